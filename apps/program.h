@@ -1,0 +1,46 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace rgbd_pose {
+
+// What every program of the project exits with.
+enum ExitCode {
+  kExitOk = 0,
+  kExitUsage = 1,           // called without what it needs
+  kExitBadInput = 2,        // a flag, file or image that cannot be used
+  kExitTrackingFailed = 3,  // ran, but the result is not usable
+  kExitSomeFailed = 4,      // some items of a batch failed
+};
+
+// Flags shown together in --help.
+struct FlagGroup {
+  std::string title;
+  std::vector<std::string> flags;
+};
+
+// What --help says of a program.
+struct ProgramInfo {
+  std::string name;
+  std::string summary;  // one sentence
+  std::string example;  // one call
+  std::vector<FlagGroup> flag_groups;
+};
+
+// Runs a program: --help and --version first, then the flags (one clear line
+// and exit 2 for an unknown flag or a value of the wrong type), logging to
+// stderr, then `body`, whose InputError becomes one line on stderr and exit 2.
+// Call it from main with main's own arguments.
+int RunProgram(int argc, char** argv, const ProgramInfo& info,
+               const std::function<int()>& body);
+
+// All flags of the program's groups as a file for --flagfile.
+std::string FormatFlagFile(const ProgramInfo& info);
+
+// Stops with kExitUsage and one line where a flag that must be given is empty.
+// Throws UsageError, which RunProgram turns into that exit.
+void RequireFlag(const std::string& name, const std::string& value);
+
+}  // namespace rgbd_pose

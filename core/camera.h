@@ -1,0 +1,65 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rgbd_pose {
+
+// A pinhole camera with OpenCV's plumb-bob distortion (k1 k2 p1 p2 k3).
+// Optical axes: x right, y down, z forward. Pixel (0, 0) is the centre of the
+// upper left pixel. Lengths in pixels.
+struct Camera {
+  int width = 640;
+  int height = 480;
+  double fx = 525.0;
+  double fy = 525.0;
+  double cx = 319.5;
+  double cy = 239.5;
+  double k1 = 0.0;
+  double k2 = 0.0;
+  double p1 = 0.0;
+  double p2 = 0.0;
+  double k3 = 0.0;
+
+  // One line that says what is wrong with the parameters, or empty.
+  std::string Check() const;
+
+  bool HasDistortion() const;
+
+  // Image point (distorted px) of a point in camera axes; z must be > 0.
+  Eigen::Vector2d Project(const Eigen::Vector3d& point) const;
+
+  // Ideal pixel (the same fx, fy, cx, cy, no distortion) of an image pixel,
+  // by fixed-point iteration (1e-10 px where the distortion is invertible).
+  Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
+
+  // Undistorts many image points at once, in place.
+  void UndistortPoints(std::vector<Eigen::Vector2d>* pixels) const;
+
+  // Point in camera axes (m) of an image pixel (distorted) at a depth z (m).
+  Eigen::Vector3d Unproject(const Eigen::Vector2d& pixel, double depth) const;
+
+  bool Contains(const Eigen::Vector2d& pixel, double border_px = 0.0) const {
+    return pixel.x() >= border_px && pixel.y() >= border_px &&
+           pixel.x() <= width - 1 - border_px &&
+           pixel.y() <= height - 1 - border_px;
+  }
+};
+
+// A camera together with how its depth images count.
+struct RgbdCamera {
+  Camera camera;
+  double depth_scale = 5000.0;  // raw units of the depth image per metre
+};
+
+// A camera known by name: tum_fr1, tum_fr2, tum_fr3, ros_default. Figures from
+// the TUM RGB-D benchmark's calibration page. Empty if the name is unknown.
+std::optional<RgbdCamera> CameraPreset(std::string_view name);
+
+// The names that CameraPreset knows.
+std::vector<std::string> CameraPresetNames();
+
+}  // namespace rgbd_pose

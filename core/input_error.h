@@ -1,0 +1,20 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+namespace rgbd_pose {
+
+// Thrown for bad input from outside (files, images, settings). The message is
+// one line that says what is wrong, where (file:line if there is one) and what
+// to do about it. Programs print it and exit with code 2.
+class InputError : public std::runtime_error {
+ public:
+  explicit InputError(const std::string& message)
+      : std::runtime_error(message) {}
+  InputError(const std::string& file, int line, const std::string& message)
+      : std::runtime_error(file + ":" + std::to_string(line) + ": " + message) {
+  }
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace rgbd_pose {
+
+// A rigid motion, named target_from_source: point_in_target =
+// target_from_source * point_in_source. Inner names cancel in products:
+// a_from_c = a_from_b * b_from_c. Translation in metres.
+struct Rigid3d {
+  Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();
+
+  Rigid3d() = default;
+  Rigid3d(const Eigen::Quaterniond& target_from_source_rotation,
+          const Eigen::Vector3d& source_origin_in_target)
+      : rotation(target_from_source_rotation.normalized()),
+        translation(source_origin_in_target) {}
+
+  Eigen::Vector3d operator*(const Eigen::Vector3d& point_in_source) const {
+    return rotation * point_in_source + translation;
+  }
+
+  Rigid3d operator*(const Rigid3d& source_from_other) const {
+    return Rigid3d(rotation * source_from_other.rotation,
+                   rotation * source_from_other.translation + translation);
+  }
+
+  Rigid3d Inverse() const {
+    const Eigen::Quaterniond inverse = rotation.conjugate();
+    return Rigid3d(inverse, -(inverse * translation));
+  }
+
+  // The rotation angle in radians, in [0, pi]; exact near 0, where
+  // acos(w) would lose half of the digits.
+  double Angle() const {
+    return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
+  }
+
+  bool IsFinite() const {
+    return rotation.coeffs().allFinite() && translation.allFinite();
+  }
+};
+
+}  // namespace rgbd_pose

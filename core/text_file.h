@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace rgbd_pose {
+
+// One data line of a text table: what is left after comments are taken out.
+struct TextLine {
+  int number = 0;  // 1-based, for messages
+  std::vector<std::string> words;
+};
+
+// The data lines of a text file with columns set apart by white space or
+// commas: comments ('#' to the end of the line), empty lines, carriage returns
+// and a byte order mark are taken out. Throws InputError if it cannot be read.
+std::vector<TextLine> ReadTextTable(const std::string& path);
+
+// A finite number, the whole word, independent of the locale; throws
+// InputError naming file, line and `what` otherwise.
+double ParseNumber(std::string_view word, const std::string& path, int line,
+                   std::string_view what);
+
+// The whole content of a file. Throws InputError if it cannot be read.
+std::string ReadTextFile(const std::string& path);
+
+// Writes a file as a whole or not at all: aside first, then renamed. Throws
+// InputError if it cannot (folder missing, disk full).
+void WriteFileAtomically(const std::string& path, std::string_view content);
+
+}  // namespace rgbd_pose
