@@ -1,0 +1,52 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/motion.h"
+#include "core/rigid3.h"
+
+namespace rgbd_pose {
+
+enum class EstimateStatus {
+  kOk,
+  kTooFewMatches,  // fewer than three usable matches
+  kDegenerate,     // some direction of motion is not determined
+  kNotConverged,   // the solver gave up
+  kInconsistent,   // too few matches agree with one motion
+};
+
+// "ok", "too_few_matches", ...
+const char* ToString(EstimateStatus status);
+
+// The result of one motion estimation.
+struct MotionEstimate {
+  EstimateStatus status = EstimateStatus::kTooFewMatches;
+  std::string reason;  // in words; empty if ok
+
+  Rigid3d cur_from_prev;  // the guess, if the status is too_few_matches
+
+  // Covariance of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a small
+  // rotation about the axes of the current camera, R_true = Exp(omega) R; C (m)
+  // is the centre of the current camera in the axes of the previous one. Zero
+  // unless the status is ok or inconsistent.
+  MotionMatrix covariance = MotionMatrix::Zero();
+
+  // Per match, in the order of the Correspondences: robust weight in [0, 1]
+  // (0 also for matches that no cost could use) and whether the match agrees
+  // with the motion within 99 % of the noise's distribution.
+  std::vector<double> weights;
+  std::vector<bool> is_inlier;
+  int num_used = 0;     // matches that some cost could use
+  int num_inliers = 0;  // of these, in agreement
+
+  double sigma = 0.0;  // robust spread of the whitened residuals; ideally 1
+  double initial_cost = 0.0;  // robust cost at the guess, at final loss widths
+  double final_cost = 0.0;
+  int iterations = 0;  // of the solver, all stages together
+  double solve_ms = 0.0;
+
+  bool ok() const { return status == EstimateStatus::kOk; }
+};
+
+}  // namespace rgbd_pose

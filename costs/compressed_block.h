@@ -1,0 +1,95 @@
+#pragma once
+
+#include <ceres/sized_cost_function.h>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+// One Ceres residual block that stands for a whole sum of robustified ones.
+//
+// Ceres spends most of its time around small residual blocks rather than in
+// them. A Gauss-Newton step needs of N blocks only their sums
+//
+//   c = 1/2 sum rho(|r_i|^2),  g = sum rho' J_i^T r_i,  H = sum rho' J_i^T J_i,
+//
+// so one block with K + 1 rows is enough:
+//
+//   r = [ L^-1 g ; sqrt(2 c - |L^-1 g|^2) ],  J = [ L^T ; 0 ],  H = L L^T,
+//
+// since r^T r / 2 = c, J^T r = g and J^T J = H: Ceres takes the very steps that
+// it takes with N blocks and losses whose rho'' <= 0 (all common ones). This
+// header needs nothing else of the project.
+
+namespace rgbd_pose {
+
+template <int K>
+struct CompressedSums {
+  Eigen::Matrix<double, K, K> hessian = Eigen::Matrix<double, K, K>::Zero();
+  Eigen::Matrix<double, K, 1> gradient = Eigen::Matrix<double, K, 1>::Zero();
+  double cost = 0.0;
+};
+
+// `Evaluator` is called as bool(const double* x, bool need_derivatives,
+// CompressedSums<K>* sums) with x[K] and zeroed sums; cost must always be set,
+// hessian (symmetric, whole) and gradient where derivatives are needed. False
+// makes Ceres reject the step.
+template <int K, typename Evaluator>
+class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
+  static_assert(K >= 1 && K <= 12, "dense sums suit small problems");
+
+ public:
+  explicit CompressedBlock(Evaluator evaluator)
+      : evaluator_(std::move(evaluator)) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    using RowMajor = Eigen::Matrix<double, K + 1, K, Eigen::RowMajor>;
+    const bool need_derivatives =
+        jacobians != nullptr && jacobians[0] != nullptr;
+    CompressedSums<K> sums;
+    if (!evaluator_(parameters[0], need_derivatives, &sums)) return false;
+    Eigen::Map<Eigen::Matrix<double, K + 1, 1>> r(residuals);
+    r.setZero();
+    r[K] = std::sqrt(std::max(0.0, 2.0 * sums.cost));
+    if (!need_derivatives) return true;
+    Eigen::Map<RowMajor> J(jacobians[0]);
+    J.setZero();
+    const Eigen::LLT<Eigen::Matrix<double, K, K>> cholesky(sums.hessian);
+    if (cholesky.info() == Eigen::Success) {
+      r.template head<K>() = cholesky.matrixL().solve(sums.gradient);
+      J.template topRows<K>() = cholesky.matrixU();
+    } else {
+      FactorSingular(sums, r.template head<K>(), J.template topRows<K>());
+    }
+    const double explained = r.template head<K>().squaredNorm();
+    r[K] = std::sqrt(std::max(0.0, 2.0 * sums.cost - explained));
+    return r.allFinite() && J.allFinite();
+  }
+
+ private:
+  // H = V diag(l) V^T with some l = 0: J = diag(sqrt l) V^T, r = diag(1/sqrt l)
+  // V^T g where l > 0. There g has no part in the null space of H.
+  template <typename Residuals, typename Rows>
+  static void FactorSingular(const CompressedSums<K>& sums, Residuals r,
+                             Rows J) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, K, K>> eigen(
+        sums.hessian);
+    const double smallest =
+        1e-14 * std::max(0.0, eigen.eigenvalues().maxCoeff());
+    for (int i = 0; i < K; ++i) {
+      const double value = eigen.eigenvalues()[i];
+      if (!(value > smallest)) continue;
+      const double root = std::sqrt(value);
+      J.row(i) = root * eigen.eigenvectors().col(i).transpose();
+      r[i] = eigen.eigenvectors().col(i).dot(sums.gradient) / root;
+    }
+  }
+
+  Evaluator evaluator_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,96 @@
+#include "costs/cost_factory.h"
+
+#include <utility>
+
+#include "core/input_error.h"
+#include "costs/cost_list.h"
+#include "costs/cost_of.h"
+#include "robust/m_estimator.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct CostEntry {
+  std::string_view name;
+  std::unique_ptr<Cost> (*make)();
+};
+
+template <typename... Residuals>
+std::vector<CostEntry> EntriesOf(TypeList<Residuals...>) {
+  return {CostEntry{Residuals::kName, []() -> std::unique_ptr<Cost> {
+                      return std::make_unique<CostOf<Residuals>>();
+                    }}...};
+}
+
+std::vector<std::string> Split(const std::string& text, char separator) {
+  std::vector<std::string> parts;
+  size_t begin = 0;
+  while (true) {
+    const size_t end = text.find(separator, begin);
+    parts.push_back(text.substr(begin, end - begin));
+    if (end == std::string::npos) return parts;
+    begin = end + 1;
+  }
+}
+
+std::string Join(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+}  // namespace
+
+std::vector<std::string> CostNames() {
+  std::vector<std::string> names;
+  for (const CostEntry& entry : EntriesOf(ResidualTypes())) {
+    names.emplace_back(entry.name);
+  }
+  return names;
+}
+
+std::unique_ptr<Cost> MakeCost(std::string_view name) {
+  for (const CostEntry& entry : EntriesOf(ResidualTypes())) {
+    if (entry.name == name) return entry.make();
+  }
+  return nullptr;
+}
+
+std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,
+                                        const std::string& loss_names) {
+  const std::vector<std::string> costs = Split(cost_names, '+');
+  const std::vector<std::string> losses = Split(loss_names, ',');
+  if (losses.size() != 1 && losses.size() != costs.size()) {
+    throw InputError("'" + loss_names + "' names " +
+                     std::to_string(losses.size()) + " losses for " +
+                     std::to_string(costs.size()) +
+                     " costs; give one for all or one for each");
+  }
+  std::vector<RobustCost> terms;
+  for (size_t i = 0; i < costs.size(); ++i) {
+    std::unique_ptr<Cost> cost = MakeCost(costs[i]);
+    if (cost == nullptr) {
+      throw InputError("unknown cost '" + costs[i] + "'; there are " +
+                       Join(CostNames()));
+    }
+    const std::string& loss_name = losses[losses.size() == 1 ? 0 : i];
+    const MEstimator* loss = FindMEstimator(loss_name);
+    if (loss == nullptr) {
+      throw InputError("unknown loss '" + loss_name + "'; there are " +
+                       Join(MEstimatorNames()));
+    }
+    const int dimension = cost->independent_rows();
+    LossFactory factory;
+    if (loss->make != nullptr) {
+      factory = [loss, dimension](double scale) {
+        return loss->make(scale * loss->Width95(dimension));
+      };
+    }
+    terms.push_back({std::move(cost), std::move(factory)});
+  }
+  return terms;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/cost.h"
+#include "core/estimator.h"
+
+namespace rgbd_pose {
+
+// The names of all costs, in the order of the type list.
+std::vector<std::string> CostNames();
+
+// The cost of that name, or null.
+std::unique_ptr<Cost> MakeCost(std::string_view name);
+
+// Costs by name ("bidirectional_point+motion_prior"), each with its loss: one
+// name for all or one each ("tukey", "tukey,none"). Throws InputError listing
+// the names there are.
+std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,
+                                        const std::string& loss_names);
+
+}  // namespace rgbd_pose
