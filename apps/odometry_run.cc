@@ -1,0 +1,123 @@
+#include "apps/odometry_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+
+#include "core/input_error.h"
+#include "costs/cost_factory.h"
+#include "frontend/frontend.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct AssemblyName {
+  const char* name;
+  Assembly assembly;
+};
+
+constexpr AssemblyName kAssemblies[] = {
+    {"compressed", Assembly::kCompressed},
+    {"per_match", Assembly::kPerMatch},
+    {"autodiff", Assembly::kAutodiff},
+};
+
+Assembly AssemblyByName(const std::string& name) {
+  for (const AssemblyName& row : kAssemblies) {
+    if (row.name == name) return row.assembly;
+  }
+  throw InputError("unknown assembly '" + name +
+                   "'; there are compressed, per_match, autodiff");
+}
+
+const DepthNoiseModel* DepthNoiseByName(const std::string& name) {
+  const DepthNoiseModel* model = FindDepthNoiseModel(name);
+  if (model != nullptr) return model;
+  std::string names;
+  for (const DepthNoiseModel& row : DepthNoiseModels()) {
+    names += (names.empty() ? "" : ", ") + std::string(row.name);
+  }
+  throw InputError("unknown depth noise '" + name + "'; there are " + names);
+}
+
+double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const size_t rank = std::min<size_t>(
+      values.size() - 1, static_cast<size_t>(share * values.size()));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[rank];
+}
+
+}  // namespace
+
+Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
+  FrontendOptions frontend;
+  frontend.camera = camera;
+  frontend.depth_noise = DepthNoiseByName(settings.depth_noise);
+  frontend.max_features = settings.max_features;
+  EstimatorOptions estimator;
+  estimator.assembly = AssemblyByName(settings.assembly);
+  return Odometry(
+      OdometryOptions(), camera, MakeFrontend(settings.frontend, frontend),
+      Estimator(estimator, MakeRobustCosts(settings.cost, settings.loss)));
+}
+
+std::vector<TrackedFrame> RunOdometry(
+    const Dataset& dataset, Odometry* odometry,
+    const std::function<void(int done)>& progress) {
+  std::vector<TrackedFrame> frames;
+  frames.reserve(dataset.size());
+  for (int i = 0; i < dataset.size(); ++i) {
+    frames.push_back(odometry->Track(dataset.Read(i)));
+    progress(i + 1);
+  }
+  return frames;
+}
+
+Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames) {
+  Trajectory trajectory;
+  for (const TrackedFrame& frame : frames) {
+    if (frame.status == TrackingStatus::kLost) continue;
+    trajectory.push_back({frame.timestamp, frame.world_from_cam});
+  }
+  return trajectory;
+}
+
+std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
+  std::string text =
+      "timestamp,status,reason,matches,inliers,iterations,sigma,track_ms,"
+      "frontend_ms,solve_ms\n";
+  char row[256];
+  for (const TrackedFrame& frame : frames) {
+    // Reasons are our own words and hold no quotes.
+    std::snprintf(row, sizeof(row),
+                  "%.6f,%s,\"%s\",%d,%d,%d,%.4f,%.3f,%.3f,%.3f\n",
+                  frame.timestamp, ToString(frame.status), frame.reason.c_str(),
+                  frame.matches, frame.inliers, frame.iterations, frame.sigma,
+                  frame.track_ms, frame.frontend_ms, frame.solve_ms);
+    text += row;
+  }
+  return text;
+}
+
+RunSummary Summarise(const std::vector<TrackedFrame>& frames) {
+  RunSummary summary;
+  std::vector<double> track, frontend, solve;
+  for (const TrackedFrame& frame : frames) {
+    ++summary.frames;
+    summary.ok += frame.status == TrackingStatus::kOk;
+    summary.degraded += frame.status == TrackingStatus::kDegraded;
+    summary.lost += frame.status == TrackingStatus::kLost;
+    summary.references += frame.is_reference;
+    track.push_back(frame.track_ms);
+    frontend.push_back(frame.frontend_ms);
+    solve.push_back(frame.solve_ms);
+  }
+  summary.median_track_ms = Quantile(track, 0.5);
+  summary.p99_track_ms = Quantile(track, 0.99);
+  summary.median_frontend_ms = Quantile(frontend, 0.5);
+  summary.median_solve_ms = Quantile(solve, 0.5);
+  return summary;
+}
+
+}  // namespace rgbd_pose

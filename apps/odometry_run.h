@@ -1,0 +1,60 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/estimator.h"
+#include "core/trajectory.h"
+#include "frontend/dataset.h"
+#include "frontend/odometry.h"
+
+namespace rgbd_pose {
+
+// The settings of a run by name, as programs take them.
+struct OdometrySettings {
+  std::string cost = "bidirectional_point";
+  std::string loss = "tukey";
+  std::string frontend = "klt";
+  std::string assembly = "compressed";
+  std::string depth_noise = "khoshelham";
+  int max_features = 400;
+};
+
+// An odometry with these settings. Throws InputError for unknown names.
+Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
+
+// Tracks a whole dataset: one result a frame, in order. `progress` hears how
+// many are done.
+std::vector<TrackedFrame> RunOdometry(
+    const Dataset& dataset, Odometry* odometry,
+    const std::function<void(int done)>& progress);
+
+// The poses of all frames that were not lost.
+Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
+
+// frames.csv: a header and one row an input frame.
+std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames);
+
+// What a run comes to.
+struct RunSummary {
+  int frames = 0;
+  int ok = 0;
+  int degraded = 0;
+  int lost = 0;
+  int references = 0;
+  double median_track_ms = 0.0;
+  double p99_track_ms = 0.0;
+  double median_frontend_ms = 0.0;
+  double median_solve_ms = 0.0;
+
+  // Share of frames with a pose, 0 to 1.
+  double TrackedShare() const {
+    return frames > 0 ? static_cast<double>(ok + degraded) / frames : 0.0;
+  }
+};
+
+RunSummary Summarise(const std::vector<TrackedFrame>& frames);
+
+}  // namespace rgbd_pose

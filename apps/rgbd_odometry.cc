@@ -1,0 +1,195 @@
+// Camera motion of an RGB-D sequence: dataset in; trajectory, figures and
+// errors out.
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <opencv2/core.hpp>
+#include <optional>
+
+#include "apps/evaluation_report.h"
+#include "apps/odometry_run.h"
+#include "apps/program.h"
+#include "apps/progress_bar.h"
+#include "core/evaluation.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
+#include "core/trajectory.h"
+#include "frontend/camera_file.h"
+#include "frontend/depth_scale.h"
+#include "frontend/tum_dataset.h"
+
+DEFINE_string(dataset, "", "folder of a sequence in TUM RGB-D layout");
+DEFINE_string(associations, "",
+              "file that pairs colour and depth images, either column order; "
+              "empty: rgb.txt and depth.txt are paired by time");
+DEFINE_string(camera, "",
+              "YAML file (ORB-SLAM2/3, ROS camera_info or Kalibr layout) or "
+              "preset: tum_fr1, tum_fr2, tum_fr3, ros_default");
+DEFINE_double(depth_scale, 0.0,
+              "raw depth units per metre; 0: as the camera says");
+DEFINE_string(depth_noise, "khoshelham",
+              "depth noise model: khoshelham, nguyen, constant");
+DEFINE_string(cost, "bidirectional_point", "cost of a match");
+DEFINE_string(loss, "tukey", "M-estimator: none, huber, cauchy, tukey");
+DEFINE_string(assembly, "compressed",
+              "how matches become Ceres residual blocks: compressed, "
+              "per_match, autodiff");
+DEFINE_string(frontend, "klt", "where matches come from: klt");
+DEFINE_int32(max_features, 400, "features wanted in a reference frame");
+DEFINE_int32(threads, 1,
+             "threads of the image processing; the result does not depend "
+             "on it");
+DEFINE_string(groundtruth, "",
+              "trajectory to compare with (TUM text); empty: groundtruth.txt "
+              "of the dataset if it is there");
+DEFINE_string(output, "", "folder for the results, made if missing");
+
+namespace rgbd_pose {
+namespace {
+
+const ProgramInfo kInfo = {
+    "rgbd_odometry",
+    "estimates the motion of an RGB-D camera along a sequence.",
+    "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
+    "--output=runs/fr1_xyz",
+    {{"Input",
+      {"dataset", "associations", "camera", "depth_scale", "depth_noise",
+       "groundtruth"}},
+     {"Estimation",
+      {"cost", "loss", "assembly", "frontend", "max_features", "threads"}},
+     {"Output", {"output"}}}};
+
+// A run that tracked less of its frames than this has failed.
+constexpr double kMinTrackedShare = 0.5;
+
+OdometrySettings SettingsFromFlags() {
+  OdometrySettings settings;
+  settings.cost = FLAGS_cost;
+  settings.loss = FLAGS_loss;
+  settings.frontend = FLAGS_frontend;
+  settings.assembly = FLAGS_assembly;
+  settings.depth_noise = FLAGS_depth_noise;
+  settings.max_features = FLAGS_max_features;
+  return settings;
+}
+
+TumDataset OpenDataset() {
+  TumDatasetOptions options;
+  options.folder = FLAGS_dataset;
+  options.associations_file = FLAGS_associations;
+  options.camera = ResolveCamera(FLAGS_camera);
+  if (FLAGS_depth_scale < 0.0) {
+    throw InputError("--depth_scale must be positive (raw units per metre)");
+  }
+  if (FLAGS_depth_scale > 0.0) options.camera.depth_scale = FLAGS_depth_scale;
+  return TumDataset(options);
+}
+
+std::optional<Trajectory> FindGroundTruth() {
+  if (!FLAGS_groundtruth.empty()) return ReadTrajectory(FLAGS_groundtruth);
+  const std::filesystem::path path =
+      std::filesystem::path(FLAGS_dataset) / "groundtruth.txt";
+  if (!std::filesystem::exists(path)) return std::nullopt;
+  return ReadTrajectory(path.string());
+}
+
+void MakeOutputFolder() {
+  std::error_code error;
+  std::filesystem::create_directories(FLAGS_output, error);
+  if (error) {
+    throw InputError("--output=" + FLAGS_output + ": cannot be made (" +
+                     error.message() + ")");
+  }
+}
+
+void PrintSummary(const RunSummary& summary) {
+  std::printf("frames      %d, %.1f %% tracked (%d ok, %d degraded, %d lost)\n",
+              summary.frames, 100.0 * summary.TrackedShare(), summary.ok,
+              summary.degraded, summary.lost);
+  std::printf("references  %d\n", summary.references);
+  std::printf(
+      "time        %.2f ms per frame median, %.2f ms 99th percentile, without "
+      "decoding\n"
+      "            of it %.2f ms matching, %.3f ms pose solve (medians)\n",
+      summary.median_track_ms, summary.p99_track_ms, summary.median_frontend_ms,
+      summary.median_solve_ms);
+}
+
+nlohmann::json SummaryToJson(const RunSummary& summary) {
+  return {{"frames", summary.frames},
+          {"ok", summary.ok},
+          {"degraded", summary.degraded},
+          {"lost", summary.lost},
+          {"references", summary.references},
+          {"tracked_share", summary.TrackedShare()},
+          {"track_ms_median", summary.median_track_ms},
+          {"track_ms_p99", summary.p99_track_ms},
+          {"frontend_ms_median", summary.median_frontend_ms},
+          {"solve_ms_median", summary.median_solve_ms}};
+}
+
+int Main() {
+  RequireFlag("dataset", FLAGS_dataset);
+  RequireFlag("camera", FLAGS_camera);
+  RequireFlag("output", FLAGS_output);
+  if (FLAGS_threads < 1) throw InputError("--threads must be at least 1");
+  cv::setNumThreads(FLAGS_threads);
+
+  // All that can be wrong with the input is looked at before the work starts
+  // and before anything is written.
+  const TumDataset dataset = OpenDataset();
+  Odometry odometry =
+      MakeOdometry(SettingsFromFlags(), dataset.camera().camera);
+  const std::optional<Trajectory> truth = FindGroundTruth();
+  MakeOutputFolder();
+  const std::string warning = DepthScaleWarning(dataset.Read(0));
+  if (!warning.empty()) LOG(WARNING) << warning;
+  if (dataset.unmatched_color() > 0) {
+    LOG(WARNING) << dataset.unmatched_color()
+                 << " colour images have no depth image within 0.02 s and "
+                    "are left out";
+  }
+
+  std::vector<TrackedFrame> frames;
+  {
+    ProgressBar bar("tracking", dataset.size());
+    frames =
+        RunOdometry(dataset, &odometry, [&bar](int done) { bar.Update(done); });
+  }
+
+  const Trajectory trajectory = TrackedTrajectory(frames);
+  const RunSummary summary = Summarise(frames);
+  PrintSummary(summary);
+  nlohmann::json metrics = {{"program", "rgbd_odometry"},
+                            {"dataset", FLAGS_dataset},
+                            {"unmatched_color", dataset.unmatched_color()},
+                            {"run", SummaryToJson(summary)}};
+  if (truth.has_value()) {
+    const EvaluationReport report = Evaluate(trajectory, *truth, {});
+    std::printf("%s", FormatEvaluation(report).c_str());
+    metrics["evaluation"] = EvaluationToJson(report);
+  }
+  const std::filesystem::path output(FLAGS_output);
+  WriteFileAtomically((output / "trajectory.txt").string(),
+                      FormatTrajectory(trajectory));
+  WriteFileAtomically((output / "frames.csv").string(),
+                      FormatFramesCsv(frames));
+  WriteFileAtomically((output / "config.flags").string(),
+                      FormatFlagFile(kInfo));
+  WriteFileAtomically((output / "metrics.json").string(),
+                      metrics.dump(2) + "\n");
+  std::printf("results in  %s\n", FLAGS_output.c_str());
+  return summary.TrackedShare() < kMinTrackedShare ? kExitTrackingFailed
+                                                   : kExitOk;
+}
+
+}  // namespace
+}  // namespace rgbd_pose
+
+int main(int argc, char** argv) {
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::kInfo, rgbd_pose::Main);
+}

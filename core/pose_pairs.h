@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "core/rigid3.h"
+#include "core/trajectory.h"
+
+namespace rgbd_pose {
+
+// An estimated pose and the ground truth of the same moment. Each counts from
+// a world of its own; both map from the same camera.
+struct PosePair {
+  double timestamp = 0.0;  // of the estimate, s
+  Rigid3d truth;           // truth_world_from_cam
+  Rigid3d estimate;        // estimate_world_from_cam
+};
+
+// The place of the time nearest to `time` in a sorted list that is not empty;
+// the earlier one of two that are as near.
+size_t NearestTime(const std::vector<double>& times, double time);
+
+// Pairs poses that are each other's nearest in time and at most
+// `max_time_difference` (s) apart, in time order. So a list of the higher rate
+// gives only the poses that fit best, and each pose is used at most once.
+// Throws InputError, naming the time ranges, if there is no such pair.
+std::vector<PosePair> PairPoses(const Trajectory& estimate,
+                                const Trajectory& ground_truth,
+                                double max_time_difference);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,61 @@
+#include "frontend/frontend.h"
+
+#include <functional>
+
+#include "core/input_error.h"
+#include "frontend/klt_frontend.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct FrontendEntry {
+  std::string_view name;
+  std::unique_ptr<Frontend> (*make)(const FrontendOptions& options);
+};
+
+template <typename Type>
+FrontendEntry EntryOf() {
+  return {Type::kName,
+          [](const FrontendOptions& options) -> std::unique_ptr<Frontend> {
+            return std::make_unique<Type>(options);
+          }};
+}
+
+// One header and one row here make a frontend.
+const FrontendEntry kFrontends[] = {
+    EntryOf<KltFrontend>(),
+};
+
+}  // namespace
+
+std::string FrontendOptions::Check() const {
+  const std::string camera_error = camera.Check();
+  if (!camera_error.empty()) return camera_error;
+  if (depth_noise == nullptr) return "a depth noise model is needed";
+  if (max_features < 3) return "max_features must be at least 3";
+  if (!(min_depth > 0.0) || !(max_depth > min_depth)) {
+    return "depth limits must satisfy 0 < min_depth < max_depth";
+  }
+  return "";
+}
+
+std::vector<std::string> FrontendNames() {
+  std::vector<std::string> names;
+  for (const FrontendEntry& entry : kFrontends) names.emplace_back(entry.name);
+  return names;
+}
+
+std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
+                                       const FrontendOptions& options) {
+  const std::string error = options.Check();
+  if (!error.empty()) throw InputError("frontend: " + error);
+  std::string names;
+  for (const FrontendEntry& entry : kFrontends) {
+    if (entry.name == name) return entry.make(options);
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw InputError("unknown frontend '" + std::string(name) + "'; there are " +
+                   names);
+}
+
+}  // namespace rgbd_pose

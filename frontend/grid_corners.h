@@ -1,0 +1,16 @@
+#pragma once
+
+#include <functional>
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace rgbd_pose {
+
+// Up to max_corners FAST corners spread over a grid: from each cell the
+// strongest that `accept` takes (a depth is there, say), so that textured
+// places do not crowd out the rest. In the order of the cells.
+std::vector<cv::Point2f> DetectGridCorners(
+    const cv::Mat& gray, int max_corners,
+    const std::function<bool(const cv::Point2f&)>& accept);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,61 @@
+#include "frontend/image_file.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <string_view>
+
+#include "core/input_error.h"
+#include "core/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+// OpenCV fills the missing rest of a JPEG with grey and calls it a success, so
+// look for the end marker behind the last scan. Neither marker can occur
+// inside the compressed data.
+bool IsCutOffJpeg(std::string_view bytes) {
+  constexpr std::string_view kJpegStart = "\xFF\xD8\xFF";
+  constexpr std::string_view kScanStart = "\xFF\xDA";
+  constexpr std::string_view kJpegEnd = "\xFF\xD9";
+  if (bytes.substr(0, kJpegStart.size()) != kJpegStart) return false;
+  const size_t last_scan = bytes.rfind(kScanStart);
+  return last_scan == std::string_view::npos ||
+         bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
+}
+
+}  // namespace
+
+cv::Mat ReadImageFile(const std::string& path, int flags) {
+  std::string bytes = ReadTextFile(path);
+  if (bytes.empty()) throw InputError(path + ": is empty; copy it again");
+  if (IsCutOffJpeg(bytes)) {
+    throw InputError(path + ": the image is cut off; copy it again");
+  }
+  cv::Mat image;
+  try {
+    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1,
+                         bytes.data());
+    image = cv::imdecode(buffer, flags | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception& error) {
+    throw InputError(path + ": cannot be decoded: " + error.err);
+  }
+  if (image.empty()) {
+    throw InputError(path +
+                     ": is damaged, cut off or no image that OpenCV can read");
+  }
+  return image;
+}
+
+cv::Mat ReadDepthImageFile(const std::string& path) {
+  cv::Mat depth = ReadImageFile(path, cv::IMREAD_UNCHANGED);
+  if (depth.type() != CV_16UC1) {
+    throw InputError(path +
+                     ": a depth image must have 16 bits and 1 channel, "
+                     "this one is " +
+                     cv::typeToString(depth.type()) +
+                     "; is it the colour image, or a depth image made for "
+                     "viewing?");
+  }
+  return depth;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "frontend/depth_lookup.h"
+#include "frontend/frontend.h"
+
+namespace rgbd_pose {
+
+// Corners of the reference frame, tracked straight into each new frame by
+// pyramidal Lucas-Kanade (Bouguet 2001), seeded by projecting their 3D points
+// with the guess. Tracking always from the reference keeps tracks from
+// drifting.
+class KltFrontend final : public Frontend {
+ public:
+  static constexpr char kName[] = "klt";
+
+  explicit KltFrontend(const FrontendOptions& options);
+
+  std::string_view name() const override { return kName; }
+  int SetReference(const Frame& frame) override;
+  void Match(const Frame& frame, const Rigid3d& cur_from_ref_guess,
+             Correspondences* matches) override;
+
+ private:
+  // The observation of an image point with its depth, undistorted.
+  Observation Observe(const Frame& frame, const cv::Point2f& pixel) const;
+
+  FrontendOptions options_;
+  DepthLookupOptions depth_options_;
+  std::vector<cv::Mat> reference_pyramid_;  // with derivatives
+  std::vector<cv::Mat> pyramid_;            // of the frame at hand
+  std::vector<cv::Point2f> reference_corners_;
+  std::vector<Observation> reference_observations_;
+  std::vector<cv::Point2f> tracked_;
+  std::vector<uchar> found_;
+  std::vector<float> error_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "core/camera.h"
+#include "core/trajectory.h"
+#include "frontend/dataset.h"
+#include "frontend/synthetic_path.h"
+#include "frontend/synthetic_renderer.h"
+
+namespace rgbd_pose {
+
+struct SyntheticOptions {
+  std::string scene = "room";  // see MakeScene
+  std::string path = "xyz";    // see FindSyntheticPath
+  int frames = 150;
+  uint32_t seed = 1;      // of textures and noise
+  double rate_hz = 30.0;  // frames a second
+  bool noise = true;      // of a real sensor, see synthetic_sensor.h
+  RgbdCamera camera;      // may have distortion
+};
+
+// The images of one time, as cameras give them.
+struct RgbdImages {
+  cv::Mat color;  // CV_8UC3, blue, green, red
+  cv::Mat depth;  // CV_16UC1, raw units, 0 = none
+};
+
+// An RGB-D sequence rendered as it is read, with exact poses. The same options
+// give the same bytes, whatever the order or the number of threads. Time
+// stamps start at 1000 s and are whole microseconds, as TUM files hold them.
+class SyntheticDataset : public Dataset {
+ public:
+  // Throws InputError if the options make no sense.
+  explicit SyntheticDataset(const SyntheticOptions& options);
+
+  int size() const override { return options_.frames; }
+  double timestamp(int index) const override;
+  Frame Read(int index) const override;
+  const RgbdCamera& camera() const override { return options_.camera; }
+
+  // Colour and depth of a frame; Read gives the same with colour turned to
+  // gray by cv::cvtColor.
+  RgbdImages ReadImages(int index) const;
+
+  // Colour of a frame, CV_8UC3.
+  cv::Mat ReadColor(int index) const { return ReadImages(index).color; }
+
+  Rigid3d WorldFromCam(int index) const;
+
+  // The exact pose of every frame.
+  Trajectory ground_truth() const;
+
+ private:
+  SyntheticOptions options_;
+  SyntheticPath path_;
+  Renderer renderer_;
+};
+
+}  // namespace rgbd_pose

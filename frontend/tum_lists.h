@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rgbd_pose {
+
+// A colour image and its depth image.
+struct ImagePair {
+  double timestamp = 0.0;  // of the colour image, s
+  std::string color_path;
+  std::string depth_path;
+};
+
+// The frames of a sequence in the layout of the TUM RGB-D benchmark, in strict
+// time order; never empty.
+struct TumLists {
+  std::vector<ImagePair> pairs;
+  int unmatched_color = 0;  // colour images without a depth image
+};
+
+// Both readers check columns, time stamps (strictly increasing) and that the
+// images of all pairs exist, and throw InputError (file:line) otherwise. Paths
+// in the lists count from `folder`.
+
+// Pairs rgb.txt and depth.txt of a folder by nearest time, at most
+// `max_time_difference` (s) apart; see Associate.
+TumLists ReadTumLists(const std::string& folder, double max_time_difference);
+
+// Reads the pairs from lines `time colour_image time depth_image`, or depth
+// first: in which order, the first line tells by a path with the word depth in
+// it or else by its images. How far the times are apart is not checked.
+TumLists ReadTumAssociations(const std::string& folder,
+                             const std::string& associations_file);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <yaml-cpp/yaml.h>
+
+#include <string>
+#include <vector>
+
+namespace rgbd_pose {
+
+// A map of a YAML file, read with checks. Whatever is wrong (a key missing, a
+// word that is no finite number, ...) is an InputError naming file, line and
+// key. YAML files written by OpenCV can be read too.
+class YamlSection {
+ public:
+  // The top level of a file; empty if the file holds something else than keys.
+  static YamlSection FromFile(const std::string& path);
+
+  bool Has(const std::string& key) const;
+  bool HasKeyStartingWith(const std::string& start) const;
+
+  // The map below a key.
+  YamlSection Child(const std::string& key) const;
+
+  double Number(const std::string& key) const;
+  double NumberOr(const std::string& key, double fallback) const;
+
+  // A list of numbers whose length is one of those given.
+  std::vector<double> Numbers(const std::string& key,
+                              const std::vector<size_t>& lengths) const;
+
+  // A positive whole number of pixels: the value of a key, or a number already
+  // read from there.
+  int Pixels(const std::string& key) const;
+  int Pixels(const std::string& key, double number) const;
+
+  // Refuses a word that is not among the known ones; a missing key is fine.
+  void CheckWord(const std::string& key,
+                 const std::vector<std::string>& known) const;
+
+  // Throws about a key that is there: "<file>:<line>: <key> <message>".
+  [[noreturn]] void Fail(const std::string& key,
+                         const std::string& message) const;
+
+ private:
+  YamlSection(const std::string& path, const std::string& prefix,
+              const YAML::Node& node)
+      : path_(path), prefix_(prefix), node_(node) {}
+
+  YAML::Node Find(const std::string& key) const;
+  double ToNumber(const std::string& key, const YAML::Node& node) const;
+
+  std::string path_;
+  std::string prefix_;     // goes before keys in messages
+  const YAML::Node node_;  // const: looking a key up must not add it
+};
+
+}  // namespace rgbd_pose
