@@ -1,0 +1,193 @@
+// The whole chain in memory: images in, poses out.
+
+#include "frontend/odometry.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <string>
+#include <vector>
+
+#include "core/evaluation.h"
+#include "core/trajectory.h"
+#include "costs/cost_factory.h"
+#include "frontend/camera_file.h"
+#include "frontend/frontend.h"
+#include "frontend/synthetic_dataset.h"
+#include "frontend/tum_dataset.h"
+
+namespace rgbd_pose {
+namespace {
+
+Odometry MakeOdometry(const Camera& camera, const std::string& loss) {
+  FrontendOptions frontend;
+  frontend.camera = camera;
+  return Odometry(OdometryOptions(), camera, MakeFrontend("klt", frontend),
+                  Estimator(EstimatorOptions(),
+                            MakeRobustCosts("bidirectional_point", loss)));
+}
+
+struct Tracked {
+  std::vector<TrackedFrame> frames;
+  Trajectory trajectory;
+
+  int Count(TrackingStatus status) const {
+    int count = 0;
+    for (const TrackedFrame& frame : frames) count += frame.status == status;
+    return count;
+  }
+};
+
+Tracked TrackAll(const Dataset& dataset, const std::string& loss) {
+  Odometry odometry = MakeOdometry(dataset.camera().camera, loss);
+  Tracked run;
+  for (int i = 0; i < dataset.size(); ++i) {
+    run.frames.push_back(odometry.Track(dataset.Read(i)));
+    run.trajectory.push_back(
+        {run.frames.back().timestamp, run.frames.back().world_from_cam});
+  }
+  return run;
+}
+
+SyntheticDataset Room(const std::string& path, int frames) {
+  SyntheticOptions options;
+  options.path = path;
+  options.frames = frames;
+  return SyntheticDataset(options);
+}
+
+// A matrix of its own: assigning cv::Mat::zeros would write into the shared
+// one.
+Frame Black(const Frame& frame) {
+  Frame black = frame;
+  black.gray = cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(0));
+  return black;
+}
+
+TEST(OdometryTest, FollowsTheCameraAlongItsAxes) {
+  const SyntheticDataset dataset = Room("xyz", 30);
+  const Tracked run = TrackAll(dataset, "tukey");
+  EXPECT_EQ(run.Count(TrackingStatus::kOk), 30);
+  const EvaluationReport report =
+      Evaluate(run.trajectory, dataset.ground_truth(), {});
+  // Ten times below the path's length would already be a failure to track;
+  // 5 mm is what the whole sequence is held to.
+  EXPECT_LE(report.ate.rmse, 0.005);
+  // Directions: the pose itself, not its inverse, to within the drift.
+  const Rigid3d first = dataset.WorldFromCam(0);
+  const Rigid3d expected = first.Inverse() * dataset.WorldFromCam(29);
+  const Rigid3d actual = run.trajectory.back().world_from_cam;
+  ASSERT_GT(expected.translation.norm(), 0.03) << "the path is vacuous";
+  EXPECT_LE((actual.translation - expected.translation).norm(), 0.005);
+}
+
+TEST(OdometryTest, ComesBackFromPanAndTilt) {
+  const SyntheticDataset dataset = Room("pan_tilt", 60);
+  for (const std::string loss : {"huber", "tukey"}) {
+    const Tracked run = TrackAll(dataset, loss);
+    EXPECT_EQ(run.Count(TrackingStatus::kLost), 0) << loss;
+    const Rigid3d end = run.trajectory.back().world_from_cam;
+    EXPECT_LE(end.Angle(), 0.3 * M_PI / 180.0) << loss;
+    EXPECT_LE(end.translation.norm(), 0.005) << loss;
+  }
+}
+
+TEST(OdometryTest, StandsStill) {
+  const Tracked run = TrackAll(Room("still", 20), "tukey");
+  for (const TrackedFrame& frame : run.frames) {
+    EXPECT_EQ(frame.status, TrackingStatus::kOk) << frame.reason;
+    EXPECT_LE(frame.world_from_cam.translation.norm(), 0.002);
+    EXPECT_LE(frame.world_from_cam.Angle(), 0.1 * M_PI / 180.0);
+  }
+}
+
+TEST(OdometryTest, EveryFrameGetsAResultAndBlackOnesAreLost) {
+  const SyntheticDataset dataset = Room("still", 1);
+  Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
+  const Frame good = dataset.Read(0);
+  const Frame black = Black(good);
+  Frame blind = good;
+  blind.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
+
+  EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
+  EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
+  for (const Frame& bad : {black, blind, black}) {
+    const TrackedFrame result = odometry.Track(bad);
+    EXPECT_EQ(result.status, TrackingStatus::kLost);
+    EXPECT_NE(result.reason, "");
+    EXPECT_LE(result.world_from_cam.translation.norm(), 0.001) << "not held";
+  }
+  odometry.Track(good);  // the new reference
+  EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
+}
+
+TEST(OdometryTest, ABlackStartIsLostUntilThereAreFeatures) {
+  const SyntheticDataset dataset = Room("still", 1);
+  Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
+  const Frame good = dataset.Read(0);
+  const Frame black = Black(good);
+  EXPECT_EQ(odometry.Track(black).status, TrackingStatus::kLost);
+  EXPECT_EQ(odometry.Track(black).status, TrackingStatus::kLost);
+  EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
+  EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
+}
+
+TEST(OdometryTest, GivesTheSameBytesTwice) {
+  const SyntheticDataset dataset = Room("xyz", 12);
+  EXPECT_EQ(FormatTrajectory(TrackAll(dataset, "tukey").trajectory),
+            FormatTrajectory(TrackAll(dataset, "tukey").trajectory));
+}
+
+class RealSequenceTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const char* folder = std::getenv("RGBD_POSE_TEST_DATA");
+    if (folder == nullptr) {
+      GTEST_SKIP() << "RGBD_POSE_TEST_DATA does not name a folder of real "
+                      "sequences";
+    }
+    folder_ = folder;
+  }
+
+  TumDataset Open(const std::string& sequence) const {
+    TumDatasetOptions options;
+    options.folder = folder_ + "/" + sequence;
+    options.camera = ResolveCamera(options.folder + "/camera.yaml");
+    return TumDataset(options);
+  }
+
+  std::string folder_;
+};
+
+TEST_F(RealSequenceTest, RedKitchenIsTrackedThroughout) {
+  const Tracked run = TrackAll(Open("redkitchen400"), "tukey");
+  EXPECT_EQ(run.frames.size(), 400u);
+  EXPECT_EQ(run.Count(TrackingStatus::kLost), 0);
+  const EvaluationReport report =
+      Evaluate(run.trajectory,
+               ReadTrajectory(folder_ + "/redkitchen400/groundtruth.txt"), {});
+  EXPECT_LE(report.ate.rmse, 0.060);
+  EXPECT_LE(report.rpe_seconds.translation.rmse, 0.050);
+}
+
+TEST_F(RealSequenceTest, AFarHallIsNotLostAndStandsStill) {
+  const Tracked run = TrackAll(Open("tum_fr2_hall50"), "tukey");
+  EXPECT_EQ(run.Count(TrackingStatus::kLost), 0);
+}
+
+TEST_F(RealSequenceTest, FastRotationIsTracked) {
+  const Tracked run = TrackAll(Open("tum_fr1_360_5"), "tukey");
+  EXPECT_EQ(run.Count(TrackingStatus::kLost), 0);
+}
+
+TEST_F(RealSequenceTest, Freiburg1IsWithinAFewMillimetres) {
+  const Tracked run = TrackAll(Open("tum_fr1_xyz_3"), "tukey");
+  EXPECT_EQ(run.Count(TrackingStatus::kOk), 3);
+  const EvaluationReport report =
+      Evaluate(run.trajectory,
+               ReadTrajectory(folder_ + "/tum_fr1_xyz_3/groundtruth.txt"), {});
+  EXPECT_LE(report.rpe_frame.translation.rmse, 0.01);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
