@@ -8,7 +8,7 @@ namespace {
 bool IsUsable(const Observation& o) {
   const bool finite = std::isfinite(o.u) && std::isfinite(o.v) &&
                       std::isfinite(o.depth) && std::isfinite(o.sigma_px) &&
-                      std::isfinite(o.sigma_depth);
+                      std::isfinite(o.sigma_depth) && o.normal.allFinite();
   return finite && o.depth >= 0.0 && o.sigma_px > 0.0 &&
          (o.depth == 0.0 || o.sigma_depth > 0.0);
 }
@@ -16,15 +16,11 @@ bool IsUsable(const Observation& o) {
 }  // namespace
 
 void ObservationArray::reserve(size_t n) {
-  for (auto* column : {&u_, &v_, &depth_, &sigma_px_, &sigma_depth_}) {
-    column->reserve(n);
-  }
+  ForEachColumn([n](std::vector<double>* column) { column->reserve(n); });
 }
 
 void ObservationArray::clear() {
-  for (auto* column : {&u_, &v_, &depth_, &sigma_px_, &sigma_depth_}) {
-    column->clear();
-  }
+  ForEachColumn([](std::vector<double>* column) { column->clear(); });
 }
 
 void ObservationArray::push_back(const Observation& o) {
@@ -33,6 +29,9 @@ void ObservationArray::push_back(const Observation& o) {
   depth_.push_back(o.depth);
   sigma_px_.push_back(o.sigma_px);
   sigma_depth_.push_back(o.sigma_depth);
+  nx_.push_back(o.normal.x());
+  ny_.push_back(o.normal.y());
+  nz_.push_back(o.normal.z());
 }
 
 bool Correspondences::Add(const Observation& prev, const Observation& cur) {

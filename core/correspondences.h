@@ -14,6 +14,8 @@ struct Observation {
   double depth = 0.0;        // along the optical axis, m; 0 = not measured
   double sigma_px = 0.5;     // standard deviation of u and of v, px
   double sigma_depth = 0.0;  // standard deviation of depth, m
+  // Unit normal of the surface in camera axes; zero = not known.
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
 // All matches seen from one frame, as a structure of arrays.
@@ -24,11 +26,21 @@ class ObservationArray {
   void clear();
   void push_back(const Observation& observation);
   Observation operator[](size_t i) const {
-    return {u_[i], v_[i], depth_[i], sigma_px_[i], sigma_depth_[i]};
+    return {u_[i],        v_[i],           depth_[i],
+            sigma_px_[i], sigma_depth_[i], {nx_[i], ny_[i], nz_[i]}};
   }
 
  private:
-  std::vector<double> u_, v_, depth_, sigma_px_, sigma_depth_;
+  // Calls f with every column.
+  template <typename F>
+  void ForEachColumn(F f) {
+    for (auto* column :
+         {&u_, &v_, &depth_, &sigma_px_, &sigma_depth_, &nx_, &ny_, &nz_}) {
+      f(column);
+    }
+  }
+
+  std::vector<double> u_, v_, depth_, sigma_px_, sigma_depth_, nx_, ny_, nz_;
 };
 
 // Matches between a previous and a current frame of one pinhole camera.

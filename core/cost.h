@@ -2,6 +2,7 @@
 
 #include <ceres/loss_function.h>
 #include <ceres/problem.h>
+#include <ceres/types.h>
 
 #include <Eigen/Core>
 #include <string_view>
@@ -20,12 +21,32 @@ enum class Assembly {
   kCompressed,  // one block of 7 rows for all matches: fast, the default
 };
 
+// Who has to own the residual blocks of an assembly: the compressed block is
+// part of its cost and used again, the others are made for a problem.
+constexpr ceres::Ownership BlockOwnership(Assembly assembly) {
+  return assembly == Assembly::kCompressed ? ceres::DO_NOT_TAKE_OWNERSHIP
+                                           : ceres::TAKE_OWNERSHIP;
+}
+
 // A robustified sum over matches, linearised at one motion:
 // cost(x + d) ~ cost + gradient . d + 1/2 d^T hessian d (Gauss-Newton).
 struct NormalEquations {
   MotionMatrix hessian = MotionMatrix::Zero();
   MotionVector gradient = MotionVector::Zero();
   double cost = 0.0;
+};
+
+// What is known of a motion before its matches are seen.
+struct MotionPrior {
+  Rigid3d cur_from_prev;
+  MotionMatrix covariance = MotionMatrix::Identity();  // as MotionEstimate's
+};
+
+// What a cost is bound to for one estimation.
+struct CostInput {
+  const Correspondences& matches;
+  Rigid3d cur_from_prev;  // where weights that depend on the motion are frozen
+  const MotionPrior* prior = nullptr;  // null: nothing is known
 };
 
 // All that the estimator sees of a cost: whitened residuals over matches. One
@@ -36,17 +57,33 @@ class Cost {
 
   virtual std::string_view name() const = 0;
 
+  // The number of residuals of a match.
+  virtual int rows() const = 0;
+
   // The number of independent measurements a match brings. Whitened residuals
   // of right matches have a squared norm of about chi^2 of so many degrees.
   virtual int independent_rows() const = 0;
 
-  // Takes in the matches this cost can use. Weights that depend on the motion
-  // are frozen at `cur_from_prev`. Keeps nothing of earlier matches but memory.
-  virtual void Bind(const Correspondences& correspondences,
-                    const Rigid3d& cur_from_prev) = 0;
+  // Whether weights are frozen at the motion bound to, so that a solver has to
+  // bind again when the motion has changed.
+  virtual bool freezes_weights() const = 0;
 
-  // The places of the bound matches within the Correspondences, increasing.
+  // Whether the whitened residuals of right matches are independent, of unit
+  // variance, so that the Hessian tells the covariance; if not (a formulation
+  // that knows no directions, say) their scatter has to be measured.
+  virtual bool is_whitened() const = 0;
+
+  // Takes in the matches this cost can use. Keeps nothing of earlier ones but
+  // memory.
+  virtual void Bind(const CostInput& input) = 0;
+
+  // The places of the bound matches within the Correspondences, increasing; -1
+  // for a residual that belongs to no match (a prior).
   virtual const std::vector<int>& matches() const = 0;
+
+  // Whitened residuals, rows() for each bound match.
+  virtual void Residuals(const MotionDerivatives& motion,
+                         std::vector<double>* residuals) const = 0;
 
   // Squared norm of each bound match's whitened residual, in their order.
   virtual void SquaredNorms(const MotionDerivatives& motion,
@@ -58,12 +95,18 @@ class Cost {
                          const ceres::LossFunction* loss,
                          NormalEquations* sum) const = 0;
 
+  // Adds sum rho'^2 J^T r r^T J over matches: with the Hessian, the covariance
+  // of an M-estimate whatever the residuals' true distribution (sandwich).
+  virtual void AddScatter(const MotionDerivatives& motion,
+                          const ceres::LossFunction* loss,
+                          MotionMatrix* scatter) const = 0;
+
   // Adds the bound matches to a problem in the parameters x[6] that count from
-  // `origin`. Losses stay owned by the caller; origin, loss and this cost must
-  // outlive the problem.
+  // `origin`. The problem must own its cost functions as BlockOwnership says
+  // and no losses; origin, loss and this cost must outlive it.
   virtual void AddTo(Assembly assembly, const MotionOrigin& origin,
                      ceres::LossFunction* loss, double* x,
-                     ceres::Problem* problem) const = 0;
+                     ceres::Problem* problem) = 0;
 };
 
 }  // namespace rgbd_pose

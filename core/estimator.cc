@@ -2,7 +2,6 @@
 
 #include <ceres/solver.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -11,6 +10,7 @@
 
 #include "core/chi_squared.h"
 #include "core/degeneracy.h"
+#include "core/scaled_loss.h"
 
 namespace rgbd_pose {
 namespace {
@@ -18,24 +18,23 @@ namespace {
 constexpr int kMinMatches = 3;
 constexpr int kIterationsPerEarlyStage = 3;
 
-// rho, rho', rho'' of a loss at s; a null loss is rho = s.
-struct LossValue {
-  double rho[3];
-  LossValue(const ceres::LossFunction* loss, double s) : rho{s, 1.0, 0.0} {
-    if (loss != nullptr) loss->Evaluate(s, rho);
-  }
-};
+// Scale and motion are estimated in turn until the scale moves by less.
+constexpr double kScaleTolerance = 0.01;
+constexpr int kMaxScaleRounds = 10;
+// Fewer residuals say nothing about their spread.
+constexpr size_t kMinResidualsForScale = 10;
+// What a scale may come to: a spread of zero (over half of the residuals
+// equal) or a huge one (over half of the matches wrong) has no use.
+constexpr double kMinScale = 0.05;
+constexpr double kMaxScale = 20.0;
 
-double Median(std::vector<double>* values) {
-  const auto middle = values->begin() + values->size() / 2;
-  std::nth_element(values->begin(), middle, values->end());
-  return *middle;
-}
+// With fewer matches their scatter is too uncertain to take for a covariance.
+constexpr int kMinMatchesForScatter = 30;
 
 }  // namespace
 
 std::string EstimatorOptions::Check() const {
-  if (graduation_factor <= 1.0) return "graduation_factor must exceed 1";
+  if (gnc_factor <= 1.0) return "gnc_factor must exceed 1";
   if (max_iterations < 1) return "max_iterations must be at least 1";
   if (min_inlier_share < 0.0 || min_inlier_share > 1.0) {
     return "min_inlier_share must lie between 0 and 1";
@@ -46,61 +45,90 @@ std::string EstimatorOptions::Check() const {
   return "";
 }
 
-// One call of Estimate: its motion so far and what it will return.
+// The work of Estimate and its memory.
 class Estimator::Solve {
  public:
-  Solve(const EstimatorOptions& options, const std::vector<RobustCost>& costs,
-        const Correspondences& correspondences, const Rigid3d& guess)
-      : options_(options), costs_(costs), norms_(costs.size()) {
-    estimate_.cur_from_prev = guess;
-    estimate_.weights.assign(correspondences.size(), 0.0);
-    estimate_.is_inlier.assign(correspondences.size(), false);
-    rejected_ = correspondences.rejected();
-    std::vector<bool> used(correspondences.size(), false);
-    for (const RobustCost& term : costs_) {
-      term.cost->Bind(correspondences, guess);
-      for (const int match : term.cost->matches()) used[match] = true;
-    }
-    estimate_.num_used =
-        static_cast<int>(std::count(used.begin(), used.end(), true));
-  }
+  Solve(const EstimatorOptions& options, std::vector<RobustCost> costs)
+      : options_(options), costs_(std::move(costs)), norms_(costs_.size()) {}
 
-  MotionEstimate Run() {
-    if (estimate_.num_used < kMinMatches) {
-      estimate_.status = EstimateStatus::kTooFewMatches;
-      estimate_.reason =
-          std::to_string(estimate_.num_used) + " usable matches, 3 are needed";
-      if (rejected_ > 0) {
-        estimate_.reason +=
-            "; " + std::to_string(rejected_) + " rejected as not finite";
+  void Run(const Correspondences& matches, const Rigid3d& guess,
+           const MotionPrior* prior, MotionEstimate* estimate) {
+    Reset(matches, guess, prior, estimate);
+    if (out_->num_used < kMinMatches) {
+      out_->status = EstimateStatus::kTooFewMatches;
+      out_->reason =
+          std::to_string(out_->num_used) + " usable matches, 3 are needed";
+      if (matches.rejected() > 0) {
+        out_->reason += "; " + std::to_string(matches.rejected()) +
+                        " rejected as not finite";
       }
-      return std::move(estimate_);
+      return;
     }
-    MakeLosses(1.0);
-    estimate_.initial_cost = Linearise().cost;
-    const bool usable = Minimise();
-    Finish(usable);
-    return std::move(estimate_);
+    SetLosses(1.0);
+    out_->initial_cost = Linearise().cost;
+    if (!MinimiseWithScale()) {
+      out_->status = EstimateStatus::kNotConverged;
+      out_->reason = "the solver found no usable step";
+      return;
+    }
+    Judge();
   }
 
  private:
-  void MakeLosses(double scale) {
+  void Reset(const Correspondences& matches, const Rigid3d& guess,
+             const MotionPrior* prior, MotionEstimate* estimate) {
+    matches_ = &matches;
+    prior_ = prior;
+    out_ = estimate;
+    out_->reason.clear();
+    out_->cur_from_prev = guess;
+    out_->covariance.setZero();
+    out_->weights.assign(matches.size(), 0.0);
+    out_->is_inlier.assign(matches.size(), false);
+    out_->num_inliers = 0;
+    out_->sigma = 0.0;
+    out_->final_cost = 0.0;
+    out_->iterations = 0;
+    converged_ = false;
+    num_blocks_ = 0;
+    for (const RobustCost& term : costs_) Bind(term.cost.get());
+    counted_.assign(matches.size(), false);
+    for (const RobustCost& term : costs_) {
+      for (const int match : term.cost->matches()) {
+        if (match >= 0) counted_[match] = true;
+      }
+      num_blocks_ += static_cast<int>(term.cost->matches().size());
+    }
+    out_->num_used =
+        static_cast<int>(std::count(counted_.begin(), counted_.end(), true));
+  }
+
+  void Bind(Cost* cost) {
+    cost->Bind({*matches_, out_->cur_from_prev, prior_});
+  }
+
+  void SetLosses(double scale) {
     losses_.clear();
     for (const RobustCost& term : costs_) {
-      losses_.push_back(term.loss ? term.loss(scale) : nullptr);
+      losses_.emplace_back(term.loss.get(), scale);
     }
   }
 
-  MotionDerivatives MotionNow() const {
-    return MotionOrigin(estimate_.cur_from_prev)
-        .DerivativesAt(MotionVector::Zero().eval().data());
+  // The loss of a term at its present width; null for least squares.
+  ceres::LossFunction* Loss(size_t term) {
+    return costs_[term].loss ? &losses_[term] : nullptr;
   }
 
-  NormalEquations Linearise() const {
+  MotionDerivatives MotionNow() const {
+    const MotionVector zero = MotionVector::Zero();
+    return MotionOrigin(out_->cur_from_prev).DerivativesAt(zero.data());
+  }
+
+  NormalEquations Linearise() {
     const MotionDerivatives motion = MotionNow();
     NormalEquations sum;
     for (size_t i = 0; i < costs_.size(); ++i) {
-      costs_[i].cost->Linearise(motion, losses_[i].get(), &sum);
+      costs_[i].cost->Linearise(motion, Loss(i), &sum);
     }
     return sum;
   }
@@ -109,42 +137,79 @@ class Estimator::Solve {
   // spread in units of the noise model, which is 1 for right matches.
   double UpdateNorms() {
     const MotionDerivatives motion = MotionNow();
-    std::vector<double> ratios;
+    values_.clear();
     for (size_t i = 0; i < costs_.size(); ++i) {
       const Cost& cost = *costs_[i].cost;
       cost.SquaredNorms(motion, &norms_[i]);
       const double median = ChiSquaredMedian(cost.independent_rows());
-      for (const double s : norms_[i]) ratios.push_back(s / median);
+      for (const double s : norms_[i]) values_.push_back(s / median);
     }
-    return std::sqrt(Median(&ratios));
+    const auto middle = values_.begin() + values_.size() / 2;
+    std::nth_element(values_.begin(), middle, values_.end());
+    return std::sqrt(*middle);
   }
 
-  // All stages. False if the solver found no finite step.
+  // The spread of residual components by the chosen scale estimator.
+  double EstimateScale() {
+    const MotionDerivatives motion = MotionNow();
+    values_.clear();
+    for (const RobustCost& term : costs_) {
+      // The prior is no sample of the matches' noise.
+      if (term.cost->matches().empty() || term.cost->matches()[0] < 0) continue;
+      term.cost->Residuals(motion, &residuals_);
+      // Rows that repeat each other are smaller by the root of how often.
+      const double unit = std::sqrt(static_cast<double>(term.cost->rows()) /
+                                    term.cost->independent_rows());
+      for (const double r : residuals_) values_.push_back(unit * r);
+    }
+    if (values_.size() < kMinResidualsForScale) return 1.0;
+    return std::clamp(options_.scale(&values_), kMinScale, kMaxScale);
+  }
+
+  bool MinimiseWithScale() {
+    scale_ = 1.0;
+    if (!Minimise()) return false;
+    for (int i = 0; options_.scale != nullptr && i < kMaxScaleRounds; ++i) {
+      const double scale = EstimateScale();
+      const bool settled = std::abs(scale - scale_) <= kScaleTolerance * scale_;
+      if (settled) break;
+      scale_ = scale;
+      if (!Minimise()) return false;
+    }
+    return true;
+  }
+
+  // All stages at one scale. False if the solver found no finite step.
   bool Minimise() {
     const bool robust = std::any_of(
         costs_.begin(), costs_.end(),
         [](const RobustCost& term) { return term.loss != nullptr; });
-    double scale = 1.0;
-    if (options_.graduate && robust) scale = std::max(1.0, UpdateNorms());
-    for (; scale > 1.0;
-         scale = std::max(1.0, scale / options_.graduation_factor)) {
-      MakeLosses(scale);
-      if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
+    double width = 1.0;
+    if (robust && options_.schedule == RobustSchedule::kGnc) {
+      width = std::max(1.0, UpdateNorms() / scale_);
     }
-    MakeLosses(1.0);
+    for (; width > 1.0; width = std::max(1.0, width / options_.gnc_factor)) {
+      SetLosses(scale_ * width);
+      if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
+      for (const RobustCost& term : costs_) {
+        if (term.cost->freezes_weights()) Bind(term.cost.get());
+      }
+    }
+    SetLosses(scale_);
     return MinimiseStage(options_.max_iterations);
   }
 
   bool MinimiseStage(int max_iterations) {
-    const MotionOrigin origin(estimate_.cur_from_prev);
+    const MotionOrigin origin(out_->cur_from_prev);
     MotionVector x = MotionVector::Zero();
     ceres::Problem::Options problem_options;
+    problem_options.cost_function_ownership = BlockOwnership(options_.assembly);
     problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     problem_options.disable_all_safety_checks = true;
     ceres::Problem problem(problem_options);
     for (size_t i = 0; i < costs_.size(); ++i) {
-      costs_[i].cost->AddTo(options_.assembly, origin, losses_[i].get(),
-                            x.data(), &problem);
+      costs_[i].cost->AddTo(options_.assembly, origin, Loss(i), x.data(),
+                            &problem);
     }
     ceres::Solver::Options solver;
     solver.linear_solver_type = ceres::DENSE_QR;
@@ -155,114 +220,147 @@ class Estimator::Solve {
     solver.parameter_tolerance = 1e-9;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
-    estimate_.iterations += static_cast<int>(summary.iterations.size()) - 1;
+    out_->iterations += static_cast<int>(summary.iterations.size()) - 1;
     converged_ = summary.termination_type == ceres::CONVERGENCE;
     if (!summary.IsSolutionUsable() || !x.allFinite()) return false;
-    estimate_.cur_from_prev = origin.CurFromPrev(x.data());
+    out_->cur_from_prev = origin.CurFromPrev(x.data());
     return true;
   }
 
-  void Finish(bool usable) {
-    if (!usable) {
-      estimate_.status = EstimateStatus::kNotConverged;
-      estimate_.reason = "the solver found no usable step";
-      return;
-    }
-    estimate_.sigma = UpdateNorms();
-    const double spread = JudgeMatches();
+  void Judge() {
+    out_->sigma = UpdateNorms();
+    JudgeMatches();
     const NormalEquations sum = Linearise();
-    estimate_.final_cost = sum.cost;
+    out_->final_cost = sum.cost;
     const Degeneracy degeneracy = FindDegeneracy(
         sum.hessian, total_weight_, options_.max_standard_deviation);
     if (degeneracy.is_degenerate) {
-      estimate_.status = EstimateStatus::kDegenerate;
-      estimate_.reason = degeneracy.reason;
+      out_->status = EstimateStatus::kDegenerate;
+      out_->reason = degeneracy.reason;
       return;
     }
-    estimate_.covariance = spread * degeneracy.inverse;
+    out_->covariance = Covariance(degeneracy.inverse);
     const double share =
-        static_cast<double>(estimate_.num_inliers) / estimate_.num_used;
+        static_cast<double>(out_->num_inliers) / out_->num_used;
+    out_->status = EstimateStatus::kOk;
     if (share < options_.min_inlier_share) {
-      estimate_.status = EstimateStatus::kInconsistent;
-      estimate_.reason = "only " + std::to_string(estimate_.num_inliers) +
-                         " of " + std::to_string(estimate_.num_used) +
-                         " matches agree with one motion";
+      out_->status = EstimateStatus::kInconsistent;
+      out_->reason = "only " + std::to_string(out_->num_inliers) + " of " +
+                     std::to_string(out_->num_used) +
+                     " matches agree with one motion";
     } else if (!converged_) {
-      estimate_.status = EstimateStatus::kNotConverged;
-      estimate_.reason = "stopped after " +
-                         std::to_string(estimate_.iterations) + " iterations";
-    } else {
-      estimate_.status = EstimateStatus::kOk;
+      out_->status = EstimateStatus::kNotConverged;
+      out_->reason =
+          "stopped after " + std::to_string(out_->iterations) + " iterations";
     }
   }
 
-  // Fills weights and inliers from the norms. Returns the factor from the
-  // inverse of the weighted Hessian to the covariance: Huber's (Robust
-  // Statistics, 7.6) for residuals of p independent components,
-  //   (sum w^2 s) (sum w p) / (sum (w p + 2 s w'))^2,  w = rho', w' = rho'',
-  // times the correction for the six parameters fitted.
-  double JudgeMatches() {
-    double psi2 = 0.0, weight_p = 0.0, slope = 0.0;
-    total_weight_ = 0.0;
-    std::vector<bool> counted(estimate_.weights.size(), false);
+  // Fills weights and inliers from the norms and sums up what the covariance
+  // needs of the losses.
+  void JudgeMatches() {
+    psi2_ = weight_p_ = slope_p_ = total_weight_ = 0.0;
+    counted_.assign(out_->weights.size(), false);
     for (size_t i = 0; i < costs_.size(); ++i) {
       const Cost& cost = *costs_[i].cost;
       const int p = cost.independent_rows();
-      const double limit = ChiSquared99(p);
+      const double limit = ChiSquared99(p) * scale_ * scale_;
       for (size_t k = 0; k < norms_[i].size(); ++k) {
         const double s = norms_[i][k];
-        const LossValue loss(losses_[i].get(), s);
-        psi2 += loss.rho[1] * loss.rho[1] * s;
-        weight_p += loss.rho[1] * p;
-        slope += loss.rho[1] * p + 2.0 * s * loss.rho[2];
-        total_weight_ += loss.rho[1];
-        // A match that several costs use is an inlier if all of them agree.
+        double rho[3];
+        losses_[i].Evaluate(s, rho);
+        psi2_ += rho[1] * rho[1] * s;
+        weight_p_ += rho[1] * p;
+        slope_p_ += rho[1] * p + 2.0 * s * rho[2];
+        total_weight_ += rho[1];
         const int match = cost.matches()[k];
-        const bool agrees = s <= limit;
-        estimate_.is_inlier[match] =
-            agrees && (!counted[match] || estimate_.is_inlier[match]);
-        estimate_.weights[match] =
-            counted[match] ? std::min(estimate_.weights[match], loss.rho[1])
-                           : loss.rho[1];
-        counted[match] = true;
+        if (match >= 0) JudgeMatch(match, rho[1], s <= limit);
       }
     }
-    estimate_.num_inliers = static_cast<int>(std::count(
-        estimate_.is_inlier.begin(), estimate_.is_inlier.end(), true));
-    // The slope can vanish for redescending losses among many outliers; a
-    // fifth of the weight keeps the covariance finite and pessimistic.
-    slope = std::max(slope, 0.2 * weight_p);
-    const double fitted = weight_p > 6.0 ? weight_p / (weight_p - 6.0) : 1.0;
-    return slope > 0.0 ? psi2 * weight_p / (slope * slope) * fitted : 0.0;
+    out_->num_inliers = static_cast<int>(
+        std::count(out_->is_inlier.begin(), out_->is_inlier.end(), true));
   }
 
-  const EstimatorOptions& options_;
-  const std::vector<RobustCost>& costs_;
-  MotionEstimate estimate_;
-  size_t rejected_ = 0;
-  std::vector<std::unique_ptr<ceres::LossFunction>> losses_;
-  std::vector<std::vector<double>> norms_;
-  double total_weight_ = 0.0;
+  // A match that several costs use is an inlier if all of them agree.
+  void JudgeMatch(int match, double weight, bool agrees) {
+    const bool again = counted_[match];
+    out_->is_inlier[match] = agrees && (!again || out_->is_inlier[match]);
+    out_->weights[match] =
+        again ? std::min(out_->weights[match], weight) : weight;
+    counted_[match] = true;
+  }
+
+  // Sandwich A^-1 B A^-1 of an M-estimate (Huber, Robust Statistics, 6.3). A is
+  // the weighted Hessian times the mean slope of psi against its mean weight; B
+  // is that Hessian times the mean of psi^2 against the mean weight, or, for
+  // costs that do not whiten fully, the scatter of their matches. Last the
+  // usual correction for six fitted parameters.
+  MotionMatrix Covariance(const MotionMatrix& inverse) {
+    // The slope can vanish for redescending losses among many outliers; a
+    // fifth of the weight keeps the covariance finite and pessimistic.
+    const double slope = std::max(slope_p_ / weight_p_, 0.2);
+    const MotionDerivatives motion = MotionNow();
+    NormalEquations whitened;
+    MotionMatrix scatter = MotionMatrix::Zero();
+    for (size_t i = 0; i < costs_.size(); ++i) {
+      const Cost& cost = *costs_[i].cost;
+      if (cost.is_whitened() || num_blocks_ < kMinMatchesForScatter) {
+        cost.Linearise(motion, Loss(i), &whitened);
+      } else {
+        cost.AddScatter(motion, Loss(i), &scatter);
+      }
+    }
+    scatter += psi2_ / weight_p_ * whitened.hessian;
+    const double fitted =
+        weight_p_ > 12.0 ? weight_p_ / (weight_p_ - 6.0) : 2.0;
+    return fitted / (slope * slope) * inverse * scatter * inverse;
+  }
+
+  const EstimatorOptions options_;
+  const std::vector<RobustCost> costs_;
+
+  // Of the call at hand.
+  const Correspondences* matches_ = nullptr;
+  const MotionPrior* prior_ = nullptr;
+  MotionEstimate* out_ = nullptr;
+  double scale_ = 1.0;
   bool converged_ = false;
+  int num_blocks_ = 0;
+  double psi2_ = 0.0;          // sum of rho'^2 s
+  double weight_p_ = 0.0;      // sum of rho' p, p the independent rows
+  double slope_p_ = 0.0;       // sum of rho' p + 2 s rho''
+  double total_weight_ = 0.0;  // sum of rho'
+
+  // Memory that is used again.
+  std::vector<ScaledLoss> losses_;
+  std::vector<std::vector<double>> norms_;
+  std::vector<double> values_;
+  std::vector<double> residuals_;
+  std::vector<bool> counted_;
 };
 
 Estimator::Estimator(const EstimatorOptions& options,
                      std::vector<RobustCost> costs)
-    : options_(options), costs_(std::move(costs)) {}
+    : solve_(std::make_unique<Solve>(options, std::move(costs))) {}
 
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;
 Estimator& Estimator::operator=(Estimator&&) noexcept = default;
 
-MotionEstimate Estimator::Estimate(const Correspondences& correspondences,
-                                   const Rigid3d& guess) {
+MotionEstimate Estimator::Estimate(const Correspondences& matches,
+                                   const Rigid3d& guess,
+                                   const MotionPrior* prior) {
+  MotionEstimate estimate;
+  Estimate(matches, guess, prior, &estimate);
+  return estimate;
+}
+
+void Estimator::Estimate(const Correspondences& matches, const Rigid3d& guess,
+                         const MotionPrior* prior, MotionEstimate* estimate) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  MotionEstimate estimate =
-      Solve(options_, costs_, correspondences, guess).Run();
-  estimate.solve_ms =
+  solve_->Run(matches, guess, prior, estimate);
+  estimate->solve_ms =
       std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-  return estimate;
 }
 
 const char* ToString(EstimateStatus status) {

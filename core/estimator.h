@@ -2,7 +2,6 @@
 
 #include <ceres/loss_function.h>
 
-#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,26 +12,31 @@
 
 namespace rgbd_pose {
 
-// Makes a loss whose width is `scale` times its nominal one.
-using LossFactory =
-    std::function<std::unique_ptr<ceres::LossFunction>(double scale)>;
-
-// A cost and the loss on each of its blocks.
+// A cost and the loss on each of its residual blocks.
 struct RobustCost {
   std::unique_ptr<Cost> cost;
-  LossFactory loss;  // empty: no loss (least squares)
+  std::unique_ptr<ceres::LossFunction> loss;  // null: least squares
+};
+
+// How losses get to their widths.
+enum class RobustSchedule {
+  kDirect,  // at once: right where the guess is within their widths
+  kGnc,     // graduated non-convexity: so wide at first that all matches
+            // count, then narrower step by step
 };
 
 struct EstimatorOptions {
   Assembly assembly = Assembly::kCompressed;
 
-  // Whether to start with losses so wide that all matches count and to narrow
-  // them step by step (graduated non-convexity). Redescending losses need it
-  // unless the guess is within their width.
-  bool graduate = true;
+  RobustSchedule schedule = RobustSchedule::kGnc;
 
   // Each stage of the graduation narrows the losses by this factor.
-  double graduation_factor = 2.0;
+  double gnc_factor = 2.0;
+
+  // Estimates the spread of residual components in units of the noise model,
+  // to which the widths are then matched; may reorder its argument. Null: the
+  // noise model is taken as it is.
+  double (*scale)(std::vector<double>* residuals) = nullptr;
 
   // Of the solver, in the last stage; the stages before take at most three.
   int max_iterations = 50;
@@ -58,14 +62,19 @@ class Estimator {
   Estimator(Estimator&&) noexcept;
   Estimator& operator=(Estimator&&) noexcept;
 
-  // `guess` is where the solver starts. Bad data is a status, never an abort.
-  MotionEstimate Estimate(const Correspondences& correspondences,
-                          const Rigid3d& guess = Rigid3d());
+  // `guess` is where the solver starts; `prior` is what costs that use one
+  // pull towards. Bad data is a status, never an abort.
+  MotionEstimate Estimate(const Correspondences& matches,
+                          const Rigid3d& guess = Rigid3d(),
+                          const MotionPrior* prior = nullptr);
+
+  // The same into an estimate whose memory is used again.
+  void Estimate(const Correspondences& matches, const Rigid3d& guess,
+                const MotionPrior* prior, MotionEstimate* estimate);
 
  private:
   class Solve;
-  EstimatorOptions options_;
-  std::vector<RobustCost> costs_;
+  std::unique_ptr<Solve> solve_;
 };
 
 }  // namespace rgbd_pose

@@ -1,8 +1,6 @@
 #pragma once
 
-#include <cmath>
-
-#include "core/correspondences.h"
+#include "core/cost.h"
 #include "core/motion.h"
 #include "costs/ray_whitening.h"
 
@@ -24,11 +22,13 @@ struct BidirectionalPoint {
   static constexpr char kName[] = "bidirectional_point";
   static constexpr int kRows = 6;
   static constexpr int kIndependentRows = 3;
+  static constexpr bool kFreezesWeights = false;
+  static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = 2 * RayWhitening<double>::kColumns;
 
   // Writes what the residual needs of match i; false if a depth is missing.
-  static bool Pack(const Correspondences& matches, size_t i,
-                   const Rigid3d& /*cur_from_prev*/, double* columns) {
+  static bool Pack(const CostInput& input, size_t i, double* columns) {
+    const Correspondences& matches = input.matches;
     const Observation prev = matches.prev()[i];
     const Observation cur = matches.cur()[i];
     if (prev.depth <= 0.0 || cur.depth <= 0.0) return false;

@@ -7,6 +7,7 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 // One Ceres residual block that stands for a whole sum of robustified ones.
@@ -33,25 +34,28 @@ struct CompressedSums {
   double cost = 0.0;
 };
 
-// `Evaluator` is called as bool(const double* x, bool need_derivatives,
-// CompressedSums<K>* sums) with x[K] and zeroed sums; cost must always be set,
-// hessian (symmetric, whole) and gradient where derivatives are needed. False
-// makes Ceres reject the step.
+// `Evaluator` is called as bool(const double* x, CompressedSums<K>* sums) with
+// x[K] and zeroed sums; it fills all of them (hessian whole, not a triangle).
+// False makes Ceres reject the step. Ceres asks for the cost of a trial step
+// first and for its derivatives after it has accepted it: the sums of the last
+// x are kept, so both take one evaluation. One block serves one thread.
 template <int K, typename Evaluator>
 class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
   static_assert(K >= 1 && K <= 12, "dense sums suit small problems");
 
  public:
   explicit CompressedBlock(Evaluator evaluator)
-      : evaluator_(std::move(evaluator)) {}
+      : evaluator_(std::move(evaluator)) {
+    x_.setConstant(std::numeric_limits<double>::quiet_NaN());
+  }
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
     using RowMajor = Eigen::Matrix<double, K + 1, K, Eigen::RowMajor>;
     const bool need_derivatives =
         jacobians != nullptr && jacobians[0] != nullptr;
-    CompressedSums<K> sums;
-    if (!evaluator_(parameters[0], need_derivatives, &sums)) return false;
+    if (!UpdateSums(parameters[0])) return false;
+    const CompressedSums<K>& sums = sums_;
     Eigen::Map<Eigen::Matrix<double, K + 1, 1>> r(residuals);
     r.setZero();
     r[K] = std::sqrt(std::max(0.0, 2.0 * sums.cost));
@@ -71,6 +75,16 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
   }
 
  private:
+  bool UpdateSums(const double* at) const {
+    const Eigen::Map<const Eigen::Matrix<double, K, 1>> x(at);
+    if (x == x_) return true;
+    x_.setConstant(std::numeric_limits<double>::quiet_NaN());
+    sums_ = CompressedSums<K>();
+    if (!evaluator_(at, &sums_)) return false;
+    x_ = x;
+    return true;
+  }
+
   // H = V diag(l) V^T with some l = 0: J = diag(sqrt l) V^T, r = diag(1/sqrt l)
   // V^T g where l > 0. There g has no part in the null space of H.
   template <typename Residuals, typename Rows>
@@ -90,6 +104,8 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
   }
 
   Evaluator evaluator_;
+  mutable Eigen::Matrix<double, K, 1> x_;  // of sums_; NaN: of none
+  mutable CompressedSums<K> sums_;
 };
 
 }  // namespace rgbd_pose

@@ -76,19 +76,14 @@ std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,
                        Join(CostNames()));
     }
     const std::string& loss_name = losses[losses.size() == 1 ? 0 : i];
-    const MEstimator* loss = FindMEstimator(loss_name);
-    if (loss == nullptr) {
+    const MEstimator* row = FindMEstimator(loss_name);
+    if (row == nullptr) {
       throw InputError("unknown loss '" + loss_name + "'; there are " +
                        Join(MEstimatorNames()));
     }
-    const int dimension = cost->independent_rows();
-    LossFactory factory;
-    if (loss->make != nullptr) {
-      factory = [loss, dimension](double scale) {
-        return loss->make(scale * loss->Width95(dimension));
-      };
-    }
-    terms.push_back({std::move(cost), std::move(factory)});
+    std::unique_ptr<ceres::LossFunction> loss =
+        row->MakeLoss(cost->independent_rows());
+    terms.push_back({std::move(cost), std::move(loss)});
   }
   return terms;
 }

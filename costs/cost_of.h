@@ -1,12 +1,15 @@
 #pragma once
 
+#include <optional>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include "core/cost.h"
 #include "costs/compressed_block.h"
 #include "costs/match_blocks.h"
 #include "costs/packed_sum.h"
+#include "costs/vector_lanes.h"
 
 namespace rgbd_pose {
 
@@ -14,9 +17,20 @@ namespace rgbd_pose {
 // residual type is stateless and says
 //
 //   kName, kRows, kIndependentRows, kColumns
-//   Pack(correspondences, i, cur_from_prev, columns) -> usable
-//   Residual(motion pose, columns, r)                 for any scalars
-//   Jacobian(motion derivatives, columns, r, J)       by hand
+//   kFreezesWeights                               see Cost::freezes_weights
+//   kIsWhitened                                   see Cost::is_whitened
+//   Pack(input, i, columns) -> usable             of match i
+//   Residual(motion pose, columns, r)             for any scalars
+//   Jacobian(motion derivatives, columns, r, J)   by hand
+//
+// A type that packs the prior instead of matches says so by kIsPrior; it is
+// called with i = 0 if there is a prior.
+template <typename Residual, typename = void>
+struct IsPrior : std::false_type {};
+template <typename Residual>
+struct IsPrior<Residual, std::void_t<decltype(Residual::kIsPrior)>>
+    : std::true_type {};
+
 template <typename Residual>
 class CostOf final : public Cost {
  public:
@@ -24,37 +38,59 @@ class CostOf final : public Cost {
   int independent_rows() const override { return Residual::kIndependentRows; }
   const std::vector<int>& matches() const override { return matches_; }
 
-  void Bind(const Correspondences& correspondences,
-            const Rigid3d& cur_from_prev) override {
+  int rows() const override { return Residual::kRows; }
+  bool freezes_weights() const override { return Residual::kFreezesWeights; }
+
+  bool is_whitened() const override { return Residual::kIsWhitened; }
+
+  void Bind(const CostInput& input) override {
     matches_.clear();
     rows_.clear();
     double columns[kColumns];
-    for (size_t i = 0; i < correspondences.size(); ++i) {
-      if (!Residual::Pack(correspondences, i, cur_from_prev, columns)) continue;
-      matches_.push_back(static_cast<int>(i));
+    const size_t count = Count(input);
+    for (size_t i = 0; i < count; ++i) {
+      if (!Residual::Pack(input, i, columns)) continue;
+      matches_.push_back(IsPrior<Residual>() ? -1 : static_cast<int>(i));
       rows_.insert(rows_.end(), columns, columns + kColumns);
     }
     Transpose();
   }
 
+  void Residuals(const MotionDerivatives& motion,
+                 std::vector<double>* residuals) const override {
+    residuals->resize(matches_.size() * Residual::kRows);
+    RunVectorised<packed::ResidualsKernel<Residual>>(motion, packed_,
+                                                     residuals->data());
+  }
+
   void SquaredNorms(const MotionDerivatives& motion,
                     std::vector<double>* squared_norms) const override {
     squared_norms->resize(matches_.size());
-    SumSquaredNorms<Residual>(motion, packed_, squared_norms->data());
+    RunVectorised<packed::SquaredNormsKernel<Residual>>(motion, packed_,
+                                                        squared_norms->data());
   }
 
   void Linearise(const MotionDerivatives& motion,
                  const ceres::LossFunction* loss,
                  NormalEquations* sum) const override {
-    SumNormalEquations<Residual>(motion, packed_, loss, sum);
+    RunVectorised<packed::LineariseKernel<Residual>>(motion, packed_, loss,
+                                                     sum);
+  }
+
+  void AddScatter(const MotionDerivatives& motion,
+                  const ceres::LossFunction* loss,
+                  MotionMatrix* scatter) const override {
+    RunVectorised<packed::ScatterKernel<Residual>>(motion, packed_, loss,
+                                                   scatter);
   }
 
   void AddTo(Assembly assembly, const MotionOrigin& origin,
              ceres::LossFunction* loss, double* x,
-             ceres::Problem* problem) const override {
+             ceres::Problem* problem) override {
     if (matches_.empty()) return;
     if (assembly == Assembly::kCompressed) {
-      AddCompressed(origin, loss, x, problem);
+      block_.emplace(SumsAt{this, &origin, loss});
+      problem->AddResidualBlock(&*block_, nullptr, x);
       return;
     }
     for (size_t i = 0; i < matches_.size(); ++i) {
@@ -73,27 +109,30 @@ class CostOf final : public Cost {
  private:
   static constexpr int kColumns = Residual::kColumns;
 
-  void AddCompressed(const MotionOrigin& origin, ceres::LossFunction* loss,
-                     double* x, ceres::Problem* problem) const {
-    auto evaluate = [this, &origin, loss](const double* at,
-                                          bool /*need_derivatives*/,
-                                          CompressedSums<6>* sums) {
+  // What the compressed block asks for its sums.
+  struct SumsAt {
+    const CostOf* cost;
+    const MotionOrigin* origin;
+    const ceres::LossFunction* loss;
+
+    bool operator()(const double* x, CompressedSums<6>* sums) const {
       NormalEquations sum;
-      Linearise(origin.DerivativesAt(at), loss, &sum);
+      cost->Linearise(origin->DerivativesAt(x), loss, &sum);
       *sums = {sum.hessian, sum.gradient, sum.cost};
       return true;
-    };
-    problem->AddResidualBlock(
-        new CompressedBlock<6, decltype(evaluate)>(std::move(evaluate)),
-        nullptr, x);
+    }
+  };
+
+  static size_t Count(const CostInput& input) {
+    if (IsPrior<Residual>()) return input.prior != nullptr ? 1 : 0;
+    return input.matches.size();
   }
 
   // rows_ (a match after the other) into packed_ (a column after the other).
   void Transpose() {
     const int size = static_cast<int>(matches_.size());
-    const int lanes = PackedColumns::kMaxLanes;
     packed_.size = size;
-    packed_.stride = (size + lanes - 1) / lanes * lanes;
+    packed_.stride = (size + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
     packed_.values.resize(static_cast<size_t>(packed_.stride) * kColumns);
     for (int i = 0; i < packed_.stride && size > 0; ++i) {
       const double* row = &rows_[(i < size ? i : size - 1) * kColumns];
@@ -106,6 +145,7 @@ class CostOf final : public Cost {
   std::vector<int> matches_;
   std::vector<double> rows_;  // for the assemblies that go match by match
   PackedColumns packed_;
+  std::optional<CompressedBlock<6, SumsAt>> block_;
 };
 
 }  // namespace rgbd_pose

@@ -87,6 +87,13 @@ std::vector<ListedImage> ReadImageList(const std::string& folder,
   return images;
 }
 
+std::vector<double> Timestamps(const std::vector<ListedImage>& images) {
+  std::vector<double> timestamps;
+  timestamps.reserve(images.size());
+  for (const ListedImage& image : images) timestamps.push_back(image.timestamp);
+  return timestamps;
+}
+
 bool MentionsDepth(std::string path) {
   std::transform(path.begin(), path.end(), path.begin(),
                  [](unsigned char c) { return std::tolower(c); });
@@ -118,13 +125,9 @@ bool IsDepthLeft(const std::string& list, const TextLine& line,
 TumLists ReadTumLists(const std::string& folder, double max_time_difference) {
   const std::vector<ListedImage> color = ReadImageList(folder, "rgb.txt");
   const std::vector<ListedImage> depth = ReadImageList(folder, "depth.txt");
-  std::vector<double> color_times;
-  std::vector<double> depth_times;
-  for (const ListedImage& image : color) color_times.push_back(image.timestamp);
-  for (const ListedImage& image : depth) depth_times.push_back(image.timestamp);
   TumLists lists;
   for (const auto [i, j] :
-       Associate(color_times, depth_times, max_time_difference)) {
+       Associate(Timestamps(color), Timestamps(depth), max_time_difference)) {
     CheckExists((fs::path(folder) / "rgb.txt").string(), color[i]);
     CheckExists((fs::path(folder) / "depth.txt").string(), depth[j]);
     lists.pairs.push_back({color[i].timestamp, color[i].path, depth[j].path});
@@ -133,8 +136,8 @@ TumLists ReadTumLists(const std::string& folder, double max_time_difference) {
     throw InputError(folder + ": no image of rgb.txt is within " +
                      std::to_string(max_time_difference) +
                      " s of one of depth.txt; the lists start at " +
-                     std::to_string(color_times.front()) + " and " +
-                     std::to_string(depth_times.front()) + " s");
+                     std::to_string(color.front().timestamp) + " and " +
+                     std::to_string(depth.front().timestamp) + " s");
   }
   lists.unmatched_color = static_cast<int>(color.size() - lists.pairs.size());
   return lists;

@@ -16,6 +16,10 @@ double MEstimator::Width95(int dimension) const {
   return width95[std::clamp(dimension, 1, kMaxDimension) - 1];
 }
 
+std::unique_ptr<ceres::LossFunction> MEstimator::MakeLoss(int dimension) const {
+  return make != nullptr ? make(Width95(dimension)) : nullptr;
+}
+
 // Widths: found by quadrature over the chi distribution; a test finds them
 // again (tests/m_estimator_test.cc).
 const std::vector<MEstimator>& MEstimators() {

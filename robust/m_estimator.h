@@ -28,6 +28,9 @@ struct MEstimator {
   std::array<double, kMaxDimension> width95;
 
   double Width95(int dimension) const;
+
+  // The loss at its 95 % width; null: no loss.
+  std::unique_ptr<ceres::LossFunction> MakeLoss(int dimension) const;
 };
 
 // All M-estimators.

@@ -37,12 +37,14 @@ class AssemblyTest
   void Bind(int count) {
     RandomWorld world(7);
     const Rigid3d truth = world.Motion(0.05, 0.05);
-    cost_->Bind(world.Matches(count, 0.2, truth), Rigid3d());
+    matches_ = world.Matches(count, 0.2, truth);
+    cost_->Bind({matches_, Rigid3d(), &prior_});
     ASSERT_GT(cost_->matches().size(), 0u);
   }
 
   std::unique_ptr<ceres::Problem> Build(Assembly assembly, double* x) {
     ceres::Problem::Options options;
+    options.cost_function_ownership = BlockOwnership(assembly);
     options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     auto problem = std::make_unique<ceres::Problem>(options);
     cost_->AddTo(assembly, origin_, loss_.get(), x, problem.get());
@@ -79,6 +81,8 @@ class AssemblyTest
   }
 
   MotionOrigin origin_;
+  Correspondences matches_;
+  MotionPrior prior_;
   std::unique_ptr<Cost> cost_;
   std::unique_ptr<ceres::LossFunction> loss_;
 };

@@ -17,7 +17,7 @@ Frame FrameWithMedian(uint16_t raw, double depth_scale) {
   frame.depth = cv::Mat(6, 5, CV_16UC1, cv::Scalar(raw));
   frame.depth.row(0).setTo(0);
   frame.depth.row(1).setTo(Frame::kNoDepth);
-  frame.depth.row(2).setTo(raw / 2);
+  frame.depth.row(2).setTo(raw - 1);
   frame.depth.row(3).setTo(raw + 1);
   return frame;
 }

@@ -37,10 +37,11 @@ struct Sample {
     const Rigid3d guess = world->Motion(1.0, 1.0);
     origin = MotionOrigin(guess);
     x << world->Vector(0.7), world->Vector(0.7);
+    const MotionPrior prior{world->Motion(1.0, 1.0)};
     Correspondences matches;
     while (true) {
       matches = world->Matches(1, 0.0, origin.CurFromPrev(x.data()));
-      if (Residual::Pack(matches, 0, guess, columns)) return;
+      if (Residual::Pack({matches, guess, &prior}, 0, columns)) return;
     }
   }
 };

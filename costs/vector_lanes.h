@@ -1,0 +1,57 @@
+#pragma once
+
+// Vectors of doubles by the compiler's own types (GCC, Clang) and the choice of
+// the instruction set at run time, so that a build for any x86-64 uses AVX2
+// where the machine has it.
+
+namespace rgbd_pose {
+
+constexpr int kMaxLanes = 8;
+
+template <int W>
+struct Lanes {
+  static_assert(W <= kMaxLanes, "columns are padded to kMaxLanes");
+  typedef double Type __attribute__((vector_size(W * sizeof(double))));
+};
+
+#if defined(__x86_64__)
+
+namespace packed {
+
+// flatten: everything below is compiled for AVX2 here and only here, so no
+// function that the rest of the program shares is.
+template <typename Kernel, typename... Args>
+[[gnu::target("avx2,fma"), gnu::flatten]] void RunAvx2(Args... args) {
+  Kernel::template Run<4>(*args...);
+}
+
+template <typename Kernel, typename... Args>
+void RunBaseline(Args... args) {
+  Kernel::template Run<2>(*args...);
+}
+
+inline bool HasAvx2() {
+  static const bool has =
+      __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
+  return has;
+}
+
+}  // namespace packed
+
+#endif
+
+// Calls Kernel::Run<W>(args...) with the widest W the machine has.
+template <typename Kernel, typename... Args>
+void RunVectorised(const Args&... args) {
+#if defined(__x86_64__)
+  if (packed::HasAvx2()) {
+    packed::RunAvx2<Kernel>(&args...);
+    return;
+  }
+  packed::RunBaseline<Kernel>(&args...);
+#else
+  Kernel::template Run<2>(args...);
+#endif
+}
+
+}  // namespace rgbd_pose
