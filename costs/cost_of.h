@@ -44,16 +44,19 @@ class CostOf final : public Cost {
   bool is_whitened() const override { return Residual::kIsWhitened; }
 
   void Bind(const CostInput& input) override {
-    matches_.clear();
-    rows_.clear();
-    double columns[kColumns];
     const size_t count = Count(input);
+    packed_.stride =
+        static_cast<int>((count + kMaxLanes - 1) / kMaxLanes * kMaxLanes);
+    packed_.values.resize(static_cast<size_t>(packed_.stride) * kColumns);
+    matches_.clear();
+    double columns[kColumns];
     for (size_t i = 0; i < count; ++i) {
       if (!Residual::Pack(input, i, columns)) continue;
+      Store(matches_.size(), columns);
       matches_.push_back(IsPrior<Residual>() ? -1 : static_cast<int>(i));
-      rows_.insert(rows_.end(), columns, columns + kColumns);
     }
-    Transpose();
+    packed_.size = static_cast<int>(matches_.size());
+    Pad();
   }
 
   void Residuals(const MotionDerivatives& motion,
@@ -65,9 +68,10 @@ class CostOf final : public Cost {
 
   void SquaredNorms(const MotionDerivatives& motion,
                     std::vector<double>* squared_norms) const override {
-    squared_norms->resize(matches_.size());
+    squared_norms->resize(packed_.stride);
     RunVectorised<packed::SquaredNormsKernel<Residual>>(motion, packed_,
                                                         squared_norms->data());
+    squared_norms->resize(matches_.size());
   }
 
   void Linearise(const MotionDerivatives& motion,
@@ -93,6 +97,7 @@ class CostOf final : public Cost {
       problem->AddResidualBlock(&*block_, nullptr, x);
       return;
     }
+    Unpack();
     for (size_t i = 0; i < matches_.size(); ++i) {
       const double* columns = &rows_[i * kColumns];
       ceres::CostFunction* block;
@@ -128,23 +133,37 @@ class CostOf final : public Cost {
     return input.matches.size();
   }
 
-  // rows_ (a match after the other) into packed_ (a column after the other).
-  void Transpose() {
-    const int size = static_cast<int>(matches_.size());
-    packed_.size = size;
-    packed_.stride = (size + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
-    packed_.values.resize(static_cast<size_t>(packed_.stride) * kColumns);
-    for (int i = 0; i < packed_.stride && size > 0; ++i) {
-      const double* row = &rows_[(i < size ? i : size - 1) * kColumns];
+  void Store(size_t i, const double* columns) {
+    for (int k = 0; k < kColumns; ++k) {
+      packed_.values[k * packed_.stride + i] = columns[k];
+    }
+  }
+
+  // Fills the last lanes by copies of the last match: no numbers that could
+  // overflow there.
+  void Pad() {
+    const size_t size = matches_.size();
+    for (size_t i = size; size > 0 && i % kMaxLanes != 0; ++i) {
       for (int k = 0; k < kColumns; ++k) {
-        packed_.values[k * packed_.stride + i] = row[k];
+        double* column = &packed_.values[k * packed_.stride];
+        column[i] = column[size - 1];
+      }
+    }
+  }
+
+  // A match after the other, for the assemblies that go match by match.
+  void Unpack() {
+    rows_.resize(matches_.size() * kColumns);
+    for (size_t i = 0; i < matches_.size(); ++i) {
+      for (int k = 0; k < kColumns; ++k) {
+        rows_[i * kColumns + k] = packed_.values[k * packed_.stride + i];
       }
     }
   }
 
   std::vector<int> matches_;
-  std::vector<double> rows_;  // for the assemblies that go match by match
   PackedColumns packed_;
+  std::vector<double> rows_;  // see Unpack
   std::optional<CompressedBlock<6, SumsAt>> block_;
 };
 

@@ -2,6 +2,7 @@
 
 #include <ceres/loss_function.h>
 
+#include <algorithm>
 #include <cstring>
 #include <vector>
 
@@ -46,6 +47,46 @@ struct Pack {
   int lanes;
 };
 
+// Matches are weighted tile by tile: first all squared norms, then all losses
+// (virtual calls, scalar), then all sums; mixing them would spill the vector
+// registers at every call.
+constexpr int kTile = 256;
+
+template <typename Residual, int W>
+[[gnu::always_inline]] inline void SquaredNormsOfTile(
+    const MotionDerivatives& motion, const PackedColumns& columns, int begin,
+    int end, double* squared_norms) {
+  using D = typename Lanes<W>::Type;
+  for (int i = begin; i < end; i += W) {
+    const Pack<Residual, W> pack(columns, i);
+    D r[Residual::kRows];
+    Residual::Residual(motion, pack.m, r);
+    D s;
+    pack.SquaredNorm(r, &s);
+    std::memcpy(squared_norms + (i - begin), &s, sizeof(D));
+  }
+}
+
+// Weights rho' of a tile, 0 for the padding; returns the sum of rho.
+template <typename Residual, int W>
+[[gnu::always_inline]] inline double WeighTile(const MotionDerivatives& motion,
+                                               const PackedColumns& columns,
+                                               const ceres::LossFunction* loss,
+                                               int begin, int end,
+                                               double* weights) {
+  alignas(64) double squared_norms[kTile + kMaxLanes];
+  SquaredNormsOfTile<Residual, W>(motion, columns, begin, end, squared_norms);
+  double cost = 0.0;
+  for (int i = 0; i < end - begin; ++i) {
+    double rho[3] = {squared_norms[i], 1.0, 0.0};
+    if (loss != nullptr) loss->Evaluate(squared_norms[i], rho);
+    cost += rho[0];
+    weights[i] = rho[1];
+  }
+  for (int i = end - begin; i % W != 0; ++i) weights[i] = 0.0;
+  return cost;
+}
+
 // A symmetric 6 x 6 sum, lane by lane: the upper triangle, row by row.
 template <typename D>
 struct SymmetricSum {
@@ -86,22 +127,16 @@ struct ResidualsKernel {
   }
 };
 
-// The squared norm of each match's residual.
+// The squared norm of each match's residual. The output has room for the
+// padding.
 template <typename Residual>
 struct SquaredNormsKernel {
   template <int W>
   [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
                                          const PackedColumns& columns,
                                          double* squared_norms) {
-    using D = typename Lanes<W>::Type;
-    for (int i = 0; i < columns.size; i += W) {
-      const Pack<Residual, W> pack(columns, i);
-      D r[Residual::kRows];
-      Residual::Residual(motion, pack.m, r);
-      D s;
-      pack.SquaredNorm(r, &s);
-      std::memcpy(squared_norms + i, &s, pack.lanes * sizeof(double));
-    }
+    SquaredNormsOfTile<Residual, W>(motion, columns, 0, columns.size,
+                                    squared_norms);
   }
 };
 
@@ -118,39 +153,39 @@ struct LineariseKernel {
     SymmetricSum<D> hessian;
     D gradient[6] = {};
     double cost = 0.0;
-    for (int i = 0; i < columns.size; i += W) {
-      const Pack<Residual, W> pack(columns, i);
-      D r[kRows];
-      D J[kRows][6];
-      Residual::Jacobian(motion, pack.m, r, J);
-      D s;
-      pack.SquaredNorm(r, &s);
-      D weight = {};
-      for (int lane = 0; lane < pack.lanes; ++lane) {
-        double rho[3] = {s[lane], 1.0, 0.0};
-        if (loss != nullptr) loss->Evaluate(s[lane], rho);
-        cost += rho[0];
-        weight[lane] = rho[1];
-      }
-      int entry = 0;
-      for (int a = 0; a < 6; ++a) {
-        D wJ[kRows];
-        for (int row = 0; row < kRows; ++row) wJ[row] = weight * J[row][a];
-        D g = wJ[0] * r[0];
-        for (int row = 1; row < kRows; ++row) g += wJ[row] * r[row];
-        gradient[a] += g;
-        for (int b = a; b < 6; ++b) {
-          D h = wJ[0] * J[0][b];
-          for (int row = 1; row < kRows; ++row) h += wJ[row] * J[row][b];
-          hessian.entries[entry++] += h;
+    for (int begin = 0; begin < columns.size; begin += kTile) {
+      const int end = std::min(begin + kTile, columns.size);
+      alignas(64) double weights[kTile + kMaxLanes];
+      cost +=
+          WeighTile<Residual, W>(motion, columns, loss, begin, end, weights);
+      for (int i = begin; i < end; i += W) {
+        const Pack<Residual, W> pack(columns, i);
+        D weight;
+        std::memcpy(&weight, weights + (i - begin), sizeof(D));
+        D r[kRows];
+        D J[kRows][6];
+        Residual::Jacobian(motion, pack.m, r, J);
+        int entry = 0;
+        for (int a = 0; a < 6; ++a) {
+          D wJ[kRows];
+          for (int row = 0; row < kRows; ++row) wJ[row] = weight * J[row][a];
+          D g = wJ[0] * r[0];
+          for (int row = 1; row < kRows; ++row) g += wJ[row] * r[row];
+          gradient[a] += g;
+          for (int b = a; b < 6; ++b) {
+            D h = wJ[0] * J[0][b];
+            for (int row = 1; row < kRows; ++row) h += wJ[row] * J[row][b];
+            hessian.entries[entry++] += h;
+          }
         }
       }
     }
     sum->cost += 0.5 * cost;
     hessian.AddTo(&sum->hessian);
     for (int a = 0; a < 6; ++a) {
-      for (int lane = 0; lane < W; ++lane)
+      for (int lane = 0; lane < W; ++lane) {
         sum->gradient[a] += gradient[a][lane];
+      }
     }
   }
 };
@@ -166,28 +201,27 @@ struct ScatterKernel {
     using D = typename Lanes<W>::Type;
     constexpr int kRows = Residual::kRows;
     SymmetricSum<D> scatter;
-    for (int i = 0; i < columns.size; i += W) {
-      const Pack<Residual, W> pack(columns, i);
-      D r[kRows];
-      D J[kRows][6];
-      Residual::Jacobian(motion, pack.m, r, J);
-      D s;
-      pack.SquaredNorm(r, &s);
-      D weight = {};
-      for (int lane = 0; lane < pack.lanes; ++lane) {
-        double rho[3] = {s[lane], 1.0, 0.0};
-        if (loss != nullptr) loss->Evaluate(s[lane], rho);
-        weight[lane] = rho[1];
-      }
-      D g[6];
-      for (int a = 0; a < 6; ++a) {
-        g[a] = J[0][a] * r[0];
-        for (int row = 1; row < kRows; ++row) g[a] += J[row][a] * r[row];
-        g[a] *= weight;
-      }
-      int entry = 0;
-      for (int a = 0; a < 6; ++a) {
-        for (int b = a; b < 6; ++b) scatter.entries[entry++] += g[a] * g[b];
+    for (int begin = 0; begin < columns.size; begin += kTile) {
+      const int end = std::min(begin + kTile, columns.size);
+      alignas(64) double weights[kTile + kMaxLanes];
+      WeighTile<Residual, W>(motion, columns, loss, begin, end, weights);
+      for (int i = begin; i < end; i += W) {
+        const Pack<Residual, W> pack(columns, i);
+        D weight;
+        std::memcpy(&weight, weights + (i - begin), sizeof(D));
+        D r[kRows];
+        D J[kRows][6];
+        Residual::Jacobian(motion, pack.m, r, J);
+        D g[6];
+        for (int a = 0; a < 6; ++a) {
+          g[a] = J[0][a] * r[0];
+          for (int row = 1; row < kRows; ++row) g[a] += J[row][a] * r[row];
+          g[a] *= weight;
+        }
+        int entry = 0;
+        for (int a = 0; a < 6; ++a) {
+          for (int b = a; b < 6; ++b) scatter.entries[entry++] += g[a] * g[b];
+        }
       }
     }
     scatter.AddTo(sum);

@@ -56,12 +56,12 @@ struct RayWhitening {
 // The six columns of an observation with depth; its sigmas times a factor.
 inline void PackRay(const Camera& camera, const Observation& o,
                     double sigma_factor, double* columns) {
-  const double sigma_px = sigma_factor * o.sigma_px;
+  const double inverse = 1.0 / (o.depth * sigma_factor * o.sigma_px);
   columns[0] = (o.u - camera.cx) / camera.fx;
   columns[1] = (o.v - camera.cy) / camera.fy;
   columns[2] = o.depth;
-  columns[3] = camera.fx / (o.depth * sigma_px);
-  columns[4] = camera.fy / (o.depth * sigma_px);
+  columns[3] = camera.fx * inverse;
+  columns[4] = camera.fy * inverse;
   columns[5] = 1.0 / (sigma_factor * o.sigma_depth);
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 
 // Vectors of doubles by the compiler's own types (GCC, Clang) and the choice of
-// the instruction set at run time, so that a build for any x86-64 uses AVX2
-// where the machine has it.
+// the instruction set at run time, so that a build for any x86-64 uses AVX-512
+// or AVX2 where the machine has it.
 
 namespace rgbd_pose {
 
@@ -18,8 +18,14 @@ struct Lanes {
 
 namespace packed {
 
-// flatten: everything below is compiled for AVX2 here and only here, so no
-// function that the rest of the program shares is.
+// flatten: everything below is compiled for the instruction set here and only
+// here, so no function that the rest of the program shares is.
+template <typename Kernel, typename... Args>
+[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma"), gnu::flatten]] void
+RunAvx512(Args... args) {
+  Kernel::template Run<8>(*args...);
+}
+
 template <typename Kernel, typename... Args>
 [[gnu::target("avx2,fma"), gnu::flatten]] void RunAvx2(Args... args) {
   Kernel::template Run<4>(*args...);
@@ -30,10 +36,20 @@ void RunBaseline(Args... args) {
   Kernel::template Run<2>(*args...);
 }
 
-inline bool HasAvx2() {
-  static const bool has =
-      __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma");
-  return has;
+enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
+
+inline InstructionSet BestInstructionSet() {
+  static const InstructionSet best = [] {
+    if (__builtin_cpu_supports("avx512f") &&
+        __builtin_cpu_supports("avx512dq") &&
+        __builtin_cpu_supports("avx512vl")) {
+      return InstructionSet::kAvx512;
+    }
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma")
+               ? InstructionSet::kAvx2
+               : InstructionSet::kBaseline;
+  }();
+  return best;
 }
 
 }  // namespace packed
@@ -44,9 +60,13 @@ inline bool HasAvx2() {
 template <typename Kernel, typename... Args>
 void RunVectorised(const Args&... args) {
 #if defined(__x86_64__)
-  if (packed::HasAvx2()) {
-    packed::RunAvx2<Kernel>(&args...);
-    return;
+  switch (packed::BestInstructionSet()) {
+    case packed::InstructionSet::kAvx512:
+      return packed::RunAvx512<Kernel>(&args...);
+    case packed::InstructionSet::kAvx2:
+      return packed::RunAvx2<Kernel>(&args...);
+    case packed::InstructionSet::kBaseline:
+      break;
   }
   packed::RunBaseline<Kernel>(&args...);
 #else

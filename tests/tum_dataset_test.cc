@@ -110,9 +110,9 @@ TEST_F(TumDatasetTest, MissesNoImageThatNoFrameNeeds) {
 
 TEST_F(TumDatasetTest, ReadsFromSeveralThreads) {
   const TumDataset dataset(options_);
-  std::vector<std::thread> threads;
-  for (int thread = 0; thread < 4; ++thread) {
-    threads.emplace_back([&dataset] {
+  std::vector<std::thread> threads(4);
+  for (std::thread& thread : threads) {
+    thread = std::thread([&dataset] {
       for (int repeat = 0; repeat < 20; ++repeat) ExpectFrames(dataset);
     });
   }

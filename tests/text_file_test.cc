@@ -1,0 +1,96 @@
+#include "core/text_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/input_error.h"
+#include "tests/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+TEST(TextFileTest, ReadsColumnsOfAllUsualForms) {
+  const struct {
+    const char* what;
+    const char* content;
+  } kCases[] = {
+      {"plain", "1 a\n\n2 b\n"},
+      {"no line end at the end", "1 a\n\n2 b"},
+      {"Windows line ends", "1 a\r\n\r\n2 b\r\n"},
+      {"byte order mark",
+       "\xEF\xBB\xBF"
+       "1 a\n\n2 b\n"},
+      {"commas and tabs", "1,a\n\n\t2 ,\t b ,\n"},
+      {"comments", "1 a # b c\n#1 a\n2 b#\n"},
+  };
+  const TempFolder folder;
+  for (const auto& c : kCases) {
+    SCOPED_TRACE(c.what);
+    const auto lines = ReadTextTable(folder.Write("table.txt", c.content));
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_EQ(lines[0].number, 1);
+    EXPECT_EQ(lines[1].number, 3);
+    EXPECT_THAT(lines[0].words, ElementsAre("1", "a"));
+    EXPECT_THAT(lines[1].words, ElementsAre("2", "b"));
+  }
+}
+
+TEST(TextFileTest, ReadsAnEmptyFileAsNoLines) {
+  const TempFolder folder;
+  EXPECT_TRUE(ReadTextTable(folder.Write("empty.txt", "")).empty());
+}
+
+TEST(TextFileTest, NamesTheFileItCannotRead) {
+  const TempFolder folder;
+  EXPECT_THAT([&] { ReadTextTable(folder / "missing.txt"); },
+              ThrowsMessage<InputError>(HasSubstr(folder / "missing.txt")));
+  EXPECT_THAT([&] { ReadTextFile(folder.path()); },
+              ThrowsMessage<InputError>(HasSubstr(folder.path() + ": is a")));
+}
+
+TEST(TextFileTest, ParsesNumbers) {
+  const auto parse = [](const char* word) {
+    return ParseNumber(word, "file", 7, "tx");
+  };
+  EXPECT_EQ(parse("1305031098.665900"), 1305031098.6659);
+  EXPECT_EQ(parse("-2.5e-3"), -0.0025);
+  EXPECT_EQ(parse("+4"), 4.0);
+  for (const char* word :
+       {"", "x", "1x", "1,5", "nan", "-NaN", "inf", "1e999", "+", "++1", "-"}) {
+    EXPECT_THAT([&] { parse(word); },
+                ThrowsMessage<InputError>("file:7: '" + std::string(word) +
+                                          "' is no finite number for tx"))
+        << word;
+  }
+}
+
+TEST(TextFileTest, ReplacesAFileAsAWhole) {
+  const TempFolder folder;
+  const std::string file = folder / "a.txt";
+  WriteFileAtomically(file, "old and long");
+  WriteFileAtomically(file, "new");
+  EXPECT_EQ(ReadTextFile(file), "new");
+  const std::filesystem::directory_iterator files(folder.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+TEST(TextFileTest, NamesTheFileItCannotWrite) {
+  const TempFolder folder;
+  EXPECT_THAT([&] { WriteFileAtomically(folder / "none/a.txt", "x"); },
+              ThrowsMessage<InputError>(HasSubstr(folder / "none/a.txt")));
+  // A folder in the way: the renaming fails and leaves nothing behind.
+  folder.Write("b.txt/inside", "x");
+  EXPECT_THAT([&] { WriteFileAtomically(folder / "b.txt", "x"); },
+              ThrowsMessage<InputError>(HasSubstr(folder / "b.txt")));
+  const std::filesystem::directory_iterator files(folder.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
