@@ -5,6 +5,7 @@
 #include <cstdio>
 
 #include "core/input_error.h"
+#include "core/text_file.h"
 #include "costs/cost_factory.h"
 #include "frontend/frontend.h"
 
@@ -26,18 +27,15 @@ Assembly AssemblyByName(const std::string& name) {
   for (const AssemblyName& row : kAssemblies) {
     if (row.name == name) return row.assembly;
   }
-  throw InputError("unknown assembly '" + name +
-                   "'; there are compressed, per_match, autodiff");
+  throw InputError("unknown assembly '" + name + "'; there are " +
+                   Join(AssemblyNames()));
 }
 
 const DepthNoiseModel* DepthNoiseByName(const std::string& name) {
   const DepthNoiseModel* model = FindDepthNoiseModel(name);
   if (model != nullptr) return model;
-  std::string names;
-  for (const DepthNoiseModel& row : DepthNoiseModels()) {
-    names += (names.empty() ? "" : ", ") + std::string(row.name);
-  }
-  throw InputError("unknown depth noise '" + name + "'; there are " + names);
+  throw InputError("unknown depth noise '" + name + "'; there are " +
+                   Join(DepthNoiseModelNames()));
 }
 
 double Quantile(std::vector<double> values, double share) {
@@ -49,6 +47,12 @@ double Quantile(std::vector<double> values, double share) {
 }
 
 }  // namespace
+
+std::vector<std::string> AssemblyNames() {
+  std::vector<std::string> names;
+  for (const AssemblyName& row : kAssemblies) names.emplace_back(row.name);
+  return names;
+}
 
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
   FrontendOptions frontend;

@@ -22,6 +22,9 @@ struct OdometrySettings {
   int max_features = 400;
 };
 
+// The names of the assemblies (core/cost.h).
+std::vector<std::string> AssemblyNames();
+
 // An odometry with these settings. Throws InputError for unknown names.
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
 

@@ -40,6 +40,13 @@ void PrintHelp(const ProgramInfo& info) {
         std::printf(", default %s", flag.default_value.c_str());
       }
       std::printf(")\n      %s\n", flag.description.c_str());
+      const auto choices = info.choices.find(name);
+      if (choices == info.choices.end()) continue;
+      std::printf("      one of:");
+      for (const std::string& choice : choices->second) {
+        std::printf(" %s", choice.c_str());
+      }
+      std::printf("\n");
     }
   }
   std::printf(

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ struct ProgramInfo {
   std::string summary;  // one sentence
   std::string example;  // one call
   std::vector<FlagGroup> flag_groups;
+  // Flags that take a name of a list: which names there are.
+  std::map<std::string, std::vector<std::string>> choices = {};
 };
 
 // Runs a program: --help and --version first, then the flags (one clear line

@@ -14,13 +14,17 @@
 #include "apps/odometry_run.h"
 #include "apps/program.h"
 #include "apps/progress_bar.h"
+#include "core/depth_noise.h"
 #include "core/evaluation.h"
 #include "core/input_error.h"
 #include "core/text_file.h"
 #include "core/trajectory.h"
+#include "costs/cost_factory.h"
 #include "frontend/camera_file.h"
 #include "frontend/depth_scale.h"
+#include "frontend/frontend.h"
 #include "frontend/tum_dataset.h"
+#include "robust/m_estimator.h"
 
 DEFINE_string(dataset, "", "folder of a sequence in TUM RGB-D layout");
 DEFINE_string(associations, "",
@@ -28,17 +32,16 @@ DEFINE_string(associations, "",
               "empty: rgb.txt and depth.txt are paired by time");
 DEFINE_string(camera, "",
               "YAML file (ORB-SLAM2/3, ROS camera_info or Kalibr layout) or "
-              "preset: tum_fr1, tum_fr2, tum_fr3, ros_default");
+              "preset");
 DEFINE_double(depth_scale, 0.0,
               "raw depth units per metre; 0: as the camera says");
-DEFINE_string(depth_noise, "khoshelham",
-              "depth noise model: khoshelham, nguyen, constant");
-DEFINE_string(cost, "bidirectional_point", "cost of a match");
-DEFINE_string(loss, "tukey", "M-estimator: none, huber, cauchy, tukey");
+DEFINE_string(depth_noise, "khoshelham", "depth noise model");
+DEFINE_string(cost, "bidirectional_point",
+              "cost of a match; several added up: a+b");
+DEFINE_string(loss, "tukey", "M-estimator; one for each of several costs: a,b");
 DEFINE_string(assembly, "compressed",
-              "how matches become Ceres residual blocks: compressed, "
-              "per_match, autodiff");
-DEFINE_string(frontend, "klt", "where matches come from: klt");
+              "how matches become Ceres residual blocks");
+DEFINE_string(frontend, "klt", "where matches come from");
 DEFINE_int32(max_features, 400, "features wanted in a reference frame");
 DEFINE_int32(threads, 1,
              "threads of the image processing; the result does not depend "
@@ -51,17 +54,26 @@ DEFINE_string(output, "", "folder for the results, made if missing");
 namespace rgbd_pose {
 namespace {
 
-const ProgramInfo kInfo = {
-    "rgbd_odometry",
-    "estimates the motion of an RGB-D camera along a sequence.",
-    "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
-    "--output=runs/fr1_xyz",
-    {{"Input",
-      {"dataset", "associations", "camera", "depth_scale", "depth_noise",
-       "groundtruth"}},
-     {"Estimation",
-      {"cost", "loss", "assembly", "frontend", "max_features", "threads"}},
-     {"Output", {"output"}}}};
+ProgramInfo Info() {
+  ProgramInfo info;
+  info.name = "rgbd_odometry";
+  info.summary = "estimates the motion of an RGB-D camera along a sequence.";
+  info.example =
+      "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
+      "--output=runs/fr1_xyz";
+  info.flag_groups = {
+      {"Input",
+       {"dataset", "associations", "camera", "depth_scale", "depth_noise",
+        "groundtruth"}},
+      {"Estimation",
+       {"cost", "loss", "assembly", "frontend", "max_features", "threads"}},
+      {"Output", {"output"}}};
+  info.choices = {
+      {"camera", CameraPresetNames()}, {"depth_noise", DepthNoiseModelNames()},
+      {"cost", CostNames()},           {"loss", MEstimatorNames()},
+      {"assembly", AssemblyNames()},   {"frontend", FrontendNames()}};
+  return info;
+}
 
 // A run that tracked less of its frames than this has failed.
 constexpr double kMinTrackedShare = 0.5;
@@ -179,7 +191,7 @@ int Main() {
   WriteFileAtomically((output / "frames.csv").string(),
                       FormatFramesCsv(frames));
   WriteFileAtomically((output / "config.flags").string(),
-                      FormatFlagFile(kInfo));
+                      FormatFlagFile(Info()));
   WriteFileAtomically((output / "metrics.json").string(),
                       metrics.dump(2) + "\n");
   std::printf("results in  %s\n", FLAGS_output.c_str());
@@ -191,5 +203,5 @@ int Main() {
 }  // namespace rgbd_pose
 
 int main(int argc, char** argv) {
-  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::kInfo, rgbd_pose::Main);
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
 }

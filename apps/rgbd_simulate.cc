@@ -9,15 +9,16 @@
 #include "apps/program.h"
 #include "apps/progress_bar.h"
 #include "frontend/camera_file.h"
+#include "frontend/synthetic_path.h"
+#include "frontend/synthetic_scene.h"
 #include "frontend/tum_writer.h"
 
-DEFINE_string(scene, "room", "what to look at: room");
-DEFINE_string(path, "xyz", "how to move: xyz, pan_tilt, circle, still");
+DEFINE_string(scene, "room", "what to look at");
+DEFINE_string(path, "xyz", "how to move");
 DEFINE_int32(frames, 150, "number of frames, at 30 Hz");
 DEFINE_uint32(seed, 1, "seed of textures and noise");
 DEFINE_bool(noise, true, "add the noise of a real sensor");
-DEFINE_string(camera, "ros_default",
-              "preset (tum_fr1, tum_fr2, tum_fr3, ros_default) or YAML file");
+DEFINE_string(camera, "ros_default", "preset or YAML file");
 DEFINE_string(output, "", "folder to make, in TUM RGB-D layout");
 
 namespace rgbd_pose {
@@ -55,6 +56,9 @@ int main(int argc, char** argv) {
       "renders a synthetic RGB-D sequence with exact poses to files",
       "rgbd_simulate --path=pan_tilt --frames=150 --output=pan_tilt",
       {{"Sequence", {"scene", "path", "frames", "seed", "noise", "camera"}},
-       {"Output", {"output"}}}};
+       {"Output", {"output"}}},
+      {{"scene", rgbd_pose::SceneNames()},
+       {"path", rgbd_pose::SyntheticPathNames()},
+       {"camera", rgbd_pose::CameraPresetNames()}}};
   return rgbd_pose::RunProgram(argc, argv, info, rgbd_pose::Simulate);
 }

@@ -31,4 +31,12 @@ const DepthNoiseModel* FindDepthNoiseModel(std::string_view name) {
   return nullptr;
 }
 
+std::vector<std::string> DepthNoiseModelNames() {
+  std::vector<std::string> names;
+  for (const DepthNoiseModel& model : DepthNoiseModels()) {
+    names.emplace_back(model.name);
+  }
+  return names;
+}
+
 }  // namespace rgbd_pose

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -20,5 +21,8 @@ const std::vector<DepthNoiseModel>& DepthNoiseModels();
 
 // The model of that name, or null.
 const DepthNoiseModel* FindDepthNoiseModel(std::string_view name);
+
+// The names of all models.
+std::vector<std::string> DepthNoiseModelNames();
 
 }  // namespace rgbd_pose

@@ -65,7 +65,7 @@ std::vector<Interval> TimeIntervals(const std::vector<double>& times,
   for (size_t i = 0; i < times.size(); ++i) {
     const double end = times[i] + delta;
     const size_t j = NearestTime(times, end);
-    if (j > i && std::abs(times[j] - end) <= max_difference) {
+    if (std::abs(times[j] - end) <= max_difference) {
       intervals.emplace_back(i, j);
     }
   }

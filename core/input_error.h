@@ -7,13 +7,21 @@ namespace rgbd_pose {
 
 // Thrown for bad input from outside (files, images, settings). The message is
 // one line that says what is wrong, where (file:line if there is one) and what
-// to do about it. Programs print it and exit with code 2.
+// to do about it. Programs print it and exit with code 2. Control
+// characters of quoted input become spaces, so that it stays one line.
 class InputError : public std::runtime_error {
  public:
   explicit InputError(const std::string& message)
-      : std::runtime_error(message) {}
+      : std::runtime_error(OneLine(message)) {}
   InputError(const std::string& file, int line, const std::string& message)
-      : std::runtime_error(file + ":" + std::to_string(line) + ": " + message) {
+      : InputError(file + ":" + std::to_string(line) + ": " + message) {}
+
+ private:
+  static std::string OneLine(std::string message) {
+    for (char& c : message) {
+      if (static_cast<unsigned char>(c) < ' ') c = ' ';
+    }
+    return message;
   }
 };
 

@@ -71,6 +71,14 @@ std::vector<TextLine> ReadTextTable(const std::string& path) {
   return lines;
 }
 
+std::string Join(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
 double ParseNumber(std::string_view word, const std::string& path, int line,
                    std::string_view what) {
   // from_chars takes no leading '+', which some writers print.

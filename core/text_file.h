@@ -17,6 +17,9 @@ struct TextLine {
 // and a byte order mark are taken out. Throws InputError if it cannot be read.
 std::vector<TextLine> ReadTextTable(const std::string& path);
 
+// Names as a list for a message: "a, b, c".
+std::string Join(const std::vector<std::string>& names);
+
 // A finite number, the whole word, independent of the locale; throws
 // InputError naming file, line and `what` otherwise.
 double ParseNumber(std::string_view word, const std::string& path, int line,

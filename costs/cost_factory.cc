@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/input_error.h"
+#include "core/text_file.h"
 #include "costs/cost_list.h"
 #include "costs/cost_of.h"
 #include "robust/m_estimator.h"
@@ -31,14 +32,6 @@ std::vector<std::string> Split(const std::string& text, char separator) {
     if (end == std::string::npos) return parts;
     begin = end + 1;
   }
-}
-
-std::string Join(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) {
-    text += (text.empty() ? "" : ", ") + name;
-  }
-  return text;
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/input_error.h"
+#include "core/text_file.h"
 #include "frontend/yaml_section.h"
 
 namespace rgbd_pose {
@@ -119,12 +120,9 @@ RgbdCamera ResolveCamera(const std::string& file_or_preset) {
   if (std::filesystem::exists(file_or_preset, error)) {
     return ReadCameraFile(file_or_preset);
   }
-  std::string names;
-  for (const std::string& name : CameraPresetNames()) {
-    names += (names.empty() ? "" : ", ") + name;
-  }
   throw InputError("camera '" + file_or_preset +
-                   "' is neither a file nor one of the presets: " + names);
+                   "' is neither a file nor one of the presets: " +
+                   Join(CameraPresetNames()));
 }
 
 }  // namespace rgbd_pose

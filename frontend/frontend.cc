@@ -1,8 +1,7 @@
 #include "frontend/frontend.h"
 
-#include <functional>
-
 #include "core/input_error.h"
+#include "core/text_file.h"
 #include "frontend/klt_frontend.h"
 
 namespace rgbd_pose {
@@ -49,13 +48,11 @@ std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
                                        const FrontendOptions& options) {
   const std::string error = options.Check();
   if (!error.empty()) throw InputError("frontend: " + error);
-  std::string names;
   for (const FrontendEntry& entry : kFrontends) {
     if (entry.name == name) return entry.make(options);
-    names += (names.empty() ? "" : ", ") + std::string(entry.name);
   }
   throw InputError("unknown frontend '" + std::string(name) + "'; there are " +
-                   names);
+                   Join(FrontendNames()));
 }
 
 }  // namespace rgbd_pose

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/input_error.h"
+#include "core/text_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -105,12 +106,17 @@ constexpr NamedPath kPaths[] = {
 }  // namespace
 
 SyntheticPath FindSyntheticPath(const std::string& name) {
-  std::string names;
   for (const NamedPath& path : kPaths) {
     if (name == path.name) return path.path;
-    names += std::string(names.empty() ? "" : ", ") + path.name;
   }
-  throw InputError("unknown path '" + name + "'; there are: " + names);
+  throw InputError("unknown path '" + name + "'; there are " +
+                   Join(SyntheticPathNames()));
+}
+
+std::vector<std::string> SyntheticPathNames() {
+  std::vector<std::string> names;
+  for (const NamedPath& path : kPaths) names.emplace_back(path.name);
+  return names;
 }
 
 }  // namespace rgbd_pose

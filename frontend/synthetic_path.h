@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/rigid3.h"
 
@@ -23,5 +24,8 @@ using SyntheticPath = Rigid3d (*)(double t, double duration);
 //   circle    a level circle of 0.3 m radius once in 9 s, looking at the desk
 //   still     no motion
 SyntheticPath FindSyntheticPath(const std::string& name);
+
+// The names of all paths.
+std::vector<std::string> SyntheticPathNames();
 
 }  // namespace rgbd_pose

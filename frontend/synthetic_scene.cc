@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/input_error.h"
+#include "core/text_file.h"
 #include "frontend/synthetic_hash.h"
 #include "frontend/synthetic_room.h"
 
@@ -48,12 +49,17 @@ void AddBox(const SceneBox& box, bool from_within,
 }
 
 Scene MakeScene(const std::string& name, uint32_t seed) {
-  std::string names;
   for (const NamedScene& scene : kScenes) {
     if (name == scene.name) return scene.make(seed);
-    names += std::string(names.empty() ? "" : ", ") + scene.name;
   }
-  throw InputError("unknown scene '" + name + "'; there are: " + names);
+  throw InputError("unknown scene '" + name + "'; there are " +
+                   Join(SceneNames()));
+}
+
+std::vector<std::string> SceneNames() {
+  std::vector<std::string> names;
+  for (const NamedScene& scene : kScenes) names.emplace_back(scene.name);
+  return names;
 }
 
 }  // namespace rgbd_pose

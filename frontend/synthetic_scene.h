@@ -47,4 +47,7 @@ void AddBox(const SceneBox& box, bool from_within,
 // names for another one. `seed` picks the textures, never the geometry.
 Scene MakeScene(const std::string& name, uint32_t seed);
 
+// The names of all scenes.
+std::vector<std::string> SceneNames();
+
 }  // namespace rgbd_pose

@@ -12,24 +12,26 @@ namespace rgbd_pose {
 
 // A row of the table of M-estimators. With Zhang's rho(x) (Image and Vision
 // Computing 15, 1997) a Ceres loss is 2 rho(sqrt s), s = |r|^2 of one block of
-// whitened residuals; so a width counts sigmas.
+// whitened residuals; so a width counts sigmas. All have R'' <= 0, and R of k
+// times the width is k^2 R(s / k^2) (core/scaled_loss.h).
 struct MEstimator {
   static constexpr int kMaxDimension = 6;
 
   std::string_view name;
   std::string_view formula;  // weight w(x) of the norm x, c the width
-  bool is_redescending;      // far matches lose all influence
+  bool is_redescending;      // far matches lose all influence: w(x) x -> 0
 
   // Makes the loss of a given width; null: no loss (least squares).
   std::unique_ptr<ceres::LossFunction> (*make)(double width);
 
-  // Width for 95 % efficiency on normal noise, by the number of independent
-  // components of the residual, 1 to 6.
+  // Width by the number of independent components of the residual, 1 to 6: for
+  // 95 % efficiency on normal noise if tuned, else 1.
+  bool is_tuned;
   std::array<double, kMaxDimension> width95;
 
   double Width95(int dimension) const;
 
-  // The loss at its 95 % width; null: no loss.
+  // The loss at that width; null: no loss.
   std::unique_ptr<ceres::LossFunction> MakeLoss(int dimension) const;
 };
 

@@ -57,20 +57,16 @@ TEST(AlignmentTest, IgnoresOrientationsWherePositionsDecide) {
   ExpectNear(AlignRigidly(pairs), world.Inverse(), kTolerance);
 }
 
-// A mirror image would fit, but is no rigid motion.
+// The mirror image x -> -x would fit, but is no rigid motion. Of those, the
+// half turn about y fits best: it gets but the shortest axis, z, wrong.
 TEST(AlignmentTest, NeverMirrors) {
   RandomWorld random(4);
-  std::vector<Vector3d> positions;
-  for (int i = 0; i < 20; ++i) positions.push_back(random.Vector(2.0));
+  const std::vector<Vector3d> positions = {{3, 0, 0},  {-3, 0, 0}, {0, 2, 0},
+                                           {0, -2, 0}, {0, 0, 1},  {0, 0, -1}};
   std::vector<PosePair> pairs = MakePairs(positions, Rigid3d(), &random);
   for (PosePair& pair : pairs) pair.estimate.translation.x() *= -1.0;
-  const Rigid3d found = AlignRigidly(pairs);
-  EXPECT_NEAR(found.rotation.toRotationMatrix().determinant(), 1.0, 1e-12);
-  for (const PosePair& pair : pairs) {
-    const double lengths = (found.rotation * pair.estimate.translation).norm() -
-                           pair.truth.translation.norm();
-    EXPECT_NEAR(lengths, 0.0, 1e-12);
-  }
+  const Rigid3d half_turn(Eigen::Quaterniond(0, 0, 1, 0), Vector3d::Zero());
+  ExpectNear(AlignRigidly(pairs), half_turn, kTolerance);
 }
 
 TEST(AlignmentTest, TakesWhatPositionsLeaveOpenFromTheFirstOrientation) {

@@ -4,16 +4,15 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <string>
 
-#include "core/input_error.h"
+#include "tests/expect_input_error.h"
 #include "tests/temp_folder.h"
 
 namespace rgbd_pose {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::ThrowsMessage;
 
 TEST(TextFileTest, ReadsColumnsOfAllUsualForms) {
   const struct {
@@ -48,10 +47,10 @@ TEST(TextFileTest, ReadsAnEmptyFileAsNoLines) {
 
 TEST(TextFileTest, NamesTheFileItCannotRead) {
   const TempFolder folder;
-  EXPECT_THAT([&] { ReadTextTable(folder / "missing.txt"); },
-              ThrowsMessage<InputError>(HasSubstr(folder / "missing.txt")));
-  EXPECT_THAT([&] { ReadTextFile(folder.path()); },
-              ThrowsMessage<InputError>(HasSubstr(folder.path() + ": is a")));
+  ExpectInputError([&] { ReadTextTable(folder / "missing.txt"); },
+                   {folder / "missing.txt"});
+  ExpectInputError([&] { ReadTextFile(folder.path()); },
+                   {folder.path() + ": is a folder"});
 }
 
 TEST(TextFileTest, ParsesNumbers) {
@@ -63,10 +62,9 @@ TEST(TextFileTest, ParsesNumbers) {
   EXPECT_EQ(parse("+4"), 4.0);
   for (const char* word :
        {"", "x", "1x", "1,5", "nan", "-NaN", "inf", "1e999", "+", "++1", "-"}) {
-    EXPECT_THAT([&] { parse(word); },
-                ThrowsMessage<InputError>("file:7: '" + std::string(word) +
-                                          "' is no finite number for tx"))
-        << word;
+    SCOPED_TRACE(word);
+    ExpectInputError([&] { parse(word); }, {"file:7: '" + std::string(word) +
+                                            "' is no finite number for tx"});
   }
 }
 
@@ -82,12 +80,12 @@ TEST(TextFileTest, ReplacesAFileAsAWhole) {
 
 TEST(TextFileTest, NamesTheFileItCannotWrite) {
   const TempFolder folder;
-  EXPECT_THAT([&] { WriteFileAtomically(folder / "none/a.txt", "x"); },
-              ThrowsMessage<InputError>(HasSubstr(folder / "none/a.txt")));
+  ExpectInputError([&] { WriteFileAtomically(folder / "none/a.txt", "x"); },
+                   {folder / "none/a.txt"});
   // A folder in the way: the renaming fails and leaves nothing behind.
   folder.Write("b.txt/inside", "x");
-  EXPECT_THAT([&] { WriteFileAtomically(folder / "b.txt", "x"); },
-              ThrowsMessage<InputError>(HasSubstr(folder / "b.txt")));
+  ExpectInputError([&] { WriteFileAtomically(folder / "b.txt", "x"); },
+                   {folder / "b.txt"});
   const std::filesystem::directory_iterator files(folder.path());
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
 }

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+namespace rgbd_pose {
+
+// What makes a scale estimator unbiased for few values: a factor each for 2 to
+// 9 values and n / (n + shift) beyond, by the parity of n. After Croux and
+// Rousseeuw, Time-Efficient Algorithms for Two Highly Robust Estimators of
+// Scale (COMPSTAT 1992); tests/scale_test.cc finds them again by simulation.
+struct SmallSample {
+  std::array<double, 8> factors;  // for n = 2 ... 9
+  double shift_even;
+  double shift_odd;
+
+  double Factor(size_t n) const {
+    if (n < 10) return factors[n - 2];
+    const double size = static_cast<double>(n);
+    return size / (size + (n % 2 == 0 ? shift_even : shift_odd));
+  }
+};
+
+}  // namespace rgbd_pose
