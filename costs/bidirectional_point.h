@@ -2,6 +2,7 @@
 
 #include "core/cost.h"
 #include "core/motion.h"
+#include "costs/point_sums.h"
 #include "costs/ray_whitening.h"
 
 namespace rgbd_pose {
@@ -95,6 +96,32 @@ struct BidirectionalPoint {
                                   axis == 2 ? -1.0 : 0.0};
       prev.WhitenColumn(backward, J + 3, 3 + axis);
     }
+  }
+
+  // The same for the compressed sums (point_sums.h): e_c depends on the motion
+  // through q = R (X_prev - C), e_p through q = R^T X_cur + C, and both fall by
+  // as much as q rises: A = -W.
+  static constexpr bool kHasPointTerms = true;
+
+  template <typename D>
+  static void PointTerms(const MotionDerivatives& motion, const D* columns,
+                         PointTerm<D>* forward, PointTerm<D>* backward) {
+    const RayWhitening<D> prev(columns);
+    const RayWhitening<D> cur(columns + RayWhitening<D>::kColumns);
+    const Eigen::Matrix3d& R = motion.R;
+    const D d[3] = {prev.x - motion.C[0], prev.y - motion.C[1],
+                    prev.z - motion.C[2]};
+    // The backward point less C: turning it about C is turning R^T X_cur.
+    for (int i = 0; i < 3; ++i) {
+      forward->q[i] = R(i, 0) * d[0] + R(i, 1) * d[1] + R(i, 2) * d[2];
+      backward->q[i] = R(0, i) * cur.x + R(1, i) * cur.y + R(2, i) * cur.z;
+    }
+    const D e_c[3] = {cur.x - forward->q[0], cur.y - forward->q[1],
+                      cur.z - forward->q[2]};
+    const D e_p[3] = {d[0] - backward->q[0], d[1] - backward->q[1],
+                      d[2] - backward->q[2]};
+    cur.Square(e_c, forward);
+    prev.Square(e_p, backward);
   }
 };
 

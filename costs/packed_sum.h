@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cstring>
+#include <type_traits>
 #include <vector>
 
 #include "core/cost.h"
 #include "core/motion.h"
+#include "costs/point_sums.h"
 #include "costs/vector_lanes.h"
 
 // Sums over matches, several at a time: the residual types' own templates run
@@ -140,6 +142,64 @@ struct SquaredNormsKernel {
   }
 };
 
+// sum w J^T J and sum w J^T r, row by row of the Jacobian.
+template <typename Residual, typename D>
+struct RowSums {
+  void Add(const MotionDerivatives& motion, const D* m, const D& weight) {
+    constexpr int kRows = Residual::kRows;
+    D r[kRows];
+    D J[kRows][6];
+    Residual::Jacobian(motion, m, r, J);
+    int entry = 0;
+    for (int a = 0; a < 6; ++a) {
+      D wJ[kRows];
+      for (int row = 0; row < kRows; ++row) wJ[row] = weight * J[row][a];
+      D g = wJ[0] * r[0];
+      for (int row = 1; row < kRows; ++row) g += wJ[row] * r[row];
+      gradient[a] += g;
+      for (int b = a; b < 6; ++b) {
+        D h = wJ[0] * J[0][b];
+        for (int row = 1; row < kRows; ++row) h += wJ[row] * J[row][b];
+        hessian.entries[entry++] += h;
+      }
+    }
+  }
+
+  void AddTo(const MotionDerivatives& /*motion*/, NormalEquations* sum) const {
+    constexpr int kLanes = sizeof(D) / sizeof(double);
+    hessian.AddTo(&sum->hessian);
+    for (int a = 0; a < 6; ++a) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        sum->gradient[a] += gradient[a][lane];
+      }
+    }
+  }
+
+  SymmetricSum<D> hessian;
+  D gradient[6] = {};
+};
+
+// The same by the short cut of point_sums.h.
+template <typename Residual, typename D>
+struct TermSums {
+  void Add(const MotionDerivatives& motion, const D* m, const D& weight) {
+    PointTerm<D> forward_term, backward_term;
+    Residual::PointTerms(motion, m, &forward_term, &backward_term);
+    forward.Add(forward_term, weight);
+    backward.Add(backward_term, weight);
+  }
+
+  // d(R (X - C)) = omega x q - R dC;  d(R^T X + C) = -(R^T omega) x q + dC.
+  void AddTo(const MotionDerivatives& motion, NormalEquations* sum) const {
+    const Eigen::Matrix3d turn = TurnOfAngles(motion);
+    forward.AddTo(turn, -motion.R, sum);
+    backward.AddTo(-(motion.R.transpose() * turn), Eigen::Matrix3d::Identity(),
+                   sum);
+  }
+
+  PointSums<D> forward, backward;
+};
+
 // The robustified normal equations, weighted by rho'.
 template <typename Residual>
 struct LineariseKernel {
@@ -149,9 +209,10 @@ struct LineariseKernel {
                                          const ceres::LossFunction* loss,
                                          NormalEquations* sum) {
     using D = typename Lanes<W>::Type;
-    constexpr int kRows = Residual::kRows;
-    SymmetricSum<D> hessian;
-    D gradient[6] = {};
+    using Sums =
+        std::conditional_t<HasPointTerms<Residual>::value,
+                           TermSums<Residual, D>, RowSums<Residual, D>>;
+    Sums sums;
     double cost = 0.0;
     for (int begin = 0; begin < columns.size; begin += kTile) {
       const int end = std::min(begin + kTile, columns.size);
@@ -162,31 +223,11 @@ struct LineariseKernel {
         const Pack<Residual, W> pack(columns, i);
         D weight;
         std::memcpy(&weight, weights + (i - begin), sizeof(D));
-        D r[kRows];
-        D J[kRows][6];
-        Residual::Jacobian(motion, pack.m, r, J);
-        int entry = 0;
-        for (int a = 0; a < 6; ++a) {
-          D wJ[kRows];
-          for (int row = 0; row < kRows; ++row) wJ[row] = weight * J[row][a];
-          D g = wJ[0] * r[0];
-          for (int row = 1; row < kRows; ++row) g += wJ[row] * r[row];
-          gradient[a] += g;
-          for (int b = a; b < 6; ++b) {
-            D h = wJ[0] * J[0][b];
-            for (int row = 1; row < kRows; ++row) h += wJ[row] * J[row][b];
-            hessian.entries[entry++] += h;
-          }
-        }
+        sums.Add(motion, pack.m, weight);
       }
     }
     sum->cost += 0.5 * cost;
-    hessian.AddTo(&sum->hessian);
-    for (int a = 0; a < 6; ++a) {
-      for (int lane = 0; lane < W; ++lane) {
-        sum->gradient[a] += gradient[a][lane];
-      }
-    }
+    sums.AddTo(motion, sum);
   }
 };
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/correspondences.h"
+#include "costs/point_sums.h"
 
 namespace rgbd_pose {
 
@@ -46,6 +47,24 @@ struct RayWhitening {
     J[0][column] = w_u * (e[0] - a * e[2]);
     J[1][column] = w_v * (e[1] - b * e[2]);
     J[2][column] = w_z * e[2];
+  }
+
+  // N = L L^T and n = -N e of a residual L^T (X - q) of the moved point q.
+  void Square(const D* e, PointTerm<D>* term) const {
+    const D uu = w_u * w_u;
+    const D vv = w_v * w_v;
+    const D au = a * uu;
+    const D bv = b * vv;
+    D* N = term->normal;
+    N[0] = uu;
+    N[1] = uu - uu;
+    N[2] = -au;
+    N[3] = vv;
+    N[4] = -bv;
+    N[5] = w_z * w_z + a * au + b * bv;
+    term->force[0] = au * e[2] - uu * e[0];
+    term->force[1] = bv * e[2] - vv * e[1];
+    term->force[2] = au * e[0] + bv * e[1] - N[5] * e[2];
   }
 
   D a, b;           // the ray: x / z, y / z

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "core/correspondences.h"
+#include "core/cost.h"
+
+namespace rgbd_pose {
+
+// Covariance (m^2) of the point of an observation with depth, from the noise
+// of u, v and depth to first order (Khoshelham & Elberink 2012). With the ray
+// (a, b, 1), a = (u - cx) / fx, b = (v - cy) / fy:
+//
+//   S = z^2 sigma_px^2 diag(1/fx^2, 1/fy^2, 0) + sigma_depth^2 (a b 1)^T (a b
+//   1)
+//
+// ray_whitening.h is its inverse square root.
+inline Eigen::Matrix3d PointCovariance(const Camera& camera,
+                                       const Observation& o) {
+  const Eigen::Vector3d ray((o.u - camera.cx) / camera.fx,
+                            (o.v - camera.cy) / camera.fy, 1.0);
+  const Eigen::Vector3d image(o.depth * o.sigma_px / camera.fx,
+                              o.depth * o.sigma_px / camera.fy, 0.0);
+  Eigen::Matrix3d S = o.sigma_depth * o.sigma_depth * (ray * ray.transpose());
+  S.diagonal() += image.cwiseAbs2();
+  return S;
+}
+
+// Covariance (m^2) of X_cur - R (X_prev - C) of a match with both depths at the
+// bound motion: S_cur + R S_prev R^T.
+inline Eigen::Matrix3d ForwardErrorCovariance(const CostInput& input,
+                                              const Observation& prev,
+                                              const Observation& cur) {
+  const Camera& camera = input.matches.camera();
+  const Eigen::Matrix3d R = input.cur_from_prev.rotation.toRotationMatrix();
+  return PointCovariance(camera, cur) +
+         R * PointCovariance(camera, prev) * R.transpose();
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+
+namespace rgbd_pose {
+
+// r = L^T e with L L^T the inverse of the covariance of e, so that r has unit
+// covariance. With the covariance K K^T (Cholesky) L^T = K^-1, a lower
+// triangle: it is kept row by row, and that of the first n components is its
+// own first part. D is double or a pack of doubles.
+template <int N, typename D>
+class Whitening {
+ public:
+  static constexpr int kColumns = N * (N + 1) / 2;
+
+  explicit Whitening(const D* columns) : w_(columns) {}
+
+  template <typename E, typename T>
+  void Whiten(const E* e, T* r) const {
+    const D* w = w_;
+    for (int row = 0; row < N; ++row) {
+      r[row] = *w++ * e[0];
+      for (int k = 1; k <= row; ++k) r[row] += *w++ * e[k];
+    }
+  }
+
+  // The same for one column of a Jacobian, into rows J[0..N-1].
+  void WhitenColumn(const D* e, D (*J)[6], int column) const {
+    D r[N];
+    Whiten(e, r);
+    for (int row = 0; row < N; ++row) J[row][column] = r[row];
+  }
+
+ private:
+  const D* w_;
+};
+
+// The columns of the whitening by a covariance; false if that is not positive
+// definite.
+template <int N>
+bool PackWhitening(const Eigen::Matrix<double, N, N>& covariance,
+                   double* columns) {
+  using Matrix = Eigen::Matrix<double, N, N>;
+  const Eigen::LLT<Matrix> cholesky(covariance);
+  if (cholesky.info() != Eigen::Success) return false;
+  const Matrix w = cholesky.matrixL().solve(Matrix::Identity());
+  if (!w.allFinite()) return false;
+  for (int row = 0; row < N; ++row) {
+    for (int k = 0; k <= row; ++k) *columns++ = w(row, k);
+  }
+  return true;
+}
+
+}  // namespace rgbd_pose
