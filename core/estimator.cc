@@ -16,7 +16,7 @@ namespace rgbd_pose {
 namespace {
 
 constexpr int kMinMatches = 3;
-constexpr int kIterationsPerEarlyStage = 3;
+constexpr int kIterationsPerEarlyStage = 2;
 
 // Scale and motion are estimated in turn until the scale moves by less.
 constexpr double kScaleTolerance = 0.01;
@@ -186,14 +186,17 @@ class Estimator::Solve {
         [](const RobustCost& term) { return term.loss != nullptr; });
     double width = 1.0;
     if (robust && options_.schedule == RobustSchedule::kGnc) {
-      width = std::max(1.0, UpdateNorms() / scale_);
+      width = UpdateNorms() / scale_;
     }
-    for (; width > 1.0; width = std::max(1.0, width / options_.gnc_factor)) {
+    while (width > 1.0) {
       SetLosses(scale_ * width);
       if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
       for (const RobustCost& term : costs_) {
         if (term.cost->freezes_weights()) Bind(term.cost.get());
       }
+      // Where over half of the matches are right they soon agree, and most
+      // stages are saved.
+      width = std::min(width / options_.gnc_factor, UpdateNorms() / scale_);
     }
     SetLosses(scale_);
     return MinimiseStage(options_.max_iterations);

@@ -30,7 +30,8 @@ struct EstimatorOptions {
 
   RobustSchedule schedule = RobustSchedule::kGnc;
 
-  // Each stage of the graduation narrows the losses by this factor.
+  // Each stage of the graduation narrows the losses by this factor, or at once
+  // to the spread of the residuals.
   double gnc_factor = 2.0;
 
   // Estimates the spread of residual components in units of the noise model,
@@ -38,7 +39,7 @@ struct EstimatorOptions {
   // noise model is taken as it is.
   double (*scale)(std::vector<double>* residuals) = nullptr;
 
-  // Of the solver, in the last stage; the stages before take at most three.
+  // Of the solver, in the last stage; the stages before take at most two.
   int max_iterations = 50;
 
   // The estimate is `inconsistent` if a smaller share of matches agrees.

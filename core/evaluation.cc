@@ -88,6 +88,7 @@ std::vector<Interval> PathIntervals(const std::vector<double>& path,
 
 std::vector<double> Times(const std::vector<PosePair>& pairs) {
   std::vector<double> times;
+  times.reserve(pairs.size());
   for (const PosePair& pair : pairs) times.push_back(pair.timestamp);
   return times;
 }

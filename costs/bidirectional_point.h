@@ -2,6 +2,8 @@
 
 #include "core/cost.h"
 #include "core/motion.h"
+#include "costs/lane_math.h"
+#include "costs/moved_point.h"
 #include "costs/point_sums.h"
 #include "costs/ray_whitening.h"
 
@@ -46,17 +48,13 @@ struct BidirectionalPoint {
   static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
     const RayWhitening<D> prev(columns);
     const RayWhitening<D> cur(columns + RayWhitening<D>::kColumns);
-    const auto& R = motion.R;
-    const T d[3] = {prev.x - motion.C[0], prev.y - motion.C[1],
-                    prev.z - motion.C[2]};
-    const T e_c[3] = {
-        cur.x - (R(0, 0) * d[0] + R(0, 1) * d[1] + R(0, 2) * d[2]),
-        cur.y - (R(1, 0) * d[0] + R(1, 1) * d[1] + R(1, 2) * d[2]),
-        cur.z - (R(2, 0) * d[0] + R(2, 1) * d[1] + R(2, 2) * d[2])};
-    const T e_p[3] = {
-        d[0] - (R(0, 0) * cur.x + R(1, 0) * cur.y + R(2, 0) * cur.z),
-        d[1] - (R(0, 1) * cur.x + R(1, 1) * cur.y + R(2, 1) * cur.z),
-        d[2] - (R(0, 2) * cur.x + R(1, 2) * cur.y + R(2, 2) * cur.z)};
+    T e_c[3], e_p[3];
+    Forward::Move(motion, prev.point, e_c);
+    Backward::Move(motion, cur.point, e_p);
+    for (int i = 0; i < 3; ++i) {
+      e_c[i] = cur.point[i] - e_c[i];
+      e_p[i] = prev.point[i] - e_p[i];
+    }
     cur.Whiten(e_c, r);
     prev.Whiten(e_p, r + 3);
   }
@@ -69,21 +67,17 @@ struct BidirectionalPoint {
     Residual(motion, columns, r);
     const RayWhitening<D> prev(columns);
     const RayWhitening<D> cur(columns + RayWhitening<D>::kColumns);
-    const D d[3] = {prev.x - motion.C[0], prev.y - motion.C[1],
-                    prev.z - motion.C[2]};
     for (int angle = 0; angle < 3; ++angle) {
-      const Eigen::Matrix3d& dR = motion.dR[angle];
+      D forward[3], backward[3];
+      Forward::Derivative(motion, prev.point, angle, forward);
+      Backward::Derivative(motion, cur.point, angle, backward);
+      for (int i = 0; i < 3; ++i) {
+        forward[i] = -forward[i];
+        backward[i] = -backward[i];
+      }
       // Tables 2.3, 2.4, 2.5: d e_c / d angle = -(dR / d angle) (X_prev - C).
-      const D forward[3] = {
-          -(dR(0, 0) * d[0] + dR(0, 1) * d[1] + dR(0, 2) * d[2]),
-          -(dR(1, 0) * d[0] + dR(1, 1) * d[1] + dR(1, 2) * d[2]),
-          -(dR(2, 0) * d[0] + dR(2, 1) * d[1] + dR(2, 2) * d[2])};
       cur.WhitenColumn(forward, J, angle);
       // Tables 2.6, 2.7, 2.8: d e_p / d angle = -(dR / d angle)^T X_cur.
-      const D backward[3] = {
-          -(dR(0, 0) * cur.x + dR(1, 0) * cur.y + dR(2, 0) * cur.z),
-          -(dR(0, 1) * cur.x + dR(1, 1) * cur.y + dR(2, 1) * cur.z),
-          -(dR(0, 2) * cur.x + dR(1, 2) * cur.y + dR(2, 2) * cur.z)};
       prev.WhitenColumn(backward, J + 3, angle);
     }
     for (int axis = 0; axis < 3; ++axis) {
@@ -108,18 +102,14 @@ struct BidirectionalPoint {
                          PointTerm<D>* forward, PointTerm<D>* backward) {
     const RayWhitening<D> prev(columns);
     const RayWhitening<D> cur(columns + RayWhitening<D>::kColumns);
-    const Eigen::Matrix3d& R = motion.R;
-    const D d[3] = {prev.x - motion.C[0], prev.y - motion.C[1],
-                    prev.z - motion.C[2]};
+    Forward::Move(motion, prev.point, forward->q);
     // The backward point less C: turning it about C is turning R^T X_cur.
+    MultiplyTransposed(motion.R, cur.point, backward->q);
+    D e_c[3], e_p[3];
     for (int i = 0; i < 3; ++i) {
-      forward->q[i] = R(i, 0) * d[0] + R(i, 1) * d[1] + R(i, 2) * d[2];
-      backward->q[i] = R(0, i) * cur.x + R(1, i) * cur.y + R(2, i) * cur.z;
+      e_c[i] = cur.point[i] - forward->q[i];
+      e_p[i] = prev.point[i] - motion.C[i] - backward->q[i];
     }
-    const D e_c[3] = {cur.x - forward->q[0], cur.y - forward->q[1],
-                      cur.z - forward->q[2]};
-    const D e_p[3] = {d[0] - backward->q[0], d[1] - backward->q[1],
-                      d[2] - backward->q[2]};
     cur.Square(e_c, forward);
     prev.Square(e_p, backward);
   }

@@ -1,10 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "core/correspondences.h"
-#include "core/cost.h"
 
 namespace rgbd_pose {
 
@@ -25,17 +23,6 @@ inline Eigen::Matrix3d PointCovariance(const Camera& camera,
   Eigen::Matrix3d S = o.sigma_depth * o.sigma_depth * (ray * ray.transpose());
   S.diagonal() += image.cwiseAbs2();
   return S;
-}
-
-// Covariance (m^2) of X_cur - R (X_prev - C) of a match with both depths at the
-// bound motion: S_cur + R S_prev R^T.
-inline Eigen::Matrix3d ForwardErrorCovariance(const CostInput& input,
-                                              const Observation& prev,
-                                              const Observation& cur) {
-  const Camera& camera = input.matches.camera();
-  const Eigen::Matrix3d R = input.cur_from_prev.rotation.toRotationMatrix();
-  return PointCovariance(camera, cur) +
-         R * PointCovariance(camera, prev) * R.transpose();
 }
 
 }  // namespace rgbd_pose

@@ -26,9 +26,7 @@ struct RayWhitening {
   explicit RayWhitening(const D* columns)
       : a(columns[0]),
         b(columns[1]),
-        x(columns[0] * columns[2]),
-        y(columns[1] * columns[2]),
-        z(columns[2]),
+        point{columns[0] * columns[2], columns[1] * columns[2], columns[2]},
         w_u(columns[3]),
         w_v(columns[4]),
         w_z(columns[5]) {}
@@ -68,7 +66,7 @@ struct RayWhitening {
   }
 
   D a, b;           // the ray: x / z, y / z
-  D x, y, z;        // the point, m
+  D point[3];       // m
   D w_u, w_v, w_z;  // 1 / m
 };
 

@@ -3,6 +3,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "frontend/grid_corners.h"
+#include "frontend/surface_normal.h"
 
 namespace rgbd_pose {
 namespace {
@@ -32,7 +33,9 @@ Observation KltFrontend::Observe(const Frame& frame,
       options_.camera.Undistort(Eigen::Vector2d(pixel.x, pixel.y));
   const DepthSample sample =
       LookUpDepth(frame, pixel.x, pixel.y, depth_options_);
-  return {ideal.x(), ideal.y(), sample.depth, kSigmaPx, sample.sigma};
+  return {ideal.x(),    ideal.y(),
+          sample.depth, kSigmaPx,
+          sample.sigma, LookUpNormal(frame, options_.camera, pixel.x, pixel.y)};
 }
 
 int KltFrontend::SetReference(const Frame& frame) {

@@ -32,12 +32,13 @@ class BarronLoss final : public ceres::LossFunction {
       rho[2] = 0.0;
       return;
     }
-    const double log = std::log1p(s / (width2_ * gap));
+    const double q = s / (width2_ * gap);
+    const double log = std::log1p(q);
     const double growth =
         alpha_ == 0.0 ? 0.5 * log : std::expm1(0.5 * alpha_ * log) / alpha_;
     rho[0] = 2.0 * width2_ * gap * growth;
     rho[1] = std::exp(-0.5 * gap * log);
-    rho[2] = -0.5 / width2_ * std::exp((-0.5 * gap - 1.0) * log);
+    rho[2] = -0.5 * rho[1] / (width2_ * (1.0 + q));
   }
 
  private:
