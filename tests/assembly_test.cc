@@ -22,6 +22,10 @@ namespace {
 constexpr double kEqual = 1e-10;      // sums of some hundred terms
 constexpr double kEqualSteps = 1e-9;  // the same after some iterations
 
+// So many depths are missing on each side that every cost finds matches to use
+// and matches to leave.
+constexpr double kMissingDepthShare = 0.25;
+
 class AssemblyTest
     : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
  protected:
@@ -34,12 +38,28 @@ class AssemblyTest
     }
   }
 
+  // Binds `count` matches that the cost can use, a fifth of them wrong, among
+  // others that it cannot (a prior is one block), at a motion off the truth and
+  // off C = 0.
   void Bind(int count) {
     RandomWorld world(7);
     const Rigid3d truth = world.Motion(0.05, 0.05);
-    matches_ = world.Matches(count, 0.2, truth);
-    cost_->Bind({matches_, Rigid3d(), &prior_});
-    ASSERT_GT(cost_->matches().size(), 0u);
+    const Rigid3d guess = world.Motion(0.05, 0.05);
+    const MotionPrior prior = world.Prior(truth, 0.05);
+    origin_ = MotionOrigin(guess);
+    matches_.Clear();
+    for (int usable = 0; usable < count;) {
+      const double outlier_share = matches_.size() % 5 == 0 ? 1.0 : 0.0;
+      const Correspondences one =
+          world.Matches(1, outlier_share, truth,
+                        /*noise=*/true, kMissingDepthShare);
+      matches_.Add(one.prev()[0], one.cur()[0]);
+      cost_->Bind({one, guess, &prior});
+      usable += static_cast<int>(cost_->matches().size());
+    }
+    cost_->Bind({matches_, guess, &prior});
+    const bool is_prior = cost_->matches()[0] < 0;
+    ASSERT_EQ(cost_->matches().size(), is_prior ? 1u : count);
   }
 
   std::unique_ptr<ceres::Problem> Build(Assembly assembly, double* x) {
@@ -82,7 +102,6 @@ class AssemblyTest
 
   MotionOrigin origin_;
   Correspondences matches_;
-  MotionPrior prior_;
   std::unique_ptr<Cost> cost_;
   std::unique_ptr<ceres::LossFunction> loss_;
 };

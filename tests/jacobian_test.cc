@@ -27,6 +27,9 @@ struct AsGTestTypes<TypeList<Types...>> {
   using type = ::testing::Types<Types...>;
 };
 
+// Enough matches lack a depth on one side for costs that use those.
+constexpr double kMissingDepthShare = 0.25;
+
 template <typename Residual>
 struct Sample {
   MotionOrigin origin;
@@ -37,10 +40,12 @@ struct Sample {
     const Rigid3d guess = world->Motion(1.0, 1.0);
     origin = MotionOrigin(guess);
     x << world->Vector(0.7), world->Vector(0.7);
-    const MotionPrior prior{world->Motion(1.0, 1.0)};
+    const Rigid3d motion = origin.CurFromPrev(x.data());
+    const MotionPrior prior = world->Prior(motion, 0.3);
     Correspondences matches;
     while (true) {
-      matches = world->Matches(1, 0.0, origin.CurFromPrev(x.data()));
+      matches =
+          world->Matches(1, 0.0, motion, /*noise=*/true, kMissingDepthShare);
       if (Residual::Pack({matches, guess, &prior}, 0, columns)) return;
     }
   }
@@ -64,22 +69,31 @@ class JacobianTest : public ::testing::Test {
     ASSERT_TRUE(oracle.Evaluate(parameters, jet_r_.data(), by_jet));
   }
 
+  // Relative to the oracle's row; absolute where that is zero.
   double RowError(int row, int first_column, int columns) const {
     const double size = jet_J_.row(row).template lpNorm<Eigen::Infinity>();
-    return (hand_J_.row(row) - jet_J_.row(row))
-               .segment(first_column, columns)
-               .template lpNorm<Eigen::Infinity>() /
-           size;
+    const double error = (hand_J_.row(row) - jet_J_.row(row))
+                             .segment(first_column, columns)
+                             .template lpNorm<Eigen::Infinity>();
+    return size > 0.0 ? error / size : error;
   }
 
   Rows hand_r_, jet_r_;
   Jacobian hand_J_, jet_J_;
 };
 
-TYPED_TEST_SUITE(JacobianTest, AsGTestTypes<ResidualTypes>::type);
+struct CostName {
+  template <typename Residual>
+  static std::string GetName(int /*index*/) {
+    return Residual::kName;
+  }
+};
+
+TYPED_TEST_SUITE(JacobianTest, AsGTestTypes<ResidualTypes>::type, CostName);
 
 TYPED_TEST(JacobianTest, EqualsTheOracleRowByRow) {
   RandomWorld world(1);
+  int telling[TypeParam::kRows] = {};  // samples where the row is not zero
   for (int i = 0; i < kSamples; ++i) {
     this->EvaluateBoth(Sample<TypeParam>(&world));
     for (int row = 0; row < TypeParam::kRows; ++row) {
@@ -87,8 +101,11 @@ TYPED_TEST(JacobianTest, EqualsTheOracleRowByRow) {
       EXPECT_NEAR(this->hand_r_[row], this->jet_r_[row], kTolerance * scale);
       EXPECT_LE(this->RowError(row, 0, 6), kTolerance)
           << TypeParam::kName << " row " << row << ", sample " << i;
-      EXPECT_GT(this->jet_J_.row(row).norm(), 1e-6) << "a vacuous sample";
+      if (this->jet_J_.row(row).norm() > 1e-6) ++telling[row];
     }
+  }
+  for (int row = 0; row < TypeParam::kRows; ++row) {
+    EXPECT_GE(telling[row], kSamples / 2) << "vacuous samples, row " << row;
   }
 }
 

@@ -1,0 +1,178 @@
+// rgbd_simulate and rgbd_odometry from end to end: files in, files out.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/text_file.h"
+#include "core/trajectory.h"
+#include "tests/run_program.h"
+
+namespace rgbd_pose {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kSimulate = RGBD_SIMULATE;
+const std::string kOdometry = RGBD_ODOMETRY;
+constexpr int kFrames = 6;
+
+class OdometryProgramTest : public testing::Test {
+ protected:
+  OdometryProgramTest() {
+    const RunResult run = RunCommand(
+        kSimulate + " --path=xyz --frames=" + std::to_string(kFrames) +
+            " --output=" + Sequence(),
+        folder_);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+
+  std::string Sequence() const { return folder_ / "sequence"; }
+
+  std::string Call(const std::string& output) const {
+    return kOdometry + " --dataset=" + Sequence() + " --camera=" + Sequence() +
+           "/camera.yaml --output=" + (folder_ / output);
+  }
+
+  RunResult Run(const std::string& command) const {
+    return RunCommand(command, folder_);
+  }
+
+  const TempFolder folder_;
+};
+
+// frames.csv without the columns of times, which differ from run to run.
+std::string WithoutTimes(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line, result;
+  while (std::getline(lines, line)) {
+    for (int i = 0; i < 3; ++i) line.erase(line.rfind(','));
+    result += line + "\n";
+  }
+  return result;
+}
+
+TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
+  const RunResult run = Run(Call("run"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("100.0 % tracked"));
+  EXPECT_THAT(run.out, HasSubstr("ATE, rigid alignment"));
+  const std::string csv = ReadTextFile(folder_ / "run/frames.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "timestamp,status,reason,matches,inliers,iterations,sigma,"
+            "track_ms,frontend_ms,solve_ms");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kFrames);
+  EXPECT_EQ(ReadTrajectory(folder_ / "run/trajectory.txt").size(),
+            static_cast<size_t>(kFrames));
+  const auto metrics =
+      nlohmann::json::parse(ReadTextFile(folder_ / "run/metrics.json"));
+  EXPECT_EQ(metrics.at("run").at("frames"), kFrames);
+  EXPECT_LT(metrics.at("evaluation").at("ate").at("position_m").at("rmse"),
+            0.005);
+}
+
+TEST_F(OdometryProgramTest, RepeatsARunFromItsFlagFile) {
+  ASSERT_EQ(Run(Call("first") + " --loss=huber --max_features=300").exit_code,
+            0);
+  const std::string flags = folder_ / "first/config.flags";
+  ASSERT_EQ(Run(kOdometry + " --flagfile=" + flags +
+                " --output=" + (folder_ / "second"))
+                .exit_code,
+            0);
+  for (const std::string file : {"trajectory.txt", "frames.csv"}) {
+    std::string first = ReadTextFile(folder_ / ("first/" + file));
+    std::string second = ReadTextFile(folder_ / ("second/" + file));
+    if (file == "frames.csv") {
+      first = WithoutTimes(first);
+      second = WithoutTimes(second);
+    }
+    EXPECT_EQ(first, second) << file;
+  }
+}
+
+TEST_F(OdometryProgramTest, ThreadsDoNotChangeTheResult) {
+  ASSERT_EQ(Run(Call("one") + " --threads=1").exit_code, 0);
+  ASSERT_EQ(Run(Call("two") + " --threads=2").exit_code, 0);
+  EXPECT_EQ(ReadTextFile(folder_ / "one/trajectory.txt"),
+            ReadTextFile(folder_ / "two/trajectory.txt"));
+}
+
+// Bad input: exit 2, one line on stderr, nothing on stdout, nothing written.
+TEST_F(OdometryProgramTest, BadInputLeavesNothingBehind) {
+  const std::string missing = folder_ / "missing";
+  folder_.Write("nan.yaml",
+                "%YAML:1.0\nCamera.fx: .nan\nCamera.fy: 500\nCamera.cx: 320\n"
+                "Camera.cy: 240\nCamera.width: 640\nCamera.height: 480\n");
+  folder_.Write("empty/rgb.txt", "# nothing\n");
+  folder_.Write("empty/depth.txt", "# nothing\n");
+  const std::string camera = " --camera=" + Sequence() + "/camera.yaml";
+  const std::string output = " --output=" + (folder_ / "bad");
+  const struct {
+    std::string arguments;
+    int exit_code;
+    std::string message;
+  } kCases[] = {
+      {"", 1, "--dataset is needed"},
+      {" --dataset=" + Sequence() + output, 1, "--camera is needed"},
+      {" --dataset=" + Sequence() + camera, 1, "--output is needed"},
+      {" --dataset=" + missing + camera + output, 2, missing},
+      {" --dataset=" + folder_.path() + "/empty" + camera + output, 2, "empty"},
+      {" --dataset=" + Sequence() + " --camera=kinect" + output, 2, "tum_fr1"},
+      {" --dataset=" + Sequence() + " --camera=" + (folder_ / "nan.yaml") +
+           output,
+       2, "nan.yaml:2"},
+      {" --dataset=" + Sequence() + camera + output + " --cost=magic", 2,
+       "unknown cost 'magic'"},
+      {" --dataset=" + Sequence() + camera + output + " --loss=tuckey", 2,
+       "unknown loss 'tuckey'"},
+      {" --dataset=" + Sequence() + camera + output + " --frontend=magic", 2,
+       "unknown frontend 'magic'"},
+      {" --dataset=" + Sequence() + camera + output + " --depth_scale=-1", 2,
+       "--depth_scale"},
+      {" --dataset=" + Sequence() + camera + output +
+           " --groundtruth=" + missing,
+       2, missing},
+  };
+  for (const auto& c : kCases) {
+    SCOPED_TRACE(c.arguments);
+    const RunResult run = Run(kOdometry + c.arguments);
+    EXPECT_EQ(run.exit_code, c.exit_code);
+    EXPECT_EQ(run.out, "");
+    EXPECT_THAT(run.err, HasSubstr(c.message));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "bad"));
+  }
+}
+
+// A broken image in the middle is only found on the way.
+TEST_F(OdometryProgramTest, ABrokenImageNamesItselfAndWritesNoResults) {
+  const std::string image = "depth/1000.100000.png";
+  ASSERT_TRUE(std::filesystem::exists(Sequence() + "/" + image));
+  std::filesystem::resize_file(Sequence() + "/" + image, 1000);
+  const RunResult run = Run(Call("bad"));
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_EQ(run.out, "");
+  EXPECT_THAT(run.err, HasSubstr(image));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "bad/trajectory.txt"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "bad/frames.csv"));
+}
+
+TEST_F(OdometryProgramTest, SimulateRefusesAFolderInUse) {
+  const RunResult run = Run(kSimulate + " --frames=2 --output=" + Sequence());
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr(Sequence()));
+  const RunResult unknown =
+      Run(kSimulate + " --path=zigzag --output=" + (folder_ / "new"));
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("pan_tilt"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "new"));
+}
+
+}  // namespace
+}  // namespace rgbd_pose
