@@ -4,38 +4,86 @@
 #include <cmath>
 #include <cstdio>
 
+#include "core/initial_guess.h"
 #include "core/input_error.h"
 #include "core/text_file.h"
 #include "costs/cost_factory.h"
 #include "frontend/frontend.h"
+#include "robust/scale.h"
 
 namespace rgbd_pose {
 namespace {
 
-struct AssemblyName {
+template <typename Value>
+struct Named {
   const char* name;
-  Assembly assembly;
+  Value value;
 };
 
-constexpr AssemblyName kAssemblies[] = {
+constexpr Named<Assembly> kAssemblies[] = {
     {"compressed", Assembly::kCompressed},
     {"per_match", Assembly::kPerMatch},
     {"autodiff", Assembly::kAutodiff},
 };
 
-Assembly AssemblyByName(const std::string& name) {
-  for (const AssemblyName& row : kAssemblies) {
-    if (row.name == name) return row.assembly;
+constexpr Named<RobustSchedule> kRobustSchedules[] = {
+    {"gnc", RobustSchedule::kGnc},
+    {"direct", RobustSchedule::kDirect},
+};
+
+template <typename Row, size_t N>
+std::vector<std::string> NamesOf(const Row (&rows)[N]) {
+  std::vector<std::string> names;
+  for (const Row& row : rows) names.emplace_back(row.name);
+  return names;
+}
+
+InputError UnknownName(const std::string& what, const std::string& name,
+                       const std::vector<std::string>& names) {
+  return InputError("unknown " + what + " '" + name + "'; there are " +
+                    Join(names));
+}
+
+template <typename Value, size_t N>
+Value ValueOf(const Named<Value> (&rows)[N], const std::string& what,
+              const std::string& name) {
+  for (const Named<Value>& row : rows) {
+    if (row.name == name) return row.value;
   }
-  throw InputError("unknown assembly '" + name + "'; there are " +
-                   Join(AssemblyNames()));
+  throw UnknownName(what, name, NamesOf(rows));
 }
 
 const DepthNoiseModel* DepthNoiseByName(const std::string& name) {
   const DepthNoiseModel* model = FindDepthNoiseModel(name);
-  if (model != nullptr) return model;
-  throw InputError("unknown depth noise '" + name + "'; there are " +
-                   Join(DepthNoiseModelNames()));
+  if (model == nullptr) {
+    throw UnknownName("depth noise", name, DepthNoiseModelNames());
+  }
+  return model;
+}
+
+EstimatorOptions MakeEstimatorOptions(const OdometrySettings& settings) {
+  EstimatorOptions options;
+  options.assembly = ValueOf(kAssemblies, "assembly", settings.assembly);
+  options.schedule =
+      ValueOf(kRobustSchedules, "robust schedule", settings.robust_schedule);
+  const ScaleEstimator* scale = FindScaleEstimator(settings.scale);
+  if (scale == nullptr) {
+    throw UnknownName("scale", settings.scale, ScaleEstimatorNames());
+  }
+  options.scale = scale->estimate;
+  return options;
+}
+
+OdometryOptions MakeOdometryOptions(const OdometrySettings& settings) {
+  OdometryOptions options;
+  options.predict_velocity = settings.initial_guess == "velocity";
+  options.initial_guess = FindInitialGuess(settings.initial_guess);
+  if (options.initial_guess == nullptr && !options.predict_velocity &&
+      settings.initial_guess != "last") {
+    throw UnknownName("initial guess", settings.initial_guess,
+                      OdometryGuessNames());
+  }
+  return options;
 }
 
 double Quantile(std::vector<double> values, double share) {
@@ -48,9 +96,15 @@ double Quantile(std::vector<double> values, double share) {
 
 }  // namespace
 
-std::vector<std::string> AssemblyNames() {
-  std::vector<std::string> names;
-  for (const AssemblyName& row : kAssemblies) names.emplace_back(row.name);
+std::vector<std::string> AssemblyNames() { return NamesOf(kAssemblies); }
+
+std::vector<std::string> RobustScheduleNames() {
+  return NamesOf(kRobustSchedules);
+}
+
+std::vector<std::string> OdometryGuessNames() {
+  std::vector<std::string> names = {"last", "velocity"};
+  for (const InitialGuess& row : InitialGuesses()) names.emplace_back(row.name);
   return names;
 }
 
@@ -59,11 +113,10 @@ Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
   frontend.camera = camera;
   frontend.depth_noise = DepthNoiseByName(settings.depth_noise);
   frontend.max_features = settings.max_features;
-  EstimatorOptions estimator;
-  estimator.assembly = AssemblyByName(settings.assembly);
-  return Odometry(
-      OdometryOptions(), camera, MakeFrontend(settings.frontend, frontend),
-      Estimator(estimator, MakeRobustCosts(settings.cost, settings.loss)));
+  return Odometry(MakeOdometryOptions(settings), camera,
+                  MakeFrontend(settings.frontend, frontend),
+                  Estimator(MakeEstimatorOptions(settings),
+                            MakeRobustCosts(settings.cost, settings.loss)));
 }
 
 std::vector<TrackedFrame> RunOdometry(

@@ -18,12 +18,19 @@ struct OdometrySettings {
   std::string loss = "tukey";
   std::string frontend = "klt";
   std::string assembly = "compressed";
+  std::string scale = "fixed";
+  std::string robust_schedule = "gnc";
+  std::string initial_guess = "last";
   std::string depth_noise = "khoshelham";
   int max_features = 400;
 };
 
-// The names of the assemblies (core/cost.h).
+// The names of assemblies (core/cost.h), robust schedules (core/estimator.h)
+// and initial guesses: last (the last pose), velocity (moved on as it moved
+// last) or one of core/initial_guess.h.
 std::vector<std::string> AssemblyNames();
+std::vector<std::string> RobustScheduleNames();
+std::vector<std::string> OdometryGuessNames();
 
 // An odometry with these settings. Throws InputError for unknown names.
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);

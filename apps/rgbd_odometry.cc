@@ -25,6 +25,7 @@
 #include "frontend/frontend.h"
 #include "frontend/tum_dataset.h"
 #include "robust/m_estimator.h"
+#include "robust/scale.h"
 
 DEFINE_string(dataset, "", "folder of a sequence in TUM RGB-D layout");
 DEFINE_string(associations, "",
@@ -41,6 +42,12 @@ DEFINE_string(cost, "bidirectional_point",
 DEFINE_string(loss, "tukey", "M-estimator; one for each of several costs: a,b");
 DEFINE_string(assembly, "compressed",
               "how matches become Ceres residual blocks");
+DEFINE_string(scale, "fixed",
+              "spread of the residuals: as the noise model says or estimated");
+DEFINE_string(robust_schedule, "gnc",
+              "losses at their widths at once, or wide at first and narrowed "
+              "step by step");
+DEFINE_string(initial_guess, "last", "where the solver starts in a frame");
 DEFINE_string(frontend, "klt", "where matches come from");
 DEFINE_int32(max_features, 400, "features wanted in a reference frame");
 DEFINE_int32(threads, 1,
@@ -66,12 +73,18 @@ ProgramInfo Info() {
        {"dataset", "associations", "camera", "depth_scale", "depth_noise",
         "groundtruth"}},
       {"Estimation",
-       {"cost", "loss", "assembly", "frontend", "max_features", "threads"}},
+       {"cost", "loss", "scale", "robust_schedule", "initial_guess", "assembly",
+        "frontend", "max_features", "threads"}},
       {"Output", {"output"}}};
-  info.choices = {
-      {"camera", CameraPresetNames()}, {"depth_noise", DepthNoiseModelNames()},
-      {"cost", CostNames()},           {"loss", MEstimatorNames()},
-      {"assembly", AssemblyNames()},   {"frontend", FrontendNames()}};
+  info.choices = {{"camera", CameraPresetNames()},
+                  {"depth_noise", DepthNoiseModelNames()},
+                  {"cost", CostNames()},
+                  {"loss", MEstimatorNames()},
+                  {"scale", ScaleEstimatorNames()},
+                  {"robust_schedule", RobustScheduleNames()},
+                  {"initial_guess", OdometryGuessNames()},
+                  {"assembly", AssemblyNames()},
+                  {"frontend", FrontendNames()}};
   return info;
 }
 
@@ -84,6 +97,9 @@ OdometrySettings SettingsFromFlags() {
   settings.loss = FLAGS_loss;
   settings.frontend = FLAGS_frontend;
   settings.assembly = FLAGS_assembly;
+  settings.scale = FLAGS_scale;
+  settings.robust_schedule = FLAGS_robust_schedule;
+  settings.initial_guess = FLAGS_initial_guess;
   settings.depth_noise = FLAGS_depth_noise;
   settings.max_features = FLAGS_max_features;
   return settings;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
 
 namespace rgbd_pose {
@@ -16,6 +18,18 @@ class CounterRandom {
   // A whole number in [0, end), 0 < end < 2^32; its bias is below end / 2^32.
   uint32_t Below(uint32_t end) {
     return static_cast<uint32_t>(((Next() >> 32) * end) >> 32);
+  }
+
+  // Three different whole numbers below `end`, which must be at least 3.
+  std::array<uint32_t, 3> ThreeBelow(uint32_t end) {
+    const uint32_t a = Below(end);
+    uint32_t b = Below(end - 1);
+    uint32_t c = Below(end - 2);
+    // Each skips those taken before it, in increasing order.
+    if (b >= a) ++b;
+    if (c >= std::min(a, b)) ++c;
+    if (c >= std::max(a, b)) ++c;
+    return {a, b, c};
   }
 
  private:

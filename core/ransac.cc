@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -12,19 +13,7 @@
 namespace rgbd_pose {
 namespace {
 
-using Sample = std::array<int, 3>;
-
-// Three different places below `count`.
-Sample DrawSample(uint32_t count, CounterRandom* random) {
-  uint32_t a = random->Below(count);
-  uint32_t b = random->Below(count - 1);
-  uint32_t c = random->Below(count - 2);
-  // Each place skips those taken before it, in increasing order.
-  if (b >= a) ++b;
-  if (c >= std::min(a, b)) ++c;
-  if (c >= std::max(a, b)) ++c;
-  return {static_cast<int>(a), static_cast<int>(b), static_cast<int>(c)};
-}
+using Sample = std::array<uint32_t, 3>;
 
 // The work of FindByRansac and its memory.
 class Search {
@@ -39,7 +28,7 @@ class Search {
     const auto count = static_cast<uint32_t>(matches_.size());
     int num_samples = options_.max_samples;
     for (int i = 0; i < num_samples; ++i) {
-      const Sample sample = DrawSample(count, &random);
+      const Sample sample = random.ThreeBelow(count);
       if (!CanBeRight(sample) || !Improve(FitToSample(sample))) continue;
       FindInliers(matches_, *best_, &inliers_);
       if (Improve(FitTo(matches_, inliers_))) {
@@ -60,7 +49,7 @@ class Search {
 
   std::optional<Rigid3d> FitToSample(const Sample& sample) const {
     PairMoments moments;
-    for (const int i : sample) {
+    for (const uint32_t i : sample) {
       moments.Add(matches_[i].cur.position, matches_[i].prev.position,
                   matches_[i].weight);
     }

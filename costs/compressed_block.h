@@ -69,8 +69,9 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
     } else {
       FactorSingular(sums, r.template head<K>(), J.template topRows<K>());
     }
-    const double explained = r.template head<K>().squaredNorm();
-    r[K] = std::sqrt(std::max(0.0, 2.0 * sums.cost - explained));
+    const double rest = 2.0 * sums.cost - r.template head<K>().squaredNorm();
+    r[K] = std::sqrt(std::max(0.0, rest));
+    Trim(-rest, r.template head<K>());
     return r.allFinite() && J.allFinite();
   }
 
@@ -83,6 +84,18 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
     if (!evaluator_(at, &sums_)) return false;
     x_ = x;
     return true;
+  }
+
+  // Where H is all but singular, rounding lets |L^-1 g|^2 exceed 2 c. Takes the
+  // excess out of the last rows: they belong to the weakest directions, so that
+  // the cost becomes exact and J^T r hardly changes.
+  template <typename Residuals>
+  static void Trim(double excess, Residuals r) {
+    for (int i = K - 1; i >= 0 && excess > 0.0; --i) {
+      const double square = r[i] * r[i];
+      r[i] = std::copysign(std::sqrt(std::max(0.0, square - excess)), r[i]);
+      excess -= square;
+    }
   }
 
   // H = V diag(l) V^T with some l = 0: J = diag(sqrt l) V^T, r = diag(1/sqrt l)
@@ -98,8 +111,9 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
       const double value = eigen.eigenvalues()[i];
       if (!(value > smallest)) continue;
       const double root = std::sqrt(value);
-      J.row(i) = root * eigen.eigenvectors().col(i).transpose();
-      r[i] = eigen.eigenvectors().col(i).dot(sums.gradient) / root;
+      const int row = K - 1 - i;  // the weakest last
+      J.row(row) = root * eigen.eigenvectors().col(i).transpose();
+      r[row] = eigen.eigenvectors().col(i).dot(sums.gradient) / root;
     }
   }
 

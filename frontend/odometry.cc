@@ -34,6 +34,9 @@ std::string OdometryOptions::Check() const {
     return "min_inliers_ok must not be below min_inliers";
   }
   if (!(max_flow_px > 0.0)) return "max_flow_px must be positive";
+  if (!(prior_sigma_rotation > 0.0) || !(prior_sigma_translation > 0.0)) {
+    return "the prior's standard deviations must be positive";
+  }
   return "";
 }
 
@@ -65,8 +68,10 @@ TrackedFrame Odometry::Track(const Frame& frame) {
   // First from the last pose. A constant velocity is only a second try: as the
   // first it can lock onto its own false motion.
   const Rigid3d last = cur_from_ref_;
-  const bool tracked = TryGuess(frame, last, &result) ||
-                       TryGuess(frame, cur_from_prev_ * last, &result);
+  const Rigid3d predicted = cur_from_prev_ * last;
+  const bool tracked =
+      TryGuess(frame, options_.predict_velocity ? predicted : last, &result) ||
+      TryGuess(frame, options_.predict_velocity ? last : predicted, &result);
   if (tracked) {
     cur_from_prev_ = cur_from_ref_ * last.Inverse();
   } else {
@@ -86,7 +91,7 @@ bool Odometry::TryGuess(const Frame& frame, const Rigid3d& cur_from_ref_guess,
   const Clock::time_point start = Clock::now();
   frontend_->Match(frame, cur_from_ref_guess, &matches_);
   result->frontend_ms += MillisecondsSince(start);
-  estimate_ = estimator_.Estimate(matches_, cur_from_ref_guess);
+  Estimate(cur_from_ref_guess);
   result->solve_ms += estimate_.solve_ms;
   result->matches = static_cast<int>(matches_.size());
   result->inliers = estimate_.num_inliers;
@@ -117,6 +122,20 @@ bool Odometry::TryGuess(const Frame& frame, const Rigid3d& cur_from_ref_guess,
     result->status = TrackingStatus::kDegraded;
   }
   return true;
+}
+
+void Odometry::Estimate(const Rigid3d& cur_from_ref_guess) {
+  Rigid3d guess = cur_from_ref_guess;
+  if (options_.initial_guess != nullptr) {
+    guess = options_.initial_guess->find(matches_).value_or(guess);
+  }
+  MotionPrior prior;
+  prior.cur_from_prev = cur_from_ref_guess;
+  const double turn = options_.prior_sigma_rotation;
+  const double shift = options_.prior_sigma_translation;
+  prior.covariance.diagonal() << turn * turn, turn * turn, turn * turn,
+      shift * shift, shift * shift, shift * shift;
+  estimator_.Estimate(matches_, guess, &prior, &estimate_);
 }
 
 void Odometry::TakeReference(const Frame& frame, TrackedFrame* result) {

@@ -5,6 +5,7 @@
 
 #include "core/correspondences.h"
 #include "core/estimator.h"
+#include "core/initial_guess.h"
 #include "core/rigid3.h"
 #include "frontend/frontend.h"
 
@@ -49,6 +50,16 @@ struct OdometryOptions {
   double min_reference_share = 0.5;
   double max_flow_px = 60.0;
 
+  // Where the solver starts: the last pose, moved on at constant velocity if
+  // asked for, unless `initial_guess` finds a motion in the matches themselves.
+  bool predict_velocity = false;
+  const InitialGuess* initial_guess = nullptr;
+
+  // Standard deviations of the motion between two frames around that start,
+  // for costs with a prior.
+  double prior_sigma_rotation = 0.05;     // rad
+  double prior_sigma_translation = 0.05;  // m
+
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
@@ -66,6 +77,8 @@ class Odometry {
   // Tries to track from one guess; true if the result is a pose.
   bool TryGuess(const Frame& frame, const Rigid3d& cur_from_ref_guess,
                 TrackedFrame* result);
+  // Fills estimate_ from matches_.
+  void Estimate(const Rigid3d& cur_from_ref_guess);
   void TakeReference(const Frame& frame, TrackedFrame* result);
   bool NeedsNewReference(int inliers) const;
   double MeanInlierFlowPx() const;

@@ -32,7 +32,7 @@ double MadScale(std::vector<double>* values) {
 const std::vector<ScaleEstimator>& ScaleEstimators() {
   static const std::vector<ScaleEstimator>& rows =
       *new std::vector<ScaleEstimator>{
-          {"none", nullptr},
+          {"fixed", nullptr},
           {"mad", MadScale},
           {"sn", SnScale},
           {"qn", QnScale},

@@ -54,10 +54,9 @@ Correspondences WithSigmas(const Correspondences& matches, double factor) {
 
 class EveryLossTest : public ::testing::TestWithParam<std::string> {};
 
-// Noise of about 1 / sqrt(300) of a match's (5 mm, 2 mrad): a tenth of the
-// motion would already be 20 sigmas off.
+// 300 matches tell the motion to about 0.3 mrad and 0.6 mm.
 TEST_P(EveryLossTest, EstimatesACleanMotion) {
-  Estimator estimator = MakeEstimator(GetParam(), "none");
+  Estimator estimator = MakeEstimator(GetParam(), "fixed");
   for (int seed = 0; seed < 10; ++seed) {
     RandomWorld world(300 + seed);
     const Rigid3d truth = world.Motion(0.2, 0.2);
@@ -77,7 +76,7 @@ TEST_P(EveryLossTest, FindsANoiselessMotionExactly) {
   RandomWorld world(31);
   const Rigid3d truth = world.Motion(0.2, 0.2);
   const MotionEstimate estimate =
-      MakeEstimator(GetParam(), "none")
+      MakeEstimator(GetParam(), "fixed")
           .Estimate(world.Matches(300, 0.0, truth, /*noise=*/false));
   ASSERT_TRUE(estimate.ok()) << estimate.reason;
   const MotionError error = ErrorOf(estimate.cur_from_prev, truth);
@@ -101,7 +100,7 @@ INSTANTIATE_TEST_SUITE_P(Scales, EveryScaleTest,
 TEST_P(EveryScaleTest, MakesUpForAWrongNoiseModel) {
   constexpr double kFactor = 3.0;
   constexpr int kTrials = 40;
-  Estimator unscaled = MakeEstimator("tukey", "none");
+  Estimator unscaled = MakeEstimator("tukey", "fixed");
   Estimator scaled = MakeEstimator("tukey", GetParam());
   double wrong = 0.0, right = 0.0, found = 0.0, sigma = 0.0;
   double wrong_share = 0.0, right_share = 0.0, found_share = 0.0;
@@ -121,27 +120,27 @@ TEST_P(EveryScaleTest, MakesUpForAWrongNoiseModel) {
     const Correspondences wrong_model = WithSigmas(right_model, 1.0 / kFactor);
     const auto add = [&truth](const MotionEstimate& estimate, double* error,
                               double* share) {
-      ASSERT_TRUE(estimate.ok()) << estimate.reason;
       *error += ErrorOf(estimate.cur_from_prev, truth).translation / kTrials;
       *share += estimate.num_inliers / 300.0 / kTrials;
     };
     add(unscaled.Estimate(right_model), &right, &right_share);
     add(unscaled.Estimate(wrong_model), &wrong, &wrong_share);
     const MotionEstimate estimate = scaled.Estimate(wrong_model);
+    ASSERT_TRUE(estimate.ok()) << estimate.reason;
     add(estimate, &found, &found_share);
     sigma += estimate.sigma / kTrials;
   }
   EXPECT_NEAR(sigma, kFactor, 0.05 * kFactor);  // of 12,000 matches: 1 %
   // Widths that are off by a few percent change the error by far less.
   EXPECT_LE(found, 1.02 * right);
-  EXPECT_NEAR(found_share, 0.99, 0.01);
+  EXPECT_NEAR(found_share, right_share, 0.01);
   // Which is no matter of course.
-  EXPECT_GT(wrong, 1.05 * right);
-  EXPECT_LT(wrong_share, 0.8);
+  EXPECT_GT(wrong, 1.3 * right);
+  EXPECT_LT(wrong_share, 0.5);
 }
 
 TEST_P(EveryScaleTest, LeavesARightNoiseModelAndOutliersAlone) {
-  Estimator unscaled = MakeEstimator("tukey", "none");
+  Estimator unscaled = MakeEstimator("tukey", "fixed");
   Estimator scaled = MakeEstimator("tukey", GetParam());
   double expected = 0.0, actual = 0.0;
   for (int seed = 0; seed < 40; ++seed) {
@@ -203,8 +202,8 @@ TEST(ScheduleTest, GraduationSurvivesSeventyPercentOutliers) {
   constexpr int kTrials = 100;
   constexpr int kMatches = 300;
   const auto success = [](RobustSchedule schedule) {
-    Estimator clean = MakeEstimator("tukey", "none");
-    Estimator estimator = MakeEstimator("tukey", "none", schedule);
+    Estimator clean = MakeEstimator("tukey", "fixed");
+    Estimator estimator = MakeEstimator("tukey", "fixed", schedule);
     std::vector<MotionError> errors;
     double angle = 0.0, translation = 0.0;  // without outliers
     for (int seed = 0; seed < kTrials; ++seed) {
@@ -236,7 +235,7 @@ TEST(ScheduleTest, GraduationSurvivesSeventyPercentOutliers) {
 // Where over half of the matches are right, few stages are needed: without
 // outliers the iterations of two stages, with many outliers more.
 TEST(ScheduleTest, StagesAreSavedWhereMatchesAgree) {
-  Estimator estimator = MakeEstimator("tukey", "none");
+  Estimator estimator = MakeEstimator("tukey", "fixed");
   RandomWorld world(34);
   const Rigid3d truth = world.Motion(0.1, 0.1);
   const int clean =
