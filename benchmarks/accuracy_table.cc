@@ -189,7 +189,7 @@ void PrintRow(const Method& method) {
   std::printf("| %s |", method.name.c_str());
   for (const double outliers : kOutlierShares) {
     const Cell cell = Measure(method, outliers);
-    std::printf(" %.3f / %.2f", cell.median_deg, cell.median_mm);
+    std::printf(" %.4f / %.2f", cell.median_deg, cell.median_mm);
     if (cell.failures > 0) std::printf(" (%d failed)", cell.failures);
     std::printf(" |");
   }
