@@ -18,8 +18,8 @@
 #include "core/estimator.h"
 #include "core/ransac.h"
 #include "costs/cost_factory.h"
+#include "frontend/synthetic_matches.h"
 #include "tests/motion_error.h"
-#include "tests/random_motion.h"
 
 DEFINE_int32(seeds, 200, "trials a cell");
 DEFINE_int32(matches, 300, "matches a trial");
@@ -85,18 +85,16 @@ std::vector<Method> OurMethods() {
     for (const Schedule& row : kSchedules) {
       EstimatorOptions options;
       options.schedule = row.schedule;
-      auto estimator = std::make_shared<Estimator>(
-          options, MakeRobustCosts(cost, row.loss));
+      auto estimator =
+          std::make_shared<Estimator>(options, MakeRobustCosts(cost, row.loss));
       std::string name = cost + ", " + row.name;
       if (missing > 0.0) name += " *";
-      methods.push_back({name, missing,
-                         [estimator](const Trial& trial) {
-                           return std::optional<Rigid3d>(
-                               estimator
-                                   ->Estimate(trial.matches, Rigid3d(),
-                                              &trial.prior)
-                                   .cur_from_prev);
-                         }});
+      methods.push_back(
+          {name, missing, [estimator](const Trial& trial) {
+             return std::optional<Rigid3d>(
+                 estimator->Estimate(trial.matches, Rigid3d(), &trial.prior)
+                     .cur_from_prev);
+           }});
     }
   }
   return methods;
@@ -139,8 +137,8 @@ std::optional<Rigid3d> PnpRansac(const Trial& trial) {
   Eigen::Vector3d omega, t;
   cv::cv2eigen(rotation, omega);
   cv::cv2eigen(translation, t);
-  return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(
-                     omega.norm(), omega.stableNormalized())),
+  return Rigid3d(Eigen::Quaterniond(
+                     Eigen::AngleAxisd(omega.norm(), omega.stableNormalized())),
                  t);
 }
 

@@ -14,8 +14,8 @@
 #include "core/cost.h"
 #include "core/estimator.h"
 #include "costs/cost_factory.h"
+#include "frontend/synthetic_matches.h"
 #include "robust/m_estimator.h"
-#include "tests/random_motion.h"
 
 namespace rgbd_pose {
 namespace {
@@ -35,8 +35,7 @@ struct World {
       : cost(MakeCost(cost_name)),
         loss(FindMEstimator(loss_name)->MakeLoss(cost->independent_rows())) {
     RandomWorld world(1);
-    matches =
-        world.Matches(count, kOutlierShare, world.Motion(0.005, 0.005));
+    matches = world.Matches(count, kOutlierShare, world.Motion(0.005, 0.005));
   }
 };
 
@@ -127,8 +126,8 @@ void SolveWithTinySolver(benchmark::State& state, const std::string& loss) {
         BlockOwnership(Assembly::kCompressed);
     problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
     ceres::Problem problem(problem_options);
-    world.cost->AddTo(Assembly::kCompressed, origin, world.loss.get(),
-                      x.data(), &problem);
+    world.cost->AddTo(Assembly::kCompressed, origin, world.loss.get(), x.data(),
+                      &problem);
     std::vector<ceres::ResidualBlockId> blocks;
     problem.GetResidualBlocks(&blocks);
     const TinyFunction function{
@@ -170,14 +169,14 @@ BENCHMARK_CAPTURE(SolveWithCeres, compressed_cholesky_huber,
 BENCHMARK_CAPTURE(SolveWithCeres, per_match_qr_huber, Assembly::kPerMatch,
                   ceres::DENSE_QR, "huber")
     ->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(SolveWithCeres, per_match_cholesky_huber,
-                  Assembly::kPerMatch, ceres::DENSE_NORMAL_CHOLESKY, "huber")
+BENCHMARK_CAPTURE(SolveWithCeres, per_match_cholesky_huber, Assembly::kPerMatch,
+                  ceres::DENSE_NORMAL_CHOLESKY, "huber")
     ->RGBD_POSE_SIZES;
 BENCHMARK_CAPTURE(SolveWithCeres, autodiff_qr_huber, Assembly::kAutodiff,
                   ceres::DENSE_QR, "huber")
     ->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(SolveWithCeres, autodiff_cholesky_huber,
-                  Assembly::kAutodiff, ceres::DENSE_NORMAL_CHOLESKY, "huber")
+BENCHMARK_CAPTURE(SolveWithCeres, autodiff_cholesky_huber, Assembly::kAutodiff,
+                  ceres::DENSE_NORMAL_CHOLESKY, "huber")
     ->RGBD_POSE_SIZES;
 BENCHMARK_CAPTURE(SolveWithTinySolver, huber, "huber")->RGBD_POSE_SIZES;
 BENCHMARK_CAPTURE(BareLoop, huber, "huber")->RGBD_POSE_SIZES;

@@ -7,10 +7,11 @@
 #include <cmath>
 #include <string>
 
+#include "apps/residual_sample.h"
 #include "core/motion.h"
 #include "costs/cost_list.h"
 #include "costs/match_blocks.h"
-#include "tests/random_motion.h"
+#include "frontend/synthetic_matches.h"
 
 namespace rgbd_pose {
 namespace {
@@ -27,30 +28,6 @@ struct AsGTestTypes<TypeList<Types...>> {
   using type = ::testing::Types<Types...>;
 };
 
-// Enough matches lack a depth on one side for costs that use those.
-constexpr double kMissingDepthShare = 0.25;
-
-template <typename Residual>
-struct Sample {
-  MotionOrigin origin;
-  MotionVector x;
-  double columns[Residual::kColumns];
-
-  explicit Sample(RandomWorld* world) {
-    const Rigid3d guess = world->Motion(1.0, 1.0);
-    origin = MotionOrigin(guess);
-    x << world->Vector(0.7), world->Vector(0.7);
-    const Rigid3d motion = origin.CurFromPrev(x.data());
-    const MotionPrior prior = world->Prior(motion, 0.3);
-    Correspondences matches;
-    while (true) {
-      matches =
-          world->Matches(1, 0.0, motion, /*noise=*/true, kMissingDepthShare);
-      if (Residual::Pack({matches, guess, &prior}, 0, columns)) return;
-    }
-  }
-};
-
 template <typename Residual>
 class JacobianTest : public ::testing::Test {
  protected:
@@ -58,7 +35,7 @@ class JacobianTest : public ::testing::Test {
   using Jacobian = Eigen::Matrix<double, Residual::kRows, 6, Eigen::RowMajor>;
 
   // Residual and Jacobian by hand and by ceres::Jet at one sample.
-  void EvaluateBoth(const Sample<Residual>& sample) {
+  void EvaluateBoth(const ResidualSample<Residual>& sample) {
     const double* parameters[] = {sample.x.data()};
     double* by_hand[] = {hand_J_.data()};
     ASSERT_TRUE(AnalyticBlock<Residual>(sample.origin, sample.columns)
@@ -95,7 +72,7 @@ TYPED_TEST(JacobianTest, EqualsTheOracleRowByRow) {
   RandomWorld world(1);
   int telling[TypeParam::kRows] = {};  // samples where the row is not zero
   for (int i = 0; i < kSamples; ++i) {
-    this->EvaluateBoth(Sample<TypeParam>(&world));
+    this->EvaluateBoth(ResidualSample<TypeParam>(&world));
     for (int row = 0; row < TypeParam::kRows; ++row) {
       const double scale = std::max(1.0, std::abs(this->jet_r_[row]));
       EXPECT_NEAR(this->hand_r_[row], this->jet_r_[row], kTolerance * scale);
@@ -137,7 +114,7 @@ TEST_F(BidirectionalPointTest, EqualsTheOracleTableByTable) {
   };
   RandomWorld world(2);
   for (int i = 0; i < kSamples; ++i) {
-    EvaluateBoth(Sample<BidirectionalPoint>(&world));
+    EvaluateBoth(ResidualSample<BidirectionalPoint>(&world));
     for (const Table& table : tables) {
       EXPECT_LE(RowError(table.row, table.first_column, table.columns),
                 kTolerance)

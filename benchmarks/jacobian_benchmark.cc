@@ -1,0 +1,110 @@
+// Residual and Jacobian of one match: by hand against automatic
+// differentiation, for every cost of the list; alone and through Ceres.
+
+#include <benchmark/benchmark.h>
+#include <ceres/crs_matrix.h>
+#include <ceres/problem.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/residual_sample.h"
+#include "core/motion.h"
+#include "costs/cost_list.h"
+#include "costs/match_blocks.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kBlocks = 256;  // fits the cache: arithmetic is what is measured
+
+template <typename Residual>
+struct Blocks {
+  MotionOrigin origin;
+  std::vector<ResidualSample<Residual>> samples;
+  std::vector<std::unique_ptr<ceres::CostFunction>> by_hand;
+  std::vector<std::unique_ptr<ceres::CostFunction>> by_jet;
+
+  Blocks() {
+    RandomWorld world(1);
+    samples.reserve(kBlocks);
+    for (int i = 0; i < kBlocks; ++i) samples.emplace_back(&world);
+    for (const auto& sample : samples) {
+      by_hand.push_back(
+          std::make_unique<AnalyticBlock<Residual>>(origin, sample.columns));
+      by_jet.push_back(std::make_unique<OracleBlock<Residual>>(
+          new OracleFunctor<Residual>(origin, sample.columns)));
+    }
+  }
+};
+
+// ns per block is the time of an iteration of the benchmark / kBlocks.
+template <typename Residual>
+void Alone(benchmark::State& state, bool by_hand) {
+  const Blocks<Residual> blocks;
+  const auto& functions = by_hand ? blocks.by_hand : blocks.by_jet;
+  MotionVector x;
+  x << 0.01, -0.02, 0.015, 0.02, 0.01, -0.03;
+  const double* parameters[] = {x.data()};
+  double r[Residual::kRows], J[Residual::kRows * 6];
+  double* jacobians[] = {J};
+  for (auto _ : state) {
+    for (const auto& function : functions) {
+      function->Evaluate(parameters, r, jacobians);
+      benchmark::DoNotOptimize(r);
+      benchmark::DoNotOptimize(J);
+    }
+  }
+  state.SetItemsProcessed(state.iterations() * kBlocks);
+}
+
+template <typename Residual>
+void InCeres(benchmark::State& state, bool by_hand) {
+  const Blocks<Residual> blocks;
+  const auto& functions = by_hand ? blocks.by_hand : blocks.by_jet;
+  MotionVector x;
+  x << 0.01, -0.02, 0.015, 0.02, 0.01, -0.03;
+  ceres::Problem::Options options;
+  options.cost_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::Problem problem(options);
+  for (const auto& function : functions) {
+    problem.AddResidualBlock(function.get(), nullptr, x.data());
+  }
+  double cost = 0.0;
+  std::vector<double> residuals, gradient;
+  ceres::CRSMatrix jacobian;
+  for (auto _ : state) {
+    problem.Evaluate({}, &cost, &residuals, &gradient, &jacobian);
+    benchmark::DoNotOptimize(cost);
+  }
+  state.SetItemsProcessed(state.iterations() * kBlocks);
+}
+
+template <typename... Residuals>
+void RegisterAll(TypeList<Residuals...>) {
+  const auto add = [](const std::string& what, const char* cost,
+                      const char* how, auto run) {
+    benchmark::RegisterBenchmark((what + "/" + cost + "/" + how).c_str(), run);
+  };
+  (add("alone", Residuals::kName, "analytic",
+       [](benchmark::State& s) { Alone<Residuals>(s, true); }),
+   ...);
+  (add("alone", Residuals::kName, "autodiff",
+       [](benchmark::State& s) { Alone<Residuals>(s, false); }),
+   ...);
+  (add("in_ceres", Residuals::kName, "analytic",
+       [](benchmark::State& s) { InCeres<Residuals>(s, true); }),
+   ...);
+  (add("in_ceres", Residuals::kName, "autodiff",
+       [](benchmark::State& s) { InCeres<Residuals>(s, false); }),
+   ...);
+}
+
+const bool kRegistered = [] {
+  RegisterAll(ResidualTypes());
+  return true;
+}();
+
+}  // namespace
+}  // namespace rgbd_pose
