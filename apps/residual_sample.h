@@ -24,7 +24,7 @@ struct ResidualSample {
     while (true) {
       const Correspondences matches =
           world->Matches(1, 0.0, motion, /*noise=*/true, kMissingDepthShare);
-      if (Residual::Pack({matches, guess, &prior}, 0, columns)) return;
+      if (Residual::Pack({matches, motion, &prior}, 0, columns)) return;
     }
   }
 };

@@ -64,8 +64,8 @@ class Cost {
   // of right matches have a squared norm of about chi^2 of so many degrees.
   virtual int independent_rows() const = 0;
 
-  // Whether weights are frozen at the motion bound to, so that a solver has to
-  // bind again when the motion has changed.
+  // Whether weights, or the choice of matches, are frozen at the motion bound
+  // to, so that a solver has to bind again when the motion has changed.
   virtual bool freezes_weights() const = 0;
 
   // Whether the whitened residuals of right matches are independent, of unit
@@ -80,6 +80,10 @@ class Cost {
   // The places of the bound matches within the Correspondences, increasing; -1
   // for a residual that belongs to no match (a prior).
   virtual const std::vector<int>& matches() const = 0;
+
+  // The number of independent measurements that each bound match brought:
+  // independent_rows(), or fewer where it lacks some; rows of those are zero.
+  virtual const std::vector<int>& degrees() const = 0;
 
   // Whitened residuals, rows() for each bound match.
   virtual void Residuals(const MotionDerivatives& motion,

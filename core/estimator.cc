@@ -21,6 +21,11 @@ constexpr int kIterationsPerEarlyStage = 2;
 // Scale and motion are estimated in turn until the scale moves by less.
 constexpr double kScaleTolerance = 0.01;
 constexpr int kMaxScaleRounds = 10;
+
+// Frozen weights are taken as right within this (rad and m).
+constexpr double kFrozenWithin = 2e-3;
+constexpr int kMaxBindRounds = 3;
+
 // Fewer residuals say nothing about their spread.
 constexpr size_t kMinResidualsForScale = 10;
 // What a scale may come to: a spread of zero (over half of the residuals
@@ -39,6 +44,7 @@ std::string EstimatorOptions::Check() const {
   if (min_inlier_share < 0.0 || min_inlier_share > 1.0) {
     return "min_inlier_share must lie between 0 and 1";
   }
+  if (max_scale <= 0.0) return "max_scale must be positive";
   if (max_standard_deviation <= 0.0) {
     return "max_standard_deviation must be positive";
   }
@@ -90,9 +96,30 @@ class Estimator::Solve {
     out_->final_cost = 0.0;
     out_->iterations = 0;
     converged_ = false;
-    num_blocks_ = 0;
     for (const RobustCost& term : costs_) Bind(term.cost.get());
-    counted_.assign(matches.size(), false);
+    CountMatches();
+  }
+
+  void Bind(Cost* cost) {
+    cost->Bind({*matches_, out_->cur_from_prev, prior_});
+  }
+
+  // Where weights are frozen, the matches used may change with the motion too.
+  // False if no cost freezes any.
+  bool BindAgain() {
+    bool changed = false;
+    for (const RobustCost& term : costs_) {
+      if (!term.cost->freezes_weights()) continue;
+      Bind(term.cost.get());
+      changed = true;
+    }
+    if (changed) CountMatches();
+    return changed;
+  }
+
+  void CountMatches() {
+    num_blocks_ = 0;
+    counted_.assign(matches_->size(), false);
     for (const RobustCost& term : costs_) {
       for (const int match : term.cost->matches()) {
         if (match >= 0) counted_[match] = true;
@@ -101,10 +128,6 @@ class Estimator::Solve {
     }
     out_->num_used =
         static_cast<int>(std::count(counted_.begin(), counted_.end(), true));
-  }
-
-  void Bind(Cost* cost) {
-    cost->Bind({*matches_, out_->cur_from_prev, prior_});
   }
 
   void SetLosses(double scale) {
@@ -141,9 +164,11 @@ class Estimator::Solve {
     for (size_t i = 0; i < costs_.size(); ++i) {
       const Cost& cost = *costs_[i].cost;
       cost.SquaredNorms(motion, &norms_[i]);
-      const double median = ChiSquaredMedian(cost.independent_rows());
-      for (const double s : norms_[i]) values_.push_back(s / median);
+      for (size_t k = 0; k < norms_[i].size(); ++k) {
+        values_.push_back(norms_[i][k] / ChiSquaredMedian(cost.degrees()[k]));
+      }
     }
+    if (values_.empty()) return 0.0;
     const auto middle = values_.begin() + values_.size() / 2;
     std::nth_element(values_.begin(), middle, values_.end());
     return std::sqrt(*middle);
@@ -158,9 +183,14 @@ class Estimator::Solve {
       if (term.cost->matches().empty() || term.cost->matches()[0] < 0) continue;
       term.cost->Residuals(motion, &residuals_);
       // Rows that repeat each other are smaller by the root of how often.
-      const double unit = std::sqrt(static_cast<double>(term.cost->rows()) /
-                                    term.cost->independent_rows());
-      for (const double r : residuals_) values_.push_back(unit * r);
+      const int rows = term.cost->rows();
+      const int degrees = term.cost->independent_rows();
+      const double unit = std::sqrt(static_cast<double>(rows) / degrees);
+      for (size_t i = 0; i < residuals_.size(); ++i) {
+        // What a match did not measure leaves rows of zeros.
+        if (term.cost->degrees()[i / rows] < degrees) continue;
+        values_.push_back(unit * residuals_[i]);
+      }
     }
     if (values_.size() < kMinResidualsForScale) return 1.0;
     return std::clamp(options_.scale(&values_), kMinScale, kMaxScale);
@@ -191,15 +221,28 @@ class Estimator::Solve {
     while (width > 1.0) {
       SetLosses(scale_ * width);
       if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
-      for (const RobustCost& term : costs_) {
-        if (term.cost->freezes_weights()) Bind(term.cost.get());
-      }
+      BindAgain();
       // Where over half of the matches are right they soon agree, and most
       // stages are saved.
       width = std::min(width / options_.gnc_factor, UpdateNorms() / scale_);
     }
     SetLosses(scale_);
-    return MinimiseStage(options_.max_iterations);
+    return MinimiseLastStage();
+  }
+
+  // Weights that were frozen at a motion too far away ask for another round.
+  bool MinimiseLastStage() {
+    for (int round = 1;; ++round) {
+      const Rigid3d before = out_->cur_from_prev;
+      if (!MinimiseStage(options_.max_iterations)) return false;
+      const Rigid3d moved = before.Inverse() * out_->cur_from_prev;
+      if (round == kMaxBindRounds ||
+          (moved.Angle() < kFrozenWithin &&
+           moved.translation.norm() < kFrozenWithin)) {
+        return true;
+      }
+      if (!BindAgain()) return true;
+    }
   }
 
   bool MinimiseStage(int max_iterations) {
@@ -248,7 +291,11 @@ class Estimator::Solve {
     const double share =
         static_cast<double>(out_->num_inliers) / out_->num_used;
     out_->status = EstimateStatus::kOk;
-    if (share < options_.min_inlier_share) {
+    if (scale_ > options_.max_scale) {
+      out_->status = EstimateStatus::kInconsistent;
+      out_->reason = "residuals are " + std::to_string(scale_) +
+                     " times what the noise model says";
+    } else if (share < options_.min_inlier_share) {
       out_->status = EstimateStatus::kInconsistent;
       out_->reason = "only " + std::to_string(out_->num_inliers) + " of " +
                      std::to_string(out_->num_used) +
@@ -267,9 +314,9 @@ class Estimator::Solve {
     counted_.assign(out_->weights.size(), false);
     for (size_t i = 0; i < costs_.size(); ++i) {
       const Cost& cost = *costs_[i].cost;
-      const int p = cost.independent_rows();
-      const double limit = ChiSquared99(p) * scale_ * scale_;
       for (size_t k = 0; k < norms_[i].size(); ++k) {
+        const int p = cost.degrees()[k];
+        const double limit = ChiSquared99(p) * scale_ * scale_;
         const double s = norms_[i][k];
         double rho[3];
         losses_[i].Evaluate(s, rho);
@@ -278,7 +325,8 @@ class Estimator::Solve {
         slope_p_ += rho[1] * p + 2.0 * s * rho[2];
         total_weight_ += rho[1];
         const int match = cost.matches()[k];
-        if (match >= 0) JudgeMatch(match, rho[1], s <= limit);
+        // Losses that are steeper than least squares near 0 weigh above 1.
+        if (match >= 0) JudgeMatch(match, std::min(rho[1], 1.0), s <= limit);
       }
     }
     out_->num_inliers = static_cast<int>(

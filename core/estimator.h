@@ -45,6 +45,10 @@ struct EstimatorOptions {
   // The estimate is `inconsistent` if a smaller share of matches agrees.
   double min_inlier_share = 0.2;
 
+  // It is `inconsistent` as well if the estimated scale exceeds this: matches
+  // so much noisier than the noise model are wrong ones.
+  double max_scale = 5.0;
+
   // A direction of motion is `degenerate` if its standard deviation exceeds
   // this (rad for rotation, m for translation).
   double max_standard_deviation = 0.5;

@@ -52,6 +52,11 @@ struct BidirectionalImage {
     return forward || backward;
   }
 
+  // Two where inverse depth is missing: u and v of one direction.
+  static int Degrees(const double* columns) {
+    return columns[kForwardColumns - 1] > 0.0 ? 3 : 2;
+  }
+
   template <typename M, typename D, typename T>
   static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
     ImageError<3, Forward, D>(columns).Residual(motion, r);

@@ -23,6 +23,10 @@ namespace rgbd_pose {
 //   Residual(motion pose, columns, r)             for any scalars
 //   Jacobian(motion derivatives, columns, r, J)   by hand
 //
+// A type whose matches may lack measurements tells how many there are by
+//
+//   Degrees(columns)                              see Cost::degrees
+//
 // A type that packs the prior instead of matches says so by kIsPrior; it is
 // called with i = 0 if there is a prior.
 template <typename Residual, typename = void>
@@ -31,12 +35,19 @@ template <typename Residual>
 struct IsPrior<Residual, std::void_t<decltype(Residual::kIsPrior)>>
     : std::true_type {};
 
+template <typename Residual, typename = void>
+struct HasDegrees : std::false_type {};
+template <typename Residual>
+struct HasDegrees<Residual, std::void_t<decltype(&Residual::Degrees)>>
+    : std::true_type {};
+
 template <typename Residual>
 class CostOf final : public Cost {
  public:
   std::string_view name() const override { return Residual::kName; }
   int independent_rows() const override { return Residual::kIndependentRows; }
   const std::vector<int>& matches() const override { return matches_; }
+  const std::vector<int>& degrees() const override { return degrees_; }
 
   int rows() const override { return Residual::kRows; }
   bool freezes_weights() const override { return Residual::kFreezesWeights; }
@@ -49,11 +60,13 @@ class CostOf final : public Cost {
         static_cast<int>((count + kMaxLanes - 1) / kMaxLanes * kMaxLanes);
     packed_.values.resize(static_cast<size_t>(packed_.stride) * kColumns);
     matches_.clear();
+    degrees_.clear();
     double columns[kColumns];
     for (size_t i = 0; i < count; ++i) {
       if (!Residual::Pack(input, i, columns)) continue;
       Store(matches_.size(), columns);
       matches_.push_back(IsPrior<Residual>() ? -1 : static_cast<int>(i));
+      degrees_.push_back(Degrees(columns));
     }
     packed_.size = static_cast<int>(matches_.size());
     Pad();
@@ -133,6 +146,11 @@ class CostOf final : public Cost {
     return input.matches.size();
   }
 
+  static int Degrees(const double* columns) {
+    if constexpr (HasDegrees<Residual>()) return Residual::Degrees(columns);
+    return Residual::kIndependentRows;
+  }
+
   void Store(size_t i, const double* columns) {
     for (int k = 0; k < kColumns; ++k) {
       packed_.values[k * packed_.stride + i] = columns[k];
@@ -162,6 +180,7 @@ class CostOf final : public Cost {
   }
 
   std::vector<int> matches_;
+  std::vector<int> degrees_;
   PackedColumns packed_;
   std::vector<double> rows_;  // see Unpack
   std::optional<CompressedBlock<6, SumsAt>> block_;

@@ -1,8 +1,13 @@
 #pragma once
 
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
 #include "core/cost.h"
 #include "core/motion.h"
 #include "costs/lane_math.h"
+#include "costs/ray.h"
 
 namespace rgbd_pose {
 
@@ -15,33 +20,43 @@ namespace rgbd_pose {
 //       + su_prev^2 (E^T x_cur)_0^2 + sv_prev^2 (E^T x_cur)_1^2 + eps^2
 //
 // where su = sigma_px / fx, sv = sigma_px / fy: D^2 - eps^2 is the variance of
-// N to first order. N and D are both proportional to |C|, so r says nothing of
-// the scale and would be 0 / 0 at C = 0, which is where a solver often starts.
-// eps is what D would be at a baseline of kRestBaseline: it keeps r finite and
-// differentiable there, and the less the motion, the less r claims to know.
+// N to first order. N and D are both proportional to |C|: r says nothing of the
+// scale, which has to come from other costs, and would be 0 / 0 at C = 0. eps
+// is what D would be at a baseline of kRestBaseline; it keeps r finite and
+// differentiable there.
+//
+// That makes C = 0 a trap: all residuals vanish there, whatever the rotation.
+// And a wrong match that happens to lie on its epipolar line outweighs tens of
+// right ones, since it passes for a point right before the camera. So a match
+// is used only if, at the motion that was bound, its rays see the baseline at
+// kMinBaseline or more and meet before the cameras (Nister's cheirality) and
+// not nearer than kNearest, both within the noise. Solvers bind again as they
+// go: from a guess without a baseline other costs have to lead.
 struct Epipolar {
   static constexpr char kName[] = "epipolar";
   static constexpr int kRows = 1;
   static constexpr int kIndependentRows = 1;
-  static constexpr bool kFreezesWeights = false;
+  static constexpr bool kFreezesWeights = true;
   static constexpr bool kIsWhitened = true;
   // a_prev, b_prev, a_cur, b_cur, su_cur^2, sv_cur^2, su_prev^2, sv_prev^2,
   // eps^2
   static constexpr int kColumns = 9;
 
   static constexpr double kRestBaseline = 1e-3;  // m
+  static constexpr double kMinBaseline = 0.01;   // m
+  static constexpr double kNearest = 0.2;        // m
+  static constexpr double kSigmas = 3.0;  // by which noise may move a depth
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     const Camera& camera = input.matches.camera();
     const Observation prev = input.matches.prev()[i];
     const Observation cur = input.matches.cur()[i];
     if (prev.depth > 0.0 && cur.depth > 0.0) return false;
+    if (!SeesBaseline(camera, input.cur_from_prev, prev, cur)) return false;
     const double s[] = {cur.sigma_px / camera.fx, cur.sigma_px / camera.fy,
                         prev.sigma_px / camera.fx, prev.sigma_px / camera.fy};
-    columns[0] = (prev.u - camera.cx) / camera.fx;
-    columns[1] = (prev.v - camera.cy) / camera.fy;
-    columns[2] = (cur.u - camera.cx) / camera.fx;
-    columns[3] = (cur.v - camera.cy) / camera.fy;
+    std::copy_n(Ray(camera, prev).data(), 2, columns);
+    std::copy_n(Ray(camera, cur).data(), 2, columns + 2);
     columns[8] = 0.0;
     for (int k = 0; k < 4; ++k) {
       columns[4 + k] = s[k] * s[k];
@@ -87,6 +102,23 @@ struct Epipolar {
   }
 
  private:
+  // The point lies at w^-1 x_prev = C + (..) y with y = R^T x_cur, therefore
+  // x_prev x y = w C x y: the parallax is the inverse depth w times the part of
+  // the baseline across the ray.
+  static bool SeesBaseline(const Camera& camera, const Rigid3d& cur_from_prev,
+                           const Observation& prev, const Observation& cur) {
+    const Eigen::Vector3d x_prev = Ray(camera, prev), x_cur = Ray(camera, cur);
+    const Eigen::Vector3d C = cur_from_prev.Inverse().translation;
+    const Eigen::Vector3d y = cur_from_prev.rotation.conjugate() * x_cur;
+    const Eigen::Vector3d across = C.cross(y);
+    const double baseline = across.norm();
+    if (baseline < kMinBaseline) return false;
+    const double parallax = x_prev.cross(y).dot(across) / baseline;
+    const double noise =
+        kSigmas * std::hypot(prev.sigma_px, cur.sigma_px) / camera.fx;
+    return parallax >= -noise && parallax <= baseline / kNearest + noise;
+  }
+
   // The residual and what leads to it.
   template <typename D, typename T>
   struct Terms {

@@ -9,6 +9,7 @@
 #include "costs/moved_point.h"
 #include "costs/point_covariance.h"
 #include "costs/projection.h"
+#include "costs/ray.h"
 #include "costs/whitening.h"
 
 namespace rgbd_pose {
@@ -94,8 +95,8 @@ bool PackImageError(const Correspondences& matches,
       target_from_source * point);
   const bool has_depth = target.depth > 0.0;
   const double w = has_depth ? 1.0 / target.depth : 0.0;
-  const Eigen::Vector3d measured((target.u - camera.cx) / camera.fx,
-                                 (target.v - camera.cy) / camera.fy, w);
+  Eigen::Vector3d measured = Ray(camera, target);
+  measured.z() = w;
   const Eigen::Vector3d sigma(target.sigma_px / camera.fx,
                               target.sigma_px / camera.fy,
                               target.sigma_depth * w * w);

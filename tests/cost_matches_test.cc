@@ -8,16 +8,19 @@
 
 #include "core/cost.h"
 #include "costs/cost_factory.h"
+#include "costs/epipolar.h"
 #include "tests/random_motion.h"
 
 namespace rgbd_pose {
 namespace {
 
+Rigid3d Motion() { return RandomWorld(4).Motion(0.1, 0.3); }
+
 // Match 0 has both depths, 1 that of the previous frame, 2 that of the current
 // frame, 3 none; 4 has both and no normal.
 Correspondences MatchesOfAllKinds() {
   RandomWorld world(3);
-  const Correspondences whole = world.Matches(5, 0.0, Rigid3d());
+  const Correspondences whole = world.Matches(5, 0.0, Motion());
   Correspondences matches(whole.camera());
   for (int i = 0; i < 5; ++i) {
     Observation prev = whole.prev()[i], cur = whole.cur()[i];
@@ -46,9 +49,50 @@ TEST(CostMatchesTest, EachCostTakesWhatItCanUse) {
   for (const std::string& name : CostNames()) {
     const std::unique_ptr<Cost> cost = MakeCost(name);
     ASSERT_TRUE(UsedMatches().count(name)) << name << " is missing above";
-    cost->Bind({matches, Rigid3d(), &prior});
+    cost->Bind({matches, Motion(), &prior});
     EXPECT_EQ(cost->matches(), UsedMatches().at(name)) << name;
   }
+}
+
+// Of one frame's depth bidirectional_image has u and v alone.
+TEST(CostMatchesTest, DegreesTellWhatIsMissing) {
+  const Correspondences matches = MatchesOfAllKinds();
+  const MotionPrior prior;
+  for (const std::string& name : CostNames()) {
+    const std::unique_ptr<Cost> cost = MakeCost(name);
+    cost->Bind({matches, Motion(), &prior});
+    std::vector<int> expected(cost->matches().size(), cost->independent_rows());
+    if (name == "bidirectional_image") expected = {3, 2, 2, 3};
+    EXPECT_EQ(cost->degrees(), expected) << name;
+  }
+}
+
+// The rays of an epipolar match have to see the baseline and meet before both
+// cameras.
+TEST(CostMatchesTest, EpipolarNeedsABaselineAndAPointInFront) {
+  const Camera camera;
+  const double half = 0.5 * Epipolar::kMinBaseline;
+  const auto uses = [&](double baseline, double depth) {
+    // The current camera is to the right, so the point moves to the left.
+    const Rigid3d motion(Eigen::Quaterniond::Identity(),
+                         Eigen::Vector3d(-baseline, 0.0, 0.0));
+    Observation prev, cur;
+    prev.u = camera.cx;
+    cur.u = camera.cx - camera.fx * baseline / depth;
+    prev.v = cur.v = camera.cy;
+    Correspondences matches(camera);
+    matches.Add(prev, cur);
+    const std::unique_ptr<Cost> cost = MakeCost("epipolar");
+    cost->Bind({matches, motion});
+    return !cost->matches().empty();
+  };
+  EXPECT_TRUE(uses(0.3, 2.0));
+  EXPECT_TRUE(uses(0.3, 1e6));
+  EXPECT_FALSE(uses(0.3, -2.0)) << "behind both cameras";
+  EXPECT_TRUE(uses(0.3, -300.0)) << "at infinity, within the noise";
+  EXPECT_FALSE(uses(0.3, 0.9 * Epipolar::kNearest));
+  EXPECT_FALSE(uses(half, 2.0));
+  EXPECT_FALSE(uses(0.0, 2.0));
 }
 
 // Costs keep nothing of what they were bound to before.
@@ -57,7 +101,7 @@ TEST(CostMatchesTest, BindingToNothingLeavesNothing) {
   const MotionPrior prior;
   for (const std::string& name : CostNames()) {
     const std::unique_ptr<Cost> cost = MakeCost(name);
-    cost->Bind({matches, Rigid3d(), &prior});
+    cost->Bind({matches, Motion(), &prior});
     cost->Bind({Correspondences(), Rigid3d()});
     EXPECT_TRUE(cost->matches().empty()) << name;
     NormalEquations sum;

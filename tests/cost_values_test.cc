@@ -231,6 +231,7 @@ TEST_F(CostValuesTest, Epipolar) {
     without_depth.Add(prev, cur);
   }
   matches_ = without_depth;
+  bound_ = motion_;  // or most matches are not used
   const Camera& camera = matches_.camera();
   const auto N = [&](const Eigen::Vector4d& pixels) {
     const Eigen::Vector3d prev = camera.Unproject(pixels.head<2>(), 1.0);

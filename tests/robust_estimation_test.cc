@@ -246,5 +246,31 @@ TEST(ScheduleTest, StagesAreSavedWhereMatchesAgree) {
   EXPECT_GE(dirty, 12);
 }
 
+// Least squares among wrong matches leaves huge residuals; a scale that fits
+// them would call all of them right.
+TEST(ScaleTest, AScaleThatOnlyFitsWrongMatchesIsNoSuccess) {
+  RandomWorld world(71);
+  for (const std::string scale : {"mad", "sn", "qn"}) {
+    const MotionEstimate estimate =
+        MakeEstimator("none", scale)
+            .Estimate(world.Matches(300, 0.2, world.Motion(0.1, 0.1)));
+    EXPECT_EQ(estimate.status, EstimateStatus::kInconsistent) << scale;
+    EXPECT_NE(estimate.reason, "") << scale;
+  }
+}
+
+TEST(WeightTest, LiesBetweenZeroAndOne) {
+  RandomWorld world(72);
+  const Correspondences matches = world.Matches(300, 0.2, Rigid3d());
+  for (const std::string& loss : MEstimatorNames()) {
+    const MotionEstimate estimate =
+        MakeEstimator(loss, "fixed").Estimate(matches);
+    for (const double weight : estimate.weights) {
+      EXPECT_GE(weight, 0.0) << loss;
+      EXPECT_LE(weight, 1.0) << loss;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace rgbd_pose
