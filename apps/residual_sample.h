@@ -16,8 +16,7 @@ struct ResidualSample {
   explicit ResidualSample(RandomWorld* world) {
     // Enough lack a depth on one side for costs that use those matches.
     constexpr double kMissingDepthShare = 0.25;
-    const Rigid3d guess = world->Motion(1.0, 1.0);
-    origin = MotionOrigin(guess);
+    origin = MotionOrigin(world->Motion(1.0, 1.0));
     x << world->Vector(0.7), world->Vector(0.7);
     const Rigid3d motion = origin.CurFromPrev(x.data());
     const MotionPrior prior = world->Prior(motion, 0.3);

@@ -21,7 +21,7 @@
 #include "frontend/synthetic_matches.h"
 #include "tests/motion_error.h"
 
-DEFINE_int32(seeds, 200, "trials a cell");
+DEFINE_int32(seeds, 1000, "trials a cell");
 DEFINE_int32(matches, 300, "matches a trial");
 
 namespace rgbd_pose {

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/random_motion.h"
+#include "frontend/synthetic_matches.h"
 
 namespace rgbd_pose {
 namespace {

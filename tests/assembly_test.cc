@@ -13,8 +13,8 @@
 
 #include "core/cost.h"
 #include "costs/cost_factory.h"
+#include "frontend/synthetic_matches.h"
 #include "robust/m_estimator.h"
-#include "tests/random_motion.h"
 
 namespace rgbd_pose {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "frontend/synthetic_matches.h"
 #include "tests/motion_error.h"
-#include "tests/random_motion.h"
 
 namespace rgbd_pose {
 namespace {

@@ -11,8 +11,8 @@
 
 #include "core/clique.h"
 #include "core/ransac.h"
+#include "frontend/synthetic_matches.h"
 #include "tests/motion_error.h"
-#include "tests/random_motion.h"
 
 namespace rgbd_pose {
 namespace {

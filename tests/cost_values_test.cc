@@ -12,7 +12,7 @@
 #include "core/cost.h"
 #include "costs/cost_factory.h"
 #include "costs/epipolar.h"
-#include "tests/random_motion.h"
+#include "frontend/synthetic_matches.h"
 
 namespace rgbd_pose {
 namespace {

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
+#include "frontend/synthetic_matches.h"
 #include "tests/expect_input_error.h"
-#include "tests/random_motion.h"
 
 namespace rgbd_pose {
 namespace {

@@ -7,8 +7,8 @@
 
 #include "core/estimator.h"
 #include "costs/cost_factory.h"
+#include "frontend/synthetic_matches.h"
 #include "tests/motion_error.h"
-#include "tests/random_motion.h"
 
 namespace rgbd_pose {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "core/chi_squared.h"
-#include "tests/random_motion.h"
+#include "frontend/synthetic_matches.h"
 
 namespace rgbd_pose {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "core/cost.h"
 #include "costs/cost_factory.h"
-#include "tests/random_motion.h"
+#include "frontend/synthetic_matches.h"
 
 namespace rgbd_pose {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include "frontend/synthetic_matches.h"
 #include "tests/expect_input_error.h"
 #include "tests/motion_error.h"
-#include "tests/random_motion.h"
 
 namespace rgbd_pose {
 namespace {

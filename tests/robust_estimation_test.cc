@@ -9,9 +9,9 @@
 
 #include "core/estimator.h"
 #include "costs/cost_factory.h"
+#include "frontend/synthetic_matches.h"
 #include "robust/m_estimator.h"
 #include "robust/scale.h"
-#include "tests/random_motion.h"
 
 namespace rgbd_pose {
 namespace {

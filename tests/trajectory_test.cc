@@ -4,8 +4,8 @@
 
 #include <string>
 
+#include "frontend/synthetic_matches.h"
 #include "tests/expect_input_error.h"
-#include "tests/random_motion.h"
 #include "tests/temp_folder.h"
 
 namespace rgbd_pose {

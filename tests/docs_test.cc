@@ -1,0 +1,84 @@
+// docs/costs.md against the list of costs.
+
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/cost.h"
+#include "costs/cost_factory.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct Entry {
+  std::string rows;
+  std::string independent_rows;
+};
+
+// The cells of a table's line "| a | b | c |"; of any other line none.
+std::vector<std::string> Cells(const std::string& line) {
+  std::vector<std::string> cells;
+  if (line.empty() || line[0] != '|') return cells;
+  std::istringstream stream(line.substr(1));
+  std::string cell;
+  while (std::getline(stream, cell, '|')) {
+    const size_t first = cell.find_first_not_of(' ');
+    const size_t last = cell.find_last_not_of(' ');
+    cells.push_back(
+        first == std::string::npos ? "" : cell.substr(first, last - first + 1));
+  }
+  return cells;
+}
+
+// Sections "## `name`" and the lines "| `name` | rows | independent rows |".
+class CostsDocumentTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ifstream file(RGBD_POSE_DOCS_DIR "/costs.md");
+    ASSERT_TRUE(file.is_open());
+    std::string line;
+    while (std::getline(file, line)) {
+      if (line.rfind("## `", 0) == 0) {
+        ++sections_[line.substr(4, line.rfind('`') - 4)];
+      }
+      const std::vector<std::string> cells = Cells(line);
+      if (cells.size() < 3 || cells[0].size() < 3 || cells[0][0] != '`') {
+        continue;
+      }
+      const std::string name = cells[0].substr(1, cells[0].size() - 2);
+      EXPECT_EQ(table_.count(name), 0u) << name << " twice";
+      table_[name] = {cells[1], cells[2]};
+    }
+  }
+
+  std::map<std::string, Entry> table_;
+  std::map<std::string, int> sections_;
+};
+
+TEST_F(CostsDocumentTest, HasEveryCostWithItsRows) {
+  for (const std::string& name : CostNames()) {
+    EXPECT_EQ(sections_[name], 1) << "no section on " << name;
+    ASSERT_TRUE(table_.count(name)) << name << " is missing in the table";
+    const std::unique_ptr<Cost> cost = MakeCost(name);
+    EXPECT_EQ(table_[name].rows, std::to_string(cost->rows())) << name;
+    EXPECT_EQ(table_[name].independent_rows,
+              std::to_string(cost->independent_rows()))
+        << name;
+  }
+}
+
+TEST_F(CostsDocumentTest, HasNoCostThatIsNone) {
+  const std::vector<std::string> names = CostNames();
+  EXPECT_EQ(table_.size(), names.size());
+  for (const auto& [name, count] : sections_) {
+    EXPECT_NE(MakeCost(name), nullptr) << name;
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,3 +1,0 @@
-#pragma once
-
-#include "frontend/synthetic_matches.h"
