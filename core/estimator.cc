@@ -266,6 +266,7 @@ class Estimator::Solve {
     solver.max_num_iterations = max_iterations;
     solver.function_tolerance = 1e-9;
     solver.parameter_tolerance = 1e-9;
+    solver.min_lm_diagonal = 1e4;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     out_->iterations += static_cast<int>(summary.iterations.size()) - 1;
