@@ -72,12 +72,11 @@ class Estimator::Solve {
     }
     SetLosses(1.0);
     out_->initial_cost = Linearise().cost;
-    if (!MinimiseWithScale()) {
-      out_->status = EstimateStatus::kNotConverged;
-      out_->reason = "the solver found no usable step";
-      return;
+    if (MinimiseWithScale()) {
+      Judge();
+    } else {
+      JudgeGuess(guess);
     }
-    Judge();
   }
 
  private:
@@ -222,6 +221,7 @@ class Estimator::Solve {
       SetLosses(scale_ * width);
       if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
       BindAgain();
+      if (out_->num_used < kMinMatches) return false;
       // Where over half of the matches are right they soon agree, and most
       // stages are saved.
       width = std::min(width / options_.gnc_factor, UpdateNorms() / scale_);
@@ -242,6 +242,7 @@ class Estimator::Solve {
         return true;
       }
       if (!BindAgain()) return true;
+      if (out_->num_used < kMinMatches) return false;
     }
   }
 
@@ -266,7 +267,6 @@ class Estimator::Solve {
     solver.max_num_iterations = max_iterations;
     solver.function_tolerance = 1e-9;
     solver.parameter_tolerance = 1e-9;
-    solver.min_lm_diagonal = 1e4;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
     out_->iterations += static_cast<int>(summary.iterations.size()) - 1;
@@ -274,6 +274,23 @@ class Estimator::Solve {
     if (!summary.IsSolutionUsable() || !x.allFinite()) return false;
     out_->cur_from_prev = origin.CurFromPrev(x.data());
     return true;
+  }
+
+  // After the solver found no step, or one that leaves all matches behind: the
+  // matches at the guess, taken as right, may tell why.
+  void JudgeGuess(const Rigid3d& guess) {
+    out_->cur_from_prev = guess;
+    BindAgain();
+    NormalEquations sum;
+    for (const RobustCost& term : costs_) {
+      term.cost->Linearise(MotionNow(), nullptr, &sum);
+    }
+    const Degeneracy degeneracy = FindDegeneracy(
+        sum.hessian, num_blocks_, options_.max_standard_deviation);
+    out_->status = degeneracy.is_degenerate ? EstimateStatus::kDegenerate
+                                            : EstimateStatus::kNotConverged;
+    out_->reason = degeneracy.is_degenerate ? degeneracy.reason
+                                            : "the solver found no usable step";
   }
 
   void Judge() {
