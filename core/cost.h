@@ -36,7 +36,8 @@ struct NormalEquations {
   double cost = 0.0;
 };
 
-// What is known of a motion before its matches are seen.
+// What is known of a motion before its matches are seen. Nothing, if the
+// covariance is not positive definite: that of a failed estimate is zero.
 struct MotionPrior {
   Rigid3d cur_from_prev;
   MotionMatrix covariance = MotionMatrix::Identity();  // as MotionEstimate's

@@ -10,6 +10,7 @@
 
 #include "core/chi_squared.h"
 #include "core/degeneracy.h"
+#include "core/robust_covariance.h"
 #include "core/scaled_loss.h"
 
 namespace rgbd_pose {
@@ -32,9 +33,6 @@ constexpr size_t kMinResidualsForScale = 10;
 // equal) or a huge one (over half of the matches wrong) has no use.
 constexpr double kMinScale = 0.05;
 constexpr double kMaxScale = 20.0;
-
-// With fewer matches their scatter is too uncertain to take for a covariance.
-constexpr int kMinMatchesForScatter = 30;
 
 }  // namespace
 
@@ -299,13 +297,18 @@ class Estimator::Solve {
     const NormalEquations sum = Linearise();
     out_->final_cost = sum.cost;
     const Degeneracy degeneracy = FindDegeneracy(
-        sum.hessian, total_weight_, options_.max_standard_deviation);
+        sum.hessian, loss_sums_.weight, options_.max_standard_deviation);
     if (degeneracy.is_degenerate) {
       out_->status = EstimateStatus::kDegenerate;
       out_->reason = degeneracy.reason;
       return;
     }
-    out_->covariance = Covariance(degeneracy.inverse);
+    weighted_.clear();
+    for (size_t i = 0; i < costs_.size(); ++i) {
+      weighted_.push_back({costs_[i].cost.get(), Loss(i)});
+    }
+    out_->covariance = RobustCovariance(weighted_, MotionNow(), loss_sums_,
+                                        degeneracy.inverse);
     const double share =
         static_cast<double>(out_->num_inliers) / out_->num_used;
     out_->status = EstimateStatus::kOk;
@@ -328,7 +331,7 @@ class Estimator::Solve {
   // Fills weights and inliers from the norms and sums up what the covariance
   // needs of the losses.
   void JudgeMatches() {
-    psi2_ = weight_p_ = slope_p_ = total_weight_ = 0.0;
+    loss_sums_ = LossSums();
     counted_.assign(out_->weights.size(), false);
     for (size_t i = 0; i < costs_.size(); ++i) {
       const Cost& cost = *costs_[i].cost;
@@ -338,10 +341,7 @@ class Estimator::Solve {
         const double s = norms_[i][k];
         double rho[3];
         losses_[i].Evaluate(s, rho);
-        psi2_ += rho[1] * rho[1] * s;
-        weight_p_ += rho[1] * p;
-        slope_p_ += rho[1] * p + 2.0 * s * rho[2];
-        total_weight_ += rho[1];
+        loss_sums_.Add(rho, s, p);
         const int match = cost.matches()[k];
         // Losses that are steeper than least squares near 0 weigh above 1.
         if (match >= 0) JudgeMatch(match, std::min(rho[1], 1.0), s <= limit);
@@ -360,32 +360,6 @@ class Estimator::Solve {
     counted_[match] = true;
   }
 
-  // Sandwich A^-1 B A^-1 of an M-estimate (Huber, Robust Statistics, 6.3). A is
-  // the weighted Hessian times the mean slope of psi against its mean weight; B
-  // is that Hessian times the mean of psi^2 against the mean weight, or, for
-  // costs that do not whiten fully, the scatter of their matches. Last the
-  // usual correction for six fitted parameters.
-  MotionMatrix Covariance(const MotionMatrix& inverse) {
-    // The slope can vanish for redescending losses among many outliers; a
-    // fifth of the weight keeps the covariance finite and pessimistic.
-    const double slope = std::max(slope_p_ / weight_p_, 0.2);
-    const MotionDerivatives motion = MotionNow();
-    NormalEquations whitened;
-    MotionMatrix scatter = MotionMatrix::Zero();
-    for (size_t i = 0; i < costs_.size(); ++i) {
-      const Cost& cost = *costs_[i].cost;
-      if (cost.is_whitened() || num_blocks_ < kMinMatchesForScatter) {
-        cost.Linearise(motion, Loss(i), &whitened);
-      } else {
-        cost.AddScatter(motion, Loss(i), &scatter);
-      }
-    }
-    scatter += psi2_ / weight_p_ * whitened.hessian;
-    const double fitted =
-        weight_p_ > 12.0 ? weight_p_ / (weight_p_ - 6.0) : 2.0;
-    return fitted / (slope * slope) * inverse * scatter * inverse;
-  }
-
   const EstimatorOptions options_;
   const std::vector<RobustCost> costs_;
 
@@ -396,13 +370,11 @@ class Estimator::Solve {
   double scale_ = 1.0;
   bool converged_ = false;
   int num_blocks_ = 0;
-  double psi2_ = 0.0;          // sum of rho'^2 s
-  double weight_p_ = 0.0;      // sum of rho' p, p the independent rows
-  double slope_p_ = 0.0;       // sum of rho' p + 2 s rho''
-  double total_weight_ = 0.0;  // sum of rho'
+  LossSums loss_sums_;
 
   // Memory that is used again.
   std::vector<ScaledLoss> losses_;
+  std::vector<WeightedCost> weighted_;
   std::vector<std::vector<double>> norms_;
   std::vector<double> values_;
   std::vector<double> residuals_;
@@ -432,22 +404,6 @@ void Estimator::Estimate(const Correspondences& matches, const Rigid3d& guess,
   solve_->Run(matches, guess, prior, estimate);
   estimate->solve_ms =
       std::chrono::duration<double, std::milli>(Clock::now() - start).count();
-}
-
-const char* ToString(EstimateStatus status) {
-  switch (status) {
-    case EstimateStatus::kOk:
-      return "ok";
-    case EstimateStatus::kTooFewMatches:
-      return "too_few_matches";
-    case EstimateStatus::kDegenerate:
-      return "degenerate";
-    case EstimateStatus::kNotConverged:
-      return "not_converged";
-    case EstimateStatus::kInconsistent:
-      return "inconsistent";
-  }
-  return "unknown";
 }
 
 }  // namespace rgbd_pose
