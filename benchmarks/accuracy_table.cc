@@ -9,12 +9,11 @@
 #include <cmath>
 #include <cstdio>
 #include <functional>
-#include <opencv2/calib3d.hpp>
-#include <opencv2/core/eigen.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "benchmarks/pnp_peer.h"
 #include "core/estimator.h"
 #include "core/ransac.h"
 #include "costs/cost_factory.h"
@@ -106,40 +105,8 @@ std::optional<Rigid3d> Ransac(const Trial& trial) {
   return consensus->cur_from_prev;
 }
 
-// Previous points into the current image; refined on the inliers.
 std::optional<Rigid3d> PnpRansac(const Trial& trial) {
-  const Correspondences& matches = trial.matches;
-  std::vector<cv::Point3d> points;
-  std::vector<cv::Point2d> pixels;
-  for (size_t i = 0; i < matches.size(); ++i) {
-    const Eigen::Vector3d point = matches.Point(matches.prev()[i]);
-    points.emplace_back(point.x(), point.y(), point.z());
-    pixels.emplace_back(matches.cur()[i].u, matches.cur()[i].v);
-  }
-  const Camera& camera = matches.camera();
-  const cv::Matx33d K(camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0,
-                      1);
-  cv::Mat rotation, translation;
-  std::vector<int> inliers;
-  cv::setRNGSeed(1);
-  if (!cv::solvePnPRansac(points, pixels, K, cv::noArray(), rotation,
-                          translation, false, 500, 3.0F, 0.999, inliers)) {
-    return std::nullopt;
-  }
-  std::vector<cv::Point3d> good_points;
-  std::vector<cv::Point2d> good_pixels;
-  for (const int i : inliers) {
-    good_points.push_back(points[i]);
-    good_pixels.push_back(pixels[i]);
-  }
-  cv::solvePnPRefineLM(good_points, good_pixels, K, cv::noArray(), rotation,
-                       translation);
-  Eigen::Vector3d omega, t;
-  cv::cv2eigen(rotation, omega);
-  cv::cv2eigen(translation, t);
-  return Rigid3d(Eigen::Quaterniond(
-                     Eigen::AngleAxisd(omega.norm(), omega.stableNormalized())),
-                 t);
+  return SolvePnp(PnpInput(trial.matches), /*refine=*/true);
 }
 
 double Median(std::vector<double> values) {

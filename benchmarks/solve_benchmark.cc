@@ -1,4 +1,9 @@
-// One pose solve from matches: building the problem and solving it.
+// One pose solve from matches, building the problem and solving it: by every
+// assembly and linear solver, beside the same steps without Ceres.
+//
+// Names: solve/<assembly>/<linear solver>/<loss>/<matches>,
+// solve/<bare_loop or tiny_solver>/<loss>/<matches>,
+// estimate/<assembly>/<loss>/<matches>.
 
 #include <benchmark/benchmark.h>
 #include <ceres/cost_function.h>
@@ -8,6 +13,7 @@
 
 #include <Eigen/Cholesky>
 #include <cmath>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -20,70 +26,81 @@
 namespace rgbd_pose {
 namespace {
 
+constexpr char kCost[] = "bidirectional_point";
 constexpr double kOutlierShare = 0.2;
 constexpr int kMaxIterations = 50;
-constexpr double kTolerance = 1e-6;  // Ceres' defaults
+constexpr double kTolerance = 1e-6;  // Ceres' default
+
+// Made once a size and motion.
+const Correspondences& Matches(int count, double max_motion) {
+  static std::map<std::pair<int, double>, Correspondences> made;
+  const auto [place, is_new] = made.try_emplace({count, max_motion});
+  if (is_new) {
+    RandomWorld world(1);
+    place->second = world.Matches(count, kOutlierShare,
+                                  world.Motion(max_motion, max_motion));
+  }
+  return place->second;
+}
 
 // Matches whose motion is small, as from frame to frame, so that one stage
 // finds it: what is compared is the solve, not the graduation.
 struct World {
-  Correspondences matches;
+  const Correspondences& matches;
   std::unique_ptr<Cost> cost;
   std::unique_ptr<ceres::LossFunction> loss;
 
-  World(int count, const std::string& cost_name, const std::string& loss_name)
-      : cost(MakeCost(cost_name)),
-        loss(FindMEstimator(loss_name)->MakeLoss(cost->independent_rows())) {
-    RandomWorld world(1);
-    matches = world.Matches(count, kOutlierShare, world.Motion(0.005, 0.005));
-  }
+  World(int count, const std::string& loss_name)
+      : matches(Matches(count, 0.005)),
+        cost(MakeCost(kCost)),
+        loss(FindMEstimator(loss_name)->MakeLoss(cost->independent_rows())) {}
 };
 
-ceres::Solver::Options SolverOptions(ceres::LinearSolverType linear) {
-  ceres::Solver::Options options;
-  options.linear_solver_type = linear;
-  options.logging_type = ceres::SILENT;
-  options.num_threads = 1;
-  options.max_num_iterations = kMaxIterations;
+ceres::Problem::Options ProblemOptions(Assembly assembly) {
+  ceres::Problem::Options options;
+  options.cost_function_ownership = BlockOwnership(assembly);
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  options.disable_all_safety_checks = true;
   return options;
 }
 
 void SolveWithCeres(benchmark::State& state, Assembly assembly,
                     ceres::LinearSolverType linear, const std::string& loss) {
-  World world(static_cast<int>(state.range(0)), "bidirectional_point", loss);
+  World world(static_cast<int>(state.range(0)), loss);
   const MotionOrigin origin;
-  double iterations = 0.0;
+  ceres::Solver::Options options;
+  options.linear_solver_type = linear;
+  options.logging_type = ceres::SILENT;
+  options.num_threads = 1;
+  options.max_num_iterations = kMaxIterations;
+  options.function_tolerance = kTolerance;
+  ceres::Solver::Summary summary;
   for (auto _ : state) {
     MotionVector x = MotionVector::Zero();
     world.cost->Bind({world.matches, Rigid3d()});
-    ceres::Problem::Options problem_options;
-    problem_options.cost_function_ownership = BlockOwnership(assembly);
-    problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    problem_options.disable_all_safety_checks = true;
-    ceres::Problem problem(problem_options);
+    ceres::Problem problem(ProblemOptions(assembly));
     world.cost->AddTo(assembly, origin, world.loss.get(), x.data(), &problem);
-    ceres::Solver::Summary summary;
-    ceres::Solve(SolverOptions(linear), &problem, &summary);
-    iterations = static_cast<double>(summary.iterations.size()) - 1.0;
+    ceres::Solve(options, &problem, &summary);
     benchmark::DoNotOptimize(x);
   }
-  state.counters["iterations"] = iterations;
+  // Ceres counts the starting point's as a Jacobian's.
+  state.counters["evaluations"] = summary.num_residual_evaluations + 1;
 }
 
 // The limit: Gauss-Newton on the same sums without Ceres.
 void BareLoop(benchmark::State& state, const std::string& loss) {
-  World world(static_cast<int>(state.range(0)), "bidirectional_point", loss);
+  World world(static_cast<int>(state.range(0)), loss);
   const MotionOrigin origin;
-  int iterations = 0;
+  int evaluations = 0;
   for (auto _ : state) {
     MotionVector x = MotionVector::Zero();
     world.cost->Bind({world.matches, Rigid3d()});
     double last_cost = 0.0;
-    for (iterations = 0; iterations < kMaxIterations; ++iterations) {
+    for (evaluations = 1; evaluations <= kMaxIterations; ++evaluations) {
       NormalEquations sum;
       world.cost->Linearise(origin.DerivativesAt(x.data()), world.loss.get(),
                             &sum);
-      if (iterations > 0 &&
+      if (evaluations > 1 &&
           std::abs(last_cost - sum.cost) <= kTolerance * last_cost) {
         break;
       }
@@ -92,10 +109,10 @@ void BareLoop(benchmark::State& state, const std::string& loss) {
     }
     benchmark::DoNotOptimize(x);
   }
-  state.counters["iterations"] = iterations;
+  state.counters["evaluations"] = evaluations;
 }
 
-// Ceres' solver for tiny problems on the compressed sums.
+// The compressed block as ceres::TinySolver calls functions.
 struct TinyFunction {
   using Scalar = double;
   enum { NUM_RESIDUALS = 7, NUM_PARAMETERS = 6 };
@@ -116,16 +133,12 @@ struct TinyFunction {
 };
 
 void SolveWithTinySolver(benchmark::State& state, const std::string& loss) {
-  World world(static_cast<int>(state.range(0)), "bidirectional_point", loss);
+  World world(static_cast<int>(state.range(0)), loss);
   const MotionOrigin origin;
   for (auto _ : state) {
     MotionVector x = MotionVector::Zero();
     world.cost->Bind({world.matches, Rigid3d()});
-    ceres::Problem::Options problem_options;
-    problem_options.cost_function_ownership =
-        BlockOwnership(Assembly::kCompressed);
-    problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    ceres::Problem problem(problem_options);
+    ceres::Problem problem(ProblemOptions(Assembly::kCompressed));
     world.cost->AddTo(Assembly::kCompressed, origin, world.loss.get(), x.data(),
                       &problem);
     std::vector<ceres::ResidualBlockId> blocks;
@@ -139,16 +152,14 @@ void SolveWithTinySolver(benchmark::State& state, const std::string& loss) {
   }
 }
 
-// The whole estimate: graduation, covariance, inliers.
+// The whole estimate with default options: graduation, covariance, inliers.
 void Estimate(benchmark::State& state, Assembly assembly,
               const std::string& loss) {
-  RandomWorld random(1);
-  const Correspondences matches =
-      random.Matches(static_cast<int>(state.range(0)), kOutlierShare,
-                     random.Motion(0.02, 0.02));
+  const Correspondences& matches =
+      Matches(static_cast<int>(state.range(0)), 0.02);
   EstimatorOptions options;
   options.assembly = assembly;
-  Estimator estimator(options, MakeRobustCosts("bidirectional_point", loss));
+  Estimator estimator(options, MakeRobustCosts(kCost, loss));
   MotionEstimate estimate;
   for (auto _ : state) {
     estimator.Estimate(matches, Rigid3d(), nullptr, &estimate);
@@ -157,41 +168,42 @@ void Estimate(benchmark::State& state, Assembly assembly,
   state.counters["iterations"] = estimate.iterations;
 }
 
-#define RGBD_POSE_SIZES \
-  Arg(30)->Arg(100)->Arg(300)->Arg(1000)->Arg(10000)->Arg(100000)
+template <typename Run, typename... Args>
+void Register(const std::string& name, int matches, Run run, Args... args) {
+  benchmark::RegisterBenchmark(name.c_str(), run, args...)->Arg(matches);
+}
 
-BENCHMARK_CAPTURE(SolveWithCeres, compressed_qr_huber, Assembly::kCompressed,
-                  ceres::DENSE_QR, "huber")
-    ->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(SolveWithCeres, compressed_cholesky_huber,
-                  Assembly::kCompressed, ceres::DENSE_NORMAL_CHOLESKY, "huber")
-    ->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(SolveWithCeres, per_match_qr_huber, Assembly::kPerMatch,
-                  ceres::DENSE_QR, "huber")
-    ->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(SolveWithCeres, per_match_cholesky_huber, Assembly::kPerMatch,
-                  ceres::DENSE_NORMAL_CHOLESKY, "huber")
-    ->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(SolveWithCeres, autodiff_qr_huber, Assembly::kAutodiff,
-                  ceres::DENSE_QR, "huber")
-    ->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(SolveWithCeres, autodiff_cholesky_huber, Assembly::kAutodiff,
-                  ceres::DENSE_NORMAL_CHOLESKY, "huber")
-    ->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(SolveWithTinySolver, huber, "huber")->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(BareLoop, huber, "huber")->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(SolveWithCeres, compressed_qr_tukey, Assembly::kCompressed,
-                  ceres::DENSE_QR, "tukey")
-    ->Arg(300);
-BENCHMARK_CAPTURE(SolveWithCeres, compressed_qr_none, Assembly::kCompressed,
-                  ceres::DENSE_QR, "none")
-    ->Arg(300);
-BENCHMARK_CAPTURE(Estimate, compressed_tukey, Assembly::kCompressed, "tukey")
-    ->RGBD_POSE_SIZES;
-BENCHMARK_CAPTURE(Estimate, per_match_tukey, Assembly::kPerMatch, "tukey")
-    ->Arg(300);
-BENCHMARK_CAPTURE(Estimate, autodiff_tukey, Assembly::kAutodiff, "tukey")
-    ->Arg(300);
+void RegisterSize(int matches, const std::string& loss) {
+  for (const auto& [assembly_name, assembly] :
+       {std::pair("compressed", Assembly::kCompressed),
+        std::pair("per_match", Assembly::kPerMatch),
+        std::pair("autodiff", Assembly::kAutodiff)}) {
+    for (const auto& [linear_name, linear] :
+         {std::pair("qr", ceres::DENSE_QR),
+          std::pair("cholesky", ceres::DENSE_NORMAL_CHOLESKY)}) {
+      Register(std::string("solve/") + assembly_name + "/" + linear_name + "/" +
+                   loss,
+               matches, SolveWithCeres, assembly, linear, loss);
+    }
+  }
+  Register("solve/tiny_solver/" + loss, matches, SolveWithTinySolver, loss);
+  Register("solve/bare_loop/" + loss, matches, BareLoop, loss);
+}
+
+const bool kRegistered = [] {
+  for (const int matches : {30, 100, 300, 1000, 10000, 100000}) {
+    RegisterSize(matches, "huber");
+    Register("estimate/compressed/tukey", matches, Estimate,
+             Assembly::kCompressed, "tukey");
+  }
+  RegisterSize(300, "none");
+  RegisterSize(300, "tukey");
+  Register("estimate/per_match/tukey", 300, Estimate, Assembly::kPerMatch,
+           "tukey");
+  Register("estimate/autodiff/tukey", 300, Estimate, Assembly::kAutodiff,
+           "tukey");
+  return true;
+}();
 
 }  // namespace
 }  // namespace rgbd_pose

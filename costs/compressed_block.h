@@ -51,7 +51,9 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    using RowMajor = Eigen::Matrix<double, K + 1, K, Eigen::RowMajor>;
+    // Row by row, as Ceres has it; Eigen wants a single column by column.
+    using RowMajor = Eigen::Matrix<double, K + 1, K,
+                                   K == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
     const bool need_derivatives =
         jacobians != nullptr && jacobians[0] != nullptr;
     if (!UpdateSums(parameters[0])) return false;

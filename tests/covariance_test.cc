@@ -4,6 +4,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <ostream>
 #include <string>
 
@@ -66,9 +67,18 @@ TEST_P(CovarianceTest, IsHonest) {
   EXPECT_NEAR(nees / kTrials, 6.0, scene.tolerance);
 }
 
-constexpr double kDefault =
-    0.6;                        // 10 %: the cost that is used if none is named
-constexpr double kOther = 1.5;  // 25 %
+std::string SceneName(const ::testing::TestParamInfo<Scene>& info) {
+  const auto percent = [](double share) {
+    return std::to_string(static_cast<int>(100.0 * share));
+  };
+  std::string name = info.param.costs;
+  std::replace(name.begin(), name.end(), '+', '_');
+  return name + "_wrong" + percent(info.param.outlier_share) + "_missing" +
+         percent(info.param.missing_depth_share);
+}
+
+constexpr double kDefault = 0.6;  // 10 %: of the cost that is the default
+constexpr double kOther = 1.5;    // 25 %
 
 INSTANTIATE_TEST_SUITE_P(
     Costs, CovarianceTest,
@@ -96,7 +106,8 @@ INSTANTIATE_TEST_SUITE_P(
         Scene{"reprojection_depth+motion_prior", "tukey,none", 0.0, 0.0,
               kOther},
         Scene{"reprojection_depth+motion_prior", "tukey,none", 0.0, 0.2,
-              kOther}));
+              kOther}),
+    SceneName);
 
 }  // namespace
 }  // namespace rgbd_pose

@@ -1,0 +1,92 @@
+#include "benchmarks/frame_trackers.h"
+
+#include <Eigen/Geometry>
+#include <limits>
+#include <opencv2/core/eigen.hpp>
+
+#include "apps/odometry_run.h"
+
+#ifdef RGBD_POSE_HAS_OPENCV_RGBD
+#include <opencv2/rgbd.hpp>
+#endif
+
+namespace rgbd_pose {
+namespace {
+
+class OurTracker : public FrameTracker {
+ public:
+  explicit OurTracker(const Camera& camera)
+      : odometry_(MakeOdometry(OdometrySettings(), camera)) {}
+
+  std::optional<Rigid3d> Track(const BenchmarkFrame& frame) override {
+    const TrackedFrame tracked = odometry_.Track(frame.frame);
+    if (tracked.status == TrackingStatus::kLost) return std::nullopt;
+    return tracked.world_from_cam;
+  }
+
+ private:
+  Odometry odometry_;
+};
+
+#ifdef RGBD_POSE_HAS_OPENCV_RGBD
+
+template <typename CvOdometry>
+class OpenCvTracker : public FrameTracker {
+ public:
+  explicit OpenCvTracker(const Camera& camera)
+      : odometry_(CvOdometry::create(cv::Mat(cv::Matx33f(
+            camera.fx, 0, camera.cx, 0, camera.fy, camera.cy, 0, 0, 1)))) {}
+
+  std::optional<Rigid3d> Track(const BenchmarkFrame& frame) override {
+    auto cur = cv::rgbd::OdometryFrame::create(frame.frame.gray, frame.depth_m);
+    bool tracked = true;
+    if (prev_ != nullptr) {
+      cv::Mat prev_from_cur;
+      tracked = odometry_->compute(cur, prev_, prev_from_cur);
+      if (tracked) {
+        Eigen::Matrix4d motion;
+        cv::cv2eigen(prev_from_cur, motion);
+        const Eigen::Matrix3d R = motion.topLeftCorner<3, 3>();
+        world_from_cam_ =
+            world_from_cam_ *
+            Rigid3d(Eigen::Quaterniond(R), motion.topRightCorner<3, 1>());
+      }
+    }
+    prev_ = cur;
+    if (!tracked) return std::nullopt;
+    return world_from_cam_;
+  }
+
+ private:
+  cv::Ptr<CvOdometry> odometry_;
+  cv::Ptr<cv::rgbd::OdometryFrame> prev_;
+  Rigid3d world_from_cam_;
+};
+
+#endif
+
+template <typename Tracker>
+std::unique_ptr<FrameTracker> Make(const Camera& camera) {
+  return std::make_unique<Tracker>(camera);
+}
+
+}  // namespace
+
+BenchmarkFrame::BenchmarkFrame(const Frame& images) : frame(images) {
+  frame.depth.convertTo(depth_m, CV_32FC1, 1.0 / frame.depth_scale);
+  const cv::Mat missing = (frame.depth == 0) | (frame.depth == Frame::kNoDepth);
+  depth_m.setTo(std::numeric_limits<float>::quiet_NaN(), missing);
+}
+
+std::vector<FrameTrackerType> FrameTrackerTypes() {
+  return {
+      {"rgbd_pose", Make<OurTracker>},
+#ifdef RGBD_POSE_HAS_OPENCV_RGBD
+      {"opencv_rgbd", Make<OpenCvTracker<cv::rgbd::RgbdOdometry>>},
+      {"opencv_icp", Make<OpenCvTracker<cv::rgbd::ICPOdometry>>},
+      {"opencv_rgbdicp", Make<OpenCvTracker<cv::rgbd::RgbdICPOdometry>>},
+#endif
+  };
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/camera.h"
+#include "core/rigid3.h"
+#include "frontend/frame.h"
+
+namespace rgbd_pose {
+
+// A frame and what OpenCV's odometries want of it, made before the clock
+// starts.
+struct BenchmarkFrame {
+  explicit BenchmarkFrame(const Frame& images);
+
+  Frame frame;
+  cv::Mat depth_m;  // CV_32FC1, m, NaN = none
+};
+
+// Tracks a camera frame by frame.
+class FrameTracker {
+ public:
+  virtual ~FrameTracker() = default;
+
+  // Takes the next frame; world_from_cam, where the world is the camera of the
+  // first frame. Nothing if the frame could not be tracked.
+  virtual std::optional<Rigid3d> Track(const BenchmarkFrame& frame) = 0;
+};
+
+struct FrameTrackerType {
+  std::string name;
+  std::unique_ptr<FrameTracker> (*make)(const Camera& camera);
+};
+
+// This project's Odometry with default settings, first; then, where OpenCV has
+// its rgbd module, cv::rgbd's RgbdOdometry, ICPOdometry and RgbdICPOdometry,
+// all with default settings and from frame to frame as in OpenCV's own sample:
+// each frame is tracked against the one before, which keeps what was computed
+// of it (pyramids, normals), and a frame that fails is taken as no motion.
+std::vector<FrameTrackerType> FrameTrackerTypes();
+
+}  // namespace rgbd_pose
