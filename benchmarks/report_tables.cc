@@ -1,5 +1,7 @@
 #include "benchmarks/report_tables.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include "benchmarks/machine.h"
@@ -10,10 +12,17 @@ namespace {
 
 constexpr int kSizes[] = {30, 100, 300, 1000, 10000, 100000};
 
-std::string Number(double value, const char* format = "%.3g") {
+std::string Fixed(double value, int decimals) {
   char text[64];
-  std::snprintf(text, sizeof(text), format, value);
+  std::snprintf(text, sizeof(text), "%.*f", decimals, value);
   return text;
+}
+
+// With three significant digits.
+std::string Number(double value) {
+  if (!(std::abs(value) > 0.0)) return Fixed(value, 0);
+  const int magnitude = static_cast<int>(std::floor(std::log10(value)));
+  return Fixed(value, std::max(0, 2 - magnitude));
 }
 
 std::string Row(const std::vector<std::string>& cells) {
@@ -64,6 +73,13 @@ std::string Counter(const BenchmarkResult& result, const std::string& name,
   return Number(factor * SpreadOf(found->second).median);
 }
 
+// That of whole things.
+std::string Count(const BenchmarkResult& result, const std::string& name) {
+  const auto found = result.counters.find(name);
+  if (found == result.counters.end()) return "";
+  return Fixed(SpreadOf(found->second).median, 0);
+}
+
 std::string SolveRows(const BenchmarkResults& results) {
   const std::string rows[][3] = {
       {"autodiff", "QR", "autodiff/qr"},
@@ -80,7 +96,7 @@ std::string SolveRows(const BenchmarkResults& results) {
         results.Find("solve/" + name + "/huber/300");
     if (result == nullptr) continue;
     text += Row({"`" + assembly + "`", solver, Time(result), Fastest(*result),
-                 Counter(*result, "evaluations")});
+                 Count(*result, "evaluations")});
   }
   return text;
 }
@@ -148,10 +164,9 @@ std::string PeerRows(const BenchmarkResults& results) {
     const BenchmarkResult* result =
         results.Find(std::string("peers/") + method);
     if (result == nullptr) continue;
-    text +=
-        Row({std::string("`") + method + "`", Time(result),
-             Counter(*result, "rotation_deg"),
-             Counter(*result, "translation_mm"), Counter(*result, "solved")});
+    text += Row({std::string("`") + method + "`", Time(result),
+                 Counter(*result, "rotation_deg"),
+                 Counter(*result, "translation_mm"), Count(*result, "solved")});
   }
   return text;
 }
@@ -168,7 +183,7 @@ std::string FrameRows(const BenchmarkResults& results) {
                    Time(result), Counter(*result, "p99_ms"),
                    Counter(*result, "ate_m", 1e3),
                    Counter(*result, "rpe_m", 1e3), Counter(*result, "rpe_deg"),
-                   Counter(*result, "frames"), Counter(*result, "failed")});
+                   Count(*result, "frames"), Count(*result, "failed")});
     }
   }
   return text;
@@ -219,7 +234,7 @@ std::map<std::string, std::string> ReportTables(
     double load_after) {
   std::string loads;
   for (const double load : results.load) {
-    loads += (loads.empty() ? "" : ", ") + Number(load, "%.2f");
+    loads += (loads.empty() ? "" : ", ") + Fixed(load, 2);
   }
   std::vector<double> waits;
   for (const auto& [name, result] : results.benchmarks) {
@@ -228,9 +243,9 @@ std::map<std::string, std::string> ReportTables(
   }
   const Spread wait = SpreadOf(waits);
   return {{"LOADS", loads},
-          {"LOAD_AFTER", Number(load_after, "%.2f")},
-          {"WALL_MEDIAN", Number(wait.median, "%.2f")},
-          {"WALL_MAX", Number(wait.max, "%.2f")},
+          {"LOAD_AFTER", Fixed(load_after, 2)},
+          {"WALL_MEDIAN", Fixed(wait.median, 2)},
+          {"WALL_MAX", Fixed(wait.max, 2)},
           {"NOISE_COUNT", NoiseCount(speedups)},
           {"INSTRUCTION_SET", InstructionSetName()},
           {"SOLVE", SolveRows(results)},
