@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace rgbd_pose {
 namespace {
@@ -28,7 +29,19 @@ std::array<Eigen::Matrix3d, 3> RotationDerivatives(const double* angles) {
 
 MotionOrigin::MotionOrigin(const Rigid3d& cur_from_prev)
     : R_(cur_from_prev.rotation.toRotationMatrix()),
-      C_(-(R_.transpose() * cur_from_prev.translation)) {}
+      C_(-(R_.transpose() * cur_from_prev.translation)) {
+  shared_x_.setConstant(std::numeric_limits<double>::quiet_NaN());
+}
+
+const MotionDerivatives& MotionOrigin::SharedDerivativesAt(
+    const double* x) const {
+  const Eigen::Map<const MotionVector> at(x);
+  if (at != shared_x_) {
+    shared_ = DerivativesAt(x);
+    shared_x_ = at;
+  }
+  return shared_;
+}
 
 MotionDerivatives MotionOrigin::DerivativesAt(const double* x) const {
   MotionDerivatives motion;

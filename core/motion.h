@@ -73,12 +73,18 @@ class MotionOrigin {
   // R, C and dR/d(alpha, beta, gamma) at x[6].
   MotionDerivatives DerivativesAt(const double* x) const;
 
+  // The same, kept until another x is asked for: what many residual blocks of
+  // one problem share (Table 2.1). For one thread at a time.
+  const MotionDerivatives& SharedDerivativesAt(const double* x) const;
+
   // The motion at x[6].
   Rigid3d CurFromPrev(const double* x) const;
 
  private:
   Eigen::Matrix3d R_;
   Eigen::Vector3d C_;
+  mutable MotionVector shared_x_;  // of shared_; NaN: of none
+  mutable MotionDerivatives shared_;
 };
 
 // The thesis' six parameters of a motion and back (origin: the identity).

@@ -9,7 +9,9 @@
 
 namespace rgbd_pose {
 
-// One match as a Ceres cost function with its hand-written Jacobian.
+// One match as a Ceres cost function with its hand-written Jacobian. What does
+// not depend on the match is computed once per motion, which is half of the
+// point of a Jacobian by hand; so one problem serves one thread.
 template <typename Residual>
 class AnalyticBlock final
     : public ceres::SizedCostFunction<Residual::kRows, 6> {
@@ -24,7 +26,7 @@ class AnalyticBlock final
       Residual::Residual(origin_.PoseAt(parameters[0]), columns_, residuals);
       return true;
     }
-    Residual::Jacobian(origin_.DerivativesAt(parameters[0]), columns_,
+    Residual::Jacobian(origin_.SharedDerivativesAt(parameters[0]), columns_,
                        residuals, reinterpret_cast<double(*)[6]>(jacobians[0]));
     return true;
   }
@@ -41,8 +43,10 @@ class OracleFunctor {
   OracleFunctor(const MotionOrigin& origin, const double* columns)
       : origin_(origin), columns_(columns) {}
 
+  // flatten: a translation unit of many costs exhausts the compiler's budget
+  // for inlining, and the oracle would be three times slower than it can be.
   template <typename T>
-  bool operator()(const T* x, T* residuals) const {
+  [[gnu::flatten]] bool operator()(const T* x, T* residuals) const {
     Residual::Residual(origin_.PoseAt(x), columns_, residuals);
     return true;
   }
