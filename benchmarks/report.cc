@@ -19,8 +19,6 @@
 
 DEFINE_string(results, "",
               "JSON outputs of the benchmark programs, set apart by commas");
-DEFINE_string(native_results, "",
-              "the same of a build for this machine alone (-march=native)");
 DEFINE_string(machine, "unnamed", "what to call this machine");
 DEFINE_string(page_template, "", "Markdown with @NAMES@ to fill in");
 DEFINE_string(page, "", "Markdown file to write");
@@ -48,14 +46,6 @@ std::string FillIn(std::string page,
   return page;
 }
 
-// Of files set apart by commas.
-BenchmarkResults ReadAll(const std::string& paths) {
-  BenchmarkResults results;
-  std::istringstream stream(paths);
-  for (std::string path; std::getline(stream, path, ',');) results.Read(path);
-  return results;
-}
-
 int Main() {
   RequireFlag("results", FLAGS_results);
   RequireFlag("page_template", FLAGS_page_template);
@@ -64,16 +54,14 @@ int Main() {
   double load_after[1] = {};
   getloadavg(load_after, 1);
 
-  const BenchmarkResults results = ReadAll(FLAGS_results);
+  BenchmarkResults results;
+  std::istringstream paths(FLAGS_results);
+  for (std::string path; std::getline(paths, path, ',');) results.Read(path);
   if (results.benchmarks.empty()) {
     throw InputError("--results=" + FLAGS_results + ": nothing was measured");
   }
-  const BenchmarkResults native = ReadAll(FLAGS_native_results);
-  std::vector<SpeedupRow> speedups = FindSpeedups(results);
-  for (const SpeedupRow& row : FindSpeedups(native)) {
-    speedups.push_back({"native_" + row.key, row.speedup, row.aim});
-  }
-  auto values = ReportTables(results, native, speedups, load_after[0]);
+  const std::vector<SpeedupRow> speedups = FindSpeedups(results);
+  auto values = ReportTables(results, speedups, load_after[0]);
   values["MACHINE"] = DescribeMachine(FLAGS_machine);
   WriteFileAtomically(FLAGS_page,
                       FillIn(ReadTextFile(FLAGS_page_template), values));
@@ -95,7 +83,7 @@ int main(int argc, char** argv) {
       "benchmark_report --results=solve.json,jacobian.json "
       "--page_template=benchmarks/benchmarks.md.in --page=docs/benchmarks.md "
       "--speedups=build/benchmarks.json",
-      {{"Input", {"results", "native_results", "page_template", "machine"}},
+      {{"Input", {"results", "page_template", "machine"}},
        {"Output", {"page", "speedups"}}}};
   return rgbd_pose::RunProgram(argc, argv, info, rgbd_pose::Main);
 }

@@ -230,8 +230,8 @@ std::string NoiseCount(const std::vector<SpeedupRow>& speedups) {
 }  // namespace
 
 std::map<std::string, std::string> ReportTables(
-    const BenchmarkResults& results, const BenchmarkResults& native,
-    const std::vector<SpeedupRow>& speedups, double load_after) {
+    const BenchmarkResults& results, const std::vector<SpeedupRow>& speedups,
+    double load_after) {
   std::string loads;
   for (const double load : results.load) {
     loads += (loads.empty() ? "" : ", ") + Fixed(load, 2);
@@ -250,7 +250,6 @@ std::map<std::string, std::string> ReportTables(
           {"INSTRUCTION_SET", InstructionSetName()},
           {"SOLVE", SolveRows(results)},
           {"SIZES", SizeRows(results)},
-          {"NATIVE", SizeRows(native)},
           {"ESTIMATE", EstimateRows(results)},
           {"JACOBIANS", JacobianRows(results)},
           {"PEERS", PeerRows(results)},

@@ -10,11 +10,10 @@
 namespace rgbd_pose {
 
 // What stands for the @NAMES@ of benchmarks.md.in: rows of tables and single
-// figures. Benchmarks that were not run have no row. `native` are those of a
-// build for this machine alone, `load_after` is the system's load when all was
-// done.
+// figures. Benchmarks that were not run have no row. `load_after` is the
+// system's load when all was done.
 std::map<std::string, std::string> ReportTables(
-    const BenchmarkResults& results, const BenchmarkResults& native,
-    const std::vector<SpeedupRow>& speedups, double load_after);
+    const BenchmarkResults& results, const std::vector<SpeedupRow>& speedups,
+    double load_after);
 
 }  // namespace rgbd_pose
