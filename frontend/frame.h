@@ -2,7 +2,7 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
-#include <string>
+#include <vector>
 
 namespace rgbd_pose {
 
@@ -13,6 +13,9 @@ struct Frame {
   cv::Mat gray;                 // CV_8UC1
   cv::Mat depth;                // CV_16UC1, registered to gray, the same size
   double depth_scale = 5000.0;  // raw depth units per metre
+
+  // What a frontend has worked out ahead: its own pyramid of `gray`, or empty.
+  std::vector<cv::Mat> pyramid;
 
   // Depth in metres at a whole pixel; 0 where there is none.
   double DepthAt(int column, int row) const {

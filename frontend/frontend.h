@@ -31,22 +31,52 @@ struct FrontendOptions {
   std::string Check() const;
 };
 
-// Finds matches between a reference frame and the frames that follow it. One
-// object serves one sequence at a time.
+// The features of one frame, to be found again in others. What else that takes
+// (patches, descriptors) is up to the frontend that made it.
+class FeatureSet {
+ public:
+  virtual ~FeatureSet() = default;
+
+  // Where the features are in their own frame. May be refined as more frames
+  // see them.
+  std::vector<Observation> observations;
+};
+
+// Matches between a feature set (prev) and a frame (cur).
+struct FeatureMatches {
+  Correspondences matches;
+  std::vector<int> features;  // of each match: its place in the feature set
+
+  // Adds a match of feature `i` if Correspondences takes it.
+  void Add(const FeatureSet& reference, int i, const Observation& cur) {
+    if (matches.Add(reference.observations[i], cur)) features.push_back(i);
+  }
+  void Clear() {
+    matches.Clear();
+    features.clear();
+  }
+};
+
+// Finds the features of one frame again in others. Feature sets belong to the
+// frontend that made them. One object serves one thread.
 class Frontend {
  public:
   virtual ~Frontend() = default;
 
   virtual std::string_view name() const = 0;
 
-  // Takes a frame as the reference and returns how many of its features have
-  // a depth.
-  virtual int SetReference(const Frame& frame) = 0;
+  // Works out ahead what does not depend on other frames (a pyramid, say) and
+  // keeps it in the frame. Optional; may be called from several threads.
+  virtual void Prepare(Frame* /*frame*/) const {}
 
-  // Fills `matches` (emptied first) with the reference's features (prev) found
-  // in `frame` (cur). The guess says where to look for them first.
-  virtual void Match(const Frame& frame, const Rigid3d& cur_from_ref_guess,
-                     Correspondences* matches) = 0;
+  // The features of a frame.
+  virtual std::unique_ptr<FeatureSet> Detect(const Frame& frame) = 0;
+
+  // Fills `matches` (emptied first) with the features of `reference` found in
+  // `frame`. The guess says where to look for them first.
+  virtual void Match(const FeatureSet& reference, const Frame& frame,
+                     const Rigid3d& cur_from_ref_guess,
+                     FeatureMatches* matches) = 0;
 };
 
 // The names of all frontends.

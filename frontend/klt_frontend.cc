@@ -20,6 +20,11 @@ constexpr double kSigmaPx = 0.5;
 // A mean grey difference over the window beyond this is another place.
 constexpr float kMaxMeanDifference = 25.0F;
 
+struct KltFeatures : FeatureSet {
+  std::vector<cv::Mat> pyramid;  // with derivatives
+  std::vector<cv::Point2f> corners;
+};
+
 }  // namespace
 
 KltFrontend::KltFrontend(const FrontendOptions& options)
@@ -38,46 +43,56 @@ Observation KltFrontend::Observe(const Frame& frame,
           sample.sigma, LookUpNormal(frame, options_.camera, pixel.x, pixel.y)};
 }
 
-int KltFrontend::SetReference(const Frame& frame) {
-  cv::buildOpticalFlowPyramid(frame.gray, reference_pyramid_, kWindow,
+void KltFrontend::Prepare(Frame* frame) const {
+  cv::buildOpticalFlowPyramid(frame->gray, frame->pyramid, kWindow, kMaxLevel,
+                              /*withDerivatives=*/false);
+}
+
+std::unique_ptr<FeatureSet> KltFrontend::Detect(const Frame& frame) {
+  auto features = std::make_unique<KltFeatures>();
+  cv::buildOpticalFlowPyramid(frame.gray, features->pyramid, kWindow,
                               kMaxLevel);
-  reference_corners_ = DetectGridCorners(
+  features->corners = DetectGridCorners(
       frame.gray, options_.max_features, [&](const cv::Point2f& pixel) {
         return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
       });
-  reference_observations_.clear();
-  for (const cv::Point2f& corner : reference_corners_) {
-    reference_observations_.push_back(Observe(frame, corner));
+  for (const cv::Point2f& corner : features->corners) {
+    features->observations.push_back(Observe(frame, corner));
   }
-  return static_cast<int>(reference_corners_.size());
+  return features;
 }
 
-void KltFrontend::Match(const Frame& frame, const Rigid3d& cur_from_ref_guess,
-                        Correspondences* matches) {
+void KltFrontend::Match(const FeatureSet& reference, const Frame& frame,
+                        const Rigid3d& cur_from_ref_guess,
+                        FeatureMatches* matches) {
   matches->Clear();
-  if (reference_corners_.empty()) return;
-  cv::buildOpticalFlowPyramid(frame.gray, pyramid_, kWindow, kMaxLevel,
-                              /*withDerivatives=*/false);
-  tracked_ = reference_corners_;
-  const Correspondences& camera = *matches;
+  const auto& features = static_cast<const KltFeatures&>(reference);
+  if (features.corners.empty()) return;
+  if (frame.pyramid.empty()) {
+    cv::buildOpticalFlowPyramid(frame.gray, pyramid_, kWindow, kMaxLevel,
+                                /*withDerivatives=*/false);
+  }
+  tracked_ = features.corners;
+  const Correspondences& camera = matches->matches;
   for (size_t i = 0; i < tracked_.size(); ++i) {
     const Eigen::Vector3d point =
-        cur_from_ref_guess * camera.Point(reference_observations_[i]);
+        cur_from_ref_guess * camera.Point(features.observations[i]);
     if (point.z() < options_.min_depth) continue;
     const Eigen::Vector2d pixel = options_.camera.Project(point);
     tracked_[i] = cv::Point2f(static_cast<float>(pixel.x()),
                               static_cast<float>(pixel.y()));
   }
-  cv::calcOpticalFlowPyrLK(reference_pyramid_, pyramid_, reference_corners_,
-                           tracked_, found_, error_, kWindow, kMaxLevel,
-                           kTermination, cv::OPTFLOW_USE_INITIAL_FLOW);
+  cv::calcOpticalFlowPyrLK(
+      features.pyramid, frame.pyramid.empty() ? pyramid_ : frame.pyramid,
+      features.corners, tracked_, found_, error_, kWindow, kMaxLevel,
+      kTermination, cv::OPTFLOW_USE_INITIAL_FLOW);
   for (size_t i = 0; i < tracked_.size(); ++i) {
     const Eigen::Vector2d pixel(tracked_[i].x, tracked_[i].y);
     if (found_[i] == 0 || error_[i] > kMaxMeanDifference ||
         !options_.camera.Contains(pixel)) {
       continue;
     }
-    matches->Add(reference_observations_[i], Observe(frame, tracked_[i]));
+    matches->Add(reference, static_cast<int>(i), Observe(frame, tracked_[i]));
   }
 }
 

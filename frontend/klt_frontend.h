@@ -19,9 +19,11 @@ class KltFrontend final : public Frontend {
   explicit KltFrontend(const FrontendOptions& options);
 
   std::string_view name() const override { return kName; }
-  int SetReference(const Frame& frame) override;
-  void Match(const Frame& frame, const Rigid3d& cur_from_ref_guess,
-             Correspondences* matches) override;
+  void Prepare(Frame* frame) const override;
+  std::unique_ptr<FeatureSet> Detect(const Frame& frame) override;
+  void Match(const FeatureSet& reference, const Frame& frame,
+             const Rigid3d& cur_from_ref_guess,
+             FeatureMatches* matches) override;
 
  private:
   // The observation of an image point with its depth, undistorted.
@@ -29,10 +31,7 @@ class KltFrontend final : public Frontend {
 
   FrontendOptions options_;
   DepthLookupOptions depth_options_;
-  std::vector<cv::Mat> reference_pyramid_;  // with derivatives
-  std::vector<cv::Mat> pyramid_;            // of the frame at hand
-  std::vector<cv::Point2f> reference_corners_;
-  std::vector<Observation> reference_observations_;
+  std::vector<cv::Mat> pyramid_;  // of a frame that has not been prepared
   std::vector<cv::Point2f> tracked_;
   std::vector<uchar> found_;
   std::vector<float> error_;

@@ -45,21 +45,22 @@ Odometry::Odometry(const OdometryOptions& options, const Camera& camera,
     : options_(options),
       frontend_(std::move(frontend)),
       estimator_(std::move(estimator)),
-      matches_(camera) {}
+      found_{Correspondences(camera), {}} {}
 
 TrackedFrame Odometry::Track(const Frame& frame) {
   const Clock::time_point start = Clock::now();
   TrackedFrame result;
   result.index = frame.index;
   result.timestamp = frame.timestamp;
-  if (!has_reference_) {
+  if (reference_ == nullptr) {
     TakeReference(frame, &result);
     result.status = TrackingStatus::kOk;
-    if (reference_features_ < options_.min_inliers) {
+    const size_t features = reference_->observations.size();
+    if (features < static_cast<size_t>(options_.min_inliers)) {
       result.status = TrackingStatus::kLost;
-      result.reason = "only " + std::to_string(reference_features_) +
+      result.reason = "only " + std::to_string(features) +
                       " features with depth to start from";
-      has_reference_ = false;
+      reference_ = nullptr;
     }
     result.world_from_cam = world_from_ref_ * cur_from_ref_.Inverse();
     result.track_ms = MillisecondsSince(start);
@@ -89,11 +90,11 @@ TrackedFrame Odometry::Track(const Frame& frame) {
 bool Odometry::TryGuess(const Frame& frame, const Rigid3d& cur_from_ref_guess,
                         TrackedFrame* result) {
   const Clock::time_point start = Clock::now();
-  frontend_->Match(frame, cur_from_ref_guess, &matches_);
+  frontend_->Match(*reference_, frame, cur_from_ref_guess, &found_);
   result->frontend_ms += MillisecondsSince(start);
   Estimate(cur_from_ref_guess);
   result->solve_ms += estimate_.solve_ms;
-  result->matches = static_cast<int>(matches_.size());
+  result->matches = static_cast<int>(found_.matches.size());
   result->inliers = estimate_.num_inliers;
   result->iterations += estimate_.iterations;
   result->sigma = estimate_.sigma;
@@ -127,7 +128,7 @@ bool Odometry::TryGuess(const Frame& frame, const Rigid3d& cur_from_ref_guess,
 void Odometry::Estimate(const Rigid3d& cur_from_ref_guess) {
   Rigid3d guess = cur_from_ref_guess;
   if (options_.initial_guess != nullptr) {
-    guess = options_.initial_guess->find(matches_).value_or(guess);
+    guess = options_.initial_guess->find(found_.matches).value_or(guess);
   }
   MotionPrior prior;
   prior.cur_from_prev = cur_from_ref_guess;
@@ -135,21 +136,21 @@ void Odometry::Estimate(const Rigid3d& cur_from_ref_guess) {
   const double shift = options_.prior_sigma_translation;
   prior.covariance.diagonal() << turn * turn, turn * turn, turn * turn,
       shift * shift, shift * shift, shift * shift;
-  estimator_.Estimate(matches_, guess, &prior, &estimate_);
+  estimator_.Estimate(found_.matches, guess, &prior, &estimate_);
 }
 
 void Odometry::TakeReference(const Frame& frame, TrackedFrame* result) {
   const Clock::time_point start = Clock::now();
   world_from_ref_ = world_from_ref_ * cur_from_ref_.Inverse();
   cur_from_ref_ = Rigid3d();
-  reference_features_ = frontend_->SetReference(frame);
-  has_reference_ = true;
+  reference_ = frontend_->Detect(frame);
   result->is_reference = true;
   result->frontend_ms += MillisecondsSince(start);
 }
 
 bool Odometry::NeedsNewReference(int inliers) const {
-  return inliers < options_.min_reference_share * reference_features_ ||
+  return inliers <
+             options_.min_reference_share * reference_->observations.size() ||
          inliers < options_.min_inliers_ok ||
          MeanInlierFlowPx() > options_.max_flow_px;
 }
@@ -157,10 +158,10 @@ bool Odometry::NeedsNewReference(int inliers) const {
 double Odometry::MeanInlierFlowPx() const {
   double sum = 0.0;
   int count = 0;
-  for (size_t i = 0; i < matches_.size(); ++i) {
+  for (size_t i = 0; i < found_.matches.size(); ++i) {
     if (!estimate_.is_inlier[i]) continue;
-    const Observation prev = matches_.prev()[i];
-    const Observation cur = matches_.cur()[i];
+    const Observation prev = found_.matches.prev()[i];
+    const Observation cur = found_.matches.cur()[i];
     sum += std::hypot(cur.u - prev.u, cur.v - prev.v);
     ++count;
   }

@@ -77,7 +77,7 @@ class Odometry {
   // Tries to track from one guess; true if the result is a pose.
   bool TryGuess(const Frame& frame, const Rigid3d& cur_from_ref_guess,
                 TrackedFrame* result);
-  // Fills estimate_ from matches_.
+  // Fills estimate_ from found_.
   void Estimate(const Rigid3d& cur_from_ref_guess);
   void TakeReference(const Frame& frame, TrackedFrame* result);
   bool NeedsNewReference(int inliers) const;
@@ -86,10 +86,9 @@ class Odometry {
   OdometryOptions options_;
   std::unique_ptr<Frontend> frontend_;
   Estimator estimator_;
-  Correspondences matches_;
+  FeatureMatches found_;
+  std::unique_ptr<FeatureSet> reference_;  // null: none yet
   MotionEstimate estimate_;
-  bool has_reference_ = false;
-  int reference_features_ = 0;
   Rigid3d world_from_ref_;
   Rigid3d cur_from_ref_;   // of the last frame
   Rigid3d cur_from_prev_;  // between the last two frames
