@@ -33,14 +33,9 @@ MotionOrigin::MotionOrigin(const Rigid3d& cur_from_prev)
   shared_x_.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
-const MotionDerivatives& MotionOrigin::SharedDerivativesAt(
-    const double* x) const {
-  const Eigen::Map<const MotionVector> at(x);
-  if (at != shared_x_) {
-    shared_ = DerivativesAt(x);
-    shared_x_ = at;
-  }
-  return shared_;
+void MotionOrigin::Share(const double* x) const {
+  shared_ = DerivativesAt(x);
+  shared_x_ = Eigen::Map<const MotionVector>(x);
 }
 
 MotionDerivatives MotionOrigin::DerivativesAt(const double* x) const {

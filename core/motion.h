@@ -75,12 +75,18 @@ class MotionOrigin {
 
   // The same, kept until another x is asked for: what many residual blocks of
   // one problem share (Table 2.1). For one thread at a time.
-  const MotionDerivatives& SharedDerivativesAt(const double* x) const;
+  const MotionDerivatives& SharedDerivativesAt(const double* x) const {
+    const Eigen::Map<const MotionVector> at(x);
+    if (at != shared_x_) Share(x);
+    return shared_;
+  }
 
   // The motion at x[6].
   Rigid3d CurFromPrev(const double* x) const;
 
  private:
+  void Share(const double* x) const;
+
   Eigen::Matrix3d R_;
   Eigen::Vector3d C_;
   mutable MotionVector shared_x_;  // of shared_; NaN: of none

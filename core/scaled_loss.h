@@ -2,12 +2,14 @@
 
 #include <ceres/loss_function.h>
 
+#include "core/batch_loss.h"
+
 namespace rgbd_pose {
 
 // A loss as seen by residuals whose sigma is `scale` times the nominal one:
 // rho(s) = scale^2 base(s / scale^2). For every M-estimator with a width this
 // is the same M-estimator with `scale` times the width.
-class ScaledLoss final : public ceres::LossFunction {
+class ScaledLoss final : public BatchLoss {
  public:
   // `base` must outlive this; null is least squares.
   ScaledLoss(const ceres::LossFunction* base, double scale)
@@ -23,6 +25,12 @@ class ScaledLoss final : public ceres::LossFunction {
     base_->Evaluate(s / scale2_, rho);
     rho[0] *= scale2_;
     rho[2] /= scale2_;
+  }
+
+  double Weigh(const double* s, int n, double* weights) const override {
+    const double inverse = 1.0 / scale2_;
+    for (int i = 0; i < n; ++i) weights[i] = s[i] * inverse;
+    return scale2_ * rgbd_pose::Weigh(base_, weights, n, weights);
   }
 
  private:

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "core/cost.h"
+#include "core/lane_math.h"
 #include "core/motion.h"
-#include "costs/lane_math.h"
 #include "costs/moved_point.h"
 #include "costs/point_sums.h"
 #include "costs/ray_whitening.h"
@@ -67,29 +67,26 @@ struct BidirectionalPoint {
     Residual(motion, columns, r);
     const RayWhitening<D> prev(columns);
     const RayWhitening<D> cur(columns + RayWhitening<D>::kColumns);
+    D from_prev[3], from_cur[3];  // C - X_prev and -X_cur
+    for (int i = 0; i < 3; ++i) {
+      from_prev[i] = motion.C[i] - prev.point[i];
+      from_cur[i] = -cur.point[i];
+    }
     for (int angle = 0; angle < 3; ++angle) {
-      D forward[3], backward[3];
-      Forward::Derivative(motion, prev.point, angle, forward);
-      Backward::Derivative(motion, cur.point, angle, backward);
-      for (int i = 0; i < 3; ++i) {
-        forward[i] = -forward[i];
-        backward[i] = -backward[i];
-      }
-      // Tables 2.3, 2.4, 2.5: d e_c / d angle = -(dR / d angle) (X_prev - C).
-      cur.WhitenColumn(forward, J, angle);
+      D de[3];
+      // Tables 2.3, 2.4, 2.5: d e_c / d angle = (dR / d angle) (C - X_prev).
+      Multiply(motion.dR[angle], from_prev, de);
+      cur.WhitenColumn(de, J, angle);
       // Tables 2.6, 2.7, 2.8: d e_p / d angle = -(dR / d angle)^T X_cur.
-      prev.WhitenColumn(backward, J + 3, angle);
+      MultiplyTransposed(motion.dR[angle], from_cur, de);
+      prev.WhitenColumn(de, J + 3, angle);
     }
+    // Table 2.9: d e_c / dC = R.
     for (int axis = 0; axis < 3; ++axis) {
-      // Table 2.9: d e_c / dC = R, d e_p / dC = -I.
-      const double forward[3] = {motion.R(0, axis), motion.R(1, axis),
-                                 motion.R(2, axis)};
-      cur.WhitenColumn(forward, J, 3 + axis);
-      const double backward[3] = {axis == 0 ? -1.0 : 0.0,
-                                  axis == 1 ? -1.0 : 0.0,
-                                  axis == 2 ? -1.0 : 0.0};
-      prev.WhitenColumn(backward, J + 3, 3 + axis);
+      cur.WhitenColumn(motion.R.col(axis).data(), J, 3 + axis);
     }
+    // Table 2.9: d e_p / dC = -I.
+    prev.WhitenNegativeIdentity(J + 3, 3);
   }
 
   // The same for the compressed sums (point_sums.h): e_c depends on the motion

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "core/cost.h"
+#include "core/vector_lanes.h"
 #include "costs/compressed_block.h"
 #include "costs/match_blocks.h"
 #include "costs/packed_sum.h"
-#include "costs/vector_lanes.h"
 
 namespace rgbd_pose {
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "core/cost.h"
+#include "core/lane_math.h"
 #include "core/motion.h"
-#include "costs/lane_math.h"
 #include "costs/ray.h"
 
 namespace rgbd_pose {

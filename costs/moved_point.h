@@ -1,7 +1,7 @@
 #pragma once
 
+#include "core/lane_math.h"
 #include "core/motion.h"
-#include "costs/lane_math.h"
 
 // A point of one frame in the axes of the other, and its derivatives. Every
 // cost on points is a function of these.

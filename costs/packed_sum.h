@@ -7,10 +7,11 @@
 #include <type_traits>
 #include <vector>
 
+#include "core/batch_loss.h"
 #include "core/cost.h"
 #include "core/motion.h"
+#include "core/vector_lanes.h"
 #include "costs/point_sums.h"
-#include "costs/vector_lanes.h"
 
 // Sums over matches, several at a time: the residual types' own templates run
 // on vectors of doubles, one lane a match.
@@ -78,13 +79,7 @@ template <typename Residual, int W>
                                                double* weights) {
   alignas(64) double squared_norms[kTile + kMaxLanes];
   SquaredNormsOfTile<Residual, W>(motion, columns, begin, end, squared_norms);
-  double cost = 0.0;
-  for (int i = 0; i < end - begin; ++i) {
-    double rho[3] = {squared_norms[i], 1.0, 0.0};
-    if (loss != nullptr) loss->Evaluate(squared_norms[i], rho);
-    cost += rho[0];
-    weights[i] = rho[1];
-  }
+  const double cost = Weigh(loss, squared_norms, end - begin, weights);
   for (int i = end - begin; i % W != 0; ++i) weights[i] = 0.0;
   return cost;
 }

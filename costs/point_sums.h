@@ -64,23 +64,23 @@ class PointSums {
   void AddTo(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& shift,
              NormalEquations* sum) const {
     // In (omega, c); the signs are those of dq = [q]x^T omega + c.
-    MotionMatrix hessian;
-    MotionVector gradient;
-    hessian.topLeftCorner<3, 3>() = Symmetric(turn_turn_);
-    hessian.bottomRightCorner<3, 3>() = Symmetric(shift_shift_);
+    Eigen::Matrix3d shift_turn;
+    Eigen::Vector3d g_turn, g_shift;
     for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) {
-        hessian(3 + i, k) = -Total(shift_turn_[i][k]);
-        hessian(k, 3 + i) = hessian(3 + i, k);
-      }
-      gradient[i] = -Total(turn_[i]);
-      gradient[3 + i] = Total(shift_[i]);
+      for (int k = 0; k < 3; ++k) shift_turn(i, k) = -Total(shift_turn_[i][k]);
+      g_turn[i] = -Total(turn_[i]);
+      g_shift[i] = Total(shift_[i]);
     }
-    MotionMatrix map = MotionMatrix::Zero();
-    map.topLeftCorner<3, 3>() = turn;
-    map.bottomRightCorner<3, 3>() = shift;
-    sum->hessian += map.transpose() * hessian * map;
-    sum->gradient += map.transpose() * gradient;
+    const Eigen::Matrix3d corner = shift.transpose() * shift_turn * turn;
+    MotionMatrix& hessian = sum->hessian;
+    hessian.topLeftCorner<3, 3>() +=
+        turn.transpose() * Symmetric(turn_turn_) * turn;
+    hessian.bottomRightCorner<3, 3>() +=
+        shift.transpose() * Symmetric(shift_shift_) * shift;
+    hessian.bottomLeftCorner<3, 3>() += corner;
+    hessian.topRightCorner<3, 3>() += corner.transpose();
+    sum->gradient.head<3>() += turn.transpose() * g_turn;
+    sum->gradient.tail<3>() += shift.transpose() * g_shift;
   }
 
  private:

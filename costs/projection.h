@@ -1,6 +1,6 @@
 #pragma once
 
-#include "costs/lane_math.h"
+#include "core/lane_math.h"
 
 namespace rgbd_pose {
 

@@ -47,6 +47,19 @@ struct RayWhitening {
     J[2][column] = w_z * e[2];
   }
 
+  // The same for the three columns of -I, from `column` on: written out, since
+  // a compiler must not leave out products with 0.
+  void WhitenNegativeIdentity(D (*J)[6], int column) const {
+    for (int row = 0; row < 3; ++row) {
+      for (int k = 0; k < 3; ++k) J[row][column + k] = D{};
+    }
+    J[0][column] -= w_u;
+    J[0][column + 2] += w_u * a;
+    J[1][column + 1] -= w_v;
+    J[1][column + 2] += w_v * b;
+    J[2][column + 2] -= w_z;
+  }
+
   // N = L L^T and n = -N e of a residual L^T (X - q) of the moved point q.
   void Square(const D* e, PointTerm<D>* term) const {
     const D uu = w_u * w_u;
@@ -73,13 +86,16 @@ struct RayWhitening {
 // The six columns of an observation with depth; its sigmas times a factor.
 inline void PackRay(const Camera& camera, const Observation& o,
                     double sigma_factor, double* columns) {
-  const double inverse = 1.0 / (o.depth * sigma_factor * o.sigma_px);
+  // One division for three: this is done for every match of every estimate.
+  const double sigma = o.depth * o.sigma_px;
+  const double inverse = 1.0 / (sigma_factor * sigma * o.sigma_depth);
+  const double image = inverse * o.sigma_depth;
   columns[0] = (o.u - camera.cx) / camera.fx;
   columns[1] = (o.v - camera.cy) / camera.fy;
   columns[2] = o.depth;
-  columns[3] = camera.fx * inverse;
-  columns[4] = camera.fy * inverse;
-  columns[5] = 1.0 / (sigma_factor * o.sigma_depth);
+  columns[3] = camera.fx * image;
+  columns[4] = camera.fy * image;
+  columns[5] = inverse * sigma;
 }
 
 }  // namespace rgbd_pose

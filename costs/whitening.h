@@ -32,6 +32,25 @@ class Whitening {
     for (int row = 0; row < N; ++row) J[row][column] = r[row];
   }
 
+  // The same for a column that is zero from `size` on: of a vector e[size].
+  template <int size>
+  void WhitenHead(const D* e, D (*J)[6], int column) const {
+    const D* w = w_;
+    for (int row = 0; row < N; w += ++row) {
+      D r = w[0] * e[0];
+      for (int k = 1; k < size && k <= row; ++k) r += w[k] * e[k];
+      J[row][column] = r;
+    }
+  }
+
+  // The same for column `k` of I.
+  void WhitenUnit(int k, D (*J)[6], int column) const {
+    const D* w = w_;
+    for (int row = 0; row < N; w += ++row) {
+      J[row][column] = row < k ? D{} : w[k];
+    }
+  }
+
  private:
   const D* w_;
 };

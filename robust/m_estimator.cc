@@ -6,7 +6,9 @@
 #include "robust/barron_loss.h"
 #include "robust/fair_loss.h"
 #include "robust/geman_mcclure_loss.h"
+#include "robust/huber_loss.h"
 #include "robust/power_loss.h"
+#include "robust/tukey_loss.h"
 #include "robust/welsch_loss.h"
 
 namespace rgbd_pose {
@@ -76,7 +78,7 @@ const std::vector<MEstimator>& MEstimators() {
       {"huber",
        "1 if x <= c, c / x beyond",
        false,
-       Make<ceres::HuberLoss>,
+       Make<HuberLoss>,
        true,
        {1.3450, 1.5011, 1.6280, 1.7311, 1.8120, 1.8693}},
       {"cauchy",
@@ -100,7 +102,7 @@ const std::vector<MEstimator>& MEstimators() {
       {"tukey",
        "(1 - (x/c)^2)^2 if x <= c, 0 beyond",
        true,
-       Make<ceres::TukeyLoss>,
+       Make<TukeyLoss>,
        true,
        {4.6851, 5.1230, 5.4902, 5.8103, 6.0963, 6.3562}},
       {"barron",

@@ -5,7 +5,7 @@
 #include <type_traits>
 
 // Arithmetic that residuals share, for double, ceres::Jet and vectors of
-// doubles (costs/vector_lanes.h) and mixes of them. Results come by pointer:
+// doubles (core/vector_lanes.h) and mixes of them. Results come by pointer:
 // how vectors are returned depends on the instruction set.
 
 namespace rgbd_pose {
