@@ -48,6 +48,7 @@ struct CostInput {
   const Correspondences& matches;
   Rigid3d cur_from_prev;  // where weights that depend on the motion are frozen
   const MotionPrior* prior = nullptr;  // null: nothing is known
+  int threads = 1;  // for sums over many matches; results do not depend on it
 };
 
 // All that the estimator sees of a cost: whitened residuals over matches. One

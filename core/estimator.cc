@@ -43,6 +43,7 @@ std::string EstimatorOptions::Check() const {
     return "min_inlier_share must lie between 0 and 1";
   }
   if (max_scale <= 0.0) return "max_scale must be positive";
+  if (threads < 1) return "threads must be at least 1";
   if (max_standard_deviation <= 0.0) {
     return "max_standard_deviation must be positive";
   }
@@ -98,7 +99,7 @@ class Estimator::Solve {
   }
 
   void Bind(Cost* cost) {
-    cost->Bind({*matches_, out_->cur_from_prev, prior_});
+    cost->Bind({*matches_, out_->cur_from_prev, prior_, options_.threads});
   }
 
   // Where weights are frozen, the matches used may change with the motion too.

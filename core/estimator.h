@@ -53,6 +53,10 @@ struct EstimatorOptions {
   // this (rad for rotation, m for translation).
   double max_standard_deviation = 0.5;
 
+  // Threads that sums over tens of thousands of matches may take. The result is
+  // the same to the last bit.
+  int threads = 1;
+
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };

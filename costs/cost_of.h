@@ -1,11 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
 #include "core/cost.h"
+#include "core/parallel_for.h"
 #include "core/vector_lanes.h"
 #include "costs/compressed_block.h"
 #include "costs/match_blocks.h"
@@ -70,6 +72,8 @@ class CostOf final : public Cost {
     }
     packed_.size = static_cast<int>(matches_.size());
     Pad();
+    threads_ = input.threads;
+    chunks_.resize((packed_.size + packed::kChunk - 1) / packed::kChunk);
   }
 
   void Residuals(const MotionDerivatives& motion,
@@ -90,8 +94,23 @@ class CostOf final : public Cost {
   void Linearise(const MotionDerivatives& motion,
                  const ceres::LossFunction* loss,
                  NormalEquations* sum) const override {
-    RunVectorised<packed::LineariseKernel<Residual>>(motion, packed_, loss,
-                                                     sum);
+    using Kernel = packed::LineariseKernel<Residual>;
+    if (packed_.size <= packed::kChunk) {
+      RunVectorised<Kernel>(motion, packed_, loss, 0, packed_.size, sum);
+      return;
+    }
+    ParallelFor(static_cast<int>(chunks_.size()), threads_, [&](int i) {
+      const int first = i * packed::kChunk;
+      const int last = std::min(first + packed::kChunk, packed_.size);
+      chunks_[i] = NormalEquations();
+      NormalEquations* const chunk = &chunks_[i];
+      RunVectorised<Kernel>(motion, packed_, loss, first, last, chunk);
+    });
+    for (const NormalEquations& chunk : chunks_) {
+      sum->hessian += chunk.hessian;
+      sum->gradient += chunk.gradient;
+      sum->cost += chunk.cost;
+    }
   }
 
   void AddScatter(const MotionDerivatives& motion,
@@ -182,7 +201,9 @@ class CostOf final : public Cost {
   std::vector<int> matches_;
   std::vector<int> degrees_;
   PackedColumns packed_;
-  std::vector<double> rows_;  // see Unpack
+  int threads_ = 1;
+  mutable std::vector<NormalEquations> chunks_;  // see Linearise
+  std::vector<double> rows_;                     // see Unpack
   std::optional<CompressedBlock<6, SumsAt>> block_;
 };
 

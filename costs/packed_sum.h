@@ -84,6 +84,10 @@ template <typename Residual, int W>
   return cost;
 }
 
+// Sums are taken over chunks of so many matches, and then over chunks, whatever
+// the number of threads: it does not change a bit of the result.
+constexpr int kChunk = 32 * kTile;
+
 // A symmetric 6 x 6 sum, lane by lane: the upper triangle, row by row.
 template <typename D>
 struct SymmetricSum {
@@ -195,13 +199,15 @@ struct TermSums {
   PointSums<D> forward, backward;
 };
 
-// The robustified normal equations, weighted by rho'.
+// The robustified normal equations, weighted by rho', of the matches from
+// `first` (a multiple of kMaxLanes) to `last`.
 template <typename Residual>
 struct LineariseKernel {
   template <int W>
   [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
                                          const PackedColumns& columns,
                                          const ceres::LossFunction* loss,
+                                         int first, int last,
                                          NormalEquations* sum) {
     using D = typename Lanes<W>::Type;
     using Sums =
@@ -209,8 +215,8 @@ struct LineariseKernel {
                            TermSums<Residual, D>, RowSums<Residual, D>>;
     Sums sums;
     double cost = 0.0;
-    for (int begin = 0; begin < columns.size; begin += kTile) {
-      const int end = std::min(begin + kTile, columns.size);
+    for (int begin = first; begin < last; begin += kTile) {
+      const int end = std::min(begin + kTile, last);
       alignas(64) double weights[kTile + kMaxLanes];
       cost +=
           WeighTile<Residual, W>(motion, columns, loss, begin, end, weights);
