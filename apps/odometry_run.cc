@@ -1,13 +1,12 @@
 #include "apps/odometry_run.h"
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 
 #include "core/initial_guess.h"
 #include "core/input_error.h"
 #include "core/text_file.h"
 #include "costs/cost_factory.h"
+#include "frontend/frame_stream.h"
 #include "frontend/frontend.h"
 #include "robust/scale.h"
 
@@ -86,14 +85,6 @@ OdometryOptions MakeOdometryOptions(const OdometrySettings& settings) {
   return options;
 }
 
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const size_t rank = std::min<size_t>(
-      values.size() - 1, static_cast<size_t>(share * values.size()));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[rank];
-}
-
 }  // namespace
 
 std::vector<std::string> AssemblyNames() { return NamesOf(kAssemblies); }
@@ -120,15 +111,30 @@ Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
 }
 
 std::vector<TrackedFrame> RunOdometry(
-    const Dataset& dataset, Odometry* odometry,
+    const Dataset& dataset, Odometry* odometry, int threads,
     const std::function<void(int done)>& progress) {
+  FrameStream stream(dataset, &odometry->frontend(), threads);
   std::vector<TrackedFrame> frames;
   frames.reserve(dataset.size());
   for (int i = 0; i < dataset.size(); ++i) {
-    frames.push_back(odometry->Track(dataset.Read(i)));
+    const StreamedFrame next = stream.Next();
+    frames.push_back(odometry->Track(next.frame));
+    frames.back().decode_ms = next.decode_ms;
     progress(i + 1);
   }
   return frames;
+}
+
+std::vector<double> ReadAllFrames(
+    const Dataset& dataset, int threads,
+    const std::function<void(int done)>& progress) {
+  FrameStream stream(dataset, nullptr, threads);
+  std::vector<double> decode_ms;
+  for (int i = 0; i < dataset.size(); ++i) {
+    decode_ms.push_back(stream.Next().decode_ms);
+    progress(i + 1);
+  }
+  return decode_ms;
 }
 
 Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames) {
@@ -142,39 +148,19 @@ Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames) {
 
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
   std::string text =
-      "timestamp,status,reason,matches,inliers,iterations,sigma,track_ms,"
-      "frontend_ms,solve_ms\n";
+      "timestamp,status,reason,matches,inliers,iterations,sigma,decode_ms,"
+      "track_ms,frontend_ms,solve_ms\n";
   char row[256];
   for (const TrackedFrame& frame : frames) {
     // Reasons are our own words and hold no quotes.
-    std::snprintf(row, sizeof(row),
-                  "%.6f,%s,\"%s\",%d,%d,%d,%.4f,%.3f,%.3f,%.3f\n",
-                  frame.timestamp, ToString(frame.status), frame.reason.c_str(),
-                  frame.matches, frame.inliers, frame.iterations, frame.sigma,
-                  frame.track_ms, frame.frontend_ms, frame.solve_ms);
+    std::snprintf(
+        row, sizeof(row), "%.6f,%s,\"%s\",%d,%d,%d,%.4f,%.3f,%.3f,%.3f,%.3f\n",
+        frame.timestamp, ToString(frame.status), frame.reason.c_str(),
+        frame.matches, frame.inliers, frame.iterations, frame.sigma,
+        frame.decode_ms, frame.track_ms, frame.match_ms, frame.solve_ms);
     text += row;
   }
   return text;
-}
-
-RunSummary Summarise(const std::vector<TrackedFrame>& frames) {
-  RunSummary summary;
-  std::vector<double> track, frontend, solve;
-  for (const TrackedFrame& frame : frames) {
-    ++summary.frames;
-    summary.ok += frame.status == TrackingStatus::kOk;
-    summary.degraded += frame.status == TrackingStatus::kDegraded;
-    summary.lost += frame.status == TrackingStatus::kLost;
-    summary.references += frame.is_reference;
-    track.push_back(frame.track_ms);
-    frontend.push_back(frame.frontend_ms);
-    solve.push_back(frame.solve_ms);
-  }
-  summary.median_track_ms = Quantile(track, 0.5);
-  summary.p99_track_ms = Quantile(track, 0.99);
-  summary.median_frontend_ms = Quantile(frontend, 0.5);
-  summary.median_solve_ms = Quantile(solve, 0.5);
-  return summary;
 }
 
 }  // namespace rgbd_pose

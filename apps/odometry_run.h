@@ -35,10 +35,17 @@ std::vector<std::string> OdometryGuessNames();
 // An odometry with these settings. Throws InputError for unknown names.
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
 
-// Tracks a whole dataset: one result a frame, in order. `progress` hears how
-// many are done.
+// Tracks a whole dataset: one result a frame, in order. Frames are read ahead
+// by the other ones of `threads` >= 1 threads; the result does not depend on
+// how many. `progress` hears how many frames are done.
 std::vector<TrackedFrame> RunOdometry(
-    const Dataset& dataset, Odometry* odometry,
+    const Dataset& dataset, Odometry* odometry, int threads,
+    const std::function<void(int done)>& progress);
+
+// Reads a whole dataset in the same way and does nothing with it. Returns how
+// long each frame took (ms); throws InputError for the first unreadable one.
+std::vector<double> ReadAllFrames(
+    const Dataset& dataset, int threads,
     const std::function<void(int done)>& progress);
 
 // The poses of all frames that were not lost.
@@ -46,25 +53,5 @@ Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
 
 // frames.csv: a header and one row an input frame.
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames);
-
-// What a run comes to.
-struct RunSummary {
-  int frames = 0;
-  int ok = 0;
-  int degraded = 0;
-  int lost = 0;
-  int references = 0;
-  double median_track_ms = 0.0;
-  double p99_track_ms = 0.0;
-  double median_frontend_ms = 0.0;
-  double median_solve_ms = 0.0;
-
-  // Share of frames with a pose, 0 to 1.
-  double TrackedShare() const {
-    return frames > 0 ? static_cast<double>(ok + degraded) / frames : 0.0;
-  }
-};
-
-RunSummary Summarise(const std::vector<TrackedFrame>& frames);
 
 }  // namespace rgbd_pose

@@ -4,16 +4,20 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
+#include <algorithm>
+#include <chrono>
 #include <cstdio>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <thread>
 
 #include "apps/evaluation_report.h"
 #include "apps/odometry_run.h"
 #include "apps/program.h"
 #include "apps/progress_bar.h"
+#include "apps/run_summary.h"
 #include "core/depth_noise.h"
 #include "core/evaluation.h"
 #include "core/input_error.h"
@@ -50,12 +54,15 @@ DEFINE_string(robust_schedule, "gnc",
 DEFINE_string(initial_guess, "last", "where the solver starts in a frame");
 DEFINE_string(frontend, "klt", "where matches come from");
 DEFINE_int32(max_features, 400, "features wanted in a reference frame");
-DEFINE_int32(threads, 1,
-             "threads of the image processing; the result does not depend "
-             "on it");
+DEFINE_int32(threads, 0,
+             "threads that read images ahead and track; 0: one a core; the "
+             "result does not depend on it");
 DEFINE_string(groundtruth, "",
               "trajectory to compare with (TUM text); empty: groundtruth.txt "
               "of the dataset if it is there");
+DEFINE_bool(validate_only, false,
+            "only read every image and say how fast that goes; needs no "
+            "--output");
 DEFINE_string(output, "", "folder for the results, made if missing");
 
 namespace rgbd_pose {
@@ -71,7 +78,7 @@ ProgramInfo Info() {
   info.flag_groups = {
       {"Input",
        {"dataset", "associations", "camera", "depth_scale", "depth_noise",
-        "groundtruth"}},
+        "groundtruth", "validate_only"}},
       {"Estimation",
        {"cost", "loss", "scale", "robust_schedule", "initial_guess", "assembly",
         "frontend", "max_features", "threads"}},
@@ -90,6 +97,25 @@ ProgramInfo Info() {
 
 // A run that tracked less of its frames than this has failed.
 constexpr double kMinTrackedShare = 0.5;
+
+// More than any machine can use for this.
+constexpr int kMaxThreads = 256;
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+int NumThreads() {
+  if (FLAGS_threads < 0 || FLAGS_threads > kMaxThreads) {
+    throw InputError("--threads must be 0 (one a core) to " +
+                     std::to_string(kMaxThreads));
+  }
+  if (FLAGS_threads > 0) return FLAGS_threads;
+  const int cores = static_cast<int>(std::thread::hardware_concurrency());
+  return std::clamp(cores, 1, kMaxThreads);  // 0 if it is not known
+}
 
 OdometrySettings SettingsFromFlags() {
   OdometrySettings settings;
@@ -134,42 +160,34 @@ void MakeOutputFolder() {
   }
 }
 
-void PrintSummary(const RunSummary& summary) {
-  std::printf("frames      %d, %.1f %% tracked (%d ok, %d degraded, %d lost)\n",
-              summary.frames, 100.0 * summary.TrackedShare(), summary.ok,
-              summary.degraded, summary.lost);
-  std::printf("references  %d\n", summary.references);
+int ValidateOnly(const TumDataset& dataset, int threads) {
+  const Clock::time_point start = Clock::now();
+  std::vector<double> decode_ms;
+  {
+    ProgressBar bar("reading", dataset.size());
+    decode_ms =
+        ReadAllFrames(dataset, threads, [&bar](int done) { bar.Update(done); });
+  }
+  std::printf("frames      %d, all readable\n", dataset.size());
   std::printf(
-      "time        %.2f ms per frame median, %.2f ms 99th percentile, without "
-      "decoding\n"
-      "            of it %.2f ms matching, %.3f ms pose solve (medians)\n",
-      summary.median_track_ms, summary.p99_track_ms, summary.median_frontend_ms,
-      summary.median_solve_ms);
-}
-
-nlohmann::json SummaryToJson(const RunSummary& summary) {
-  return {{"frames", summary.frames},
-          {"ok", summary.ok},
-          {"degraded", summary.degraded},
-          {"lost", summary.lost},
-          {"references", summary.references},
-          {"tracked_share", summary.TrackedShare()},
-          {"track_ms_median", summary.median_track_ms},
-          {"track_ms_p99", summary.p99_track_ms},
-          {"frontend_ms_median", summary.median_frontend_ms},
-          {"solve_ms_median", summary.median_solve_ms}};
+      "decoding    %.1f frames/s with %d thread(s), %.2f ms per frame median\n",
+      dataset.size() / SecondsSince(start), threads, Median(decode_ms));
+  return kExitOk;
 }
 
 int Main() {
+  const Clock::time_point start = Clock::now();
   RequireFlag("dataset", FLAGS_dataset);
   RequireFlag("camera", FLAGS_camera);
-  RequireFlag("output", FLAGS_output);
-  if (FLAGS_threads < 1) throw InputError("--threads must be at least 1");
-  cv::setNumThreads(FLAGS_threads);
+  if (!FLAGS_validate_only) RequireFlag("output", FLAGS_output);
+  const int threads = NumThreads();
+  // The threads are ours: OpenCV's own would only compete with them.
+  cv::setNumThreads(1);
 
   // All that can be wrong with the input is looked at before the work starts
   // and before anything is written.
   const TumDataset dataset = OpenDataset();
+  if (FLAGS_validate_only) return ValidateOnly(dataset, threads);
   Odometry odometry =
       MakeOdometry(SettingsFromFlags(), dataset.camera().camera);
   const std::optional<Trajectory> truth = FindGroundTruth();
@@ -185,16 +203,18 @@ int Main() {
   std::vector<TrackedFrame> frames;
   {
     ProgressBar bar("tracking", dataset.size());
-    frames =
-        RunOdometry(dataset, &odometry, [&bar](int done) { bar.Update(done); });
+    frames = RunOdometry(dataset, &odometry, threads,
+                         [&bar](int done) { bar.Update(done); });
   }
+  const double seconds = SecondsSince(start);
 
   const Trajectory trajectory = TrackedTrajectory(frames);
-  const RunSummary summary = Summarise(frames);
-  PrintSummary(summary);
+  const RunSummary summary = Summarise(frames, threads, seconds);
+  std::printf("%s", FormatSummary(summary).c_str());
   nlohmann::json metrics = {{"program", "rgbd_odometry"},
                             {"dataset", FLAGS_dataset},
                             {"unmatched_color", dataset.unmatched_color()},
+                            {"peak_rss_mb", PeakMemoryMb()},
                             {"run", SummaryToJson(summary)}};
   if (truth.has_value()) {
     const EvaluationReport report = Evaluate(trajectory, *truth, {});

@@ -18,6 +18,10 @@ DEFINE_string(path, "xyz", "how to move");
 DEFINE_int32(frames, 150, "number of frames, at 30 Hz");
 DEFINE_uint32(seed, 1, "seed of textures and noise");
 DEFINE_bool(noise, true, "add the noise of a real sensor");
+DEFINE_double(shutter, 0.0, "how long the shutter is open (s): blurs motion");
+DEFINE_double(exposure_drift, 0.0,
+              "swing of the automatic exposure in 4 s, 0..1: gains from "
+              "exp(-this) to exp(this)");
 DEFINE_string(camera, "ros_default", "preset or YAML file");
 DEFINE_string(output, "", "folder to make, in TUM RGB-D layout");
 
@@ -32,6 +36,8 @@ int Simulate() {
   options.frames = FLAGS_frames;
   options.seed = FLAGS_seed;
   options.noise = FLAGS_noise;
+  options.exposure_s = FLAGS_shutter;
+  options.exposure_drift = FLAGS_exposure_drift;
   options.camera = ResolveCamera(FLAGS_camera);
   const SyntheticDataset dataset(options);
   {
@@ -55,7 +61,9 @@ int main(int argc, char** argv) {
       "rgbd_simulate",
       "renders a synthetic RGB-D sequence with exact poses to files",
       "rgbd_simulate --path=pan_tilt --frames=150 --output=pan_tilt",
-      {{"Sequence", {"scene", "path", "frames", "seed", "noise", "camera"}},
+      {{"Sequence",
+        {"scene", "path", "frames", "seed", "noise", "shutter",
+         "exposure_drift", "camera"}},
        {"Output", {"output"}}},
       {{"scene", rgbd_pose::SceneNames()},
        {"path", rgbd_pose::SyntheticPathNames()},

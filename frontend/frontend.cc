@@ -2,7 +2,10 @@
 
 #include "core/input_error.h"
 #include "core/text_file.h"
+#include "frontend/descriptor_frontend.h"
+#include "frontend/descriptor_method.h"
 #include "frontend/klt_frontend.h"
+#include "frontend/patch_frontend.h"
 
 namespace rgbd_pose {
 namespace {
@@ -20,9 +23,18 @@ FrontendEntry EntryOf() {
           }};
 }
 
+template <const DescriptorMethod& (*method)()>
+FrontendEntry EntryOf() {
+  return {method().name,
+          [](const FrontendOptions& options) -> std::unique_ptr<Frontend> {
+            return std::make_unique<DescriptorFrontend>(options, method());
+          }};
+}
+
 // One header and one row here make a frontend.
 const FrontendEntry kFrontends[] = {
-    EntryOf<KltFrontend>(),
+    EntryOf<KltFrontend>(), EntryOf<PatchFrontend>(), EntryOf<Orb>(),
+    EntryOf<Sift>(),        EntryOf<Akaze>(),
 };
 
 }  // namespace

@@ -6,9 +6,8 @@
 
 namespace rgbd_pose {
 
-// Up to max_corners FAST corners spread over a grid: from each cell the
-// strongest that `accept` takes (a depth is there, say), so that textured
-// places do not crowd out the rest. In the order of the cells.
+// Up to about max_corners FAST corners that `accept` takes, spread over the
+// image as SelectOverGrid does.
 std::vector<cv::Point2f> DetectGridCorners(
     const cv::Mat& gray, int max_corners,
     const std::function<bool(const cv::Point2f&)>& accept);

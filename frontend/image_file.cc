@@ -5,6 +5,9 @@
 
 #include "core/input_error.h"
 #include "core/text_file.h"
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+#include "frontend/png_decoder.h"
+#endif
 
 namespace rgbd_pose {
 namespace {
@@ -22,15 +25,33 @@ bool IsCutOffJpeg(std::string_view bytes) {
          bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
 }
 
+// What there is a quicker way for; empty: leave it to OpenCV.
+cv::Mat DecodeQuickly([[maybe_unused]] std::string_view bytes,
+                      [[maybe_unused]] int flags) {
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+  if (flags == cv::IMREAD_GRAYSCALE) return DecodePngToGray(bytes);
+  if (flags == cv::IMREAD_UNCHANGED) return DecodePngDepth(bytes);
+#endif
+  return cv::Mat();
+}
+
+bool IsDamaged(std::string_view bytes) {
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+  if (IsDamagedPng(bytes)) return true;
+#endif
+  return IsCutOffJpeg(bytes);
+}
+
 }  // namespace
 
 cv::Mat ReadImageFile(const std::string& path, int flags) {
   std::string bytes = ReadTextFile(path);
   if (bytes.empty()) throw InputError(path + ": is empty; copy it again");
-  if (IsCutOffJpeg(bytes)) {
-    throw InputError(path + ": the image is cut off; copy it again");
+  cv::Mat image = DecodeQuickly(bytes, flags);
+  if (!image.empty()) return image;
+  if (IsDamaged(bytes)) {
+    throw InputError(path + ": is damaged or cut off; copy it again");
   }
-  cv::Mat image;
   try {
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1,
                          bytes.data());

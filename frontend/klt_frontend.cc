@@ -3,7 +3,7 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "frontend/grid_corners.h"
-#include "frontend/surface_normal.h"
+#include "frontend/observe.h"
 
 namespace rgbd_pose {
 namespace {
@@ -32,17 +32,6 @@ KltFrontend::KltFrontend(const FrontendOptions& options)
       depth_options_{options.depth_noise, options.min_depth,
                      options.max_depth} {}
 
-Observation KltFrontend::Observe(const Frame& frame,
-                                 const cv::Point2f& pixel) const {
-  const Eigen::Vector2d ideal =
-      options_.camera.Undistort(Eigen::Vector2d(pixel.x, pixel.y));
-  const DepthSample sample =
-      LookUpDepth(frame, pixel.x, pixel.y, depth_options_);
-  return {ideal.x(),    ideal.y(),
-          sample.depth, kSigmaPx,
-          sample.sigma, LookUpNormal(frame, options_.camera, pixel.x, pixel.y)};
-}
-
 void KltFrontend::Prepare(Frame* frame) const {
   cv::buildOpticalFlowPyramid(frame->gray, frame->pyramid, kWindow, kMaxLevel,
                               /*withDerivatives=*/false);
@@ -57,7 +46,8 @@ std::unique_ptr<FeatureSet> KltFrontend::Detect(const Frame& frame) {
         return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
       });
   for (const cv::Point2f& corner : features->corners) {
-    features->observations.push_back(Observe(frame, corner));
+    features->observations.push_back(Observe(
+        frame, options_.camera, corner.x, corner.y, kSigmaPx, depth_options_));
   }
   return features;
 }
@@ -92,7 +82,9 @@ void KltFrontend::Match(const FeatureSet& reference, const Frame& frame,
         !options_.camera.Contains(pixel)) {
       continue;
     }
-    matches->Add(reference, static_cast<int>(i), Observe(frame, tracked_[i]));
+    matches->Add(reference, static_cast<int>(i),
+                 Observe(frame, options_.camera, pixel.x(), pixel.y(), kSigmaPx,
+                         depth_options_));
   }
 }
 

@@ -26,9 +26,6 @@ class KltFrontend final : public Frontend {
              FeatureMatches* matches) override;
 
  private:
-  // The observation of an image point with its depth, undistorted.
-  Observation Observe(const Frame& frame, const cv::Point2f& pixel) const;
-
   FrontendOptions options_;
   DepthLookupOptions depth_options_;
   std::vector<cv::Mat> pyramid_;  // of a frame that has not been prepared

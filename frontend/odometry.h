@@ -3,38 +3,24 @@
 #include <memory>
 #include <string>
 
-#include "core/correspondences.h"
 #include "core/estimator.h"
 #include "core/initial_guess.h"
 #include "core/rigid3.h"
 #include "frontend/frontend.h"
+#include "frontend/keyframes.h"
+#include "frontend/relocaliser.h"
+#include "frontend/tracked_frame.h"
 
 namespace rgbd_pose {
 
-enum class TrackingStatus {
-  kOk,
-  kDegraded,  // a pose, but from few or contradicting matches
-  kLost,      // no pose: the last one is held
-};
-
-// "ok", "degraded", "lost"
-const char* ToString(TrackingStatus status);
-
-// What became of one input frame.
-struct TrackedFrame {
-  int index = 0;
-  double timestamp = 0.0;  // s
-  TrackingStatus status = TrackingStatus::kLost;
-  std::string reason;         // in words; empty if ok
-  Rigid3d world_from_cam;     // the world is the camera of the first frame
-  bool is_reference = false;  // became the reference of the frames that follow
-  int matches = 0;
-  int inliers = 0;
-  int iterations = 0;
-  double sigma = 0.0;        // spread of whitened residuals; ideally 1
-  double track_ms = 0.0;     // all of Track
-  double frontend_ms = 0.0;  // of it: features and matching
-  double solve_ms = 0.0;     // of it: motion estimation
+// What to do with frames whose motion is not found. Whatever it is, every frame
+// is searched for among earlier references, and tracking goes on if it is
+// found.
+enum class LostPolicy {
+  kStop,        // every further frame is lost
+  kHold,        // the last pose is reported until the place is found again
+  kPredict,     // the pose moves on as it moved last
+  kNewSegment,  // as kHold, and after a while a new segment starts
 };
 
 struct OdometryOptions {
@@ -60,38 +46,78 @@ struct OdometryOptions {
   double prior_sigma_rotation = 0.05;     // rad
   double prior_sigma_translation = 0.05;  // m
 
+  LostPolicy on_lost = LostPolicy::kNewSegment;
+
+  // How long (s) the old segment is searched for before a new one starts.
+  double new_segment_after = 1.5;
+
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
 
 // Tracks a camera frame by frame against a reference frame (keyframe), which
-// it changes when the view has changed. Every frame gets a result.
+// it changes when the view has changed, to an earlier one if the view returns.
+// Every frame gets a result.
 class Odometry {
  public:
   Odometry(const OdometryOptions& options, const Camera& camera,
            std::unique_ptr<Frontend> frontend, Estimator estimator);
 
-  TrackedFrame Track(const Frame& frame);
+  // `cur_from_prev_guess`: the motion since the frame before, if something else
+  // tells (wheels, an inertial sensor); tried first, and believed only as far
+  // as the images agree.
+  TrackedFrame Track(const Frame& frame,
+                     const Rigid3d* cur_from_prev_guess = nullptr);
+
+  const Frontend& frontend() const { return *frontend_; }
+
+  // The matches that the last frame was tracked by (prev: its reference) and
+  // what the estimator made of them.
+  const FeatureMatches& last_matches() const { return found_; }
+  const MotionEstimate& last_estimate() const { return estimate_; }
 
  private:
-  // Tries to track from one guess; true if the result is a pose.
-  bool TryGuess(const Frame& frame, const Rigid3d& cur_from_ref_guess,
-                TrackedFrame* result);
+  void Start(const Frame& frame, TrackedFrame* result);
+  bool Follow(const Frame& frame, const Rigid3d* cur_from_prev_guess,
+              TrackedFrame* result);
+  bool Relocalise(const Frame& frame, TrackedFrame* result);
+  void Lose(const Frame& frame, TrackedFrame* result);
+
+  // Tries to track against a reference from one guess; true if the result,
+  // in estimate_, is a pose.
+  bool Try(const Frame& frame, const Keyframe& reference,
+           const Rigid3d& cur_from_ref_guess, TrackedFrame* result);
   // Fills estimate_ from found_.
   void Estimate(const Rigid3d& cur_from_ref_guess);
-  void TakeReference(const Frame& frame, TrackedFrame* result);
-  bool NeedsNewReference(int inliers) const;
+  // What follows from a frame tracked against reference_ as in estimate_.
+  void Accept(const Frame& frame, TrackedFrame* result);
+  void ChangeReference(const Frame& frame, TrackedFrame* result);
+  bool NeedsNewReference() const;
+  // Goes on from an earlier reference instead; false, and nothing has changed,
+  // if it does not serve.
+  bool ReturnTo(const Frame& frame, Keyframe* earlier,
+                const Rigid3d& cur_from_earlier_guess, TrackedFrame* result);
+  // False, and nothing has changed, if the frame has too few features.
+  bool TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
+                     TrackedFrame* result);
   double MeanInlierFlowPx() const;
+  Rigid3d WorldFromCam() const;
 
   OdometryOptions options_;
   std::unique_ptr<Frontend> frontend_;
   Estimator estimator_;
+  Keyframes keyframes_;
+  Relocaliser relocaliser_;
   FeatureMatches found_;
-  std::unique_ptr<FeatureSet> reference_;  // null: none yet
   MotionEstimate estimate_;
-  Rigid3d world_from_ref_;
-  Rigid3d cur_from_ref_;   // of the last frame
-  Rigid3d cur_from_prev_;  // between the last two frames
+  FeatureMatches other_found_;  // see ReturnTo
+  MotionEstimate other_estimate_;
+  Keyframe* reference_ = nullptr;  // null: none yet
+  Rigid3d cur_from_ref_;           // of the last frame
+  Rigid3d cur_from_prev_;          // between the last two frames
+  int segment_ = 0;
+  double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
+  bool is_lost_ = false;
 };
 
 }  // namespace rgbd_pose

@@ -4,6 +4,7 @@
 #include <opencv2/imgproc.hpp>
 
 #include "core/input_error.h"
+#include "frontend/synthetic_exposure.h"
 #include "frontend/synthetic_hash.h"
 #include "frontend/synthetic_sensor.h"
 
@@ -28,6 +29,15 @@ const SyntheticOptions& Checked(const SyntheticOptions& options) {
   if (!problem.empty()) {
     throw InputError("camera of the synthetic sequence: " + problem);
   }
+  if (!(options.exposure_s >= 0.0 &&
+        options.exposure_s <= 1.0 / options.rate_hz)) {
+    throw InputError("the shutter time of a synthetic sequence must be in 0.." +
+                     std::to_string(1.0 / options.rate_hz) +
+                     " s, the time from frame to frame");
+  }
+  if (!(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0)) {
+    throw InputError("exposure_drift of a synthetic sequence must be in 0..1");
+  }
   return options;
 }
 
@@ -40,16 +50,26 @@ SyntheticDataset::SyntheticDataset(const SyntheticOptions& options)
 }
 
 double SyntheticDataset::timestamp(int index) const {
-  return std::round((kFirstStamp + index / options_.rate_hz) * 1e6) / 1e6;
+  return std::round((kFirstStamp + Time(index)) * 1e6) / 1e6;
+}
+
+Rigid3d SyntheticDataset::WorldFromCamAt(double t) const {
+  const Rigid3d world_from_path = path_(t, Time(options_.frames - 1));
+  return options_.path_from_cam.has_value()
+             ? world_from_path * *options_.path_from_cam
+             : world_from_path;
 }
 
 Rigid3d SyntheticDataset::WorldFromCam(int index) const {
-  return path_(index / options_.rate_hz,
-               (options_.frames - 1) / options_.rate_hz);
+  return WorldFromCamAt(Time(index));
 }
 
 RgbdImages SyntheticDataset::ReadImages(int index) const {
-  Rendering rendering = renderer_.Render(WorldFromCam(index));
+  const double t = Time(index);
+  Rendering rendering =
+      Expose(renderer_, options_.camera.camera.fx,
+             [this](double time) { return WorldFromCamAt(time); }, t,
+             {options_.exposure_s, DriftingGain(options_.exposure_drift, t)});
   if (options_.noise) {
     // One key an image; images take less than 2^40 numbers after theirs.
     const uint64_t sequence = HashCounter(options_.seed);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "core/camera.h"
@@ -19,6 +20,16 @@ struct SyntheticOptions {
   double rate_hz = 30.0;  // frames a second
   bool noise = true;      // of a real sensor, see synthetic_sensor.h
   RgbdCamera camera;      // may have distortion
+
+  // How long the shutter is open (s), from half of it before the pose of a
+  // frame to half of it after; at most the time from frame to frame.
+  double exposure_s = 0.0;
+
+  // Swing of the automatic exposure, 0..1: see DriftingGain.
+  double exposure_drift = 0.0;
+
+  // How the camera is mounted on what moves along the path, if not straight.
+  std::optional<Rigid3d> path_from_cam;
 };
 
 // The images of one time, as cameras give them.
@@ -47,12 +58,17 @@ class SyntheticDataset : public Dataset {
   // Colour of a frame, CV_8UC3.
   cv::Mat ReadColor(int index) const { return ReadImages(index).color; }
 
+  // The pose in the middle of the exposure.
   Rigid3d WorldFromCam(int index) const;
 
   // The exact pose of every frame.
   Trajectory ground_truth() const;
 
  private:
+  // Seconds since the first frame.
+  double Time(int index) const { return index / options_.rate_hz; }
+  Rigid3d WorldFromCamAt(double t) const;
+
   SyntheticOptions options_;
   SyntheticPath path_;
   Renderer renderer_;

@@ -94,14 +94,56 @@ Rigid3d Circle(double t, double /*duration*/) {
       {0.8, 0.25, 0.90});
 }
 
+struct Wave {
+  double amplitude;
+  double hz;
+  double phase;  // rad
+};
+
+template <size_t N>
+double Sum(const Wave (&waves)[N], double t) {
+  double sum = 0.0;
+  for (const Wave& wave : waves) {
+    sum += wave.amplitude * std::sin(2.0 * M_PI * wave.hz * t + wave.phase);
+  }
+  return sum;
+}
+
+// Frequencies are whole hundredths, so that it repeats after 100 s and its
+// peaks over that time are its peaks for ever; phases are such that the first
+// five seconds come close to them.
+Rigid3d Handheld(double t, double /*duration*/) {
+  // The arm, the hand, its tremor; m, then degrees.
+  constexpr Wave kX[] = {
+      {0.35, 0.19, 4.3}, {0.044, 0.61, 1.6}, {0.0035, 2.3, 1.0}};
+  constexpr Wave kY[] = {
+      {0.37, 0.23, 5.5}, {0.040, 0.71, 3.3}, {0.0035, 2.9, 5.9}};
+  constexpr Wave kZ[] = {
+      {0.12, 0.37, 1.2}, {0.026, 0.89, 4.2}, {0.0035, 2.6, 1.7}};
+  constexpr Wave kYaw[] = {
+      {17.5, 0.41, 3.1}, {4.0, 1.13, 5.4}, {0.25, 3.1, 4.9}};
+  constexpr Wave kPitch[] = {
+      {5.6, 0.53, 3.4}, {2.4, 1.27, 4.8}, {0.25, 2.7, 4.7}};
+  constexpr Wave kRoll[] = {
+      {4.8, 0.47, 0.7}, {2.0, 1.19, 0.9}, {0.25, 3.3, 2.8}};
+  Rigid3d world_from_hand = LookAt({-1.10, -0.40, 1.40}, {0.7, 0.15, 0.95});
+  world_from_hand.translation += Vector3d(Sum(kX, t), Sum(kY, t), Sum(kZ, t));
+  return world_from_hand * Turn(Sum(kYaw, t) * kDegree, Vector3d::UnitY()) *
+         Turn(Sum(kPitch, t) * kDegree, Vector3d::UnitX()) *
+         Turn(Sum(kRoll, t) * kDegree, Vector3d::UnitZ());
+}
+
 Rigid3d Still(double /*t*/, double duration) { return Xyz(0.0, duration); }
 
 struct NamedPath {
   const char* name;
   SyntheticPath path;
 };
-constexpr NamedPath kPaths[] = {
-    {"xyz", Xyz}, {"pan_tilt", PanTilt}, {"circle", Circle}, {"still", Still}};
+constexpr NamedPath kPaths[] = {{"xyz", Xyz},
+                                {"pan_tilt", PanTilt},
+                                {"circle", Circle},
+                                {"still", Still},
+                                {"handheld", Handheld}};
 
 }  // namespace
 

@@ -161,8 +161,7 @@ long PeakBytesOfEstimate(int count) {
 }
 
 TEST(AllocationTest, MemoryIsLinearInTheNumberOfMatches) {
-  // docs/costs.md states 130 bytes a match: 12 columns, norm, weight and place;
-  // vectors that grow by doubling may hold twice as much of the last.
+  // As docs/benchmarks.md states: 12 columns of 8 bytes, norm, weight and place.
   constexpr long kMaxBytesAMatch = 160;
   // What does not grow with the matches: options, Ceres.
   constexpr long kFixedBytes = 100000;

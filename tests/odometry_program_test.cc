@@ -18,6 +18,7 @@ namespace rgbd_pose {
 namespace {
 
 using testing::HasSubstr;
+using testing::Not;
 
 const std::string kSimulate = RGBD_SIMULATE;
 const std::string kOdometry = RGBD_ODOMETRY;
@@ -52,7 +53,7 @@ std::string WithoutTimes(const std::string& csv) {
   std::istringstream lines(csv);
   std::string line, result;
   while (std::getline(lines, line)) {
-    for (int i = 0; i < 3; ++i) line.erase(line.rfind(','));
+    for (int i = 0; i < 4; ++i) line.erase(line.rfind(','));
     result += line + "\n";
   }
   return result;
@@ -62,17 +63,27 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
   const RunResult run = Run(Call("run"));
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, HasSubstr("100.0 % tracked"));
+  EXPECT_THAT(run.out, HasSubstr("frames/s with decoding"));
   EXPECT_THAT(run.out, HasSubstr("ATE, rigid alignment"));
   const std::string csv = ReadTextFile(folder_ / "run/frames.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "timestamp,status,reason,matches,inliers,iterations,sigma,"
-            "track_ms,frontend_ms,solve_ms");
+            "decode_ms,track_ms,frontend_ms,solve_ms");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kFrames);
   EXPECT_EQ(ReadTrajectory(folder_ / "run/trajectory.txt").size(),
             static_cast<size_t>(kFrames));
   const auto metrics =
       nlohmann::json::parse(ReadTextFile(folder_ / "run/metrics.json"));
   EXPECT_EQ(metrics.at("run").at("frames"), kFrames);
+  EXPECT_GT(metrics.at("run").at("decode_ms_median"), 0.0);
+  const double seconds = metrics.at("run").at("wall_seconds");
+  EXPECT_GT(seconds, 0.0);
+  // Both are written with all their digits.
+  EXPECT_NEAR(metrics.at("run").at("frames_per_second"), kFrames / seconds,
+              1e-6);
+  // One frame in memory is 1.5 MB with its pyramid; six hundred make a leak.
+  EXPECT_GT(metrics.at("peak_rss_mb"), 1.0);
+  EXPECT_LT(metrics.at("peak_rss_mb"), 500.0);
   EXPECT_LT(metrics.at("evaluation").at("ate").at("position_m").at("rmse"),
             0.005);
 }
@@ -98,9 +109,35 @@ TEST_F(OdometryProgramTest, RepeatsARunFromItsFlagFile) {
 
 TEST_F(OdometryProgramTest, ThreadsDoNotChangeTheResult) {
   ASSERT_EQ(Run(Call("one") + " --threads=1").exit_code, 0);
-  ASSERT_EQ(Run(Call("two") + " --threads=2").exit_code, 0);
-  EXPECT_EQ(ReadTextFile(folder_ / "one/trajectory.txt"),
-            ReadTextFile(folder_ / "two/trajectory.txt"));
+  for (const std::string threads : {"0", "2", "5"}) {
+    ASSERT_EQ(Run(Call("many") + " --threads=" + threads).exit_code, 0);
+    EXPECT_EQ(ReadTextFile(folder_ / "one/trajectory.txt"),
+              ReadTextFile(folder_ / "many/trajectory.txt"));
+    EXPECT_EQ(WithoutTimes(ReadTextFile(folder_ / "one/frames.csv")),
+              WithoutTimes(ReadTextFile(folder_ / "many/frames.csv")));
+  }
+}
+
+TEST_F(OdometryProgramTest, ValidatesWithoutTracking) {
+  const std::string call = kOdometry +
+                           " --validate_only --dataset=" + Sequence() +
+                           " --camera=" + Sequence() + "/camera.yaml";
+  const RunResult good = Run(call);
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_THAT(good.out, HasSubstr(std::to_string(kFrames) + ", all readable"));
+  EXPECT_THAT(good.out, HasSubstr("frames/s"));
+
+  // The first of two broken images is the one that is named.
+  const std::string images[] = {"depth/1000.066667.png", "rgb/1000.100000.png"};
+  for (const std::string& image : images) {
+    ASSERT_TRUE(std::filesystem::exists(Sequence() + "/" + image)) << image;
+    std::filesystem::resize_file(Sequence() + "/" + image, 1000);
+  }
+  const RunResult bad = Run(call + " --threads=3");
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_EQ(bad.out, "");
+  EXPECT_THAT(bad.err, HasSubstr(images[0]));
+  EXPECT_THAT(bad.err, Not(HasSubstr(images[1])));
 }
 
 // Bad input: exit 2, one line on stderr, nothing on stdout, nothing written.
@@ -135,6 +172,8 @@ TEST_F(OdometryProgramTest, BadInputLeavesNothingBehind) {
        "unknown frontend 'magic'"},
       {" --dataset=" + Sequence() + camera + output + " --depth_scale=-1", 2,
        "--depth_scale"},
+      {" --dataset=" + Sequence() + camera + output + " --threads=-1", 2,
+       "--threads"},
       {" --dataset=" + Sequence() + camera + output +
            " --groundtruth=" + missing,
        2, missing},

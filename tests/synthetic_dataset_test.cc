@@ -169,7 +169,41 @@ TEST_P(SyntheticPathImages, HaveDepthInRange) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Paths, SyntheticPathImages,
-                         testing::Values("xyz", "pan_tilt", "circle"));
+                         testing::Values("xyz", "pan_tilt", "circle",
+                                         "handheld"));
+
+// The path repeats after 100 s, far beyond the frames looked at above.
+TEST(SyntheticDatasetTest, HandheldAlwaysSeesTextureAndDepth) {
+  SyntheticOptions options = PathOptions("handheld");
+  options.frames = 3000;
+  const SyntheticDataset dataset(options);
+  for (int index = 0; index < options.frames; index += 187) {
+    const Frame frame = dataset.Read(index);
+    EXPECT_GT(cv::countNonZero(frame.depth), 0.9 * 640 * 480) << index;
+    std::vector<cv::Point2f> corners;
+    cv::goodFeaturesToTrack(frame.gray, corners, 2000, 0.01, 8);
+    EXPECT_GE(corners.size(), 500u) << index;
+  }
+}
+
+TEST(SyntheticDatasetTest, ExposureChangesColourAlone) {
+  SyntheticOptions options = PathOptions("handheld");
+  options.noise = false;
+  const SyntheticDataset plain(options);
+  options.exposure_s = 0.01;
+  options.exposure_drift = 0.3;
+  const SyntheticDataset exposed(options);
+  constexpr int kBrightest = 30;  // a quarter of the drift's period
+  const RgbdImages before = plain.ReadImages(kBrightest);
+  const RgbdImages after = exposed.ReadImages(kBrightest);
+  EXPECT_EQ(Difference(before.depth, after.depth), 0.0);
+  EXPECT_EQ(plain.WorldFromCam(kBrightest).translation,
+            exposed.WorldFromCam(kBrightest).translation);
+  // exp(0.3) = 1.35, less what saturates.
+  const double gain = cv::mean(after.color)[1] / cv::mean(before.color)[1];
+  EXPECT_GT(gain, 1.25);
+  EXPECT_LT(gain, 1.36);
+}
 
 TEST(SyntheticDatasetTest, RefusesOptionsWithoutSense) {
   SyntheticOptions options;
@@ -187,6 +221,16 @@ TEST(SyntheticDatasetTest, RefusesOptionsWithoutSense) {
   options = {};
   options.camera.depth_scale = 0.0;
   EXPECT_THROW(SyntheticDataset{options}, InputError);
+  for (const double bad : {-0.001, 0.034, std::nan("")}) {
+    options = {};
+    options.exposure_s = bad;
+    EXPECT_THROW(SyntheticDataset{options}, InputError) << bad;
+  }
+  for (const double bad : {-0.1, 1.1, std::nan("")}) {
+    options = {};
+    options.exposure_drift = bad;
+    EXPECT_THROW(SyntheticDataset{options}, InputError) << bad;
+  }
 }
 
 }  // namespace

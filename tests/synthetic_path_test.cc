@@ -5,8 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "core/input_error.h"
+#include "frontend/synthetic_scene.h"
 
 namespace rgbd_pose {
 namespace {
@@ -95,6 +97,60 @@ TEST(SyntheticPathTest, StillIsStill) {
   EXPECT_EQ(extent.max_turn_rate, 0.0);
 }
 
+struct Peaks {
+  double speed = 0.0;                                     // m/s
+  double turn_rate = 0.0;                                 // rad/s
+  double change_of_speed = 0.0;                           // m/s^2
+  double clearance = std::numeric_limits<double>::max();  // m
+};
+
+// Distance of a point from a rectangle.
+double Distance(const SceneFace& face, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d from_origin = point - face.origin;
+  const double u = face.u_axis.dot(from_origin);
+  const double v = face.v_axis.dot(from_origin);
+  return std::hypot(u - std::clamp(u, 0.0, face.width),
+                    v - std::clamp(v, 0.0, face.height),
+                    face.normal.dot(from_origin));
+}
+
+// By differences over a tenth of a millisecond, every 5 ms.
+Peaks FindPeaks(const std::string& name, double seconds) {
+  const SyntheticPath path = FindSyntheticPath(name);
+  const Scene room = MakeScene("room", 1);
+  constexpr double kStep = 1e-4;  // s
+  Peaks peaks;
+  for (double t = 0.0; t < seconds; t += 0.005) {
+    const Rigid3d before = path(t - kStep, seconds);
+    const Rigid3d now = path(t, seconds);
+    const Rigid3d after = path(t + kStep, seconds);
+    const Eigen::Vector3d way = after.translation - before.translation;
+    const double turn = (before.Inverse() * after).Angle();
+    const Eigen::Vector3d bend =
+        after.translation - 2.0 * now.translation + before.translation;
+    peaks.speed = std::max(peaks.speed, way.norm() / (2.0 * kStep));
+    peaks.turn_rate = std::max(peaks.turn_rate, turn / (2.0 * kStep));
+    peaks.change_of_speed =
+        std::max(peaks.change_of_speed, bend.norm() / (kStep * kStep));
+    for (const SceneFace& face : room.faces) {
+      peaks.clearance =
+          std::min(peaks.clearance, Distance(face, now.translation));
+    }
+  }
+  return peaks;
+}
+
+TEST(SyntheticPathTest, HandheldIsFastButKeepsItsLimits) {
+  const Peaks always = FindPeaks("handheld", 100.0);  // then it repeats
+  EXPECT_LE(always.speed, 1.0);
+  EXPECT_LE(always.turn_rate, 90.0 * kDegree);
+  EXPECT_GE(always.clearance, 0.6);
+  EXPECT_LE(always.change_of_speed, 10.0);  // as an arm can; no jerks
+  const Peaks default_length = FindPeaks("handheld", 149 / kRate);
+  EXPECT_GE(default_length.speed, 0.95);
+  EXPECT_GE(default_length.turn_rate, 85.0 * kDegree);
+}
+
 TEST(SyntheticPathTest, UnknownNameListsTheNames) {
   try {
     FindSyntheticPath("spiral");
@@ -102,7 +158,7 @@ TEST(SyntheticPathTest, UnknownNameListsTheNames) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("spiral"));
     EXPECT_THAT(error.what(),
-                testing::HasSubstr("xyz, pan_tilt, circle, still"));
+                testing::HasSubstr("xyz, pan_tilt, circle, still, handheld"));
   }
 }
 

@@ -1,0 +1,92 @@
+#include "apps/run_summary.h"
+
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cstdio>
+
+namespace rgbd_pose {
+namespace {
+
+double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0.0;
+  const size_t rank = std::min<size_t>(
+      values.size() - 1, static_cast<size_t>(share * values.size()));
+  std::nth_element(values.begin(), values.begin() + rank, values.end());
+  return values[rank];
+}
+
+}  // namespace
+
+double Median(const std::vector<double>& values) {
+  return Quantile(values, 0.5);
+}
+
+RunSummary Summarise(const std::vector<TrackedFrame>& frames, int threads,
+                     double wall_seconds) {
+  RunSummary summary;
+  summary.threads = threads;
+  summary.wall_seconds = wall_seconds;
+  std::vector<double> decode, track, frontend, solve;
+  for (const TrackedFrame& frame : frames) {
+    ++summary.frames;
+    summary.ok += frame.status == TrackingStatus::kOk;
+    summary.degraded += frame.status == TrackingStatus::kDegraded;
+    summary.lost += frame.status == TrackingStatus::kLost;
+    summary.references += frame.is_reference;
+    decode.push_back(frame.decode_ms);
+    track.push_back(frame.track_ms);
+    frontend.push_back(frame.match_ms);
+    solve.push_back(frame.solve_ms);
+  }
+  summary.median_decode_ms = Median(decode);
+  summary.median_track_ms = Median(track);
+  summary.p99_track_ms = Quantile(track, 0.99);
+  summary.median_frontend_ms = Median(frontend);
+  summary.median_solve_ms = Median(solve);
+  return summary;
+}
+
+std::string FormatSummary(const RunSummary& summary) {
+  char text[1024];
+  std::snprintf(
+      text, sizeof(text),
+      "frames      %d, %.1f %% tracked (%d ok, %d degraded, %d lost)\n"
+      "references  %d\n"
+      "time        %.2f ms per frame median, %.2f ms 99th percentile, without "
+      "decoding\n"
+      "            of it %.2f ms matching, %.3f ms pose solve (medians)\n"
+      "throughput  %.1f frames/s with decoding (%.2f ms per frame median), %d "
+      "thread(s)\n",
+      summary.frames, 100.0 * summary.TrackedShare(), summary.ok,
+      summary.degraded, summary.lost, summary.references,
+      summary.median_track_ms, summary.p99_track_ms, summary.median_frontend_ms,
+      summary.median_solve_ms, summary.FramesPerSecond(),
+      summary.median_decode_ms, summary.threads);
+  return text;
+}
+
+nlohmann::json SummaryToJson(const RunSummary& summary) {
+  return {{"frames", summary.frames},
+          {"ok", summary.ok},
+          {"degraded", summary.degraded},
+          {"lost", summary.lost},
+          {"references", summary.references},
+          {"tracked_share", summary.TrackedShare()},
+          {"decode_ms_median", summary.median_decode_ms},
+          {"track_ms_median", summary.median_track_ms},
+          {"track_ms_p99", summary.p99_track_ms},
+          {"frontend_ms_median", summary.median_frontend_ms},
+          {"solve_ms_median", summary.median_solve_ms},
+          {"threads", summary.threads},
+          {"wall_seconds", summary.wall_seconds},
+          {"frames_per_second", summary.FramesPerSecond()}};
+}
+
+double PeakMemoryMb() {
+  rusage usage = {};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss * 1024 / 1e6;  // it counts KiB
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+namespace rgbd_pose {
+
+// An image (CV_8UC1) and `levels - 1` more, each half as wide and high as the
+// one before, of the means of 2 x 2 pixels. Level 0 shares the memory of
+// `gray`. Fewer levels if the image becomes smaller than 8 pixels.
+void BuildImagePyramid(const cv::Mat& gray, int levels,
+                       std::vector<cv::Mat>* pyramid);
+
+// A coordinate (px) of level 0 in another level: the centre of the first 2 x 2
+// pixels, at 0.5, becomes 0.
+inline float ToLevel(float coordinate, int level) {
+  return (coordinate + 0.5F) / static_cast<float>(1 << level) - 0.5F;
+}
+inline float FromLevel(float coordinate, int level) {
+  return (coordinate + 0.5F) * static_cast<float>(1 << level) - 0.5F;
+}
+
+}  // namespace rgbd_pose

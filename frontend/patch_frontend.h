@@ -1,0 +1,38 @@
+#pragma once
+
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "frontend/depth_lookup.h"
+#include "frontend/frontend.h"
+
+namespace rgbd_pose {
+
+// Corners of the reference frame, each found again by aligning small patches
+// coarse to fine (patch_alignment.h), whatever the exposure. First both frames
+// are aligned as a whole (coarse_alignment.h), so that every patch starts
+// near, from a place that the images confirm; and patches are stretched and
+// turned as depth, surface normal and motion have it.
+class PatchFrontend final : public Frontend {
+ public:
+  static constexpr char kName[] = "patch";
+
+  explicit PatchFrontend(const FrontendOptions& options);
+
+  std::string_view name() const override { return kName; }
+  void Prepare(Frame* frame) const override;
+  std::unique_ptr<FeatureSet> Detect(const Frame& frame) override;
+  void Match(const FeatureSet& reference, const Frame& frame,
+             const Rigid3d& cur_from_ref_guess,
+             FeatureMatches* matches) override;
+
+ private:
+  // Of a frame, whether it has been prepared or not.
+  const std::vector<cv::Mat>& PyramidOf(const Frame& frame);
+
+  FrontendOptions options_;
+  DepthLookupOptions depth_options_;
+  std::vector<cv::Mat> pyramid_;  // of a frame that has not been prepared
+};
+
+}  // namespace rgbd_pose

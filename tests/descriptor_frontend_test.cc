@@ -1,0 +1,194 @@
+#include "frontend/descriptor_frontend.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "costs/cost_factory.h"
+#include "frontend/frontend.h"
+#include "frontend/odometry.h"
+#include "frontend/synthetic_dataset.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Half a second apart on path xyz: about 0.1 m and 20 px of flow.
+constexpr int kPrev = 0;
+constexpr int kCur = 15;
+
+// A match further than this from the truth shows another place: five times the
+// noise of the coarsest keypoints.
+constexpr double kWrongPx = 8.0;
+
+class DescriptorFrontendTest : public ::testing::TestWithParam<const char*> {
+ protected:
+  DescriptorFrontendTest() : dataset_(Options()) {
+    FrontendOptions options;
+    options.camera = dataset_.camera().camera;
+    frontend_ = MakeFrontend(GetParam(), options);
+    cur_from_prev_ =
+        dataset_.WorldFromCam(kCur).Inverse() * dataset_.WorldFromCam(kPrev);
+  }
+
+  static SyntheticOptions Options() {
+    SyntheticOptions options;
+    options.frames = 150;
+    return options;
+  }
+
+  FeatureMatches MatchFrom(const Frame& prev, const Frame& cur,
+                           const Rigid3d& guess) {
+    const std::unique_ptr<FeatureSet> reference = frontend_->Detect(prev);
+    FeatureMatches found{Correspondences(dataset_.camera().camera), {}};
+    frontend_->Match(*reference, cur, guess, &found);
+    return found;
+  }
+
+  // How far (px) each match is from where the true motion takes its point.
+  std::vector<double> Errors(const Correspondences& matches) const {
+    std::vector<double> errors;
+    for (size_t i = 0; i < matches.size(); ++i) {
+      const Observation cur = matches.cur()[i];
+      const Eigen::Vector2d expected = dataset_.camera().camera.Project(
+          cur_from_prev_ * matches.Point(matches.prev()[i]));
+      errors.push_back((expected - Eigen::Vector2d(cur.u, cur.v)).norm());
+    }
+    std::sort(errors.begin(), errors.end());
+    return errors;
+  }
+
+  void ExpectMostlyRight(const FeatureMatches& found) const {
+    // Enough for a good pose: more than twice what odometry calls ok.
+    ASSERT_GE(found.matches.size(), 100u);
+    const std::vector<double> errors = Errors(found.matches);
+    EXPECT_LT(errors[errors.size() / 2], 1.0);
+    const auto wrong =
+        errors.end() - std::lower_bound(errors.begin(), errors.end(), kWrongPx);
+    // An M-estimator bears several times as many.
+    EXPECT_LE(wrong, 0.1 * static_cast<double>(errors.size()));
+  }
+
+  SyntheticDataset dataset_;
+  std::unique_ptr<Frontend> frontend_;
+  Rigid3d cur_from_prev_;
+};
+
+TEST_P(DescriptorFrontendTest, MatchesAreWhereTheTruthHasThem) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  const FeatureMatches found = MatchFrom(prev, cur, Rigid3d());
+  ExpectMostlyRight(found);
+  EXPECT_EQ(found.features.size(), found.matches.size());
+  // The same feature in the frame it comes from: where it was, to the bit.
+  const std::unique_ptr<FeatureSet> reference = frontend_->Detect(prev);
+  FeatureMatches itself{Correspondences(dataset_.camera().camera), {}};
+  frontend_->Match(*reference, prev, Rigid3d(), &itself);
+  for (size_t i = 0; i < itself.matches.size(); ++i) {
+    EXPECT_EQ(itself.matches.prev()[i].u, itself.matches.cur()[i].u);
+    EXPECT_EQ(itself.matches.prev()[i].depth, itself.matches.cur()[i].depth);
+  }
+}
+
+TEST_P(DescriptorFrontendTest, FeaturesAreSpreadOverTheImage) {
+  const Frame frame = dataset_.Read(kPrev);
+  const std::unique_ptr<FeatureSet> features = frontend_->Detect(frame);
+  ASSERT_GE(features->observations.size(), 200u);
+  int quadrants[2][2] = {};
+  for (const Observation& o : features->observations) {
+    EXPECT_GT(o.depth, 0.0);
+    ++quadrants[o.v > frame.gray.rows / 2.0][o.u > frame.gray.cols / 2.0];
+  }
+  for (const auto& row : quadrants) {
+    for (const int count : row) {
+      // 40 % of an even share.
+      EXPECT_GE(count, static_cast<int>(features->observations.size()) / 10);
+    }
+  }
+}
+
+TEST_P(DescriptorFrontendTest, CoarserKeypointsAreLessExact) {
+  const std::unique_ptr<FeatureSet> features =
+      frontend_->Detect(dataset_.Read(kPrev));
+  double least = 1e9;
+  double most = 0.0;
+  for (const Observation& o : features->observations) {
+    least = std::min(least, o.sigma_px);
+    most = std::max(most, o.sigma_px);
+  }
+  EXPECT_GE(least, 0.2);
+  EXPECT_LE(least, 1.0);
+  EXPECT_GE(most, 2.0 * least);
+}
+
+TEST_P(DescriptorFrontendTest, TheSameFramesGiveTheSameMatches) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  const FeatureMatches once = MatchFrom(prev, cur, Rigid3d());
+  // From a copy nothing is known ahead.
+  Frame copy = cur;
+  copy.gray = cur.gray.clone();
+  const FeatureMatches twice = MatchFrom(prev, copy, Rigid3d());
+  ASSERT_EQ(once.features, twice.features);
+  for (size_t i = 0; i < once.matches.size(); ++i) {
+    EXPECT_EQ(once.matches.cur()[i].u, twice.matches.cur()[i].u);
+    EXPECT_EQ(once.matches.cur()[i].v, twice.matches.cur()[i].v);
+  }
+}
+
+TEST_P(DescriptorFrontendTest, AWrongGuessStillGivesMatches) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  const Rigid3d turned(
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY())),
+      Eigen::Vector3d(0.0, 0.3, 0.0));
+  ExpectMostlyRight(MatchFrom(prev, cur, turned));
+  const Rigid3d behind(
+      Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY())),
+      Eigen::Vector3d::Zero());
+  ExpectMostlyRight(MatchFrom(prev, cur, behind));
+}
+
+TEST_P(DescriptorFrontendTest, ABlackFrameGivesNothing) {
+  const Frame good = dataset_.Read(kPrev);
+  Frame black = good;
+  black.gray = cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0));
+  EXPECT_EQ(MatchFrom(good, black, Rigid3d()).matches.size(), 0u);
+  EXPECT_EQ(MatchFrom(black, good, Rigid3d()).matches.size(), 0u);
+  EXPECT_EQ(MatchFrom(black, black, Rigid3d()).matches.size(), 0u);
+  EXPECT_TRUE(frontend_->Detect(black)->observations.empty());
+  Frame blind = good;
+  blind.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
+  EXPECT_TRUE(frontend_->Detect(blind)->observations.empty());
+}
+
+TEST_P(DescriptorFrontendTest, TracksAlongItsAxes) {
+  Odometry odometry(OdometryOptions(), dataset_.camera().camera,
+                    std::move(frontend_),
+                    Estimator(EstimatorOptions(),
+                              MakeRobustCosts("bidirectional_point", "tukey")));
+  Rigid3d end;
+  for (int i = 0; i < 20; ++i) {
+    const TrackedFrame result = odometry.Track(dataset_.Read(i));
+    EXPECT_EQ(result.status, TrackingStatus::kOk) << i << ": " << result.reason;
+    end = result.world_from_cam;
+  }
+  const Rigid3d truth =
+      dataset_.WorldFromCam(0).Inverse() * dataset_.WorldFromCam(19);
+  ASSERT_GT(truth.translation.norm(), 0.05) << "the path is vacuous";
+  // The noise of a pose is about 2 mm.
+  EXPECT_LE((end.translation - truth.translation).norm(), 0.01);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, DescriptorFrontendTest,
+                         ::testing::Values("orb", "sift", "akaze"),
+                         [](const auto& info) {
+                           return std::string(info.param);
+                         });
+
+}  // namespace
+}  // namespace rgbd_pose
