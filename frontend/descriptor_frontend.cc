@@ -1,6 +1,5 @@
 #include "frontend/descriptor_frontend.h"
 
-#include <algorithm>
 #include <limits>
 #include <utility>
 

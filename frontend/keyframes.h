@@ -5,6 +5,7 @@
 
 #include "core/camera.h"
 #include "core/rigid3.h"
+#include "frontend/feature_trust.h"
 #include "frontend/frontend.h"
 
 namespace rgbd_pose {
@@ -15,6 +16,7 @@ struct Keyframe {
   int segment = 0;  // see TrackedFrame
   Rigid3d world_from_cam;
   std::unique_ptr<FeatureSet> features;
+  FeatureTrust trust;
 };
 
 // The latest keyframes, for when the view returns to one of them. Bounded: the

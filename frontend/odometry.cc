@@ -31,6 +31,10 @@ class StageTimer {
 constexpr double kMinReturnShare = 0.7;
 constexpr double kMaxReturnFlow = 0.5;
 
+// Of a new reference's features at least so many have a say at once: where most
+// are doubted the doubt itself is in doubt.
+constexpr double kMinTrustedShare = 0.3;
+
 std::string OnlyInliers(int inliers) {
   return "only " + std::to_string(inliers) + " inliers";
 }
@@ -60,6 +64,7 @@ Odometry::Odometry(const OdometryOptions& options, const Camera& camera,
       keyframes_(camera),
       relocaliser_(camera),
       found_{Correspondences(camera), {}},
+      doubted_(found_),
       other_found_(found_) {}
 
 TrackedFrame Odometry::Track(const Frame& frame,
@@ -162,6 +167,7 @@ bool Odometry::Try(const Frame& frame, const Keyframe& reference,
   {
     const StageTimer timer(&result->match_ms);
     frontend_->Match(*reference.features, frame, cur_from_ref_guess, &found_);
+    reference.trust.Split(&found_, &doubted_);
   }
   Estimate(cur_from_ref_guess);
   const int inliers = estimate_.num_inliers;
@@ -210,13 +216,14 @@ void Odometry::Estimate(const Rigid3d& cur_from_ref_guess) {
 void Odometry::Accept(const Frame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
+  reference_->trust.Learn(doubted_, cur_from_ref_);
   if (NeedsNewReference()) ChangeReference(frame, result);
 }
 
 bool Odometry::NeedsNewReference() const {
   const int inliers = estimate_.num_inliers;
-  return inliers < options_.min_reference_share *
-                       reference_->features->observations.size() ||
+  return inliers <
+             options_.min_reference_share * reference_->trust.num_trusted() ||
          inliers < options_.min_inliers_ok ||
          MeanInlierFlowPx() > options_.max_flow_px;
 }
@@ -258,6 +265,13 @@ bool Odometry::TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
                              TrackedFrame* result) {
   const StageTimer timer(&result->reference_ms);
   std::unique_ptr<FeatureSet> features = frontend_->Detect(frame);
+  // Trust is passed on from reference to reference as long as they are tracked.
+  const bool was_tracked = result->status != TrackingStatus::kLost;
+  const FeatureTrust trust =
+      was_tracked
+          ? FeatureTrust(*reference_->features, found_, estimate_, *features,
+                         kMinTrustedShare * features->observations.size())
+          : FeatureTrust(features->observations.size());
   const size_t count = features->observations.size();
   if (count < static_cast<size_t>(options_.min_inliers)) {
     if (result->status == TrackingStatus::kLost) {
@@ -267,7 +281,7 @@ bool Odometry::TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
     return false;
   }
   reference_ = keyframes_.Add(
-      {frame.index, segment_, world_from_cam, std::move(features)});
+      {frame.index, segment_, world_from_cam, std::move(features), trust});
   relocaliser_.Add(frame, frame.index);
   cur_from_ref_ = Rigid3d();
   result->is_reference = true;

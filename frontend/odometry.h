@@ -110,6 +110,7 @@ class Odometry {
   Relocaliser relocaliser_;
   FeatureMatches found_;
   MotionEstimate estimate_;
+  FeatureMatches doubted_;      // of the last frame, see FeatureTrust
   FeatureMatches other_found_;  // see ReturnTo
   MotionEstimate other_estimate_;
   Keyframe* reference_ = nullptr;  // null: none yet

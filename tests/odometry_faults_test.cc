@@ -235,7 +235,7 @@ TEST(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
   for (int i = 0; i < kFrames; ++i) {
     truth.push_back({dataset.timestamp(i), Rigid3d()});
   }
-  // A frame's own noise, from hundreds of corners of 0.5 px, is a fifth of
+  // A frame's own noise, from hundreds of corners of 0.5 px, is a quarter of
   // this; more would be drift.
   for (const Outcome& outcome : Track(dataset, truth)) {
     EXPECT_TRUE(outcome.ok()) << outcome;

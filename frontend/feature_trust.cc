@@ -1,0 +1,120 @@
+#include "frontend/feature_trust.h"
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+namespace rgbd_pose {
+namespace {
+
+// Frames in which a doubted feature has to agree: what moves at a few
+// centimetres a second has moved by several sigmas after as many.
+constexpr int kAgreements = 3;
+
+// A doubted match agrees if it is so near (px) to where the motion puts it: 3
+// sigmas of 0.7 px.
+constexpr double kMaxErrorPx = 2.0;
+
+// Features fail together within cells of this size (px): some six features of a
+// well textured view.
+constexpr double kCellPx = 64.0;
+
+// One failed feature in a cell is chance.
+constexpr int kMinFailed = 2;
+
+// Where the current camera sees a point of the reference.
+std::optional<Eigen::Vector2d> Project(const Camera& camera,
+                                       const Rigid3d& cur_from_ref,
+                                       const Observation& o) {
+  const Eigen::Vector3d point =
+      cur_from_ref * Eigen::Vector3d((o.u - camera.cx) / camera.fx * o.depth,
+                                     (o.v - camera.cy) / camera.fy * o.depth,
+                                     o.depth);
+  if (o.depth <= 0.0 || point.z() <= 0.0) return std::nullopt;
+  return Eigen::Vector2d(camera.fx * point.x() / point.z() + camera.cx,
+                         camera.fy * point.y() / point.z() + camera.cy);
+}
+
+// Counts of features by cells of the image; those outside count nowhere.
+class CellCounts {
+ public:
+  explicit CellCounts(const Camera& camera)
+      : columns_(static_cast<int>(camera.width / kCellPx) + 1),
+        rows_(static_cast<int>(camera.height / kCellPx) + 1),
+        counts_(columns_ * rows_, 0),
+        spare_(0) {}
+
+  int& At(const Eigen::Vector2d& pixel) {
+    if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0)) return spare_;
+    const int column = static_cast<int>(pixel.x() / kCellPx);
+    const int row = static_cast<int>(pixel.y() / kCellPx);
+    if (column >= columns_ || row >= rows_) return spare_;
+    return counts_[row * columns_ + column];
+  }
+
+ private:
+  int columns_, rows_;
+  std::vector<int> counts_;
+  int spare_;
+};
+
+}  // namespace
+
+FeatureTrust::FeatureTrust(const FeatureSet& last, const FeatureMatches& found,
+                           const MotionEstimate& estimate,
+                           const FeatureSet& fresh, size_t min_trusted)
+    : doubts_(fresh.observations.size(), 0) {
+  const Camera& camera = found.matches.camera();
+  std::vector<bool> agrees(last.observations.size(), false);
+  for (size_t i = 0; i < found.features.size(); ++i) {
+    if (estimate.is_inlier[i]) agrees[found.features[i]] = true;
+  }
+  CellCounts agreed(camera), failed(camera);
+  for (size_t i = 0; i < agrees.size(); ++i) {
+    const auto pixel =
+        Project(camera, estimate.cur_from_prev, last.observations[i]);
+    if (pixel.has_value()) ++(agrees[i] ? agreed : failed).At(*pixel);
+  }
+  for (size_t i = 0; i < doubts_.size(); ++i) {
+    const Observation& o = fresh.observations[i];
+    const int failures = failed.At({o.u, o.v});
+    if (failures >= kMinFailed && failures > agreed.At({o.u, o.v})) {
+      doubts_[i] = kAgreements;
+    }
+  }
+  if (num_trusted() < min_trusted) doubts_.assign(doubts_.size(), 0);
+}
+
+size_t FeatureTrust::num_trusted() const {
+  return std::count(doubts_.begin(), doubts_.end(), 0);
+}
+
+void FeatureTrust::Split(FeatureMatches* found, FeatureMatches* doubted) const {
+  doubted->Clear();
+  if (num_trusted() == doubts_.size()) return;
+  FeatureMatches trusted{Correspondences(found->matches.camera()), {}};
+  for (size_t i = 0; i < found->features.size(); ++i) {
+    const int feature = found->features[i];
+    FeatureMatches& part = doubts_[feature] == 0 ? trusted : *doubted;
+    part.matches.Add(found->matches.prev()[i], found->matches.cur()[i]);
+    part.features.push_back(feature);
+  }
+  *found = std::move(trusted);
+}
+
+void FeatureTrust::Learn(const FeatureMatches& doubted,
+                         const Rigid3d& cur_from_ref) {
+  const Camera& camera = doubted.matches.camera();
+  for (size_t i = 0; i < doubted.features.size(); ++i) {
+    const Observation cur = doubted.matches.cur()[i];
+    const auto expected =
+        Project(camera, cur_from_ref, doubted.matches.prev()[i]);
+    const bool agrees =
+        expected.has_value() &&
+        (*expected - Eigen::Vector2d(cur.u, cur.v)).norm() <= kMaxErrorPx;
+    int& doubt = doubts_[doubted.features[i]];
+    doubt = agrees ? doubt - 1 : kAgreements;
+  }
+}
+
+}  // namespace rgbd_pose
