@@ -1,6 +1,7 @@
 #include "apps/odometry_run.h"
 
 #include <cstdio>
+#include <optional>
 
 #include "core/initial_guess.h"
 #include "core/input_error.h"
@@ -28,6 +29,13 @@ constexpr Named<Assembly> kAssemblies[] = {
 constexpr Named<RobustSchedule> kRobustSchedules[] = {
     {"gnc", RobustSchedule::kGnc},
     {"direct", RobustSchedule::kDirect},
+};
+
+constexpr Named<LostPolicy> kLostPolicies[] = {
+    {"stop", LostPolicy::kStop},
+    {"hold", LostPolicy::kHold},
+    {"predict", LostPolicy::kPredict},
+    {"new_segment", LostPolicy::kNewSegment},
 };
 
 template <typename Row, size_t N>
@@ -82,6 +90,7 @@ OdometryOptions MakeOdometryOptions(const OdometrySettings& settings) {
     throw UnknownName("initial guess", settings.initial_guess,
                       OdometryGuessNames());
   }
+  options.on_lost = ValueOf(kLostPolicies, "policy", settings.on_lost);
   return options;
 }
 
@@ -99,6 +108,8 @@ std::vector<std::string> OdometryGuessNames() {
   return names;
 }
 
+std::vector<std::string> LostPolicyNames() { return NamesOf(kLostPolicies); }
+
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
   FrontendOptions frontend;
   frontend.camera = camera;
@@ -110,17 +121,23 @@ Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
                             MakeRobustCosts(settings.cost, settings.loss)));
 }
 
-std::vector<TrackedFrame> RunOdometry(
-    const Dataset& dataset, Odometry* odometry, int threads,
-    const std::function<void(int done)>& progress) {
-  FrameStream stream(dataset, &odometry->frontend(), threads);
+std::vector<TrackedFrame> RunOdometry(const Dataset& dataset,
+                                      Odometry* odometry,
+                                      const RunOptions& options) {
+  FrameStream stream(dataset, &odometry->frontend(), options.threads);
   std::vector<TrackedFrame> frames;
   frames.reserve(dataset.size());
   for (int i = 0; i < dataset.size(); ++i) {
     const StreamedFrame next = stream.Next();
-    frames.push_back(odometry->Track(next.frame));
+    std::optional<Rigid3d> guess;
+    if (options.motion_guess != nullptr && i > 0) {
+      guess = options.motion_guess->CurFromPrev(frames.back().timestamp,
+                                                next.frame.timestamp);
+    }
+    frames.push_back(
+        odometry->Track(next.frame, guess.has_value() ? &*guess : nullptr));
     frames.back().decode_ms = next.decode_ms;
-    progress(i + 1);
+    if (options.on_frame) options.on_frame(next.frame, frames.back());
   }
   return frames;
 }
@@ -148,16 +165,21 @@ Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames) {
 
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
   std::string text =
-      "timestamp,status,reason,matches,inliers,iterations,sigma,decode_ms,"
-      "track_ms,frontend_ms,solve_ms\n";
-  char row[256];
+      "timestamp,status,reason,segment,reference,is_reference,relocalised,"
+      "matches,inliers,iterations,sigma,decode_ms,track_ms,match_ms,solve_ms,"
+      "reference_ms,relocalise_ms\n";
+  char row[512];
   for (const TrackedFrame& frame : frames) {
     // Reasons are our own words and hold no quotes.
     std::snprintf(
-        row, sizeof(row), "%.6f,%s,\"%s\",%d,%d,%d,%.4f,%.3f,%.3f,%.3f,%.3f\n",
+        row, sizeof(row),
+        "%.6f,%s,\"%s\",%d,%d,%d,%d,%d,%d,%d,%.4f,%.3f,%.3f,%.3f,%.3f,%.3f,"
+        "%.3f\n",
         frame.timestamp, ToString(frame.status), frame.reason.c_str(),
+        frame.segment, frame.reference, frame.is_reference, frame.relocalised,
         frame.matches, frame.inliers, frame.iterations, frame.sigma,
-        frame.decode_ms, frame.track_ms, frame.match_ms, frame.solve_ms);
+        frame.decode_ms, frame.track_ms, frame.match_ms, frame.solve_ms,
+        frame.reference_ms, frame.relocalise_ms);
     text += row;
   }
   return text;

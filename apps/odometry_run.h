@@ -8,6 +8,7 @@
 #include "core/estimator.h"
 #include "core/trajectory.h"
 #include "frontend/dataset.h"
+#include "frontend/motion_guess.h"
 #include "frontend/odometry.h"
 
 namespace rgbd_pose {
@@ -21,6 +22,7 @@ struct OdometrySettings {
   std::string scale = "fixed";
   std::string robust_schedule = "gnc";
   std::string initial_guess = "last";
+  std::string on_lost = "new_segment";
   std::string depth_noise = "khoshelham";
   int max_features = 400;
 };
@@ -32,15 +34,25 @@ std::vector<std::string> AssemblyNames();
 std::vector<std::string> RobustScheduleNames();
 std::vector<std::string> OdometryGuessNames();
 
+// What to do with lost frames (LostPolicy).
+std::vector<std::string> LostPolicyNames();
+
 // An odometry with these settings. Throws InputError for unknown names.
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
 
-// Tracks a whole dataset: one result a frame, in order. Frames are read ahead
-// by the other ones of `threads` >= 1 threads; the result does not depend on
-// how many. `progress` hears how many frames are done.
-std::vector<TrackedFrame> RunOdometry(
-    const Dataset& dataset, Odometry* odometry, int threads,
-    const std::function<void(int done)>& progress);
+struct RunOptions {
+  int threads = 1;  // that read frames ahead and track
+
+  const MotionGuess* motion_guess = nullptr;  // null: nothing else is known
+
+  // Hears of each frame after it was tracked; may be empty.
+  std::function<void(const Frame& frame, const TrackedFrame& tracked)> on_frame;
+};
+
+// Tracks a whole dataset: one result a frame, in order.
+std::vector<TrackedFrame> RunOdometry(const Dataset& dataset,
+                                      Odometry* odometry,
+                                      const RunOptions& options);
 
 // Reads a whole dataset in the same way and does nothing with it. Returns how
 // long each frame took (ms); throws InputError for the first unreadable one.

@@ -52,6 +52,12 @@ DEFINE_string(robust_schedule, "gnc",
               "losses at their widths at once, or wide at first and narrowed "
               "step by step");
 DEFINE_string(initial_guess, "last", "where the solver starts in a frame");
+DEFINE_string(on_lost, "new_segment",
+              "what to do with frames whose motion is not found; they are "
+              "searched for among earlier references in any case but stop");
+DEFINE_string(motion_guess, "",
+              "trajectory (TUM text) that tells roughly how the camera moved "
+              "between frames: wheels, an inertial sensor; empty: none");
 DEFINE_string(frontend, "klt", "where matches come from");
 DEFINE_int32(max_features, 400, "features wanted in a reference frame");
 DEFINE_int32(threads, 0,
@@ -78,10 +84,10 @@ ProgramInfo Info() {
   info.flag_groups = {
       {"Input",
        {"dataset", "associations", "camera", "depth_scale", "depth_noise",
-        "groundtruth", "validate_only"}},
+        "motion_guess", "groundtruth", "validate_only"}},
       {"Estimation",
-       {"cost", "loss", "scale", "robust_schedule", "initial_guess", "assembly",
-        "frontend", "max_features", "threads"}},
+       {"cost", "loss", "scale", "robust_schedule", "initial_guess", "on_lost",
+        "assembly", "frontend", "max_features", "threads"}},
       {"Output", {"output"}}};
   info.choices = {{"camera", CameraPresetNames()},
                   {"depth_noise", DepthNoiseModelNames()},
@@ -90,6 +96,7 @@ ProgramInfo Info() {
                   {"scale", ScaleEstimatorNames()},
                   {"robust_schedule", RobustScheduleNames()},
                   {"initial_guess", OdometryGuessNames()},
+                  {"on_lost", LostPolicyNames()},
                   {"assembly", AssemblyNames()},
                   {"frontend", FrontendNames()}};
   return info;
@@ -126,6 +133,7 @@ OdometrySettings SettingsFromFlags() {
   settings.scale = FLAGS_scale;
   settings.robust_schedule = FLAGS_robust_schedule;
   settings.initial_guess = FLAGS_initial_guess;
+  settings.on_lost = FLAGS_on_lost;
   settings.depth_noise = FLAGS_depth_noise;
   settings.max_features = FLAGS_max_features;
   return settings;
@@ -191,6 +199,10 @@ int Main() {
   Odometry odometry =
       MakeOdometry(SettingsFromFlags(), dataset.camera().camera);
   const std::optional<Trajectory> truth = FindGroundTruth();
+  std::optional<MotionGuess> motion_guess;
+  if (!FLAGS_motion_guess.empty()) {
+    motion_guess.emplace(ReadTrajectory(FLAGS_motion_guess));
+  }
   MakeOutputFolder();
   const std::string warning = DepthScaleWarning(dataset.Read(0));
   if (!warning.empty()) LOG(WARNING) << warning;
@@ -203,8 +215,14 @@ int Main() {
   std::vector<TrackedFrame> frames;
   {
     ProgressBar bar("tracking", dataset.size());
-    frames = RunOdometry(dataset, &odometry, threads,
-                         [&bar](int done) { bar.Update(done); });
+    RunOptions options;
+    options.threads = threads;
+    if (motion_guess.has_value()) options.motion_guess = &*motion_guess;
+    options.on_frame = [&bar, done = 0](const Frame&,
+                                        const TrackedFrame&) mutable {
+      bar.Update(++done);
+    };
+    frames = RunOdometry(dataset, &odometry, options);
   }
   const double seconds = SecondsSince(start);
 

@@ -27,7 +27,10 @@ RunSummary Summarise(const std::vector<TrackedFrame>& frames, int threads,
   RunSummary summary;
   summary.threads = threads;
   summary.wall_seconds = wall_seconds;
-  std::vector<double> decode, track, frontend, solve;
+  std::vector<double> decode, track, match, solve, reference, relocalise;
+  const auto add = [](double ms, std::vector<double>* all) {
+    if (ms > 0.0) all->push_back(ms);
+  };
   for (const TrackedFrame& frame : frames) {
     ++summary.frames;
     summary.ok += frame.status == TrackingStatus::kOk;
@@ -36,14 +39,20 @@ RunSummary Summarise(const std::vector<TrackedFrame>& frames, int threads,
     summary.references += frame.is_reference;
     decode.push_back(frame.decode_ms);
     track.push_back(frame.track_ms);
-    frontend.push_back(frame.match_ms);
-    solve.push_back(frame.solve_ms);
+    add(frame.match_ms, &match);
+    add(frame.solve_ms, &solve);
+    add(frame.reference_ms, &reference);
+    add(frame.relocalise_ms, &relocalise);
+    summary.segments = std::max(summary.segments, frame.segment + 1);
+    summary.relocalised += frame.relocalised;
   }
   summary.median_decode_ms = Median(decode);
   summary.median_track_ms = Median(track);
   summary.p99_track_ms = Quantile(track, 0.99);
-  summary.median_frontend_ms = Median(frontend);
+  summary.median_match_ms = Median(match);
   summary.median_solve_ms = Median(solve);
+  summary.median_reference_ms = Median(reference);
+  summary.median_relocalise_ms = Median(relocalise);
   return summary;
 }
 
@@ -52,16 +61,18 @@ std::string FormatSummary(const RunSummary& summary) {
   std::snprintf(
       text, sizeof(text),
       "frames      %d, %.1f %% tracked (%d ok, %d degraded, %d lost)\n"
-      "references  %d\n"
+      "references  %d, %d segment(s), %d frame(s) found again\n"
       "time        %.2f ms per frame median, %.2f ms 99th percentile, without "
       "decoding\n"
-      "            of it %.2f ms matching, %.3f ms pose solve (medians)\n"
+      "            of it %.2f ms matching, %.3f ms pose solve; %.2f ms for a "
+      "new reference\n"
       "throughput  %.1f frames/s with decoding (%.2f ms per frame median), %d "
       "thread(s)\n",
       summary.frames, 100.0 * summary.TrackedShare(), summary.ok,
-      summary.degraded, summary.lost, summary.references,
-      summary.median_track_ms, summary.p99_track_ms, summary.median_frontend_ms,
-      summary.median_solve_ms, summary.FramesPerSecond(),
+      summary.degraded, summary.lost, summary.references, summary.segments,
+      summary.relocalised, summary.median_track_ms, summary.p99_track_ms,
+      summary.median_match_ms, summary.median_solve_ms,
+      summary.median_reference_ms, summary.FramesPerSecond(),
       summary.median_decode_ms, summary.threads);
   return text;
 }
@@ -72,12 +83,16 @@ nlohmann::json SummaryToJson(const RunSummary& summary) {
           {"degraded", summary.degraded},
           {"lost", summary.lost},
           {"references", summary.references},
+          {"segments", summary.segments},
+          {"relocalised", summary.relocalised},
           {"tracked_share", summary.TrackedShare()},
           {"decode_ms_median", summary.median_decode_ms},
           {"track_ms_median", summary.median_track_ms},
           {"track_ms_p99", summary.p99_track_ms},
-          {"frontend_ms_median", summary.median_frontend_ms},
+          {"match_ms_median", summary.median_match_ms},
           {"solve_ms_median", summary.median_solve_ms},
+          {"reference_ms_median", summary.median_reference_ms},
+          {"relocalise_ms_median", summary.median_relocalise_ms},
           {"threads", summary.threads},
           {"wall_seconds", summary.wall_seconds},
           {"frames_per_second", summary.FramesPerSecond()}};

@@ -15,11 +15,16 @@ struct RunSummary {
   int degraded = 0;
   int lost = 0;
   int references = 0;
+  int segments = 0;
+  int relocalised = 0;
   double median_decode_ms = 0.0;
   double median_track_ms = 0.0;
   double p99_track_ms = 0.0;
-  double median_frontend_ms = 0.0;
+  // Of the frames in which they took place.
+  double median_match_ms = 0.0;
   double median_solve_ms = 0.0;
+  double median_reference_ms = 0.0;
+  double median_relocalise_ms = 0.0;
 
   // Of the whole program, up to the last frame.
   int threads = 0;

@@ -53,7 +53,7 @@ std::string WithoutTimes(const std::string& csv) {
   std::istringstream lines(csv);
   std::string line, result;
   while (std::getline(lines, line)) {
-    for (int i = 0; i < 4; ++i) line.erase(line.rfind(','));
+    for (int i = 0; i < 6; ++i) line.erase(line.rfind(','));
     result += line + "\n";
   }
   return result;
@@ -67,8 +67,9 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
   EXPECT_THAT(run.out, HasSubstr("ATE, rigid alignment"));
   const std::string csv = ReadTextFile(folder_ / "run/frames.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "timestamp,status,reason,matches,inliers,iterations,sigma,"
-            "decode_ms,track_ms,frontend_ms,solve_ms");
+            "timestamp,status,reason,segment,reference,is_reference,"
+            "relocalised,matches,inliers,iterations,sigma,decode_ms,track_ms,"
+            "match_ms,solve_ms,reference_ms,relocalise_ms");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kFrames);
   EXPECT_EQ(ReadTrajectory(folder_ / "run/trajectory.txt").size(),
             static_cast<size_t>(kFrames));
