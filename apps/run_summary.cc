@@ -27,7 +27,8 @@ RunSummary Summarise(const std::vector<TrackedFrame>& frames, int threads,
   RunSummary summary;
   summary.threads = threads;
   summary.wall_seconds = wall_seconds;
-  std::vector<double> decode, track, match, solve, reference, relocalise;
+  std::vector<double> decode, track, match, solve, reference, relocalise,
+      matches, inlier_shares;
   const auto add = [](double ms, std::vector<double>* all) {
     if (ms > 0.0) all->push_back(ms);
   };
@@ -44,8 +45,15 @@ RunSummary Summarise(const std::vector<TrackedFrame>& frames, int threads,
     add(frame.reference_ms, &reference);
     add(frame.relocalise_ms, &relocalise);
     summary.segments = std::max(summary.segments, frame.segment + 1);
+    if (frame.matches > 0) {
+      matches.push_back(frame.matches);
+      inlier_shares.push_back(static_cast<double>(frame.inliers) /
+                              frame.matches);
+    }
     summary.relocalised += frame.relocalised;
   }
+  summary.median_matches = Median(matches);
+  summary.median_inlier_share = Median(inlier_shares);
   summary.median_decode_ms = Median(decode);
   summary.median_track_ms = Median(track);
   summary.p99_track_ms = Quantile(track, 0.99);
@@ -86,6 +94,8 @@ nlohmann::json SummaryToJson(const RunSummary& summary) {
           {"segments", summary.segments},
           {"relocalised", summary.relocalised},
           {"tracked_share", summary.TrackedShare()},
+          {"matches_median", summary.median_matches},
+          {"inlier_share_median", summary.median_inlier_share},
           {"decode_ms_median", summary.median_decode_ms},
           {"track_ms_median", summary.median_track_ms},
           {"track_ms_p99", summary.p99_track_ms},

@@ -17,6 +17,9 @@ struct RunSummary {
   int references = 0;
   int segments = 0;
   int relocalised = 0;
+  // Of the frames that were matched against a reference.
+  double median_matches = 0.0;
+  double median_inlier_share = 0.0;
   double median_decode_ms = 0.0;
   double median_track_ms = 0.0;
   double p99_track_ms = 0.0;

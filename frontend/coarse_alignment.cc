@@ -5,6 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "frontend/image_pyramid.h"
+#include "frontend/sample_image.h"
 
 namespace rgbd_pose {
 namespace {
@@ -13,9 +14,19 @@ namespace {
 constexpr int kCoarsest = 5;
 constexpr int kFinest = 3;
 constexpr int kMaxIterations = 6;
+
+// A step shorter than this (px of its level) is the last of a level.
 constexpr float kMinStepPx = 0.05F;
+
+// Flatter pixels (grey levels per px) are noise.
 constexpr float kMinGradient = 1.5F;
+
+// Several for each parameter.
 constexpr int kMinPoints = 30;
+
+// A gain beyond these is not one of exposure: nothing fits.
+constexpr float kMinGain = 0.1F;
+constexpr float kMaxGain = 10.0F;
 
 // Differences beyond this (grey levels) are other things than noise and
 // interpolation, and count no more than this.
@@ -25,6 +36,14 @@ constexpr float kMaxDifference = 15.0F;
 // kMaxDifference: keeps what the image does not tell small.
 constexpr float kSigmaTurn = 0.1F;   // rad
 constexpr float kSigmaShift = 0.1F;  // m
+
+constexpr float kMinDepth = 0.1F;  // m, before the camera
+
+// The rotation by a vector, good for steps.
+Eigen::Quaterniond SmallTurn(const Eigen::Vector3d& turn) {
+  return Eigen::Quaterniond(1.0, 0.5 * turn.x(), 0.5 * turn.y(),
+                            0.5 * turn.z());
+}
 
 Camera AtLevel(Camera camera, int level) {
   const double scale = 1.0 / (1 << level);
@@ -40,7 +59,8 @@ Camera AtLevel(Camera camera, int level) {
 CoarseReference::CoarseReference(const Frame& frame,
                                  const std::vector<cv::Mat>& pyramid,
                                  const Camera& camera) {
-  const int coarsest = std::min(kCoarsest, static_cast<int>(pyramid.size()) - 1);
+  const int coarsest =
+      std::min(kCoarsest, static_cast<int>(pyramid.size()) - 1);
   for (int level = coarsest; level >= kFinest; --level) {
     Level made = MakeLevel(frame, pyramid[level], level, camera);
     if (static_cast<int>(made.points.size()) >= kMinPoints) {
@@ -53,50 +73,49 @@ CoarseReference::Level CoarseReference::MakeLevel(const Frame& frame,
                                                   const cv::Mat& image,
                                                   int index,
                                                   const Camera& camera) {
-  using Row = Eigen::Matrix<float, kParameters, 1>;
   Level level;
   level.level = index;
   level.camera = AtLevel(camera, index);
   const Camera& c = level.camera;
-  std::vector<Row> rows;
   double sum = 0.0, squares = 0.0;
   for (int v = 1; v + 1 < image.rows; ++v) {
     const uint8_t* row = image.ptr<uint8_t>(v);
     for (int u = 1; u + 1 < image.cols; ++u) {
       const float gx = 0.5F * static_cast<float>(row[u + 1] - row[u - 1]);
-      const float gy = 0.5F * static_cast<float>(row[u + image.step] -
-                                                 row[u - image.step]);
+      const float gy =
+          0.5F * static_cast<float>(row[u + image.step] - row[u - image.step]);
       if (std::abs(gx) + std::abs(gy) < kMinGradient) continue;
-      const double depth =
-          frame.DepthAt(static_cast<int>(FromLevel(u, index)),
-                        static_cast<int>(FromLevel(v, index)));
+      const double depth = frame.DepthAt(static_cast<int>(FromLevel(u, index)),
+                                         static_cast<int>(FromLevel(v, index)));
       if (depth <= 0.0) continue;
-      const Eigen::Vector3f X =
-          c.Unproject(Eigen::Vector2d(u, v), depth).cast<float>();
+      const Eigen::Vector2d ideal = c.Undistort(Eigen::Vector2d(u, v));
+      Point point;
+      point.distortion = (Eigen::Vector2d(u, v) - ideal).cast<float>();
+      point.place = Eigen::Vector3d((ideal.x() - c.cx) / c.fx * depth,
+                                    (ideal.y() - c.cy) / c.fy * depth, depth)
+                        .cast<float>();
+      const Eigen::Vector3f& X = point.place;
       const float a = gx * static_cast<float>(c.fx) / X.z();
       const float b = gy * static_cast<float>(c.fy) / X.z();
       const float d = -(a * X.x() + b * X.y()) / X.z();
-      Row jacobian;
-      const float grey = row[u];
-      jacobian << X.y() * d - X.z() * b, X.z() * a - X.x() * d,
-          X.x() * b - X.y() * a, a, b, d, grey, 1.0F;
-      rows.push_back(jacobian);
-      level.points.push_back(X);
-      level.grey.push_back(grey);
-      sum += grey;
-      squares += grey * grey;
+      point.grey = row[u];
+      point.step << X.y() * d - X.z() * b, X.z() * a - X.x() * d,
+          X.x() * b - X.y() * a, a, b, d, point.grey, 1.0F;
+      level.points.push_back(point);
+      sum += point.grey;
+      squares += point.grey * point.grey;
     }
   }
-  const size_t n = rows.size();
+  const size_t n = level.points.size();
   if (static_cast<int>(n) < kMinPoints) return level;
   level.mean = static_cast<float>(sum / n);
   level.deviation =
       std::sqrt(std::max(0.0, squares / n - level.mean * level.mean));
   Eigen::Matrix<double, kParameters, kParameters> information;
   information.setZero();
-  for (const Row& row : rows) {
-    const Eigen::Matrix<double, kParameters, 1> r = row.cast<double>();
-    information += r * r.transpose();
+  for (const Point& point : level.points) {
+    const Eigen::Matrix<double, kParameters, 1> row = point.step.cast<double>();
+    information += row * row.transpose();
   }
   const double noise = kMaxDifference * kMaxDifference;
   for (int i = 0; i < 3; ++i) {
@@ -105,20 +124,8 @@ CoarseReference::Level CoarseReference::MakeLevel(const Frame& frame,
   }
   const Eigen::Matrix<float, kParameters, kParameters> inverse =
       information.inverse().cast<float>();
-  level.steps.reserve(n);
-  for (const Row& row : rows) level.steps.push_back(inverse * row);
+  for (Point& point : level.points) point.step = (inverse * point.step).eval();
   return level;
-}
-
-void CoarseReference::StartingGain(const Level& level, const cv::Mat& image,
-                                   float* gain, float* bias) {
-  cv::Scalar mean, deviation;
-  cv::meanStdDev(image, mean, deviation);
-  *gain = 1.0F;
-  if (level.deviation > 1.0F && deviation[0] > 1.0) {
-    *gain = static_cast<float>(deviation[0]) / level.deviation;
-  }
-  *bias = static_cast<float>(mean[0]) - *gain * level.mean;
 }
 
 CoarseReference::Fit CoarseReference::FitAt(const Level& level,
@@ -131,41 +138,29 @@ CoarseReference::Fit CoarseReference::FitAt(const Level& level,
       cur_from_ref.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f t = cur_from_ref.translation.cast<float>();
   const Camera& c = level.camera;
-  const float fx = c.fx, fy = c.fy, cx = c.cx, cy = c.cy;
-  const bool distorted = c.HasDistortion();
+  const auto fx = static_cast<float>(c.fx);
+  const auto fy = static_cast<float>(c.fy);
+  const auto cx = static_cast<float>(c.cx);
+  const auto cy = static_cast<float>(c.cy);
+  const auto max_u = static_cast<float>(image.cols - 1);
+  const auto max_v = static_cast<float>(image.rows - 1);
   const float clamp = kMaxDifference * gain;
-  for (size_t i = 0; i < level.points.size(); ++i) {
-    const Eigen::Vector3f X = R * level.points[i] + t;
-    const float predicted = gain * level.grey[i] + bias;
-    float difference = clamp;
-    float seen = predicted;
-    if (X.z() > 0.1F) {
-      float u, v;
-      if (distorted) {
-        const Eigen::Vector2d pixel = c.Project(X.cast<double>());
-        u = static_cast<float>(pixel.x());
-        v = static_cast<float>(pixel.y());
-      } else {
-        const float inverse = 1.0F / X.z();
-        u = fx * X.x() * inverse + cx;
-        v = fy * X.y() * inverse + cy;
-      }
-      if (u >= 0.0F && v >= 0.0F && u < image.cols - 1 && v < image.rows - 1) {
-        const int column = static_cast<int>(u);
-        const int row = static_cast<int>(v);
-        const float s = u - column;
-        const float q = v - row;
-        const uint8_t* p = image.ptr<uint8_t>(row) + column;
-        const float above = p[0] + s * (p[1] - p[0]);
-        p += image.step;
-        const float below = p[0] + s * (p[1] - p[0]);
-        difference = above + q * (below - above) - predicted;
-        difference = std::clamp(difference, -clamp, clamp);
-        seen = predicted + difference;
-      }
+  for (const Point& point : level.points) {
+    const Eigen::Vector3f X = R * point.place + t;
+    const float predicted = gain * point.grey + bias;
+    // Out of view it says nothing about the motion, but does not explain the
+    // image either.
+    float cost = clamp;
+    float difference = 0.0F;
+    const float u = fx * X.x() / X.z() + cx + point.distortion.x();
+    const float v = fy * X.y() / X.z() + cy + point.distortion.y();
+    if (X.z() > kMinDepth && u >= 0.0F && v >= 0.0F && u < max_u && v < max_v) {
+      difference =
+          std::clamp(SampleImage(image, u, v) - predicted, -clamp, clamp);
+      cost = difference;
     }
-    fit.cost += difference * difference;
-    fit.step += seen * level.steps[i];
+    fit.cost += cost * cost;
+    fit.step += (predicted + difference) * point.step;
   }
   fit.gain = fit.step[6];
   fit.bias = fit.step[7];
@@ -180,26 +175,25 @@ Rigid3d CoarseReference::Align(const std::vector<cv::Mat>& pyramid,
     return cur_from_ref_guess;
   }
   Rigid3d cur_from_ref = cur_from_ref_guess;
-  float gain = 1.0F;
-  float bias = 0.0F;
-  StartingGain(levels_.front(), pyramid[levels_.front().level], &gain, &bias);
+  // To start with, the brightness of the whole images.
+  const Level& coarsest = levels_.front();
+  cv::Scalar mean, deviation;
+  cv::meanStdDev(pyramid[coarsest.level], mean, deviation);
+  float gain = static_cast<float>(deviation[0]) / coarsest.deviation;
+  float bias = static_cast<float>(mean[0]) - gain * coarsest.mean;
+  if (!(gain > kMinGain && gain < kMaxGain)) return cur_from_ref_guess;
   for (const Level& level : levels_) {
     for (int i = 0; i < kMaxIterations; ++i) {
       const Fit fit =
           FitAt(level, pyramid[level.level], cur_from_ref, gain, bias);
-      if (!(fit.gain > 0.1F && fit.gain < 10.0F)) return cur_from_ref_guess;
+      if (!(fit.gain > kMinGain && fit.gain < kMaxGain))
+        return cur_from_ref_guess;
       gain = fit.gain;
       bias = fit.bias;
       const Eigen::Matrix<double, 6, 1> step =
           -(fit.step.head<6>() / gain).cast<double>();
-      const Eigen::Vector3d turn = step.head<3>();
-      const double angle = turn.norm();
       cur_from_ref =
-          cur_from_ref *
-          Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(
-                      angle, angle > 0.0 ? Eigen::Vector3d(turn / angle)
-                                         : Eigen::Vector3d::UnitX())),
-                  step.tail<3>());
+          cur_from_ref * Rigid3d(SmallTurn(step.head<3>()), step.tail<3>());
       if (level.camera.fx * step.norm() < kMinStepPx) break;
     }
   }

@@ -30,15 +30,22 @@ class CoarseReference {
  private:
   static constexpr int kParameters = 8;  // motion, gain, bias
 
+  using Parameters = Eigen::Matrix<float, kParameters, 1>;
+
+  // A pixel of a level.
+  struct Point {
+    Eigen::Vector3f place;       // in camera axes, m
+    Eigen::Vector2f distortion;  // by the lens, px
+    float grey;
+    Parameters step;  // what a grey level of it tells about the parameters
+  };
+
   struct Level {
     int level = 0;
     Camera camera;
-    std::vector<Eigen::Vector3f> points;
-    std::vector<float> grey;
-    float mean = 0.0F;
-    float deviation = 0.0F;
-    // What a grey level of each point tells about the parameters.
-    std::vector<Eigen::Matrix<float, kParameters, 1>> steps;
+    std::vector<Point> points;
+    float mean = 0.0F;       // of their grey levels
+    float deviation = 0.0F;  // likewise, standard
   };
 
   // The fit of one level at one motion.
@@ -46,15 +53,13 @@ class CoarseReference {
     float gain = 1.0F;
     float bias = 0.0F;
     float cost = 0.0F;  // mean squared clamped difference
-    Eigen::Matrix<float, kParameters, 1> step;
+    Parameters step;
   };
 
   static Level MakeLevel(const Frame& frame, const cv::Mat& image, int level,
                          const Camera& camera);
   static Fit FitAt(const Level& level, const cv::Mat& image,
                    const Rigid3d& cur_from_ref, float gain, float bias);
-  static void StartingGain(const Level& level, const cv::Mat& image,
-                           float* gain, float* bias);
 
   std::vector<Level> levels_;  // coarsest first
 };

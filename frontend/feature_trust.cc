@@ -61,16 +61,19 @@ class CellCounts {
 }  // namespace
 
 FeatureTrust::FeatureTrust(const FeatureSet& last, const FeatureMatches& found,
-                           const MotionEstimate& estimate,
+                           const MotionEstimate& estimate, bool missing_failed,
                            const FeatureSet& fresh, size_t min_trusted)
     : doubts_(fresh.observations.size(), 0) {
   const Camera& camera = found.matches.camera();
   std::vector<bool> agrees(last.observations.size(), false);
+  std::vector<bool> counts(last.observations.size(), missing_failed);
   for (size_t i = 0; i < found.features.size(); ++i) {
+    counts[found.features[i]] = true;
     if (estimate.is_inlier[i]) agrees[found.features[i]] = true;
   }
   CellCounts agreed(camera), failed(camera);
   for (size_t i = 0; i < agrees.size(); ++i) {
+    if (!counts[i]) continue;
     const auto pixel =
         Project(camera, estimate.cur_from_prev, last.observations[i]);
     if (pixel.has_value()) ++(agrees[i] ? agreed : failed).At(*pixel);

@@ -21,11 +21,12 @@ class FeatureTrust {
 
   // The features of a new reference, doubted where those of the last one have
   // failed: `found` and `estimate` tell how the new reference's own frame was
-  // tracked against the last one. If that would leave fewer than `min_trusted`,
-  // all are trusted.
+  // tracked against the last one, and `missing_failed` whether features that
+  // were not found count as failed. If that would leave fewer than
+  // `min_trusted`, all are trusted.
   FeatureTrust(const FeatureSet& last, const FeatureMatches& found,
-               const MotionEstimate& estimate, const FeatureSet& fresh,
-               size_t min_trusted);
+               const MotionEstimate& estimate, bool missing_failed,
+               const FeatureSet& fresh, size_t min_trusted);
 
   size_t num_trusted() const;
 

@@ -65,6 +65,10 @@ class Frontend {
 
   virtual std::string_view name() const = 0;
 
+  // Whether it should find every feature that is in view and not hidden.
+  // Detectors need not fire in the same place twice.
+  virtual bool finds_all_in_view() const { return true; }
+
   // Works out ahead what does not depend on other frames (a pyramid, say) and
   // keeps it in the frame. Optional; may be called from several threads.
   virtual void Prepare(Frame* /*frame*/) const {}

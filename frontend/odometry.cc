@@ -31,10 +31,6 @@ class StageTimer {
 constexpr double kMinReturnShare = 0.7;
 constexpr double kMaxReturnFlow = 0.5;
 
-// Of a new reference's features at least so many have a say at once: where most
-// are doubted the doubt itself is in doubt.
-constexpr double kMinTrustedShare = 0.3;
-
 std::string OnlyInliers(int inliers) {
   return "only " + std::to_string(inliers) + " inliers";
 }
@@ -158,6 +154,7 @@ void Odometry::Lose(const Frame& frame, TrackedFrame* result) {
   }
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
+  result->reference = -1;
   result->status = TrackingStatus::kDegraded;
   result->reason = "a new segment: the motion since it was lost is unknown";
 }
@@ -265,13 +262,14 @@ bool Odometry::TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
                              TrackedFrame* result) {
   const StageTimer timer(&result->reference_ms);
   std::unique_ptr<FeatureSet> features = frontend_->Detect(frame);
-  // Trust is passed on from reference to reference as long as they are tracked.
+  // Trust is passed on from reference to reference as long as they are tracked;
+  // where hardly any feature would have it the doubt itself is in doubt.
   const bool was_tracked = result->status != TrackingStatus::kLost;
   const FeatureTrust trust =
-      was_tracked
-          ? FeatureTrust(*reference_->features, found_, estimate_, *features,
-                         kMinTrustedShare * features->observations.size())
-          : FeatureTrust(features->observations.size());
+      was_tracked ? FeatureTrust(*reference_->features, found_, estimate_,
+                                 frontend_->finds_all_in_view(), *features,
+                                 2 * options_.min_inliers_ok)
+                  : FeatureTrust(features->observations.size());
   const size_t count = features->observations.size();
   if (count < static_cast<size_t>(options_.min_inliers)) {
     if (result->status == TrackingStatus::kLost) {

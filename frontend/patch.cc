@@ -1,53 +1,47 @@
 #include "frontend/patch.h"
 
-#include <algorithm>
 #include <cmath>
+
+#include "frontend/sample_image.h"
 
 namespace rgbd_pose {
 namespace {
 
-// A gradient below this (grey levels per px, mean over the patch) is noise.
-static const float kMinGradient = getenv("T_GRAD") ? atof(getenv("T_GRAD")) : 1.0F;
+// A contrast or gradient whose RMS over the patch is below this (grey levels,
+// grey levels per px) is the noise of the image.
+constexpr float kMinGrey = 0.5F;
 
-// An image point, bilinear; coordinates are clamped to the image.
-float Sample(const cv::Mat& image, float u, float v) {
-  u = std::clamp(u, 0.0F, static_cast<float>(image.cols - 1));
-  v = std::clamp(v, 0.0F, static_cast<float>(image.rows - 1));
-  const int column = std::min(static_cast<int>(u), image.cols - 2);
-  const int row = std::min(static_cast<int>(v), image.rows - 2);
-  const float s = u - static_cast<float>(column);
-  const float t = v - static_cast<float>(row);
-  const uint8_t* upper = image.ptr<uint8_t>(row) + column;
-  const uint8_t* lower = upper + image.step;
-  const float above = upper[0] + s * static_cast<float>(upper[1] - upper[0]);
-  const float below = lower[0] + s * static_cast<float>(lower[1] - lower[0]);
-  return above + t * (below - above);
-}
+// One more on each side than the patch, for its derivatives.
+constexpr int kSide = kPatchSize + 2;
+
+using Pixels = Eigen::Array<float, kPatchSize, kPatchSize, Eigen::RowMajor>;
+using Seen = Eigen::Array<float, kSide, kSide, Eigen::RowMajor>;
 
 }  // namespace
 
-template <int N>
 void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
-               const Eigen::Matrix2f& image_from_patch, Patch<N>* patch) {
-  using Pixels = Eigen::Array<float, N, N, Eigen::RowMajor>;
-  // One more on each side for the derivatives.
-  Eigen::Array<float, N + 2, N + 2, Eigen::RowMajor> seen;
-  for (int i = 0; i < N + 2; ++i) {
-    for (int j = 0; j < N + 2; ++j) {
-      const Eigen::Vector2f offset(j - 1 - N / 2, i - 1 - N / 2);
-      const Eigen::Vector2f at = centre + image_from_patch * offset;
-      seen(i, j) = Sample(image, at.x(), at.y());
+               const Eigen::Matrix2f& image_from_patch, Patch* patch) {
+  constexpr float kMinEnergy = kMinGrey * kMinGrey * Patch::kPixels;
+  // Just inside, as SampleImage wants it.
+  const Eigen::Array2f limit(static_cast<float>(image.cols) - 1.001F,
+                             static_cast<float>(image.rows) - 1.001F);
+  Seen seen;
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      const Eigen::Vector2f offset(j - kSide / 2, i - kSide / 2);
+      const Eigen::Array2f at =
+          (centre + image_from_patch * offset).array().max(0.0F).min(limit);
+      seen(i, j) = SampleImage(image, at.x(), at.y());
     }
   }
-  Pixels grey = seen.template block<N, N>(1, 1);
-  Pixels x = 0.5F * (seen.template block<N, N>(1, 2) -
-                     seen.template block<N, N>(1, 0));
-  Pixels y = 0.5F * (seen.template block<N, N>(2, 1) -
-                     seen.template block<N, N>(0, 1));
+  constexpr int n = kPatchSize;
+  Pixels grey = seen.block<n, n>(1, 1);
+  Pixels x = 0.5F * (seen.block<n, n>(1, 2) - seen.block<n, n>(1, 0));
+  Pixels y = 0.5F * (seen.block<n, n>(2, 1) - seen.block<n, n>(0, 1));
+  patch->min_eigenvalue = 0.0F;
   grey -= grey.mean();
   patch->energy = grey.square().sum();
-  patch->min_eigenvalue = 0.0F;
-  if (patch->energy < kMinGradient * kMinGradient * N * N) return;
+  if (!(patch->energy > kMinEnergy)) return;
   const Pixels contrast = grey / patch->energy;
   x -= x.mean();
   y -= y.mean();
@@ -59,16 +53,11 @@ void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
   const float determinant = xx * yy - xy * xy;
   const float smaller =
       0.5F * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4.0F * xy * xy));
-  if (!(smaller > kMinGradient * kMinGradient * N * N)) return;
+  if (!(smaller > kMinEnergy && determinant > 0.0F)) return;
   patch->min_eigenvalue = smaller;
   Eigen::Map<Pixels>(patch->contrast) = contrast;
   Eigen::Map<Pixels>(patch->steps_x) = (yy * x - xy * y) / determinant;
   Eigen::Map<Pixels>(patch->steps_y) = (xx * y - xy * x) / determinant;
 }
-
-template void MakePatch(const cv::Mat&, const Eigen::Vector2f&,
-                        const Eigen::Matrix2f&, Patch<8>*);
-template void MakePatch(const cv::Mat&, const Eigen::Vector2f&,
-                        const Eigen::Matrix2f&, Patch<16>*);
 
 }  // namespace rgbd_pose

@@ -5,37 +5,37 @@
 
 namespace rgbd_pose {
 
+// Side of a patch. Larger ones (16) scatter less from frame to frame, but reach
+// over the edges of their surface: in simulation they drift half as much again,
+// and they take longer.
+constexpr int kPatchSize = 8;
+
 // What inverse-compositional Lucas-Kanade (Baker & Matthews 2004) needs to know
-// of a patch of N x N pixels T, rows after each other. An image patch I that
-// shows it brighter and moved by d px, I = gain T(x + d) + bias, has
+// of a patch T, rows after each other. An image patch I that shows it brighter
+// and moved by d px, I(x) = gain T(x + d) + bias, has
 //   gain = <contrast, I>,   d = (<steps_x, I>, <steps_y, I>) / gain
-// to first order: gain and bias are solved for along with d, and as the steps
-// are orthogonal to T and to 1, they need no iteration of their own.
-template <int N>
+// to first order. The steps are orthogonal to 1 and to T, so that gain and bias
+// need no iteration of their own.
 struct Patch {
-  static constexpr int kSize = N;
+  static constexpr int kPixels = kPatchSize * kPatchSize;
 
-  alignas(64) float contrast[N * N];
-  alignas(64) float steps_x[N * N];
-  alignas(64) float steps_y[N * N];
+  alignas(32) float contrast[kPixels];
+  alignas(32) float steps_x[kPixels];
+  alignas(32) float steps_y[kPixels];
 
-  // Sum of squared deviations of T from its mean.
+  // Sum of the squared deviations of T from its mean.
   float energy = 0.0F;
 
-  // The smaller eigenvalue of the Hessian of d (grey^2 / px^2): a noise of s
-  // grey levels moves the result by s / sqrt(of this) px.
+  // The smaller eigenvalue of the Hessian of d (grey^2 / px^2): noise of s grey
+  // levels moves the result by s / sqrt(min_eigenvalue) px. 0: there is too
+  // little to hold on to, and nothing else is set.
   float min_eigenvalue = 0.0F;
-
-  // False if there is too little to hold on to.
-  bool IsUsable() const { return min_eigenvalue > 0.0F; }
 };
 
 // The patch around a point (px of `image`, CV_8UC1), seen through an affine
-// map: pixel (i, j) of it, -N / 2 <= i, j < N / 2, shows
-// image(centre + image_from_patch * (i, j)). Beyond its border the image goes
-// on as there.
-template <int N>
+// map: its pixel (i, j), -4 <= i, j < 4, shows image(centre + image_from_patch
+// * (i, j)). Beyond its border the image goes on as it is there.
 void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
-               const Eigen::Matrix2f& image_from_patch, Patch<N>* patch);
+               const Eigen::Matrix2f& image_from_patch, Patch* patch);
 
 }  // namespace rgbd_pose

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <opencv2/core.hpp>
 
 #include "frontend/patch.h"
@@ -13,31 +12,31 @@ struct PatchAlignmentOptions {
   // A step shorter than this (px) is the last.
   float min_step_px = 0.02F;
 
-  // The result lies at most this far (px, each way) from the start.
-  float max_shift_px = 4.0F;
+  // The result lies at most this far (px, along each axis) from the start:
+  // beyond it the patch and its start have too little in common.
+  float max_shift_px = 3.0F;
 };
 
 // Where a patch was found in an image.
 struct AlignedPatch {
-  bool found = false;  // false: left the image or the allowed shift, or
-                       // shows nothing like the patch
-  float u = 0.0F;      // px
-  float v = 0.0F;
-  float gain = 1.0F;  // of the image's contrast over the patch's
+  // False, and nothing else is set: the patch has too little contrast, it left
+  // the image or the allowed shift, or there is nothing like it.
+  bool found = false;
 
-  // Correlation of patch and image, gain and bias taken out: 1 = the same.
+  float u = 0.0F;     // px
+  float v = 0.0F;     // px
+  float gain = 0.0F;  // contrast of the image over that of the patch
+
+  // Of patch and image, whatever the gain and bias: 1 = the same.
   float correlation = 0.0F;
 
-  // RMS of what the patch does not explain, in grey levels of the patch.
+  // RMS of what the patch does not explain, in its own grey levels.
   float residual = 0.0F;
 };
 
 // Moves a patch over an image (CV_8UC1), from a start (px), to where it fits
-// best, whatever the gain and bias between them. On an edge or a flat place it
-// is not found.
-template <int N>
-AlignedPatch AlignPatch(const Patch<N>& patch, const cv::Mat& image,
-                        float start_u, float start_v,
-                        const PatchAlignmentOptions& options);
+// best with any gain and bias.
+AlignedPatch AlignPatch(const Patch& patch, const cv::Mat& image, float start_u,
+                        float start_v, const PatchAlignmentOptions& options);
 
 }  // namespace rgbd_pose

@@ -27,9 +27,6 @@ class PatchFrontend final : public Frontend {
              FeatureMatches* matches) override;
 
  private:
-  // Of a frame, whether it has been prepared or not.
-  const std::vector<cv::Mat>& PyramidOf(const Frame& frame);
-
   FrontendOptions options_;
   DepthLookupOptions depth_options_;
   std::vector<cv::Mat> pyramid_;  // of a frame that has not been prepared

@@ -22,8 +22,8 @@ Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
   if (std::abs(normal.dot(ray)) < kMinIncidence * ray.norm()) {
     normal = Eigen::Vector3d::UnitZ();
   }
-  const Eigen::RowVector2d tilt = normal.head<2>().transpose() /
-                                  normal.dot(ray);
+  const Eigen::RowVector2d tilt =
+      normal.head<2>().transpose() / normal.dot(ray);
   Eigen::Matrix<double, 3, 2> moved;
   moved.leftCols<2>() = -ray * tilt;
   moved(0, 0) += 1.0;

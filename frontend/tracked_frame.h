@@ -28,7 +28,7 @@ struct TrackedFrame {
   // pose, where tracking was lost for good: what happened between is unknown.
   int segment = 0;
 
-  int reference = -1;         // index of the frame it was tracked against
+  int reference = -1;  // index of the frame it was tracked against; -1: none
   bool is_reference = false;  // became the reference of the frames that follow
   bool relocalised = false;   // found again among earlier references
 

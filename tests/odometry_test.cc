@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,10 +21,11 @@
 namespace rgbd_pose {
 namespace {
 
-Odometry MakeOdometry(const Camera& camera, const std::string& loss) {
+Odometry MakeOdometry(const Camera& camera, const std::string& loss,
+                      const OdometryOptions& options = {}) {
   FrontendOptions frontend;
   frontend.camera = camera;
-  return Odometry(OdometryOptions(), camera, MakeFrontend("klt", frontend),
+  return Odometry(options, camera, MakeFrontend("patch", frontend),
                   Estimator(EstimatorOptions(),
                             MakeRobustCosts("bidirectional_point", loss)));
 }
@@ -130,6 +133,136 @@ TEST(OdometryTest, ABlackStartIsLostUntilThereAreFeatures) {
   EXPECT_EQ(odometry.Track(black).status, TrackingStatus::kLost);
   EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
   EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
+}
+
+// Two views of the room that have nothing in common, each a moment long, with
+// darkness between: what each policy makes of it.
+class LostPolicyTest : public ::testing::Test {
+ protected:
+  LostPolicyTest() {
+    SyntheticOptions options;
+    options.path = "xyz";
+    options.frames = 8;
+    here_.emplace(options);
+    options.path_from_cam = Rigid3d(
+        Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY())),
+        Eigen::Vector3d::Zero());
+    elsewhere_.emplace(options);
+  }
+
+  // Frames 0-7 here, 8 and 9 dark, then elsewhere from 10 on, 0.5 s apart.
+  std::vector<TrackedFrame> Run(LostPolicy policy, int frames) {
+    OdometryOptions options;
+    options.on_lost = policy;
+    options.new_segment_after = 1.0;
+    Odometry odometry = MakeOdometry(here_->camera().camera, "tukey", options);
+    std::vector<TrackedFrame> results;
+    for (int i = 0; i < frames; ++i) {
+      Frame frame = i < 8    ? here_->Read(i)
+                    : i < 10 ? Black(here_->Read(7))
+                             : elsewhere_->Read(0);
+      frame.index = i;
+      frame.timestamp = i < 8 ? i / 30.0 : 0.25 + 0.5 * (i - 8);
+      results.push_back(odometry.Track(frame));
+    }
+    return results;
+  }
+
+  std::optional<SyntheticDataset> here_, elsewhere_;
+};
+
+TEST_F(LostPolicyTest, HoldKeepsTheLastPose) {
+  const auto frames = Run(LostPolicy::kHold, 14);
+  ASSERT_EQ(frames[7].status, TrackingStatus::kOk);
+  for (int i = 8; i < 14; ++i) {
+    EXPECT_EQ(frames[i].status, TrackingStatus::kLost) << i;
+    EXPECT_NE(frames[i].reason, "") << i;
+    EXPECT_EQ(frames[i].world_from_cam.translation,
+              frames[7].world_from_cam.translation);
+    EXPECT_EQ(frames[i].segment, 0);
+  }
+}
+
+TEST_F(LostPolicyTest, PredictMovesOn) {
+  const auto frames = Run(LostPolicy::kPredict, 10);
+  const Rigid3d step =
+      frames[6].world_from_cam.Inverse() * frames[7].world_from_cam;
+  for (int i = 8; i < 10; ++i) {
+    EXPECT_EQ(frames[i].status, TrackingStatus::kLost);
+    const Rigid3d expected = frames[i - 1].world_from_cam * step;
+    EXPECT_LE(
+        (frames[i].world_from_cam.translation - expected.translation).norm(),
+        1e-9);
+  }
+  EXPECT_GT(step.translation.norm(), 1e-4) << "the test is vacuous";
+}
+
+TEST_F(LostPolicyTest, StopNeverComesBack) {
+  OdometryOptions options;
+  options.on_lost = LostPolicy::kStop;
+  Odometry odometry = MakeOdometry(here_->camera().camera, "tukey", options);
+  const Frame good = here_->Read(0);
+  EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
+  EXPECT_EQ(odometry.Track(Black(good)).status, TrackingStatus::kLost);
+  const TrackedFrame after = odometry.Track(good);
+  EXPECT_EQ(after.status, TrackingStatus::kLost);
+  EXPECT_NE(after.reason.find("stopped"), std::string::npos) << after.reason;
+}
+
+TEST_F(LostPolicyTest, ANewSegmentStartsWhereTheOldOneEnded) {
+  const auto frames = Run(LostPolicy::kNewSegment, 14);
+  EXPECT_EQ(frames[9].status, TrackingStatus::kLost) << "dark";
+  EXPECT_EQ(frames[10].status, TrackingStatus::kDegraded) << frames[10].reason;
+  EXPECT_EQ(frames[10].segment, 1);
+  EXPECT_EQ(frames[10].reference, -1);
+  EXPECT_EQ(frames[10].world_from_cam.translation,
+            frames[7].world_from_cam.translation);
+  EXPECT_EQ(frames[11].status, TrackingStatus::kOk) << frames[11].reason;
+  EXPECT_EQ(frames[11].segment, 1);
+  EXPECT_EQ(frames[11].reference, 10);
+}
+
+TEST_F(LostPolicyTest, TheOldSegmentIsTakenUpAgainIfTheViewReturns) {
+  OdometryOptions options;
+  Odometry odometry = MakeOdometry(here_->camera().camera, "tukey", options);
+  Frame frame = here_->Read(0);
+  odometry.Track(frame);
+  for (int i = 1; i < 6; ++i) {
+    Frame dark = Black(frame);
+    dark.index = i;
+    dark.timestamp = frame.timestamp + 0.2 * i;
+    EXPECT_EQ(odometry.Track(dark).status, TrackingStatus::kLost);
+  }
+  Frame moved = here_->Read(7);
+  moved.index = 6;
+  moved.timestamp = frame.timestamp + 1.2;
+  const TrackedFrame back = odometry.Track(moved);
+  EXPECT_EQ(back.status, TrackingStatus::kOk) << back.reason;
+  EXPECT_EQ(back.segment, 0);
+  const Rigid3d expected =
+      here_->WorldFromCam(0).Inverse() * here_->WorldFromCam(7);
+  EXPECT_LE((back.world_from_cam.translation - expected.translation).norm(),
+            0.003);
+}
+
+// The second frame is far from the first: only who is told finds it at once.
+TEST(OdometryTest, AMotionGuessIsTriedFirst) {
+  const SyntheticDataset dataset = Room("pan_tilt", 40);
+  const Frame first = dataset.Read(0);
+  const Frame second = dataset.Read(8);
+  const Rigid3d truth =
+      dataset.WorldFromCam(8).Inverse() * dataset.WorldFromCam(0);
+  ASSERT_GT(truth.Angle(), 3.0 * M_PI / 180.0) << "the test is vacuous";
+  const Rigid3d wrong = truth.Inverse();
+  for (const Rigid3d& guess : {truth, wrong}) {
+    Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
+    odometry.Track(first);
+    const TrackedFrame tracked = odometry.Track(second, &guess);
+    EXPECT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
+    const Rigid3d error = truth * tracked.world_from_cam;
+    EXPECT_LE(error.translation.norm(), 0.01) << "believed a wrong guess";
+    EXPECT_LE(error.Angle(), 0.3 * M_PI / 180.0);
+  }
 }
 
 TEST(OdometryTest, GivesTheSameBytesTwice) {

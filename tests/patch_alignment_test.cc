@@ -64,8 +64,8 @@ TEST(PatchAlignmentTest, FindsSubPixelShifts) {
   for (const Eigen::Vector2d& shift :
        {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(0.3, -0.4),
         Eigen::Vector2d(-1.25, 0.5), Eigen::Vector2d(1.6, 1.3)}) {
-    const cv::Mat moved = Render(
-        [&](const Eigen::Vector2d& x) { return Texture(x - shift); });
+    const cv::Mat moved =
+        Render([&](const Eigen::Vector2d& x) { return Texture(x - shift); });
     SCOPED_TRACE(shift.transpose());
     ExpectAt(Align(patch, moved), kCentre + shift);
   }
@@ -123,8 +123,8 @@ TEST(PatchAlignmentTest, TellsAnotherPlace) {
   const AlignedPatch found = Align(patch, other);
   EXPECT_TRUE(!found.found || found.correlation < 0.8F);
   // The negative of an image is another place, too.
-  const cv::Mat negative = Render(
-      [](const Eigen::Vector2d& x) { return 240.0 - Texture(x); });
+  const cv::Mat negative =
+      Render([](const Eigen::Vector2d& x) { return 240.0 - Texture(x); });
   const AlignedPatch inverted = Align(patch, negative);
   EXPECT_TRUE(!inverted.found || inverted.correlation < 0.8F);
 }
@@ -174,8 +174,8 @@ TEST(PatchAlignmentTest, NoiseMovesItAsMuchAsThePatchSays) {
     });
     const AlignedPatch found = Align(patch, noisy);
     ASSERT_TRUE(found.found);
-    squares += std::pow(found.u - kCentre.x(), 2) +
-               std::pow(found.v - kCentre.y(), 2);
+    squares +=
+        std::pow(found.u - kCentre.x(), 2) + std::pow(found.v - kCentre.y(), 2);
   }
   const double rms = std::sqrt(squares / kTrials);
   // Worst direction twice, the best one at least: between one and sqrt(2).
