@@ -17,7 +17,7 @@ namespace rgbd_pose {
 struct OdometrySettings {
   std::string cost = "bidirectional_point";
   std::string loss = "tukey";
-  std::string frontend = "klt";
+  std::string frontend = "patch";
   std::string assembly = "compressed";
   std::string scale = "fixed";
   std::string robust_schedule = "gnc";

@@ -10,10 +10,12 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <thread>
 
 #include "apps/evaluation_report.h"
+#include "apps/frame_selection.h"
 #include "apps/odometry_run.h"
 #include "apps/program.h"
 #include "apps/progress_bar.h"
@@ -27,6 +29,7 @@
 #include "frontend/camera_file.h"
 #include "frontend/depth_scale.h"
 #include "frontend/frontend.h"
+#include "frontend/match_overlay.h"
 #include "frontend/tum_dataset.h"
 #include "robust/m_estimator.h"
 #include "robust/scale.h"
@@ -58,7 +61,7 @@ DEFINE_string(on_lost, "new_segment",
 DEFINE_string(motion_guess, "",
               "trajectory (TUM text) that tells roughly how the camera moved "
               "between frames: wheels, an inertial sensor; empty: none");
-DEFINE_string(frontend, "klt", "where matches come from");
+DEFINE_string(frontend, "patch", "where matches come from");
 DEFINE_int32(max_features, 400, "features wanted in a reference frame");
 DEFINE_int32(threads, 0,
              "threads that read images ahead and track; 0: one a core; the "
@@ -69,6 +72,9 @@ DEFINE_string(groundtruth, "",
 DEFINE_bool(validate_only, false,
             "only read every image and say how fast that goes; needs no "
             "--output");
+DEFINE_string(debug_images, "",
+              "frames whose matches are drawn into OUTPUT/debug, coloured by "
+              "robust weight: all, or numbers and ranges such as 10,20-40:5");
 DEFINE_string(output, "", "folder for the results, made if missing");
 
 namespace rgbd_pose {
@@ -88,7 +94,7 @@ ProgramInfo Info() {
       {"Estimation",
        {"cost", "loss", "scale", "robust_schedule", "initial_guess", "on_lost",
         "assembly", "frontend", "max_features", "threads"}},
-      {"Output", {"output"}}};
+      {"Output", {"output", "debug_images"}}};
   info.choices = {{"camera", CameraPresetNames()},
                   {"depth_noise", DepthNoiseModelNames()},
                   {"cost", CostNames()},
@@ -159,12 +165,30 @@ std::optional<Trajectory> FindGroundTruth() {
   return ReadTrajectory(path.string());
 }
 
-void MakeOutputFolder() {
+void MakeFolder(const std::filesystem::path& folder) {
   std::error_code error;
-  std::filesystem::create_directories(FLAGS_output, error);
+  std::filesystem::create_directories(folder, error);
   if (error) {
-    throw InputError("--output=" + FLAGS_output + ": cannot be made (" +
-                     error.message() + ")");
+    throw InputError("--output=" + FLAGS_output + ": " + folder.string() +
+                     " cannot be made (" + error.message() + ")");
+  }
+}
+
+// Draws what the odometry has made of the frame into a folder.
+void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
+                     const TrackedFrame& tracked, const Camera& camera,
+                     const Odometry& odometry) {
+  char name[32];
+  std::snprintf(name, sizeof(name), "%06d.png", tracked.index);
+  char caption[128];
+  std::snprintf(caption, sizeof(caption),
+                "frame %d  %s  %d of %d matches agree  reference %d",
+                tracked.index, ToString(tracked.status), tracked.inliers,
+                tracked.matches, tracked.reference);
+  const std::string path = (folder / name).string();
+  if (!cv::imwrite(path, DrawMatches(frame, camera, odometry.last_matches(),
+                                     odometry.last_estimate(), caption))) {
+    throw InputError(path + ": cannot be written");
   }
 }
 
@@ -203,7 +227,10 @@ int Main() {
   if (!FLAGS_motion_guess.empty()) {
     motion_guess.emplace(ReadTrajectory(FLAGS_motion_guess));
   }
-  MakeOutputFolder();
+  const FrameSelection drawn("debug_images", FLAGS_debug_images);
+  const std::filesystem::path output(FLAGS_output);
+  const std::filesystem::path debug_folder = output / "debug";
+  MakeFolder(FLAGS_debug_images.empty() ? output : debug_folder);
   const std::string warning = DepthScaleWarning(dataset.Read(0));
   if (!warning.empty()) LOG(WARNING) << warning;
   if (dataset.unmatched_color() > 0) {
@@ -218,9 +245,12 @@ int Main() {
     RunOptions options;
     options.threads = threads;
     if (motion_guess.has_value()) options.motion_guess = &*motion_guess;
-    options.on_frame = [&bar, done = 0](const Frame&,
-                                        const TrackedFrame&) mutable {
-      bar.Update(++done);
+    options.on_frame = [&](const Frame& frame, const TrackedFrame& tracked) {
+      if (drawn.Contains(tracked.index)) {
+        WriteDebugImage(debug_folder, frame, tracked, dataset.camera().camera,
+                        odometry);
+      }
+      bar.Update(tracked.index + 1);
     };
     frames = RunOdometry(dataset, &odometry, options);
   }
@@ -239,7 +269,6 @@ int Main() {
     std::printf("%s", FormatEvaluation(report).c_str());
     metrics["evaluation"] = EvaluationToJson(report);
   }
-  const std::filesystem::path output(FLAGS_output);
   WriteFileAtomically((output / "trajectory.txt").string(),
                       FormatTrajectory(trajectory));
   WriteFileAtomically((output / "frames.csv").string(),
