@@ -24,7 +24,7 @@ struct OdometrySettings {
   std::string initial_guess = "last";
   std::string on_lost = "new_segment";
   std::string depth_noise = "khoshelham";
-  int max_features = 400;
+  int max_features = 600;
 };
 
 // The names of assemblies (core/cost.h), robust schedules (core/estimator.h)

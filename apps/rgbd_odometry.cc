@@ -62,7 +62,7 @@ DEFINE_string(motion_guess, "",
               "trajectory (TUM text) that tells roughly how the camera moved "
               "between frames: wheels, an inertial sensor; empty: none");
 DEFINE_string(frontend, "patch", "where matches come from");
-DEFINE_int32(max_features, 400, "features wanted in a reference frame");
+DEFINE_int32(max_features, 600, "features wanted in a reference frame");
 DEFINE_int32(threads, 0,
              "threads that read images ahead and track; 0: one a core; the "
              "result does not depend on it");

@@ -21,7 +21,7 @@ struct FrontendOptions {
   const DepthNoiseModel* depth_noise = FindDepthNoiseModel("khoshelham");
 
   // The number of features wanted in a reference frame.
-  int max_features = 400;
+  int max_features = 600;
 
   // Depths beyond these limits (m) are not used.
   double min_depth = 0.3;

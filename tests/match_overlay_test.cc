@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Far from the colours of all weights, and black stays black when dimmed.
+// Bright, so that it shows whether the image is dimmed.
 constexpr int kGray = 200;
 
 Frame GrayFrame(const Camera& camera) {
