@@ -122,7 +122,7 @@ class Strip {
     if (end < text->size() && space != std::string::npos && space > 0) {
       end = space;
     }
-    const std::string row = text->substr(0, end);
+    std::string row = text->substr(0, end);
     text->erase(0, std::min(text->find_first_not_of(' ', end), text->size()));
     return row;
   }
