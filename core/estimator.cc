@@ -258,7 +258,7 @@ class Estimator::Solve {
                             &problem);
     }
     ceres::Solver::Options solver;
-    // The fastest on the compressed block (scripts/benchmark); its 7 x 6
+    // The fastest on the compressed block (docs/benchmarks.md); its 7 x 6
     // Jacobian is triangular, so squaring it only gives the Hessian back.
     solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
     solver.logging_type = ceres::SILENT;
