@@ -129,18 +129,18 @@ void ExpectRecovery(const std::vector<Outcome>& outcomes, int end) {
 
 TEST(OdometryFaultsTest, BlackFramesAreLostAndLeftBehind) {
   const auto outcomes =
-      TrackFaulty("circle", 45, {{FaultKind::kBlack, 15, 30}});
-  ExpectLost(outcomes, 15, 30);
+      TrackFaulty("circle", 50, {{FaultKind::kBlack, 15, 35}});
+  ExpectLost(outcomes, 15, 35);
   ExpectNoWrongOk(outcomes);
-  ExpectRecovery(outcomes, 30);
+  ExpectRecovery(outcomes, 35);
 }
 
 TEST(OdometryFaultsTest, CoveredDepthIsLostAndLeftBehind) {
   const auto outcomes =
-      TrackFaulty("circle", 45, {{FaultKind::kCovered, 15, 30}});
-  ExpectLost(outcomes, 15, 30);
+      TrackFaulty("circle", 60, {{FaultKind::kCovered, 15, 45}});  // 1 s
+  ExpectLost(outcomes, 15, 45);
   ExpectNoWrongOk(outcomes);
-  ExpectRecovery(outcomes, 30);
+  ExpectRecovery(outcomes, 45);
 }
 
 TEST(OdometryFaultsTest, FindsItselfAfterAKnock) {
