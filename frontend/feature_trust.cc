@@ -1,8 +1,9 @@
 #include "frontend/feature_trust.h"
 
 #include <algorithm>
-#include <optional>
 #include <utility>
+
+#include "frontend/seen_at.h"
 
 namespace rgbd_pose {
 namespace {
@@ -21,19 +22,6 @@ constexpr double kCellPx = 64.0;
 
 // One failed feature in a cell is chance.
 constexpr int kMinFailed = 2;
-
-// Where the current camera sees a point of the reference.
-std::optional<Eigen::Vector2d> Project(const Camera& camera,
-                                       const Rigid3d& cur_from_ref,
-                                       const Observation& o) {
-  const Eigen::Vector3d point =
-      cur_from_ref * Eigen::Vector3d((o.u - camera.cx) / camera.fx * o.depth,
-                                     (o.v - camera.cy) / camera.fy * o.depth,
-                                     o.depth);
-  if (o.depth <= 0.0 || point.z() <= 0.0) return std::nullopt;
-  return Eigen::Vector2d(camera.fx * point.x() / point.z() + camera.cx,
-                         camera.fy * point.y() / point.z() + camera.cy);
-}
 
 // Counts of features by cells of the image; those outside count nowhere.
 class CellCounts {
@@ -75,7 +63,7 @@ FeatureTrust::FeatureTrust(const FeatureSet& last, const FeatureMatches& found,
   for (size_t i = 0; i < agrees.size(); ++i) {
     if (!counts[i]) continue;
     const auto pixel =
-        Project(camera, estimate.cur_from_prev, last.observations[i]);
+        SeenAt(camera, estimate.cur_from_prev, last.observations[i]);
     if (pixel.has_value()) ++(agrees[i] ? agreed : failed).At(*pixel);
   }
   for (size_t i = 0; i < doubts_.size(); ++i) {
@@ -111,7 +99,7 @@ void FeatureTrust::Learn(const FeatureMatches& doubted,
   for (size_t i = 0; i < doubted.features.size(); ++i) {
     const Observation cur = doubted.matches.cur()[i];
     const auto expected =
-        Project(camera, cur_from_ref, doubted.matches.prev()[i]);
+        SeenAt(camera, cur_from_ref, doubted.matches.prev()[i]);
     const bool agrees =
         expected.has_value() &&
         (*expected - Eigen::Vector2d(cur.u, cur.v)).norm() <= kMaxErrorPx;

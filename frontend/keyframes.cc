@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "frontend/seen_at.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -16,17 +18,11 @@ Overlap OverlapOf(const Camera& camera, const FeatureSet& features,
   Overlap overlap;
   int seen = 0;
   for (const Observation& o : features.observations) {
-    const Eigen::Vector3d point =
-        cur_from_keyframe *
-        Eigen::Vector3d((o.u - camera.cx) / camera.fx * o.depth,
-                        (o.v - camera.cy) / camera.fy * o.depth, o.depth);
-    if (o.depth <= 0.0 || point.z() <= 0.0) continue;
     // Lens distortion does not matter here.
-    const Eigen::Vector2d pixel(camera.fx * point.x() / point.z() + camera.cx,
-                                camera.fy * point.y() / point.z() + camera.cy);
-    if (!camera.Contains(pixel)) continue;
+    const auto pixel = SeenAt(camera, cur_from_keyframe, o);
+    if (!pixel.has_value() || !camera.Contains(*pixel)) continue;
     ++seen;
-    overlap.flow_px += (pixel - Eigen::Vector2d(o.u, o.v)).norm();
+    overlap.flow_px += (*pixel - Eigen::Vector2d(o.u, o.v)).norm();
   }
   if (seen == 0) return overlap;
   overlap.share = static_cast<double>(seen) / features.observations.size();

@@ -14,69 +14,26 @@
 #include "frontend/frontend.h"
 #include "frontend/odometry.h"
 #include "frontend/synthetic_dataset.h"
+#include "tests/matched_views.h"
 
 namespace rgbd_pose {
 namespace {
 
-// Half a second apart on path xyz: about 0.1 m and 20 px of flow.
-constexpr int kPrev = 0;
-constexpr int kCur = 15;
+constexpr double kMedianPx = 1.0;
 
 // A match further than this from the truth shows another place: five times the
 // noise of the coarsest keypoints.
 constexpr double kWrongPx = 8.0;
 
-class DescriptorFrontendTest : public ::testing::TestWithParam<const char*> {
+class DescriptorFrontendTest : public ::testing::TestWithParam<const char*>,
+                               protected MatchedViews {
  protected:
-  DescriptorFrontendTest() : dataset_(Options()) {
-    FrontendOptions options;
-    options.camera = dataset_.camera().camera;
-    frontend_ = MakeFrontend(GetParam(), options);
-    cur_from_prev_ =
-        dataset_.WorldFromCam(kCur).Inverse() * dataset_.WorldFromCam(kPrev);
-  }
+  DescriptorFrontendTest() : MatchedViews(GetParam()) {}
 
-  static SyntheticOptions Options() {
-    SyntheticOptions options;
-    options.frames = 150;
-    return options;
-  }
-
-  FeatureMatches MatchFrom(const Frame& prev, const Frame& cur,
-                           const Rigid3d& guess) {
-    const std::unique_ptr<FeatureSet> reference = frontend_->Detect(prev);
-    FeatureMatches found{Correspondences(dataset_.camera().camera), {}};
-    frontend_->Match(*reference, cur, guess, &found);
-    return found;
-  }
-
-  // How far (px) each match is from where the true motion takes its point.
-  std::vector<double> Errors(const Correspondences& matches) const {
-    std::vector<double> errors;
-    for (size_t i = 0; i < matches.size(); ++i) {
-      const Observation cur = matches.cur()[i];
-      const Eigen::Vector2d expected = dataset_.camera().camera.Project(
-          cur_from_prev_ * matches.Point(matches.prev()[i]));
-      errors.push_back((expected - Eigen::Vector2d(cur.u, cur.v)).norm());
-    }
-    std::sort(errors.begin(), errors.end());
-    return errors;
-  }
-
+  // Enough matches for a good pose: more than twice what odometry calls ok.
   void ExpectMostlyRight(const FeatureMatches& found) const {
-    // Enough for a good pose: more than twice what odometry calls ok.
-    ASSERT_GE(found.matches.size(), 100u);
-    const std::vector<double> errors = Errors(found.matches);
-    EXPECT_LT(errors[errors.size() / 2], 1.0);
-    const auto wrong =
-        errors.end() - std::lower_bound(errors.begin(), errors.end(), kWrongPx);
-    // An M-estimator bears several times as many.
-    EXPECT_LE(wrong, 0.1 * static_cast<double>(errors.size()));
+    MatchedViews::ExpectMostlyRight(found, 100, kMedianPx, kWrongPx);
   }
-
-  SyntheticDataset dataset_;
-  std::unique_ptr<Frontend> frontend_;
-  Rigid3d cur_from_prev_;
 };
 
 TEST_P(DescriptorFrontendTest, MatchesAreWhereTheTruthHasThem) {

@@ -12,13 +12,10 @@
 #include "frontend/frontend.h"
 #include "frontend/odometry.h"
 #include "frontend/synthetic_dataset.h"
+#include "tests/matched_views.h"
 
 namespace rgbd_pose {
 namespace {
-
-// Half a second apart on path xyz: about 0.1 m and 20 px of flow.
-constexpr int kPrev = 0;
-constexpr int kCur = 15;
 
 // Noise of depth moves a point by up to half a pixel at this baseline.
 constexpr double kMedianPx = 0.5;
@@ -26,50 +23,12 @@ constexpr double kMedianPx = 0.5;
 // A match further than this from the truth shows another place.
 constexpr double kWrongPx = 3.0;
 
-class PatchFrontendTest : public ::testing::Test {
+class PatchFrontendTest : public ::testing::Test, protected MatchedViews {
  protected:
-  PatchFrontendTest() : dataset_(SyntheticOptions()) {
-    FrontendOptions options;
-    options.camera = dataset_.camera().camera;
-    frontend_ = MakeFrontend("patch", options);
-    cur_from_prev_ =
-        dataset_.WorldFromCam(kCur).Inverse() * dataset_.WorldFromCam(kPrev);
-  }
-
-  FeatureMatches MatchFrom(const Frame& prev, const Frame& cur,
-                           const Rigid3d& guess) {
-    const std::unique_ptr<FeatureSet> reference = frontend_->Detect(prev);
-    return MatchFrom(*reference, cur, guess);
-  }
-  FeatureMatches MatchFrom(const FeatureSet& reference, const Frame& cur,
-                           const Rigid3d& guess) {
-    FeatureMatches found{Correspondences(dataset_.camera().camera), {}};
-    frontend_->Match(reference, cur, guess, &found);
-    return found;
-  }
-
-  // How far (px) each match is from where the true motion takes its point.
-  std::vector<double> Errors(const Correspondences& matches) const {
-    std::vector<double> errors;
-    for (size_t i = 0; i < matches.size(); ++i) {
-      const Observation cur = matches.cur()[i];
-      const Eigen::Vector2d expected = dataset_.camera().camera.Project(
-          cur_from_prev_ * matches.Point(matches.prev()[i]));
-      errors.push_back((expected - Eigen::Vector2d(cur.u, cur.v)).norm());
-    }
-    std::sort(errors.begin(), errors.end());
-    return errors;
-  }
+  PatchFrontendTest() : MatchedViews("patch") {}
 
   void ExpectMostlyRight(const FeatureMatches& found) const {
-    ASSERT_GE(found.matches.size(), 200u);
-    EXPECT_EQ(found.features.size(), found.matches.size());
-    const std::vector<double> errors = Errors(found.matches);
-    EXPECT_LT(errors[errors.size() / 2], kMedianPx);
-    const auto wrong =
-        errors.end() - std::lower_bound(errors.begin(), errors.end(), kWrongPx);
-    // An M-estimator bears several times as many.
-    EXPECT_LE(wrong, 0.1 * static_cast<double>(errors.size()));
+    MatchedViews::ExpectMostlyRight(found, 200, kMedianPx, kWrongPx);
   }
 
   static void ExpectSame(const FeatureMatches& a, const FeatureMatches& b) {
@@ -92,10 +51,6 @@ class PatchFrontendTest : public ::testing::Test {
     other.pyramid.clear();
     return other;
   }
-
-  SyntheticDataset dataset_;
-  std::unique_ptr<Frontend> frontend_;
-  Rigid3d cur_from_prev_;
 };
 
 TEST_F(PatchFrontendTest, MatchesAreWhereTheTruthHasThem) {
