@@ -1,7 +1,5 @@
 #pragma once
 
-#include <ceres/loss_function.h>
-
 #include <memory>
 #include <string>
 #include <vector>
@@ -9,14 +7,9 @@
 #include "core/correspondences.h"
 #include "core/cost.h"
 #include "core/motion_estimate.h"
+#include "core/robust_terms.h"
 
 namespace rgbd_pose {
-
-// A cost and the loss on each of its residual blocks.
-struct RobustCost {
-  std::unique_ptr<Cost> cost;
-  std::unique_ptr<ceres::LossFunction> loss;  // null: least squares
-};
 
 // How losses get to their widths.
 enum class RobustSchedule {

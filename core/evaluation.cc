@@ -104,14 +104,29 @@ std::vector<double> PathLengths(const std::vector<PosePair>& pairs) {
   return path;
 }
 
-ErrorStatistics AbsoluteError(const std::vector<PosePair>& pairs,
-                              const Rigid3d& truth_from_estimate) {
-  std::vector<double> errors;
+std::vector<PoseError> PoseErrors(const std::vector<PosePair>& pairs,
+                                  const Rigid3d& truth_from_estimate,
+                                  const std::vector<Interval>& intervals) {
+  std::vector<PoseError> errors;
   for (const PosePair& pair : pairs) {
+    PoseError error;
+    error.timestamp = pair.timestamp;
     const Eigen::Vector3d aligned =
         truth_from_estimate * pair.estimate.translation;
-    errors.push_back((aligned - pair.truth.translation).norm());
+    error.position = (aligned - pair.truth.translation).norm();
+    errors.push_back(error);
   }
+  for (const auto& [i, j] : intervals) {
+    const Rigid3d error = RelativeError(pairs[i], pairs[j]);
+    errors[i].rpe_translation = error.translation.norm();
+    errors[i].rpe_rotation = error.Angle();
+  }
+  return errors;
+}
+
+ErrorStatistics AbsoluteError(const std::vector<PoseError>& poses) {
+  std::vector<double> errors;
+  for (const PoseError& pose : poses) errors.push_back(pose.position);
   return Summarise(std::move(errors));
 }
 
@@ -149,11 +164,12 @@ EvaluationReport Evaluate(const Trajectory& estimate,
   report.duration = times.back() - times.front();
   report.path_length = path.back();
   report.truth_from_estimate = AlignRigidly(pairs);
-  report.ate = AbsoluteError(pairs, report.truth_from_estimate);
+  const std::vector<Interval> intervals = TimeIntervals(
+      times, options.rpe_delta_seconds, options.max_time_difference);
+  report.poses = PoseErrors(pairs, report.truth_from_estimate, intervals);
+  report.ate = AbsoluteError(report.poses);
   report.rpe_frame = SummariseIntervals(pairs, FrameIntervals(pairs.size()));
-  report.rpe_seconds =
-      SummariseIntervals(pairs, TimeIntervals(times, options.rpe_delta_seconds,
-                                              options.max_time_difference));
+  report.rpe_seconds = SummariseIntervals(pairs, intervals);
   report.rpe_metres =
       SummariseIntervals(pairs, PathIntervals(path, options.rpe_delta_metres));
   if (pairs.size() > 1) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/rigid3.h"
 #include "core/trajectory.h"
@@ -44,6 +45,15 @@ struct FinalPoseError {
   double angle = 0.0;        // rad
 };
 
+// The errors of one paired pose.
+struct PoseError {
+  double timestamp = 0.0;  // of the estimate, s
+  double position = 0.0;   // after the alignment, m
+  // Of rpe_seconds, for the interval that starts here; empty if none does.
+  std::optional<double> rpe_translation;  // m
+  std::optional<double> rpe_rotation;     // rad
+};
+
 // All figures are over poses paired in time (core/pose_pairs.h). Those of
 // relative and final errors do not depend on the worlds of the trajectories.
 struct EvaluationReport {
@@ -66,6 +76,9 @@ struct EvaluationReport {
 
   // E from the first to the last paired pose; empty if there is but one.
   std::optional<FinalPoseError> final_pose;
+
+  // What ate and rpe_seconds sum up: one a paired pose, in time order.
+  std::vector<PoseError> poses;
 };
 
 // Judges an estimate. Throws InputError if the options are of no use or no

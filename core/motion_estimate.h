@@ -37,6 +37,15 @@ struct MotionEstimate {
   // with the motion within 99 % of the noise's distribution.
   std::vector<double> weights;
   std::vector<bool> is_inlier;
+
+  // Per match as well: norm of its whitened residual at this motion, in sigmas
+  // of the noise model, and how many independent measurements it holds: for
+  // right matches the norm follows a chi distribution of so many degrees. Of a
+  // match that several costs use, the largest norm. Both are 0 for matches that
+  // no cost could use, and all are where the motion was not judged.
+  std::vector<double> residual_norms;
+  std::vector<int> residual_degrees;
+
   int num_used = 0;     // matches that some cost could use
   int num_inliers = 0;  // of these, in agreement
 

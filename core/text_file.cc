@@ -35,6 +35,19 @@ std::vector<std::string> SplitWords(std::string_view line) {
   return words;
 }
 
+// What is written aside until it is whole.
+std::string AsideOf(const std::string& path) { return path + ".partial"; }
+
+std::FILE* OpenToWrite(const std::string& path) {
+  std::FILE* file = std::fopen(AsideOf(path).c_str(), "wb");
+  if (file == nullptr) {
+    throw InputError(path +
+                     ": cannot be written; check that its folder exists and "
+                     "may be written to");
+  }
+  return file;
+}
+
 }  // namespace
 
 std::string ReadTextFile(const std::string& path) {
@@ -97,13 +110,8 @@ double ParseNumber(std::string_view word, const std::string& path, int line,
 }
 
 void WriteFileAtomically(const std::string& path, std::string_view content) {
-  const std::string aside = path + ".partial";
-  std::FILE* file = std::fopen(aside.c_str(), "wb");
-  if (file == nullptr) {
-    throw InputError(path +
-                     ": cannot be written; check that its folder exists and "
-                     "may be written to");
-  }
+  const std::string aside = AsideOf(path);
+  std::FILE* file = OpenToWrite(path);
   const bool written =
       std::fwrite(content.data(), 1, content.size(), file) == content.size();
   const bool closed = std::fclose(file) == 0;
@@ -114,6 +122,15 @@ void WriteFileAtomically(const std::string& path, std::string_view content) {
     std::filesystem::remove(aside, ignored);
     throw InputError(path + ": writing failed; is the disk full?");
   }
+}
+
+void RequireWritable(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw InputError(path + ": is a folder, a file is needed here");
+  }
+  std::fclose(OpenToWrite(path));
+  std::filesystem::remove(AsideOf(path), ignored);
 }
 
 }  // namespace rgbd_pose

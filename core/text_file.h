@@ -32,4 +32,8 @@ std::string ReadTextFile(const std::string& path);
 // InputError if it cannot (folder missing, disk full).
 void WriteFileAtomically(const std::string& path, std::string_view content);
 
+// Throws InputError if WriteFileAtomically could not write the file: to be told
+// before the work rather than after it. Leaves everything as it was.
+void RequireWritable(const std::string& path);
+
 }  // namespace rgbd_pose
