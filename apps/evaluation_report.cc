@@ -63,6 +63,13 @@ json StatisticsToJson(const ErrorStatistics& e) {
       {"rmse", e.rmse}, {"median", e.median}, {"mean", e.mean}, {"max", e.max}};
 }
 
+json PoseToJson(const Rigid3d& pose) {
+  const Eigen::Vector3d& t = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  return {{"translation_m", {t.x(), t.y(), t.z()}},
+          {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
 }  // namespace
 
 std::string FormatEvaluation(const EvaluationReport& report) {
@@ -91,16 +98,18 @@ std::string FormatEvaluation(const EvaluationReport& report) {
 }
 
 json EvaluationToJson(const EvaluationReport& report) {
-  json result = {{"estimated_poses", report.estimated_poses},
-                 {"paired_poses", report.paired_poses},
-                 {"max_time_difference_s", report.options.max_time_difference},
-                 {"duration_s", report.duration},
-                 {"path_length_m", report.path_length},
-                 {"ate",
-                  {{"definition", kAteDefinition},
-                   {"count", report.ate.count},
-                   {"position_m", StatisticsToJson(report.ate)}}},
-                 {"final_pose", nullptr}};
+  json result = {
+      {"estimated_poses", report.estimated_poses},
+      {"paired_poses", report.paired_poses},
+      {"max_time_difference_s", report.options.max_time_difference},
+      {"duration_s", report.duration},
+      {"path_length_m", report.path_length},
+      {"ate",
+       {{"definition", kAteDefinition},
+        {"count", report.ate.count},
+        {"position_m", StatisticsToJson(report.ate)}}},
+      {"truth_from_estimate", PoseToJson(report.truth_from_estimate)},
+      {"final_pose", nullptr}};
   for (const RelativeEntry& entry : RelativeEntries(report)) {
     result[entry.key] = {
         {"definition", entry.definition},

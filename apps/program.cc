@@ -165,6 +165,8 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
   return Run(argc, argv, info, body);
 }
 
+std::string ProgramVersion() { return kVersion; }
+
 std::string FormatFlagFile(const ProgramInfo& info) {
   std::string text;
   for (const FlagGroup& group : info.flag_groups) {

@@ -2,6 +2,8 @@
 
 #include <unistd.h>
 
+#include <cinttypes>
+#include <cmath>
 #include <cstdio>
 #include <utility>
 
@@ -28,14 +30,39 @@ void ProgressBar::Update(int done) {
   const Clock::time_point now = Clock::now();
   if (done < total_ && now - last_drawn_ < kRedrawEvery) return;
   last_drawn_ = now;
-  const double elapsed = std::chrono::duration<double>(now - start_).count();
-  const double left = done > 0 ? elapsed * (total_ - done) / done : 0.0;
   const int filled = kBarWidth * done / total_;
   const std::string bar =
       std::string(filled, '#') + std::string(kBarWidth - filled, '.');
-  std::fprintf(stderr, "\r\033[K%s [%s] %d/%d, %.0f s left", label_.c_str(),
-               bar.c_str(), done, total_, left);
+  std::fprintf(stderr, "\r\033[K%s [%s] %d/%d, %s left", label_.c_str(),
+               bar.c_str(), done, total_, TimeLeft(done).c_str());
   std::fflush(stderr);
+}
+
+void ProgressBar::PrintLine(const std::string& line) {
+  std::fprintf(stderr, "%s%s\n", visible_ ? "\r\033[K" : "", line.c_str());
+}
+
+std::string ProgressBar::TimeLeft(int done) const {
+  if (done <= 0) return "?";
+  const std::chrono::duration<double> elapsed = Clock::now() - start_;
+  return FormatDuration(elapsed.count() * (total_ - done) / done);
+}
+
+std::string FormatDuration(double seconds) {
+  constexpr int64_t kMinute = 60;
+  constexpr int64_t kHour = 60 * kMinute;
+  const int64_t whole = std::llround(seconds);
+  char text[64];
+  if (whole < kMinute) {
+    std::snprintf(text, sizeof(text), "%" PRId64 " s", whole);
+  } else if (whole < kHour) {
+    std::snprintf(text, sizeof(text), "%" PRId64 " min %02" PRId64 " s",
+                  whole / kMinute, whole % kMinute);
+  } else {
+    std::snprintf(text, sizeof(text), "%" PRId64 " h %02" PRId64 " min",
+                  whole / kHour, whole % kHour / kMinute);
+  }
+  return text;
 }
 
 }  // namespace rgbd_pose

@@ -18,6 +18,16 @@ class ProgressBar {
   // second.
   void Update(int done);
 
+  // Prints a line on stderr, terminal or not; the bar moves below it with the
+  // next update.
+  void PrintLine(const std::string& line);
+
+  // Whether the bar is drawn at all.
+  bool visible() const { return visible_; }
+
+  // How long the rest will take, if it goes on like this: "12 s", "3 h 05 min".
+  std::string TimeLeft(int done) const;
+
  private:
   using Clock = std::chrono::steady_clock;
   std::string label_;
@@ -26,5 +36,8 @@ class ProgressBar {
   Clock::time_point start_;
   Clock::time_point last_drawn_;
 };
+
+// A duration as people say it: "12 s", "4 min 08 s", "3 h 05 min".
+std::string FormatDuration(double seconds);
 
 }  // namespace rgbd_pose

@@ -15,10 +15,13 @@
 #include <thread>
 
 #include "apps/evaluation_report.h"
+#include "apps/frame_errors.h"
 #include "apps/frame_selection.h"
 #include "apps/odometry_run.h"
 #include "apps/program.h"
 #include "apps/progress_bar.h"
+#include "apps/report_page.h"
+#include "apps/residual_histogram.h"
 #include "apps/run_summary.h"
 #include "core/depth_noise.h"
 #include "core/evaluation.h"
@@ -27,9 +30,11 @@
 #include "core/trajectory.h"
 #include "costs/cost_factory.h"
 #include "frontend/camera_file.h"
+#include "frontend/cloud_fusion.h"
 #include "frontend/depth_scale.h"
 #include "frontend/frontend.h"
 #include "frontend/match_overlay.h"
+#include "frontend/ply_writer.h"
 #include "frontend/tum_dataset.h"
 #include "robust/m_estimator.h"
 #include "robust/scale.h"
@@ -75,6 +80,12 @@ DEFINE_bool(validate_only, false,
 DEFINE_string(debug_images, "",
               "frames whose matches are drawn into OUTPUT/debug, coloured by "
               "robust weight: all, or numbers and ranges such as 10,20-40:5");
+DEFINE_string(save_cloud, "",
+              "file for a coloured point cloud of what was seen (PLY), in the "
+              "world of the trajectory; empty: none");
+DEFINE_double(voxel, 0.01,
+              "side of the cubes (m) that the cloud's points are merged in");
+DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
 DEFINE_string(output, "", "folder for the results, made if missing");
 
 namespace rgbd_pose {
@@ -94,7 +105,7 @@ ProgramInfo Info() {
       {"Estimation",
        {"cost", "loss", "scale", "robust_schedule", "initial_guess", "on_lost",
         "assembly", "frontend", "max_features", "threads"}},
-      {"Output", {"output", "debug_images"}}};
+      {"Output", {"output", "report", "debug_images", "save_cloud", "voxel"}}};
   info.choices = {{"camera", CameraPresetNames()},
                   {"depth_noise", DepthNoiseModelNames()},
                   {"cost", CostNames()},
@@ -180,16 +191,49 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                      const Odometry& odometry) {
   char name[32];
   std::snprintf(name, sizeof(name), "%06d.png", tracked.index);
-  char caption[128];
-  std::snprintf(caption, sizeof(caption),
-                "frame %d  %s  %d of %d matches agree  reference %d",
-                tracked.index, ToString(tracked.status), tracked.inliers,
-                tracked.matches, tracked.reference);
+  std::string caption = "frame " + std::to_string(tracked.index) + "  " +
+                        ToString(tracked.status);
+  if (tracked.reference >= 0) {
+    caption += "  " + std::to_string(tracked.inliers) + " of " +
+               std::to_string(tracked.matches) + " matches agree  reference " +
+               std::to_string(tracked.reference);
+  }
   const std::string path = (folder / name).string();
   if (!cv::imwrite(path, DrawMatches(frame, camera, odometry.last_matches(),
                                      odometry.last_estimate(), caption))) {
     throw InputError(path + ": cannot be written");
   }
+}
+
+// Of the cloud that --save_cloud asks for; none if it asks for none.
+std::optional<CloudFusion> MakeCloudFusion(const Camera& camera) {
+  CloudFusionOptions options;
+  options.camera = camera;
+  options.voxel_size = FLAGS_voxel;
+  const std::string problem = options.Check();
+  if (!problem.empty()) throw InputError("--voxel: " + problem);
+  if (FLAGS_save_cloud.empty()) return std::nullopt;
+  return CloudFusion(options);
+}
+
+// Writes the cloud and returns what metrics.json says of it.
+nlohmann::json SaveCloud(const CloudFusion& fusion) {
+  WritePly(FLAGS_save_cloud, fusion.cloud().Points());
+  std::printf("cloud       %d points of %d frames in %s\n",
+              fusion.cloud().size(), fusion.frames(), FLAGS_save_cloud.c_str());
+  return {{"points", fusion.cloud().size()},
+          {"frames", fusion.frames()},
+          {"voxel_m", FLAGS_voxel}};
+}
+
+// The page is a help to look at a run; a program built without the library that
+// it needs says so and goes on.
+void WriteReport() {
+  if (!FLAGS_report) return;
+  std::printf("report in   %s\n",
+              HasReportLibrary() ? WriteRunReport(FLAGS_output).c_str()
+                                 : "no file: built without plotly.js, which "
+                                   "scripts/install_dependencies fetches");
 }
 
 int ValidateOnly(const TumDataset& dataset, int threads) {
@@ -228,9 +272,11 @@ int Main() {
     motion_guess.emplace(ReadTrajectory(FLAGS_motion_guess));
   }
   const FrameSelection drawn("debug_images", FLAGS_debug_images);
+  std::optional<CloudFusion> fusion = MakeCloudFusion(dataset.camera().camera);
   const std::filesystem::path output(FLAGS_output);
   const std::filesystem::path debug_folder = output / "debug";
   MakeFolder(FLAGS_debug_images.empty() ? output : debug_folder);
+  if (fusion.has_value()) RequireWritable(FLAGS_save_cloud);
   const std::string warning = DepthScaleWarning(dataset.Read(0));
   if (!warning.empty()) LOG(WARNING) << warning;
   if (dataset.unmatched_color() > 0) {
@@ -240,6 +286,7 @@ int Main() {
   }
 
   std::vector<TrackedFrame> frames;
+  ResidualHistogram residuals;
   {
     ProgressBar bar("tracking", dataset.size());
     RunOptions options;
@@ -249,6 +296,13 @@ int Main() {
       if (drawn.Contains(tracked.index)) {
         WriteDebugImage(debug_folder, frame, tracked, dataset.camera().camera,
                         odometry);
+      }
+      if (fusion.has_value() && fusion->Wants(tracked)) {
+        fusion->Add(frame, dataset.ReadColor(tracked.index),
+                    tracked.world_from_cam);
+      }
+      if (tracked.status != TrackingStatus::kLost && tracked.matches > 0) {
+        residuals.Add(odometry.last_estimate());
       }
       bar.Update(tracked.index + 1);
     };
@@ -263,12 +317,16 @@ int Main() {
                             {"dataset", FLAGS_dataset},
                             {"unmatched_color", dataset.unmatched_color()},
                             {"peak_rss_mb", PeakMemoryMb()},
-                            {"run", SummaryToJson(summary)}};
+                            {"run", SummaryToJson(summary)},
+                            {"residuals", residuals.ToJson()}};
   if (truth.has_value()) {
     const EvaluationReport report = Evaluate(trajectory, *truth, {});
     std::printf("%s", FormatEvaluation(report).c_str());
     metrics["evaluation"] = EvaluationToJson(report);
+    WriteFileAtomically((output / "errors.csv").string(),
+                        FormatErrorsCsv(frames, *truth, report));
   }
+  if (fusion.has_value()) metrics["cloud"] = SaveCloud(*fusion);
   WriteFileAtomically((output / "trajectory.txt").string(),
                       FormatTrajectory(trajectory));
   WriteFileAtomically((output / "frames.csv").string(),
@@ -278,6 +336,7 @@ int Main() {
   WriteFileAtomically((output / "metrics.json").string(),
                       metrics.dump(2) + "\n");
   std::printf("results in  %s\n", FLAGS_output.c_str());
+  WriteReport();
   return summary.TrackedShare() < kMinTrackedShare ? kExitTrackingFailed
                                                    : kExitOk;
 }

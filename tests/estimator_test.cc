@@ -8,6 +8,7 @@
 #include "core/input_error.h"
 #include "costs/cost_factory.h"
 #include "frontend/synthetic_matches.h"
+#include "robust/m_estimator.h"
 
 namespace rgbd_pose {
 namespace {
@@ -96,6 +97,26 @@ TEST(EstimatorTest, LeastSquaresIsRuinedByTheSameOutliers) {
   const MotionEstimate estimate = MakeEstimator("none").Estimate(matches);
   EXPECT_GT(ErrorOf(estimate.cur_from_prev, truth).translation, 0.02)
       << "the outliers of the other tests are no challenge";
+}
+
+// The norms are what the loss weighed: Huber gives 1 up to its width and the
+// width over the norm beyond. They are those of the noise, too.
+TEST(EstimatorTest, ResidualNormsExplainTheWeights) {
+  RandomWorld world(13);
+  const MotionEstimate estimate = MakeEstimator("huber").Estimate(
+      world.Matches(2000, 0.0, world.Motion(0.1, 0.1)));
+  ASSERT_TRUE(estimate.ok()) << estimate.reason;
+  ASSERT_EQ(estimate.residual_norms.size(), 2000u);
+  const double width = FindMEstimator("huber")->Width95(3);
+  double sum_of_squares = 0.0;
+  for (size_t i = 0; i < estimate.residual_norms.size(); ++i) {
+    EXPECT_EQ(estimate.residual_degrees[i], 3);
+    const double norm = estimate.residual_norms[i];
+    EXPECT_NEAR(estimate.weights[i], norm <= width ? 1.0 : width / norm, 1e-12);
+    sum_of_squares += norm * norm;
+  }
+  // The mean of chi^2 of 3 degrees over 2000 matches scatters by 0.055.
+  EXPECT_NEAR(sum_of_squares / 2000, 3.0, 0.3);
 }
 
 TEST(EstimatorTest, TooFewMatchesAreAStatus) {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "frontend/synthetic_matches.h"
@@ -130,6 +131,26 @@ TEST(EvaluationTest, RpeByHand) {
 
 // The truth runs along z at 0.5 m/s; the estimate gains 0.03 m and 0.02 rad of
 // yaw a second on it. So every error is the drift times its interval.
+// The errors of single poses are those that the statistics sum up.
+TEST(EvaluationTest, PosesHaveErrorsOfTheirOwn) {
+  const EvaluationReport report = Evaluate(Walk(2, 100), Walk(3, 100));
+  ASSERT_EQ(report.poses.size(), 100u);
+  double largest = 0.0;
+  double largest_turn = 0.0;
+  int intervals = 0;
+  for (const PoseError& pose : report.poses) {
+    largest = std::max(largest, pose.position);
+    ASSERT_EQ(pose.rpe_translation.has_value(), pose.rpe_rotation.has_value());
+    if (!pose.rpe_rotation.has_value()) continue;
+    ++intervals;
+    largest_turn = std::max(largest_turn, *pose.rpe_rotation);
+  }
+  EXPECT_EQ(largest, report.ate.max);
+  EXPECT_EQ(largest_turn, report.rpe_seconds.rotation.max);
+  EXPECT_EQ(intervals, 70);  // of 1 s at 30 Hz
+  EXPECT_TRUE(report.poses[69].rpe_translation.has_value());
+}
+
 TEST(EvaluationTest, RpeOfAConstantDrift) {
   constexpr double kSpeed = 0.5, kDrift = 0.03, kYawDrift = 0.02;
   Trajectory truth, estimate;

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
@@ -116,6 +117,62 @@ TEST_F(OdometryProgramTest, ThreadsDoNotChangeTheResult) {
               ReadTextFile(folder_ / "many/trajectory.txt"));
     EXPECT_EQ(WithoutTimes(ReadTextFile(folder_ / "one/frames.csv")),
               WithoutTimes(ReadTextFile(folder_ / "many/frames.csv")));
+  }
+}
+
+TEST_F(OdometryProgramTest, SavesACloudOfTheRoom) {
+  const auto cloud = [this](const std::string& threads) {
+    const std::string file = folder_ / ("cloud" + threads + ".ply");
+    const RunResult run = Run(Call("run") + " --threads=" + threads +
+                              " --voxel=0.02 --save_cloud=" + file);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr(file));
+    return ReadTextFile(file);
+  };
+  const std::string bytes = cloud("1");
+  EXPECT_EQ(bytes, cloud("2"));
+
+  const std::string kStart =
+      "ply\nformat binary_little_endian 1.0\nelement vertex ";
+  ASSERT_EQ(bytes.substr(0, kStart.size()), kStart);
+  const size_t points = std::stoul(bytes.substr(kStart.size()));
+  const std::string kHeaderEnd = "end_header\n";
+  const size_t first = bytes.find(kHeaderEnd) + kHeaderEnd.size();
+  constexpr size_t kPointBytes = 15;
+  ASSERT_EQ(bytes.size(), first + kPointBytes * points);
+  // A view into a furnished room of 5 x 4 x 2.6 m is some square metres, and a
+  // square metre 2500 cubes, or a few times that where noise spreads it.
+  EXPECT_GT(points, 10000u);
+  EXPECT_LT(points, 300000u);
+  float nearest = 100.0F, furthest = 0.0F;
+  for (size_t i = 0; i < points; ++i) {
+    float z;
+    std::memcpy(&z, &bytes[first + kPointBytes * i + 8], sizeof(z));
+    nearest = std::min(nearest, z);
+    furthest = std::max(furthest, z);
+  }
+  EXPECT_GT(nearest, 0.25F);  // sensors see nothing nearer
+  EXPECT_GT(furthest, 1.5F);
+  EXPECT_LT(furthest, 6.4F);  // the room's diagonal
+}
+
+TEST_F(OdometryProgramTest, RefusesACloudItCannotWriteBeforeTracking) {
+  const struct {
+    std::string arguments;
+    std::string message;
+  } kCases[] = {
+      {" --voxel=0", "--voxel"},
+      {" --voxel=2", "--voxel"},
+      {" --save_cloud=" + (folder_ / "missing/cloud.ply"), "missing/cloud.ply"},
+      {" --save_cloud=" + folder_.path(), "is a folder"},
+  };
+  for (const auto& c : kCases) {
+    SCOPED_TRACE(c.arguments);
+    const RunResult run = Run(Call("bad") + c.arguments);
+    EXPECT_EQ(run.exit_code, 2);
+    EXPECT_EQ(run.out, "");
+    EXPECT_THAT(run.err, HasSubstr(c.message));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   }
 }
 

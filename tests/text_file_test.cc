@@ -90,5 +90,17 @@ TEST(TextFileTest, NamesTheFileItCannotWrite) {
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
 }
 
+TEST(TextFileTest, TellsAheadWhatItCannotWrite) {
+  const TempFolder folder;
+  ExpectInputError([&] { RequireWritable(folder / "none/a.txt"); },
+                   {folder / "none/a.txt"});
+  ExpectInputError([&] { RequireWritable(folder.path()); }, {folder.path()});
+  RequireWritable(folder / "a.txt");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  folder.Write("a.txt", "x");
+  RequireWritable(folder / "a.txt");
+  EXPECT_EQ(ReadTextFile(folder / "a.txt"), "x");
+}
+
 }  // namespace
 }  // namespace rgbd_pose

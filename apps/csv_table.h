@@ -1,0 +1,32 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace rgbd_pose {
+
+// A text table as the programs write it: a line of column names, then rows of
+// cells set apart by commas; cells may be in double quotes.
+class CsvTable {
+ public:
+  // Throws InputError if the file cannot be read or a row has not as many
+  // cells as there are columns.
+  static CsvTable Read(const std::string& path);
+
+  size_t size() const { return rows_.size(); }
+  bool Has(const std::string& column) const;
+
+  // The cells of a column. Throws InputError if there is no such column.
+  std::vector<std::string> Words(const std::string& column) const;
+
+  // The same as numbers, NaN where a cell is empty. Throws InputError for
+  // anything else that is no finite number.
+  std::vector<double> Numbers(const std::string& column) const;
+
+ private:
+  std::string path_;
+  std::vector<std::string> columns_;
+  std::vector<std::vector<std::string>> rows_;
+};
+
+}  // namespace rgbd_pose

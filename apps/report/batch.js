@@ -1,0 +1,141 @@
+'use strict';
+
+// The page of a batch: many sequences with many settings.
+
+const SETTING_SYMBOLS = ['circle', 'square', 'diamond', 'triangle-up', 'x', 'star'];
+
+const BATCH_FIGURES = [
+  {key: 'ate_rmse_m', id: 'batch-ate', title: 'Position error (ATE, RMSE)',
+   label: 'ATE', unit: 'mm', factor: 1000,
+   text: 'Distance of positions from the truth after turning and shifting the ' +
+         'whole path to fit best; its scale is kept.'},
+  {key: 'rpe_seconds_translation_m', id: 'batch-rpe',
+   title: 'Motion error over 1 s (RPE, RMSE)', label: 'RPE', unit: 'mm', factor: 1000,
+   text: 'Error of every motion that takes 1 s.'},
+  {key: 'rpe_seconds_rotation_deg', id: 'batch-turn',
+   title: 'Turn error over 1 s (RPE, RMSE)', label: 'RPE', unit: '°', factor: 1,
+   text: 'The same motions: by which angle their turn is off.'},
+  {key: 'track_ms_median', id: 'batch-time', title: 'Time per frame', label: 'time',
+   unit: 'ms', factor: 1,
+   text: 'Median tracking time, without decoding.'},
+];
+
+function distinct(values) {
+  return [...new Set(values)];
+}
+
+// What sets a run apart from others: the settings that are not all the same.
+function settingName(row, varied) {
+  return varied.map(name => row[name]).join(', ') || 'all runs';
+}
+
+function batchHeader(data, varied) {
+  const rows = data.rows;
+  document.title = data.name + ': rgbd_pose batch';
+  const fixed = ['cost', 'loss', 'frontend'].filter(name => !varied.includes(name));
+  const page = document.getElementById('page');
+  page.append(make('h1', {}, 'Batch: ' + data.name));
+  if (rows.length > 0 && fixed.length > 0) {
+    page.append(make('p', {class: 'soft'}, 'The same in all runs: ' +
+        fixed.map(name => `${name} ${rows[0][name]}`).join(', ') + '.'));
+  }
+  const figures = make('div', {class: 'figures'});
+  const ok = rows.filter(row => row.status === 'ok').length;
+  const count = name => distinct(rows.map(row => row[name])).length;
+  for (const [value, text] of [
+    [rows.length, 'runs'], [ok, 'of them ok'],
+    [count('sequence'), 'sequences'],
+    [distinct(rows.map(row => settingName(row, varied))).length, 'settings'],
+    [count('repeat'), 'repeats'],
+  ]) {
+    figures.append(make('div', {class: 'figure'}, make('b', {}, String(value)),
+        make('span', {}, text)));
+  }
+  page.append(figures);
+}
+
+// A row a sequence; settings side by side within it.
+function batchPlot(data, figure, sequences, settings, varied) {
+  const rows = data.rows.filter(row => known(row[figure.key]));
+  if (rows.length === 0) return;
+  sequences = sequences.filter(name => rows.some(row => row.sequence === name));
+  const element = section(figure.title, figure.text + ' Logarithmic; less is better.');
+  const traces = settings.map((setting, k) => {
+    const own = rows.filter(row => settingName(row, varied) === setting);
+    // Within the height of 1 that a sequence has.
+    const shift = settings.length > 1 ? 0.6 * (k / (settings.length - 1) - 0.5) : 0;
+    return {
+      type: 'scatter', mode: 'markers', name: setting,
+      x: own.map(row => figure.factor * row[figure.key]),
+      y: own.map(row => sequences.indexOf(row.sequence) + shift),
+      customdata: own.map(row => `${row.sequence}, run ${row.repeat}`),
+      hovertemplate: `%{customdata}: %{x:.3~g} ${figure.unit}` +
+          '<extra>%{fullData.name}</extra>',
+      marker: {size: 9, color: SEGMENT_COLORS[k % SEGMENT_COLORS.length],
+               symbol: SETTING_SYMBOLS[
+                   Math.floor(k / SEGMENT_COLORS.length) % SETTING_SYMBOLS.length]},
+    };
+  });
+  const values = rows.map(row => figure.factor * row[figure.key]).filter(v => v > 0);
+  const low = Math.log10(Math.min(...values)), high = Math.log10(Math.max(...values));
+  // At least from half to double, so that small differences stay small.
+  const room = Math.max(0.05 * (high - low), 0.3 - (high - low) / 2, 0.02);
+  const div = plot(figure.id, 'batch', element, traces, {
+    height: 110 + sequences.length * Math.max(34, 12 * settings.length),
+    showlegend: settings.length > 1,
+    hovermode: 'closest',
+    xaxis: axis(`${figure.label} (${figure.unit})`, Object.assign(
+        {type: 'log', range: [low - room, high + room]},
+        logTicks(low - room, high + room))),
+    yaxis: axis('', {
+      range: [sequences.length - 0.5, -0.5], tickvals: sequences.map((s, i) => i),
+      ticktext: sequences.map(shorten), gridcolor: '#d8dee4'}),
+  });
+  div.style.height = '';
+}
+
+// Ticks at 1, 2 and 5 times powers of ten, or at these powers alone if there
+// are many.
+function logTicks(low, high) {
+  const tickvals = [];
+  for (let power = Math.floor(low); power <= high; ++power) {
+    for (const digit of high - low > 2.5 ? [1] : [1, 2, 5]) {
+      tickvals.push(Number(`${digit}e${power}`));
+    }
+  }
+  return {tickvals, ticktext: tickvals.map(String)};
+}
+
+// Long names of sequences would leave no room for the plot on a phone; it is
+// their ends that differ.
+function shorten(name) {
+  const kLongest = window.innerWidth < 600 ? 14 : 40;
+  return name.length > kLongest ? '…' + name.slice(1 - kLongest) : name;
+}
+
+function batchTable(data, varied) {
+  const number = (value, factor, count = 3) => (
+      {number: known(value) ? digits(value * factor, count) : '–'});
+  section('All runs').append(table(
+      ['sequence', ...varied, {number: 'run'}, 'status', {number: 'tracked (%)'},
+       {number: 'ATE (mm)'}, {number: 'RPE (mm/s)'}, {number: 'RPE (°/s)'},
+       {number: 'ms/frame'}],
+      data.rows.map(row => [
+        {class: 'name', text: row.sequence}, ...varied.map(name => row[name]),
+        {number: String(row.repeat)}, row.status, number(row.tracked_share, 100),
+        number(row.ate_rmse_m, 1000), number(row.rpe_seconds_translation_m, 1000),
+        number(row.rpe_seconds_rotation_deg, 1), number(row.track_ms_median, 1),
+      ]), 'stack wide'));
+}
+
+function showBatch(data) {
+  const varied = ['cost', 'loss', 'frontend'].filter(
+      name => distinct(data.rows.map(row => row[name])).length > 1);
+  const sequences = distinct(data.rows.map(row => row.sequence));
+  const settings = distinct(data.rows.map(row => settingName(row, varied)));
+  batchHeader(data, varied);
+  for (const figure of BATCH_FIGURES) {
+    batchPlot(data, figure, sequences, settings, varied);
+  }
+  batchTable(data, varied);
+}

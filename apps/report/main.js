@@ -1,0 +1,7 @@
+'use strict';
+
+const PAGES = {run: showRun, batch: showBatch};
+const page = document.getElementById('page');
+PAGES[page.dataset.kind](JSON.parse(document.getElementById('data').textContent));
+fitForPrint();
+page.dataset.done = 'true';

@@ -1,0 +1,205 @@
+'use strict';
+
+// What the pages share: elements, numbers in words and a plain look of plots.
+
+// Okabe and Ito: told apart by the colour-blind as well.
+const COLOR = {
+  black: '#000000', orange: '#E69F00', sky: '#56B4E9', green: '#009E73',
+  yellow: '#F0E442', blue: '#0072B2', vermillion: '#D55E00', purple: '#CC79A7',
+  grey: '#8c959f',
+};
+// Of the segments of a path, in order; black is the truth's.
+const SEGMENT_COLORS = [
+  COLOR.blue, COLOR.vermillion, COLOR.green, COLOR.purple, COLOR.orange,
+  COLOR.sky,
+];
+
+// Makes an element: make('td', {class: 'number'}, 'text' or child, ...).
+function make(tag, attributes, ...children) {
+  const element = document.createElement(tag);
+  for (const [name, value] of Object.entries(attributes || {})) {
+    element.setAttribute(name, value);
+  }
+  element.append(...children);
+  return element;
+}
+
+function known(value) {
+  return value !== null && value !== undefined && Number.isFinite(value);
+}
+
+// A number with so many significant digits, never as 1e-7.
+function digits(value, count) {
+  if (!known(value)) return 'n/a';
+  if (value === 0) return '0';
+  const decimals = count - 1 - Math.floor(Math.log10(Math.abs(value)));
+  return value.toFixed(Math.min(Math.max(decimals, 0), 12));
+}
+
+function largest(values) {
+  return values.reduce((most, v) => (known(v) && v > most ? v : most), 0);
+}
+
+// Metres as what reads best up to the largest of them.
+function lengthUnit(most) {
+  return most < 1 ? {name: 'mm', factor: 1000} : {name: 'm', factor: 1};
+}
+
+function scaled(values, factor) {
+  return values.map(v => (known(v) ? v * factor : null));
+}
+
+function axis(title, more) {
+  return Object.assign({
+    title: {text: title, standoff: 6},
+    automargin: true,
+    zeroline: false,
+    gridcolor: '#e7ebef',
+    linecolor: '#8c959f',
+    linewidth: 1,
+    ticks: 'outside',
+    tickcolor: '#8c959f',
+    ticklen: 4,
+    nticks: 8,
+  }, more);
+}
+
+const BASE_LAYOUT = {
+  font: {family: 'system-ui, -apple-system, "Segoe UI", Roboto, Arial, sans-serif',
+         size: 12, color: '#1b1f24'},
+  paper_bgcolor: '#fff',
+  plot_bgcolor: '#fff',
+  margin: {l: 10, r: 14, t: 10, b: 10},
+  legend: {orientation: 'h', x: 0, xanchor: 'left', y: 1.02, yanchor: 'bottom',
+           bgcolor: 'rgba(0,0,0,0)', itemsizing: 'constant'},
+  hovermode: 'x unified',
+  hoverlabel: {font: {size: 12}},
+  dragmode: false,
+};
+
+// The bar of buttons would lie over titles and legends; dragging zooms and a
+// double click goes back without it.
+const CONFIG = {displayModeBar: false, responsive: true};
+
+// Dragging zooms with a mouse; on a touch screen it must scroll the page.
+function dragMode() {
+  return window.matchMedia('(pointer: coarse)').matches ? false : 'zoom';
+}
+
+function plot(id, size, parent, traces, layout) {
+  const div = make('div', {id: id, class: 'plot ' + size});
+  parent.append(div);
+  Plotly.newPlot(
+      div, traces,
+      Object.assign({}, BASE_LAYOUT, {dragmode: dragMode()}, layout), CONFIG);
+  return div;
+}
+
+// Rows of one time axis, top to bottom: their y axes and titles. Each row is
+// {title, y, weight} with y the title of its axis.
+function rowsLayout(rows, xTitle, xRange) {
+  const gap = 0.11;
+  const total = rows.reduce((sum, row) => sum + (row.weight || 1), 0);
+  const height = (1 - gap * (rows.length - 1)) / total;
+  const layout = {annotations: [], showlegend: false};
+  let top = 1;
+  rows.forEach((row, i) => {
+    const number = i === 0 ? '' : String(i + 1);
+    const bottom = Math.max(0, top - height * (row.weight || 1));
+    layout['yaxis' + number] = axis(row.y, Object.assign(
+        {domain: [bottom, top], nticks: 5, rangemode: 'tozero'}, row.axis));
+    layout.annotations.push({
+      text: row.title, showarrow: false, xref: 'paper', yref: 'paper', x: 0,
+      xanchor: 'left', y: top, yanchor: 'bottom', yshift: 3, align: 'left',
+      font: {size: 12.5},
+    });
+    top = bottom - gap;
+  });
+  const last = rows.length === 1 ? '' : String(rows.length);
+  layout.xaxis = axis(xTitle, {anchor: 'y' + last, range: xRange});
+  layout.margin = {l: 10, r: 14, t: 26, b: 10};
+  return layout;
+}
+
+// The same range of times in all plots, with room for markers at its ends.
+function timeRange(data) {
+  const end = largest(data.frames.t) || 1;
+  return [-0.01 * end, 1.01 * end];
+}
+
+// A dashed line across row `number` ('' is the first).
+function level(value, number) {
+  return {type: 'line', xref: 'paper', x0: 0, x1: 1, yref: 'y' + number, y0: value,
+          y1: value, line: {color: COLOR.grey, width: 1, dash: 'dash'}};
+}
+
+// A square of colour for a title that stands in for a legend.
+function key(color) {
+  return `<span style="color:${color}">\u25A0</span> `;
+}
+
+// A filled outline of bars of equal width that start at `from`.
+function bars(counts, from, width) {
+  const x = [from], y = [0];
+  counts.forEach((count, i) => {
+    x.push(from + i * width, from + (i + 1) * width);
+    y.push(count, count);
+  });
+  x.push(from + counts.length * width);
+  y.push(0);
+  return {x, y};
+}
+
+function table(head, rows, className) {
+  const cell = (tag, content, label) => {
+    const number = typeof content === 'object' && content.number !== undefined;
+    const attributes = {};
+    if (number) attributes.class = 'number';
+    else if (typeof content === 'object') attributes.class = content.class;
+    if (label) attributes['data-label'] = label;
+    const text = number ? content.number
+        : typeof content === 'object' ? content.text : content;
+    return make(tag, attributes, text);
+  };
+  return make('div', {class: 'scroll'}, make('table', {class: className || ''},
+      make('thead', {}, make('tr', {}, ...head.map(h => cell('th', h)))),
+      make('tbody', {}, ...rows.map(row => make('tr', {}, ...row.map(
+          (c, i) => cell('td', c,
+              typeof c === 'object' && c.number !== undefined ? head[i].number : '',
+          )))))));
+}
+
+// A heading, a paragraph and what the caller adds.
+function section(title, text) {
+  const element = make('section', {}, make('h2', {}, title));
+  if (text) element.append(make('p', {class: 'soft'}, text));
+  document.getElementById('page').append(element);
+  return element;
+}
+
+// Plots keep the size they were drawn at; paper (A4) has another.
+const PAPER_WIDTH = 680;
+const PAPER_HEIGHT = {small: 240, rows2: 310, rows3: 390};
+
+function fitToPaper(div) {
+  const half = div.parentElement.classList.contains('pair');
+  const size = Object.keys(PAPER_HEIGHT).find(name => div.classList.contains(name));
+  // Others have the height of what they show.
+  const height = PAPER_HEIGHT[size] || div.offsetHeight;
+  div.style.height = height + 'px';
+  Plotly.relayout(div, {width: half ? PAPER_WIDTH / 2 - 8 : PAPER_WIDTH, height});
+}
+
+function fitToScreen(div) {
+  const fixed = div.classList.contains('batch');
+  const height = fixed ? div.offsetHeight : null;
+  div.style.height = '';
+  Plotly.relayout(div, {width: null, height, autosize: true});
+}
+
+function fitForPrint() {
+  const all = fit => () =>
+      document.querySelectorAll('.js-plotly-plot:not(.screen *)').forEach(fit);
+  window.addEventListener('beforeprint', all(fitToPaper));
+  window.addEventListener('afterprint', all(fitToScreen));
+}

@@ -1,0 +1,150 @@
+'use strict';
+
+// The page of one run.
+
+function setting(data, name) {
+  for (const [, flags] of data.settings) {
+    for (const [key, value] of flags) if (key === name) return value;
+  }
+  return '';
+}
+
+function baseName(path) {
+  const parts = String(path || '').split('/').filter(part => part);
+  return parts.length ? parts[parts.length - 1] : 'run';
+}
+
+function header(data) {
+  const run = data.metrics.run;
+  const name = baseName(data.metrics.dataset);
+  document.title = name + ': rgbd_pose run';
+  const page = document.getElementById('page');
+  const times = data.frames.t;
+  const seconds = times.length ? times[times.length - 1] : 0;
+  page.append(
+      make('h1', {}, 'Camera motion: ' + name),
+      make('p', {class: 'soft'},
+          `${run.frames} frame${run.frames === 1 ? '' : 's'} over ` +
+          `${digits(seconds, 3)} s; cost ${setting(data, 'cost')}, loss ` +
+          `${setting(data, 'loss')}, frontend ${setting(data, 'frontend')}.`));
+  const figures = make('div', {class: 'figures'});
+  const add = (value, text) => figures.append(
+      make('div', {class: 'figure'}, make('b', {}, value), make('span', {}, text)));
+  const evaluation = data.metrics.evaluation;
+  if (evaluation && evaluation.ate.position_m) {
+    add(digits(evaluation.ate.position_m.rmse * 1000, 3) + ' mm',
+        'position error (ATE, RMSE)');
+  }
+  if (evaluation && evaluation.rpe_seconds.translation_m) {
+    add(digits(evaluation.rpe_seconds.translation_m.rmse * 1000, 3) + ' mm',
+        'motion error over 1\u00a0s (RPE, RMSE)');
+    add(digits(evaluation.rpe_seconds.rotation_deg.rmse, 3) + '°',
+        'turn error over 1\u00a0s (RPE, RMSE)');
+  }
+  add(digits(100 * run.tracked_share, 3) + ' %',
+      `of frames tracked (${run.ok} ok, ${run.degraded} degraded, ${run.lost} lost)`);
+  if (run.segments > 1) {
+    add(String(run.segments), 'segments; what joins them is unknown');
+  }
+  add(digits(run.track_ms_median, 3) + ' ms', 'tracking a frame, median');
+  add(digits(run.frames_per_second, 3),
+      `frames/s with decoding, ${run.threads} thread${run.threads === 1 ? '' : 's'}`);
+  page.append(figures);
+}
+
+function metrics(data) {
+  const e = data.metrics.evaluation, run = data.metrics.run;
+  const number = (value, count = 3) => ({number: digits(value, count)});
+  const element = section('Metrics');
+  if (e) {
+    element.append(make('p', {class: 'soft'},
+        `${e.paired_poses} of ${e.estimated_poses} estimated poses have a ground ` +
+        `truth within ${e.max_time_difference_s} s; they span ` +
+        `${digits(e.duration_s, 4)} s and ${digits(e.path_length_m, 4)} m of path.`));
+    const row = (name, statistics, factor, definition) => [
+      {class: 'name', text: name},
+      ...['rmse', 'median', 'mean', 'max'].map(key => (statistics
+          ? number(statistics[key] * factor) : {number: 'n/a'})),
+      definition,
+    ];
+    const relative = (key, span, words) => (e[key] ? [
+      row(`RPE over ${span}: motion (mm)`, e[key].translation_m, 1000,
+          `Error of every motion ${words}: how far its end is off, seen from its ` +
+          'start.'),
+      row(`RPE over ${span}: turn (°)`, e[key].rotation_deg, 1,
+          `The same motions: by which angle their turn is off.`),
+    ] : []);
+    const rows = [
+      row('ATE: position (mm)', e.ate.position_m, 1000,
+          'Distance of each estimated position from the true one, after turning ' +
+          'and shifting the whole path to fit best; its scale is kept.'),
+      ...relative('rpe_frame', '1 frame', 'from one frame to the next'),
+      ...relative('rpe_seconds', `${e.rpe_seconds.delta} s`,
+          `that takes ${e.rpe_seconds.delta} s`),
+      ...relative('rpe_metres', `${e.rpe_metres.delta} m`,
+          `along ${e.rpe_metres.delta} m of the true path`),
+    ];
+    element.append(table(['', {number: 'RMSE'}, {number: 'median'}, {number: 'mean'},
+                          {number: 'max'}, 'what it is'], rows, 'stack'));
+    if (e.final_pose) {
+      element.append(make('p', {},
+          `Last pose against the truth, both relative to the first: ` +
+          `${digits(e.final_pose.translation_m * 1000, 3)} mm and ` +
+          `${digits(e.final_pose.rotation_deg, 3)}°.`));
+    }
+    element.append(make('h3', {}, 'Of the run'));
+  }
+  const rows = [
+    ['tracked frames', digits(100 * run.tracked_share, 4) + ' %',
+     'Frames with a pose: ok or degraded. Degraded: from few or contradicting matches.'],
+    ['new references', String(run.references),
+     'Frames that others were then tracked against.'],
+    ['found again', String(run.relocalised),
+     'Frames whose place was found among earlier references after being lost.'],
+    ['matches', digits(run.matches_median, 3), 'Median number in a frame.'],
+    ['in agreement', digits(100 * run.inlier_share_median, 3) + ' %',
+     'Median share of matches whose residual lies within 99 % of the noise.'],
+    ['tracking', digits(run.track_ms_median, 3) + ' ms',
+     `Median per frame without decoding; 99 of 100 frames take less than ` +
+     `${digits(run.track_ms_p99, 3)} ms.`],
+    ['matching', digits(run.match_ms_median, 3) + ' ms', 'Of it, median.'],
+    ['pose solve', digits(run.solve_ms_median, 3) + ' ms', 'Of it, median.'],
+    ['new reference', digits(run.reference_ms_median, 3) + ' ms',
+     'Median of the frames that became one.'],
+    ['decoding', digits(run.decode_ms_median, 3) + ' ms',
+     'Reading the two images of a frame, median.'],
+    ['throughput', digits(run.frames_per_second, 3) + ' frames/s',
+     `Of the whole program: ${digits(run.wall_seconds, 3)} s with ${run.threads} ` +
+     `thread${run.threads === 1 ? '' : 's'}.`],
+    ['memory', digits(data.metrics.peak_rss_mb, 3) + ' MB', 'The most at any time.'],
+  ];
+  element.append(table(['', {number: ''}, 'what it is'],
+      rows.map(([name, value, text]) => [
+        {class: 'name', text: name}, {number: value}, text]), 'stack'));
+}
+
+function settings(data) {
+  const element = section('Settings', 'What produced this run; to repeat it:');
+  element.append(make('pre', {}, 'rgbd_odometry --flagfile=config.flags'));
+  const columns = make('div', {class: 'columns'});
+  for (const [title, flags] of data.settings) {
+    columns.append(make('div', {}, make('h3', {}, title), table(
+        ['flag', 'value'],
+        flags.map(([name, value]) => [
+          {class: 'code', text: '--' + name},
+          value === '' ? {class: 'soft', text: '(empty)'} : {class: 'code', text: value},
+        ]))));
+  }
+  element.append(columns);
+}
+
+function showRun(data) {
+  header(data);
+  paths(data);
+  errors(data);
+  tracking(data);
+  times(data);
+  residuals(data);
+  metrics(data);
+  settings(data);
+}

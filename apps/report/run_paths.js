@@ -1,0 +1,134 @@
+'use strict';
+
+// Where the camera went: two views and one in 3D.
+
+// The path cut into pieces of one segment each, with gaps where lost.
+function segmentTraces(data, axes, type, line) {
+  const path = data.path, frames = data.frames;
+  const ids = [...new Set(frames.segment.filter((s, i) => known(path.x[i])))];
+  return ids.map((id, k) => {
+    const trace = {
+      type, mode: path.x.length === 1 ? 'markers' : 'lines',
+      name: ids.length > 1 ? `estimate, segment ${id + 1}` : 'estimate',
+      line: Object.assign({color: SEGMENT_COLORS[k % SEGMENT_COLORS.length]}, line),
+      marker: {color: SEGMENT_COLORS[k % SEGMENT_COLORS.length]},
+      connectgaps: false,
+      customdata: frames.t,
+      hovertemplate: '%{customdata:.2f} s<extra>%{fullData.name}</extra>',
+      legendgroup: 'segment' + id,
+    };
+    'xyz'.split('').slice(0, axes.length).forEach((letter, i) => {
+      trace[letter] = path[axes[i]].map(
+          (value, frame) => (frames.segment[frame] === id ? value : null));
+    });
+    return trace;
+  });
+}
+
+function pathTraces(data, axes, type, line) {
+  const path = data.path;
+  const letters = 'xyz'.split('').slice(0, axes.length);
+  const traces = [];
+  if (path.true_x) {
+    const truth = {type, mode: path.x.length === 1 ? 'markers' : 'lines',
+                   name: 'ground truth', connectgaps: false,
+                   line: Object.assign({color: COLOR.black}, line),
+                   marker: {color: COLOR.black, symbol: 'circle-open', size: 9},
+                   customdata: data.frames.t,
+                   hovertemplate: '%{customdata:.2f} s<extra>ground truth</extra>'};
+    letters.forEach((letter, i) => { truth[letter] = path['true_' + axes[i]]; });
+    traces.push(truth);
+  }
+  traces.push(...segmentTraces(data, axes, type, line));
+  const tracked = path.x.map((v, i) => (known(v) ? i : -1)).filter(i => i >= 0);
+  const ends = [['start', tracked[0], 'circle', '#fff'],
+                ['end', tracked[tracked.length - 1], 'square', COLOR.black]];
+  for (const [name, place, symbol, color] of ends) {
+    if (place === undefined || (name === 'end' && tracked.length < 2)) continue;
+    const marker = {type, mode: 'markers', name, hoverinfo: 'name',
+                    marker: {symbol, color, size: type === 'scatter3d' ? 5 : 10,
+                             line: {color: COLOR.black, width: 1.5}}};
+    letters.forEach((letter, i) => { marker[letter] = [path[axes[i]][place]]; });
+    traces.push(marker);
+  }
+  return traces;
+}
+
+// The axis of the shown world that points down, if one nearly does: there the
+// picture is turned so that up is up. The world of an estimate alone is its
+// first camera: x right, y down, z ahead.
+function downVector(data) {
+  const e = data.metrics.evaluation;
+  if (!data.path.true_x || !e || !e.truth_from_estimate) return [0, 1, 0];
+  const [x, y, z, w] = e.truth_from_estimate.quaternion_xyzw;
+  return [2 * (x * y - w * z), 1 - 2 * (x * x + z * z), 2 * (y * z + w * x)];
+}
+
+function hasWebGl() {
+  try {
+    return !!document.createElement('canvas').getContext('webgl');
+  } catch (error) {
+    return false;
+  }
+}
+
+// The range of all positions along an axis with room around them; equal units
+// may widen it.
+function pathRange(path, name, reversed) {
+  const all = path[name].concat(path['true_' + name] || []).filter(known);
+  const low = Math.min(...all), high = Math.max(...all);
+  const room = 0.05 * (high - low) || 0.5;
+  return reversed ? [high + room, low - room] : [low - room, high + room];
+}
+
+function paths(data) {
+  const element = section('Path', data.path.true_x
+      ? 'Positions of the camera in the world of the ground truth, the estimate ' +
+        'after the rigid alignment (no scale). Equal units on all axes.'
+      : 'Positions of the camera as seen from the first one: X to its right, Y ' +
+        'down, Z ahead. There is no ground truth. Equal units on all axes.');
+  const down = downVector(data);
+  const pair = make('div', {class: 'pair'});
+  element.append(pair);
+  for (const [a, b, k] of [['x', 'y', 1], ['x', 'z', 2]]) {
+    plot(`path-${a}${b}`, 'small', pair,
+        pathTraces(data, [a, b], 'scatter', {width: 2}), {
+          xaxis: axis(a.toUpperCase() + ' (m)',
+              {nticks: 6, range: pathRange(data.path, a, false)}),
+          yaxis: axis(b.toUpperCase() + ' (m)',
+              {nticks: 7, scaleanchor: 'x',
+               range: pathRange(data.path, b, down[k] > 0.7)}),
+          hovermode: 'closest',
+        });
+  }
+  const screen = make('div', {class: 'screen'});
+  element.append(screen);
+  if (!hasWebGl()) {
+    screen.append(make('p', {class: 'soft', id: 'no-webgl'},
+        'The view in 3D needs WebGL, which this browser does not offer.'));
+    return;
+  }
+  screen.append(make('h3', {}, 'In 3D'), make('p', {class: 'soft'},
+      'Drag to turn, scroll or pinch to zoom. In the other plots a mouse zooms by '
+      + 'dragging; a double click goes back.'));
+  const axis3 = title => ({title: {text: title}, nticks: 5, gridcolor: '#d8dee4',
+                           backgroundcolor: '#fff', zeroline: false});
+  const side = down.map(v => -v);
+  // Looks from behind and above, whatever axis is up.
+  // A narrow window needs more distance.
+  const far = window.innerWidth < 600 ? 1.5 : 1;
+  const back = Math.abs(side[1]) > 0.7 ? [-1, 0, -1.7] : [1.4, -1.6, 0];
+  const eye = back.map((v, k) => far * (v + 0.8 * side[k]));
+  plot('path-3d', 'large', screen, pathTraces(data, ['x', 'y', 'z'], 'scatter3d',
+      {width: 4}), {
+        margin: {l: 0, r: 0, t: 0, b: 0},
+        dragmode: 'turntable',
+        hovermode: 'closest',
+        scene: {
+          aspectmode: 'data', dragmode: 'orbit',
+          xaxis: axis3('X (m)'), yaxis: axis3('Y (m)'), zaxis: axis3('Z (m)'),
+          camera: {up: {x: side[0], y: side[1], z: side[2]},
+                   eye: {x: eye[0], y: eye[1], z: eye[2]}},
+        },
+      });
+}

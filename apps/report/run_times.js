@@ -1,0 +1,170 @@
+'use strict';
+
+// What changes over time: errors, tracking, time spent.
+
+const STATUS = [
+  {name: 'ok', color: COLOR.green},
+  {name: 'degraded', color: COLOR.orange},
+  {name: 'lost', color: COLOR.vermillion},
+];
+
+const STAGES = [
+  {key: 'match_ms', name: 'matching', color: COLOR.blue},
+  {key: 'solve_ms', name: 'pose solve', color: COLOR.orange},
+  {key: 'reference_ms', name: 'new reference', color: COLOR.green},
+  {key: 'relocalise_ms', name: 'search when lost', color: COLOR.purple},
+  {key: 'other_ms', name: 'other tracking', color: COLOR.grey},
+];
+
+const TIME_AXIS = 'time since the first frame (s)';
+
+const PER_POINT = data => (data.every > 1
+    ? ` Every point stands for ${data.every} frames: times and errors are the` +
+      ' largest of them.' : '');
+
+// Grey bands over the times of frames without a pose.
+function lostBands(data) {
+  return data.incidents.filter(i => i.status === 'lost').map(i => ({
+    type: 'rect', xref: 'x', yref: 'paper', y0: 0, y1: 1, x0: i.from_s,
+    x1: Math.max(i.to_s, i.from_s + 1e-3), fillcolor: '#d0d7de', opacity: 0.6,
+    line: {width: 0}, layer: 'below',
+  }));
+}
+
+function lineTrace(data, y, number, name, color, format, more) {
+  return Object.assign({
+    type: 'scatter', mode: data.frames.t.length === 1 ? 'markers' : 'lines',
+    x: data.frames.t, y, name, connectgaps: false, line: {color, width: 1.5},
+    marker: {color}, yaxis: 'y' + number,
+    hovertemplate: `%{y:${format}}`,
+  }, more);
+}
+
+function errors(data) {
+  if (!data.errors || data.num_frames < 2) return;
+  const evaluation = data.metrics.evaluation;
+  const lost = data.incidents.some(i => i.status === 'lost');
+  const element = section('Error over time',
+      'Above: how far each position is from the truth after the alignment. ' +
+      'Below: the error of the motion over the second that starts at that time, ' +
+      'which drift from before does not enter. Dashed: root mean square (RMSE).' + PER_POINT(data) +
+      (lost ? ' Grey: lost, no pose.' : ''));
+  const rmse = (statistics, factor, unit) => (statistics
+      ? `, RMSE ${digits(statistics.rmse * factor, 3)} ${unit}` : ': n/a');
+  const position = lengthUnit(largest(data.errors.position_m));
+  const rpe = lengthUnit(largest(data.errors.rpe_m));
+  const relative = evaluation.rpe_seconds;
+  const levels = [];
+  if (evaluation.ate.position_m) {
+    levels.push(level(evaluation.ate.position_m.rmse * position.factor, ''));
+  }
+  const rows = [
+    {title: 'Position' + rmse(evaluation.ate.position_m, position.factor, position.name),
+     y: position.name},
+  ];
+  const traces = [lineTrace(data, scaled(data.errors.position_m, position.factor), '',
+      `position (${position.name})`, COLOR.blue, '.3~g')];
+  if (relative.translation_m) {
+    rows.push(
+        {title: 'Motion over 1 s' + rmse(relative.translation_m, rpe.factor, rpe.name),
+         y: rpe.name},
+        {title: 'Turn over 1 s' + rmse(relative.rotation_deg, 1, '°'), y: 'degrees'});
+    traces.push(
+        lineTrace(data, scaled(data.errors.rpe_m, rpe.factor), '2',
+            `motion (${rpe.name})`, COLOR.vermillion, '.3~g'),
+        lineTrace(data, data.errors.rpe_deg, '3', 'turn (°)', COLOR.purple, '.3~g'));
+    levels.push(level(relative.translation_m.rmse * rpe.factor, '2'),
+        level(relative.rotation_deg.rmse, '3'));
+  }
+  plot('errors', rows.length > 1 ? 'rows3' : 'small', element, traces,
+      Object.assign(rowsLayout(rows, TIME_AXIS, timeRange(data)),
+          {shapes: lostBands(data).concat(levels)}));
+}
+
+function tracking(data) {
+  const frames = data.frames;
+  const element = section('Tracking',
+      'Status of every frame; how many matches were found against the reference ' +
+      'frame and how many of them agree with one motion; and sigma, the spread of ' +
+      'whitened residuals: 1 means that the noise model fits.' + PER_POINT(data));
+  const rows = [
+    {title: 'Status, and new references', y: '', weight: 0.8,
+     axis: {range: [-1.6, 2.6], tickvals: [2, 1, 0, -1], showgrid: false,
+            ticktext: [...STATUS.map(s => s.name), 'reference']}},
+    {title: key(COLOR.sky) + 'matches   ' + key(COLOR.blue) + 'in agreement',
+     y: 'matches'},
+    {title: 'Sigma, ideally 1 (dashed)', y: 'sigma', weight: 0.8},
+  ];
+  const traces = STATUS.map((status, code) => ({
+    type: 'scatter', mode: 'markers', name: status.name,
+    x: frames.t.filter((t, i) => frames.status[i] === code),
+    y: frames.t.filter((t, i) => frames.status[i] === code).map(() => 2 - code),
+    marker: {color: status.color, symbol: 'square', size: 7}, hoverinfo: 'skip',
+  }));
+  const references = frames.t.filter((t, i) => frames.is_reference[i]);
+  traces.push({
+    type: 'scatter', mode: 'markers', name: 'new reference', x: references,
+    y: references.map(() => -1), hoverinfo: 'skip',
+    marker: {symbol: 'line-ns-open', size: 9, color: COLOR.black},
+  });
+  // The first frame has nothing to be matched against.
+  const matched = values => values.map(
+      (v, i) => (frames.matches[i] > 0 || frames.status[i] > 0 ? v : null));
+  traces.push(
+      lineTrace(data, matched(frames.matches), '2', 'matches', COLOR.sky, 'd'),
+      lineTrace(data, matched(frames.inliers), '2', 'in agreement', COLOR.blue, 'd'),
+      lineTrace(data, frames.sigma.map(s => (s > 0 ? s : null)), '3', 'sigma',
+          COLOR.purple, '.2f'));
+  const layout = rowsLayout(rows, TIME_AXIS, timeRange(data));
+  layout.shapes = lostBands(data).concat(level(1, '3'));
+  plot('tracking', 'rows3', element, traces, layout);
+  incidents(data, element);
+}
+
+function incidents(data, element) {
+  if (data.incidents.length === 0) {
+    element.append(make('p', {}, 'Every frame is ok.'));
+    return;
+  }
+  const shown = data.incidents.slice(0, 20);
+  element.append(make('h3', {}, 'Frames that are not ok'));
+  element.append(table(
+      [{number: 'from (s)'}, {number: 'to (s)'}, {number: 'frames'}, 'status', 'why'],
+      shown.map(i => [
+        {number: i.from_s.toFixed(2)}, {number: i.to_s.toFixed(2)},
+        {number: i.first === i.last ? String(i.first) : `${i.first}–${i.last}`},
+        i.status, i.reason,
+      ])));
+  const rest = data.incidents.length - shown.length;
+  if (rest > 0) {
+    element.append(make('p', {class: 'soft'},
+        `${rest} further stretch${rest === 1 ? '' : 'es'} in frames.csv.`));
+  }
+}
+
+function times(data) {
+  const frames = data.frames;
+  const element = section('Time per frame',
+      'Above: where the time of tracking goes, stacked. Below: decoding of the ' +
+      'images, which may run on other threads meanwhile.' + PER_POINT(data));
+  const other = frames.track_ms.map((all, i) => Math.max(0, all - STAGES.slice(0, 4)
+      .reduce((sum, stage) => sum + (frames[stage.key][i] || 0), 0)));
+  const traces = [];
+  for (const stage of STAGES) {
+    const y = stage.key === 'other_ms' ? other : frames[stage.key];
+    if (largest(y) < 1e-3) continue;
+    traces.push(lineTrace(data, y, '', stage.name, stage.color, '.2f', {
+      stackgroup: 'one', line: {width: 0, color: stage.color, shape: 'hvh'},
+      fillcolor: stage.color,
+    }));
+  }
+  traces.push(lineTrace(data, frames.decode_ms, '2', 'decoding', COLOR.black, '.2f',
+      {showlegend: false, line: {width: 1, color: COLOR.black}}));
+  const layout = rowsLayout([
+    {title: '', y: 'tracking (ms)', weight: 1.6},
+    {title: '', y: 'decoding (ms)'},
+  ], TIME_AXIS, timeRange(data));
+  layout.showlegend = true;
+  layout.legend = Object.assign({}, BASE_LAYOUT.legend, {traceorder: 'normal'});
+  plot('times', 'rows2', element, traces, layout);
+}

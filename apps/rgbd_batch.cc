@@ -1,0 +1,251 @@
+// Many runs of rgbd_odometry: sequences x settings in, one table out.
+
+#include <gflags/gflags.h>
+#include <unistd.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/batch_list.h"
+#include "apps/batch_lock.h"
+#include "apps/batch_plan.h"
+#include "apps/batch_pool.h"
+#include "apps/batch_process.h"
+#include "apps/batch_run_folder.h"
+#include "apps/batch_shard.h"
+#include "apps/batch_summary.h"
+#include "apps/program.h"
+#include "apps/progress_bar.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
+#include "costs/cost_factory.h"
+#include "frontend/frontend.h"
+#include "robust/m_estimator.h"
+
+DEFINE_string(sequences, "",
+              "list of sequences, one a line: folder (or pattern) and maybe "
+              "camera (preset or YAML file; without: camera.yaml in it)");
+DEFINE_string(costs, "bidirectional_point",
+              "costs, set apart by commas; a+b is one that adds up");
+DEFINE_string(losses, "tukey", "M-estimators, set apart by commas");
+DEFINE_string(frontends, "patch", "frontends, set apart by commas");
+DEFINE_int32(repeats, 1, "how often each combination is run");
+DEFINE_string(settings, "",
+              "flag file of rgbd_odometry for all runs; paths in it must be "
+              "absolute; empty: its defaults");
+DEFINE_string(output, "", "folder for the results, made if missing");
+DEFINE_bool(resume, false,
+            "run only what is missing, has failed or was made with other "
+            "settings or inputs");
+DEFINE_bool(merge, false,
+            "run nothing, only write the summary of what all shards have done");
+DEFINE_bool(dry_run, false, "run nothing, only print the plan");
+DEFINE_int32(jobs, 0, "runs at a time; 0: one a core");
+DEFINE_double(timeout, 0.0, "seconds after which a run is killed; 0: never");
+DEFINE_string(shard, "",
+              "i/n: only every n-th sequence, beginning with number i (from "
+              "0); empty: as the Slurm job array says, or all");
+DEFINE_string(program, "",
+              "program to run for each item; empty: rgbd_odometry beside this "
+              "one");
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+ProgramInfo Info() {
+  ProgramInfo info;
+  info.name = "rgbd_batch";
+  info.summary =
+      "runs rgbd_odometry on many sequences with many settings, each run in a "
+      "process and a folder of its own, and makes one table of it.";
+  info.example =
+      "rgbd_batch --sequences=list.txt --losses=huber,tukey --repeats=2 "
+      "--output=runs";
+  info.flag_groups = {
+      {"Plan",
+       {"sequences", "costs", "losses", "frontends", "repeats", "settings"}},
+      {"How it is run",
+       {"jobs", "timeout", "resume", "shard", "merge", "dry_run", "program"}},
+      {"Output", {"output"}}};
+  info.choices = {{"costs", CostNames()},
+                  {"losses", MEstimatorNames()},
+                  {"frontends", FrontendNames()}};
+  return info;
+}
+
+std::string ProgramPath() {
+  std::error_code error;
+  const fs::path path =
+      FLAGS_program.empty()
+          ? fs::read_symlink("/proc/self/exe", error).parent_path() /
+                "rgbd_odometry"
+          : fs::absolute(FLAGS_program);
+  if (!fs::is_regular_file(path, error) || access(path.c_str(), X_OK) != 0) {
+    throw InputError(path.string() +
+                     ": no program that can be run; give it by --program");
+  }
+  return path.string();
+}
+
+// All that changes the result of a run beside its place in the plan.
+std::string SettingsText() {
+  return "version " + ProgramVersion() + "\nprogram " + FLAGS_program + "\n" +
+         (FLAGS_settings.empty() ? "" : ReadTextFile(FLAGS_settings));
+}
+
+void CheckFlags() {
+  RequireFlag("sequences", FLAGS_sequences);
+  RequireFlag("output", FLAGS_output);
+  if (FLAGS_jobs < 0) throw InputError("--jobs must be 0 (one a core) or more");
+  if (!(FLAGS_timeout >= 0.0)) {
+    throw InputError("--timeout must be 0 (none) or a number of seconds");
+  }
+  if (FLAGS_merge && (!FLAGS_shard.empty() || FLAGS_resume)) {
+    throw InputError("--merge runs nothing: no --shard or --resume with it");
+  }
+}
+
+std::vector<BatchRun> RunsToDo(const std::vector<BatchRun>& plan,
+                               const BatchFolder& folder) {
+  std::vector<BatchRun> runs;
+  for (const BatchRun& run : plan) {
+    const std::optional<RunEnd> end = folder.ReadEnd(run);
+    if (!end || end->status != "ok") runs.push_back(run);
+  }
+  return runs;
+}
+
+int PrintPlan(const std::vector<BatchRun>& plan, const BatchFolder& folder) {
+  const std::vector<BatchRun> to_do = RunsToDo(plan, folder);
+  auto next = to_do.begin();
+  for (const BatchRun& run : plan) {
+    const bool is_next = next != to_do.end() && next->Name() == run.Name();
+    if (is_next) ++next;
+    std::printf("%s  %s\n", is_next ? "run " : "done", run.Name().c_str());
+  }
+  std::printf("%zu runs, %zu of them to do\n", plan.size(), to_do.size());
+  return kExitOk;
+}
+
+// Results of another plan must not be mixed up with this one's unasked.
+void RefuseEarlierRuns(const std::vector<BatchRun>& plan,
+                       const BatchFolder& folder, const BatchShard& shard) {
+  std::string found = shard.IsWhole() ? folder.FindRun("") : "";
+  for (size_t i = 0; i < plan.size() && found.empty(); ++i) {
+    found = folder.FindRun(plan[i].sequence.name);
+  }
+  if (found.empty()) return;
+  throw InputError("--output=" + FLAGS_output + " already holds runs (" +
+                   found +
+                   "); add --resume to go on with them or choose "
+                   "another folder");
+}
+
+void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
+            const std::string& program) {
+  BatchPoolOptions options;
+  options.program = program;
+  // A page a run is much for many runs; --settings may ask for it, and
+  // rgbd_report makes it at any time.
+  options.arguments = {"--report=false"};
+  if (!FLAGS_settings.empty()) {
+    options.arguments.push_back("--flagfile=" +
+                                fs::absolute(FLAGS_settings).string());
+  }
+  options.jobs = FLAGS_jobs > 0 ? FLAGS_jobs : AvailableCores();
+  options.timeout_seconds = FLAGS_timeout;
+  const int total = static_cast<int>(runs.size());
+  ProgressBar bar("running", total);
+  int done = 0;
+  options.on_end = [&](const BatchRun& run, const RunEnd& end, double seconds) {
+    ++done;
+    // The bar itself says enough of those that went well.
+    if (!bar.visible() || end.status != "ok") {
+      std::string line = "[" + std::to_string(done) + "/" +
+                         std::to_string(total) + "] " + end.status;
+      if (end.status != "ok") {
+        line += " (exit code " + std::to_string(end.exit_code) + ")";
+      }
+      line += "  " + run.Name() + "  " + FormatDuration(seconds) + ", " +
+              bar.TimeLeft(done) + " left";
+      if (end.status != "ok") {
+        line += "; see " + folder.Complete(run) + "/run.log";
+      }
+      bar.PrintLine(line);
+    }
+    bar.Update(done);
+  };
+  bar.Update(0);
+  RunBatch(runs, folder, options);
+}
+
+// Results that another plan or other inputs have left are not this plan's.
+void WarnOfOtherHashes(const std::vector<BatchRun>& plan,
+                       const BatchFolder& folder) {
+  int others = 0;
+  for (const BatchRun& run : plan) {
+    others += folder.Holds(run) && !folder.ReadEnd(run).has_value();
+  }
+  if (others == 0) return;
+  std::fprintf(stderr,
+               "rgbd_batch: %d run(s) were made with other settings or inputs "
+               "and count as missing; --resume makes them anew\n",
+               others);
+}
+
+int WriteSummary(const std::vector<BatchRun>& plan, const BatchFolder& folder,
+                 const BatchShard& shard) {
+  const BatchSummary summary = Summarise(plan, folder);
+  const std::string base = folder.output() + "/summary";
+  if (shard.IsWhole()) {
+    WriteFileAtomically(base + ".json", FormatBatchJson(summary));
+    WriteFileAtomically(base + ".csv", FormatBatchCsv(summary));
+  } else {
+    WriteFileAtomically(base + "-" + shard.Name() + ".csv",
+                        FormatBatchCsv(summary));
+  }
+  std::fputs(FormatBatchTable(summary).c_str(), stdout);
+  const int not_ok = CountNotOk(summary);
+  std::printf("%zu runs, %d not ok; results in %s\n", summary.size(), not_ok,
+              FLAGS_output.c_str());
+  return not_ok == 0 ? kExitOk : kExitSomeFailed;
+}
+
+int Main() {
+  CheckFlags();
+  const BatchGrid grid =
+      ParseGrid(FLAGS_costs, FLAGS_losses, FLAGS_frontends, FLAGS_repeats);
+  const BatchShard shard = FLAGS_merge ? BatchShard() : ParseShard(FLAGS_shard);
+  const std::vector<BatchRun> plan =
+      MakePlan(ReadSequenceList(FLAGS_sequences), grid, shard, SettingsText());
+  const BatchFolder folder(fs::absolute(FLAGS_output).string());
+  if (FLAGS_dry_run) return PrintPlan(plan, folder);
+
+  const std::string program = FLAGS_merge ? "" : ProgramPath();
+  std::error_code error;
+  fs::create_directories(folder.output(), error);
+  if (error) {
+    throw InputError("--output=" + FLAGS_output + ": cannot be made (" +
+                     error.message() + ")");
+  }
+  const BatchLock lock(folder.output(), shard);
+  if (FLAGS_merge) {
+    WarnOfOtherHashes(plan, folder);
+    return WriteSummary(plan, folder, shard);
+  }
+  if (!FLAGS_resume) RefuseEarlierRuns(plan, folder, shard);
+  RunAll(RunsToDo(plan, folder), folder, program);
+  return WriteSummary(plan, folder, shard);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
+
+int main(int argc, char** argv) {
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+}
