@@ -161,7 +161,8 @@ long PeakBytesOfEstimate(int count) {
 }
 
 TEST(AllocationTest, MemoryIsLinearInTheNumberOfMatches) {
-  // As docs/benchmarks.md states: 12 columns of 8 bytes, norm, weight and place.
+  // As docs/benchmarks.md states: 12 columns of 8 bytes, norm, weight and
+  // place.
   constexpr long kMaxBytesAMatch = 160;
   // What does not grow with the matches: options, Ceres.
   constexpr long kFixedBytes = 100000;
