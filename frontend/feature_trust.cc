@@ -23,6 +23,16 @@ constexpr double kCellPx = 64.0;
 // One failed feature in a cell is chance.
 constexpr int kMinFailed = 2;
 
+// Whether a match is where the motion puts it.
+bool Agrees(const FeatureMatches& found, size_t i,
+            const Rigid3d& cur_from_ref) {
+  const Observation cur = found.matches.cur()[i];
+  const auto expected =
+      SeenAt(found.matches.camera(), cur_from_ref, found.matches.prev()[i]);
+  return expected.has_value() &&
+         (*expected - Eigen::Vector2d(cur.u, cur.v)).norm() <= kMaxErrorPx;
+}
+
 // Counts of features by cells of the image; those outside count nowhere.
 class CellCounts {
  public:
@@ -49,6 +59,7 @@ class CellCounts {
 }  // namespace
 
 FeatureTrust::FeatureTrust(const FeatureSet& last, const FeatureMatches& found,
+                           const FeatureMatches& doubted,
                            const MotionEstimate& estimate, bool missing_failed,
                            const FeatureSet& fresh, size_t min_trusted)
     : doubts_(fresh.observations.size(), 0) {
@@ -58,6 +69,11 @@ FeatureTrust::FeatureTrust(const FeatureSet& last, const FeatureMatches& found,
   for (size_t i = 0; i < found.features.size(); ++i) {
     counts[found.features[i]] = true;
     if (estimate.is_inlier[i]) agrees[found.features[i]] = true;
+  }
+  // Otherwise references in quick succession would never trust them.
+  for (size_t i = 0; i < doubted.features.size(); ++i) {
+    counts[doubted.features[i]] = true;
+    agrees[doubted.features[i]] = Agrees(doubted, i, estimate.cur_from_prev);
   }
   CellCounts agreed(camera), failed(camera);
   for (size_t i = 0; i < agrees.size(); ++i) {
@@ -95,14 +111,8 @@ void FeatureTrust::Split(FeatureMatches* found, FeatureMatches* doubted) const {
 
 void FeatureTrust::Learn(const FeatureMatches& doubted,
                          const Rigid3d& cur_from_ref) {
-  const Camera& camera = doubted.matches.camera();
   for (size_t i = 0; i < doubted.features.size(); ++i) {
-    const Observation cur = doubted.matches.cur()[i];
-    const auto expected =
-        SeenAt(camera, cur_from_ref, doubted.matches.prev()[i]);
-    const bool agrees =
-        expected.has_value() &&
-        (*expected - Eigen::Vector2d(cur.u, cur.v)).norm() <= kMaxErrorPx;
+    const bool agrees = Agrees(doubted, i, cur_from_ref);
     int& doubt = doubts_[doubted.features[i]];
     doubt = agrees ? doubt - 1 : kAgreements;
   }

@@ -20,13 +20,14 @@ class FeatureTrust {
   explicit FeatureTrust(size_t features) : doubts_(features, 0) {}
 
   // The features of a new reference, doubted where those of the last one have
-  // failed: `found` and `estimate` tell how the new reference's own frame was
-  // tracked against the last one, and `missing_failed` whether features that
-  // were not found count as failed. If that would leave fewer than
-  // `min_trusted`, all are trusted.
+  // failed: `found`, `doubted` and `estimate` tell how the new reference's own
+  // frame was tracked against the last one, and `missing_failed` whether
+  // features that were not found count as failed. If that would leave fewer
+  // than `min_trusted`, all are trusted.
   FeatureTrust(const FeatureSet& last, const FeatureMatches& found,
-               const MotionEstimate& estimate, bool missing_failed,
-               const FeatureSet& fresh, size_t min_trusted);
+               const FeatureMatches& doubted, const MotionEstimate& estimate,
+               bool missing_failed, const FeatureSet& fresh,
+               size_t min_trusted);
 
   size_t num_trusted() const;
 

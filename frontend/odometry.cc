@@ -266,9 +266,9 @@ bool Odometry::TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
   // where hardly any feature would have it the doubt itself is in doubt.
   const bool was_tracked = result->status != TrackingStatus::kLost;
   const FeatureTrust trust =
-      was_tracked ? FeatureTrust(*reference_->features, found_, estimate_,
-                                 frontend_->finds_all_in_view(), *features,
-                                 2 * options_.min_inliers_ok)
+      was_tracked ? FeatureTrust(*reference_->features, found_, doubted_,
+                                 estimate_, frontend_->finds_all_in_view(),
+                                 *features, 2 * options_.min_inliers_ok)
                   : FeatureTrust(features->observations.size());
   const size_t count = features->observations.size();
   if (count < static_cast<size_t>(options_.min_inliers)) {

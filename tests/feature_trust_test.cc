@@ -16,7 +16,7 @@ Observation At(double u, double v) { return {u, v, kDepth, 0.5, 0.01}; }
 // in the right half do not or are not found.
 class FeatureTrustTest : public testing::Test {
  protected:
-  FeatureTrustTest() : found_{Correspondences(kCamera), {}} {
+  FeatureTrustTest() : found_{Correspondences(kCamera), {}}, doubted_(found_) {
     for (int v = 40; v < 480; v += 20) {
       for (int u = 40; u < 640; u += 20) {
         const int i = static_cast<int>(last_.observations.size());
@@ -34,8 +34,8 @@ class FeatureTrustTest : public testing::Test {
   }
 
   FeatureTrust Trust(bool missing_failed, size_t min_trusted = 1) const {
-    return FeatureTrust(last_, found_, estimate_, missing_failed, fresh_,
-                        min_trusted);
+    return FeatureTrust(last_, found_, doubted_, estimate_, missing_failed,
+                        fresh_, min_trusted);
   }
 
   // Splits matches of all fresh features; those of the doubted ones.
@@ -51,7 +51,7 @@ class FeatureTrustTest : public testing::Test {
   }
 
   FeatureSet last_, fresh_;
-  FeatureMatches found_;
+  FeatureMatches found_, doubted_;
   MotionEstimate estimate_;
 };
 
@@ -77,6 +77,24 @@ TEST_F(FeatureTrustTest, WhatWasNotFoundCountsOnlyIfAsked) {
   }
   EXPECT_EQ(Trust(/*missing_failed=*/true).num_trusted(), 2u);
   EXPECT_EQ(Trust(/*missing_failed=*/false).num_trusted(), 4u);
+}
+
+// Features of the last reference that were doubted, but agree by now, speak for
+// those around them; others that were doubted do not.
+TEST_F(FeatureTrustTest, DoubtedFeaturesThatAgreeSpeakForTheirPlace) {
+  FeatureMatches left{Correspondences(kCamera), {}};
+  estimate_.is_inlier.clear();
+  for (int i = 0; i < static_cast<int>(last_.observations.size()); ++i) {
+    const Observation o = last_.observations[i];
+    if (o.u < 320) {
+      left.Add(last_, i, o);
+      estimate_.is_inlier.push_back(true);
+    } else {
+      doubted_.Add(last_, i, At(o.v < 240 ? o.u : o.u + 15, o.v));
+    }
+  }
+  found_ = left;
+  EXPECT_EQ(Doubted(Trust(/*missing_failed=*/true)), (std::vector<int>{3}));
 }
 
 TEST_F(FeatureTrustTest, AllAreTrustedIfTooFewWouldBeLeft) {
