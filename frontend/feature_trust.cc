@@ -67,13 +67,13 @@ FeatureTrust::FeatureTrust(const FeatureSet& last, const FeatureMatches& found,
   std::vector<bool> agrees(last.observations.size(), false);
   std::vector<bool> counts(last.observations.size(), missing_failed);
   for (size_t i = 0; i < found.features.size(); ++i) {
-    counts[found.features[i]] = true;
+    counts.at(found.features[i]) = true;  // throws if of another reference
     if (estimate.is_inlier[i]) agrees[found.features[i]] = true;
   }
   // Otherwise references in quick succession would never trust them.
   for (size_t i = 0; i < doubted.features.size(); ++i) {
-    counts[doubted.features[i]] = true;
-    agrees[doubted.features[i]] = Agrees(doubted, i, estimate.cur_from_prev);
+    counts.at(doubted.features[i]) = true;
+    agrees.at(doubted.features[i]) = Agrees(doubted, i, estimate.cur_from_prev);
   }
   CellCounts agreed(camera), failed(camera);
   for (size_t i = 0; i < agrees.size(); ++i) {

@@ -61,7 +61,8 @@ Odometry::Odometry(const OdometryOptions& options, const Camera& camera,
       relocaliser_(camera),
       found_{Correspondences(camera), {}},
       doubted_(found_),
-      other_found_(found_) {}
+      other_found_(found_),
+      other_doubted_(found_) {}
 
 TrackedFrame Odometry::Track(const Frame& frame,
                              const Rigid3d* cur_from_prev_guess) {
@@ -241,8 +242,7 @@ bool Odometry::ReturnTo(const Frame& frame, Keyframe* earlier,
                         const Rigid3d& cur_from_earlier_guess,
                         TrackedFrame* result) {
   TrackedFrame attempt = *result;
-  std::swap(found_, other_found_);
-  std::swap(estimate_, other_estimate_);
+  SwapAttempts();
   std::swap(reference_, earlier);
   if (Try(frame, *reference_, cur_from_earlier_guess, &attempt) &&
       attempt.status == TrackingStatus::kOk && !NeedsNewReference()) {
@@ -250,12 +250,17 @@ bool Odometry::ReturnTo(const Frame& frame, Keyframe* earlier,
     *result = attempt;
     return true;
   }
-  std::swap(found_, other_found_);
-  std::swap(estimate_, other_estimate_);
+  SwapAttempts();
   std::swap(reference_, earlier);
   result->match_ms = attempt.match_ms;
   result->solve_ms = attempt.solve_ms;
   return false;
+}
+
+void Odometry::SwapAttempts() {
+  std::swap(found_, other_found_);
+  std::swap(doubted_, other_doubted_);
+  std::swap(estimate_, other_estimate_);
 }
 
 bool Odometry::TakeReference(const Frame& frame, const Rigid3d& world_from_cam,

@@ -97,6 +97,8 @@ class Odometry {
   // if it does not serve.
   bool ReturnTo(const Frame& frame, Keyframe* earlier,
                 const Rigid3d& cur_from_earlier_guess, TrackedFrame* result);
+  // Sets what the last Try has made aside, or takes it up again.
+  void SwapAttempts();
   // False, and nothing has changed, if the frame has too few features.
   bool TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
                      TrackedFrame* result);
@@ -111,7 +113,8 @@ class Odometry {
   FeatureMatches found_;
   MotionEstimate estimate_;
   FeatureMatches doubted_;      // of the last frame, see FeatureTrust
-  FeatureMatches other_found_;  // see ReturnTo
+  FeatureMatches other_found_;  // see SwapAttempts
+  FeatureMatches other_doubted_;
   MotionEstimate other_estimate_;
   Keyframe* reference_ = nullptr;  // null: none yet
   Rigid3d cur_from_ref_;           // of the last frame
