@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <stdexcept>
 #include <vector>
 
 namespace rgbd_pose {
@@ -95,6 +96,16 @@ TEST_F(FeatureTrustTest, DoubtedFeaturesThatAgreeSpeakForTheirPlace) {
   }
   found_ = left;
   EXPECT_EQ(Doubted(Trust(/*missing_failed=*/true)), (std::vector<int>{3}));
+}
+
+// Matches of another reference are a mistake of the caller's: it must not write
+// beyond the features there are.
+TEST_F(FeatureTrustTest, MatchesOfAnotherReferenceAreRefused) {
+  FeatureSet larger = last_;
+  larger.observations.push_back(At(100, 100));
+  doubted_.Add(larger, static_cast<int>(last_.observations.size()),
+               At(100, 100));
+  EXPECT_THROW(Trust(/*missing_failed=*/true), std::out_of_range);
 }
 
 TEST_F(FeatureTrustTest, AllAreTrustedIfTooFewWouldBeLeft) {
