@@ -1,7 +1,6 @@
 #include "apps/batch_process.h"
 
 #include <fcntl.h>
-#include <sched.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -10,7 +9,6 @@
 #include <cerrno>
 #include <csignal>
 #include <cstring>
-#include <thread>
 
 #include "core/input_error.h"
 
@@ -59,16 +57,6 @@ std::optional<int> PollProcess(pid_t process) {
   int state = 0;
   if (waitpid(process, &state, WNOHANG) != process) return std::nullopt;
   return state;
-}
-
-int AvailableCores() {
-  // Unlike the number of cores of the machine, this heeds what a scheduler
-  // such as Slurm has given.
-  cpu_set_t cores;
-  if (sched_getaffinity(0, sizeof(cores), &cores) == 0) {
-    return std::max(1, CPU_COUNT(&cores));
-  }
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
 }
 
 }  // namespace rgbd_pose

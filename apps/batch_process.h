@@ -18,7 +18,4 @@ pid_t StartProcess(const std::vector<std::string>& command,
 // The state of waitpid once the process has ended; empty until then.
 std::optional<int> PollProcess(pid_t process);
 
-// How many processor cores this process may use, at least 1.
-int AvailableCores();
-
 }  // namespace rgbd_pose

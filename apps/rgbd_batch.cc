@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/available_cores.h"
 #include "apps/batch_list.h"
 #include "apps/batch_lock.h"
 #include "apps/batch_plan.h"

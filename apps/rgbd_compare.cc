@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <sstream>
-#include <thread>
 
+#include "apps/available_cores.h"
 #include "apps/compare_sequence.h"
 #include "apps/compare_sweep.h"
 #include "apps/compare_sweep_report.h"
@@ -62,10 +62,6 @@ ProgramInfo Info() {
   return info;
 }
 
-int NumThreads() {
-  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
-}
-
 std::vector<std::string> Losses() {
   std::string text = FLAGS_losses;
   if (text.empty() && FLAGS_experiment == "sweep") return MEstimatorNames();
@@ -105,7 +101,7 @@ void AddSequence(const std::string& title, const std::string& figure,
   settings.cost = FLAGS_cost;
   settings.frontend = FLAGS_frontend;
   const std::vector<LossRun> runs =
-      CompareLosses(dataset, truth, Losses(), settings, NumThreads());
+      CompareLosses(dataset, truth, Losses(), settings, AvailableCores());
   *report += "## " + title + "\n\n";
   if (returns_to_start) {
     *report +=
@@ -172,7 +168,7 @@ int Sweep() {
   options.losses = Losses();
   options.cost = FLAGS_cost;
   options.seeds = FLAGS_seeds;
-  options.threads = NumThreads();
+  options.threads = AvailableCores();
   if (FLAGS_seeds < 1 || FLAGS_seeds > kMaxSeeds) {
     throw InputError("--seeds must be 1 to " + std::to_string(kMaxSeeds));
   }

@@ -12,8 +12,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
-#include <thread>
 
+#include "apps/available_cores.h"
 #include "apps/evaluation_report.h"
 #include "apps/frame_errors.h"
 #include "apps/frame_selection.h"
@@ -137,8 +137,7 @@ int NumThreads() {
                      std::to_string(kMaxThreads));
   }
   if (FLAGS_threads > 0) return FLAGS_threads;
-  const int cores = static_cast<int>(std::thread::hardware_concurrency());
-  return std::clamp(cores, 1, kMaxThreads);  // 0 if it is not known
+  return std::min(AvailableCores(), kMaxThreads);
 }
 
 OdometrySettings SettingsFromFlags() {

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <thread>
 
+#include "apps/available_cores.h"
 #include "apps/program.h"
 #include "apps/progress_bar.h"
 #include "frontend/camera_file.h"
@@ -43,7 +43,7 @@ int Simulate() {
   {
     ProgressBar bar("rendering", dataset.size());
     TumWriterOptions writer;
-    writer.threads = std::max(1U, std::thread::hardware_concurrency());
+    writer.threads = AvailableCores();
     writer.progress = [&bar](int done) { bar.Update(done); };
     WriteTumSequence(dataset, FLAGS_output, writer);
   }
