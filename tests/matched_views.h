@@ -5,9 +5,12 @@
 #include <algorithm>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "costs/cost_factory.h"
 #include "frontend/frontend.h"
+#include "frontend/odometry.h"
 #include "frontend/synthetic_dataset.h"
 
 namespace rgbd_pose {
@@ -65,6 +68,26 @@ class MatchedViews {
         errors.end() - std::lower_bound(errors.begin(), errors.end(), wrong_px);
     // An M-estimator bears several times as many.
     EXPECT_LE(wrong, 0.1 * static_cast<double>(errors.size()));
+  }
+
+  // Takes the frontend. `max_error`: of the last position, m.
+  void ExpectTracksAlongItsAxes(double max_error) {
+    Odometry odometry(
+        OdometryOptions(), dataset_.camera().camera, std::move(frontend_),
+        Estimator(EstimatorOptions(),
+                  MakeRobustCosts("bidirectional_point", "tukey")));
+    constexpr int kLast = 19;
+    Rigid3d end;
+    for (int i = 0; i <= kLast; ++i) {
+      const TrackedFrame result = odometry.Track(dataset_.Read(i));
+      EXPECT_EQ(result.status, TrackingStatus::kOk)
+          << i << ": " << result.reason;
+      end = result.world_from_cam;
+    }
+    const Rigid3d truth =
+        dataset_.WorldFromCam(0).Inverse() * dataset_.WorldFromCam(kLast);
+    ASSERT_GT(truth.translation.norm(), 0.05) << "the path is vacuous";
+    EXPECT_LE((end.translation - truth.translation).norm(), max_error);
   }
 
   SyntheticDataset dataset_;
