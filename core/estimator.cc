@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/degeneracy.h"
+#include "core/input_error.h"
 
 namespace rgbd_pose {
 namespace {
@@ -23,6 +24,14 @@ constexpr int kMaxScaleRounds = 10;
 // Frozen weights are taken as right within this (rad and m).
 constexpr double kFrozenWithin = 2e-3;
 constexpr int kMaxBindRounds = 3;
+
+std::vector<RobustCost> TermsOf(std::unique_ptr<Cost> cost,
+                                std::unique_ptr<ceres::LossFunction> loss) {
+  if (cost == nullptr) throw InputError("an estimator needs a cost");
+  std::vector<RobustCost> terms;
+  terms.push_back({std::move(cost), std::move(loss)});
+  return terms;
+}
 
 }  // namespace
 
@@ -243,6 +252,11 @@ class Estimator::Solve {
 Estimator::Estimator(const EstimatorOptions& options,
                      std::vector<RobustCost> costs)
     : solve_(std::make_unique<Solve>(options, std::move(costs))) {}
+
+Estimator::Estimator(const EstimatorOptions& options,
+                     std::unique_ptr<Cost> cost,
+                     std::unique_ptr<ceres::LossFunction> loss)
+    : Estimator(options, TermsOf(std::move(cost), std::move(loss))) {}
 
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;

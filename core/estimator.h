@@ -1,5 +1,7 @@
 #pragma once
 
+#include <ceres/loss_function.h>
+
 #include <memory>
 #include <string>
 #include <vector>
@@ -60,6 +62,9 @@ struct EstimatorOptions {
 class Estimator {
  public:
   Estimator(const EstimatorOptions& options, std::vector<RobustCost> costs);
+  // Of one cost; a null loss is least squares. Throws InputError without cost.
+  Estimator(const EstimatorOptions& options, std::unique_ptr<Cost> cost,
+            std::unique_ptr<ceres::LossFunction> loss);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
   Estimator& operator=(Estimator&&) noexcept;

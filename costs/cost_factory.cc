@@ -18,9 +18,7 @@ struct CostEntry {
 
 template <typename... Residuals>
 std::vector<CostEntry> EntriesOf(TypeList<Residuals...>) {
-  return {CostEntry{Residuals::kName, []() -> std::unique_ptr<Cost> {
-                      return std::make_unique<CostOf<Residuals>>();
-                    }}...};
+  return {CostEntry{Residuals::kName, &MakeCost<Residuals>}...};
 }
 
 std::vector<std::string> Split(const std::string& text, char separator) {

@@ -19,7 +19,8 @@ std::unique_ptr<Cost> MakeCost(std::string_view name);
 // Costs by name ("bidirectional_point+motion_prior"), each with its loss: one
 // name for all or one each ("tukey", "tukey,none"). Throws InputError listing
 // the names there are.
-std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,
-                                        const std::string& loss_names);
+std::vector<RobustCost> MakeRobustCosts(
+    const std::string& cost_names = "bidirectional_point",
+    const std::string& loss_names = "tukey");
 
 }  // namespace rgbd_pose

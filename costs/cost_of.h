@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -9,6 +10,7 @@
 #include "core/cost.h"
 #include "core/parallel_for.h"
 #include "core/vector_lanes.h"
+#include "costs/autodiff_jacobian.h"
 #include "costs/compressed_block.h"
 #include "costs/match_blocks.h"
 #include "costs/packed_sum.h"
@@ -23,6 +25,9 @@ namespace rgbd_pose {
 //   kIsWhitened                                   see Cost::is_whitened
 //   Pack(input, i, columns) -> usable             of match i
 //   Residual(motion pose, columns, r)             for any scalars
+//
+// and, where it has to be fast (costs/autodiff_jacobian.h does it otherwise),
+//
 //   Jacobian(motion derivatives, columns, r, J)   by hand
 //
 // A type whose matches may lack measurements tells how many there are by
@@ -43,8 +48,11 @@ template <typename Residual>
 struct HasDegrees<Residual, std::void_t<decltype(&Residual::Degrees)>>
     : std::true_type {};
 
-template <typename Residual>
+template <typename Type>
 class CostOf final : public Cost {
+  using Residual = std::conditional_t<HasJacobian<Type>::value, Type,
+                                      WithAutodiffJacobian<Type>>;
+
  public:
   std::string_view name() const override { return Residual::kName; }
   int independent_rows() const override { return Residual::kIndependentRows; }
@@ -206,5 +214,12 @@ class CostOf final : public Cost {
   std::vector<double> rows_;                     // see Unpack
   std::optional<CompressedBlock<6, SumsAt>> block_;
 };
+
+// The cost of a residual type of your own; costs/cost_factory.h makes those of
+// this project by name.
+template <typename Residual>
+std::unique_ptr<Cost> MakeCost() {
+  return std::make_unique<CostOf<Residual>>();
+}
 
 }  // namespace rgbd_pose

@@ -20,7 +20,6 @@ class DescriptorFrontend final : public Frontend {
   DescriptorFrontend(const FrontendOptions& options,
                      const DescriptorMethod& method);
 
-  std::string_view name() const override { return method_.name; }
   bool finds_all_in_view() const override { return false; }
   std::unique_ptr<FeatureSet> Detect(const Frame& frame) override;
   void Match(const FeatureSet& reference, const Frame& frame,

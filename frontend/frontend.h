@@ -63,8 +63,6 @@ class Frontend {
  public:
   virtual ~Frontend() = default;
 
-  virtual std::string_view name() const = 0;
-
   // Whether it should find every feature that is in view and not hidden.
   // Detectors need not fire in the same place twice.
   virtual bool finds_all_in_view() const { return true; }

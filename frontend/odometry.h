@@ -69,6 +69,9 @@ class Odometry {
   TrackedFrame Track(const Frame& frame,
                      const Rigid3d* cur_from_prev_guess = nullptr);
 
+  // The pose after the last frame, found or not (see LostPolicy).
+  Rigid3d WorldFromCam() const;
+
   const Frontend& frontend() const { return *frontend_; }
 
   // The matches that the last frame was tracked by (prev: its reference) and
@@ -103,7 +106,6 @@ class Odometry {
   bool TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
                      TrackedFrame* result);
   double MeanInlierFlowPx() const;
-  Rigid3d WorldFromCam() const;
 
   OdometryOptions options_;
   std::unique_ptr<Frontend> frontend_;

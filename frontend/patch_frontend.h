@@ -19,7 +19,6 @@ class PatchFrontend final : public Frontend {
 
   explicit PatchFrontend(const FrontendOptions& options);
 
-  std::string_view name() const override { return kName; }
   void Prepare(Frame* frame) const override;
   std::unique_ptr<FeatureSet> Detect(const Frame& frame) override;
   void Match(const FeatureSet& reference, const Frame& frame,

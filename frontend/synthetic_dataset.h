@@ -16,10 +16,10 @@ struct SyntheticOptions {
   std::string scene = "room";  // see MakeScene
   std::string path = "xyz";    // see FindSyntheticPath
   int frames = 150;
-  uint32_t seed = 1;      // of textures and noise
-  double rate_hz = 30.0;  // frames a second
-  bool noise = true;      // of a real sensor, see synthetic_sensor.h
-  RgbdCamera camera;      // may have distortion
+  uint32_t seed = 1;       // of textures and noise
+  double rate_hz = 30.0;   // frames a second
+  bool noise = true;       // of a real sensor, see synthetic_sensor.h
+  RgbdCamera camera = {};  // may have distortion
 
   // How long the shutter is open (s), from half of it before the pose of a
   // frame to half of it after; at most the time from frame to frame.
@@ -29,7 +29,7 @@ struct SyntheticOptions {
   double exposure_drift = 0.0;
 
   // How the camera is mounted on what moves along the path, if not straight.
-  std::optional<Rigid3d> path_from_cam;
+  std::optional<Rigid3d> path_from_cam = {};
 };
 
 // The images of one time, as cameras give them.

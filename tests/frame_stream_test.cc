@@ -59,7 +59,6 @@ class FakeDataset : public Dataset {
 // Prepares a frame by a copy of its image.
 class FakeFrontend : public Frontend {
  public:
-  std::string_view name() const override { return "fake"; }
   void Prepare(Frame* frame) const override {
     frame->pyramid = {frame->gray.clone()};
   }

@@ -1,0 +1,30 @@
+// Odometry frame by frame, in the loop of your own camera.
+#include <cstdio>
+#include <opencv2/imgproc.hpp>
+
+#include "costs/cost_factory.h"
+#include "frontend/odometry.h"
+#include "frontend/synthetic_dataset.h"
+
+int main() {
+  const rgbd_pose::SyntheticDataset camera({"room", "pan_tilt", 60});  // yours
+  const rgbd_pose::FrontendOptions options{camera.camera().camera};
+  rgbd_pose::Odometry odometry({}, options.camera,
+                               rgbd_pose::MakeFrontend("patch", options),
+                               {{}, rgbd_pose::MakeRobustCosts()});
+  for (int i = 0; i < camera.size(); ++i) {
+    const rgbd_pose::RgbdImages images = camera.ReadImages(i);
+    rgbd_pose::Frame frame;
+    frame.index = i;
+    frame.timestamp = i / 30.0;  // s
+    cv::cvtColor(images.color, frame.gray, cv::COLOR_BGR2GRAY);
+    frame.depth = images.depth;
+    frame.depth_scale = 5000.0;  // units per metre
+    const rgbd_pose::TrackedFrame tracked = odometry.Track(frame);
+    if (!tracked.reason.empty())
+      std::printf("%d: %s\n", i, tracked.reason.c_str());
+  }
+  const double error = odometry.WorldFromCam().translation.norm();
+  std::printf("back at the start within %.2f mm\n", 1e3 * error);
+  return 0;
+}

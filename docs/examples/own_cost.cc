@@ -1,0 +1,30 @@
+// A cost of your own: the 3D error of a match in percent of its depth.
+#include <cstdio>
+
+#include "core/estimator.h"
+#include "costs/cost_of.h"
+#include "costs/forward_error.h"
+#include "frontend/synthetic_matches.h"
+
+struct RelativeError : rgbd_pose::ForwardError {  // kColumns and Pack of that
+  static constexpr char kName[] = "relative_error";
+  static constexpr int kRows = 3, kIndependentRows = 3;
+  static constexpr bool kFreezesWeights = false, kIsWhitened = false;
+  template <typename M, typename D, typename T>
+  static void Residual(const rgbd_pose::MotionPose<M>& motion, const D* columns,
+                       T* r) {
+    Error(motion, columns, r);
+    for (int i = 0; i < 3; ++i) r[i] = 100.0 * r[i] / columns[5];
+  }
+};
+
+int main() {
+  rgbd_pose::RandomWorld world(1);  // stands for your matches
+  const rgbd_pose::Rigid3d truth = world.Motion(0.1, 0.1);
+  rgbd_pose::Estimator estimator({}, rgbd_pose::MakeCost<RelativeError>(),
+                                 std::make_unique<ceres::CauchyLoss>(2.0));
+  const auto estimate = estimator.Estimate(world.Matches(500, 0.2, truth));
+  const auto error = estimate.cur_from_prev.Inverse() * truth;
+  std::printf("error %.2f mm\n", 1e3 * error.translation.norm());
+  return estimate.ok() ? 0 : 1;
+}

@@ -1,0 +1,30 @@
+// A frontend of your own: strong corners, followed by optical flow.
+#include <cstdio>
+#include <opencv2/video/tracking.hpp>
+
+#include "costs/cost_factory.h"
+#include "frontend/odometry.h"
+#include "frontend/point_frontend.h"
+#include "frontend/synthetic_dataset.h"
+
+struct Flow final : rgbd_pose::PointFrontend {
+  using PointFrontend::PointFrontend;
+  void Find(const rgbd_pose::Frame& frame, Points* points) override {
+    cv::goodFeaturesToTrack(frame.gray, *points, 400, 0.01, 10.0);
+  }
+  void Follow(const rgbd_pose::Frame& from, const Points& points,
+              const rgbd_pose::Frame& to, Points* moved,
+              Found* found) override {
+    cv::calcOpticalFlowPyrLK(from.gray, to.gray, points, *moved, *found, {});
+  }
+};
+
+int main() {
+  const rgbd_pose::SyntheticDataset room({"room", "pan_tilt", 60});  // or yours
+  const rgbd_pose::FrontendOptions options{room.camera().camera};
+  rgbd_pose::Odometry odometry({}, options.camera,
+                               std::make_unique<Flow>(options),
+                               {{}, rgbd_pose::MakeRobustCosts()});
+  for (int i = 0; i < room.size(); ++i) odometry.Track(room.Read(i));
+  std::printf("error %.4f m\n", odometry.WorldFromCam().translation.norm());
+}
