@@ -26,6 +26,7 @@
 #include "core/depth_noise.h"
 #include "core/evaluation.h"
 #include "core/input_error.h"
+#include "core/quantile.h"
 #include "core/text_file.h"
 #include "core/trajectory.h"
 #include "costs/cost_factory.h"

@@ -5,22 +5,21 @@
 #include <algorithm>
 #include <cstdio>
 
+#include "core/quantile.h"
+
 namespace rgbd_pose {
 namespace {
 
-double Quantile(std::vector<double> values, double share) {
-  if (values.empty()) return 0.0;
-  const size_t rank = std::min<size_t>(
-      values.size() - 1, static_cast<size_t>(share * values.size()));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[rank];
+// 0 where there is nothing to sum up.
+double QuantileOrZero(const std::vector<double>& values, double share) {
+  return values.empty() ? 0.0 : Quantile(values, share);
+}
+
+double MedianOrZero(const std::vector<double>& values) {
+  return QuantileOrZero(values, 0.5);
 }
 
 }  // namespace
-
-double Median(const std::vector<double>& values) {
-  return Quantile(values, 0.5);
-}
 
 RunSummary Summarise(const std::vector<TrackedFrame>& frames, int threads,
                      double wall_seconds) {
@@ -52,15 +51,15 @@ RunSummary Summarise(const std::vector<TrackedFrame>& frames, int threads,
     }
     summary.relocalised += frame.relocalised;
   }
-  summary.median_matches = Median(matches);
-  summary.median_inlier_share = Median(inlier_shares);
-  summary.median_decode_ms = Median(decode);
-  summary.median_track_ms = Median(track);
-  summary.p99_track_ms = Quantile(track, 0.99);
-  summary.median_match_ms = Median(match);
-  summary.median_solve_ms = Median(solve);
-  summary.median_reference_ms = Median(reference);
-  summary.median_relocalise_ms = Median(relocalise);
+  summary.median_matches = MedianOrZero(matches);
+  summary.median_inlier_share = MedianOrZero(inlier_shares);
+  summary.median_decode_ms = MedianOrZero(decode);
+  summary.median_track_ms = MedianOrZero(track);
+  summary.p99_track_ms = QuantileOrZero(track, 0.99);
+  summary.median_match_ms = MedianOrZero(match);
+  summary.median_solve_ms = MedianOrZero(solve);
+  summary.median_reference_ms = MedianOrZero(reference);
+  summary.median_relocalise_ms = MedianOrZero(relocalise);
   return summary;
 }
 

@@ -51,9 +51,6 @@ std::string FormatSummary(const RunSummary& summary);
 // For metrics.json.
 nlohmann::json SummaryToJson(const RunSummary& summary);
 
-// The median, or 0 of nothing.
-double Median(const std::vector<double>& values);
-
 // The most memory (MB) that this process has had so far.
 double PeakMemoryMb();
 

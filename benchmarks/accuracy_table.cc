@@ -15,6 +15,7 @@
 
 #include "benchmarks/pnp_peer.h"
 #include "core/estimator.h"
+#include "core/quantile.h"
 #include "core/ransac.h"
 #include "costs/cost_factory.h"
 #include "frontend/synthetic_matches.h"
@@ -107,13 +108,6 @@ std::optional<Rigid3d> Ransac(const Trial& trial) {
 
 std::optional<Rigid3d> PnpRansac(const Trial& trial) {
   return SolvePnp(PnpInput(trial.matches), /*refine=*/true);
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 struct Cell {

@@ -21,6 +21,7 @@
 #include "benchmarks/frame_trackers.h"
 #include "core/evaluation.h"
 #include "core/input_error.h"
+#include "core/quantile.h"
 #include "core/text_file.h"
 #include "frontend/camera_file.h"
 #include "frontend/synthetic_dataset.h"
@@ -91,13 +92,6 @@ struct Clock {
         .count();
   }
 };
-
-double Quantile(std::vector<double> values, double share) {
-  const size_t rank =
-      std::min(values.size() - 1, static_cast<size_t>(share * values.size()));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[rank];
-}
 
 // The first frame has nothing to be tracked against and does not count.
 nlohmann::json RunRound(const Sequence& sequence, const FrameTrackerType& type,

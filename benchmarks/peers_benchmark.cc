@@ -16,6 +16,7 @@
 
 #include "benchmarks/pnp_peer.h"
 #include "core/estimator.h"
+#include "core/quantile.h"
 #include "core/ransac.h"
 #include "costs/cost_factory.h"
 #include "frontend/synthetic_matches.h"
@@ -130,13 +131,6 @@ std::optional<Rigid3d> Pnp(const Trial& trial) {
 
 std::optional<Rigid3d> PnpRefined(const Trial& trial) {
   return SolvePnp(trial.pnp, /*refine=*/true);
-}
-
-double Median(std::vector<double> values) {
-  if (values.empty()) return std::nan("");
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 void Measure(benchmark::State& state, Method method) {

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/input_error.h"
+#include "core/quantile.h"
 #include "core/text_file.h"
 
 namespace rgbd_pose {
@@ -17,13 +18,6 @@ double Nanoseconds(const std::string& unit, const std::string& path) {
   if (unit == "s") return 1e9;
   throw InputError(path + ": unknown time unit '" + unit +
                    "'; there are ns, us, ms, s");
-}
-
-double Quantile(const std::vector<double>& sorted, double share) {
-  const double place = share * (sorted.size() - 1);
-  const size_t below = static_cast<size_t>(place);
-  const size_t above = std::min(below + 1, sorted.size() - 1);
-  return sorted[below] + (place - below) * (sorted[above] - sorted[below]);
 }
 
 void AddEntry(const nlohmann::json& entry, const std::string& path,
@@ -72,10 +66,9 @@ const BenchmarkResult* BenchmarkResults::FindFastest(
   return fastest;
 }
 
-Spread SpreadOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return {values.front(), Quantile(values, 0.25), Quantile(values, 0.5),
-          Quantile(values, 0.75), values.back()};
+Spread SpreadOf(const std::vector<double>& values) {
+  return {Quantile(values, 0.0), Quantile(values, 0.25), Quantile(values, 0.5),
+          Quantile(values, 0.75), Quantile(values, 1.0)};
 }
 
 Speedup SpeedupOf(const BenchmarkResult& ours, const BenchmarkResult& theirs) {

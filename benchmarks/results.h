@@ -39,7 +39,7 @@ struct BenchmarkResults {
 struct Spread {
   double min, lower_quartile, median, upper_quartile, max;
 };
-Spread SpreadOf(std::vector<double> values);
+Spread SpreadOf(const std::vector<double>& values);
 
 // How many times faster `ours` is than `theirs`, by CPU times of one run.
 struct Speedup {

@@ -10,10 +10,18 @@ namespace rgbd_pose {
 // (SplitMix64; Steele, Lea & Flood 2014).
 class CounterRandom {
  public:
+  // What counters go up by, and 64 well-mixed bits of one.
+  static constexpr uint64_t kStep = 0x9e3779b97f4a7c15u;
+  static uint64_t Mix(uint64_t x) {
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
+    return x ^ (x >> 31);
+  }
+
   explicit CounterRandom(uint64_t seed) : counter_(Mix(seed)) {}
 
   // 64 random bits.
-  uint64_t Next() { return Mix(counter_ += 0x9e3779b97f4a7c15u); }
+  uint64_t Next() { return Mix(counter_ += kStep); }
 
   // A whole number in [0, end), 0 < end < 2^32; its bias is below end / 2^32.
   uint32_t Below(uint32_t end) {
@@ -33,12 +41,6 @@ class CounterRandom {
   }
 
  private:
-  static uint64_t Mix(uint64_t x) {
-    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
-    x = (x ^ (x >> 27)) * 0x94d049bb133111ebu;
-    return x ^ (x >> 31);
-  }
-
   uint64_t counter_;
 };
 

@@ -1,10 +1,10 @@
 #include "core/pose_pairs.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <string>
 
+#include "core/association.h"
 #include "core/input_error.h"
 
 namespace rgbd_pose {
@@ -42,13 +42,10 @@ std::vector<PosePair> PairPoses(const Trajectory& estimate,
   const std::vector<double> estimate_times = Times(estimate);
   const std::vector<double> truth_times = Times(ground_truth);
   std::vector<PosePair> pairs;
-  for (size_t i = 0; i < estimate.size() && !ground_truth.empty(); ++i) {
-    const double time = estimate_times[i];
-    const size_t j = NearestTime(truth_times, time);
-    if (std::abs(truth_times[j] - time) > max_time_difference) continue;
-    if (NearestTime(estimate_times, truth_times[j]) != i) continue;
-    pairs.push_back(
-        {time, ground_truth[j].world_from_cam, estimate[i].world_from_cam});
+  for (const auto [i, j] :
+       Associate(estimate_times, truth_times, max_time_difference)) {
+    pairs.push_back({estimate_times[i], ground_truth[j].world_from_cam,
+                     estimate[i].world_from_cam});
   }
   if (pairs.empty()) {
     char difference[32];

@@ -20,10 +20,9 @@ struct PosePair {
 // the earlier one of two that are as near.
 size_t NearestTime(const std::vector<double>& times, double time);
 
-// Pairs poses that are each other's nearest in time and at most
-// `max_time_difference` (s) apart, in time order. So a list of the higher rate
-// gives only the poses that fit best, and each pose is used at most once.
-// Throws InputError, naming the time ranges, if there is no such pair.
+// Pairs poses nearest in time and at most `max_time_difference` (s) apart, each
+// used at most once (association.h), in time order. Throws InputError, naming
+// the time ranges, if there is no such pair.
 std::vector<PosePair> PairPoses(const Trajectory& estimate,
                                 const Trajectory& ground_truth,
                                 double max_time_difference);

@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "core/counter_random.h"
+
 namespace rgbd_pose {
 
 // Hashes in place of random generators: the value at a place (lattice cell,
@@ -18,12 +20,9 @@ inline uint32_t HashCell(int x, int y, uint32_t seed) {
   return h ^ (h >> 16);
 }
 
-// 64 well-mixed bits of a counter. SplitMix64 (Steele, Lea & Flood 2014).
+// 64 well-mixed bits of a counter.
 inline uint64_t HashCounter(uint64_t counter) {
-  uint64_t h = counter * 0x9e3779b97f4a7c15u;
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9u;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111ebu;
-  return h ^ (h >> 31);
+  return CounterRandom::Mix(counter * CounterRandom::kStep);
 }
 
 // A number of mean 0 and variance 1 from 64 random bits: the sum of their

@@ -8,7 +8,7 @@
 
 #include "core/input_error.h"
 #include "core/text_file.h"
-#include "frontend/association.h"
+#include "core/association.h"
 #include "frontend/image_file.h"
 
 namespace rgbd_pose {

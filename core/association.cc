@@ -1,4 +1,4 @@
-#include "frontend/association.h"
+#include "core/association.h"
 
 #include <algorithm>
 #include <functional>

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace rgbd_pose {
+
+// The value below which `share` (0 to 1) of the values lie, interpolated
+// between two of them; NaN of none.
+inline double Quantile(std::vector<double> values, double share) {
+  if (values.empty()) return std::numeric_limits<double>::quiet_NaN();
+  const double place = share * static_cast<double>(values.size() - 1);
+  const auto below = values.begin() + static_cast<ptrdiff_t>(place);
+  std::nth_element(values.begin(), below, values.end());
+  if (below + 1 == values.end()) return *below;
+  const double above = *std::min_element(below + 1, values.end());
+  return *below + (place - std::floor(place)) * (above - *below);
+}
+
+inline double Median(const std::vector<double>& values) {
+  return Quantile(values, 0.5);
+}
+
+}  // namespace rgbd_pose
