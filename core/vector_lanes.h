@@ -19,17 +19,27 @@ struct Lanes {
 namespace packed {
 
 // flatten: everything below is compiled for the instruction set here and only
-// here, so no function that the rest of the program shares is.
+// here, so no function that the rest of the program shares is. With the checks
+// of sanitizers that takes many minutes: there only the kernel itself is.
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+#define RGBD_POSE_TARGET(set) [[gnu::target(set)]]
+#else
+#define RGBD_POSE_TARGET(set) [[gnu::target(set), gnu::flatten]]
+#endif
+
 template <typename Kernel, typename... Args>
-[[gnu::target("avx512f,avx512dq,avx512vl,avx2,fma"), gnu::flatten]] void
-RunAvx512(Args... args) {
+RGBD_POSE_TARGET("avx512f,avx512dq,avx512vl,avx2,fma")
+void RunAvx512(Args... args) {
   Kernel::template Run<8>(*args...);
 }
 
 template <typename Kernel, typename... Args>
-[[gnu::target("avx2,fma"), gnu::flatten]] void RunAvx2(Args... args) {
+RGBD_POSE_TARGET("avx2,fma")
+void RunAvx2(Args... args) {
   Kernel::template Run<4>(*args...);
 }
+
+#undef RGBD_POSE_TARGET
 
 template <typename Kernel, typename... Args>
 void RunBaseline(Args... args) {

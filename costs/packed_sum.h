@@ -22,7 +22,7 @@ namespace rgbd_pose {
 // of the last match to a multiple of kMaxLanes.
 struct PackedColumns {
   std::vector<double> values;  // column k starts at k * stride
-  int stride = 0;
+  ptrdiff_t stride = 0;
   int size = 0;
 };
 
