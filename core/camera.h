@@ -12,12 +12,17 @@ namespace rgbd_pose {
 // Optical axes: x right, y down, z forward. Pixel (0, 0) is the centre of the
 // upper left pixel. Lengths in pixels.
 struct Camera {
+  // Size of the image.
   int width = 640;
   int height = 480;
+
+  // Focal lengths and principal point.
   double fx = 525.0;
   double fy = 525.0;
   double cx = 319.5;
   double cy = 239.5;
+
+  // Distortion: radial k, tangential p.
   double k1 = 0.0;
   double k2 = 0.0;
   double p1 = 0.0;
@@ -27,6 +32,7 @@ struct Camera {
   // One line that says what is wrong with the parameters, or empty.
   std::string Check() const;
 
+  // Whether any distortion coefficient is not 0.
   bool HasDistortion() const;
 
   // Image point (distorted px) of a point in camera axes; z must be > 0.
@@ -42,6 +48,7 @@ struct Camera {
   // Point in camera axes (m) of an image pixel (distorted) at a depth z (m).
   Eigen::Vector3d Unproject(const Eigen::Vector2d& pixel, double depth) const;
 
+  // Whether an image point is in the image, so far from its border.
   bool Contains(const Eigen::Vector2d& pixel, double border_px = 0.0) const {
     return pixel.x() >= border_px && pixel.y() >= border_px &&
            pixel.x() <= width - 1 - border_px &&
@@ -51,7 +58,7 @@ struct Camera {
 
 // A camera together with how its depth images count.
 struct RgbdCamera {
-  Camera camera;
+  Camera camera;                // of the colour image
   double depth_scale = 5000.0;  // raw units of the depth image per metre
 };
 

@@ -21,6 +21,7 @@ struct Observation {
 // All matches seen from one frame, as a structure of arrays.
 class ObservationArray {
  public:
+  // As those of std::vector.
   size_t size() const { return u_.size(); }
   void reserve(size_t n);
   void clear();
@@ -59,8 +60,11 @@ class Correspondences {
   void Clear();
   void Reserve(size_t n);
 
+  // How many matches there are, and how many Add has refused.
   size_t size() const { return prev_.size(); }
   size_t rejected() const { return rejected_; }
+
+  // What both sides share, and what each has seen, in the same order.
   const Camera& camera() const { return camera_; }
   const ObservationArray& prev() const { return prev_; }
   const ObservationArray& cur() const { return cur_; }

@@ -31,21 +31,21 @@ constexpr ceres::Ownership BlockOwnership(Assembly assembly) {
 // A robustified sum over matches, linearised at one motion:
 // cost(x + d) ~ cost + gradient . d + 1/2 d^T hessian d (Gauss-Newton).
 struct NormalEquations {
-  MotionMatrix hessian = MotionMatrix::Zero();
-  MotionVector gradient = MotionVector::Zero();
-  double cost = 0.0;
+  MotionMatrix hessian = MotionMatrix::Zero();   // sum rho' J^T J
+  MotionVector gradient = MotionVector::Zero();  // sum rho' J^T r
+  double cost = 0.0;                             // 1/2 sum rho
 };
 
 // What is known of a motion before its matches are seen. Nothing, if the
 // covariance is not positive definite: that of a failed estimate is zero.
 struct MotionPrior {
-  Rigid3d cur_from_prev;
+  Rigid3d cur_from_prev;                               // the prediction
   MotionMatrix covariance = MotionMatrix::Identity();  // as MotionEstimate's
 };
 
 // What a cost is bound to for one estimation.
 struct CostInput {
-  const Correspondences& matches;
+  const Correspondences& matches;  // of which it takes what it can use
   Rigid3d cur_from_prev;  // where weights that depend on the motion are frozen
   const MotionPrior* prior = nullptr;  // null: nothing is known
   int threads = 1;  // for sums over many matches; results do not depend on it
@@ -57,6 +57,7 @@ class Cost {
  public:
   virtual ~Cost() = default;
 
+  // As programs take it.
   virtual std::string_view name() const = 0;
 
   // The number of residuals of a match.

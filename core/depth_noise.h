@@ -8,7 +8,7 @@ namespace rgbd_pose {
 
 // How uncertain one measured depth is.
 struct DepthNoiseModel {
-  std::string_view name;
+  std::string_view name;          // as programs take it
   double (*sigma)(double depth);  // standard deviation (m) at a depth (m)
 };
 

@@ -20,9 +20,12 @@ enum class RobustSchedule {
             // count, then narrower step by step
 };
 
+// How a motion is estimated.
 struct EstimatorOptions {
+  // How matches become residual blocks; the result does not depend on it.
   Assembly assembly = Assembly::kCompressed;
 
+  // How losses get to their widths.
   RobustSchedule schedule = RobustSchedule::kGnc;
 
   // Each stage of the graduation narrows the losses by this factor, or at once
@@ -61,6 +64,7 @@ struct EstimatorOptions {
 // object serves one thread at a time.
 class Estimator {
  public:
+  // Minimises the sum of these costs.
   Estimator(const EstimatorOptions& options, std::vector<RobustCost> costs);
   // Of one cost; a null loss is least squares. Throws InputError without cost.
   Estimator(const EstimatorOptions& options, std::unique_ptr<Cost> cost,

@@ -26,11 +26,11 @@ struct EvaluationOptions {
 
 // Sums up errors; all 0 if there are none.
 struct ErrorStatistics {
-  int count = 0;
-  double rmse = 0.0;
-  double mean = 0.0;
+  int count = 0;        // of errors
+  double rmse = 0.0;    // root of their mean square
+  double mean = 0.0;    // their mean
   double median = 0.0;  // of an even number, the mean of the two in the middle
-  double max = 0.0;
+  double max = 0.0;     // the largest
 };
 
 // Errors of motions between two poses i and j of the camera (Sturm 2012):
@@ -40,6 +40,7 @@ struct RelativePoseError {
   ErrorStatistics rotation;     // angle of E, rad
 };
 
+// The error of the last pose relative to the first.
 struct FinalPoseError {
   double translation = 0.0;  // m
   double angle = 0.0;        // rad
@@ -57,11 +58,11 @@ struct PoseError {
 // All figures are over poses paired in time (core/pose_pairs.h). Those of
 // relative and final errors do not depend on the worlds of the trajectories.
 struct EvaluationReport {
-  EvaluationOptions options;
-  int estimated_poses = 0;   // in the estimate
-  int paired_poses = 0;      // of those, with a ground truth
-  double duration = 0.0;     // from the first to the last paired pose, s
-  double path_length = 0.0;  // of the paired ground truth, m
+  EvaluationOptions options;  // that it was made with
+  int estimated_poses = 0;    // in the estimate
+  int paired_poses = 0;       // of those, with a ground truth
+  double duration = 0.0;      // from the first to the last paired pose, s
+  double path_length = 0.0;   // of the paired ground truth, m
 
   // Absolute trajectory error: distances (m) of positions after the rigid
   // alignment, without scale, by truth_from_estimate (of worlds).

@@ -11,7 +11,7 @@ namespace rgbd_pose {
 
 // A way to guess the motion from the matches alone, without a place to start.
 struct InitialGuess {
-  std::string_view name;
+  std::string_view name;  // as programs take it
   // cur_from_prev, or nothing where the matches do not tell; whoever asks then
   // falls back to a guess of their own (the last motion, say).
   std::optional<Rigid3d> (*find)(const Correspondences& matches);

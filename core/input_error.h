@@ -11,6 +11,7 @@ namespace rgbd_pose {
 // characters of quoted input become spaces, so that it stays one line.
 class InputError : public std::runtime_error {
  public:
+  // The message, with the place it is about if there is one.
   explicit InputError(const std::string& message)
       : std::runtime_error(OneLine(message)) {}
   InputError(const std::string& file, int line, const std::string& message)

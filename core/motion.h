@@ -17,21 +17,22 @@
 
 namespace rgbd_pose {
 
+// The six parameters, and what is quadratic in them.
 using MotionVector = Eigen::Matrix<double, 6, 1>;
 using MotionMatrix = Eigen::Matrix<double, 6, 6>;
 
 // R and C of a motion, for any scalar (double or ceres::Jet).
 template <typename T>
 struct MotionPose {
-  Eigen::Matrix<T, 3, 3> R;
-  Eigen::Matrix<T, 3, 1> C;
+  Eigen::Matrix<T, 3, 3> R;  // previous axes to current axes
+  Eigen::Matrix<T, 3, 1> C;  // current centre in the previous frame, m
 };
 
 // R, C and the three matrices dR/d(alpha, beta, gamma) (Table 2.1). What a
 // hand-written Jacobian needs, computed once per motion. dR/dC = 0 and
 // dC/dC = I are not stored.
 struct MotionDerivatives : MotionPose<double> {
-  std::array<Eigen::Matrix3d, 3> dR;
+  std::array<Eigen::Matrix3d, 3> dR;  // by alpha, beta, gamma
 };
 
 // The rotation of the three angles: Rz(gamma) Ry(beta) Rx(alpha).
@@ -58,6 +59,7 @@ Eigen::Matrix<T, 3, 3> RotationFromAngles(const T* angles) {
 // tables hold as they are. The identity as the origin gives the thesis' x.
 class MotionOrigin {
  public:
+  // The motion at x = 0; by default none.
   MotionOrigin() : MotionOrigin(Rigid3d()) {}
   explicit MotionOrigin(const Rigid3d& cur_from_prev);
 

@@ -8,6 +8,7 @@
 
 namespace rgbd_pose {
 
+// How far an estimate can be believed.
 enum class EstimateStatus {
   kOk,
   kTooFewMatches,  // fewer than three usable matches
@@ -21,6 +22,7 @@ const char* ToString(EstimateStatus status);
 
 // The result of one motion estimation.
 struct MotionEstimate {
+  // Whether to believe the rest.
   EstimateStatus status = EstimateStatus::kTooFewMatches;
   std::string reason;  // in words; empty if ok
 
@@ -51,10 +53,11 @@ struct MotionEstimate {
 
   double sigma = 0.0;  // robust spread of the whitened residuals; ideally 1
   double initial_cost = 0.0;  // robust cost at the guess, at final loss widths
-  double final_cost = 0.0;
-  int iterations = 0;  // of the solver, all stages together
-  double solve_ms = 0.0;
+  double final_cost = 0.0;    // the same at the estimate
+  int iterations = 0;         // of the solver, all stages together
+  double solve_ms = 0.0;      // time of the whole estimation
 
+  // Whether there is nothing to say against it.
   bool ok() const { return status == EstimateStatus::kOk; }
 };
 

@@ -10,24 +10,29 @@ namespace rgbd_pose {
 // target_from_source * point_in_source. Inner names cancel in products:
 // a_from_c = a_from_b * b_from_c. Translation in metres.
 struct Rigid3d {
+  // Of source axes into target axes, and the source's origin in the target.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
+  // No motion, or these two.
   Rigid3d() = default;
   Rigid3d(const Eigen::Quaterniond& target_from_source_rotation,
           const Eigen::Vector3d& source_origin_in_target)
       : rotation(target_from_source_rotation.normalized()),
         translation(source_origin_in_target) {}
 
+  // The point in the target.
   Eigen::Vector3d operator*(const Eigen::Vector3d& point_in_source) const {
     return rotation * point_in_source + translation;
   }
 
+  // target_from_other.
   Rigid3d operator*(const Rigid3d& source_from_other) const {
     return Rigid3d(rotation * source_from_other.rotation,
                    rotation * source_from_other.translation + translation);
   }
 
+  // source_from_target.
   Rigid3d Inverse() const {
     const Eigen::Quaterniond inverse = rotation.conjugate();
     return Rigid3d(inverse, -(inverse * translation));
@@ -39,6 +44,7 @@ struct Rigid3d {
     return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
   }
 
+  // Whether all of its numbers are.
   bool IsFinite() const {
     return rotation.coeffs().allFinite() && translation.allFinite();
   }

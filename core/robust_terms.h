@@ -15,7 +15,7 @@ namespace rgbd_pose {
 
 // A cost and the loss on each of its residual blocks.
 struct RobustCost {
-  std::unique_ptr<Cost> cost;
+  std::unique_ptr<Cost> cost;                 // must not be null
   std::unique_ptr<ceres::LossFunction> loss;  // null: least squares
 };
 

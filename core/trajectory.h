@@ -9,8 +9,8 @@ namespace rgbd_pose {
 
 // One pose of a trajectory. The time stamp is in seconds.
 struct StampedPose {
-  double timestamp = 0.0;
-  Rigid3d world_from_cam;
+  double timestamp = 0.0;  // s
+  Rigid3d world_from_cam;  // m
 };
 
 // Poses with strictly increasing time stamps.

@@ -27,8 +27,10 @@
 
 namespace rgbd_pose {
 
+// The three sums H, g and c at one x[K].
 template <int K>
 struct CompressedSums {
+  // As above.
   Eigen::Matrix<double, K, K> hessian = Eigen::Matrix<double, K, K>::Zero();
   Eigen::Matrix<double, K, 1> gradient = Eigen::Matrix<double, K, 1>::Zero();
   double cost = 0.0;
@@ -44,11 +46,13 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
   static_assert(K >= 1 && K <= 12, "dense sums suit small problems");
 
  public:
+  // Keeps the evaluator.
   explicit CompressedBlock(Evaluator evaluator)
       : evaluator_(std::move(evaluator)) {
     x_.setConstant(std::numeric_limits<double>::quiet_NaN());
   }
 
+  // The K + 1 rows, as Ceres asks for them.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
     // Row by row, as Ceres has it; Eigen wants a single column by column.

@@ -48,6 +48,7 @@ template <typename Residual>
 struct HasDegrees<Residual, std::void_t<decltype(&Residual::Degrees)>>
     : std::true_type {};
 
+// Of a residual type as described above.
 template <typename Type>
 class CostOf final : public Cost {
   using Residual = std::conditional_t<HasJacobian<Type>::value, Type,

@@ -14,8 +14,9 @@
 
 namespace rgbd_pose {
 
+// What goes into a cloud.
 struct CloudFusionOptions {
-  Camera camera;
+  Camera camera;  // of all frames
 
   // Side of the cubes that points are merged in (m). Finer than the noise of
   // the sensor, the cloud holds more noise, not more detail.
@@ -40,6 +41,7 @@ struct CloudFusionOptions {
 // in the world of their poses.
 class CloudFusion {
  public:
+  // The options must be sound, see Check.
   explicit CloudFusion(const CloudFusionOptions& options);
 
   // Whether Add would bring anything new: the status is ok, the camera has
@@ -50,8 +52,9 @@ class CloudFusion {
   void Add(const Frame& frame, const cv::Mat& color,
            const Rigid3d& world_from_cam);
 
+  // What has come together, and of how many frames.
   const VoxelCloud& cloud() const { return cloud_; }
-  int frames() const { return frames_; }  // added
+  int frames() const { return frames_; }
 
  private:
   CloudFusionOptions options_;

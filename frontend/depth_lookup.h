@@ -11,8 +11,11 @@ struct DepthSample {
   double sigma = 0.0;  // standard deviation, m
 };
 
+// Which depths are used, and how uncertain they are.
 struct DepthLookupOptions {
+  // Of single pixels.
   const DepthNoiseModel* noise = FindDepthNoiseModel("khoshelham");
+
   double min_depth = 0.3;  // m
   double max_depth = 8.0;  // m
 };

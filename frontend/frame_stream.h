@@ -15,8 +15,8 @@ namespace rgbd_pose {
 
 // A frame, and how long reading and preparing it took, in whichever thread.
 struct StreamedFrame {
-  Frame frame;
-  double decode_ms = 0.0;
+  Frame frame;             // prepared
+  double decode_ms = 0.0;  // to read and to prepare it
 };
 
 // The frames of a dataset in order, read and prepared ahead by several threads.

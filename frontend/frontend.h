@@ -15,7 +15,7 @@ namespace rgbd_pose {
 
 // What all frontends share.
 struct FrontendOptions {
-  Camera camera;
+  Camera camera;  // of all frames
 
   // How uncertain a measured depth is.
   const DepthNoiseModel* depth_noise = FindDepthNoiseModel("khoshelham");
@@ -44,13 +44,14 @@ class FeatureSet {
 
 // Matches between a feature set (prev) and a frame (cur).
 struct FeatureMatches {
-  Correspondences matches;
+  Correspondences matches;    // prev: the feature set, cur: the frame
   std::vector<int> features;  // of each match: its place in the feature set
 
   // Adds a match of feature `i` if Correspondences takes it.
   void Add(const FeatureSet& reference, int i, const Observation& cur) {
     if (matches.Add(reference.observations[i], cur)) features.push_back(i);
   }
+  // Takes all out; keeps the memory.
   void Clear() {
     matches.Clear();
     features.clear();

@@ -12,6 +12,7 @@ namespace rgbd_pose {
 // and at any rate.
 class MotionGuess {
  public:
+  // World from camera, whatever the world.
   explicit MotionGuess(Trajectory trajectory)
       : trajectory_(std::move(trajectory)) {}
 

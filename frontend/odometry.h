@@ -23,6 +23,7 @@ enum class LostPolicy {
   kNewSegment,  // as kHold, and after a while a new segment starts
 };
 
+// When to believe a motion, change the reference, give up.
 struct OdometryOptions {
   // A frame is lost with fewer inliers, degraded with fewer than the second.
   int min_inliers = 15;
@@ -46,6 +47,7 @@ struct OdometryOptions {
   double prior_sigma_rotation = 0.05;     // rad
   double prior_sigma_translation = 0.05;  // m
 
+  // What becomes of frames whose motion is not found.
   LostPolicy on_lost = LostPolicy::kNewSegment;
 
   // How long (s) the old segment is searched for before a new one starts.
@@ -60,6 +62,7 @@ struct OdometryOptions {
 // Every frame gets a result.
 class Odometry {
  public:
+  // The options must be sound (see Check), the frontend made for that camera.
   Odometry(const OdometryOptions& options, const Camera& camera,
            std::unique_ptr<Frontend> frontend, Estimator estimator);
 
@@ -72,6 +75,7 @@ class Odometry {
   // The pose after the last frame, found or not (see LostPolicy).
   Rigid3d WorldFromCam() const;
 
+  // For what may be prepared ahead.
   const Frontend& frontend() const { return *frontend_; }
 
   // The matches that the last frame was tracked by (prev: its reference) and

@@ -12,14 +12,15 @@
 
 namespace rgbd_pose {
 
+// What to render.
 struct SyntheticOptions {
   std::string scene = "room";  // see MakeScene
   std::string path = "xyz";    // see FindSyntheticPath
-  int frames = 150;
-  uint32_t seed = 1;       // of textures and noise
-  double rate_hz = 30.0;   // frames a second
-  bool noise = true;       // of a real sensor, see synthetic_sensor.h
-  RgbdCamera camera = {};  // may have distortion
+  int frames = 150;            // how many
+  uint32_t seed = 1;           // of textures and noise
+  double rate_hz = 30.0;       // frames a second
+  bool noise = true;           // of a real sensor, see synthetic_sensor.h
+  RgbdCamera camera = {};      // may have distortion
 
   // How long the shutter is open (s), from half of it before the pose of a
   // frame to half of it after; at most the time from frame to frame.

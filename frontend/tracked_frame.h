@@ -6,8 +6,9 @@
 
 namespace rgbd_pose {
 
+// Whether to believe the pose of a frame.
 enum class TrackingStatus {
-  kOk,
+  kOk,        // a pose that many matches agree on
   kDegraded,  // a pose, but from few or contradicting matches
   kLost,      // no pose was found: see LostPolicy for the one reported
 };
@@ -17,10 +18,10 @@ const char* ToString(TrackingStatus status);
 
 // What became of one input frame.
 struct TrackedFrame {
-  int index = 0;
+  int index = 0;           // place in the sequence, from 0
   double timestamp = 0.0;  // s
-  TrackingStatus status = TrackingStatus::kLost;
-  std::string reason;  // in words; empty if ok
+  TrackingStatus status = TrackingStatus::kLost;  // with its reason:
+  std::string reason;                             // in words; empty if ok
 
   Rigid3d world_from_cam;  // the world is the camera of the first frame
 
@@ -32,9 +33,9 @@ struct TrackedFrame {
   bool is_reference = false;  // became the reference of the frames that follow
   bool relocalised = false;   // found again among earlier references
 
-  int matches = 0;
-  int inliers = 0;
-  int iterations = 0;
+  int matches = 0;     // with the reference
+  int inliers = 0;     // of these, in agreement with the motion
+  int iterations = 0;  // of the solver, all attempts together
   double sigma = 0.0;  // spread of whitened residuals; ideally 1
 
   // Where the time went. Decoding may run beside the tracking of others.

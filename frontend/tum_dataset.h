@@ -8,6 +8,7 @@
 
 namespace rgbd_pose {
 
+// Where a sequence is, and how to read it.
 struct TumDatasetOptions {
   // Holds rgb.txt, depth.txt (unless there is an associations file) and the
   // images, whose paths in the lists count from here.

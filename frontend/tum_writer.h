@@ -8,8 +8,9 @@
 
 namespace rgbd_pose {
 
+// How to write a sequence.
 struct TumWriterOptions {
-  int threads = 2;
+  int threads = 2;  // that render; the files do not depend on it
   // Told how many frames are written, one call at a time; may be empty.
   std::function<void(int done)> progress;
 };

@@ -15,9 +15,10 @@ namespace rgbd_pose {
 // whitened residuals; so a width counts sigmas. All have R'' <= 0, and R of k
 // times the width is k^2 R(s / k^2) (core/scaled_loss.h).
 struct MEstimator {
+  // The most independent components there are widths for.
   static constexpr int kMaxDimension = 6;
 
-  std::string_view name;
+  std::string_view name;     // as programs take it
   std::string_view formula;  // weight w(x) of the norm x, c the width
   bool is_redescending;      // far matches lose all influence: w(x) x -> 0
 
@@ -29,6 +30,8 @@ struct MEstimator {
   bool is_tuned;
   std::array<double, kMaxDimension> width95;
 
+  // The width for a residual of so many components, at least 1; of more than 6
+  // that of 6.
   double Width95(int dimension) const;
 
   // The loss at that width; null: no loss.

@@ -25,7 +25,7 @@ double QnScale(std::vector<double>* values);
 
 // A row of the table of scale estimators.
 struct ScaleEstimator {
-  std::string_view name;
+  std::string_view name;                            // as programs take it
   double (*estimate)(std::vector<double>* values);  // null: takes sigma as 1
 };
 

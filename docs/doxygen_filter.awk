@@ -1,0 +1,53 @@
+# Marks the plain // comments of our headers for Doxygen:
+# - /// above what they describe; they hold for all lines up to a blank one;
+# - ///< beside it, where they may go on below in the same column.
+{
+  place = index($0, "//")
+  before = place ? substr($0, 1, place - 1) : $0
+  match($0, /^ */)
+  indent = RLENGTH
+}
+
+# A comment on lines of its own.
+place && before ~ /^ *$/ {
+  if (place == beside) {
+    print before "///<" substr($0, place + 2)
+  } else {
+    if (!is_above) above = ""
+    above = above before "///" substr($0, place + 2) "\n"
+    above_indent = indent
+    is_above = 1
+    is_first = 1
+    beside = 0
+  }
+  next
+}
+
+{
+  beside = 0
+  is_above = 0
+}
+
+# A blank line, or the end of a class: what was said above is over.
+/^ *$/ || /^ *}/ || /^ *(public|private|protected):/ {
+  if (is_first) printf "%s", above
+  above = ""
+  is_first = 0
+  print
+  next
+}
+
+# Whatever begins where the comment began is described by it.
+{
+  is_new = is_first || (ended && indent == above_indent)
+  own = place && before ~ /[;,{)] *$/ && before !~ /^ *#/
+  if (above != "" && is_new && (is_first || !own)) printf "%s", above
+  is_first = 0
+  ended = before ~ /[;}] *$/
+  if (own) {
+    beside = place
+    print before "///<" substr($0, place + 2)
+  } else {
+    print
+  }
+}
