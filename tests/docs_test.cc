@@ -1,7 +1,8 @@
-// docs/costs.md against the list of costs.
+// docs/costs.md and docs/losses.md against the lists of costs and losses.
 
 #include <gtest/gtest.h>
 
+#include <cstdio>
 #include <fstream>
 #include <map>
 #include <memory>
@@ -11,6 +12,7 @@
 
 #include "core/cost.h"
 #include "costs/cost_factory.h"
+#include "robust/m_estimator.h"
 
 namespace rgbd_pose {
 namespace {
@@ -78,6 +80,36 @@ TEST_F(CostsDocumentTest, HasNoCostThatIsNone) {
   for (const auto& [name, count] : sections_) {
     EXPECT_NE(MakeCost(name), nullptr) << name;
   }
+}
+
+std::string Printed(double width) {
+  char text[16];
+  std::snprintf(text, sizeof(text), "%.4f", width);
+  return text;
+}
+
+// The lines "| `name` | weight | width, 1 | width, 3 | redescending |".
+TEST(LossesDocumentTest, HasEveryLossAsItIs) {
+  std::ifstream file(RGBD_POSE_DOCS_DIR "/losses.md");
+  ASSERT_TRUE(file.is_open());
+  std::vector<std::vector<std::string>> table;
+  std::string line;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> cells = Cells(line);
+    if (!cells.empty() && cells[0][0] == '`' && cells[0].back() == '`' &&
+        cells[0][1] != '-') {
+      table.push_back(cells);
+    }
+  }
+  std::vector<std::vector<std::string>> expected;
+  for (const MEstimator& row : MEstimators()) {
+    expected.push_back({"`" + std::string(row.name) + "`",
+                        std::string(row.formula),
+                        row.is_tuned ? Printed(row.Width95(1)) : "",
+                        row.is_tuned ? Printed(row.Width95(3)) : "",
+                        row.is_redescending ? "yes" : "no"});
+  }
+  EXPECT_EQ(table, expected);
 }
 
 }  // namespace
