@@ -14,6 +14,7 @@ namespace rgbd_pose {
 // distortion are seen to here.
 class PointFrontend : public Frontend {
  public:
+  // The options must be sound (see Check).
   explicit PointFrontend(const FrontendOptions& options);
 
   std::unique_ptr<FeatureSet> Detect(const Frame& frame) final;
@@ -38,6 +39,7 @@ class PointFrontend : public Frontend {
   // with; without its depth.
   virtual void PrepareReference(Frame* frame) const { Prepare(frame); }
 
+  // Those it was made with.
   const FrontendOptions& options() const { return options_; }
 
  private:

@@ -15,7 +15,7 @@ import sys
 
 # Their blocks are compiled as they stand, by tests/CMakeLists.txt.
 COMPILED = ['docs/compressed_block.md']
-LANGUAGES = ['cpp', 'diff', 'sh', 'text']
+LANGUAGES = ['cpp', 'diff', 'python', 'sh', 'text']
 
 BLOCK = re.compile(r'(<!-- (docs/examples/\S+) -->\n)?```(\w*)\n(.*?)```', re.S)
 
