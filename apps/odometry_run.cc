@@ -3,33 +3,14 @@
 #include <cstdio>
 #include <optional>
 
+#include "apps/named_values.h"
 #include "core/initial_guess.h"
-#include "core/input_error.h"
-#include "core/text_file.h"
 #include "costs/cost_factory.h"
 #include "frontend/frame_stream.h"
 #include "frontend/frontend.h"
-#include "robust/scale.h"
 
 namespace rgbd_pose {
 namespace {
-
-template <typename Value>
-struct Named {
-  const char* name;
-  Value value;
-};
-
-constexpr Named<Assembly> kAssemblies[] = {
-    {"compressed", Assembly::kCompressed},
-    {"per_match", Assembly::kPerMatch},
-    {"autodiff", Assembly::kAutodiff},
-};
-
-constexpr Named<RobustSchedule> kRobustSchedules[] = {
-    {"gnc", RobustSchedule::kGnc},
-    {"direct", RobustSchedule::kDirect},
-};
 
 constexpr Named<LostPolicy> kLostPolicies[] = {
     {"stop", LostPolicy::kStop},
@@ -37,49 +18,6 @@ constexpr Named<LostPolicy> kLostPolicies[] = {
     {"predict", LostPolicy::kPredict},
     {"new_segment", LostPolicy::kNewSegment},
 };
-
-template <typename Row, size_t N>
-std::vector<std::string> NamesOf(const Row (&rows)[N]) {
-  std::vector<std::string> names;
-  for (const Row& row : rows) names.emplace_back(row.name);
-  return names;
-}
-
-InputError UnknownName(const std::string& what, const std::string& name,
-                       const std::vector<std::string>& names) {
-  return InputError("unknown " + what + " '" + name + "'; there are " +
-                    Join(names));
-}
-
-template <typename Value, size_t N>
-Value ValueOf(const Named<Value> (&rows)[N], const std::string& what,
-              const std::string& name) {
-  for (const Named<Value>& row : rows) {
-    if (row.name == name) return row.value;
-  }
-  throw UnknownName(what, name, NamesOf(rows));
-}
-
-const DepthNoiseModel* DepthNoiseByName(const std::string& name) {
-  const DepthNoiseModel* model = FindDepthNoiseModel(name);
-  if (model == nullptr) {
-    throw UnknownName("depth noise", name, DepthNoiseModelNames());
-  }
-  return model;
-}
-
-EstimatorOptions MakeEstimatorOptions(const OdometrySettings& settings) {
-  EstimatorOptions options;
-  options.assembly = ValueOf(kAssemblies, "assembly", settings.assembly);
-  options.schedule =
-      ValueOf(kRobustSchedules, "robust schedule", settings.robust_schedule);
-  const ScaleEstimator* scale = FindScaleEstimator(settings.scale);
-  if (scale == nullptr) {
-    throw UnknownName("scale", settings.scale, ScaleEstimatorNames());
-  }
-  options.scale = scale->estimate;
-  return options;
-}
 
 OdometryOptions MakeOdometryOptions(const OdometrySettings& settings) {
   OdometryOptions options;
@@ -95,12 +33,6 @@ OdometryOptions MakeOdometryOptions(const OdometrySettings& settings) {
 }
 
 }  // namespace
-
-std::vector<std::string> AssemblyNames() { return NamesOf(kAssemblies); }
-
-std::vector<std::string> RobustScheduleNames() {
-  return NamesOf(kRobustSchedules);
-}
 
 std::vector<std::string> OdometryGuessNames() {
   std::vector<std::string> names = {"last", "velocity"};

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/estimator_settings.h"
 #include "core/camera.h"
 #include "core/estimator.h"
 #include "core/trajectory.h"
@@ -14,24 +15,16 @@
 namespace rgbd_pose {
 
 // The settings of a run by name, as programs take them.
-struct OdometrySettings {
-  std::string cost = "bidirectional_point";
-  std::string loss = "tukey";
+struct OdometrySettings : EstimatorSettings {
   std::string frontend = "patch";
-  std::string assembly = "compressed";
-  std::string scale = "fixed";
-  std::string robust_schedule = "gnc";
   std::string initial_guess = "last";
   std::string on_lost = "new_segment";
   std::string depth_noise = "khoshelham";
   int max_features = 600;
 };
 
-// The names of assemblies (core/cost.h), robust schedules (core/estimator.h)
-// and initial guesses: last (the last pose), velocity (moved on as it moved
-// last) or one of core/initial_guess.h.
-std::vector<std::string> AssemblyNames();
-std::vector<std::string> RobustScheduleNames();
+// The names of initial guesses: last (the last pose), velocity (moved on as it
+// moved last) or one of core/initial_guess.h.
 std::vector<std::string> OdometryGuessNames();
 
 // What to do with lost frames (LostPolicy).

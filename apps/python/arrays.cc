@@ -1,0 +1,122 @@
+#include "apps/python/arrays.h"
+
+#include <Eigen/LU>
+#include <cmath>
+#include <utility>
+
+#include "core/input_error.h"
+
+namespace py = pybind11;
+
+namespace rgbd_pose {
+namespace {
+
+// Rows of a rotation matrix may be off unit length and right angles by so much.
+constexpr double kMaxRotationError = 0.01;
+
+std::string InWords(const std::vector<py::ssize_t>& shape) {
+  std::string text;
+  for (const py::ssize_t side : shape) {
+    if (!text.empty()) text += ", ";
+    text += side == NumberArray::kAny ? "N" : std::to_string(side);
+  }
+  return "(" + text + (shape.size() == 1 ? ",)" : ")");
+}
+
+void RequireShape(const py::array& array, const std::string& name,
+                  const std::vector<py::ssize_t>& shape) {
+  bool fits = array.ndim() == static_cast<py::ssize_t>(shape.size());
+  for (size_t i = 0; fits && i < shape.size(); ++i) {
+    fits = shape[i] == NumberArray::kAny || array.shape(i) == shape[i];
+  }
+  if (fits) return;
+  throw InputError(name + ": has shape " + ShapeInWords(array) + "; it needs " +
+                   InWords(shape));
+}
+
+}  // namespace
+
+NumberArray::NumberArray(const py::object& object, const std::string& name,
+                         const std::vector<py::ssize_t>& shape)
+    : array_(ToArray(object, name)) {
+  const char kind = array_.dtype().kind();
+  if (kind != 'f' && kind != 'i' && kind != 'u') {
+    throw InputError(name + ": holds " +
+                     py::str(array_.dtype()).cast<std::string>() +
+                     "; it needs real numbers, such as float64");
+  }
+  RequireShape(array_, name, shape);
+  is_float32_ = py::isinstance<py::array_t<float>>(array_);
+  if (!is_float32_ && !py::isinstance<py::array_t<double>>(array_)) {
+    array_ = py::array_t<double, py::array::forcecast>::ensure(array_);
+  }
+  data_ = static_cast<const char*>(array_.data());
+  size_ = array_.shape(0);
+  for (size_t i = 0; i < shape.size(); ++i) strides_[i] = array_.strides(i);
+}
+
+py::array ToArray(const py::object& object, const std::string& name) {
+  py::array array = py::array::ensure(object);
+  if (!array) throw InputError(name + ": is no array of numbers");
+  return array;
+}
+
+std::string ShapeInWords(const py::array& array) {
+  return InWords({array.shape(), array.shape() + array.ndim()});
+}
+
+Rigid3d RigidFromMatrix(const Eigen::Matrix4d& matrix,
+                        const std::string& where) {
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d error = R * R.transpose() - Eigen::Matrix3d::Identity();
+  const bool is_rigid = matrix.allFinite() &&
+                        error.cwiseAbs().maxCoeff() <= kMaxRotationError &&
+                        R.determinant() > 0.0 &&
+                        matrix.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
+  if (!is_rigid) {
+    throw InputError(where +
+                     ": is no rigid motion; it needs a rotation matrix, a "
+                     "translation (m) and a last row 0 0 0 1");
+  }
+  return Rigid3d(Eigen::Quaterniond(R), matrix.topRightCorner<3, 1>());
+}
+
+Rigid3d RigidFromArray(const py::object& object, const std::string& name) {
+  const NumberArray numbers(object, name, {4, 4});
+  Eigen::Matrix4d matrix;
+  for (int i = 0; i < 4; ++i) {
+    for (int j = 0; j < 4; ++j) matrix(i, j) = numbers(i, j);
+  }
+  return RigidFromMatrix(matrix, name);
+}
+
+Eigen::Matrix4d MatrixFromRigid(const Rigid3d& motion) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = motion.rotation.toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = motion.translation;
+  return matrix;
+}
+
+py::array ReadOnly(py::array array) {
+  array.attr("setflags")(py::arg("write") = false);
+  return array;
+}
+
+py::array ArrayFromMatrix(const Eigen::MatrixXd& matrix) {
+  py::array_t<double> array({matrix.rows(), matrix.cols()});
+  auto to = array.mutable_unchecked<2>();
+  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
+    for (Eigen::Index j = 0; j < matrix.cols(); ++j) to(i, j) = matrix(i, j);
+  }
+  return ReadOnly(std::move(array));
+}
+
+bool IsPath(const py::object& object) {
+  return py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__");
+}
+
+std::string PathFrom(const py::object& path) {
+  return py::module_::import("os").attr("fsencode")(path).cast<std::string>();
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace rgbd_pose {
+
+// Each adds its classes and functions to the module.
+void BindCamera(pybind11::module_* module);
+void BindEstimate(pybind11::module_* module);
+void BindOdometry(pybind11::module_* module);
+void BindEvaluation(pybind11::module_* module);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,136 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/python/arrays.h"
+#include "apps/python/bindings.h"
+#include "core/camera.h"
+#include "core/input_error.h"
+#include "frontend/camera_file.h"
+
+namespace py = pybind11;
+
+namespace rgbd_pose {
+namespace {
+
+RgbdCamera Checked(const RgbdCamera& camera) {
+  const std::string problem = camera.camera.Check();
+  if (!problem.empty()) throw InputError("Camera: " + problem);
+  if (!std::isfinite(camera.depth_scale) || camera.depth_scale <= 0.0) {
+    throw InputError("Camera: the depth scale must be a positive number");
+  }
+  return camera;
+}
+
+RgbdCamera MakeCamera(double fx, double fy, double cx, double cy, int width,
+                      int height, const std::vector<double>& distortion,
+                      double depth_scale) {
+  RgbdCamera result;
+  result.depth_scale = depth_scale;
+  Camera& camera = result.camera;
+  camera.width = width;
+  camera.height = height;
+  camera.fx = fx;
+  camera.fy = fy;
+  camera.cx = cx;
+  camera.cy = cy;
+  if (!distortion.empty()) {
+    if (distortion.size() != 4 && distortion.size() != 5) {
+      throw InputError("Camera: " + std::to_string(distortion.size()) +
+                       " distortion coefficients; it needs k1 k2 p1 p2 and "
+                       "maybe k3");
+    }
+    camera.k1 = distortion[0];
+    camera.k2 = distortion[1];
+    camera.p1 = distortion[2];
+    camera.p2 = distortion[3];
+    if (distortion.size() == 5) camera.k3 = distortion[4];
+  }
+  return Checked(result);
+}
+
+RgbdCamera LoadCamera(const py::object& path_or_preset,
+                      std::optional<double> depth_scale) {
+  RgbdCamera camera = ResolveCamera(PathFrom(path_or_preset));
+  if (depth_scale.has_value()) camera.depth_scale = *depth_scale;
+  return Checked(camera);
+}
+
+Eigen::Matrix3d Intrinsics(const Camera& camera) {
+  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
+  matrix(0, 0) = camera.fx;
+  matrix(1, 1) = camera.fy;
+  matrix(0, 2) = camera.cx;
+  matrix(1, 2) = camera.cy;
+  return matrix;
+}
+
+std::string InWords(const RgbdCamera& camera) {
+  const Camera& c = camera.camera;
+  char text[512];
+  std::snprintf(text, sizeof(text),
+                "Camera(fx=%.9g, fy=%.9g, cx=%.9g, cy=%.9g, width=%d, "
+                "height=%d, distortion=(%.9g, %.9g, %.9g, %.9g, %.9g), "
+                "depth_scale=%.9g)",
+                c.fx, c.fy, c.cx, c.cy, c.width, c.height, c.k1, c.k2, c.p1,
+                c.p2, c.k3, camera.depth_scale);
+  return text;
+}
+
+// A property of the pinhole model.
+template <auto kMember>
+auto Of(const RgbdCamera& camera) {
+  return camera.camera.*kMember;
+}
+
+}  // namespace
+
+void BindCamera(py::module_* module) {
+  py::class_<RgbdCamera>(*module, "Camera", R"(
+A pinhole camera and how its depth images count. It does not change.
+
+Axes are optical: x right, y down, z forward. Pixel (0, 0) is the centre of the
+upper left pixel. Focal lengths and centre are in pixels, the distortion is
+OpenCV's plumb bob (k1 k2 p1 p2 and maybe k3), depth_scale is raw units of a
+depth image per metre.)")
+      .def(py::init(&MakeCamera), "InputError if the values make no camera.",
+           py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
+           py::arg("width") = 640, py::arg("height") = 480,
+           py::arg_v("distortion", std::vector<double>(), "()"),
+           py::arg("depth_scale") = 5000.0)
+      .def_static("load", &LoadCamera, R"(
+A camera by the name of a preset (camera_presets()) or a YAML file in the layout
+of ORB-SLAM2/3, ROS camera_info or Kalibr. depth_scale, if given, replaces that
+of the preset or file.)",
+                  py::arg("path_or_preset"),
+                  py::arg("depth_scale") = py::none())
+      .def_property_readonly("fx", &Of<&Camera::fx>, "px")
+      .def_property_readonly("fy", &Of<&Camera::fy>, "px")
+      .def_property_readonly("cx", &Of<&Camera::cx>, "px")
+      .def_property_readonly("cy", &Of<&Camera::cy>, "px")
+      .def_property_readonly("width", &Of<&Camera::width>, "px")
+      .def_property_readonly("height", &Of<&Camera::height>, "px")
+      .def_property_readonly(
+          "distortion",
+          [](const RgbdCamera& self) {
+            const Camera& c = self.camera;
+            return py::make_tuple(c.k1, c.k2, c.p1, c.p2, c.k3);
+          },
+          "k1 k2 p1 p2 k3")
+      .def_readonly("depth_scale", &RgbdCamera::depth_scale,
+                    "raw units of a depth image per metre")
+      .def_property_readonly(
+          "matrix",
+          [](const RgbdCamera& self) {
+            return ArrayFromMatrix(Intrinsics(self.camera));
+          },
+          "(3, 3) [fx 0 cx; 0 fy cy; 0 0 1], px")
+      .def("__repr__", &InWords);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,171 @@
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "apps/python/arrays.h"
+#include "apps/python/bindings.h"
+#include "apps/python/trajectory_arrays.h"
+#include "core/evaluation.h"
+#include "core/text_file.h"
+#include "core/trajectory.h"
+
+namespace py = pybind11;
+
+namespace rgbd_pose {
+namespace {
+
+// Errors, one by one and summed up.
+struct Errors : ErrorStatistics {
+  std::vector<double> values;
+};
+
+struct AteResult : Errors {
+  std::vector<double> timestamps;
+  Rigid3d reference_from_estimated;
+};
+
+struct RpeResult {
+  std::vector<double> timestamps;
+  Errors translation;
+  Errors rotation;
+};
+
+EvaluationReport EvaluateObjects(const py::object& estimated,
+                                 const py::object& reference,
+                                 const EvaluationOptions& options) {
+  const Trajectory estimate = TrajectoryFrom(estimated, "estimated");
+  const Trajectory truth = TrajectoryFrom(reference, "reference");
+  const py::gil_scoped_release no_gil;
+  return Evaluate(estimate, truth, options);
+}
+
+AteResult EvaluateAte(const py::object& estimated, const py::object& reference,
+                      double max_time_difference) {
+  EvaluationOptions options;
+  options.max_time_difference = max_time_difference;
+  // Of no matter here, but it must exceed the difference.
+  options.rpe_delta_seconds = 2.0 * max_time_difference + 1.0;
+  const EvaluationReport report =
+      EvaluateObjects(estimated, reference, options);
+  AteResult result;
+  static_cast<ErrorStatistics&>(result) = report.ate;
+  result.reference_from_estimated = report.truth_from_estimate;
+  for (const PoseError& pose : report.poses) {
+    result.timestamps.push_back(pose.timestamp);
+    result.values.push_back(pose.position);
+  }
+  return result;
+}
+
+RpeResult EvaluateRpe(const py::object& estimated, const py::object& reference,
+                      double delta_seconds, double max_time_difference) {
+  EvaluationOptions options;
+  options.max_time_difference = max_time_difference;
+  options.rpe_delta_seconds = delta_seconds;
+  const EvaluationReport report =
+      EvaluateObjects(estimated, reference, options);
+  RpeResult result;
+  static_cast<ErrorStatistics&>(result.translation) =
+      report.rpe_seconds.translation;
+  static_cast<ErrorStatistics&>(result.rotation) = report.rpe_seconds.rotation;
+  for (const PoseError& pose : report.poses) {
+    if (!pose.rpe_translation.has_value()) continue;
+    result.timestamps.push_back(pose.timestamp);
+    result.translation.values.push_back(*pose.rpe_translation);
+    result.rotation.values.push_back(*pose.rpe_rotation);
+  }
+  return result;
+}
+
+template <auto kList, typename Result>
+py::array List(const py::object& self) {
+  return ViewOf(self.cast<const Result&>().*kList, self);
+}
+
+void BindResults(py::module_* module) {
+  py::class_<Errors>(*module, "Errors",
+                     "Errors (m or rad), summed up and one by one; sums are 0 "
+                     "if there are none.")
+      .def_readonly("count", &Errors::count)
+      .def_readonly("rmse", &Errors::rmse)
+      .def_readonly("mean", &Errors::mean)
+      .def_readonly("median", &Errors::median,
+                    "of an even number, the mean of the two in the middle")
+      .def_readonly("max", &Errors::max)
+      .def_property_readonly("values", &List<&Errors::values, Errors>,
+                             "(count,), in the order of time")
+      .def("__repr__", [](const Errors& self) {
+        return "Errors(rmse=" + std::to_string(self.rmse) +
+               ", count=" + std::to_string(self.count) + ")";
+      });
+  py::class_<AteResult, Errors>(
+      *module, "AteResult",
+      "Absolute trajectory error: distances (m) of positions after the best "
+      "rigid\nalignment, without scale.")
+      .def_property_readonly("timestamps",
+                             &List<&AteResult::timestamps, AteResult>,
+                             "(count,), of the estimated poses, s")
+      .def_property_readonly(
+          "reference_from_estimated",
+          [](const AteResult& self) {
+            return ArrayFromMatrix(
+                MatrixFromRigid(self.reference_from_estimated));
+          },
+          "(4, 4), the alignment of the worlds");
+  py::class_<RpeResult>(
+      *module, "RpeResult",
+      "Relative pose errors: of every motion over the interval.")
+      .def_readonly("translation", &RpeResult::translation, "Errors, m")
+      .def_readonly("rotation", &RpeResult::rotation, "Errors, rad")
+      .def_property_readonly("timestamps",
+                             &List<&RpeResult::timestamps, RpeResult>,
+                             "(count,), of the intervals' first poses, s");
+}
+
+}  // namespace
+
+void BindEvaluation(py::module_* module) {
+  BindResults(module);
+  const double difference = EvaluationOptions().max_time_difference;
+  module->def("evaluate_ate", &EvaluateAte, R"(
+Absolute trajectory error of an estimated trajectory.
+
+estimated, reference: path of a TUM text file, or a pair of time stamps (N,) (s,
+    increasing) and poses world_from_cam, (N, 7) tx ty tz qx qy qz qw or
+    (N, 4, 4).
+max_time_difference: pair poses at most this far apart (s).
+
+InputError if no poses belong together.)",
+              py::arg("estimated"), py::arg("reference"),
+              py::arg("max_time_difference") = difference);
+  module->def("evaluate_rpe", &EvaluateRpe, R"(
+Relative pose error of an estimated trajectory over a fixed time.
+
+delta_seconds: the interval; every pose that has a counterpart so much later is
+    a start. It must exceed max_time_difference.
+
+All others are those of evaluate_ate.)",
+              py::arg("estimated"), py::arg("reference"),
+              py::arg("delta_seconds") = EvaluationOptions().rpe_delta_seconds,
+              py::arg("max_time_difference") = difference);
+  module->def(
+      "read_trajectory",
+      [](const py::object& path) {
+        return ArraysFromTrajectory(ReadTrajectory(PathFrom(path)));
+      },
+      "(timestamps (N,), poses (N, 4, 4)) of a TUM text file.",
+      py::arg("path"));
+  module->def(
+      "write_trajectory",
+      [](const py::object& path, const py::object& trajectory) {
+        WriteFileAtomically(PathFrom(path), FormatTrajectory(TrajectoryFrom(
+                                                trajectory, "trajectory")));
+      },
+      "Writes a trajectory, as evaluate_ate takes it, as TUM text.",
+      py::arg("path"), py::arg("trajectory"));
+}
+
+}  // namespace rgbd_pose

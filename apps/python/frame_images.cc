@@ -1,0 +1,99 @@
+#include "apps/python/frame_images.h"
+
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/input_error.h"
+
+namespace py = pybind11;
+
+namespace rgbd_pose {
+namespace {
+
+// Depths in metres become raw units of 0.2 mm, finer than any sensor measures.
+constexpr double kUnitsPerMetre = 5000.0;
+
+// How many values an image has at a pixel; 0 if the array is no image of the
+// camera's size.
+int Channels(const py::array& array, const Camera& camera) {
+  if (array.ndim() < 2 || array.ndim() > 3) return 0;
+  if (array.shape(0) != camera.height || array.shape(1) != camera.width) {
+    return 0;
+  }
+  return array.ndim() == 2 ? 1 : static_cast<int>(array.shape(2));
+}
+
+InputError WrongImage(const std::string& name, const py::array& array,
+                      const Camera& camera, const std::string& needed) {
+  return InputError(name + ": is " +
+                    py::str(array.dtype()).cast<std::string>() + " of shape " +
+                    ShapeInWords(array) + "; it needs " + needed +
+                    " of the camera's " + std::to_string(camera.height) +
+                    " x " + std::to_string(camera.width) + " pixels");
+}
+
+cv::Mat GrayFrom(const py::object& object, const Camera& camera) {
+  const py::array array = ToArray(object, "image");
+  const int channels = Channels(array, camera);
+  if (!py::isinstance<py::array_t<uint8_t>>(array) ||
+      (channels != 1 && channels != 3)) {
+    throw WrongImage("image", array, camera, "uint8, grey or RGB,");
+  }
+  cv::Mat gray(camera.height, camera.width, CV_8UC1);
+  const auto* data = static_cast<const uint8_t*>(array.data());
+  const py::ssize_t next = channels == 3 ? array.strides(2) : 0;
+  for (int y = 0; y < gray.rows; ++y) {
+    const uint8_t* from = data + y * array.strides(0);
+    uint8_t* to = gray.ptr<uint8_t>(y);
+    for (int x = 0; x < gray.cols; ++x, from += array.strides(1)) {
+      // 0.299 R + 0.587 G + 0.114 B, rounded as where PNG files are read.
+      to[x] = channels == 1
+                  ? *from
+                  : static_cast<uint8_t>((9797 * from[0] + 19234 * from[next] +
+                                          3737 * from[2 * next]) >>
+                                         15);
+    }
+  }
+  return gray;
+}
+
+uint16_t RawDepth(double metres) {
+  const double raw = std::round(metres * kUnitsPerMetre);
+  // NaN compares false.
+  return raw > 0.0 && raw < Frame::kNoDepth ? static_cast<uint16_t>(raw) : 0;
+}
+
+}  // namespace
+
+Frame FrameFromArrays(const py::object& image, const py::object& depth,
+                      const RgbdCamera& camera) {
+  Frame frame;
+  frame.gray = GrayFrom(image, camera.camera);
+  const py::array array = ToArray(depth, "depth");
+  const bool is_raw = py::isinstance<py::array_t<uint16_t>>(array);
+  if (Channels(array, camera.camera) != 1 || array.ndim() != 2 ||
+      !(is_raw || array.dtype().kind() == 'f')) {
+    throw WrongImage("depth", array, camera.camera,
+                     "uint16 (raw units) or float32 (metres)");
+  }
+  frame.depth_scale = is_raw ? camera.depth_scale : kUnitsPerMetre;
+  frame.depth.create(camera.camera.height, camera.camera.width, CV_16UC1);
+  if (is_raw) {
+    const auto from = array.unchecked<uint16_t, 2>();
+    for (int y = 0; y < frame.depth.rows; ++y) {
+      auto* to = frame.depth.ptr<uint16_t>(y);
+      for (int x = 0; x < frame.depth.cols; ++x) to[x] = from(y, x);
+    }
+  } else {
+    const NumberArray from(array, "depth",
+                           {camera.camera.height, camera.camera.width});
+    for (int y = 0; y < frame.depth.rows; ++y) {
+      auto* to = frame.depth.ptr<uint16_t>(y);
+      for (int x = 0; x < frame.depth.cols; ++x) to[x] = RawDepth(from(y, x));
+    }
+  }
+  return frame;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,29 @@
+// The Python module: what the C++ library does, with NumPy arrays.
+
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include "apps/python/bindings.h"
+#include "core/camera.h"
+#include "core/input_error.h"
+#include "costs/cost_factory.h"
+#include "frontend/frontend.h"
+#include "robust/m_estimator.h"
+
+namespace py = pybind11;
+
+PYBIND11_MODULE(_rgbd_pose, m) {
+  using namespace rgbd_pose;
+  m.attr("__version__") = RGBD_POSE_VERSION;
+  py::register_exception<InputError>(m, "InputError", PyExc_ValueError).doc() =
+      "Bad input. The message is one line: what is wrong, where, what to do.";
+  m.def("costs", CostNames, "Names of all costs.");
+  m.def("losses", MEstimatorNames, "Names of all M-estimators.");
+  m.def("frontends", FrontendNames, "Names of all frontends.");
+  m.def("camera_presets", CameraPresetNames,
+        "Names that Camera.load knows besides files.");
+  BindCamera(&m);
+  BindEstimate(&m);
+  BindOdometry(&m);
+  BindEvaluation(&m);
+}

@@ -1,0 +1,299 @@
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <cmath>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/odometry_run.h"
+#include "apps/python/arrays.h"
+#include "apps/python/bindings.h"
+#include "apps/python/frame_images.h"
+#include "apps/python/trajectory_arrays.h"
+#include "core/input_error.h"
+#include "core/text_file.h"
+#include "core/trajectory.h"
+#include "frontend/tum_dataset.h"
+
+namespace py = pybind11;
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kDefaultFrameRate = 30.0;  // Hz
+
+// What became of a frame, and how sure that is.
+struct TrackedResult : TrackedFrame {
+  std::optional<MotionMatrix> covariance;
+};
+
+// An odometry for many threads: calls wait for each other. They must not hold
+// the GIL while they do.
+class SharedOdometry {
+ public:
+  SharedOdometry(const OdometrySettings& settings, const RgbdCamera& camera)
+      : camera_(camera), odometry_(MakeOdometry(settings, camera.camera)) {}
+
+  const RgbdCamera& camera() const { return camera_; }
+
+  // Without a time stamp, frames come at 30 Hz.
+  TrackedResult Track(Frame frame, std::optional<double> timestamp,
+                      const std::optional<Rigid3d>& guess) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    frame.index = static_cast<int>(frames_.size());
+    frame.timestamp = timestamp.value_or(NextTime());
+    if (!std::isfinite(frame.timestamp) ||
+        (!frames_.empty() && frame.timestamp <= frames_.back().timestamp)) {
+      throw InputError("timestamp: " + std::to_string(frame.timestamp) +
+                       " s is not after that of the frame before; frames must "
+                       "come in the order of time");
+    }
+    TrackedResult result;
+    static_cast<TrackedFrame&>(result) =
+        odometry_.Track(frame, guess.has_value() ? &*guess : nullptr);
+    if (result.status != TrackingStatus::kLost && result.reference >= 0) {
+      result.covariance = odometry_.last_estimate().covariance;
+    }
+    frames_.push_back(result);
+    return result;
+  }
+
+  Trajectory trajectory() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return TrackedTrajectory(frames_);
+  }
+
+ private:
+  double NextTime() const {
+    return frames_.empty() ? 0.0
+                           : frames_.back().timestamp + 1.0 / kDefaultFrameRate;
+  }
+
+  const RgbdCamera camera_;
+  std::mutex mutex_;
+  Odometry odometry_;
+  std::vector<TrackedFrame> frames_;
+};
+
+std::unique_ptr<SharedOdometry> MakeSharedOdometry(
+    const RgbdCamera& camera, const std::string& frontend,
+    const std::string& cost, const std::string& loss, const std::string& scale,
+    const std::string& robust_schedule, const std::string& initial_guess,
+    const std::string& on_lost, const std::string& depth_noise,
+    const std::string& assembly, int max_features) {
+  OdometrySettings settings;
+  settings.cost = cost;
+  settings.loss = loss;
+  settings.assembly = assembly;
+  settings.scale = scale;
+  settings.robust_schedule = robust_schedule;
+  settings.frontend = frontend;
+  settings.initial_guess = initial_guess;
+  settings.on_lost = on_lost;
+  settings.depth_noise = depth_noise;
+  settings.max_features = max_features;
+  return std::make_unique<SharedOdometry>(settings, camera);
+}
+
+TrackedResult Track(SharedOdometry* odometry, const py::object& image,
+                    const py::object& depth, std::optional<double> timestamp,
+                    const py::object& motion_guess) {
+  Frame frame = FrameFromArrays(image, depth, odometry->camera());
+  std::optional<Rigid3d> guess;
+  if (!motion_guess.is_none()) {
+    guess = RigidFromArray(motion_guess, "motion_guess");
+  }
+  const py::gil_scoped_release no_gil;
+  return odometry->Track(std::move(frame), timestamp, guess);
+}
+
+Trajectory TrajectoryOf(SharedOdometry* odometry) {
+  const py::gil_scoped_release no_gil;
+  return odometry->trajectory();
+}
+
+std::string InWords(const TrackedResult& frame) {
+  std::string text = "TrackedFrame(" + std::to_string(frame.index) + ": " +
+                     ToString(frame.status);
+  if (!frame.reason.empty()) text += ", " + frame.reason;
+  return text + ", " + std::to_string(frame.inliers) + " of " +
+         std::to_string(frame.matches) + " matches agree)";
+}
+
+void BindTrackedFrame(py::module_* module) {
+  py::class_<TrackedResult>(*module, "TrackedFrame",
+                            "What became of one input frame.")
+      .def_readonly("index", &TrackedResult::index, "of the frame, from 0")
+      .def_readonly("timestamp", &TrackedResult::timestamp, "s")
+      .def_property_readonly(
+          "status",
+          [](const TrackedResult& self) { return ToString(self.status); },
+          "'ok', 'degraded' (a pose, but from few or contradicting matches) "
+          "or\n'lost' (no pose was found: see on_lost for the one reported)")
+      .def_readonly("reason", &TrackedResult::reason,
+                    "of the status, in words; empty if ok")
+      .def_property_readonly(
+          "world_from_cam",
+          [](const TrackedResult& self) {
+            return ArrayFromMatrix(MatrixFromRigid(self.world_from_cam));
+          },
+          "(4, 4): point_in_world = world_from_cam @ point_in_cam (m); the "
+          "world\nis the camera of the first frame")
+      .def_property_readonly(
+          "covariance",
+          [](const TrackedResult& self) -> py::object {
+            if (!self.covariance.has_value()) return py::none();
+            return ArrayFromMatrix(*self.covariance);
+          },
+          "(6, 6), of the motion since the reference frame, as that of\n"
+          "MotionEstimate; None if it was tracked against none")
+      .def_readonly("segment", &TrackedResult::segment,
+                    "frames of one segment hang together")
+      .def_readonly("reference", &TrackedResult::reference,
+                    "index of the frame it was tracked against; -1: none")
+      .def_readonly("is_reference", &TrackedResult::is_reference,
+                    "whether it became the reference of those that follow")
+      .def_readonly("relocalised", &TrackedResult::relocalised,
+                    "whether it was found again among earlier references")
+      .def_readonly("matches", &TrackedResult::matches, "with the reference")
+      .def_readonly("inliers", &TrackedResult::inliers,
+                    "of these, in agreement")
+      .def_readonly("iterations", &TrackedResult::iterations, "of the solver")
+      .def_readonly("sigma", &TrackedResult::sigma,
+                    "spread of the whitened residuals, ideally 1")
+      .def_readonly("track_ms", &TrackedResult::track_ms,
+                    "time of all the tracking, ms")
+      .def_readonly("match_ms", &TrackedResult::match_ms, "of it: matching")
+      .def_readonly("solve_ms", &TrackedResult::solve_ms,
+                    "of it: motion estimation")
+      .def_readonly("reference_ms", &TrackedResult::reference_ms,
+                    "of it: features of a new reference")
+      .def_readonly("relocalise_ms", &TrackedResult::relocalise_ms,
+                    "of it: search for the place when lost")
+      .def("__repr__", &InWords);
+}
+
+void BindSharedOdometry(py::module_* module) {
+  py::class_<SharedOdometry>(*module, "Odometry", R"(
+Tracks a camera frame by frame against a reference frame. Calls of one object
+from several threads wait for each other; objects do not share anything.
+
+frontend: where matches come from (frontends()).
+cost, loss, scale, robust_schedule, depth_noise, assembly: of estimate_motion.
+initial_guess: where the solver starts in a frame: "last" (the last pose),
+    "velocity", "identity", "ransac" or "clique".
+on_lost: what to do with frames whose motion is not found: "stop", "hold",
+    "predict" or "new_segment".
+max_features: wanted in a reference frame.)")
+      .def(py::init(&MakeSharedOdometry), "InputError for unknown names.",
+           py::arg("camera").none(false), py::arg("frontend") = "patch",
+           py::kw_only(), py::arg("cost") = "bidirectional_point",
+           py::arg("loss") = "tukey", py::arg("scale") = "fixed",
+           py::arg("robust_schedule") = "gnc",
+           py::arg("initial_guess") = "last",
+           py::arg("on_lost") = "new_segment",
+           py::arg("depth_noise") = "khoshelham",
+           py::arg("assembly") = "compressed", py::arg("max_features") = 600)
+      .def("track", &Track, R"(
+Tracks the next frame. The GIL is released.
+
+image: (height, width) uint8 grey, or (height, width, 3) uint8 in the order red,
+    green, blue.
+depth: (height, width), registered to the image: uint16 in raw units
+    (camera.depth_scale a metre; 0 and 65535: none), or float32 or float64 in
+    metres (not finite or not positive: none), which are held in steps of
+    0.2 mm up to 13.1 m.
+timestamp: s, later than that of the frame before; None: 1/30 s after it.
+motion_guess: (4, 4) cur_from_prev since the frame before, if something else
+    tells; tried first, believed only as far as the images agree.
+
+Both images are copied: what becomes of the arrays afterwards does not matter.
+A frame that is lost is a status; images of a wrong shape or type raise
+InputError and count as no frame.)",
+           py::arg("image"), py::arg("depth"),
+           py::arg("timestamp") = py::none(),
+           py::arg("motion_guess") = py::none())
+      .def_property_readonly(
+          "trajectory",
+          [](SharedOdometry* self) {
+            return ArraysFromTrajectory(TrajectoryOf(self));
+          },
+          "(timestamps (N,), world_from_cam (N, 4, 4)) of frames not lost")
+      .def(
+          "save_trajectory",
+          [](SharedOdometry* self, const py::object& path) {
+            WriteFileAtomically(PathFrom(path),
+                                FormatTrajectory(TrajectoryOf(self)));
+          },
+          "Writes the trajectory as TUM text.", py::arg("path"));
+}
+
+std::unique_ptr<TumDataset> OpenTumDataset(const py::object& folder,
+                                           const RgbdCamera& camera,
+                                           const py::object& associations) {
+  TumDatasetOptions options;
+  options.folder = PathFrom(folder);
+  if (!associations.is_none()) {
+    options.associations_file = PathFrom(associations);
+  }
+  options.camera = camera;
+  return std::make_unique<TumDataset>(options);
+}
+
+Frame ReadFrame(const TumDataset& dataset, int index) {
+  if (index < 0) index += dataset.size();
+  if (index < 0 || index >= dataset.size()) {
+    throw py::index_error("the dataset has " + std::to_string(dataset.size()) +
+                          " frames");
+  }
+  const py::gil_scoped_release no_gil;
+  return dataset.Read(index);
+}
+
+void BindTumDataset(py::module_* module) {
+  py::class_<Frame>(*module, "Frame", "One RGB-D image pair of a sequence.")
+      .def_readonly("index", &Frame::index, "place in its dataset, from 0")
+      .def_readonly("timestamp", &Frame::timestamp, "of the colour image, s")
+      .def_property_readonly(
+          "gray",
+          [](const py::object& self) {
+            return ArrayOfImage<uint8_t>(self.cast<const Frame&>().gray, self);
+          },
+          "(height, width) uint8")
+      .def_property_readonly(
+          "depth",
+          [](const py::object& self) {
+            return ArrayOfImage<uint16_t>(self.cast<const Frame&>().depth,
+                                          self);
+          },
+          "(height, width) uint16, raw units; 0 and 65535: none");
+  py::class_<TumDataset>(*module, "TumDataset", R"(
+A sequence in the layout of the TUM RGB-D benchmark, as a sequence of Frame.
+
+folder: with rgb.txt and depth.txt, which are paired by time.
+associations: file that pairs colour and depth images instead.
+
+InputError (file:line) for what cannot be read; the images are read as they are
+asked for, with the GIL released.)")
+      .def(py::init(&OpenTumDataset), "InputError for what cannot be read.",
+           py::arg("folder"), py::arg("camera").none(false),
+           py::arg("associations") = py::none())
+      .def("__len__", &TumDataset::size)
+      .def("__getitem__", &ReadFrame, py::arg("index"))
+      .def_property_readonly(
+          "camera", [](const TumDataset& self) { return self.camera(); },
+          "that all frames share");
+}
+
+}  // namespace
+
+void BindOdometry(py::module_* module) {
+  BindTrackedFrame(module);
+  BindSharedOdometry(module);
+  BindTumDataset(module);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,37 @@
+"""RGB-D odometry: the motion of a camera from colour and depth images.
+
+Poses are named target_from_source: point_in_target = target_from_source @
+point_in_source. Lengths are in metres, angles in radians, times in seconds
+unless a name says otherwise. Bad input raises InputError, a ValueError.
+"""
+
+from ._rgbd_pose import *
+from ._rgbd_pose import __version__
+
+__all__ = [
+    "AteResult",
+    "Camera",
+    "Errors",
+    "EstimateError",
+    "Frame",
+    "InputError",
+    "MotionEstimate",
+    "Odometry",
+    "RpeResult",
+    "TrackedFrame",
+    "TumDataset",
+    "camera_presets",
+    "costs",
+    "estimate_motion",
+    "estimate_motion_pixels",
+    "evaluate_ate",
+    "evaluate_rpe",
+    "frontends",
+    "losses",
+    "read_trajectory",
+    "write_trajectory",
+]
+
+# Users know the package, not the extension in it.
+for _name in __all__:
+    globals()[_name].__module__ = __name__
