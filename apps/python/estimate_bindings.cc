@@ -245,14 +245,15 @@ std::string InWords(const EstimateResult& result) {
 }
 
 // Throws the module's EstimateError with the status and the reason.
-py::object RaiseIfFailed(const py::object& self) {
-  const MotionEstimate& e = self.cast<const EstimateResult&>().estimate;
+const EstimateResult& RaiseIfFailed(const EstimateResult& self) {
+  const MotionEstimate& e = self.estimate;
   if (e.ok()) return self;
   const py::object type =
-      py::type::of(self).attr("_error_type").cast<py::object>();
+      py::type::of<EstimateResult>().attr("_error_type").cast<py::object>();
   const py::object error =
       type(std::string(ToString(e.status)) + ": " + e.reason);
-  error.attr("estimate") = self;
+  // The object that Python has already, no copy.
+  error.attr("estimate") = py::cast(&self, py::return_value_policy::reference);
   PyErr_SetObject(type.ptr(), error.ptr());
   throw py::error_already_set();
 }
@@ -290,6 +291,7 @@ or False for rows that no cost could use.)");
           "ok", [](const EstimateResult& self) { return self.estimate.ok(); },
           "whether the status is 'ok'")
       .def("raise_if_failed", &RaiseIfFailed,
+           py::return_value_policy::reference,
            "Raises EstimateError with status and reason unless ok; returns\n"
            "the estimate itself.")
       .def_property_readonly(

@@ -89,12 +89,12 @@ void BindResults(py::module_* module) {
   py::class_<Errors>(*module, "Errors",
                      "Errors (m or rad), summed up and one by one; sums are 0 "
                      "if there are none.")
-      .def_readonly("count", &Errors::count)
-      .def_readonly("rmse", &Errors::rmse)
-      .def_readonly("mean", &Errors::mean)
+      .def_readonly("count", &Errors::count, "how many there are")
+      .def_readonly("rmse", &Errors::rmse, "root of the mean of squares")
+      .def_readonly("mean", &Errors::mean, "of all")
       .def_readonly("median", &Errors::median,
                     "of an even number, the mean of the two in the middle")
-      .def_readonly("max", &Errors::max)
+      .def_readonly("max", &Errors::max, "the largest")
       .def_property_readonly("values", &List<&Errors::values, Errors>,
                              "(count,), in the order of time")
       .def("__repr__", [](const Errors& self) {

@@ -14,6 +14,9 @@ namespace py = pybind11;
 
 PYBIND11_MODULE(_rgbd_pose, m) {
   using namespace rgbd_pose;
+  // Users know the package: names in messages and help are those of its parts.
+  const py::object own_name = m.attr("__name__");
+  m.attr("__name__") = "rgbd_pose";
   m.attr("__version__") = RGBD_POSE_VERSION;
   py::register_exception<InputError>(m, "InputError", PyExc_ValueError).doc() =
       "Bad input. The message is one line: what is wrong, where, what to do.";
@@ -26,4 +29,5 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   BindEstimate(&m);
   BindOdometry(&m);
   BindEvaluation(&m);
+  m.attr("__name__") = own_name;
 }

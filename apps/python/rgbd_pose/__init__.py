@@ -31,7 +31,3 @@ __all__ = [
     "read_trajectory",
     "write_trajectory",
 ]
-
-# Users know the package, not the extension in it.
-for _name in __all__:
-    globals()[_name].__module__ = __name__

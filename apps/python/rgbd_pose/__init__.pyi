@@ -1,0 +1,270 @@
+import os
+from typing import List, Literal, Optional, Sequence, Tuple, Union
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+__version__: str
+
+_Path = Union[str, os.PathLike[str]]
+_Floats = NDArray[np.float64]
+# The path of a TUM text file, or time stamps (N,) and poses (N, 7) or (N, 4, 4).
+_Trajectory = Union[_Path, Tuple[ArrayLike, ArrayLike]]
+
+class InputError(ValueError): ...
+
+class EstimateError(RuntimeError):
+    estimate: MotionEstimate
+
+def costs() -> List[str]: ...
+def losses() -> List[str]: ...
+def frontends() -> List[str]: ...
+def camera_presets() -> List[str]: ...
+
+class Camera:
+    def __init__(
+        self,
+        fx: float,
+        fy: float,
+        cx: float,
+        cy: float,
+        width: int = 640,
+        height: int = 480,
+        distortion: Sequence[float] = (),
+        depth_scale: float = 5000.0,
+    ) -> None: ...
+    @staticmethod
+    def load(
+        path_or_preset: _Path, depth_scale: Optional[float] = None
+    ) -> Camera: ...
+    @property
+    def fx(self) -> float: ...
+    @property
+    def fy(self) -> float: ...
+    @property
+    def cx(self) -> float: ...
+    @property
+    def cy(self) -> float: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def distortion(self) -> Tuple[float, float, float, float, float]: ...
+    @property
+    def depth_scale(self) -> float: ...
+    @property
+    def matrix(self) -> _Floats: ...  # (3, 3), px
+
+class MotionEstimate:
+    @property
+    def status(
+        self,
+    ) -> Literal[
+        "ok",
+        "too_few_matches",
+        "degenerate",
+        "not_converged",
+        "inconsistent",
+    ]: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def ok(self) -> bool: ...
+    def raise_if_failed(self) -> MotionEstimate: ...
+    @property
+    def cur_from_prev(self) -> _Floats: ...  # (4, 4), m
+    @property
+    def covariance(self) -> _Floats: ...  # (6, 6), rad and m
+    @property
+    def weights(self) -> _Floats: ...  # (N,)
+    @property
+    def inliers(self) -> NDArray[np.bool_]: ...  # (N,)
+    @property
+    def residual_norms(self) -> _Floats: ...  # (N,), sigmas
+    @property
+    def residual_degrees(self) -> NDArray[np.int32]: ...  # (N,)
+    @property
+    def num_used(self) -> int: ...
+    @property
+    def num_inliers(self) -> int: ...
+    @property
+    def num_rejected(self) -> int: ...
+    @property
+    def sigma(self) -> float: ...
+    @property
+    def initial_cost(self) -> float: ...
+    @property
+    def final_cost(self) -> float: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def solve_ms(self) -> float: ...
+
+def estimate_motion(
+    points_prev: ArrayLike,
+    points_cur: ArrayLike,
+    camera: Optional[Camera] = None,
+    *,
+    cost: str = "bidirectional_point",
+    loss: str = "tukey",
+    scale: str = "fixed",
+    robust_schedule: str = "gnc",
+    initial_guess: Union[str, ArrayLike] = "identity",
+    sigma_px: float = 0.5,
+    depth_noise: str = "khoshelham",
+    normals_cur: Optional[ArrayLike] = None,
+    prior: Optional[Tuple[ArrayLike, ArrayLike]] = None,
+    assembly: str = "compressed",
+    max_iterations: int = 50,
+    threads: int = 1,
+) -> MotionEstimate: ...
+def estimate_motion_pixels(
+    pixels_prev: ArrayLike,
+    pixels_cur: ArrayLike,
+    camera: Camera,
+    *,
+    cost: str = "bidirectional_point",
+    loss: str = "tukey",
+    scale: str = "fixed",
+    robust_schedule: str = "gnc",
+    initial_guess: Union[str, ArrayLike] = "identity",
+    sigma_px: float = 0.5,
+    depth_noise: str = "khoshelham",
+    normals_cur: Optional[ArrayLike] = None,
+    prior: Optional[Tuple[ArrayLike, ArrayLike]] = None,
+    assembly: str = "compressed",
+    max_iterations: int = 50,
+    threads: int = 1,
+) -> MotionEstimate: ...
+
+class TrackedFrame:
+    @property
+    def index(self) -> int: ...
+    @property
+    def timestamp(self) -> float: ...
+    @property
+    def status(self) -> Literal["ok", "degraded", "lost"]: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def world_from_cam(self) -> _Floats: ...  # (4, 4), m
+    @property
+    def covariance(self) -> Optional[_Floats]: ...  # (6, 6), rad and m
+    @property
+    def segment(self) -> int: ...
+    @property
+    def reference(self) -> int: ...
+    @property
+    def is_reference(self) -> bool: ...
+    @property
+    def relocalised(self) -> bool: ...
+    @property
+    def matches(self) -> int: ...
+    @property
+    def inliers(self) -> int: ...
+    @property
+    def iterations(self) -> int: ...
+    @property
+    def sigma(self) -> float: ...
+    @property
+    def track_ms(self) -> float: ...
+    @property
+    def match_ms(self) -> float: ...
+    @property
+    def solve_ms(self) -> float: ...
+    @property
+    def reference_ms(self) -> float: ...
+    @property
+    def relocalise_ms(self) -> float: ...
+
+class Odometry:
+    def __init__(
+        self,
+        camera: Camera,
+        frontend: str = "patch",
+        *,
+        cost: str = "bidirectional_point",
+        loss: str = "tukey",
+        scale: str = "fixed",
+        robust_schedule: str = "gnc",
+        initial_guess: str = "last",
+        on_lost: str = "new_segment",
+        depth_noise: str = "khoshelham",
+        assembly: str = "compressed",
+        max_features: int = 600,
+    ) -> None: ...
+    def track(
+        self,
+        image: NDArray[np.uint8],
+        depth: NDArray[Union[np.uint16, np.floating]],
+        timestamp: Optional[float] = None,
+        motion_guess: Optional[ArrayLike] = None,
+    ) -> TrackedFrame: ...
+    @property
+    def trajectory(self) -> Tuple[_Floats, _Floats]: ...  # (N,), (N, 4, 4)
+    def save_trajectory(self, path: _Path) -> None: ...
+
+class Frame:
+    @property
+    def index(self) -> int: ...
+    @property
+    def timestamp(self) -> float: ...
+    @property
+    def gray(self) -> NDArray[np.uint8]: ...  # (height, width)
+    @property
+    def depth(self) -> NDArray[np.uint16]: ...  # (height, width), raw units
+
+class TumDataset:
+    def __init__(
+        self,
+        folder: _Path,
+        camera: Camera,
+        associations: Optional[_Path] = None,
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    def __getitem__(self, index: int) -> Frame: ...
+    @property
+    def camera(self) -> Camera: ...
+
+class Errors:
+    @property
+    def count(self) -> int: ...
+    @property
+    def rmse(self) -> float: ...
+    @property
+    def mean(self) -> float: ...
+    @property
+    def median(self) -> float: ...
+    @property
+    def max(self) -> float: ...
+    @property
+    def values(self) -> _Floats: ...  # (count,), m or rad
+
+class AteResult(Errors):
+    @property
+    def timestamps(self) -> _Floats: ...  # (count,), s
+    @property
+    def reference_from_estimated(self) -> _Floats: ...  # (4, 4), m
+
+class RpeResult:
+    @property
+    def timestamps(self) -> _Floats: ...  # (N,), s
+    @property
+    def translation(self) -> Errors: ...
+    @property
+    def rotation(self) -> Errors: ...
+
+def evaluate_ate(
+    estimated: _Trajectory,
+    reference: _Trajectory,
+    max_time_difference: float = 0.02,
+) -> AteResult: ...
+def evaluate_rpe(
+    estimated: _Trajectory,
+    reference: _Trajectory,
+    delta_seconds: float = 1.0,
+    max_time_difference: float = 0.02,
+) -> RpeResult: ...
+def read_trajectory(path: _Path) -> Tuple[_Floats, _Floats]: ...
+def write_trajectory(path: _Path, trajectory: _Trajectory) -> None: ...

@@ -1,0 +1,69 @@
+"""What tests share: random matches, and a sequence with what programs make of
+it."""
+
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+import rgbd_pose
+
+
+def run_program(name, *flags):
+    program = pathlib.Path(os.environ["RGBD_POSE_BIN"]) / name
+    return subprocess.run(
+        [str(program), *flags], check=True, capture_output=True, text=True
+    ).stdout
+
+
+@pytest.fixture(scope="session")
+def sequence(tmp_path_factory):
+    """Folder of a sequence of 12 frames in TUM layout."""
+    folder = tmp_path_factory.mktemp("data") / "sequence"
+    run_program(
+        "rgbd_simulate", "--path=xyz", "--frames=12", f"--output={folder}"
+    )
+    return folder
+
+
+@pytest.fixture(scope="session")
+def camera(sequence):
+    return rgbd_pose.Camera.load(sequence / "camera.yaml")
+
+
+def rotation(axis, angle):
+    """(3, 3) by Rodrigues' formula."""
+    x, y, z = np.asarray(axis) / np.linalg.norm(axis)
+    k = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    return np.eye(3) + np.sin(angle) * k + (1.0 - np.cos(angle)) * k @ k
+
+
+def motion():
+    """(4, 4) cur_from_prev: 5 degrees and about 10 cm."""
+    result = np.eye(4)
+    result[:3, :3] = rotation([1.0, -2.0, 0.5], np.radians(5.0))
+    result[:3, 3] = [0.05, -0.04, 0.07]
+    return result
+
+
+def move(cur_from_prev, points):
+    return points @ cur_from_prev[:3, :3].T + cur_from_prev[:3, 3]
+
+
+def random_points(count, seed=1):
+    """(count, 3) in view of a Kinect, 1-4 m away."""
+    rng = np.random.default_rng(seed)
+    rays = rng.uniform([-0.5, -0.4, 1.0], [0.5, 0.4, 1.0], (count, 3))
+    return rays * rng.uniform(1.0, 4.0, (count, 1))
+
+
+def add_kinect_noise(points, rng, camera):
+    """Noise as the estimator's default model has it."""
+    z = points[:, 2]
+    pixels = points[:, :2] / z[:, None] * [camera.fx, camera.fy]
+    pixels += rng.normal(0.0, 0.5, pixels.shape)
+    depth = z + rng.normal(0.0, 1.425e-3 * z**2)
+    rays = pixels / [camera.fx, camera.fy]
+    return np.column_stack([rays * depth[:, None], depth])

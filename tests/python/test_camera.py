@@ -1,0 +1,83 @@
+import numpy as np
+import pytest
+
+import rgbd_pose
+
+
+def test_keeps_what_it_is_given():
+    camera = rgbd_pose.Camera(
+        500, 501, 320, 240, 641, 482, (0.1, -0.2, 0.003, 0.004), 1000
+    )
+    assert (camera.fx, camera.fy, camera.cx, camera.cy) == (500, 501, 320, 240)
+    assert (camera.width, camera.height) == (641, 482)
+    assert camera.distortion == (0.1, -0.2, 0.003, 0.004, 0.0)
+    assert camera.depth_scale == 1000.0
+    np.testing.assert_array_equal(
+        camera.matrix, [[500, 0, 320], [0, 501, 240], [0, 0, 1]]
+    )
+    copy = eval(repr(camera), {"Camera": rgbd_pose.Camera})
+    assert repr(copy) == repr(camera)
+
+
+def test_does_not_change():
+    camera = rgbd_pose.Camera.load("tum_fr1")
+    with pytest.raises(AttributeError):
+        camera.fx = 1.0
+
+
+def test_loads_presets_and_files(tmp_path):
+    assert "tum_fr1" in rgbd_pose.camera_presets()
+    assert rgbd_pose.Camera.load("tum_fr1").fx == 517.306408
+    assert rgbd_pose.Camera.load("tum_fr1", depth_scale=1.0).depth_scale == 1.0
+    path = tmp_path / "camera.yaml"
+    path.write_text(
+        "Camera.width: 320\nCamera.height: 240\nCamera.fx: 262\n"
+        "Camera.fy: 263\nCamera.cx: 160\nCamera.cy: 120\n"
+        "DepthMapFactor: 1000\n"
+    )
+    for name in (path, str(path)):
+        camera = rgbd_pose.Camera.load(name)
+        assert (camera.fy, camera.height, camera.depth_scale) == (263, 240, 1000)
+
+
+@pytest.mark.parametrize(
+    "make, words",
+    [
+        (lambda: rgbd_pose.Camera(0, 500, 320, 240), "Camera: "),
+        (lambda: rgbd_pose.Camera(np.nan, 500, 320, 240), "Camera: "),
+        (
+            lambda: rgbd_pose.Camera(5, 5, 1, 1, distortion=[0.1]),
+            "1 distortion coefficients",
+        ),
+        (
+            lambda: rgbd_pose.Camera(500, 500, 320, 240, depth_scale=0),
+            "depth scale",
+        ),
+        (lambda: rgbd_pose.Camera.load("tum_fr9"), "tum_fr1, tum_fr2"),
+    ],
+)
+def test_bad_values_are_told_in_one_line(make, words):
+    with pytest.raises(rgbd_pose.InputError, match=words) as error:
+        make()
+    assert isinstance(error.value, ValueError)
+    assert "\n" not in str(error.value)
+
+
+def test_names():
+    assert "bidirectional_point" in rgbd_pose.costs()
+    assert "tukey" in rgbd_pose.losses()
+    assert "patch" in rgbd_pose.frontends()
+    assert rgbd_pose.Camera.__module__ == "rgbd_pose"
+    assert rgbd_pose.InputError.__module__ == "rgbd_pose"
+
+
+def test_version_is_that_of_the_project():
+    import os
+    import pathlib
+    import re
+
+    text = pathlib.Path(
+        os.environ["RGBD_POSE_SOURCES"], "CMakeLists.txt"
+    ).read_text()
+    version = re.search(r"project\(rgbd_pose VERSION ([\d.]+)", text).group(1)
+    assert rgbd_pose.__version__ == version

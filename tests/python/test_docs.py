@@ -1,0 +1,24 @@
+"""The examples of docs/python.md run as they stand there, one after another."""
+
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+PAGE = pathlib.Path(os.environ["RGBD_POSE_SOURCES"], "docs/python.md")
+
+
+def test_examples_run(sequence, tmp_path):
+    (tmp_path / "sequence").symlink_to(sequence)
+    blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
+    assert len(blocks) == 3
+    for block in blocks:
+        run = subprocess.run(
+            [sys.executable, "-c", block],
+            cwd=tmp_path, capture_output=True, text=True,
+        )
+        assert run.returncode == 0, block + run.stderr
+        # What a line prints is written behind it, in words of its output.
+        for expected in re.findall(r"# prints (.*)", block):
+            assert expected in run.stdout, run.stdout

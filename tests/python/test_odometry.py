@@ -1,0 +1,241 @@
+"""Odometry against the program rgbd_odometry and on frames that break."""
+
+import csv
+
+import numpy as np
+import pytest
+
+import rgbd_pose
+from conftest import run_program
+
+
+def track_all(odometry, dataset):
+    return [odometry.track(f.gray, f.depth, f.timestamp) for f in dataset]
+
+
+@pytest.fixture(scope="module")
+def dataset(sequence, camera):
+    return rgbd_pose.TumDataset(sequence, camera)
+
+
+@pytest.mark.parametrize("frontend", rgbd_pose.frontends())
+def test_tracks_as_the_program_does(
+    frontend, sequence, dataset, camera, tmp_path
+):
+    run_program(
+        "rgbd_odometry", f"--dataset={sequence}", "--threads=1",
+        f"--camera={sequence}/camera.yaml", f"--frontend={frontend}",
+        f"--output={tmp_path}/run", "--noreport",
+    )
+    with open(tmp_path / "run/frames.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert len(rows) == len(dataset)
+
+    odometry = rgbd_pose.Odometry(camera, frontend)
+    # One memory for all images, as cameras have: nothing may be kept of it.
+    gray = np.empty((camera.height, camera.width), np.uint8)
+    depth = np.empty((camera.height, camera.width), np.uint16)
+    for frame, row in zip(dataset, rows):
+        gray[:], depth[:] = frame.gray, frame.depth
+        tracked = odometry.track(gray, depth, frame.timestamp)
+        gray[:], depth[:] = 0, 0
+        assert tracked.index == frame.index
+        assert f"{tracked.timestamp:.6f}" == row["timestamp"]
+        assert f"{tracked.sigma:.4f}" == row["sigma"]
+        for name in ("status", "reason", "segment", "reference", "matches",
+                     "inliers", "iterations"):
+            assert str(getattr(tracked, name)) == row[name], name
+        assert str(int(tracked.is_reference)) == row["is_reference"]
+        assert tracked.track_ms > 0.0
+    odometry.save_trajectory(tmp_path / "trajectory.txt")
+    assert (tmp_path / "trajectory.txt").read_bytes() == (
+        tmp_path / "run/trajectory.txt"
+    ).read_bytes()
+
+
+def test_settings_are_those_of_the_program(
+    sequence, dataset, camera, tmp_path
+):
+    settings = {
+        "cost": "reprojection_depth", "loss": "huber", "scale": "mad",
+        "robust_schedule": "direct", "initial_guess": "velocity",
+        "on_lost": "hold", "depth_noise": "nguyen", "assembly": "per_match",
+        "max_features": 200,
+    }
+    run_program(
+        "rgbd_odometry", f"--dataset={sequence}",
+        f"--camera={sequence}/camera.yaml", f"--output={tmp_path}/run",
+        "--noreport", *(f"--{key}={value}" for key, value in settings.items()),
+    )
+    odometry = rgbd_pose.Odometry(camera, **settings)
+    track_all(odometry, dataset)
+    odometry.save_trajectory(tmp_path / "trajectory.txt")
+    expected = (tmp_path / "run/trajectory.txt").read_bytes()
+    assert (tmp_path / "trajectory.txt").read_bytes() == expected
+    # Each setting matters but the assembly, which is the same problem, and
+    # the policy, as no frame is lost.
+    for key in settings.keys() - {"assembly", "on_lost"}:
+        other = {k: v for k, v in settings.items() if k != key}
+        odometry = rgbd_pose.Odometry(camera, **other)
+        track_all(odometry, dataset)
+        odometry.save_trajectory(tmp_path / "other.txt")
+        assert (tmp_path / "other.txt").read_bytes() != expected, key
+
+
+def test_trajectory(dataset, camera):
+    odometry = rgbd_pose.Odometry(camera)
+    stamps, poses = odometry.trajectory
+    assert stamps.shape == (0,) and poses.shape == (0, 4, 4)
+    frames = track_all(odometry, dataset)
+    stamps, poses = odometry.trajectory
+    np.testing.assert_array_equal(stamps, [f.timestamp for f in frames])
+    np.testing.assert_array_equal(poses, [f.world_from_cam for f in frames])
+    np.testing.assert_array_equal(poses[0], np.eye(4))
+
+
+def test_covariance(dataset, camera):
+    frames = track_all(rgbd_pose.Odometry(camera), dataset)
+    assert frames[0].covariance is None and frames[0].reference == -1
+    for frame in frames[1:]:
+        assert frame.covariance.shape == (6, 6)
+        deviation = np.sqrt(np.diag(frame.covariance))
+        assert (deviation > 1e-6).all() and (deviation < 0.01).all()
+        np.linalg.cholesky(frame.covariance)
+
+
+@pytest.mark.parametrize("dtype", [np.float32, np.float64])
+def test_depth_in_metres_is_the_same(dataset, camera, dtype):
+    raw = rgbd_pose.Odometry(camera)
+    track_all(raw, dataset)
+    metric = rgbd_pose.Odometry(camera)
+    for f in dataset:
+        metres = f.depth.astype(dtype) / dtype(camera.depth_scale)
+        metres[f.depth == 0] = np.nan
+        metres[0, :5] = [np.inf, -np.inf, -1.0, 20.0, 13.107]
+        metric.track(f.gray, metres, f.timestamp)
+    np.testing.assert_array_equal(metric.trajectory[1], raw.trajectory[1])
+
+
+def test_depth_scale_is_the_cameras(dataset, camera):
+    millimetres = rgbd_pose.Camera(
+        camera.fx, camera.fy, camera.cx, camera.cy, depth_scale=1000.0
+    )
+    odometry = rgbd_pose.Odometry(millimetres)
+    for f in dataset:
+        depth = np.round(f.depth / 5.0).astype(np.uint16)
+        odometry.track(f.gray, depth, f.timestamp)
+    plain = rgbd_pose.Odometry(camera)
+    track_all(plain, dataset)
+    np.testing.assert_allclose(
+        odometry.trajectory[1], plain.trajectory[1], atol=2e-3
+    )
+    assert (odometry.trajectory[1] != plain.trajectory[1]).any()
+
+
+def colourful(gray):
+    """An RGB image whose channels differ from place to place."""
+    shift = np.arange(gray.shape[1]) % 64
+    channels = [gray, np.roll(gray, 3, axis=0) // 2 + shift, 255 - gray]
+    return np.stack(channels, axis=-1).astype(np.uint8)
+
+
+def test_colour_is_red_green_blue(dataset, camera):
+    def trajectory(image_of):
+        odometry = rgbd_pose.Odometry(camera)
+        for f in dataset:
+            odometry.track(image_of(colourful(f.gray)), f.depth, f.timestamp)
+        return odometry.trajectory[1]
+
+    def gray(rgb):
+        weighted = rgb.astype(np.int64) @ [9797, 19234, 3737]
+        return (weighted >> 15).astype(np.uint8)
+
+    expected = trajectory(gray)
+    np.testing.assert_array_equal(trajectory(lambda rgb: rgb), expected)
+    # BGR seen backwards, a view with a negative stride.
+    np.testing.assert_array_equal(
+        trajectory(lambda rgb: rgb[..., ::-1].copy()[..., ::-1]), expected
+    )
+    assert (trajectory(lambda rgb: rgb[..., ::-1]) != expected).any()
+
+
+def test_a_lost_frame_is_a_status(dataset, camera):
+    odometry = rgbd_pose.Odometry(camera, on_lost="hold")
+    first = dataset[0]
+    odometry.track(first.gray, first.depth, 0.0)
+    lost = odometry.track(np.zeros_like(first.gray), first.depth, 0.1)
+    assert lost.status == "lost" and lost.reason != ""
+    assert lost.covariance is None
+    assert "lost" in repr(lost)
+    again = odometry.track(first.gray, first.depth, 0.2)
+    assert again.status == "ok"
+    np.testing.assert_array_equal(odometry.trajectory[0], [0.0, 0.2])
+
+
+def test_time_stamps(dataset, camera):
+    odometry = rgbd_pose.Odometry(camera)
+    f = dataset[0]
+    assert odometry.track(f.gray, f.depth).timestamp == 0.0
+    assert odometry.track(f.gray, f.depth).timestamp == 1.0 / 30.0
+    assert odometry.track(f.gray, f.depth, 5).timestamp == 5.0
+    for bad in (5.0, 4.0, np.nan, np.inf):
+        with pytest.raises(rgbd_pose.InputError, match="timestamp: .* after"):
+            odometry.track(f.gray, f.depth, bad)
+    assert odometry.track(f.gray, f.depth, 6.0).index == 3
+
+
+def test_motion_guess(dataset, camera):
+    odometry = rgbd_pose.Odometry(camera)
+    f = dataset[0]
+    odometry.track(f.gray, f.depth, motion_guess=np.eye(4))
+    tracked = odometry.track(f.gray, f.depth, motion_guess=np.eye(4))
+    assert tracked.status == "ok"
+    with pytest.raises(rgbd_pose.InputError, match="motion_guess: has shape"):
+        odometry.track(f.gray, f.depth, motion_guess=np.eye(3))
+
+
+IMAGE = np.zeros((480, 640), np.uint8)
+DEPTH = np.zeros((480, 640), np.uint16)
+
+
+@pytest.mark.parametrize(
+    "image, depth, words",
+    [
+        (IMAGE.T, DEPTH, r"image: is uint8 of shape \(640, 480\); .*480 x 640"),
+        (IMAGE * 1.0, DEPTH, "image: is float64 of shape"),
+        (np.zeros((480, 640, 4), np.uint8), DEPTH, "image: is uint8 of shape"),
+        (IMAGE, DEPTH[:-1], r"depth: is uint16 of shape \(479, 640\)"),
+        (IMAGE, DEPTH.astype(np.int32), "depth: is int32"),
+        (IMAGE, np.zeros((480, 640, 1), np.uint16), "depth: is uint16"),
+        (IMAGE, IMAGE, "depth: is uint8 of shape"),
+        (None, DEPTH, "image: is object"),
+    ],
+)
+def test_wrong_images_are_told_in_one_line(camera, image, depth, words):
+    odometry = rgbd_pose.Odometry(camera)
+    with pytest.raises(rgbd_pose.InputError, match=words) as error:
+        odometry.track(image, depth)
+    assert "\n" not in str(error.value)
+
+
+def test_unknown_names(camera):
+    with pytest.raises(rgbd_pose.InputError, match="unknown frontend 'x'"):
+        rgbd_pose.Odometry(camera, "x")
+    with pytest.raises(rgbd_pose.InputError, match="unknown policy 'x'"):
+        rgbd_pose.Odometry(camera, on_lost="x")
+
+
+def test_dataset(dataset, sequence, camera, tmp_path):
+    assert len(dataset) == 12 and len(list(dataset)) == 12
+    assert dataset[-1].index == 11
+    with pytest.raises(IndexError, match="12 frames"):
+        dataset[12]
+    gray = dataset[3].gray  # outlives its frame
+    assert gray.shape == (480, 640) and gray.dtype == np.uint8
+    assert gray.std() > 10.0
+    assert dataset[3].depth.dtype == np.uint16
+    assert dataset.camera.fx == camera.fx
+    with pytest.raises(rgbd_pose.InputError, match="no such folder"):
+        rgbd_pose.TumDataset(tmp_path / "none", camera)
+    with pytest.raises(rgbd_pose.InputError, match="pairs.txt"):
+        rgbd_pose.TumDataset(sequence, camera, tmp_path / "pairs.txt")

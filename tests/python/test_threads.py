@@ -1,0 +1,105 @@
+"""The GIL is released while the library works."""
+
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import rgbd_pose
+from conftest import motion, move, random_points
+
+
+class Counter(threading.Thread):
+    """Counts as long as it gets the GIL."""
+
+    def __init__(self):
+        super().__init__(daemon=True)
+        self.count = 0
+        self.stopped = False
+
+    def run(self):
+        while not self.stopped:
+            self.count += 1
+            time.sleep(0)  # offers the GIL
+
+
+@pytest.fixture
+def counter():
+    """A thread that cannot take the GIL, only be given it."""
+    interval = sys.getswitchinterval()
+    thread = Counter()
+    thread.start()
+    while thread.count == 0:
+        time.sleep(0.001)
+    sys.setswitchinterval(1000.0)
+    yield thread
+    sys.setswitchinterval(interval)
+    thread.stopped = True
+    thread.join()
+
+
+def advances(counter, function):
+    """Whether the counter moves during any of a hundred calls."""
+    for _ in range(100):
+        before = counter.count
+        function()
+        if counter.count > before:
+            return True
+    return False
+
+
+def test_the_counter_waits_for_python_code(counter):
+    assert not advances(counter, lambda: sum(range(10000)))
+
+
+def test_estimate_motion_releases_it(counter):
+    prev = random_points(50000)
+    cur = move(motion(), prev)
+    assert advances(counter, lambda: rgbd_pose.estimate_motion(prev, cur))
+
+
+def test_reading_and_tracking_release_it(counter, sequence, camera):
+    dataset = rgbd_pose.TumDataset(sequence, camera)
+    assert advances(counter, lambda: dataset[0])
+    frame = dataset[0]
+    odometry = rgbd_pose.Odometry(camera)
+    assert advances(counter, lambda: odometry.track(frame.gray, frame.depth))
+
+
+def test_many_threads_get_the_same(counter):
+    prev = random_points(5000)
+    cur = move(motion(), prev)
+    expected = rgbd_pose.estimate_motion(prev, cur).cur_from_prev
+    results = [None] * 4
+
+    def work(i):
+        results[i] = rgbd_pose.estimate_motion(prev, cur).cur_from_prev
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    for result in results:
+        np.testing.assert_array_equal(result, expected)
+
+
+def test_calls_of_one_odometry_wait_for_each_other(sequence, camera):
+    frame = rgbd_pose.TumDataset(sequence, camera)[0]
+    odometry = rgbd_pose.Odometry(camera)
+    frames = []
+
+    def work():
+        for _ in range(5):
+            frames.append(odometry.track(frame.gray, frame.depth))
+            assert len(odometry.trajectory[0]) > 0
+
+    threads = [threading.Thread(target=work) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(f.index for f in frames) == list(range(20))
+    assert all(f.status == "ok" for f in frames)
