@@ -6,6 +6,7 @@ namespace rgbd_pose {
 
 // Each adds its classes and functions to the module.
 void BindCamera(pybind11::module_* module);
+void BindEstimateResult(pybind11::module_* module);
 void BindEstimate(pybind11::module_* module);
 void BindOdometry(pybind11::module_* module);
 void BindEvaluation(pybind11::module_* module);

@@ -26,6 +26,7 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   m.def("camera_presets", CameraPresetNames,
         "Names that Camera.load knows besides files.");
   BindCamera(&m);
+  BindEstimateResult(&m);
   BindEstimate(&m);
   BindOdometry(&m);
   BindEvaluation(&m);

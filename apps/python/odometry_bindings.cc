@@ -2,19 +2,16 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <cmath>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "apps/odometry_run.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"
+#include "apps/python/shared_odometry.h"
 #include "apps/python/trajectory_arrays.h"
-#include "core/input_error.h"
 #include "core/text_file.h"
 #include "core/trajectory.h"
 #include "frontend/tum_dataset.h"
@@ -23,61 +20,6 @@ namespace py = pybind11;
 
 namespace rgbd_pose {
 namespace {
-
-constexpr double kDefaultFrameRate = 30.0;  // Hz
-
-// What became of a frame, and how sure that is.
-struct TrackedResult : TrackedFrame {
-  std::optional<MotionMatrix> covariance;
-};
-
-// An odometry for many threads: calls wait for each other. They must not hold
-// the GIL while they do.
-class SharedOdometry {
- public:
-  SharedOdometry(const OdometrySettings& settings, const RgbdCamera& camera)
-      : camera_(camera), odometry_(MakeOdometry(settings, camera.camera)) {}
-
-  const RgbdCamera& camera() const { return camera_; }
-
-  // Without a time stamp, frames come at 30 Hz.
-  TrackedResult Track(Frame frame, std::optional<double> timestamp,
-                      const std::optional<Rigid3d>& guess) {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    frame.index = static_cast<int>(frames_.size());
-    frame.timestamp = timestamp.value_or(NextTime());
-    if (!std::isfinite(frame.timestamp) ||
-        (!frames_.empty() && frame.timestamp <= frames_.back().timestamp)) {
-      throw InputError("timestamp: " + std::to_string(frame.timestamp) +
-                       " s is not after that of the frame before; frames must "
-                       "come in the order of time");
-    }
-    TrackedResult result;
-    static_cast<TrackedFrame&>(result) =
-        odometry_.Track(frame, guess.has_value() ? &*guess : nullptr);
-    if (result.status != TrackingStatus::kLost && result.reference >= 0) {
-      result.covariance = odometry_.last_estimate().covariance;
-    }
-    frames_.push_back(result);
-    return result;
-  }
-
-  Trajectory trajectory() {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    return TrackedTrajectory(frames_);
-  }
-
- private:
-  double NextTime() const {
-    return frames_.empty() ? 0.0
-                           : frames_.back().timestamp + 1.0 / kDefaultFrameRate;
-  }
-
-  const RgbdCamera camera_;
-  std::mutex mutex_;
-  Odometry odometry_;
-  std::vector<TrackedFrame> frames_;
-};
 
 std::unique_ptr<SharedOdometry> MakeSharedOdometry(
     const RgbdCamera& camera, const std::string& frontend,

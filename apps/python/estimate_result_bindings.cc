@@ -1,0 +1,138 @@
+#include <pybind11/pybind11.h>
+
+#include <string>
+
+#include "apps/python/arrays.h"
+#include "apps/python/bindings.h"
+#include "apps/python/estimate_rows.h"
+#include "core/motion_estimate.h"
+
+namespace py = pybind11;
+
+namespace rgbd_pose {
+namespace {
+
+std::string InWords(const EstimateResult& result) {
+  const MotionEstimate& e = result.estimate;
+  std::string text = std::string("MotionEstimate(") + ToString(e.status);
+  if (!e.reason.empty()) text += ": " + e.reason;
+  return text + ", " + std::to_string(e.num_inliers) + " of " +
+         std::to_string(e.num_used) + " matches agree)";
+}
+
+// Throws the module's EstimateError with the status and the reason.
+const EstimateResult& RaiseIfFailed(const EstimateResult& self) {
+  const MotionEstimate& e = self.estimate;
+  if (e.ok()) return self;
+  const py::object type =
+      py::type::of<EstimateResult>().attr("_error_type").cast<py::object>();
+  const py::object error =
+      type(std::string(ToString(e.status)) + ": " + e.reason);
+  // The object that Python has already, no copy.
+  error.attr("estimate") = py::cast(&self, py::return_value_policy::reference);
+  PyErr_SetObject(type.ptr(), error.ptr());
+  throw py::error_already_set();
+}
+
+// A property that is a field of MotionEstimate.
+template <auto kMember>
+auto Field(const EstimateResult& result) {
+  return result.estimate.*kMember;
+}
+
+// The same, a list seen as an array without a copy.
+template <auto kMember>
+py::array List(const py::object& self) {
+  return ViewOf(self.cast<const EstimateResult&>().estimate.*kMember, self);
+}
+
+}  // namespace
+
+void BindEstimateResult(py::module_* module) {
+  module->attr("EstimateError") =
+      py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(
+          "rgbd_pose.EstimateError",
+          "A motion that could not be estimated: its status and reason. "
+          "`estimate` is the\nMotionEstimate.",
+          PyExc_RuntimeError, nullptr));
+  py::class_<EstimateResult> result(*module, "MotionEstimate", R"(
+The motion between two frames as estimated, and what speaks for it. Arrays are
+not to be written; those of N entries have one for each row that was given, 0
+or False for rows that no cost could use.)");
+  result.attr("_error_type") = module->attr("EstimateError");
+  result
+      .def_property_readonly(
+          "status",
+          [](const EstimateResult& self) {
+            return ToString(self.estimate.status);
+          },
+          "'ok', 'too_few_matches' (fewer than three usable), 'degenerate' "
+          "(some\ndirection of motion is not determined), 'not_converged' or\n"
+          "'inconsistent' (too few matches agree with one motion)")
+      .def_property_readonly("reason", &Field<&MotionEstimate::reason>,
+                             "of the status, in words; empty if ok")
+      .def_property_readonly(
+          "ok", [](const EstimateResult& self) { return self.estimate.ok(); },
+          "whether the status is 'ok'")
+      .def("raise_if_failed", &RaiseIfFailed,
+           py::return_value_policy::reference,
+           "Raises EstimateError with status and reason unless ok; returns\n"
+           "the estimate itself.")
+      .def_property_readonly(
+          "cur_from_prev",
+          [](const EstimateResult& self) {
+            return ArrayFromMatrix(
+                MatrixFromRigid(self.estimate.cur_from_prev));
+          },
+          "(4, 4): point_in_cur = cur_from_prev @ point_in_prev (m); the "
+          "guess,\nif the status is 'too_few_matches'")
+      .def_property_readonly(
+          "covariance",
+          [](const EstimateResult& self) {
+            return ArrayFromMatrix(self.estimate.covariance);
+          },
+          "(6, 6), of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a "
+          "small\nrotation about the axes of the current camera, R_true = "
+          "Exp(omega) R; C (m)\nis the centre of the current camera in the "
+          "axes of the previous one. Zero\nunless the status is 'ok' or "
+          "'inconsistent'.")
+      .def_property_readonly("weights", &List<&MotionEstimate::weights>,
+                             "(N,) float64: robust weights in [0, 1]")
+      .def_property_readonly(
+          "inliers",
+          [](const py::object& self) {
+            const auto& e = self.cast<const EstimateResult&>();
+            return ViewOf(e.is_inlier, self).view("bool");
+          },
+          "(N,) bool: whether the match agrees with the motion within 99 % of\n"
+          "the noise's distribution")
+      .def_property_readonly(
+          "residual_norms", &List<&MotionEstimate::residual_norms>,
+          "(N,) float64: norm of the whitened residual, in sigmas of the noise")
+      .def_property_readonly(
+          "residual_degrees", &List<&MotionEstimate::residual_degrees>,
+          "(N,) int32: independent measurements in it; the norm of right\n"
+          "matches follows a chi distribution of so many degrees")
+      .def_property_readonly("num_used", &Field<&MotionEstimate::num_used>,
+                             "matches that some cost could use")
+      .def_property_readonly("num_inliers",
+                             &Field<&MotionEstimate::num_inliers>,
+                             "of these, in agreement")
+      .def_readonly("num_rejected", &EstimateResult::num_rejected,
+                    "rows that are no match: not finite, or a negative depth")
+      .def_property_readonly("sigma", &Field<&MotionEstimate::sigma>,
+                             "robust spread of the whitened residuals, "
+                             "ideally 1")
+      .def_property_readonly("initial_cost",
+                             &Field<&MotionEstimate::initial_cost>,
+                             "robust cost at the guess")
+      .def_property_readonly("final_cost", &Field<&MotionEstimate::final_cost>,
+                             "robust cost at the motion")
+      .def_property_readonly("iterations", &Field<&MotionEstimate::iterations>,
+                             "of the solver, all stages together")
+      .def_property_readonly("solve_ms", &Field<&MotionEstimate::solve_ms>,
+                             "time that the solve took, ms")
+      .def("__repr__", &InWords);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <mutex>
+#include <optional>
+#include <vector>
+
+#include "apps/odometry_run.h"
+#include "core/camera.h"
+#include "core/motion.h"
+#include "core/rigid3.h"
+#include "core/trajectory.h"
+#include "frontend/frame.h"
+#include "frontend/odometry.h"
+#include "frontend/tracked_frame.h"
+
+namespace rgbd_pose {
+
+// What became of a frame, and how sure that is.
+struct TrackedResult : TrackedFrame {
+  std::optional<MotionMatrix> covariance;
+};
+
+// An odometry for many threads: calls wait for each other, so they must not
+// hold the GIL. Remembers what became of all frames.
+class SharedOdometry {
+ public:
+  SharedOdometry(const OdometrySettings& settings, const RgbdCamera& camera);
+
+  const RgbdCamera& camera() const { return camera_; }
+
+  // Tracks the next frame. Without a time stamp, frames come at 30 Hz. Throws
+  // InputError, and nothing has changed, if time does not go on.
+  TrackedResult Track(Frame frame, std::optional<double> timestamp,
+                      const std::optional<Rigid3d>& guess);
+
+  // Of the frames that were not lost.
+  Trajectory trajectory();
+
+ private:
+  double NextTime() const;
+
+  const RgbdCamera camera_;
+  std::mutex mutex_;
+  Odometry odometry_;
+  std::vector<TrackedFrame> frames_;
+};
+
+}  // namespace rgbd_pose
