@@ -18,7 +18,8 @@ def dataset(sequence, camera):
     return rgbd_pose.TumDataset(sequence, camera)
 
 
-@pytest.mark.parametrize("frontend", rgbd_pose.frontends())
+# akaze and sift are orb in this, but slow.
+@pytest.mark.parametrize("frontend", ["patch", "klt", "orb"])
 def test_tracks_as_the_program_does(
     frontend, sequence, dataset, camera, tmp_path
 ):
@@ -226,10 +227,10 @@ def test_unknown_names(camera):
 
 
 def test_dataset(dataset, sequence, camera, tmp_path):
-    assert len(dataset) == 12 and len(list(dataset)) == 12
-    assert dataset[-1].index == 11
-    with pytest.raises(IndexError, match="12 frames"):
-        dataset[12]
+    assert len(dataset) == 8 and len(list(dataset)) == 8
+    assert dataset[-1].index == 7
+    with pytest.raises(IndexError, match="8 frames"):
+        dataset[8]
     gray = dataset[3].gray  # outlives its frame
     assert gray.shape == (480, 640) and gray.dtype == np.uint8
     assert gray.std() > 10.0

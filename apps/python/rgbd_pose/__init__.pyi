@@ -8,7 +8,7 @@ __version__: str
 
 _Path = Union[str, os.PathLike[str]]
 _Floats = NDArray[np.float64]
-# The path of a TUM text file, or time stamps (N,) and poses (N, 7) or (N, 4, 4).
+# A TUM text file, or time stamps (N,) and poses (N, 7) or (N, 4, 4).
 _Trajectory = Union[_Path, Tuple[ArrayLike, ArrayLike]]
 
 class InputError(ValueError): ...
