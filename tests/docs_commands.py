@@ -90,6 +90,9 @@ def script(page_name, page, exceptions):
     count = 0
     for begin, end, text in commands(page):
         count += 1
+        if '&&' in text:  # bash goes on where the first of two fails
+            lines[begin] = text + ' || false'
+            lines[begin + 1:end + 1] = [''] * (end - begin)
         if text not in exceptions:
             continue
         used.add(text)

@@ -6,12 +6,15 @@
 - A ```cpp block is the file that the comment before it names
   (<!-- docs/examples/x.cc -->), which a test compiles and runs. With --write
   blocks are brought up to date instead.
-- A ```sh block is whole: it is run by tests/docs_commands.py.
+- Blocks have a language that something reads: sh is run by
+  tests/docs_commands.py, python by tests/python/test_docs.py.
 """
 
 import pathlib
 import re
 import sys
+
+import docs_exceptions
 
 # Their blocks are compiled as they stand, by tests/CMakeLists.txt.
 COMPILED = ['docs/compressed_block.md']
@@ -96,6 +99,9 @@ def main():
         examples |= set(re.findall(r'docs/examples/[a-z_]+\.cc', text))
         if write and renewed != text:
             (source / name).write_text(renewed)
+    problems += [f'tests/docs_exceptions.py: there is no page {name}'
+                 for name in {**docs_exceptions.EXCEPTIONS,
+                              **docs_exceptions.BEFORE} if name not in pages]
     problems += [f'{path.name}: no page mentions docs/examples/{path.name}'
                  for path in sorted((source / 'docs/examples').glob('*.cc'))
                  if f'docs/examples/{path.name}' not in examples]
