@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <iterator>
 
 namespace rgbd_pose {
 namespace {
@@ -115,6 +116,7 @@ std::optional<RgbdCamera> CameraPreset(std::string_view name) {
 
 std::vector<std::string> CameraPresetNames() {
   std::vector<std::string> names;
+  names.reserve(std::size(kPresets));
   for (const Preset& preset : kPresets) names.emplace_back(preset.name);
   return names;
 }

@@ -126,6 +126,7 @@ std::vector<PoseError> PoseErrors(const std::vector<PosePair>& pairs,
 
 ErrorStatistics AbsoluteError(const std::vector<PoseError>& poses) {
   std::vector<double> errors;
+  errors.reserve(poses.size());
   for (const PoseError& pose : poses) errors.push_back(pose.position);
   return Summarise(std::move(errors));
 }

@@ -40,7 +40,7 @@ const FrontendEntry kFrontends[] = {
 }  // namespace
 
 std::string FrontendOptions::Check() const {
-  const std::string camera_error = camera.Check();
+  std::string camera_error = camera.Check();
   if (!camera_error.empty()) return camera_error;
   if (depth_noise == nullptr) return "a depth noise model is needed";
   if (max_features < 3) return "max_features must be at least 3";

@@ -9,9 +9,9 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kMinAlpha = -4.0;
 constexpr double kMaxAlpha = 2.0;
 constexpr double kAlphaStep = 0.25;
+constexpr int kAlphaSteps = 24;     // down to -4
 constexpr double kFarthest = 10.0;  // widths
 
 // -ln of the density at a norm of x widths, but for its normalisation.
@@ -40,7 +40,8 @@ double MostLikelyBarronAlpha(const std::vector<double>& norms, int dimension,
                              double width) {
   double best_alpha = kMaxAlpha;
   double best = std::numeric_limits<double>::infinity();
-  for (double alpha = kMaxAlpha; alpha >= kMinAlpha; alpha -= kAlphaStep) {
+  for (int step = 0; step <= kAlphaSteps; ++step) {
+    const double alpha = kMaxAlpha - step * kAlphaStep;
     const BarronLoss loss(1.0, alpha);
     double value = norms.size() * std::log(Normalisation(loss, dimension));
     for (const double norm : norms) {
