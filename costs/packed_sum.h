@@ -3,6 +3,7 @@
 #include <ceres/loss_function.h>
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <type_traits>
 #include <vector>
