@@ -121,11 +121,6 @@ TEST_P(DescriptorFrontendTest, ABlackFrameGivesNothing) {
   EXPECT_TRUE(frontend_->Detect(blind)->observations.empty());
 }
 
-TEST_P(DescriptorFrontendTest, TracksAlongItsAxes) {
-  // The noise of a pose is about 2 mm.
-  ExpectTracksAlongItsAxes(0.01);
-}
-
 INSTANTIATE_TEST_SUITE_P(Methods, DescriptorFrontendTest,
                          ::testing::Values("orb", "sift", "akaze"),
                          [](const auto& info) {
