@@ -226,6 +226,11 @@ asked for, with the GIL released.)")
            py::arg("associations") = py::none())
       .def("__len__", &TumDataset::size)
       .def("__getitem__", &ReadFrame, py::arg("index"))
+      .def("__iter__",
+           [](const py::object& self) {
+             return py::reinterpret_steal<py::iterator>(
+                 PySeqIter_New(self.ptr()));
+           })
       .def_property_readonly(
           "camera", [](const TumDataset& self) { return self.camera(); },
           "that all frames share");

@@ -1,5 +1,5 @@
 import os
-from typing import List, Literal, Optional, Sequence, Tuple, Union
+from typing import Iterator, List, Literal, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -197,7 +197,9 @@ class Odometry:
     def track(
         self,
         image: NDArray[np.uint8],
-        depth: NDArray[Union[np.uint16, np.floating]],
+        depth: Union[
+            NDArray[np.uint16], NDArray[np.float32], NDArray[np.float64]
+        ],
         timestamp: Optional[float] = None,
         motion_guess: Optional[ArrayLike] = None,
     ) -> TrackedFrame: ...
@@ -224,6 +226,7 @@ class TumDataset:
     ) -> None: ...
     def __len__(self) -> int: ...
     def __getitem__(self, index: int) -> Frame: ...
+    def __iter__(self) -> Iterator[Frame]: ...
     @property
     def camera(self) -> Camera: ...
 
