@@ -36,11 +36,18 @@ struct CompressedSums {
   double cost = 0.0;
 };
 
+// Residuals r[K + 1] and, row by row, the Jacobian J[K + 1][K] that stand for
+// sums whose hessian is whole, not a triangle. Null J: r stands for the cost
+// alone. False if a number is not finite.
+template <int K>
+bool FactorSums(const CompressedSums<K>& sums, double* residuals,
+                double* jacobian);
+
 // `Evaluator` is called as bool(const double* x, CompressedSums<K>* sums) with
-// x[K] and zeroed sums; it fills all of them (hessian whole, not a triangle).
-// False makes Ceres reject the step. Ceres asks for the cost of a trial step
-// first and for its derivatives after it has accepted it: the sums of the last
-// x are kept, so both take one evaluation. One block serves one thread.
+// x[K] and zeroed sums; it fills all of them. False makes Ceres reject the
+// step. Ceres asks for the cost of a trial step first and for its derivatives
+// after it has accepted it: the sums of the last x are kept, so both take one
+// evaluation. One block serves one thread.
 template <int K, typename Evaluator>
 class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
   static_assert(K >= 1 && K <= 12, "dense sums suit small problems");
@@ -55,30 +62,9 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
   // The K + 1 rows, as Ceres asks for them.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    // Row by row, as Ceres has it; Eigen wants a single column by column.
-    using RowMajor = Eigen::Matrix<double, K + 1, K,
-                                   K == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
-    const bool need_derivatives =
-        jacobians != nullptr && jacobians[0] != nullptr;
-    if (!UpdateSums(parameters[0])) return false;
-    const CompressedSums<K>& sums = sums_;
-    Eigen::Map<Eigen::Matrix<double, K + 1, 1>> r(residuals);
-    r.setZero();
-    r[K] = std::sqrt(std::max(0.0, 2.0 * sums.cost));
-    if (!need_derivatives) return true;
-    Eigen::Map<RowMajor> J(jacobians[0]);
-    J.setZero();
-    const Eigen::LLT<Eigen::Matrix<double, K, K>> cholesky(sums.hessian);
-    if (cholesky.info() == Eigen::Success) {
-      r.template head<K>() = cholesky.matrixL().solve(sums.gradient);
-      J.template topRows<K>() = cholesky.matrixU();
-    } else {
-      FactorSingular(sums, r.template head<K>(), J.template topRows<K>());
-    }
-    const double rest = 2.0 * sums.cost - r.template head<K>().squaredNorm();
-    r[K] = std::sqrt(std::max(0.0, rest));
-    Trim(-rest, r.template head<K>());
-    return r.allFinite() && J.allFinite();
+    return UpdateSums(parameters[0]) &&
+           FactorSums(sums_, residuals,
+                      jacobians != nullptr ? jacobians[0] : nullptr);
   }
 
  private:
@@ -92,40 +78,68 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
     return true;
   }
 
-  // Where H is all but singular, rounding lets |L^-1 g|^2 exceed 2 c. Takes the
-  // excess out of the last rows: they belong to the weakest directions, so that
-  // the cost becomes exact and J^T r hardly changes.
-  template <typename Residuals>
-  static void Trim(double excess, Residuals r) {
-    for (int i = K - 1; i >= 0 && excess > 0.0; --i) {
-      const double square = r[i] * r[i];
-      r[i] = std::copysign(std::sqrt(std::max(0.0, square - excess)), r[i]);
-      excess -= square;
-    }
-  }
-
-  // H = V diag(l) V^T with some l = 0: J = diag(sqrt l) V^T, r = diag(1/sqrt l)
-  // V^T g where l > 0. There g has no part in the null space of H.
-  template <typename Residuals, typename Rows>
-  static void FactorSingular(const CompressedSums<K>& sums, Residuals r,
-                             Rows J) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, K, K>> eigen(
-        sums.hessian);
-    const double smallest =
-        1e-14 * std::max(0.0, eigen.eigenvalues().maxCoeff());
-    for (int i = 0; i < K; ++i) {
-      const double value = eigen.eigenvalues()[i];
-      if (!(value > smallest)) continue;
-      const double root = std::sqrt(value);
-      const int row = K - 1 - i;  // the weakest last
-      J.row(row) = root * eigen.eigenvectors().col(i).transpose();
-      r[row] = eigen.eigenvectors().col(i).dot(sums.gradient) / root;
-    }
-  }
-
   Evaluator evaluator_;
   mutable Eigen::Matrix<double, K, 1> x_;  // of sums_; NaN: of none
   mutable CompressedSums<K> sums_;
 };
+
+namespace compressed {
+
+// Where H is all but singular, rounding lets |L^-1 g|^2 exceed 2 c. Takes the
+// excess out of the last rows: they belong to the weakest directions, so that
+// the cost becomes exact and J^T r hardly changes.
+template <int K, typename Residuals>
+void Trim(double excess, Residuals r) {
+  for (int i = K - 1; i >= 0 && excess > 0.0; --i) {
+    const double square = r[i] * r[i];
+    r[i] = std::copysign(std::sqrt(std::max(0.0, square - excess)), r[i]);
+    excess -= square;
+  }
+}
+
+// H = V diag(l) V^T with some l = 0: J = diag(sqrt l) V^T, r = diag(1/sqrt l)
+// V^T g where l > 0. There g has no part in the null space of H.
+template <int K, typename Residuals, typename Rows>
+void FactorSingular(const CompressedSums<K>& sums, Residuals r, Rows J) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, K, K>> eigen(
+      sums.hessian);
+  const double smallest = 1e-14 * std::max(0.0, eigen.eigenvalues().maxCoeff());
+  for (int i = 0; i < K; ++i) {
+    const double value = eigen.eigenvalues()[i];
+    if (!(value > smallest)) continue;
+    const double root = std::sqrt(value);
+    const int row = K - 1 - i;  // the weakest last
+    J.row(row) = root * eigen.eigenvectors().col(i).transpose();
+    r[row] = eigen.eigenvectors().col(i).dot(sums.gradient) / root;
+  }
+}
+
+}  // namespace compressed
+
+template <int K>
+bool FactorSums(const CompressedSums<K>& sums, double* residuals,
+                double* jacobian) {
+  // Row by row, as Ceres has it; Eigen wants a single column by column.
+  using RowMajor = Eigen::Matrix<double, K + 1, K,
+                                 K == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+  Eigen::Map<Eigen::Matrix<double, K + 1, 1>> r(residuals);
+  r.setZero();
+  r[K] = std::sqrt(std::max(0.0, 2.0 * sums.cost));
+  if (jacobian == nullptr) return true;
+  Eigen::Map<RowMajor> J(jacobian);
+  J.setZero();
+  const Eigen::LLT<Eigen::Matrix<double, K, K>> cholesky(sums.hessian);
+  if (cholesky.info() == Eigen::Success) {
+    r.template head<K>() = cholesky.matrixL().solve(sums.gradient);
+    J.template topRows<K>() = cholesky.matrixU();
+  } else {
+    compressed::FactorSingular<K>(sums, r.template head<K>(),
+                                  J.template topRows<K>());
+  }
+  const double rest = 2.0 * sums.cost - r.template head<K>().squaredNorm();
+  r[K] = std::sqrt(std::max(0.0, rest));
+  compressed::Trim<K>(-rest, r.template head<K>());
+  return r.allFinite() && J.allFinite();
+}
 
 }  // namespace rgbd_pose

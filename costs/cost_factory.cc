@@ -9,6 +9,10 @@
 #include "robust/m_estimator.h"
 
 namespace rgbd_pose {
+
+template bool FactorSums<6>(const CompressedSums<6>& sums, double* residuals,
+                            double* jacobian);
+
 namespace {
 
 struct CostEntry {

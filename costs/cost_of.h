@@ -48,6 +48,10 @@ template <typename Residual>
 struct HasDegrees<Residual, std::void_t<decltype(&Residual::Degrees)>>
     : std::true_type {};
 
+// Compiled once, in cost_factory.cc: Eigen's factorisations take seconds.
+extern template bool FactorSums<6>(const CompressedSums<6>& sums,
+                                   double* residuals, double* jacobian);
+
 // Of a residual type as described above.
 template <typename Type>
 class CostOf final : public Cost {
