@@ -1,0 +1,45 @@
+# `cpack -G DEB`: librgbd-pose-dev (libraries, headers) and rgbd-pose-tools
+# (programs). Of static libraries only: programs must not need a -dev package.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_NAME rgbd-pose)
+set(CPACK_PACKAGE_CONTACT "rgbd_pose developers <rgbd_pose@example.org>")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY ${PROJECT_DESCRIPTION})
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL development tools)
+set(CPACK_COMPONENTS_GROUPING IGNORE)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME librgbd-pose-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
+    "motion of an RGB-D camera as a Ceres problem - libraries and headers
+ Costs, M-estimators, frontends and odometry, each a named, swappable piece;
+ for find_package(rgbd_pose) and pkg-config.")
+set(dependencies libceres-dev libeigen3-dev libopencv-dev libyaml-cpp-dev)
+if(Libdeflate_FOUND)
+  list(APPEND dependencies libdeflate-dev)
+endif()
+list(JOIN dependencies ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
+
+set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME rgbd-pose-tools)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
+set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
+set(CPACK_COMPONENT_TOOLS_DESCRIPTION
+    "motion of an RGB-D camera as a Ceres problem - programs
+ Visual odometry on sequences in TUM layout, evaluation, batches, reports and
+ simulated sequences.")
+
+# Debian wants the licence of each package here; plain installs have it in their
+# own folder of documents.
+foreach(component DEVELOPMENT TOOLS)
+  string(TOLOWER ${component} name)
+  set(folder
+      ${CMAKE_INSTALL_DATADIR}/doc/${CPACK_DEBIAN_${component}_PACKAGE_NAME})
+  install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright
+          DESTINATION ${folder} COMPONENT ${name} EXCLUDE_FROM_ALL)
+  install(FILES ${PROJECT_SOURCE_DIR}/third_party_notes.md
+          DESTINATION ${folder} COMPONENT ${name} EXCLUDE_FROM_ALL)
+endforeach()
+
+include(CPack)

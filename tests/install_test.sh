@@ -1,0 +1,99 @@
+#!/usr/bin/env bash
+# Installs a build, moves the result elsewhere and uses it there as a stranger
+# would: by find_package and by pkg-config. Called with source and build folder.
+set -euo pipefail
+
+readonly source=$1 build=$2
+command -v pkg-config >/dev/null || {
+  echo "skipped: needs pkg-config"
+  exit 77
+}
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+readonly work prefix=$work/prefix
+
+fail() {
+  echo "FAILED: $*" >&2
+  cat "$work/log" >&2
+  exit 1
+}
+
+# says PATTERN WHAT: what the last command wrote.
+says() { grep -Eq -- "$1" "$work/log" || fail "$2 does not say '$1'"; }
+
+# configure FOLDER ARGUMENT...: a project that uses what is installed.
+configure() {
+  local folder=$1
+  shift
+  cmake -S "$folder" -B "$folder/build" -DCMAKE_PREFIX_PATH="$prefix" "$@" \
+    >"$work/log" 2>&1
+}
+
+# project NAME LANGUAGE FIND_PACKAGE_ARGUMENT...: a project that only finds.
+project() {
+  local folder=$work/$1 language=$2
+  shift 2
+  mkdir "$folder"
+  printf '%s\n' 'cmake_minimum_required(VERSION 3.22)' \
+    "project(finds $language)" "find_package(rgbd_pose $*)" \
+    >"$folder/CMakeLists.txt"
+}
+
+cmake --install "$build" --prefix "$work/first" >"$work/log" 2>&1 ||
+  fail "cmake --install"
+mv "$work/first" "$prefix"
+! grep -rlF -e "$source/" -e "$build/" "$prefix" >"$work/log" ||
+  fail "these files tell where they were built"
+[ ! -e "$prefix/include/rgbd_pose/apps" ] || fail "headers of apps"
+
+# The examples, in the middle of nowhere.
+cp -r "$source/docs/examples" "$work/examples"
+configure "$work/examples" || fail "examples: find_package"
+cmake --build "$work/examples/build" --parallel 2 >"$work/log" 2>&1 ||
+  fail "examples: build"
+check() {
+  "$1" >"$work/log" 2>&1 || fail "$1"
+  says "$2" "$1"
+}
+readonly examples=$work/examples/build
+check "$examples/estimate_motion" '^ok, 160 of 200 matches .* 0\.000 mm$'
+check "$examples/own_cost" '^error 0\.[0-9]+ mm$'
+check "$examples/own_loss" '^error 0\.[0-9]+ mm$'
+check "$examples/own_frontend" '^error 0\.00[0-9]+ m$'
+check "$examples/camera_loop" '^back at the start within 0\.[0-9]+ mm$'
+
+# One component needs no more than its own dependencies.
+project costs CXX REQUIRED COMPONENTS costs
+cp "$source/docs/examples/estimate_motion.cc" "$work/costs"
+printf '%s\n' 'add_executable(estimate_motion estimate_motion.cc)' \
+  'target_link_libraries(estimate_motion PRIVATE rgbd_pose::costs)' \
+  >>"$work/costs/CMakeLists.txt"
+configure "$work/costs" -DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=TRUE \
+  -DCMAKE_DISABLE_FIND_PACKAGE_yaml-cpp=TRUE ||
+  fail "costs: find_package without OpenCV"
+cmake --build "$work/costs/build" >"$work/log" 2>&1 || fail "costs: build"
+check "$work/costs/build/estimate_motion" '^ok'
+
+# What is not there is refused in words.
+project lidar NONE REQUIRED COMPONENTS core lidar
+! configure "$work/lidar" || fail "took an unknown component"
+says "no component 'lidar'; there are core, robust, costs, frontend" lidar
+project newer NONE 0.99 REQUIRED
+! configure "$work/newer" || fail "took another version"
+says 'compatible with requested version "0.99"' newer
+
+# By pkg-config: all headers together, and a program.
+export PKG_CONFIG_PATH
+PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name rgbd_pose.pc)")
+read -ra flags < <(pkg-config --cflags rgbd_pose)
+read -ra libraries < <(pkg-config --libs rgbd_pose)
+(cd "$prefix/include/rgbd_pose" && find . -name '*.h' |
+  sed 's|^\./\(.*\)|#include "\1"|') >"$work/all.cc"
+[ "$(wc -l <"$work/all.cc")" -gt 100 ] || fail "headers are missing"
+"${CXX:-c++}" -std=c++17 -fsyntax-only "${flags[@]}" "$work/all.cc" \
+  >"$work/log" 2>&1 || fail "headers do not compile"
+"${CXX:-c++}" -std=c++17 "$source/docs/examples/camera_loop.cc" \
+  "${flags[@]}" "${libraries[@]}" -Wl,-rpath,"${PKG_CONFIG_PATH%/*}" \
+  -o "$work/camera_loop" >"$work/log" 2>&1 || fail "pkg-config: build"
+check "$work/camera_loop" '^back at the start within 0\.[0-9]+ mm$'
+echo "ok"
