@@ -56,6 +56,7 @@ endfunction()
 function(rgbd_pose_configure_pkg_config input output)
   file(RELATIVE_PATH RGBD_POSE_PC_PREFIX
        ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  string(REGEX REPLACE "/$" "" RGBD_POSE_PC_PREFIX "${RGBD_POSE_PC_PREFIX}")
   set(own -lrgbd_pose_frontend -lrgbd_pose_costs -lrgbd_pose_robust
           -lrgbd_pose_core)
   set(public_libs -lceres -lopencv_core)

@@ -13,9 +13,8 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME librgbd-pose-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
-    "motion of an RGB-D camera as a Ceres problem - libraries and headers
- Costs, M-estimators, frontends and odometry, each a named, swappable piece;
- for find_package(rgbd_pose) and pkg-config.")
+    "Libraries, headers and files for find_package(rgbd_pose) and pkg-config:
+costs, M-estimators, frontends and odometry, each a named, swappable piece.")
 set(dependencies libceres-dev libeigen3-dev libopencv-dev libyaml-cpp-dev)
 if(Libdeflate_FOUND)
   list(APPEND dependencies libdeflate-dev)
@@ -26,9 +25,8 @@ set(CPACK_DEBIAN_TOOLS_PACKAGE_NAME rgbd-pose-tools)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SECTION science)
 set(CPACK_DEBIAN_TOOLS_PACKAGE_SHLIBDEPS ON)
 set(CPACK_COMPONENT_TOOLS_DESCRIPTION
-    "motion of an RGB-D camera as a Ceres problem - programs
- Visual odometry on sequences in TUM layout, evaluation, batches, reports and
- simulated sequences.")
+    "Programs: visual odometry on sequences in TUM layout, evaluation, batches,
+reports and simulated sequences.")
 
 # Debian wants the licence of each package here; plain installs have it in their
 # own folder of documents.
