@@ -269,7 +269,8 @@ bool Odometry::TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
   std::unique_ptr<FeatureSet> features = frontend_->Detect(frame);
   // Trust is passed on from reference to reference as long as they are tracked;
   // where hardly any feature would have it the doubt itself is in doubt.
-  const bool was_tracked = result->status != TrackingStatus::kLost;
+  const bool was_tracked =
+      reference_ != nullptr && result->status != TrackingStatus::kLost;
   const FeatureTrust trust =
       was_tracked ? FeatureTrust(*reference_->features, found_, doubted_,
                                  estimate_, frontend_->finds_all_in_view(),
