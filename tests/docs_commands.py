@@ -22,7 +22,7 @@ import docs_exceptions
 
 FOLDERS = ('core robust costs frontend apps benchmarks tests docs '
            'scripts').split()
-TIMEOUT = 170  # s
+TIMEOUT = 290  # s
 SKIPPED = 77  # as an exit code; for ctest
 
 # cmake knows the presets; it installs, and builds projects other than ours.
