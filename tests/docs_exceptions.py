@@ -46,6 +46,7 @@ EXCEPTIONS = {
         'scripts/fuzz': left_out('takes minutes'),
         'scripts/coverage': left_out('takes minutes'),
         'scripts/mutants': left_out('takes minutes'),
+        'scripts/check_packages': left_out('takes minutes and needs root'),
         'scripts/benchmark':
             left_out('takes minutes; tests/benchmark_programs_test.cc runs '
                      'the programs'),
