@@ -30,8 +30,10 @@ set(folder ${CMAKE_CURRENT_SOURCE_DIR}/report)
 rgbd_pose_embed(page kPage ${folder}/page.html)
 rgbd_pose_embed(style kStyle ${folder}/style.css)
 rgbd_pose_embed(script kScript ${folder}/plots.js ${folder}/run.js
-                ${folder}/run_paths.js ${folder}/run_times.js
-                ${folder}/run_residuals.js ${folder}/batch.js ${folder}/main.js)
+                ${folder}/run_paths.js ${folder}/run_cloud.js
+                ${folder}/run_times.js
+                ${folder}/run_residuals.js ${folder}/batch.js
+                ${folder}/compare.js ${folder}/sweep.js ${folder}/main.js)
 if(RGBD_POSE_PLOTLY_DIR)
   rgbd_pose_embed(library kLibrary ${RGBD_POSE_PLOTLY_DIR}/plotly-gl3d.min.js)
   rgbd_pose_embed(license kLicense ${RGBD_POSE_PLOTLY_DIR}/LICENSE)

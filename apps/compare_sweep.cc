@@ -100,4 +100,27 @@ std::vector<SweepCell> RunSweep(const SweepOptions& options) {
   return cells;
 }
 
+std::vector<SweepCell> CellsOf(const std::vector<SweepCell>& cells,
+                               const SweepMethod& method) {
+  std::vector<SweepCell> chosen;
+  for (const SweepCell& cell : cells) {
+    if (cell.method.loss == method.loss &&
+        cell.method.schedule == method.schedule &&
+        cell.method.ransac == method.ransac) {
+      chosen.push_back(cell);
+    }
+  }
+  return chosen;
+}
+
+std::vector<std::string> LossesOf(const std::vector<SweepCell>& cells) {
+  std::vector<std::string> losses;
+  for (const SweepCell& cell : cells) {
+    if (losses.empty() || losses.back() != cell.method.loss) {
+      losses.push_back(cell.method.loss);
+    }
+  }
+  return losses;
+}
+
 }  // namespace rgbd_pose

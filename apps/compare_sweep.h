@@ -39,4 +39,11 @@ inline double SweepShare(int i) { return i * 0.1; }
 // schedule, start, share. Throws InputError for unknown names.
 std::vector<SweepCell> RunSweep(const SweepOptions& options);
 
+// The cells of one method, by share; nothing if it did not run.
+std::vector<SweepCell> CellsOf(const std::vector<SweepCell>& cells,
+                               const SweepMethod& method);
+
+// The losses of a sweep in its order.
+std::vector<std::string> LossesOf(const std::vector<SweepCell>& cells);
+
 }  // namespace rgbd_pose

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "apps/batch_report_data.h"
+#include "apps/compare_report_data.h"
 #include "apps/report_assets.h"
 #include "apps/run_report_data.h"
 #include "core/text_file.h"
@@ -79,6 +80,13 @@ std::string WriteRunReport(const std::string& run_folder) {
 std::string WriteBatchReport(const std::string& batch_folder) {
   return WritePage(batch_folder,
                    ReportPage("batch", BatchReportData(batch_folder)));
+}
+
+std::string WriteComparisonReport(const std::string& folder) {
+  const nlohmann::json data = CompareReportData(folder);
+  return WritePage(
+      folder,
+      ReportPage(data.contains("sequences") ? "comparison" : "sweep", data));
 }
 
 }  // namespace rgbd_pose

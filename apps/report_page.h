@@ -9,8 +9,14 @@ namespace rgbd_pose {
 // Whether this program was built with the plotting library that pages need.
 bool HasReportLibrary();
 
+// What a program says instead of the name of a page it cannot write.
+constexpr char kNoReportLibrary[] =
+    "no file: built without plotly.js, which scripts/install_dependencies "
+    "fetches";
+
 // A page in one file that needs nothing else: the data, the plotting library
-// and our scripts (apps/report), which draw what `kind` says: "run" or "batch".
+// and our scripts (apps/report), which draw what `kind` says: "run", "batch",
+// "comparison" or "sweep".
 std::string ReportPage(std::string_view kind, const nlohmann::json& data);
 
 // Writes report.html of a run from the files in its folder; returns its path.
@@ -19,5 +25,8 @@ std::string WriteRunReport(const std::string& run_folder);
 
 // The same for a batch, from its summary.csv.
 std::string WriteBatchReport(const std::string& batch_folder);
+
+// The same for a comparison by rgbd_compare, from the files in its folder.
+std::string WriteComparisonReport(const std::string& folder);
 
 }  // namespace rgbd_pose

@@ -7,13 +7,18 @@
 #include <cstdio>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <sstream>
 
 #include "apps/available_cores.h"
+#include "apps/compare_paths.h"
 #include "apps/compare_sequence.h"
+#include "apps/compare_sequence_report.h"
 #include "apps/compare_sweep.h"
 #include "apps/compare_sweep_report.h"
+#include "apps/compare_sweep_verdict.h"
 #include "apps/program.h"
+#include "apps/report_page.h"
 #include "core/input_error.h"
 #include "core/text_file.h"
 #include "costs/cost_factory.h"
@@ -23,9 +28,10 @@
 #include "frontend/tum_dataset.h"
 #include "robust/m_estimator.h"
 
-DEFINE_string(experiment, "",
-              "pan_tilt or xyz (simulated), sweep (wrong matches), or the "
-              "folder of a sequence in TUM RGB-D layout with ground truth");
+DEFINE_string(
+    experiment, "",
+    "pan_tilt or xyz (simulated), sweep (wrong matches), or the "
+    "folder of a sequence in TUM RGB-D layout, best with groundtruth.txt");
 DEFINE_string(losses, "",
               "M-estimators, separated by commas; empty: all in a sweep, else "
               "none,huber,cauchy,geman_mcclure,welsch,tukey");
@@ -35,6 +41,7 @@ DEFINE_string(camera, "",
 DEFINE_string(frontend, "patch", "where matches of images come from");
 DEFINE_int32(frames, 150, "frames of a simulated sequence");
 DEFINE_int32(seeds, 200, "trials of a sweep at each share of wrong matches");
+DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
 DEFINE_string(output, "", "folder for the results, made if missing");
 
 namespace rgbd_pose {
@@ -45,6 +52,8 @@ constexpr char kSequenceLosses[] =
 // ORB-SLAM2 uses it on freiburg2, whose depths it found 4 % too great.
 constexpr double kOtherFr2DepthScale = 5208.0;
 constexpr int kMaxSeeds = 100000;
+// A sequence of which less was tracked, whatever the loss, compares nothing.
+constexpr double kMinTrackedShare = 0.5;
 
 ProgramInfo Info() {
   ProgramInfo info;
@@ -54,7 +63,7 @@ ProgramInfo Info() {
   info.flag_groups = {{"Experiment",
                        {"experiment", "losses", "cost", "camera", "frontend",
                         "frames", "seeds"}},
-                      {"Output", {"output"}}};
+                      {"Output", {"output", "report"}}};
   info.choices = {{"losses", MEstimatorNames()},
                   {"cost", CostNames()},
                   {"camera", CameraPresetNames()},
@@ -82,6 +91,16 @@ std::vector<std::string> Losses() {
   return losses;
 }
 
+// The last name of a path, which may end with a slash; as a word of a table.
+std::string FolderName(const std::string& path) {
+  const std::filesystem::path folder =
+      std::filesystem::absolute(path).lexically_normal();
+  std::string name =
+      (folder.has_filename() ? folder : folder.parent_path()).filename();
+  std::replace(name.begin(), name.end(), '"', '\'');
+  return name;
+}
+
 void Write(const std::string& file, const std::string& content) {
   const std::filesystem::path folder(FLAGS_output);
   std::error_code error;
@@ -93,74 +112,118 @@ void Write(const std::string& file, const std::string& content) {
   WriteFileAtomically((folder / file).string(), content);
 }
 
-// Results of one sequence, added to those before.
+// Writes and prints what every experiment ends with.
+void Finish(const std::string& report) {
+  Write("report.md", report);
+  Write("config.flags", FormatFlagFile(Info()));
+  std::printf("%s", report.c_str());
+  if (!FLAGS_report) return;
+  std::printf("report in   %s\n",
+              HasReportLibrary() ? WriteComparisonReport(FLAGS_output).c_str()
+                                 : kNoReportLibrary);
+}
+
+// What is known of several sequences, one after the other.
+struct SequenceResults {
+  std::string report;  // report.md
+  std::string tables = kSequenceCsvHeader;
+  std::string paths = kComparedPathsCsvHeader;
+  bool any_tracked = false;  // some loss, in some sequence
+};
+
 void AddSequence(const std::string& title, const std::string& figure,
-                 const Dataset& dataset, const Trajectory& truth,
-                 bool returns_to_start, std::string* report, std::string* csv) {
+                 const Dataset& dataset, const std::optional<Trajectory>& truth,
+                 bool returns_to_start, SequenceResults* results) {
   OdometrySettings settings;
   settings.cost = FLAGS_cost;
   settings.frontend = FLAGS_frontend;
   const std::vector<LossRun> runs =
       CompareLosses(dataset, truth, Losses(), settings, AvailableCores());
-  *report += "## " + title + "\n\n";
+  results->report += "## " + title + "\n\n";
   if (returns_to_start) {
-    *report +=
+    results->report +=
         "End pose against angle [0 0 0] and translation [0 0 0], as in "
         "the thesis' Tables 4.4-4.6:\n\n" +
-        EndPoseTable(runs) + "\n";
+        EndPoseTable(runs, returns_to_start) + "\n";
   }
-  *report +=
-      "Errors along the path (RMSE), as in the thesis' Tables 4.7 and "
-      "4.8:\n\n" +
-      PathErrorTable(runs) + "\n![Top views of the paths](" + figure + ")\n\n";
-  *csv += SequenceCsvRows(title, runs);
-  Write(figure, PathFigure(title, runs, truth));
+  if (truth.has_value()) {
+    results->report +=
+        "Errors along the path (RMSE), as in the thesis' Tables 4.7 and "
+        "4.8:\n\n" +
+        PathErrorTable(runs);
+  } else {
+    results->report +=
+        "There is no groundtruth.txt, so errors are not known. The last pose "
+        "seen from the first:\n\n" +
+        EndPoseTable(runs, returns_to_start) + "\n" + TrackedLine(runs);
+  }
+  results->report += "\n![Top views of the paths](" + figure + ")\n\n";
+  results->tables += SequenceCsvRows(title, runs);
+  const std::vector<ComparedPath> paths = ComparePaths(runs, truth);
+  results->paths += ComparedPathsCsvRows(title, paths);
+  Write(figure, PathFigure(title, paths));
+  for (const LossRun& run : runs) {
+    results->any_tracked |= run.TrackedShare() >= kMinTrackedShare;
+  }
+}
+
+void AddSimulated(SequenceResults* results) {
+  SyntheticOptions options;
+  options.path = FLAGS_experiment;
+  options.frames = FLAGS_frames;
+  options.camera =
+      ResolveCamera(FLAGS_camera.empty() ? "ros_default" : FLAGS_camera);
+  const SyntheticDataset dataset(options);
+  AddSequence("simulated " + FLAGS_experiment + ", " +
+                  std::to_string(FLAGS_frames) + " frames",
+              "paths.svg", dataset, dataset.ground_truth(),
+              FLAGS_experiment == "pan_tilt", results);
+}
+
+// The sequence of a folder, once for each depth scale it may have.
+void AddRecorded(const std::string& name, SequenceResults* results) {
+  RequireFlag("camera", FLAGS_camera);
+  const std::string truth_file =
+      (std::filesystem::path(FLAGS_experiment) / "groundtruth.txt").string();
+  std::optional<Trajectory> truth;
+  if (std::filesystem::exists(truth_file)) truth = ReadTrajectory(truth_file);
+  TumDatasetOptions options;
+  options.folder = FLAGS_experiment;
+  options.camera = ResolveCamera(FLAGS_camera);
+  std::vector<double> scales = {options.camera.depth_scale};
+  if (FLAGS_camera == "tum_fr2") scales.push_back(kOtherFr2DepthScale);
+  for (const double scale : scales) {
+    options.camera.depth_scale = scale;
+    const TumDataset dataset(options);
+    char units[32];
+    std::snprintf(units, sizeof(units), "%.10g", scale);
+    AddSequence(name + ", " + units + " raw depth units per metre",
+                scales.size() == 1 ? "paths.svg"
+                                   : std::string("paths_") + units + ".svg",
+                dataset, truth, /*returns_to_start=*/false, results);
+  }
 }
 
 int CompareSequences() {
-  std::string report = "# M-estimators on " + FLAGS_experiment + "\n\n";
-  std::string csv = kSequenceCsvHeader;
-  if (FLAGS_experiment == "pan_tilt" || FLAGS_experiment == "xyz") {
-    SyntheticOptions options;
-    options.path = FLAGS_experiment;
-    options.frames = FLAGS_frames;
-    options.camera =
-        ResolveCamera(FLAGS_camera.empty() ? "ros_default" : FLAGS_camera);
-    const SyntheticDataset dataset(options);
-    AddSequence("simulated " + FLAGS_experiment + ", " +
-                    std::to_string(FLAGS_frames) + " frames",
-                "paths.svg", dataset, dataset.ground_truth(),
-                FLAGS_experiment == "pan_tilt", &report, &csv);
-  } else {
-    const std::filesystem::path folder(FLAGS_experiment);
-    if (!std::filesystem::is_directory(folder)) {
-      throw InputError("--experiment=" + FLAGS_experiment +
-                       " is neither pan_tilt, xyz or sweep nor a folder");
-    }
-    RequireFlag("camera", FLAGS_camera);
-    const Trajectory truth =
-        ReadTrajectory((folder / "groundtruth.txt").string());
-    TumDatasetOptions options;
-    options.folder = FLAGS_experiment;
-    options.camera = ResolveCamera(FLAGS_camera);
-    std::vector<double> scales = {options.camera.depth_scale};
-    if (FLAGS_camera == "tum_fr2") scales.push_back(kOtherFr2DepthScale);
-    for (const double scale : scales) {
-      options.camera.depth_scale = scale;
-      const TumDataset dataset(options);
-      char units[32];
-      std::snprintf(units, sizeof(units), "%.0f", scale);
-      AddSequence(folder.filename().string() + ", " + units +
-                      " raw depth units per metre",
-                  scales.size() == 1 ? "paths.svg"
-                                     : std::string("paths_") + units + ".svg",
-                  dataset, truth, /*returns_to_start=*/false, &report, &csv);
-    }
+  const bool simulated =
+      FLAGS_experiment == "pan_tilt" || FLAGS_experiment == "xyz";
+  if (!simulated && !std::filesystem::is_directory(FLAGS_experiment)) {
+    throw InputError("--experiment=" + FLAGS_experiment +
+                     " is neither pan_tilt, xyz or sweep nor a folder");
   }
-  Write("tables.csv", csv);
-  Write("report.md", report);
-  std::printf("%s", report.c_str());
-  return kExitOk;
+  const std::string name =
+      simulated ? FLAGS_experiment : FolderName(FLAGS_experiment);
+  SequenceResults results;
+  results.report = "# M-estimators on " + name + "\n\n";
+  if (simulated) {
+    AddSimulated(&results);
+  } else {
+    AddRecorded(name, &results);
+  }
+  Write("tables.csv", results.tables);
+  Write("paths.csv", results.paths);
+  Finish(results.report);
+  return results.any_tracked ? kExitOk : kExitTrackingFailed;
 }
 
 int Sweep() {
@@ -186,8 +249,7 @@ int Sweep() {
   Write("sweep.csv", SweepCsv(cells));
   Write("translation.svg", SweepFigure(cells, /*rotation=*/false));
   Write("rotation.svg", SweepFigure(cells, /*rotation=*/true));
-  Write("report.md", report);
-  std::printf("%s", report.c_str());
+  Finish(report);
   return kExitOk;
 }
 

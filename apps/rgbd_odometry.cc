@@ -14,6 +14,7 @@
 #include <optional>
 
 #include "apps/available_cores.h"
+#include "apps/cloud_preview.h"
 #include "apps/evaluation_report.h"
 #include "apps/frame_errors.h"
 #include "apps/frame_selection.h"
@@ -216,11 +217,17 @@ std::optional<CloudFusion> MakeCloudFusion(const Camera& camera) {
   return CloudFusion(options);
 }
 
-// Writes the cloud and returns what metrics.json says of it.
-nlohmann::json SaveCloud(const CloudFusion& fusion) {
+// Writes the cloud, and a few of its points in the world that the page of the
+// run shows; returns what metrics.json says of it.
+nlohmann::json SaveCloud(const CloudFusion& fusion,
+                         const Rigid3d& shown_from_world) {
   WritePly(FLAGS_save_cloud, fusion.cloud().Points());
   std::printf("cloud       %d points of %d frames in %s\n",
               fusion.cloud().size(), fusion.frames(), FLAGS_save_cloud.c_str());
+  WriteFileAtomically(
+      (std::filesystem::path(FLAGS_output) / kCloudPreviewFile).string(),
+      CloudPreview(fusion.cloud().Thin(kMaxPreviewPoints), shown_from_world)
+          .dump());
   return {{"points", fusion.cloud().size()},
           {"frames", fusion.frames()},
           {"voxel_m", FLAGS_voxel}};
@@ -230,10 +237,9 @@ nlohmann::json SaveCloud(const CloudFusion& fusion) {
 // it needs says so and goes on.
 void WriteReport() {
   if (!FLAGS_report) return;
-  std::printf("report in   %s\n",
-              HasReportLibrary() ? WriteRunReport(FLAGS_output).c_str()
-                                 : "no file: built without plotly.js, which "
-                                   "scripts/install_dependencies fetches");
+  std::printf("report in   %s\n", HasReportLibrary()
+                                      ? WriteRunReport(FLAGS_output).c_str()
+                                      : kNoReportLibrary);
 }
 
 int ValidateOnly(const TumDataset& dataset, int threads) {
@@ -319,14 +325,18 @@ int Main() {
                             {"peak_rss_mb", PeakMemoryMb()},
                             {"run", SummaryToJson(summary)},
                             {"residuals", residuals.ToJson()}};
+  Rigid3d shown_from_world;
   if (truth.has_value()) {
     const EvaluationReport report = Evaluate(trajectory, *truth, {});
     std::printf("%s", FormatEvaluation(report).c_str());
     metrics["evaluation"] = EvaluationToJson(report);
+    shown_from_world = report.truth_from_estimate;
     WriteFileAtomically((output / "errors.csv").string(),
                         FormatErrorsCsv(frames, *truth, report));
   }
-  if (fusion.has_value()) metrics["cloud"] = SaveCloud(*fusion);
+  if (fusion.has_value()) {
+    metrics["cloud"] = SaveCloud(*fusion, shown_from_world);
+  }
   WriteFileAtomically((output / "trajectory.txt").string(),
                       FormatTrajectory(trajectory));
   WriteFileAtomically((output / "frames.csv").string(),

@@ -1,4 +1,4 @@
-// The page of a run or of a batch from its files.
+// The page of a run, a batch or a comparison from its files.
 
 #include <gflags/gflags.h>
 
@@ -13,6 +13,9 @@ DEFINE_string(run, "", "folder that rgbd_odometry has written its results to");
 DEFINE_string(batch, "",
               "folder that rgbd_batch has written its summary.csv to; instead "
               "of --run");
+DEFINE_string(comparison, "",
+              "folder that rgbd_compare has written its results to; instead "
+              "of --run");
 
 namespace rgbd_pose {
 namespace {
@@ -22,24 +25,30 @@ ProgramInfo Info() {
   info.name = "rgbd_report";
   info.summary = "writes report.html, a page to look at in a browser.";
   info.example = "rgbd_report --run=runs/fr1_xyz";
-  info.flag_groups = {{"Input", {"run", "batch"}}};
+  info.flag_groups = {{"Input", {"run", "batch", "comparison"}}};
   return info;
 }
 
+std::string WriteReport() {
+  if (!FLAGS_batch.empty()) return WriteBatchReport(FLAGS_batch);
+  if (!FLAGS_comparison.empty()) return WriteComparisonReport(FLAGS_comparison);
+  return WriteRunReport(FLAGS_run);
+}
+
 int Main() {
-  if (FLAGS_batch.empty()) RequireFlag("run", FLAGS_run);
-  if (!FLAGS_batch.empty() && !FLAGS_run.empty()) {
-    throw InputError("either --run or --batch");
+  const int given = static_cast<int>(!FLAGS_run.empty()) +
+                    static_cast<int>(!FLAGS_batch.empty()) +
+                    static_cast<int>(!FLAGS_comparison.empty());
+  if (given == 0) RequireFlag("run", FLAGS_run);
+  if (given > 1) {
+    throw InputError("--run, --batch and --comparison: one at a time");
   }
   if (!HasReportLibrary()) {
     throw InputError(
         "built without plotly.js, which pages need; scripts/"
         "install_dependencies fetches it, then configure and build again");
   }
-  std::printf("report in   %s\n",
-              (FLAGS_run.empty() ? WriteBatchReport(FLAGS_batch)
-                                 : WriteRunReport(FLAGS_run))
-                  .c_str());
+  std::printf("report in   %s\n", WriteReport().c_str());
   return kExitOk;
 }
 

@@ -7,10 +7,12 @@
 #include <filesystem>
 #include <limits>
 #include <memory>
-#include <sstream>
 #include <vector>
 
+#include "apps/cloud_preview.h"
 #include "apps/csv_table.h"
+#include "apps/report_settings.h"
+#include "apps/report_thinning.h"
 #include "core/chi_squared.h"
 #include "core/input_error.h"
 #include "core/text_file.h"
@@ -23,53 +25,6 @@ namespace {
 using nlohmann::json;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
-// Frames in groups of `every`, each drawn as one point.
-class Thinning {
- public:
-  explicit Thinning(size_t frames)
-      : every_((frames + kMaxReportPoints - 1) / kMaxReportPoints) {
-    every_ = std::max<size_t>(every_, 1);
-  }
-
-  size_t every() const { return every_; }
-
-  // The first of each group.
-  json First(const std::vector<double>& values, int decimals) const {
-    json result = json::array();
-    for (size_t i = 0; i < values.size(); i += every_) {
-      result.push_back(Rounded(values[i], decimals));
-    }
-    return result;
-  }
-
-  // The largest of each group, so that no peak is lost.
-  json Largest(const std::vector<double>& values, int decimals) const {
-    json result = json::array();
-    for (size_t i = 0; i < values.size(); i += every_) {
-      double largest = kNaN;
-      const size_t end = std::min(i + every_, values.size());
-      for (size_t k = i; k < end; ++k) {
-        if (!(largest >= values[k]) && !std::isnan(values[k])) {
-          largest = values[k];
-        }
-      }
-      result.push_back(Rounded(largest, decimals));
-    }
-    return result;
-  }
-
- private:
-  // Dividing by a power of ten gives the number nearest to the short decimal,
-  // which is then written with as few digits.
-  static json Rounded(double value, int decimals) {
-    if (!std::isfinite(value)) return nullptr;
-    const double scale = std::pow(10.0, decimals);
-    return std::round(value * scale) / scale;
-  }
-
-  size_t every_;
-};
 
 // 0 ok, 1 degraded, 2 lost
 std::vector<double> StatusCodes(const CsvTable& frames) {
@@ -111,7 +66,7 @@ json Incidents(const CsvTable& frames) {
   return list;
 }
 
-json FrameColumns(const CsvTable& frames, const Thinning& thinning) {
+json FrameColumns(const CsvTable& frames, const ReportThinning& thinning) {
   json columns = {{"t", thinning.First(Elapsed(frames), 4)},
                   {"status", thinning.Largest(StatusCodes(frames), 0)},
                   {"segment", thinning.First(frames.Numbers("segment"), 0)},
@@ -129,7 +84,7 @@ json FrameColumns(const CsvTable& frames, const Thinning& thinning) {
 
 // Positions of all frames, null where lost; trajectory.txt has the others.
 json EstimatedPath(const CsvTable& frames, const std::string& trajectory_file,
-                   const Thinning& thinning) {
+                   const ReportThinning& thinning) {
   const std::vector<double> status = StatusCodes(frames);
   const size_t tracked = std::count_if(status.begin(), status.end(),
                                        [](double code) { return code < 2; });
@@ -156,7 +111,8 @@ json EstimatedPath(const CsvTable& frames, const std::string& trajectory_file,
 }
 
 // The path in the world of the ground truth, and the errors of each frame.
-void AddErrors(const std::string& file, const Thinning& thinning, json* data) {
+void AddErrors(const std::string& file, const ReportThinning& thinning,
+               json* data) {
   const CsvTable table = CsvTable::Read(file);
   json path;
   for (const char* name : {"x", "y", "z", "true_x", "true_y", "true_z"}) {
@@ -167,33 +123,6 @@ void AddErrors(const std::string& file, const Thinning& thinning, json* data) {
       {"position_m", thinning.Largest(table.Numbers("position_error_m"), 6)},
       {"rpe_m", thinning.Largest(table.Numbers("rpe_m"), 6)},
       {"rpe_deg", thinning.Largest(table.Numbers("rpe_deg"), 4)}};
-}
-
-// Groups of flags: [title, [[name, value], ...]].
-json Settings(const std::string& flag_file) {
-  json groups = json::array();
-  std::istringstream text(ReadTextFile(flag_file));
-  std::string line;
-  while (std::getline(text, line)) {
-    const size_t equals = line.find('=');
-    if (line.rfind("# ", 0) == 0) {
-      groups.push_back({line.substr(2), json::array()});
-    } else if (line.rfind("--", 0) == 0 && equals != std::string::npos &&
-               !groups.empty()) {
-      groups.back()[1].push_back(
-          {line.substr(2, equals - 2), line.substr(equals + 1)});
-    }
-  }
-  return groups;
-}
-
-std::string SettingOf(const json& groups, const std::string& name) {
-  for (const json& group : groups) {
-    for (const json& flag : group[1]) {
-      if (flag[0] == name) return flag[1];
-    }
-  }
-  return "";
 }
 
 // The weight that the run's loss gives a norm, and the norm up to which a match
@@ -244,19 +173,24 @@ json RunReportData(const std::string& run_folder) {
   const std::filesystem::path folder(run_folder);
   const auto file = [&](const char* name) { return (folder / name).string(); };
   const CsvTable frames = CsvTable::Read(file("frames.csv"));
-  const Thinning thinning(frames.size());
+  const ReportThinning thinning(frames.size(), kMaxReportPoints);
   json data = {{"num_frames", frames.size()},
                {"every", thinning.every()},
                {"frames", FrameColumns(frames, thinning)},
                {"incidents", Incidents(frames)},
                {"metrics", ParseJson(file("metrics.json"))},
-               {"settings", Settings(file("config.flags"))}};
+               {"settings", ReadReportSettings(file("config.flags"))}};
   if (std::filesystem::exists(folder / "errors.csv")) {
     AddErrors(file("errors.csv"), thinning, &data);
   } else {
     data["path"] = EstimatedPath(frames, file("trajectory.txt"), thinning);
   }
   data["loss"] = LossCurve(data);
+  // Older files of the folder's name may be of another run.
+  if (data["metrics"].contains("cloud") &&
+      std::filesystem::exists(folder / kCloudPreviewFile)) {
+    data["cloud"] = ParseJson(file(kCloudPreviewFile));
+  }
   return data;
 }
 

@@ -13,12 +13,23 @@ struct ChartPoint {
   double high = 0.0;
 };
 
+// How the i-th of several lines looks: colours that colour-blind people tell
+// apart (Okabe & Ito 2008, without black and yellow), and dashes and markers
+// besides. All of the first twelve differ.
+struct SeriesStyle {
+  std::string colour = "#000000";  // "#rrggbb"
+  std::string dash;                // lengths in pixels; empty: none
+  int marker = -1;                 // of kNumMarkers shapes; -1: none
+};
+SeriesStyle StyleOf(int i);
+constexpr int kNumMarkers = 5;
+
 // A line of a panel.
 struct ChartSeries {
   std::string label;
-  std::string colour;  // "#rrggbb"
-  bool is_dashed = false;
+  SeriesStyle style;
   double width_px = 1.5;
+  // Where x or y is NaN, or y <= 0 on a logarithmic axis, the line has a gap.
   std::vector<ChartPoint> points;
 };
 
@@ -27,25 +38,22 @@ struct ChartPanel {
   std::string x_label;  // with its unit
   std::string y_label;
   std::vector<ChartSeries> series;
+  bool log_y = false;
+  // As many units a pixel on both axes, and in all such panels of a chart.
+  bool is_map = false;
 };
 
-// Panels side by side below one legend, which is that of the first panel: all
-// have the same series. All panels have the same ranges, or with `same_scale`
-// as many units a pixel on both axes of every panel, as maps do.
+// Panels side by side, below one legend, which is that of the first panel, or
+// with the names of lines at their ends.
 struct Chart {
   std::string title;
   std::vector<ChartPanel> panels;
   int columns = 2;
   int panel_width_px = 360;
   int panel_height_px = 360;
-  bool log_y = false;  // y > 0 then
-  bool same_scale = false;
+  bool same_ranges = false;  // of all panels that are no maps
+  bool label_lines = false;
 };
-
-// The i-th colour that colour-blind people tell apart (Okabe & Ito 2008,
-// without black and yellow), from the start again after the last.
-std::string SeriesColour(int i);
-constexpr int kNumSeriesColours = 6;
 
 // The chart as a file of SVG 1.1.
 std::string FormatSvg(const Chart& chart);

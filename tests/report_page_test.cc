@@ -6,6 +6,7 @@
 #include <string>
 
 #include "apps/run_report_data.h"
+#include "tests/expect_input_error.h"
 #include "tests/temp_folder.h"
 
 namespace rgbd_pose {
@@ -82,6 +83,21 @@ TEST(RunReportData, LongRunsAreThinnedWithoutLosingPeaks) {
   EXPECT_EQ(times.size(), static_cast<size_t>(kMaxReportPoints));
   EXPECT_EQ(times[4], 50.0);  // frames 12 to 14
   EXPECT_EQ(data.at("frames").at("status")[2], 2);
+}
+
+// One that an earlier run has left in the folder does not count.
+TEST(RunReportData, TheCloudIsThatOfTheRun) {
+  const TempFolder folder;
+  WriteRun(folder, 3);
+  folder.Write("cloud_preview.json", R"({"points": 1})");
+  EXPECT_FALSE(RunReportData(folder.path()).contains("cloud"));
+  folder.Write("metrics.json",
+               R"({"cloud": {"points": 9},
+                   "residuals": {"degrees_counts": [0, 0, 0, 1]}})");
+  EXPECT_EQ(RunReportData(folder.path()).at("cloud").at("points"), 1);
+  folder.Write("cloud_preview.json", "[]");
+  ExpectInputError([&] { RunReportData(folder.path()); },
+                   {"cloud_preview.json"});
 }
 
 TEST(ReportPage, WordsOfTheDataCannotEndItsScript) {

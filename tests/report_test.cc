@@ -162,5 +162,80 @@ TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
   EXPECT_EQ(Count(browser.out, ">failed</td>"), 1);
 }
 
+TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
+  Track(" --save_cloud=" + (folder_ / "run/cloud.ply"));
+  const std::string page = ReadTextFile(Page());
+  EXPECT_LT(page.size(), kMaxPageBytes);
+  EXPECT_THAT(page, HasSubstr("\"colors\":\""));
+  std::filesystem::remove(folder_ / "run/cloud.ply");  // it may be elsewhere
+  ASSERT_EQ(Run(RGBD_REPORT " --run=" + (folder_ / "run")).exit_code, 0);
+  EXPECT_TRUE(ReadTextFile(Page()) == page) << "not the page of the run";
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
+  EXPECT_EQ(Console(browser), "");
+  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+  EXPECT_EQ(Count(browser.out, " js-plotly-plot\""), 8);
+  EXPECT_THAT(browser.out, HasSubstr("What was seen: "));
+  EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));  // its legend
+}
+
+// Of a comparison: what rgbd_compare writes, rgbd_report writes again.
+class ComparisonReportTest : public ReportTest {
+ protected:
+  void Compare(const std::string& arguments) {
+    const RunResult run =
+        Run(RGBD_COMPARE " --losses=none,tukey --output=" + (folder_ / "run") +
+            " " + arguments);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("report in   " + Page()));
+    const std::string page = ReadTextFile(Page());
+    EXPECT_LT(page.size(), kMaxPageBytes);
+    std::filesystem::remove(Page());
+    const RunResult again =
+        Run(RGBD_REPORT " --comparison=" + (folder_ / "run"));
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_TRUE(ReadTextFile(Page()) == page) << "not the same page";
+  }
+
+  void ExpectPlots(const std::vector<std::string>& ids) const {
+    for (const std::string width : {"1280", "390"}) {
+      const RunResult browser =
+          Browse("--window-size=" + width + ",4000 --dump-dom");
+      EXPECT_EQ(Console(browser), "");
+      EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+      for (const std::string& id : ids) {
+        EXPECT_EQ(Count(browser.out, "<div id=\"" + id + "\""), 1) << id;
+      }
+      EXPECT_EQ(Count(browser.out, " js-plotly-plot\""),
+                static_cast<int>(ids.size()));
+    }
+    const std::string image = folder_ / "page.png";
+    Browse("--window-size=1280,4000 --screenshot=" + image);
+    ASSERT_TRUE(std::filesystem::exists(image));
+    EXPECT_GT(std::filesystem::file_size(image), kMinScreenshotBytes);
+  }
+};
+
+TEST_F(ComparisonReportTest, OfASequenceWithTruth) {
+  Compare("--camera=ros_default --experiment=" + Sequence());
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  ExpectPlots({"s0-path-xy", "s0-path-xz", "s0-path-3d", "s0-figures-mm",
+               "s0-figures-deg", "s0-errors"});
+}
+
+TEST_F(ComparisonReportTest, WithoutTruthAtTwoDepthScales) {
+  std::filesystem::remove(Sequence() + "/groundtruth.txt");
+  Compare("--camera=tum_fr2 --experiment=" + Sequence());
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  ExpectPlots({"s0-path-xy", "s0-path-xz", "s0-path-3d", "s1-path-xy",
+               "s1-path-xz", "s1-path-3d"});
+}
+
+TEST_F(ComparisonReportTest, OfASweep) {
+  Compare("--experiment=sweep --seeds=10");
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  ExpectPlots({"sweep-translation", "sweep-rotation"});
+}
+
 }  // namespace
 }  // namespace rgbd_pose

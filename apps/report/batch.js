@@ -48,8 +48,7 @@ function batchHeader(data, varied) {
     [distinct(rows.map(row => settingName(row, varied))).length, 'settings'],
     [count('repeat'), 'repeats'],
   ]) {
-    figures.append(make('div', {class: 'figure'}, make('b', {}, String(value)),
-        make('span', {}, text)));
+    figures.append(figureTile(String(value), text));
   }
   page.append(figures);
 }
@@ -76,34 +75,17 @@ function batchPlot(data, figure, sequences, settings, varied) {
                    Math.floor(k / SEGMENT_COLORS.length) % SETTING_SYMBOLS.length]},
     };
   });
-  const values = rows.map(row => figure.factor * row[figure.key]).filter(v => v > 0);
-  const low = Math.log10(Math.min(...values)), high = Math.log10(Math.max(...values));
-  // At least from half to double, so that small differences stay small.
-  const room = Math.max(0.05 * (high - low), 0.3 - (high - low) / 2, 0.02);
   const div = plot(figure.id, 'batch', element, traces, {
     height: 110 + sequences.length * Math.max(34, 12 * settings.length),
     showlegend: settings.length > 1,
     hovermode: 'closest',
-    xaxis: axis(`${figure.label} (${figure.unit})`, Object.assign(
-        {type: 'log', range: [low - room, high + room]},
-        logTicks(low - room, high + room))),
+    xaxis: axis(`${figure.label} (${figure.unit})`,
+        logAxis(rows.map(row => figure.factor * row[figure.key]))),
     yaxis: axis('', {
       range: [sequences.length - 0.5, -0.5], tickvals: sequences.map((s, i) => i),
       ticktext: sequences.map(shorten), gridcolor: '#d8dee4'}),
   });
   div.style.height = '';
-}
-
-// Ticks at 1, 2 and 5 times powers of ten, or at these powers alone if there
-// are many.
-function logTicks(low, high) {
-  const tickvals = [];
-  for (let power = Math.floor(low); power <= high; ++power) {
-    for (const digit of high - low > 2.5 ? [1] : [1, 2, 5]) {
-      tickvals.push(Number(`${digit}e${power}`));
-    }
-  }
-  return {tickvals, ticktext: tickvals.map(String)};
 }
 
 // Long names of sequences would leave no room for the plot on a phone; it is

@@ -1,6 +1,8 @@
 'use strict';
 
-const PAGES = {run: showRun, batch: showBatch};
+const PAGES = {
+  run: showRun, batch: showBatch, comparison: showComparison, sweep: showSweep,
+};
 const page = document.getElementById('page');
 PAGES[page.dataset.kind](JSON.parse(document.getElementById('data').textContent));
 fitForPrint();

@@ -14,6 +14,16 @@ const SEGMENT_COLORS = [
   COLOR.sky,
 ];
 
+// How the k-th of several lines looks; all of the first twelve differ.
+const LINE_DASHES = ['solid', 'dash', 'dot', 'dashdot'];
+const LINE_SYMBOLS = ['circle', 'square', 'diamond', 'triangle-up', 'triangle-down'];
+
+function lineStyle(k) {
+  return {color: SEGMENT_COLORS[k % SEGMENT_COLORS.length],
+          dash: LINE_DASHES[k % LINE_DASHES.length],
+          symbol: LINE_SYMBOLS[k % LINE_SYMBOLS.length]};
+}
+
 // Makes an element: make('td', {class: 'number'}, 'text' or child, ...).
 function make(tag, attributes, ...children) {
   const element = document.createElement(tag);
@@ -64,6 +74,33 @@ function axis(title, more) {
   }, more);
 }
 
+// A logarithmic axis for all values above 0: ticks at powers of ten and, where
+// they are few, between. At least from half to double, so that small
+// differences stay small.
+function logAxis(values) {
+  const above = values.filter(v => known(v) && v > 0).map(Math.log10);
+  const least = above.reduce((a, b) => Math.min(a, b), Infinity);
+  const most = above.reduce((a, b) => Math.max(a, b), -Infinity);
+  if (above.length === 0) return {type: 'log'};
+  const room = Math.max(0.05 * (most - least), 0.3 - (most - least) / 2, 0.02);
+  const low = least - room, high = most + room;
+  const wanted = high - low > 2.5 ? [1] : high - low > 1 ? [1, 2, 5]
+      : [1, 1.5, 2, 3, 4, 5, 7];
+  const tickvals = [];
+  for (let power = Math.floor(low); power <= high; ++power) {
+    for (const digit of wanted) {
+      tickvals.push(Number(`${digit}e${power}`));
+    }
+  }
+  return {type: 'log', range: [low, high], rangemode: 'normal', tickvals,
+          ticktext: tickvals.map(String)};
+}
+
+// A figure of a page's head: a number and what it is.
+function figureTile(value, text) {
+  return make('div', {class: 'figure'}, make('b', {}, value), make('span', {}, text));
+}
+
 const BASE_LAYOUT = {
   font: {family: 'system-ui, -apple-system, "Segoe UI", Roboto, Arial, sans-serif',
          size: 12, color: '#1b1f24'},
@@ -71,7 +108,7 @@ const BASE_LAYOUT = {
   plot_bgcolor: '#fff',
   margin: {l: 10, r: 14, t: 10, b: 10},
   legend: {orientation: 'h', x: 0, xanchor: 'left', y: 1.02, yanchor: 'bottom',
-           bgcolor: 'rgba(0,0,0,0)', itemsizing: 'constant'},
+           bgcolor: 'rgba(0,0,0,0)', itemsizing: 'constant', itemwidth: 40},
   hovermode: 'x unified',
   hoverlabel: {font: {size: 12}},
   dragmode: false,
@@ -98,7 +135,7 @@ function plot(id, size, parent, traces, layout) {
 // Rows of one time axis, top to bottom: their y axes and titles. Each row is
 // {title, y, weight} with y the title of its axis.
 function rowsLayout(rows, xTitle, xRange) {
-  const gap = 0.11;
+  const gap = rows.some(row => row.title) ? 0.11 : 0.05;
   const total = rows.reduce((sum, row) => sum + (row.weight || 1), 0);
   const height = (1 - gap * (rows.length - 1)) / total;
   const layout = {annotations: [], showlegend: false};
@@ -169,6 +206,29 @@ function table(head, rows, className) {
           )))))));
 }
 
+// The flags of a run and how to repeat it; `data.settings` has them in groups.
+function setting(data, name) {
+  for (const [, flags] of data.settings) {
+    for (const [key, value] of flags) if (key === name) return value;
+  }
+  return '';
+}
+
+function settings(data, program) {
+  const element = section('Settings', 'What produced this; to repeat it:');
+  element.append(make('pre', {}, program + ' --flagfile=config.flags'));
+  const columns = make('div', {class: 'columns'});
+  for (const [title, flags] of data.settings) {
+    columns.append(make('div', {}, make('h3', {}, title), table(
+        ['flag', 'value'],
+        flags.map(([name, value]) => [
+          {class: 'code', text: '--' + name},
+          value === '' ? {class: 'soft', text: '(empty)'} : {class: 'code', text: value},
+        ]))));
+  }
+  element.append(columns);
+}
+
 // A heading, a paragraph and what the caller adds.
 function section(title, text) {
   const element = make('section', {}, make('h2', {}, title));
@@ -179,7 +239,9 @@ function section(title, text) {
 
 // Plots keep the size they were drawn at; paper (A4) has another.
 const PAPER_WIDTH = 680;
-const PAPER_HEIGHT = {small: 240, rows2: 310, rows3: 390};
+const PAPER_HEIGHT = {
+  small: 240, paths: 300, rows2: 310, rows3: 390, rows4: 520, tall: 420,
+};
 
 function fitToPaper(div) {
   const half = div.parentElement.classList.contains('pair');

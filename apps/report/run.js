@@ -2,13 +2,6 @@
 
 // The page of one run.
 
-function setting(data, name) {
-  for (const [, flags] of data.settings) {
-    for (const [key, value] of flags) if (key === name) return value;
-  }
-  return '';
-}
-
 function baseName(path) {
   const parts = String(path || '').split('/').filter(part => part);
   return parts.length ? parts[parts.length - 1] : 'run';
@@ -28,8 +21,7 @@ function header(data) {
           `${digits(seconds, 3)} s; cost ${setting(data, 'cost')}, loss ` +
           `${setting(data, 'loss')}, frontend ${setting(data, 'frontend')}.`));
   const figures = make('div', {class: 'figures'});
-  const add = (value, text) => figures.append(
-      make('div', {class: 'figure'}, make('b', {}, value), make('span', {}, text)));
+  const add = (value, text) => figures.append(figureTile(value, text));
   const evaluation = data.metrics.evaluation;
   if (evaluation && evaluation.ate.position_m) {
     add(digits(evaluation.ate.position_m.rmse * 1000, 3) + ' mm',
@@ -123,21 +115,6 @@ function metrics(data) {
         {class: 'name', text: name}, {number: value}, text]), 'stack'));
 }
 
-function settings(data) {
-  const element = section('Settings', 'What produced this run; to repeat it:');
-  element.append(make('pre', {}, 'rgbd_odometry --flagfile=config.flags'));
-  const columns = make('div', {class: 'columns'});
-  for (const [title, flags] of data.settings) {
-    columns.append(make('div', {}, make('h3', {}, title), table(
-        ['flag', 'value'],
-        flags.map(([name, value]) => [
-          {class: 'code', text: '--' + name},
-          value === '' ? {class: 'soft', text: '(empty)'} : {class: 'code', text: value},
-        ]))));
-  }
-  element.append(columns);
-}
-
 function showRun(data) {
   header(data);
   paths(data);
@@ -146,5 +123,5 @@ function showRun(data) {
   times(data);
   residuals(data);
   metrics(data);
-  settings(data);
+  settings(data, 'rgbd_odometry');
 }

@@ -74,37 +74,35 @@ function hasWebGl() {
 
 // The range of all positions along an axis with room around them; equal units
 // may widen it.
-function pathRange(path, name, reversed) {
-  const all = path[name].concat(path['true_' + name] || []).filter(known);
+function pathRange(values, reversed) {
+  const all = values.filter(known);
   const low = Math.min(...all), high = Math.max(...all);
   const room = 0.05 * (high - low) || 0.5;
   return reversed ? [high + room, low - room] : [low - room, high + room];
 }
 
-function paths(data) {
-  const element = section('Path', data.path.true_x
-      ? 'Positions of the camera in the world of the ground truth, the estimate ' +
-        'after the rigid alignment (no scale). Equal units on all axes.'
-      : 'Positions of the camera as seen from the first one: X to its right, Y ' +
-        'down, Z ahead. There is no ground truth. Equal units on all axes.');
-  const down = downVector(data);
+// Two views of paths and one in 3D, with ids that begin with `prefix`, the first
+// and the last of their `sizes`.
+// `positions` has all x, y and z, `down` the axis that points down;
+// `tracesOf(axes, type, line)` makes the traces.
+function pathViews(element, prefix, sizes, positions, down, tracesOf) {
   const pair = make('div', {class: 'pair'});
   element.append(pair);
   for (const [a, b, k] of [['x', 'y', 1], ['x', 'z', 2]]) {
-    plot(`path-${a}${b}`, 'small', pair,
-        pathTraces(data, [a, b], 'scatter', {width: 2}), {
+    plot(`${prefix}path-${a}${b}`, sizes[0], pair,
+        tracesOf([a, b], 'scatter', {width: 2}), {
           xaxis: axis(a.toUpperCase() + ' (m)',
-              {nticks: 6, range: pathRange(data.path, a, false)}),
+              {nticks: 6, range: pathRange(positions[a], false)}),
           yaxis: axis(b.toUpperCase() + ' (m)',
               {nticks: 7, scaleanchor: 'x',
-               range: pathRange(data.path, b, down[k] > 0.7)}),
+               range: pathRange(positions[b], down[k] > 0.7)}),
           hovermode: 'closest',
         });
   }
   const screen = make('div', {class: 'screen'});
   element.append(screen);
   if (!hasWebGl()) {
-    screen.append(make('p', {class: 'soft', id: 'no-webgl'},
+    screen.append(make('p', {class: 'soft'},
         'The view in 3D needs WebGL, which this browser does not offer.'));
     return;
   }
@@ -116,11 +114,12 @@ function paths(data) {
   const side = down.map(v => -v);
   // Looks from behind and above, whatever axis is up.
   // A narrow window needs more distance.
-  const far = window.innerWidth < 600 ? 1.5 : 1;
+  // What was seen is wider than the path; it is looked at from near.
+  const far = (window.innerWidth < 600 ? 1.5 : 1) * (sizes[1] === 'tall' ? 0.75 : 1);
   const back = Math.abs(side[1]) > 0.7 ? [-1, 0, -1.7] : [1.4, -1.6, 0];
   const eye = back.map((v, k) => far * (v + 0.8 * side[k]));
-  plot('path-3d', 'large', screen, pathTraces(data, ['x', 'y', 'z'], 'scatter3d',
-      {width: 4}), {
+  plot(`${prefix}path-3d`, sizes[1], screen,
+      tracesOf(['x', 'y', 'z'], 'scatter3d', {width: 4}), {
         margin: {l: 0, r: 0, t: 0, b: 0},
         dragmode: 'turntable',
         hovermode: 'closest',
@@ -131,4 +130,20 @@ function paths(data) {
                    eye: {x: eye[0], y: eye[1], z: eye[2]}},
         },
       });
+}
+
+function paths(data) {
+  const element = section('Path', data.path.true_x
+      ? 'Positions of the camera in the world of the ground truth, the estimate ' +
+        'after the rigid alignment (no scale). Equal units on all axes.'
+      : 'Positions of the camera as seen from the first one: X to its right, Y ' +
+        'down, Z ahead. There is no ground truth. Equal units on all axes.');
+  const positions = {};
+  for (const name of ['x', 'y', 'z']) {
+    positions[name] = data.path[name].concat(data.path['true_' + name] || []);
+  }
+  pathViews(element, '', ['small', data.cloud ? 'tall' : 'large'], positions, downVector(data), (axes, type, line) => (
+      (type === 'scatter3d' ? cloudTraces(data) : []).concat(
+          pathTraces(data, axes, type, line))));
+  cloudNote(data, element);
 }

@@ -1,0 +1,119 @@
+'use strict';
+
+// The page of a sweep: all M-estimators on matches of which a share is wrong.
+
+const SWEEP_METHODS = [
+  {schedule: 'gnc', ransac: false, name: 'graduated (gnc), from no motion'},
+  {schedule: 'gnc', ransac: true, name: 'graduated (gnc), from RANSAC'},
+  {schedule: 'direct', ransac: false, name: 'at their widths at once (direct), from no motion'},
+  {schedule: 'direct', ransac: true, name: 'at their widths at once (direct), from RANSAC'},
+];
+
+const SWEEP_ERRORS = [
+  {key: 'translation_mm', id: 'sweep-translation', unit: 'mm', y: 'translation error (mm)'},
+  {key: 'rotation_deg', id: 'sweep-rotation', unit: '°', y: 'rotation error (°)'},
+];
+
+const SWEEP_DEFINITIONS = [
+  ['error', 'Of the estimated motion against the true one; the median of all trials at ' +
+      'a share of wrong matches.'],
+  ['band', 'Holds the median of all possible trials in 95 of 100 sweeps, by order ' +
+      'statistics; it assumes nothing on how errors are spread.'],
+  ['wrong matches', 'Point anywhere at random; those that agree with each other are ' +
+      'not tried.'],
+  ['graduated (gnc)', 'The loss is wide at first and narrowed step by step.'],
+  ['from RANSAC', 'The solver starts at what RANSAC found, else at no motion.'],
+];
+
+function sweepHeader(data) {
+  document.title = 'Wrong matches: rgbd_pose comparison';
+  const losses = distinct(data.methods.map(method => method.loss));
+  const page = document.getElementById('page');
+  const percent = data.wrong_percent;
+  page.append(make('h1', {}, 'M-estimators on wrong matches'), make('p', {class: 'soft'},
+      `${losses.length} loss${losses.length === 1 ? '' : 'es'} on the same simulated ` +
+      `matches with Kinect noise, of which ${percent[0]} to ` +
+      `${percent[percent.length - 1]} % are wrong; ${setting(data, 'seeds')} random ` +
+      `motions at each share; cost ${setting(data, 'cost')}.`));
+  section('Verdict').append(...data.verdict.split(/(?<=\.) (?=Under)/).map(
+      text => make('p', {}, text)));
+}
+
+// Curves of one kind of error under one method, each loss with its band.
+function sweepTraces(data, chosen, error) {
+  const methods = data.methods.filter(
+      m => m.schedule === chosen.schedule && m.ransac === chosen.ransac);
+  const bands = [], lines = [];
+  methods.forEach((method, k) => {
+    const {color, dash, symbol} = lineStyle(k);
+    const band = method[error.key];
+    const x = data.wrong_percent;
+    bands.push({
+      type: 'scatter', mode: 'lines', fill: 'toself', hoverinfo: 'skip',
+      x: x.concat(x.slice().reverse()), y: band.high.concat(band.low.slice().reverse()),
+      line: {width: 0, color}, opacity: 0.15, fillcolor: color, showlegend: false,
+      legendgroup: method.loss, name: method.loss,
+    });
+    lines.push({
+      type: 'scatter', mode: 'lines+markers', name: method.loss, x, y: band.median,
+      legendgroup: method.loss, line: {color, dash, width: 2},
+      marker: {color, symbol, size: 7},
+      customdata: x.map((v, i) => `${digits(band.median[i], 3)} ${error.unit} ` +
+          `[${digits(band.low[i], 3)}, ${digits(band.high[i], 3)}]`),
+      hovertemplate: '%{customdata}',
+    });
+  });
+  return bands.concat(lines);
+}
+
+function sweepLayout(data, error) {
+  // The same for all methods, so that a change of the method shows.
+  const values = [].concat(...data.methods.map(
+      m => m[error.key].low.concat(m[error.key].high)));
+  const end = data.wrong_percent[data.wrong_percent.length - 1];
+  return {
+    uirevision: 'kept',  // what is hidden stays hidden
+    xaxis: axis('wrong matches (%)', {range: [-0.03 * end, 1.03 * end]}),
+    yaxis: axis(error.y, logAxis(values)),
+  };
+}
+
+function sweepTable(data, chosen) {
+  const methods = data.methods.filter(
+      m => m.schedule === chosen.schedule && m.ransac === chosen.ransac);
+  return table(
+      ['loss', ...data.wrong_percent.map(share => ({number: share + ' %'}))],
+      methods.map(({loss, translation_mm: band}) => [
+        {class: 'name', text: loss},
+        ...data.wrong_percent.map((share, i) => ({
+          number: `${digits(band.median[i], 3)} [${digits(band.low[i], 3)}, ` +
+              `${digits(band.high[i], 3)}]`})),
+      ]), 'stack wide bands');
+}
+
+function showSweep(data) {
+  sweepHeader(data);
+  const element = section('Errors over the share of wrong matches',
+      'Medians with their 95 % bands, logarithmic; the losses are' +
+      ' treated as chosen here.' + LEGEND_HINT);
+  const select = make('select', {id: 'method', 'aria-label': 'how losses are treated'},
+      ...SWEEP_METHODS.map((method, i) => make('option', {value: i}, method.name)));
+  element.append(select);
+  const divs = SWEEP_ERRORS.map(error => {
+    element.append(make('h3', {}, error.key === 'rotation_deg' ? 'Rotation'
+                                                               : 'Translation'));
+    return plot(error.id, 'tall', element, sweepTraces(data, SWEEP_METHODS[0], error),
+        sweepLayout(data, error));
+  });
+  element.append(make('h3', {}, 'Median translation errors (mm) and their 95 % bands'));
+  const place = make('div', {}, sweepTable(data, SWEEP_METHODS[0]));
+  element.append(place);
+  select.addEventListener('change', () => {
+    const chosen = SWEEP_METHODS[select.value];
+    SWEEP_ERRORS.forEach((error, i) => Plotly.react(divs[i],
+        sweepTraces(data, chosen, error), divs[i].layout, CONFIG));
+    place.replaceChildren(sweepTable(data, chosen));
+  });
+  definitions(SWEEP_DEFINITIONS);
+  settings(data, 'rgbd_compare');
+}
