@@ -91,14 +91,14 @@ class CompareFolderTest : public CompareProgramTest {
   void SetUp() override {
     const RunResult run =
         RunCommand(std::string(RGBD_SIMULATE) +
-                       " --path=xyz --frames=4 --output=" + Sequence(),
+                       " --path=xyz --frames=4 --output='" + Sequence() + "'",
                    folder_);
     ASSERT_EQ(run.exit_code, 0) << run.err;
   }
+
   std::string Sequence() const { return folder_ / "a \"long\" name"; }
   std::string Experiment() const {
-    return " --losses=none,tukey \"--experiment=" + folder_.path() +
-           "/a \\\"long\\\" name/\"";
+    return " --losses=none,tukey --experiment='" + Sequence() + "/'";
   }
 };
 

@@ -38,6 +38,9 @@ class ReportTest : public testing::Test {
     if (probe.err.find("built without plotly.js") != std::string::npos) {
       GTEST_SKIP() << "built without plotly.js";
     }
+  }
+
+  void Simulate() const {
     const RunResult simulate =
         Run(RGBD_SIMULATE " --path=xyz --frames=40 --output=" + Sequence());
     ASSERT_EQ(simulate.exit_code, 0) << simulate.err;
@@ -88,6 +91,7 @@ class ReportTest : public testing::Test {
 };
 
 TEST_F(ReportTest, APageIsSmallAndNeedsNothingElse) {
+  Simulate();
   Track();
   const std::string page = ReadTextFile(Page());
   EXPECT_LT(page.size(), kMaxPageBytes);
@@ -103,6 +107,7 @@ TEST_F(ReportTest, APageIsSmallAndNeedsNothingElse) {
 }
 
 TEST_F(ReportTest, ARunWithoutAReportOrItsFiles) {
+  Simulate();
   Track(" --noreport");
   EXPECT_FALSE(std::filesystem::exists(Page()));
   std::filesystem::remove(folder_ / "run/frames.csv");
@@ -116,6 +121,7 @@ TEST_F(ReportTest, ARunWithoutAReportOrItsFiles) {
 
 TEST_F(ReportTest, ABrowserDrawsAllPlots) {
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  Simulate();
   Track();
   const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
   EXPECT_EQ(Console(browser), "");
@@ -134,6 +140,7 @@ TEST_F(ReportTest, ABrowserDrawsAllPlots) {
 
 TEST_F(ReportTest, WithoutGroundTruthThereAreNoErrors) {
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  Simulate();
   std::filesystem::remove(Sequence() + "/groundtruth.txt");
   Track();
   const RunResult browser = Browse("--window-size=390,4000 --dump-dom");
@@ -163,6 +170,7 @@ TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
 }
 
 TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
+  Simulate();
   Track(" --save_cloud=" + (folder_ / "run/cloud.ply"));
   const std::string page = ReadTextFile(Page());
   EXPECT_LT(page.size(), kMaxPageBytes);
@@ -217,6 +225,7 @@ class ComparisonReportTest : public ReportTest {
 };
 
 TEST_F(ComparisonReportTest, OfASequenceWithTruth) {
+  Simulate();
   Compare("--camera=ros_default --experiment=" + Sequence());
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
   ExpectPlots({"s0-path-xy", "s0-path-xz", "s0-path-3d", "s0-figures-mm",
@@ -224,6 +233,7 @@ TEST_F(ComparisonReportTest, OfASequenceWithTruth) {
 }
 
 TEST_F(ComparisonReportTest, WithoutTruthAtTwoDepthScales) {
+  Simulate();
   std::filesystem::remove(Sequence() + "/groundtruth.txt");
   Compare("--camera=tum_fr2 --experiment=" + Sequence());
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
