@@ -5,8 +5,8 @@
 const COMPARED_ERRORS = [
   {key: 'distance_m', y: 'distance', unit: 'mm', factor: 1000},
   {key: 'angle_deg', y: 'angle', unit: '°', factor: 1},
-  {key: 'rpe_seconds_m', y: 'motion over 1 s', unit: 'mm', factor: 1000},
-  {key: 'rpe_seconds_deg', y: 'turn over 1 s', unit: '°', factor: 1},
+  {key: 'rpe_seconds_m', y: 'motion', unit: 'mm', factor: 1000},
+  {key: 'rpe_seconds_deg', y: 'turn', unit: '°', factor: 1},
 ];
 
 const COMPARED_FIGURES = [
@@ -75,13 +75,13 @@ function comparisonTiles(sequence) {
   return tiles;
 }
 
-function comparedPaths(sequence, prefix, element) {
-  element.append(make('h3', {}, 'Paths'), make('p', {class: 'soft'}, (sequence.truth
+function comparedPaths(sequence, prefix, parent) {
+  const element = block(parent, 'Paths', (sequence.truth
       ? 'Positions of the camera in the world of the ground truth; the first pose ' +
         'of every path is laid on the true one.'
       : 'Positions of the camera as seen from the first one: X to its right, Y ' +
         'down, Z ahead. There is no ground truth.') +
-      ' Equal units on all axes.' + LEGEND_HINT));
+      ' Equal units on all axes.' + LEGEND_HINT);
   const paths = sequence.truth ? [sequence.truth, ...sequence.losses]
                                : sequence.losses;
   const positions = {};
@@ -115,17 +115,17 @@ function comparedPaths(sequence, prefix, element) {
   });
 }
 
-function comparedErrors(sequence, prefix, element) {
+function comparedErrors(sequence, prefix, parent) {
   const shown = COMPARED_ERRORS.filter(
       error => sequence.losses.some(loss => loss[error.key].some(v => v > 0)));
   if (shown.length === 0) return;
-  element.append(make('h3', {}, 'Errors over time'), make('p', {class: 'soft'},
+  const element = block(parent, 'Errors over time',
       'Logarithmic. Distance and angle from the truth, the first poses laid on each ' +
       'other' + (shown.some(error => error.key.startsWith('rpe'))
-          ? '; the error of the motion over the second that starts at that time, ' +
-            'which drift from before does not enter.' : '.') +
+          ? '; motion and turn: errors of the motion over the second that starts at ' +
+            'that time, which drift from before does not enter.' : '.') +
       (sequence.every > 1 ? ` Every point is the largest of ${sequence.every} frames.`
-                          : '') + LEGEND_HINT));
+                          : '') + LEGEND_HINT);
   const end = largest(sequence.t) || 1;
   const rows = shown.map(error => ({
     title: '', y: `${error.y} (${error.unit})`,
@@ -180,15 +180,14 @@ function comparedFigures(sequence, prefix, element) {
   }
 }
 
-function comparedTables(data, sequence, prefix, element) {
+function comparedTables(data, sequence, prefix, parent) {
   const number = (value, decimals) => (
       {number: known(value) ? value.toFixed(decimals) : 'n/a'});
   const returns = setting(data, 'experiment') === 'pan_tilt';
   if (returns || !sequence.truth) {
-    element.append(make('h3', {}, 'Last pose seen from the first'),
-        make('p', {class: 'soft'}, returns
-            ? 'The path ends where it starts: all should be 0, as in the thesis\' ' +
-              'Tables 4.4-4.6.' : 'In the thesis\' parameters.'),
+    block(parent, 'Last pose seen from the first', returns
+        ? 'The path ends where it starts: all should be 0, as in the thesis\' Tables ' +
+          '4.4-4.6.' : 'In the thesis\' parameters.').append(
         table(['loss', ...['alpha (°)', 'beta (°)', 'gamma (°)', 'Cx (mm)', 'Cy (mm)',
                            'Cz (mm)', 'tracked (%)'].map(text => ({number: text}))],
             sequence.losses.map(({name, figures: f}) => [
@@ -197,8 +196,8 @@ function comparedTables(data, sequence, prefix, element) {
               number(f.cz_mm, 3), number(100 * f.tracked_share, 1)]), 'stack wide'));
   }
   if (!sequence.truth) return;
-  element.append(make('h3', {}, 'Errors along the path'), make('p', {class: 'soft'},
-      'As in the thesis\' Tables 4.7 and 4.8. Logarithmic; less is better.'));
+  const element = block(parent, 'Errors along the path',
+      'As in the thesis\' Tables 4.7 and 4.8. Logarithmic; less is better.');
   comparedFigures(sequence, prefix, element);
   element.append(table(
       ['loss', {number: 'ATE (mm)'}, {number: 'RPE (mm/s)'}, {number: 'RPE (°/s)'},
@@ -219,6 +218,7 @@ function showComparison(data) {
   data.sequences.forEach((sequence, i) => {
     const prefix = `s${i}-`;
     const element = section(sequence.name);
+    element.classList.add('long');
     element.append(comparisonTiles(sequence));
     comparedPaths(sequence, prefix, element);
     comparedTables(data, sequence, prefix, element);

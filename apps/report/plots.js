@@ -229,6 +229,14 @@ function settings(data, program) {
   element.append(columns);
 }
 
+// A part of a long section, which a printed page does not break.
+function block(parent, title, text) {
+  const element = make('div', {class: 'block'}, make('h3', {}, title));
+  if (text) element.append(make('p', {class: 'soft'}, text));
+  parent.append(element);
+  return element;
+}
+
 // A heading, a paragraph and what the caller adds.
 function section(title, text) {
   const element = make('section', {}, make('h2', {}, title));
@@ -240,7 +248,7 @@ function section(title, text) {
 // Plots keep the size they were drawn at; paper (A4) has another.
 const PAPER_WIDTH = 680;
 const PAPER_HEIGHT = {
-  small: 240, paths: 300, rows2: 310, rows3: 390, rows4: 520, tall: 420,
+  small: 240, paths: 300, rows2: 310, rows3: 390, rows4: 640, tall: 420,
 };
 
 function fitToPaper(div) {

@@ -81,6 +81,33 @@ function pathRange(values, reversed) {
   return reversed ? [high + room, low - room] : [low - room, high + room];
 }
 
+// The ranges of a scene that holds all traces, and its sides for equal units on
+// all axes, the longest always the same: a long path stays in the picture.
+function sceneBox(traces) {
+  const kLongestSide = 1.05, kThinnest = 0.1;
+  const low = {}, high = {};
+  for (const name of ['x', 'y', 'z']) {
+    low[name] = Infinity;
+    high[name] = -Infinity;
+    for (const trace of traces) {
+      for (const value of trace[name]) {
+        if (!known(value)) continue;
+        low[name] = Math.min(low[name], value);
+        high[name] = Math.max(high[name], value);
+      }
+    }
+  }
+  const longest = Math.max(...['x', 'y', 'z'].map(name => high[name] - low[name])) || 1;
+  const ranges = {}, ratio = {};
+  for (const name of ['x', 'y', 'z']) {
+    const side = Math.max(1.04 * (high[name] - low[name]), kThinnest * longest);
+    const middle = (low[name] + high[name]) / 2;
+    ranges[name] = [middle - side / 2, middle + side / 2];
+    ratio[name] = kLongestSide * side / longest;
+  }
+  return {ranges, ratio};
+}
+
 // Two views of paths and one in 3D, with ids that begin with `prefix`, the first
 // and the last of their `sizes`.
 // `positions` has all x, y and z, `down` the axis that points down;
@@ -109,23 +136,27 @@ function pathViews(element, prefix, sizes, positions, down, tracesOf) {
   screen.append(make('h3', {}, 'In 3D'), make('p', {class: 'soft'},
       'Drag to turn, scroll or pinch to zoom. In the other plots a mouse zooms by '
       + 'dragging; a double click goes back.'));
-  const axis3 = title => ({title: {text: title}, nticks: 5, gridcolor: '#d8dee4',
-                           backgroundcolor: '#fff', zeroline: false});
+  const traces = tracesOf(['x', 'y', 'z'], 'scatter3d', {width: 4});
+  const {ranges, ratio} = sceneBox(traces);
+  const axis3 = name => ({
+    title: {text: name.toUpperCase() + ' (m)'}, range: ranges[name],
+    nticks: Math.max(2, Math.round(5 * ratio[name])),  // short sides have room for few
+    gridcolor: '#d8dee4', backgroundcolor: '#fff', zeroline: false,
+  });
   const side = down.map(v => -v);
   // Looks from behind and above, whatever axis is up.
   // A narrow window needs more distance.
-  // What was seen is wider than the path; it is looked at from near.
-  const far = (window.innerWidth < 600 ? 1.5 : 1) * (sizes[1] === 'tall' ? 0.75 : 1);
+  // What was seen gets a taller window and is looked at from nearer.
+  const far = window.innerWidth < 600 ? 1.5 : sizes[1] === 'tall' ? 0.75 : 1;
   const back = Math.abs(side[1]) > 0.7 ? [-1, 0, -1.7] : [1.4, -1.6, 0];
   const eye = back.map((v, k) => far * (v + 0.8 * side[k]));
-  plot(`${prefix}path-3d`, sizes[1], screen,
-      tracesOf(['x', 'y', 'z'], 'scatter3d', {width: 4}), {
+  plot(`${prefix}path-3d`, sizes[1], screen, traces, {
         margin: {l: 0, r: 0, t: 0, b: 0},
         dragmode: 'turntable',
         hovermode: 'closest',
         scene: {
-          aspectmode: 'data', dragmode: 'orbit',
-          xaxis: axis3('X (m)'), yaxis: axis3('Y (m)'), zaxis: axis3('Z (m)'),
+          aspectmode: 'manual', aspectratio: ratio, dragmode: 'orbit',
+          xaxis: axis3('x'), yaxis: axis3('y'), zaxis: axis3('z'),
           camera: {up: {x: side[0], y: side[1], z: side[2]},
                    eye: {x: eye[0], y: eye[1], z: eye[2]}},
         },

@@ -10,8 +10,10 @@ const SWEEP_METHODS = [
 ];
 
 const SWEEP_ERRORS = [
-  {key: 'translation_mm', id: 'sweep-translation', unit: 'mm', y: 'translation error (mm)'},
-  {key: 'rotation_deg', id: 'sweep-rotation', unit: '°', y: 'rotation error (°)'},
+  {key: 'translation_mm', id: 'sweep-translation', unit: 'mm', title: 'Translation',
+   y: 'translation error (mm)'},
+  {key: 'rotation_deg', id: 'sweep-rotation', unit: '°', title: 'Rotation',
+   y: 'rotation error (°)'},
 ];
 
 const SWEEP_DEFINITIONS = [
@@ -99,15 +101,12 @@ function showSweep(data) {
   const select = make('select', {id: 'method', 'aria-label': 'how losses are treated'},
       ...SWEEP_METHODS.map((method, i) => make('option', {value: i}, method.name)));
   element.append(select);
-  const divs = SWEEP_ERRORS.map(error => {
-    element.append(make('h3', {}, error.key === 'rotation_deg' ? 'Rotation'
-                                                               : 'Translation'));
-    return plot(error.id, 'tall', element, sweepTraces(data, SWEEP_METHODS[0], error),
-        sweepLayout(data, error));
-  });
-  element.append(make('h3', {}, 'Median translation errors (mm) and their 95 % bands'));
+  element.classList.add('long');
+  const divs = SWEEP_ERRORS.map(error => plot(
+      error.id, 'tall', block(element, error.title),
+      sweepTraces(data, SWEEP_METHODS[0], error), sweepLayout(data, error)));
   const place = make('div', {}, sweepTable(data, SWEEP_METHODS[0]));
-  element.append(place);
+  block(element, 'Median translation errors (mm) and their 95 % bands').append(place);
   select.addEventListener('change', () => {
     const chosen = SWEEP_METHODS[select.value];
     SWEEP_ERRORS.forEach((error, i) => Plotly.react(divs[i],
