@@ -7,6 +7,7 @@
 
 #include "apps/progress_bar.h"
 #include "apps/svg_chart.h"
+#include "core/input_error.h"
 #include "core/pose_pairs.h"
 #include "frontend/frame_stream.h"
 
@@ -89,6 +90,10 @@ std::vector<LossRun> CompareLosses(const Dataset& dataset,
     run.trajectory = TrackedTrajectory(frames[k]);
     run.tracked_share =
         static_cast<double>(run.trajectory.size()) / dataset.size();
+    if (run.trajectory.empty()) {
+      throw InputError("no frame could be tracked with the loss " + run.loss +
+                       "; rgbd_odometry says why");
+    }
     run.report = Evaluate(run.trajectory, truth, {});
     runs.push_back(run);
   }

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <sstream>
+#include <system_error>
 
 #include "apps/available_cores.h"
 #include "apps/compare_sequence.h"
@@ -82,15 +83,29 @@ std::vector<std::string> Losses() {
   return losses;
 }
 
-void Write(const std::string& file, const std::string& content) {
-  const std::filesystem::path folder(FLAGS_output);
+constexpr char kReport[] = "report.md";
+
+std::filesystem::path Output(const std::string& file) {
+  return std::filesystem::path(FLAGS_output) / file;
+}
+
+// Whether results can be written is better known before the work.
+void PrepareOutput() {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  std::filesystem::create_directories(FLAGS_output, error);
   if (error) {
     throw InputError("--output=" + FLAGS_output + ": cannot be made (" +
                      error.message() + ")");
   }
-  WriteFileAtomically((folder / file).string(), content);
+  RequireWritable(Output(kReport).string());
+}
+
+// The report is the last to be written and the first of an earlier one to go:
+// where it is, all is of one run.
+void Write(const std::string& file, const std::string& content) {
+  std::error_code ignored;
+  std::filesystem::remove(Output(kReport), ignored);
+  WriteFileAtomically(Output(file).string(), content);
 }
 
 // Results of one sequence, added to those before.
@@ -100,6 +115,7 @@ void AddSequence(const std::string& title, const std::string& figure,
   OdometrySettings settings;
   settings.cost = FLAGS_cost;
   settings.frontend = FLAGS_frontend;
+  PrepareOutput();
   const std::vector<LossRun> runs =
       CompareLosses(dataset, truth, Losses(), settings, AvailableCores());
   *report += "## " + title + "\n\n";
@@ -133,7 +149,8 @@ int CompareSequences() {
                 FLAGS_experiment == "pan_tilt", &report, &csv);
   } else {
     const std::filesystem::path folder(FLAGS_experiment);
-    if (!std::filesystem::is_directory(folder)) {
+    std::error_code error;
+    if (!std::filesystem::is_directory(folder, error)) {
       throw InputError("--experiment=" + FLAGS_experiment +
                        " is neither pan_tilt, xyz or sweep nor a folder");
     }
@@ -158,7 +175,7 @@ int CompareSequences() {
     }
   }
   Write("tables.csv", csv);
-  Write("report.md", report);
+  Write(kReport, report);
   std::printf("%s", report.c_str());
   return kExitOk;
 }
@@ -172,6 +189,7 @@ int Sweep() {
   if (FLAGS_seeds < 1 || FLAGS_seeds > kMaxSeeds) {
     throw InputError("--seeds must be 1 to " + std::to_string(kMaxSeeds));
   }
+  PrepareOutput();
   const std::vector<SweepCell> cells = RunSweep(options);
   const std::string report =
       "# M-estimators on wrong matches\n\n" + SweepVerdict(cells) +
@@ -186,7 +204,7 @@ int Sweep() {
   Write("sweep.csv", SweepCsv(cells));
   Write("translation.svg", SweepFigure(cells, /*rotation=*/false));
   Write("rotation.svg", SweepFigure(cells, /*rotation=*/true));
-  Write("report.md", report);
+  Write(kReport, report);
   std::printf("%s", report.c_str());
   return kExitOk;
 }
