@@ -156,8 +156,8 @@ TEST_F(BadInputTest, OneRunAtATimeWritesToAFolder) {
   EXPECT_THAT(ReadTextFile(folder_ / "out/metrics.json"), HasSubstr("ate"));
 
   // Many at once: some may come too late, but the results are whole.
-  const RunResult many = RunCommand("for i in 1 2 3 4 5 6; do (" + call +
-                                        " >/dev/null; echo $?) & done; wait",
+  const RunResult many = RunCommand("{ for i in 1 2 3 4 5 6; do (" + call +
+                                        " >/dev/null; echo $?) & done; wait; }",
                                     folder_);
   EXPECT_THAT(many.out, testing::MatchesRegex("([02]\n)*0\n([02]\n)*"));
   EXPECT_FALSE(fs::exists(folder_ / aside));

@@ -126,7 +126,7 @@ TEST_F(BadInputTest, Flags) {
           {"two losses for one cost", nullptr, "--loss=tukey,huber", 2,
            "'tukey,huber' names 2 losses for 1 costs"},
           {"frontend", nullptr, "--frontend=magic", 2,
-           "unknown frontend 'magic'; there are patch"},
+           "unknown frontend 'magic'; there are klt, patch"},
           {"scale", nullptr, "--scale=iqr", 2, "unknown scale 'iqr'; there"},
           {"schedule", nullptr, "--robust_schedule=slow", 2,
            "unknown robust schedule 'slow'; there are gnc"},
