@@ -51,7 +51,9 @@ class FlagReader {
   // `where` goes before messages.
   void Read(const std::vector<std::string>& words, const std::string& where) {
     for (auto word = words.begin(); word != words.end(); ++word) {
-      if (word->size() < 2 || word->front() != '-' || *word == "--") {
+      // gflags would read a word up to its first zero byte.
+      if (word->size() < 2 || word->front() != '-' || *word == "--" ||
+          word->find('\0') != std::string::npos) {
         throw InputError(where + "'" + *word +
                          "' is no flag; flags look like --name=value");
       }

@@ -171,6 +171,8 @@ TEST_F(BadInputTest, FlagFiles) {
            "{seq}/run.flags:1: 'loss=tukey' is no flag"},
           {"no number", file("  --threads=x\n"), "", 2,
            "{seq}/run.flags:1: 'x' is no int32 for --threads"},
+          {"zero bytes", file(std::string("--flagfile\0=x\n", 14)), "", 2,
+           "{seq}/run.flags:1: '--flagfile =x' is no flag"},
           {"help", file("--help\n"), "", 2, "unknown flag --help"},
           {"names itself",
            [](const Seq& s) {

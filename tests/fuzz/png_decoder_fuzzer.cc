@@ -28,8 +28,13 @@ void DecodeAsRows(std::string_view bytes, bool is_depth) {
   png.height = static_cast<uint32_t>(1 + (bytes.size() - 1) / row_bytes);
   png.rows = bytes.substr(1);
   png.rows.resize(png.height * row_bytes);
+  bool are_filters = true;
+  for (size_t i = 0; i < png.rows.size(); i += row_bytes) {
+    are_filters &= static_cast<uint8_t>(png.rows[i]) <= 4;
+  }
   const std::string file = png.File();
-  Require(!rgbd_pose::IsDamagedPng(file), "checksums that are right");
+  Require(rgbd_pose::IsDamagedPng(file) != are_filters,
+          "damaged just where a filter is none");
   Decode(file);
 }
 
