@@ -74,7 +74,9 @@ std::string BatchRun::Name() const {
 
 BatchGrid ParseGrid(const std::string& costs, const std::string& losses,
                     const std::string& frontends, int repeats) {
-  if (repeats < 1) throw InputError("--repeats must be at least 1");
+  if (repeats < 1 || repeats > 10000) {
+    throw InputError("--repeats must be 1 to 10000");
+  }
   return {ParseNames("costs", costs, CostNames(), true),
           ParseNames("losses", losses, MEstimatorNames(), false),
           ParseNames("frontends", frontends, FrontendNames(), false), repeats};

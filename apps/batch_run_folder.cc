@@ -24,6 +24,12 @@ void Check(const std::error_code& error, const std::string& folder) {
   }
 }
 
+// Of a run that has ended; see RunEnd.
+bool IsStatus(const std::string& word) {
+  return word == "ok" || word == "failed" || word == "timeout" ||
+         word == "crashed";
+}
+
 std::vector<fs::path> FoldersIn(const fs::path& folder) {
   std::vector<fs::path> folders;
   std::error_code error;
@@ -48,11 +54,14 @@ std::optional<RunEnd> BatchFolder::ReadEnd(const BatchRun& run) const {
   if (!Holds(run)) return std::nullopt;
   const std::string path = (fs::path(Complete(run)) / kMarker).string();
   const auto json = nlohmann::json::parse(ReadTextFile(path), nullptr, false);
-  if (!json.is_object()) return std::nullopt;
+  if (!json.is_object() || !json.contains("exit_code") ||
+      !json.at("exit_code").is_number_integer()) {
+    return std::nullopt;
+  }
   try {
     const RunEnd end = {json.at("status"), json.at("exit_code"),
                         json.at("hash")};
-    if (end.hash != run.hash) return std::nullopt;
+    if (end.hash != run.hash || !IsStatus(end.status)) return std::nullopt;
     return end;
   } catch (const nlohmann::json::exception&) {
     return std::nullopt;  // not written by this program

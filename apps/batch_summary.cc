@@ -35,7 +35,7 @@ constexpr Figure kFigures[] = {
     {"wall_seconds", "/run/wall_seconds"},
 };
 
-// A run that failed may have none or half a file.
+// A run that failed may have none.
 json ReadMetrics(const std::string& folder) {
   const std::filesystem::path path =
       std::filesystem::path(folder) / "metrics.json";
@@ -47,7 +47,8 @@ json ReadMetrics(const std::string& folder) {
 ordered_json FindFigure(const json& metrics, const char* pointer) {
   const json::json_pointer place(pointer);
   if (!metrics.is_object() || !metrics.contains(place)) return nullptr;
-  return metrics.at(place);
+  const json& figure = metrics.at(place);
+  return figure.is_number() ? ordered_json(figure) : nullptr;
 }
 
 ordered_json MakeRow(const BatchRun& run, const BatchFolder& folder) {

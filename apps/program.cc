@@ -3,13 +3,15 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
-#include <algorithm>
+#include <cerrno>
+#include <csignal>
 #include <cstdio>
 #include <exception>
 #include <stdexcept>
+#include <system_error>
 
+#include "apps/flag_reader.h"
 #include "core/input_error.h"
-#include "core/text_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -55,86 +57,20 @@ void PrintHelp(const ProgramInfo& info) {
       "4 some batch items failed.\n");
 }
 
-// gflags leaves the process with code 1 at the first bad flag and lists every
-// library's flags at --help; so look at the words before it does.
-class FlagChecker {
- public:
-  void Check(const std::vector<std::string>& words, const std::string& where) {
-    for (size_t i = 0; i < words.size(); ++i) {
-      const std::string& word = words[i];
-      if (word == "--") return;
-      if (word.size() < 2 || word[0] != '-') {
-        throw InputError(where + "'" + word +
-                         "' is no flag; flags look like --name=value");
-      }
-      const std::string text = word.substr(word[1] == '-' ? 2 : 1);
-      const size_t equals = text.find('=');
-      const std::string name = text.substr(0, equals);
-      gflags::CommandLineFlagInfo flag;
-      const bool known = gflags::GetCommandLineFlagInfo(name.c_str(), &flag);
-      if (!known && equals == std::string::npos && IsNegatedBool(name)) {
-        continue;
-      }
-      if (!known) {
-        throw InputError(where + "unknown flag --" + name +
-                         "; --help lists the flags");
-      }
-      std::string value = "true";
-      if (equals != std::string::npos) {
-        value = text.substr(equals + 1);
-      } else if (flag.type != "bool") {
-        if (++i == words.size()) {
-          throw InputError(where + "--" + name + " needs a value");
-        }
-        value = words[i];
-      }
-      if (name == "flagfile") {
-        CheckFile(value);
-      } else if (gflags::SetCommandLineOption(name.c_str(), value.c_str())
-                     .empty()) {
-        throw InputError(where + "'" + value + "' is no " + flag.type +
-                         " for --" + name);
-      }
-    }
-  }
-
- private:
-  static bool IsNegatedBool(const std::string& name) {
-    gflags::CommandLineFlagInfo flag;
-    return name.rfind("no", 0) == 0 &&
-           gflags::GetCommandLineFlagInfo(name.substr(2).c_str(), &flag) &&
-           flag.type == "bool";
-  }
-
-  void CheckFile(const std::string& path) {
-    if (++depth_ > kMaxDepth) {
-      throw InputError(path + ": flag files name each other in a circle");
-    }
-    const std::string content = ReadTextFile(path);
-    size_t begin = 0;
-    for (int number = 1; begin < content.size(); ++number) {
-      const size_t end = std::min(content.find('\n', begin), content.size());
-      std::string line = content.substr(begin, end - begin);
-      begin = end + 1;
-      while (!line.empty() && std::isspace(line.back())) line.pop_back();
-      if (line.empty() || line[0] != '-') continue;  // as gflags reads it
-      Check({line}, path + ":" + std::to_string(number) + ": ");
-    }
-    --depth_;
-  }
-
-  static constexpr int kMaxDepth = 8;
-  int depth_ = 0;
-};
-
 int Run(int argc, char** argv, const ProgramInfo& info,
         const std::function<int()>& body) {
   try {
-    FlagChecker().Check({argv + 1, argv + argc}, "");
-    gflags::ParseCommandLineFlags(&argc, &argv, true);
+    ReadFlags({argv + 1, argv + argc});
     FLAGS_logtostderr = true;
     google::InitGoogleLogging(argv[0]);
-    return body();
+    // A file that grows beyond a limit is told as a full disk is.
+    std::signal(SIGXFSZ, SIG_IGN);
+    const int exit_code = body();
+    if (std::fflush(stdout) != 0) {
+      throw InputError("the standard output cannot be written (" +
+                       std::generic_category().message(errno) + ")");
+    }
+    return exit_code;
   } catch (const UsageError& error) {
     std::fprintf(stderr, "%s: %s\n", info.name.c_str(), error.what());
     return kExitUsage;

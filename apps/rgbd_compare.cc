@@ -9,6 +9,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 #include <sstream>
+#include <system_error>
 
 #include "apps/available_cores.h"
 #include "apps/compare_paths.h"
@@ -101,21 +102,35 @@ std::string FolderName(const std::string& path) {
   return name;
 }
 
-void Write(const std::string& file, const std::string& content) {
-  const std::filesystem::path folder(FLAGS_output);
+constexpr char kReport[] = "report.md";
+
+std::filesystem::path Output(const std::string& file) {
+  return std::filesystem::path(FLAGS_output) / file;
+}
+
+// Whether results can be written is better known before the work.
+void PrepareOutput() {
   std::error_code error;
-  std::filesystem::create_directories(folder, error);
+  std::filesystem::create_directories(FLAGS_output, error);
   if (error) {
     throw InputError("--output=" + FLAGS_output + ": cannot be made (" +
                      error.message() + ")");
   }
-  WriteFileAtomically((folder / file).string(), content);
+  RequireWritable(Output(kReport).string());
+}
+
+// The report is the last to be written and the first of an earlier one to go:
+// where it is, all is of one run.
+void Write(const std::string& file, const std::string& content) {
+  std::error_code ignored;
+  std::filesystem::remove(Output(kReport), ignored);
+  WriteFileAtomically(Output(file).string(), content);
 }
 
 // Writes and prints what every experiment ends with.
 void Finish(const std::string& report) {
-  Write("report.md", report);
   Write("config.flags", FormatFlagFile(Info()));
+  Write(kReport, report);
   std::printf("%s", report.c_str());
   if (!FLAGS_report) return;
   std::printf("report in   %s\n",
@@ -137,6 +152,7 @@ void AddSequence(const std::string& title, const std::string& figure,
   OdometrySettings settings;
   settings.cost = FLAGS_cost;
   settings.frontend = FLAGS_frontend;
+  PrepareOutput();
   const std::vector<LossRun> runs =
       CompareLosses(dataset, truth, Losses(), settings, AvailableCores());
   results->report += "## " + title + "\n\n";
@@ -207,7 +223,8 @@ void AddRecorded(const std::string& name, SequenceResults* results) {
 int CompareSequences() {
   const bool simulated =
       FLAGS_experiment == "pan_tilt" || FLAGS_experiment == "xyz";
-  if (!simulated && !std::filesystem::is_directory(FLAGS_experiment)) {
+  std::error_code error;
+  if (!simulated && !std::filesystem::is_directory(FLAGS_experiment, error)) {
     throw InputError("--experiment=" + FLAGS_experiment +
                      " is neither pan_tilt, xyz or sweep nor a folder");
   }
@@ -235,6 +252,7 @@ int Sweep() {
   if (FLAGS_seeds < 1 || FLAGS_seeds > kMaxSeeds) {
     throw InputError("--seeds must be 1 to " + std::to_string(kMaxSeeds));
   }
+  PrepareOutput();
   const std::vector<SweepCell> cells = RunSweep(options);
   const std::string report =
       "# M-estimators on wrong matches\n\n" + SweepVerdict(cells) +

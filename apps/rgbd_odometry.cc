@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
-#include <opencv2/imgcodecs.hpp>
 #include <optional>
 
 #include "apps/available_cores.h"
@@ -23,10 +22,12 @@
 #include "apps/progress_bar.h"
 #include "apps/report_page.h"
 #include "apps/residual_histogram.h"
+#include "apps/run_folder.h"
 #include "apps/run_summary.h"
 #include "core/depth_noise.h"
 #include "core/evaluation.h"
 #include "core/input_error.h"
+#include "core/pose_pairs.h"
 #include "core/quantile.h"
 #include "core/text_file.h"
 #include "core/trajectory.h"
@@ -35,6 +36,7 @@
 #include "frontend/cloud_fusion.h"
 #include "frontend/depth_scale.h"
 #include "frontend/frontend.h"
+#include "frontend/image_file.h"
 #include "frontend/match_overlay.h"
 #include "frontend/ply_writer.h"
 #include "frontend/tum_dataset.h"
@@ -162,7 +164,7 @@ TumDataset OpenDataset() {
   options.folder = FLAGS_dataset;
   options.associations_file = FLAGS_associations;
   options.camera = ResolveCamera(FLAGS_camera);
-  if (FLAGS_depth_scale < 0.0) {
+  if (!(FLAGS_depth_scale >= 0.0)) {
     throw InputError("--depth_scale must be positive (raw units per metre)");
   }
   if (FLAGS_depth_scale > 0.0) options.camera.depth_scale = FLAGS_depth_scale;
@@ -177,12 +179,24 @@ std::optional<Trajectory> FindGroundTruth() {
   return ReadTrajectory(path.string());
 }
 
-void MakeFolder(const std::filesystem::path& folder) {
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error) {
-    throw InputError("--output=" + FLAGS_output + ": " + folder.string() +
-                     " cannot be made (" + error.message() + ")");
+// A ground truth of another time is better told before the work than after it.
+void CheckOverlap(const Dataset& dataset, const Trajectory& truth) {
+  Trajectory frames(dataset.size());
+  for (int i = 0; i < dataset.size(); ++i) {
+    frames[i].timestamp = dataset.timestamp(i);
+  }
+  PairPoses(frames, truth, EvaluationOptions().max_time_difference);
+}
+
+// Nothing where none of the poses that were found can be compared.
+std::optional<EvaluationReport> TryToEvaluate(const Trajectory& trajectory,
+                                              const Trajectory& truth) {
+  if (trajectory.empty()) return std::nullopt;
+  try {
+    return Evaluate(trajectory, truth, {});
+  } catch (const InputError& error) {
+    LOG(WARNING) << "no errors: " << error.what();
+    return std::nullopt;
   }
 }
 
@@ -199,11 +213,9 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                std::to_string(tracked.matches) + " matches agree  reference " +
                std::to_string(tracked.reference);
   }
-  const std::string path = (folder / name).string();
-  if (!cv::imwrite(path, DrawMatches(frame, camera, odometry.last_matches(),
-                                     odometry.last_estimate(), caption))) {
-    throw InputError(path + ": cannot be written");
-  }
+  WritePngFile((folder / name).string(),
+               DrawMatches(frame, camera, odometry.last_matches(),
+                           odometry.last_estimate(), caption));
 }
 
 // Of the cloud that --save_cloud asks for; none if it asks for none.
@@ -220,12 +232,15 @@ std::optional<CloudFusion> MakeCloudFusion(const Camera& camera) {
 // Writes the cloud, and a few of its points in the world that the page of the
 // run shows; returns what metrics.json says of it.
 nlohmann::json SaveCloud(const CloudFusion& fusion,
-                         const Rigid3d& shown_from_world) {
+                         const Rigid3d& shown_from_world,
+                         const std::filesystem::path& folder,
+                         std::string* text) {
   WritePly(FLAGS_save_cloud, fusion.cloud().Points());
-  std::printf("cloud       %d points of %d frames in %s\n",
-              fusion.cloud().size(), fusion.frames(), FLAGS_save_cloud.c_str());
+  *text += "cloud       " + std::to_string(fusion.cloud().size()) +
+           " points of " + std::to_string(fusion.frames()) + " frames in " +
+           FLAGS_save_cloud + "\n";
   WriteFileAtomically(
-      (std::filesystem::path(FLAGS_output) / kCloudPreviewFile).string(),
+      (folder / kCloudPreviewFile).string(),
       CloudPreview(fusion.cloud().Thin(kMaxPreviewPoints), shown_from_world)
           .dump());
   return {{"points", fusion.cloud().size()},
@@ -235,11 +250,13 @@ nlohmann::json SaveCloud(const CloudFusion& fusion,
 
 // The page is a help to look at a run; a program built without the library that
 // it needs says so and goes on.
-void WriteReport() {
+void WriteReport(const std::filesystem::path& folder, std::string* text) {
   if (!FLAGS_report) return;
-  std::printf("report in   %s\n", HasReportLibrary()
-                                      ? WriteRunReport(FLAGS_output).c_str()
-                                      : kNoReportLibrary);
+  if (HasReportLibrary()) WriteRunReport(folder.string());
+  *text += "report in   " +
+           (HasReportLibrary() ? FLAGS_output + "/report.html"
+                               : std::string(kNoReportLibrary)) +
+           "\n";
 }
 
 int ValidateOnly(const TumDataset& dataset, int threads) {
@@ -273,17 +290,21 @@ int Main() {
   Odometry odometry =
       MakeOdometry(SettingsFromFlags(), dataset.camera().camera);
   const std::optional<Trajectory> truth = FindGroundTruth();
+  if (truth.has_value()) CheckOverlap(dataset, *truth);
   std::optional<MotionGuess> motion_guess;
   if (!FLAGS_motion_guess.empty()) {
     motion_guess.emplace(ReadTrajectory(FLAGS_motion_guess));
   }
   const FrameSelection drawn("debug_images", FLAGS_debug_images);
-  std::optional<CloudFusion> fusion = MakeCloudFusion(dataset.camera().camera);
-  const std::filesystem::path output(FLAGS_output);
-  const std::filesystem::path debug_folder = output / "debug";
-  MakeFolder(FLAGS_debug_images.empty() ? output : debug_folder);
-  if (fusion.has_value()) RequireWritable(FLAGS_save_cloud);
   const std::string warning = DepthScaleWarning(dataset.Read(0));
+  std::optional<CloudFusion> fusion = MakeCloudFusion(dataset.camera().camera);
+  RunFolder folder(FLAGS_output);
+  const std::filesystem::path& output = folder.aside();
+  const std::filesystem::path debug_folder = output / "debug";
+  if (!FLAGS_debug_images.empty()) {
+    std::filesystem::create_directory(debug_folder);
+  }
+  if (fusion.has_value()) RequireWritable(FLAGS_save_cloud);
   if (!warning.empty()) LOG(WARNING) << warning;
   if (dataset.unmatched_color() > 0) {
     LOG(WARNING) << dataset.unmatched_color()
@@ -318,7 +339,7 @@ int Main() {
 
   const Trajectory trajectory = TrackedTrajectory(frames);
   const RunSummary summary = Summarise(frames, threads, seconds);
-  std::printf("%s", FormatSummary(summary).c_str());
+  std::string text = FormatSummary(summary);
   nlohmann::json metrics = {{"program", "rgbd_odometry"},
                             {"dataset", FLAGS_dataset},
                             {"unmatched_color", dataset.unmatched_color()},
@@ -326,16 +347,17 @@ int Main() {
                             {"run", SummaryToJson(summary)},
                             {"residuals", residuals.ToJson()}};
   Rigid3d shown_from_world;
-  if (truth.has_value()) {
-    const EvaluationReport report = Evaluate(trajectory, *truth, {});
-    std::printf("%s", FormatEvaluation(report).c_str());
-    metrics["evaluation"] = EvaluationToJson(report);
-    shown_from_world = report.truth_from_estimate;
+  std::optional<EvaluationReport> report;
+  if (truth.has_value()) report = TryToEvaluate(trajectory, *truth);
+  if (report.has_value()) {
+    text += FormatEvaluation(*report);
+    metrics["evaluation"] = EvaluationToJson(*report);
+    shown_from_world = report->truth_from_estimate;
     WriteFileAtomically((output / "errors.csv").string(),
-                        FormatErrorsCsv(frames, *truth, report));
+                        FormatErrorsCsv(frames, *truth, *report));
   }
   if (fusion.has_value()) {
-    metrics["cloud"] = SaveCloud(*fusion, shown_from_world);
+    metrics["cloud"] = SaveCloud(*fusion, shown_from_world, output, &text);
   }
   WriteFileAtomically((output / "trajectory.txt").string(),
                       FormatTrajectory(trajectory));
@@ -343,12 +365,20 @@ int Main() {
                       FormatFramesCsv(frames));
   WriteFileAtomically((output / "config.flags").string(),
                       FormatFlagFile(Info()));
+  // The name of the dataset may be no UTF-8.
   WriteFileAtomically((output / "metrics.json").string(),
-                      metrics.dump(2) + "\n");
-  std::printf("results in  %s\n", FLAGS_output.c_str());
-  WriteReport();
-  return summary.TrackedShare() < kMinTrackedShare ? kExitTrackingFailed
-                                                   : kExitOk;
+                      metrics.dump(2, ' ', /*ensure_ascii=*/false,
+                                   nlohmann::json::error_handler_t::replace) +
+                          "\n");
+  WriteReport(output, &text);
+  folder.Publish();
+  std::printf("%sresults in  %s\n", text.c_str(), FLAGS_output.c_str());
+  if (summary.TrackedShare() >= kMinTrackedShare) return kExitOk;
+  std::fprintf(stderr,
+               "rgbd_odometry: only %.1f %% of the frames were tracked; "
+               "%s/frames.csv says why\n",
+               100.0 * summary.TrackedShare(), FLAGS_output.c_str());
+  return kExitTrackingFailed;
 }
 
 }  // namespace

@@ -125,10 +125,25 @@ void AddErrors(const std::string& file, const ReportThinning& thinning,
       {"rpe_deg", thinning.Largest(table.Numbers("rpe_deg"), 4)}};
 }
 
+// The number of degrees of freedom that most residuals of the run have; 0 if
+// there are none.
+int CommonDegrees(const json& metrics, const std::string& file) {
+  const json::json_pointer place("/residuals/degrees_counts");
+  const json counts = metrics.contains(place) ? metrics.at(place) : json();
+  if (!counts.is_array() ||
+      !std::all_of(counts.begin(), counts.end(),
+                   [](const json& count) { return count.is_number(); })) {
+    throw InputError(file + ": no list of numbers at " + place.to_string() +
+                     "; repeat the run");
+  }
+  return static_cast<int>(std::max_element(counts.begin(), counts.end()) -
+                          counts.begin());
+}
+
 // The weight that the run's loss gives a norm, and the norm up to which a match
 // counts as in agreement; null where several costs each
 // have their own.
-json LossCurve(const json& data) {
+json LossCurve(const json& data, const std::string& metrics_file) {
   constexpr double kStep = 0.05;
   constexpr int kSteps = 160;
   const json& metrics = data.at("metrics");
@@ -139,9 +154,7 @@ json LossCurve(const json& data) {
   if (row == nullptr || several || !metrics.contains("residuals")) {
     return nullptr;
   }
-  const json& counts = metrics.at("residuals").at("degrees_counts");
-  const int dimension = static_cast<int>(
-      std::max_element(counts.begin(), counts.end()) - counts.begin());
+  const int dimension = CommonDegrees(metrics, metrics_file);
   if (dimension == 0) return nullptr;
   const std::unique_ptr<ceres::LossFunction> loss = row->MakeLoss(dimension);
   json weights = json::array();
@@ -185,7 +198,7 @@ json RunReportData(const std::string& run_folder) {
   } else {
     data["path"] = EstimatedPath(frames, file("trajectory.txt"), thinning);
   }
-  data["loss"] = LossCurve(data);
+  data["loss"] = LossCurve(data, file("metrics.json"));
   // Older files of the folder's name may be of another run.
   if (data["metrics"].contains("cloud") &&
       std::filesystem::exists(folder / kCloudPreviewFile)) {

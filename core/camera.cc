@@ -1,5 +1,6 @@
 #include "core/camera.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <iterator>
@@ -40,6 +41,10 @@ Vector2d RemoveDistortion(const Camera& c, const Vector2d& distorted) {
   return point;
 }
 
+// Of the larger side of the image: views of 157 and of 0.6 degrees.
+constexpr double kMinFocal = 0.1;
+constexpr double kMaxFocal = 100.0;
+
 struct Preset {
   std::string_view name;
   RgbdCamera camera;
@@ -73,6 +78,12 @@ std::string Camera::Check() const {
   if (fx <= 0.0 || fy <= 0.0) {
     return "fx and fy must be positive (ICL-NUIM's fy = -480: mirror the "
            "images or use its TUM-compatible release)";
+  }
+  const double size = std::max(width, height);
+  for (const double f : {fx, fy}) {
+    if (f < kMinFocal * size || f > kMaxFocal * size) {
+      return "fx and fy must be in pixels: 0.1 to 100 times the image's size";
+    }
   }
   if (cx < 0.0 || cy < 0.0 || cx >= width || cy >= height) {
     return "the principal point must lie inside the image";

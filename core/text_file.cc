@@ -1,5 +1,6 @@
 #include "core/text_file.h"
 
+#include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -12,8 +13,6 @@
 
 namespace rgbd_pose {
 namespace {
-
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 bool IsSeparator(char c) {
   return c == ' ' || c == '\t' || c == ',' || c == '\r';
@@ -38,12 +37,16 @@ std::vector<std::string> SplitWords(std::string_view line) {
 // What is written aside until it is whole.
 std::string AsideOf(const std::string& path) { return path + ".partial"; }
 
+// "(No space left on device)"; of the last call that failed.
+std::string Reason() {
+  return "(" + std::generic_category().message(errno) + ")";
+}
+
 std::FILE* OpenToWrite(const std::string& path) {
   std::FILE* file = std::fopen(AsideOf(path).c_str(), "wb");
   if (file == nullptr) {
-    throw InputError(path +
-                     ": cannot be written; check that its folder exists and "
-                     "may be written to");
+    throw InputError(path + ": cannot be written " + Reason() +
+                     "; check that its folder exists and may be written to");
   }
   return file;
 }
@@ -60,18 +63,19 @@ std::string ReadTextFile(const std::string& path) {
     throw InputError(path +
                      ": cannot be opened; check the path and its rights");
   }
-  std::ostringstream content;
-  content << file.rdbuf();
+  std::string content;
+  char buffer[1 << 16];
+  do {
+    file.read(buffer, sizeof(buffer));
+    content.append(buffer, file.gcount());
+  } while (file);
   if (file.bad()) throw InputError(path + ": cannot be read");
-  return content.str();
+  return content;
 }
 
 std::vector<TextLine> ReadTextTable(const std::string& path) {
-  std::string content = ReadTextFile(path);
-  std::string_view rest = content;
-  if (rest.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
-    rest.remove_prefix(kByteOrderMark.size());
-  }
+  const std::string content = ReadTextFile(path);
+  std::string_view rest = WithoutByteOrderMark(content);
   std::vector<TextLine> lines;
   for (int number = 1; !rest.empty(); ++number) {
     const size_t end = std::min(rest.find('\n'), rest.size());
@@ -82,6 +86,14 @@ std::vector<TextLine> ReadTextTable(const std::string& path) {
     if (!words.empty()) lines.push_back({number, std::move(words)});
   }
   return lines;
+}
+
+std::string_view WithoutByteOrderMark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
+    text.remove_prefix(kByteOrderMark.size());
+  }
+  return text;
 }
 
 std::string Join(const std::vector<std::string>& names) {
@@ -109,19 +121,31 @@ double ParseNumber(std::string_view word, const std::string& path, int line,
   return value;
 }
 
+double ParseTimestamp(std::string_view word, const std::string& path,
+                      int line) {
+  constexpr double kLatest = 1e11;  // in the year 5138
+  const double seconds = ParseNumber(word, path, line, "the time stamp");
+  if (std::abs(seconds) > kLatest) {
+    throw InputError(path, line,
+                     "time stamp " + std::string(word) +
+                         " is not in seconds; are these milli- or "
+                         "nanoseconds?");
+  }
+  return seconds;
+}
+
 void WriteFileAtomically(const std::string& path, std::string_view content) {
   const std::string aside = AsideOf(path);
   std::FILE* file = OpenToWrite(path);
   const bool written =
-      std::fwrite(content.data(), 1, content.size(), file) == content.size();
-  const bool closed = std::fclose(file) == 0;
-  std::error_code error;
-  if (written && closed) std::filesystem::rename(aside, path, error);
-  if (!written || !closed || error) {
-    std::error_code ignored;
-    std::filesystem::remove(aside, ignored);
-    throw InputError(path + ": writing failed; is the disk full?");
-  }
+      std::fwrite(content.data(), 1, content.size(), file) == content.size() &&
+      std::fflush(file) == 0;
+  std::string reason = written ? "" : Reason();
+  if (std::fclose(file) != 0 && written) reason = Reason();
+  if (reason.empty() && std::rename(aside.c_str(), path.c_str()) == 0) return;
+  if (reason.empty()) reason = Reason();
+  std::remove(aside.c_str());
+  throw InputError(path + ": writing failed " + reason);
 }
 
 void RequireWritable(const std::string& path) {

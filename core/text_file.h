@@ -17,6 +17,9 @@ struct TextLine {
 // and a byte order mark are taken out. Throws InputError if it cannot be read.
 std::vector<TextLine> ReadTextTable(const std::string& path);
 
+// A text without the byte order mark that some editors put before it.
+std::string_view WithoutByteOrderMark(std::string_view text);
+
 // Names as a list for a message: "a, b, c".
 std::string Join(const std::vector<std::string>& names);
 
@@ -24,6 +27,10 @@ std::string Join(const std::vector<std::string>& names);
 // InputError naming file, line and `what` otherwise.
 double ParseNumber(std::string_view word, const std::string& path, int line,
                    std::string_view what);
+
+// A time stamp in seconds: as ParseNumber, and no number of milli- or
+// nanoseconds since 1970.
+double ParseTimestamp(std::string_view word, const std::string& path, int line);
 
 // The whole content of a file. Throws InputError if it cannot be read.
 std::string ReadTextFile(const std::string& path);

@@ -15,6 +15,7 @@ namespace {
 constexpr std::array<std::string_view, 8> kColumns = {
     "timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
 constexpr double kMaxQuaternionError = 0.01;  // of its length, from 1
+constexpr double kMaxCoordinate = 1e9;        // m; squares stay finite
 constexpr int kTimeDecimals = 6;
 constexpr int kPoseDecimals = 9;
 
@@ -26,7 +27,8 @@ StampedPose ParsePose(const TextLine& line, const std::string& path) {
                          "qz qw");
   }
   std::array<double, kColumns.size()> value{};
-  for (size_t i = 0; i < kColumns.size(); ++i) {
+  value[0] = ParseTimestamp(line.words[0], path, line.number);
+  for (size_t i = 1; i < kColumns.size(); ++i) {
     value[i] = ParseNumber(line.words[i], path, line.number, kColumns[i]);
   }
   const Eigen::Quaterniond rotation(value[7], value[4], value[5], value[6]);
@@ -35,7 +37,13 @@ StampedPose ParsePose(const TextLine& line, const std::string& path) {
                      "the quaternion (columns 5 to 8, qx qy qz qw) is not of "
                      "unit length; check the order of the columns");
   }
-  return {value[0], Rigid3d(rotation, {value[1], value[2], value[3]})};
+  const Rigid3d pose(rotation, {value[1], value[2], value[3]});
+  if (pose.translation.lpNorm<Eigen::Infinity>() > kMaxCoordinate) {
+    throw InputError(path, line.number,
+                     "a position (columns 2 to 4) further away than 1e9 m; "
+                     "check the order of the columns");
+  }
+  return {value[0], pose};
 }
 
 // Unlike printf, it does not depend on the locale.

@@ -43,7 +43,9 @@ std::string FrontendOptions::Check() const {
   std::string camera_error = camera.Check();
   if (!camera_error.empty()) return camera_error;
   if (depth_noise == nullptr) return "a depth noise model is needed";
-  if (max_features < 3) return "max_features must be at least 3";
+  if (max_features < 3 || max_features > 1000000) {
+    return "max_features must be 3 to 1000000";
+  }
   if (!(min_depth > 0.0) || !(max_depth > min_depth)) {
     return "depth limits must satisfy 0 < min_depth < max_depth";
   }

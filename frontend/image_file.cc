@@ -29,7 +29,8 @@ bool IsCutOffJpeg(std::string_view bytes) {
 cv::Mat DecodeQuickly([[maybe_unused]] std::string_view bytes,
                       [[maybe_unused]] int flags) {
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
-  if (flags == cv::IMREAD_GRAYSCALE) return DecodePngToGray(bytes);
+  const int depth_or_not = flags & ~cv::IMREAD_ANYDEPTH;  // 8 bits in any case
+  if (depth_or_not == cv::IMREAD_GRAYSCALE) return DecodePngToGray(bytes);
   if (flags == cv::IMREAD_UNCHANGED) return DecodePngDepth(bytes);
 #endif
   return cv::Mat();
@@ -66,6 +67,17 @@ cv::Mat ReadImageFile(const std::string& path, int flags) {
   return image;
 }
 
+cv::Mat ReadGrayImageFile(const std::string& path) {
+  cv::Mat gray =
+      ReadImageFile(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
+  if (gray.type() != CV_8UC1) {
+    throw InputError(path +
+                     ": a colour image must have 8 bits a channel, this one "
+                     "has more; is it the depth image?");
+  }
+  return gray;
+}
+
 cv::Mat ReadDepthImageFile(const std::string& path) {
   cv::Mat depth = ReadImageFile(path, cv::IMREAD_UNCHANGED);
   if (depth.type() != CV_16UC1) {
@@ -77,6 +89,15 @@ cv::Mat ReadDepthImageFile(const std::string& path) {
                      "viewing?");
   }
   return depth;
+}
+
+// OpenCV does not notice a disk that gets full at the end of a file.
+void WritePngFile(const std::string& path, const cv::Mat& image,
+                  const std::vector<int>& settings) {
+  std::vector<uchar> bytes;
+  cv::imencode(".png", image, bytes, settings);
+  WriteFileAtomically(
+      path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
 }  // namespace rgbd_pose

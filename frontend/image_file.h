@@ -2,6 +2,7 @@
 
 #include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 namespace rgbd_pose {
 
@@ -12,8 +13,17 @@ namespace rgbd_pose {
 // May be called from several threads at once.
 cv::Mat ReadImageFile(const std::string& path, int flags);
 
+// Reads a colour or gray image as gray values (CV_8UC1). Throws InputError for
+// one of other than 8 bits a channel, too: it would be a depth image.
+cv::Mat ReadGrayImageFile(const std::string& path);
+
 // Reads a depth image: 16 bits, one channel (CV_16UC1). Throws InputError for
 // any other, too.
 cv::Mat ReadDepthImageFile(const std::string& path);
+
+// Writes an image as a PNG file, as a whole or not at all; `settings` as for
+// cv::imwrite. Throws InputError if it cannot.
+void WritePngFile(const std::string& path, const cv::Mat& image,
+                  const std::vector<int>& settings = {});
 
 }  // namespace rgbd_pose

@@ -20,11 +20,15 @@ constexpr int kRgb = 2;
 // Far beyond any depth camera: a few wrong bytes must not claim all memory.
 constexpr uint32_t kMaxSide = 1 << 14;
 
+// The filters of section 9 count from 0.
+constexpr int kLastFilter = 4;
+
 struct Png {
   int width = 0;
   int height = 0;
   int bit_depth = 0;
   int color_type = 0;
+  bool is_interlaced = false;
   std::string compressed;
 };
 
@@ -73,8 +77,34 @@ bool ReadHeader(std::string_view header, Png* png) {
   png->height = static_cast<int>(height);
   png->bit_depth = data[8];
   png->color_type = data[9];
-  // Of compression, filtering and interlacing only the plain kinds.
-  return data[10] == 0 && data[11] == 0 && data[12] == 0;
+  png->is_interlaced = data[12] == 1;
+  // There is one kind of compression, one of filtering, two of interlacing.
+  return data[10] == 0 && data[11] == 0 && data[12] <= 1;
+}
+
+struct FreeDecompressor {
+  void operator()(libdeflate_decompressor* decompressor) const {
+    libdeflate_free_decompressor(decompressor);
+  }
+};
+
+// Decompresses an image of `size` bytes; null if there are fewer or they are
+// damaged. `has_more` says whether there are more.
+std::unique_ptr<uint8_t[]> Decompress(const Png& png, size_t size,
+                                      bool* has_more) {
+  // The format packs no tighter; the memory for a claim is not taken unseen.
+  constexpr size_t kMaxRatio = 1032;
+  if (size / kMaxRatio > png.compressed.size()) return nullptr;
+  std::unique_ptr<uint8_t[]> rows(new uint8_t[size]);
+  const std::unique_ptr<libdeflate_decompressor, FreeDecompressor> decompressor(
+      libdeflate_alloc_decompressor());
+  if (decompressor == nullptr) return nullptr;
+  const libdeflate_result result = libdeflate_zlib_decompress(
+      decompressor.get(), png.compressed.data(), png.compressed.size(),
+      rows.get(), size, nullptr);
+  *has_more = result == LIBDEFLATE_INSUFFICIENT_SPACE;
+  if (result != LIBDEFLATE_SUCCESS && !*has_more) return nullptr;
+  return rows;
 }
 
 // False for a damaged file, and for one that holds what would change the values
@@ -91,7 +121,7 @@ bool ReadChunks(std::string_view bytes, Png* png) {
     if (chunk.type == "IDAT") {
       png->compressed += chunk.data;
     } else if (chunk.type == "IHDR") {
-      if (!ReadHeader(chunk.data, png)) return false;
+      if (!ReadHeader(chunk.data, png) || png->is_interlaced) return false;
     } else if (chunk.type != "pHYs" && chunk.type != "tIME" &&
                chunk.type != "tEXt") {
       return false;
@@ -156,27 +186,15 @@ bool Unfilter(int filter, const uint8_t* up_row, uint8_t* row, int size) {
   }
 }
 
-struct FreeDecompressor {
-  void operator()(libdeflate_decompressor* decompressor) const {
-    libdeflate_free_decompressor(decompressor);
-  }
-};
-
 // Decompresses the image and hands its rows to `convert(row, y)`.
 template <int kPixelBytes, typename Convert>
 bool ReadRows(const Png& png, Convert convert) {
   const int size = kPixelBytes * png.width;
   const size_t stride = 1 + static_cast<size_t>(size);  // a filter ahead
   const size_t total = stride * png.height;
-  const std::unique_ptr<uint8_t[]> rows(new uint8_t[total]);
-  const std::unique_ptr<libdeflate_decompressor, FreeDecompressor> decompressor(
-      libdeflate_alloc_decompressor());
-  if (decompressor == nullptr ||
-      libdeflate_zlib_decompress(decompressor.get(), png.compressed.data(),
-                                 png.compressed.size(), rows.get(), total,
-                                 nullptr) != LIBDEFLATE_SUCCESS) {
-    return false;
-  }
+  bool has_more = false;
+  const std::unique_ptr<uint8_t[]> rows = Decompress(png, total, &has_more);
+  if (rows == nullptr || has_more) return false;
   const std::vector<uint8_t> above_first(size, 0);
   const uint8_t* up_row = above_first.data();
   for (int y = 0; y < png.height; ++y) {
@@ -188,16 +206,42 @@ bool ReadRows(const Png& png, Convert convert) {
   return true;
 }
 
+// Whether the compressed data of an image of any kind, but not interlaced, hold
+// all its rows.
+bool HasItsRows(const Png& png) {
+  constexpr int kChannels[] = {1, 0, 3, 1, 2, 0, 4};  // by colour type
+  const int channels = png.color_type <= 6 ? kChannels[png.color_type] : 0;
+  if (channels == 0 || png.bit_depth < 1 || png.bit_depth > 16) return false;
+  const size_t row_bits = static_cast<size_t>(png.width) * channels *
+                          static_cast<size_t>(png.bit_depth);
+  const size_t stride = 1 + (row_bits + 7) / 8;
+  bool has_more = false;  // is no harm
+  const std::unique_ptr<uint8_t[]> rows =
+      Decompress(png, stride * png.height, &has_more);
+  if (rows == nullptr) return false;
+  for (int y = 0; y < png.height; ++y) {
+    if (rows[stride * y] > kLastFilter) return false;
+  }
+  return true;
+}
+
 }  // namespace
 
 bool IsDamagedPng(std::string_view bytes) {
   if (!SkipSignature(&bytes)) return false;
+  Png png;
+  bool is_first = true;
   Chunk chunk;
   while (NextChunk(&bytes, &chunk)) {
     // A capital letter marks chunks that are needed to show the image.
     const bool is_critical = (chunk.type[0] & 0x20) == 0;
     if (is_critical && !chunk.is_intact) return true;
-    if (chunk.type == "IEND") return false;
+    if (is_first && (chunk.type != "IHDR" || !ReadHeader(chunk.data, &png))) {
+      return true;
+    }
+    is_first = false;
+    if (chunk.type == "IDAT") png.compressed += chunk.data;
+    if (chunk.type == "IEND") return !png.is_interlaced && !HasItsRows(png);
   }
   return true;
 }

@@ -14,8 +14,9 @@ namespace rgbd_pose {
 cv::Mat DecodePngToGray(std::string_view bytes);
 cv::Mat DecodePngDepth(std::string_view bytes);
 
-// Whether a file begins as a PNG and is cut off, or has another checksum than
-// it says in what is needed of it. (libpng would tell stderr about it.)
+// Whether a file begins as a PNG and is cut off, has another checksum than it
+// says in what is needed of it, or holds other than the rows of an image, which
+// has at most 16384 x 16384 pixels. (libpng would tell stderr about it.)
 bool IsDamagedPng(std::string_view bytes);
 
 }  // namespace rgbd_pose

@@ -13,9 +13,12 @@ namespace {
 
 constexpr double kFirstStamp = 1000.0;  // s
 
+constexpr int kMaxFrames = 1000000;  // 9 hours at 30 Hz
+
 const SyntheticOptions& Checked(const SyntheticOptions& options) {
-  if (options.frames < 1) {
-    throw InputError("a synthetic sequence needs at least 1 frame, not " +
+  if (options.frames < 1 || options.frames > kMaxFrames) {
+    throw InputError("a synthetic sequence has 1 to " +
+                     std::to_string(kMaxFrames) + " frames, not " +
                      std::to_string(options.frames));
   }
   // Time stamps are whole microseconds and must differ.

@@ -35,7 +35,7 @@ Frame TumDataset::Read(int index) const {
   Frame frame;
   frame.index = index;
   frame.timestamp = pair.timestamp;
-  frame.gray = ReadImageFile(pair.color_path, cv::IMREAD_GRAYSCALE);
+  frame.gray = ReadGrayImageFile(pair.color_path);
   frame.depth = ReadDepthImageFile(pair.depth_path);
   frame.depth_scale = camera_.depth_scale;
   CheckSize(frame.gray, pair.color_path);

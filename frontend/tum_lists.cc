@@ -79,9 +79,9 @@ std::vector<ListedImage> ReadImageList(const std::string& folder,
   }
   std::vector<ListedImage> images;
   for (const TextLine& line : ReadLines(list, 2, "time image")) {
-    images.push_back(
-        {ParseNumber(line.words[0], list, line.number, "the time stamp"),
-         (fs::path(folder) / line.words[1]).string(), line.number});
+    images.push_back({ParseTimestamp(line.words[0], list, line.number),
+                      (fs::path(folder) / line.words[1]).string(),
+                      line.number});
   }
   CheckTimeOrder(list, images);
   return images;
@@ -151,10 +151,9 @@ TumLists ReadTumAssociations(const std::string& folder,
       ReadLines(associations_file, 4, "time image time image");
   for (const TextLine& line : lines) {
     for (const size_t column : {0, 2}) {
-      ListedImage image = {ParseNumber(line.words[column], associations_file,
-                                       line.number, "the time stamp"),
-                           (fs::path(folder) / line.words[column + 1]).string(),
-                           line.number};
+      ListedImage image = {
+          ParseTimestamp(line.words[column], associations_file, line.number),
+          (fs::path(folder) / line.words[column + 1]).string(), line.number};
       CheckExists(associations_file, image);
       (column == 0 ? left : right).push_back(std::move(image));
     }

@@ -14,6 +14,7 @@
 #include "core/input_error.h"
 #include "core/text_file.h"
 #include "core/trajectory.h"
+#include "frontend/image_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -53,12 +54,9 @@ std::string FormatList(const SyntheticDataset& dataset,
 
 void WritePng(const fs::path& path, const cv::Mat& image) {
   // Sensor noise leaves no repetitions worth a search.
-  const std::vector<int> settings = {cv::IMWRITE_PNG_COMPRESSION, 1,
-                                     cv::IMWRITE_PNG_STRATEGY,
-                                     cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY};
-  if (!cv::imwrite(path.string(), image, settings)) {
-    throw InputError(path.string() + ": writing failed; is the disk full?");
-  }
+  WritePngFile(path.string(), image,
+               {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY,
+                cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY});
 }
 
 void WriteImages(const SyntheticDataset& dataset, const fs::path& folder,

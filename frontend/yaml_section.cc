@@ -10,9 +10,8 @@ namespace {
 
 // OpenCV's first line, %YAML:1.0, is no YAML. Its line end stays, so that line
 // numbers do not change.
-std::string WithoutDirective(std::string text) {
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.rfind(kByteOrderMark, 0) == 0) text.erase(0, kByteOrderMark.size());
+std::string WithoutDirective(std::string_view content) {
+  std::string text(WithoutByteOrderMark(content));
   if (text.rfind("%YAML", 0) == 0) text.erase(0, text.find_first_of("\r\n"));
   return text;
 }

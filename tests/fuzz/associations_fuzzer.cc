@@ -1,0 +1,38 @@
+// Files that pair colour and depth images.
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "frontend/tum_lists.h"
+#include "tests/fuzz/fuzz_input.h"
+
+namespace {
+
+// Of the images that the input may name, `a` is colour and `b` depth.
+void WriteImages(const rgbd_pose::FuzzFolder& folder) {
+  std::vector<uint8_t> bytes;
+  for (const int type : {CV_8UC1, CV_16UC1}) {
+    cv::imencode(".png", cv::Mat(2, 2, type, cv::Scalar(7)), bytes);
+    folder.Write(type == CV_8UC1 ? "a" : "b",
+                 rgbd_pose::FuzzText(bytes.data(), bytes.size()));
+  }
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace rgbd_pose;
+  static const FuzzFolder folder;
+  static const bool once = (WriteImages(folder), true);
+  (void)once;
+  const std::string file =
+      folder.Write("associations.txt", FuzzText(data, size));
+  MayRefuse([&] {
+    const TumLists lists = ReadTumAssociations(folder.path(), file);
+    Require(!lists.pairs.empty(), "at least one frame");
+    for (size_t i = 1; i < lists.pairs.size(); ++i) {
+      Require(lists.pairs[i].timestamp > lists.pairs[i - 1].timestamp,
+              "frames in strict time order");
+    }
+  });
+  return 0;
+}

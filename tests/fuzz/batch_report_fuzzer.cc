@@ -1,0 +1,15 @@
+// What the page of a batch is made from: summary.csv.
+
+#include "apps/batch_report_data.h"
+#include "tests/fuzz/fuzz_input.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace rgbd_pose;
+  static const FuzzFolder folder;
+  folder.Write("summary.csv", FuzzText(data, size));
+  MayRefuse([&] {
+    BatchReportData(folder.path())
+        .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  });
+  return 0;
+}

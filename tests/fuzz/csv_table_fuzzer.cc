@@ -1,0 +1,16 @@
+// Tables that the reports read.
+
+#include "apps/csv_table.h"
+#include "tests/fuzz/fuzz_input.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace rgbd_pose;
+  static const FuzzFolder folder;
+  const std::string file = folder.Write("table.csv", FuzzText(data, size));
+  MayRefuse([&] {
+    const CsvTable table = CsvTable::Read(file);
+    Require(table.Words("a").size() == table.size(), "a cell a row");
+    Require(table.Numbers("a").size() == table.size(), "a cell a row");
+  });
+  return 0;
+}

@@ -1,0 +1,26 @@
+// Values of flags that are more than a word or a number.
+
+#include "apps/batch_plan.h"
+#include "apps/batch_shard.h"
+#include "apps/frame_selection.h"
+#include "costs/cost_factory.h"
+#include "tests/fuzz/fuzz_input.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace rgbd_pose;
+  const std::string text(FuzzText(data, size));
+  MayRefuse([&] {
+    const BatchShard shard = ParseShard(text);
+    Require(0 <= shard.index && shard.index < shard.count, "a shard");
+  });
+  MayRefuse([&] {
+    const FrameSelection selection("flag", text);
+    for (const int index : {0, 1, 20, 2147483647}) selection.Contains(index);
+  });
+  MayRefuse([&] {
+    Require(!ParseGrid(text, "tukey", "klt", 1).costs.empty(), "a cost");
+  });
+  MayRefuse([&] { Require(!MakeRobustCosts(text, "none").empty(), "a cost"); });
+  MayRefuse([&] { MakeRobustCosts("bidirectional_point+epipolar", text); });
+  return 0;
+}

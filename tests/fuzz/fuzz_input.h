@@ -1,0 +1,88 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+#include "core/input_error.h"
+
+// Every target takes any bytes, in builds for libFuzzer as well as from the
+// runner of the corpus.
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+
+namespace rgbd_pose {
+
+inline std::string_view FuzzText(const uint8_t* data, size_t size) {
+  return {reinterpret_cast<const char*>(data), size};
+}
+
+// Takes what is before the next line of four dashes off `rest`: one input may
+// stand for several files.
+inline std::string_view NextFile(std::string_view* rest) {
+  constexpr std::string_view kBetween = "----\n";
+  const size_t end = rest->find(kBetween);
+  const std::string_view file = rest->substr(0, end);
+  rest->remove_prefix(end == std::string_view::npos ? rest->size()
+                                                    : end + kBetween.size());
+  return file;
+}
+
+// What a target finds out by itself ends it as a crash does.
+inline void Require(bool condition, const char* what) {
+  if (condition) return;
+  std::fprintf(stderr, "not as documented: %s\n", what);
+  std::abort();
+}
+
+// Makes a call that may throw an InputError of one line, and nothing else.
+template <typename Call>
+void MayRefuse(Call call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    Require(std::string_view(error.what()).find('\n') == std::string::npos,
+            "a message of one line");
+  }
+}
+
+// A folder, in memory where the system has such, for parsers that read paths.
+class FuzzFolder {
+ public:
+  FuzzFolder() {
+    std::error_code error;
+    const bool has_memory = std::filesystem::is_directory("/dev/shm", error);
+    path_ = (has_memory ? std::filesystem::path("/dev/shm")
+                        : std::filesystem::temp_directory_path()) /
+            "rgbd_pose_fuzz.XXXXXX";
+    Require(mkdtemp(path_.data()) != nullptr, "a folder to work in");
+  }
+  ~FuzzFolder() {
+    std::error_code ignored;
+    std::filesystem::remove_all(path_, ignored);
+  }
+  FuzzFolder(const FuzzFolder&) = delete;
+  FuzzFolder& operator=(const FuzzFolder&) = delete;
+
+  const std::string& path() const { return path_; }
+
+  // Writes a file, in place of an earlier one, and returns its path.
+  std::string Write(const std::string& name, std::string_view bytes) const {
+    const std::string path = path_ + "/" + name;
+    std::FILE* file = std::fopen(path.c_str(), "wb");
+    Require(
+        file != nullptr &&
+            std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() &&
+            std::fclose(file) == 0,
+        "a file that can be written");
+    return path;
+  }
+
+ private:
+  std::string path_;
+};
+
+}  // namespace rgbd_pose

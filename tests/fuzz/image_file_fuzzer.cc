@@ -1,0 +1,22 @@
+// Images of any kind, by whichever decoder takes them.
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "frontend/image_file.h"
+#include "tests/fuzz/fuzz_input.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace rgbd_pose;
+  static const FuzzFolder folder;
+  const std::string file = folder.Write("image", FuzzText(data, size));
+  MayRefuse([&] {
+    Require(ReadGrayImageFile(file).type() == CV_8UC1, "gray values");
+  });
+  MayRefuse([&] {
+    Require(ReadImageFile(file, cv::IMREAD_COLOR).type() == CV_8UC3, "colours");
+  });
+  MayRefuse([&] {
+    Require(ReadDepthImageFile(file).type() == CV_16UC1, "raw depths");
+  });
+  return 0;
+}

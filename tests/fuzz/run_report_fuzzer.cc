@@ -1,0 +1,22 @@
+// What the page of a run is made from: frames.csv, metrics.json, config.flags,
+// trajectory.txt and maybe errors.csv, one after the other in the input.
+
+#include "apps/run_report_data.h"
+#include "tests/fuzz/fuzz_input.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace rgbd_pose;
+  static const FuzzFolder folder;
+  std::string_view rest = FuzzText(data, size);
+  for (const char* name :
+       {"frames.csv", "metrics.json", "config.flags", "trajectory.txt"}) {
+    folder.Write(name, NextFile(&rest));
+  }
+  std::filesystem::remove(folder.path() + "/errors.csv");
+  if (!rest.empty()) folder.Write("errors.csv", rest);
+  MayRefuse([&] {
+    RunReportData(folder.path())
+        .dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  });
+  return 0;
+}
