@@ -6,9 +6,9 @@
 #include <opencv2/imgcodecs.hpp>
 #include <utility>
 
+#include "core/association.h"
 #include "core/input_error.h"
 #include "core/text_file.h"
-#include "core/association.h"
 #include "frontend/image_file.h"
 
 namespace rgbd_pose {
