@@ -9,7 +9,7 @@ namespace rgbd_pose {
 //
 //   R(s) = c^2/3 (1 - (1 - s/c^2)^3) if s <= c^2, c^2/3 beyond,
 //
-// as ceres::TukeyLoss of 2.1 and later (that of 2.0 is half of it).
+// as ceres::TukeyLoss of 2.0 and later (before, it was half of that).
 class TukeyFormula {
  public:
   explicit TukeyFormula(double width) : c2_(width * width) {}
