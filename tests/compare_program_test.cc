@@ -69,6 +69,11 @@ TEST_F(CompareProgramTest, PanTiltGivesTablesAndFigure) {
   EXPECT_EQ(Count(run.out, "\n| none |"), 2);  // of each table one row
   EXPECT_EQ(Count(run.out, "\n| tukey |"), 2);
   EXPECT_EQ(Count(Result("tables.csv"), "\n"), 3);  // with the header
+  // Its page, or why there is none.
+  const bool has_page =
+      std::filesystem::exists(folder_ / "results/report.html");
+  EXPECT_EQ(Count(run.out, "\nreport in   "), 1);
+  EXPECT_EQ(Count(run.out, "no file: built without plotly.js"), !has_page);
   // The truth and two losses, six frames each.
   EXPECT_EQ(Count(Result("paths.csv"), "\n"), 1 + 3 * 6);
   ExpectWellFormedSvg(Result("paths.svg"), 4);

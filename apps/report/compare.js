@@ -92,7 +92,7 @@ function comparedPaths(sequence, prefix, parent) {
     element.append(make('p', {}, 'No loss has a pose: every frame is lost.'));
     return;
   }
-  pathViews(element, prefix, ['paths', 'large'], positions, sequence.down, (axes, type, line) => {
+  const tracesOf = (axes, type, line) => {
     const trace = (path, name, look) => {
       const points = path.x.filter(known).length;
       const result = {
@@ -112,7 +112,8 @@ function comparedPaths(sequence, prefix, parent) {
           const {color, dash} = lineStyle(k);
           return trace(loss, loss.name, {color, dash});
         }));
-  });
+  };
+  pathViews(element, prefix, ['paths', 'large'], positions, sequence.down, tracesOf);
 }
 
 function comparedErrors(sequence, prefix, parent) {

@@ -144,23 +144,22 @@ function pathViews(element, prefix, sizes, positions, down, tracesOf) {
     gridcolor: '#d8dee4', backgroundcolor: '#fff', zeroline: false,
   });
   const side = down.map(v => -v);
-  // Looks from behind and above, whatever axis is up.
-  // A narrow window needs more distance.
-  // What was seen gets a taller window and is looked at from nearer.
+  // Looks from behind and above, whatever axis is up. A narrow window needs more
+  // distance, a tall one less.
   const far = window.innerWidth < 600 ? 1.5 : sizes[1] === 'tall' ? 0.75 : 1;
   const back = Math.abs(side[1]) > 0.7 ? [-1, 0, -1.7] : [1.4, -1.6, 0];
   const eye = back.map((v, k) => far * (v + 0.8 * side[k]));
   plot(`${prefix}path-3d`, sizes[1], screen, traces, {
-        margin: {l: 0, r: 0, t: 0, b: 0},
-        dragmode: 'turntable',
-        hovermode: 'closest',
-        scene: {
-          aspectmode: 'manual', aspectratio: ratio, dragmode: 'orbit',
-          xaxis: axis3('x'), yaxis: axis3('y'), zaxis: axis3('z'),
-          camera: {up: {x: side[0], y: side[1], z: side[2]},
-                   eye: {x: eye[0], y: eye[1], z: eye[2]}},
-        },
-      });
+    margin: {l: 0, r: 0, t: 0, b: 0},
+    dragmode: 'turntable',
+    hovermode: 'closest',
+    scene: {
+      aspectmode: 'manual', aspectratio: ratio, dragmode: 'orbit',
+      xaxis: axis3('x'), yaxis: axis3('y'), zaxis: axis3('z'),
+      camera: {up: {x: side[0], y: side[1], z: side[2]},
+               eye: {x: eye[0], y: eye[1], z: eye[2]}},
+    },
+  });
 }
 
 function paths(data) {
@@ -173,7 +172,8 @@ function paths(data) {
   for (const name of ['x', 'y', 'z']) {
     positions[name] = data.path[name].concat(data.path['true_' + name] || []);
   }
-  pathViews(element, '', ['small', data.cloud ? 'tall' : 'large'], positions, downVector(data), (axes, type, line) => (
+  const sizes = ['small', data.cloud ? 'tall' : 'large'];
+  pathViews(element, '', sizes, positions, downVector(data), (axes, type, line) => (
       (type === 'scatter3d' ? cloudTraces(data) : []).concat(
           pathTraces(data, axes, type, line))));
   cloudNote(data, element);

@@ -5,8 +5,10 @@
 const SWEEP_METHODS = [
   {schedule: 'gnc', ransac: false, name: 'graduated (gnc), from no motion'},
   {schedule: 'gnc', ransac: true, name: 'graduated (gnc), from RANSAC'},
-  {schedule: 'direct', ransac: false, name: 'at their widths at once (direct), from no motion'},
-  {schedule: 'direct', ransac: true, name: 'at their widths at once (direct), from RANSAC'},
+  {schedule: 'direct', ransac: false,
+   name: 'at their widths at once (direct), from no motion'},
+  {schedule: 'direct', ransac: true,
+   name: 'at their widths at once (direct), from RANSAC'},
 ];
 
 const SWEEP_ERRORS = [
