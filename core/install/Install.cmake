@@ -51,34 +51,24 @@ function(rgbd_pose_install_package)
   endforeach()
 endfunction()
 
-# Headers use Ceres, glog, Eigen and OpenCV's core; whatever else the libraries
-# use must be linked by hand only if they are static.
+# As the targets' public dependencies; whatever else the libraries use must be
+# linked by hand only if they are static.
 function(rgbd_pose_configure_pkg_config input output)
   file(RELATIVE_PATH RGBD_POSE_PC_PREFIX
        ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
   string(REGEX REPLACE "/$" "" RGBD_POSE_PC_PREFIX "${RGBD_POSE_PC_PREFIX}")
-  set(own -lrgbd_pose_frontend -lrgbd_pose_costs -lrgbd_pose_robust
-          -lrgbd_pose_core)
-  set(public_libs -lceres -lopencv_core)
-  set(private_libs -lopencv_video -lopencv_features2d -lopencv_imgcodecs
-                   -lopencv_imgproc)
-  set(public_packages eigen3 libglog)
-  set(private_packages yaml-cpp)
+  set(requires eigen3 libglog)
+  set(requires_private yaml-cpp)
   if(Libdeflate_FOUND)
-    list(APPEND private_packages libdeflate)
+    list(APPEND requires_private libdeflate)
   endif()
   if(NOT BUILD_SHARED_LIBS)
-    list(PREPEND public_libs ${private_libs})
-    list(APPEND public_packages ${private_packages})
-    set(private_libs)
-    set(private_packages)
+    list(APPEND requires ${requires_private})
+    set(requires_private)
   endif()
   list(TRANSFORM OpenCV_INCLUDE_DIRS PREPEND -I OUTPUT_VARIABLE flags)
-  list(JOIN public_packages " " RGBD_POSE_PC_REQUIRES)
-  list(JOIN private_packages " " RGBD_POSE_PC_REQUIRES_PRIVATE)
-  list(APPEND own ${public_libs})
-  list(JOIN own " " RGBD_POSE_PC_LIBS)
-  list(JOIN private_libs " " RGBD_POSE_PC_LIBS_PRIVATE)
+  list(JOIN requires " " RGBD_POSE_PC_REQUIRES)
+  list(JOIN requires_private " " RGBD_POSE_PC_REQUIRES_PRIVATE)
   list(JOIN flags " " RGBD_POSE_PC_CFLAGS)
   configure_file(${input} ${output} @ONLY)
 endfunction()
