@@ -78,12 +78,17 @@ void BadInputTest::ExpectEach(const std::string& command,
 void BadInputTest::Expect(const std::string& command,
                           const BadInput& row) const {
   const std::vector<std::string> before = ResultsBelow(folder_.path());
-  const RunResult run = RunCommand(command, folder_);
+  RunResult run = RunCommand(command, folder_);
   ASSERT_EQ(run.exit_code, row.exit_code) << run.err;
   if (row.exit_code == 0) {
     EXPECT_EQ(run.err, "");
     return;
   }
+#ifndef RGBD_POSE_HAS_LIBDEFLATE
+  // libpng has had its word before.
+  const size_t own = run.err.find(NameOf(command) + ": ");
+  if (own != std::string::npos) run.err.erase(0, own);
+#endif
   EXPECT_THAT(run.err, testing::StartsWith(NameOf(command) + ": "));
   EXPECT_THAT(run.err, testing::HasSubstr(Fill(row.message)));
   EXPECT_THAT(run.err, testing::Not(testing::HasSubstr("unexpected")));
@@ -91,6 +96,7 @@ void BadInputTest::Expect(const std::string& command,
   if (row.exit_code > 2) return;  // ran to its end
   EXPECT_EQ(run.out, "");
   EXPECT_EQ(ResultsBelow(folder_.path()), before);
+  EXPECT_TRUE(!fs::exists(folder_ / "out") || fs::is_empty(folder_ / "out"));
 }
 
 }  // namespace rgbd_pose

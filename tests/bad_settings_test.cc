@@ -146,6 +146,7 @@ TEST_F(BadInputTest, Flags) {
           {"infinite depth scale", nullptr, "--depth_scale=inf", 2,
            "the depth scale must be a positive number"},
           {"no cubes", nullptr, "--voxel=0", 2, "--voxel: the voxel size must"},
+          {"cubes as large as rooms", nullptr, "--voxel=2", 2, "--voxel: "},
           {"cubes that are no number", nullptr, "--voxel=nan", 2, "--voxel: "},
           {"frames backwards", nullptr, "--debug_images=20-10", 2,
            "--debug_images=20-10: '20-10' is no frame number"},

@@ -285,33 +285,5 @@ TEST_F(BatchProgramTest, ShardsMergeToTheSummaryOfOneBatch) {
   EXPECT_TRUE(merged == TimelessFiles(folder_ / "local"));
 }
 
-TEST_F(BatchProgramTest, BadCallsEndWithOneLine) {
-  folder_.Write("none.txt", "data/xyz\ndata/none\n");
-  const struct {
-    std::string command;
-    int exit_code;
-    std::string message;
-  } kCases[] = {
-      {kBatch, 1, "--sequences is needed"},
-      {Call("runs", "none.txt"), 2, "none.txt:2: no such folder"},
-      {Call("runs") + " --costs=magic", 2, "'magic'"},
-      {Call("runs") + " --shard=2/2", 2, "--shard=2/2"},
-      {Call("runs") + " --merge --resume", 2, "--merge"},
-      {Call("runs") + " --timeout=-1", 2, "--timeout"},
-      {Call("runs") + " --jobs=-1", 2, "--jobs"},
-      {Call("runs") + " --program=" + (folder_ / "none.txt"), 2, "--program"},
-      {Call("runs") + " --settings=" + (folder_ / "none"), 2, "none"},
-  };
-  for (const auto& c : kCases) {
-    SCOPED_TRACE(c.command);
-    const RunResult run = Run(c.command);
-    EXPECT_EQ(run.exit_code, c.exit_code);
-    EXPECT_EQ(run.out, "");
-    EXPECT_THAT(run.err, HasSubstr(c.message));
-    EXPECT_EQ(CountLines(run.err), 1) << run.err;
-    EXPECT_FALSE(fs::exists(folder_ / "runs"));
-  }
-}
-
 }  // namespace
 }  // namespace rgbd_pose

@@ -162,20 +162,5 @@ TEST_F(CompareProgramTest, SweepGivesEveryCell) {
   EXPECT_EQ(Result("sweep.csv"), csv) << "the same whenever it runs";
 }
 
-TEST_F(CompareProgramTest, BadInputIsOneLine) {
-  std::filesystem::create_directory(folder_ / "no_truth");
-  const std::string no_truth = folder_ / "no_truth";
-  for (const std::string& arguments :
-       {std::string("--experiment=nonsense"),
-        "--camera=tum_fr1 --experiment=" + no_truth,
-        std::string("--experiment=xyz --losses=nonsense"),
-        std::string("--experiment=sweep --seeds=0")}) {
-    const RunResult run = Compare(arguments);
-    EXPECT_EQ(run.exit_code, 2) << arguments;
-    EXPECT_EQ(Count(run.err, "\n"), 1) << run.err;
-  }
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "results"));
-}
-
 }  // namespace
 }  // namespace rgbd_pose

@@ -156,26 +156,6 @@ TEST_F(OdometryProgramTest, SavesACloudOfTheRoom) {
   EXPECT_LT(furthest, 6.4F);  // the room's diagonal
 }
 
-TEST_F(OdometryProgramTest, RefusesACloudItCannotWriteBeforeTracking) {
-  const struct {
-    std::string arguments;
-    std::string message;
-  } kCases[] = {
-      {" --voxel=0", "--voxel"},
-      {" --voxel=2", "--voxel"},
-      {" --save_cloud=" + (folder_ / "missing/cloud.ply"), "missing/cloud.ply"},
-      {" --save_cloud=" + folder_.path(), "is a folder"},
-  };
-  for (const auto& c : kCases) {
-    SCOPED_TRACE(c.arguments);
-    const RunResult run = Run(Call("bad") + c.arguments);
-    EXPECT_EQ(run.exit_code, 2);
-    EXPECT_EQ(run.out, "");
-    EXPECT_THAT(run.err, HasSubstr(c.message));
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-  }
-}
-
 TEST_F(OdometryProgramTest, ValidatesWithoutTracking) {
   const std::string call = kOdometry +
                            " --validate_only --dataset=" + Sequence() +
@@ -196,79 +176,6 @@ TEST_F(OdometryProgramTest, ValidatesWithoutTracking) {
   EXPECT_EQ(bad.out, "");
   EXPECT_THAT(bad.err, HasSubstr(images[0]));
   EXPECT_THAT(bad.err, Not(HasSubstr(images[1])));
-}
-
-// Bad input: exit 2, one line on stderr, nothing on stdout, nothing written.
-TEST_F(OdometryProgramTest, BadInputLeavesNothingBehind) {
-  const std::string missing = folder_ / "missing";
-  folder_.Write("nan.yaml",
-                "%YAML:1.0\nCamera.fx: .nan\nCamera.fy: 500\nCamera.cx: 320\n"
-                "Camera.cy: 240\nCamera.width: 640\nCamera.height: 480\n");
-  folder_.Write("empty/rgb.txt", "# nothing\n");
-  folder_.Write("empty/depth.txt", "# nothing\n");
-  const std::string camera = " --camera=" + Sequence() + "/camera.yaml";
-  const std::string output = " --output=" + (folder_ / "bad");
-  const struct {
-    std::string arguments;
-    int exit_code;
-    std::string message;
-  } kCases[] = {
-      {"", 1, "--dataset is needed"},
-      {" --dataset=" + Sequence() + output, 1, "--camera is needed"},
-      {" --dataset=" + Sequence() + camera, 1, "--output is needed"},
-      {" --dataset=" + missing + camera + output, 2, missing},
-      {" --dataset=" + folder_.path() + "/empty" + camera + output, 2, "empty"},
-      {" --dataset=" + Sequence() + " --camera=kinect" + output, 2, "tum_fr1"},
-      {" --dataset=" + Sequence() + " --camera=" + (folder_ / "nan.yaml") +
-           output,
-       2, "nan.yaml:2"},
-      {" --dataset=" + Sequence() + camera + output + " --cost=magic", 2,
-       "unknown cost 'magic'"},
-      {" --dataset=" + Sequence() + camera + output + " --loss=tuckey", 2,
-       "unknown loss 'tuckey'"},
-      {" --dataset=" + Sequence() + camera + output + " --frontend=magic", 2,
-       "unknown frontend 'magic'"},
-      {" --dataset=" + Sequence() + camera + output + " --depth_scale=-1", 2,
-       "--depth_scale"},
-      {" --dataset=" + Sequence() + camera + output + " --threads=-1", 2,
-       "--threads"},
-      {" --dataset=" + Sequence() + camera + output +
-           " --groundtruth=" + missing,
-       2, missing},
-  };
-  for (const auto& c : kCases) {
-    SCOPED_TRACE(c.arguments);
-    const RunResult run = Run(kOdometry + c.arguments);
-    EXPECT_EQ(run.exit_code, c.exit_code);
-    EXPECT_EQ(run.out, "");
-    EXPECT_THAT(run.err, HasSubstr(c.message));
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
-    EXPECT_FALSE(std::filesystem::exists(folder_ / "bad"));
-  }
-}
-
-// A broken image in the middle is only found on the way.
-TEST_F(OdometryProgramTest, ABrokenImageNamesItselfAndWritesNoResults) {
-  const std::string image = "depth/1000.100000.png";
-  ASSERT_TRUE(std::filesystem::exists(Sequence() + "/" + image));
-  std::filesystem::resize_file(Sequence() + "/" + image, 1000);
-  const RunResult run = Run(Call("bad"));
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_EQ(run.out, "");
-  EXPECT_THAT(run.err, HasSubstr(image));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "bad/trajectory.txt"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "bad/frames.csv"));
-}
-
-TEST_F(OdometryProgramTest, SimulateRefusesAFolderInUse) {
-  const RunResult run = Run(kSimulate + " --frames=2 --output=" + Sequence());
-  EXPECT_EQ(run.exit_code, 2);
-  EXPECT_THAT(run.err, HasSubstr(Sequence()));
-  const RunResult unknown =
-      Run(kSimulate + " --path=zigzag --output=" + (folder_ / "new"));
-  EXPECT_EQ(unknown.exit_code, 2);
-  EXPECT_THAT(unknown.err, HasSubstr("pan_tilt"));
-  EXPECT_FALSE(std::filesystem::exists(folder_ / "new"));
 }
 
 }  // namespace

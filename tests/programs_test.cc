@@ -27,15 +27,12 @@ constexpr char kTurned[] =
     "0 0 0 0 0 0 .70710678 .70710678\n1 0 1 0 0 0 .70710678 .70710678\n"
     "2 -1 1 0 0 0 .70710678 .70710678\n3 -1 1 1 0 0 .70710678 .70710678\n";
 
-// Files for the programs to read, as {truth}, {turned} and so on; {none} is in
-// the folder of the test but does not exist.
+// Files for the programs to read, as {truth} and {turned}.
 class ProgramsTest : public testing::Test {
  protected:
   ProgramsTest() {
     folder_.Write("truth.txt", kTruth);
     folder_.Write("turned.txt", kTurned);
-    folder_.Write("broken.txt", "0 0 0 0 0 0 0 1\n1 oops 0 0 0 0 0 1\n");
-    folder_.Write("later.txt", "100 0 0 0 0 0 0 1\n");
   }
 
   // Replaces {name} by the path of name.txt.
@@ -78,54 +75,6 @@ TEST_F(ProgramsTest, HelpNamesTheFlagsOfTheProgramAlone) {
       EXPECT_THAT(run.out, Not(HasSubstr("minloglevel")));  // of glog
       EXPECT_THAT(run.out, Not(HasSubstr("fromenv")));      // of gflags
     }
-  }
-}
-
-// Bad calls: a code, one line on stderr, nothing on stdout.
-TEST_F(ProgramsTest, BadCallsEndWithOneLine) {
-  const struct {
-    const char* what;
-    std::string command;
-    int exit_code;
-    std::string message;
-  } kCases[] = {
-      {"evaluate: no flags", kEvaluate, 1, "--estimate is needed"},
-      {"evaluate: no truth", kEvaluate + " --estimate={turned}", 1,
-       "--groundtruth is needed"},
-      {"evaluate: unknown flag", kEvaluate + " --estimates={turned}", 2,
-       "unknown flag --estimates"},
-      {"evaluate: no flag at all", kEvaluate + " {turned} {truth}", 2,
-       "{turned}' is no flag"},
-      {"evaluate: no number",
-       kEvaluate + " --estimate={turned} --groundtruth={truth} "
-                   "--max_time_difference=soon",
-       2, "'soon' is no double for --max_time_difference"},
-      {"evaluate: no estimate file",
-       kEvaluate + " --estimate={none} --groundtruth={truth}", 2, "{none}: "},
-      {"evaluate: no truth file",
-       kEvaluate + " --estimate={turned} --groundtruth={none}", 2, "{none}: "},
-      {"evaluate: broken line",
-       kEvaluate + " --estimate={broken} --groundtruth={truth}", 2,
-       "{broken}:2: 'oops'"},
-      {"evaluate: another time",
-       kEvaluate + " --estimate={later} --groundtruth={truth}", 2,
-       "(100.000000 s to 100.000000 s)"},
-      {"evaluate: negative tolerance",
-       kEvaluate + " --estimate={turned} --groundtruth={truth} "
-                   "--max_time_difference=-1",
-       2, "must not be negative"},
-      {"evaluate: no folder for the result",
-       kEvaluate + " --estimate={turned} --groundtruth={truth} "
-                   "--aligned={no/folder}",
-       2, "{no/folder}: cannot be written"},
-  };
-  for (const auto& c : kCases) {
-    SCOPED_TRACE(c.what);
-    const RunResult run = RunFilled(c.command);
-    EXPECT_EQ(run.exit_code, c.exit_code);
-    EXPECT_EQ(run.out, "");
-    EXPECT_THAT(run.err, HasSubstr(Fill(c.message)));
-    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
   }
 }
 
