@@ -100,6 +100,26 @@ TEST_F(ImageFileTest, DepthMustHaveSixteenBitsAndOneChannel) {
   }
 }
 
+TEST_F(ImageFileTest, ColourMustHaveEightBits) {
+  for (const int type : {CV_8UC1, CV_8UC3}) {
+    EXPECT_EQ(ReadGrayImageFile(Write("color.png", Noise(type))).type(),
+              CV_8UC1);
+  }
+  for (const int type : {CV_16UC1, CV_16UC3}) {
+    const std::string path = Write("color.png", Noise(type));
+    ExpectInputError([&] { ReadGrayImageFile(path); }, {path, "8 bits"});
+  }
+}
+
+TEST_F(ImageFileTest, WritesPngFilesAsAWhole) {
+  const cv::Mat image = Noise(CV_16UC1);
+  WritePngFile(folder_ / "a.png", image);
+  EXPECT_EQ(
+      cv::norm(ReadDepthImageFile(folder_ / "a.png"), image, cv::NORM_INF), 0);
+  ExpectInputError([&] { WritePngFile(folder_ / "none/a.png", image); },
+                   {folder_ / "none/a.png", "cannot be written"});
+}
+
 // A JPEG turned by its EXIF header (orientation 6) stays as its camera saw it.
 TEST_F(ImageFileTest, LeavesTheOrientationAlone) {
   const std::string path = Write("color.jpg", Noise(CV_8UC3));

@@ -191,5 +191,24 @@ TEST(PngDecoderTest, LeavesContradictoryFilesToOpenCv) {
   ExpectLeft(signature + header + good.substr(8));
 }
 
+// What libpng would tell stderr about.
+TEST(PngDecoderTest, FindsDamageWithoutWrongChecksums) {
+  PngParts parts = Depth();
+  EXPECT_FALSE(IsDamagedPng(parts.File()));
+  parts.rows.pop_back();
+  EXPECT_TRUE(IsDamagedPng(parts.File())) << "a byte is missing";
+  parts = Depth(4);
+  parts.rows[2 * kWidth + 1] = 5;
+  EXPECT_TRUE(IsDamagedPng(parts.File())) << "no such filter";
+  parts = Depth();
+  parts.kind[1] = 5;
+  EXPECT_TRUE(IsDamagedPng(parts.File())) << "no such kind of colour";
+  parts = Depth();
+  parts.width = parts.height = 16384;  // not to be taken memory for
+  EXPECT_TRUE(IsDamagedPng(parts.File()));
+  parts.width = 16385;
+  EXPECT_TRUE(IsDamagedPng(parts.File()));
+}
+
 }  // namespace
 }  // namespace rgbd_pose

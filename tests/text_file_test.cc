@@ -68,6 +68,27 @@ TEST(TextFileTest, ParsesNumbers) {
   }
 }
 
+TEST(TextFileTest, TimeStampsAreInSeconds) {
+  const auto parse = [](const char* word) {
+    return ParseTimestamp(word, "file", 7);
+  };
+  EXPECT_EQ(parse("1305031098.665900"), 1305031098.6659);
+  EXPECT_EQ(parse("-2.5"), -2.5);
+  for (const char* word : {"1305031098665", "1305031098665900000", "-1e300"}) {
+    ExpectInputError(
+        [&] { parse(word); },
+        {"file:7: time stamp " + std::string(word) + " is not in seconds"});
+  }
+}
+
+// A file that cannot be read to its end must not pass for a short one.
+TEST(TextFileTest, TellsOfAnErrorOnTheWay) {
+  const std::string unreadable = "/proc/self/mem";  // nothing at address 0
+  if (!std::filesystem::exists(unreadable)) GTEST_SKIP() << "no /proc";
+  ExpectInputError([&] { ReadTextFile(unreadable); },
+                   {unreadable + ": cannot be read"});
+}
+
 TEST(TextFileTest, ReplacesAFileAsAWhole) {
   const TempFolder folder;
   const std::string file = folder / "a.txt";
