@@ -72,8 +72,8 @@ class CostOf final : public Cost {
   void Bind(const CostInput& input) override {
     const size_t count = Count(input);
     packed_.stride =
-        static_cast<int>((count + kMaxLanes - 1) / kMaxLanes * kMaxLanes);
-    packed_.values.resize(static_cast<size_t>(packed_.stride) * kColumns);
+        static_cast<ptrdiff_t>((count + kMaxLanes - 1) / kMaxLanes * kMaxLanes);
+    packed_.values.resize(packed_.stride * kColumns);
     matches_.clear();
     degrees_.clear();
     double columns[kColumns];

@@ -71,7 +71,7 @@ TEST(CostMatchesTest, DegreesTellWhatIsMissing) {
 // cameras.
 TEST(CostMatchesTest, EpipolarNeedsABaselineAndAPointInFront) {
   const Camera camera;
-  const double half = 0.5 * Epipolar::kMinBaseline;
+  const double short_baseline = 0.9 * Epipolar::kMinBaseline;
   const auto uses = [&](double baseline, double depth) {
     // The current camera is to the right, so the point moves to the left.
     const Rigid3d motion(Eigen::Quaterniond::Identity(),
@@ -91,7 +91,9 @@ TEST(CostMatchesTest, EpipolarNeedsABaselineAndAPointInFront) {
   EXPECT_FALSE(uses(0.3, -2.0)) << "behind both cameras";
   EXPECT_TRUE(uses(0.3, -300.0)) << "at infinity, within the noise";
   EXPECT_FALSE(uses(0.3, 0.9 * Epipolar::kNearest));
-  EXPECT_FALSE(uses(half, 2.0));
+  EXPECT_TRUE(uses(0.3, 2.0 * Epipolar::kNearest));
+  EXPECT_TRUE(uses(0.03, 0.99 * Epipolar::kNearest)) << "within the noise";
+  EXPECT_FALSE(uses(short_baseline, 2.0));
   EXPECT_FALSE(uses(0.0, 2.0));
 }
 
