@@ -218,7 +218,10 @@ TEST(MEstimatorTest, RedescendingMeansNoInfluenceFromAfar) {
 TEST(BarronLossTest, LeadsFromLeastSquaresToWelsch) {
   const double c = 1.5;
   for (double s = 0.01; s < 100.0; s *= 2.0) {
-    EXPECT_EQ(Evaluate(BarronLoss(c, 2.0), s).value, s);
+    const Rho quadratic = Evaluate(BarronLoss(c, 2.0), s);
+    EXPECT_EQ(quadratic.value, s);
+    EXPECT_EQ(quadratic.first, 1.0);
+    EXPECT_EQ(quadratic.second, 0.0);
     const struct {
       double alpha;
       std::string name;
