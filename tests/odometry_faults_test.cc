@@ -92,7 +92,7 @@ std::vector<Outcome> TrackFaulty(const std::string& path, int frames,
   options.path = path;
   options.frames = frames;
   const FaultyDataset dataset(options, faults);
-  const std::vector<Outcome> outcomes = Track(dataset, dataset.ground_truth());
+  std::vector<Outcome> outcomes = Track(dataset, dataset.ground_truth());
   EXPECT_EQ(outcomes.size(), static_cast<size_t>(dataset.size()));
   return outcomes;
 }
