@@ -73,11 +73,12 @@ class FuzzFolder {
   std::string Write(const std::string& name, std::string_view bytes) const {
     const std::string path = path_ + "/" + name;
     std::FILE* file = std::fopen(path.c_str(), "wb");
-    Require(
+    // fwrite takes no null, not even for nothing.
+    const bool is_written =
         file != nullptr &&
-            std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size() &&
-            std::fclose(file) == 0,
-        "a file that can be written");
+        (bytes.empty() ||
+         std::fwrite(bytes.data(), 1, bytes.size(), file) == bytes.size());
+    Require(is_written && std::fclose(file) == 0, "a file that can be written");
     return path;
   }
 
