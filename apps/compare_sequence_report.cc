@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "core/motion.h"
 #include "core/text_file.h"
 
 namespace rgbd_pose {
@@ -24,15 +25,9 @@ std::optional<EndPose> EndPoseOf(const Trajectory& trajectory) {
   if (trajectory.empty()) return std::nullopt;
   const Rigid3d first_from_last = trajectory.front().world_from_cam.Inverse() *
                                   trajectory.back().world_from_cam;
-  const Eigen::Matrix3d R =
-      first_from_last.rotation.conjugate().toRotationMatrix();
-  return EndPose{
-      kDegrees *
-          Eigen::Vector3d(std::atan2(R(2, 1), R(2, 2)),
-                          std::atan2(-R(2, 0), std::hypot(R(0, 0), R(1, 0))),
-                          std::atan2(R(1, 0), R(0, 0))),
-      kMillimetres * first_from_last.translation,
-      kDegrees * first_from_last.Angle()};
+  const MotionVector motion = MotionFromRigid(first_from_last.Inverse());
+  return EndPose{kDegrees * motion.head<3>(), kMillimetres * motion.tail<3>(),
+                 kDegrees * first_from_last.Angle()};
 }
 
 // What tables say of one run; empty where there is nothing to judge.

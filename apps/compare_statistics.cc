@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "apps/format.h"
+
 namespace rgbd_pose {
 
 int MedianBandRank(int count) {
@@ -31,6 +33,10 @@ MedianBand FindMedianBand(std::vector<double> values) {
   band.high = values[count - 1 - rank];
   band.p90 = values[std::max(0, (9 * count + 9) / 10 - 1)];
   return band;
+}
+
+std::string FormatBand(const MedianBand& band) {
+  return Format("%.3g [%.3g, %.3g]", band.median, band.low, band.high);
 }
 
 }  // namespace rgbd_pose

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <string>
 #include <vector>
 
 namespace rgbd_pose {
@@ -21,5 +22,8 @@ int MedianBandRank(int count);
 
 // All NaN of no values.
 MedianBand FindMedianBand(std::vector<double> values);
+
+// "median [low, high]", three digits each.
+std::string FormatBand(const MedianBand& band);
 
 }  // namespace rgbd_pose

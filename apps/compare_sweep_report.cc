@@ -1,27 +1,11 @@
 #include "apps/compare_sweep_report.h"
 
-#include <cstdio>
-
 #include "apps/csv_table.h"
+#include "apps/format.h"
 #include "apps/svg_chart.h"
 #include "core/input_error.h"
 
 namespace rgbd_pose {
-namespace {
-
-template <typename... Values>
-std::string Format(const char* format, Values... values) {
-  char text[1024];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
-
-std::string FormatBand(const MedianBand& band) {
-  return Format("%.3g [%.3g, %.3g]", band.median, band.low, band.high);
-}
-
-}  // namespace
-
 std::string SweepCsv(const std::vector<SweepCell>& cells) {
   std::string text =
       "loss,schedule,start,wrong_share,rotation_median_deg,rotation_low_deg,"

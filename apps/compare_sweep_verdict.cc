@@ -2,24 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <utility>
 
+#include "apps/format.h"
 #include "core/text_file.h"
 
 namespace rgbd_pose {
 namespace {
-
-template <typename... Values>
-std::string Format(const char* format, Values... values) {
-  char text[1024];
-  std::snprintf(text, sizeof(text), format, values...);
-  return text;
-}
-
-std::string FormatBand(const MedianBand& band) {
-  return Format("%.3g [%.3g, %.3g]", band.median, band.low, band.high);
-}
 
 bool Meet(const MedianBand& a, const MedianBand& b) {
   return a.low <= b.high && b.low <= a.high;

@@ -1,8 +1,8 @@
 #include "apps/evaluation_report.h"
 
-#include <cstdarg>
-#include <cstdio>
 #include <vector>
+
+#include "apps/format.h"
 
 namespace rgbd_pose {
 namespace {
@@ -14,16 +14,6 @@ constexpr double kDegreesPerRadian = 57.29577951308232;
 constexpr char kAteDefinition[] = "rigid alignment, no scale";
 constexpr char kFinalPoseDefinition[] = "last pose relative to the first";
 
-__attribute__((format(printf, 1, 2))) std::string Print(const char* format,
-                                                        ...) {
-  char text[256];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof(text), format, arguments);
-  va_end(arguments);
-  return text;
-}
-
 struct RelativeEntry {
   std::string key;
   std::string definition;
@@ -34,12 +24,13 @@ struct RelativeEntry {
 std::vector<RelativeEntry> RelativeEntries(const EvaluationReport& report) {
   const double seconds = report.options.rpe_delta_seconds;
   const double metres = report.options.rpe_delta_metres;
-  return {{"rpe_frame", "fixed delta 1 frame, consecutive poses", 1.0,
-           report.rpe_frame},
-          {"rpe_seconds", Print("fixed delta %g s", seconds), seconds,
-           report.rpe_seconds},
-          {"rpe_metres", Print("fixed delta %g m of ground-truth path", metres),
-           metres, report.rpe_metres}};
+  return {
+      {"rpe_frame", "fixed delta 1 frame, consecutive poses", 1.0,
+       report.rpe_frame},
+      {"rpe_seconds", Format("fixed delta %g s", seconds), seconds,
+       report.rpe_seconds},
+      {"rpe_metres", Format("fixed delta %g m of ground-truth path", metres),
+       metres, report.rpe_metres}};
 }
 
 ErrorStatistics InDegrees(const ErrorStatistics& radians) {
@@ -52,9 +43,9 @@ ErrorStatistics InDegrees(const ErrorStatistics& radians) {
 }
 
 std::string FormatStatistics(const char* quantity, const ErrorStatistics& e) {
-  if (e.count == 0) return Print("  %-30s%12s\n", quantity, "n/a");
-  return Print("  %-30s%12.5f%12.5f%12.5f%12.5f\n", quantity, e.rmse, e.median,
-               e.mean, e.max);
+  if (e.count == 0) return Format("  %-30s%12s\n", quantity, "n/a");
+  return Format("  %-30s%12.5f%12.5f%12.5f%12.5f\n", quantity, e.rmse, e.median,
+                e.mean, e.max);
 }
 
 json StatisticsToJson(const ErrorStatistics& e) {
@@ -74,26 +65,27 @@ json PoseToJson(const Rigid3d& pose) {
 
 std::string FormatEvaluation(const EvaluationReport& report) {
   std::string text =
-      Print("%d of %d estimated poses have a ground truth within %g s;\n",
-            report.paired_poses, report.estimated_poses,
-            report.options.max_time_difference);
-  text += Print("they span %.3f s and %.3f m of path.\n\n", report.duration,
-                report.path_length);
-  text += Print("%-32s%12s%12s%12s%12s\n", "", "RMSE", "median", "mean", "max");
-  text += Print("ATE, %s (%d poses)\n", kAteDefinition, report.ate.count);
+      Format("%d of %d estimated poses have a ground truth within %g s;\n",
+             report.paired_poses, report.estimated_poses,
+             report.options.max_time_difference);
+  text += Format("they span %.3f s and %.3f m of path.\n\n", report.duration,
+                 report.path_length);
+  text +=
+      Format("%-32s%12s%12s%12s%12s\n", "", "RMSE", "median", "mean", "max");
+  text += Format("ATE, %s (%d poses)\n", kAteDefinition, report.ate.count);
   text += FormatStatistics("position (m)", report.ate);
   for (const RelativeEntry& entry : RelativeEntries(report)) {
-    text += Print("RPE, %s (%d pairs)\n", entry.definition.c_str(),
-                  entry.error.translation.count);
+    text += Format("RPE, %s (%d pairs)\n", entry.definition.c_str(),
+                   entry.error.translation.count);
     text += FormatStatistics("translation (m)", entry.error.translation);
     text += FormatStatistics("rotation (deg)", InDegrees(entry.error.rotation));
   }
-  text += Print("Final pose error, %s\n", kFinalPoseDefinition);
-  if (!report.final_pose) return text + Print("  %-30s%12s\n", "", "n/a");
-  text += Print("  %-30s%12.5f\n", "translation (m)",
-                report.final_pose->translation);
-  text += Print("  %-30s%12.5f\n", "rotation (deg)",
-                report.final_pose->angle * kDegreesPerRadian);
+  text += Format("Final pose error, %s\n", kFinalPoseDefinition);
+  if (!report.final_pose) return text + Format("  %-30s%12s\n", "", "n/a");
+  text += Format("  %-30s%12.5f\n", "translation (m)",
+                 report.final_pose->translation);
+  text += Format("  %-30s%12.5f\n", "rotation (deg)",
+                 report.final_pose->angle * kDegreesPerRadian);
   return text;
 }
 

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdarg>
-#include <cstdio>
 #include <iterator>
 #include <utility>
 
 #include "apps/chart_axis.h"
+#include "apps/format.h"
 
 namespace rgbd_pose {
 namespace {
@@ -26,15 +25,6 @@ constexpr int kLabelColumn = 130;
 constexpr double kLabelRow = 14.0;
 // A letter of a title.
 constexpr int kTitleLetter = 9;
-
-[[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...) {
-  char text[512];
-  va_list arguments;
-  va_start(arguments, format);
-  std::vsnprintf(text, sizeof(text), format, arguments);
-  va_end(arguments);
-  return text;
-}
 
 std::string Escape(const std::string& text) {
   std::string escaped;
