@@ -97,7 +97,7 @@ class ListReader {
       return line.words[1];
     }
     const bool given = line.words.size() == 2;
-    const std::string file =
+    std::string file =
         given ? FromBase(line.words[1]) : (folder / "camera.yaml").string();
     std::error_code error;
     if (!fs::is_regular_file(file, error)) {

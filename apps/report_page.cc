@@ -37,8 +37,7 @@ std::string InlineData(const nlohmann::json& data) {
 }
 
 std::string WritePage(const std::string& folder, const std::string& page) {
-  const std::string path =
-      (std::filesystem::path(folder) / "report.html").string();
+  std::string path = (std::filesystem::path(folder) / "report.html").string();
   WriteFileAtomically(path, page);
   return path;
 }

@@ -172,7 +172,7 @@ json LossCurve(const json& data, const std::string& metrics_file) {
 }
 
 json ParseJson(const std::string& file) {
-  const json value =
+  json value =
       json::parse(ReadTextFile(file), nullptr, /*allow_exceptions=*/false);
   if (!value.is_object()) {
     throw InputError(file + ": is no JSON object; repeat the run");

@@ -26,6 +26,7 @@ struct WithAutodiffJacobian : Type {
                        D (*J)[6]) {
     constexpr int kRows = Type::kRows;
     constexpr int kColumns = Type::kColumns;
+    // NOLINTNEXTLINE(bugprone-sizeof-expression): D may be one double.
     constexpr int kLanes = sizeof(D) / sizeof(double);
     double match[kColumns][kLanes];
     double rows[kRows][kLanes];

@@ -79,11 +79,12 @@ CoarseReference::Level CoarseReference::MakeLevel(const Frame& frame,
   const Camera& c = level.camera;
   double sum = 0.0, squares = 0.0;
   for (int v = 1; v + 1 < image.rows; ++v) {
+    const uint8_t* above = image.ptr<uint8_t>(v - 1);
     const uint8_t* row = image.ptr<uint8_t>(v);
+    const uint8_t* below = image.ptr<uint8_t>(v + 1);
     for (int u = 1; u + 1 < image.cols; ++u) {
       const float gx = 0.5F * static_cast<float>(row[u + 1] - row[u - 1]);
-      const float gy =
-          0.5F * static_cast<float>(row[u + image.step] - row[u - image.step]);
+      const float gy = 0.5F * static_cast<float>(below[u] - above[u]);
       if (std::abs(gx) + std::abs(gy) < kMinGradient) continue;
       const double depth = frame.DepthAt(static_cast<int>(FromLevel(u, index)),
                                          static_cast<int>(FromLevel(v, index)));

@@ -32,10 +32,11 @@ class RandomWorld {
   }
 
   Rigid3d Motion(double max_angle, double max_translation) {
+    // One statement a draw: compilers differ in the order of arguments.
     const Eigen::Vector3d axis = Vector(1.0).normalized();
-    return Rigid3d(
-        Eigen::Quaterniond(Eigen::AngleAxisd(Uniform(0.0, max_angle), axis)),
-        Vector(max_translation));
+    const Eigen::Vector3d translation = Vector(max_translation);
+    const Eigen::AngleAxisd rotation(Uniform(0.0, max_angle), axis);
+    return Rigid3d(Eigen::Quaterniond(rotation), translation);
   }
 
   // A noiseless match of a random point at 1-4 m, with Kinect sigmas and a

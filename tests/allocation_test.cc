@@ -73,8 +73,8 @@ TEST(AllocationTest, TheCounterCounts) {
 TEST(AllocationTest, CostsKeepTheirMemory) {
   RandomWorld world(1);
   const Rigid3d truth = world.Motion(0.02, 0.05);
-  const Correspondences matches =
-      world.Matches(500, 0.2, truth, /*noise=*/true, /*missing_depth=*/0.2);
+  const Correspondences matches = world.Matches(500, 0.2, truth, /*noise=*/true,
+                                                /*missing_depth_share=*/0.2);
   const MotionPrior prior = world.Prior(truth, 0.05);
   const MotionOrigin origin(truth);
   const MotionVector x = MotionVector::Zero();

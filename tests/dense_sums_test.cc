@@ -36,7 +36,7 @@ class DenseSumsTest : public ::testing::TestWithParam<std::string> {
     RandomWorld world(11);
     truth_ = world.Motion(0.02, 0.3);
     matches_ = world.Matches(kMany, 0.1, truth_, /*noise=*/true,
-                             /*missing_depth=*/0.2);
+                             /*missing_depth_share=*/0.2);
   }
 
   NormalEquations Sum(const Correspondences& matches, int threads) const {
