@@ -42,7 +42,7 @@ class ReportTest : public testing::Test {
 
   void Simulate() const {
     const RunResult simulate =
-        Run(RGBD_SIMULATE " --path=xyz --frames=40 --output=" + Sequence());
+        Run(RGBD_SIMULATE " --path=xyz --frames=16 --output=" + Sequence());
     ASSERT_EQ(simulate.exit_code, 0) << simulate.err;
   }
 
