@@ -19,8 +19,8 @@ struct Lanes {
 namespace packed {
 
 // flatten: everything below is compiled for the instruction set here and only
-// here, so no function that the rest of the program shares is. With the checks
-// of sanitizers that takes many minutes: there only the kernel itself is.
+// here, so no function that the rest of the program shares is. With GCC's
+// sanitizers that takes many minutes: there only the kernel itself is.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define RGBD_POSE_TARGET(set) [[gnu::target(set)]]
 #else
