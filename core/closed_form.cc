@@ -30,7 +30,9 @@ void PairMoments::Add(const Vector3d& target, const Vector3d& source,
             weighted_source.dot(from_source_mean);
 }
 
-NearestRotation::NearestRotation(const Matrix3d& m) {
+NearestRotation::NearestRotation(const Matrix3d& m)
+    : rotation(Matrix3d::Identity()), stiffness(0.0) {
+  if (!m.allFinite()) return;  // of which the SVD would leave its results unset
   const Eigen::JacobiSVD<Matrix3d> svd(
       m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double sign =
@@ -43,8 +45,7 @@ NearestRotation::NearestRotation(const Matrix3d& m) {
 std::optional<Rigid3d> FitRigidly(const PairMoments& moments) {
   if (moments.count < 3) return std::nullopt;
   const NearestRotation nearest(moments.covariance);
-  // Written so that what is not a number fails as well.
-  if (!(nearest.stiffness > kMinStiffnessPerPair * moments.count)) {
+  if (nearest.stiffness <= kMinStiffnessPerPair * moments.count) {
     return std::nullopt;
   }
   const Eigen::Quaterniond rotation(nearest.rotation);

@@ -25,7 +25,8 @@ struct PairMoments {
            double pair_weight = 1.0);
 };
 
-// The rotation R (never a reflection) that maximises trace(R^T m).
+// The rotation R (never a reflection) that maximises trace(R^T m). Of an m that
+// is not finite: the identity, of stiffness 0.
 struct NearestRotation {
   explicit NearestRotation(const Eigen::Matrix3d& m);
 

@@ -121,6 +121,15 @@ TEST(ClosedFormTest, TooFewOrALineLeaveTheMotionOpen) {
   EXPECT_FALSE(FitRigidly(MomentsOf({point, along, nan}, truth)).has_value());
 }
 
+TEST(ClosedFormTest, WhatIsNotFiniteDeterminesNoRotation) {
+  for (const double value : {std::nan(""), 1.0 / 0.0}) {
+    Eigen::Matrix3d m = 5.0 * Eigen::Matrix3d::Identity();
+    m(1, 2) = value;
+    EXPECT_EQ(NearestRotation(m).stiffness, 0.0);
+    EXPECT_EQ(NearestRotation(m).rotation, Eigen::Matrix3d::Identity());
+  }
+}
+
 // What lies one sigma off a line is noise; what lies ten off is a shape.
 TEST(ClosedFormTest, NoiseIsNoShape) {
   RandomWorld world(6);
