@@ -45,7 +45,8 @@ NearestRotation::NearestRotation(const Matrix3d& m)
 std::optional<Rigid3d> FitRigidly(const PairMoments& moments) {
   if (moments.count < 3) return std::nullopt;
   const NearestRotation nearest(moments.covariance);
-  if (nearest.stiffness <= kMinStiffnessPerPair * moments.count) {
+  // Written so that what is not a number, as of sums that overflow, fails too.
+  if (!(nearest.stiffness > kMinStiffnessPerPair * moments.count)) {
     return std::nullopt;
   }
   const Eigen::Quaterniond rotation(nearest.rotation);
