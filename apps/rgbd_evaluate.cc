@@ -4,12 +4,12 @@
 
 #include <cstdio>
 
-#include "apps/evaluation_report.h"
-#include "apps/program.h"
-#include "core/evaluation.h"
-#include "core/input_error.h"
-#include "core/text_file.h"
-#include "core/trajectory.h"
+#include "apps/results/evaluation_report.h"
+#include "apps/shell/program.h"
+#include "core/evaluation/evaluation.h"
+#include "core/evaluation/trajectory.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
 
 DEFINE_string(estimate, "", "the estimated trajectory, as TUM text");
 DEFINE_string(groundtruth, "", "the true trajectory, as TUM text");

@@ -9,13 +9,13 @@
 #include <string>
 #include <vector>
 
-#include "apps/program.h"
-#include "apps/residual_sample.h"
-#include "core/input_error.h"
-#include "core/motion.h"
+#include "apps/shell/program.h"
+#include "core/geometry/motion.h"
+#include "core/util/input_error.h"
+#include "costs/assembly/match_blocks.h"
 #include "costs/cost_factory.h"
 #include "costs/cost_list.h"
-#include "costs/match_blocks.h"
+#include "frontend/simulation/residual_sample.h"
 
 DEFINE_int32(samples, 1000, "random motions and matches for each cost");
 DEFINE_uint32(seed, 1, "seed of the samples");

@@ -5,9 +5,9 @@
 #include <cstdio>
 #include <string>
 
-#include "apps/program.h"
-#include "apps/report_page.h"
-#include "core/input_error.h"
+#include "apps/report/report_page.h"
+#include "apps/shell/program.h"
+#include "core/util/input_error.h"
 
 DEFINE_string(run, "", "folder that rgbd_odometry has written its results to");
 DEFINE_string(batch, "",

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "apps/available_cores.h"
-#include "apps/program.h"
-#include "apps/progress_bar.h"
-#include "frontend/camera_file.h"
-#include "frontend/synthetic_path.h"
-#include "frontend/synthetic_scene.h"
-#include "frontend/tum_writer.h"
+#include "apps/shell/available_cores.h"
+#include "apps/shell/program.h"
+#include "apps/shell/progress_bar.h"
+#include "frontend/simulation/synthetic_path.h"
+#include "frontend/simulation/synthetic_scene.h"
+#include "frontend/simulation/tum_writer.h"
+#include "frontend/sources/camera_file.h"
 
 DEFINE_string(scene, "room", "what to look at");
 DEFINE_string(path, "xyz", "how to move");

@@ -14,12 +14,12 @@
 #include <vector>
 
 #include "benchmarks/pnp_peer.h"
-#include "core/estimator.h"
-#include "core/quantile.h"
-#include "core/ransac.h"
+#include "core/estimation/estimator.h"
+#include "core/initial_guess/ransac.h"
+#include "core/util/quantile.h"
 #include "costs/cost_factory.h"
-#include "frontend/synthetic_matches.h"
-#include "tests/motion_error.h"
+#include "frontend/simulation/synthetic_matches.h"
+#include "tests/support/motion_error.h"
 
 DEFINE_int32(seeds, 1000, "trials a cell");
 DEFINE_int32(matches, 300, "matches a trial");

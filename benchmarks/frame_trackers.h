@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/camera.h"
-#include "core/rigid3.h"
-#include "frontend/frame.h"
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+#include "frontend/image/frame.h"
 
 namespace rgbd_pose {
 

@@ -17,15 +17,15 @@
 #include <string>
 #include <vector>
 
-#include "apps/program.h"
+#include "apps/shell/program.h"
 #include "benchmarks/frame_trackers.h"
-#include "core/evaluation.h"
-#include "core/input_error.h"
-#include "core/quantile.h"
-#include "core/text_file.h"
-#include "frontend/camera_file.h"
-#include "frontend/synthetic_dataset.h"
-#include "frontend/tum_dataset.h"
+#include "core/evaluation/evaluation.h"
+#include "core/util/input_error.h"
+#include "core/util/quantile.h"
+#include "core/util/text_file.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/sources/camera_file.h"
+#include "frontend/sources/tum_dataset.h"
 
 DEFINE_int32(frames, 90, "frames of each sequence, from its start");
 DEFINE_int32(rounds, 5, "how often each method tracks each sequence");

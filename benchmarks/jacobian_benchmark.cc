@@ -14,10 +14,10 @@
 #include <string>
 #include <vector>
 
-#include "apps/residual_sample.h"
-#include "core/motion.h"
+#include "core/geometry/motion.h"
+#include "costs/assembly/match_blocks.h"
 #include "costs/cost_list.h"
-#include "costs/match_blocks.h"
+#include "frontend/simulation/residual_sample.h"
 
 namespace rgbd_pose {
 namespace {

@@ -8,7 +8,7 @@
 #include <opencv2/core/version.hpp>
 #include <thread>
 
-#include "core/vector_lanes.h"
+#include "core/util/vector_lanes.h"
 
 namespace rgbd_pose {
 namespace {

@@ -15,12 +15,12 @@
 #include <vector>
 
 #include "benchmarks/pnp_peer.h"
-#include "core/estimator.h"
-#include "core/quantile.h"
-#include "core/ransac.h"
+#include "core/estimation/estimator.h"
+#include "core/initial_guess/ransac.h"
+#include "core/util/quantile.h"
 #include "costs/cost_factory.h"
-#include "frontend/synthetic_matches.h"
-#include "tests/motion_error.h"
+#include "frontend/simulation/synthetic_matches.h"
+#include "tests/support/motion_error.h"
 
 namespace rgbd_pose {
 namespace {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "core/correspondences.h"
-#include "core/rigid3.h"
+#include "core/estimation/correspondences.h"
+#include "core/geometry/rigid3.h"
 
 // OpenCV's PnP on our matches: what most people would use instead.
 

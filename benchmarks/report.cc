@@ -9,13 +9,13 @@
 #include <sstream>
 #include <string>
 
-#include "apps/program.h"
+#include "apps/shell/program.h"
 #include "benchmarks/machine.h"
 #include "benchmarks/report_tables.h"
 #include "benchmarks/results.h"
 #include "benchmarks/speedups.h"
-#include "core/input_error.h"
-#include "core/text_file.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
 
 DEFINE_string(results, "",
               "JSON outputs of the benchmark programs, set apart by commas");

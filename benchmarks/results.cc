@@ -4,9 +4,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/input_error.h"
-#include "core/quantile.h"
-#include "core/text_file.h"
+#include "core/util/input_error.h"
+#include "core/util/quantile.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {

@@ -17,10 +17,10 @@
 #include <memory>
 #include <string>
 
-#include "core/cost.h"
-#include "core/estimator.h"
+#include "core/estimation/cost.h"
+#include "core/estimation/estimator.h"
 #include "costs/cost_factory.h"
-#include "frontend/synthetic_matches.h"
+#include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
 
 namespace rgbd_pose {

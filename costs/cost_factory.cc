@@ -2,10 +2,10 @@
 
 #include <utility>
 
-#include "core/input_error.h"
-#include "core/text_file.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "costs/assembly/cost_of.h"
 #include "costs/cost_list.h"
-#include "costs/cost_of.h"
 #include "robust/m_estimator.h"
 
 namespace rgbd_pose {

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/cost.h"
-#include "core/estimator.h"
+#include "core/estimation/cost.h"
+#include "core/estimation/estimator.h"
 
 namespace rgbd_pose {
 

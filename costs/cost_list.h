@@ -1,14 +1,14 @@
 #pragma once
 
-#include "costs/bidirectional_image.h"
-#include "costs/bidirectional_point.h"
-#include "costs/epipolar.h"
-#include "costs/mahalanobis_point.h"
-#include "costs/motion_prior.h"
-#include "costs/point_to_plane.h"
-#include "costs/point_to_point.h"
-#include "costs/reprojection.h"
-#include "costs/reprojection_depth.h"
+#include "costs/matches/bidirectional_image.h"
+#include "costs/matches/bidirectional_point.h"
+#include "costs/matches/epipolar.h"
+#include "costs/matches/mahalanobis_point.h"
+#include "costs/matches/motion_prior.h"
+#include "costs/matches/point_to_plane.h"
+#include "costs/matches/point_to_point.h"
+#include "costs/matches/reprojection.h"
+#include "costs/matches/reprojection_depth.h"
 
 namespace rgbd_pose {
 

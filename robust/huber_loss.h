@@ -1,7 +1,7 @@
 #pragma once
 
-#include "core/batch_loss.h"
-#include "core/lane_math.h"
+#include "core/estimation/batch_loss.h"
+#include "core/util/lane_math.h"
 
 namespace rgbd_pose {
 

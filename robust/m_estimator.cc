@@ -56,8 +56,9 @@ std::unique_ptr<ceres::LossFunction> MEstimator::MakeLoss(int dimension) const {
 }
 
 // Widths: found by quadrature over the chi distribution; a test finds them
-// again (tests/m_estimator_width_test.cc). Student's t keeps the sigma as its
-// scale, at an efficiency of 92 to 94 %: at 95 % it would be Cauchy's loss.
+// again (tests/robust/m_estimator_width_test.cc). Student's t keeps the sigma
+// as its scale, at an efficiency of 92 to 94 %: at 95 % it would be Cauchy's
+// loss.
 const std::vector<MEstimator>& MEstimators() {
   static const std::vector<MEstimator>& rows = *new std::vector<MEstimator>{
       {"none", "1", false, nullptr, false, kUntuned},

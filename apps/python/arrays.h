@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/rigid3.h"
+#include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
 

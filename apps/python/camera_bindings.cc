@@ -9,9 +9,9 @@
 
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
-#include "core/camera.h"
-#include "core/input_error.h"
-#include "frontend/camera_file.h"
+#include "core/geometry/camera.h"
+#include "core/util/input_error.h"
+#include "frontend/sources/camera_file.h"
 
 namespace py = pybind11;
 

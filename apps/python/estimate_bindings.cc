@@ -5,16 +5,16 @@
 #include <string>
 #include <vector>
 
-#include "apps/estimator_settings.h"
-#include "apps/named_values.h"
+#include "apps/pipeline/estimator_settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/estimate_rows.h"
-#include "core/camera.h"
-#include "core/correspondences.h"
-#include "core/estimator.h"
-#include "core/initial_guess.h"
-#include "core/input_error.h"
+#include "core/estimation/correspondences.h"
+#include "core/estimation/estimator.h"
+#include "core/geometry/camera.h"
+#include "core/initial_guess/initial_guess.h"
+#include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "costs/cost_factory.h"
 
 namespace py = pybind11;

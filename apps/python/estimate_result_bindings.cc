@@ -5,7 +5,7 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/estimate_rows.h"
-#include "core/motion_estimate.h"
+#include "core/estimation/motion_estimate.h"
 
 namespace py = pybind11;
 

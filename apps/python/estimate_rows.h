@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "apps/python/arrays.h"
-#include "core/camera.h"
-#include "core/correspondences.h"
-#include "core/depth_noise.h"
-#include "core/motion_estimate.h"
+#include "core/estimation/correspondences.h"
+#include "core/estimation/motion_estimate.h"
+#include "core/geometry/camera.h"
+#include "core/geometry/depth_noise.h"
 
 // Between the rows of Python's arrays and the matches of an estimate. Nothing
 // here needs the GIL.

@@ -8,9 +8,9 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/trajectory_arrays.h"
-#include "core/evaluation.h"
-#include "core/text_file.h"
-#include "core/trajectory.h"
+#include "core/evaluation/evaluation.h"
+#include "core/evaluation/trajectory.h"
+#include "core/util/text_file.h"
 
 namespace py = pybind11;
 

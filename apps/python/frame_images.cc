@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "core/input_error.h"
+#include "core/util/input_error.h"
 
 namespace py = pybind11;
 

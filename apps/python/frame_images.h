@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 
 #include "apps/python/arrays.h"
-#include "core/camera.h"
-#include "frontend/frame.h"
+#include "core/geometry/camera.h"
+#include "frontend/image/frame.h"
 
 namespace rgbd_pose {
 

@@ -4,10 +4,10 @@
 #include <pybind11/stl.h>
 
 #include "apps/python/bindings.h"
-#include "core/camera.h"
-#include "core/input_error.h"
+#include "core/geometry/camera.h"
+#include "core/util/input_error.h"
 #include "costs/cost_factory.h"
-#include "frontend/frontend.h"
+#include "frontend/features/frontend.h"
 #include "robust/m_estimator.h"
 
 namespace py = pybind11;

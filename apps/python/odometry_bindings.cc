@@ -6,15 +6,15 @@
 #include <optional>
 #include <string>
 
-#include "apps/odometry_run.h"
+#include "apps/pipeline/odometry_run.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"
 #include "apps/python/shared_odometry.h"
 #include "apps/python/trajectory_arrays.h"
-#include "core/text_file.h"
-#include "core/trajectory.h"
-#include "frontend/tum_dataset.h"
+#include "core/evaluation/trajectory.h"
+#include "core/util/text_file.h"
+#include "frontend/sources/tum_dataset.h"
 
 namespace py = pybind11;
 

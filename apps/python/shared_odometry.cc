@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-#include "core/input_error.h"
+#include "core/util/input_error.h"
 
 namespace rgbd_pose {
 namespace {

@@ -4,14 +4,14 @@
 #include <optional>
 #include <vector>
 
-#include "apps/odometry_run.h"
-#include "core/camera.h"
-#include "core/motion.h"
-#include "core/rigid3.h"
-#include "core/trajectory.h"
-#include "frontend/frame.h"
-#include "frontend/odometry.h"
-#include "frontend/tracked_frame.h"
+#include "apps/pipeline/odometry_run.h"
+#include "core/evaluation/trajectory.h"
+#include "core/geometry/camera.h"
+#include "core/geometry/motion.h"
+#include "core/geometry/rigid3.h"
+#include "frontend/image/frame.h"
+#include "frontend/tracking/odometry.h"
+#include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {
 

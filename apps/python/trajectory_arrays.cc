@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "apps/python/arrays.h"
-#include "core/input_error.h"
+#include "core/util/input_error.h"
 
 namespace py = pybind11;
 

@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/trajectory.h"
+#include "core/evaluation/trajectory.h"
 
 namespace rgbd_pose {
 

@@ -3,8 +3,8 @@
 #include <opencv2/imgproc.hpp>
 
 #include "costs/cost_factory.h"
-#include "frontend/odometry.h"
-#include "frontend/synthetic_dataset.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/odometry.h"
 
 int main() {
   const rgbd_pose::SyntheticDataset camera({"room", "pan_tilt", 60});  // yours

@@ -2,7 +2,7 @@
 // wrong.
 #include <cstdio>
 
-#include "core/estimator.h"
+#include "core/estimation/estimator.h"
 #include "costs/cost_factory.h"
 
 int main() {

@@ -3,9 +3,9 @@
 #include <opencv2/video/tracking.hpp>
 
 #include "costs/cost_factory.h"
-#include "frontend/odometry.h"
-#include "frontend/point_frontend.h"
-#include "frontend/synthetic_dataset.h"
+#include "frontend/features/point_frontend.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/odometry.h"
 
 struct Flow final : rgbd_pose::PointFrontend {
   using PointFrontend::PointFrontend;

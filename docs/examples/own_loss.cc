@@ -1,9 +1,9 @@
 // A loss of your own: least squares up to its width, no influence beyond.
 #include <cstdio>
 
-#include "core/estimator.h"
+#include "core/estimation/estimator.h"
 #include "costs/cost_factory.h"
-#include "frontend/synthetic_matches.h"
+#include "frontend/simulation/synthetic_matches.h"
 
 class TruncatedLoss final : public ceres::LossFunction {
  public:

@@ -1,9 +1,9 @@
 // What a batch reads of a run that has ended: done.json and metrics.json, one
 // after the other in the input.
 
-#include "apps/batch_run_folder.h"
-#include "apps/batch_summary.h"
-#include "apps/csv_table.h"
+#include "apps/batch/batch_run_folder.h"
+#include "apps/batch/batch_summary.h"
+#include "apps/shell/csv_table.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

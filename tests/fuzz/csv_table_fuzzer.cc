@@ -1,6 +1,6 @@
 // Tables that the reports read.
 
-#include "apps/csv_table.h"
+#include "apps/shell/csv_table.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,8 +1,8 @@
 // Values of flags that are more than a word or a number.
 
-#include "apps/batch_plan.h"
-#include "apps/batch_shard.h"
-#include "apps/frame_selection.h"
+#include "apps/batch/batch_plan.h"
+#include "apps/batch/batch_shard.h"
+#include "apps/shell/frame_selection.h"
 #include "costs/cost_factory.h"
 #include "tests/fuzz/fuzz_input.h"
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/input_error.h"
+#include "core/util/input_error.h"
 
 // Every target takes any bytes, in builds for libFuzzer as well as from the
 // runner of the corpus.

@@ -1,8 +1,8 @@
 // Our own decoder of PNG files.
 
-#include "frontend/png_decoder.h"
+#include "frontend/sources/png_decoder.h"
 #include "tests/fuzz/fuzz_input.h"
-#include "tests/png_parts.h"
+#include "tests/support/png_parts.h"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/text_file.h"
+#include "core/util/text_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int main(int argc, char** argv) {

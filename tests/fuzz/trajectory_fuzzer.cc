@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "core/trajectory.h"
+#include "core/evaluation/trajectory.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

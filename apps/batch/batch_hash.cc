@@ -1,0 +1,69 @@
+#include "apps/batch/batch_hash.h"
+
+#include <cstdio>
+#include <filesystem>
+
+#include "core/geometry/camera.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsFile(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+void AddFile(const fs::path& path, TextHash* hash) {
+  hash->Add(IsFile(path) ? "file" : "none");
+  if (IsFile(path)) hash->Add(ReadTextFile(path.string()));
+}
+
+// Lines of any kind are taken; whether they make sense is found out by the run.
+void AddImagesOf(const fs::path& folder, const char* list, TextHash* hash) {
+  AddFile(folder / list, hash);
+  if (!IsFile(folder / list)) return;
+  for (const TextLine& line : ReadTextTable((folder / list).string())) {
+    if (line.words.size() < 2) continue;
+    std::error_code error;
+    const auto size = fs::file_size(folder / line.words[1], error);
+    hash->Add(error ? "none" : std::to_string(size));
+  }
+}
+
+}  // namespace
+
+void TextHash::AddByte(unsigned char byte) {
+  state_ = (state_ ^ byte) * 0x100000001b3u;
+}
+
+void TextHash::Add(std::string_view text) {
+  for (const char c : text) AddByte(static_cast<unsigned char>(c));
+  for (uint64_t size = text.size(), i = 0; i < 8; ++i, size >>= 8) {
+    AddByte(static_cast<unsigned char>(size & 0xff));
+  }
+}
+
+std::string TextHash::Hex() const {
+  char text[17];
+  std::snprintf(text, sizeof(text), "%016llx",
+                static_cast<unsigned long long>(state_));
+  return text;
+}
+
+std::string HashSequence(const BatchSequence& sequence) {
+  TextHash hash;
+  AddImagesOf(sequence.folder, "rgb.txt", &hash);
+  AddImagesOf(sequence.folder, "depth.txt", &hash);
+  AddFile(fs::path(sequence.folder) / "groundtruth.txt", &hash);
+  if (CameraPreset(sequence.camera)) {
+    hash.Add(sequence.camera);
+  } else {
+    AddFile(sequence.camera, &hash);
+  }
+  return hash.Hex();
+}
+
+}  // namespace rgbd_pose

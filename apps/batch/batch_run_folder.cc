@@ -1,0 +1,112 @@
+#include "apps/batch/batch_run_folder.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <vector>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMarker[] = "done.json";
+constexpr char kPartial[] = ".partial";
+
+void Check(const std::error_code& error, const std::string& folder) {
+  if (error) {
+    throw InputError(folder + ": cannot be made or replaced (" +
+                     error.message() + ")");
+  }
+}
+
+// Of a run that has ended; see RunEnd.
+bool IsStatus(const std::string& word) {
+  return word == "ok" || word == "failed" || word == "timeout" ||
+         word == "crashed";
+}
+
+std::vector<fs::path> FoldersIn(const fs::path& folder) {
+  std::vector<fs::path> folders;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    if (entry.is_directory(error)) folders.push_back(entry.path());
+  }
+  std::sort(folders.begin(), folders.end());
+  return folders;
+}
+
+}  // namespace
+
+std::string BatchFolder::Complete(const BatchRun& run) const {
+  return (fs::path(output_) / run.Name()).string();
+}
+
+std::string BatchFolder::Partial(const BatchRun& run) const {
+  return Complete(run) + kPartial;
+}
+
+std::optional<RunEnd> BatchFolder::ReadEnd(const BatchRun& run) const {
+  if (!Holds(run)) return std::nullopt;
+  const std::string path = (fs::path(Complete(run)) / kMarker).string();
+  const auto json = nlohmann::json::parse(ReadTextFile(path), nullptr, false);
+  if (!json.is_object() || !json.contains("exit_code") ||
+      !json.at("exit_code").is_number_integer()) {
+    return std::nullopt;
+  }
+  try {
+    const RunEnd end = {json.at("status"), json.at("exit_code"),
+                        json.at("hash")};
+    if (end.hash != run.hash || !IsStatus(end.status)) return std::nullopt;
+    return end;
+  } catch (const nlohmann::json::exception&) {
+    return std::nullopt;  // not written by this program
+  }
+}
+
+bool BatchFolder::Holds(const BatchRun& run) const {
+  std::error_code error;
+  return fs::is_regular_file(fs::path(Complete(run)) / kMarker, error);
+}
+
+std::string BatchFolder::FindRun(const std::string& sequence) const {
+  const std::vector<fs::path> sequences =
+      sequence.empty() ? FoldersIn(output_)
+                       : std::vector<fs::path>{fs::path(output_) / sequence};
+  for (const fs::path& folder : sequences) {
+    for (const fs::path& run : FoldersIn(folder)) {
+      std::error_code error;
+      if (run.extension() == kPartial || fs::exists(run / kMarker, error)) {
+        return run.string();
+      }
+    }
+  }
+  return "";
+}
+
+void BatchFolder::Begin(const BatchRun& run) const {
+  const std::string folder = Partial(run);
+  std::error_code error;
+  fs::remove_all(folder, error);
+  Check(error, folder);
+  fs::create_directories(folder, error);
+  Check(error, folder);
+}
+
+void BatchFolder::Finish(const BatchRun& run, const RunEnd& end) const {
+  const nlohmann::ordered_json json = {
+      {"status", end.status}, {"exit_code", end.exit_code}, {"hash", end.hash}};
+  WriteFileAtomically((fs::path(Partial(run)) / kMarker).string(),
+                      json.dump(2) + "\n");
+  std::error_code error;
+  fs::remove_all(Complete(run), error);
+  Check(error, Complete(run));
+  fs::rename(Partial(run), Complete(run), error);
+  Check(error, Complete(run));
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,42 @@
+#include "apps/compare/compare_sequence.h"
+
+#include "apps/shell/progress_bar.h"
+#include "frontend/sources/frame_stream.h"
+
+namespace rgbd_pose {
+
+std::vector<LossRun> CompareLosses(const Dataset& dataset,
+                                   const std::optional<Trajectory>& truth,
+                                   const std::vector<std::string>& losses,
+                                   const OdometrySettings& settings,
+                                   int threads) {
+  std::vector<Odometry> odometries;
+  std::vector<LossRun> runs;
+  for (const std::string& loss : losses) {
+    OdometrySettings own = settings;
+    own.loss = loss;
+    odometries.push_back(MakeOdometry(own, dataset.camera().camera));
+    runs.emplace_back();
+    runs.back().loss = loss;
+  }
+  {
+    ProgressBar bar("tracking", dataset.size());
+    FrameStream stream(dataset, odometries[0].prepare(), threads);
+    for (int i = 0; i < dataset.size(); ++i) {
+      const StreamedFrame next = stream.Next();
+      for (size_t k = 0; k < losses.size(); ++k) {
+        runs[k].frames.push_back(odometries[k].Track(next.frame));
+      }
+      bar.Update(i + 1);
+    }
+  }
+  for (LossRun& run : runs) {
+    run.trajectory = TrackedTrajectory(run.frames);
+    if (truth.has_value() && !run.trajectory.empty()) {
+      run.report = Evaluate(run.trajectory, *truth);
+    }
+  }
+  return runs;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,126 @@
+#include "apps/compare/compare_sweep.h"
+
+#include <cmath>
+#include <optional>
+
+#include "core/estimation/estimator.h"
+#include "core/initial_guess/ransac.h"
+#include "core/util/parallel_for.h"
+#include "costs/cost_factory.h"
+#include "frontend/simulation/synthetic_matches.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A motion as between a reference and a frame some tenths of a second later.
+constexpr double kMaxAngle = 0.1;        // rad
+constexpr double kMaxTranslation = 0.1;  // m, along each axis
+constexpr unsigned kFirstSeed = 7000;    // others than the benchmarks'
+
+struct MotionError {
+  double rotation_deg = 0.0;
+  double translation_mm = 0.0;
+};
+
+MotionError ErrorOf(const Rigid3d& estimate, const Rigid3d& truth) {
+  const Rigid3d difference = estimate.Inverse() * truth;
+  return {difference.Angle() * 180.0 / M_PI,
+          difference.translation.norm() * 1e3};
+}
+
+std::vector<SweepMethod> Methods(const std::vector<std::string>& losses) {
+  std::vector<SweepMethod> methods;
+  for (const std::string& loss : losses) {
+    for (const char* schedule : {"gnc", "direct"}) {
+      for (const bool ransac : {false, true}) {
+        methods.push_back({loss, schedule, ransac});
+      }
+    }
+  }
+  return methods;
+}
+
+Estimator MakeEstimator(const std::string& cost, const SweepMethod& method) {
+  EstimatorOptions options;
+  options.schedule =
+      method.schedule == "gnc" ? RobustSchedule::kGnc : RobustSchedule::kDirect;
+  return Estimator(options, MakeRobustCosts(cost, method.loss));
+}
+
+// The errors of all methods on the matches of one seed.
+std::vector<MotionError> RunSeed(int seed, double outlier_share, int matches,
+                                 const std::vector<SweepMethod>& methods,
+                                 std::vector<Estimator>* estimators) {
+  RandomWorld world(kFirstSeed + seed);
+  const Rigid3d truth = world.Motion(kMaxAngle, kMaxTranslation);
+  const Correspondences found = world.Matches(matches, outlier_share, truth);
+  const std::optional<Consensus> consensus = FindByRansac(found);
+  const Rigid3d ransac =
+      consensus.has_value() ? consensus->cur_from_prev : Rigid3d();
+  std::vector<MotionError> errors;
+  for (size_t i = 0; i < methods.size(); ++i) {
+    const Rigid3d guess = methods[i].ransac ? ransac : Rigid3d();
+    errors.push_back(
+        ErrorOf((*estimators)[i].Estimate(found, guess).cur_from_prev, truth));
+  }
+  return errors;
+}
+
+}  // namespace
+
+std::vector<SweepCell> RunSweep(const SweepOptions& options) {
+  const std::vector<SweepMethod> methods = Methods(options.losses);
+  // An estimator serves one thread at a time.
+  std::vector<std::vector<Estimator>> estimators(options.threads);
+  for (std::vector<Estimator>& own : estimators) {
+    for (const SweepMethod& method : methods) {
+      own.push_back(MakeEstimator(options.cost, method));
+    }
+  }
+  std::vector<SweepCell> cells(methods.size() * kSweepShares);
+  for (int share = 0; share < kSweepShares; ++share) {
+    std::vector<std::vector<MotionError>> errors(options.seeds);
+    ParallelFor(options.threads, options.threads, [&](int thread) {
+      for (int seed = thread; seed < options.seeds; seed += options.threads) {
+        errors[seed] = RunSeed(seed, SweepShare(share), options.matches,
+                               methods, &estimators[thread]);
+      }
+    });
+    for (size_t i = 0; i < methods.size(); ++i) {
+      std::vector<double> rotations, translations;
+      for (const std::vector<MotionError>& of_seed : errors) {
+        rotations.push_back(of_seed[i].rotation_deg);
+        translations.push_back(of_seed[i].translation_mm);
+      }
+      cells[i * kSweepShares + share] = {methods[i], SweepShare(share),
+                                         FindMedianBand(rotations),
+                                         FindMedianBand(translations)};
+    }
+  }
+  return cells;
+}
+
+std::vector<SweepCell> CellsOf(const std::vector<SweepCell>& cells,
+                               const SweepMethod& method) {
+  std::vector<SweepCell> chosen;
+  for (const SweepCell& cell : cells) {
+    if (cell.method.loss == method.loss &&
+        cell.method.schedule == method.schedule &&
+        cell.method.ransac == method.ransac) {
+      chosen.push_back(cell);
+    }
+  }
+  return chosen;
+}
+
+std::vector<std::string> LossesOf(const std::vector<SweepCell>& cells) {
+  std::vector<std::string> losses;
+  for (const SweepCell& cell : cells) {
+    if (losses.empty() || losses.back() != cell.method.loss) {
+      losses.push_back(cell.method.loss);
+    }
+  }
+  return losses;
+}
+
+}  // namespace rgbd_pose

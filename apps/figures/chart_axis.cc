@@ -1,0 +1,76 @@
+#include "apps/figures/chart_axis.h"
+
+#include <algorithm>
+
+namespace rgbd_pose {
+
+void AxisRangeFinder::Add(double value) {
+  if (!std::isfinite(value)) return;
+  low_ = std::min(low_, value);
+  high_ = std::max(high_, value);
+}
+
+AxisRange AxisRangeFinder::Found() const {
+  if (!(low_ <= high_)) return {};
+  if (low_ == high_) return {low_ - 0.5, high_ + 0.5};
+  const double room = 0.04 * (high_ - low_);
+  return {low_ - room, high_ + room};
+}
+
+std::vector<AxisTic> LinearTics(const AxisRange& range) {
+  const double power = std::pow(10.0, std::floor(std::log10(range.span())));
+  const double step = range.span() < 1.5 * power   ? 0.2 * power
+                      : range.span() < 3.5 * power ? 0.5 * power
+                      : range.span() < 7.0 * power ? power
+                                                   : 2.0 * power;
+  std::vector<AxisTic> tics;
+  for (double i = std::ceil(range.low / step); i * step <= range.high; ++i) {
+    tics.push_back({i * step, i * step + 0.0});  // no -0
+  }
+  return tics;
+}
+
+std::vector<AxisTic> LogTics(const AxisRange& range) {
+  constexpr double kFewPowers = 2.5;
+  std::vector<AxisTic> tics;
+  for (double power = std::floor(range.low); power <= range.high; ++power) {
+    for (const double digit : {1.0, 2.0, 5.0}) {
+      const double place = power + std::log10(digit);
+      if (place < range.low || place > range.high) continue;
+      if (digit > 1.0 && range.span() >= kFewPowers) continue;
+      tics.push_back({place, digit * std::pow(10.0, power)});
+    }
+  }
+  return tics;
+}
+
+std::vector<double> SpreadOut(const std::vector<double>& places,
+                              double distance) {
+  // Neighbours that touch move as one, around the middle of where they belong.
+  struct Run {
+    double sum;  // of the places, each without its shift within the run
+    int count;
+    double First() const { return sum / count; }
+  };
+  std::vector<Run> runs;
+  for (const double place : places) {
+    runs.push_back({place, 1});
+    while (runs.size() > 1) {
+      const Run last = runs.back();
+      Run& before = runs[runs.size() - 2];
+      if (last.First() >= before.First() + before.count * distance) break;
+      before.sum += last.sum - last.count * before.count * distance;
+      before.count += last.count;
+      runs.pop_back();
+    }
+  }
+  std::vector<double> spread;
+  for (const Run& run : runs) {
+    for (int i = 0; i < run.count; ++i) {
+      spread.push_back(run.First() + i * distance);
+    }
+  }
+  return spread;
+}
+
+}  // namespace rgbd_pose

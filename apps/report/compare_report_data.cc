@@ -1,0 +1,216 @@
+#include "apps/report/compare_report_data.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <map>
+#include <vector>
+
+#include "apps/compare/compare_paths.h"
+#include "apps/compare/compare_sweep_report.h"
+#include "apps/compare/compare_sweep_verdict.h"
+#include "apps/report/report_settings.h"
+#include "apps/report/report_thinning.h"
+#include "apps/shell/csv_table.h"
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+using nlohmann::json;
+
+// The rows of a table that belong to one path: [begin, end).
+struct PathRows {
+  std::string sequence;
+  std::string loss;
+  size_t begin = 0;
+  size_t end = 0;
+};
+
+std::vector<PathRows> FindPaths(const CsvTable& table) {
+  const std::vector<std::string> sequences = table.Words("sequence");
+  const std::vector<std::string> losses = table.Words("loss");
+  std::vector<PathRows> paths;
+  for (size_t i = 0; i < table.size(); ++i) {
+    if (paths.empty() || paths.back().sequence != sequences[i] ||
+        paths.back().loss != losses[i]) {
+      paths.push_back({sequences[i], losses[i], i, i});
+    }
+    paths.back().end = i + 1;
+  }
+  return paths;
+}
+
+// paths.csv as columns of numbers.
+class PathTable {
+ public:
+  explicit PathTable(const CsvTable& table) {
+    for (const char* name :
+         {"timestamp", "x", "y", "z", "qx", "qy", "qz", "qw", "distance_m",
+          "angle_deg", "rpe_seconds_m", "rpe_seconds_deg"}) {
+      columns_[name] = table.Numbers(name);
+    }
+  }
+
+  std::vector<double> Rows(const std::string& name,
+                           const PathRows& rows) const {
+    const std::vector<double>& all = columns_.at(name);
+    return {all.begin() + rows.begin, all.begin() + rows.end};
+  }
+
+  // The axis that points down in the first known picture of a path, as the
+  // world has it: cameras are held upright.
+  json Down(const PathRows& rows) const {
+    for (size_t i = rows.begin; i < rows.end; ++i) {
+      const Eigen::Quaterniond rotation(
+          columns_.at("qw")[i], columns_.at("qx")[i], columns_.at("qy")[i],
+          columns_.at("qz")[i]);
+      if (!rotation.coeffs().allFinite()) continue;
+      const Eigen::Vector3d down = rotation * Eigen::Vector3d::UnitY();
+      return {down.x(), down.y(), down.z()};
+    }
+    return {0.0, 1.0, 0.0};
+  }
+
+ private:
+  std::map<std::string, std::vector<double>> columns_;
+};
+
+// Times since the first frame, s.
+std::vector<double> Elapsed(std::vector<double> times) {
+  for (size_t i = times.size(); i-- > 0;) times[i] -= times[0];
+  return times;
+}
+
+json PathColumns(const PathTable& table, const PathRows& rows,
+                 const ReportThinning& thinning) {
+  json path;
+  for (const char* name : {"x", "y", "z"}) {
+    path[name] = thinning.First(table.Rows(name, rows), 5);
+  }
+  if (rows.loss == kTruthName) return path;
+  for (const char* name : {"distance_m", "rpe_seconds_m"}) {
+    path[name] = thinning.Largest(table.Rows(name, rows), 6);
+  }
+  for (const char* name : {"angle_deg", "rpe_seconds_deg"}) {
+    path[name] = thinning.Largest(table.Rows(name, rows), 5);
+  }
+  return path;
+}
+
+// Rows of tables.csv: [sequence][loss] = {figure: number or null}.
+json Figures(const CsvTable& table) {
+  const std::vector<std::string> sequences = table.Words("sequence");
+  const std::vector<std::string> losses = table.Words("loss");
+  json figures;
+  for (const char* name :
+       {"alpha_deg", "beta_deg", "gamma_deg", "cx_mm", "cy_mm", "cz_mm",
+        "end_deg", "end_mm", "ate_mm", "rpe_seconds_mm", "rpe_seconds_deg",
+        "tracked_share"}) {
+    const std::vector<double> numbers = table.Numbers(name);
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      figures[sequences[i]][losses[i]][name] =
+          std::isnan(numbers[i]) ? json() : json(numbers[i]);
+    }
+  }
+  return figures;
+}
+
+json Sequences(const std::string& tables_file, const std::string& paths_file) {
+  const json figures = Figures(CsvTable::Read(tables_file));
+  const CsvTable table = CsvTable::Read(paths_file);
+  const PathTable numbers(table);
+  const std::vector<PathRows> paths = FindPaths(table);
+  const size_t max_points =
+      kMaxComparedPoints / std::max<size_t>(paths.size(), 1);
+  json sequences = json::array();
+  for (const PathRows& rows : paths) {
+    const ReportThinning thinning(rows.end - rows.begin, max_points);
+    if (sequences.empty() || sequences.back().at("name") != rows.sequence) {
+      sequences.push_back(
+          {{"name", rows.sequence},
+           {"num_frames", rows.end - rows.begin},
+           {"every", thinning.every()},
+           {"down", numbers.Down(rows)},
+           {"t", thinning.First(Elapsed(numbers.Rows("timestamp", rows)), 4)},
+           {"losses", json::array()}});
+    }
+    json& sequence = sequences.back();
+    if (rows.end - rows.begin != sequence.at("num_frames")) {
+      throw InputError(paths_file + ": " + rows.loss +
+                       " has not as many rows as the path before; repeat the "
+                       "comparison");
+    }
+    json path = PathColumns(numbers, rows, thinning);
+    if (rows.loss == kTruthName) {
+      sequence["truth"] = path;
+      continue;
+    }
+    if (!figures.contains(rows.sequence) ||
+        !figures.at(rows.sequence).contains(rows.loss)) {
+      throw InputError(tables_file + ": no row of " + rows.loss + " on " +
+                       rows.sequence + "; repeat the comparison");
+    }
+    path["name"] = rows.loss;
+    path["figures"] = figures.at(rows.sequence).at(rows.loss);
+    sequence["losses"].push_back(path);
+  }
+  return sequences;
+}
+
+json BandColumns(const std::vector<SweepCell>& cells,
+                 MedianBand SweepCell::*band) {
+  json columns;
+  for (const SweepCell& cell : cells) {
+    const MedianBand& own = cell.*band;
+    columns["median"].push_back(own.median);
+    columns["low"].push_back(own.low);
+    columns["high"].push_back(own.high);
+    columns["p90"].push_back(own.p90);
+  }
+  return columns;
+}
+
+// One method a loss, schedule and start, with its errors at all shares.
+json Methods(const std::vector<SweepCell>& cells) {
+  json methods = json::array();
+  for (const std::string& loss : LossesOf(cells)) {
+    for (const char* schedule : {"gnc", "direct"}) {
+      for (const bool ransac : {false, true}) {
+        const std::vector<SweepCell> own =
+            CellsOf(cells, {loss, schedule, ransac});
+        methods.push_back(
+            {{"loss", loss},
+             {"schedule", schedule},
+             {"ransac", ransac},
+             {"translation_mm", BandColumns(own, &SweepCell::translation_mm)},
+             {"rotation_deg", BandColumns(own, &SweepCell::rotation_deg)}});
+      }
+    }
+  }
+  return methods;
+}
+
+}  // namespace
+
+json CompareReportData(const std::string& folder) {
+  const auto file = [&folder](const char* name) {
+    return (std::filesystem::path(folder) / name).string();
+  };
+  json data = {{"settings", ReadReportSettings(file("config.flags"))}};
+  // Both kinds of files may be there, of one comparison after another.
+  if (SettingOf(data["settings"], "experiment") == "sweep") {
+    const std::vector<SweepCell> cells = ReadSweepCsv(file("sweep.csv"));
+    for (int i = 0; i < kSweepShares; ++i) {
+      data["wrong_percent"].push_back(std::round(SweepShare(i) * 100.0));
+    }
+    data["methods"] = Methods(cells);
+    data["verdict"] = SweepVerdict(cells);
+  } else {
+    data["sequences"] = Sequences(file("tables.csv"), file("paths.csv"));
+  }
+  return data;
+}
+
+}  // namespace rgbd_pose

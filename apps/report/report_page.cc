@@ -1,0 +1,91 @@
+#include "apps/report/report_page.h"
+
+#include <filesystem>
+#include <string>
+
+#include "apps/report/batch_report_data.h"
+#include "apps/report/compare_report_data.h"
+#include "apps/report/report_assets.h"
+#include "apps/report/run_report_data.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+void ReplaceAll(std::string_view from, std::string_view to, std::string* text) {
+  for (size_t at = 0; (at = text->find(from, at)) != std::string::npos;) {
+    text->replace(at, from.size(), to);
+    at += to.size();
+  }
+}
+
+// In strings of a script, the only place where it occurs, this means the same
+// but does not end the script for the browser.
+std::string InlineScript(std::string_view script) {
+  std::string text(script);
+  ReplaceAll("</script", "<\\/script", &text);
+  ReplaceAll("<!--", "<\\!--", &text);
+  return text;
+}
+
+std::string InlineData(const nlohmann::json& data) {
+  // Words that are no UTF-8 (names of folders) must not stop a report.
+  std::string text = data.dump(-1, ' ', /*ensure_ascii=*/false,
+                               nlohmann::json::error_handler_t::replace);
+  ReplaceAll("<", "\\u003c", &text);
+  return text;
+}
+
+std::string WritePage(const std::string& folder, const std::string& page) {
+  std::string path = (std::filesystem::path(folder) / "report.html").string();
+  WriteFileAtomically(path, page);
+  return path;
+}
+
+}  // namespace
+
+bool HasReportLibrary() { return !EmbeddedReportAssets().library.empty(); }
+
+std::string ReportPage(std::string_view kind, const nlohmann::json& data) {
+  const ReportAssets assets = EmbeddedReportAssets();
+  const struct {
+    std::string_view place;
+    std::string content;
+  } kParts[] = {
+      {"%STYLE%", std::string(assets.style)},
+      {"%KIND%", std::string(kind)},
+      {"%DATA%", InlineData(data)},
+      {"%LICENSE%", std::string(assets.library_license)},
+      {"%LIBRARY%", InlineScript(assets.library)},
+      {"%SCRIPT%", InlineScript(assets.script)},
+  };
+  // In the order of the page, so that no place is looked for in a content.
+  std::string page;
+  size_t done = 0;
+  for (const auto& part : kParts) {
+    const size_t at = assets.page.find(part.place, done);
+    page += assets.page.substr(done, at - done);
+    page += part.content;
+    done = at + part.place.size();
+  }
+  page += assets.page.substr(done);
+  return page;
+}
+
+std::string WriteRunReport(const std::string& run_folder) {
+  return WritePage(run_folder, ReportPage("run", RunReportData(run_folder)));
+}
+
+std::string WriteBatchReport(const std::string& batch_folder) {
+  return WritePage(batch_folder,
+                   ReportPage("batch", BatchReportData(batch_folder)));
+}
+
+std::string WriteComparisonReport(const std::string& folder) {
+  const nlohmann::json data = CompareReportData(folder);
+  return WritePage(
+      folder,
+      ReportPage(data.contains("sequences") ? "comparison" : "sweep", data));
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,210 @@
+#include "apps/report/run_report_data.h"
+
+#include <ceres/loss_function.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <vector>
+
+#include "apps/report/report_settings.h"
+#include "apps/report/report_thinning.h"
+#include "apps/results/cloud_preview.h"
+#include "apps/shell/csv_table.h"
+#include "core/evaluation/trajectory.h"
+#include "core/util/chi_squared.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "robust/m_estimator.h"
+
+namespace rgbd_pose {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// 0 ok, 1 degraded, 2 lost
+std::vector<double> StatusCodes(const CsvTable& frames) {
+  std::vector<double> codes;
+  for (const std::string& word : frames.Words("status")) {
+    codes.push_back(word == "ok" ? 0 : word == "degraded" ? 1 : 2);
+  }
+  return codes;
+}
+
+// Times since the first frame, s.
+std::vector<double> Elapsed(const CsvTable& frames) {
+  std::vector<double> times = frames.Numbers("timestamp");
+  for (size_t i = times.size(); i-- > 0;) times[i] -= times[0];
+  return times;
+}
+
+// Stretches of frames that are not ok, each with the reason of its first.
+json Incidents(const CsvTable& frames) {
+  constexpr size_t kMaxIncidents = 100;
+  const std::vector<std::string> status = frames.Words("status");
+  const std::vector<std::string> reason = frames.Words("reason");
+  const std::vector<double> times = Elapsed(frames);
+  json list = json::array();
+  size_t begin = 0;
+  while (begin < status.size()) {
+    size_t end = begin + 1;
+    while (end < status.size() && status[end] == status[begin]) ++end;
+    if (status[begin] != "ok" && list.size() < kMaxIncidents) {
+      list.push_back({{"first", begin},
+                      {"last", end - 1},
+                      {"from_s", times[begin]},
+                      {"to_s", times[end - 1]},
+                      {"status", status[begin]},
+                      {"reason", reason[begin]}});
+    }
+    begin = end;
+  }
+  return list;
+}
+
+json FrameColumns(const CsvTable& frames, const ReportThinning& thinning) {
+  json columns = {{"t", thinning.First(Elapsed(frames), 4)},
+                  {"status", thinning.Largest(StatusCodes(frames), 0)},
+                  {"segment", thinning.First(frames.Numbers("segment"), 0)},
+                  {"sigma", thinning.Largest(frames.Numbers("sigma"), 3)}};
+  for (const char* name : {"matches", "inliers"}) {
+    columns[name] = thinning.First(frames.Numbers(name), 0);
+  }
+  columns["is_reference"] = thinning.Largest(frames.Numbers("is_reference"), 0);
+  for (const char* name : {"decode_ms", "track_ms", "match_ms", "solve_ms",
+                           "reference_ms", "relocalise_ms"}) {
+    columns[name] = thinning.Largest(frames.Numbers(name), 3);
+  }
+  return columns;
+}
+
+// Positions of all frames, null where lost; trajectory.txt has the others.
+json EstimatedPath(const CsvTable& frames, const std::string& trajectory_file,
+                   const ReportThinning& thinning) {
+  const std::vector<double> status = StatusCodes(frames);
+  const size_t tracked = std::count_if(status.begin(), status.end(),
+                                       [](double code) { return code < 2; });
+  Trajectory trajectory;
+  if (tracked > 0) trajectory = ReadTrajectory(trajectory_file);
+  if (trajectory.size() != tracked) {
+    throw InputError(trajectory_file + ": " +
+                     std::to_string(trajectory.size()) + " poses, but " +
+                     std::to_string(tracked) +
+                     " frames of frames.csv have one; repeat the run");
+  }
+  std::vector<double> axes[3];
+  size_t next = 0;
+  for (const double code : status) {
+    for (int k = 0; k < 3; ++k) {
+      axes[k].push_back(
+          code < 2 ? trajectory[next].world_from_cam.translation[k] : kNaN);
+    }
+    next += code < 2;
+  }
+  return {{"x", thinning.First(axes[0], 4)},
+          {"y", thinning.First(axes[1], 4)},
+          {"z", thinning.First(axes[2], 4)}};
+}
+
+// The path in the world of the ground truth, and the errors of each frame.
+void AddErrors(const std::string& file, const ReportThinning& thinning,
+               json* data) {
+  const CsvTable table = CsvTable::Read(file);
+  json path;
+  for (const char* name : {"x", "y", "z", "true_x", "true_y", "true_z"}) {
+    path[name] = thinning.First(table.Numbers(name), 4);
+  }
+  (*data)["path"] = path;
+  (*data)["errors"] = {
+      {"position_m", thinning.Largest(table.Numbers("position_error_m"), 6)},
+      {"rpe_m", thinning.Largest(table.Numbers("rpe_m"), 6)},
+      {"rpe_deg", thinning.Largest(table.Numbers("rpe_deg"), 4)}};
+}
+
+// The number of degrees of freedom that most residuals of the run have; 0 if
+// there are none.
+int CommonDegrees(const json& metrics, const std::string& file) {
+  const json::json_pointer place("/residuals/degrees_counts");
+  const json counts = metrics.contains(place) ? metrics.at(place) : json();
+  if (!counts.is_array() ||
+      !std::all_of(counts.begin(), counts.end(),
+                   [](const json& count) { return count.is_number(); })) {
+    throw InputError(file + ": no list of numbers at " + place.to_string() +
+                     "; repeat the run");
+  }
+  return static_cast<int>(std::max_element(counts.begin(), counts.end()) -
+                          counts.begin());
+}
+
+// The weight that the run's loss gives a norm, and the norm up to which a match
+// counts as in agreement; null where several costs each
+// have their own.
+json LossCurve(const json& data, const std::string& metrics_file) {
+  constexpr double kStep = 0.05;
+  constexpr int kSteps = 160;
+  const json& metrics = data.at("metrics");
+  const MEstimator* row =
+      FindMEstimator(SettingOf(data.at("settings"), "loss"));
+  const bool several =
+      SettingOf(data.at("settings"), "cost").find('+') != std::string::npos;
+  if (row == nullptr || several || !metrics.contains("residuals")) {
+    return nullptr;
+  }
+  const int dimension = CommonDegrees(metrics, metrics_file);
+  if (dimension == 0) return nullptr;
+  const std::unique_ptr<ceres::LossFunction> loss = row->MakeLoss(dimension);
+  json weights = json::array();
+  for (int i = 0; i <= kSteps; ++i) {
+    const double x = i * kStep;
+    double rho[3] = {x * x, 1.0, 0.0};
+    if (loss != nullptr) loss->Evaluate(x * x, rho);
+    weights.push_back(std::round(std::min(rho[1], 1.0) * 1e4) / 1e4);
+  }
+  return {{"name", row->name},
+          {"width", loss ? json(row->Width95(dimension)) : json(nullptr)},
+          {"limit", std::sqrt(ChiSquared99(dimension))},
+          {"step", kStep},
+          {"weights", weights}};
+}
+
+json ParseJson(const std::string& file) {
+  json value =
+      json::parse(ReadTextFile(file), nullptr, /*allow_exceptions=*/false);
+  if (!value.is_object()) {
+    throw InputError(file + ": is no JSON object; repeat the run");
+  }
+  return value;
+}
+
+}  // namespace
+
+json RunReportData(const std::string& run_folder) {
+  const std::filesystem::path folder(run_folder);
+  const auto file = [&](const char* name) { return (folder / name).string(); };
+  const CsvTable frames = CsvTable::Read(file("frames.csv"));
+  const ReportThinning thinning(frames.size(), kMaxReportPoints);
+  json data = {{"num_frames", frames.size()},
+               {"every", thinning.every()},
+               {"frames", FrameColumns(frames, thinning)},
+               {"incidents", Incidents(frames)},
+               {"metrics", ParseJson(file("metrics.json"))},
+               {"settings", ReadReportSettings(file("config.flags"))}};
+  if (std::filesystem::exists(folder / "errors.csv")) {
+    AddErrors(file("errors.csv"), thinning, &data);
+  } else {
+    data["path"] = EstimatedPath(frames, file("trajectory.txt"), thinning);
+  }
+  data["loss"] = LossCurve(data, file("metrics.json"));
+  // Older files of the folder's name may be of another run.
+  if (data["metrics"].contains("cloud") &&
+      std::filesystem::exists(folder / kCloudPreviewFile)) {
+    data["cloud"] = ParseJson(file(kCloudPreviewFile));
+  }
+  return data;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,73 @@
+#include "apps/results/cloud_preview.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <string>
+
+namespace rgbd_pose {
+namespace {
+
+// The greatest number of 16 bits.
+constexpr double kMaxStep = 65535.0;
+
+// RFC 4648.
+std::string Base64(const std::string& bytes) {
+  constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t bits = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      const size_t at = i + k;
+      bits =
+          bits << 8 | (at < bytes.size() ? static_cast<uint8_t>(bytes[at]) : 0);
+    }
+    for (size_t k = 0; k < 4; ++k) {
+      text += i + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
+    }
+  }
+  return text;
+}
+
+}  // namespace
+
+nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
+                            const Rigid3d& shown_from_world) {
+  std::vector<Eigen::Vector3d> positions;
+  positions.reserve(points.size());
+  for (const ColoredPoint& point : points) {
+    positions.push_back(shown_from_world * point.position.cast<double>());
+  }
+  Eigen::Vector3d low = Eigen::Vector3d::Zero();
+  Eigen::Vector3d high = Eigen::Vector3d::Zero();
+  if (!positions.empty()) low = high = positions.front();
+  for (const Eigen::Vector3d& position : positions) {
+    low = low.cwiseMin(position);
+    high = high.cwiseMax(position);
+  }
+  // One step for all axes; a cloud of one point needs none.
+  const double span = (high - low).maxCoeff();
+  const double step = span > 0.0 ? span / kMaxStep : 1.0;
+  std::string position_bytes, color_bytes;
+  for (size_t i = 0; i < points.size(); ++i) {
+    for (int k = 0; k < 3; ++k) {
+      const auto steps =
+          static_cast<uint16_t>(std::lround((positions[i](k) - low(k)) / step));
+      position_bytes += static_cast<char>(steps & 0xFF);
+      position_bytes += static_cast<char>(steps >> 8);
+    }
+    for (const uint8_t value :
+         {points[i].red, points[i].green, points[i].blue}) {
+      color_bytes += static_cast<char>(value);
+    }
+  }
+  return {{"points", points.size()},
+          {"origin_m", {low.x(), low.y(), low.z()}},
+          {"step_m", step},
+          {"positions", Base64(position_bytes)},
+          {"colors", Base64(color_bytes)}};
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,122 @@
+#include "apps/results/evaluation_report.h"
+
+#include <vector>
+
+#include "apps/shell/format.h"
+
+namespace rgbd_pose {
+namespace {
+
+using nlohmann::json;
+
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+constexpr char kAteDefinition[] = "rigid alignment, no scale";
+constexpr char kFinalPoseDefinition[] = "last pose relative to the first";
+
+struct RelativeEntry {
+  std::string key;
+  std::string definition;
+  double delta;
+  const RelativePoseError& error;
+};
+
+std::vector<RelativeEntry> RelativeEntries(const EvaluationReport& report) {
+  const double seconds = report.options.rpe_delta_seconds;
+  const double metres = report.options.rpe_delta_metres;
+  return {
+      {"rpe_frame", "fixed delta 1 frame, consecutive poses", 1.0,
+       report.rpe_frame},
+      {"rpe_seconds", Format("fixed delta %g s", seconds), seconds,
+       report.rpe_seconds},
+      {"rpe_metres", Format("fixed delta %g m of ground-truth path", metres),
+       metres, report.rpe_metres}};
+}
+
+ErrorStatistics InDegrees(const ErrorStatistics& radians) {
+  ErrorStatistics degrees = radians;
+  for (double* value :
+       {&degrees.rmse, &degrees.median, &degrees.mean, &degrees.max}) {
+    *value *= kDegreesPerRadian;
+  }
+  return degrees;
+}
+
+std::string FormatStatistics(const char* quantity, const ErrorStatistics& e) {
+  if (e.count == 0) return Format("  %-30s%12s\n", quantity, "n/a");
+  return Format("  %-30s%12.5f%12.5f%12.5f%12.5f\n", quantity, e.rmse, e.median,
+                e.mean, e.max);
+}
+
+json StatisticsToJson(const ErrorStatistics& e) {
+  if (e.count == 0) return nullptr;
+  return {
+      {"rmse", e.rmse}, {"median", e.median}, {"mean", e.mean}, {"max", e.max}};
+}
+
+json PoseToJson(const Rigid3d& pose) {
+  const Eigen::Vector3d& t = pose.translation;
+  const Eigen::Quaterniond& q = pose.rotation;
+  return {{"translation_m", {t.x(), t.y(), t.z()}},
+          {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
+}
+
+}  // namespace
+
+std::string FormatEvaluation(const EvaluationReport& report) {
+  std::string text =
+      Format("%d of %d estimated poses have a ground truth within %g s;\n",
+             report.paired_poses, report.estimated_poses,
+             report.options.max_time_difference);
+  text += Format("they span %.3f s and %.3f m of path.\n\n", report.duration,
+                 report.path_length);
+  text +=
+      Format("%-32s%12s%12s%12s%12s\n", "", "RMSE", "median", "mean", "max");
+  text += Format("ATE, %s (%d poses)\n", kAteDefinition, report.ate.count);
+  text += FormatStatistics("position (m)", report.ate);
+  for (const RelativeEntry& entry : RelativeEntries(report)) {
+    text += Format("RPE, %s (%d pairs)\n", entry.definition.c_str(),
+                   entry.error.translation.count);
+    text += FormatStatistics("translation (m)", entry.error.translation);
+    text += FormatStatistics("rotation (deg)", InDegrees(entry.error.rotation));
+  }
+  text += Format("Final pose error, %s\n", kFinalPoseDefinition);
+  if (!report.final_pose) return text + Format("  %-30s%12s\n", "", "n/a");
+  text += Format("  %-30s%12.5f\n", "translation (m)",
+                 report.final_pose->translation);
+  text += Format("  %-30s%12.5f\n", "rotation (deg)",
+                 report.final_pose->angle * kDegreesPerRadian);
+  return text;
+}
+
+json EvaluationToJson(const EvaluationReport& report) {
+  json result = {
+      {"estimated_poses", report.estimated_poses},
+      {"paired_poses", report.paired_poses},
+      {"max_time_difference_s", report.options.max_time_difference},
+      {"duration_s", report.duration},
+      {"path_length_m", report.path_length},
+      {"ate",
+       {{"definition", kAteDefinition},
+        {"count", report.ate.count},
+        {"position_m", StatisticsToJson(report.ate)}}},
+      {"truth_from_estimate", PoseToJson(report.truth_from_estimate)},
+      {"final_pose", nullptr}};
+  for (const RelativeEntry& entry : RelativeEntries(report)) {
+    result[entry.key] = {
+        {"definition", entry.definition},
+        {"delta", entry.delta},
+        {"count", entry.error.translation.count},
+        {"translation_m", StatisticsToJson(entry.error.translation)},
+        {"rotation_deg", StatisticsToJson(InDegrees(entry.error.rotation))}};
+  }
+  if (report.final_pose) {
+    result["final_pose"] = {
+        {"definition", kFinalPoseDefinition},
+        {"translation_m", report.final_pose->translation},
+        {"rotation_deg", report.final_pose->angle * kDegreesPerRadian}};
+  }
+  return result;
+}
+
+}  // namespace rgbd_pose

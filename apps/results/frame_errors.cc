@@ -1,0 +1,69 @@
+#include "apps/results/frame_errors.h"
+
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+#include "core/evaluation/pose_pairs.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kDegreesPerRadian = 57.29577951308232;
+
+void AddNumber(double value, std::string* row) {
+  char text[64];
+  std::snprintf(text, sizeof(text), ",%.6f", value);
+  *row += text;
+}
+
+void AddPosition(const Eigen::Vector3d& position, std::string* row) {
+  for (const double value : position) AddNumber(value, row);
+}
+
+}  // namespace
+
+std::string FormatErrorsCsv(const std::vector<TrackedFrame>& frames,
+                            const Trajectory& truth,
+                            const EvaluationReport& report) {
+  std::string text =
+      "timestamp,true_x,true_y,true_z,x,y,z,position_error_m,rpe_m,rpe_deg\n";
+  std::vector<double> times;
+  times.reserve(truth.size());
+  for (const StampedPose& pose : truth) times.push_back(pose.timestamp);
+  auto error = report.poses.begin();
+  for (const TrackedFrame& frame : frames) {
+    char stamp[64];
+    std::snprintf(stamp, sizeof(stamp), "%.6f", frame.timestamp);
+    text += stamp;
+    const size_t nearest = NearestTime(times, frame.timestamp);
+    if (std::abs(times[nearest] - frame.timestamp) <=
+        report.options.max_time_difference) {
+      AddPosition(truth[nearest].world_from_cam.translation, &text);
+    } else {
+      text += ",,,";
+    }
+    if (frame.status == TrackingStatus::kLost) {
+      text += ",,,,,,\n";
+      continue;
+    }
+    AddPosition(report.truth_from_estimate * frame.world_from_cam.translation,
+                &text);
+    if (error == report.poses.end() || error->timestamp != frame.timestamp) {
+      text += ",,,\n";
+      continue;
+    }
+    AddNumber(error->position, &text);
+    if (error->rpe_translation.has_value()) {
+      AddNumber(*error->rpe_translation, &text);
+      AddNumber(*error->rpe_rotation * kDegreesPerRadian, &text);
+    } else {
+      text += ",,";
+    }
+    text += "\n";
+    ++error;
+  }
+  return text;
+}
+
+}  // namespace rgbd_pose

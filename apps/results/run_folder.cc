@@ -1,0 +1,110 @@
+#include "apps/results/run_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <system_error>
+#include <vector>
+
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kAside[] = ".rgbd_odometry.partial";
+constexpr char kLock[] = "lock";
+constexpr char kLast[] = "metrics.json";
+constexpr const char* kResults[] = {
+    kLast,        "report.html",  "errors.csv",        "trajectory.txt",
+    "frames.csv", "config.flags", "cloud_preview.json"};
+
+[[noreturn]] void Fail(const fs::path& folder, const std::error_code& error) {
+  throw InputError("--output: " + folder.string() +
+                   " cannot be made or written to (" + error.message() + ")");
+}
+
+// Whether an open file is still the one of that path.
+bool IsAt(int file, const fs::path& path) {
+  struct stat open_one, one_there;
+  return fstat(file, &open_one) == 0 && stat(path.c_str(), &one_there) == 0 &&
+         open_one.st_dev == one_there.st_dev &&
+         open_one.st_ino == one_there.st_ino;
+}
+
+std::vector<fs::path> FilesBelow(const fs::path& folder) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_directory()) {
+      files.push_back(entry.path().lexically_relative(folder));
+    }
+  }
+  return files;
+}
+
+}  // namespace
+
+RunFolder::RunFolder(const std::string& path)
+    : path_(path), aside_(path_ / kAside) {
+  std::error_code error;
+  is_new_ = fs::create_directories(path_, error);
+  if (error) Fail(path_, error);
+  Lock();
+  for (const auto& entry : fs::directory_iterator(aside_, error)) {
+    // Of a run that was killed.
+    if (entry.path().filename() != kLock) fs::remove_all(entry, error);
+  }
+}
+
+// The last run to have the folder removes the lock; who opened it just before
+// that has to make a new one.
+void RunFolder::Lock() {
+  const fs::path file = aside_ / kLock;
+  do {
+    if (lock_ >= 0) close(lock_);
+    std::error_code error;
+    fs::create_directories(aside_, error);
+    if (error) Fail(path_, error);
+    lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock_ < 0 && errno == ENOENT) continue;
+    if (lock_ < 0) Fail(path_, {errno, std::generic_category()});
+    // File systems without locks have to do without.
+    if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      close(lock_);
+      throw InputError("--output: " + path_.string() +
+                       ": another rgbd_odometry writes its results here; wait "
+                       "for it or choose another folder");
+    }
+  } while (!IsAt(lock_, file));
+}
+
+RunFolder::~RunFolder() {
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(aside_, ignored)) {
+    if (entry.path().filename() != kLock) fs::remove_all(entry, ignored);
+  }
+  fs::remove(aside_ / kLock, ignored);
+  fs::remove(aside_, ignored);
+  if (is_new_) fs::remove(path_, ignored);  // if it is empty
+  close(lock_);
+}
+
+void RunFolder::Publish() {
+  try {
+    for (const char* name : kResults) fs::remove(path_ / name);
+    for (const fs::path& file : FilesBelow(aside_)) {
+      if (file == kLock || file == kLast) continue;
+      fs::create_directories((path_ / file).parent_path());
+      fs::rename(aside_ / file, path_ / file);
+    }
+    fs::rename(aside_ / kLast, path_ / kLast);
+  } catch (const fs::filesystem_error& error) {
+    Fail(path_, error.code());
+  }
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "frontend/tracking/tracked_frame.h"
+
+namespace rgbd_pose {
+
+// What a run comes to.
+struct RunSummary {
+  int frames = 0;
+  int ok = 0;
+  int degraded = 0;
+  int lost = 0;
+  int references = 0;
+  int segments = 0;
+  int relocalised = 0;
+  // Of the frames that were matched against a reference.
+  double median_matches = 0.0;
+  double median_inlier_share = 0.0;
+  double median_decode_ms = 0.0;
+  double median_track_ms = 0.0;
+  double p99_track_ms = 0.0;
+  // Of the frames in which they took place.
+  double median_match_ms = 0.0;
+  double median_solve_ms = 0.0;
+  double median_reference_ms = 0.0;
+  double median_relocalise_ms = 0.0;
+
+  // Of the whole program, up to the last frame.
+  int threads = 0;
+  double wall_seconds = 0.0;
+
+  // Share of frames with a pose, 0 to 1.
+  double TrackedShare() const {
+    return frames > 0 ? static_cast<double>(ok + degraded) / frames : 0.0;
+  }
+  double FramesPerSecond() const {
+    return wall_seconds > 0.0 ? frames / wall_seconds : 0.0;
+  }
+};
+
+RunSummary Summarise(const std::vector<TrackedFrame>& frames, int threads,
+                     double wall_seconds);
+
+// As the program prints it: lines of a title and figures.
+std::string FormatSummary(const RunSummary& summary);
+
+// For metrics.json.
+nlohmann::json SummaryToJson(const RunSummary& summary);
+
+// The most memory (MB) that this process has had so far.
+double PeakMemoryMb();
+
+}  // namespace rgbd_pose

@@ -1,0 +1,128 @@
+#include "apps/shell/flag_reader.h"
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <string_view>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+using gflags::CommandLineFlagInfo;
+
+// Flags that gflags acts upon itself, partly by ending the process.
+bool IsOfGflags(const std::string& name) {
+  static const std::set<std::string> kNames = {
+      "flagfile",    "fromenv",
+      "tryfromenv",  "undefok",
+      "help",        "helpfull",
+      "helpmatch",   "helpon",
+      "helppackage", "helpshort",
+      "helpxml",     "tab_completion_columns",
+      "version",     "tab_completion_word"};
+  return kNames.count(name) > 0;
+}
+
+bool FindFlag(const std::string& name, CommandLineFlagInfo* flag) {
+  return !IsOfGflags(name) &&
+         gflags::GetCommandLineFlagInfo(name.c_str(), flag);
+}
+
+// The switch that "no<name>" turns off.
+bool FindNegated(const std::string& name, CommandLineFlagInfo* flag) {
+  return name.rfind("no", 0) == 0 && FindFlag(name.substr(2), flag) &&
+         flag->type == "bool";
+}
+
+std::string_view WithoutSpaceAround(std::string_view line) {
+  const auto is_space = [](unsigned char c) { return std::isspace(c) != 0; };
+  while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
+  while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
+  return line;
+}
+
+class FlagReader {
+ public:
+  // `where` goes before messages.
+  void Read(const std::vector<std::string>& words, const std::string& where) {
+    for (auto word = words.begin(); word != words.end(); ++word) {
+      // gflags would read a word up to its first zero byte.
+      if (word->size() < 2 || word->front() != '-' || *word == "--" ||
+          word->find('\0') != std::string::npos) {
+        throw InputError(where + "'" + *word +
+                         "' is no flag; flags look like --name=value");
+      }
+      const std::string text = word->substr((*word)[1] == '-' ? 2 : 1);
+      const size_t equals = text.find('=');
+      const bool has_value = equals != std::string::npos;
+      const std::string name = text.substr(0, equals);
+      CommandLineFlagInfo flag;
+      if (name != "flagfile" && !FindFlag(name, &flag)) {
+        if (has_value || !FindNegated(name, &flag)) {
+          throw InputError(where + "unknown flag --" + name +
+                           "; --help lists the flags");
+        }
+        Set(flag, "false", where);
+      } else if (has_value) {
+        Take(name, flag, text.substr(equals + 1), where);
+      } else if (flag.type == "bool") {
+        Set(flag, "true", where);
+      } else if (++word != words.end()) {
+        Take(name, flag, *word, where);
+      } else {
+        throw InputError(where + "--" + name + " needs a value");
+      }
+    }
+  }
+
+ private:
+  void Take(const std::string& name, const CommandLineFlagInfo& flag,
+            const std::string& value, const std::string& where) {
+    if (name == "flagfile") {
+      ReadFile(value);
+    } else {
+      Set(flag, value, where);
+    }
+  }
+
+  static void Set(const CommandLineFlagInfo& flag, const std::string& value,
+                  const std::string& where) {
+    if (gflags::SetCommandLineOption(flag.name.c_str(), value.c_str())
+            .empty()) {
+      throw InputError(where + "'" + value + "' is no " + flag.type +
+                       " for --" + flag.name);
+    }
+  }
+
+  void ReadFile(const std::string& path) {
+    if (++depth_ > kMaxDepth) {
+      throw InputError(path + ": flag files name each other in a circle");
+    }
+    const std::string content = ReadTextFile(path);
+    std::string_view rest = WithoutByteOrderMark(content);
+    for (int number = 1; !rest.empty(); ++number) {
+      const size_t end = std::min(rest.find('\n'), rest.size());
+      const std::string_view line = WithoutSpaceAround(rest.substr(0, end));
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+      if (line.empty() || line.front() == '#') continue;
+      Read({std::string(line)}, path + ":" + std::to_string(number) + ": ");
+    }
+    --depth_;
+  }
+
+  static constexpr int kMaxDepth = 8;
+  int depth_ = 0;
+};
+
+}  // namespace
+
+void ReadFlags(const std::vector<std::string>& words) {
+  FlagReader().Read(words, "");
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,21 @@
+#include "apps/shell/format.h"
+
+#include <cstdarg>
+#include <cstdio>
+
+namespace rgbd_pose {
+
+std::string Format(const char* format, ...) {
+  va_list arguments, again;
+  va_start(arguments, format);
+  va_copy(again, arguments);
+  const int length = std::vsnprintf(nullptr, 0, format, arguments);
+  va_end(arguments);
+  std::string text(length > 0 ? length : 0, '\0');
+  // Writes a zero byte where the string has its own.
+  std::vsnprintf(text.data(), text.size() + 1, format, again);
+  va_end(again);
+  return text;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,74 @@
+# What `cmake --install` puts where, with files for find_package and pkg-config.
+# Libraries with their headers are the component `development`, programs `tools`.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(RGBD_POSE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/rgbd_pose)
+set(RGBD_POSE_HEADER_DIR ${CMAKE_INSTALL_INCLUDEDIR}/rgbd_pose)
+
+# A library and the headers of its folder. Each is an export set of its own, so
+# that who asks for one component needs no more than its dependencies.
+function(rgbd_pose_install_library name)
+  install(TARGETS rgbd_pose_${name} EXPORT rgbd_pose_${name}
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
+          ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
+          DESTINATION ${RGBD_POSE_HEADER_DIR}/${name} COMPONENT development
+          FILES_MATCHING PATTERN *.h)
+  install(EXPORT rgbd_pose_${name} NAMESPACE rgbd_pose::
+          FILE rgbd_pose_${name}.cmake
+          DESTINATION ${RGBD_POSE_CMAKE_DIR} COMPONENT development)
+  export(EXPORT rgbd_pose_${name} NAMESPACE rgbd_pose::
+         FILE ${PROJECT_BINARY_DIR}/rgbd_pose_${name}.cmake)
+endfunction()
+
+function(rgbd_pose_install_program name)
+  install(TARGETS ${name} RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR}
+                                  COMPONENT tools)
+endfunction()
+
+# The package's own files. Those for find_package serve the build tree, too.
+function(rgbd_pose_install_package)
+  set(source ${PROJECT_SOURCE_DIR}/cmake)
+  set(binary ${PROJECT_BINARY_DIR})
+  configure_file(${source}/rgbd_poseConfig.cmake.in
+                 ${binary}/rgbd_poseConfig.cmake @ONLY)
+  write_basic_package_version_file(${binary}/rgbd_poseConfigVersion.cmake
+                                   COMPATIBILITY SameMinorVersion)
+  configure_file(${PROJECT_SOURCE_DIR}/frontend/FindLibdeflate.cmake
+                 ${binary}/FindLibdeflate.cmake COPYONLY)
+  install(FILES ${binary}/rgbd_poseConfig.cmake
+                ${binary}/rgbd_poseConfigVersion.cmake
+                ${binary}/FindLibdeflate.cmake
+          DESTINATION ${RGBD_POSE_CMAKE_DIR} COMPONENT development)
+  rgbd_pose_configure_pkg_config(${source}/rgbd_pose.pc.in
+                                 ${binary}/rgbd_pose.pc)
+  install(FILES ${binary}/rgbd_pose.pc
+          DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
+  foreach(file LICENSE README.md CHANGELOG.md third_party_notes.md)
+    install(FILES ${PROJECT_SOURCE_DIR}/${file}
+            DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
+  endforeach()
+endfunction()
+
+# As the targets' public dependencies; whatever else the libraries use must be
+# linked by hand only if they are static.
+function(rgbd_pose_configure_pkg_config input output)
+  file(RELATIVE_PATH RGBD_POSE_PC_PREFIX
+       ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
+  string(REGEX REPLACE "/$" "" RGBD_POSE_PC_PREFIX "${RGBD_POSE_PC_PREFIX}")
+  set(requires eigen3 libglog)
+  set(requires_private yaml-cpp)
+  if(Libdeflate_FOUND)
+    list(APPEND requires_private libdeflate)
+  endif()
+  if(NOT BUILD_SHARED_LIBS)
+    list(APPEND requires ${requires_private})
+    set(requires_private)
+  endif()
+  list(TRANSFORM OpenCV_INCLUDE_DIRS PREPEND -I OUTPUT_VARIABLE flags)
+  list(JOIN requires " " RGBD_POSE_PC_REQUIRES)
+  list(JOIN requires_private " " RGBD_POSE_PC_REQUIRES_PRIVATE)
+  list(JOIN flags " " RGBD_POSE_PC_CFLAGS)
+  configure_file(${input} ${output} @ONLY)
+endfunction()

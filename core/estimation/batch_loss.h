@@ -1,0 +1,97 @@
+#pragma once
+
+#include <ceres/loss_function.h>
+
+#include <cstring>
+
+#include "core/util/vector_lanes.h"
+
+namespace rgbd_pose {
+
+// A loss that can weigh many residuals in one call: for compressed sums, where
+// a virtual call a match would cost as much as the arithmetic.
+class BatchLoss : public ceres::LossFunction {
+ public:
+  // weights[i] = rho'(s[i]) for n squared norms; returns the sum of rho(s[i]).
+  // `weights` may be `s` itself.
+  virtual double Weigh(const double* s, int n, double* weights) const = 0;
+};
+
+// The same for any loss; null is least squares.
+inline double Weigh(const ceres::LossFunction* loss, const double* s, int n,
+                    double* weights) {
+  if (const auto* batch = dynamic_cast<const BatchLoss*>(loss)) {
+    return batch->Weigh(s, n, weights);
+  }
+  double sum = 0.0;
+  for (int i = 0; i < n; ++i) {
+    double rho[3] = {s[i], 1.0, 0.0};
+    if (loss != nullptr) loss->Evaluate(s[i], rho);
+    sum += rho[0];
+    weights[i] = rho[1];
+  }
+  return sum;
+}
+
+namespace packed {
+
+template <typename Formula>
+struct WeighKernel {
+  template <int W>
+  [[gnu::always_inline]] static void Run(const Formula& formula,
+                                         const double* s, int n,
+                                         double* weights, double* sum) {
+    using D = typename Lanes<W>::Type;
+    D total = {};
+    for (int i = 0; i < n; i += W) {
+      const int lanes = n - i < W ? n - i : W;
+      D x = {}, rho, weight;  // rho(0) = 0: spare lanes add nothing
+      if (lanes == W) {
+        std::memcpy(&x, s + i, sizeof(D));
+      } else {
+        for (int lane = 0; lane < lanes; ++lane) x[lane] = s[i + lane];
+      }
+      formula.Weigh(x, &rho, &weight);
+      total += rho;
+      if (lanes == W) {
+        std::memcpy(weights + i, &weight, sizeof(D));
+      } else {
+        for (int lane = 0; lane < lanes; ++lane) {
+          weights[i + lane] = weight[lane];
+        }
+      }
+    }
+    *sum = 0.0;
+    for (int lane = 0; lane < W; ++lane) *sum += total[lane];
+  }
+};
+
+}  // namespace packed
+
+// The loss of a formula that works lane by lane. It says, for T double or a
+// vector of doubles (core/util/vector_lanes.h),
+//
+//   Weigh(const T& s, T* rho, T* weight)   rho(s) and rho'(s), rho(0) = 0
+//   Curvature(double s)                    rho''(s)
+template <typename Formula>
+class BatchLossOf final : public BatchLoss {
+ public:
+  explicit BatchLossOf(double width) : formula_(width) {}
+
+  void Evaluate(double s, double rho[3]) const override {
+    formula_.Weigh(s, &rho[0], &rho[1]);
+    rho[2] = formula_.Curvature(s);
+  }
+
+  double Weigh(const double* s, int n, double* weights) const override {
+    double sum = 0.0;
+    double* const at = &sum;
+    RunVectorised<packed::WeighKernel<Formula>>(formula_, s, n, weights, at);
+    return sum;
+  }
+
+ private:
+  Formula formula_;
+};
+
+}  // namespace rgbd_pose

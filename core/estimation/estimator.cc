@@ -1,0 +1,282 @@
+#include "core/estimation/estimator.h"
+
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <string>
+#include <utility>
+
+#include "core/estimation/degeneracy.h"
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kMinMatches = 3;
+constexpr int kIterationsPerEarlyStage = 2;
+
+// Scale and motion are estimated in turn until the scale moves by less.
+constexpr double kScaleTolerance = 0.01;
+constexpr int kMaxScaleRounds = 10;
+
+// Frozen weights are taken as right within this (rad and m).
+constexpr double kFrozenWithin = 2e-3;
+constexpr int kMaxBindRounds = 3;
+
+std::vector<RobustCost> TermsOf(std::unique_ptr<Cost> cost,
+                                std::unique_ptr<ceres::LossFunction> loss) {
+  if (cost == nullptr) throw InputError("an estimator needs a cost");
+  std::vector<RobustCost> terms;
+  terms.push_back({std::move(cost), std::move(loss)});
+  return terms;
+}
+
+}  // namespace
+
+std::string EstimatorOptions::Check() const {
+  if (gnc_factor <= 1.0) return "gnc_factor must exceed 1";
+  if (max_iterations < 1) return "max_iterations must be at least 1";
+  if (min_inlier_share < 0.0 || min_inlier_share > 1.0) {
+    return "min_inlier_share must lie between 0 and 1";
+  }
+  if (max_scale <= 0.0) return "max_scale must be positive";
+  if (threads < 1) return "threads must be at least 1";
+  if (max_standard_deviation <= 0.0) {
+    return "max_standard_deviation must be positive";
+  }
+  return "";
+}
+
+// The work of Estimate and its memory.
+class Estimator::Solve {
+ public:
+  Solve(const EstimatorOptions& options, std::vector<RobustCost> costs)
+      : options_(options), terms_(std::move(costs)) {}
+
+  void Run(const Correspondences& matches, const Rigid3d& guess,
+           const MotionPrior* prior, MotionEstimate* estimate) {
+    Reset(matches, guess, prior, estimate);
+    if (out_->num_used < kMinMatches) {
+      out_->status = EstimateStatus::kTooFewMatches;
+      out_->reason =
+          std::to_string(out_->num_used) + " usable matches, 3 are needed";
+      if (matches.rejected() > 0) {
+        out_->reason += "; " + std::to_string(matches.rejected()) +
+                        " rejected as not finite";
+      }
+      return;
+    }
+    out_->initial_cost = terms_.Linearise(MotionNow()).cost;
+    if (MinimiseWithScale()) {
+      Judge();
+    } else {
+      JudgeGuess(guess);
+    }
+  }
+
+ private:
+  void Reset(const Correspondences& matches, const Rigid3d& guess,
+             const MotionPrior* prior, MotionEstimate* estimate) {
+    matches_ = &matches;
+    prior_ = prior;
+    out_ = estimate;
+    out_->reason.clear();
+    out_->cur_from_prev = guess;
+    out_->covariance.setZero();
+    out_->weights.assign(matches.size(), 0.0);
+    out_->is_inlier.assign(matches.size(), false);
+    out_->residual_norms.assign(matches.size(), 0.0);
+    out_->residual_degrees.assign(matches.size(), 0);
+    out_->num_inliers = 0;
+    out_->sigma = 0.0;
+    out_->final_cost = 0.0;
+    out_->iterations = 0;
+    converged_ = false;
+    terms_.Bind(Input());
+    out_->num_used = terms_.num_used();
+  }
+
+  // At the motion so far.
+  CostInput Input() const {
+    return {*matches_, out_->cur_from_prev, prior_, options_.threads};
+  }
+
+  // Where weights are frozen: at the motion so far. False if none are.
+  bool BindAgain() {
+    const bool changed = terms_.BindAgain(Input());
+    out_->num_used = terms_.num_used();
+    return changed;
+  }
+
+  MotionDerivatives MotionNow() const {
+    const MotionVector zero = MotionVector::Zero();
+    return MotionOrigin(out_->cur_from_prev).DerivativesAt(zero.data());
+  }
+
+  bool MinimiseWithScale() {
+    scale_ = 1.0;
+    if (!Minimise()) return false;
+    for (int i = 0; options_.scale != nullptr && i < kMaxScaleRounds; ++i) {
+      const double scale = terms_.EstimateScale(MotionNow(), options_.scale);
+      const bool settled = std::abs(scale - scale_) <= kScaleTolerance * scale_;
+      if (settled) break;
+      scale_ = scale;
+      if (!Minimise()) return false;
+    }
+    return true;
+  }
+
+  // All stages at one scale. False if the solver found no finite step.
+  bool Minimise() {
+    double width = 1.0;
+    if (terms_.has_losses() && options_.schedule == RobustSchedule::kGnc) {
+      width = terms_.UpdateNorms(MotionNow()) / scale_;
+    }
+    while (width > 1.0) {
+      terms_.SetLosses(scale_ * width);
+      if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
+      BindAgain();
+      if (out_->num_used < kMinMatches) return false;
+      // Where over half of the matches are right they soon agree, and most
+      // stages are saved.
+      width = std::min(width / options_.gnc_factor,
+                       terms_.UpdateNorms(MotionNow()) / scale_);
+    }
+    terms_.SetLosses(scale_);
+    return MinimiseLastStage();
+  }
+
+  // Weights that were frozen at a motion too far away ask for another round.
+  bool MinimiseLastStage() {
+    for (int round = 1;; ++round) {
+      const Rigid3d before = out_->cur_from_prev;
+      if (!MinimiseStage(options_.max_iterations)) return false;
+      const Rigid3d moved = before.Inverse() * out_->cur_from_prev;
+      if (round == kMaxBindRounds ||
+          (moved.Angle() < kFrozenWithin &&
+           moved.translation.norm() < kFrozenWithin)) {
+        return true;
+      }
+      if (!BindAgain()) return true;
+      if (out_->num_used < kMinMatches) return false;
+    }
+  }
+
+  bool MinimiseStage(int max_iterations) {
+    const MotionOrigin origin(out_->cur_from_prev);
+    MotionVector x = MotionVector::Zero();
+    ceres::Problem::Options problem_options;
+    problem_options.cost_function_ownership = BlockOwnership(options_.assembly);
+    problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    problem_options.disable_all_safety_checks = true;
+    ceres::Problem problem(problem_options);
+    terms_.AddTo(options_.assembly, origin, x.data(), &problem);
+    ceres::Solver::Options solver;
+    // The fastest on the compressed block (docs/benchmarks.md); its 7 x 6
+    // Jacobian is triangular, so squaring it only gives the Hessian back.
+    solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
+    solver.logging_type = ceres::SILENT;
+    solver.num_threads = 1;
+    solver.max_num_iterations = max_iterations;
+    solver.function_tolerance = 1e-9;
+    solver.parameter_tolerance = 1e-9;
+    ceres::Solver::Summary summary;
+    ceres::Solve(solver, &problem, &summary);
+    out_->iterations += static_cast<int>(summary.iterations.size()) - 1;
+    converged_ = summary.termination_type == ceres::CONVERGENCE;
+    if (!summary.IsSolutionUsable() || !x.allFinite()) return false;
+    out_->cur_from_prev = origin.CurFromPrev(x.data());
+    return true;
+  }
+
+  // After the solver found no step, or one that leaves all matches behind: the
+  // matches at the guess, taken as right, may tell why.
+  void JudgeGuess(const Rigid3d& guess) {
+    out_->cur_from_prev = guess;
+    BindAgain();
+    const NormalEquations sum = terms_.LineariseWithoutLosses(MotionNow());
+    const Degeneracy degeneracy = FindDegeneracy(
+        sum.hessian, terms_.num_blocks(), options_.max_standard_deviation);
+    out_->status = degeneracy.is_degenerate ? EstimateStatus::kDegenerate
+                                            : EstimateStatus::kNotConverged;
+    out_->reason = degeneracy.is_degenerate ? degeneracy.reason
+                                            : "the solver found no usable step";
+  }
+
+  void Judge() {
+    out_->sigma = terms_.UpdateNorms(MotionNow());
+    const LossSums loss_sums = terms_.JudgeMatches(scale_, out_);
+    const NormalEquations sum = terms_.Linearise(MotionNow());
+    out_->final_cost = sum.cost;
+    const Degeneracy degeneracy = FindDegeneracy(
+        sum.hessian, loss_sums.weight, options_.max_standard_deviation);
+    if (degeneracy.is_degenerate) {
+      out_->status = EstimateStatus::kDegenerate;
+      out_->reason = degeneracy.reason;
+      return;
+    }
+    out_->covariance =
+        terms_.Covariance(MotionNow(), loss_sums, degeneracy.inverse);
+    const double share =
+        static_cast<double>(out_->num_inliers) / out_->num_used;
+    out_->status = EstimateStatus::kOk;
+    if (scale_ > options_.max_scale) {
+      out_->status = EstimateStatus::kInconsistent;
+      out_->reason = "residuals are " + std::to_string(scale_) +
+                     " times what the noise model says";
+    } else if (share < options_.min_inlier_share) {
+      out_->status = EstimateStatus::kInconsistent;
+      out_->reason = "only " + std::to_string(out_->num_inliers) + " of " +
+                     std::to_string(out_->num_used) +
+                     " matches agree with one motion";
+    } else if (!converged_) {
+      out_->status = EstimateStatus::kNotConverged;
+      out_->reason =
+          "stopped after " + std::to_string(out_->iterations) + " iterations";
+    }
+  }
+
+  const EstimatorOptions options_;
+  RobustTerms terms_;
+
+  // Of the call at hand.
+  const Correspondences* matches_ = nullptr;
+  const MotionPrior* prior_ = nullptr;
+  MotionEstimate* out_ = nullptr;
+  double scale_ = 1.0;
+  bool converged_ = false;
+};
+
+Estimator::Estimator(const EstimatorOptions& options,
+                     std::vector<RobustCost> costs)
+    : solve_(std::make_unique<Solve>(options, std::move(costs))) {}
+
+Estimator::Estimator(const EstimatorOptions& options,
+                     std::unique_ptr<Cost> cost,
+                     std::unique_ptr<ceres::LossFunction> loss)
+    : Estimator(options, TermsOf(std::move(cost), std::move(loss))) {}
+
+Estimator::~Estimator() = default;
+Estimator::Estimator(Estimator&&) noexcept = default;
+Estimator& Estimator::operator=(Estimator&&) noexcept = default;
+
+MotionEstimate Estimator::Estimate(const Correspondences& matches,
+                                   const Rigid3d& guess,
+                                   const MotionPrior* prior) {
+  MotionEstimate estimate;
+  Estimate(matches, guess, prior, &estimate);
+  return estimate;
+}
+
+void Estimator::Estimate(const Correspondences& matches, const Rigid3d& guess,
+                         const MotionPrior* prior, MotionEstimate* estimate) {
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  solve_->Run(matches, guess, prior, estimate);
+  estimate->solve_ms =
+      std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/geometry/motion.h"
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// How far an estimate can be believed.
+enum class EstimateStatus {
+  kOk,
+  kTooFewMatches,  // fewer than three usable matches
+  kDegenerate,     // some direction of motion is not determined
+  kNotConverged,   // the solver gave up
+  kInconsistent,   // too few matches agree with one motion
+};
+
+// "ok", "too_few_matches", ...
+const char* ToString(EstimateStatus status);
+
+// The result of one motion estimation.
+struct MotionEstimate {
+  // Whether to believe the rest.
+  EstimateStatus status = EstimateStatus::kTooFewMatches;
+  std::string reason;  // in words; empty if ok
+
+  Rigid3d cur_from_prev;  // the guess, if the status is too_few_matches
+
+  // Covariance of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a small
+  // rotation about the axes of the current camera, R_true = Exp(omega) R; C (m)
+  // is the centre of the current camera in the axes of the previous one. Zero
+  // unless the status is ok or inconsistent.
+  MotionMatrix covariance = MotionMatrix::Zero();
+
+  // Per match, in the order of the Correspondences: robust weight in [0, 1]
+  // (0 also for matches that no cost could use) and whether the match agrees
+  // with the motion within 99 % of the noise's distribution.
+  std::vector<double> weights;
+  std::vector<bool> is_inlier;
+
+  // Per match as well: norm of its whitened residual at this motion, in sigmas
+  // of the noise model, and how many independent measurements it holds: for
+  // right matches the norm follows a chi distribution of so many degrees. Of a
+  // match that several costs use, the largest norm. Both are 0 for matches that
+  // no cost could use, and all are where the motion was not judged.
+  std::vector<double> residual_norms;
+  std::vector<int> residual_degrees;
+
+  int num_used = 0;     // matches that some cost could use
+  int num_inliers = 0;  // of these, in agreement
+
+  double sigma = 0.0;  // robust spread of the whitened residuals; ideally 1
+  double initial_cost = 0.0;  // robust cost at the guess, at final loss widths
+  double final_cost = 0.0;    // the same at the estimate
+  int iterations = 0;         // of the solver, all stages together
+  double solve_ms = 0.0;      // time of the whole estimation
+
+  // Whether there is nothing to say against it.
+  bool ok() const { return status == EstimateStatus::kOk; }
+};
+
+}  // namespace rgbd_pose

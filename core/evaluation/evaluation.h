@@ -1,0 +1,92 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/evaluation/trajectory.h"
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// How a trajectory is judged against the ground truth.
+struct EvaluationOptions {
+  // Poses belong together if their time stamps differ by no more than this (s);
+  // a relative error may miss its interval by as much.
+  double max_time_difference = 0.02;
+
+  // The intervals of the relative pose errors: in time (s) and along the path
+  // of the ground truth (m).
+  double rpe_delta_seconds = 1.0;
+  double rpe_delta_metres = 1.0;
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+// Sums up errors; all 0 if there are none.
+struct ErrorStatistics {
+  int count = 0;        // of errors
+  double rmse = 0.0;    // root of their mean square
+  double mean = 0.0;    // their mean
+  double median = 0.0;  // of an even number, the mean of the two in the middle
+  double max = 0.0;     // the largest
+};
+
+// Errors of motions between two poses i and j of the camera (Sturm 2012):
+// E = (truth_i^-1 truth_j)^-1 (estimate_i^-1 estimate_j).
+struct RelativePoseError {
+  ErrorStatistics translation;  // |translation of E|, m
+  ErrorStatistics rotation;     // angle of E, rad
+};
+
+// The error of the last pose relative to the first.
+struct FinalPoseError {
+  double translation = 0.0;  // m
+  double angle = 0.0;        // rad
+};
+
+// The errors of one paired pose.
+struct PoseError {
+  double timestamp = 0.0;  // of the estimate, s
+  double position = 0.0;   // after the alignment, m
+  // Of rpe_seconds, for the interval that starts here; empty if none does.
+  std::optional<double> rpe_translation;  // m
+  std::optional<double> rpe_rotation;     // rad
+};
+
+// All figures are over poses paired in time (core/evaluation/pose_pairs.h).
+// Those of relative and final errors do not depend on the worlds of the
+// trajectories.
+struct EvaluationReport {
+  EvaluationOptions options;  // that it was made with
+  int estimated_poses = 0;    // in the estimate
+  int paired_poses = 0;       // of those, with a ground truth
+  double duration = 0.0;      // from the first to the last paired pose, s
+  double path_length = 0.0;   // of the paired ground truth, m
+
+  // Absolute trajectory error: distances (m) of positions after the rigid
+  // alignment, without scale, by truth_from_estimate (of worlds).
+  ErrorStatistics ate;
+  Rigid3d truth_from_estimate;
+
+  // Relative pose errors at fixed intervals. Every paired pose that has its
+  // counterpart is a start:
+  RelativePoseError rpe_frame;    // j is the next paired pose
+  RelativePoseError rpe_seconds;  // j is nearest to rpe_delta_seconds later
+  RelativePoseError rpe_metres;   // j is the first rpe_delta_metres or more on
+
+  // E from the first to the last paired pose; empty if there is but one.
+  std::optional<FinalPoseError> final_pose;
+
+  // What ate and rpe_seconds sum up: one a paired pose, in time order.
+  std::vector<PoseError> poses;
+};
+
+// Judges an estimate. Throws InputError if the options are of no use or no
+// poses belong together.
+EvaluationReport Evaluate(const Trajectory& estimate,
+                          const Trajectory& ground_truth,
+                          const EvaluationOptions& options = {});
+
+}  // namespace rgbd_pose

@@ -1,0 +1,96 @@
+#include "core/evaluation/trajectory.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <string_view>
+#include <system_error>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr std::array<std::string_view, 8> kColumns = {
+    "timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
+constexpr double kMaxQuaternionError = 0.01;  // of its length, from 1
+constexpr double kMaxCoordinate = 1e9;        // m; squares stay finite
+constexpr int kTimeDecimals = 6;
+constexpr int kPoseDecimals = 9;
+
+StampedPose ParsePose(const TextLine& line, const std::string& path) {
+  if (line.words.size() != kColumns.size()) {
+    throw InputError(path, line.number,
+                     std::to_string(line.words.size()) +
+                         " columns; a pose needs 8: timestamp tx ty tz qx qy "
+                         "qz qw");
+  }
+  std::array<double, kColumns.size()> value{};
+  value[0] = ParseTimestamp(line.words[0], path, line.number);
+  for (size_t i = 1; i < kColumns.size(); ++i) {
+    value[i] = ParseNumber(line.words[i], path, line.number, kColumns[i]);
+  }
+  const Eigen::Quaterniond rotation(value[7], value[4], value[5], value[6]);
+  if (!(std::abs(rotation.norm() - 1.0) <= kMaxQuaternionError)) {
+    throw InputError(path, line.number,
+                     "the quaternion (columns 5 to 8, qx qy qz qw) is not of "
+                     "unit length; check the order of the columns");
+  }
+  const Rigid3d pose(rotation, {value[1], value[2], value[3]});
+  if (pose.translation.lpNorm<Eigen::Infinity>() > kMaxCoordinate) {
+    throw InputError(path, line.number,
+                     "a position (columns 2 to 4) further away than 1e9 m; "
+                     "check the order of the columns");
+  }
+  return {value[0], pose};
+}
+
+// Unlike printf, it does not depend on the locale.
+void AppendNumber(double value, int decimals, std::string* text) {
+  std::array<char, 400> buffer;  // the largest double has 309 digits
+  const std::to_chars_result result =
+      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                    std::chars_format::fixed, decimals);
+  text->append(buffer.data(), result.ptr);
+}
+
+}  // namespace
+
+Trajectory ReadTrajectory(const std::string& path) {
+  Trajectory trajectory;
+  for (const TextLine& line : ReadTextTable(path)) {
+    const StampedPose pose = ParsePose(line, path);
+    if (!trajectory.empty() && pose.timestamp <= trajectory.back().timestamp) {
+      throw InputError(path, line.number,
+                       "time stamp " + line.words[0] +
+                           " is not after the one before it; sort the poses "
+                           "by time and keep one a time stamp");
+    }
+    trajectory.push_back(pose);
+  }
+  if (trajectory.empty()) {
+    throw InputError(path +
+                     ": holds no poses; a line is timestamp tx ty tz qx qy qz "
+                     "qw");
+  }
+  return trajectory;
+}
+
+std::string FormatTrajectory(const Trajectory& trajectory) {
+  std::string text = "# timestamp tx ty tz qx qy qz qw\n";
+  for (const StampedPose& pose : trajectory) {
+    const Eigen::Vector3d& t = pose.world_from_cam.translation;
+    const Eigen::Quaterniond& q = pose.world_from_cam.rotation;
+    AppendNumber(pose.timestamp, kTimeDecimals, &text);
+    for (const double value :
+         {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
+      text += ' ';
+      AppendNumber(value, kPoseDecimals, &text);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,135 @@
+#include "core/geometry/camera.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <iterator>
+
+namespace rgbd_pose {
+namespace {
+
+using Eigen::Vector2d;
+
+// Applies the distortion to a point on the plane z = 1.
+Vector2d Distort(const Camera& c, const Vector2d& point) {
+  const double x = point.x();
+  const double y = point.y();
+  const double r2 = x * x + y * y;
+  const double radial = 1.0 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+  return {x * radial + 2.0 * c.p1 * x * y + c.p2 * (r2 + 2.0 * x * x),
+          y * radial + c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y};
+}
+
+// The inverse of Distort. Divides by the radial factor instead of subtracting
+// the shift, since that contracts faster for large k1.
+Vector2d RemoveDistortion(const Camera& c, const Vector2d& distorted) {
+  constexpr int kMaxIterations = 100;
+  constexpr double kTolerance = 1e-13;  // well below 1e-10 px for f < 1000
+  Vector2d point = distorted;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const double x = point.x();
+    const double y = point.y();
+    const double r2 = x * x + y * y;
+    const double radial = 1.0 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
+    const Vector2d tangential(2.0 * c.p1 * x * y + c.p2 * (r2 + 2.0 * x * x),
+                              c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y);
+    const Vector2d next = (distorted - tangential) / radial;
+    const double change = (next - point).lpNorm<Eigen::Infinity>();
+    point = next;
+    if (!(change > kTolerance)) break;
+  }
+  return point;
+}
+
+// Of the larger side of the image: views of 157 and of 0.6 degrees.
+constexpr double kMinFocal = 0.1;
+constexpr double kMaxFocal = 100.0;
+
+struct Preset {
+  std::string_view name;
+  RgbdCamera camera;
+};
+
+// TUM RGB-D benchmark, "intrinsic camera calibration" table. The per-camera
+// depth factors are already applied in the released images.
+constexpr double kTumDepthScale = 5000.0;
+const std::array<Preset, 4> kPresets = {{
+    {"tum_fr1",
+     {{640, 480, 517.306408, 516.469215, 318.643040, 255.313989, 0.262383,
+       -0.953104, -0.005358, 0.002628, 1.163314},
+      kTumDepthScale}},
+    {"tum_fr2",
+     {{640, 480, 520.908620, 521.007327, 325.141442, 249.701764, 0.231222,
+       -0.784899, -0.003257, -0.000105, 0.917205},
+      kTumDepthScale}},
+    {"tum_fr3",
+     {{640, 480, 535.4, 539.2, 320.1, 247.6, 0, 0, 0, 0, 0}, kTumDepthScale}},
+    {"ros_default",
+     {{640, 480, 525.0, 525.0, 319.5, 239.5, 0, 0, 0, 0, 0}, kTumDepthScale}},
+}};
+
+}  // namespace
+
+std::string Camera::Check() const {
+  if (width <= 0 || height <= 0) return "image size must be positive";
+  for (const double value : {fx, fy, cx, cy, k1, k2, p1, p2, k3}) {
+    if (!std::isfinite(value)) return "intrinsics must be finite numbers";
+  }
+  if (fx <= 0.0 || fy <= 0.0) {
+    return "fx and fy must be positive (ICL-NUIM's fy = -480: mirror the "
+           "images or use its TUM-compatible release)";
+  }
+  const double size = std::max(width, height);
+  for (const double f : {fx, fy}) {
+    if (f < kMinFocal * size || f > kMaxFocal * size) {
+      return "fx and fy must be in pixels: 0.1 to 100 times the image's size";
+    }
+  }
+  if (cx < 0.0 || cy < 0.0 || cx >= width || cy >= height) {
+    return "the principal point must lie inside the image";
+  }
+  return "";
+}
+
+bool Camera::HasDistortion() const {
+  return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0;
+}
+
+Vector2d Camera::Project(const Eigen::Vector3d& point) const {
+  Vector2d plane = point.head<2>() / point.z();
+  if (HasDistortion()) plane = Distort(*this, plane);
+  return {fx * plane.x() + cx, fy * plane.y() + cy};
+}
+
+Vector2d Camera::Undistort(const Vector2d& pixel) const {
+  if (!HasDistortion()) return pixel;
+  const Vector2d plane =
+      RemoveDistortion(*this, {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy});
+  return {fx * plane.x() + cx, fy * plane.y() + cy};
+}
+
+void Camera::UndistortPoints(std::vector<Vector2d>* pixels) const {
+  if (!HasDistortion()) return;
+  for (Vector2d& pixel : *pixels) pixel = Undistort(pixel);
+}
+
+Eigen::Vector3d Camera::Unproject(const Vector2d& pixel, double depth) const {
+  const Vector2d ideal = Undistort(pixel);
+  return {(ideal.x() - cx) / fx * depth, (ideal.y() - cy) / fy * depth, depth};
+}
+
+std::optional<RgbdCamera> CameraPreset(std::string_view name) {
+  for (const Preset& preset : kPresets) {
+    if (preset.name == name) return preset.camera;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> CameraPresetNames() {
+  std::vector<std::string> names;
+  names.reserve(std::size(kPresets));
+  for (const Preset& preset : kPresets) names.emplace_back(preset.name);
+  return names;
+}
+
+}  // namespace rgbd_pose

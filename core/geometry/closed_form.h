@@ -1,0 +1,49 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// Weighted sums over pairs of points, kept up to date pair by pair without loss
+// of digits far from the origin (West, Communications of the ACM 22, 1979).
+struct PairMoments {
+  int count = 0;
+  double weight = 0.0;
+  Eigen::Vector3d target_mean = Eigen::Vector3d::Zero();
+  Eigen::Vector3d source_mean = Eigen::Vector3d::Zero();
+
+  // Sums about the means: of weight * target * source^T, and of weight times
+  // both squared distances.
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+  double spread = 0.0;
+
+  // `pair_weight` must be positive.
+  void Add(const Eigen::Vector3d& target, const Eigen::Vector3d& source,
+           double pair_weight = 1.0);
+};
+
+// The rotation R (never a reflection) that maximises trace(R^T m). Of an m that
+// is not finite: the identity, of stiffness 0.
+struct NearestRotation {
+  explicit NearestRotation(const Eigen::Matrix3d& m);
+
+  Eigen::Matrix3d rotation;
+  // How much R is determined: the trace falls by stiffness / 2 * angle^2 for
+  // small further rotations about the axis that matters least.
+  double stiffness;
+};
+
+// The rigid motion target_from_source, without scale, that minimises the
+// weighted sum of squared distances |target - target_from_source * source|^2
+// (Horn 1987; Umeyama 1991). Weights are inverse variances of one component of
+// that difference (1 / m^2).
+//
+// Nothing if the motion is not determined: fewer than three pairs, points on
+// one spot or line, or so near to one that noise alone could be what turns
+// them.
+std::optional<Rigid3d> FitRigidly(const PairMoments& moments);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,85 @@
+#include "core/initial_guess/clique.h"
+
+#include <algorithm>
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Which matches are consistent with which, a row of bits each.
+class ConsistencyGraph {
+ public:
+  ConsistencyGraph(const std::vector<PointMatch>& matches, double max_sigmas)
+      : size_(matches.size()),
+        words_((size_ + 63) / 64),
+        bits_(size_ * words_),
+        degrees_(size_) {
+    for (size_t i = 0; i < size_; ++i) {
+      for (size_t j = 0; j < i; ++j) {
+        if (PreserveDistance(matches[i], matches[j], max_sigmas)) {
+          Connect(i, j);
+          Connect(j, i);
+        }
+      }
+    }
+  }
+
+  // Howard's greedy clique: the order in which matches join is that of their
+  // degrees, so one pass through that order is enough.
+  std::vector<int> GreedyClique() const {
+    std::vector<int> order(size_);
+    std::iota(order.begin(), order.end(), 0);
+    std::stable_sort(order.begin(), order.end(), [this](int a, int b) {
+      return degrees_[a] > degrees_[b];
+    });
+    std::vector<int> clique;
+    std::vector<uint64_t> candidates(words_, ~uint64_t{0});
+    for (const int i : order) {
+      if ((candidates[i / 64] >> (i % 64) & 1) == 0) continue;
+      clique.push_back(i);
+      for (size_t w = 0; w < words_; ++w) {
+        candidates[w] &= bits_[i * words_ + w];
+      }
+    }
+    return clique;
+  }
+
+ private:
+  void Connect(size_t i, size_t j) {
+    bits_[i * words_ + j / 64] |= uint64_t{1} << (j % 64);
+    ++degrees_[i];
+  }
+
+  size_t size_;
+  size_t words_;  // of 64 bits, a row
+  std::vector<uint64_t> bits_;
+  std::vector<int> degrees_;
+};
+
+}  // namespace
+
+std::string CliqueOptions::Check() const {
+  if (!(max_distance_sigmas > 0.0)) {
+    return "max_distance_sigmas must be positive";
+  }
+  if (max_matches < 3) return "max_matches must be at least 3";
+  return consensus.Check();
+}
+
+std::optional<Consensus> FindByClique(const Correspondences& matches,
+                                      const CliqueOptions& options) {
+  const std::string problem = options.Check();
+  if (!problem.empty()) throw InputError(problem);
+  const std::vector<PointMatch> points =
+      PointMatches(matches, options.max_matches);
+  const ConsistencyGraph graph(points, options.max_distance_sigmas);
+  const std::optional<Rigid3d> fit = FitTo(points, graph.GreedyClique());
+  if (!fit) return std::nullopt;
+  return FindConsensus(points, *fit, options.consensus);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,62 @@
+#include "core/initial_guess/consensus.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/util/chi_squared.h"
+
+namespace rgbd_pose {
+
+std::string ConsensusOptions::Check() const {
+  if (min_inliers < 3) return "min_inliers must be at least 3";
+  if (!(min_inlier_share >= 0.0 && min_inlier_share <= 1.0)) {
+    return "min_inlier_share must lie between 0 and 1";
+  }
+  if (refits < 0) return "refits must not be negative";
+  return "";
+}
+
+double MaxSquaredDistance() { return ChiSquared99(3); }
+
+std::optional<Rigid3d> FitTo(const std::vector<PointMatch>& matches,
+                             const std::vector<int>& chosen) {
+  PairMoments moments;
+  for (const int i : chosen) {
+    moments.Add(matches[i].cur.position, matches[i].prev.position,
+                matches[i].weight);
+  }
+  return FitRigidly(moments);
+}
+
+void FindInliers(const std::vector<PointMatch>& matches,
+                 const Rigid3d& cur_from_prev, std::vector<int>* inliers) {
+  const Eigen::Matrix3d rotation = cur_from_prev.rotation.toRotationMatrix();
+  inliers->clear();
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const double distance =
+        matches[i].SquaredDistance(rotation, cur_from_prev.translation);
+    if (distance <= MaxSquaredDistance()) {
+      inliers->push_back(static_cast<int>(i));
+    }
+  }
+}
+
+std::optional<Consensus> FindConsensus(const std::vector<PointMatch>& matches,
+                                       const Rigid3d& cur_from_prev,
+                                       const ConsensusOptions& options) {
+  Consensus consensus{cur_from_prev, {}};
+  FindInliers(matches, cur_from_prev, &consensus.inliers);
+  for (int i = 0; i < options.refits; ++i) {
+    const std::optional<Rigid3d> fit = FitTo(matches, consensus.inliers);
+    if (!fit) return std::nullopt;
+    consensus.cur_from_prev = *fit;
+    FindInliers(matches, *fit, &consensus.inliers);
+  }
+  const double required = std::max<double>(
+      options.min_inliers, options.min_inlier_share * matches.size());
+  if (consensus.inliers.size() < required) return std::nullopt;
+  for (int& inlier : consensus.inliers) inlier = matches[inlier].index;
+  return consensus;
+}
+
+}  // namespace rgbd_pose

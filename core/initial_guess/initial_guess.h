@@ -1,0 +1,29 @@
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+#include "core/estimation/correspondences.h"
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// A way to guess the motion from the matches alone, without a place to start.
+struct InitialGuess {
+  std::string_view name;  // as programs take it
+  // cur_from_prev, or nothing where the matches do not tell; whoever asks then
+  // falls back to a guess of their own (the last motion, say).
+  std::optional<Rigid3d> (*find)(const Correspondences& matches);
+};
+
+// All initial guesses:
+//   identity  no motion, whatever the matches say
+//   ransac    what random samples of three find most agreement with (ransac.h)
+//   clique    that of the matches that preserve all their distances (clique.h)
+const std::vector<InitialGuess>& InitialGuesses();
+
+// The initial guess of that name, or null.
+const InitialGuess* FindInitialGuess(std::string_view name);
+
+}  // namespace rgbd_pose

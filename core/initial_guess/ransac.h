@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/estimation/correspondences.h"
+#include "core/initial_guess/consensus.h"
+
+namespace rgbd_pose {
+
+struct RansacOptions {
+  // Samples of three matches that are drawn at most.
+  int max_samples = 500;
+
+  // Drawing ends earlier when, at the share of inliers seen so far, a sample
+  // of right matches only has come up with this probability.
+  double confidence = 0.999;
+
+  // A sample is given up where a motion would have to change a distance
+  // between two of its points by more standard deviations.
+  double max_distance_sigmas = 3.0;
+
+  // Of more matches, so many evenly spread over the list are looked at.
+  int max_matches = 1000;
+
+  uint64_t seed = 1;
+
+  ConsensusOptions consensus;
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+// The motion that most matches agree with, by random samples of three matches
+// and closed form (Fischler & Bolles 1981), each new best one fitted anew to
+// those that agree with it (Chum, Matas & Kittler 2003). Distances are whitened
+// by the noise of both frames; matches without a depth on both sides do not
+// count. The same input gives the same bytes. Nothing if no motion has enough
+// agreement or the agreeing matches leave it open. Throws InputError if the
+// options are wrong.
+std::optional<Consensus> FindByRansac(const Correspondences& matches,
+                                      const RansacOptions& options = {});
+
+}  // namespace rgbd_pose

@@ -1,0 +1,160 @@
+#include "core/util/text_file.h"
+
+#include <cerrno>
+#include <charconv>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+bool IsSeparator(char c) {
+  return c == ' ' || c == '\t' || c == ',' || c == '\r';
+}
+
+std::vector<std::string> SplitWords(std::string_view line) {
+  std::vector<std::string> words;
+  size_t begin = 0;
+  while (begin < line.size()) {
+    if (IsSeparator(line[begin])) {
+      ++begin;
+      continue;
+    }
+    size_t end = begin;
+    while (end < line.size() && !IsSeparator(line[end])) ++end;
+    words.emplace_back(line.substr(begin, end - begin));
+    begin = end;
+  }
+  return words;
+}
+
+// What is written aside until it is whole.
+std::string AsideOf(const std::string& path) { return path + ".partial"; }
+
+// "(No space left on device)"; of the last call that failed.
+std::string Reason() {
+  return "(" + std::generic_category().message(errno) + ")";
+}
+
+std::FILE* OpenToWrite(const std::string& path) {
+  std::FILE* file = std::fopen(AsideOf(path).c_str(), "wb");
+  if (file == nullptr) {
+    throw InputError(path + ": cannot be written " + Reason() +
+                     "; check that its folder exists and may be written to");
+  }
+  return file;
+}
+
+}  // namespace
+
+std::string ReadTextFile(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw InputError(path + ": is a folder, a file is needed here");
+  }
+  std::ifstream file(path, std::ios::binary);
+  if (!file) {
+    throw InputError(path +
+                     ": cannot be opened; check the path and its rights");
+  }
+  std::string content;
+  char buffer[1 << 16];
+  do {
+    file.read(buffer, sizeof(buffer));
+    content.append(buffer, file.gcount());
+  } while (file);
+  if (file.bad()) throw InputError(path + ": cannot be read");
+  return content;
+}
+
+std::vector<TextLine> ReadTextTable(const std::string& path) {
+  const std::string content = ReadTextFile(path);
+  std::string_view rest = WithoutByteOrderMark(content);
+  std::vector<TextLine> lines;
+  for (int number = 1; !rest.empty(); ++number) {
+    const size_t end = std::min(rest.find('\n'), rest.size());
+    std::string_view line = rest.substr(0, end);
+    rest.remove_prefix(std::min(end + 1, rest.size()));
+    line = line.substr(0, line.find('#'));
+    std::vector<std::string> words = SplitWords(line);
+    if (!words.empty()) lines.push_back({number, std::move(words)});
+  }
+  return lines;
+}
+
+std::string_view WithoutByteOrderMark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.substr(0, kByteOrderMark.size()) == kByteOrderMark) {
+    text.remove_prefix(kByteOrderMark.size());
+  }
+  return text;
+}
+
+std::string Join(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += (text.empty() ? "" : ", ") + name;
+  }
+  return text;
+}
+
+double ParseNumber(std::string_view word, const std::string& path, int line,
+                   std::string_view what) {
+  // from_chars takes no leading '+', which some writers print.
+  std::string_view digits = word;
+  if (!digits.empty() && digits.front() == '+') digits.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] =
+      std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (error != std::errc() || end != digits.data() + digits.size() ||
+      !std::isfinite(value)) {
+    throw InputError(path, line,
+                     "'" + std::string(word) + "' is no finite number for " +
+                         std::string(what));
+  }
+  return value;
+}
+
+double ParseTimestamp(std::string_view word, const std::string& path,
+                      int line) {
+  constexpr double kLatest = 1e11;  // in the year 5138
+  const double seconds = ParseNumber(word, path, line, "the time stamp");
+  if (std::abs(seconds) > kLatest) {
+    throw InputError(path, line,
+                     "time stamp " + std::string(word) +
+                         " is not in seconds; are these milli- or "
+                         "nanoseconds?");
+  }
+  return seconds;
+}
+
+void WriteFileAtomically(const std::string& path, std::string_view content) {
+  const std::string aside = AsideOf(path);
+  std::FILE* file = OpenToWrite(path);
+  const bool written =
+      std::fwrite(content.data(), 1, content.size(), file) == content.size() &&
+      std::fflush(file) == 0;
+  std::string reason = written ? "" : Reason();
+  if (std::fclose(file) != 0 && written) reason = Reason();
+  if (reason.empty() && std::rename(aside.c_str(), path.c_str()) == 0) return;
+  if (reason.empty()) reason = Reason();
+  std::remove(aside.c_str());
+  throw InputError(path + ": writing failed " + reason);
+}
+
+void RequireWritable(const std::string& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored)) {
+    throw InputError(path + ": is a folder, a file is needed here");
+  }
+  std::fclose(OpenToWrite(path));
+  std::filesystem::remove(AsideOf(path), ignored);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,275 @@
+#pragma once
+
+#include <ceres/loss_function.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+#include "core/estimation/batch_loss.h"
+#include "core/estimation/cost.h"
+#include "core/geometry/motion.h"
+#include "core/util/vector_lanes.h"
+#include "costs/parts/point_sums.h"
+
+// Sums over matches, several at a time: the residual types' own templates run
+// on vectors of doubles, one lane a match.
+
+namespace rgbd_pose {
+
+// The columns of all bound matches as a structure of arrays; padded by copies
+// of the last match to a multiple of kMaxLanes.
+struct PackedColumns {
+  std::vector<double> values;  // column k starts at k * stride
+  ptrdiff_t stride = 0;
+  int size = 0;
+};
+
+namespace packed {
+
+// W matches starting at i: their columns and how many of them are real.
+template <typename Residual, int W>
+struct Pack {
+  using D = typename Lanes<W>::Type;
+
+  Pack(const PackedColumns& columns, int i)
+      : lanes(columns.size - i < W ? columns.size - i : W) {
+    for (int k = 0; k < Residual::kColumns; ++k) {
+      std::memcpy(&m[k], &columns.values[k * columns.stride + i], sizeof(D));
+    }
+  }
+
+  // By pointer: how vectors are returned depends on the instruction set.
+  static void SquaredNorm(const D* r, D* s) {
+    *s = r[0] * r[0];
+    for (int row = 1; row < Residual::kRows; ++row) *s += r[row] * r[row];
+  }
+
+  D m[Residual::kColumns];
+  int lanes;
+};
+
+// Matches are weighted tile by tile: first all squared norms, then all losses
+// (virtual calls, scalar), then all sums; mixing them would spill the vector
+// registers at every call.
+constexpr int kTile = 256;
+
+template <typename Residual, int W>
+[[gnu::always_inline]] inline void SquaredNormsOfTile(
+    const MotionDerivatives& motion, const PackedColumns& columns, int begin,
+    int end, double* squared_norms) {
+  using D = typename Lanes<W>::Type;
+  for (int i = begin; i < end; i += W) {
+    const Pack<Residual, W> pack(columns, i);
+    D r[Residual::kRows];
+    Residual::Residual(motion, pack.m, r);
+    D s;
+    pack.SquaredNorm(r, &s);
+    std::memcpy(squared_norms + (i - begin), &s, sizeof(D));
+  }
+}
+
+// Weights rho' of a tile, 0 for the padding; returns the sum of rho.
+template <typename Residual, int W>
+[[gnu::always_inline]] inline double WeighTile(const MotionDerivatives& motion,
+                                               const PackedColumns& columns,
+                                               const ceres::LossFunction* loss,
+                                               int begin, int end,
+                                               double* weights) {
+  alignas(64) double squared_norms[kTile + kMaxLanes];
+  SquaredNormsOfTile<Residual, W>(motion, columns, begin, end, squared_norms);
+  const double cost = Weigh(loss, squared_norms, end - begin, weights);
+  for (int i = end - begin; i % W != 0; ++i) weights[i] = 0.0;
+  return cost;
+}
+
+// Sums are taken over chunks of so many matches, and then over chunks, whatever
+// the number of threads: it does not change a bit of the result.
+constexpr int kChunk = 32 * kTile;
+
+// A symmetric 6 x 6 sum, lane by lane: the upper triangle, row by row.
+template <typename D>
+struct SymmetricSum {
+  D entries[21] = {};
+
+  void AddTo(MotionMatrix* sum) const {
+    constexpr int kLanes = sizeof(D) / sizeof(double);
+    int entry = 0;
+    for (int a = 0; a < 6; ++a) {
+      for (int b = a; b < 6; ++b, ++entry) {
+        double value = 0.0;
+        for (int lane = 0; lane < kLanes; ++lane) value += entries[entry][lane];
+        (*sum)(a, b) += value;
+        if (b != a) (*sum)(b, a) += value;
+      }
+    }
+  }
+};
+
+// The residuals of all matches, kRows each.
+template <typename Residual>
+struct ResidualsKernel {
+  template <int W>
+  [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
+                                         const PackedColumns& columns,
+                                         double* residuals) {
+    using D = typename Lanes<W>::Type;
+    for (int i = 0; i < columns.size; i += W) {
+      const Pack<Residual, W> pack(columns, i);
+      D r[Residual::kRows];
+      Residual::Residual(motion, pack.m, r);
+      for (int lane = 0; lane < pack.lanes; ++lane) {
+        for (int row = 0; row < Residual::kRows; ++row) {
+          residuals[(i + lane) * Residual::kRows + row] = r[row][lane];
+        }
+      }
+    }
+  }
+};
+
+// The squared norm of each match's residual. The output has room for the
+// padding.
+template <typename Residual>
+struct SquaredNormsKernel {
+  template <int W>
+  [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
+                                         const PackedColumns& columns,
+                                         double* squared_norms) {
+    SquaredNormsOfTile<Residual, W>(motion, columns, 0, columns.size,
+                                    squared_norms);
+  }
+};
+
+// sum w J^T J and sum w J^T r, row by row of the Jacobian.
+template <typename Residual, typename D>
+struct RowSums {
+  void Add(const MotionDerivatives& motion, const D* m, const D& weight) {
+    constexpr int kRows = Residual::kRows;
+    D r[kRows];
+    D J[kRows][6];
+    Residual::Jacobian(motion, m, r, J);
+    int entry = 0;
+    for (int a = 0; a < 6; ++a) {
+      D wJ[kRows];
+      for (int row = 0; row < kRows; ++row) wJ[row] = weight * J[row][a];
+      D g = wJ[0] * r[0];
+      for (int row = 1; row < kRows; ++row) g += wJ[row] * r[row];
+      gradient[a] += g;
+      for (int b = a; b < 6; ++b) {
+        D h = wJ[0] * J[0][b];
+        for (int row = 1; row < kRows; ++row) h += wJ[row] * J[row][b];
+        hessian.entries[entry++] += h;
+      }
+    }
+  }
+
+  void AddTo(const MotionDerivatives& /*motion*/, NormalEquations* sum) const {
+    constexpr int kLanes = sizeof(D) / sizeof(double);
+    hessian.AddTo(&sum->hessian);
+    for (int a = 0; a < 6; ++a) {
+      for (int lane = 0; lane < kLanes; ++lane) {
+        sum->gradient[a] += gradient[a][lane];
+      }
+    }
+  }
+
+  SymmetricSum<D> hessian;
+  D gradient[6] = {};
+};
+
+// The same by the short cut of point_sums.h.
+template <typename Residual, typename D>
+struct TermSums {
+  void Add(const MotionDerivatives& motion, const D* m, const D& weight) {
+    PointTerm<D> forward_term, backward_term;
+    Residual::PointTerms(motion, m, &forward_term, &backward_term);
+    forward.Add(forward_term, weight);
+    backward.Add(backward_term, weight);
+  }
+
+  // d(R (X - C)) = omega x q - R dC;  d(R^T X + C) = -(R^T omega) x q + dC.
+  void AddTo(const MotionDerivatives& motion, NormalEquations* sum) const {
+    const Eigen::Matrix3d turn = TurnOfAngles(motion);
+    forward.AddTo(turn, -motion.R, sum);
+    backward.AddTo(-(motion.R.transpose() * turn), Eigen::Matrix3d::Identity(),
+                   sum);
+  }
+
+  PointSums<D> forward, backward;
+};
+
+// The robustified normal equations, weighted by rho', of the matches from
+// `first` (a multiple of kMaxLanes) to `last`.
+template <typename Residual>
+struct LineariseKernel {
+  template <int W>
+  [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
+                                         const PackedColumns& columns,
+                                         const ceres::LossFunction* loss,
+                                         int first, int last,
+                                         NormalEquations* sum) {
+    using D = typename Lanes<W>::Type;
+    using Sums =
+        std::conditional_t<HasPointTerms<Residual>::value,
+                           TermSums<Residual, D>, RowSums<Residual, D>>;
+    Sums sums;
+    double cost = 0.0;
+    for (int begin = first; begin < last; begin += kTile) {
+      const int end = std::min(begin + kTile, last);
+      alignas(64) double weights[kTile + kMaxLanes];
+      cost +=
+          WeighTile<Residual, W>(motion, columns, loss, begin, end, weights);
+      for (int i = begin; i < end; i += W) {
+        const Pack<Residual, W> pack(columns, i);
+        D weight;
+        std::memcpy(&weight, weights + (i - begin), sizeof(D));
+        sums.Add(motion, pack.m, weight);
+      }
+    }
+    sum->cost += 0.5 * cost;
+    sums.AddTo(motion, sum);
+  }
+};
+
+// sum rho'^2 J^T r r^T J.
+template <typename Residual>
+struct ScatterKernel {
+  template <int W>
+  [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
+                                         const PackedColumns& columns,
+                                         const ceres::LossFunction* loss,
+                                         MotionMatrix* sum) {
+    using D = typename Lanes<W>::Type;
+    constexpr int kRows = Residual::kRows;
+    SymmetricSum<D> scatter;
+    for (int begin = 0; begin < columns.size; begin += kTile) {
+      const int end = std::min(begin + kTile, columns.size);
+      alignas(64) double weights[kTile + kMaxLanes];
+      WeighTile<Residual, W>(motion, columns, loss, begin, end, weights);
+      for (int i = begin; i < end; i += W) {
+        const Pack<Residual, W> pack(columns, i);
+        D weight;
+        std::memcpy(&weight, weights + (i - begin), sizeof(D));
+        D r[kRows];
+        D J[kRows][6];
+        Residual::Jacobian(motion, pack.m, r, J);
+        D g[6];
+        for (int a = 0; a < 6; ++a) {
+          g[a] = J[0][a] * r[0];
+          for (int row = 1; row < kRows; ++row) g[a] += J[row][a] * r[row];
+          g[a] *= weight;
+        }
+        int entry = 0;
+        for (int a = 0; a < 6; ++a) {
+          for (int b = a; b < 6; ++b) scatter.entries[entry++] += g[a] * g[b];
+        }
+      }
+    }
+    scatter.AddTo(sum);
+  }
+};
+
+}  // namespace packed
+}  // namespace rgbd_pose

@@ -1,0 +1,76 @@
+#pragma once
+
+#include <algorithm>
+
+#include "core/estimation/cost.h"
+#include "costs/parts/image_error.h"
+
+namespace rgbd_pose {
+
+// Re-projection both ways (Howard 2008; Huang 2013): the previous point in the
+// current image and the current point in the previous image, each with u, v and
+// inverse depth:
+//
+//   rows 0-2  L_c^T (m_cur  - project(R (X_prev - C)))
+//   rows 3-5  L_p^T (m_prev - project(R^T X_cur + C))
+//
+// L L^T is the inverse of the noise of the measurement plus that of the
+// projected point, frozen at the motion that was bound. Both directions tell
+// the same three measurements, each with the noise of both frames: so each
+// covariance counts twice (the rows are divided by sqrt 2).
+//
+// If only one frame has depth, only its points can be projected and only their
+// u and v compared: two rows, told once; the other four are zero. Points behind
+// a camera: projection.h.
+struct BidirectionalImage {
+  static constexpr char kName[] = "bidirectional_image";
+  static constexpr int kRows = 6;
+  static constexpr int kIndependentRows = 3;
+  static constexpr bool kFreezesWeights = true;
+  static constexpr bool kIsWhitened = true;
+  static constexpr int kForwardColumns =
+      ImageError<3, Forward, double>::kColumns;
+  static constexpr int kColumns = 2 * kForwardColumns;
+
+  static bool Pack(const CostInput& input, size_t i, double* columns) {
+    const Correspondences& matches = input.matches;
+    const Observation prev = matches.prev()[i];
+    const Observation cur = matches.cur()[i];
+    const bool forward = prev.depth > 0.0;
+    const bool backward = cur.depth > 0.0;
+    const double repeats = forward && backward ? 2.0 : 1.0;
+    std::fill_n(columns, kColumns, 0.0);
+    if (forward && !PackImageError<3>(matches, input.cur_from_prev, prev, cur,
+                                      repeats, columns)) {
+      return false;
+    }
+    if (backward &&
+        !PackImageError<3>(matches, input.cur_from_prev.Inverse(), cur, prev,
+                           repeats, columns + kForwardColumns)) {
+      return false;
+    }
+    return forward || backward;
+  }
+
+  // Two where inverse depth is missing: u and v of one direction.
+  static int Degrees(const double* columns) {
+    return columns[kForwardColumns - 1] > 0.0 ? 3 : 2;
+  }
+
+  template <typename M, typename D, typename T>
+  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+    ImageError<3, Forward, D>(columns).Residual(motion, r);
+    ImageError<3, Backward, D>(columns + kForwardColumns)
+        .Residual(motion, r + 3);
+  }
+
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
+    ImageError<3, Forward, D>(columns).Jacobian(motion, r, J);
+    ImageError<3, Backward, D>(columns + kForwardColumns)
+        .Jacobian(motion, r + 3, J + 3);
+  }
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,52 @@
+#pragma once
+
+#include "core/estimation/cost.h"
+#include "costs/parts/forward_error.h"
+#include "costs/parts/whitening.h"
+
+namespace rgbd_pose {
+
+// The 3D error of a match under the noise of both of its points (Dryanovski,
+// Valenti & Xiao 2013; generalised ICP, Segal, Haehnel & Thrun 2009):
+//
+//   r = L^T e,  e = X_cur - R (X_prev - C),  L L^T = (S_cur + R S_prev R^T)^-1
+//
+// with the covariances S of PointCovariance. L is frozen at the motion that was
+// bound: it changes little with it, and a weight that follows the motion would
+// reward motions that make the noise look large.
+struct MahalanobisPoint {
+  static constexpr char kName[] = "mahalanobis_point";
+  static constexpr int kRows = 3;
+  static constexpr int kIndependentRows = 3;
+  static constexpr bool kFreezesWeights = true;
+  static constexpr bool kIsWhitened = true;
+  static constexpr int kColumns =
+      ForwardError::kColumns + Whitening<3, double>::kColumns;
+
+  static bool Pack(const CostInput& input, size_t i, double* columns) {
+    return ForwardError::Pack(input, i, columns) &&
+           PackWhitening<3>(ForwardError::Covariance(input, i),
+                            columns + ForwardError::kColumns);
+  }
+
+  template <typename M, typename D, typename T>
+  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+    T e[3];
+    ForwardError::Error(motion, columns, e);
+    Whitening<3, D>(columns + ForwardError::kColumns).Whiten(e, r);
+  }
+
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
+    Residual(motion, columns, r);
+    const Whitening<3, D> whitening(columns + ForwardError::kColumns);
+    for (int parameter = 0; parameter < 6; ++parameter) {
+      D de[3];
+      ForwardError::Derivative(motion, columns, parameter, de);
+      whitening.WhitenColumn(de, J, parameter);
+    }
+  }
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "core/estimation/cost.h"
+#include "core/util/lane_math.h"
+#include "costs/parts/whitening.h"
+
+namespace rgbd_pose {
+
+// A pull towards a motion that was predicted (Kerl, Sturm & Cremers 2013, there
+// a motion model for dense odometry): one block of six rows,
+//
+//   r = L^T [ 1/2 vee(R R_p^T - R_p R^T) ; C - C_p ]
+//
+// with L L^T the inverse of MotionPrior::covariance. The upper half is axis
+// times sine of the rotation Exp(omega) = R R_p^T, about the current axes. It
+// shrinks again beyond 90 degrees: the prediction has to be nearer than that. A
+// prior whose covariance is not positive definite (that of an estimate which
+// failed is zero) says nothing and is not used.
+struct MotionPriorCost {
+  static constexpr char kName[] = "motion_prior";
+  static constexpr int kRows = 6;
+  static constexpr int kIndependentRows = 6;
+  static constexpr bool kFreezesWeights = false;
+  static constexpr bool kIsWhitened = true;
+  static constexpr bool kIsPrior = true;
+  static constexpr int kPose = 9 + 3;  // R_p, column by column, and C_p
+  static constexpr int kColumns = kPose + Whitening<6, double>::kColumns;
+
+  static bool Pack(const CostInput& input, size_t /*i*/, double* columns) {
+    const Rigid3d& motion = input.prior->cur_from_prev;
+    const Eigen::Matrix3d R = motion.rotation.toRotationMatrix();
+    const Eigen::Vector3d C = motion.Inverse().translation;
+    std::copy_n(R.data(), 9, columns);
+    std::copy_n(C.data(), 3, columns + 9);
+    return motion.IsFinite() &&
+           PackWhitening<6>(input.prior->covariance, columns + kPose);
+  }
+
+  template <typename M, typename D, typename T>
+  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+    T e[6];
+    HalfTwist(columns, motion.R, e);
+    for (int i = 0; i < 3; ++i) e[3 + i] = motion.C[i] - columns[9 + i];
+    Whitening<6, D>(columns + kPose).Whiten(e, r);
+  }
+
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
+    Residual(motion, columns, r);
+    const Whitening<6, D> whitening(columns + kPose);
+    for (int angle = 0; angle < 3; ++angle) {
+      D de[3];
+      HalfTwist(columns, motion.dR[angle], de);
+      whitening.template WhitenHead<3>(de, J, angle);
+    }
+    for (int k = 3; k < 6; ++k) whitening.WhitenUnit(k, J, k);
+  }
+
+ private:
+  // 1/2 vee(A R_p^T - R_p A^T), which is half the sum of the cross products of
+  // the columns of R_p and A.
+  template <typename D, typename M, typename T>
+  static void HalfTwist(const D* predicted, const Eigen::Matrix<M, 3, 3>& A,
+                        T* twist) {
+    T c[3][3];
+    for (int k = 0; k < 3; ++k) Cross(predicted + 3 * k, A.col(k).data(), c[k]);
+    for (int i = 0; i < 3; ++i) twist[i] = 0.5 * (c[0][i] + c[1][i] + c[2][i]);
+  }
+};
+
+}  // namespace rgbd_pose

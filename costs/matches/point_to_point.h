@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cmath>
+
+#include "core/estimation/cost.h"
+#include "costs/parts/forward_error.h"
+
+namespace rgbd_pose {
+
+// The plain 3D error of a match, as in closed-form alignment (Horn 1987; Arun,
+// Huang & Blostein 1987): e = X_cur - R (X_prev - C), divided by one sigma for
+// all directions. That sigma^2 is the mean of the variances of e along the
+// axes, trace(S_cur + R S_prev R^T) / 3, and does not depend on the motion.
+//
+// A depth camera errs many times more along the ray than across it. One sigma
+// for both wastes what the image knows, and the rows are not of unit variance:
+// not whitened, so the covariance comes from their scatter.
+struct PointToPoint {
+  static constexpr char kName[] = "point_to_point";
+  static constexpr int kRows = 3;
+  static constexpr int kIndependentRows = 3;
+  static constexpr bool kFreezesWeights = false;
+  static constexpr bool kIsWhitened = false;
+  static constexpr int kColumns = ForwardError::kColumns + 1;
+
+  static bool Pack(const CostInput& input, size_t i, double* columns) {
+    if (!ForwardError::Pack(input, i, columns)) return false;
+    columns[6] =
+        1.0 / std::sqrt(ForwardError::Covariance(input, i).trace() / 3);
+    return true;
+  }
+
+  template <typename M, typename D, typename T>
+  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+    ForwardError::Error(motion, columns, r);
+    for (int row = 0; row < 3; ++row) r[row] *= columns[6];
+  }
+
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
+    Residual(motion, columns, r);
+    for (int parameter = 0; parameter < 6; ++parameter) {
+      D de[3];
+      ForwardError::Derivative(motion, columns, parameter, de);
+      for (int row = 0; row < 3; ++row)
+        J[row][parameter] = columns[6] * de[row];
+    }
+  }
+};
+
+}  // namespace rgbd_pose

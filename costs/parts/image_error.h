@@ -1,0 +1,112 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+
+#include "core/estimation/correspondences.h"
+#include "core/geometry/motion.h"
+#include "core/geometry/rigid3.h"
+#include "costs/parts/moved_point.h"
+#include "costs/parts/point_covariance.h"
+#include "costs/parts/projection.h"
+#include "costs/parts/ray.h"
+#include "costs/parts/whitening.h"
+
+namespace rgbd_pose {
+
+// The error of a point of one frame, moved and projected into the other, where
+// it was measured: u and v (N = 2) or u, v and inverse depth (N = 3), whitened.
+// Pixels count in units of the focal length (projection.h); after whitening
+// units do not matter. Direction is Forward or Backward (moved_point.h); D is
+// double or a pack of doubles.
+template <int N, typename Direction, typename D>
+struct ImageError {
+  static constexpr int kPoint = 3;
+  static constexpr int kColumns = kPoint + N + Whitening<N, D>::kColumns;
+
+  // The point, its measurement and the whitening.
+  explicit ImageError(const D* columns)
+      : point(columns),
+        measured(columns + kPoint),
+        whitening(columns + kPoint + N) {}
+
+  template <typename M, typename T>
+  void Residual(const MotionPose<M>& motion, T* r) const {
+    T q[3];
+    Direction::Move(motion, point, q);
+    WhitenError(Projection<T>(q), r);
+  }
+
+  void Jacobian(const MotionDerivatives& motion, D* r, D (*J)[6]) const {
+    D q[3];
+    Direction::Move(motion, point, q);
+    const Projection<D> projection(q);
+    WhitenError(projection, r);
+    for (int parameter = 0; parameter < 6; ++parameter) {
+      D dq[3], dm[3], de[N];
+      Direction::Derivative(motion, point, parameter, dq);
+      projection.Derivative(dq, dm);
+      for (int i = 0; i < N; ++i) de[i] = -dm[i];
+      whitening.WhitenColumn(de, J, parameter);
+    }
+  }
+
+ private:
+  template <typename T>
+  void WhitenError(const Projection<T>& projection, T* r) const {
+    T e[N];
+    for (int i = 0; i < N; ++i) e[i] = measured[i] - projection.m()[i];
+    whitening.Whiten(e, r);
+  }
+
+  const D* point;
+  const D* measured;
+  Whitening<N, D> whitening;
+};
+
+// Covariance of the projection of a point of `source` into the target frame, by
+// the noise of that point alone.
+inline Eigen::Matrix3d ProjectedCovariance(const Camera& camera,
+                                           const Observation& source,
+                                           const Eigen::Matrix3d& R,
+                                           const Eigen::Vector3d& moved) {
+  const Projection<double> projection(moved.data());
+  Eigen::Matrix3d P;
+  for (int k = 0; k < 3; ++k) {
+    projection.Derivative(R.col(k).data(), P.col(k).data());
+  }
+  return P * PointCovariance(camera, source) * P.transpose();
+}
+
+// Writes the columns of an ImageError of a point of `source`, which has depth,
+// measured as `target`. The covariance is that of the measurement plus that of
+// the projected point at `target_from_source`, times `repeats`. Without depth
+// of the target the row of inverse depth weighs nothing. False if the noise
+// allows no whitening.
+template <int N>
+bool PackImageError(const Correspondences& matches,
+                    const Rigid3d& target_from_source,
+                    const Observation& source, const Observation& target,
+                    double repeats, double* columns) {
+  const Camera& camera = matches.camera();
+  const Eigen::Vector3d point = matches.Point(source);
+  Eigen::Matrix3d covariance = ProjectedCovariance(
+      camera, source, target_from_source.rotation.toRotationMatrix(),
+      target_from_source * point);
+  const bool has_depth = target.depth > 0.0;
+  const double w = has_depth ? 1.0 / target.depth : 0.0;
+  Eigen::Vector3d measured = Ray(camera, target);
+  measured.z() = w;
+  const Eigen::Vector3d sigma(target.sigma_px / camera.fx,
+                              target.sigma_px / camera.fy,
+                              target.sigma_depth * w * w);
+  covariance.diagonal() += sigma.cwiseAbs2();
+  covariance *= repeats;
+  columns = std::copy_n(point.data(), 3, columns);
+  columns = std::copy_n(measured.data(), N, columns);
+  if (N == 3 && has_depth) return PackWhitening<3>(covariance, columns);
+  std::fill_n(columns, Whitening<N, double>::kColumns, 0.0);
+  return PackWhitening<2>(covariance.topLeftCorner<2, 2>(), columns);
+}
+
+}  // namespace rgbd_pose

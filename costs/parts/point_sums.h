@@ -1,0 +1,132 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <type_traits>
+
+#include "core/estimation/cost.h"
+#include "core/geometry/motion.h"
+
+// A short cut for residuals that depend on the motion through one moved point:
+// r = f(q), A = dr/dq. A small turn omega and a shift c of q give
+//
+//   dq = omega x q + c,   so with N = A^T A and n = A^T r (3 numbers wide)
+//
+// the normal equations in (omega, c) are sums of N, N [q]x, [q]x^T N [q]x, n
+// and n x q: 27 sums for any number of rows, instead of 27 for each row. What
+// omega and c are in the six parameters is the same for all matches and is
+// applied once, at the end.
+
+namespace rgbd_pose {
+
+// One match's share.
+template <typename D>
+struct PointTerm {
+  D q[3];       // the moved point
+  D normal[6];  // N: 00 01 02 11 12 22
+  D force[3];   // n
+};
+
+// The sums over all matches, lane by lane.
+template <typename D>
+class PointSums {
+ public:
+  void Add(const PointTerm<D>& term, const D& weight) {
+    const D* q = term.q;
+    D N[6], n[3];
+    for (int i = 0; i < 6; ++i) N[i] = weight * term.normal[i];
+    for (int i = 0; i < 3; ++i) n[i] = weight * term.force[i];
+    // P = N [q]x: row i is (row i of N) x q.
+    const D P[3][3] = {{N[1] * q[2] - N[2] * q[1], N[2] * q[0] - N[0] * q[2],
+                        N[0] * q[1] - N[1] * q[0]},
+                       {N[3] * q[2] - N[4] * q[1], N[4] * q[0] - N[1] * q[2],
+                        N[1] * q[1] - N[3] * q[0]},
+                       {N[4] * q[2] - N[5] * q[1], N[5] * q[0] - N[2] * q[2],
+                        N[2] * q[1] - N[4] * q[0]}};
+    for (int i = 0; i < 6; ++i) shift_shift_[i] += N[i];
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) shift_turn_[i][k] += P[i][k];
+    }
+    // [q]x^T P: column k is (column k of P) x q.
+    turn_turn_[0] += P[1][0] * q[2] - P[2][0] * q[1];
+    turn_turn_[1] += P[1][1] * q[2] - P[2][1] * q[1];
+    turn_turn_[2] += P[1][2] * q[2] - P[2][2] * q[1];
+    turn_turn_[3] += P[2][1] * q[0] - P[0][1] * q[2];
+    turn_turn_[4] += P[2][2] * q[0] - P[0][2] * q[2];
+    turn_turn_[5] += P[0][2] * q[1] - P[1][2] * q[0];
+    for (int i = 0; i < 3; ++i) shift_[i] += n[i];
+    turn_[0] += n[1] * q[2] - n[2] * q[1];
+    turn_[1] += n[2] * q[0] - n[0] * q[2];
+    turn_[2] += n[0] * q[1] - n[1] * q[0];
+  }
+
+  // Adds the normal equations in the six parameters: omega = turn * d(angles),
+  // c = shift * dC.
+  void AddTo(const Eigen::Matrix3d& turn, const Eigen::Matrix3d& shift,
+             NormalEquations* sum) const {
+    // In (omega, c); the signs are those of dq = [q]x^T omega + c.
+    Eigen::Matrix3d shift_turn;
+    Eigen::Vector3d g_turn, g_shift;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = 0; k < 3; ++k) shift_turn(i, k) = -Total(shift_turn_[i][k]);
+      g_turn[i] = -Total(turn_[i]);
+      g_shift[i] = Total(shift_[i]);
+    }
+    const Eigen::Matrix3d corner = shift.transpose() * shift_turn * turn;
+    MotionMatrix& hessian = sum->hessian;
+    hessian.topLeftCorner<3, 3>() +=
+        turn.transpose() * Symmetric(turn_turn_) * turn;
+    hessian.bottomRightCorner<3, 3>() +=
+        shift.transpose() * Symmetric(shift_shift_) * shift;
+    hessian.bottomLeftCorner<3, 3>() += corner;
+    hessian.topRightCorner<3, 3>() += corner.transpose();
+    sum->gradient.head<3>() += turn.transpose() * g_turn;
+    sum->gradient.tail<3>() += shift.transpose() * g_shift;
+  }
+
+ private:
+  static double Total(const D& lanes) {
+    constexpr int kLanes = sizeof(D) / sizeof(double);
+    double total = 0.0;
+    for (int lane = 0; lane < kLanes; ++lane) total += lanes[lane];
+    return total;
+  }
+
+  static Eigen::Matrix3d Symmetric(const D* entries) {
+    Eigen::Matrix3d matrix;
+    int entry = 0;
+    for (int i = 0; i < 3; ++i) {
+      for (int k = i; k < 3; ++k, ++entry) {
+        matrix(i, k) = matrix(k, i) = Total(entries[entry]);
+      }
+    }
+    return matrix;
+  }
+
+  D turn_turn_[6] = {};
+  D shift_turn_[3][3] = {};
+  D shift_shift_[6] = {};
+  D turn_[3] = {};
+  D shift_[3] = {};
+};
+
+// The turns omega of the current axes per change of each angle: column k is
+// the axis of (dR/d angle_k) R^T.
+inline Eigen::Matrix3d TurnOfAngles(const MotionDerivatives& motion) {
+  Eigen::Matrix3d turn;
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Matrix3d skew = motion.dR[k] * motion.R.transpose();
+    turn.col(k) << skew(2, 1), skew(0, 2), skew(1, 0);
+  }
+  return turn;
+}
+
+// Whether a residual type says its terms: the forward point R (X_prev - C) and
+// the backward point R^T X_cur + C, by
+//   PointTerms(motion, columns, forward, backward).
+template <typename Residual, typename = void>
+struct HasPointTerms : std::false_type {};
+template <typename Residual>
+struct HasPointTerms<Residual, std::void_t<decltype(Residual::kHasPointTerms)>>
+    : std::true_type {};
+
+}  // namespace rgbd_pose

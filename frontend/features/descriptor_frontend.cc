@@ -1,0 +1,101 @@
+#include "frontend/features/descriptor_frontend.h"
+
+#include <limits>
+#include <utility>
+
+#include "frontend/features/grid_selection.h"
+#include "frontend/image/observe.h"
+
+namespace rgbd_pose {
+namespace {
+
+// So many keypoints are detected for each feature wanted: textured places take
+// most of them, and those of a reference have to be among them again.
+constexpr int kKeypointsPerFeature = 5;
+
+// How far (rad) a keypoint may be from where it is expected: turns of 200
+// degrees a second at 30 frames a second, without any prediction.
+constexpr double kSearchAngle = 0.12;
+
+// The guess was wrong if a smaller share of the features is found around it.
+constexpr double kMinGuidedShare = 0.2;
+
+struct DescribedFeatures : FeatureSet {
+  DescribedKeypoints described;  // of each observation
+};
+
+bool IsSame(const Frame& a, const Frame& b) {
+  return a.index == b.index && a.timestamp == b.timestamp &&
+         a.gray.data == b.gray.data && a.gray.size() == b.gray.size();
+}
+
+}  // namespace
+
+DescriptorFrontend::DescriptorFrontend(const FrontendOptions& options,
+                                       const DescriptorMethod& method)
+    : options_(options),
+      method_(method),
+      depth_options_{options.depth_noise, options.min_depth, options.max_depth},
+      detector_(method.make(kKeypointsPerFeature * options.max_features)) {}
+
+const DescribedKeypoints& DescriptorFrontend::Describe(const Frame& frame) {
+  if (!described_frame_.gray.empty() && IsSame(frame, described_frame_)) {
+    return described_;
+  }
+  detector_->detectAndCompute(frame.gray, cv::noArray(), described_.keypoints,
+                              described_.descriptors);
+  described_frame_ = frame;
+  return described_;
+}
+
+Observation DescriptorFrontend::ObserveKeypoint(
+    const Frame& frame, const cv::KeyPoint& keypoint) const {
+  return Observe(frame, options_.camera, keypoint.pt.x, keypoint.pt.y,
+                 method_.SigmaPx(keypoint), depth_options_);
+}
+
+std::unique_ptr<FeatureSet> DescriptorFrontend::Detect(const Frame& frame) {
+  const DescribedKeypoints& all = Describe(frame);
+  auto features = std::make_unique<DescribedFeatures>();
+  features->described = all.Select(SelectOverGrid(
+      all.keypoints, frame.gray.size(), options_.max_features,
+      [&](const cv::Point2f& pixel) {
+        return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
+      }));
+  for (const cv::KeyPoint& keypoint : features->described.keypoints) {
+    features->observations.push_back(ObserveKeypoint(frame, keypoint));
+  }
+  return features;
+}
+
+void DescriptorFrontend::Match(const FeatureSet& reference, const Frame& frame,
+                               const Rigid3d& cur_from_ref_guess,
+                               FeatureMatches* matches) {
+  matches->Clear();
+  const auto& features = static_cast<const DescribedFeatures&>(reference);
+  const DescribedKeypoints& current = Describe(frame);
+  SearchGuide guide;
+  guide.radius_px = static_cast<float>(kSearchAngle * options_.camera.fx);
+  for (const Observation& o : features.observations) {
+    const Eigen::Vector3d point =
+        cur_from_ref_guess * matches->matches.Point(o);
+    Eigen::Vector2d pixel =
+        Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+    if (point.z() > 0.0) pixel = options_.camera.Project(point);
+    guide.expected.emplace_back(static_cast<float>(pixel.x()),
+                                static_cast<float>(pixel.y()));
+  }
+  std::vector<KeypointMatch> found =
+      MatchKeypoints(method_, features.described, current, &guide);
+  if (found.size() < kMinGuidedShare * features.observations.size()) {
+    std::vector<KeypointMatch> anywhere =
+        MatchKeypoints(method_, features.described, current, nullptr);
+    if (anywhere.size() > found.size()) found = std::move(anywhere);
+  }
+  for (const KeypointMatch& match : found) {
+    matches->Add(reference, match.reference,
+                 ObserveKeypoint(frame, current.keypoints[match.current]));
+  }
+}
+
+}  // namespace rgbd_pose

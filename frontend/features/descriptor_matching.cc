@@ -1,0 +1,143 @@
+#include "frontend/features/descriptor_matching.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <optional>
+
+namespace rgbd_pose {
+namespace {
+
+// A second best must be so much worse (Lowe 2004).
+constexpr double kMaxRatio = 0.8;
+
+// Keypoints this near to each other are one place seen at several scales: no
+// rivals in the ratio test.
+constexpr float kSamePlacePx = 4.0F;
+
+// The keypoints of an image by their place, for searches within a radius.
+class KeypointGrid {
+ public:
+  KeypointGrid(const std::vector<cv::KeyPoint>& keypoints, float cell_px)
+      : keypoints_(keypoints), cell_px_(cell_px) {
+    for (const cv::KeyPoint& keypoint : keypoints) {
+      columns_ = std::max(columns_, Cell(keypoint.pt.x) + 1);
+      rows_ = std::max(rows_, Cell(keypoint.pt.y) + 1);
+    }
+    cells_.resize(static_cast<size_t>(columns_) * rows_);
+    for (size_t i = 0; i < keypoints.size(); ++i) {
+      const cv::Point2f& p = keypoints[i].pt;
+      cells_[Cell(p.y) * columns_ + Cell(p.x)].push_back(static_cast<int>(i));
+    }
+  }
+
+  // Those within one cell's width of a point.
+  void Near(const cv::Point2f& p, std::vector<int>* near) const {
+    near->clear();
+    // Written so that what is not a number finds nothing.
+    if (!(p.x >= -cell_px_ && p.x <= (columns_ + 1) * cell_px_ &&
+          p.y >= -cell_px_ && p.y <= (rows_ + 1) * cell_px_)) {
+      return;
+    }
+    const int column = Cell(p.x);
+    const int row = Cell(p.y);
+    for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {
+      for (int c = std::max(0, column - 1);
+           c <= std::min(columns_ - 1, column + 1); ++c) {
+        for (const int i : cells_[r * columns_ + c]) {
+          const cv::Point2f offset = keypoints_[i].pt - p;
+          if (offset.dot(offset) <= cell_px_ * cell_px_) near->push_back(i);
+        }
+      }
+    }
+  }
+
+ private:
+  int Cell(float x) const { return static_cast<int>(std::floor(x / cell_px_)); }
+
+  const std::vector<cv::KeyPoint>& keypoints_;
+  float cell_px_;
+  int columns_ = 0;
+  int rows_ = 0;
+  std::vector<std::vector<int>> cells_;
+};
+
+struct Nearest {
+  int place = -1;
+  double distance = std::numeric_limits<double>::infinity();
+};
+
+// The nearest of the candidates if it passes the ratio test.
+Nearest FindDistinct(const std::vector<cv::KeyPoint>& keypoints,
+                     const std::vector<int>& candidates,
+                     const std::vector<double>& distances,
+                     double max_distance) {
+  Nearest best;
+  for (size_t k = 0; k < candidates.size(); ++k) {
+    if (distances[k] < best.distance) best = {candidates[k], distances[k]};
+  }
+  if (best.distance > max_distance) return {};
+  const double limit = best.distance / kMaxRatio;
+  for (size_t k = 0; k < candidates.size(); ++k) {
+    if (distances[k] >= limit) continue;
+    const cv::Point2f offset =
+        keypoints[candidates[k]].pt - keypoints[best.place].pt;
+    if (offset.dot(offset) > kSamePlacePx * kSamePlacePx) return {};
+  }
+  return best;
+}
+
+}  // namespace
+
+DescribedKeypoints DescribedKeypoints::Select(
+    const std::vector<int>& places) const {
+  DescribedKeypoints selected;
+  selected.descriptors.create(static_cast<int>(places.size()), descriptors.cols,
+                              descriptors.type());
+  for (size_t k = 0; k < places.size(); ++k) {
+    selected.keypoints.push_back(keypoints[places[k]]);
+    descriptors.row(places[k]).copyTo(
+        selected.descriptors.row(static_cast<int>(k)));
+  }
+  return selected;
+}
+
+std::vector<KeypointMatch> MatchKeypoints(const DescriptorMethod& method,
+                                          const DescribedKeypoints& reference,
+                                          const DescribedKeypoints& current,
+                                          const SearchGuide* guide) {
+  const int size = current.descriptors.cols;
+  std::vector<int> candidates(current.keypoints.size());
+  std::iota(candidates.begin(), candidates.end(), 0);
+  std::optional<KeypointGrid> grid;
+  if (guide != nullptr) grid.emplace(current.keypoints, guide->radius_px);
+  std::vector<double> distances;
+  std::vector<Nearest> nearest_reference(current.keypoints.size());
+  std::vector<KeypointMatch> matches;
+  for (size_t i = 0; i < reference.keypoints.size(); ++i) {
+    if (grid) grid->Near(guide->expected[i], &candidates);
+    distances.resize(candidates.size());
+    for (size_t k = 0; k < candidates.size(); ++k) {
+      distances[k] = method.distance(reference.descriptor(i),
+                                     current.descriptor(candidates[k]), size);
+      Nearest& nearest = nearest_reference[candidates[k]];
+      if (distances[k] < nearest.distance) {
+        nearest = {static_cast<int>(i), distances[k]};
+      }
+    }
+    const Nearest best = FindDistinct(current.keypoints, candidates, distances,
+                                      method.max_distance);
+    if (best.place >= 0) matches.push_back({static_cast<int>(i), best.place});
+  }
+  matches.erase(
+      std::remove_if(matches.begin(), matches.end(),
+                     [&](const KeypointMatch& match) {
+                       return nearest_reference[match.current].place !=
+                              match.reference;
+                     }),
+      matches.end());
+  return matches;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,72 @@
+#include "frontend/features/frontend.h"
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/features/descriptor_frontend.h"
+#include "frontend/features/descriptor_method.h"
+#include "frontend/features/klt_frontend.h"
+#include "frontend/features/patch_frontend.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct FrontendEntry {
+  std::string_view name;
+  std::unique_ptr<Frontend> (*make)(const FrontendOptions& options);
+};
+
+template <typename Type>
+FrontendEntry EntryOf() {
+  return {Type::kName,
+          [](const FrontendOptions& options) -> std::unique_ptr<Frontend> {
+            return std::make_unique<Type>(options);
+          }};
+}
+
+template <const DescriptorMethod& (*method)()>
+FrontendEntry EntryOf() {
+  return {method().name,
+          [](const FrontendOptions& options) -> std::unique_ptr<Frontend> {
+            return std::make_unique<DescriptorFrontend>(options, method());
+          }};
+}
+
+// One header and one row here make a frontend.
+const FrontendEntry kFrontends[] = {
+    EntryOf<KltFrontend>(), EntryOf<PatchFrontend>(), EntryOf<Orb>(),
+    EntryOf<Sift>(),        EntryOf<Akaze>(),
+};
+
+}  // namespace
+
+std::string FrontendOptions::Check() const {
+  std::string camera_error = camera.Check();
+  if (!camera_error.empty()) return camera_error;
+  if (depth_noise == nullptr) return "a depth noise model is needed";
+  if (max_features < 3 || max_features > 1000000) {
+    return "max_features must be 3 to 1000000";
+  }
+  if (!(min_depth > 0.0) || !(max_depth > min_depth)) {
+    return "depth limits must satisfy 0 < min_depth < max_depth";
+  }
+  return "";
+}
+
+std::vector<std::string> FrontendNames() {
+  std::vector<std::string> names;
+  for (const FrontendEntry& entry : kFrontends) names.emplace_back(entry.name);
+  return names;
+}
+
+std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
+                                       const FrontendOptions& options) {
+  const std::string error = options.Check();
+  if (!error.empty()) throw InputError("frontend: " + error);
+  for (const FrontendEntry& entry : kFrontends) {
+    if (entry.name == name) return entry.make(options);
+  }
+  throw InputError("unknown frontend '" + std::string(name) + "'; there are " +
+                   Join(FrontendNames()));
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/estimation/correspondences.h"
+#include "core/geometry/camera.h"
+#include "core/geometry/depth_noise.h"
+#include "core/geometry/rigid3.h"
+#include "frontend/image/frame.h"
+
+namespace rgbd_pose {
+
+// What all frontends share.
+struct FrontendOptions {
+  Camera camera;  // of all frames
+
+  // How uncertain a measured depth is.
+  const DepthNoiseModel* depth_noise = FindDepthNoiseModel("khoshelham");
+
+  // The number of features wanted in a reference frame.
+  int max_features = 600;
+
+  // Depths beyond these limits (m) are not used.
+  double min_depth = 0.3;
+  double max_depth = 8.0;
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+// The features of one frame, to be found again in others. What else that takes
+// (patches, descriptors) is up to the frontend that made it.
+class FeatureSet {
+ public:
+  virtual ~FeatureSet() = default;
+
+  // Where the features are in their own frame. May be refined as more frames
+  // see them.
+  std::vector<Observation> observations;
+};
+
+// Matches between a feature set (prev) and a frame (cur).
+struct FeatureMatches {
+  Correspondences matches;    // prev: the feature set, cur: the frame
+  std::vector<int> features;  // of each match: its place in the feature set
+
+  // Adds a match of feature `i` if Correspondences takes it.
+  void Add(const FeatureSet& reference, int i, const Observation& cur) {
+    if (matches.Add(reference.observations[i], cur)) features.push_back(i);
+  }
+  // Takes all out; keeps the memory.
+  void Clear() {
+    matches.Clear();
+    features.clear();
+  }
+};
+
+// Finds the features of one frame again in others. Feature sets belong to the
+// frontend that made them. One object serves one thread.
+class Frontend {
+ public:
+  virtual ~Frontend() = default;
+
+  // Whether it should find every feature that is in view and not hidden.
+  // Detectors need not fire in the same place twice.
+  virtual bool finds_all_in_view() const { return true; }
+
+  // Works out ahead what does not depend on other frames (a pyramid, say) and
+  // keeps it in the frame. Optional; may be called from several threads.
+  virtual void Prepare(Frame* /*frame*/) const {}
+
+  // The features of a frame.
+  virtual std::unique_ptr<FeatureSet> Detect(const Frame& frame) = 0;
+
+  // Fills `matches` (emptied first) with the features of `reference` found in
+  // `frame`. The guess says where to look for them first.
+  virtual void Match(const FeatureSet& reference, const Frame& frame,
+                     const Rigid3d& cur_from_ref_guess,
+                     FeatureMatches* matches) = 0;
+};
+
+// The names of all frontends.
+std::vector<std::string> FrontendNames();
+
+// The frontend of that name. Throws InputError listing the names there are, or
+// saying what is wrong with the options.
+std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
+                                       const FrontendOptions& options);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,53 @@
+#include "frontend/features/grid_selection.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kCellPx = 32;
+constexpr int kBorderPx = 8;  // no patch around it otherwise
+
+bool IsStronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
+  if (a.response != b.response) return a.response > b.response;
+  // Ties by place keep the order independent of the sort's implementation.
+  return std::make_pair(a.pt.y, a.pt.x) < std::make_pair(b.pt.y, b.pt.x);
+}
+
+}  // namespace
+
+std::vector<int> SelectOverGrid(
+    const std::vector<cv::KeyPoint>& keypoints, const cv::Size& image,
+    int max_count, const std::function<bool(const cv::Point2f&)>& accept) {
+  const int columns = (image.width + kCellPx - 1) / kCellPx;
+  const int rows = (image.height + kCellPx - 1) / kCellPx;
+  std::vector<std::vector<int>> cells(columns * rows);
+  const cv::Rect2f inside(kBorderPx, kBorderPx, image.width - 2 * kBorderPx,
+                          image.height - 2 * kBorderPx);
+  for (size_t i = 0; i < keypoints.size(); ++i) {
+    const cv::Point2f& pixel = keypoints[i].pt;
+    if (!inside.contains(pixel)) continue;
+    const int cell = static_cast<int>(pixel.y) / kCellPx * columns +
+                     static_cast<int>(pixel.x) / kCellPx;
+    cells[cell].push_back(static_cast<int>(i));
+  }
+  // Every second cell is often empty (no texture, no depth): let the others
+  // give twice their fair share.
+  const size_t share = std::max<size_t>(1, 2 * max_count / cells.size());
+  std::vector<int> selected;
+  for (std::vector<int>& cell : cells) {
+    std::sort(cell.begin(), cell.end(), [&](int a, int b) {
+      return IsStronger(keypoints[a], keypoints[b]);
+    });
+    size_t taken = 0;
+    for (size_t i = 0; i < cell.size() && taken < share; ++i) {
+      if (!accept(keypoints[cell[i]].pt)) continue;
+      selected.push_back(cell[i]);
+      ++taken;
+    }
+  }
+  return selected;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,190 @@
+#include "frontend/features/match_overlay.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <numeric>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace rgbd_pose {
+namespace {
+
+// Dark enough for every colour of the map to stand out, light enough to see
+// what the features sit on.
+constexpr double kDimming = 0.45;
+
+const cv::Scalar kNoWeightColor = cv::Scalar::all(200);
+const cv::Scalar kStripColor = cv::Scalar::all(24);
+const cv::Scalar kTextColor = cv::Scalar::all(235);
+
+// One row: the colours of the weights from 0 to 1. Readers with any colour
+// vision see their order, as it is one of lightness, too. The map's darkest
+// part is left out: it would not be seen on the image.
+cv::Mat WeightColors() {
+  constexpr int kFirst = 88;
+  cv::Mat steps(1, 256 - kFirst, CV_8UC1);
+  for (int i = 0; i < steps.cols; ++i) {
+    steps.at<uchar>(i) = cv::saturate_cast<uchar>(kFirst + i);
+  }
+  cv::Mat colors;
+  cv::applyColorMap(steps, colors, cv::COLORMAP_PLASMA);
+  return colors;
+}
+
+cv::Scalar ColorAt(const cv::Mat& colors, double weight) {
+  const double place = std::clamp(weight, 0.0, 1.0) * (colors.cols - 1);
+  return colors.at<cv::Vec3b>(cvRound(place));
+}
+
+// Lengths (px) for an image of some width.
+struct Layout {
+  explicit Layout(int image_width) {
+    constexpr int kPlainWidth = 640;  // all grows with images wider than this
+    unit = std::max(1, image_width / kPlainWidth);
+    dot_radius = std::max(1.5, 2.5 * image_width / kPlainWidth);
+    margin = 6 * unit;
+    row_height = 18 * unit;
+    row_width = std::max(1, image_width - 2 * margin);
+    font_scale = 0.42 * unit;  // the smallest that is read with ease
+
+    // 80 average characters are 600 wide in this font.
+    caption_rows = (600 * unit + row_width - 1) / row_width;
+    height = (caption_rows + 1) * row_height + margin;
+  }
+
+  int unit;  // thickness of lines and letters
+  double dot_radius;
+  int margin;
+  int row_height;
+  int row_width;
+  double font_scale;
+  int caption_rows;
+  int height;
+};
+
+// The rows of text below the image: the caption, and the legend in the last.
+class Strip {
+ public:
+  Strip(const Layout& layout, int width)
+      : layout_(layout), image_(layout.height, width, CV_8UC3, kStripColor) {}
+
+  const cv::Mat& image() const { return image_; }
+
+  void DrawCaption(std::string caption) {
+    for (int row = 0; row < layout_.caption_rows && !caption.empty(); ++row) {
+      PutText(TakeRow(&caption), layout_.margin, row);
+    }
+  }
+
+  // `colors`: one row, those of the weights from 0 to 1.
+  void DrawLegend(const cv::Mat& colors) {
+    const int row = layout_.caption_rows;
+    const std::string low = "robust weight  0";
+    PutText(low, layout_.margin, row);
+    const int x = 2 * layout_.margin + TextWidth(low);
+    const cv::Size bar(80 * layout_.unit, layout_.row_height / 2);
+    const int right = x + bar.width + layout_.margin;
+    const std::string high_and_key =
+        "1     dot: feature now, line: from the reference";
+    const bool has_room = right + TextWidth(high_and_key) <= image_.cols;
+    PutText(has_room ? high_and_key : "1", right, row);
+    for (int i = 0; i < bar.width; ++i) {
+      const double weight = i / (bar.width - 1.0);
+      cv::line(image_, {x + i, Baseline(row) - bar.height},
+               {x + i, Baseline(row)}, ColorAt(colors, weight));
+    }
+  }
+
+ private:
+  // Where the letters of a row stand.
+  int Baseline(int row) const {
+    return (row + 1) * layout_.row_height - layout_.margin / 2;
+  }
+
+  int TextWidth(const std::string& text) const {
+    return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, layout_.font_scale,
+                           layout_.unit, nullptr)
+        .width;
+  }
+
+  void PutText(const std::string& text, int x, int row) {
+    cv::putText(image_, text, {x, Baseline(row)}, cv::FONT_HERSHEY_SIMPLEX,
+                layout_.font_scale, kTextColor, layout_.unit, cv::LINE_AA);
+  }
+
+  // Takes off as many words as fit into a row: at least a character.
+  std::string TakeRow(std::string* text) const {
+    size_t end = text->size();
+    while (end > 1 && TextWidth(text->substr(0, end)) > layout_.row_width) {
+      --end;
+    }
+    const size_t space = text->rfind(' ', end);
+    if (end < text->size() && space != std::string::npos && space > 0) {
+      end = space;
+    }
+    std::string row = text->substr(0, end);
+    text->erase(0, std::min(text->find_first_not_of(' ', end), text->size()));
+    return row;
+  }
+
+  Layout layout_;
+  cv::Mat image_;
+};
+
+// OpenCV draws to fractions of a pixel in fixed point: here, 1/16 px.
+constexpr int kShift = 4;
+int Fixed(double px) { return cvRound(px * (1 << kShift)); }
+
+// Where an observation is in the image as taken, in fixed point.
+cv::Point ImagePoint(const Camera& camera, const Observation& o) {
+  const Eigen::Vector2d pixel = camera.Project(
+      {(o.u - camera.cx) / camera.fx, (o.v - camera.cy) / camera.fy, 1.0});
+  // Far outside is far enough; the rest would not fit into an int.
+  constexpr double kFarPx = 1e5;
+  const Eigen::Vector2d near = pixel.cwiseMax(-kFarPx).cwiseMin(kFarPx);
+  return {Fixed(near.x()), Fixed(near.y())};
+}
+
+// The places of the weights, the smallest first.
+std::vector<size_t> Ascending(const std::vector<double>& weights) {
+  std::vector<size_t> order(weights.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(), [&weights](size_t a, size_t b) {
+    return weights[a] < weights[b];
+  });
+  return order;
+}
+
+}  // namespace
+
+cv::Mat DrawMatches(const Frame& frame, const Camera& camera,
+                    const FeatureMatches& found, const MotionEstimate& estimate,
+                    const std::string& caption) {
+  const Layout layout(frame.gray.cols);
+  const cv::Mat colors = WeightColors();
+  cv::Mat image;
+  cv::cvtColor(frame.gray * kDimming, image, cv::COLOR_GRAY2BGR);
+
+  const Correspondences& matches = found.matches;
+  const bool has_weights = estimate.weights.size() == matches.size();
+  const std::vector<double> weights =
+      has_weights ? estimate.weights : std::vector<double>(matches.size(), 0.0);
+  for (const size_t i : Ascending(weights)) {
+    const cv::Scalar color =
+        has_weights ? ColorAt(colors, weights[i]) : kNoWeightColor;
+    const cv::Point prev = ImagePoint(camera, matches.prev()[i]);
+    const cv::Point cur = ImagePoint(camera, matches.cur()[i]);
+    cv::line(image, prev, cur, color, layout.unit, cv::LINE_AA, kShift);
+    cv::circle(image, cur, Fixed(layout.dot_radius), color, cv::FILLED,
+               cv::LINE_AA, kShift);
+  }
+
+  Strip strip(layout, image.cols);
+  strip.DrawCaption(caption);
+  strip.DrawLegend(colors);
+  cv::Mat picture;
+  cv::vconcat(image, strip.image(), picture);
+  return picture;
+}
+
+}  // namespace rgbd_pose

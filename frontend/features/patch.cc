@@ -1,0 +1,63 @@
+#include "frontend/features/patch.h"
+
+#include <cmath>
+
+#include "frontend/image/sample_image.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A contrast or gradient whose RMS over the patch is below this (grey levels,
+// grey levels per px) is the noise of the image.
+constexpr float kMinGrey = 0.5F;
+
+// One more on each side than the patch, for its derivatives.
+constexpr int kSide = kPatchSize + 2;
+
+using Pixels = Eigen::Array<float, kPatchSize, kPatchSize, Eigen::RowMajor>;
+using Seen = Eigen::Array<float, kSide, kSide, Eigen::RowMajor>;
+
+}  // namespace
+
+void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
+               const Eigen::Matrix2f& image_from_patch, Patch* patch) {
+  constexpr float kMinEnergy = kMinGrey * kMinGrey * Patch::kPixels;
+  // Just inside, as SampleImage wants it.
+  const Eigen::Array2f limit(static_cast<float>(image.cols) - 1.001F,
+                             static_cast<float>(image.rows) - 1.001F);
+  Seen seen;
+  for (int i = 0; i < kSide; ++i) {
+    for (int j = 0; j < kSide; ++j) {
+      const Eigen::Vector2f offset(j - kSide / 2, i - kSide / 2);
+      const Eigen::Array2f at =
+          (centre + image_from_patch * offset).array().max(0.0F).min(limit);
+      seen(i, j) = SampleImage(image, at.x(), at.y());
+    }
+  }
+  constexpr int n = kPatchSize;
+  Pixels grey = seen.block<n, n>(1, 1);
+  Pixels x = 0.5F * (seen.block<n, n>(1, 2) - seen.block<n, n>(1, 0));
+  Pixels y = 0.5F * (seen.block<n, n>(2, 1) - seen.block<n, n>(0, 1));
+  patch->min_eigenvalue = 0.0F;
+  grey -= grey.mean();
+  patch->energy = grey.square().sum();
+  if (!(patch->energy > kMinEnergy)) return;
+  const Pixels contrast = grey / patch->energy;
+  x -= x.mean();
+  y -= y.mean();
+  x -= (x * contrast).sum() * grey;
+  y -= (y * contrast).sum() * grey;
+  const float xx = x.square().sum();
+  const float yy = y.square().sum();
+  const float xy = (x * y).sum();
+  const float determinant = xx * yy - xy * xy;
+  const float smaller =
+      0.5F * (xx + yy - std::sqrt((xx - yy) * (xx - yy) + 4.0F * xy * xy));
+  if (!(smaller > kMinEnergy && determinant > 0.0F)) return;
+  patch->min_eigenvalue = smaller;
+  Eigen::Map<Pixels>(patch->contrast) = contrast;
+  Eigen::Map<Pixels>(patch->steps_x) = (yy * x - xy * y) / determinant;
+  Eigen::Map<Pixels>(patch->steps_y) = (xx * y - xy * x) / determinant;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,165 @@
+#include "frontend/features/patch_frontend.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+
+#include "frontend/features/coarse_alignment.h"
+#include "frontend/features/grid_corners.h"
+#include "frontend/features/patch.h"
+#include "frontend/features/patch_alignment.h"
+#include "frontend/features/plane_warp.h"
+#include "frontend/image/image_pyramid.h"
+#include "frontend/image/observe.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Localisation noise of a corner per image, as of other frontends: what is
+// systematic (warp, interpolation, calibration) is most of it.
+constexpr double kSigmaPx = 0.5;
+
+// What a patch does not explain is no white noise: neighbouring pixels err
+// alike, so it moves the result this much further than white noise would.
+constexpr double kNoiseFactor = 5.0;
+
+// Less alike is another place. Low, since what is unlike already has a large
+// sigma.
+constexpr float kMinCorrelation = 0.7F;
+
+// 640 x 480 to 20 x 15; patches are looked for in the first three.
+constexpr int kLevels = 6;
+constexpr int kPatchLevels = 3;
+
+// Patches are made anew when their shape has changed by this: an error of up
+// to a quarter of a pixel at their corners.
+constexpr float kWarpStep = 0.125F;
+
+// As many levels as there are: small images have fewer.
+int PatchLevels(const std::vector<cv::Mat>& pyramid) {
+  return std::min(kPatchLevels, static_cast<int>(pyramid.size()));
+}
+
+// A surface that has become larger or smaller than this (in area), or is seen
+// from behind, does not look like its patch any more.
+constexpr float kMaxScale = 4.0F;
+
+// The patches of a feature, one a level, as a motion makes them look.
+struct PatchStack {
+  Eigen::Matrix2f ref_from_patch = Eigen::Matrix2f::Zero();  // none yet
+  std::array<Patch, kPatchLevels> levels;
+};
+
+struct PatchFeatures : FeatureSet {
+  PatchFeatures(const Frame& frame, std::vector<cv::Mat> levels,
+                const Camera& camera)
+      : pyramid(std::move(levels)), coarse(frame, pyramid, camera) {}
+
+  // The patches of a feature for a warp near to `ref_from_patch`: a function
+  // of that alone, whatever was asked for before.
+  const PatchStack& Patches(size_t i,
+                            const Eigen::Matrix2f& ref_from_patch) const {
+    const Eigen::Matrix2f rounded =
+        (ref_from_patch / kWarpStep).array().round() * kWarpStep;
+    PatchStack& patch = patches[i];
+    if (patch.ref_from_patch == rounded) return patch;
+    patch.ref_from_patch = rounded;
+    for (int level = 0; level < PatchLevels(pyramid); ++level) {
+      MakePatch(pyramid[level],
+                {ToLevel(corners[i].x, level), ToLevel(corners[i].y, level)},
+                rounded, &patch.levels[level]);
+    }
+    return patch;
+  }
+
+  std::vector<cv::Mat> pyramid;
+  CoarseReference coarse;
+  std::vector<cv::Point2f> corners;
+  mutable std::vector<PatchStack> patches;  // see Patches
+};
+
+// Coarse to fine from a start (px): a level that fails is left out, but for
+// the last.
+AlignedPatch FindPatch(const PatchStack& patch,
+                       const std::vector<cv::Mat>& pyramid,
+                       const Eigen::Vector2d& start) {
+  auto u = static_cast<float>(start.x());
+  auto v = static_cast<float>(start.y());
+  AlignedPatch found;
+  for (int level = PatchLevels(pyramid) - 1; level >= 0; --level) {
+    PatchAlignmentOptions options;
+    // A coarse level need not be better than the start of the next.
+    if (level > 0) options.min_step_px *= 4.0F;
+    found = AlignPatch(patch.levels[level], pyramid[level], ToLevel(u, level),
+                       ToLevel(v, level), options);
+    if (!found.found) continue;
+    u = FromLevel(found.u, level);
+    v = FromLevel(found.v, level);
+  }
+  return found;
+}
+
+}  // namespace
+
+PatchFrontend::PatchFrontend(const FrontendOptions& options)
+    : options_(options),
+      depth_options_{options.depth_noise, options.min_depth,
+                     options.max_depth} {}
+
+void PatchFrontend::Prepare(Frame* frame) const {
+  BuildImagePyramid(frame->gray, kLevels, &frame->pyramid);
+}
+
+std::unique_ptr<FeatureSet> PatchFrontend::Detect(const Frame& frame) {
+  std::vector<cv::Mat> pyramid = frame.pyramid;
+  if (pyramid.empty()) BuildImagePyramid(frame.gray, kLevels, &pyramid);
+  auto features = std::make_unique<PatchFeatures>(frame, std::move(pyramid),
+                                                  options_.camera);
+  features->corners = DetectGridCorners(
+      frame.gray, options_.max_features, [&](const cv::Point2f& pixel) {
+        return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
+      });
+  for (const cv::Point2f& corner : features->corners) {
+    features->observations.push_back(Observe(
+        frame, options_.camera, corner.x, corner.y, kSigmaPx, depth_options_));
+  }
+  features->patches.resize(features->corners.size());
+  return features;
+}
+
+void PatchFrontend::Match(const FeatureSet& reference, const Frame& frame,
+                          const Rigid3d& cur_from_ref_guess,
+                          FeatureMatches* matches) {
+  matches->Clear();
+  const auto& features = static_cast<const PatchFeatures&>(reference);
+  if (features.corners.empty()) return;
+  if (frame.pyramid.empty()) BuildImagePyramid(frame.gray, kLevels, &pyramid_);
+  const std::vector<cv::Mat>& pyramid =
+      frame.pyramid.empty() ? pyramid_ : frame.pyramid;
+  const Rigid3d cur_from_ref =
+      features.coarse.Align(pyramid, cur_from_ref_guess);
+  const Camera& camera = options_.camera;
+  for (size_t i = 0; i < features.corners.size(); ++i) {
+    const Observation& ref = features.observations[i];
+    const Eigen::Vector3d point = cur_from_ref * matches->matches.Point(ref);
+    if (!(point.z() >= options_.min_depth)) continue;
+    const Eigen::Vector2d start = camera.Project(point);
+    if (!camera.Contains(start)) continue;
+    const Eigen::Matrix2f warp = PlaneWarp(camera, ref, cur_from_ref);
+    const float scale = warp.determinant();
+    if (!(scale > 1.0F / kMaxScale && scale < kMaxScale)) continue;
+    const PatchStack& patches = features.Patches(i, warp.inverse());
+    const AlignedPatch found = FindPatch(patches, pyramid, start);
+    if (!found.found || found.correlation < kMinCorrelation) continue;
+    const double sigma_px =
+        std::hypot(kSigmaPx, kNoiseFactor * found.residual /
+                                 std::sqrt(patches.levels[0].min_eigenvalue));
+    matches->Add(
+        reference, static_cast<int>(i),
+        Observe(frame, camera, found.u, found.v, sigma_px, depth_options_));
+  }
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,89 @@
+#include "frontend/features/point_frontend.h"
+
+#include <string>
+
+#include "core/util/input_error.h"
+#include "frontend/features/grid_corners.h"
+#include "frontend/image/observe.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Localisation noise of a point per image: together 0.7 px.
+constexpr double kSigmaPx = 0.5;
+
+struct PointFeatures : FeatureSet {
+  Frame frame;
+  std::vector<cv::Point2f> points;
+};
+
+}  // namespace
+
+PointFrontend::PointFrontend(const FrontendOptions& options)
+    : options_(options),
+      depth_options_{options.depth_noise, options.min_depth,
+                     options.max_depth} {}
+
+std::unique_ptr<FeatureSet> PointFrontend::Detect(const Frame& frame) {
+  auto features = std::make_unique<PointFeatures>();
+  Points points;
+  Find(frame, &points);
+  for (const cv::Point2f& point : points) {
+    const Observation observation = ObserveAt(frame, point);
+    if (observation.depth <= 0.0) continue;
+    features->points.push_back(point);
+    features->observations.push_back(observation);
+  }
+  features->frame = frame;
+  features->frame.depth.release();
+  PrepareReference(&features->frame);
+  return features;
+}
+
+void PointFrontend::Match(const FeatureSet& reference, const Frame& frame,
+                          const Rigid3d& cur_from_ref_guess,
+                          FeatureMatches* matches) {
+  matches->Clear();
+  const auto& features = static_cast<const PointFeatures&>(reference);
+  if (features.points.empty()) return;
+  moved_ = features.points;
+  const Correspondences& camera = matches->matches;
+  for (size_t i = 0; i < moved_.size(); ++i) {
+    const Eigen::Vector3d point =
+        cur_from_ref_guess * camera.Point(features.observations[i]);
+    if (point.z() < options_.min_depth) continue;
+    const Eigen::Vector2d pixel = options_.camera.Project(point);
+    moved_[i] = cv::Point2f(static_cast<float>(pixel.x()),
+                            static_cast<float>(pixel.y()));
+  }
+  found_.assign(moved_.size(), 1);
+  Follow(features.frame, features.points, frame, &moved_, &found_);
+  const size_t count = features.points.size();
+  if (moved_.size() != count || found_.size() != count) {
+    throw InputError("a frontend followed " + std::to_string(moved_.size()) +
+                     " of " + std::to_string(count) +
+                     " points; it must say of each whether it was found");
+  }
+  for (size_t i = 0; i < moved_.size(); ++i) {
+    if (found_[i] == 0 ||
+        !options_.camera.Contains({moved_[i].x, moved_[i].y})) {
+      continue;
+    }
+    matches->Add(reference, static_cast<int>(i), ObserveAt(frame, moved_[i]));
+  }
+}
+
+void PointFrontend::Find(const Frame& frame, Points* points) {
+  *points = DetectGridCorners(
+      frame.gray, options_.max_features, [&](const cv::Point2f& pixel) {
+        return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
+      });
+}
+
+Observation PointFrontend::ObserveAt(const Frame& frame,
+                                     const cv::Point2f& point) const {
+  return Observe(frame, options_.camera, point.x, point.y, kSigmaPx,
+                 depth_options_);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "frontend/features/frontend.h"
+#include "frontend/image/depth_lookup.h"
+
+namespace rgbd_pose {
+
+// A frontend whose features are image points. What remains to be said is where
+// they have moved to, and perhaps which they are; depth, its noise and
+// distortion are seen to here.
+class PointFrontend : public Frontend {
+ public:
+  // The options must be sound (see Check).
+  explicit PointFrontend(const FrontendOptions& options);
+
+  std::unique_ptr<FeatureSet> Detect(const Frame& frame) final;
+  void Match(const FeatureSet& reference, const Frame& frame,
+             const Rigid3d& cur_from_ref_guess, FeatureMatches* matches) final;
+
+ protected:
+  using Points = std::vector<cv::Point2f>;  // px, distorted
+  using Found = std::vector<uchar>;         // 0: no, else yes
+
+  // The points of a frame to be found again; those without a depth will be left
+  // out. Unless overridden, corners with a depth, spread over a grid.
+  virtual void Find(const Frame& frame, Points* points);
+
+  // Where `points` of the frame `from` are in the frame `to`. On entry `moved`
+  // holds where the guess has them, and all are found. Neither may change its
+  // size: Match would throw InputError.
+  virtual void Follow(const Frame& from, const Points& points, const Frame& to,
+                      Points* moved, Found* found) = 0;
+
+  // As Prepare, for a copy of the frame that others are going to be compared
+  // with; without its depth.
+  virtual void PrepareReference(Frame* frame) const { Prepare(frame); }
+
+  // Those it was made with.
+  const FrontendOptions& options() const { return options_; }
+
+ private:
+  Observation ObserveAt(const Frame& frame, const cv::Point2f& point) const;
+
+  FrontendOptions options_;
+  DepthLookupOptions depth_options_;
+  Points moved_;
+  Found found_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frontend/map/colored_point.h"
+
+namespace rgbd_pose {
+
+// A point cloud as a PLY file: binary little-endian, per vertex x y z (float,
+// metres) and red green blue (uchar). (G. Turk, The PLY Polygon File Format,
+// 1994.)
+std::string FormatPly(const std::vector<ColoredPoint>& points);
+
+// Writes it as a whole or not at all. Throws InputError if it cannot.
+void WritePly(const std::string& path, const std::vector<ColoredPoint>& points);
+
+}  // namespace rgbd_pose

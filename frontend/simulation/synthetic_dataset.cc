@@ -1,0 +1,107 @@
+#include "frontend/simulation/synthetic_dataset.h"
+
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+
+#include "core/util/input_error.h"
+#include "frontend/simulation/synthetic_exposure.h"
+#include "frontend/simulation/synthetic_hash.h"
+#include "frontend/simulation/synthetic_sensor.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kFirstStamp = 1000.0;  // s
+
+constexpr int kMaxFrames = 1000000;  // 9 hours at 30 Hz
+
+const SyntheticOptions& Checked(const SyntheticOptions& options) {
+  if (options.frames < 1 || options.frames > kMaxFrames) {
+    throw InputError("a synthetic sequence has 1 to " +
+                     std::to_string(kMaxFrames) + " frames, not " +
+                     std::to_string(options.frames));
+  }
+  // Time stamps are whole microseconds and must differ.
+  if (!(options.rate_hz > 0.0 && options.rate_hz <= 1e5)) {
+    throw InputError("the rate of a synthetic sequence must be in 0..1e5 Hz");
+  }
+  if (!(options.camera.depth_scale > 0.0)) {
+    throw InputError("depth_scale of a synthetic sequence must be positive");
+  }
+  const std::string problem = options.camera.camera.Check();
+  if (!problem.empty()) {
+    throw InputError("camera of the synthetic sequence: " + problem);
+  }
+  if (!(options.exposure_s >= 0.0 &&
+        options.exposure_s <= 1.0 / options.rate_hz)) {
+    throw InputError("the shutter time of a synthetic sequence must be in 0.." +
+                     std::to_string(1.0 / options.rate_hz) +
+                     " s, the time from frame to frame");
+  }
+  if (!(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0)) {
+    throw InputError("exposure_drift of a synthetic sequence must be in 0..1");
+  }
+  return options;
+}
+
+}  // namespace
+
+SyntheticDataset::SyntheticDataset(const SyntheticOptions& options)
+    : options_(Checked(options)),
+      path_(FindSyntheticPath(options.path)),
+      renderer_(MakeScene(options.scene, options.seed), options.camera.camera) {
+}
+
+double SyntheticDataset::timestamp(int index) const {
+  return std::round((kFirstStamp + Time(index)) * 1e6) / 1e6;
+}
+
+Rigid3d SyntheticDataset::WorldFromCamAt(double t) const {
+  const Rigid3d world_from_path = path_(t, Time(options_.frames - 1));
+  return options_.path_from_cam.has_value()
+             ? world_from_path * *options_.path_from_cam
+             : world_from_path;
+}
+
+Rigid3d SyntheticDataset::WorldFromCam(int index) const {
+  return WorldFromCamAt(Time(index));
+}
+
+RgbdImages SyntheticDataset::ReadImages(int index) const {
+  const double t = Time(index);
+  Rendering rendering =
+      Expose(renderer_, options_.camera.camera.fx,
+             [this](double time) { return WorldFromCamAt(time); }, t,
+             {options_.exposure_s, DriftingGain(options_.exposure_drift, t)});
+  if (options_.noise) {
+    // One key an image; images take less than 2^40 numbers after theirs.
+    const uint64_t sequence = HashCounter(options_.seed);
+    const uint64_t frame = static_cast<uint64_t>(index) << 41;
+    AddColorNoise(sequence + frame, &rendering.color);
+    rendering.depth = MeasureDepth(rendering.depth, options_.camera.camera.fx,
+                                   sequence + frame + (uint64_t{1} << 40));
+  }
+  return {rendering.color,
+          EncodeDepth(rendering.depth, options_.camera.depth_scale)};
+}
+
+Frame SyntheticDataset::Read(int index) const {
+  const RgbdImages images = ReadImages(index);
+  Frame frame;
+  frame.index = index;
+  frame.timestamp = timestamp(index);
+  cv::cvtColor(images.color, frame.gray, cv::COLOR_BGR2GRAY);
+  frame.depth = images.depth;
+  frame.depth_scale = options_.camera.depth_scale;
+  return frame;
+}
+
+Trajectory SyntheticDataset::ground_truth() const {
+  Trajectory trajectory(size());
+  for (int i = 0; i < size(); ++i) {
+    trajectory[i] = {timestamp(i), WorldFromCam(i)};
+  }
+  return trajectory;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "core/evaluation/trajectory.h"
+#include "core/geometry/camera.h"
+#include "frontend/simulation/synthetic_path.h"
+#include "frontend/simulation/synthetic_renderer.h"
+#include "frontend/sources/dataset.h"
+
+namespace rgbd_pose {
+
+// What to render.
+struct SyntheticOptions {
+  std::string scene = "room";  // see MakeScene
+  std::string path = "xyz";    // see FindSyntheticPath
+  int frames = 150;            // how many
+  uint32_t seed = 1;           // of textures and noise
+  double rate_hz = 30.0;       // frames a second
+  bool noise = true;           // of a real sensor, see synthetic_sensor.h
+  RgbdCamera camera = {};      // may have distortion
+
+  // How long the shutter is open (s), from half of it before the pose of a
+  // frame to half of it after; at most the time from frame to frame.
+  double exposure_s = 0.0;
+
+  // Swing of the automatic exposure, 0..1: see DriftingGain.
+  double exposure_drift = 0.0;
+
+  // How the camera is mounted on what moves along the path, if not straight.
+  std::optional<Rigid3d> path_from_cam = {};
+};
+
+// The images of one time, as cameras give them.
+struct RgbdImages {
+  cv::Mat color;  // CV_8UC3, blue, green, red
+  cv::Mat depth;  // CV_16UC1, raw units, 0 = none
+};
+
+// An RGB-D sequence rendered as it is read, with exact poses. The same options
+// give the same bytes, whatever the order or the number of threads. Time
+// stamps start at 1000 s and are whole microseconds, as TUM files hold them.
+class SyntheticDataset : public Dataset {
+ public:
+  // Throws InputError if the options make no sense.
+  explicit SyntheticDataset(const SyntheticOptions& options);
+
+  int size() const override { return options_.frames; }
+  double timestamp(int index) const override;
+  Frame Read(int index) const override;
+  const RgbdCamera& camera() const override { return options_.camera; }
+
+  // Colour and depth of a frame; Read gives the same with colour turned to
+  // gray by cv::cvtColor.
+  RgbdImages ReadImages(int index) const;
+
+  // Colour of a frame, CV_8UC3.
+  cv::Mat ReadColor(int index) const { return ReadImages(index).color; }
+
+  // The pose in the middle of the exposure.
+  Rigid3d WorldFromCam(int index) const;
+
+  // The exact pose of every frame.
+  Trajectory ground_truth() const;
+
+ private:
+  // Seconds since the first frame.
+  double Time(int index) const { return index / options_.rate_hz; }
+  Rigid3d WorldFromCamAt(double t) const;
+
+  SyntheticOptions options_;
+  SyntheticPath path_;
+  Renderer renderer_;
+};
+
+}  // namespace rgbd_pose

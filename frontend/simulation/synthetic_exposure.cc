@@ -1,0 +1,55 @@
+#include "frontend/simulation/synthetic_exposure.h"
+
+#include <cmath>
+#include <opencv2/core.hpp>
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kInvisibleBlur = 0.1;  // px
+
+// About how far (px) the nearest thing moves through the image.
+double BlurLength(const Rigid3d& motion, const cv::Mat& depth,
+                  double focal_px) {
+  double nearest = 0.0;
+  double farthest = 0.0;
+  cv::minMaxLoc(depth, &nearest, &farthest, nullptr, nullptr, depth > 0.0f);
+  const double shift =
+      farthest > 0.0 ? motion.translation.norm() / nearest : 0.0;
+  return focal_px * (motion.Angle() + shift);
+}
+
+}  // namespace
+
+double DriftingGain(double amplitude, double t) {
+  return std::exp(amplitude * std::sin(2.0 * M_PI * t / kExposurePeriod));
+}
+
+Rendering Expose(const Renderer& renderer, double focal_px,
+                 const std::function<Rigid3d(double t)>& world_from_cam,
+                 double t, const Exposure& exposure) {
+  const double half_time = exposure.shutter_s / 2.0;
+  Rendering out = renderer.Render(world_from_cam(t));
+  const Rigid3d closing_from_opening =
+      world_from_cam(t + half_time).Inverse() * world_from_cam(t - half_time);
+  const double length = BlurLength(closing_from_opening, out.depth, focal_px);
+  const int pairs =
+      length < kInvisibleBlur
+          ? 0
+          : static_cast<int>(std::ceil(length / (2.0 * kMaxBlurStep)));
+  const int renderings = 2 * pairs + 1;
+  cv::Mat sum;
+  out.color.convertTo(sum, CV_32F);
+  for (int i = 1; i <= pairs; ++i) {
+    const double offset = exposure.shutter_s * i / renderings;
+    for (const double side : {-1.0, 1.0}) {
+      const Rendering moved =
+          renderer.Render(world_from_cam(t + side * offset));
+      cv::add(sum, moved.color, sum, cv::noArray(), CV_32F);
+    }
+  }
+  sum.convertTo(out.color, CV_8U, exposure.gain / renderings);
+  return out;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+
+#include "core/util/counter_random.h"
+
+namespace rgbd_pose {
+
+// Hashes in place of random generators: the value at a place (lattice cell,
+// pixel, frame) depends on that place only, so threads and order do not matter.
+
+// 32 well-mixed bits of a lattice cell. Finalizer of MurmurHash3 (Appleby).
+inline uint32_t HashCell(int x, int y, uint32_t seed) {
+  uint32_t h = static_cast<uint32_t>(x) * 0x9e3779b1u +
+               static_cast<uint32_t>(y) * 0x7feb352du + seed;
+  h ^= h >> 16;
+  h *= 0x85ebca6bu;
+  h ^= h >> 13;
+  h *= 0xc2b2ae35u;
+  return h ^ (h >> 16);
+}
+
+// 64 well-mixed bits of a counter.
+inline uint64_t HashCounter(uint64_t counter) {
+  return CounterRandom::Mix(counter * CounterRandom::kStep);
+}
+
+// A number of mean 0 and variance 1 from 64 random bits: the sum of their
+// eight bytes, normal to the eye (kurtosis 2.85, never beyond 4.9 sigma).
+inline float GaussianFromBits(uint64_t bits) {
+  constexpr uint64_t kEvenBytes = 0x00ff00ff00ff00ffu;
+  uint64_t sum = (bits & kEvenBytes) + ((bits >> 8) & kEvenBytes);
+  sum = (sum * 0x0001000100010001u) >> 48;
+  constexpr float kMean = 8 * 127.5f;
+  constexpr float kInverseSigma = 1.0f / 209.0215f;  // sqrt(8 (256^2 - 1) / 12)
+  return (static_cast<float>(sum) - kMean) * kInverseSigma;
+}
+
+}  // namespace rgbd_pose

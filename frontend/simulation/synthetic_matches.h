@@ -1,0 +1,138 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <random>
+
+#include "core/estimation/correspondences.h"
+#include "core/estimation/cost.h"
+#include "core/geometry/depth_noise.h"
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// Random motions and matches with the noise of a Kinect, wrong matches and
+// missing depths; for tests, benchmarks and experiments. The same for one seed
+// on every platform with the same standard library.
+class RandomWorld {
+ public:
+  explicit RandomWorld(unsigned seed)
+      : generator_(seed), extra_generator_(~seed) {}
+
+  double Uniform(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(generator_);
+  }
+
+  double Normal(double sigma) {
+    return std::normal_distribution<double>(0.0, sigma)(generator_);
+  }
+
+  Eigen::Vector3d Vector(double size) {
+    return {Uniform(-size, size), Uniform(-size, size), Uniform(-size, size)};
+  }
+
+  Rigid3d Motion(double max_angle, double max_translation) {
+    // One statement a draw: compilers differ in the order of arguments.
+    const Eigen::Vector3d axis = Vector(1.0).normalized();
+    const Eigen::Vector3d translation = Vector(max_translation);
+    const Eigen::AngleAxisd rotation(Uniform(0.0, max_angle), axis);
+    return Rigid3d(Eigen::Quaterniond(rotation), translation);
+  }
+
+  // A noiseless match of a random point at 1-4 m, with Kinect sigmas and a
+  // tracking noise of 0.5 px in each frame.
+  void Match(const Camera& camera, const Rigid3d& cur_from_prev,
+             Observation* prev, Observation* cur) {
+    while (true) {
+      prev->u = Uniform(0.0, camera.width - 1.0);
+      prev->v = Uniform(0.0, camera.height - 1.0);
+      prev->depth = Uniform(1.0, 4.0);
+      const Eigen::Vector3d point =
+          cur_from_prev * Correspondences(camera).Point(*prev);
+      if (point.z() < 0.5) continue;
+      cur->u = camera.fx * point.x() / point.z() + camera.cx;
+      cur->v = camera.fy * point.y() / point.z() + camera.cy;
+      cur->depth = point.z();
+      for (Observation* o : {prev, cur}) {
+        o->sigma_px = 0.5;
+        o->sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(o->depth);
+      }
+      return;
+    }
+  }
+
+  // Disturbs an observation by its own sigmas.
+  void AddNoise(Observation* o) {
+    o->u += Normal(o->sigma_px);
+    o->v += Normal(o->sigma_px);
+    o->depth += Normal(o->sigma_depth);
+  }
+
+  // Matches with noise, of which a share points to a random place and depth.
+  // All current points have a normal of any direction that faces the camera. On
+  // each side a share of the depths, by chance, is missing.
+  Correspondences Matches(int count, double outlier_share,
+                          const Rigid3d& cur_from_prev, bool noise = true,
+                          double missing_depth_share = 0.0) {
+    const Camera camera;
+    Correspondences matches(camera);
+    for (int i = 0; i < count; ++i) {
+      Observation prev, cur;
+      Match(camera, cur_from_prev, &prev, &cur);
+      if (noise) {
+        AddNoise(&prev);
+        AddNoise(&cur);
+      }
+      if (i < outlier_share * count) {
+        cur.u = Uniform(0.0, camera.width - 1.0);
+        cur.v = Uniform(0.0, camera.height - 1.0);
+        cur.depth = Uniform(1.0, 4.0);
+      }
+      cur.normal = FacingNormal(matches.Point(cur));
+      for (Observation* o : {&prev, &cur}) {
+        if (Extra(0.0, 1.0) < missing_depth_share) o->depth = 0.0;
+      }
+      matches.Add(prev, cur);
+    }
+    return matches;
+  }
+
+  // A motion predicted with an error drawn from a covariance, itself random:
+  // all six parts correlated, each of about `sigma` (rad, m).
+  MotionPrior Prior(const Rigid3d& truth, double sigma) {
+    MotionMatrix spread = MotionMatrix::Identity();
+    for (double& value : spread.reshaped()) value += Extra(-0.5, 0.5);
+    MotionPrior prior;
+    prior.covariance = sigma * sigma * spread * spread.transpose();
+    MotionVector unit;
+    std::normal_distribution<double> normal;
+    for (double& value : unit) value = normal(extra_generator_);
+    const MotionVector error = sigma * spread * unit;
+    const Eigen::Vector3d omega = -error.head<3>();
+    const Eigen::Quaterniond rotation(
+        Eigen::AngleAxisd(omega.norm(), omega.normalized()));
+    const Eigen::Vector3d C = truth.Inverse().translation - error.tail<3>();
+    prior.cur_from_prev.rotation = rotation * truth.rotation;
+    prior.cur_from_prev.translation = -(prior.cur_from_prev.rotation * C);
+    return prior;
+  }
+
+ private:
+  double Extra(double low, double high) {
+    return std::uniform_real_distribution<double>(low, high)(extra_generator_);
+  }
+
+  // A random unit normal, uniform on the hemisphere that faces the camera.
+  Eigen::Vector3d FacingNormal(const Eigen::Vector3d& point) {
+    Eigen::Vector3d n;
+    do {
+      n = {Extra(-1.0, 1.0), Extra(-1.0, 1.0), Extra(-1.0, 1.0)};
+    } while (n.squaredNorm() > 1.0 || n.squaredNorm() < 1e-4);
+    return (n.dot(point) > 0.0 ? -n : n).normalized();
+  }
+
+  std::mt19937 generator_;
+  std::mt19937 extra_generator_;  // its own: normals change no other numbers
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,164 @@
+#include "frontend/simulation/synthetic_path.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Eigen::AngleAxisd;
+using Eigen::Matrix3d;
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+constexpr double kDegree = M_PI / 180.0;
+
+// A camera at a place that looks at a point, its x axis level.
+Rigid3d LookAt(const Vector3d& place, const Vector3d& target) {
+  Matrix3d world_from_cam;
+  world_from_cam.col(2) = (target - place).normalized();
+  world_from_cam.col(0) =
+      world_from_cam.col(2).cross(Vector3d::UnitZ()).normalized();
+  world_from_cam.col(1) = world_from_cam.col(2).cross(world_from_cam.col(0));
+  return Rigid3d(Quaterniond(world_from_cam), place);
+}
+
+Rigid3d Turn(double angle, const Vector3d& axis) {
+  return Rigid3d(Quaterniond(AngleAxisd(angle, axis)), Vector3d::Zero());
+}
+
+Rigid3d Shift(const Vector3d& translation) {
+  return Rigid3d(Quaterniond::Identity(), translation);
+}
+
+Rigid3d Xyz(double t, double /*duration*/) {
+  constexpr double kReach = 0.2;  // m
+  constexpr double kRound = 5.0;  // s for all three axes
+  constexpr double kSway = 1.0 * kDegree;
+  const double leg = t / (kRound / 3.0);
+  const int index = static_cast<int>(leg);
+  const double side = index % 6 < 3 ? 1.0 : -1.0;
+  Vector3d shift = Vector3d::Zero();
+  // A raised cosine starts and stops softly.
+  shift[index % 3] =
+      side * kReach * 0.5 * (1.0 - std::cos(2.0 * M_PI * (leg - index)));
+  const Rigid3d sway = Turn(kSway * std::sin(1.9 * t), Vector3d::UnitX()) *
+                       Turn(kSway * std::sin(1.3 * t), Vector3d::UnitY()) *
+                       Turn(kSway * std::sin(2.3 * t), Vector3d::UnitZ());
+  return LookAt({-1.10, -0.35, 1.35}, {0.6, 0.2, 0.80}) * Shift(shift) * sway;
+}
+
+// Where a device is that goes through stops, each leg lasting as long as its
+// angle is wide: cubic ease in and out, `share` in 0..1 of the whole way.
+template <size_t N>
+double ThroughStops(const double (&stops)[N], double share) {
+  double way = 0.0;
+  for (size_t i = 1; i < N; ++i) way += std::abs(stops[i] - stops[i - 1]);
+  double left = std::max(share, 0.0) * way;
+  for (size_t i = 1; i < N; ++i) {
+    const double leg = std::abs(stops[i] - stops[i - 1]);
+    if (left < leg) {
+      const double s = left / leg;
+      return stops[i - 1] + (stops[i] - stops[i - 1]) * s * s * (3.0 - 2.0 * s);
+    }
+    left -= leg;
+  }
+  return stops[N - 1];
+}
+
+Rigid3d PanTilt(double t, double duration) {
+  constexpr double kPan[] = {0.0, 20.0, -20.0, 0.0};
+  constexpr double kTilt[] = {0.0, 12.0, -12.0, 0.0};
+  constexpr double kPanShare = 80.0 / (80.0 + 48.0);
+  const double share = duration > 0.0 ? std::min(t / duration, 1.0) : 1.0;
+  const double pan = ThroughStops(kPan, share / kPanShare);
+  const double tilt =
+      ThroughStops(kTilt, (share - kPanShare) / (1.0 - kPanShare));
+  const Rigid3d world_from_mount =
+      LookAt({-1.5, -0.45, 1.25}, {0.6, 0.15, 1.0});
+  const Rigid3d head_from_cam = Shift({0.02, -0.06, 0.04});
+  return world_from_mount * Turn(pan * kDegree, Vector3d::UnitY()) *
+         Turn(tilt * kDegree, Vector3d::UnitX()) * head_from_cam;
+}
+
+Rigid3d Circle(double t, double /*duration*/) {
+  constexpr double kRadius = 0.3;  // m
+  constexpr double kPeriod = 9.0;  // s
+  const double angle = 2.0 * M_PI * t / kPeriod;
+  const Vector3d centre(-1.10, -0.40, 1.35);
+  return LookAt(
+      centre + kRadius * Vector3d(std::cos(angle), std::sin(angle), 0),
+      {0.8, 0.25, 0.90});
+}
+
+struct Wave {
+  double amplitude;
+  double hz;
+  double phase;  // rad
+};
+
+template <size_t N>
+double Sum(const Wave (&waves)[N], double t) {
+  double sum = 0.0;
+  for (const Wave& wave : waves) {
+    sum += wave.amplitude * std::sin(2.0 * M_PI * wave.hz * t + wave.phase);
+  }
+  return sum;
+}
+
+// Frequencies are whole hundredths, so that it repeats after 100 s and its
+// peaks over that time are its peaks for ever; phases are such that the first
+// five seconds come close to them.
+Rigid3d Handheld(double t, double /*duration*/) {
+  // The arm, the hand, its tremor; m, then degrees.
+  constexpr Wave kX[] = {
+      {0.35, 0.19, 4.3}, {0.044, 0.61, 1.6}, {0.0035, 2.3, 1.0}};
+  constexpr Wave kY[] = {
+      {0.37, 0.23, 5.5}, {0.040, 0.71, 3.3}, {0.0035, 2.9, 5.9}};
+  constexpr Wave kZ[] = {
+      {0.12, 0.37, 1.2}, {0.026, 0.89, 4.2}, {0.0035, 2.6, 1.7}};
+  constexpr Wave kYaw[] = {
+      {17.5, 0.41, 3.1}, {4.0, 1.13, 5.4}, {0.25, 3.1, 4.9}};
+  constexpr Wave kPitch[] = {
+      {5.6, 0.53, 3.4}, {2.4, 1.27, 4.8}, {0.25, 2.7, 4.7}};
+  constexpr Wave kRoll[] = {
+      {4.8, 0.47, 0.7}, {2.0, 1.19, 0.9}, {0.25, 3.3, 2.8}};
+  Rigid3d world_from_hand = LookAt({-1.10, -0.40, 1.40}, {0.7, 0.15, 0.95});
+  world_from_hand.translation += Vector3d(Sum(kX, t), Sum(kY, t), Sum(kZ, t));
+  return world_from_hand * Turn(Sum(kYaw, t) * kDegree, Vector3d::UnitY()) *
+         Turn(Sum(kPitch, t) * kDegree, Vector3d::UnitX()) *
+         Turn(Sum(kRoll, t) * kDegree, Vector3d::UnitZ());
+}
+
+Rigid3d Still(double /*t*/, double duration) { return Xyz(0.0, duration); }
+
+struct NamedPath {
+  const char* name;
+  SyntheticPath path;
+};
+constexpr NamedPath kPaths[] = {{"xyz", Xyz},
+                                {"pan_tilt", PanTilt},
+                                {"circle", Circle},
+                                {"still", Still},
+                                {"handheld", Handheld}};
+
+}  // namespace
+
+SyntheticPath FindSyntheticPath(const std::string& name) {
+  for (const NamedPath& path : kPaths) {
+    if (name == path.name) return path.path;
+  }
+  throw InputError("unknown path '" + name + "'; there are " +
+                   Join(SyntheticPathNames()));
+}
+
+std::vector<std::string> SyntheticPathNames() {
+  std::vector<std::string> names;
+  for (const NamedPath& path : kPaths) names.emplace_back(path.name);
+  return names;
+}
+
+}  // namespace rgbd_pose

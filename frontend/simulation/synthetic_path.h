@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// The pose world_from_cam at time t of a path that lasts `duration` (both in
+// seconds, 0 <= t <= duration, or half a shutter time outside).
+using SyntheticPath = Rigid3d (*)(double t, double duration);
+
+// A path through the scene "room" known by name. Throws InputError that lists
+// the names for another one. Camera axes: x right, y down, z forward.
+//   xyz       0.2 m along the camera's x, y and z axis and back, then the same
+//             towards the other side; 5 s a round at 0.24 m/s on average (0.38
+//             at most) with turns of about 1 degree, as TUM's freiburg1_xyz
+//   pan_tilt  pan 0, +20, -20, 0 degrees, then tilt 0, +12, -12, 0 degrees,
+//             stopping softly at each, the camera's centre a few centimetres
+//             off both axes, as on a pan-tilt unit. Stretched over `duration`
+//             (38 deg/s at most in 5 s), so that the last pose is exactly the
+//             first
+//   circle    a level circle of 0.3 m radius once in 9 s, looking at the desk
+//   still     no motion
+//   handheld  swings of arm and hand on all six axes, up to 1.0 m/s and 90
+//             deg/s (0.96 and 87 reached within the first 5 s)
+SyntheticPath FindSyntheticPath(const std::string& name);
+
+// The names of all paths.
+std::vector<std::string> SyntheticPathNames();
+
+}  // namespace rgbd_pose

@@ -1,0 +1,155 @@
+#include "frontend/simulation/synthetic_renderer.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <utility>
+
+#include "frontend/simulation/synthetic_texture.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Eigen::Matrix2f;
+using Eigen::Matrix3f;
+using Eigen::Vector2f;
+using Eigen::Vector3f;
+
+constexpr int kTileSize = 32;
+// Faces reach this much beyond their edges, so that rounding tears no cracks
+// where two of them meet (m).
+constexpr float kOverlap = 1e-4f;
+// Blur of a lens and of the mosaic of colour filters (sigma, px).
+constexpr double kLensBlur = 0.6;
+
+// How much of the lamp's light, and of that of the room, a surface sends back.
+float Brightness(const Vector3f& to_lamp) {
+  constexpr float kAmbient = 0.60f;
+  constexpr float kLamp = 0.85f;
+  constexpr float kHalfDistance2 = 6.0f;  // m^2
+  const float distance2 = to_lamp.squaredNorm() + 1e-6f;
+  const float cosine = std::max(0.0f, to_lamp.z()) / std::sqrt(distance2);
+  return kAmbient + kLamp * cosine / (1.0f + distance2 / kHalfDistance2);
+}
+
+// Range of an image of one channel.
+void FindRange(const cv::Mat& image, float* min, float* max) {
+  double low = 0.0;
+  double high = 0.0;
+  cv::minMaxLoc(image, &low, &high);
+  *min = static_cast<float>(low);
+  *max = static_cast<float>(high);
+}
+
+}  // namespace
+
+// By pixel of a tile, row after row: the inverse depth of the nearest face, 0
+// if there is none, and its index.
+struct Renderer::NearestFaces {
+  std::array<float, kTileSize* kTileSize> inverse_depth = {};
+  std::array<int, kTileSize* kTileSize> index = {};
+};
+
+Renderer::Renderer(Scene scene, const Camera& camera)
+    : scene_(std::move(scene)),
+      rays_x_(camera.height, camera.width, CV_32FC1),
+      rays_y_(camera.height, camera.width, CV_32FC1),
+      pixel_(1.0 / camera.fx, 1.0 / camera.fy) {
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const Eigen::Vector3d ray = camera.Unproject({u, v}, 1.0);
+      rays_x_.at<float>(v, u) = static_cast<float>(ray.x());
+      rays_y_.at<float>(v, u) = static_cast<float>(ray.y());
+    }
+  }
+  const cv::Rect image(0, 0, camera.width, camera.height);
+  for (int v = 0; v < camera.height; v += kTileSize) {
+    for (int u = 0; u < camera.width; u += kTileSize) {
+      Tile tile;
+      tile.pixels = cv::Rect(u, v, kTileSize, kTileSize) & image;
+      FindRange(rays_x_(tile.pixels), &tile.min.x(), &tile.max.x());
+      FindRange(rays_y_(tile.pixels), &tile.min.y(), &tile.max.y());
+      tiles_.push_back(tile);
+    }
+  }
+}
+
+Renderer::NearestFaces Renderer::FindNearest(
+    const std::vector<VisibleFace>& faces, const Tile& tile) const {
+  NearestFaces nearest;
+  for (size_t i = 0; i < faces.size(); ++i) {
+    if ((faces[i].min.array() > tile.max.array()).any() ||
+        (faces[i].max.array() < tile.min.array()).any()) {
+      continue;
+    }
+    const Matrix3f h = faces[i].face_from_ray;
+    const float width = static_cast<float>(faces[i].face->width) + kOverlap;
+    const float height = static_cast<float>(faces[i].face->height) + kOverlap;
+    const int face = static_cast<int>(i);
+    for (int row = 0; row < tile.pixels.height; ++row) {
+      const float* x = rays_x_.ptr<float>(tile.pixels.y + row) + tile.pixels.x;
+      const float* y = rays_y_.ptr<float>(tile.pixels.y + row) + tile.pixels.x;
+      float* best = nearest.inverse_depth.data() + row * kTileSize;
+      int* index = nearest.index.data() + row * kTileSize;
+      // No branches and no divisions: the compiler turns it into vectors.
+      for (int column = 0; column < tile.pixels.width; ++column) {
+        const float u = h(0, 0) * x[column] + h(0, 1) * y[column] + h(0, 2);
+        const float v = h(1, 0) * x[column] + h(1, 1) * y[column] + h(1, 2);
+        const float w = h(2, 0) * x[column] + h(2, 1) * y[column] + h(2, 2);
+        const bool hit = (w > best[column]) & (u >= -kOverlap * w) &
+                         (u <= width * w) & (v >= -kOverlap * w) &
+                         (v <= height * w);
+        best[column] = hit ? w : best[column];
+        index[column] = hit ? face : index[column];
+      }
+    }
+  }
+  return nearest;
+}
+
+void Renderer::Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
+                     const NearestFaces& nearest, Rendering* out) const {
+  for (int row = 0; row < tile.pixels.height; ++row) {
+    for (int column = 0; column < tile.pixels.width; ++column) {
+      const int place = row * kTileSize + column;
+      if (nearest.inverse_depth[place] <= 0.0f) continue;
+      const float z = 1.0f / nearest.inverse_depth[place];
+      const VisibleFace& visible = faces[nearest.index[place]];
+      const Matrix3f& h = visible.face_from_ray;
+      const cv::Point pixel = tile.pixels.tl() + cv::Point(column, row);
+      const Vector3f ray(rays_x_.at<float>(pixel), rays_y_.at<float>(pixel), 1);
+      const Vector2f on_face = h.topRows<2>() * ray * z;
+      // d on_face / d ray, the derivative of a quotient.
+      const Matrix2f slope =
+          (h.topLeftCorner<2, 2>() - on_face * h.block<1, 2>(2, 0)) * z;
+      const Vector2f footprint = (slope * pixel_.asDiagonal()).rowwise().norm();
+      const float brightness =
+          Brightness(visible.lamp - Vector3f(on_face.x(), on_face.y(), 0.0f));
+      const cv::Vec3f color =
+          Paint(visible.face->material, visible.face->seed,
+                {on_face.x(), on_face.y(), footprint.x(), footprint.y()});
+      out->color.at<cv::Vec3b>(pixel) = color * (255.0f * brightness);
+      out->depth.at<float>(pixel) = z;
+    }
+  }
+}
+
+Rendering Renderer::Render(const Rigid3d& world_from_cam) const {
+  const std::vector<VisibleFace> faces =
+      FindVisibleFaces(scene_, world_from_cam);
+  Rendering out;
+  out.color = cv::Mat::zeros(rays_x_.size(), CV_8UC3);
+  out.depth = cv::Mat::zeros(rays_x_.size(), CV_32FC1);
+  cv::parallel_for_(cv::Range(0, static_cast<int>(tiles_.size())),
+                    [&](const cv::Range& range) {
+                      for (int i = range.start; i < range.end; ++i) {
+                        Shade(faces, tiles_[i], FindNearest(faces, tiles_[i]),
+                              &out);
+                      }
+                    });
+  cv::GaussianBlur(out.color, out.color, cv::Size(3, 3), kLensBlur);
+  return out;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <opencv2/core.hpp>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+#include "frontend/simulation/synthetic_scene.h"
+#include "frontend/simulation/synthetic_view.h"
+
+namespace rgbd_pose {
+
+// What an ideal RGB-D camera sees.
+struct Rendering {
+  cv::Mat color;  // CV_8UC3, blue, green, red
+  cv::Mat depth;  // CV_32FC1, z along the optical axis in metres; 0 = nothing
+};
+
+// Casts one ray a pixel into a scene. Depth is that of the pixel's centre, to
+// single precision; colour is averaged over the pixel and slightly blurred, as
+// by a lens. Render may be called from several threads at once; the result
+// does not depend on the number of threads.
+class Renderer {
+ public:
+  Renderer(Scene scene, const Camera& camera);
+
+  Rendering Render(const Rigid3d& world_from_cam) const;
+
+ private:
+  // A block of the image and the range of its rays on the plane z = 1.
+  struct Tile {
+    cv::Rect pixels;
+    Eigen::Vector2f min;
+    Eigen::Vector2f max;
+  };
+  struct NearestFaces;
+
+  NearestFaces FindNearest(const std::vector<VisibleFace>& faces,
+                           const Tile& tile) const;
+  void Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
+             const NearestFaces& nearest, Rendering* out) const;
+
+  Scene scene_;
+  cv::Mat rays_x_;  // CV_32FC1, where each pixel's ray meets the plane z = 1
+  cv::Mat rays_y_;
+  Eigen::Vector2f pixel_;  // size of a pixel on that plane
+  std::vector<Tile> tiles_;
+};
+
+}  // namespace rgbd_pose

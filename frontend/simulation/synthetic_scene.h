@@ -1,0 +1,53 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "frontend/simulation/synthetic_texture.h"
+
+namespace rgbd_pose {
+
+// One rectangle of a scene, seen from the side its normal points to. The
+// surface point (u, v), 0 <= u <= width, 0 <= v <= height, lies at
+// origin + u * u_axis + v * v_axis. World axes, metres.
+struct SceneFace {
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();
+  Eigen::Vector3d u_axis = Eigen::Vector3d::UnitX();  // level on upright faces
+  Eigen::Vector3d v_axis = Eigen::Vector3d::UnitY();  // down on upright faces
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
+  double width = 0.0;
+  double height = 0.0;
+  Material material;
+  uint32_t seed = 0;  // of the texture
+};
+
+// A world to look at: z up, the floor at z = 0, metres.
+struct Scene {
+  std::vector<SceneFace> faces;
+  Eigen::Vector3d lamp = Eigen::Vector3d::Zero();  // point light
+};
+
+// An upright box, turned about the vertical.
+struct SceneBox {
+  Eigen::Vector3d foot;  // centre of its bottom face (m)
+  Eigen::Vector3d size;  // along its own axes (m)
+  double yaw_deg = 0.0;
+};
+
+// Adds the faces of a box, seen from outside or, as a room, from within. The
+// materials are those of the sides -x, +x, -y, +y, -z, +z of its own axes.
+void AddBox(const SceneBox& box, bool from_within,
+            const std::array<Material, 6>& materials, uint32_t seed,
+            Scene* scene);
+
+// A scene known by name; "room" is MakeRoom's. Throws InputError that lists the
+// names for another one. `seed` picks the textures, never the geometry.
+Scene MakeScene(const std::string& name, uint32_t seed);
+
+// The names of all scenes.
+std::vector<std::string> SceneNames();
+
+}  // namespace rgbd_pose

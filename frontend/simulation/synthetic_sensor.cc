@@ -1,0 +1,91 @@
+#include "frontend/simulation/synthetic_sensor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "frontend/simulation/synthetic_hash.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Whether the surface between two neighbouring pixels leans too far away, or
+// is no surface at all but the edge of one.
+bool TooSteep(float z, float neighbour, float max_step) {
+  return std::abs(z - neighbour) > max_step * std::min(z, neighbour);
+}
+
+// Turns the pixels of a row to 0 that the projector, to the right of the
+// camera, does not reach: a point appears `disparity` pixels further left to
+// it, and what is further left on a row must stay so unless it is hidden.
+void DropShadow(int columns, float* row) {
+  constexpr auto kDisparity =
+      static_cast<float>(1.0 / (8.0 * kInverseDepthStep));  // px m
+  constexpr float kTolerance = 1.0f;                        // px
+  float leftmost = std::numeric_limits<float>::max();
+  for (int u = columns - 1; u >= 0; --u) {
+    if (row[u] == 0.0f) continue;
+    const float seen_at = static_cast<float>(u) - kDisparity / row[u];
+    if (seen_at > leftmost + kTolerance) {
+      row[u] = 0.0f;
+    } else {
+      leftmost = std::min(leftmost, seen_at);
+    }
+  }
+}
+
+}  // namespace
+
+cv::Mat EncodeDepth(const cv::Mat& depth_m, double depth_scale) {
+  cv::Mat raw;
+  depth_m.convertTo(raw, CV_16UC1, depth_scale);
+  return raw;
+}
+
+cv::Mat MeasureDepth(const cv::Mat& depth_m, double focal_px, uint64_t key) {
+  const auto max_step = static_cast<float>(
+      std::tan(kMaxSensorSlantDeg * M_PI / 180.0) / focal_px);
+  constexpr auto kStep = static_cast<float>(kInverseDepthStep);
+  constexpr auto kSigma = static_cast<float>(kDisparitySigma);
+  cv::Mat measured = cv::Mat::zeros(depth_m.size(), CV_32FC1);
+  for (int v = 0; v < depth_m.rows; ++v) {
+    const float* row = depth_m.ptr<float>(v);
+    const float* above = depth_m.ptr<float>(std::max(v - 1, 0));
+    const float* below = depth_m.ptr<float>(std::min(v + 1, depth_m.rows - 1));
+    float* out = measured.ptr<float>(v);
+    for (int u = 0; u < depth_m.cols; ++u) {
+      const float z = row[u];
+      if (z < kMinSensorDepth || z > kMaxSensorDepth) continue;
+      const float left = row[std::max(u - 1, 0)];
+      const float right = row[std::min(u + 1, depth_m.cols - 1)];
+      if (TooSteep(z, left, max_step) || TooSteep(z, right, max_step) ||
+          TooSteep(z, above[u], max_step) || TooSteep(z, below[u], max_step)) {
+        continue;
+      }
+      out[u] = z;
+    }
+    DropShadow(depth_m.cols, out);
+    const uint64_t first = key + static_cast<uint64_t>(v) * depth_m.cols;
+    for (int u = 0; u < depth_m.cols; ++u) {
+      if (out[u] == 0.0f) continue;
+      const float noise = kSigma * GaussianFromBits(HashCounter(first + u));
+      out[u] = 1.0f / (kStep * std::round(1.0f / (kStep * out[u]) + noise));
+    }
+  }
+  return measured;
+}
+
+void AddColorNoise(uint64_t key, cv::Mat* color) {
+  const int values = color->cols * color->channels();
+  for (int v = 0; v < color->rows; ++v) {
+    uint8_t* row = color->ptr<uint8_t>(v);
+    const uint64_t first = key + static_cast<uint64_t>(v) * values;
+    for (int i = 0; i < values; ++i) {
+      const float noise = static_cast<float>(kColorSigma) *
+                          GaussianFromBits(HashCounter(first + i));
+      row[i] = cv::saturate_cast<uint8_t>(static_cast<float>(row[i]) + noise);
+    }
+  }
+}
+
+}  // namespace rgbd_pose

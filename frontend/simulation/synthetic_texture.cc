@@ -1,0 +1,159 @@
+#include "frontend/simulation/synthetic_texture.h"
+
+#include <algorithm>
+
+#include "frontend/simulation/synthetic_hash.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Octaves of the grain, coarse to fine: cells of 0.24 m down to 2.6 mm.
+constexpr int kOctaves = 8;
+constexpr float kCoarsestCell = 0.24f;
+constexpr float kCellRatio = 0.524f;
+// Natural images lose amplitude in proportion to the wavelength; a little less
+// is lost here, since corners live on the fine octaves.
+constexpr float kAmplitudeRatio = 0.8f;
+// Each octave is turned against the last to hide the lattice (cos, sin).
+constexpr float kTurnCos = 0.8f;
+constexpr float kTurnSin = 0.6f;
+
+// A word is a row of glyphs, a line of words has a gap to the next.
+constexpr float kWordLength = 11.0f;  // in blocks
+constexpr float kLineHeight = 5.0f;
+constexpr float kGlyphHeight = 3.0f;
+
+int Floor(float x) {
+  const int i = static_cast<int>(x);
+  return i - (x < static_cast<float>(i));
+}
+
+float Clamp01(float x) { return std::min(std::max(x, 0.0f), 1.0f); }
+
+// One byte of a hash as -1..1.
+float Signed(uint32_t hash, int byte) {
+  return static_cast<float>((hash >> (8 * byte)) & 0xffu) / 127.5f - 1.0f;
+}
+
+// How much of a pattern of this cell size survives the pixel's extent: nothing
+// once the shortest wavelength, two cells, is under two pixels.
+float Visible(float cell, float footprint) {
+  return Clamp01(cell / footprint - 1.0f);
+}
+
+// Value noise in -1..1 with cells of size 1.
+float SmoothNoise(float x, float y, uint32_t seed) {
+  const int i = Floor(x);
+  const int j = Floor(y);
+  const float fx = x - static_cast<float>(i);
+  const float fy = y - static_cast<float>(j);
+  const float wx = fx * fx * (3.0f - 2.0f * fx);
+  const float wy = fy * fy * (3.0f - 2.0f * fy);
+  const float a = Signed(HashCell(i, j, seed), 0);
+  const float b = Signed(HashCell(i + 1, j, seed), 0);
+  const float c = Signed(HashCell(i, j + 1, seed), 0);
+  const float d = Signed(HashCell(i + 1, j + 1, seed), 0);
+  const float top = a + (b - a) * wx;
+  const float bottom = c + (d - c) * wx;
+  return top + (bottom - top) * wy;
+}
+
+float Grain(const SurfacePoint& point, uint32_t seed) {
+  const float footprint = std::max(point.footprint_u, point.footprint_v);
+  float sum = 0.0f;
+  float amplitude = 1.0f;
+  float cell = kCoarsestCell;
+  float x = point.u;
+  float y = point.v;
+  for (int octave = 0; octave < kOctaves; ++octave) {
+    const float visible = Visible(cell, footprint);
+    if (visible == 0.0f) break;
+    sum += visible * amplitude * SmoothNoise(x / cell, y / cell, seed + octave);
+    amplitude *= kAmplitudeRatio;
+    cell *= kCellRatio;
+    const float turned = kTurnCos * x - kTurnSin * y;
+    y = kTurnSin * x + kTurnCos * y;
+    x = turned;
+  }
+  return sum;
+}
+
+// Calls use(hash, weight) for the cells, of size 1, under a pixel of extent
+// (footprint_x, footprint_y): one inside a cell, up to four at its corners.
+template <typename Use>
+void ForCellsUnderPixel(float x, float y, float footprint_x, float footprint_y,
+                        uint32_t seed, Use use) {
+  const int i = Floor(x - 0.5f);
+  const int j = Floor(y - 0.5f);
+  const float wx =
+      Clamp01((x - 1.0f - static_cast<float>(i)) / footprint_x + 0.5f);
+  const float wy =
+      Clamp01((y - 1.0f - static_cast<float>(j)) / footprint_y + 0.5f);
+  for (int corner = 0; corner < 4; ++corner) {
+    const int right = corner & 1;
+    const int below = corner >> 1;
+    const float weight = (right ? wx : 1.0f - wx) * (below ? wy : 1.0f - wy);
+    if (weight > 0.0f) use(HashCell(i + right, j + below, seed), weight);
+  }
+}
+
+cv::Vec3f Tiles(const Material& material, const SurfacePoint& p,
+                uint32_t seed) {
+  cv::Vec3f shift(0, 0, 0);
+  ForCellsUnderPixel(
+      p.u / material.tile[0], p.v / material.tile[1],
+      p.footprint_u / material.tile[0], p.footprint_v / material.tile[1], seed,
+      [&](uint32_t hash, float weight) {
+        const float gray = material.tile_contrast * Signed(hash, 3);
+        for (int c = 0; c < 3; ++c) {
+          shift[c] += weight * (gray + material.tile_tint * Signed(hash, c));
+        }
+      });
+  return shift;
+}
+
+// How much ink of words lies under the pixel, 0..1.
+float Ink(const Material& material, const SurfacePoint& p, uint32_t seed) {
+  const float block = material.glyph;
+  const float visible = Visible(block, std::max(p.footprint_u, p.footprint_v));
+  const float x = p.u / block;
+  const float y = p.v / block;
+  const float width = p.footprint_u / block;
+  const float height = p.footprint_v / block;
+  float word = 0.0f;
+  ForCellsUnderPixel(x / kWordLength, y / kLineHeight, width / kWordLength,
+                     height / kLineHeight, seed,
+                     [&](uint32_t hash, float weight) {
+                       const float share = (hash & 0xffffu) / 65536.0f;
+                       if (share < material.glyph_density) word += weight;
+                     });
+  if (word == 0.0f) return 0.0f;
+  const float line =
+      y - kLineHeight * static_cast<float>(Floor(y / kLineHeight));
+  word *= Clamp01(line / height) * Clamp01((kGlyphHeight - line) / height);
+  float bit = 0.0f;
+  ForCellsUnderPixel(x, y, width, height, seed + 1,
+                     [&](uint32_t hash, float weight) {
+                       bit += weight * static_cast<float>(hash & 1u);
+                     });
+  return word * (0.5f + visible * (bit - 0.5f));
+}
+
+}  // namespace
+
+cv::Vec3f Paint(const Material& material, uint32_t seed,
+                const SurfacePoint& point) {
+  const float grain = 1.0f + material.grain * Grain(point, seed);
+  cv::Vec3f color = material.color;
+  if (material.tile_contrast > 0.0f || material.tile_tint > 0.0f) {
+    color += Tiles(material, point, seed + 0x100u);
+  }
+  color *= grain;
+  if (material.glyph_density > 0.0f) {
+    const float paper = 1.0f - Ink(material, point, seed + 0x200u);
+    color *= 0.15f + 0.85f * paper;
+  }
+  return color;
+}
+
+}  // namespace rgbd_pose

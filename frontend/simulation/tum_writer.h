@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "core/geometry/camera.h"
+#include "frontend/simulation/synthetic_dataset.h"
+
+namespace rgbd_pose {
+
+// How to write a sequence.
+struct TumWriterOptions {
+  int threads = 2;  // that render; the files do not depend on it
+  // Told how many frames are written, one call at a time; may be empty.
+  std::function<void(int done)> progress;
+};
+
+// Writes a sequence in the layout of the TUM RGB-D benchmark: rgb/*.png and
+// depth/*.png named by their time stamps, rgb.txt, depth.txt, groundtruth.txt,
+// and camera.yaml as ORB-SLAM2 reads it. Missing folders on the way to `folder`
+// are made. The sequence is written to FOLDER.partial (what an earlier run left
+// there is deleted) and renamed, so it is there as a whole or not at all.
+// Throws InputError if `folder` holds anything already or cannot be written.
+void WriteTumSequence(const SyntheticDataset& dataset,
+                      const std::string& folder,
+                      const TumWriterOptions& options = {});
+
+// The text of camera.yaml.
+std::string FormatCameraYaml(const RgbdCamera& camera);
+
+}  // namespace rgbd_pose

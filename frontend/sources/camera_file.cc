@@ -1,0 +1,128 @@
+#include "frontend/sources/camera_file.h"
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/sources/yaml_section.h"
+
+namespace rgbd_pose {
+namespace {
+
+Camera ReadOrbSlam(const YamlSection& file) {
+  const std::string prefix =
+      file.HasKeyStartingWith("Camera1.") ? "Camera1." : "Camera.";
+  file.CheckWord("Camera.type", {"PinHole", "Rectified"});
+  Camera camera;
+  camera.width = file.Pixels("Camera.width");
+  camera.height = file.Pixels("Camera.height");
+  camera.fx = file.Number(prefix + "fx");
+  camera.fy = file.Number(prefix + "fy");
+  camera.cx = file.Number(prefix + "cx");
+  camera.cy = file.Number(prefix + "cy");
+  camera.k1 = file.NumberOr(prefix + "k1", 0.0);
+  camera.k2 = file.NumberOr(prefix + "k2", 0.0);
+  camera.p1 = file.NumberOr(prefix + "p1", 0.0);
+  camera.p2 = file.NumberOr(prefix + "p2", 0.0);
+  camera.k3 = file.NumberOr(prefix + "k3", 0.0);
+  return camera;
+}
+
+// Coefficients in the order k1 k2 p1 p2 and maybe k3.
+void SetDistortion(const std::vector<double>& coefficients, Camera* camera) {
+  camera->k1 = coefficients[0];
+  camera->k2 = coefficients[1];
+  camera->p1 = coefficients[2];
+  camera->p2 = coefficients[3];
+  if (coefficients.size() > 4) camera->k3 = coefficients[4];
+}
+
+Camera ReadRosCameraInfo(const YamlSection& file) {
+  file.CheckWord("distortion_model", {"plumb_bob"});
+  Camera camera;
+  camera.width = file.Pixels("image_width");
+  camera.height = file.Pixels("image_height");
+  const YamlSection matrix = file.Child("camera_matrix");
+  const std::vector<double> k = matrix.Numbers("data", {9});
+  if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
+    matrix.Fail("data", "must read [fx 0 cx 0 fy cy 0 0 1], row by row");
+  }
+  camera.fx = k[0];
+  camera.fy = k[4];
+  camera.cx = k[2];
+  camera.cy = k[5];
+  SetDistortion(file.Child("distortion_coefficients").Numbers("data", {4, 5}),
+                &camera);
+  return camera;
+}
+
+Camera ReadKalibr(const YamlSection& file) {
+  const YamlSection cam = file.Child("cam0");
+  cam.CheckWord("camera_model", {"pinhole"});
+  cam.CheckWord("distortion_model", {"radtan"});
+  Camera camera;
+  const std::vector<double> size = cam.Numbers("resolution", {2});
+  camera.width = cam.Pixels("resolution", size[0]);
+  camera.height = cam.Pixels("resolution", size[1]);
+  const std::vector<double> intrinsics = cam.Numbers("intrinsics", {4});
+  camera.fx = intrinsics[0];
+  camera.fy = intrinsics[1];
+  camera.cx = intrinsics[2];
+  camera.cy = intrinsics[3];
+  SetDistortion(cam.Numbers("distortion_coeffs", {4}), &camera);
+  return camera;
+}
+
+Camera ReadAnyLayout(const std::string& path, const YamlSection& file) {
+  if (file.HasKeyStartingWith("Camera.") ||
+      file.HasKeyStartingWith("Camera1.")) {
+    return ReadOrbSlam(file);
+  }
+  if (file.Has("camera_matrix")) return ReadRosCameraInfo(file);
+  if (file.Has("cam0")) return ReadKalibr(file);
+  throw InputError(path +
+                   ": no camera in here; known layouts are ORB-SLAM "
+                   "(Camera.fx), ROS camera_info (camera_matrix) and Kalibr "
+                   "(cam0)");
+}
+
+double ReadDepthScale(const YamlSection& file) {
+  for (const char* key : {"DepthMapFactor", "RGBD.DepthMapFactor"}) {
+    if (!file.Has(key)) continue;
+    const double scale = file.Number(key);
+    if (scale < 1.0) {
+      file.Fail(key,
+                "must be raw depth units per metre, so at least 1 (5000 for "
+                "the TUM benchmark, 1000 for millimetres); is it inverted?");
+    }
+    return scale;
+  }
+  return RgbdCamera{}.depth_scale;
+}
+
+}  // namespace
+
+RgbdCamera ReadCameraFile(const std::string& path) {
+  const YamlSection file = YamlSection::FromFile(path);
+  RgbdCamera result;
+  result.camera = ReadAnyLayout(path, file);
+  result.depth_scale = ReadDepthScale(file);
+  const std::string problem = result.camera.Check();
+  if (!problem.empty()) throw InputError(path + ": " + problem);
+  return result;
+}
+
+RgbdCamera ResolveCamera(const std::string& file_or_preset) {
+  if (const auto preset = CameraPreset(file_or_preset)) return *preset;
+  std::error_code error;
+  if (std::filesystem::exists(file_or_preset, error)) {
+    return ReadCameraFile(file_or_preset);
+  }
+  throw InputError("camera '" + file_or_preset +
+                   "' is neither a file nor one of the presets: " +
+                   Join(CameraPresetNames()));
+}
+
+}  // namespace rgbd_pose

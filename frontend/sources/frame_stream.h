@@ -1,0 +1,72 @@
+#pragma once
+
+#include <condition_variable>
+#include <exception>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "frontend/image/frame.h"
+#include "frontend/sources/dataset.h"
+
+namespace rgbd_pose {
+
+// A frame, and how long reading and preparing it took, in whichever thread.
+struct StreamedFrame {
+  Frame frame;             // prepared
+  double decode_ms = 0.0;  // to read and to prepare it
+};
+
+// The frames of a dataset in order, read and prepared ahead by several threads.
+// The thread that calls Next is one of them: where its frame is not ready yet,
+// it reads one itself instead of sleeping, so that all threads are always busy.
+// The frames are the same whatever the number of threads.
+class FrameStream {
+ public:
+  // `threads` >= 1 counts the calling one: 1 reads each frame when it is asked
+  // for. `prepare` works on each frame in the thread that has read it
+  // (Frontend::Prepare, say); it may be empty. The dataset must outlive the
+  // stream.
+  FrameStream(const Dataset& dataset, std::function<void(Frame*)> prepare,
+              int threads);
+
+  // Gives up the frames that were not asked for; waits for those being read.
+  ~FrameStream();
+  FrameStream(const FrameStream&) = delete;
+  FrameStream& operator=(const FrameStream&) = delete;
+
+  // The next frame, of Dataset::size() in all (std::out_of_range beyond them).
+  // Always to be called from the same thread. Rethrows what reading this frame
+  // threw; the one after can be asked for nevertheless.
+  StreamedFrame Next();
+
+ private:
+  struct Result {
+    StreamedFrame frame;
+    std::exception_ptr error;
+  };
+  using Lock = std::unique_lock<std::mutex>;
+
+  // Whether a frame may be begun: not more than a few ahead, for the memory.
+  bool CanBegin() const;
+  // Begins the next frame and sees it through, with the lock given up
+  // meanwhile.
+  void ReadOne(Lock* lock);
+  void Work();
+
+  const Dataset& dataset_;
+  const std::function<void(Frame*)> prepare_;
+  const int max_ahead_;
+  std::mutex mutex_;  // of all that follows
+  std::condition_variable may_begin_;
+  std::condition_variable is_ready_;
+  std::map<int, Result> ready_;  // by frame
+  int num_begun_ = 0;
+  int num_taken_ = 0;
+  bool stop_ = false;
+  std::vector<std::thread> workers_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,103 @@
+#include "frontend/sources/image_file.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <string_view>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+#include "frontend/sources/png_decoder.h"
+#endif
+
+namespace rgbd_pose {
+namespace {
+
+// OpenCV fills the missing rest of a JPEG with grey and calls it a success, so
+// look for the end marker behind the last scan. Neither marker can occur
+// inside the compressed data.
+bool IsCutOffJpeg(std::string_view bytes) {
+  constexpr std::string_view kJpegStart = "\xFF\xD8\xFF";
+  constexpr std::string_view kScanStart = "\xFF\xDA";
+  constexpr std::string_view kJpegEnd = "\xFF\xD9";
+  if (bytes.substr(0, kJpegStart.size()) != kJpegStart) return false;
+  const size_t last_scan = bytes.rfind(kScanStart);
+  return last_scan == std::string_view::npos ||
+         bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
+}
+
+// What there is a quicker way for; empty: leave it to OpenCV.
+cv::Mat DecodeQuickly([[maybe_unused]] std::string_view bytes,
+                      [[maybe_unused]] int flags) {
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+  const int depth_or_not = flags & ~cv::IMREAD_ANYDEPTH;  // 8 bits in any case
+  if (depth_or_not == cv::IMREAD_GRAYSCALE) return DecodePngToGray(bytes);
+  if (flags == cv::IMREAD_UNCHANGED) return DecodePngDepth(bytes);
+#endif
+  return cv::Mat();
+}
+
+bool IsDamaged(std::string_view bytes) {
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+  if (IsDamagedPng(bytes)) return true;
+#endif
+  return IsCutOffJpeg(bytes);
+}
+
+}  // namespace
+
+cv::Mat ReadImageFile(const std::string& path, int flags) {
+  std::string bytes = ReadTextFile(path);
+  if (bytes.empty()) throw InputError(path + ": is empty; copy it again");
+  cv::Mat image = DecodeQuickly(bytes, flags);
+  if (!image.empty()) return image;
+  if (IsDamaged(bytes)) {
+    throw InputError(path + ": is damaged or cut off; copy it again");
+  }
+  try {
+    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1,
+                         bytes.data());
+    image = cv::imdecode(buffer, flags | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception& error) {
+    throw InputError(path + ": cannot be decoded: " + error.err);
+  }
+  if (image.empty()) {
+    throw InputError(path +
+                     ": is damaged, cut off or no image that OpenCV can read");
+  }
+  return image;
+}
+
+cv::Mat ReadGrayImageFile(const std::string& path) {
+  cv::Mat gray =
+      ReadImageFile(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
+  if (gray.type() != CV_8UC1) {
+    throw InputError(path +
+                     ": a colour image must have 8 bits a channel, this one "
+                     "has more; is it the depth image?");
+  }
+  return gray;
+}
+
+cv::Mat ReadDepthImageFile(const std::string& path) {
+  cv::Mat depth = ReadImageFile(path, cv::IMREAD_UNCHANGED);
+  if (depth.type() != CV_16UC1) {
+    throw InputError(path +
+                     ": a depth image must have 16 bits and 1 channel, "
+                     "this one is " +
+                     cv::typeToString(depth.type()) +
+                     "; is it the colour image, or a depth image made for "
+                     "viewing?");
+  }
+  return depth;
+}
+
+// OpenCV does not notice a disk that gets full at the end of a file.
+void WritePngFile(const std::string& path, const cv::Mat& image,
+                  const std::vector<int>& settings) {
+  std::vector<uchar> bytes;
+  cv::imencode(".png", image, bytes, settings);
+  WriteFileAtomically(
+      path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+}
+
+}  // namespace rgbd_pose

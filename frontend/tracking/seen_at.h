@@ -1,0 +1,27 @@
+#pragma once
+
+#include <optional>
+
+#include "core/estimation/correspondences.h"
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// The ideal pixel at which the current camera sees a point that was observed,
+// with its depth, from the reference; nothing without a depth or if the point
+// is not before the camera. It may lie outside the image.
+inline std::optional<Eigen::Vector2d> SeenAt(const Camera& camera,
+                                             const Rigid3d& cur_from_ref,
+                                             const Observation& o) {
+  if (o.depth <= 0.0) return std::nullopt;
+  const Eigen::Vector3d point =
+      cur_from_ref * Eigen::Vector3d((o.u - camera.cx) / camera.fx * o.depth,
+                                     (o.v - camera.cy) / camera.fy * o.depth,
+                                     o.depth);
+  if (point.z() <= 0.0) return std::nullopt;
+  return Eigen::Vector2d(camera.fx * point.x() / point.z() + camera.cx,
+                         camera.fy * point.y() / point.z() + camera.cy);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <string>
+
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// Whether to believe the pose of a frame.
+enum class TrackingStatus {
+  kOk,        // a pose that many matches agree on
+  kDegraded,  // a pose, but from few or contradicting matches
+  kLost,      // no pose was found: see LostPolicy for the one reported
+};
+
+// "ok", "degraded", "lost"
+const char* ToString(TrackingStatus status);
+
+// What became of one input frame.
+struct TrackedFrame {
+  int index = 0;           // place in the sequence, from 0
+  double timestamp = 0.0;  // s
+  TrackingStatus status = TrackingStatus::kLost;  // with its reason:
+  std::string reason;                             // in words; empty if ok
+
+  Rigid3d world_from_cam;  // the world is the camera of the first frame
+
+  // Frames of one segment hang together. A new one starts, at the last known
+  // pose, where tracking was lost for good: what happened between is unknown.
+  int segment = 0;
+
+  int reference = -1;  // index of the frame it was tracked against; -1: none
+  bool is_reference = false;  // became the reference of the frames that follow
+  bool relocalised = false;   // found again among earlier references
+
+  int matches = 0;     // with the reference
+  int inliers = 0;     // of these, in agreement with the motion
+  int iterations = 0;  // of the solver, all attempts together
+  double sigma = 0.0;  // spread of whitened residuals; ideally 1
+
+  // Where the time went. Decoding may run beside the tracking of others.
+  double decode_ms = 0.0;
+  double track_ms = 0.0;       // all of Odometry::Track
+  double match_ms = 0.0;       // of it: matching
+  double solve_ms = 0.0;       // of it: motion estimation
+  double reference_ms = 0.0;   // of it: features of a new reference
+  double relocalise_ms = 0.0;  // of it: search for the place when lost
+};
+
+}  // namespace rgbd_pose

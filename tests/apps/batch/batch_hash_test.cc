@@ -1,0 +1,89 @@
+#include "apps/batch/batch_hash.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+std::string HashOf(const std::string& a, const std::string& b) {
+  TextHash hash;
+  hash.Add(a);
+  hash.Add(b);
+  return hash.Hex();
+}
+
+TEST(TextHashTest, IsFnv1a) {
+  EXPECT_EQ(TextHash().Hex(), "cbf29ce484222325");  // its offset basis
+}
+
+TEST(TextHashTest, TellsTextsApart) {
+  EXPECT_EQ(HashOf("a", "bc"), HashOf("a", "bc"));
+  EXPECT_NE(HashOf("a", "bc"), HashOf("ab", "c"));
+  EXPECT_NE(HashOf("", "a"), HashOf("a", ""));
+  EXPECT_NE(HashOf("a", "b"), HashOf("b", "a"));
+}
+
+class HashSequenceTest : public testing::Test {
+ protected:
+  HashSequenceTest() { WriteSequence("s"); }
+
+  void WriteSequence(const std::string& name) const {
+    folder_.Write(name + "/rgb.txt", "1 rgb/1.png\n2 rgb/2.png\n");
+    folder_.Write(name + "/depth.txt", "1 depth/1.png\n");
+    folder_.Write(name + "/rgb/1.png", "x");
+    folder_.Write(name + "/rgb/2.png", "xx");
+    folder_.Write(name + "/depth/1.png", "xxx");
+    folder_.Write(name + "/camera.yaml", "fx: 500");
+  }
+
+  std::string Hash(const std::string& name = "s") const {
+    const std::string folder = folder_ / name;
+    return HashSequence({name, folder, folder + "/camera.yaml"});
+  }
+
+  const TempFolder folder_;
+};
+
+TEST_F(HashSequenceTest, DoesNotDependOnThePlace) {
+  WriteSequence("t");
+  EXPECT_EQ(Hash("s"), Hash("t"));
+}
+
+TEST_F(HashSequenceTest, SeesEveryInput) {
+  const std::string before = Hash();
+  const struct {
+    const char* file;
+    const char* text;
+  } kChanges[] = {
+      {"s/rgb.txt", "1 rgb/1.png\n2.5 rgb/2.png\n"},
+      {"s/depth.txt", "1 depth/1.png\n2 depth/2.png\n"},
+      {"s/rgb/2.png", "xxx"},
+      {"s/depth/1.png", ""},
+      {"s/camera.yaml", "fx: 501"},
+      {"s/groundtruth.txt", ""},
+  };
+  for (const auto& change : kChanges) {
+    const TempFolder& folder = folder_;
+    folder.Write(change.file, change.text);
+    EXPECT_NE(Hash(), before) << change.file;
+    WriteSequence("s");
+  }
+  std::filesystem::remove(folder_ / "s/groundtruth.txt");
+  EXPECT_EQ(Hash(), before) << "all is as it was";
+}
+
+TEST_F(HashSequenceTest, TakesBrokenSequences) {
+  folder_.Write("s/rgb.txt", "oops\n");
+  const std::string broken = Hash();
+  std::filesystem::remove(folder_ / "s/rgb.txt");
+  EXPECT_NE(Hash(), broken);
+  EXPECT_NE(HashSequence({"s", folder_ / "s", "tum_fr1"}),
+            HashSequence({"s", folder_ / "s", "tum_fr2"}));
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,88 @@
+#include "apps/batch/batch_list.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+class BatchListTest : public testing::Test {
+ protected:
+  BatchListTest() {
+    for (const std::string name : {"b", "a", "c"}) {
+      folder_.Write("data/" + name + "/camera.yaml", "");
+    }
+    folder_.Write("data/file", "");
+    folder_.Write("other/a/rgb.txt", "");
+    folder_.Write("mine.yaml", "");
+  }
+
+  std::vector<BatchSequence> Read(const std::string& text) const {
+    return ReadSequenceList(folder_.Write("lists/list.txt", text));
+  }
+
+  void ExpectRefused(const std::string& text,
+                     const std::vector<std::string>& parts) const {
+    SCOPED_TRACE(text);
+    ExpectInputError([&] { Read(text); }, parts);
+  }
+
+  const TempFolder folder_;
+};
+
+TEST_F(BatchListTest, PathsCountFromTheList) {
+  const auto sequences = Read(
+      "# folder camera\n\n"
+      "../data/b  # with its own camera\n"
+      "../data/a/ tum_fr1\n" +
+      (folder_ / "data/c") + " ../mine.yaml\n");
+  ASSERT_EQ(sequences.size(), 3u);
+  EXPECT_EQ(sequences[0].name, "b");
+  EXPECT_EQ(sequences[0].folder, folder_ / "data/b");
+  EXPECT_EQ(sequences[0].camera, folder_ / "data/b/camera.yaml");
+  EXPECT_EQ(sequences[1].name, "a");
+  EXPECT_EQ(sequences[1].folder, folder_ / "data/a");
+  EXPECT_EQ(sequences[1].camera, "tum_fr1");
+  EXPECT_EQ(sequences[2].folder, folder_ / "data/c");
+  EXPECT_EQ(sequences[2].camera, folder_ / "mine.yaml");
+}
+
+TEST_F(BatchListTest, APatternStandsForAllFoldersInOrder) {
+  const auto sequences = Read("../data/* ros_default\n");
+  ASSERT_EQ(sequences.size(), 3u);
+  EXPECT_EQ(sequences[0].name, "a");
+  EXPECT_EQ(sequences[1].name, "b");
+  EXPECT_EQ(sequences[2].name, "c");
+  EXPECT_EQ(sequences[2].camera, "ros_default");
+}
+
+TEST_F(BatchListTest, ALinkGivesAnotherName) {
+  std::filesystem::create_directory_symlink(folder_ / "other/a",
+                                            folder_ / "other/a2");
+  const auto sequences = Read("../data/a\n../other/a2 tum_fr1\n");
+  ASSERT_EQ(sequences.size(), 2u);
+  EXPECT_EQ(sequences[1].name, "a2");
+}
+
+TEST_F(BatchListTest, BadLinesAreNamed) {
+  ExpectRefused("# nothing\n", {"list.txt", "lists no sequences"});
+  ExpectRefused("../data/a\n../data/d\n", {"list.txt:2", "data/d"});
+  ExpectRefused("../data/file\n", {"list.txt:1", "data/file"});
+  ExpectRefused("../data/x*\n", {"list.txt:1", "x*"});
+  ExpectRefused("../data/a tum_fr1 5\n", {"list.txt:1", "has 3"});
+  ExpectRefused("../data/a kinect\n", {"list.txt:1", "kinect", "tum_fr1"});
+  ExpectRefused("../other/a\n", {"list.txt:1", "other/a/camera.yaml"});
+  ExpectRefused("../data/a\n\n../other/a tum_fr1\n",
+                {"list.txt:3", "'a'", "line 1"});
+  ExpectRefused("../data/*\n../data/a\n", {"list.txt:2", "'a'", "line 1"});
+  ExpectInputError([this] { ReadSequenceList(folder_ / "none"); }, {"none"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,73 @@
+#include "apps/batch/batch_plan.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+#include <vector>
+
+#include "tests/support/expect_input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Folders that do not exist have a hash, too.
+const std::vector<BatchSequence> kSequences = {
+    {"one", "/none/one", "tum_fr1"},
+    {"two", "/none/two", "tum_fr1"},
+    {"three", "/none/three", "tum_fr2"}};
+
+TEST(BatchPlanTest, HasAllCombinationsInOrder) {
+  const BatchGrid grid = ParseGrid("epipolar,reprojection_depth+epipolar",
+                                   "huber,tukey", "klt", 2);
+  const std::vector<BatchRun> plan = MakePlan(kSequences, grid, {}, "");
+  ASSERT_EQ(plan.size(), 3u * 2 * 2 * 1 * 2);
+  EXPECT_EQ(plan[0].Name(), "one/epipolar-huber-klt-r1");
+  EXPECT_EQ(plan[1].Name(), "one/epipolar-huber-klt-r2");
+  EXPECT_EQ(plan[2].Name(), "one/epipolar-tukey-klt-r1");
+  EXPECT_EQ(plan[4].Name(), "one/reprojection_depth+epipolar-huber-klt-r1");
+  EXPECT_EQ(plan[8].Name(), "two/epipolar-huber-klt-r1");
+  std::set<std::string> names;
+  for (const BatchRun& run : plan) names.insert(run.Name());
+  EXPECT_EQ(names.size(), plan.size());
+}
+
+TEST(BatchPlanTest, AShardHasWholeSequences) {
+  const BatchGrid grid = ParseGrid("epipolar", "huber,tukey", "klt", 1);
+  const std::vector<BatchRun> plan = MakePlan(kSequences, grid, {0, 2}, "");
+  ASSERT_EQ(plan.size(), 4u);
+  EXPECT_EQ(plan[1].sequence.name, "one");
+  EXPECT_EQ(plan[2].sequence.name, "three");
+  EXPECT_TRUE(MakePlan(kSequences, grid, {4, 5}, "").empty());
+}
+
+TEST(BatchPlanTest, TheHashTellsAllButRepeats) {
+  const BatchGrid grid = ParseGrid("epipolar", "huber,tukey", "klt,orb", 2);
+  const auto plan = MakePlan(kSequences, grid, {}, "");
+  const auto again = MakePlan(kSequences, grid, {}, "");
+  const auto other = MakePlan(kSequences, grid, {}, "--scale=mad");
+  std::set<std::string> hashes;
+  for (size_t i = 0; i < plan.size(); ++i) {
+    hashes.insert(plan[i].hash);
+    EXPECT_EQ(plan[i].hash, again[i].hash);
+    EXPECT_NE(plan[i].hash, other[i].hash);
+  }
+  // Sequences one and two have the same inputs: none, and the same camera.
+  EXPECT_EQ(hashes.size(), 2u * 2 * 2);
+}
+
+TEST(BatchPlanTest, RefusesNamesThatAreNotThere) {
+  ExpectInputError([] { ParseGrid("magic", "huber", "klt", 1); },
+                   {"--costs", "'magic'", "bidirectional_point"});
+  ExpectInputError([] { ParseGrid("epipolar+magic", "huber", "klt", 1); },
+                   {"--costs", "'magic'"});
+  ExpectInputError([] { ParseGrid("epipolar", "huber,", "klt", 1); },
+                   {"--losses", "''"});
+  ExpectInputError([] { ParseGrid("epipolar", "huber", "klt,klt", 1); },
+                   {"--frontends", "'klt'", "twice"});
+  ExpectInputError([] { ParseGrid("epipolar", "huber", "klt", 0); },
+                   {"--repeats"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose

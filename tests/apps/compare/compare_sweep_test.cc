@@ -1,0 +1,130 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "apps/compare/compare_sweep_report.h"
+#include "apps/compare/compare_sweep_verdict.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+MedianBand Around(double median) {
+  return {median, 0.9 * median, 1.1 * median, 2.0 * median};
+}
+
+// All methods of some losses with errors of 1 mm and 0.1 degrees.
+std::vector<SweepCell> LevelCells(const std::vector<std::string>& losses) {
+  std::vector<SweepCell> cells;
+  for (const std::string& loss : losses) {
+    for (const char* schedule : {"gnc", "direct"}) {
+      for (const bool ransac : {false, true}) {
+        for (int i = 0; i < kSweepShares; ++i) {
+          cells.push_back({{loss, schedule, ransac},
+                           SweepShare(i),
+                           Around(0.1),
+                           Around(1.0)});
+        }
+      }
+    }
+  }
+  return cells;
+}
+
+void SetError(const SweepMethod& method, int share, double median,
+              std::vector<SweepCell>* cells) {
+  for (SweepCell& cell : *cells) {
+    if (cell.method.loss == method.loss &&
+        cell.method.schedule == method.schedule &&
+        cell.method.ransac == method.ransac &&
+        cell.outlier_share == SweepShare(share)) {
+      cell.translation_mm = Around(median);
+    }
+  }
+}
+
+TEST(SweepVerdictTest, RansacThatChangesNothing) {
+  const std::string verdict = SweepVerdict(LevelCells({"none", "tukey"}));
+  EXPECT_THAT(verdict, HasSubstr("Under the gnc schedule a start from RANSAC "
+                                 "changes no median beyond the bands, at any "
+                                 "share."));
+  EXPECT_THAT(verdict,
+              HasSubstr("direct schedule a start from RANSAC changes"));
+  EXPECT_THAT(verdict, HasSubstr("bands of the medians meet): tukey."));
+}
+
+// It is said of those shares alone at which it is so, in either direction.
+TEST(SweepVerdictTest, RansacThatHelpsAtSomeShares) {
+  std::vector<SweepCell> cells = LevelCells({"none", "tukey", "welsch"});
+  SetError({"tukey", "direct", false}, 1, 90.0, &cells);
+  SetError({"tukey", "direct", false}, 4, 70.0, &cells);
+  SetError({"welsch", "direct", true}, 5, 3.0, &cells);
+  for (int i = 0; i < kSweepShares; ++i) {
+    SetError({"none", "gnc", false}, i, 8.0, &cells);
+  }
+  const std::string verdict = SweepVerdict(cells);
+  EXPECT_THAT(verdict,
+              HasSubstr("gnc schedule a start from RANSAC lowers the median "
+                        "beyond the bands for none (at every share; 1 mm "
+                        "instead of 8 mm at 60 %)."));
+  EXPECT_THAT(verdict,
+              HasSubstr("lowers the median beyond the bands for tukey (at 10, "
+                        "40 % wrong matches; 1 mm instead of 70 mm at 40 %) "
+                        "and raises the median beyond the bands for welsch (3 "
+                        "mm instead of 1 mm at 50 %)."));
+  EXPECT_THAT(verdict,
+              HasSubstr("The error of none is 8 times as great at 0 %, "
+                        "8 times at 30 % and 8 times at 60 %."));
+}
+
+// Worse than the best where their bands meet, and better beyond the bands at
+// one share.
+TEST(SweepVerdictTest, LevelMeansThatBandsMeetFromEitherSide) {
+  std::vector<SweepCell> cells = LevelCells({"tukey", "welsch"});
+  for (int i = 0; i < kSweepShares; ++i) {
+    SetError({"welsch", "gnc", false}, i, 1.1, &cells);
+  }
+  EXPECT_THAT(SweepVerdict(cells), HasSubstr("meet): welsch."));
+  SetError({"welsch", "gnc", false}, 2, 0.6, &cells);
+  const std::string verdict = SweepVerdict(cells);
+  EXPECT_THAT(verdict, HasSubstr("tukey has the smallest"));
+  EXPECT_THAT(verdict,
+              HasSubstr("No other loss is level with it at every share."));
+}
+
+TEST(SweepVerdictTest, OneLossHasNoRivals) {
+  const std::string verdict = SweepVerdict(LevelCells({"tukey"}));
+  EXPECT_THAT(verdict, Not(HasSubstr("other loss")));
+  EXPECT_THAT(verdict, Not(HasSubstr("Level with it")));
+}
+
+TEST(SweepCsvTest, IsReadAsItWasWritten) {
+  const TempFolder folder;
+  std::vector<SweepCell> cells = LevelCells({"none", "tukey"});
+  SetError({"tukey", "direct", true}, 3, 0.25, &cells);
+  const std::string csv = SweepCsv(cells);
+  const std::vector<SweepCell> read =
+      ReadSweepCsv(folder.Write("sweep.csv", csv));
+  ASSERT_EQ(read.size(), cells.size());
+  EXPECT_EQ(SweepCsv(read), csv);
+  EXPECT_EQ(SweepVerdict(read), SweepVerdict(cells));
+}
+
+TEST(SweepCsvTest, AnIncompleteFileIsRefused) {
+  const TempFolder folder;
+  std::vector<SweepCell> cells = LevelCells({"none"});
+  cells.pop_back();
+  const std::string file = folder.Write("sweep.csv", SweepCsv(cells));
+  ExpectInputError([&] { ReadSweepCsv(file); },
+                   {file, "not all shares of none, direct, RANSAC"});
+  folder.Write("sweep.csv", SweepCsv({}));
+  ExpectInputError([&] { ReadSweepCsv(file); }, {file, "no rows"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,69 @@
+#include "apps/figures/chart_axis.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <vector>
+
+namespace rgbd_pose {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+using testing::IsEmpty;
+using testing::Pointwise;
+
+std::vector<double> ValuesOf(const std::vector<AxisTic>& tics) {
+  std::vector<double> values;
+  for (const AxisTic& tic : tics) values.push_back(tic.value);
+  return values;
+}
+
+TEST(ChartAxisTest, ARangeHasRoomAroundItsValues) {
+  AxisRangeFinder finder;
+  for (const double value : {2.0, std::nan(""), 12.0, std::log(0.0), 7.0}) {
+    finder.Add(value);
+  }
+  EXPECT_DOUBLE_EQ(finder.Found().low, 1.6);
+  EXPECT_DOUBLE_EQ(finder.Found().high, 12.4);
+}
+
+TEST(ChartAxisTest, ARangeOfOneOrNoValueIsWide) {
+  AxisRangeFinder finder;
+  EXPECT_GT(finder.Found().span(), 0.0);
+  finder.Add(3.0);
+  EXPECT_GT(finder.Found().span(), 0.0);
+  EXPECT_EQ(finder.Found().Share(3.0), 0.5);
+}
+
+TEST(ChartAxisTest, LinearTicsAreRoundNumbers) {
+  EXPECT_THAT(ValuesOf(LinearTics({-0.1, 1.01})),
+              Pointwise(DoubleNear(1e-12), {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}));
+  EXPECT_THAT(
+      ValuesOf(LinearTics({-21.0, 39.0})),
+      Pointwise(DoubleNear(1e-12), {-20.0, -10.0, 0.0, 10.0, 20.0, 30.0}));
+}
+
+TEST(ChartAxisTest, LogTicsGetFewerOnALongAxis) {
+  EXPECT_THAT(ValuesOf(LogTics({-0.5, 1.2})),
+              Pointwise(DoubleNear(1e-12), {0.5, 1.0, 2.0, 5.0, 10.0}));
+  EXPECT_THAT(ValuesOf(LogTics({-0.5, 3.2})),
+              Pointwise(DoubleNear(1e-12), {1.0, 10.0, 100.0, 1000.0}));
+  for (const AxisTic& tic : LogTics({-0.5, 1.2})) {
+    EXPECT_DOUBLE_EQ(tic.place, std::log10(tic.value));
+  }
+}
+
+TEST(ChartAxisTest, LabelsThatTouchAreSpreadAroundTheirMiddle) {
+  EXPECT_THAT(SpreadOut({}, 10.0), IsEmpty());
+  EXPECT_THAT(SpreadOut({0.0, 10.0, 30.0}, 10.0), ElementsAre(0.0, 10.0, 30.0));
+  EXPECT_THAT(SpreadOut({50.0, 50.0, 50.0}, 10.0),
+              ElementsAre(40.0, 50.0, 60.0));
+  // The first two, spread, come to touch the third.
+  EXPECT_THAT(SpreadOut({10.0, 10.0, 16.0, 90.0}, 10.0),
+              ElementsAre(2.0, 12.0, 22.0, 90.0));
+}
+
+}  // namespace
+}  // namespace rgbd_pose

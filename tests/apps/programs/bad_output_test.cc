@@ -1,0 +1,168 @@
+// Outputs that cannot be written: below a file, on a full disk, in use.
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "tests/support/bad_input.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+using Seq = SpoiledSequence;
+using testing::HasSubstr;
+
+const std::string kEvaluate = RGBD_EVALUATE
+    " --estimate={seq}/groundtruth.txt --groundtruth={seq}/groundtruth.txt ";
+const std::string kSweep = RGBD_COMPARE
+    " --experiment=sweep --seeds=1 --losses=none,huber --output={dir}/out ";
+
+// To the command, the disk is full when a file gets longer than so many blocks
+// of 512 bytes (1024 where sh is bash).
+std::string WithFullDisk(int blocks, const std::string& command) {
+  return "ulimit -f " + std::to_string(blocks) + "; exec " + command;
+}
+
+TEST_F(BadInputTest, OutputsThatCannotBe) {
+  const auto file = [](const Seq& seq) { seq.Write("file", "mine"); };
+  ExpectEach(Odometry(),
+             {
+                 {"below a file", file, "--output={seq}/file/out", 2,
+                  "--output: {seq}/file/out cannot be made"},
+                 {"a file", file, "--output={seq}/file", 2,
+                  "--output: {seq}/file cannot be made"},
+                 {"where none can be made", nullptr, "--output=/proc/none", 2,
+                  "--output: /proc/none cannot be made"},
+                 {"the cloud's folder is missing", nullptr,
+                  "--save_cloud={seq}/none/cloud.ply", 2,
+                  "{seq}/none/cloud.ply: cannot be written (No such file"},
+                 {"the cloud is a folder", nullptr, "--save_cloud={seq}", 2,
+                  "{seq}: is a folder, a file is needed here"},
+             });
+  ExpectEach(
+      "",
+      {
+          {"simulate: below a file", file,
+           RGBD_SIMULATE " --frames=2 --output={seq}/file/out", 2,
+           "{seq}/file/out: cannot be written: Not a directory"},
+          {"simulate: a folder in use", nullptr,
+           RGBD_SIMULATE " --frames=2 --output={seq}", 2,
+           "{seq}: is there already and no empty folder"},
+          {"compare: below a file", file, kSweep + "--output={seq}/file/out", 2,
+           "--output={seq}/file/out: cannot be made (Not a directory)"},
+          {"batch: below a file",
+           [](const Seq& s) {
+             s.Write("file", "mine");
+             s.Write("list", ".\n");
+           },
+           RGBD_BATCH " --sequences={seq}/list --output={seq}/file/out", 2,
+           "--output={seq}/file/out: cannot be made (Not a directory)"},
+          {"evaluate: below a file", file,
+           kEvaluate + "--aligned={seq}/file/aligned.txt", 2,
+           "{seq}/file/aligned.txt: cannot be written (Not a directory)"},
+          {"evaluate: nobody takes the output", nullptr,
+           "(exec >/dev/full; exec " + kEvaluate + ")", 2,
+           "the standard output cannot be written (No space left on device)"},
+      });
+}
+
+TEST_F(BadInputTest, FullDisks) {
+  ExpectEach(
+      "", {
+              {"figures", nullptr, WithFullDisk(2, Odometry()), 2,
+               "metrics.json: writing failed (File too large)"},
+              {"pictures", nullptr,
+               WithFullDisk(40, Odometry() + "--debug_images=all"), 2,
+               "debug/000000.png: writing failed (File too large)"},
+              {"cloud", nullptr,
+               WithFullDisk(40, Odometry() + "--save_cloud={dir}/cloud.ply"), 2,
+               "{dir}/cloud.ply: writing failed (File too large)"},
+              {"simulate", nullptr,
+               WithFullDisk(40, RGBD_SIMULATE " --frames=2 --output={dir}/out"),
+               2, ".png: writing failed (File too large)"},
+              {"compare", nullptr, WithFullDisk(2, kSweep), 2,
+               "writing failed (File too large)"},
+              {"evaluate",
+               [](const Seq& s) {
+                 std::string poses;
+                 for (int i = 0; i < 100; ++i) {
+                   poses += std::to_string(i) + " 0 0 0 0 0 0 1\n";
+                 }
+                 s.Write("groundtruth.txt", poses);
+               },
+               WithFullDisk(2, kEvaluate + "--aligned={dir}/aligned.txt"), 2,
+               "{dir}/aligned.txt: writing failed (File too large)"},
+          });
+}
+
+std::string Contents(const std::string& folder) {
+  std::vector<std::string> files;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
+    files.push_back(
+        entry.path().string() + "\n" +
+        (entry.is_regular_file() ? ReadTextFile(entry.path().string()) : ""));
+  }
+  std::sort(files.begin(), files.end());
+  std::string text;
+  for (const std::string& file : files) text += file;
+  return text;
+}
+
+// Whatever a run fails of, the results of the one before stay as they were.
+TEST_F(BadInputTest, ARunThatFailsLeavesEarlierResultsAlone) {
+  fs::rename(folder_ / "good", folder_ / "seq");
+  const std::string call = Fill(Odometry()) + "--debug_images=1 ";
+  ASSERT_EQ(RunCommand(call, folder_).exit_code, 0);
+  const std::string before = Contents(folder_ / "out");
+  for (const std::string& command :
+       {WithFullDisk(2, call), WithFullDisk(40, call),
+        call + "--save_cloud=/dev/full/cloud.ply"}) {
+    EXPECT_EQ(RunCommand(command, folder_).exit_code, 2);
+    EXPECT_EQ(Contents(folder_ / "out"), before) << command;
+  }
+  Spoiled().Cut("depth/1000.100000.png", 100);
+  EXPECT_EQ(RunCommand(call, folder_).exit_code, 2);
+  EXPECT_EQ(Contents(folder_ / "out"), before);
+}
+
+// What a run does not write again must not pass for its own.
+TEST_F(BadInputTest, ResultsAreThoseOfOneRun) {
+  fs::rename(folder_ / "good", folder_ / "seq");
+  const std::string call = Fill(Odometry());
+  ASSERT_EQ(RunCommand(call, folder_).exit_code, 0);
+  EXPECT_TRUE(fs::exists(folder_ / "out/errors.csv"));
+  folder_.Write("out/mine.txt", "mine");
+  Spoiled().Remove("groundtruth.txt");
+  ASSERT_EQ(RunCommand(call, folder_).exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "out/errors.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/mine.txt"));
+}
+
+TEST_F(BadInputTest, OneRunAtATimeWritesToAFolder) {
+  fs::rename(folder_ / "good", folder_ / "seq");
+  const std::string call = Fill(Odometry());
+  const std::string aside = "out/.rgbd_odometry.partial/";
+  folder_.Write(aside + "metrics.json", "of a run that was killed");
+  const int lock = open(folder_.Write(aside + "lock", "").c_str(), O_RDWR);
+  ASSERT_EQ(flock(lock, LOCK_EX), 0);
+  const RunResult refused = RunCommand(call, folder_);
+  EXPECT_EQ(refused.exit_code, 2);
+  EXPECT_THAT(refused.err, HasSubstr("another rgbd_odometry writes its"));
+  EXPECT_TRUE(fs::exists(folder_ / (aside + "metrics.json")));
+  close(lock);
+  EXPECT_EQ(RunCommand(call, folder_).exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / aside));
+  EXPECT_THAT(ReadTextFile(folder_ / "out/metrics.json"), HasSubstr("ate"));
+
+  // Many at once: some may come too late, but the results are whole.
+  const RunResult many = RunCommand("{ for i in 1 2 3 4 5 6; do (" + call +
+                                        " >/dev/null; echo $?) & done; wait; }",
+                                    folder_);
+  EXPECT_THAT(many.out, testing::MatchesRegex("([02]\n)*0\n([02]\n)*"));
+  EXPECT_FALSE(fs::exists(folder_ / aside));
+  EXPECT_THAT(ReadTextFile(folder_ / "out/metrics.json"), HasSubstr("ate"));
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,240 @@
+// Sequences that are broken, as rgbd_odometry finds them.
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/support/bad_input.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Seq = SpoiledSequence;
+
+const std::string kColor = "rgb/1000.066667.png";
+const std::string kDepth = "depth/1000.066667.png";
+constexpr int kWidth = 320;
+constexpr int kHeight = 240;
+
+// Puts another image in the place of one of the sequence.
+auto Image(const std::string& name, int type, int width = kWidth) {
+  return [=](const Seq& seq) {
+    cv::imwrite(seq / name,
+                cv::Mat(kHeight, width, type, cv::Scalar(90, 90, 90)));
+  };
+}
+
+// Puts a file of the fuzzers' corpus in the place of an image.
+auto Corpus(const std::string& name, const std::string& image) {
+  return [=](const Seq& seq) {
+    seq.Write(name, ReadTextFile(RGBD_POSE_CORPUS "/image_file/" + image));
+  };
+}
+
+auto Text(const std::string& name, const std::string& content) {
+  return [=](const Seq& seq) { seq.Write(name, content); };
+}
+
+auto Swap(const std::string& name, const std::string& from,
+          const std::string& to) {
+  return [=](const Seq& seq) { seq.Replace(name, from, to); };
+}
+
+auto Gone(const std::string& name) {
+  return [=](const Seq& seq) { seq.Remove(name); };
+}
+
+// As editors on Windows save it.
+auto Windows(const std::string& name) {
+  return [=](const Seq& seq) {
+    std::string content = "\xEF\xBB\xBF";
+    for (const char c : seq.Read(name)) {
+      content += c == '\n' ? std::string("\r\n") : std::string(1, c);
+    }
+    seq.Write(name, content);
+  };
+}
+
+TEST_F(BadInputTest, Images) {
+  ExpectEach(
+      Odometry(),
+      {
+          {"depth cut off", [](const Seq& s) { s.Cut(kDepth, 1000); }, "", 2,
+           "{seq}/" + kDepth + ": is damaged or cut off; copy it again"},
+          {"colour cut off", [](const Seq& s) { s.Cut(kColor, 1000); }, "", 2,
+           "{seq}/" + kColor + ": is damaged or cut off; copy it again"},
+          {"depth is garbage", Text(kDepth, "garbage, not a picture"), "", 2,
+           kDepth + ": is damaged, cut off or no image"},
+          {"colour is garbage", Text(kColor, "garbage, not a picture"), "", 2,
+           kColor + ": is damaged, cut off or no image"},
+          {"garbage with right checksums", Corpus(kColor, "no_zlib.png"), "", 2,
+           kColor + ": is damaged"},
+          {"the same in gray", Corpus(kColor, "no_zlib_gray.png"), "", 2,
+           kColor + ": is damaged"},
+          {"rows are missing", Corpus(kDepth, "rows_missing.png"), "", 2,
+           kDepth + ": is damaged"},
+          {"claims 4 Gpixels", Corpus(kColor, "huge.png"), "", 2,
+           kColor + ": is "},
+          {"claims 900 Mpixels", Corpus(kColor, "large.png"), "", 2,
+           kColor + ": is "},
+          {"empty", [](const Seq& s) { s.Cut(kDepth, 0); }, "", 2,
+           kDepth + ": is empty; copy it again"},
+          {"8-bit depth", Image(kDepth, CV_8UC1), "", 2,
+           kDepth + ": a depth image must have 16 bits and 1 channel"},
+          {"depth in three channels", Image(kDepth, CV_16UC3), "", 2,
+           "this one is CV_16UC3"},
+          {"colour in the place of depth",
+           [](const Seq& s) { s.Write(kDepth, s.Read(kColor)); }, "", 2,
+           "is it the colour image"},
+          {"depth in the place of colour",
+           [](const Seq& s) { s.Write(kColor, s.Read(kDepth)); }, "", 2,
+           kColor + ": a colour image must have 8 bits"},
+          {"16-bit colour", Image(kColor, CV_16UC3), "", 2,
+           kColor + ": a colour image must have 8 bits"},
+          {"depth of another size", Image(kDepth, CV_16UC1, 160), "", 2,
+           kDepth + ": is 160 x 240 pixels, the camera has 320 x 240"},
+          {"colour of another size", Image(kColor, CV_8UC3, 640), "", 2,
+           kColor + ": is 640 x 240 pixels, the camera has 320 x 240"},
+          {"the camera of another size", Swap("camera.yaml", "320", "640"), "",
+           2, "the camera has 640 x 240"},
+          {"gray for colour", Image(kColor, CV_8UC1), "--on_lost=hold", 0, ""},
+          {"no depth anywhere",
+           [](const Seq& s) {
+             for (const char* time : {"00000", "33333", "66667"}) {
+               Image("depth/1000.0" + std::string(time) + ".png", CV_16UC1)(s);
+               cv::imwrite(s / ("depth/1000.0" + std::string(time) + ".png"),
+                           cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(0)));
+             }
+             cv::imwrite(s / "depth/1000.100000.png",
+                         cv::Mat(kHeight, kWidth, CV_16UC1, cv::Scalar(0)));
+           },
+           "", 3, "only 0.0 % of the frames were tracked"},
+          {"validated only", [](const Seq& s) { s.Cut(kDepth, 1000); },
+           "--validate_only", 2, kDepth + ": is damaged"},
+      });
+}
+
+TEST_F(BadInputTest, Lists) {
+  const std::string kRgb = "{seq}/rgb.txt";
+  const std::string kFirst = "1000.033333 rgb/1000.033333.png\n";
+  ExpectEach(
+      Odometry(),
+      {
+          {"no folder", nullptr, "--dataset={seq}/none", 2,
+           "{seq}/none: no such folder"},
+          {"no rgb.txt", Gone("rgb.txt"), "", 2, kRgb + ": missing"},
+          {"no depth.txt", Gone("depth.txt"), "", 2,
+           "{seq}/depth.txt: missing"},
+          {"rgb.txt is a folder",
+           [](const Seq& s) {
+             s.Remove("rgb.txt");
+             std::filesystem::create_directory(s / "rgb.txt");
+           },
+           "", 2, kRgb + ": is a folder"},
+          {"empty", Text("rgb.txt", ""), "", 2, kRgb + ": lists no images"},
+          {"only comments", Text("depth.txt", "# a\n\n# b"), "", 2,
+           "{seq}/depth.txt: lists no images"},
+          {"no such image", Gone(kColor), "", 2,
+           kRgb + ":4: no such image: {seq}/" + kColor},
+          {"no such depth image", Gone(kDepth), "", 2,
+           "{seq}/depth.txt:4: no such image: {seq}/" + kDepth},
+          {"three columns", Swap("rgb.txt", kFirst, "1000.03 a b\n"), "", 2,
+           kRgb + ":3: needs 2 columns (time image), has 3: '1000.03 a b'"},
+          {"one column", Swap("rgb.txt", kFirst, "1000.03\n"), "", 2,
+           kRgb + ":3: needs 2 columns"},
+          {"a word for the time", Swap("rgb.txt", kFirst, "soon a\n"), "", 2,
+           kRgb + ":3: 'soon' is no finite number for the time stamp"},
+          {"nan for the time", Swap("rgb.txt", kFirst, "nan a\n"), "", 2,
+           kRgb + ":3: 'nan' is no finite number"},
+          {"binary", Text("rgb.txt", std::string("\0\x01\xFF\n\x7F", 5)), "", 2,
+           kRgb + ":1: needs 2 columns"},
+          {"nanoseconds", Swap("rgb.txt", kFirst, "1305031102175304000 a\n"),
+           "", 2,
+           kRgb + ":3: time stamp 1305031102175304000 is not in "
+                  "seconds"},
+          {"time goes backwards", Swap("rgb.txt", "1000.1", "999.1"), "", 2,
+           kRgb + ":5: an earlier time stamp than the line before"},
+          {"a time stamp twice", Swap("rgb.txt", kFirst, kFirst + kFirst), "",
+           2, kRgb + ":4: the same time stamp as the line before"},
+          {"no depth image near", Text("depth.txt", "5 depth/x.png\n"), "", 2,
+           "no image of rgb.txt is within 0.02"},
+          {"one frame", Text("rgb.txt", kFirst), "", 0, ""},
+          {"CRLF and a byte order mark in rgb.txt", Windows("rgb.txt"), "", 0,
+           ""},
+          {"the same in depth.txt", Windows("depth.txt"), "", 0, ""},
+          {"no line end at the end", Text("rgb.txt", kFirst.substr(0, 31)), "",
+           0, ""},
+      });
+}
+
+TEST_F(BadInputTest, Associations) {
+  const std::string kPair =
+      "1000.0 rgb/1000.000000.png 1000.0 depth/1000.000000.png\n";
+  const auto list = [](const std::string& text) {
+    return Text("list.txt", text);
+  };
+  ExpectEach(
+      Odometry() + "--associations={seq}/list.txt ",
+      {
+          {"missing", nullptr, "", 2, "{seq}/list.txt: cannot be opened"},
+          {"empty", list(""), "", 2, "{seq}/list.txt: lists no images"},
+          {"three columns", list("1 a 1\n"), "", 2, "list.txt:1: needs 4 col"},
+          {"a word for the time", list("1 " + kPair.substr(7, 19) + " x y\n"),
+           "", 2, "list.txt:1: 'x' is no finite number"},
+          {"no such image", list("1 rgb/x.png 1 depth/x.png\n"), "", 2,
+           "list.txt:1: no such image: {seq}/rgb/x.png"},
+          {"colour twice",
+           list("1 rgb/1000.000000.png 1 rgb/1000.033333.png\n"), "", 2,
+           "list.txt:1: one image of a line must be colour and one depth"},
+          {"twice the same", list(kPair + kPair), "", 2,
+           "list.txt:2: the same time stamp"},
+          {"depth first",
+           list("1000 depth/1000.000000.png 1000 rgb/1000.000000.png\n"), "", 0,
+           ""},
+          {"CRLF and a byte order mark",
+           list("\xEF\xBB\xBF" + kPair.substr(0, kPair.size() - 1) + "\r\n"),
+           "", 0, ""},
+      });
+}
+
+TEST_F(BadInputTest, GroundTruth) {
+  const std::string kFile = "{seq}/groundtruth.txt";
+  const auto truth = [](const std::string& line) {
+    return Text("groundtruth.txt", "1000 0 0 0 0 0 0 1\n" + line + "\n");
+  };
+  ExpectEach(
+      Odometry(),
+      {
+          {"nan", truth("1001 nan 0 0 0 0 0 1"), "", 2,
+           kFile + ":2: 'nan' is no finite number for tx"},
+          {"infinite", truth("1001 0 0 inf 0 0 0 1"), "", 2,
+           kFile + ":2: 'inf' is no finite number for tz"},
+          {"beyond any number", truth("1001 0 0 1e999 0 0 0 1"), "", 2,
+           kFile + ":2: '1e999' is no finite number for tz"},
+          {"far away", truth("1001 0 1e200 0 0 0 0 1"), "", 2,
+           kFile + ":2: a position (columns 2 to 4) further away than 1e9 m"},
+          {"no unit quaternion", truth("1001 0 0 0 0 0 1 1"), "", 2,
+           kFile + ":2: the quaternion (columns 5 to 8, qx qy qz qw) is not"},
+          {"no quaternion at all", truth("1001 0 0 0 0 0 0 0"), "", 2,
+           kFile + ":2: the quaternion"},
+          {"seven columns", truth("1001 0 0 0 0 0 1"), "", 2,
+           kFile + ":2: 7 columns; a pose needs 8"},
+          {"time goes backwards", truth("999 0 0 0 0 0 0 1"), "", 2,
+           kFile + ":2: time stamp 999 is not after the one before it"},
+          {"a time stamp twice", truth("1000 0 0 0 0 0 0 1"), "", 2,
+           kFile + ":2: time stamp 1000 is not after the one before it"},
+          {"nanoseconds", truth("1305031102175304000 0 0 0 0 0 0 1"), "", 2,
+           kFile + ":2: time stamp 1305031102175304000 is not in seconds"},
+          {"empty", Text("groundtruth.txt", ""), "", 2,
+           kFile + ": holds no poses"},
+          {"of another time", Text("groundtruth.txt", "5 0 0 0 0 0 0 1\n"), "",
+           2, "(5.000000 s to 5.000000 s)"},
+          {"named but missing", nullptr, "--groundtruth={seq}/none.txt", 2,
+           "{seq}/none.txt: cannot be opened"},
+          {"a guess of motion that is broken", Text("guess.txt", "1 2\n"),
+           "--motion_guess={seq}/guess.txt", 2, "{seq}/guess.txt:1: 2 columns"},
+          {"one pose", truth(""), "", 0, ""},
+          {"CRLF and a byte order mark", Windows("groundtruth.txt"), "", 0, ""},
+      });
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,181 @@
+// Bad input of the programs beside rgbd_odometry.
+
+#include "tests/support/bad_input.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Seq = SpoiledSequence;
+
+auto Text(const std::string& name, const std::string& content) {
+  return [=](const Seq& seq) { seq.Write(name, content); };
+}
+
+TEST_F(BadInputTest, Evaluate) {
+  const auto estimate = [](const std::string& text) {
+    return Text("estimate.txt", text);
+  };
+  const auto same = [](const Seq& s) {
+    s.Write("estimate.txt", s.Read("groundtruth.txt"));
+  };
+  ExpectEach(
+      RGBD_EVALUATE
+      " --estimate={seq}/estimate.txt --groundtruth={seq}/groundtruth.txt ",
+      {
+          {"no estimate named", same, "--estimate=", 1, "--estimate is needed"},
+          {"no truth named", same, "--groundtruth=", 1,
+           "--groundtruth is needed"},
+          {"unknown flag", same, "--estimates=x", 2, "unknown flag --estimat"},
+          {"no flag", same, "{seq}/estimate.txt", 2,
+           "'{seq}/estimate.txt' is no flag"},
+          {"no number", same, "--max_time_difference=soon", 2,
+           "'soon' is no double for --max_time_difference"},
+          {"missing", nullptr, "", 2, "{seq}/estimate.txt: cannot be opened"},
+          {"the truth is missing", same, "--groundtruth={seq}/none.txt", 2,
+           "{seq}/none.txt: cannot be opened"},
+          {"a folder", same, "--estimate={seq}", 2, "{seq}: is a folder"},
+          {"empty", estimate("# nothing\n"), "", 2,
+           "{seq}/estimate.txt: holds no poses"},
+          {"a word", estimate("0 0 0 0 0 0 0 1\n1 oops 0 0 0 0 0 1\n"), "", 2,
+           "{seq}/estimate.txt:2: 'oops' is no finite number for tx"},
+          {"of another time", estimate("5 0 0 0 0 0 0 1\n"), "", 2,
+           "no pose of the estimate (5.000000 s to 5.000000 s) is within 0.02"},
+          {"negative tolerance", same, "--max_time_difference=-1", 2,
+           "must not be negative"},
+          {"no tolerance at all", same, "--max_time_difference=nan", 2,
+           "must not be negative"},
+          {"a tolerance beyond the interval", same, "--max_time_difference=2",
+           2, "must be longer than the largest time difference"},
+          {"no distance", same, "--rpe_delta_metres=0", 2, "must be positive"},
+          {"no folder for the result", same, "--aligned={seq}/none/a.txt", 2,
+           "{seq}/none/a.txt: cannot be written (No such file or directory)"},
+          {"CRLF and a byte order mark",
+           [same](const Seq& s) {
+             same(s);
+             s.Replace("estimate.txt", "#", "\xEF\xBB\xBF#");
+             s.Replace("estimate.txt", "\n", "\r\n");
+           },
+           "", 0, ""},
+          {"one pose", estimate("1000 0 0 0 0 0 0 1\n"), "", 0, ""},
+      });
+}
+
+TEST_F(BadInputTest, Simulate) {
+  ExpectEach(
+      RGBD_SIMULATE " --frames=2 --output={dir}/out ",
+      {
+          {"no output", nullptr, "--output=", 1, "--output is needed"},
+          {"path", nullptr, "--path=zigzag", 2, "pan_tilt"},
+          {"scene", nullptr, "--scene=moon", 2, "unknown scene 'moon'"},
+          {"no frames", nullptr, "--frames=0", 2, "has 1 to 1000000 frames"},
+          {"far too many frames", nullptr, "--frames=2000000000", 2,
+           "has 1 to 1000000 frames, not 2000000000"},
+          {"negative seed", nullptr, "--seed=-1", 2,
+           "'-1' is no uint32 for --seed"},
+          {"negative shutter", nullptr, "--shutter=-1", 2,
+           "the shutter time of a"},
+          {"a shutter that is no number", nullptr, "--shutter=nan", 2,
+           "the shutter time of a"},
+          {"infinite drift", nullptr, "--exposure_drift=inf", 2,
+           "exposure_drift of"},
+          {"camera", nullptr, "--camera=kinect", 2, "camera 'kinect'"},
+      });
+}
+
+TEST_F(BadInputTest, Compare) {
+  ExpectEach(
+      RGBD_COMPARE " --frames=2 --output={dir}/out ",
+      {
+          {"no experiment", nullptr, "", 1, "--experiment is needed"},
+          {"no output", nullptr, "--experiment=xyz --output=", 1, "--output"},
+          {"unknown experiment", nullptr, "--experiment=abc", 2,
+           "--experiment=abc is neither pan_tilt, xyz or sweep nor a folder"},
+          {"no camera", nullptr, "--experiment={seq}", 1, "--camera is needed"},
+          {"unknown loss", nullptr, "--experiment=xyz --losses=tuckey", 2,
+           "--losses: unknown loss 'tuckey'"},
+          {"a loss twice", nullptr, "--experiment=xyz --losses=tukey,tukey", 2,
+           "--losses: 'tukey' is there twice"},
+          {"only a comma", nullptr, "--experiment=xyz --losses=,", 2,
+           "--losses: unknown loss ''"},
+          {"unknown cost", nullptr, "--experiment=sweep --cost=magic", 2,
+           "unknown cost 'magic'"},
+          {"unknown frontend", nullptr, "--experiment=xyz --frontend=magic", 2,
+           "unknown frontend 'magic'"},
+          {"no trials", nullptr, "--experiment=sweep --seeds=0", 2,
+           "--seeds must be 1 to 100000"},
+          {"no frames", nullptr, "--experiment=xyz --frames=0", 2,
+           "has 1 to 1000000 frames"},
+          {"a broken ground truth",
+           [](const Seq& s) { s.Write("groundtruth.txt", "1 2 3\n"); },
+           "--experiment={seq} --camera={seq}/camera.yaml", 2,
+           "{seq}/groundtruth.txt:1"},
+          {"a broken image",
+           [](const Seq& s) { s.Cut("depth/1000.033333.png", 100); },
+           "--experiment={seq} --camera={seq}/camera.yaml", 2,
+           "depth/1000.033333.png: is damaged"},
+      });
+}
+
+TEST_F(BadInputTest, Report) {
+  const RunResult probe =
+      RunCommand(RGBD_REPORT " --run=" + folder_.path(), folder_);
+  if (probe.err.find("built without plotly.js") != std::string::npos) {
+    GTEST_SKIP() << "built without plotly.js";
+  }
+  ASSERT_EQ(RunCommand(Fill(RGBD_ODOMETRY
+                            " --dataset={dir}/good --noreport --output={dir}/"
+                            "run --camera={dir}/good/camera.yaml"),
+                       folder_)
+                .exit_code,
+            0);
+  // A copy of that run with one file changed; "" takes it away.
+  const auto run = [this](const std::string& file, const std::string& from,
+                          const std::string& to) {
+    return [=](const Seq& seq) {
+      std::filesystem::remove_all(seq.path);
+      std::filesystem::copy(folder_ / "run", seq.path,
+                            std::filesystem::copy_options::recursive);
+      from.empty() ? seq.Remove(file) : seq.Replace(file, from, to);
+    };
+  };
+  const std::string kCounts = "\"degrees_counts\": [";
+  ExpectEach(
+      RGBD_REPORT " ",
+      {
+          {"nothing named", nullptr, "", 1, "--run is needed"},
+          {"both", nullptr, "--run=a --batch=b", 2, "one at a time"},
+          {"no folder", nullptr, "--run={seq}/none", 2,
+           "{seq}/none/frames.csv: cannot be opened"},
+          {"no batch", nullptr, "--batch={seq}", 2,
+           "{seq}/summary.csv: cannot be opened"},
+          {"an empty table", Text("summary.csv", ""), "--batch={seq}", 2,
+           "{seq}/summary.csv:1: no column 'sequence'"},
+          {"a table of too few columns",
+           Text("summary.csv", "sequence,cost\na\n"), "--batch={seq}", 2,
+           "{seq}/summary.csv:2: 1 cells under 2 column names"},
+          {"no metrics", run("metrics.json", "", ""), "--run={seq}", 2,
+           "{seq}/metrics.json: cannot be opened"},
+          {"metrics that are no JSON", run("metrics.json", "{", ""),
+           "--run={seq}", 2, "{seq}/metrics.json: is no JSON object"},
+          {"words for figures",
+           run("metrics.json", kCounts, kCounts + "\"a\","), "--run={seq}", 2,
+           "{seq}/metrics.json: no list of numbers at /residuals/degrees_cou"},
+          {"no figures", run("metrics.json", kCounts, "\"other\": ["),
+           "--run={seq}", 2, "{seq}/metrics.json: no list of numbers at"},
+          {"no settings", run("config.flags", "", ""), "--run={seq}", 2,
+           "{seq}/config.flags: cannot be opened"},
+          {"a word for a number", run("frames.csv", ",ok,\"\",0", ",ok,\"\",a"),
+           "--run={seq}", 2, "{seq}/frames.csv:2: 'a' is no finite number"},
+          {"errors of no columns", run("errors.csv", "true_x", "x_true"),
+           "--run={seq}", 2, "{seq}/errors.csv:1: no column 'true_x'"},
+          {"no poses",
+           [run](const Seq& s) {
+             run("errors.csv", "", "")(s);
+             s.Write("trajectory.txt", "");
+           },
+           "--run={seq}", 2, "{seq}/trajectory.txt: holds no poses"},
+      });
+}
+
+}  // namespace
+}  // namespace rgbd_pose

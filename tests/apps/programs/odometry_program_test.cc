@@ -1,0 +1,182 @@
+// rgbd_simulate and rgbd_odometry from end to end: files in, files out.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/evaluation/trajectory.h"
+#include "core/util/text_file.h"
+#include "tests/support/run_program.h"
+
+namespace rgbd_pose {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+const std::string kSimulate = RGBD_SIMULATE;
+const std::string kOdometry = RGBD_ODOMETRY;
+constexpr int kFrames = 6;
+
+class OdometryProgramTest : public testing::Test {
+ protected:
+  OdometryProgramTest() {
+    const RunResult run = RunCommand(
+        kSimulate + " --path=xyz --frames=" + std::to_string(kFrames) +
+            " --output=" + Sequence(),
+        folder_);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+
+  std::string Sequence() const { return folder_ / "sequence"; }
+
+  std::string Call(const std::string& output) const {
+    return kOdometry + " --dataset=" + Sequence() + " --camera=" + Sequence() +
+           "/camera.yaml --output=" + (folder_ / output);
+  }
+
+  RunResult Run(const std::string& command) const {
+    return RunCommand(command, folder_);
+  }
+
+  const TempFolder folder_;
+};
+
+// frames.csv without the columns of times, which differ from run to run.
+std::string WithoutTimes(const std::string& csv) {
+  std::istringstream lines(csv);
+  std::string line, result;
+  while (std::getline(lines, line)) {
+    for (int i = 0; i < 6; ++i) line.erase(line.rfind(','));
+    result += line + "\n";
+  }
+  return result;
+}
+
+TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
+  const RunResult run = Run(Call("run"));
+  ASSERT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_THAT(run.out, HasSubstr("100.0 % tracked"));
+  EXPECT_THAT(run.out, HasSubstr("frames/s with decoding"));
+  EXPECT_THAT(run.out, HasSubstr("ATE, rigid alignment"));
+  const std::string csv = ReadTextFile(folder_ / "run/frames.csv");
+  EXPECT_EQ(csv.substr(0, csv.find('\n')),
+            "timestamp,status,reason,segment,reference,is_reference,"
+            "relocalised,matches,inliers,iterations,sigma,decode_ms,track_ms,"
+            "match_ms,solve_ms,reference_ms,relocalise_ms");
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kFrames);
+  EXPECT_EQ(ReadTrajectory(folder_ / "run/trajectory.txt").size(),
+            static_cast<size_t>(kFrames));
+  const auto metrics =
+      nlohmann::json::parse(ReadTextFile(folder_ / "run/metrics.json"));
+  EXPECT_EQ(metrics.at("run").at("frames"), kFrames);
+  EXPECT_GT(metrics.at("run").at("decode_ms_median"), 0.0);
+  const double seconds = metrics.at("run").at("wall_seconds");
+  EXPECT_GT(seconds, 0.0);
+  // Both are written with all their digits.
+  EXPECT_NEAR(metrics.at("run").at("frames_per_second"), kFrames / seconds,
+              1e-6);
+  // One frame in memory is 1.5 MB with its pyramid; six hundred make a leak.
+  EXPECT_GT(metrics.at("peak_rss_mb"), 1.0);
+  EXPECT_LT(metrics.at("peak_rss_mb"), 500.0);
+  EXPECT_LT(metrics.at("evaluation").at("ate").at("position_m").at("rmse"),
+            0.005);
+}
+
+TEST_F(OdometryProgramTest, RepeatsARunFromItsFlagFile) {
+  ASSERT_EQ(Run(Call("first") + " --loss=huber --max_features=300").exit_code,
+            0);
+  const std::string flags = folder_ / "first/config.flags";
+  ASSERT_EQ(Run(kOdometry + " --flagfile=" + flags +
+                " --output=" + (folder_ / "second"))
+                .exit_code,
+            0);
+  for (const std::string file : {"trajectory.txt", "frames.csv"}) {
+    std::string first = ReadTextFile(folder_ / ("first/" + file));
+    std::string second = ReadTextFile(folder_ / ("second/" + file));
+    if (file == "frames.csv") {
+      first = WithoutTimes(first);
+      second = WithoutTimes(second);
+    }
+    EXPECT_EQ(first, second) << file;
+  }
+}
+
+TEST_F(OdometryProgramTest, ThreadsDoNotChangeTheResult) {
+  ASSERT_EQ(Run(Call("one") + " --threads=1").exit_code, 0);
+  for (const std::string threads : {"0", "2", "5"}) {
+    ASSERT_EQ(Run(Call("many") + " --threads=" + threads).exit_code, 0);
+    EXPECT_EQ(ReadTextFile(folder_ / "one/trajectory.txt"),
+              ReadTextFile(folder_ / "many/trajectory.txt"));
+    EXPECT_EQ(WithoutTimes(ReadTextFile(folder_ / "one/frames.csv")),
+              WithoutTimes(ReadTextFile(folder_ / "many/frames.csv")));
+  }
+}
+
+TEST_F(OdometryProgramTest, SavesACloudOfTheRoom) {
+  const auto cloud = [this](const std::string& threads) {
+    const std::string file = folder_ / ("cloud" + threads + ".ply");
+    const RunResult run = Run(Call("run") + " --threads=" + threads +
+                              " --voxel=0.02 --save_cloud=" + file);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr(file));
+    return ReadTextFile(file);
+  };
+  const std::string bytes = cloud("1");
+  EXPECT_EQ(bytes, cloud("2"));
+
+  const std::string kStart =
+      "ply\nformat binary_little_endian 1.0\nelement vertex ";
+  ASSERT_EQ(bytes.substr(0, kStart.size()), kStart);
+  const size_t points = std::stoul(bytes.substr(kStart.size()));
+  const std::string kHeaderEnd = "end_header\n";
+  const size_t first = bytes.find(kHeaderEnd) + kHeaderEnd.size();
+  constexpr size_t kPointBytes = 15;
+  ASSERT_EQ(bytes.size(), first + kPointBytes * points);
+  // A view into a furnished room of 5 x 4 x 2.6 m is some square metres, and a
+  // square metre 2500 cubes, or a few times that where noise spreads it.
+  EXPECT_GT(points, 10000u);
+  EXPECT_LT(points, 300000u);
+  float nearest = 100.0F, furthest = 0.0F;
+  for (size_t i = 0; i < points; ++i) {
+    float z;
+    std::memcpy(&z, &bytes[first + kPointBytes * i + 8], sizeof(z));
+    nearest = std::min(nearest, z);
+    furthest = std::max(furthest, z);
+  }
+  EXPECT_GT(nearest, 0.25F);  // sensors see nothing nearer
+  EXPECT_GT(furthest, 1.5F);
+  EXPECT_LT(furthest, 6.4F);  // the room's diagonal
+}
+
+TEST_F(OdometryProgramTest, ValidatesWithoutTracking) {
+  const std::string call = kOdometry +
+                           " --validate_only --dataset=" + Sequence() +
+                           " --camera=" + Sequence() + "/camera.yaml";
+  const RunResult good = Run(call);
+  EXPECT_EQ(good.exit_code, 0) << good.err;
+  EXPECT_THAT(good.out, HasSubstr(std::to_string(kFrames) + ", all readable"));
+  EXPECT_THAT(good.out, HasSubstr("frames/s"));
+
+  // The first of two broken images is the one that is named.
+  const std::string images[] = {"depth/1000.066667.png", "rgb/1000.100000.png"};
+  for (const std::string& image : images) {
+    ASSERT_TRUE(std::filesystem::exists(Sequence() + "/" + image)) << image;
+    std::filesystem::resize_file(Sequence() + "/" + image, 1000);
+  }
+  const RunResult bad = Run(call + " --threads=3");
+  EXPECT_EQ(bad.exit_code, 2);
+  EXPECT_EQ(bad.out, "");
+  EXPECT_THAT(bad.err, HasSubstr(images[0]));
+  EXPECT_THAT(bad.err, Not(HasSubstr(images[1])));
+}
+
+}  // namespace
+}  // namespace rgbd_pose

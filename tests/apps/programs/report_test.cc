@@ -1,0 +1,268 @@
+// report.html from end to end: a simulated run, its page, a real browser.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+#include <string>
+
+#include "core/util/text_file.h"
+#include "tests/support/run_program.h"
+
+namespace rgbd_pose {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// What a page may weigh so that it can be mailed.
+constexpr size_t kMaxPageBytes = 3'000'000;
+// A blank window of this size is a tenth of it as PNG.
+constexpr size_t kMinScreenshotBytes = 40'000;
+
+int Count(const std::string& text, const std::string& word) {
+  int count = 0;
+  for (size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at) {
+    ++count;
+  }
+  return count;
+}
+
+class ReportTest : public testing::Test {
+ protected:
+  void SetUp() override {
+    // Ends with the reason, whatever the folder, if it cannot write pages.
+    const RunResult probe = Run(RGBD_REPORT " --run=" + (folder_ / "none"));
+    if (probe.err.find("built without plotly.js") != std::string::npos) {
+      GTEST_SKIP() << "built without plotly.js";
+    }
+  }
+
+  void Simulate() const {
+    const RunResult simulate =
+        Run(RGBD_SIMULATE " --path=xyz --frames=16 --output=" + Sequence());
+    ASSERT_EQ(simulate.exit_code, 0) << simulate.err;
+  }
+
+  std::string Sequence() const { return folder_ / "sequence"; }
+  std::string Page() const { return folder_ / "run/report.html"; }
+
+  void Track(const std::string& more = "") {
+    const RunResult run = Run(
+        RGBD_ODOMETRY " --dataset=" + Sequence() + " --camera=" + Sequence() +
+        "/camera.yaml --output=" + (folder_ / "run") + more);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+  }
+
+  RunResult Run(const std::string& command) const {
+    return RunCommand(command, folder_);
+  }
+
+  static bool HasBrowser() {
+    return std::system("command -v chromium >/dev/null") == 0;
+  }
+
+  // Opens the page of the run; what the browser does with it is in `action`.
+  RunResult Browse(const std::string& action) const {
+    return Run(
+        "timeout 60 chromium --headless --no-sandbox --disable-gpu "
+        "--disable-quic --no-first-run --disable-background-networking "
+        "--disable-component-update --disable-sync --enable-unsafe-swiftshader "
+        "--enable-logging=stderr --virtual-time-budget=10000 --user-data-dir=" +
+        (folder_ / "browser") + " " + action + " file://" + Page());
+  }
+
+  // What the browser says of the page, without its advice on speed.
+  static std::string Console(const RunResult& browser) {
+    std::istringstream lines(browser.err);
+    std::string line, result;
+    while (std::getline(lines, line)) {
+      if (line.find("CONSOLE") == std::string::npos) continue;
+      if (line.find("Canvas2D: ") != std::string::npos) continue;
+      if (line.find("GL Driver Message") != std::string::npos) continue;
+      result += line + "\n";
+    }
+    return result;
+  }
+
+  const TempFolder folder_;
+};
+
+TEST_F(ReportTest, APageIsSmallAndNeedsNothingElse) {
+  Simulate();
+  Track();
+  const std::string page = ReadTextFile(Page());
+  EXPECT_LT(page.size(), kMaxPageBytes);
+  EXPECT_THAT(page, Not(HasSubstr("<script src")));
+  EXPECT_THAT(page, Not(HasSubstr("<link")));
+  EXPECT_THAT(page, HasSubstr("Permission is hereby granted"));  // the licence
+
+  std::filesystem::remove(Page());
+  const RunResult again = Run(RGBD_REPORT " --run=" + (folder_ / "run"));
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_THAT(again.out, HasSubstr(Page()));
+  EXPECT_TRUE(ReadTextFile(Page()) == page) << "not the page of the run";
+}
+
+TEST_F(ReportTest, ARunWithoutAReportOrItsFiles) {
+  Simulate();
+  Track(" --noreport");
+  EXPECT_FALSE(std::filesystem::exists(Page()));
+  std::filesystem::remove(folder_ / "run/frames.csv");
+  const RunResult report = Run(RGBD_REPORT " --run=" + (folder_ / "run"));
+  EXPECT_EQ(report.exit_code, 2);
+  EXPECT_THAT(report.err, HasSubstr("frames.csv"));
+  EXPECT_FALSE(std::filesystem::exists(Page()));
+  EXPECT_EQ(Run(RGBD_REPORT).exit_code, 1);
+  EXPECT_EQ(Run(RGBD_REPORT " --run=a --batch=b").exit_code, 2);
+}
+
+TEST_F(ReportTest, ABrowserDrawsAllPlots) {
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  Simulate();
+  Track();
+  const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
+  EXPECT_EQ(Console(browser), "");
+  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+  for (const std::string id : {"path-xy", "path-xz", "path-3d", "errors",
+                               "tracking", "times", "residuals", "weights"}) {
+    EXPECT_EQ(Count(browser.out, "<div id=\"" + id + "\""), 1) << id;
+  }
+  EXPECT_EQ(Count(browser.out, " js-plotly-plot\""), 8);
+
+  const std::string image = folder_ / "page.png";
+  Browse("--window-size=1280,4000 --screenshot=" + image);
+  ASSERT_TRUE(std::filesystem::exists(image));
+  EXPECT_GT(std::filesystem::file_size(image), kMinScreenshotBytes);
+}
+
+TEST_F(ReportTest, WithoutGroundTruthThereAreNoErrors) {
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  Simulate();
+  std::filesystem::remove(Sequence() + "/groundtruth.txt");
+  Track();
+  const RunResult browser = Browse("--window-size=390,4000 --dump-dom");
+  EXPECT_EQ(Console(browser), "");
+  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+  EXPECT_EQ(Count(browser.out, "<div id=\"errors\""), 0);
+  EXPECT_EQ(Count(browser.out, " js-plotly-plot\""), 7);
+}
+
+TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
+  folder_.Write("run/summary.csv",
+                "sequence,cost,loss,frontend,repeat,status,frames,"
+                "tracked_share,ate_rmse_m,rpe_seconds_translation_m,"
+                "rpe_seconds_rotation_deg,track_ms_median\n"
+                "kitchen,point,huber,patch,0,ok,400,1,0.03,0.02,1.1,1.2\n"
+                "kitchen,point,tukey,patch,0,ok,400,1,0.04,0.03,1.2,1.3\n"
+                "hall,point,huber,patch,0,ok,50,1,,,,1.2\n"
+                "hall,point,tukey,patch,0,failed,,,,,,\n");
+  const RunResult report = Run(RGBD_REPORT " --batch=" + (folder_ / "run"));
+  ASSERT_EQ(report.exit_code, 0) << report.err;
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  const RunResult browser = Browse("--window-size=390,4000 --dump-dom");
+  EXPECT_EQ(Console(browser), "");
+  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+  EXPECT_EQ(Count(browser.out, " js-plotly-plot\""), 4);
+  EXPECT_EQ(Count(browser.out, ">failed</td>"), 1);
+}
+
+TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
+  Simulate();
+  Track(" --save_cloud=" + (folder_ / "run/cloud.ply"));
+  const std::string page = ReadTextFile(Page());
+  EXPECT_LT(page.size(), kMaxPageBytes);
+  EXPECT_THAT(page, HasSubstr("\"colors\":\""));
+  std::filesystem::remove(folder_ / "run/cloud.ply");  // it may be elsewhere
+  ASSERT_EQ(Run(RGBD_REPORT " --run=" + (folder_ / "run")).exit_code, 0);
+  EXPECT_TRUE(ReadTextFile(Page()) == page) << "not the page of the run";
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
+  EXPECT_EQ(Console(browser), "");
+  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+  EXPECT_EQ(Count(browser.out, " js-plotly-plot\""), 8);
+  EXPECT_THAT(browser.out, HasSubstr("What was seen: "));
+  EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));  // its legend
+}
+
+// Of a comparison: what rgbd_compare writes, rgbd_report writes again.
+class ComparisonReportTest : public ReportTest {
+ protected:
+  void Compare(const std::string& arguments) {
+    const RunResult run =
+        Run(RGBD_COMPARE " --losses=none,tukey --output=" + (folder_ / "run") +
+            " " + arguments);
+    ASSERT_EQ(run.exit_code, 0) << run.err;
+    EXPECT_THAT(run.out, HasSubstr("report in   " + Page()));
+    const std::string page = ReadTextFile(Page());
+    EXPECT_LT(page.size(), kMaxPageBytes);
+    std::filesystem::remove(Page());
+    const RunResult again =
+        Run(RGBD_REPORT " --comparison=" + (folder_ / "run"));
+    ASSERT_EQ(again.exit_code, 0) << again.err;
+    EXPECT_TRUE(ReadTextFile(Page()) == page) << "not the same page";
+  }
+
+  void ExpectPlots(const std::vector<std::string>& ids) const {
+    for (const std::string width : {"1280", "390"}) {
+      const RunResult browser =
+          Browse("--window-size=" + width + ",4000 --dump-dom");
+      EXPECT_EQ(Console(browser), "");
+      EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+      for (const std::string& id : ids) {
+        EXPECT_EQ(Count(browser.out, "<div id=\"" + id + "\""), 1) << id;
+      }
+      EXPECT_EQ(Count(browser.out, " js-plotly-plot\""),
+                static_cast<int>(ids.size()));
+    }
+    const std::string image = folder_ / "page.png";
+    Browse("--window-size=1280,4000 --screenshot=" + image);
+    ASSERT_TRUE(std::filesystem::exists(image));
+    EXPECT_GT(std::filesystem::file_size(image), kMinScreenshotBytes);
+  }
+};
+
+TEST_F(ComparisonReportTest, OfASequenceWithTruth) {
+  Simulate();
+  Compare("--camera=ros_default --experiment=" + Sequence());
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  ExpectPlots({"s0-path-xy", "s0-path-xz", "s0-path-3d", "s0-figures-mm",
+               "s0-figures-deg", "s0-errors"});
+}
+
+TEST_F(ComparisonReportTest, WithoutTruthAtTwoDepthScales) {
+  Simulate();
+  std::filesystem::remove(Sequence() + "/groundtruth.txt");
+  Compare("--camera=tum_fr2 --experiment=" + Sequence());
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  ExpectPlots({"s0-path-xy", "s0-path-xz", "s0-path-3d", "s1-path-xy",
+               "s1-path-xz", "s1-path-3d"});
+}
+
+TEST_F(ComparisonReportTest, OfASweep) {
+  Compare("--experiment=sweep --seeds=10");
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  ExpectPlots({"sweep-translation", "sweep-rotation"});
+
+  // Another treatment of the losses, as if chosen by hand.
+  const auto table = [](const RunResult& browser) {
+    const size_t begin = browser.out.find("<tbody>");
+    return browser.out.substr(begin, browser.out.find("</tbody>") - begin);
+  };
+  const std::string before = table(Browse("--dump-dom"));
+  EXPECT_THAT(before, HasSubstr(">tukey<"));
+  folder_.Write("run/report.html",
+                ReadTextFile(Page()) +
+                    "<script>const method = document.getElementById('method');"
+                    "method.value = '2';"
+                    "method.dispatchEvent(new Event('change'));</script>");
+  const RunResult changed = Browse("--dump-dom");
+  EXPECT_EQ(Console(changed), "");
+  EXPECT_THAT(table(changed), HasSubstr(">tukey<"));
+  EXPECT_NE(table(changed), before);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,88 @@
+#include "apps/results/cloud_preview.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace rgbd_pose {
+namespace {
+
+std::vector<uint8_t> FromBase64(const std::string& text) {
+  const std::string digits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<uint8_t> bytes;
+  uint32_t bits = 0;
+  int count = 0;
+  for (const char c : text) {
+    if (c == '=') break;
+    bits = bits << 6 | static_cast<uint32_t>(digits.find(c));
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes.push_back(static_cast<uint8_t>(bits >> count));
+  }
+  return bytes;
+}
+
+// Reads a preview as the page does.
+std::vector<ColoredPoint> Decode(const nlohmann::json& preview) {
+  const std::vector<uint8_t> steps = FromBase64(preview.at("positions"));
+  const std::vector<uint8_t> colors = FromBase64(preview.at("colors"));
+  std::vector<ColoredPoint> points(preview.at("points").get<size_t>());
+  EXPECT_EQ(steps.size(), 6 * points.size());
+  EXPECT_EQ(colors.size(), 3 * points.size());
+  for (size_t i = 0; i < points.size(); ++i) {
+    for (size_t k = 0; k < 3; ++k) {
+      const int number = steps[6 * i + 2 * k] + 256 * steps[6 * i + 2 * k + 1];
+      points[i].position[static_cast<int>(k)] =
+          static_cast<float>(preview.at("origin_m")[k].get<double>() +
+                             preview.at("step_m").get<double>() * number);
+    }
+    points[i].red = colors[3 * i];
+    points[i].green = colors[3 * i + 1];
+    points[i].blue = colors[3 * i + 2];
+  }
+  return points;
+}
+
+TEST(CloudPreviewTest, KeepsPlacesAndColoursOfAnyNumberOfPoints) {
+  // So many that each length of the last group of base64 comes up.
+  for (int count = 0; count <= 7; ++count) {
+    std::vector<ColoredPoint> points;
+    for (int i = 0; i < count; ++i) {
+      ColoredPoint point;
+      point.position = {1.0F + i, -2.0F * i, 0.25F};
+      point.red = static_cast<uint8_t>(250 + i);  // past 255
+      point.green = static_cast<uint8_t>(i);
+      point.blue = 128;
+      points.push_back(point);
+    }
+    const std::vector<ColoredPoint> decoded =
+        Decode(CloudPreview(points, Rigid3d()));
+    ASSERT_EQ(decoded.size(), points.size());
+    for (size_t i = 0; i < points.size(); ++i) {
+      // Half a step of 12 m over 16 bits.
+      EXPECT_LT((decoded[i].position - points[i].position).norm(), 2e-4F);
+      EXPECT_EQ(decoded[i].red, points[i].red);
+      EXPECT_EQ(decoded[i].green, points[i].green);
+      EXPECT_EQ(decoded[i].blue, points[i].blue);
+    }
+  }
+}
+
+TEST(CloudPreviewTest, PointsAreMovedIntoTheShownWorld) {
+  const Rigid3d shown_from_world(
+      Eigen::Quaterniond(Eigen::AngleAxisd(M_PI / 2, Eigen::Vector3d::UnitZ())),
+      Eigen::Vector3d(10.0, 20.0, 30.0));
+  std::vector<ColoredPoint> points(2);
+  points[0].position = {1.0F, 0.0F, 0.0F};
+  const std::vector<ColoredPoint> decoded =
+      Decode(CloudPreview(points, shown_from_world));
+  EXPECT_LT((decoded[0].position - Eigen::Vector3f(10, 21, 30)).norm(), 1e-4F);
+  EXPECT_LT((decoded[1].position - Eigen::Vector3f(10, 20, 30)).norm(), 1e-4F);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,103 @@
+#include "apps/results/evaluation_report.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace rgbd_pose {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kHalfTurn = 3.14159265358979323846;
+
+EvaluationReport MakeReport() {
+  EvaluationReport report;
+  report.estimated_poses = 500;
+  report.paired_poses = 400;
+  report.duration = 13.3;
+  report.path_length = 3.0155;
+  report.ate = {400, 0.25, 0.2, 0.125, 1.5};
+  report.rpe_frame = {{399, 0.5, 0.4, 0.3, 0.6}, {399, kHalfTurn, 0, 0, 0}};
+  report.rpe_seconds = {{370, 1.5, 1.4, 1.3, 1.6},
+                        {370, 0, kHalfTurn / 2, kHalfTurn / 4, kHalfTurn}};
+  report.final_pose = {0.75, kHalfTurn / 180};
+  return report;
+}
+
+TEST(EvaluationReportTest, TableSaysWhatIsMeasuredAndHow) {
+  EXPECT_EQ(
+      FormatEvaluation(MakeReport()),
+      "400 of 500 estimated poses have a ground truth within 0.02 s;\n"
+      "they span 13.300 s and 3.015 m of path.\n"
+      "\n"
+      "                                        RMSE      median        mean"
+      "         max\n"
+      "ATE, rigid alignment, no scale (400 poses)\n"
+      "  position (m)                       0.25000     0.12500     0.20000"
+      "     1.50000\n"
+      "RPE, fixed delta 1 frame, consecutive poses (399 pairs)\n"
+      "  translation (m)                    0.50000     0.30000     0.40000"
+      "     0.60000\n"
+      "  rotation (deg)                   180.00000     0.00000     0.00000"
+      "     0.00000\n"
+      "RPE, fixed delta 1 s (370 pairs)\n"
+      "  translation (m)                    1.50000     1.30000     1.40000"
+      "     1.60000\n"
+      "  rotation (deg)                     0.00000    45.00000    90.00000"
+      "   180.00000\n"
+      "RPE, fixed delta 1 m of ground-truth path (0 pairs)\n"
+      "  translation (m)                        n/a\n"
+      "  rotation (deg)                         n/a\n"
+      "Final pose error, last pose relative to the first\n"
+      "  translation (m)                    0.75000\n"
+      "  rotation (deg)                     1.00000\n");
+}
+
+TEST(EvaluationReportTest, JsonHasTheSameFigures) {
+  const nlohmann::json json = EvaluationToJson(MakeReport());
+  EXPECT_EQ(json.at("estimated_poses"), 500);
+  EXPECT_EQ(json.at("paired_poses"), 400);
+  EXPECT_EQ(json.at("duration_s"), 13.3);
+  EXPECT_EQ(json.at("path_length_m"), 3.0155);
+  EXPECT_EQ(json.at("max_time_difference_s"), 0.02);
+  EXPECT_EQ(json.at("ate").at("definition"), "rigid alignment, no scale");
+  EXPECT_EQ(json.at("ate").at("position_m").at("rmse"), 0.25);
+  EXPECT_EQ(json.at("ate").at("position_m").at("median"), 0.125);
+  const nlohmann::json& seconds = json.at("rpe_seconds");
+  EXPECT_EQ(seconds.at("count"), 370);
+  EXPECT_EQ(seconds.at("delta"), 1.0);
+  EXPECT_EQ(seconds.at("translation_m").at("rmse"), 1.5);
+  EXPECT_DOUBLE_EQ(seconds.at("rotation_deg").at("mean"), 90.0);
+  EXPECT_DOUBLE_EQ(json.at("rpe_frame").at("rotation_deg").at("rmse"), 180.0);
+  EXPECT_EQ(json.at("final_pose").at("translation_m"), 0.75);
+  EXPECT_DOUBLE_EQ(json.at("final_pose").at("rotation_deg"), 1.0);
+}
+
+TEST(EvaluationReportTest, NothingToMeasureIsNull) {
+  EvaluationReport report = MakeReport();
+  report.final_pose.reset();
+  const nlohmann::json json = EvaluationToJson(report);
+  EXPECT_EQ(json.at("rpe_metres").at("count"), 0);
+  EXPECT_TRUE(json.at("rpe_metres").at("translation_m").is_null());
+  EXPECT_TRUE(json.at("rpe_metres").at("rotation_deg").is_null());
+  EXPECT_TRUE(json.at("final_pose").is_null());
+  EXPECT_THAT(FormatEvaluation(report), HasSubstr("first\n"
+                                                  "                "
+                                                  "                "
+                                                  "         n/a\n"));
+}
+
+TEST(EvaluationReportTest, NamesTheIntervalsInUse) {
+  EvaluationReport report = MakeReport();
+  report.options.rpe_delta_seconds = 0.5;
+  report.options.rpe_delta_metres = 2.0;
+  const std::string table = FormatEvaluation(report);
+  EXPECT_THAT(table, HasSubstr("fixed delta 0.5 s ("));
+  EXPECT_THAT(table, HasSubstr("fixed delta 2 m of"));
+  const nlohmann::json json = EvaluationToJson(report);
+  EXPECT_EQ(json.at("rpe_seconds").at("delta"), 0.5);
+  EXPECT_EQ(json.at("rpe_metres").at("delta"), 2.0);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

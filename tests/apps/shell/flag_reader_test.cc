@@ -1,0 +1,71 @@
+#include "apps/shell/flag_reader.h"
+
+#include <gflags/gflags.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+
+DEFINE_string(test_word, "", "");
+DEFINE_bool(test_switch, false, "");
+DEFINE_int32(test_number, 0, "");
+
+namespace rgbd_pose {
+namespace {
+
+TEST(FlagReaderTest, TakesTheFormsOfGflags) {
+  ReadFlags({"--test_word=a=b c", "-test_number", "-3", "--test_switch"});
+  EXPECT_EQ(FLAGS_test_word, "a=b c");
+  EXPECT_EQ(FLAGS_test_number, -3);
+  EXPECT_TRUE(FLAGS_test_switch);
+  ReadFlags({"--notest_switch", "--test_word="});
+  EXPECT_FALSE(FLAGS_test_switch);
+  EXPECT_EQ(FLAGS_test_word, "");
+  ReadFlags({"--test_switch=true", "--test_number=1", "--test_number=2"});
+  EXPECT_TRUE(FLAGS_test_switch);
+  EXPECT_EQ(FLAGS_test_number, 2) << "the last one counts";
+}
+
+TEST(FlagReaderTest, ReadsFilesInTheirPlace) {
+  const TempFolder folder;
+  const std::string inner =
+      folder.Write("inner", "\xEF\xBB\xBF--test_number=4\r\n");
+  const std::string outer = folder.Write(
+      "outer", "# Title\n\n  --test_word=x \n--flagfile=" + inner + "\n");
+  ReadFlags({"--test_number=1", "--flagfile", outer, "--test_word=y"});
+  EXPECT_EQ(FLAGS_test_number, 4);
+  EXPECT_EQ(FLAGS_test_word, "y");
+}
+
+TEST(FlagReaderTest, RefusesAllElse) {
+  const TempFolder folder;
+  const std::string file = folder.Write("file", "# a\ntest_number=4\n");
+  const std::string circle = folder / "circle";
+  folder.Write("circle", "--flagfile=" + circle + "\n");
+  const struct {
+    std::vector<std::string> words;
+    std::string message;
+  } kCases[] = {
+      {{"--test_wrd=a"}, "unknown flag --test_wrd"},
+      {{"word"}, "'word' is no flag"},
+      {{"-"}, "'-' is no flag"},
+      {{"--"}, "'--' is no flag"},
+      {{std::string("--flagfile\0=a", 13)}, "is no flag"},
+      {{"--notest_word"}, "unknown flag --notest_word"},
+      {{"--notest_switch=true"}, "unknown flag --notest_switch"},
+      {{"--test_word"}, "--test_word needs a value"},
+      {{"--test_number=x"}, "'x' is no int32 for --test_number"},
+      {{"--fromenv=test_word"}, "unknown flag --fromenv"},
+      {{"--help"}, "unknown flag --help"},
+      {{"--flagfile=" + file}, file + ":2: 'test_number=4' is no flag"},
+      {{"--flagfile=" + circle}, "circle"},
+      {{"--flagfile=" + folder.path()}, "is a folder"},
+  };
+  for (const auto& c : kCases) {
+    SCOPED_TRACE(c.words[0]);
+    ExpectInputError([&] { ReadFlags(c.words); }, {c.message});
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

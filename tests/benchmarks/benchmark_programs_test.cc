@@ -1,0 +1,72 @@
+// Runs the benchmark programs, as briefly as they can be, and makes the page of
+// what they measured. No timing is judged here.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/util/text_file.h"
+#include "tests/support/run_program.h"
+
+namespace rgbd_pose {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+class BenchmarkProgramsTest : public testing::Test {
+ protected:
+  // Measures what the filter names; the path of the results.
+  std::string Measure(const std::string& program, const std::string& filter) {
+    const RunResult run = RunCommand(
+        program + " --benchmark_min_time=0.001 --benchmark_repetitions=2" +
+            " --benchmark_format=json --benchmark_filter='" + filter + "'",
+        folder_);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+    return folder_.Write(std::to_string(++files_) + ".json", run.out);
+  }
+
+  TempFolder folder_;
+  int files_ = 0;
+};
+
+TEST_F(BenchmarkProgramsTest, MakeThePageAndTheSpeedups) {
+  std::string results =
+      Measure(SOLVE_BENCHMARK, "^(solve|estimate)/.*/(huber|tukey)/300$");
+  results += "," + Measure(JACOBIAN_BENCHMARK, "bidirectional_point");
+  results += "," + Measure(PEERS_BENCHMARK, "estimator|pnp_ransac$");
+  const std::string frames = folder_ / "frames.json";
+  const RunResult tracked =
+      RunCommand(std::string(FRAMES_BENCHMARK) +
+                     " --frames=3 --rounds=1 --output=" + frames,
+                 folder_);
+  ASSERT_EQ(tracked.exit_code, 0) << tracked.err;
+  results += "," + frames;
+
+  const std::string page = folder_ / "page.md";
+  const std::string speedups = folder_ / "benchmarks.json";
+  const RunResult report = RunCommand(
+      std::string(BENCHMARK_REPORT) + " --results=" + results +
+          " --page_template=" + BENCHMARK_PAGE_TEMPLATE +
+          " --machine='a test' --page=" + page + " --speedups=" + speedups,
+      folder_);
+  ASSERT_EQ(report.exit_code, 0) << report.err;
+
+  const std::string text = ReadTextFile(page);
+  EXPECT_THAT(text, HasSubstr("| machine | a test"));
+  EXPECT_THAT(text, Not(HasSubstr("@"))) << "a mark was left";
+  const nlohmann::json ratios = nlohmann::json::parse(ReadTextFile(speedups));
+  for (const char* key : {"solve_n300_compressed_over_autodiff",
+                          "solve_n300_compressed_over_per_match",
+                          "solve_n300_compressed_over_bare_loop",
+                          "jacobian_bidirectional_point_analytic_over_autodiff",
+                          "estimate_over_pnp_ransac"}) {
+    ASSERT_TRUE(ratios.contains(key)) << key;
+    EXPECT_GT(ratios[key].get<double>(), 0.0) << key;
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

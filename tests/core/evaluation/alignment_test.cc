@@ -1,0 +1,110 @@
+#include "core/evaluation/alignment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "frontend/simulation/synthetic_matches.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Eigen::Vector3d;
+
+// Alignments that positions determine are exact but for rounding and for the
+// share that the first orientation has (1e-9 of a radian or less).
+constexpr double kTolerance = 1e-8;
+// What only the first orientation determines is good to rounding (1e-16) over
+// its share (1e-9), with room for the size of the numbers.
+constexpr double kOpenTolerance = 1e-5;
+
+// Pairs of which the estimates are `world` times the truth.
+std::vector<PosePair> MakePairs(const std::vector<Vector3d>& positions,
+                                const Rigid3d& world, RandomWorld* random) {
+  std::vector<PosePair> pairs;
+  for (const Vector3d& position : positions) {
+    const Rigid3d truth(random->Motion(3.0, 0.0).rotation, position);
+    pairs.push_back({0.1 * pairs.size(), truth, world * truth});
+  }
+  return pairs;
+}
+
+void ExpectNear(const Rigid3d& a, const Rigid3d& b, double tolerance) {
+  EXPECT_LE((a * b.Inverse()).Angle(), tolerance);
+  EXPECT_LE((a.translation - b.translation).norm(), 10 * tolerance);
+}
+
+TEST(AlignmentTest, FindsTheWorldOfTheEstimate) {
+  RandomWorld random(2);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<Vector3d> positions;
+    for (int i = 0; i < 3 + trial; ++i) positions.push_back(random.Vector(2.0));
+    const Rigid3d world = random.Motion(3.1, 5.0);
+    ExpectNear(AlignRigidly(MakePairs(positions, world, &random)),
+               world.Inverse(), kTolerance);
+  }
+}
+
+TEST(AlignmentTest, IgnoresOrientationsWherePositionsDecide) {
+  RandomWorld random(3);
+  std::vector<Vector3d> positions;
+  for (int i = 0; i < 20; ++i) positions.push_back(random.Vector(2.0));
+  const Rigid3d world = random.Motion(3.1, 5.0);
+  std::vector<PosePair> pairs = MakePairs(positions, world, &random);
+  for (PosePair& pair : pairs) {
+    pair.estimate.rotation = random.Motion(3.0, 0.0).rotation;
+  }
+  ExpectNear(AlignRigidly(pairs), world.Inverse(), kTolerance);
+}
+
+// The mirror image x -> -x would fit, but is no rigid motion. Of those, the
+// half turn about y fits best: it gets but the shortest axis, z, wrong.
+TEST(AlignmentTest, NeverMirrors) {
+  RandomWorld random(4);
+  const std::vector<Vector3d> positions = {{3, 0, 0},  {-3, 0, 0}, {0, 2, 0},
+                                           {0, -2, 0}, {0, 0, 1},  {0, 0, -1}};
+  std::vector<PosePair> pairs = MakePairs(positions, Rigid3d(), &random);
+  for (PosePair& pair : pairs) pair.estimate.translation.x() *= -1.0;
+  const Rigid3d half_turn(Eigen::Quaterniond(0, 0, 1, 0), Vector3d::Zero());
+  ExpectNear(AlignRigidly(pairs), half_turn, kTolerance);
+}
+
+TEST(AlignmentTest, TakesWhatPositionsLeaveOpenFromTheFirstOrientation) {
+  const Vector3d start(0.3, -1.2, 2.0);
+  const Vector3d step(0.1, 0.2, -0.05);
+  const struct {
+    const char* what;
+    std::vector<Vector3d> positions;
+  } kCases[] = {
+      {"one pose", {start}},
+      {"two poses", {start, start + step}},
+      {"still", {start, start, start, start}},
+      {"a line", {start, start + step, start + 3 * step, start + 4 * step}},
+      {"there and back", {start, start + step, start, start - step}},
+      {"a plane", {start, start + step, start + step.unitOrthogonal()}},
+  };
+  RandomWorld random(5);
+  for (const auto& c : kCases) {
+    SCOPED_TRACE(c.what);
+    for (int trial = 0; trial < 20; ++trial) {
+      const Rigid3d world = random.Motion(3.1, 5.0);
+      ExpectNear(AlignRigidly(MakePairs(c.positions, world, &random)),
+                 world.Inverse(), kOpenTolerance);
+    }
+  }
+}
+
+TEST(AlignmentTest, PutsAnEstimateThatStandsStillOnTheMean) {
+  RandomWorld random(6);
+  const Rigid3d world = random.Motion(3.1, 5.0);
+  std::vector<PosePair> pairs =
+      MakePairs({{0, 0, 0}, {1, 0, 0}, {1, 2, 0}, {0, 2, 4}}, world, &random);
+  for (PosePair& pair : pairs) pair.estimate = pairs[0].estimate;
+  const Rigid3d found = AlignRigidly(pairs);
+  const Vector3d mean(0.5, 1.0, 1.0);
+  EXPECT_LE((found * pairs[0].estimate.translation - mean).norm(), 1e-12);
+  EXPECT_LE((found * world).Angle(), kOpenTolerance);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

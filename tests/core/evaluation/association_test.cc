@@ -1,0 +1,136 @@
+#include "core/evaluation/association.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <random>
+#include <tuple>
+
+namespace rgbd_pose {
+namespace {
+
+using testing::ElementsAre;
+using testing::IsEmpty;
+using Pairs = std::vector<std::pair<int, int>>;
+
+constexpr double kMaxDifference = 0.02;
+
+Pairs AssociateToPairs(const std::vector<double>& first,
+                       const std::vector<double>& second,
+                       double max_difference = kMaxDifference) {
+  Pairs pairs;
+  for (const auto [i, j] : Associate(first, second, max_difference)) {
+    pairs.emplace_back(i, j);
+  }
+  return pairs;
+}
+
+// The definition, spelt out: all pairs, the best first.
+Pairs AssociateByDefinition(const std::vector<double>& first,
+                            const std::vector<double>& second,
+                            double max_difference) {
+  std::vector<std::tuple<double, int, int>> candidates;
+  for (size_t i = 0; i < first.size(); ++i) {
+    for (size_t j = 0; j < second.size(); ++j) {
+      const double difference = std::abs(first[i] - second[j]);
+      if (difference <= max_difference)
+        candidates.emplace_back(difference, i, j);
+    }
+  }
+  std::sort(candidates.begin(), candidates.end());
+  std::vector<bool> first_used(first.size());
+  std::vector<bool> second_used(second.size());
+  Pairs pairs;
+  for (const auto& [difference, i, j] : candidates) {
+    if (first_used[i] || second_used[j]) continue;
+    first_used[i] = second_used[j] = true;
+    pairs.emplace_back(i, j);
+  }
+  std::sort(pairs.begin(), pairs.end());
+  return pairs;
+}
+
+TEST(AssociationTest, PairsNearestTimes) {
+  EXPECT_THAT(AssociateToPairs({1.00, 1.10, 1.20}, {1.01, 1.095, 1.19}),
+              ElementsAre(std::pair(0, 0), std::pair(1, 1), std::pair(2, 2)));
+}
+
+TEST(AssociationTest, LeavesOutWhatIsTooFarApart) {
+  EXPECT_THAT(AssociateToPairs({1.0, 2.0, 3.0}, {1.021, 2.019, 5.0}),
+              ElementsAre(std::pair(1, 1)));
+}
+
+TEST(AssociationTest, TakesAPairExactlyAsFarApartAsAllowed) {
+  EXPECT_THAT(AssociateToPairs({1.0}, {1.25}, 0.25),
+              ElementsAre(std::pair(0, 0)));
+  EXPECT_THAT(AssociateToPairs({1.0}, {1.0}, 0.0),
+              ElementsAre(std::pair(0, 0)));
+}
+
+// Entry 1 is nearer to 1.012 than entry 0 is, and takes it from it.
+TEST(AssociationTest, UsesEachEntryOnceTheBestPairFirst) {
+  EXPECT_THAT(AssociateToPairs({1.000, 1.015}, {1.012}),
+              ElementsAre(std::pair(1, 0)));
+  EXPECT_THAT(AssociateToPairs({1.012}, {1.000, 1.015}),
+              ElementsAre(std::pair(0, 1)));
+}
+
+// Once 1.006 and 1.007 are a pair, the entries around them may be one.
+TEST(AssociationTest, PairsWhatIsLeftAroundAPair) {
+  EXPECT_THAT(AssociateToPairs({1.000, 1.007}, {1.006, 1.012}),
+              ElementsAre(std::pair(0, 1), std::pair(1, 0)));
+}
+
+TEST(AssociationTest, OfEqualDifferencesTheEarlierPairWins) {
+  EXPECT_THAT(AssociateToPairs({1.0}, {0.75, 1.25}, 0.5),
+              ElementsAre(std::pair(0, 0)));
+  EXPECT_THAT(AssociateToPairs({0.75, 1.25}, {1.0}, 0.5),
+              ElementsAre(std::pair(0, 0)));
+}
+
+TEST(AssociationTest, EmptyListsGiveNoPairs) {
+  EXPECT_THAT(AssociateToPairs({}, {}), IsEmpty());
+  EXPECT_THAT(AssociateToPairs({1.0}, {}), IsEmpty());
+  EXPECT_THAT(AssociateToPairs({}, {1.0}), IsEmpty());
+}
+
+// Stamps on a coarse grid, so that equal times and differences are common.
+TEST(AssociationTest, DoesAsTheDefinitionForRandomLists) {
+  std::mt19937 random(7);
+  const auto make_list = [&random] {
+    std::vector<double> times;
+    double time = 100.0;
+    for (int i = 0; i < 60; ++i) {
+      time += (1 + random() % 12) / 256.0;
+      times.push_back(time);
+    }
+    return times;
+  };
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::vector<double> first = make_list();
+    const std::vector<double> second = make_list();
+    const double max_difference = (random() % 16) / 256.0;
+    ASSERT_EQ(AssociateToPairs(first, second, max_difference),
+              AssociateByDefinition(first, second, max_difference))
+        << "trial " << trial;
+  }
+}
+
+// All entries lie within the allowed difference of all others: 10^10 pairs.
+TEST(AssociationTest, IsFastForEntriesThatAreAllClose) {
+  constexpr int kCount = 100000;
+  constexpr double kTimeLimit = 10.0;  // s; takes 0.1 s, all pairs take minutes
+  std::vector<double> times(kCount);
+  for (int i = 0; i < kCount; ++i) times[i] = i * 1e-7;
+  const auto start = std::chrono::steady_clock::now();
+  EXPECT_EQ(Associate(times, times, kMaxDifference).size(), times.size());
+  const std::chrono::duration<double> taken =
+      std::chrono::steady_clock::now() - start;
+  EXPECT_LT(taken.count(), kTimeLimit);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,100 @@
+#include "core/evaluation/trajectory.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "frontend/simulation/synthetic_matches.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+TEST(TrajectoryTest, FormatsTumText) {
+  const Eigen::Quaterniond half_turn(0.0, 0.0, 1.0, 0.0);
+  EXPECT_EQ(FormatTrajectory({{1305031098.6659, Rigid3d()},
+                              {1305031099.0, {half_turn, {1.5, -2, 3e-10}}}}),
+            "# timestamp tx ty tz qx qy qz qw\n"
+            "1305031098.665900 0.000000000 0.000000000 0.000000000 "
+            "0.000000000 0.000000000 0.000000000 1.000000000\n"
+            "1305031099.000000 1.500000000 -2.000000000 0.000000000 "
+            "0.000000000 1.000000000 0.000000000 0.000000000\n");
+}
+
+TEST(TrajectoryTest, ReadsWhatItWrites) {
+  // Half of the last decimal, of a quaternion's four numbers a little more.
+  constexpr double kTimeTolerance = 0.51e-6;
+  constexpr double kPositionTolerance = 0.51e-9;
+  constexpr double kAngleTolerance = 2.1e-9;
+  RandomWorld world(1);
+  Trajectory written;
+  for (int i = 0; i < 100; ++i) {
+    written.push_back({1e9 + i + world.Uniform(0, 0.9), world.Motion(3.1, 50)});
+  }
+  const TempFolder folder;
+  const Trajectory read =
+      ReadTrajectory(folder.Write("t.txt", FormatTrajectory(written)));
+  ASSERT_EQ(read.size(), written.size());
+  for (size_t i = 0; i < read.size(); ++i) {
+    EXPECT_NEAR(read[i].timestamp, written[i].timestamp, kTimeTolerance);
+    const Rigid3d a = read[i].world_from_cam;
+    const Rigid3d b = written[i].world_from_cam;
+    EXPECT_LE((a.translation - b.translation).lpNorm<Eigen::Infinity>(),
+              kPositionTolerance);
+    EXPECT_LE((a.Inverse() * b).Angle(), kAngleTolerance);
+  }
+}
+
+TEST(TrajectoryTest, ReadsTheColumnsInTheirOrder) {
+  const TempFolder folder;
+  const Trajectory read = ReadTrajectory(
+      folder.Write("t.txt",
+                   "\xEF\xBB\xBF# timestamp tx ty tz qx qy qz qw\r\n"
+                   "\r\n"
+                   "0.5 1 2 3 0 0 0.7071 0.7071 # a quarter turn about z\r\n"
+                   "0.6,1,2,3,0,0,0,-1.009\r\n"));
+  ASSERT_EQ(read.size(), 2u);
+  EXPECT_EQ(read[0].timestamp, 0.5);
+  const Eigen::Vector3d in_world =
+      read[0].world_from_cam * Eigen::Vector3d(1, 0, 0);
+  EXPECT_LE((in_world - Eigen::Vector3d(1, 3, 3)).norm(), 1e-15);
+  EXPECT_EQ(read[1].timestamp, 0.6);
+  EXPECT_EQ(read[1].world_from_cam.rotation.norm(), 1.0);
+}
+
+TEST(TrajectoryTest, NamesTheLineThatIsWrong) {
+  const std::string good = "# comment\n1 0 0 0 0 0 0 1\n";  // lines 1 and 2
+  const struct {
+    const char* what;
+    std::string content;
+    const char* message;
+  } kCases[] = {
+      {"column missing", good + "2 0 0 0 0 0 1\n", ":3: 7 columns"},
+      {"column too many", good + "2 0 0 0 0 0 0 1 5\n", ":3: 9 columns"},
+      {"cut off", good + "2 0", ":3: 2 columns"},
+      {"letters", good + "2 0 zero 0 0 0 0 1\n", ":3: 'zero' is no"},
+      {"number and letters", good + "2 0 0m 0 0 0 0 1\n", ":3: '0m' is no"},
+      {"NaN", good + "\n2 0 0 nan 0 0 0 1\n", ":4: 'nan' is no"},
+      {"infinite", good + "2 inf 0 0 0 0 0 1\n", ":3: 'inf' is no"},
+      {"time stamp NaN", "nan 0 0 0 0 0 0 1\n", ":1: 'nan' is no"},
+      {"time backwards", good + "0.5 0 0 0 0 0 0 1\n", ":3: time stamp 0.5"},
+      {"time doubled", good + "1.0 0 0 0 0 0 0 1\n", ":3: time stamp 1.0"},
+      {"zero quaternion", good + "2 0 0 0 0 0 0 0\n", ":3: the quaternion"},
+      {"quaternion too long", good + "2 0 0 0 0 0 0 1.011\n", ":3: the qua"},
+      {"quaternion too short", good + "2 0 0 0 0 0 0 0.989\n", ":3: the qua"},
+      {"empty", "", ": holds no poses"},
+      {"comments only", "# a\n\n# b\n", ": holds no poses"},
+  };
+  const TempFolder folder;
+  for (const auto& c : kCases) {
+    SCOPED_TRACE(c.what);
+    const std::string file = folder.Write("t.txt", c.content);
+    ExpectInputError([&] { ReadTrajectory(file); }, {file + c.message});
+  }
+  ExpectInputError([&] { ReadTrajectory(folder / "missing.txt"); },
+                   {folder / "missing.txt"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,90 @@
+#include "core/geometry/camera.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rgbd_pose {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+TEST(CameraTest, ProjectsTheOpticalAxisToThePrincipalPoint) {
+  for (const std::string& name : CameraPresetNames()) {
+    const Camera camera = CameraPreset(name)->camera;
+    const Vector2d pixel = camera.Project(Vector3d(0, 0, 2.5));
+    EXPECT_DOUBLE_EQ(pixel.x(), camera.cx) << name;
+    EXPECT_DOUBLE_EQ(pixel.y(), camera.cy) << name;
+  }
+}
+
+TEST(CameraTest, ProjectsRightAndDown) {
+  const Camera camera;
+  const Vector2d pixel = camera.Project(Vector3d(0.2, 0.1, 2.0));
+  EXPECT_DOUBLE_EQ(pixel.x(), 319.5 + 52.5);
+  EXPECT_DOUBLE_EQ(pixel.y(), 239.5 + 26.25);
+}
+
+// By hand from OpenCV's model: x = 0.3, y = -0.2, r^2 = 0.13.
+TEST(CameraTest, DistortsAsOpenCvDocuments) {
+  Camera camera{640, 480, 500, 400, 320, 240, 0.1, -0.2, 0.01, -0.02, 0.3};
+  const double radial =
+      1 + 0.1 * 0.13 - 0.2 * 0.13 * 0.13 + 0.3 * 0.13 * 0.13 * 0.13;
+  const double x =
+      0.3 * radial + 2 * 0.01 * 0.3 * -0.2 - 0.02 * (0.13 + 2 * 0.3 * 0.3);
+  const double y =
+      -0.2 * radial + 0.01 * (0.13 + 2 * 0.2 * 0.2) - 2 * 0.02 * 0.3 * -0.2;
+  const Vector2d pixel = camera.Project(Vector3d(0.6, -0.4, 2.0));
+  EXPECT_NEAR(pixel.x(), 500 * x + 320, 1e-10);
+  EXPECT_NEAR(pixel.y(), 400 * y + 240, 1e-10);
+}
+
+TEST(CameraTest, UndistortInvertsProjectEverywhereInTheImage) {
+  constexpr double kTolerancePx = 1e-9;
+  for (const std::string& name : CameraPresetNames()) {
+    const Camera camera = CameraPreset(name)->camera;
+    for (int v = 0; v < camera.height; v += 37) {
+      for (int u = 0; u < camera.width; u += 41) {
+        const Vector3d point = camera.Unproject(Vector2d(u, v), 1.7);
+        EXPECT_DOUBLE_EQ(point.z(), 1.7);
+        const Vector2d back = camera.Project(point);
+        EXPECT_NEAR(back.x(), u, kTolerancePx) << name;
+        EXPECT_NEAR(back.y(), v, kTolerancePx) << name;
+      }
+    }
+  }
+}
+
+TEST(CameraTest, UndistortPointsDoesAsUndistort) {
+  const Camera camera = CameraPreset("tum_fr1")->camera;
+  std::vector<Vector2d> pixels = {{10, 20}, {600, 400}};
+  camera.UndistortPoints(&pixels);
+  EXPECT_EQ(pixels[0], camera.Undistort(Vector2d(10, 20)));
+  EXPECT_EQ(pixels[1], camera.Undistort(Vector2d(600, 400)));
+  EXPECT_GT((pixels[0] - Vector2d(10, 20)).norm(), 1.0);
+}
+
+TEST(CameraTest, ChecksItsParameters) {
+  EXPECT_EQ(Camera{}.Check(), "");
+  Camera camera;
+  camera.fx = std::nan("");
+  EXPECT_NE(camera.Check(), "");
+  camera = Camera{};
+  camera.fy = -480;
+  EXPECT_NE(camera.Check(), "");
+  camera = Camera{};
+  camera.cx = 700;
+  EXPECT_NE(camera.Check(), "");
+  camera = Camera{};
+  camera.height = 0;
+  EXPECT_NE(camera.Check(), "");
+}
+
+TEST(CameraTest, UnknownPresetIsEmpty) {
+  EXPECT_FALSE(CameraPreset("kinect").has_value());
+  EXPECT_TRUE(CameraPreset("tum_fr3").has_value());
+}
+
+}  // namespace
+}  // namespace rgbd_pose

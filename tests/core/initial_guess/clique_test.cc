@@ -1,0 +1,82 @@
+#include "core/initial_guess/clique.h"
+
+#include <gtest/gtest.h>
+
+#include "frontend/simulation/synthetic_matches.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/motion_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+// What all searches have in common is in consensus_test.cc.
+
+// Two rigid bodies, each of which is a clique: the larger one is found, in
+// whatever order they come.
+TEST(CliqueTest, FindsTheLargerOfTwoBodies) {
+  for (const bool larger_first : {true, false}) {
+    RandomWorld world(51);
+    const Rigid3d larger = world.Motion(0.3, 0.3);
+    const Rigid3d smaller = world.Motion(0.3, 0.3);
+    Correspondences matches;
+    for (int i = 0; i < 200; ++i) {
+      const bool is_first = i < (larger_first ? 120 : 80);
+      Observation prev, cur;
+      world.Match(matches.camera(), is_first == larger_first ? larger : smaller,
+                  &prev, &cur);
+      world.AddNoise(&prev);
+      world.AddNoise(&cur);
+      matches.Add(prev, cur);
+    }
+    const auto found = FindByClique(matches);
+    ASSERT_TRUE(found.has_value());
+    // 120 matches: 2 mm on average.
+    EXPECT_LE(ErrorOf(found->cur_from_prev, larger).translation, 0.01);
+    for (const int inlier : found->inliers) {
+      EXPECT_TRUE(larger_first ? inlier < 120 : inlier >= 80) << inlier;
+    }
+  }
+}
+
+// Far more matches than it looks at.
+TEST(CliqueTest, LooksAtTheMostItMay) {
+  RandomWorld world(52);
+  const Rigid3d truth = world.Motion(0.6, 0.5);
+  CliqueOptions options;
+  options.max_matches = 100;
+  const auto found = FindByClique(world.Matches(20000, 0.4, truth), options);
+  ASSERT_TRUE(found.has_value());
+  EXPECT_LE(found->inliers.size(), 60U);
+  EXPECT_GE(found->inliers.size(), 50U);
+  EXPECT_LE(ErrorOf(found->cur_from_prev, truth).translation, 0.01);
+}
+
+// Sizes at which a row of bits just fills its last word, or just does not.
+TEST(CliqueTest, FillsItsWords) {
+  for (const int count : {63, 64, 65, 128, 129}) {
+    RandomWorld world(53);
+    const auto found = FindByClique(
+        world.Matches(count, 0.0, world.Motion(0.6, 0.5), /*noise=*/false));
+    ASSERT_TRUE(found.has_value());
+    EXPECT_EQ(found->inliers.size(), static_cast<size_t>(count));
+  }
+}
+
+TEST(CliqueTest, SaysWhichOptionIsWrong) {
+  const Correspondences none;
+  const auto expect_error = [&](CliqueOptions options, const char* name) {
+    ExpectInputError([&] { FindByClique(none, options); }, {name});
+  };
+  CliqueOptions options;
+  options.max_distance_sigmas = -1.0;
+  expect_error(options, "max_distance_sigmas");
+  options = {};
+  options.max_matches = 2;
+  expect_error(options, "max_matches");
+  options = {};
+  options.consensus.refits = -1;
+  expect_error(options, "refits");
+}
+
+}  // namespace
+}  // namespace rgbd_pose

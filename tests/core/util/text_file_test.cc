@@ -1,0 +1,127 @@
+#include "core/util/text_file.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <string>
+
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+using testing::ElementsAre;
+
+TEST(TextFileTest, ReadsColumnsOfAllUsualForms) {
+  const struct {
+    const char* what;
+    const char* content;
+  } kCases[] = {
+      {"plain", "1 a\n\n2 b\n"},
+      {"no line end at the end", "1 a\n\n2 b"},
+      {"Windows line ends", "1 a\r\n\r\n2 b\r\n"},
+      {"byte order mark",
+       "\xEF\xBB\xBF"
+       "1 a\n\n2 b\n"},
+      {"commas and tabs", "1,a\n\n\t2 ,\t b ,\n"},
+      {"comments", "1 a # b c\n#1 a\n2 b#\n"},
+  };
+  const TempFolder folder;
+  for (const auto& c : kCases) {
+    SCOPED_TRACE(c.what);
+    const auto lines = ReadTextTable(folder.Write("table.txt", c.content));
+    ASSERT_EQ(lines.size(), 2u);
+    EXPECT_EQ(lines[0].number, 1);
+    EXPECT_EQ(lines[1].number, 3);
+    EXPECT_THAT(lines[0].words, ElementsAre("1", "a"));
+    EXPECT_THAT(lines[1].words, ElementsAre("2", "b"));
+  }
+}
+
+TEST(TextFileTest, ReadsAnEmptyFileAsNoLines) {
+  const TempFolder folder;
+  EXPECT_TRUE(ReadTextTable(folder.Write("empty.txt", "")).empty());
+}
+
+TEST(TextFileTest, NamesTheFileItCannotRead) {
+  const TempFolder folder;
+  ExpectInputError([&] { ReadTextTable(folder / "missing.txt"); },
+                   {folder / "missing.txt"});
+  ExpectInputError([&] { ReadTextFile(folder.path()); },
+                   {folder.path() + ": is a folder"});
+}
+
+TEST(TextFileTest, ParsesNumbers) {
+  const auto parse = [](const char* word) {
+    return ParseNumber(word, "file", 7, "tx");
+  };
+  EXPECT_EQ(parse("1305031098.665900"), 1305031098.6659);
+  EXPECT_EQ(parse("-2.5e-3"), -0.0025);
+  EXPECT_EQ(parse("+4"), 4.0);
+  for (const char* word :
+       {"", "x", "1x", "1,5", "nan", "-NaN", "inf", "1e999", "+", "++1", "-"}) {
+    SCOPED_TRACE(word);
+    ExpectInputError([&] { parse(word); }, {"file:7: '" + std::string(word) +
+                                            "' is no finite number for tx"});
+  }
+}
+
+TEST(TextFileTest, TimeStampsAreInSeconds) {
+  const auto parse = [](const char* word) {
+    return ParseTimestamp(word, "file", 7);
+  };
+  EXPECT_EQ(parse("1305031098.665900"), 1305031098.6659);
+  EXPECT_EQ(parse("-2.5"), -2.5);
+  for (const char* word : {"1305031098665", "1305031098665900000", "-1e300"}) {
+    ExpectInputError(
+        [&] { parse(word); },
+        {"file:7: time stamp " + std::string(word) + " is not in seconds"});
+  }
+}
+
+// A file that cannot be read to its end must not pass for a short one.
+TEST(TextFileTest, TellsOfAnErrorOnTheWay) {
+  const std::string unreadable = "/proc/self/mem";  // nothing at address 0
+  if (!std::filesystem::exists(unreadable)) GTEST_SKIP() << "no /proc";
+  ExpectInputError([&] { ReadTextFile(unreadable); },
+                   {unreadable + ": cannot be read"});
+}
+
+TEST(TextFileTest, ReplacesAFileAsAWhole) {
+  const TempFolder folder;
+  const std::string file = folder / "a.txt";
+  WriteFileAtomically(file, "old and long");
+  WriteFileAtomically(file, "new");
+  EXPECT_EQ(ReadTextFile(file), "new");
+  const std::filesystem::directory_iterator files(folder.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+TEST(TextFileTest, NamesTheFileItCannotWrite) {
+  const TempFolder folder;
+  ExpectInputError([&] { WriteFileAtomically(folder / "none/a.txt", "x"); },
+                   {folder / "none/a.txt"});
+  // A folder in the way: the renaming fails and leaves nothing behind.
+  folder.Write("b.txt/inside", "x");
+  ExpectInputError([&] { WriteFileAtomically(folder / "b.txt", "x"); },
+                   {folder / "b.txt"});
+  const std::filesystem::directory_iterator files(folder.path());
+  EXPECT_EQ(std::distance(begin(files), end(files)), 1);
+}
+
+TEST(TextFileTest, TellsAheadWhatItCannotWrite) {
+  const TempFolder folder;
+  ExpectInputError([&] { RequireWritable(folder / "none/a.txt"); },
+                   {folder / "none/a.txt"});
+  ExpectInputError([&] { RequireWritable(folder.path()); }, {folder.path()});
+  RequireWritable(folder / "a.txt");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  folder.Write("a.txt", "x");
+  RequireWritable(folder / "a.txt");
+  EXPECT_EQ(ReadTextFile(folder / "a.txt"), "x");
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,174 @@
+// The three assemblies are one problem: equal cost, gradient, J^T J and, step
+// for step, equal iterations of Ceres.
+
+#include <ceres/crs_matrix.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <tuple>
+#include <vector>
+
+#include "core/estimation/cost.h"
+#include "costs/cost_factory.h"
+#include "frontend/simulation/synthetic_matches.h"
+#include "robust/m_estimator.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kEqual = 1e-10;      // sums of some hundred terms
+constexpr double kEqualSteps = 1e-9;  // the same after some iterations
+
+// So many depths are missing on each side that every cost finds matches to use
+// and matches to leave.
+constexpr double kMissingDepthShare = 0.25;
+
+class AssemblyTest
+    : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {
+ protected:
+  AssemblyTest() {
+    const MEstimator* row = FindMEstimator(std::get<1>(GetParam()));
+    cost_ = MakeCost(std::get<0>(GetParam()));
+    // Wide enough for all weights to differ from 0 at the guess.
+    if (row->make != nullptr) {
+      loss_ = row->make(20.0 * row->Width95(cost_->independent_rows()));
+    }
+  }
+
+  // Binds `count` matches that the cost can use, a fifth of them wrong, among
+  // others that it cannot (a prior is one block), at a motion off the truth.
+  // The baseline is long: near C = 0, where all epipolar residuals vanish and
+  // wrong matches therefore push, one step amplifies rounding a thousandfold.
+  void Bind(int count) {
+    RandomWorld world(7);
+    const Rigid3d truth = world.Motion(0.05, 0.3);
+    const Rigid3d guess = world.Motion(0.01, 0.01) * truth;
+    const MotionPrior prior = world.Prior(truth, 0.05);
+    origin_ = MotionOrigin(guess);
+    matches_.Clear();
+    for (int usable = 0; usable < count;) {
+      const double outlier_share = matches_.size() % 5 == 0 ? 1.0 : 0.0;
+      const Correspondences one =
+          world.Matches(1, outlier_share, truth,
+                        /*noise=*/true, kMissingDepthShare);
+      matches_.Add(one.prev()[0], one.cur()[0]);
+      cost_->Bind({one, guess, &prior});
+      usable += static_cast<int>(cost_->matches().size());
+    }
+    cost_->Bind({matches_, guess, &prior});
+    const MotionPrior here{guess, 1e-4 * MotionMatrix::Identity()};
+    anchor_->Bind({matches_, guess, &here});
+    const bool is_prior = cost_->matches()[0] < 0;
+    ASSERT_EQ(cost_->matches().size(), is_prior ? 1u : count);
+  }
+
+  std::unique_ptr<ceres::Problem> Build(Assembly assembly, double* x) {
+    ceres::Problem::Options options;
+    options.cost_function_ownership = BlockOwnership(assembly);
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    auto problem = std::make_unique<ceres::Problem>(options);
+    cost_->AddTo(assembly, origin_, loss_.get(), x, problem.get());
+    return problem;
+  }
+
+  NormalEquations Evaluate(Assembly assembly, MotionVector x) {
+    auto problem = Build(assembly, x.data());
+    NormalEquations result;
+    std::vector<double> gradient;
+    ceres::CRSMatrix crs;
+    problem->Evaluate({}, &result.cost, nullptr, &gradient, &crs);
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(crs.num_rows, 6);
+    for (int row = 0; row < crs.num_rows; ++row) {
+      for (int k = crs.rows[row]; k < crs.rows[row + 1]; ++k) {
+        J(row, crs.cols[k]) = crs.values[k];
+      }
+    }
+    result.hessian = J.transpose() * J;
+    result.gradient = Eigen::Map<MotionVector>(gradient.data());
+    return result;
+  }
+
+  // Together with an anchor of 1 cm and 0.6 degrees, the same for all: epipolar
+  // matches alone leave the scale open, where steps are only rounding, and a
+  // prior alone is met exactly, so that costs are only rounding.
+  ceres::Solver::Summary Solve(Assembly assembly, MotionVector* x) {
+    auto problem = Build(assembly, x->data());
+    anchor_->AddTo(assembly, origin_, nullptr, x->data(), problem.get());
+    ceres::Solver::Options options;
+    options.logging_type = ceres::SILENT;
+    options.linear_solver_type = ceres::DENSE_QR;
+    // Scaling by column norms rounds differently; it has no other influence.
+    options.max_num_iterations = 8;
+    ceres::Solver::Summary summary;
+    ceres::Solve(options, problem.get(), &summary);
+    return summary;
+  }
+
+  MotionOrigin origin_;
+  Correspondences matches_;
+  std::unique_ptr<Cost> cost_;
+  std::unique_ptr<Cost> anchor_ = MakeCost("motion_prior");
+  std::unique_ptr<ceres::LossFunction> loss_;
+};
+
+TEST_P(AssemblyTest, CostGradientAndHessianAreEqual) {
+  // Sizes around the width of the vector loops' lanes: the tails matter.
+  for (const int count : {6, 7, 8, 9, 301}) {
+    Bind(count);
+    MotionVector x;
+    x << 0.01, -0.02, 0.015, 0.02, 0.01, -0.03;
+    const NormalEquations expected = Evaluate(Assembly::kPerMatch, x);
+    for (const Assembly assembly :
+         {Assembly::kAutodiff, Assembly::kCompressed}) {
+      const NormalEquations actual = Evaluate(assembly, x);
+      EXPECT_NEAR(actual.cost, expected.cost, kEqual * expected.cost);
+      EXPECT_LE((actual.gradient - expected.gradient).norm(),
+                kEqual * expected.gradient.norm());
+      EXPECT_LE((actual.hessian - expected.hessian).norm(),
+                kEqual * expected.hessian.norm());
+    }
+  }
+}
+
+TEST_P(AssemblyTest, CeresTakesTheSameSteps) {
+  Bind(300);
+  MotionVector x = MotionVector::Zero();
+  const ceres::Solver::Summary expected = Solve(Assembly::kPerMatch, &x);
+  for (const Assembly assembly : {Assembly::kAutodiff, Assembly::kCompressed}) {
+    MotionVector y = MotionVector::Zero();
+    const ceres::Solver::Summary actual = Solve(assembly, &y);
+    ASSERT_EQ(actual.iterations.size(), expected.iterations.size());
+    for (size_t i = 0; i < expected.iterations.size(); ++i) {
+      EXPECT_NEAR(actual.iterations[i].cost, expected.iterations[i].cost,
+                  kEqualSteps * expected.iterations[i].cost)
+          << "iteration " << i;
+    }
+    EXPECT_LE((x - y).norm(), kEqualSteps);
+  }
+}
+
+TEST_P(AssemblyTest, LineariseIsTheProblemsNormalEquations) {
+  Bind(50);
+  MotionVector x;
+  x << 0.01, -0.02, 0.015, 0.02, 0.01, -0.03;
+  const NormalEquations expected = Evaluate(Assembly::kPerMatch, x);
+  NormalEquations actual;
+  cost_->Linearise(origin_.DerivativesAt(x.data()), loss_.get(), &actual);
+  EXPECT_NEAR(actual.cost, expected.cost, kEqual * expected.cost);
+  EXPECT_LE((actual.hessian - expected.hessian).norm(),
+            kEqual * expected.hessian.norm());
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CostsAndLosses, AssemblyTest,
+    ::testing::Combine(::testing::ValuesIn(CostNames()),
+                       ::testing::ValuesIn(MEstimatorNames())),
+    [](const auto& info) {
+      return std::get<0>(info.param) + "_" + std::get<1>(info.param);
+    });
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,118 @@
+// Which matches each cost takes in.
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/estimation/cost.h"
+#include "costs/cost_factory.h"
+#include "costs/matches/epipolar.h"
+#include "frontend/simulation/synthetic_matches.h"
+
+namespace rgbd_pose {
+namespace {
+
+Rigid3d Motion() { return RandomWorld(4).Motion(0.1, 0.3); }
+
+// Match 0 has both depths, 1 that of the previous frame, 2 that of the current
+// frame, 3 none; 4 has both and no normal.
+Correspondences MatchesOfAllKinds() {
+  RandomWorld world(3);
+  const Correspondences whole = world.Matches(5, 0.0, Motion());
+  Correspondences matches(whole.camera());
+  for (int i = 0; i < 5; ++i) {
+    Observation prev = whole.prev()[i], cur = whole.cur()[i];
+    if (i == 2 || i == 3) prev.depth = 0.0;
+    if (i == 1 || i == 3) cur.depth = 0.0;
+    if (i == 4) cur.normal.setZero();
+    matches.Add(prev, cur);
+  }
+  return matches;
+}
+
+const std::map<std::string, std::vector<int>>& UsedMatches() {
+  static const auto& used = *new std::map<std::string, std::vector<int>>{
+      {"bidirectional_point", {0, 4}}, {"bidirectional_image", {0, 1, 2, 4}},
+      {"point_to_point", {0, 4}},      {"mahalanobis_point", {0, 4}},
+      {"point_to_plane", {0}},         {"reprojection", {0, 1, 4}},
+      {"reprojection_depth", {0, 4}},  {"epipolar", {1, 2, 3}},
+      {"motion_prior", {-1}},
+  };
+  return used;
+}
+
+TEST(CostMatchesTest, EachCostTakesWhatItCanUse) {
+  const Correspondences matches = MatchesOfAllKinds();
+  const MotionPrior prior;
+  for (const std::string& name : CostNames()) {
+    const std::unique_ptr<Cost> cost = MakeCost(name);
+    ASSERT_TRUE(UsedMatches().count(name)) << name << " is missing above";
+    cost->Bind({matches, Motion(), &prior});
+    EXPECT_EQ(cost->matches(), UsedMatches().at(name)) << name;
+  }
+}
+
+// Of one frame's depth bidirectional_image has u and v alone.
+TEST(CostMatchesTest, DegreesTellWhatIsMissing) {
+  const Correspondences matches = MatchesOfAllKinds();
+  const MotionPrior prior;
+  for (const std::string& name : CostNames()) {
+    const std::unique_ptr<Cost> cost = MakeCost(name);
+    cost->Bind({matches, Motion(), &prior});
+    std::vector<int> expected(cost->matches().size(), cost->independent_rows());
+    if (name == "bidirectional_image") expected = {3, 2, 2, 3};
+    EXPECT_EQ(cost->degrees(), expected) << name;
+  }
+}
+
+// The rays of an epipolar match have to see the baseline and meet before both
+// cameras.
+TEST(CostMatchesTest, EpipolarNeedsABaselineAndAPointInFront) {
+  const Camera camera;
+  const double short_baseline = 0.9 * Epipolar::kMinBaseline;
+  const auto uses = [&](double baseline, double depth) {
+    // The current camera is to the right, so the point moves to the left.
+    const Rigid3d motion(Eigen::Quaterniond::Identity(),
+                         Eigen::Vector3d(-baseline, 0.0, 0.0));
+    Observation prev, cur;
+    prev.u = camera.cx;
+    cur.u = camera.cx - camera.fx * baseline / depth;
+    prev.v = cur.v = camera.cy;
+    Correspondences matches(camera);
+    matches.Add(prev, cur);
+    const std::unique_ptr<Cost> cost = MakeCost("epipolar");
+    cost->Bind({matches, motion});
+    return !cost->matches().empty();
+  };
+  EXPECT_TRUE(uses(0.3, 2.0));
+  EXPECT_TRUE(uses(0.3, 1e6));
+  EXPECT_FALSE(uses(0.3, -2.0)) << "behind both cameras";
+  EXPECT_TRUE(uses(0.3, -300.0)) << "at infinity, within the noise";
+  EXPECT_FALSE(uses(0.3, 0.9 * Epipolar::kNearest));
+  EXPECT_TRUE(uses(0.3, 2.0 * Epipolar::kNearest));
+  EXPECT_TRUE(uses(0.03, 0.99 * Epipolar::kNearest)) << "within the noise";
+  EXPECT_FALSE(uses(short_baseline, 2.0));
+  EXPECT_FALSE(uses(0.0, 2.0));
+}
+
+// Costs keep nothing of what they were bound to before.
+TEST(CostMatchesTest, BindingToNothingLeavesNothing) {
+  const Correspondences matches = MatchesOfAllKinds();
+  const MotionPrior prior;
+  for (const std::string& name : CostNames()) {
+    const std::unique_ptr<Cost> cost = MakeCost(name);
+    cost->Bind({matches, Motion(), &prior});
+    cost->Bind({Correspondences(), Rigid3d()});
+    EXPECT_TRUE(cost->matches().empty()) << name;
+    NormalEquations sum;
+    const MotionVector zero = MotionVector::Zero();
+    cost->Linearise(MotionOrigin().DerivativesAt(zero.data()), nullptr, &sum);
+    EXPECT_EQ(sum.cost, 0.0) << name;
+    EXPECT_TRUE(sum.hessian.isZero(0.0)) << name;
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,180 @@
+// Scenes and costs that leave directions of motion open: a status that names
+// one of them, never a number that is none.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/estimation/estimator.h"
+#include "costs/cost_factory.h"
+#include "frontend/simulation/synthetic_matches.h"
+
+namespace rgbd_pose {
+namespace {
+
+using ::testing::Values;
+
+// Of 150 matches with the noise of a Kinect; six sigmas.
+constexpr double kMaxAngle = 0.006;        // rad
+constexpr double kMaxTranslation = 0.012;  // m
+
+Estimator MakeEstimator(const std::string& costs) {
+  return Estimator({}, MakeRobustCosts(costs, "tukey"));
+}
+
+void ExpectSane(const MotionEstimate& estimate) {
+  EXPECT_TRUE(estimate.cur_from_prev.IsFinite());
+  EXPECT_TRUE(estimate.covariance.allFinite());
+  EXPECT_TRUE(std::isfinite(estimate.final_cost));
+  EXPECT_TRUE(std::isfinite(estimate.sigma));
+  EXPECT_EQ(estimate.reason.empty(), estimate.ok());
+}
+
+// Matches on the plane z = `depth` of the previous frame, with its normal, seen
+// before and after a motion.
+Correspondences MatchesOnAPlane(int count, double depth, const Rigid3d& truth,
+                                bool noise) {
+  RandomWorld world(21);
+  const Camera camera;
+  Correspondences matches(camera);
+  for (int i = 0; i < count; ++i) {
+    Observation prev, cur;
+    prev.u = world.Uniform(0.0, camera.width - 1.0);
+    prev.v = world.Uniform(0.0, camera.height - 1.0);
+    prev.depth = depth;
+    const Eigen::Vector3d point = truth * matches.Point(prev);
+    const Eigen::Vector2d pixel = camera.Project(point);
+    cur.u = pixel.x();
+    cur.v = pixel.y();
+    cur.depth = point.z();
+    cur.normal = truth.rotation * Eigen::Vector3d(0.0, 0.0, -1.0);
+    for (Observation* o : {&prev, &cur}) {
+      o->sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(o->depth);
+      if (noise) world.AddNoise(o);
+    }
+    matches.Add(prev, cur);
+  }
+  return matches;
+}
+
+class EveryCostTest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(EveryCostTest, FewerThanThreeMatchesAreTooFew) {
+  RandomWorld world(20);
+  const Rigid3d truth = world.Motion(0.05, 0.1);
+  const MotionPrior prior = world.Prior(truth, 0.01);
+  const double missing_depth_share = GetParam() == "epipolar" ? 1.0 : 0.0;
+  for (const int count : {0, 1, 2}) {
+    const Correspondences matches =
+        world.Matches(count, 0.0, truth, /*noise=*/true, missing_depth_share);
+    const MotionEstimate estimate =
+        MakeEstimator(GetParam()).Estimate(matches, truth, &prior);
+    EXPECT_EQ(estimate.status, EstimateStatus::kTooFewMatches) << count;
+    ExpectSane(estimate);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Costs, EveryCostTest, ::testing::ValuesIn(CostNames()),
+                         [](const auto& info) { return info.param; });
+
+class OneDepthTest : public ::testing::TestWithParam<std::string> {};
+
+// A wall straight ahead is no trouble where a match is more than a distance
+// from it.
+TEST_P(OneDepthTest, IsEnough) {
+  const Rigid3d truth = RandomWorld(22).Motion(0.05, 0.05);
+  const MotionEstimate estimate =
+      MakeEstimator(GetParam())
+          .Estimate(MatchesOnAPlane(150, 2.0, truth, /*noise=*/true));
+  EXPECT_TRUE(estimate.ok()) << estimate.reason;
+  ExpectSane(estimate);
+  const Rigid3d error = estimate.cur_from_prev.Inverse() * truth;
+  EXPECT_LE(error.Angle(), kMaxAngle);
+  EXPECT_LE(error.translation.norm(), kMaxTranslation);
+}
+
+INSTANTIATE_TEST_SUITE_P(Costs, OneDepthTest,
+                         Values("bidirectional_point", "bidirectional_image",
+                                "point_to_point", "mahalanobis_point",
+                                "reprojection", "reprojection_depth"),
+                         [](const auto& info) { return info.param; });
+
+// Of a plane its distance is all that counts: gliding along it and turning
+// about its normal stay open, noise or not.
+TEST(DegenerateScenesTest, PointToPlaneOnOnePlane) {
+  for (const bool noise : {false, true}) {
+    const MotionEstimate estimate =
+        MakeEstimator("point_to_plane")
+            .Estimate(MatchesOnAPlane(150, 2.0, Rigid3d(), noise));
+    EXPECT_EQ(estimate.status, EstimateStatus::kDegenerate);
+    ExpectSane(estimate);
+    const bool names_one = estimate.reason.find("translation along x") == 0 ||
+                           estimate.reason.find("translation along y") == 0 ||
+                           estimate.reason.find("rotation about z") == 0;
+    EXPECT_TRUE(names_one) << estimate.reason;
+  }
+}
+
+// What one cost leaves open another one may know.
+TEST(DegenerateScenesTest, APriorHelpsOnOnePlane) {
+  RandomWorld world(23);
+  const Rigid3d truth = world.Motion(0.05, 0.05);
+  const MotionPrior prior = world.Prior(truth, 0.01);
+  Estimator estimator(
+      {}, MakeRobustCosts("point_to_plane+motion_prior", "tukey,none"));
+  const MotionEstimate estimate =
+      estimator.Estimate(MatchesOnAPlane(150, 2.0, truth, /*noise=*/true),
+                         prior.cur_from_prev, &prior);
+  EXPECT_TRUE(estimate.ok()) << estimate.reason;
+  ExpectSane(estimate);
+}
+
+// Without any depth the length of C is open: the weak direction is its own.
+TEST(DegenerateScenesTest, EpipolarAloneHasNoScale) {
+  const char* names[] = {"translation along x", "translation along y",
+                         "translation along z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const bool noise : {false, true}) {
+      RandomWorld world(24);
+      const Eigen::Vector3d C = 0.3 * Eigen::Vector3d::Unit(axis);
+      const Rigid3d truth(Eigen::Quaterniond::Identity(), -C);
+      const MotionEstimate estimate =
+          MakeEstimator("epipolar")
+              .Estimate(world.Matches(150, 0.0, truth, noise,
+                                      /*missing_depth_share=*/1.0),
+                        truth);
+      EXPECT_EQ(estimate.status, EstimateStatus::kDegenerate);
+      ExpectSane(estimate);
+      EXPECT_EQ(estimate.reason.find(names[axis]), 0u) << estimate.reason;
+    }
+  }
+}
+
+// From a guess without a baseline the epipolar cost can use nothing.
+TEST(DegenerateScenesTest, EpipolarAloneNeedsAGuess) {
+  RandomWorld world(25);
+  const Rigid3d truth = world.Motion(0.05, 0.3);
+  const MotionEstimate estimate =
+      MakeEstimator("epipolar")
+          .Estimate(world.Matches(150, 0.0, truth, true,
+                                  /*missing_depth_share=*/1.0));
+  EXPECT_EQ(estimate.status, EstimateStatus::kTooFewMatches);
+  ExpectSane(estimate);
+}
+
+// All matches may drop out between stages: here the guess has a baseline and
+// the matches know that there is none.
+TEST(DegenerateScenesTest, EpipolarMatchesMayAllDropOut) {
+  RandomWorld world(26);
+  const Rigid3d guess(Eigen::Quaterniond::Identity(),
+                      Eigen::Vector3d(0.03, 0.0, 0.0));
+  const MotionEstimate estimate =
+      MakeEstimator("epipolar")
+          .Estimate(world.Matches(150, 0.5, Rigid3d(), true, 1.0), guess);
+  EXPECT_FALSE(estimate.ok());
+  ExpectSane(estimate);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

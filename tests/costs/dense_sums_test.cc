@@ -1,0 +1,121 @@
+// Sums over many matches: taken chunk by chunk, on any number of threads.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/estimation/estimator.h"
+#include "core/util/parallel_for.h"
+#include "costs/cost_factory.h"
+#include "frontend/simulation/synthetic_matches.h"
+#include "robust/m_estimator.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Some chunks (costs/assembly/packed_sum.h) and a part of one, not a multiple
+// of a lane.
+constexpr int kMany = 30003;
+
+TEST(ParallelForTest, DoesEverythingOnce) {
+  for (const int n : {0, 1, 2, 7}) {
+    for (const int threads : {1, 2, 3, 16}) {
+      std::vector<int> done(n, 0);
+      ParallelFor(n, threads, [&](int i) { ++done[i]; });
+      EXPECT_EQ(done, std::vector<int>(n, 1)) << n << " on " << threads;
+    }
+  }
+}
+
+class DenseSumsTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  DenseSumsTest() {
+    RandomWorld world(11);
+    truth_ = world.Motion(0.02, 0.3);
+    matches_ = world.Matches(kMany, 0.1, truth_, /*noise=*/true,
+                             /*missing_depth_share=*/0.2);
+  }
+
+  NormalEquations Sum(const Correspondences& matches, int threads) const {
+    const std::unique_ptr<Cost> cost = MakeCost(GetParam());
+    const auto loss =
+        FindMEstimator("huber")->MakeLoss(cost->independent_rows());
+    cost->Bind({matches, truth_, nullptr, threads});
+    NormalEquations sum;
+    const MotionOrigin origin(truth_);
+    const MotionVector x = MotionVector::Constant(0.001);
+    cost->Linearise(origin.DerivativesAt(x.data()), loss.get(), &sum);
+    return sum;
+  }
+
+  Rigid3d truth_;
+  Correspondences matches_;
+};
+
+TEST_P(DenseSumsTest, AreTheSameToTheLastBitOnAnyNumberOfThreads) {
+  const NormalEquations one = Sum(matches_, 1);
+  ASSERT_GT(one.cost, 0.0);
+  for (const int threads : {2, 3, 8}) {
+    const NormalEquations many = Sum(matches_, threads);
+    EXPECT_EQ(many.cost, one.cost) << threads;
+    EXPECT_EQ(many.gradient, one.gradient) << threads;
+    EXPECT_EQ(many.hessian, one.hessian) << threads;
+  }
+}
+
+// The parts, each small enough for one chunk, add up to the whole.
+TEST_P(DenseSumsTest, AreThoseOfTheirParts) {
+  const NormalEquations whole = Sum(matches_, 2);
+  NormalEquations parts;
+  constexpr size_t kPart = 1000;
+  for (size_t first = 0; first < matches_.size(); first += kPart) {
+    Correspondences part(matches_.camera());
+    for (size_t i = first; i < std::min(first + kPart, matches_.size()); ++i) {
+      part.Add(matches_.prev()[i], matches_.cur()[i]);
+    }
+    const NormalEquations sum = Sum(part, 1);
+    parts.cost += sum.cost;
+    parts.gradient += sum.gradient;
+    parts.hessian += sum.hessian;
+  }
+  constexpr double kEqual = 1e-10;  // sums of tens of thousands of terms
+  EXPECT_NEAR(whole.cost, parts.cost, kEqual * parts.cost);
+  EXPECT_LE((whole.hessian - parts.hessian).norm(),
+            kEqual * parts.hessian.norm());
+  // The gradient is a small rest of large terms: sqrt(2 c H) bounds them.
+  EXPECT_LE((whole.gradient - parts.gradient).norm(),
+            kEqual * std::sqrt(2.0 * parts.cost * parts.hessian.norm()));
+}
+
+INSTANTIATE_TEST_SUITE_P(AllCosts, DenseSumsTest,
+                         ::testing::Values("bidirectional_point",
+                                           "bidirectional_image",
+                                           "reprojection_depth", "epipolar"),
+                         [](const auto& info) { return info.param; });
+
+TEST(DenseEstimateTest, ThreadsDoNotChangeABit) {
+  RandomWorld world(12);
+  const Rigid3d truth = world.Motion(0.05, 0.1);
+  const Correspondences matches = world.Matches(kMany, 0.2, truth);
+  std::vector<MotionEstimate> estimates;
+  for (const int threads : {1, 4}) {
+    EstimatorOptions options;
+    options.threads = threads;
+    Estimator estimator(options,
+                        MakeRobustCosts("bidirectional_point", "tukey"));
+    estimates.push_back(estimator.Estimate(matches));
+    EXPECT_TRUE(estimates.back().ok()) << estimates.back().reason;
+  }
+  EXPECT_EQ(estimates[0].cur_from_prev.rotation.coeffs(),
+            estimates[1].cur_from_prev.rotation.coeffs());
+  EXPECT_EQ(estimates[0].cur_from_prev.translation,
+            estimates[1].cur_from_prev.translation);
+  EXPECT_EQ(estimates[0].covariance, estimates[1].covariance);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

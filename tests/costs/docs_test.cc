@@ -1,0 +1,116 @@
+// docs/costs.md and docs/losses.md against the lists of costs and losses.
+
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/estimation/cost.h"
+#include "costs/cost_factory.h"
+#include "robust/m_estimator.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct Entry {
+  std::string rows;
+  std::string independent_rows;
+};
+
+// The cells of a table's line "| a | b | c |"; of any other line none.
+std::vector<std::string> Cells(const std::string& line) {
+  std::vector<std::string> cells;
+  if (line.empty() || line[0] != '|') return cells;
+  std::istringstream stream(line.substr(1));
+  std::string cell;
+  while (std::getline(stream, cell, '|')) {
+    const size_t first = cell.find_first_not_of(' ');
+    const size_t last = cell.find_last_not_of(' ');
+    cells.push_back(
+        first == std::string::npos ? "" : cell.substr(first, last - first + 1));
+  }
+  return cells;
+}
+
+// Sections "## `name`" and the lines "| `name` | rows | independent rows |".
+class CostsDocumentTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::ifstream file(RGBD_POSE_DOCS_DIR "/costs.md");
+    ASSERT_TRUE(file.is_open());
+    std::string line;
+    while (std::getline(file, line)) {
+      if (line.rfind("## `", 0) == 0) {
+        ++sections_[line.substr(4, line.rfind('`') - 4)];
+      }
+      const std::vector<std::string> cells = Cells(line);
+      if (cells.size() < 3 || cells[0].size() < 3 || cells[0][0] != '`') {
+        continue;
+      }
+      const std::string name = cells[0].substr(1, cells[0].size() - 2);
+      EXPECT_EQ(table_.count(name), 0u) << name << " twice";
+      table_[name] = {cells[1], cells[2]};
+    }
+  }
+
+  std::map<std::string, Entry> table_;
+  std::map<std::string, int> sections_;
+};
+
+TEST_F(CostsDocumentTest, HasEveryCostWithItsRows) {
+  for (const std::string& name : CostNames()) {
+    EXPECT_EQ(sections_[name], 1) << "no section on " << name;
+    ASSERT_TRUE(table_.count(name)) << name << " is missing in the table";
+    const std::unique_ptr<Cost> cost = MakeCost(name);
+    EXPECT_EQ(table_[name].rows, std::to_string(cost->rows())) << name;
+    EXPECT_EQ(table_[name].independent_rows,
+              std::to_string(cost->independent_rows()))
+        << name;
+  }
+}
+
+TEST_F(CostsDocumentTest, HasNoCostThatIsNone) {
+  const std::vector<std::string> names = CostNames();
+  EXPECT_EQ(table_.size(), names.size());
+  for (const auto& [name, count] : sections_) {
+    EXPECT_NE(MakeCost(name), nullptr) << name;
+  }
+}
+
+std::string Printed(double width) {
+  char text[16];
+  std::snprintf(text, sizeof(text), "%.4f", width);
+  return text;
+}
+
+// The lines "| `name` | weight | width, 1 | width, 3 | redescending |".
+TEST(LossesDocumentTest, HasEveryLossAsItIs) {
+  std::ifstream file(RGBD_POSE_DOCS_DIR "/losses.md");
+  ASSERT_TRUE(file.is_open());
+  std::vector<std::vector<std::string>> table;
+  std::string line;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> cells = Cells(line);
+    if (!cells.empty() && cells[0][0] == '`' && cells[0].back() == '`' &&
+        cells[0][1] != '-') {
+      table.push_back(cells);
+    }
+  }
+  std::vector<std::vector<std::string>> expected;
+  for (const MEstimator& row : MEstimators()) {
+    expected.push_back({"`" + std::string(row.name) + "`",
+                        std::string(row.formula),
+                        row.is_tuned ? Printed(row.Width95(1)) : "",
+                        row.is_tuned ? Printed(row.Width95(3)) : "",
+                        row.is_redescending ? "yes" : "no"});
+  }
+  EXPECT_EQ(table, expected);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,193 @@
+#include "core/estimation/estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/util/input_error.h"
+#include "costs/cost_factory.h"
+#include "frontend/simulation/synthetic_matches.h"
+#include "robust/m_estimator.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct MotionError {
+  double angle;        // rad
+  double translation;  // m, of the current centre in the previous frame
+};
+
+MotionError ErrorOf(const Rigid3d& estimate, const Rigid3d& truth) {
+  const Rigid3d difference = estimate.Inverse() * truth;
+  return {difference.Angle(), difference.translation.norm()};
+}
+
+Estimator MakeEstimator(const std::string& loss,
+                        Assembly assembly = Assembly::kCompressed) {
+  EstimatorOptions options;
+  options.assembly = assembly;
+  return Estimator(options, MakeRobustCosts("bidirectional_point", loss));
+}
+
+TEST(EstimatorTest, FindsANoiselessMotionExactly) {
+  RandomWorld world(11);
+  for (const std::string loss : {"none", "huber", "cauchy", "tukey"}) {
+    Estimator estimator = MakeEstimator(loss);
+    const Rigid3d truth = world.Motion(0.2, 0.3);
+    const MotionEstimate estimate =
+        estimator.Estimate(world.Matches(100, 0.0, truth, /*noise=*/false));
+    EXPECT_EQ(estimate.status, EstimateStatus::kOk) << estimate.reason;
+    const MotionError error = ErrorOf(estimate.cur_from_prev, truth);
+    EXPECT_LE(error.angle, 1e-8) << loss;
+    EXPECT_LE(error.translation, 1e-8) << loss;
+    EXPECT_EQ(estimate.num_inliers, 100);
+  }
+}
+
+TEST(EstimatorTest, TheThreeAssembliesAgree) {
+  RandomWorld world(12);
+  const Rigid3d truth = world.Motion(0.1, 0.1);
+  const Correspondences matches = world.Matches(200, 0.2, truth);
+  const MotionEstimate expected =
+      MakeEstimator("tukey", Assembly::kPerMatch).Estimate(matches);
+  for (const Assembly assembly : {Assembly::kAutodiff, Assembly::kCompressed}) {
+    const MotionEstimate actual =
+        MakeEstimator("tukey", assembly).Estimate(matches);
+    const MotionError error =
+        ErrorOf(actual.cur_from_prev, expected.cur_from_prev);
+    EXPECT_LE(error.angle, 1e-9);
+    EXPECT_LE(error.translation, 1e-9);
+    EXPECT_EQ(actual.iterations, expected.iterations);
+    EXPECT_EQ(actual.is_inlier, expected.is_inlier);
+  }
+}
+
+// 30 % of the matches are grossly wrong: Tukey stays within three times the
+// error that is left without any wrong match.
+TEST(EstimatorTest, TukeySurvivesThirtyPercentOutliers) {
+  double clean = 0.0, dirty = 0.0, clean_angle = 0.0, dirty_angle = 0.0;
+  Estimator estimator = MakeEstimator("tukey");
+  constexpr int kTrials = 30;
+  for (int seed = 0; seed < kTrials; ++seed) {
+    for (const double outliers : {0.0, 0.3}) {
+      RandomWorld world(100 + seed);
+      const Rigid3d truth = world.Motion(0.1, 0.1);
+      const MotionEstimate estimate =
+          estimator.Estimate(world.Matches(300, outliers, truth));
+      ASSERT_TRUE(estimate.ok()) << estimate.reason;
+      const MotionError error = ErrorOf(estimate.cur_from_prev, truth);
+      (outliers > 0 ? dirty : clean) += error.translation;
+      (outliers > 0 ? dirty_angle : clean_angle) += error.angle;
+      if (outliers > 0) {
+        // No single trial may be far off either: half the inlier share.
+        EXPECT_LE(error.translation, 0.01);
+        EXPECT_NEAR(estimate.num_inliers, 208, 25);  // 99 % of 210
+      }
+    }
+  }
+  EXPECT_LE(dirty, 3.0 * clean);
+  EXPECT_LE(dirty_angle, 3.0 * clean_angle);
+}
+
+TEST(EstimatorTest, LeastSquaresIsRuinedByTheSameOutliers) {
+  RandomWorld world(100);
+  const Rigid3d truth = world.Motion(0.1, 0.1);
+  const Correspondences matches = world.Matches(300, 0.3, truth);
+  const MotionEstimate estimate = MakeEstimator("none").Estimate(matches);
+  EXPECT_GT(ErrorOf(estimate.cur_from_prev, truth).translation, 0.02)
+      << "the outliers of the other tests are no challenge";
+}
+
+// The norms are what the loss weighed: Huber gives 1 up to its width and the
+// width over the norm beyond. They are those of the noise, too.
+TEST(EstimatorTest, ResidualNormsExplainTheWeights) {
+  RandomWorld world(13);
+  const MotionEstimate estimate = MakeEstimator("huber").Estimate(
+      world.Matches(2000, 0.0, world.Motion(0.1, 0.1)));
+  ASSERT_TRUE(estimate.ok()) << estimate.reason;
+  ASSERT_EQ(estimate.residual_norms.size(), 2000u);
+  const double width = FindMEstimator("huber")->Width95(3);
+  double sum_of_squares = 0.0;
+  for (size_t i = 0; i < estimate.residual_norms.size(); ++i) {
+    EXPECT_EQ(estimate.residual_degrees[i], 3);
+    const double norm = estimate.residual_norms[i];
+    EXPECT_NEAR(estimate.weights[i], norm <= width ? 1.0 : width / norm, 1e-12);
+    sum_of_squares += norm * norm;
+  }
+  // The mean of chi^2 of 3 degrees over 2000 matches scatters by 0.055.
+  EXPECT_NEAR(sum_of_squares / 2000, 3.0, 0.3);
+}
+
+TEST(EstimatorTest, TooFewMatchesAreAStatus) {
+  RandomWorld world(13);
+  for (const int count : {0, 1, 2}) {
+    const MotionEstimate estimate =
+        MakeEstimator("tukey").Estimate(world.Matches(count, 0.0, Rigid3d()));
+    EXPECT_EQ(estimate.status, EstimateStatus::kTooFewMatches);
+    EXPECT_NE(estimate.reason, "");
+  }
+}
+
+TEST(EstimatorTest, CountsWhatWasRejectedAsNotFinite) {
+  Correspondences matches;
+  const Observation bad{std::nan(""), 0, 1, 1, 1};
+  for (int i = 0; i < 5; ++i) matches.Add(bad, bad);
+  const MotionEstimate estimate = MakeEstimator("tukey").Estimate(matches);
+  EXPECT_EQ(estimate.status, EstimateStatus::kTooFewMatches);
+  EXPECT_NE(estimate.reason.find("5 rejected"), std::string::npos);
+}
+
+// Points on a line leave the rotation about it open, noise or not.
+TEST(EstimatorTest, ALineIsDegenerate) {
+  for (const bool noise : {false, true}) {
+    RandomWorld world(14);
+    Correspondences matches;
+    const Camera camera;
+    for (int i = 0; i < 100; ++i) {
+      Observation o{world.Uniform(0, 639), camera.cy, 2.0, 0.5, 0.0057};
+      Observation prev = o, cur = o;
+      if (noise) {
+        world.AddNoise(&prev);
+        world.AddNoise(&cur);
+      }
+      matches.Add(prev, cur);
+    }
+    const MotionEstimate estimate = MakeEstimator("tukey").Estimate(matches);
+    EXPECT_EQ(estimate.status, EstimateStatus::kDegenerate);
+    EXPECT_NE(estimate.reason.find("rotation about x"), std::string::npos)
+        << estimate.reason;
+    EXPECT_TRUE(estimate.cur_from_prev.IsFinite());
+  }
+}
+
+TEST(EstimatorTest, MatchesThatContradictEachOtherAreInconsistent) {
+  RandomWorld world(15);
+  const MotionEstimate estimate =
+      MakeEstimator("huber").Estimate(world.Matches(200, 1.0, Rigid3d()));
+  EXPECT_FALSE(estimate.ok());
+  EXPECT_NE(estimate.reason, "");
+}
+
+TEST(EstimatorTest, DoesTheSameEachTime) {
+  RandomWorld world(16);
+  Estimator estimator = MakeEstimator("tukey");
+  const Correspondences matches =
+      world.Matches(300, 0.3, world.Motion(0.1, 0.1));
+  const MotionEstimate first = estimator.Estimate(matches);
+  estimator.Estimate(world.Matches(17, 0.0, Rigid3d()));  // leaves no trace
+  const MotionEstimate second = estimator.Estimate(matches);
+  EXPECT_EQ(first.cur_from_prev.translation, second.cur_from_prev.translation);
+  EXPECT_EQ(first.weights, second.weights);
+  EXPECT_EQ(first.final_cost, second.final_cost);
+}
+
+TEST(CostFactoryTest, NamesWhatIsUnknown) {
+  EXPECT_THROW(MakeRobustCosts("bidirectional", "tukey"), InputError);
+  EXPECT_THROW(MakeRobustCosts("bidirectional_point", "tuckey"), InputError);
+  EXPECT_THROW(MakeRobustCosts("bidirectional_point", "tukey,huber"),
+               InputError);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,154 @@
+// Every hand-written Jacobian against ceres::Jet, exactly; not against finite
+// differences, which would hide a wrong small term.
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "core/geometry/motion.h"
+#include "costs/assembly/match_blocks.h"
+#include "costs/cost_list.h"
+#include "frontend/simulation/residual_sample.h"
+#include "frontend/simulation/synthetic_matches.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Rounding of some tens of operations, relative to the largest entry of the
+// row: a row mixes terms of very different sizes that may cancel.
+constexpr double kTolerance = 1e-12;
+constexpr int kSamples = 1000;
+
+template <typename List>
+struct AsGTestTypes;
+template <typename... Types>
+struct AsGTestTypes<TypeList<Types...>> {
+  using type = ::testing::Types<Types...>;
+};
+
+template <typename Residual>
+class JacobianTest : public ::testing::Test {
+ protected:
+  using Rows = Eigen::Matrix<double, Residual::kRows, 1>;
+  using Jacobian = Eigen::Matrix<double, Residual::kRows, 6, Eigen::RowMajor>;
+
+  // Residual and Jacobian by hand and by ceres::Jet at one sample.
+  void EvaluateBoth(const ResidualSample<Residual>& sample) {
+    const double* parameters[] = {sample.x.data()};
+    double* by_hand[] = {hand_J_.data()};
+    ASSERT_TRUE(AnalyticBlock<Residual>(sample.origin, sample.columns)
+                    .Evaluate(parameters, hand_r_.data(), by_hand));
+    double* by_jet[] = {jet_J_.data()};
+    OracleBlock<Residual> oracle(
+        new OracleFunctor<Residual>(sample.origin, sample.columns));
+    ASSERT_TRUE(oracle.Evaluate(parameters, jet_r_.data(), by_jet));
+  }
+
+  // Relative to the oracle's row; absolute where that is zero.
+  double RowError(int row, int first_column, int columns) const {
+    const double size = jet_J_.row(row).template lpNorm<Eigen::Infinity>();
+    const double error = (hand_J_.row(row) - jet_J_.row(row))
+                             .segment(first_column, columns)
+                             .template lpNorm<Eigen::Infinity>();
+    return size > 0.0 ? error / size : error;
+  }
+
+  Rows hand_r_, jet_r_;
+  Jacobian hand_J_, jet_J_;
+};
+
+struct CostName {
+  template <typename Residual>
+  static std::string GetName(int /*index*/) {
+    return Residual::kName;
+  }
+};
+
+TYPED_TEST_SUITE(JacobianTest, AsGTestTypes<ResidualTypes>::type, CostName);
+
+TYPED_TEST(JacobianTest, EqualsTheOracleRowByRow) {
+  RandomWorld world(1);
+  int telling[TypeParam::kRows] = {};  // samples where the row is not zero
+  for (int i = 0; i < kSamples; ++i) {
+    this->EvaluateBoth(ResidualSample<TypeParam>(&world));
+    for (int row = 0; row < TypeParam::kRows; ++row) {
+      const double scale = std::max(1.0, std::abs(this->jet_r_[row]));
+      EXPECT_NEAR(this->hand_r_[row], this->jet_r_[row], kTolerance * scale);
+      EXPECT_LE(this->RowError(row, 0, 6), kTolerance)
+          << TypeParam::kName << " row " << row << ", sample " << i;
+      if (this->jet_J_.row(row).norm() > 1e-6) ++telling[row];
+    }
+  }
+  for (int row = 0; row < TypeParam::kRows; ++row) {
+    EXPECT_GE(telling[row], kSamples / 2) << "vacuous samples, row " << row;
+  }
+}
+
+// The thesis' tables by number: which block of rows and columns each is, so
+// that a failure names the table to look at.
+struct Table {
+  const char* name;
+  int row;
+  int first_column;
+  int columns;
+};
+
+using BidirectionalPointTest = JacobianTest<BidirectionalPoint>;
+
+TEST_F(BidirectionalPointTest, EqualsTheOracleTableByTable) {
+  const Table tables[] = {
+      {"Table 2.3, current x error", 0, 0, 3},
+      {"Table 2.4, current y error", 1, 0, 3},
+      {"Table 2.5, current z error", 2, 0, 3},
+      {"Table 2.6, previous x error", 3, 0, 3},
+      {"Table 2.7, previous y error", 4, 0, 3},
+      {"Table 2.8, previous z error", 5, 0, 3},
+      {"Table 2.9, C columns of current x", 0, 3, 3},
+      {"Table 2.9, C columns of current y", 1, 3, 3},
+      {"Table 2.9, C columns of current z", 2, 3, 3},
+      {"Table 2.9, C columns of previous x", 3, 3, 3},
+      {"Table 2.9, C columns of previous y", 4, 3, 3},
+      {"Table 2.9, C columns of previous z", 5, 3, 3},
+  };
+  RandomWorld world(2);
+  for (int i = 0; i < kSamples; ++i) {
+    EvaluateBoth(ResidualSample<BidirectionalPoint>(&world));
+    for (const Table& table : tables) {
+      EXPECT_LE(RowError(table.row, table.first_column, table.columns),
+                kTolerance)
+          << table.name << ", sample " << i;
+    }
+  }
+}
+
+// With unit whitening on the optical axis (a = b = 0) the rows are the plain
+// errors of the tables, here written out in matrices.
+TEST_F(BidirectionalPointTest, RowsAreTheThesisErrors) {
+  const Eigen::Vector3d prev(0.0, 0.0, 1.5), cur(0.0, 0.0, 2.0);
+  const double columns[] = {0, 0, prev.z(), 1, 1, 1, 0, 0, cur.z(), 1, 1, 1};
+  MotionVector x;
+  x << 0.2, -0.1, 0.3, 0.05, -0.02, 0.07;
+  double r[6], J[6][6];
+  const MotionDerivatives motion = MotionOrigin().DerivativesAt(x.data());
+  BidirectionalPoint::Jacobian(motion, columns, r, J);
+  const Eigen::Matrix3d R = (Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) *
+                             Eigen::AngleAxisd(-0.1, Eigen::Vector3d::UnitY()) *
+                             Eigen::AngleAxisd(0.2, Eigen::Vector3d::UnitX()))
+                                .toRotationMatrix();
+  const Eigen::Vector3d C = x.tail<3>();
+  const Eigen::Vector3d e_c = cur - R * (prev - C);
+  const Eigen::Vector3d e_p = prev - (R.transpose() * cur + C);
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_NEAR(r[i], e_c[i], kTolerance);
+    EXPECT_NEAR(r[3 + i], e_p[i], kTolerance);
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(J[i][3 + k], R(i, k), kTolerance);
+      EXPECT_EQ(J[3 + i][3 + k], i == k ? -1.0 : 0.0);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

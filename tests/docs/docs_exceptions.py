@@ -1,0 +1,78 @@
+"""What tests/docs/docs_commands.py does not run as a page says it.
+
+A command that is not listed here is run. A listed one that its page no longer
+holds fails the test.
+"""
+
+import collections
+
+# Why, and what is run in its place (nothing, if empty).
+Instead = collections.namedtuple('Instead', 'why run')
+
+
+def left_out(why):
+    return Instead(why, '')
+
+
+def in_place(run, why):
+    return Instead(why, run)
+
+
+def simulated(folder, options='', frames=4):
+    return (f'rgbd_simulate --frames={frames} {options} --output={folder}'
+            ' >/dev/null\n')
+
+
+# By page: what has to be there before its commands are run.
+BEFORE = {
+    'docs/batch.md':
+        'mkdir simulated\n' +
+        simulated('rgbd_dataset_freiburg1_xyz', '--camera=tum_fr1') +
+        simulated('simulated/xyz', '--path=xyz') +
+        simulated('simulated/pan_tilt', '--path=pan_tilt'),
+    'docs/thesis_experiments.md':
+        simulated('rgbd_dataset_freiburg2_xyz', '--camera=tum_fr2'),
+}
+
+SLURM = 'needs a cluster; tests/apps/programs/slurm_test.sh runs a job array on one'
+
+# By page and command (on one line, without a comment).
+EXCEPTIONS = {
+    'CONTRIBUTING.md': {
+        'scripts/test': left_out('it runs this test'),
+        'ctest --test-dir build -R costs': left_out('runs as part of all'),
+        'scripts/check_format': left_out('needs a checkout; CI runs it'),
+        'scripts/check': left_out('takes half an hour; it runs this test'),
+        'scripts/fuzz': left_out('takes minutes'),
+        'scripts/coverage': left_out('takes minutes'),
+        'scripts/mutants': left_out('takes minutes'),
+        'scripts/check_packages': left_out('takes minutes and needs root'),
+        'scripts/benchmark':
+            left_out('takes minutes; tests/benchmarks/benchmark_programs_test.cc runs '
+                     'the programs'),
+        'scripts/accuracy': left_out('takes minutes'),
+        'scripts/frontends': left_out('takes minutes'),
+    },
+    'README.md': {
+        'scripts/download_tum freiburg1_xyz':
+            in_place(
+                simulated('rgbd_dataset_freiburg1_xyz', '--camera=tum_fr1', 10),
+                'needs the network; tests/scripts/download_tum_test.sh runs it '
+                'against a server of its own'),
+    },
+    'docs/batch.md': {
+        'seq 0 7 | parallel rgbd_batch --flagfile=plan.flags --resume '
+        '--jobs=1 --shard={}/8':
+            in_place(
+                'for i in $(seq 0 7); do rgbd_batch --flagfile=plan.flags '
+                '--resume --jobs=1 --shard=$i/8; done',
+                'GNU parallel may be missing'),
+        'job=$(sbatch --parsable batch.sh)': left_out(SLURM),
+        'sbatch --dependency=afterany:$job --wrap "rgbd_batch '
+        '--flagfile=plan.flags --merge"': left_out(SLURM),
+    },
+    'docs/python.md': {
+        'apt-get install pybind11-dev python3-dev python3-numpy':
+            left_out('needs root; scripts/install_dependencies does it'),
+    },
+}

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+"""Checks README.md, CONTRIBUTING.md and docs/*.md: docs_pages.py SOURCE
+
+- Links lead to files of the project and to headings that are there.
+- Every page of docs/ can be reached from README.md.
+- A ```cpp block is the file that the comment before it names
+  (<!-- docs/examples/x.cc -->), which a test compiles and runs. With --write
+  blocks are brought up to date instead.
+- Blocks have a language that something reads: sh is run by
+  tests/docs/docs_commands.py, python by tests/python/test_docs.py.
+"""
+
+import pathlib
+import re
+import sys
+
+import docs_exceptions
+
+# Their blocks are compiled as they stand, by tests/CMakeLists.txt.
+COMPILED = ['docs/compressed_block.md']
+LANGUAGES = ['cpp', 'diff', 'python', 'sh', 'text']
+
+BLOCK = re.compile(r'(<!-- (docs/examples/\S+) -->\n)?```(\w*)\n(.*?)```', re.S)
+
+
+def without_blocks(text):
+    return re.sub(r'```.*?```', '', text, flags=re.S)
+
+
+def anchors(text):
+    """The names of a page's headings, as links have them."""
+    names = set()
+    for heading in re.findall(r'^#+ (.*)$', without_blocks(text), re.M):
+        heading = re.sub(r'\[([^]]*)\]\([^)]*\)', r'\1', heading).lower()
+        names.add(re.sub(r'[^\w\- ]', '', heading).replace(' ', '-'))
+    return names
+
+
+def check_links(source, pages):
+    problems = []
+    reached = {'README.md'}
+    for name, text in pages.items():
+        folder = (source / name).parent
+        for target in re.findall(r'\]\(([^)\s]+)\)', without_blocks(text)):
+            if re.match(r'https?://', target):
+                continue
+            path, _, anchor = target.partition('#')
+            file = (folder / path).resolve() if path else source / name
+            if not file.exists():
+                problems.append(f'{name}: no such file: {target}')
+                continue
+            linked = file.relative_to(source).as_posix()
+            reached.add(linked)
+            if anchor and anchor not in anchors(file.read_text()):
+                problems.append(f'{name}: no such heading: {target}')
+    problems += [f'{name}: no page links to it'
+                 for name in sorted(set(pages) - reached)]
+    return problems
+
+
+def check_blocks(source, name, text, write):
+    """Returns the problems and the page with its examples brought up to date."""
+    problems = []
+
+    def renew(match):
+        comment, example, language, content = match.groups()
+        if language not in LANGUAGES:
+            problems.append(f'{name}: a block must be one of {LANGUAGES}, not '
+                            f'"{language}": {content.splitlines()[0]}')
+        if language != 'cpp' or name in COMPILED:
+            return match.group()
+        if not example:
+            problems.append(f'{name}: a cpp block without the name of its file')
+            return match.group()
+        if not (source / example).exists():
+            problems.append(f'{name}: no such file: {example}')
+            return match.group()
+        code = (source / example).read_text()
+        if content != code and not write:
+            problems.append(f'{name}: differs from {example}; '
+                            'tests/docs/docs_pages.py . --write renews it')
+        return f'{comment}```cpp\n{code}```'
+
+    return problems, BLOCK.sub(renew, text)
+
+
+def main():
+    source = pathlib.Path(sys.argv[1]).resolve()
+    write = '--write' in sys.argv[2:]
+    paths = [source / 'README.md', source / 'CONTRIBUTING.md']
+    paths += sorted((source / 'docs').glob('*.md'))
+    pages = {path.relative_to(source).as_posix(): path.read_text()
+             for path in paths}
+    problems = check_links(source, pages)
+    examples = set()
+    for name, text in pages.items():
+        more, renewed = check_blocks(source, name, text, write)
+        problems += more
+        examples |= set(re.findall(r'docs/examples/[a-z_]+\.cc', text))
+        if write and renewed != text:
+            (source / name).write_text(renewed)
+    problems += [f'tests/docs/docs_exceptions.py: there is no page {name}'
+                 for name in {**docs_exceptions.EXCEPTIONS,
+                              **docs_exceptions.BEFORE} if name not in pages]
+    problems += [f'{path.name}: no page mentions docs/examples/{path.name}'
+                 for path in sorted((source / 'docs/examples').glob('*.cc'))
+                 if f'docs/examples/{path.name}' not in examples]
+    if problems:
+        sys.exit('\n'.join(problems))
+    print(f'{len(pages)} pages')
+
+
+if __name__ == '__main__':
+    main()

@@ -1,0 +1,68 @@
+#!/usr/bin/env bash
+# include_directions.sh SOURCE: each room (folder) includes only itself and the
+# rooms that docs/architecture.md lists above it, and no file includes itself by
+# way of others.
+set -euo pipefail
+cd "$1"
+status=0
+above=()  # the rooms so far
+
+# room FOLDER OURS THEIRS: its sources may include rooms above it that match
+# OURS and the libraries' headers that match THEIRS (regular expressions).
+room() {
+  local files ours
+  files=$(find "$1" -maxdepth 1 -name '*.h' -o -maxdepth 1 -name '*.cc')
+  if [ -z "$files" ]; then
+    echo "$1: no sources; has it moved?"
+    status=1
+    return
+  fi
+  above+=("$1")
+  ours=$(printf '%s\n' "${above[@]}" | grep -E "^($2)" | paste -sd'|')
+  # Standard headers have neither a folder nor an ending.
+  # shellcheck disable=SC2086
+  if grep -nE '^ *# *include' $files /dev/null |
+    grep -vE "include (\"($ours|$1)/[a-z_0-9]+\.h\"|<[a-z_0-9]+>|<($3))"; then
+    echo "$1 must not include the above"
+    status=1
+  fi
+}
+
+room core/util core 'Eigen/|ceres/'
+room core/geometry core 'Eigen/'
+room core/estimation core 'Eigen/|ceres/'
+room core/initial_guess core 'Eigen/'
+room core/evaluation core 'Eigen/'
+room robust 'core/|robust' 'ceres/'
+room costs/parts 'core/|costs/' 'Eigen/'
+room costs/matches 'core/|costs/' 'Eigen/'
+room costs/assembly 'core/|costs/' 'Eigen/|ceres/'
+room costs 'core/|costs|robust' 'Eigen/|ceres/'
+opencv='Eigen/|opencv2/'
+room frontend/image 'core/|frontend/' "$opencv"
+room frontend/sources 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h"
+room frontend/features 'core/|frontend/' "$opencv"
+room frontend/places 'core/|frontend/' "$opencv"
+room frontend/tracking 'core/|frontend/' "$opencv"
+room frontend/map 'core/|frontend/' "$opencv"
+room frontend/simulation 'core/|frontend/' "$opencv"
+programs='core/|robust|costs|frontend/|apps/'
+libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h"
+room apps/shell 'core/|apps/' "$libraries"
+room apps/pipeline "$programs" 'Eigen/|opencv2/|ceres/'
+room apps/figures 'core/|apps/' 'none'
+room apps/results "$programs" "$libraries"
+room apps/compare "$programs" "$libraries"
+room apps/batch "$programs" "$libraries"
+room apps/report "$programs" "$libraries"
+room apps/python "$programs" "$libraries|pybind11/"
+
+# Circles within a room, too.
+circles=$(grep -roE --include='*.h' '^#include "[^"]+"' core robust costs \
+  frontend apps | sed 's/:#include "/ /; s/"$//' | tsort 2>&1 >/dev/null || true)
+if [ -n "$circles" ]; then
+  echo "$circles"
+  echo "headers include each other in a circle"
+  status=1
+fi
+exit $status

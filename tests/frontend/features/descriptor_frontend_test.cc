@@ -1,0 +1,131 @@
+#include "frontend/features/descriptor_frontend.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "frontend/features/frontend.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "tests/support/matched_views.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kMedianPx = 1.0;
+
+// A match further than this from the truth shows another place: five times the
+// noise of the coarsest keypoints.
+constexpr double kWrongPx = 8.0;
+
+class DescriptorFrontendTest : public ::testing::TestWithParam<const char*>,
+                               protected MatchedViews {
+ protected:
+  DescriptorFrontendTest() : MatchedViews(GetParam()) {}
+
+  // Enough matches for a good pose: more than twice what odometry calls ok.
+  void ExpectMostlyRight(const FeatureMatches& found) const {
+    MatchedViews::ExpectMostlyRight(found, 100, kMedianPx, kWrongPx);
+  }
+};
+
+TEST_P(DescriptorFrontendTest, MatchesAreWhereTheTruthHasThem) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  const FeatureMatches found = MatchFrom(prev, cur, Rigid3d());
+  ExpectMostlyRight(found);
+  EXPECT_EQ(found.features.size(), found.matches.size());
+  // The same feature in the frame it comes from: where it was, to the bit.
+  const std::unique_ptr<FeatureSet> reference = frontend_->Detect(prev);
+  FeatureMatches itself{Correspondences(dataset_.camera().camera), {}};
+  frontend_->Match(*reference, prev, Rigid3d(), &itself);
+  for (size_t i = 0; i < itself.matches.size(); ++i) {
+    EXPECT_EQ(itself.matches.prev()[i].u, itself.matches.cur()[i].u);
+    EXPECT_EQ(itself.matches.prev()[i].depth, itself.matches.cur()[i].depth);
+  }
+}
+
+TEST_P(DescriptorFrontendTest, FeaturesAreSpreadOverTheImage) {
+  const Frame frame = dataset_.Read(kPrev);
+  const std::unique_ptr<FeatureSet> features = frontend_->Detect(frame);
+  ASSERT_GE(features->observations.size(), 200u);
+  int quadrants[2][2] = {};
+  for (const Observation& o : features->observations) {
+    EXPECT_GT(o.depth, 0.0);
+    ++quadrants[o.v > frame.gray.rows / 2.0][o.u > frame.gray.cols / 2.0];
+  }
+  for (const auto& row : quadrants) {
+    for (const int count : row) {
+      // 40 % of an even share.
+      EXPECT_GE(count, static_cast<int>(features->observations.size()) / 10);
+    }
+  }
+}
+
+TEST_P(DescriptorFrontendTest, CoarserKeypointsAreLessExact) {
+  const std::unique_ptr<FeatureSet> features =
+      frontend_->Detect(dataset_.Read(kPrev));
+  double least = 1e9;
+  double most = 0.0;
+  for (const Observation& o : features->observations) {
+    least = std::min(least, o.sigma_px);
+    most = std::max(most, o.sigma_px);
+  }
+  EXPECT_GE(least, 0.2);
+  EXPECT_LE(least, 1.0);
+  EXPECT_GE(most, 2.0 * least);
+}
+
+TEST_P(DescriptorFrontendTest, TheSameFramesGiveTheSameMatches) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  const FeatureMatches once = MatchFrom(prev, cur, Rigid3d());
+  // From a copy nothing is known ahead.
+  Frame copy = cur;
+  copy.gray = cur.gray.clone();
+  const FeatureMatches twice = MatchFrom(prev, copy, Rigid3d());
+  ASSERT_EQ(once.features, twice.features);
+  for (size_t i = 0; i < once.matches.size(); ++i) {
+    EXPECT_EQ(once.matches.cur()[i].u, twice.matches.cur()[i].u);
+    EXPECT_EQ(once.matches.cur()[i].v, twice.matches.cur()[i].v);
+  }
+}
+
+TEST_P(DescriptorFrontendTest, AWrongGuessStillGivesMatches) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  const Rigid3d turned(
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitY())),
+      Eigen::Vector3d(0.0, 0.3, 0.0));
+  ExpectMostlyRight(MatchFrom(prev, cur, turned));
+  const Rigid3d behind(
+      Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY())),
+      Eigen::Vector3d::Zero());
+  ExpectMostlyRight(MatchFrom(prev, cur, behind));
+}
+
+TEST_P(DescriptorFrontendTest, ABlackFrameGivesNothing) {
+  const Frame good = dataset_.Read(kPrev);
+  Frame black = good;
+  black.gray = cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0));
+  EXPECT_EQ(MatchFrom(good, black, Rigid3d()).matches.size(), 0u);
+  EXPECT_EQ(MatchFrom(black, good, Rigid3d()).matches.size(), 0u);
+  EXPECT_EQ(MatchFrom(black, black, Rigid3d()).matches.size(), 0u);
+  EXPECT_TRUE(frontend_->Detect(black)->observations.empty());
+  Frame blind = good;
+  blind.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
+  EXPECT_TRUE(frontend_->Detect(blind)->observations.empty());
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, DescriptorFrontendTest,
+                         ::testing::Values("orb", "sift", "akaze"),
+                         [](const auto& info) {
+                           return std::string(info.param);
+                         });
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,170 @@
+#include "frontend/features/patch_frontend.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "frontend/features/frontend.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "tests/support/matched_views.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Noise of depth moves a point by up to half a pixel at this baseline.
+constexpr double kMedianPx = 0.5;
+
+// A match further than this from the truth shows another place.
+constexpr double kWrongPx = 3.0;
+
+class PatchFrontendTest : public ::testing::Test, protected MatchedViews {
+ protected:
+  PatchFrontendTest() : MatchedViews("patch") {}
+
+  void ExpectMostlyRight(const FeatureMatches& found) const {
+    MatchedViews::ExpectMostlyRight(found, 200, kMedianPx, kWrongPx);
+  }
+
+  static void ExpectSame(const FeatureMatches& a, const FeatureMatches& b) {
+    ASSERT_EQ(a.features, b.features);
+    for (size_t i = 0; i < a.matches.size(); ++i) {
+      EXPECT_EQ(a.matches.cur()[i].u, b.matches.cur()[i].u);
+      EXPECT_EQ(a.matches.cur()[i].v, b.matches.cur()[i].v);
+      EXPECT_EQ(a.matches.cur()[i].sigma_px, b.matches.cur()[i].sigma_px);
+    }
+  }
+
+  static Rigid3d Turn(double angle, const Eigen::Vector3d& axis) {
+    return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)),
+                   Eigen::Vector3d::Zero());
+  }
+
+  static Frame WithGray(const Frame& frame, const cv::Mat& gray) {
+    Frame other = frame;
+    other.gray = gray;
+    other.pyramid.clear();
+    return other;
+  }
+};
+
+TEST_F(PatchFrontendTest, MatchesAreWhereTheTruthHasThem) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  ExpectMostlyRight(MatchFrom(prev, cur, Rigid3d()));
+  ExpectMostlyRight(MatchFrom(prev, cur, cur_from_prev_));
+}
+
+TEST_F(PatchFrontendTest, WrongGuessesStillGiveMatches) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  const double f = dataset_.camera().camera.fx;
+  for (const double px : {20.0, 40.0}) {
+    SCOPED_TRACE(px);
+    for (const double sign : {-1.0, 1.0}) {
+      ExpectMostlyRight(MatchFrom(
+          prev, cur,
+          Turn(sign * px / f, Eigen::Vector3d::UnitY()) * cur_from_prev_));
+      ExpectMostlyRight(MatchFrom(
+          prev, cur,
+          Turn(sign * px / f, Eigen::Vector3d::UnitX()) * cur_from_prev_));
+    }
+  }
+}
+
+TEST_F(PatchFrontendTest, ExposureDoesNotMatter) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  for (const double gain : {0.5, 0.7, 1.4, 2.0}) {
+    SCOPED_TRACE(gain);
+    cv::Mat gray;
+    cur.gray.convertTo(gray, CV_8UC1, gain);
+    ExpectMostlyRight(MatchFrom(prev, WithGray(cur, gray), Rigid3d()));
+  }
+}
+
+TEST_F(PatchFrontendTest, APreparedFrameGivesTheSame) {
+  const Frame prev = dataset_.Read(kPrev);
+  Frame cur = dataset_.Read(kCur);
+  const FeatureMatches plain = MatchFrom(prev, cur, Rigid3d());
+  frontend_->Prepare(&cur);
+  ExpectSame(plain, MatchFrom(prev, cur, Rigid3d()));
+}
+
+// Whatever was matched in between, too: the patches are kept.
+TEST_F(PatchFrontendTest, TheSameFramesGiveTheSameMatches) {
+  const std::unique_ptr<FeatureSet> reference =
+      frontend_->Detect(dataset_.Read(kPrev));
+  const Frame cur = dataset_.Read(kCur);
+  const FeatureMatches once = MatchFrom(*reference, cur, Rigid3d());
+  MatchFrom(*reference, dataset_.Read(45), Rigid3d());
+  ExpectSame(once, MatchFrom(*reference, cur, Rigid3d()));
+}
+
+TEST_F(PatchFrontendTest, ABlackFrameGivesNothing) {
+  const Frame good = dataset_.Read(kPrev);
+  const Frame black =
+      WithGray(good, cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0)));
+  EXPECT_EQ(MatchFrom(good, black, Rigid3d()).matches.size(), 0u);
+  EXPECT_EQ(MatchFrom(black, good, Rigid3d()).matches.size(), 0u);
+  EXPECT_EQ(MatchFrom(black, black, Rigid3d()).matches.size(), 0u);
+  Frame blind = good;
+  blind.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
+  EXPECT_TRUE(frontend_->Detect(blind)->observations.empty());
+  EXPECT_EQ(MatchFrom(blind, good, Rigid3d()).matches.size(), 0u);
+}
+
+TEST_F(PatchFrontendTest, AnotherSceneGivesFewMatches) {
+  const Frame prev = dataset_.Read(kPrev);
+  cv::Mat turned;
+  cv::rotate(prev.gray, turned, cv::ROTATE_180);
+  const std::unique_ptr<FeatureSet> reference = frontend_->Detect(prev);
+  const FeatureMatches found =
+      MatchFrom(*reference, WithGray(prev, turned), Rigid3d());
+  EXPECT_LT(found.matches.size(), reference->observations.size() / 5);
+}
+
+TEST_F(PatchFrontendTest, NonsenseGuessesDoNoHarm) {
+  const Frame prev = dataset_.Read(kPrev);
+  const Frame cur = dataset_.Read(kCur);
+  const Rigid3d behind = Turn(M_PI, Eigen::Vector3d::UnitY());
+  EXPECT_EQ(MatchFrom(prev, cur, behind).matches.size(), 0u);
+  const Rigid3d far(Eigen::Quaterniond::Identity(), {1e6, 0.0, 0.0});
+  EXPECT_EQ(MatchFrom(prev, cur, far).matches.size(), 0u);
+}
+
+TEST_F(PatchFrontendTest, SmallAndOddImagesAreTaken) {
+  const Frame full = dataset_.Read(kPrev);
+  for (const cv::Size& size : {cv::Size(101, 67), cv::Size(24, 24)}) {
+    Frame small = full;
+    small.gray = full.gray(cv::Rect(cv::Point(200, 200), size)).clone();
+    small.depth = full.depth(cv::Rect(cv::Point(200, 200), size)).clone();
+    const FeatureMatches found = MatchFrom(small, small, Rigid3d());
+    for (size_t i = 0; i < found.matches.size(); ++i) {
+      EXPECT_NEAR(found.matches.prev()[i].u, found.matches.cur()[i].u, 0.01);
+    }
+  }
+}
+
+TEST_F(PatchFrontendTest, LessCertainMatchesSaySo) {
+  const FeatureMatches found =
+      MatchFrom(dataset_.Read(kPrev), dataset_.Read(kCur), Rigid3d());
+  double least = 1e9;
+  double most = 0.0;
+  for (size_t i = 0; i < found.matches.size(); ++i) {
+    least = std::min(least, found.matches.cur()[i].sigma_px);
+    most = std::max(most, found.matches.cur()[i].sigma_px);
+  }
+  EXPECT_GE(least, 0.3);
+  EXPECT_GE(most, 1.5 * least);
+}
+
+TEST_F(PatchFrontendTest, TracksAlongItsAxes) {
+  // Several times the noise of a pose, well below a millimetre.
+  ExpectTracksAlongItsAxes(0.003);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

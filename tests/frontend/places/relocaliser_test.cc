@@ -1,0 +1,183 @@
+#include "frontend/places/relocaliser.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <optional>
+
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/simulation/synthetic_renderer.h"
+#include "frontend/simulation/synthetic_scene.h"
+#include "frontend/simulation/synthetic_sensor.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kDegree = M_PI / 180.0;
+
+// Good enough to track from: a fraction of the depth's and of a view's width.
+constexpr double kMaxTranslationError = 0.03;
+constexpr double kMaxRotationError = 1.0 * kDegree;
+
+// Frames of the simulated room from wherever the camera stands.
+class Room {
+ public:
+  explicit Room(uint32_t seed)
+      : seed_(seed), renderer_(MakeScene("room", seed), camera_.camera) {}
+
+  const Camera& camera() const { return camera_.camera; }
+
+  // Seen from `start_from_cam` relative to the start of the paths.
+  Frame See(const Rigid3d& start_from_cam) {
+    const Rigid3d world_from_start = FindSyntheticPath("still")(0.0, 1.0);
+    Rendering rendering = renderer_.Render(world_from_start * start_from_cam);
+    const uint64_t key = (static_cast<uint64_t>(seed_) << 48) +
+                         (static_cast<uint64_t>(++count_) << 41);
+    AddColorNoise(key, &rendering.color);
+    Frame frame;
+    frame.index = count_;
+    frame.timestamp = count_ / 30.0;
+    frame.depth_scale = camera_.depth_scale;
+    cv::cvtColor(rendering.color, frame.gray, cv::COLOR_BGR2GRAY);
+    frame.depth = EncodeDepth(
+        MeasureDepth(rendering.depth, camera_.camera.fx, key + (1ull << 40)),
+        camera_.depth_scale);
+    return frame;
+  }
+
+ private:
+  RgbdCamera camera_;
+  uint32_t seed_;
+  Renderer renderer_;
+  int count_ = 0;
+};
+
+Rigid3d Turned(double degrees) {
+  return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(
+                     degrees * kDegree, Eigen::Vector3d::UnitY())),
+                 Eigen::Vector3d::Zero());
+}
+
+Rigid3d Moved(double x, double y, double z) {
+  return Rigid3d(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, y, z));
+}
+
+void ExpectFound(const std::optional<Relocalisation>& found,
+                 const Rigid3d& cur_from_keyframe) {
+  ASSERT_TRUE(found.has_value());
+  EXPECT_GE(found->inliers, 15);
+  const Rigid3d error = found->cur_from_keyframe * cur_from_keyframe.Inverse();
+  EXPECT_LE(error.Angle(), kMaxRotationError);
+  EXPECT_LE(error.translation.norm(), kMaxTranslationError);
+}
+
+TEST(RelocaliserTest, FindsThePlaceFromAnotherPose) {
+  Room room(1);
+  Relocaliser relocaliser(room.camera());
+  relocaliser.Add(room.See(Rigid3d()), 42);
+  for (const Rigid3d& pose :
+       {Rigid3d(), Turned(25.0), Turned(-25.0), Moved(0.3, 0.0, 0.0),
+        Moved(0.0, 0.0, 0.3), Moved(-0.2, 0.1, -0.2) * Turned(10.0)}) {
+    const std::optional<Relocalisation> found =
+        relocaliser.Find(room.See(pose));
+    ExpectFound(found, pose.Inverse());
+    EXPECT_EQ(found->keyframe_id, 42);
+  }
+}
+
+TEST(RelocaliserTest, FindsOldKeyframesAfterSomeSearches) {
+  Room room(1);
+  Relocaliser relocaliser(room.camera());
+  relocaliser.Add(room.See(Rigid3d()), 7);
+  const Frame elsewhere = room.See(Turned(180.0));
+  for (int i = 0; i < 19; ++i) relocaliser.Add(elsewhere, 100 + i);
+  const Frame frame = room.See(Moved(0.1, 0.0, 0.0));
+  std::optional<Relocalisation> found;
+  // Each search describes two of the twenty.
+  for (int i = 0; i < 10 && !found; ++i) found = relocaliser.Find(frame);
+  ExpectFound(found, Moved(-0.1, 0.0, 0.0));
+  EXPECT_EQ(found->keyframe_id, 7);
+}
+
+TEST(RelocaliserTest, KeepsABoundedNumberOfKeyframes) {
+  Room room(1);
+  Relocaliser relocaliser(room.camera());
+  const Frame place = room.See(Rigid3d());
+  relocaliser.Add(place, 7);
+  const Frame elsewhere = room.See(Turned(180.0));
+  for (int i = 0; i < 20; ++i) relocaliser.Add(elsewhere, 100 + i);
+  for (int i = 0; i < 25; ++i) EXPECT_FALSE(relocaliser.Find(place));
+}
+
+TEST(RelocaliserTest, FindsNothingWhereNothingIsSeen) {
+  Room room(1);
+  const Frame good = room.See(Rigid3d());
+  Frame black = good;
+  black.gray = cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0));
+  Frame blind = good;
+  blind.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
+
+  Relocaliser relocaliser(room.camera());
+  EXPECT_FALSE(relocaliser.Find(good)) << "without any keyframe";
+  relocaliser.Add(black, 1);
+  relocaliser.Add(blind, 2);
+  EXPECT_FALSE(relocaliser.Find(good));
+  relocaliser.Add(good, 3);
+  EXPECT_FALSE(relocaliser.Find(black));
+  EXPECT_FALSE(relocaliser.Find(blind));
+  EXPECT_TRUE(relocaliser.Find(good));
+}
+
+// Same shapes, other textures: only the pictures tell them apart. And one
+// room's other sides, of which all but neighbours share nothing.
+TEST(RelocaliserTest, DoesNotTakeAnotherSceneForThePlace) {
+  Room room(1);
+  Relocaliser relocaliser(room.camera());
+  for (int i = 0; i < 8; ++i) {
+    relocaliser.Add(room.See(Moved(0.05 * i, 0.0, 0.0)), i);
+  }
+  for (const uint32_t seed : {2u, 3u, 4u, 5u}) {
+    Room other(seed);
+    for (const double degrees : {0.0, 10.0, 120.0}) {
+      const Frame frame = other.See(Turned(degrees));
+      for (int i = 0; i < 2; ++i) {
+        EXPECT_FALSE(relocaliser.Find(frame)) << seed << " " << degrees;
+      }
+    }
+  }
+  for (const double degrees : {100.0, 140.0, 180.0, 220.0, 260.0}) {
+    EXPECT_FALSE(relocaliser.Find(room.See(Turned(degrees)))) << degrees;
+  }
+}
+
+TEST(RelocaliserTest, DoesNotKeepWhatTheCallerOverwrites) {
+  Room room(1);
+  Frame frame = room.See(Rigid3d());
+  const Frame same = room.See(Rigid3d());
+  Relocaliser relocaliser(room.camera());
+  relocaliser.Add(frame, 1);
+  frame.gray.setTo(0);
+  frame.depth.setTo(0);
+  EXPECT_TRUE(relocaliser.Find(same));
+}
+
+TEST(RelocaliserTest, TheSameCallsGiveTheSameMotion) {
+  Room room(1);
+  const Frame keyframe = room.See(Rigid3d());
+  const Frame frame = room.See(Turned(15.0));
+  std::optional<Relocalisation> found[2];
+  for (std::optional<Relocalisation>& result : found) {
+    Relocaliser relocaliser(room.camera());
+    relocaliser.Add(keyframe, 1);
+    result = relocaliser.Find(frame);
+    ASSERT_TRUE(result.has_value());
+  }
+  EXPECT_EQ(found[0]->inliers, found[1]->inliers);
+  EXPECT_EQ(found[0]->cur_from_keyframe.translation,
+            found[1]->cur_from_keyframe.translation);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,166 @@
+#include "frontend/simulation/synthetic_path.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/util/input_error.h"
+#include "frontend/simulation/synthetic_scene.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kRate = 30.0;  // Hz
+constexpr double kDegree = M_PI / 180.0;
+
+struct Extent {
+  double max_speed = 0.0;                         // m/s
+  double max_turn_rate = 0.0;                     // rad/s
+  double max_angle = 0.0;                         // rad, from the start
+  Eigen::Vector3d min = Eigen::Vector3d::Zero();  // of the camera's centre, in
+  Eigen::Vector3d max = Eigen::Vector3d::Zero();  // axes of the first camera
+};
+
+Extent Measure(const std::string& name, int frames) {
+  const SyntheticPath path = FindSyntheticPath(name);
+  const double duration = (frames - 1) / kRate;
+  const Rigid3d start = path(0.0, duration);
+  Rigid3d last = start;
+  Extent extent;
+  for (int i = 1; i < frames; ++i) {
+    const Rigid3d pose = path(i / kRate, duration);
+    const Rigid3d step = last.Inverse() * pose;
+    const Rigid3d start_from_cam = start.Inverse() * pose;
+    extent.max_speed =
+        std::max(extent.max_speed, step.translation.norm() * kRate);
+    extent.max_turn_rate = std::max(extent.max_turn_rate, step.Angle() * kRate);
+    extent.max_angle = std::max(extent.max_angle, start_from_cam.Angle());
+    extent.min = extent.min.cwiseMin(start_from_cam.translation);
+    extent.max = extent.max.cwiseMax(start_from_cam.translation);
+    last = pose;
+  }
+  return extent;
+}
+
+TEST(SyntheticPathTest, XyzMovesAlongEachAxisBothWaysByHand) {
+  const Extent extent = Measure("xyz", 301);  // two rounds
+  constexpr double kTolerance = 2e-3;  // the peak may fall between two frames
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_NEAR(extent.min[axis], -0.2, kTolerance);
+    EXPECT_NEAR(extent.max[axis], 0.2, kTolerance);
+  }
+  EXPECT_LT(extent.max_speed, 0.4);
+  EXPECT_LT(extent.max_angle, 3.0 * kDegree);
+}
+
+TEST(SyntheticPathTest, XyzShowsAllAxesInTheDefaultLength) {
+  const Extent extent = Measure("xyz", 150);
+  EXPECT_GT(extent.max.minCoeff(), 0.19);
+}
+
+TEST(SyntheticPathTest, PanTiltReturnsExactlyForAnyNumberOfFrames) {
+  const SyntheticPath path = FindSyntheticPath("pan_tilt");
+  for (const int frames : {1, 2, 7, 30, 100, 150, 151, 299, 1000}) {
+    const double duration = (frames - 1) / kRate;
+    const Rigid3d first = path(0.0, duration);
+    const Rigid3d last = path((frames - 1) / kRate, duration);
+    EXPECT_EQ(first.rotation.coeffs(), last.rotation.coeffs()) << frames;
+    EXPECT_EQ(first.translation, last.translation) << frames;
+  }
+}
+
+TEST(SyntheticPathTest, PanTiltTurnsAsAUnitWithTheCameraOffItsAxes) {
+  const Extent extent = Measure("pan_tilt", 150);
+  EXPECT_NEAR(extent.max_angle, 20.0 * kDegree, 0.1 * kDegree);
+  EXPECT_LT(extent.max_turn_rate, 40.0 * kDegree);
+  const double reach = (extent.max - extent.min).maxCoeff();
+  EXPECT_GT(reach, 0.01);
+  EXPECT_LT(reach, 0.08);
+}
+
+TEST(SyntheticPathTest, CircleIsLevelAndClosed) {
+  const SyntheticPath path = FindSyntheticPath("circle");
+  const Eigen::Vector3d start = path(0.0, 9.0).translation;
+  const Eigen::Vector3d opposite = path(4.5, 9.0).translation;
+  constexpr double kTolerance = 1e-12;  // rounding
+  EXPECT_NEAR((opposite - start).norm(), 0.6, kTolerance);
+  EXPECT_NEAR((path(9.0, 9.0).translation - start).norm(), 0.0, kTolerance);
+  EXPECT_EQ(path(2.0, 9.0).translation.z(), start.z());
+}
+
+TEST(SyntheticPathTest, StillIsStill) {
+  const Extent extent = Measure("still", 100);
+  EXPECT_EQ(extent.max_speed, 0.0);
+  EXPECT_EQ(extent.max_turn_rate, 0.0);
+}
+
+struct Peaks {
+  double speed = 0.0;                                     // m/s
+  double turn_rate = 0.0;                                 // rad/s
+  double change_of_speed = 0.0;                           // m/s^2
+  double clearance = std::numeric_limits<double>::max();  // m
+};
+
+// Distance of a point from a rectangle.
+double Distance(const SceneFace& face, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d from_origin = point - face.origin;
+  const double u = face.u_axis.dot(from_origin);
+  const double v = face.v_axis.dot(from_origin);
+  return std::hypot(u - std::clamp(u, 0.0, face.width),
+                    v - std::clamp(v, 0.0, face.height),
+                    face.normal.dot(from_origin));
+}
+
+// By differences over a tenth of a millisecond, every 5 ms.
+Peaks FindPeaks(const std::string& name, double seconds) {
+  const SyntheticPath path = FindSyntheticPath(name);
+  const Scene room = MakeScene("room", 1);
+  constexpr double kStep = 1e-4;  // s
+  Peaks peaks;
+  for (double t = 0.0; t < seconds; t += 0.005) {
+    const Rigid3d before = path(t - kStep, seconds);
+    const Rigid3d now = path(t, seconds);
+    const Rigid3d after = path(t + kStep, seconds);
+    const Eigen::Vector3d way = after.translation - before.translation;
+    const double turn = (before.Inverse() * after).Angle();
+    const Eigen::Vector3d bend =
+        after.translation - 2.0 * now.translation + before.translation;
+    peaks.speed = std::max(peaks.speed, way.norm() / (2.0 * kStep));
+    peaks.turn_rate = std::max(peaks.turn_rate, turn / (2.0 * kStep));
+    peaks.change_of_speed =
+        std::max(peaks.change_of_speed, bend.norm() / (kStep * kStep));
+    for (const SceneFace& face : room.faces) {
+      peaks.clearance =
+          std::min(peaks.clearance, Distance(face, now.translation));
+    }
+  }
+  return peaks;
+}
+
+TEST(SyntheticPathTest, HandheldIsFastButKeepsItsLimits) {
+  const Peaks always = FindPeaks("handheld", 100.0);  // then it repeats
+  EXPECT_LE(always.speed, 1.0);
+  EXPECT_LE(always.turn_rate, 90.0 * kDegree);
+  EXPECT_GE(always.clearance, 0.6);
+  EXPECT_LE(always.change_of_speed, 10.0);  // as an arm can; no jerks
+  const Peaks default_length = FindPeaks("handheld", 149 / kRate);
+  EXPECT_GE(default_length.speed, 0.95);
+  EXPECT_GE(default_length.turn_rate, 85.0 * kDegree);
+}
+
+TEST(SyntheticPathTest, UnknownNameListsTheNames) {
+  try {
+    FindSyntheticPath("spiral");
+    FAIL() << "no error";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), testing::HasSubstr("spiral"));
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr("xyz, pan_tilt, circle, still, handheld"));
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

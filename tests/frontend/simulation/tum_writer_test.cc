@@ -1,0 +1,123 @@
+#include "frontend/simulation/tum_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <opencv2/core.hpp>
+#include <stdexcept>
+#include <vector>
+
+#include "core/util/input_error.h"
+#include "frontend/sources/camera_file.h"
+#include "frontend/sources/tum_dataset.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+class TumWriterTest : public testing::Test {
+ protected:
+  TumWriterTest()
+      : parent_(fs::path(testing::TempDir()) /
+                ("tum_writer_" + std::string(testing::UnitTest::GetInstance()
+                                                 ->current_test_info()
+                                                 ->name()))),
+        folder_(parent_ / "new" / "sequence") {
+    fs::remove_all(parent_);
+    options_.frames = 4;
+    options_.camera.camera = {160,  120,  130.5, 131.25, 79.5, 59.5,
+                              0.01, 0.02, 0.0,   0.001,  0.0};
+    options_.camera.depth_scale = 1000.0;
+  }
+  ~TumWriterTest() override { fs::remove_all(parent_); }
+
+  fs::path parent_;
+  fs::path folder_;
+  SyntheticOptions options_;
+};
+
+TEST_F(TumWriterTest, ReadsBackAsWritten) {
+  const SyntheticDataset dataset(options_);
+  std::vector<int> told;
+  TumWriterOptions writer;
+  writer.progress = [&told](int done) { told.push_back(done); };
+  WriteTumSequence(dataset, folder_.string() + "/", writer);
+  EXPECT_EQ(told, (std::vector<int>{1, 2, 3, 4}));
+
+  TumDatasetOptions options;
+  options.folder = folder_.string();
+  options.camera = ReadCameraFile((folder_ / "camera.yaml").string());
+  const TumDataset read(options);
+  ASSERT_EQ(read.size(), dataset.size());
+  for (int i = 0; i < dataset.size(); ++i) {
+    const RgbdImages images = dataset.ReadImages(i);
+    EXPECT_EQ(read.timestamp(i), dataset.timestamp(i));
+    EXPECT_EQ(cv::norm(read.ReadColor(i), images.color, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(read.Read(i).depth, images.depth, cv::NORM_INF), 0.0);
+  }
+  const Trajectory truth =
+      ReadTrajectory((folder_ / "groundtruth.txt").string());
+  ASSERT_EQ(truth.size(), 4u);
+  constexpr double kTolerance = 1e-9;  // of the text
+  for (int i = 0; i < dataset.size(); ++i) {
+    const Rigid3d off =
+        truth[i].world_from_cam.Inverse() * dataset.WorldFromCam(i);
+    EXPECT_EQ(truth[i].timestamp, dataset.timestamp(i));
+    EXPECT_LT(off.translation.norm(), 2 * kTolerance);
+    EXPECT_LT(off.Angle(), 4 * kTolerance);
+  }
+}
+
+TEST_F(TumWriterTest, CameraReadsBackExactly) {
+  WriteTumSequence(SyntheticDataset(options_), folder_.string());
+  const RgbdCamera camera = ReadCameraFile((folder_ / "camera.yaml").string());
+  EXPECT_EQ(camera.depth_scale, 1000.0);
+  EXPECT_EQ(camera.camera.width, 160);
+  EXPECT_EQ(camera.camera.height, 120);
+  EXPECT_EQ(camera.camera.fx, 130.5);
+  EXPECT_EQ(camera.camera.fy, 131.25);
+  EXPECT_EQ(camera.camera.cx, 79.5);
+  EXPECT_EQ(camera.camera.cy, 59.5);
+  EXPECT_EQ(camera.camera.k1, 0.01);
+  EXPECT_EQ(camera.camera.k2, 0.02);
+  EXPECT_EQ(camera.camera.p1, 0.0);
+  EXPECT_EQ(camera.camera.p2, 0.001);
+  EXPECT_EQ(camera.camera.k3, 0.0);
+}
+
+TEST_F(TumWriterTest, TakesAnEmptyFolderButNoOther) {
+  fs::create_directories(folder_);
+  WriteTumSequence(SyntheticDataset(options_), folder_.string());
+  EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
+  EXPECT_THROW(WriteTumSequence(SyntheticDataset(options_), folder_.string()),
+               InputError);
+  const fs::path file = parent_ / "file";
+  std::ofstream(file.string()) << "text";
+  EXPECT_THROW(WriteTumSequence(SyntheticDataset(options_), file.string()),
+               InputError);
+}
+
+TEST_F(TumWriterTest, LeavesNothingIfItFails) {
+  TumWriterOptions writer;
+  writer.progress = [](int done) {
+    if (done == 2) throw std::runtime_error("stop");
+  };
+  EXPECT_THROW(
+      WriteTumSequence(SyntheticDataset(options_), folder_.string(), writer),
+      std::runtime_error);
+  EXPECT_TRUE(fs::is_empty(folder_.parent_path()));
+}
+
+TEST_F(TumWriterTest, IsUndisturbedByWhatAnEarlierRunLeft) {
+  const fs::path left = folder_.string() + ".partial";
+  fs::create_directories(left);
+  std::ofstream((left / "old.txt").string()) << "text";
+  WriteTumSequence(SyntheticDataset(options_), folder_.string());
+  EXPECT_FALSE(fs::exists(folder_ / "old.txt"));
+  EXPECT_FALSE(fs::exists(left));
+}
+
+}  // namespace
+}  // namespace rgbd_pose

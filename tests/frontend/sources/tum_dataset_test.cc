@@ -1,0 +1,189 @@
+#include "frontend/sources/tum_dataset.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <thread>
+
+#include "frontend/sources/camera_file.h"
+#include "tests/support/tum_sequence.h"
+
+namespace rgbd_pose {
+namespace {
+
+using TumDatasetTest = TumSequenceTest;
+
+// Expects the three frames of the fixture, in full.
+void ExpectFrames(const TumDataset& dataset) {
+  ASSERT_EQ(dataset.size(), 3);
+  const int images[] = {0, 1, 3};
+  const double timestamps[] = {1.00, 1.04, 1.10};
+  for (int i = 0; i < 3; ++i) {
+    const Frame frame = dataset.Read(i);
+    EXPECT_EQ(frame.index, i);
+    EXPECT_EQ(frame.timestamp, timestamps[i]);
+    EXPECT_EQ(dataset.timestamp(i), timestamps[i]);
+    EXPECT_EQ(frame.depth_scale, kDepthScale);
+    ASSERT_EQ(frame.gray.type(), CV_8UC1);
+    ASSERT_EQ(frame.gray.size(), cv::Size(kWidth, kHeight));
+    EXPECT_EQ(cv::norm(frame.depth, DepthImage(images[i]), cv::NORM_INF), 0);
+  }
+}
+
+TEST_F(TumDatasetTest, AssociatesTheListsItself) {
+  const TumDataset dataset(options_);
+  ExpectFrames(dataset);
+  EXPECT_EQ(dataset.unmatched_color(), 1);
+  EXPECT_EQ(dataset.camera().camera.width, kWidth);
+}
+
+TEST_F(TumDatasetTest, TakesTheTimeDifferenceFromItsOptions) {
+  options_.max_time_difference = 0.002;
+  const TumDataset dataset(options_);
+  EXPECT_EQ(dataset.size(), 1);
+  EXPECT_EQ(dataset.timestamp(0), 1.04);
+  EXPECT_EQ(dataset.unmatched_color(), 3);
+}
+
+TEST_F(TumDatasetTest, ReadsGrayAndColor) {
+  const TumDataset dataset(options_);
+  // 0.299 red + 0.587 green + 0.114 blue, rounded; JPEG may be 2 levels off.
+  EXPECT_NEAR(dataset.Read(0).gray.at<uint8_t>(5, 5), 69, 1);
+  EXPECT_NEAR(dataset.Read(1).gray.at<uint8_t>(5, 5), 70, 2);
+  const cv::Mat color = dataset.ReadColor(2);
+  ASSERT_EQ(color.type(), CV_8UC3);
+  EXPECT_EQ(color.at<cv::Vec3b>(5, 5), cv::Vec3b(13, 63, 113));
+}
+
+TEST_F(TumDatasetTest, DepthIsMetresAndZeroWhereThereIsNone) {
+  const Frame frame = TumDataset(options_).Read(0);
+  EXPECT_EQ(frame.DepthAt(0, 0), 0.0);
+  EXPECT_EQ(frame.DepthAt(1, 0), 0.0);
+  EXPECT_EQ(frame.DepthAt(2, 0), 1.0);
+}
+
+TEST_F(TumDatasetTest, TakesCarriageReturnsAndAByteOrderMark) {
+  folder_.Write("rgb.txt",
+                "\xEF\xBB\xBF"
+                "1.00 rgb/0.png\r\n1.04 rgb/1.jpg\r\n\r\n1.10 rgb/3.png");
+  const TumDataset dataset(options_);
+  ExpectFrames(dataset);
+  EXPECT_EQ(dataset.unmatched_color(), 0);
+}
+
+TEST_F(TumDatasetTest, TakesAssociationsInEitherOrder) {
+  UseAssociations(
+      "1.00 rgb/0.png 1.005 depth/0.png\n"
+      "1.04 rgb/1.jpg 1.039 depth/1.png\n"
+      "1.10 rgb/3.png 1.11 depth/3.png\n");
+  ExpectFrames(TumDataset(options_));
+  UseAssociations(
+      "1.005 depth/0.png 1.00 rgb/0.png\n"
+      "1.039 depth/1.png 1.04 rgb/1.jpg\n"
+      "1.11 depth/3.png 1.10 rgb/3.png\n");
+  ExpectFrames(TumDataset(options_));
+}
+
+TEST_F(TumDatasetTest, TellsAssociatedImagesApartByLookingAtThem) {
+  std::filesystem::rename(folder_ / "depth", folder_ / "d");
+  UseAssociations("1.00 rgb/0.png 1.005 d/0.png\n");
+  EXPECT_EQ(TumDataset(options_).timestamp(0), 1.00);
+  UseAssociations("1.005 d/0.png 1.00 rgb/0.png\n");
+  const TumDataset dataset(options_);
+  EXPECT_EQ(dataset.timestamp(0), 1.00);
+  EXPECT_EQ(dataset.Read(0).depth.at<uint16_t>(3, 3), 1000);
+}
+
+TEST_F(TumDatasetTest, NeedsNoListsBesideAssociations) {
+  std::filesystem::remove(folder_ / "rgb.txt");
+  std::filesystem::remove(folder_ / "depth.txt");
+  UseAssociations("1.00 rgb/0.png 1.005 depth/0.png\n");
+  EXPECT_EQ(TumDataset(options_).size(), 1);
+}
+
+TEST_F(TumDatasetTest, MissesNoImageThatNoFrameNeeds) {
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "rgb/2.png"));
+  EXPECT_NO_THROW(TumDataset{options_});
+}
+
+TEST_F(TumDatasetTest, ReadsFromSeveralThreads) {
+  const TumDataset dataset(options_);
+  std::vector<std::thread> threads(4);
+  for (std::thread& thread : threads) {
+    thread = std::thread([&dataset] {
+      for (int repeat = 0; repeat < 20; ++repeat) ExpectFrames(dataset);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+}
+
+TEST_F(TumDatasetTest, RefusesAMissingFolder) {
+  options_.folder = folder_ / "nowhere";
+  ExpectRefused({"nowhere", "folder"});
+}
+
+TEST_F(TumDatasetTest, RefusesBadOptions) {
+  options_.max_time_difference = -0.1;
+  ExpectRefused({"time difference"});
+  options_.max_time_difference = 0.02;
+  options_.camera.depth_scale = 0.0;
+  ExpectRefused({"depth scale"});
+  options_.camera = SmallCamera();
+  options_.camera.camera.fx = 0.0;
+  ExpectRefused({"camera: ", "fx"});
+}
+
+TEST_F(TumDatasetTest, RefusesColorOfAnotherSize) {
+  WriteImage(folder_ / "rgb/0.png", cv::Mat(48, 64, CV_8UC3, cv::Scalar(7)));
+  ExpectReadRefused({"rgb/0.png", "64 x 48", "32 x 24"});
+  EXPECT_THROW(TumDataset(options_).ReadColor(0), InputError);
+}
+
+TEST_F(TumDatasetTest, RefusesDepthOfAnotherSize) {
+  WriteImage(folder_ / "depth/0.png", cv::Mat(24, 31, CV_16UC1, cv::Scalar(7)));
+  ExpectReadRefused({"depth/0.png", "31 x 24", "32 x 24"});
+}
+
+TEST_F(TumDatasetTest, RefusesDepthThatIsNoDepth) {
+  WriteImage(folder_ / "depth/0.png", ColorImage(0));
+  ExpectReadRefused({"depth/0.png", "16 bits", "CV_8UC3"});
+}
+
+// Real sequences, which are not part of the project: RGBD_POSE_TEST_DATA names
+// the folder that holds them.
+class RealTumDatasetTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(RealTumDatasetTest, IsReadInFull) {
+  const char* data = std::getenv("RGBD_POSE_TEST_DATA");
+  if (data == nullptr) {
+    GTEST_SKIP() << "needs " << GetParam() << " in RGBD_POSE_TEST_DATA";
+  }
+  TumDatasetOptions options;
+  options.folder = std::string(data) + "/" + GetParam();
+  options.camera = ReadCameraFile(options.folder + "/camera.yaml");
+  const TumDataset dataset(options);
+  ASSERT_GT(dataset.size(), 0);
+  for (const int i : {0, dataset.size() - 1}) {
+    const Frame frame = dataset.Read(i);
+    EXPECT_EQ(frame.gray.size(), frame.depth.size());
+    EXPECT_GT(cv::countNonZero(frame.depth), 0);
+  }
+  // The association file that came with the sequence, if any, says the same.
+  options.associations_file = options.folder + "/associations.txt";
+  if (!std::filesystem::exists(options.associations_file)) return;
+  const TumDataset associated(options);
+  ASSERT_EQ(associated.size(), dataset.size());
+  for (int i = 0; i < dataset.size(); ++i) {
+    EXPECT_EQ(associated.timestamp(i), dataset.timestamp(i));
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Tum, RealTumDatasetTest,
+                         testing::Values("redkitchen400", "tum_fr1_360_5",
+                                         "tum_fr1_xyz_3", "tum_fr2_hall50"),
+                         [](const auto& info) { return info.param; });
+
+}  // namespace
+}  // namespace rgbd_pose

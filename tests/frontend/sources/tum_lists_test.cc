@@ -1,0 +1,113 @@
+#include "frontend/sources/tum_lists.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "tests/support/tum_sequence.h"
+
+namespace rgbd_pose {
+namespace {
+
+using TumListsTest = TumSequenceTest;
+
+struct BadList {
+  const char* name;
+  const char* file;  // the list that is replaced
+  const char* text;
+  std::vector<std::string> message_parts;
+};
+
+class BadTumListsTest : public TumSequenceTest,
+                        public testing::WithParamInterface<BadList> {};
+
+TEST_P(BadTumListsTest, IsRefusedNamingFileAndLine) {
+  const std::string path = folder_.Write(GetParam().file, GetParam().text);
+  if (GetParam().file == std::string("associations.txt")) {
+    options_.associations_file = path;
+  }
+  ExpectRefused(GetParam().message_parts);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Tum, BadTumListsTest,
+    testing::Values(
+        BadList{"Empty", "rgb.txt", "", {"rgb.txt: "}},
+        BadList{"OnlyComments", "depth.txt", "# a\n\n", {"depth.txt: "}},
+        BadList{"OutOfOrder",
+                "rgb.txt",
+                "# x\n1.04 rgb/1.jpg\n1.00 rgb/0.png\n",
+                {"rgb.txt:3:", "earlier"}},
+        BadList{"Doubled",
+                "depth.txt",
+                "1.005 depth/0.png\n1.005 depth/1.png\n",
+                {"depth.txt:2:", "same time stamp"}},
+        BadList{"NaN",
+                "rgb.txt",
+                "1.0 rgb/0.png\nnan rgb/1.jpg\n",
+                {"rgb.txt:2:", "'nan'", "time stamp"}},
+        BadList{"NoNumber",
+                "rgb.txt",
+                "rgb/0.png 1.0\n",
+                {"rgb.txt:1:", "'rgb/0.png'"}},
+        BadList{"OneColumn",
+                "rgb.txt",
+                "1.0 rgb/0.png\n\n1.04\n",
+                {"rgb.txt:3:", "2 columns", "'1.04'"}},
+        BadList{"MissingColorImage",
+                "rgb.txt",
+                "1.0 rgb/9.png\n",
+                {"rgb.txt:1:", "rgb/9.png"}},
+        BadList{"MissingDepthImage",
+                "depth.txt",
+                "1.0 depth/9.png\n",
+                {"depth.txt:1:", "depth/9.png"}},
+        BadList{"FolderForImage", "rgb.txt", "1.0 rgb\n", {"rgb.txt:1:"}},
+        BadList{"NothingAssociates",
+                "depth.txt",
+                "7.5 depth/0.png\n",
+                {"rgb.txt", "depth.txt", "1.0", "7.5"}},
+        BadList{"AssociationsEmpty",
+                "associations.txt",
+                "#\n",
+                {"associations.txt: "}},
+        BadList{"AssociationsThreeColumns",
+                "associations.txt",
+                "1.00 rgb/0.png 1.005 depth/0.png\n1.04 rgb/1.jpg 1.039\n",
+                {"associations.txt:2:", "4 columns", "has 3",
+                 "'1.04 rgb/1.jpg 1.039'"}},
+        BadList{"AssociationsPathForTime",
+                "associations.txt",
+                "rgb/0.png 1.00 depth/0.png 1.005\n",
+                {"associations.txt:1:", "'rgb/0.png'"}},
+        BadList{"AssociationsNaN",
+                "associations.txt",
+                "1.00 rgb/0.png nan depth/0.png\n",
+                {"associations.txt:1:", "'nan'"}},
+        BadList{"AssociationsOutOfOrder",
+                "associations.txt",
+                "1.039 depth/1.png 1.04 rgb/1.jpg\n"
+                "1.005 depth/0.png 1.00 rgb/0.png\n",
+                {"associations.txt:2:", "earlier"}},
+        BadList{"AssociationsMissingImage",
+                "associations.txt",
+                "1.00 rgb/0.png 1.005 depth/9.png\n",
+                {"associations.txt:1:", "depth/9.png"}},
+        BadList{"AssociationsOnlyColor",
+                "associations.txt",
+                "1.00 rgb/0.png 1.005 rgb/3.png\n",
+                {"associations.txt:1:", "colour", "depth", "rgb/3.png"}}),
+    [](const auto& info) { return info.param.name; });
+
+TEST_F(TumListsTest, RefusesAMissingList) {
+  std::filesystem::remove(folder_ / "rgb.txt");
+  ExpectRefused({"rgb.txt: missing"});
+}
+
+TEST_F(TumListsTest, RefusesMissingAssociations) {
+  options_.associations_file = folder_ / "pairs.txt";
+  ExpectRefused({"pairs.txt"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,48 @@
+#include "frontend/tracking/motion_guess.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rgbd_pose {
+namespace {
+
+Rigid3d Pose(double yaw, double x) {
+  return Rigid3d(
+      Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitY())),
+      {x, 0.0, 0.0});
+}
+
+// A quarter turn in 0.1 s while moving 1 m along x; then a gap.
+const MotionGuess kGuess(Trajectory{{10.0, Pose(0.0, 0.0)},
+                                    {10.1, Pose(M_PI / 2, 1.0)},
+                                    {11.0, Pose(0.0, 5.0)}});
+
+TEST(MotionGuessTest, IsTheMotionFromPreviousToCurrent) {
+  const auto motion = kGuess.CurFromPrev(10.0, 10.1);
+  ASSERT_TRUE(motion.has_value());
+  // The current camera's z axis is the world's x axis, so the camera before is
+  // 1 m behind it.
+  const Rigid3d expected = Pose(M_PI / 2, 1.0).Inverse();
+  EXPECT_LE((motion->translation - expected.translation).norm(), 1e-12);
+  EXPECT_NEAR(motion->translation.z(), -1.0, 1e-12);
+  EXPECT_NEAR(motion->Angle(), M_PI / 2, 1e-12);
+}
+
+TEST(MotionGuessTest, InterpolatesBetweenPoses) {
+  const auto motion = kGuess.CurFromPrev(10.0, 10.05);
+  ASSERT_TRUE(motion.has_value());
+  EXPECT_NEAR(motion->Angle(), M_PI / 4, 1e-9);
+  EXPECT_NEAR(motion->Inverse().translation.x(), 0.5, 1e-9);
+}
+
+TEST(MotionGuessTest, KnowsNothingInGapsAndBeyondTheEnds) {
+  EXPECT_FALSE(kGuess.CurFromPrev(10.05, 10.5).has_value());
+  EXPECT_FALSE(kGuess.CurFromPrev(9.9, 10.05).has_value());
+  EXPECT_FALSE(kGuess.CurFromPrev(11.0, 11.1).has_value());
+  EXPECT_TRUE(kGuess.CurFromPrev(9.99, 10.05).has_value());
+  EXPECT_FALSE(MotionGuess(Trajectory()).CurFromPrev(0.0, 0.1).has_value());
+}
+
+}  // namespace
+}  // namespace rgbd_pose

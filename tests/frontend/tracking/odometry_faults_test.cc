@@ -1,0 +1,248 @@
+// What becomes of the odometry when the camera is covered, knocked, or looks
+// at something that moves: it says so, is never sure of a wrong pose, and
+// finds its way back.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "core/evaluation/trajectory.h"
+#include "costs/cost_factory.h"
+#include "frontend/features/frontend.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/simulation/synthetic_faults.h"
+#include "frontend/simulation/synthetic_path.h"
+#include "frontend/simulation/synthetic_renderer.h"
+#include "frontend/simulation/synthetic_scene.h"
+#include "frontend/simulation/synthetic_sensor.h"
+#include "frontend/tracking/odometry.h"
+
+namespace rgbd_pose {
+namespace {
+
+// How wrong a pose may be that is called ok: the drift of a few seconds
+// (less than half of it in the worst of the sequences without faults), far
+// below what a pose is off by that follows a box or a false match.
+constexpr double kMaxShift = 0.020;      // m
+constexpr double kMaxShiftShare = 0.01;  // of the way so far
+constexpr double kMaxTurnDeg = 0.5;
+constexpr int kRecoveryFrames = 5;
+
+Odometry MakeOdometry(const Camera& camera) {
+  FrontendOptions frontend;
+  frontend.camera = camera;
+  return Odometry(OdometryOptions(), camera, MakeFrontend("patch", frontend),
+                  Estimator(EstimatorOptions(),
+                            MakeRobustCosts("bidirectional_point", "tukey")));
+}
+
+// One frame, and how far its pose is off the truth; both are relative to the
+// first frame.
+struct Outcome {
+  TrackedFrame tracked;
+  double shift = 0.0;      // m
+  double turn_deg = 0.0;   // degrees
+  double max_shift = 0.0;  // m
+
+  bool ok() const { return tracked.status == TrackingStatus::kOk; }
+  bool lost() const { return tracked.status == TrackingStatus::kLost; }
+  bool right() const { return shift <= max_shift && turn_deg <= kMaxTurnDeg; }
+};
+
+std::ostream& operator<<(std::ostream& out, const Outcome& outcome) {
+  return out << "frame " << outcome.tracked.index << " is "
+             << ToString(outcome.tracked.status) << " ("
+             << outcome.tracked.reason << "), off by " << 1e3 * outcome.shift
+             << " mm, " << outcome.turn_deg << " deg, with "
+             << outcome.tracked.inliers << " of " << outcome.tracked.matches
+             << " matches";
+}
+
+std::vector<Outcome> Track(const Dataset& dataset, const Trajectory& truth) {
+  Odometry odometry = MakeOdometry(dataset.camera().camera);
+  std::vector<Outcome> outcomes;
+  double way = 0.0;
+  const Rigid3d first_from_world = truth[0].world_from_cam.Inverse();
+  for (int i = 0; i < dataset.size(); ++i) {
+    Outcome outcome;
+    outcome.tracked = odometry.Track(dataset.Read(i));
+    const Rigid3d expected = first_from_world * truth[i].world_from_cam;
+    const Rigid3d error = expected.Inverse() * outcome.tracked.world_from_cam;
+    if (i > 0) {
+      way += (truth[i].world_from_cam.translation -
+              truth[i - 1].world_from_cam.translation)
+                 .norm();
+    }
+    outcome.shift = error.translation.norm();
+    outcome.turn_deg = error.Angle() * 180.0 / M_PI;
+    outcome.max_shift = kMaxShift + kMaxShiftShare * way;
+    outcomes.push_back(outcome);
+  }
+  return outcomes;
+}
+
+std::vector<Outcome> TrackFaulty(const std::string& path, int frames,
+                                 const std::vector<Fault>& faults) {
+  SyntheticOptions options;
+  options.path = path;
+  options.frames = frames;
+  const FaultyDataset dataset(options, faults);
+  std::vector<Outcome> outcomes = Track(dataset, dataset.ground_truth());
+  EXPECT_EQ(outcomes.size(), static_cast<size_t>(dataset.size()));
+  return outcomes;
+}
+
+void ExpectNoWrongOk(const std::vector<Outcome>& outcomes) {
+  for (const Outcome& outcome : outcomes) {
+    EXPECT_TRUE(!outcome.ok() || outcome.right()) << outcome;
+  }
+}
+
+void ExpectNeverLost(const std::vector<Outcome>& outcomes) {
+  for (const Outcome& outcome : outcomes)
+    EXPECT_FALSE(outcome.lost()) << outcome;
+}
+
+void ExpectLost(const std::vector<Outcome>& outcomes, int first, int end) {
+  for (int i = first; i < end; ++i)
+    EXPECT_TRUE(outcomes[i].lost()) << outcomes[i];
+}
+
+// From one of the first frames after the fault on.
+void ExpectRecovery(const std::vector<Outcome>& outcomes, int end) {
+  const auto after = outcomes.begin() + end;
+  const auto ok = std::find_if(after, after + kRecoveryFrames,
+                               [](const Outcome& o) { return o.ok(); });
+  if (ok == after + kRecoveryFrames) {
+    ADD_FAILURE() << "not ok again: " << *(ok - 1);
+    return;
+  }
+  EXPECT_TRUE(ok->right()) << *ok;
+  EXPECT_TRUE(outcomes.back().ok() && outcomes.back().right())
+      << "at the end: " << outcomes.back();
+}
+
+TEST(OdometryFaultsTest, BlackFramesAreLostAndLeftBehind) {
+  const auto outcomes =
+      TrackFaulty("circle", 50, {{FaultKind::kBlack, 15, 35}});
+  ExpectLost(outcomes, 15, 35);
+  ExpectNoWrongOk(outcomes);
+  ExpectRecovery(outcomes, 35);
+}
+
+TEST(OdometryFaultsTest, CoveredDepthIsLostAndLeftBehind) {
+  const auto outcomes =
+      TrackFaulty("circle", 60, {{FaultKind::kCovered, 15, 45}});  // 1 s
+  ExpectLost(outcomes, 15, 45);
+  ExpectNoWrongOk(outcomes);
+  ExpectRecovery(outcomes, 45);
+}
+
+TEST(OdometryFaultsTest, FindsItselfAfterAKnock) {
+  constexpr int kKnock = 20;
+  const auto outcomes =
+      TrackFaulty("circle", 40, {{FaultKind::kTurned, kKnock}});
+  ExpectNoWrongOk(outcomes);
+  ExpectRecovery(outcomes, kKnock);
+}
+
+TEST(OdometryFaultsTest, DoesNotFollowABoxThatFillsMuchOfTheImage) {
+  const auto outcomes = TrackFaulty("circle", 60, {{FaultKind::kBox, 15, 50}});
+  ExpectNeverLost(outcomes);
+  ExpectNoWrongOk(outcomes);
+  ExpectRecovery(outcomes, 50);
+}
+
+// A pan that reaches 48 deg/s, 44 px from frame to frame at 10 Hz.
+TEST(OdometryFaultsTest, TracksAThirdOfTheFrames) {
+  const auto outcomes =
+      TrackFaulty("pan_tilt", 120, {{FaultKind::kThinned, 15, 105}});
+  ASSERT_EQ(outcomes.size(), 60u);
+  ExpectNeverLost(outcomes);
+  ExpectNoWrongOk(outcomes);
+  ExpectRecovery(outcomes, 15 + 30);
+}
+
+TEST(OdometryFaultsTest, TracksThroughStepsOfTheExposure) {
+  for (const double gain : {2.0, 0.5}) {
+    SCOPED_TRACE("gain " + std::to_string(gain));
+    const auto outcomes =
+        TrackFaulty("circle", 40, {{FaultKind::kGain, 15, 30, gain}});
+    ExpectNeverLost(outcomes);
+    ExpectNoWrongOk(outcomes);
+    ExpectRecovery(outcomes, 15);
+    ExpectRecovery(outcomes, 30);
+  }
+}
+
+// Half the resolution: blurred frames take several renderings each.
+TEST(OdometryFaultsTest, TracksAFastHandWithBlurAndDriftingExposure) {
+  SyntheticOptions options;
+  options.path = "handheld";
+  options.frames = 150;
+  options.exposure_s = 0.01;
+  options.exposure_drift = 0.3;
+  options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
+  const SyntheticDataset dataset(options);
+  const auto outcomes = Track(dataset, dataset.ground_truth());
+  ASSERT_EQ(outcomes.size(), 150u);
+  ExpectNeverLost(outcomes);
+  ExpectNoWrongOk(outcomes);
+}
+
+// One view with new noise in every frame: what SyntheticDataset makes of the
+// path "still", without rendering the same again and again.
+class NoisyView : public Dataset {
+ public:
+  explicit NoisyView(int frames) : frames_(frames) {
+    const Rigid3d pose = FindSyntheticPath("still")(0.0, 1.0);
+    view_ = Renderer(MakeScene("room", 1), camera_.camera).Render(pose);
+  }
+
+  int size() const override { return frames_; }
+  double timestamp(int index) const override { return index / 30.0; }
+  const RgbdCamera& camera() const override { return camera_; }
+
+  Frame Read(int index) const override {
+    const uint64_t key = static_cast<uint64_t>(index) << 41;
+    cv::Mat color = view_.color.clone();
+    AddColorNoise(key, &color);
+    Frame frame;
+    frame.index = index;
+    frame.timestamp = timestamp(index);
+    cv::cvtColor(color, frame.gray, cv::COLOR_BGR2GRAY);
+    frame.depth = EncodeDepth(
+        MeasureDepth(view_.depth, camera_.camera.fx, key + (uint64_t{1} << 40)),
+        camera_.depth_scale);
+    return frame;
+  }
+
+ private:
+  int frames_;
+  RgbdCamera camera_;
+  Rendering view_;
+};
+
+TEST(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
+  constexpr int kFrames = 300;  // 10 s
+  const NoisyView dataset(kFrames);
+  Trajectory truth;
+  for (int i = 0; i < kFrames; ++i) {
+    truth.push_back({dataset.timestamp(i), Rigid3d()});
+  }
+  // A frame's own noise, from hundreds of corners of 0.5 px, is a quarter of
+  // this; more would be drift.
+  for (const Outcome& outcome : Track(dataset, truth)) {
+    EXPECT_TRUE(outcome.ok()) << outcome;
+    EXPECT_LT(outcome.shift, 0.001) << outcome;
+    EXPECT_LT(outcome.turn_deg, 0.05) << outcome;
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

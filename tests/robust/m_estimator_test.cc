@@ -1,0 +1,258 @@
+#include "robust/m_estimator.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/estimation/scaled_loss.h"
+#include "robust/barron_loss.h"
+#include "robust/power_loss.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kRounding = 1e-12;
+
+// Widths on both sides of 1.
+constexpr double kWidths[] = {0.5, 2.0, 7.0};
+
+struct Rho {
+  double value;
+  double first;
+  double second;
+};
+
+Rho Evaluate(const ceres::LossFunction& loss, double s) {
+  double rho[3];
+  loss.Evaluate(s, rho);
+  return {rho[0], rho[1], rho[2]};
+}
+
+// All rows that have a loss.
+std::vector<MEstimator> Rows() {
+  std::vector<MEstimator> rows;
+  for (const MEstimator& row : MEstimators()) {
+    if (row.make != nullptr) rows.push_back(row);
+  }
+  return rows;
+}
+
+struct RhoWeight {
+  double rho;
+  double weight;
+};
+
+// The published rho(x) and w(x) by name, written down independently: Zhang's
+// table, Barron's equation 1 times c^2, -ln of Student's density scaled to
+// w(0) = 1. Zhang's L1, L1-L2, Lp and Geman-McClure have no width; theirs is
+// c^2 rho(x / c).
+RhoWeight Published(std::string_view name, double x, double c) {
+  const double q = x / c;
+  const double c2 = c * c;
+  if (name == "l1") return {c2 * q, 1 / q};
+  if (name == "lp") return {c2 * std::pow(q, 1.2) / 1.2, std::pow(q, -0.8)};
+  if (name == "l1_l2") {
+    return {c2 * 2 * (std::sqrt(1 + q * q / 2) - 1),
+            1 / std::sqrt(1 + q * q / 2)};
+  }
+  if (name == "fair") return {c2 * (q - std::log(1 + q)), 1 / (1 + q)};
+  if (name == "huber") {
+    return x <= c ? RhoWeight{x * x / 2, 1.0}
+                  : RhoWeight{c * (x - c / 2), c / x};
+  }
+  if (name == "cauchy") {
+    return {c2 / 2 * std::log(1 + q * q), 1 / (1 + q * q)};
+  }
+  if (name == "geman_mcclure") {
+    return {c2 * q * q / 2 / (1 + q * q), std::pow(1 + q * q, -2)};
+  }
+  if (name == "welsch") {
+    return {c2 / 2 * (1 - std::exp(-q * q)), std::exp(-q * q)};
+  }
+  if (name == "tukey") {
+    const double t = 1 - q * q;
+    return x <= c ? RhoWeight{c2 / 6 * (1 - t * t * t), t * t}
+                  : RhoWeight{c2 / 6, 0.0};
+  }
+  if (name == "barron") {
+    const double a = -1.0, b = std::abs(a - 2);
+    return {c2 * b / a * (std::pow(q * q / b + 1, a / 2) - 1),
+            std::pow(q * q / b + 1, a / 2 - 1)};
+  }
+  if (name == "student_t") {
+    const double nu = 5.0, p = 3.0;
+    const double at_zero = (nu + p) / (nu * c2);  // 1/x d/dx of -ln density
+    return {(nu + p) / 2 * std::log(1 + q * q / nu) / at_zero,
+            (nu + p) / (nu + q * q) / c2 / at_zero};
+  }
+  ADD_FAILURE() << "no formula for " << name;
+  return {};
+}
+
+TEST(MEstimatorTest, AreThePublishedFormulas) {
+  for (const MEstimator& row : Rows()) {
+    // L1 and Lp are so at sqrt(x^2 + epsilon^2), less the value at 0.
+    const bool is_power = row.name == "l1" || row.name == "lp";
+    const double epsilon = is_power ? PowerLoss::kEpsilon : 0.0;
+    for (const double c : kWidths) {
+      const auto loss = row.make(c);
+      const double at_zero =
+          is_power ? Published(row.name, epsilon * c, c).rho : 0.0;
+      for (double x = 0.05; x < 20.0; x *= 1.3) {
+        const Rho actual = Evaluate(*loss, x * x);
+        const RhoWeight expected =
+            Published(row.name, std::hypot(x, epsilon * c), c);
+        EXPECT_NEAR(actual.value, 2 * (expected.rho - at_zero),
+                    kRounding * (1 + actual.value))
+            << row.name << " at " << x;
+        EXPECT_NEAR(actual.first, expected.weight, kRounding * 10)
+            << row.name << " at " << x;
+      }
+    }
+  }
+}
+
+// From a tenth of the width on, epsilon changes a weight by less than 1 %.
+TEST(MEstimatorTest, EpsilonIsSmall) {
+  for (const std::string name : {"l1", "lp"}) {
+    const auto loss = FindMEstimator(name)->make(1.0);
+    const double expected = Published(name, 0.1, 1.0).weight;
+    EXPECT_NEAR(Evaluate(*loss, 0.01).first, expected, 0.01 * expected);
+  }
+}
+
+TEST(MEstimatorTest, StartAtZeroWithUnitSlope) {
+  for (const MEstimator& row : Rows()) {
+    for (const double c : kWidths) {
+      const Rho rho = Evaluate(*row.make(c), 0.0);
+      EXPECT_EQ(rho.value, 0.0) << row.name;
+      if (row.name == "l1" || row.name == "lp") {
+        const double exponent = row.name == "l1" ? 1.0 : 1.2;
+        const double slope = std::pow(PowerLoss::kEpsilon, exponent - 2);
+        EXPECT_NEAR(rho.first, slope, kRounding * slope) << row.name;
+      } else {
+        EXPECT_EQ(rho.first, 1.0) << row.name;
+      }
+      // Fair's is infinite; that must not get out.
+      EXPECT_TRUE(std::isfinite(rho.second)) << row.name;
+    }
+  }
+}
+
+// rho' and rho'' against central differences on both sides of the width.
+TEST(MEstimatorTest, DerivativesMatchDifferences) {
+  for (const MEstimator& row : Rows()) {
+    const auto loss = row.make(2.0);
+    for (const double s : {0.3, 1.0, 3.5, 4.5, 9.0, 40.0}) {
+      constexpr double kStep = 1e-5;
+      constexpr double kTolerance = 1e-8;  // of a central difference
+      const Rho low = Evaluate(*loss, s - kStep);
+      const Rho at = Evaluate(*loss, s);
+      const Rho high = Evaluate(*loss, s + kStep);
+      EXPECT_NEAR(at.first, (high.value - low.value) / (2 * kStep), kTolerance)
+          << row.name << " at " << s;
+      EXPECT_NEAR(at.second, (high.first - low.first) / (2 * kStep), kTolerance)
+          << row.name << " at " << s;
+    }
+  }
+}
+
+// The compressed block relies on rho'' <= 0, the estimator on finite values.
+TEST(MEstimatorTest, AreConcaveInTheSquareEverywhere) {
+  for (const MEstimator& row : Rows()) {
+    for (const double c : {1e-3, 1.0, 1e3}) {
+      const auto loss = row.make(c);
+      for (double s = 1e-18; s < 1e18; s *= 1.7) {
+        const Rho rho = Evaluate(*loss, s);
+        ASSERT_TRUE(std::isfinite(rho.value)) << row.name << " at " << s;
+        ASSERT_GE(rho.value, 0.0) << row.name << " at " << s;
+        ASSERT_GE(rho.first, 0.0) << row.name << " at " << s;
+        ASSERT_LE(rho.second, 0.0) << row.name << " at " << s;
+        ASSERT_TRUE(std::isfinite(rho.second)) << row.name << " at " << s;
+      }
+    }
+  }
+}
+
+// The estimator widens losses by ScaledLoss instead of making them anew.
+TEST(MEstimatorTest, AScaledLossIsTheLossOfScaledWidth) {
+  for (const MEstimator& row : Rows()) {
+    for (const double scale : {0.05, 0.7, 3.0, 200.0}) {
+      const auto base = row.make(1.5);
+      const ScaledLoss scaled(base.get(), scale);
+      const auto expected_loss = row.make(1.5 * scale);
+      for (double s = 1e-6; s < 1e6; s *= 3.0) {
+        const Rho actual = Evaluate(scaled, s);
+        const Rho expected = Evaluate(*expected_loss, s);
+        // Differences of nearly equal numbers where s is below the width.
+        const double tolerance = kRounding * (1.5 * scale) * (1.5 * scale);
+        EXPECT_NEAR(actual.value, expected.value,
+                    kRounding * expected.value + tolerance)
+            << row.name << " at " << s;
+        EXPECT_NEAR(actual.first, expected.first, kRounding * expected.first);
+        EXPECT_NEAR(actual.second, expected.second,
+                    -kRounding * expected.second);
+      }
+    }
+  }
+}
+
+// psi = w(x) x of a residual 10^6 widths off against its largest value.
+TEST(MEstimatorTest, RedescendingMeansNoInfluenceFromAfar) {
+  for (const MEstimator& row : MEstimators()) {
+    double largest = 0.0, last = 0.0;
+    for (double x = 1e-3; x < 1e6; x *= 1.1) {
+      last = row.make ? Evaluate(*row.make(1.0), x * x).first * x : x;
+      largest = std::max(largest, last);
+    }
+    constexpr double kNone =
+        1e-4;  // 1 / x falls to 2e-6, a constant not at all
+    EXPECT_EQ(last < kNone * largest, row.is_redescending) << row.name;
+  }
+}
+
+TEST(BarronLossTest, LeadsFromLeastSquaresToWelsch) {
+  const double c = 1.5;
+  for (double s = 0.01; s < 100.0; s *= 2.0) {
+    const Rho quadratic = Evaluate(BarronLoss(c, 2.0), s);
+    EXPECT_EQ(quadratic.value, s);
+    EXPECT_EQ(quadratic.first, 1.0);
+    EXPECT_EQ(quadratic.second, 0.0);
+    const struct {
+      double alpha;
+      std::string name;
+      double width;  // that makes it Barron's of width c
+    } members[] = {{1.0, "l1_l2", c / std::sqrt(2.0)},
+                   {0.0, "cauchy", c * std::sqrt(2.0)},
+                   {-2.0, "geman_mcclure", 2.0 * c},
+                   {-1e9, "welsch", c * std::sqrt(2.0)}};
+    for (const auto& member : members) {
+      const double tolerance = member.alpha == -1e9 ? 1e-6 : kRounding;
+      const Rho actual = Evaluate(BarronLoss(c, member.alpha), s);
+      const Rho expected =
+          Evaluate(*FindMEstimator(member.name)->make(member.width), s);
+      EXPECT_NEAR(actual.value, expected.value, tolerance * (1 + s));
+      EXPECT_NEAR(actual.first, expected.first, tolerance) << member.name;
+      EXPECT_NEAR(actual.second, expected.second, tolerance) << member.name;
+    }
+    // Without a jump where the formula changes.
+    EXPECT_NEAR(Evaluate(BarronLoss(c, 1e-9), s).value,
+                Evaluate(BarronLoss(c, 0.0), s).value, 1e-7 * s);
+    EXPECT_NEAR(Evaluate(BarronLoss(c, 2.0 - 1e-9), s).value, s, 1e-7 * s);
+  }
+}
+
+TEST(MEstimatorTest, FindsByName) {
+  for (const std::string& name : MEstimatorNames()) {
+    ASSERT_NE(FindMEstimator(name), nullptr);
+    EXPECT_EQ(FindMEstimator(name)->name, name);
+  }
+  EXPECT_EQ(FindMEstimator("tuckey"), nullptr);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/util/text_file.h"
+#include "tests/support/run_program.h"
+
+namespace rgbd_pose {
+
+// What a row of a table spoils: a copy of a good sequence of four frames.
+struct SpoiledSequence {
+  std::string path;
+
+  std::string operator/(const std::string& name) const {
+    return path + "/" + name;
+  }
+  std::string Read(const std::string& name) const {
+    return ReadTextFile(*this / name);
+  }
+  void Write(const std::string& name, const std::string& content) const {
+    WriteFileAtomically(*this / name, content);
+  }
+  void Cut(const std::string& name, size_t size) const {
+    std::filesystem::resize_file(*this / name, size);
+  }
+  void Remove(const std::string& name) const {
+    std::filesystem::remove_all(*this / name);
+  }
+  // Replaces the first place where `from` is found.
+  void Replace(const std::string& name, const std::string& from,
+               const std::string& to) const {
+    std::string content = Read(name);
+    const size_t at = content.find(from);
+    ASSERT_NE(at, std::string::npos) << from << " is not in " << name;
+    Write(name, content.replace(at, from.size(), to));
+  }
+};
+
+// A bad input, or one that only looks bad.
+struct BadInput {
+  std::string name;
+  std::function<void(const SpoiledSequence&)> spoil;  // null: nothing
+  // Further words for the program, or all of them where the table says so;
+  // {dir} is the folder of the test, {seq} that of the sequence.
+  std::string words;
+  int exit_code = 0;
+  std::string message;  // in the one line on stderr, with {dir} and {seq}
+};
+
+// Runs the rows of tables and looks at all that programs promise: the exit
+// code, one line on stderr that names the program, and whole results or none.
+class BadInputTest : public testing::Test {
+ protected:
+  BadInputTest();
+
+  // The rows of a table, each added to `command`.
+  void ExpectEach(const std::string& command,
+                  const std::vector<BadInput>& rows) const;
+
+  // Replaces {dir} and {seq}.
+  std::string Fill(std::string text) const;
+
+  // rgbd_odometry with the sequence, its camera and {dir}/out as the output.
+  static std::string Odometry();
+
+  SpoiledSequence Spoiled() const { return {folder_ / "seq"}; }
+
+  const TempFolder folder_;
+
+ private:
+  void Expect(const std::string& command, const BadInput& row) const;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,98 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "costs/cost_factory.h"
+#include "frontend/features/frontend.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/odometry.h"
+
+namespace rgbd_pose {
+
+// Two views of the simulated room, a frontend, and how well its matches between
+// them agree with the truth.
+class MatchedViews {
+ protected:
+  // Half a second apart on path xyz: about 0.1 m and 20 px of flow.
+  static constexpr int kPrev = 0;
+  static constexpr int kCur = 15;
+
+  explicit MatchedViews(const std::string& frontend)
+      : dataset_(SyntheticOptions()) {
+    FrontendOptions options;
+    options.camera = dataset_.camera().camera;
+    frontend_ = MakeFrontend(frontend, options);
+    cur_from_prev_ =
+        dataset_.WorldFromCam(kCur).Inverse() * dataset_.WorldFromCam(kPrev);
+  }
+
+  FeatureMatches MatchFrom(const Frame& prev, const Frame& cur,
+                           const Rigid3d& guess) {
+    return MatchFrom(*frontend_->Detect(prev), cur, guess);
+  }
+  FeatureMatches MatchFrom(const FeatureSet& reference, const Frame& cur,
+                           const Rigid3d& guess) {
+    FeatureMatches found{Correspondences(dataset_.camera().camera), {}};
+    frontend_->Match(reference, cur, guess, &found);
+    return found;
+  }
+
+  // How far (px) each match is from where the true motion takes its point,
+  // sorted.
+  std::vector<double> Errors(const Correspondences& matches) const {
+    std::vector<double> errors;
+    for (size_t i = 0; i < matches.size(); ++i) {
+      const Observation cur = matches.cur()[i];
+      const Eigen::Vector2d expected = dataset_.camera().camera.Project(
+          cur_from_prev_ * matches.Point(matches.prev()[i]));
+      errors.push_back((expected - Eigen::Vector2d(cur.u, cur.v)).norm());
+    }
+    std::sort(errors.begin(), errors.end());
+    return errors;
+  }
+
+  // `wrong_px`: a match further than this from the truth shows another place.
+  void ExpectMostlyRight(const FeatureMatches& found, size_t min_matches,
+                         double median_px, double wrong_px) const {
+    ASSERT_GE(found.matches.size(), min_matches);
+    EXPECT_EQ(found.features.size(), found.matches.size());
+    const std::vector<double> errors = Errors(found.matches);
+    EXPECT_LT(errors[errors.size() / 2], median_px);
+    const auto wrong =
+        errors.end() - std::lower_bound(errors.begin(), errors.end(), wrong_px);
+    // An M-estimator bears several times as many.
+    EXPECT_LE(wrong, 0.1 * static_cast<double>(errors.size()));
+  }
+
+  // Takes the frontend. `max_error`: of the last position, m.
+  void ExpectTracksAlongItsAxes(double max_error) {
+    Odometry odometry(
+        OdometryOptions(), dataset_.camera().camera, std::move(frontend_),
+        Estimator(EstimatorOptions(),
+                  MakeRobustCosts("bidirectional_point", "tukey")));
+    constexpr int kLast = 19;
+    Rigid3d end;
+    for (int i = 0; i <= kLast; ++i) {
+      const TrackedFrame result = odometry.Track(dataset_.Read(i));
+      EXPECT_EQ(result.status, TrackingStatus::kOk)
+          << i << ": " << result.reason;
+      end = result.world_from_cam;
+    }
+    const Rigid3d truth =
+        dataset_.WorldFromCam(0).Inverse() * dataset_.WorldFromCam(kLast);
+    ASSERT_GT(truth.translation.norm(), 0.05) << "the path is vacuous";
+    EXPECT_LE((end.translation - truth.translation).norm(), max_error);
+  }
+
+  SyntheticDataset dataset_;
+  std::unique_ptr<Frontend> frontend_;
+  Rigid3d cur_from_prev_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <string>
+
+#include "core/util/text_file.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+
+// What a program said and how it ended.
+struct RunResult {
+  int exit_code = -1;  // -1: ended by a signal
+  std::string out;
+  std::string err;
+};
+
+// Runs a command of the shell with nothing to read; keeps its output in
+// `folder` meanwhile.
+inline RunResult RunCommand(const std::string& command,
+                            const TempFolder& folder) {
+  const std::string out = folder / "stdout";
+  const std::string err = folder / "stderr";
+  const int status = std::system(
+      (command + " </dev/null >'" + out + "' 2>'" + err + "'").c_str());
+  return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, ReadTextFile(out),
+          ReadTextFile(err)};
+}
+
+}  // namespace rgbd_pose
