@@ -35,7 +35,7 @@ function(rgbd_pose_install_package)
                  ${binary}/rgbd_poseConfig.cmake @ONLY)
   write_basic_package_version_file(${binary}/rgbd_poseConfigVersion.cmake
                                    COMPATIBILITY SameMinorVersion)
-  configure_file(${PROJECT_SOURCE_DIR}/frontend/FindLibdeflate.cmake
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/FindLibdeflate.cmake
                  ${binary}/FindLibdeflate.cmake COPYONLY)
   install(FILES ${binary}/rgbd_poseConfig.cmake
                 ${binary}/rgbd_poseConfigVersion.cmake
