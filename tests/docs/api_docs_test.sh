@@ -18,8 +18,8 @@ cp -r "$1"/{core,robust,costs,frontend,docs,scripts} "$folder"
 
 # A gap is found: an undocumented class.
 comment='// What all frontends share.'
-grep -qxF "$comment" "$folder/frontend/frontend.h"
-sed -i "\\|^$comment\$|d" "$folder/frontend/frontend.h"
+grep -qxF "$comment" "$folder/frontend/features/frontend.h"
+sed -i "\\|^$comment\$|d" "$folder/frontend/features/frontend.h"
 if "$folder/scripts/api_docs" >"$folder/log" 2>&1; then
   echo "a class without a comment went unnoticed"
   exit 1
