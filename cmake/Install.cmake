@@ -12,8 +12,9 @@ function(rgbd_pose_install_library name)
   install(TARGETS rgbd_pose_${name} EXPORT rgbd_pose_${name}
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
-          DESTINATION ${RGBD_POSE_HEADER_DIR}/${name} COMPONENT development
+          DESTINATION ${RGBD_POSE_HEADER_DIR}/${folder} COMPONENT development
           FILES_MATCHING PATTERN *.h)
   install(EXPORT rgbd_pose_${name} NAMESPACE rgbd_pose::
           FILE rgbd_pose_${name}.cmake
@@ -43,7 +44,9 @@ function(rgbd_pose_install_package)
           DESTINATION ${RGBD_POSE_CMAKE_DIR} COMPONENT development)
   rgbd_pose_configure_pkg_config(${source}/rgbd_pose.pc.in
                                  ${binary}/rgbd_pose.pc)
-  install(FILES ${binary}/rgbd_pose.pc
+  configure_file(${source}/rgbd_pose_simulation.pc.in
+                 ${binary}/rgbd_pose_simulation.pc @ONLY)
+  install(FILES ${binary}/rgbd_pose.pc ${binary}/rgbd_pose_simulation.pc
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
   foreach(file LICENSE README.md CHANGELOG.md third_party_notes.md)
     install(FILES ${PROJECT_SOURCE_DIR}/${file}

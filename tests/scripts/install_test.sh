@@ -77,7 +77,7 @@ check "$work/costs/build/estimate_motion" '^ok'
 # What is not there is refused in words.
 project lidar NONE REQUIRED COMPONENTS core lidar
 ! configure "$work/lidar" || fail "took an unknown component"
-says "no component 'lidar'; there are core, robust, costs, frontend" lidar
+says "no component 'lidar'; there are core, robust, costs, frontend, simulation" lidar
 project newer NONE 0.99 REQUIRED
 ! configure "$work/newer" || fail "took another version"
 says 'compatible with requested version "0.99"' newer
@@ -86,7 +86,9 @@ says 'compatible with requested version "0.99"' newer
 export PKG_CONFIG_PATH
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name rgbd_pose.pc)")
 read -ra flags < <(pkg-config --cflags rgbd_pose)
-read -ra libraries < <(pkg-config --libs rgbd_pose)
+read -ra libraries < <(pkg-config --libs rgbd_pose_simulation)
+[[ " $(pkg-config --libs rgbd_pose) " != *simulation* ]] ||
+  fail "rgbd_pose.pc links the simulator"
 (cd "$prefix/include/rgbd_pose" && find . -name '*.h' |
   sed 's|^\./\(.*\)|#include "\1"|') >"$work/all.cc"
 [ "$(wc -l <"$work/all.cc")" -gt 100 ] || fail "headers are missing"
