@@ -5,36 +5,57 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <limits>
 
 namespace rgbd_pose {
 namespace {
 
-// Noise of one sigma feigns an information of about 1 a match (rad^-2 or
-// m^-2); real scenes at 0.3-8 m give more than 100.
-constexpr double kMinInformationPerMatch = 10.0;
+// How many times over a rotation must be known better than noise feigns it.
+constexpr double kFeignedMargin = 3.0;
+
+// Of a Hessian scaled to a diagonal of ones: below this it is singular.
+constexpr double kSingular = 1e-12;
 
 constexpr std::array<const char*, 6> kDirections = {
     "rotation about x",    "rotation about y",    "rotation about z",
     "translation along x", "translation along y", "translation along z"};
 
+// The directions that stand out, the strongest first.
 std::string Describe(const MotionVector& direction, double deviation) {
-  Eigen::Index strongest = 0;
-  direction.cwiseAbs().maxCoeff(&strongest);
-  std::string text = kDirections[strongest];
-  for (int i = 0; i < 6; ++i) {
-    if (i != strongest && std::abs(direction[i]) > 0.4) {
-      text += std::string(" with ") + kDirections[i];
+  std::array<int, 6> order = {0, 1, 2, 3, 4, 5};
+  std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
+    return std::abs(direction[a]) > std::abs(direction[b]);
+  });
+  std::string text = kDirections[order[0]];
+  for (int i = 1; i < 6; ++i) {
+    if (std::abs(direction[order[i]]) > 0.4 * direction.norm()) {
+      text += std::string(" with ") + kDirections[order[i]];
     }
   }
   char number[64];
   std::snprintf(number, sizeof(number), "%.2g %s", deviation,
-                strongest < 3 ? "rad" : "m");
+                order[0] < 3 ? "rad" : "m");
   return text + " is not determined (standard deviation " + number + ")";
+}
+
+// Variance of the weakest direction of a block of a covariance, and the joint
+// change of all six that goes with it.
+struct WeakDirection {
+  double deviation;
+  MotionVector direction;
+};
+
+WeakDirection WeakestOf(const MotionMatrix& covariance, int first) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
+      Eigen::Matrix3d(covariance.block<3, 3>(first, first)));
+  return {std::sqrt(eigen.eigenvalues()[2]),
+          covariance.middleCols<3>(first) * eigen.eigenvectors().col(2)};
 }
 
 }  // namespace
 
-Degeneracy FindDegeneracy(const MotionMatrix& hessian, double total_weight,
+Degeneracy FindDegeneracy(const MotionMatrix& hessian,
+                          double feigned_information,
                           double max_standard_deviation) {
   Degeneracy result;
   if (!hessian.allFinite()) {
@@ -42,19 +63,56 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian, double total_weight,
     result.reason = "the Hessian is not finite";
     return result;
   }
-  const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(hessian);
-  const double weakest = std::max(eigen.eigenvalues()[0], 0.0);
-  const double deviation = 1.0 / std::sqrt(weakest);
-  if (!(deviation <= max_standard_deviation) ||
-      weakest < kMinInformationPerMatch * total_weight) {
+  // In units of what each parameter alone would be known to, in which radians
+  // and metres compare.
+  MotionVector unit;
+  for (int i = 0; i < 6; ++i) {
+    unit[i] = hessian(i, i) > 0.0 ? 1.0 / std::sqrt(hessian(i, i)) : 1.0;
+  }
+  const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
+      unit.asDiagonal() * hessian * unit.asDiagonal());
+  if (!(eigen.eigenvalues()[0] > kSingular)) {
     result.is_degenerate = true;
-    result.reason = Describe(eigen.eigenvectors().col(0), deviation);
+    result.reason = Describe(eigen.eigenvectors().col(0),
+                             std::numeric_limits<double>::infinity());
     return result;
   }
-  result.inverse = eigen.eigenvectors() *
-                   eigen.eigenvalues().cwiseInverse().asDiagonal() *
-                   eigen.eigenvectors().transpose();
+  const MotionMatrix covariance =
+      unit.asDiagonal() * eigen.eigenvectors() *
+      eigen.eigenvalues().cwiseInverse().asDiagonal() *
+      eigen.eigenvectors().transpose() * unit.asDiagonal();
+  const WeakDirection rotation = WeakestOf(covariance, 0);
+  const WeakDirection translation = WeakestOf(covariance, 3);
+  const double known = 1.0 / (rotation.deviation * rotation.deviation);
+  const bool is_rotation = rotation.deviation > max_standard_deviation ||
+                           known < kFeignedMargin * feigned_information;
+  if (is_rotation || translation.deviation > max_standard_deviation) {
+    const WeakDirection& weak = is_rotation ? rotation : translation;
+    result.is_degenerate = true;
+    result.reason =
+        Describe(weak.direction.cwiseQuotient(unit), weak.deviation);
+    return result;
+  }
+  result.inverse = covariance;
   return result;
+}
+
+double FeignedInformation(const Correspondences& matches,
+                          const std::vector<double>& weights) {
+  const double focal = matches.camera().fx;
+  double sum = 0.0;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const Observation prev = matches.prev()[i];
+    const Observation o = prev.depth > 0.0 ? prev : matches.cur()[i];
+    double feigned = 1.0;  // without a depth there are only directions
+    if (o.depth > 0.0) {
+      const double along = o.sigma_depth * focal, across = o.depth * o.sigma_px;
+      const double a = along * along, b = across * across;
+      feigned = (a * a + b * b) / (2.0 * a * b);
+    }
+    sum += weights.empty() ? feigned : weights[i] * feigned;
+  }
+  return sum;
 }
 
 }  // namespace rgbd_pose

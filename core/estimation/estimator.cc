@@ -197,8 +197,9 @@ class Estimator::Solve {
     out_->cur_from_prev = guess;
     BindAgain();
     const NormalEquations sum = terms_.LineariseWithoutLosses(MotionNow());
-    const Degeneracy degeneracy = FindDegeneracy(
-        sum.hessian, terms_.num_blocks(), options_.max_standard_deviation);
+    const Degeneracy degeneracy =
+        FindDegeneracy(sum.hessian, FeignedInformation(*matches_, {}),
+                       options_.max_standard_deviation);
     out_->status = degeneracy.is_degenerate ? EstimateStatus::kDegenerate
                                             : EstimateStatus::kNotConverged;
     out_->reason = degeneracy.is_degenerate ? degeneracy.reason
@@ -211,7 +212,8 @@ class Estimator::Solve {
     const NormalEquations sum = terms_.Linearise(MotionNow());
     out_->final_cost = sum.cost;
     const Degeneracy degeneracy = FindDegeneracy(
-        sum.hessian, loss_sums.weight, options_.max_standard_deviation);
+        sum.hessian, FeignedInformation(*matches_, out_->weights),
+        options_.max_standard_deviation);
     if (degeneracy.is_degenerate) {
       out_->status = EstimateStatus::kDegenerate;
       out_->reason = degeneracy.reason;

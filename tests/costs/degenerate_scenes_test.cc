@@ -58,6 +58,56 @@ Correspondences MatchesOnAPlane(int count, double depth, const Rigid3d& truth,
   return matches;
 }
 
+// Matches on the walls of a corridor 3 m wide and high, its end so far away
+// that it covers `end_share` of the pixels; with exact normals.
+Correspondences MatchesInACorridor(int count, double end_share) {
+  RandomWorld world(27);
+  const Camera camera;
+  const double half = 1.5;  // m
+  const double end = 2.0 * half *
+                     std::sqrt(camera.fx * camera.fy / end_share /
+                               camera.width / camera.height);
+  Correspondences matches(camera);
+  for (int i = 0; i < count; ++i) {
+    Observation o;
+    o.u = world.Uniform(0.0, camera.width - 1.0);
+    o.v = world.Uniform(0.0, camera.height - 1.0);
+    o.depth = 1.0;
+    const Eigen::Vector3d ray = matches.Point(o);
+    const double side = half / std::abs(ray.x());
+    const double floor = half / std::abs(ray.y());
+    o.depth = std::min({side, floor, end});
+    o.normal = o.depth == end    ? Eigen::Vector3d(0.0, 0.0, -1.0)
+               : o.depth == side ? Eigen::Vector3d(1.0, 0.0, 0.0)
+                                 : Eigen::Vector3d(0.0, 1.0, 0.0);
+    o.sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(o.depth);
+    Observation prev = o, cur = o;
+    world.AddNoise(&prev);
+    world.AddNoise(&cur);
+    matches.Add(prev, cur);
+  }
+  return matches;
+}
+
+// Matches on a strip across the image at a depth, `height` px high, with noise.
+Correspondences MatchesOnAStrip(int count, double depth, double height) {
+  RandomWorld world(28 + count);
+  const Camera camera;
+  Correspondences matches(camera);
+  for (int i = 0; i < count; ++i) {
+    Observation prev, cur;
+    prev.u = world.Uniform(0.0, camera.width - 1.0);
+    prev.v = camera.cy + world.Uniform(-0.5, 0.5) * height;
+    prev.depth = depth;
+    prev.sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(depth);
+    cur = prev;
+    world.AddNoise(&prev);
+    world.AddNoise(&cur);
+    matches.Add(prev, cur);
+  }
+  return matches;
+}
+
 class EveryCostTest : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(EveryCostTest, FewerThanThreeMatchesAreTooFew) {
@@ -113,6 +163,52 @@ TEST(DegenerateScenesTest, PointToPlaneOnOnePlane) {
                            estimate.reason.find("translation along y") == 0 ||
                            estimate.reason.find("rotation about z") == 0;
     EXPECT_TRUE(names_one) << estimate.reason;
+  }
+}
+
+// A direction that few matches tell of is known by many: what counts is how
+// well, not how little each tells.
+TEST(DegenerateScenesTest, TheEndOfACorridorIsEnough) {
+  for (const double end_share : {0.12, 0.03}) {
+    const MotionEstimate estimate =
+        MakeEstimator("point_to_plane")
+            .Estimate(MatchesInACorridor(30000, end_share));
+    EXPECT_TRUE(estimate.ok()) << estimate.reason;
+    ExpectSane(estimate);
+    const double deviation = std::sqrt(estimate.covariance(5, 5));
+    EXPECT_GT(deviation, 0.001);
+    EXPECT_LT(deviation, 0.02);
+    EXPECT_LT(std::abs(estimate.cur_from_prev.translation.z()),
+              4.0 * deviation);
+  }
+}
+
+// What noise feigns of the rotation about a line grows with the number of
+// matches, and with the distance, as a depth errs more than an image does.
+TEST(DegenerateScenesTest, NoiseIsNoLeverAboutALine) {
+  for (const char* cost : {"bidirectional_point", "mahalanobis_point",
+                           "reprojection_depth", "bidirectional_image"}) {
+    for (const int count : {10, 100, 5000}) {
+      for (const double depth : {0.5, 2.0, 4.0, 8.0}) {
+        const MotionEstimate estimate = MakeEstimator(cost).Estimate(
+            MatchesOnAStrip(count, depth, /*height=*/0.0));
+        EXPECT_EQ(estimate.status, EstimateStatus::kDegenerate)
+            << cost << ", " << count << " matches at " << depth << " m";
+        EXPECT_NE(estimate.reason.find("rotation about x"), std::string::npos)
+            << estimate.reason;
+        ExpectSane(estimate);
+      }
+    }
+  }
+}
+
+TEST(DegenerateScenesTest, AStripOfFourSigmasIsALever) {
+  for (const char* cost : {"bidirectional_point", "mahalanobis_point"}) {
+    for (const int count : {30, 1000}) {
+      const MotionEstimate estimate = MakeEstimator(cost).Estimate(
+          MatchesOnAStrip(count, 2.0, /*height=*/20.0));
+      EXPECT_TRUE(estimate.ok()) << estimate.reason;
+    }
   }
 }
 
