@@ -45,8 +45,8 @@ struct Trial {
         prev(3, all.size()),
         cur(3, all.size()) {
     for (size_t i = 0; i < all.size(); ++i) {
-      prev.col(i) = all.Point(all.prev()[i]);
-      cur.col(i) = all.Point(all.cur()[i]);
+      prev.col(i) = all.Point(all[i].prev);
+      cur.col(i) = all.Point(all[i].cur);
     }
   }
 };

@@ -24,9 +24,9 @@ struct PnpInput {
       : camera(matches.camera().fx, 0, matches.camera().cx, 0,
                matches.camera().fy, matches.camera().cy, 0, 0, 1) {
     for (size_t i = 0; i < matches.size(); ++i) {
-      const Eigen::Vector3d point = matches.Point(matches.prev()[i]);
+      const Eigen::Vector3d point = matches.Point(matches[i].prev);
       points.emplace_back(point.x(), point.y(), point.z());
-      pixels.emplace_back(matches.cur()[i].u, matches.cur()[i].v);
+      pixels.emplace_back(matches[i].cur.u, matches[i].cur.v);
     }
   }
 };

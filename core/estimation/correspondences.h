@@ -18,30 +18,9 @@ struct Observation {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-// All matches seen from one frame, as a structure of arrays.
-class ObservationArray {
- public:
-  // As those of std::vector.
-  size_t size() const { return u_.size(); }
-  void reserve(size_t n);
-  void clear();
-  void push_back(const Observation& observation);
-  Observation operator[](size_t i) const {
-    return {u_[i],        v_[i],           depth_[i],
-            sigma_px_[i], sigma_depth_[i], {nx_[i], ny_[i], nz_[i]}};
-  }
-
- private:
-  // Calls f with every column.
-  template <typename F>
-  void ForEachColumn(F f) {
-    for (auto* column :
-         {&u_, &v_, &depth_, &sigma_px_, &sigma_depth_, &nx_, &ny_, &nz_}) {
-      f(column);
-    }
-  }
-
-  std::vector<double> u_, v_, depth_, sigma_px_, sigma_depth_, nx_, ny_, nz_;
+// One scene point (or so it is believed) in both frames.
+struct Match {
+  Observation prev, cur;
 };
 
 // Matches between a previous and a current frame of one pinhole camera.
@@ -58,16 +37,19 @@ class Correspondences {
 
   // Takes all matches out; keeps the memory and the camera.
   void Clear();
-  void Reserve(size_t n);
+  void Reserve(size_t n) { matches_.reserve(n); }
 
-  // How many matches there are, and how many Add has refused.
-  size_t size() const { return prev_.size(); }
+  // The matches, as those of a std::vector.
+  size_t size() const { return matches_.size(); }
+  const Match& operator[](size_t i) const { return matches_[i]; }
+  std::vector<Match>::const_iterator begin() const { return matches_.begin(); }
+  std::vector<Match>::const_iterator end() const { return matches_.end(); }
+
+  // How many matches Add has refused.
   size_t rejected() const { return rejected_; }
 
-  // What both sides share, and what each has seen, in the same order.
+  // Of both frames.
   const Camera& camera() const { return camera_; }
-  const ObservationArray& prev() const { return prev_; }
-  const ObservationArray& cur() const { return cur_; }
 
   // Point in camera axes (m) of an observation with a depth.
   Eigen::Vector3d Point(const Observation& o) const {
@@ -77,8 +59,7 @@ class Correspondences {
 
  private:
   Camera camera_;
-  ObservationArray prev_;
-  ObservationArray cur_;
+  std::vector<Match> matches_;
   size_t rejected_ = 0;
 };
 

@@ -102,8 +102,8 @@ double FeignedInformation(const Correspondences& matches,
   const double focal = matches.camera().fx;
   double sum = 0.0;
   for (size_t i = 0; i < matches.size(); ++i) {
-    const Observation prev = matches.prev()[i];
-    const Observation o = prev.depth > 0.0 ? prev : matches.cur()[i];
+    const auto& [prev, cur] = matches[i];
+    const Observation& o = prev.depth > 0.0 ? prev : cur;
     double feigned = 1.0;  // without a depth there are only directions
     if (o.depth > 0.0) {
       const double along = o.sigma_depth * focal, across = o.depth * o.sigma_px;

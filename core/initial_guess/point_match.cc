@@ -8,7 +8,7 @@ namespace rgbd_pose {
 namespace {
 
 bool HasDepths(const Correspondences& matches, size_t i) {
-  return matches.prev()[i].depth > 0.0 && matches.cur()[i].depth > 0.0;
+  return matches[i].prev.depth > 0.0 && matches[i].cur.depth > 0.0;
 }
 
 NoisyPoint MakeNoisyPoint(const Correspondences& matches,
@@ -21,8 +21,8 @@ NoisyPoint MakeNoisyPoint(const Correspondences& matches,
 }
 
 PointMatch MakePointMatch(const Correspondences& matches, size_t i) {
-  const Observation prev = matches.prev()[i];
-  const Observation cur = matches.cur()[i];
+  const Observation& prev = matches[i].prev;
+  const Observation& cur = matches[i].cur;
   PointMatch match;
   match.index = static_cast<int>(i);
   match.prev = MakeNoisyPoint(matches, prev);

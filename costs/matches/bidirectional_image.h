@@ -34,8 +34,8 @@ struct BidirectionalImage {
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     const Correspondences& matches = input.matches;
-    const Observation prev = matches.prev()[i];
-    const Observation cur = matches.cur()[i];
+    const Observation& prev = matches[i].prev;
+    const Observation& cur = matches[i].cur;
     const bool forward = prev.depth > 0.0;
     const bool backward = cur.depth > 0.0;
     const double repeats = forward && backward ? 2.0 : 1.0;

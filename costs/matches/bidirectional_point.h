@@ -32,8 +32,8 @@ struct BidirectionalPoint {
   // Writes what the residual needs of match i; false if a depth is missing.
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     const Correspondences& matches = input.matches;
-    const Observation prev = matches.prev()[i];
-    const Observation cur = matches.cur()[i];
+    const Observation& prev = matches[i].prev;
+    const Observation& cur = matches[i].cur;
     if (prev.depth <= 0.0 || cur.depth <= 0.0) return false;
     constexpr double kSigmaFactor = 2.0;  // see above
     PackRay(matches.camera(), prev, kSigmaFactor, columns);

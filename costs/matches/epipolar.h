@@ -49,8 +49,8 @@ struct Epipolar {
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     const Camera& camera = input.matches.camera();
-    const Observation prev = input.matches.prev()[i];
-    const Observation cur = input.matches.cur()[i];
+    const Observation& prev = input.matches[i].prev;
+    const Observation& cur = input.matches[i].cur;
     if (prev.depth > 0.0 && cur.depth > 0.0) return false;
     if (!SeesBaseline(camera, input.cur_from_prev, prev, cur)) return false;
     const double s[] = {cur.sigma_px / camera.fx, cur.sigma_px / camera.fy,

@@ -26,7 +26,7 @@ struct PointToPlane {
   static constexpr int kColumns = ForwardError::kColumns + 3;  // n / sigma
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
-    const Eigen::Vector3d n = input.matches.cur()[i].normal;
+    const Eigen::Vector3d n = input.matches[i].cur.normal;
     if (n.isZero(0.0) || !ForwardError::Pack(input, i, columns)) return false;
     const double variance = n.dot(ForwardError::Covariance(input, i) * n);
     Eigen::Map<Eigen::Vector3d>(columns + ForwardError::kColumns) =

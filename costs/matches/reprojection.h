@@ -22,8 +22,8 @@ struct Reprojection {
   static constexpr int kColumns = ImageError<2, Forward, double>::kColumns;
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
-    const Observation prev = input.matches.prev()[i];
-    const Observation cur = input.matches.cur()[i];
+    const Observation& prev = input.matches[i].prev;
+    const Observation& cur = input.matches[i].cur;
     if (prev.depth <= 0.0) return false;
     return PackImageError<2>(input.matches, input.cur_from_prev, prev, cur, 1.0,
                              columns);

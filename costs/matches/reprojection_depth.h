@@ -23,8 +23,8 @@ struct ReprojectionDepth {
   static constexpr int kColumns = ImageError<3, Forward, double>::kColumns;
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
-    const Observation prev = input.matches.prev()[i];
-    const Observation cur = input.matches.cur()[i];
+    const Observation& prev = input.matches[i].prev;
+    const Observation& cur = input.matches[i].cur;
     if (prev.depth <= 0.0 || cur.depth <= 0.0) return false;
     return PackImageError<3>(input.matches, input.cur_from_prev, prev, cur, 1.0,
                              columns);

@@ -17,8 +17,8 @@ struct ForwardError {
   // Writes the columns of match i; false if a depth is missing.
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     const Correspondences& matches = input.matches;
-    const Observation prev = matches.prev()[i];
-    const Observation cur = matches.cur()[i];
+    const Observation& prev = matches[i].prev;
+    const Observation& cur = matches[i].cur;
     if (prev.depth <= 0.0 || cur.depth <= 0.0) return false;
     Eigen::Map<Eigen::Vector3d> x_prev(columns), x_cur(columns + 3);
     x_prev = matches.Point(prev);
@@ -30,8 +30,8 @@ struct ForwardError {
   static Eigen::Matrix3d Covariance(const CostInput& input, size_t i) {
     const Camera& camera = input.matches.camera();
     const Eigen::Matrix3d R = input.cur_from_prev.rotation.toRotationMatrix();
-    return PointCovariance(camera, input.matches.cur()[i]) +
-           R * PointCovariance(camera, input.matches.prev()[i]) * R.transpose();
+    return PointCovariance(camera, input.matches[i].cur) +
+           R * PointCovariance(camera, input.matches[i].prev) * R.transpose();
   }
 
   template <typename M, typename D, typename T>

@@ -172,8 +172,8 @@ cv::Mat DrawMatches(const Frame& frame, const Camera& camera,
   for (const size_t i : Ascending(weights)) {
     const cv::Scalar color =
         has_weights ? ColorAt(colors, weights[i]) : kNoWeightColor;
-    const cv::Point prev = ImagePoint(camera, matches.prev()[i]);
-    const cv::Point cur = ImagePoint(camera, matches.cur()[i]);
+    const cv::Point prev = ImagePoint(camera, matches[i].prev);
+    const cv::Point cur = ImagePoint(camera, matches[i].cur);
     cv::line(image, prev, cur, color, layout.unit, cv::LINE_AA, kShift);
     cv::circle(image, cur, Fixed(layout.dot_radius), color, cv::FILLED,
                cv::LINE_AA, kShift);

@@ -26,9 +26,9 @@ constexpr int kMinFailed = 2;
 // Whether a match is where the motion puts it.
 bool Agrees(const FeatureMatches& found, size_t i,
             const Rigid3d& cur_from_ref) {
-  const Observation cur = found.matches.cur()[i];
+  const Observation& cur = found.matches[i].cur;
   const auto expected =
-      SeenAt(found.matches.camera(), cur_from_ref, found.matches.prev()[i]);
+      SeenAt(found.matches.camera(), cur_from_ref, found.matches[i].prev);
   return expected.has_value() &&
          (*expected - Eigen::Vector2d(cur.u, cur.v)).norm() <= kMaxErrorPx;
 }
@@ -103,7 +103,7 @@ void FeatureTrust::Split(FeatureMatches* found, FeatureMatches* doubted) const {
   for (size_t i = 0; i < found->features.size(); ++i) {
     const int feature = found->features[i];
     FeatureMatches& part = doubts_[feature] == 0 ? trusted : *doubted;
-    part.matches.Add(found->matches.prev()[i], found->matches.cur()[i]);
+    part.matches.Add(found->matches[i].prev, found->matches[i].cur);
     part.features.push_back(feature);
   }
   *found = std::move(trusted);

@@ -297,8 +297,8 @@ double Odometry::MeanInlierFlowPx() const {
   int count = 0;
   for (size_t i = 0; i < found_.matches.size(); ++i) {
     if (!estimate_.is_inlier[i]) continue;
-    const Observation prev = found_.matches.prev()[i];
-    const Observation cur = found_.matches.cur()[i];
+    const Observation& prev = found_.matches[i].prev;
+    const Observation& cur = found_.matches[i].cur;
     sum += std::hypot(cur.u - prev.u, cur.v - prev.v);
     ++count;
   }

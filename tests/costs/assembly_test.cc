@@ -54,7 +54,7 @@ class AssemblyTest
       const Correspondences one =
           world.Matches(1, outlier_share, truth,
                         /*noise=*/true, kMissingDepthShare);
-      matches_.Add(one.prev()[0], one.cur()[0]);
+      matches_.Add(one[0].prev, one[0].cur);
       cost_->Bind({one, guess, &prior});
       usable += static_cast<int>(cost_->matches().size());
     }

@@ -23,7 +23,7 @@ Correspondences MatchesOfAllKinds() {
   const Correspondences whole = world.Matches(5, 0.0, Motion());
   Correspondences matches(whole.camera());
   for (int i = 0; i < 5; ++i) {
-    Observation prev = whole.prev()[i], cur = whole.cur()[i];
+    Observation prev = whole[i].prev, cur = whole[i].cur;
     if (i == 2 || i == 3) prev.depth = 0.0;
     if (i == 1 || i == 3) cur.depth = 0.0;
     if (i == 4) cur.normal.setZero();

@@ -70,16 +70,16 @@ class CostValuesTest : public ::testing::Test {
   Eigen::Vector3d C() const { return motion_.Inverse().translation; }
 
   Eigen::Vector3d ForwardError(size_t i) const {
-    return matches_.Point(matches_.cur()[i]) -
-           motion_ * matches_.Point(matches_.prev()[i]);
+    return matches_.Point(matches_[i].cur) -
+           motion_ * matches_.Point(matches_[i].prev);
   }
 
   // Covariance of the forward error at the bound motion.
   Eigen::Matrix3d ForwardCovariance(size_t i) const {
     const Camera& camera = matches_.camera();
-    return Propagate(matches_.cur()[i],
+    return Propagate(matches_[i].cur,
                      [&](const Measured& m) { return PointOf(camera, m); }) +
-           Propagate(matches_.prev()[i], [&](const Measured& m) {
+           Propagate(matches_[i].prev, [&](const Measured& m) {
              return bound_ * PointOf(camera, m);
            });
   }
@@ -139,7 +139,7 @@ TEST_F(CostValuesTest, BidirectionalPoint) {
     return Eigen::Vector3d(information.llt().matrixL().transpose() * e / 2.0);
   };
   Expect("bidirectional_point", [&](size_t i) {
-    const Observation prev = matches_.prev()[i], cur = matches_.cur()[i];
+    const Observation prev = matches_[i].prev, cur = matches_[i].cur;
     Eigen::VectorXd r(6);
     r << whiten(cur, ForwardError(i)),
         whiten(prev,
@@ -162,7 +162,7 @@ TEST_F(CostValuesTest, MahalanobisPoint) {
 
 TEST_F(CostValuesTest, PointToPlane) {
   Expect("point_to_plane", [&](size_t i) {
-    const Eigen::Vector3d n = matches_.cur()[i].normal;
+    const Eigen::Vector3d n = matches_[i].cur.normal;
     const double variance = n.transpose() * ForwardCovariance(i) * n;
     return Eigen::VectorXd::Constant(
         1, n.dot(ForwardError(i)) / std::sqrt(variance));
@@ -171,7 +171,7 @@ TEST_F(CostValuesTest, PointToPlane) {
 
 TEST_F(CostValuesTest, Reprojection) {
   Expect("reprojection", [&](size_t i) {
-    const Observation prev = matches_.prev()[i], cur = matches_.cur()[i];
+    const Observation prev = matches_[i].prev, cur = matches_[i].cur;
     return Whiten(ImageCovariance(prev, cur, bound_).topLeftCorner<2, 2>(),
                   ImageError(prev, cur, motion_).head<2>());
   });
@@ -179,7 +179,7 @@ TEST_F(CostValuesTest, Reprojection) {
 
 TEST_F(CostValuesTest, ReprojectionDepth) {
   Expect("reprojection_depth", [&](size_t i) {
-    const Observation prev = matches_.prev()[i], cur = matches_.cur()[i];
+    const Observation prev = matches_[i].prev, cur = matches_[i].cur;
     return Whiten(ImageCovariance(prev, cur, bound_),
                   ImageError(prev, cur, motion_));
   });
@@ -187,7 +187,7 @@ TEST_F(CostValuesTest, ReprojectionDepth) {
 
 TEST_F(CostValuesTest, BidirectionalImage) {
   Expect("bidirectional_image", [&](size_t i) {
-    const Observation prev = matches_.prev()[i], cur = matches_.cur()[i];
+    const Observation prev = matches_[i].prev, cur = matches_[i].cur;
     Eigen::VectorXd r(6);
     r << Whiten(ImageCovariance(prev, cur, bound_),
                 ImageError(prev, cur, motion_)),
@@ -201,14 +201,14 @@ TEST_F(CostValuesTest, BidirectionalImage) {
 TEST_F(CostValuesTest, BidirectionalImageWithDepthOnOneSide) {
   Correspondences partial(matches_.camera());
   for (size_t i = 0; i < matches_.size(); ++i) {
-    Observation prev = matches_.prev()[i], cur = matches_.cur()[i];
+    Observation prev = matches_[i].prev, cur = matches_[i].cur;
     (i % 2 == 0 ? prev : cur).depth = 0.0;
     partial.Add(prev, cur);
   }
   const Correspondences whole = matches_;
   matches_ = partial;
   Expect("bidirectional_image", [&](size_t i) {
-    const Observation prev = whole.prev()[i], cur = whole.cur()[i];
+    const Observation prev = whole[i].prev, cur = whole[i].cur;
     Eigen::VectorXd r = Eigen::VectorXd::Zero(6);
     if (i % 2 == 1) {
       r.head<2>() =
@@ -226,7 +226,7 @@ TEST_F(CostValuesTest, BidirectionalImageWithDepthOnOneSide) {
 TEST_F(CostValuesTest, Epipolar) {
   Correspondences without_depth(matches_.camera());
   for (size_t i = 0; i < matches_.size(); ++i) {
-    Observation prev = matches_.prev()[i], cur = matches_.cur()[i];
+    Observation prev = matches_[i].prev, cur = matches_[i].cur;
     prev.depth = cur.depth = 0.0;
     without_depth.Add(prev, cur);
   }
@@ -239,7 +239,7 @@ TEST_F(CostValuesTest, Epipolar) {
     return cur.dot(R() * C().cross(prev));
   };
   Expect("epipolar", [&](size_t i) {
-    const Observation prev = matches_.prev()[i], cur = matches_.cur()[i];
+    const Observation prev = matches_[i].prev, cur = matches_[i].cur;
     const Eigen::Vector4d at(prev.u, prev.v, cur.u, cur.v);
     // Both frames are equally noisy here, and fx = fy.
     double variance =

@@ -75,7 +75,7 @@ TEST_P(DenseSumsTest, AreThoseOfTheirParts) {
   for (size_t first = 0; first < matches_.size(); first += kPart) {
     Correspondences part(matches_.camera());
     for (size_t i = first; i < std::min(first + kPart, matches_.size()); ++i) {
-      part.Add(matches_.prev()[i], matches_.cur()[i]);
+      part.Add(matches_[i].prev, matches_[i].cur);
     }
     const NormalEquations sum = Sum(part, 1);
     parts.cost += sum.cost;

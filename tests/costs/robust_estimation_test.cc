@@ -41,8 +41,8 @@ Estimator MakeEstimator(const std::string& loss, const std::string& scale,
 Correspondences WithSigmas(const Correspondences& matches, double factor) {
   Correspondences result(matches.camera());
   for (size_t i = 0; i < matches.size(); ++i) {
-    Observation prev = matches.prev()[i];
-    Observation cur = matches.cur()[i];
+    Observation prev = matches[i].prev;
+    Observation cur = matches[i].cur;
     for (Observation* o : {&prev, &cur}) {
       o->sigma_px *= factor;
       o->sigma_depth *= factor;
@@ -111,8 +111,8 @@ TEST_P(EveryScaleTest, MakesUpForAWrongNoiseModel) {
         WithSigmas(world.Matches(300, 0.0, truth, /*noise=*/false), kFactor);
     Correspondences right_model(clean.camera());
     for (size_t i = 0; i < clean.size(); ++i) {
-      Observation prev = clean.prev()[i];
-      Observation cur = clean.cur()[i];
+      Observation prev = clean[i].prev;
+      Observation cur = clean[i].cur;
       world.AddNoise(&prev);
       world.AddNoise(&cur);
       right_model.Add(prev, cur);

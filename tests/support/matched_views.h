@@ -48,9 +48,9 @@ class MatchedViews {
   std::vector<double> Errors(const Correspondences& matches) const {
     std::vector<double> errors;
     for (size_t i = 0; i < matches.size(); ++i) {
-      const Observation cur = matches.cur()[i];
+      const Observation& cur = matches[i].cur;
       const Eigen::Vector2d expected = dataset_.camera().camera.Project(
-          cur_from_prev_ * matches.Point(matches.prev()[i]));
+          cur_from_prev_ * matches.Point(matches[i].prev));
       errors.push_back((expected - Eigen::Vector2d(cur.u, cur.v)).norm());
     }
     std::sort(errors.begin(), errors.end());

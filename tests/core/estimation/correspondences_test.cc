@@ -15,9 +15,10 @@ TEST(CorrespondencesTest, KeepsWhatWasAdded) {
   Correspondences matches;
   ASSERT_TRUE(matches.Add(Good(), {110.0, 190.0, 0.0, 0.7, 0.0}));
   EXPECT_EQ(matches.size(), 1u);
-  EXPECT_EQ(matches.prev()[0].depth, 2.0);
-  EXPECT_EQ(matches.cur()[0].u, 110.0);
-  EXPECT_EQ(matches.cur()[0].depth, 0.0);
+  EXPECT_EQ(matches[0].prev.depth, 2.0);
+  EXPECT_EQ(matches[0].cur.u, 110.0);
+  EXPECT_EQ(matches[0].cur.depth, 0.0);
+  for (const Match& match : matches) EXPECT_EQ(match.prev.u, 100.0);
   matches.Clear();
   EXPECT_EQ(matches.size(), 0u);
 }

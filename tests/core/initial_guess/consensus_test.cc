@@ -168,12 +168,12 @@ TEST_P(ConsensusTest, IgnoresMatchesWithoutDepth) {
   const Correspondences matches = world.Matches(100, 0.3, FarMotion(&world));
   Correspondences mixed(matches.camera());
   for (size_t i = 0; i < matches.size(); ++i) {
-    Observation blind = matches.cur()[i];
+    Observation blind = matches[i].cur;
     blind.u = world.Uniform(0.0, 639.0);
     blind.depth = 0.0;
-    mixed.Add(i % 2 == 0 ? blind : matches.prev()[i],
-              i % 2 == 0 ? matches.cur()[i] : blind);
-    mixed.Add(matches.prev()[i], matches.cur()[i]);
+    mixed.Add(i % 2 == 0 ? blind : matches[i].prev,
+              i % 2 == 0 ? matches[i].cur : blind);
+    mixed.Add(matches[i].prev, matches[i].cur);
   }
   const std::optional<Consensus> expected = Find(matches);
   const std::optional<Consensus> actual = Find(mixed);

@@ -15,17 +15,17 @@ TEST(PointMatchTest, TakesMatchesWithDepthOnBothSides) {
   RandomWorld world(31);
   const Correspondences all = world.Matches(4, 0.0, Rigid3d());
   Correspondences matches(all.camera());
-  Observation blind = all.cur()[0];
+  Observation blind = all[0].cur;
   blind.depth = 0.0;
-  matches.Add(all.prev()[0], blind);
-  matches.Add(all.prev()[1], all.cur()[1]);
-  matches.Add(blind, all.cur()[2]);
-  matches.Add(all.prev()[3], all.cur()[3]);
+  matches.Add(all[0].prev, blind);
+  matches.Add(all[1].prev, all[1].cur);
+  matches.Add(blind, all[2].cur);
+  matches.Add(all[3].prev, all[3].cur);
   const std::vector<PointMatch> points = PointMatches(matches, 10);
   ASSERT_EQ(points.size(), 2U);
   EXPECT_EQ(points[0].index, 1);
   EXPECT_EQ(points[1].index, 3);
-  EXPECT_EQ(points[1].cur.position, matches.Point(all.cur()[3]));
+  EXPECT_EQ(points[1].cur.position, matches.Point(all[3].cur));
 }
 
 TEST(PointMatchTest, SpreadsTheMostItTakesOverTheList) {

@@ -44,8 +44,8 @@ TEST_P(DescriptorFrontendTest, MatchesAreWhereTheTruthHasThem) {
   FeatureMatches itself{Correspondences(dataset_.camera().camera), {}};
   frontend_->Match(*reference, prev, Rigid3d(), &itself);
   for (size_t i = 0; i < itself.matches.size(); ++i) {
-    EXPECT_EQ(itself.matches.prev()[i].u, itself.matches.cur()[i].u);
-    EXPECT_EQ(itself.matches.prev()[i].depth, itself.matches.cur()[i].depth);
+    EXPECT_EQ(itself.matches[i].prev.u, itself.matches[i].cur.u);
+    EXPECT_EQ(itself.matches[i].prev.depth, itself.matches[i].cur.depth);
   }
 }
 
@@ -90,8 +90,8 @@ TEST_P(DescriptorFrontendTest, TheSameFramesGiveTheSameMatches) {
   const FeatureMatches twice = MatchFrom(prev, copy, Rigid3d());
   ASSERT_EQ(once.features, twice.features);
   for (size_t i = 0; i < once.matches.size(); ++i) {
-    EXPECT_EQ(once.matches.cur()[i].u, twice.matches.cur()[i].u);
-    EXPECT_EQ(once.matches.cur()[i].v, twice.matches.cur()[i].v);
+    EXPECT_EQ(once.matches[i].cur.u, twice.matches[i].cur.u);
+    EXPECT_EQ(once.matches[i].cur.v, twice.matches[i].cur.v);
   }
 }
 

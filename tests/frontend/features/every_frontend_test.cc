@@ -42,8 +42,8 @@ TEST_P(EveryFrontendTest, GivesTheSameWhetherFramesArePreparedOrNot) {
   const FeatureMatches prepared = MatchFrom(prev, cur, cur_from_prev_);
   ASSERT_EQ(plain.features, prepared.features);
   for (size_t i = 0; i < plain.matches.size(); ++i) {
-    EXPECT_EQ(plain.matches.cur()[i].u, prepared.matches.cur()[i].u);
-    EXPECT_EQ(plain.matches.cur()[i].depth, prepared.matches.cur()[i].depth);
+    EXPECT_EQ(plain.matches[i].cur.u, prepared.matches[i].cur.u);
+    EXPECT_EQ(plain.matches[i].cur.depth, prepared.matches[i].cur.depth);
   }
 }
 

@@ -31,9 +31,9 @@ class PatchFrontendTest : public ::testing::Test, protected MatchedViews {
   static void ExpectSame(const FeatureMatches& a, const FeatureMatches& b) {
     ASSERT_EQ(a.features, b.features);
     for (size_t i = 0; i < a.matches.size(); ++i) {
-      EXPECT_EQ(a.matches.cur()[i].u, b.matches.cur()[i].u);
-      EXPECT_EQ(a.matches.cur()[i].v, b.matches.cur()[i].v);
-      EXPECT_EQ(a.matches.cur()[i].sigma_px, b.matches.cur()[i].sigma_px);
+      EXPECT_EQ(a.matches[i].cur.u, b.matches[i].cur.u);
+      EXPECT_EQ(a.matches[i].cur.v, b.matches[i].cur.v);
+      EXPECT_EQ(a.matches[i].cur.sigma_px, b.matches[i].cur.sigma_px);
     }
   }
 
@@ -143,7 +143,7 @@ TEST_F(PatchFrontendTest, SmallAndOddImagesAreTaken) {
     small.depth = full.depth(cv::Rect(cv::Point(200, 200), size)).clone();
     const FeatureMatches found = MatchFrom(small, small, Rigid3d());
     for (size_t i = 0; i < found.matches.size(); ++i) {
-      EXPECT_NEAR(found.matches.prev()[i].u, found.matches.cur()[i].u, 0.01);
+      EXPECT_NEAR(found.matches[i].prev.u, found.matches[i].cur.u, 0.01);
     }
   }
 }
@@ -154,8 +154,8 @@ TEST_F(PatchFrontendTest, LessCertainMatchesSaySo) {
   double least = 1e9;
   double most = 0.0;
   for (size_t i = 0; i < found.matches.size(); ++i) {
-    least = std::min(least, found.matches.cur()[i].sigma_px);
-    most = std::max(most, found.matches.cur()[i].sigma_px);
+    least = std::min(least, found.matches[i].cur.sigma_px);
+    most = std::max(most, found.matches[i].cur.sigma_px);
   }
   EXPECT_GE(least, 0.3);
   EXPECT_GE(most, 1.5 * least);

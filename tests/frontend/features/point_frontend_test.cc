@@ -63,8 +63,8 @@ TEST_F(PointFrontendTest, StartsWhereTheGuessHasThem) {
   const FeatureMatches found = MatchWithItself(guess);
   ASSERT_EQ(found.matches.size(), 2u);
   // 0.04 m at 2 m: fx * 0.02
-  EXPECT_NEAR(found.matches.cur()[0].u, 100.0 + 0.02 * camera_.fx, 1e-4);
-  EXPECT_EQ(found.matches.cur()[0].depth, 2.0);
+  EXPECT_NEAR(found.matches[0].cur.u, 100.0 + 0.02 * camera_.fx, 1e-4);
+  EXPECT_EQ(found.matches[0].cur.depth, 2.0);
 }
 
 TEST_F(PointFrontendTest, LeavesOutWhatIsNotFoundOrOutOfTheImage) {
