@@ -147,14 +147,14 @@ struct SequenceResults {
 };
 
 void AddSequence(const std::string& title, const std::string& figure,
-                 const Dataset& dataset, const std::optional<Trajectory>& truth,
+                 FrameSource* source, const std::optional<Trajectory>& truth,
                  bool returns_to_start, SequenceResults* results) {
   OdometrySettings settings;
   settings.cost = FLAGS_cost;
   settings.frontend = FLAGS_frontend;
   PrepareOutput();
   const std::vector<LossRun> runs =
-      CompareLosses(dataset, truth, Losses(), settings, AvailableCores());
+      CompareLosses(source, truth, Losses(), settings, AvailableCores());
   results->report += "## " + title + "\n\n";
   if (returns_to_start) {
     results->report +=
@@ -189,10 +189,10 @@ void AddSimulated(SequenceResults* results) {
   options.frames = FLAGS_frames;
   options.camera =
       ResolveCamera(FLAGS_camera.empty() ? "ros_default" : FLAGS_camera);
-  const SyntheticDataset dataset(options);
+  SyntheticDataset dataset(options);
   AddSequence("simulated " + FLAGS_experiment + ", " +
                   std::to_string(FLAGS_frames) + " frames",
-              "paths.svg", dataset, dataset.ground_truth(),
+              "paths.svg", &dataset, dataset.ground_truth(),
               FLAGS_experiment == "pan_tilt", results);
 }
 
@@ -210,13 +210,13 @@ void AddRecorded(const std::string& name, SequenceResults* results) {
   if (FLAGS_camera == "tum_fr2") scales.push_back(kOtherFr2DepthScale);
   for (const double scale : scales) {
     options.camera.depth_scale = scale;
-    const TumDataset dataset(options);
+    TumDataset dataset(options);
     char units[32];
     std::snprintf(units, sizeof(units), "%.10g", scale);
     AddSequence(name + ", " + units + " raw depth units per metre",
                 scales.size() == 1 ? "paths.svg"
                                    : std::string("paths_") + units + ".svg",
-                dataset, truth, /*returns_to_start=*/false, results);
+                &dataset, truth, /*returns_to_start=*/false, results);
   }
 }
 

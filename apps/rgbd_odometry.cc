@@ -259,18 +259,18 @@ void WriteReport(const std::filesystem::path& folder, std::string* text) {
            "\n";
 }
 
-int ValidateOnly(const TumDataset& dataset, int threads) {
+int ValidateOnly(TumDataset* dataset, int threads) {
   const Clock::time_point start = Clock::now();
   std::vector<double> decode_ms;
   {
-    ProgressBar bar("reading", dataset.size());
+    ProgressBar bar("reading", dataset->size());
     decode_ms =
         ReadAllFrames(dataset, threads, [&bar](int done) { bar.Update(done); });
   }
-  std::printf("frames      %d, all readable\n", dataset.size());
+  std::printf("frames      %d, all readable\n", dataset->size());
   std::printf(
       "decoding    %.1f frames/s with %d thread(s), %.2f ms per frame median\n",
-      dataset.size() / SecondsSince(start), threads, Median(decode_ms));
+      dataset->size() / SecondsSince(start), threads, Median(decode_ms));
   return kExitOk;
 }
 
@@ -285,8 +285,8 @@ int Main() {
 
   // All that can be wrong with the input is looked at before the work starts
   // and before anything is written.
-  const TumDataset dataset = OpenDataset();
-  if (FLAGS_validate_only) return ValidateOnly(dataset, threads);
+  TumDataset dataset = OpenDataset();
+  if (FLAGS_validate_only) return ValidateOnly(&dataset, threads);
   Odometry odometry =
       MakeOdometry(SettingsFromFlags(), dataset.camera().camera);
   const std::optional<Trajectory> truth = FindGroundTruth();
@@ -333,7 +333,7 @@ int Main() {
       }
       bar.Update(tracked.index + 1);
     };
-    frames = RunOdometry(dataset, &odometry, options);
+    frames = RunOdometry(&dataset, &odometry, options);
   }
   const double seconds = SecondsSince(start);
 

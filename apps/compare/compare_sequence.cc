@@ -5,7 +5,7 @@
 
 namespace rgbd_pose {
 
-std::vector<LossRun> CompareLosses(const Dataset& dataset,
+std::vector<LossRun> CompareLosses(FrameSource* source,
                                    const std::optional<Trajectory>& truth,
                                    const std::vector<std::string>& losses,
                                    const OdometrySettings& settings,
@@ -15,19 +15,18 @@ std::vector<LossRun> CompareLosses(const Dataset& dataset,
   for (const std::string& loss : losses) {
     OdometrySettings own = settings;
     own.loss = loss;
-    odometries.push_back(MakeOdometry(own, dataset.camera().camera));
+    odometries.push_back(MakeOdometry(own, source->camera().camera));
     runs.emplace_back();
     runs.back().loss = loss;
   }
   {
-    ProgressBar bar("tracking", dataset.size());
-    FrameStream stream(dataset, odometries[0].prepare(), threads);
-    for (int i = 0; i < dataset.size(); ++i) {
-      const StreamedFrame next = stream.Next();
+    ProgressBar bar("tracking", static_cast<int>(source->timestamps().size()));
+    FrameStream stream(source, odometries[0].prepare(), threads);
+    while (const std::optional<StreamedFrame> next = stream.Next()) {
       for (size_t k = 0; k < losses.size(); ++k) {
-        runs[k].frames.push_back(odometries[k].Track(next.frame));
+        runs[k].frames.push_back(odometries[k].Track(next->frame));
       }
-      bar.Update(i + 1);
+      bar.Update(static_cast<int>(runs[0].frames.size()));
     }
   }
   for (LossRun& run : runs) {

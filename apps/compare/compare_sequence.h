@@ -7,7 +7,7 @@
 #include "apps/pipeline/odometry_run.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
-#include "frontend/sources/dataset.h"
+#include "frontend/sources/frame_source.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {
@@ -29,7 +29,7 @@ struct LossRun {
 // Tracks a sequence with several losses, the rest of the settings the same;
 // every frame is read once. Throws InputError for unknown names and for a
 // ground truth of other times.
-std::vector<LossRun> CompareLosses(const Dataset& dataset,
+std::vector<LossRun> CompareLosses(FrameSource* source,
                                    const std::optional<Trajectory>& truth,
                                    const std::vector<std::string>& losses,
                                    const OdometrySettings& settings,

@@ -53,35 +53,32 @@ Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
                             MakeRobustCosts(settings.cost, settings.loss)));
 }
 
-std::vector<TrackedFrame> RunOdometry(const Dataset& dataset,
-                                      Odometry* odometry,
+std::vector<TrackedFrame> RunOdometry(FrameSource* source, Odometry* odometry,
                                       const RunOptions& options) {
-  FrameStream stream(dataset, odometry->prepare(), options.threads);
+  FrameStream stream(source, odometry->prepare(), options.threads);
   std::vector<TrackedFrame> frames;
-  frames.reserve(dataset.size());
-  for (int i = 0; i < dataset.size(); ++i) {
-    const StreamedFrame next = stream.Next();
+  while (const std::optional<StreamedFrame> next = stream.Next()) {
     std::optional<Rigid3d> guess;
-    if (options.motion_guess != nullptr && i > 0) {
+    if (options.motion_guess != nullptr && !frames.empty()) {
       guess = options.motion_guess->CurFromPrev(frames.back().timestamp,
-                                                next.frame.timestamp);
+                                                next->frame.timestamp);
     }
     frames.push_back(
-        odometry->Track(next.frame, guess.has_value() ? &*guess : nullptr));
-    frames.back().decode_ms = next.decode_ms;
-    if (options.on_frame) options.on_frame(next.frame, frames.back());
+        odometry->Track(next->frame, guess.has_value() ? &*guess : nullptr));
+    frames.back().decode_ms = next->decode_ms;
+    if (options.on_frame) options.on_frame(next->frame, frames.back());
   }
   return frames;
 }
 
 std::vector<double> ReadAllFrames(
-    const Dataset& dataset, int threads,
+    FrameSource* source, int threads,
     const std::function<void(int done)>& progress) {
-  FrameStream stream(dataset, nullptr, threads);
+  FrameStream stream(source, nullptr, threads);
   std::vector<double> decode_ms;
-  for (int i = 0; i < dataset.size(); ++i) {
-    decode_ms.push_back(stream.Next().decode_ms);
-    progress(i + 1);
+  while (const std::optional<StreamedFrame> next = stream.Next()) {
+    decode_ms.push_back(next->decode_ms);
+    progress(static_cast<int>(decode_ms.size()));
   }
   return decode_ms;
 }

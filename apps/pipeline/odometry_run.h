@@ -8,7 +8,7 @@
 #include "core/estimation/estimator.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
-#include "frontend/sources/dataset.h"
+#include "frontend/sources/frame_source.h"
 #include "frontend/tracking/motion_guess.h"
 #include "frontend/tracking/odometry.h"
 
@@ -42,15 +42,15 @@ struct RunOptions {
   std::function<void(const Frame& frame, const TrackedFrame& tracked)> on_frame;
 };
 
-// Tracks a whole dataset: one result a frame, in order.
-std::vector<TrackedFrame> RunOdometry(const Dataset& dataset,
-                                      Odometry* odometry,
+// Tracks all frames of a source: one result a frame, in order.
+std::vector<TrackedFrame> RunOdometry(FrameSource* source, Odometry* odometry,
                                       const RunOptions& options);
 
-// Reads a whole dataset in the same way and does nothing with it. Returns how
-// long each frame took (ms); throws InputError for the first unreadable one.
+// Reads all frames of a source in the same way and does nothing with them.
+// Returns how long each frame took (ms); throws InputError for the first
+// unreadable one.
 std::vector<double> ReadAllFrames(
-    const Dataset& dataset, int threads,
+    FrameSource* source, int threads,
     const std::function<void(int done)>& progress);
 
 // The poses of all frames that were not lost.

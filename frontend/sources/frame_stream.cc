@@ -1,8 +1,6 @@
 #include "frontend/sources/frame_stream.h"
 
-#include <algorithm>
 #include <chrono>
-#include <stdexcept>
 #include <utility>
 
 namespace rgbd_pose {
@@ -15,13 +13,12 @@ constexpr int kMaxReady = 8;
 
 }  // namespace
 
-FrameStream::FrameStream(const Dataset& dataset,
+FrameStream::FrameStream(FrameSource* source,
                          std::function<void(Frame*)> prepare, int threads)
-    : dataset_(dataset),
+    : source_(source),
       prepare_(std::move(prepare)),
       max_ahead_(threads + kMaxReady) {
-  const int num_workers = std::min(threads - 1, dataset.size());
-  for (int i = 0; i < num_workers; ++i) {
+  for (int i = 1; i < threads; ++i) {
     workers_.emplace_back(&FrameStream::Work, this);
   }
 }
@@ -31,43 +28,58 @@ FrameStream::~FrameStream() {
     const Lock lock(mutex_);
     stop_ = true;
   }
-  may_begin_.notify_all();
+  changed_.notify_all();
   for (std::thread& worker : workers_) worker.join();
 }
 
-StreamedFrame FrameStream::Next() {
+std::optional<StreamedFrame> FrameStream::Next() {
   Lock lock(mutex_);
-  if (num_taken_ == dataset_.size()) {
-    throw std::out_of_range("no frame is left in the stream");
-  }
   // Frames are begun in order: if this one is not ready, it is being read by
   // another thread, or it is the next to begin.
-  while (ready_.count(num_taken_) == 0) {
+  while (num_taken_ < size_ && ready_.count(num_taken_) == 0) {
     if (CanBegin()) {
       ReadOne(&lock);
     } else {
-      is_ready_.wait(lock);
+      changed_.wait(lock);
     }
   }
+  if (num_taken_ == size_) return std::nullopt;
   Result result = std::move(ready_.extract(num_taken_).mapped());
   ++num_taken_;
   lock.unlock();
-  may_begin_.notify_one();
+  changed_.notify_all();
   if (result.error != nullptr) std::rethrow_exception(result.error);
   return std::move(result.frame);
 }
 
 bool FrameStream::CanBegin() const {
-  return num_begun_ < std::min(dataset_.size(), num_taken_ + max_ahead_);
+  return !is_asking_ && num_begun_ < size_ &&
+         num_begun_ < num_taken_ + max_ahead_;
 }
 
 void FrameStream::ReadOne(Lock* lock) {
   const int index = num_begun_++;
+  is_asking_ = true;
+  lock->unlock();
+  const auto start = std::chrono::steady_clock::now();
+  std::optional<RgbdFrame> next;
+  try {
+    next = source_->Next();
+  } catch (...) {  // is the error of this frame
+    next = RgbdFrame{0.0, [error = std::current_exception()]() -> Frame {
+                       std::rethrow_exception(error);
+                     }};
+  }
+  lock->lock();
+  is_asking_ = false;
+  if (!next.has_value()) size_ = index;
+  changed_.notify_all();
+  if (!next.has_value()) return;
+
   lock->unlock();
   Result result;
-  const auto start = std::chrono::steady_clock::now();
   try {
-    result.frame.frame = dataset_.Read(index);
+    result.frame.frame = next->read();
     if (prepare_) prepare_(&result.frame.frame);
   } catch (...) {
     result.error = std::current_exception();
@@ -77,13 +89,13 @@ void FrameStream::ReadOne(Lock* lock) {
                                .count();
   lock->lock();
   ready_.emplace(index, std::move(result));
-  is_ready_.notify_one();
+  changed_.notify_all();
 }
 
 void FrameStream::Work() {
   Lock lock(mutex_);
   while (true) {
-    may_begin_.wait(lock, [this] { return stop_ || CanBegin(); });
+    changed_.wait(lock, [this] { return stop_ || CanBegin(); });
     if (stop_) return;
     ReadOne(&lock);
   }

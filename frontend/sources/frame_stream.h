@@ -3,13 +3,15 @@
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <limits>
 #include <map>
 #include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "frontend/image/frame.h"
-#include "frontend/sources/dataset.h"
+#include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {
 
@@ -19,7 +21,7 @@ struct StreamedFrame {
   double decode_ms = 0.0;  // to read and to prepare it
 };
 
-// The frames of a dataset in order, read and prepared ahead by several threads.
+// The frames of a source in order, read and prepared ahead by several threads.
 // The thread that calls Next is one of them: where its frame is not ready yet,
 // it reads one itself instead of sleeping, so that all threads are always busy.
 // The frames are the same whatever the number of threads.
@@ -27,9 +29,9 @@ class FrameStream {
  public:
   // `threads` >= 1 counts the calling one: 1 reads each frame when it is asked
   // for. `prepare` works on each frame in the thread that has read it
-  // (Frontend::Prepare, say); it may be empty. The dataset must outlive the
-  // stream.
-  FrameStream(const Dataset& dataset, std::function<void(Frame*)> prepare,
+  // (Frontend::Prepare, say); it may be empty. The source must outlive the
+  // stream, and nobody else may ask it for frames.
+  FrameStream(FrameSource* source, std::function<void(Frame*)> prepare,
               int threads);
 
   // Gives up the frames that were not asked for; waits for those being read.
@@ -37,10 +39,10 @@ class FrameStream {
   FrameStream(const FrameStream&) = delete;
   FrameStream& operator=(const FrameStream&) = delete;
 
-  // The next frame, of Dataset::size() in all (std::out_of_range beyond them).
-  // Always to be called from the same thread. Rethrows what reading this frame
-  // threw; the one after can be asked for nevertheless.
-  StreamedFrame Next();
+  // The next frame; nothing after the last one. Always to be called from the
+  // same thread. Rethrows what reading this frame threw; the one after can be
+  // asked for nevertheless.
+  std::optional<StreamedFrame> Next();
 
  private:
   struct Result {
@@ -56,15 +58,16 @@ class FrameStream {
   void ReadOne(Lock* lock);
   void Work();
 
-  const Dataset& dataset_;
+  FrameSource* const source_;
   const std::function<void(Frame*)> prepare_;
   const int max_ahead_;
   std::mutex mutex_;  // of all that follows
-  std::condition_variable may_begin_;
-  std::condition_variable is_ready_;
+  std::condition_variable changed_;
+  bool is_asking_ = false;       // somebody is asking the source
   std::map<int, Result> ready_;  // by frame
   int num_begun_ = 0;
   int num_taken_ = 0;
+  int size_ = std::numeric_limits<int>::max();  // until the source has ended
   bool stop_ = false;
   std::vector<std::thread> workers_;
 };

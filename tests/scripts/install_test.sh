@@ -77,7 +77,7 @@ check "$work/costs/build/estimate_motion" '^ok'
 # What is not there is refused in words.
 project lidar NONE REQUIRED COMPONENTS core lidar
 ! configure "$work/lidar" || fail "took an unknown component"
-says "no component 'lidar'; there are core, robust, costs, frontend, simulation" lidar
+says "no component 'lidar'; there are core, robust, costs, frontend," lidar
 project newer NONE 0.99 REQUIRED
 ! configure "$work/newer" || fail "took another version"
 says 'compatible with requested version "0.99"' newer

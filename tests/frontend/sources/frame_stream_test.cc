@@ -7,7 +7,6 @@
 #include <functional>
 #include <future>
 #include <set>
-#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -27,15 +26,27 @@ constexpr milliseconds kPause(20);
 
 // Frames of one pixel, the frame's index. `on_read` hears of every read, in
 // its thread.
-class FakeDataset : public Dataset {
+class FakeSource : public FrameSource {
  public:
-  explicit FakeDataset(int size) : size_(size) {}
+  explicit FakeSource(int size) : size_(size) {}
 
-  int size() const override { return size_; }
-  double timestamp(int index) const override { return index; }
   const RgbdCamera& camera() const override { return camera_; }
 
-  Frame Read(int index) const override {
+  std::optional<RgbdFrame> Next() override {
+    EXPECT_FALSE(is_asked.exchange(true)) << "asked by two threads at once";
+    const int index = next_;
+    on_ask(index);
+    std::optional<RgbdFrame> next;
+    if (next_ < size_) {
+      next = RgbdFrame{1.0 * index, [this, index] { return Read(index); }};
+      ++next_;
+    }
+    is_asked = false;
+    if (missing.count(index) > 0) throw InputError("the cable is loose");
+    return next;
+  }
+
+  Frame Read(int index) {
     ++reads;
     on_read(index);
     if (unreadable.count(index) > 0) {
@@ -48,11 +59,15 @@ class FakeDataset : public Dataset {
   }
 
   std::function<void(int)> on_read = [](int) {};
+  std::function<void(int)> on_ask = [](int) {};
   std::set<int> unreadable;
-  mutable std::atomic<int> reads = 0;
+  std::set<int> missing;  // frames that the source fails to give
+  std::atomic<int> reads = 0;
+  std::atomic<bool> is_asked = false;
 
  private:
   int size_;
+  int next_ = 0;
   RgbdCamera camera_;
 };
 
@@ -66,7 +81,7 @@ bool WaitFor(const std::function<bool()>& condition) {
 }
 
 void ExpectFrame(FrameStream* stream, int index) {
-  const Frame frame = stream->Next().frame;
+  const Frame frame = stream->Next().value().frame;
   EXPECT_EQ(frame.index, index);
   EXPECT_EQ(frame.gray.at<uint8_t>(0, 0), index);
 }
@@ -74,35 +89,37 @@ void ExpectFrame(FrameStream* stream, int index) {
 class FrameStreamTest : public testing::TestWithParam<int> {};  // threads
 
 TEST_P(FrameStreamTest, GivesEachFrameOnceAndInOrder) {
-  FakeDataset dataset(60);
+  FakeSource source(60);
   // Later frames of a group of five are read quicker than its first ones.
-  dataset.on_read = [](int index) {
+  source.on_read = [](int index) {
     std::this_thread::sleep_for(milliseconds(4 - index % 5));
   };
-  FrameStream stream(dataset, nullptr, GetParam());
+  FrameStream stream(&source, nullptr, GetParam());
   for (int i = 0; i < 60; ++i) ExpectFrame(&stream, i);
-  EXPECT_EQ(dataset.reads, 60);
-  EXPECT_THROW(stream.Next(), std::out_of_range);
+  EXPECT_EQ(source.reads, 60);
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_FALSE(stream.Next().has_value());
+  }
 }
 
 TEST_P(FrameStreamTest, PreparesFrames) {
-  const FakeDataset dataset(20);
+  FakeSource source(20);
   FrameStream stream(
-      dataset, [](Frame* frame) { frame->pyramid = {frame->gray.clone()}; },
+      &source, [](Frame* frame) { frame->pyramid = {frame->gray.clone()}; },
       GetParam());
   for (int i = 0; i < 20; ++i) {
-    const Frame frame = stream.Next().frame;
+    const Frame frame = stream.Next().value().frame;
     ASSERT_EQ(frame.pyramid.size(), 1u);
     EXPECT_EQ(frame.pyramid[0].at<uint8_t>(0, 0), i);
   }
 }
 
 TEST_P(FrameStreamTest, RethrowsForExactlyTheUnreadableFrames) {
-  FakeDataset dataset(12);
-  dataset.unreadable = {0, 3, 4, 11};
-  FrameStream stream(dataset, nullptr, GetParam());
+  FakeSource source(12);
+  source.unreadable = {0, 3, 4, 11};
+  FrameStream stream(&source, nullptr, GetParam());
   for (int i = 0; i < 12; ++i) {
-    if (dataset.unreadable.count(i) > 0) {
+    if (source.unreadable.count(i) > 0) {
       ExpectInputError([&stream] { stream.Next(); },
                        {"image " + std::to_string(i) + " is broken"});
     } else {
@@ -111,49 +128,65 @@ TEST_P(FrameStreamTest, RethrowsForExactlyTheUnreadableFrames) {
   }
 }
 
+TEST_P(FrameStreamTest, WhatASourceFailsToGiveIsTheErrorOfThatFrame) {
+  FakeSource source(6);
+  source.missing = {0, 3};
+  FrameStream stream(&source, nullptr, GetParam());
+  for (int i = 0; i < 6; ++i) {
+    if (source.missing.count(i) > 0) {
+      ExpectInputError([&stream] { stream.Next(); }, {"the cable is loose"});
+    } else {
+      ExpectFrame(&stream, i);
+    }
+  }
+  EXPECT_FALSE(stream.Next().has_value());
+}
+
 TEST_P(FrameStreamTest, SaysHowLongAFrameTook) {
-  FakeDataset dataset(4);
-  dataset.on_read = [](int index) {
+  FakeSource source(4);
+  source.on_read = [](int index) {
     if (index == 2) std::this_thread::sleep_for(kPause);
   };
-  FrameStream stream(dataset, nullptr, GetParam());
+  FrameStream stream(&source, nullptr, GetParam());
   for (int i = 0; i < 4; ++i) {
-    const double decode_ms = stream.Next().decode_ms;
+    const double decode_ms = stream.Next().value().decode_ms;
     EXPECT_GE(decode_ms, i == 2 ? kPause.count() : 0.0);
   }
 }
 
 TEST_P(FrameStreamTest, CanBeGivenUpAtAnyTime) {
   for (int taken = 0; taken < 4; ++taken) {
-    FakeDataset dataset(100);
-    dataset.unreadable = {5};
-    dataset.on_read = [](int) { std::this_thread::sleep_for(milliseconds(1)); };
+    FakeSource source(100);
+    source.unreadable = {5};
+    source.on_read = [](int) { std::this_thread::sleep_for(milliseconds(1)); };
     {
-      FrameStream stream(dataset, nullptr, GetParam());
+      FrameStream stream(&source, nullptr, GetParam());
       for (int i = 0; i < taken; ++i) ExpectFrame(&stream, i);
     }
-    const int reads = dataset.reads;
+    const int reads = source.reads;
     EXPECT_LT(reads, 100);
     std::this_thread::sleep_for(kPause);
-    EXPECT_EQ(dataset.reads, reads) << "somebody goes on reading";
+    EXPECT_EQ(source.reads, reads) << "somebody goes on reading";
   }
 }
 
-TEST_P(FrameStreamTest, AnEmptyDatasetHasNoFrame) {
-  const FakeDataset dataset(0);
-  FrameStream stream(dataset, nullptr, GetParam());
-  EXPECT_THROW(stream.Next(), std::out_of_range);
+TEST_P(FrameStreamTest, AnEmptySourceHasNoFrame) {
+  FakeSource source(0);
+  FrameStream stream(&source, nullptr, GetParam());
+  for (int again = 0; again < 2; ++again) {
+    EXPECT_FALSE(stream.Next().has_value());
+  }
 }
 
 TEST_P(FrameStreamTest, StaysAFewFramesAhead) {
   const int threads = GetParam();
   const int most = threads == 1 ? 0 : threads + 8;
-  const FakeDataset dataset(100);
-  FrameStream stream(dataset, nullptr, threads);
+  FakeSource source(100);
+  FrameStream stream(&source, nullptr, threads);
   for (int taken = 0; taken < 5; ++taken) {
-    ASSERT_TRUE(WaitFor([&] { return dataset.reads == taken + most; }));
+    ASSERT_TRUE(WaitFor([&] { return source.reads == taken + most; }));
     std::this_thread::sleep_for(kPause);
-    EXPECT_EQ(dataset.reads, taken + most);
+    EXPECT_EQ(source.reads, taken + most);
     ExpectFrame(&stream, taken);
   }
 }
@@ -161,28 +194,45 @@ TEST_P(FrameStreamTest, StaysAFewFramesAhead) {
 INSTANTIATE_TEST_SUITE_P(Threads, FrameStreamTest, testing::Values(1, 2, 5));
 
 TEST(FrameStreamThreadsTest, OneThreadIsTheCallingOne) {
-  FakeDataset dataset(3);
+  FakeSource source(3);
   const std::thread::id caller = std::this_thread::get_id();
-  dataset.on_read = [caller](int) {
+  source.on_read = [caller](int) {
     EXPECT_EQ(std::this_thread::get_id(), caller);
   };
-  FrameStream stream(dataset, nullptr, 1);
+  FrameStream stream(&source, nullptr, 1);
   for (int i = 0; i < 3; ++i) ExpectFrame(&stream, i);
+}
+
+// A camera's next frame is not there yet: the one before it is, nevertheless.
+TEST(FrameStreamThreadsTest, GivesAFrameWhileTheSourceWaitsForTheNext) {
+  FakeSource source(2);
+  std::promise<void> taken;
+  std::future<void> is_taken = taken.get_future();
+  std::thread::id caller = std::this_thread::get_id();
+  source.on_ask = [&](int index) {
+    if (index == 1 && std::this_thread::get_id() != caller) {
+      EXPECT_EQ(is_taken.wait_for(kPatience), std::future_status::ready);
+    }
+  };
+  FrameStream stream(&source, nullptr, 2);
+  ExpectFrame(&stream, 0);
+  taken.set_value();
+  ExpectFrame(&stream, 1);
 }
 
 // Two reads that wait for each other need two threads that read.
 TEST(FrameStreamThreadsTest, TheCallingThreadReadsInsteadOfSleeping) {
-  FakeDataset dataset(2);
+  FakeSource source(2);
   std::promise<void> begun[2];
   std::future<void> has_begun[2] = {begun[0].get_future(),
                                     begun[1].get_future()};
-  dataset.on_read = [&](int index) {
+  source.on_read = [&](int index) {
     begun[index].set_value();
     EXPECT_EQ(has_begun[1 - index].wait_for(kPatience),
               std::future_status::ready)
         << "nobody reads the other frame";
   };
-  FrameStream stream(dataset, nullptr, 2);
+  FrameStream stream(&source, nullptr, 2);
   for (int i = 0; i < 2; ++i) ExpectFrame(&stream, i);
 }
 

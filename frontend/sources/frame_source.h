@@ -1,0 +1,44 @@
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "frontend/image/frame.h"
+
+namespace rgbd_pose {
+
+// A frame as it comes from a source: most of the work is yet to be done.
+struct RgbdFrame {
+  double timestamp = 0.0;  // of the colour image, seconds
+
+  // Decodes it; in any thread, beside other frames, as long as the source is
+  // there. Throws InputError if an image is unreadable or does not fit the
+  // camera.
+  std::function<Frame()> read;
+};
+
+// Where RGB-D frames come from, in the order of their time stamps, which
+// strictly increase: a recording, a simulation, a camera.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+
+  // The next frame, waiting for it if need be; nothing after the last one. From
+  // one thread at a time. Should be quick, as it cannot be shared out:
+  // RgbdFrame::read can.
+  virtual std::optional<RgbdFrame> Next() = 0;
+
+  // Camera that all frames share.
+  virtual const RgbdCamera& camera() const = 0;
+
+  // The time stamps of all frames (s) if they are known ahead, as those of a
+  // recording are; empty otherwise.
+  virtual std::vector<double> timestamps() const { return {}; }
+
+  // How many colour images make no frame since they have no depth image.
+  virtual int unmatched_color() const { return 0; }
+};
+
+}  // namespace rgbd_pose
