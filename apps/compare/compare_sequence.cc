@@ -21,10 +21,15 @@ std::vector<LossRun> CompareLosses(FrameSource* source,
   }
   {
     ProgressBar bar("tracking", static_cast<int>(source->timestamps().size()));
-    FrameStream stream(source, odometries[0].prepare(), threads);
+    FrameStream stream(
+        source,
+        [&odometries](const Frame& frame) {
+          return odometries[0].Prepare(frame);
+        },
+        threads);
     while (const std::optional<StreamedFrame> next = stream.Next()) {
       for (size_t k = 0; k < losses.size(); ++k) {
-        runs[k].frames.push_back(odometries[k].Track(next->frame));
+        runs[k].frames.push_back(odometries[k].Track(*next->frame));
       }
       bar.Update(static_cast<int>(runs[0].frames.size()));
     }

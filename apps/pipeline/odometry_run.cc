@@ -55,18 +55,21 @@ Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
 
 std::vector<TrackedFrame> RunOdometry(FrameSource* source, Odometry* odometry,
                                       const RunOptions& options) {
-  FrameStream stream(source, odometry->prepare(), options.threads);
+  FrameStream stream(
+      source,
+      [odometry](const Frame& frame) { return odometry->Prepare(frame); },
+      options.threads);
   std::vector<TrackedFrame> frames;
   while (const std::optional<StreamedFrame> next = stream.Next()) {
     std::optional<Rigid3d> guess;
     if (options.motion_guess != nullptr && !frames.empty()) {
       guess = options.motion_guess->CurFromPrev(frames.back().timestamp,
-                                                next->frame.timestamp);
+                                                next->frame->timestamp);
     }
     frames.push_back(
-        odometry->Track(next->frame, guess.has_value() ? &*guess : nullptr));
+        odometry->Track(*next->frame, guess.has_value() ? &*guess : nullptr));
     frames.back().decode_ms = next->decode_ms;
-    if (options.on_frame) options.on_frame(next->frame, frames.back());
+    if (options.on_frame) options.on_frame(*next->frame, frames.back());
   }
   return frames;
 }

@@ -12,9 +12,9 @@ int main() {
   rgbd_pose::Odometry odometry({}, options.camera,
                                rgbd_pose::MakeFrontend("patch", options),
                                {{}, rgbd_pose::MakeRobustCosts()});
+  rgbd_pose::Frame frame;  // its memory serves for all of them
   for (int i = 0; i < camera.size(); ++i) {
     const rgbd_pose::RgbdImages images = camera.ReadImages(i);
-    rgbd_pose::Frame frame;
     frame.index = i;
     frame.timestamp = i / 30.0;  // s
     cv::cvtColor(images.color, frame.gray, cv::COLOR_BGR2GRAY);

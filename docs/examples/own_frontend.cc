@@ -12,8 +12,8 @@ struct Flow final : rgbd_pose::PointFrontend {
   void Find(const rgbd_pose::Frame& frame, Points* points) override {
     cv::goodFeaturesToTrack(frame.gray, *points, 400, 0.01, 10.0);
   }
-  void Follow(const rgbd_pose::Frame& from, const Points& points,
-              const rgbd_pose::Frame& to, Points* moved,
+  void Follow(const rgbd_pose::PreparedFrame& from, const Points& points,
+              const rgbd_pose::PreparedFrame& to, Points* moved,
               Found* found) override {
     cv::calcOpticalFlowPyrLK(from.gray, to.gray, points, *moved, *found, {});
   }

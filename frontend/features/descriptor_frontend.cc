@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "frontend/features/descriptor_matching.h"
 #include "frontend/features/grid_selection.h"
 #include "frontend/image/observe.h"
 
@@ -24,10 +25,11 @@ struct DescribedFeatures : FeatureSet {
   DescribedKeypoints described;  // of each observation
 };
 
-bool IsSame(const Frame& a, const Frame& b) {
-  return a.index == b.index && a.timestamp == b.timestamp &&
-         a.gray.data == b.gray.data && a.gray.size() == b.gray.size();
-}
+struct DescribedFrame final : PreparedFrame {
+  using PreparedFrame::PreparedFrame;
+
+  DescribedKeypoints described;
+};
 
 }  // namespace
 
@@ -35,17 +37,18 @@ DescriptorFrontend::DescriptorFrontend(const FrontendOptions& options,
                                        const DescriptorMethod& method)
     : options_(options),
       method_(method),
-      depth_options_{options.depth_noise, options.min_depth, options.max_depth},
-      detector_(method.make(kKeypointsPerFeature * options.max_features)) {}
+      depth_options_{options.depth_noise, options.min_depth,
+                     options.max_depth} {}
 
-const DescribedKeypoints& DescriptorFrontend::Describe(const Frame& frame) {
-  if (!described_frame_.gray.empty() && IsSame(frame, described_frame_)) {
-    return described_;
-  }
-  detector_->detectAndCompute(frame.gray, cv::noArray(), described_.keypoints,
-                              described_.descriptors);
-  described_frame_ = frame;
-  return described_;
+std::unique_ptr<const PreparedFrame> DescriptorFrontend::Prepare(
+    const Frame& frame) const {
+  auto prepared = std::make_unique<DescribedFrame>(frame);
+  // OpenCV does not say that a detector may serve several threads.
+  method_.make(kKeypointsPerFeature * options_.max_features)
+      ->detectAndCompute(frame.gray, cv::noArray(),
+                         prepared->described.keypoints,
+                         prepared->described.descriptors);
+  return prepared;
 }
 
 Observation DescriptorFrontend::ObserveKeypoint(
@@ -54,8 +57,10 @@ Observation DescriptorFrontend::ObserveKeypoint(
                  method_.SigmaPx(keypoint), depth_options_);
 }
 
-std::unique_ptr<FeatureSet> DescriptorFrontend::Detect(const Frame& frame) {
-  const DescribedKeypoints& all = Describe(frame);
+std::unique_ptr<FeatureSet> DescriptorFrontend::Detect(
+    const PreparedFrame& frame) {
+  const DescribedKeypoints& all =
+      dynamic_cast<const DescribedFrame&>(frame).described;
   auto features = std::make_unique<DescribedFeatures>();
   features->described = all.Select(SelectOverGrid(
       all.keypoints, frame.gray.size(), options_.max_features,
@@ -68,12 +73,14 @@ std::unique_ptr<FeatureSet> DescriptorFrontend::Detect(const Frame& frame) {
   return features;
 }
 
-void DescriptorFrontend::Match(const FeatureSet& reference, const Frame& frame,
+void DescriptorFrontend::Match(const FeatureSet& reference,
+                               const PreparedFrame& frame,
                                const Rigid3d& cur_from_ref_guess,
                                FeatureMatches* matches) {
   matches->Clear();
   const auto& features = static_cast<const DescribedFeatures&>(reference);
-  const DescribedKeypoints& current = Describe(frame);
+  const DescribedKeypoints& current =
+      dynamic_cast<const DescribedFrame&>(frame).described;
   SearchGuide guide;
   guide.radius_px = static_cast<float>(kSearchAngle * options_.camera.fx);
   for (const Observation& o : features.observations) {

@@ -1,9 +1,8 @@
 #pragma once
 
+#include <memory>
 #include <opencv2/core.hpp>
-#include <opencv2/features2d.hpp>
 
-#include "frontend/features/descriptor_matching.h"
 #include "frontend/features/descriptor_method.h"
 #include "frontend/features/frontend.h"
 #include "frontend/image/depth_lookup.h"
@@ -21,25 +20,20 @@ class DescriptorFrontend final : public Frontend {
                      const DescriptorMethod& method);
 
   bool finds_all_in_view() const override { return false; }
-  std::unique_ptr<FeatureSet> Detect(const Frame& frame) override;
-  void Match(const FeatureSet& reference, const Frame& frame,
+  std::unique_ptr<const PreparedFrame> Prepare(
+      const Frame& frame) const override;
+  std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override;
+  void Match(const FeatureSet& reference, const PreparedFrame& frame,
              const Rigid3d& cur_from_ref_guess,
              FeatureMatches* matches) override;
 
  private:
-  // The keypoints of a frame, worked out once while it stays the same.
-  const DescribedKeypoints& Describe(const Frame& frame);
   Observation ObserveKeypoint(const Frame& frame,
                               const cv::KeyPoint& keypoint) const;
 
   FrontendOptions options_;
   const DescriptorMethod& method_;
   DepthLookupOptions depth_options_;
-  cv::Ptr<cv::Feature2D> detector_;
-  DescribedKeypoints described_;
-  // Which frame that was. To hold its pixels keeps their address from being
-  // used again.
-  Frame described_frame_;
 };
 
 }  // namespace rgbd_pose

@@ -58,8 +58,9 @@ struct FeatureMatches {
   }
 };
 
-// Finds the features of one frame again in others. Feature sets belong to the
-// frontend that made them. One object serves one thread.
+// Finds the features of one frame again in others. Feature sets and prepared
+// frames are for frontends of the type that made them. One object serves one
+// thread.
 class Frontend {
  public:
   virtual ~Frontend() = default;
@@ -68,16 +69,20 @@ class Frontend {
   // Detectors need not fire in the same place twice.
   virtual bool finds_all_in_view() const { return true; }
 
-  // Works out ahead what does not depend on other frames (a pyramid, say) and
-  // keeps it in the frame. Optional; may be called from several threads.
-  virtual void Prepare(Frame* /*frame*/) const {}
+  // Works out what does not depend on other frames (a pyramid, say). May be
+  // called from several threads.
+  virtual std::unique_ptr<const PreparedFrame> Prepare(
+      const Frame& frame) const {
+    return std::make_unique<PreparedFrame>(frame);
+  }
 
-  // The features of a frame.
-  virtual std::unique_ptr<FeatureSet> Detect(const Frame& frame) = 0;
+  // The features of a frame. They keep copies, if anything, of its images: the
+  // caller may write the next ones into the same memory.
+  virtual std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) = 0;
 
   // Fills `matches` (emptied first) with the features of `reference` found in
   // `frame`. The guess says where to look for them first.
-  virtual void Match(const FeatureSet& reference, const Frame& frame,
+  virtual void Match(const FeatureSet& reference, const PreparedFrame& frame,
                      const Rigid3d& cur_from_ref_guess,
                      FeatureMatches* matches) = 0;
 };

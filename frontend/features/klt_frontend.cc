@@ -1,5 +1,6 @@
 #include "frontend/features/klt_frontend.h"
 
+#include <opencv2/core.hpp>
 #include <opencv2/video/tracking.hpp>
 
 namespace rgbd_pose {
@@ -14,26 +15,31 @@ const cv::TermCriteria kTermination(cv::TermCriteria::COUNT +
 // A mean grey difference over the window beyond this is another place.
 constexpr float kMaxMeanDifference = 25.0F;
 
+struct KltFrame final : PreparedFrame {
+  KltFrame(const Frame& frame, bool with_derivatives) : PreparedFrame(frame) {
+    cv::buildOpticalFlowPyramid(gray, pyramid, kWindow, kMaxLevel,
+                                with_derivatives);
+  }
+
+  std::vector<cv::Mat> pyramid;
+};
+
 }  // namespace
 
-void KltFrontend::Prepare(Frame* frame) const {
-  cv::buildOpticalFlowPyramid(frame->gray, frame->pyramid, kWindow, kMaxLevel,
-                              /*withDerivatives=*/false);
+std::unique_ptr<const PreparedFrame> KltFrontend::Prepare(
+    const Frame& frame) const {
+  return std::make_unique<KltFrame>(frame, /*with_derivatives=*/false);
 }
 
-void KltFrontend::PrepareReference(Frame* frame) const {
-  frame->pyramid.clear();  // may be shared with the frame it is a copy of
-  cv::buildOpticalFlowPyramid(frame->gray, frame->pyramid, kWindow, kMaxLevel);
+std::unique_ptr<const PreparedFrame> KltFrontend::PrepareReference(
+    const Frame& frame) const {
+  return std::make_unique<KltFrame>(frame, /*with_derivatives=*/true);
 }
 
-void KltFrontend::Follow(const Frame& from, const Points& points,
-                         const Frame& to, Points* moved, Found* found) {
-  if (to.pyramid.empty()) {
-    cv::buildOpticalFlowPyramid(to.gray, pyramid_, kWindow, kMaxLevel,
-                                /*withDerivatives=*/false);
-  }
-  cv::calcOpticalFlowPyrLK(from.pyramid,
-                           to.pyramid.empty() ? pyramid_ : to.pyramid, points,
+void KltFrontend::Follow(const PreparedFrame& from, const Points& points,
+                         const PreparedFrame& to, Points* moved, Found* found) {
+  cv::calcOpticalFlowPyrLK(dynamic_cast<const KltFrame&>(from).pyramid,
+                           dynamic_cast<const KltFrame&>(to).pyramid, points,
                            *moved, *found, error_, kWindow, kMaxLevel,
                            kTermination, cv::OPTFLOW_USE_INITIAL_FLOW);
   for (size_t i = 0; i < found->size(); ++i) {

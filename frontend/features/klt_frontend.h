@@ -1,6 +1,6 @@
 #pragma once
 
-#include <opencv2/core.hpp>
+#include <memory>
 #include <vector>
 
 #include "frontend/features/point_frontend.h"
@@ -17,14 +17,15 @@ class KltFrontend final : public PointFrontend {
 
   using PointFrontend::PointFrontend;
 
-  void Prepare(Frame* frame) const override;
+  std::unique_ptr<const PreparedFrame> Prepare(
+      const Frame& frame) const override;
 
  private:
-  void PrepareReference(Frame* frame) const override;
-  void Follow(const Frame& from, const Points& points, const Frame& to,
-              Points* moved, Found* found) override;
+  std::unique_ptr<const PreparedFrame> PrepareReference(
+      const Frame& frame) const override;
+  void Follow(const PreparedFrame& from, const Points& points,
+              const PreparedFrame& to, Points* moved, Found* found) override;
 
-  std::vector<cv::Mat> pyramid_;  // of a frame that has not been prepared
   std::vector<float> error_;
 };
 

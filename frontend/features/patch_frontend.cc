@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <utility>
 
 #include "frontend/features/coarse_alignment.h"
 #include "frontend/features/grid_corners.h"
@@ -52,10 +51,21 @@ struct PatchStack {
   std::array<Patch, kPatchLevels> levels;
 };
 
+struct PatchFrame final : PreparedFrame {
+  explicit PatchFrame(const Frame& frame) : PreparedFrame(frame) {
+    BuildImagePyramid(gray, kLevels, &pyramid);
+  }
+
+  std::vector<cv::Mat> pyramid;
+};
+
 struct PatchFeatures : FeatureSet {
-  PatchFeatures(const Frame& frame, std::vector<cv::Mat> levels,
-                const Camera& camera)
-      : pyramid(std::move(levels)), coarse(frame, pyramid, camera) {}
+  PatchFeatures(const PatchFrame& frame, const Camera& camera)
+      : coarse(frame, frame.pyramid, camera) {
+    for (int level = 0; level < PatchLevels(frame.pyramid); ++level) {
+      pyramid.push_back(frame.pyramid[level].clone());
+    }
+  }
 
   // The patches of a feature for a warp near to `ref_from_patch`: a function
   // of that alone, whatever was asked for before.
@@ -74,7 +84,7 @@ struct PatchFeatures : FeatureSet {
     return patch;
   }
 
-  std::vector<cv::Mat> pyramid;
+  std::vector<cv::Mat> pyramid;  // the levels that patches are taken from
   CoarseReference coarse;
   std::vector<cv::Point2f> corners;
   mutable std::vector<PatchStack> patches;  // see Patches
@@ -108,15 +118,14 @@ PatchFrontend::PatchFrontend(const FrontendOptions& options)
       depth_options_{options.depth_noise, options.min_depth,
                      options.max_depth} {}
 
-void PatchFrontend::Prepare(Frame* frame) const {
-  BuildImagePyramid(frame->gray, kLevels, &frame->pyramid);
+std::unique_ptr<const PreparedFrame> PatchFrontend::Prepare(
+    const Frame& frame) const {
+  return std::make_unique<PatchFrame>(frame);
 }
 
-std::unique_ptr<FeatureSet> PatchFrontend::Detect(const Frame& frame) {
-  std::vector<cv::Mat> pyramid = frame.pyramid;
-  if (pyramid.empty()) BuildImagePyramid(frame.gray, kLevels, &pyramid);
-  auto features = std::make_unique<PatchFeatures>(frame, std::move(pyramid),
-                                                  options_.camera);
+std::unique_ptr<FeatureSet> PatchFrontend::Detect(const PreparedFrame& frame) {
+  auto features = std::make_unique<PatchFeatures>(
+      dynamic_cast<const PatchFrame&>(frame), options_.camera);
   features->corners = DetectGridCorners(
       frame.gray, options_.max_features, [&](const cv::Point2f& pixel) {
         return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
@@ -129,15 +138,15 @@ std::unique_ptr<FeatureSet> PatchFrontend::Detect(const Frame& frame) {
   return features;
 }
 
-void PatchFrontend::Match(const FeatureSet& reference, const Frame& frame,
+void PatchFrontend::Match(const FeatureSet& reference,
+                          const PreparedFrame& frame,
                           const Rigid3d& cur_from_ref_guess,
                           FeatureMatches* matches) {
   matches->Clear();
   const auto& features = static_cast<const PatchFeatures&>(reference);
   if (features.corners.empty()) return;
-  if (frame.pyramid.empty()) BuildImagePyramid(frame.gray, kLevels, &pyramid_);
   const std::vector<cv::Mat>& pyramid =
-      frame.pyramid.empty() ? pyramid_ : frame.pyramid;
+      dynamic_cast<const PatchFrame&>(frame).pyramid;
   const Rigid3d cur_from_ref =
       features.coarse.Align(pyramid, cur_from_ref_guess);
   const Camera& camera = options_.camera;

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <opencv2/core.hpp>
-#include <vector>
-
 #include "frontend/features/frontend.h"
 #include "frontend/image/depth_lookup.h"
 
@@ -19,16 +16,16 @@ class PatchFrontend final : public Frontend {
 
   explicit PatchFrontend(const FrontendOptions& options);
 
-  void Prepare(Frame* frame) const override;
-  std::unique_ptr<FeatureSet> Detect(const Frame& frame) override;
-  void Match(const FeatureSet& reference, const Frame& frame,
+  std::unique_ptr<const PreparedFrame> Prepare(
+      const Frame& frame) const override;
+  std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override;
+  void Match(const FeatureSet& reference, const PreparedFrame& frame,
              const Rigid3d& cur_from_ref_guess,
              FeatureMatches* matches) override;
 
  private:
   FrontendOptions options_;
   DepthLookupOptions depth_options_;
-  std::vector<cv::Mat> pyramid_;  // of a frame that has not been prepared
 };
 
 }  // namespace rgbd_pose

@@ -13,7 +13,7 @@ namespace {
 constexpr double kSigmaPx = 0.5;
 
 struct PointFeatures : FeatureSet {
-  Frame frame;
+  std::unique_ptr<const PreparedFrame> frame;  // a copy
   std::vector<cv::Point2f> points;
 };
 
@@ -24,7 +24,7 @@ PointFrontend::PointFrontend(const FrontendOptions& options)
       depth_options_{options.depth_noise, options.min_depth,
                      options.max_depth} {}
 
-std::unique_ptr<FeatureSet> PointFrontend::Detect(const Frame& frame) {
+std::unique_ptr<FeatureSet> PointFrontend::Detect(const PreparedFrame& frame) {
   auto features = std::make_unique<PointFeatures>();
   Points points;
   Find(frame, &points);
@@ -34,13 +34,15 @@ std::unique_ptr<FeatureSet> PointFrontend::Detect(const Frame& frame) {
     features->points.push_back(point);
     features->observations.push_back(observation);
   }
-  features->frame = frame;
-  features->frame.depth.release();
-  PrepareReference(&features->frame);
+  Frame copy = frame;
+  copy.gray = frame.gray.clone();
+  copy.depth.release();
+  features->frame = PrepareReference(copy);
   return features;
 }
 
-void PointFrontend::Match(const FeatureSet& reference, const Frame& frame,
+void PointFrontend::Match(const FeatureSet& reference,
+                          const PreparedFrame& frame,
                           const Rigid3d& cur_from_ref_guess,
                           FeatureMatches* matches) {
   matches->Clear();
@@ -57,7 +59,7 @@ void PointFrontend::Match(const FeatureSet& reference, const Frame& frame,
                             static_cast<float>(pixel.y()));
   }
   found_.assign(moved_.size(), 1);
-  Follow(features.frame, features.points, frame, &moved_, &found_);
+  Follow(*features.frame, features.points, frame, &moved_, &found_);
   const size_t count = features.points.size();
   if (moved_.size() != count || found_.size() != count) {
     throw InputError("a frontend followed " + std::to_string(moved_.size()) +

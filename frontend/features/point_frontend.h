@@ -17,8 +17,8 @@ class PointFrontend : public Frontend {
   // The options must be sound (see Check).
   explicit PointFrontend(const FrontendOptions& options);
 
-  std::unique_ptr<FeatureSet> Detect(const Frame& frame) final;
-  void Match(const FeatureSet& reference, const Frame& frame,
+  std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) final;
+  void Match(const FeatureSet& reference, const PreparedFrame& frame,
              const Rigid3d& cur_from_ref_guess, FeatureMatches* matches) final;
 
  protected:
@@ -32,12 +32,15 @@ class PointFrontend : public Frontend {
   // Where `points` of the frame `from` are in the frame `to`. On entry `moved`
   // holds where the guess has them, and all are found. Neither may change its
   // size: Match would throw InputError.
-  virtual void Follow(const Frame& from, const Points& points, const Frame& to,
-                      Points* moved, Found* found) = 0;
+  virtual void Follow(const PreparedFrame& from, const Points& points,
+                      const PreparedFrame& to, Points* moved, Found* found) = 0;
 
   // As Prepare, for a copy of the frame that others are going to be compared
   // with; without its depth.
-  virtual void PrepareReference(Frame* frame) const { Prepare(frame); }
+  virtual std::unique_ptr<const PreparedFrame> PrepareReference(
+      const Frame& frame) const {
+    return Prepare(frame);
+  }
 
   // Those it was made with.
   const FrontendOptions& options() const { return options_; }

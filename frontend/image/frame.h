@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <opencv2/core.hpp>
-#include <vector>
 
 namespace rgbd_pose {
 
@@ -14,9 +13,6 @@ struct Frame {
   cv::Mat depth;                // CV_16UC1, registered to gray, the same size
   double depth_scale = 5000.0;  // raw depth units per metre
 
-  // What a frontend has worked out ahead: its own pyramid of `gray`, or empty.
-  std::vector<cv::Mat> pyramid;
-
   // Depth in metres at a whole pixel; 0 where there is none.
   double DepthAt(int column, int row) const {
     const uint16_t raw = depth.at<uint16_t>(row, column);
@@ -25,6 +21,14 @@ struct Frame {
 
   // Some sensors mark "no measurement" by the largest value instead of 0.
   static constexpr uint16_t kNoDepth = 65535;
+};
+
+// A frame with what whoever tracks it needs of it alone (a pyramid, say): made
+// by the frontend that is to use it, which knows what has been added. It shares
+// the images, which must stay as they are for as long as it is in use.
+struct PreparedFrame : Frame {
+  explicit PreparedFrame(const Frame& frame) : Frame(frame) {}
+  virtual ~PreparedFrame() = default;
 };
 
 }  // namespace rgbd_pose

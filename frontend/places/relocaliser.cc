@@ -91,7 +91,6 @@ void Relocaliser::Add(const Frame& keyframe, int id) {
   place->frame = keyframe;
   place->frame.gray = keyframe.gray.clone();
   place->frame.depth = keyframe.depth.clone();
-  place->frame.pyramid.clear();
   places_.push_front(std::move(place));
   if (places_.size() > kMaxPlaces) places_.pop_back();
   next_ = 1;

@@ -13,8 +13,7 @@ constexpr int kMaxReady = 8;
 
 }  // namespace
 
-FrameStream::FrameStream(FrameSource* source,
-                         std::function<void(Frame*)> prepare, int threads)
+FrameStream::FrameStream(FrameSource* source, Prepare prepare, int threads)
     : source_(source),
       prepare_(std::move(prepare)),
       max_ahead_(threads + kMaxReady) {
@@ -79,8 +78,9 @@ void FrameStream::ReadOne(Lock* lock) {
   lock->unlock();
   Result result;
   try {
-    result.frame.frame = next->read();
-    if (prepare_) prepare_(&result.frame.frame);
+    const Frame frame = next->read();
+    result.frame.frame =
+        prepare_ ? prepare_(frame) : std::make_unique<PreparedFrame>(frame);
   } catch (...) {
     result.error = std::current_exception();
   }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <limits>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <thread>
@@ -17,7 +18,7 @@ namespace rgbd_pose {
 
 // A frame, and how long reading and preparing it took, in whichever thread.
 struct StreamedFrame {
-  Frame frame;             // prepared
+  std::unique_ptr<const PreparedFrame> frame;
   double decode_ms = 0.0;  // to read and to prepare it
 };
 
@@ -27,12 +28,14 @@ struct StreamedFrame {
 // The frames are the same whatever the number of threads.
 class FrameStream {
  public:
+  // Works on a frame in the thread that has read it (Frontend::Prepare, say).
+  using Prepare =
+      std::function<std::unique_ptr<const PreparedFrame>(const Frame& frame)>;
+
   // `threads` >= 1 counts the calling one: 1 reads each frame when it is asked
-  // for. `prepare` works on each frame in the thread that has read it
-  // (Frontend::Prepare, say); it may be empty. The source must outlive the
-  // stream, and nobody else may ask it for frames.
-  FrameStream(FrameSource* source, std::function<void(Frame*)> prepare,
-              int threads);
+  // for. `prepare` may be empty. The source must outlive the stream, and nobody
+  // else may ask it for frames.
+  FrameStream(FrameSource* source, Prepare prepare, int threads);
 
   // Gives up the frames that were not asked for; waits for those being read.
   ~FrameStream();
@@ -59,7 +62,7 @@ class FrameStream {
   void Work();
 
   FrameSource* const source_;
-  const std::function<void(Frame*)> prepare_;
+  const Prepare prepare_;
   const int max_ahead_;
   std::mutex mutex_;  // of all that follows
   std::condition_variable changed_;

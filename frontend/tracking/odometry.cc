@@ -66,6 +66,19 @@ Odometry::Odometry(const OdometryOptions& options, const Camera& camera,
 
 TrackedFrame Odometry::Track(const Frame& frame,
                              const Rigid3d* cur_from_prev_guess) {
+  double prepare_ms = 0.0;
+  std::unique_ptr<const PreparedFrame> prepared;
+  {
+    const StageTimer timer(&prepare_ms);
+    prepared = Prepare(frame);
+  }
+  TrackedFrame result = Track(*prepared, cur_from_prev_guess);
+  result.track_ms += prepare_ms;
+  return result;
+}
+
+TrackedFrame Odometry::Track(const PreparedFrame& frame,
+                             const Rigid3d* cur_from_prev_guess) {
   TrackedFrame result;
   result.index = frame.index;
   result.timestamp = frame.timestamp;
@@ -85,7 +98,7 @@ TrackedFrame Odometry::Track(const Frame& frame,
   return result;
 }
 
-void Odometry::Start(const Frame& frame, TrackedFrame* result) {
+void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
   if (!TakeReference(frame, WorldFromCam(), result)) return;
   result->status = TrackingStatus::kOk;
   tracked_at_ = frame.timestamp;
@@ -93,7 +106,8 @@ void Odometry::Start(const Frame& frame, TrackedFrame* result) {
 
 // First from the last pose. A constant velocity is only a second try: as the
 // first it can lock onto its own false motion.
-bool Odometry::Follow(const Frame& frame, const Rigid3d* cur_from_prev_guess,
+bool Odometry::Follow(const PreparedFrame& frame,
+                      const Rigid3d* cur_from_prev_guess,
                       TrackedFrame* result) {
   const Rigid3d last = cur_from_ref_;
   const Rigid3d predicted = cur_from_prev_ * last;
@@ -114,7 +128,7 @@ bool Odometry::Follow(const Frame& frame, const Rigid3d* cur_from_prev_guess,
   return true;
 }
 
-bool Odometry::Relocalise(const Frame& frame, TrackedFrame* result) {
+bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   std::optional<Relocalisation> place;
   {
     const StageTimer timer(&result->relocalise_ms);
@@ -136,7 +150,7 @@ bool Odometry::Relocalise(const Frame& frame, TrackedFrame* result) {
   return true;
 }
 
-void Odometry::Lose(const Frame& frame, TrackedFrame* result) {
+void Odometry::Lose(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = true;
   result->status = TrackingStatus::kLost;
   if (options_.on_lost == LostPolicy::kPredict) {
@@ -160,7 +174,7 @@ void Odometry::Lose(const Frame& frame, TrackedFrame* result) {
   result->reason = "a new segment: the motion since it was lost is unknown";
 }
 
-bool Odometry::Try(const Frame& frame, const Keyframe& reference,
+bool Odometry::Try(const PreparedFrame& frame, const Keyframe& reference,
                    const Rigid3d& cur_from_ref_guess, TrackedFrame* result) {
   {
     const StageTimer timer(&result->match_ms);
@@ -211,7 +225,7 @@ void Odometry::Estimate(const Rigid3d& cur_from_ref_guess) {
   estimator_.Estimate(found_.matches, guess, &prior, &estimate_);
 }
 
-void Odometry::Accept(const Frame& frame, TrackedFrame* result) {
+void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
   reference_->trust.Learn(doubted_, cur_from_ref_);
@@ -226,7 +240,8 @@ bool Odometry::NeedsNewReference() const {
          MeanInlierFlowPx() > options_.max_flow_px;
 }
 
-void Odometry::ChangeReference(const Frame& frame, TrackedFrame* result) {
+void Odometry::ChangeReference(const PreparedFrame& frame,
+                               TrackedFrame* result) {
   const Rigid3d world_from_cam = WorldFromCam();
   Keyframe* const earlier =
       keyframes_.FindNearest(world_from_cam, segment_, kMinReturnShare,
@@ -238,7 +253,7 @@ void Odometry::ChangeReference(const Frame& frame, TrackedFrame* result) {
   }
 }
 
-bool Odometry::ReturnTo(const Frame& frame, Keyframe* earlier,
+bool Odometry::ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
                         const Rigid3d& cur_from_earlier_guess,
                         TrackedFrame* result) {
   TrackedFrame attempt = *result;
@@ -263,7 +278,8 @@ void Odometry::SwapAttempts() {
   std::swap(estimate_, other_estimate_);
 }
 
-bool Odometry::TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
+bool Odometry::TakeReference(const PreparedFrame& frame,
+                             const Rigid3d& world_from_cam,
                              TrackedFrame* result) {
   const StageTimer timer(&result->reference_ms);
   std::unique_ptr<FeatureSet> features = frontend_->Detect(frame);

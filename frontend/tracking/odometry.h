@@ -1,6 +1,5 @@
 #pragma once
 
-#include <functional>
 #include <memory>
 #include <string>
 
@@ -69,20 +68,24 @@ class Odometry {
 
   // `cur_from_prev_guess`: the motion since the frame before, if something else
   // tells (wheels, an inertial sensor); tried first, and believed only as far
-  // as the images agree.
+  // as the images agree. What is kept of the images is copied: the next ones
+  // may be written into the same memory.
   TrackedFrame Track(const Frame& frame,
                      const Rigid3d* cur_from_prev_guess = nullptr);
 
+  // The same for a frame that Prepare has made, here or in an odometry with the
+  // same frontend.
+  TrackedFrame Track(const PreparedFrame& frame,
+                     const Rigid3d* cur_from_prev_guess = nullptr);
+
+  // Works out what does not depend on other frames: may be done ahead, from any
+  // thread, as long as this lives.
+  std::unique_ptr<const PreparedFrame> Prepare(const Frame& frame) const {
+    return frontend_->Prepare(frame);
+  }
+
   // The pose after the last frame, found or not (see LostPolicy).
   Rigid3d WorldFromCam() const;
-
-  // What may be done with frames ahead, for a FrameStream; from any thread, as
-  // long as this lives.
-  std::function<void(Frame*)> prepare() const {
-    return [frontend = frontend_.get()](Frame* frame) {
-      frontend->Prepare(frame);
-    };
-  }
 
   // The matches that the last frame was tracked by (prev: its reference) and
   // what the estimator made of them.
@@ -90,30 +93,30 @@ class Odometry {
   const MotionEstimate& last_estimate() const { return estimate_; }
 
  private:
-  void Start(const Frame& frame, TrackedFrame* result);
-  bool Follow(const Frame& frame, const Rigid3d* cur_from_prev_guess,
+  void Start(const PreparedFrame& frame, TrackedFrame* result);
+  bool Follow(const PreparedFrame& frame, const Rigid3d* cur_from_prev_guess,
               TrackedFrame* result);
-  bool Relocalise(const Frame& frame, TrackedFrame* result);
-  void Lose(const Frame& frame, TrackedFrame* result);
+  bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
+  void Lose(const PreparedFrame& frame, TrackedFrame* result);
 
   // Tries to track against a reference from one guess; true if the result,
   // in estimate_, is a pose.
-  bool Try(const Frame& frame, const Keyframe& reference,
+  bool Try(const PreparedFrame& frame, const Keyframe& reference,
            const Rigid3d& cur_from_ref_guess, TrackedFrame* result);
   // Fills estimate_ from found_.
   void Estimate(const Rigid3d& cur_from_ref_guess);
   // What follows from a frame tracked against reference_ as in estimate_.
-  void Accept(const Frame& frame, TrackedFrame* result);
-  void ChangeReference(const Frame& frame, TrackedFrame* result);
+  void Accept(const PreparedFrame& frame, TrackedFrame* result);
+  void ChangeReference(const PreparedFrame& frame, TrackedFrame* result);
   bool NeedsNewReference() const;
   // Goes on from an earlier reference instead; false, and nothing has changed,
   // if it does not serve.
-  bool ReturnTo(const Frame& frame, Keyframe* earlier,
+  bool ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
                 const Rigid3d& cur_from_earlier_guess, TrackedFrame* result);
   // Sets what the last Try has made aside, or takes it up again.
   void SwapAttempts();
   // False, and nothing has changed, if the frame has too few features.
-  bool TakeReference(const Frame& frame, const Rigid3d& world_from_cam,
+  bool TakeReference(const PreparedFrame& frame, const Rigid3d& world_from_cam,
                      TrackedFrame* result);
   double MeanInlierFlowPx() const;
 

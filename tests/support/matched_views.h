@@ -34,13 +34,16 @@ class MatchedViews {
 
   FeatureMatches MatchFrom(const Frame& prev, const Frame& cur,
                            const Rigid3d& guess) {
-    return MatchFrom(*frontend_->Detect(prev), cur, guess);
+    return MatchFrom(*Detect(prev), cur, guess);
   }
   FeatureMatches MatchFrom(const FeatureSet& reference, const Frame& cur,
                            const Rigid3d& guess) {
     FeatureMatches found{Correspondences(dataset_.camera().camera), {}};
-    frontend_->Match(reference, cur, guess, &found);
+    frontend_->Match(reference, *frontend_->Prepare(cur), guess, &found);
     return found;
+  }
+  std::unique_ptr<FeatureSet> Detect(const Frame& frame) {
+    return frontend_->Detect(*frontend_->Prepare(frame));
   }
 
   // How far (px) each match is from where the true motion takes its point,

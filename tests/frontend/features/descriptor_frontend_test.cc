@@ -40,9 +40,8 @@ TEST_P(DescriptorFrontendTest, MatchesAreWhereTheTruthHasThem) {
   ExpectMostlyRight(found);
   EXPECT_EQ(found.features.size(), found.matches.size());
   // The same feature in the frame it comes from: where it was, to the bit.
-  const std::unique_ptr<FeatureSet> reference = frontend_->Detect(prev);
-  FeatureMatches itself{Correspondences(dataset_.camera().camera), {}};
-  frontend_->Match(*reference, prev, Rigid3d(), &itself);
+  const std::unique_ptr<FeatureSet> reference = Detect(prev);
+  const FeatureMatches itself = MatchFrom(*reference, prev, Rigid3d());
   for (size_t i = 0; i < itself.matches.size(); ++i) {
     EXPECT_EQ(itself.matches[i].prev.u, itself.matches[i].cur.u);
     EXPECT_EQ(itself.matches[i].prev.depth, itself.matches[i].cur.depth);
@@ -51,7 +50,7 @@ TEST_P(DescriptorFrontendTest, MatchesAreWhereTheTruthHasThem) {
 
 TEST_P(DescriptorFrontendTest, FeaturesAreSpreadOverTheImage) {
   const Frame frame = dataset_.Read(kPrev);
-  const std::unique_ptr<FeatureSet> features = frontend_->Detect(frame);
+  const std::unique_ptr<FeatureSet> features = Detect(frame);
   ASSERT_GE(features->observations.size(), 200u);
   int quadrants[2][2] = {};
   for (const Observation& o : features->observations) {
@@ -67,8 +66,7 @@ TEST_P(DescriptorFrontendTest, FeaturesAreSpreadOverTheImage) {
 }
 
 TEST_P(DescriptorFrontendTest, CoarserKeypointsAreLessExact) {
-  const std::unique_ptr<FeatureSet> features =
-      frontend_->Detect(dataset_.Read(kPrev));
+  const std::unique_ptr<FeatureSet> features = Detect(dataset_.Read(kPrev));
   double least = 1e9;
   double most = 0.0;
   for (const Observation& o : features->observations) {
@@ -115,10 +113,10 @@ TEST_P(DescriptorFrontendTest, ABlackFrameGivesNothing) {
   EXPECT_EQ(MatchFrom(good, black, Rigid3d()).matches.size(), 0u);
   EXPECT_EQ(MatchFrom(black, good, Rigid3d()).matches.size(), 0u);
   EXPECT_EQ(MatchFrom(black, black, Rigid3d()).matches.size(), 0u);
-  EXPECT_TRUE(frontend_->Detect(black)->observations.empty());
+  EXPECT_TRUE(Detect(black)->observations.empty());
   Frame blind = good;
   blind.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
-  EXPECT_TRUE(frontend_->Detect(blind)->observations.empty());
+  EXPECT_TRUE(Detect(blind)->observations.empty());
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, DescriptorFrontendTest,

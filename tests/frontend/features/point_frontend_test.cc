@@ -22,8 +22,9 @@ class Fake final : public PointFrontend {
   void Find(const Frame& /*frame*/, Points* points) override {
     *points = {{100.0F, 100.0F}, {20.0F, 20.0F}, {150.0F, 120.0F}};
   }
-  void Follow(const Frame& from, const Points& points, const Frame& /*to*/,
-              Points* moved, Found* found) override {
+  void Follow(const PreparedFrame& from, const Points& points,
+              const PreparedFrame& /*to*/, Points* moved,
+              Found* found) override {
     EXPECT_FALSE(from.gray.empty());
     EXPECT_EQ(moved->size(), points.size());
     if (missing >= 0) (*found)[missing] = 0;
@@ -41,7 +42,8 @@ class PointFrontendTest : public ::testing::Test {
 
   FeatureMatches MatchWithItself(const Rigid3d& guess) {
     FeatureMatches matches{Correspondences(camera_), {}};
-    frontend_.Match(*frontend_.Detect(frame_), frame_, guess, &matches);
+    const PreparedFrame frame(frame_);
+    frontend_.Match(*frontend_.Detect(frame), frame, guess, &matches);
     return matches;
   }
 
@@ -51,7 +53,7 @@ class PointFrontendTest : public ::testing::Test {
 };
 
 TEST_F(PointFrontendTest, LeavesOutPointsWithoutDepth) {
-  const auto features = frontend_.Detect(frame_);
+  const auto features = frontend_.Detect(PreparedFrame(frame_));
   ASSERT_EQ(features->observations.size(), 2u);
   EXPECT_EQ(features->observations[0].u, 100.0);
   EXPECT_EQ(features->observations[0].depth, 2.0);

@@ -81,7 +81,7 @@ bool WaitFor(const std::function<bool()>& condition) {
 }
 
 void ExpectFrame(FrameStream* stream, int index) {
-  const Frame frame = stream->Next().value().frame;
+  const Frame frame = *stream->Next().value().frame;
   EXPECT_EQ(frame.index, index);
   EXPECT_EQ(frame.gray.at<uint8_t>(0, 0), index);
 }
@@ -104,13 +104,17 @@ TEST_P(FrameStreamTest, GivesEachFrameOnceAndInOrder) {
 
 TEST_P(FrameStreamTest, PreparesFrames) {
   FakeSource source(20);
+  struct Twice : PreparedFrame {
+    using PreparedFrame::PreparedFrame;
+    int twice = 2 * gray.at<uint8_t>(0, 0);
+  };
   FrameStream stream(
-      &source, [](Frame* frame) { frame->pyramid = {frame->gray.clone()}; },
+      &source,
+      [](const Frame& frame) { return std::make_unique<Twice>(frame); },
       GetParam());
   for (int i = 0; i < 20; ++i) {
-    const Frame frame = stream.Next().value().frame;
-    ASSERT_EQ(frame.pyramid.size(), 1u);
-    EXPECT_EQ(frame.pyramid[0].at<uint8_t>(0, 0), i);
+    const StreamedFrame next = stream.Next().value();
+    EXPECT_EQ(dynamic_cast<const Twice&>(*next.frame).twice, 2 * i);
   }
 }
 
