@@ -25,37 +25,11 @@ bool IsCutOffJpeg(std::string_view bytes) {
          bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
 }
 
-// What there is a quicker way for; empty: leave it to OpenCV.
-cv::Mat DecodeQuickly([[maybe_unused]] std::string_view bytes,
-                      [[maybe_unused]] int flags) {
-#ifdef RGBD_POSE_HAS_LIBDEFLATE
-  const int depth_or_not = flags & ~cv::IMREAD_ANYDEPTH;  // 8 bits in any case
-  if (depth_or_not == cv::IMREAD_GRAYSCALE) return DecodePngToGray(bytes);
-  if (flags == cv::IMREAD_UNCHANGED) return DecodePngDepth(bytes);
-#endif
-  return cv::Mat();
-}
-
-bool IsDamaged(std::string_view bytes) {
-#ifdef RGBD_POSE_HAS_LIBDEFLATE
-  if (IsDamagedPng(bytes)) return true;
-#endif
-  return IsCutOffJpeg(bytes);
-}
-
-}  // namespace
-
-cv::Mat ReadImageFile(const std::string& path, int flags) {
-  std::string bytes = ReadTextFile(path);
-  if (bytes.empty()) throw InputError(path + ": is empty; copy it again");
-  cv::Mat image = DecodeQuickly(bytes, flags);
-  if (!image.empty()) return image;
-  if (IsDamaged(bytes)) {
-    throw InputError(path + ": is damaged or cut off; copy it again");
-  }
+cv::Mat DecodeByOpenCv(const std::string& path, std::string* bytes, int flags) {
+  cv::Mat image;
   try {
-    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1,
-                         bytes.data());
+    const cv::Mat buffer(1, static_cast<int>(bytes->size()), CV_8UC1,
+                         bytes->data());
     image = cv::imdecode(buffer, flags | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& error) {
     throw InputError(path + ": cannot be decoded: " + error.err);
@@ -67,9 +41,42 @@ cv::Mat ReadImageFile(const std::string& path, int flags) {
   return image;
 }
 
-cv::Mat ReadGrayImageFile(const std::string& path) {
-  cv::Mat gray =
-      ReadImageFile(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH);
+// Reads an image, in colour as well if `color` is not null.
+cv::Mat Read(const std::string& path, int flags, cv::Mat* color) {
+  std::string bytes = ReadTextFile(path);
+  if (bytes.empty()) throw InputError(path + ": is empty; copy it again");
+  bool is_damaged = IsCutOffJpeg(bytes);
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+  PngUse use = PngUse::kOther;
+  const int depth_or_not = flags & ~cv::IMREAD_ANYDEPTH;  // 8 bits in any case
+  if (depth_or_not == cv::IMREAD_GRAYSCALE) {
+    use = color == nullptr ? PngUse::kGray : PngUse::kGrayAndColor;
+  }
+  if (flags == cv::IMREAD_UNCHANGED) use = PngUse::kDepth;
+  const DecodedPng png = DecodePng(bytes, use);
+  if (!png.image.empty()) {
+    if (color != nullptr) *color = png.color;
+    return png.image;
+  }
+  is_damaged |= png.is_damaged;
+#endif
+  if (is_damaged) {
+    throw InputError(path + ": is damaged or cut off; copy it again");
+  }
+  if (color != nullptr) {
+    *color = DecodeByOpenCv(path, &bytes, cv::IMREAD_COLOR);
+  }
+  return DecodeByOpenCv(path, &bytes, flags);
+}
+
+}  // namespace
+
+cv::Mat ReadImageFile(const std::string& path, int flags) {
+  return Read(path, flags, nullptr);
+}
+
+cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color) {
+  cv::Mat gray = Read(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH, color);
   if (gray.type() != CV_8UC1) {
     throw InputError(path +
                      ": a colour image must have 8 bits a channel, this one "

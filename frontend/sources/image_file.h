@@ -13,9 +13,11 @@ namespace rgbd_pose {
 // May be called from several threads at once.
 cv::Mat ReadImageFile(const std::string& path, int flags);
 
-// Reads a colour or gray image as gray values (CV_8UC1). Throws InputError for
-// one of other than 8 bits a channel, too: it would be a depth image.
-cv::Mat ReadGrayImageFile(const std::string& path);
+// Reads a colour or gray image as gray values (CV_8UC1) and, unless null, in
+// colour (CV_8UC3 in the order blue, green, red; most PNG files need no second
+// decoding). Throws InputError for one of other than 8 bits a channel, too: it
+// would be a depth image.
+cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color = nullptr);
 
 // Reads a depth image: 16 bits, one channel (CV_16UC1). Throws InputError for
 // any other, too.

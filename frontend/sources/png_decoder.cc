@@ -20,9 +20,6 @@ constexpr int kRgb = 2;
 // Far beyond any depth camera: a few wrong bytes must not claim all memory.
 constexpr uint32_t kMaxSide = 1 << 14;
 
-// The filters of section 9 count from 0.
-constexpr int kLastFilter = 4;
-
 struct Png {
   int width = 0;
   int height = 0;
@@ -30,6 +27,11 @@ struct Png {
   int color_type = 0;
   bool is_interlaced = false;
   std::string compressed;
+
+  // Bytes from row to row: a filter goes ahead.
+  size_t Stride(int pixel_bytes) const {
+    return 1 + static_cast<size_t>(pixel_bytes) * width;
+  }
 };
 
 uint32_t BigEndian(const uint8_t* bytes) {
@@ -78,8 +80,12 @@ bool ReadHeader(std::string_view header, Png* png) {
   png->bit_depth = data[8];
   png->color_type = data[9];
   png->is_interlaced = data[12] == 1;
-  // There is one kind of compression, one of filtering, two of interlacing.
-  return data[10] == 0 && data[11] == 0 && data[12] <= 1;
+  // There are five kinds of colour, one of compression, one of filtering, two
+  // of interlacing.
+  const bool is_color =
+      std::string_view("\0\2\3\4\6", 5).find(static_cast<char>(data[9])) !=
+      std::string_view::npos;
+  return is_color && data[10] == 0 && data[11] == 0 && data[12] <= 1;
 }
 
 struct FreeDecompressor {
@@ -105,29 +111,6 @@ std::unique_ptr<uint8_t[]> Decompress(const Png& png, size_t size,
   *has_more = result == LIBDEFLATE_INSUFFICIENT_SPACE;
   if (result != LIBDEFLATE_SUCCESS && !*has_more) return nullptr;
   return rows;
-}
-
-// False for a damaged file, and for one that holds what would change the values
-// of its pixels, such as a colour space.
-bool ReadChunks(std::string_view bytes, Png* png) {
-  if (!SkipSignature(&bytes)) return false;
-  png->compressed.reserve(bytes.size());
-  Chunk chunk;
-  bool is_first = true;
-  while (NextChunk(&bytes, &chunk) && chunk.is_intact &&
-         (chunk.type == "IHDR") == is_first) {
-    is_first = false;
-    if (chunk.type == "IEND") return true;
-    if (chunk.type == "IDAT") {
-      png->compressed += chunk.data;
-    } else if (chunk.type == "IHDR") {
-      if (!ReadHeader(chunk.data, png) || png->is_interlaced) return false;
-    } else if (chunk.type != "pHYs" && chunk.type != "tIME" &&
-               chunk.type != "tEXt") {
-      return false;
-    }
-  }
-  return false;
 }
 
 // The neighbour nearest to left + up - up_left. Chosen without branches: what
@@ -186,19 +169,15 @@ bool Unfilter(int filter, const uint8_t* up_row, uint8_t* row, int size) {
   }
 }
 
-// Decompresses the image and hands its rows to `convert(row, y)`.
+// Undoes the filters of `rows` and hands each to `convert(row, y)`. False if a
+// filter does not exist.
 template <int kPixelBytes, typename Convert>
-bool ReadRows(const Png& png, Convert convert) {
+bool ReadRows(const Png& png, uint8_t* rows, Convert convert) {
   const int size = kPixelBytes * png.width;
-  const size_t stride = 1 + static_cast<size_t>(size);  // a filter ahead
-  const size_t total = stride * png.height;
-  bool has_more = false;
-  const std::unique_ptr<uint8_t[]> rows = Decompress(png, total, &has_more);
-  if (rows == nullptr || has_more) return false;
   const std::vector<uint8_t> above_first(size, 0);
   const uint8_t* up_row = above_first.data();
   for (int y = 0; y < png.height; ++y) {
-    uint8_t* row = rows.get() + y * stride + 1;
+    uint8_t* row = rows + y * png.Stride(kPixelBytes) + 1;
     if (!Unfilter<kPixelBytes>(row[-1], up_row, row, size)) return false;
     convert(row, y);
     up_row = row;
@@ -206,79 +185,107 @@ bool ReadRows(const Png& png, Convert convert) {
   return true;
 }
 
-// Whether the compressed data of an image of any kind, but not interlaced, hold
-// all its rows.
-bool HasItsRows(const Png& png) {
-  constexpr int kChannels[] = {1, 0, 3, 1, 2, 0, 4};  // by colour type
-  const int channels = png.color_type <= 6 ? kChannels[png.color_type] : 0;
-  if (channels == 0 || png.bit_depth < 1 || png.bit_depth > 16) return false;
-  const size_t row_bits = static_cast<size_t>(png.width) * channels *
-                          static_cast<size_t>(png.bit_depth);
-  const size_t stride = 1 + (row_bits + 7) / 8;
-  bool has_more = false;  // is no harm
-  const std::unique_ptr<uint8_t[]> rows =
-      Decompress(png, stride * png.height, &has_more);
-  if (rows == nullptr) return false;
-  for (int y = 0; y < png.height; ++y) {
-    if (rows[stride * y] > kLastFilter) return false;
+// Whether it is a kind that is decoded here, as far as the header says.
+bool IsOurs(const Png& png, PngUse use) {
+  if (png.is_interlaced) return false;
+  if (use == PngUse::kDepth) {
+    return png.bit_depth == 16 && png.color_type == kGray;
   }
-  return true;
+  return use != PngUse::kOther && png.bit_depth == 8 &&
+         (png.color_type == kRgb || png.color_type == kGray);
+}
+
+// Chunks without which nothing can be shown are marked by a capital letter.
+bool IsCritical(const Chunk& chunk) { return (chunk.type[0] & 0x20) == 0; }
+
+// Others that leave the values of the pixels alone, unlike a colour space.
+bool IsComment(const Chunk& chunk) {
+  return chunk.type == "pHYs" || chunk.type == "tIME" || chunk.type == "tEXt";
+}
+
+// Reads all chunks. `is_ours` says whether the image is to be decoded here: its
+// compressed bytes are then in `png`. False for a damaged file.
+bool ReadChunks(std::string_view bytes, PngUse use, Png* png, bool* is_ours) {
+  Chunk chunk;
+  if (!NextChunk(&bytes, &chunk) || chunk.type != "IHDR" || !chunk.is_intact ||
+      !ReadHeader(chunk.data, png)) {
+    return false;
+  }
+  *is_ours = IsOurs(*png, use);
+  if (*is_ours) png->compressed.reserve(bytes.size());
+  while (NextChunk(&bytes, &chunk)) {
+    if (IsCritical(chunk) && !chunk.is_intact) return false;
+    if (chunk.type == "IEND") return true;
+    if (chunk.type != "IDAT") {
+      *is_ours &= IsComment(chunk) && chunk.is_intact;
+    } else if (*is_ours) {
+      png->compressed += chunk.data;
+    }
+  }
+  return false;
+}
+
+// Gray values, and colours unless `color` is empty.
+template <int kChannels>
+bool ReadGray(const Png& png, uint8_t* rows, cv::Mat* gray, cv::Mat* color) {
+  return ReadRows<kChannels>(png, rows, [&](const uint8_t* row, int y) {
+    uint8_t* to = gray->ptr<uint8_t>(y);
+    uint8_t* bgr = color->empty() ? nullptr : color->ptr<uint8_t>(y);
+    for (int x = 0; x < png.width; ++x, row += kChannels) {
+      const uint8_t red = row[0];
+      const uint8_t green = row[kChannels / 2];
+      const uint8_t blue = row[kChannels - 1];
+      // 0.299 R + 0.587 G + 0.114 B in 15 bits, rounded down as libpng does,
+      // which OpenCV leaves it to. They add up to 1.
+      to[x] = static_cast<uint8_t>((9797 * red + 19234 * green + 3737 * blue) >>
+                                   15);
+      if (bgr == nullptr) continue;
+      *bgr++ = blue;
+      *bgr++ = green;
+      *bgr++ = red;
+    }
+  });
+}
+
+bool ReadDepth(const Png& png, uint8_t* rows, cv::Mat* depth) {
+  return ReadRows<2>(png, rows, [&](const uint8_t* row, int y) {
+    uint16_t* to = depth->ptr<uint16_t>(y);
+    for (int x = 0; x < png.width; ++x) {
+      to[x] = static_cast<uint16_t>(row[2 * x] << 8 | row[2 * x + 1]);
+    }
+  });
 }
 
 }  // namespace
 
-bool IsDamagedPng(std::string_view bytes) {
-  if (!SkipSignature(&bytes)) return false;
+DecodedPng DecodePng(std::string_view bytes, PngUse use) {
+  DecodedPng decoded;
+  if (!SkipSignature(&bytes)) return decoded;
   Png png;
-  bool is_first = true;
-  Chunk chunk;
-  while (NextChunk(&bytes, &chunk)) {
-    // A capital letter marks chunks that are needed to show the image.
-    const bool is_critical = (chunk.type[0] & 0x20) == 0;
-    if (is_critical && !chunk.is_intact) return true;
-    if (is_first && (chunk.type != "IHDR" || !ReadHeader(chunk.data, &png))) {
-      return true;
-    }
-    is_first = false;
-    if (chunk.type == "IDAT") png.compressed += chunk.data;
-    if (chunk.type == "IEND") return !png.is_interlaced && !HasItsRows(png);
-  }
-  return true;
-}
+  bool is_ours = false;
+  decoded.is_damaged = !ReadChunks(bytes, use, &png, &is_ours);
+  if (decoded.is_damaged || !is_ours) return decoded;
 
-cv::Mat DecodePngToGray(std::string_view bytes) {
-  Png png;
-  if (!ReadChunks(bytes, &png) || png.bit_depth != 8 ||
-      png.color_type != kRgb) {
-    return cv::Mat();
+  const bool is_rgb = png.color_type == kRgb;
+  const int pixel_bytes = is_rgb ? 3 : png.bit_depth / 8;
+  bool has_more = false;
+  const std::unique_ptr<uint8_t[]> rows =
+      Decompress(png, png.Stride(pixel_bytes) * png.height, &has_more);
+  if (has_more) return decoded;
+  cv::Mat image, color;
+  bool is_read = rows != nullptr;
+  if (is_read && use == PngUse::kDepth) {
+    image.create(png.height, png.width, CV_16UC1);
+    is_read = ReadDepth(png, rows.get(), &image);
+  } else if (is_read) {
+    image.create(png.height, png.width, CV_8UC1);
+    if (use == PngUse::kGrayAndColor) color.create(image.size(), CV_8UC3);
+    is_read = is_rgb ? ReadGray<3>(png, rows.get(), &image, &color)
+                     : ReadGray<1>(png, rows.get(), &image, &color);
   }
-  cv::Mat gray(png.height, png.width, CV_8UC1);
-  const bool read = ReadRows<3>(png, [&gray](const uint8_t* rgb, int y) {
-    uint8_t* to = gray.ptr<uint8_t>(y);
-    for (int x = 0; x < gray.cols; ++x, rgb += 3) {
-      // 0.299 R + 0.587 G + 0.114 B in 15 bits, rounded down as libpng does,
-      // which OpenCV leaves it to.
-      to[x] = static_cast<uint8_t>(
-          (9797 * rgb[0] + 19234 * rgb[1] + 3737 * rgb[2]) >> 15);
-    }
-  });
-  return read ? gray : cv::Mat();
-}
-
-cv::Mat DecodePngDepth(std::string_view bytes) {
-  Png png;
-  if (!ReadChunks(bytes, &png) || png.bit_depth != 16 ||
-      png.color_type != kGray) {
-    return cv::Mat();
-  }
-  cv::Mat depth(png.height, png.width, CV_16UC1);
-  const bool read = ReadRows<2>(png, [&depth](const uint8_t* row, int y) {
-    uint16_t* to = depth.ptr<uint16_t>(y);
-    for (int x = 0; x < depth.cols; ++x) {
-      to[x] = static_cast<uint16_t>(row[2 * x] << 8 | row[2 * x + 1]);
-    }
-  });
-  return read ? depth : cv::Mat();
+  if (is_read) return {image, color, /*is_damaged=*/false};
+  decoded.is_damaged = true;
+  return decoded;
 }
 
 }  // namespace rgbd_pose

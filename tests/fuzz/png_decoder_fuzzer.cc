@@ -6,15 +6,23 @@
 
 namespace {
 
+using rgbd_pose::DecodedPng;
+using rgbd_pose::DecodePng;
+using rgbd_pose::PngUse;
 using rgbd_pose::Require;
 
 void Decode(std::string_view bytes) {
-  const cv::Mat gray = rgbd_pose::DecodePngToGray(bytes);
-  const cv::Mat depth = rgbd_pose::DecodePngDepth(bytes);
-  Require(gray.empty() || gray.type() == CV_8UC1, "gray values");
-  Require(depth.empty() || depth.type() == CV_16UC1, "raw depths");
-  Require(!rgbd_pose::IsDamagedPng(bytes) || (gray.empty() && depth.empty()),
-          "nothing of a damaged file");
+  const DecodedPng gray = DecodePng(bytes, PngUse::kGrayAndColor);
+  const DecodedPng depth = DecodePng(bytes, PngUse::kDepth);
+  for (const DecodedPng* png : {&gray, &depth}) {
+    Require(!png->is_damaged || png->image.empty(),
+            "nothing of a damaged file");
+  }
+  if (!gray.image.empty()) {
+    Require(gray.image.type() == CV_8UC1, "gray values");
+    Require(gray.color.type() == CV_8UC3, "colours");
+  }
+  Require(depth.image.empty() || depth.image.type() == CV_16UC1, "raw depths");
 }
 
 // Checksums would keep a fuzzer out, so bytes also become the rows of files
@@ -33,8 +41,10 @@ void DecodeAsRows(std::string_view bytes, bool is_depth) {
     are_filters &= static_cast<uint8_t>(png.rows[i]) <= 4;
   }
   const std::string file = png.File();
-  Require(rgbd_pose::IsDamagedPng(file) != are_filters,
-          "damaged just where a filter is none");
+  Require(
+      DecodePng(file, is_depth ? PngUse::kDepth : PngUse::kGray).is_damaged !=
+          are_filters,
+      "damaged just where a filter is none");
   Decode(file);
 }
 

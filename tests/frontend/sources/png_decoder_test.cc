@@ -33,6 +33,10 @@ PngParts Color(int filter = -1) {
   return {kWidth, kHeight, {8, 2, 0, 0, 0}, "", RandomRows(3 * kWidth, filter)};
 }
 
+PngParts Gray(int filter = -1) {
+  return {kWidth, kHeight, {8, 0, 0, 0, 0}, "", RandomRows(kWidth, filter)};
+}
+
 PngParts Depth(int filter = -1) {
   return {
       kWidth, kHeight, {16, 0, 0, 0, 0}, "", RandomRows(2 * kWidth, filter)};
@@ -41,6 +45,21 @@ PngParts Depth(int filter = -1) {
 cv::Mat DecodeByOpenCv(std::string file, int flags) {
   return cv::imdecode(
       cv::Mat(1, static_cast<int>(file.size()), CV_8UC1, file.data()), flags);
+}
+
+cv::Mat AsGray(const std::string& file) {
+  return DecodePng(file, PngUse::kGray).image;
+}
+
+cv::Mat AsDepth(const std::string& file) {
+  return DecodePng(file, PngUse::kDepth).image;
+}
+
+// Whether any use of the file shows that it is damaged.
+bool IsDamaged(const std::string& file) {
+  return DecodePng(file, PngUse::kGray).is_damaged ||
+         DecodePng(file, PngUse::kDepth).is_damaged ||
+         DecodePng(file, PngUse::kOther).is_damaged;
 }
 
 // Expects exactly what OpenCV makes of a file.
@@ -54,23 +73,34 @@ void ExpectAsOpenCv(const cv::Mat& decoded, const std::string& file,
 }
 
 void ExpectGrayAsOpenCv(const std::string& file) {
-  ExpectAsOpenCv(DecodePngToGray(file), file, cv::IMREAD_GRAYSCALE);
+  ExpectAsOpenCv(AsGray(file), file, cv::IMREAD_GRAYSCALE);
 }
 
 void ExpectDepthAsOpenCv(const std::string& file) {
-  ExpectAsOpenCv(DecodePngDepth(file), file, cv::IMREAD_UNCHANGED);
+  ExpectAsOpenCv(AsDepth(file), file, cv::IMREAD_UNCHANGED);
 }
 
 void ExpectLeft(const std::string& file) {
-  EXPECT_TRUE(DecodePngToGray(file).empty());
-  EXPECT_TRUE(DecodePngDepth(file).empty());
+  EXPECT_TRUE(AsGray(file).empty());
+  EXPECT_TRUE(AsDepth(file).empty());
 }
 
 TEST(PngDecoderTest, UndoesEveryFilterAsOpenCvDoes) {
   for (int filter = -1; filter < 5; ++filter) {
     SCOPED_TRACE(filter);
     ExpectGrayAsOpenCv(Color(filter).File());
+    ExpectGrayAsOpenCv(Gray(filter).File());
     ExpectDepthAsOpenCv(Depth(filter).File());
+  }
+}
+
+TEST(PngDecoderTest, GivesColoursToo) {
+  for (const PngParts& parts : {Color(), Gray()}) {
+    const std::string file = parts.File();
+    const DecodedPng decoded = DecodePng(file, PngUse::kGrayAndColor);
+    ExpectAsOpenCv(decoded.image, file, cv::IMREAD_GRAYSCALE);
+    ExpectAsOpenCv(decoded.color, file, cv::IMREAD_COLOR);
+    EXPECT_TRUE(DecodePng(file, PngUse::kGray).color.empty());
   }
 }
 
@@ -97,7 +127,7 @@ TEST(PngDecoderTest, ReadsWhatOpenCvWrites) {
 TEST(PngDecoderTest, TakesDepthFromTheUpperByteFirst) {
   PngParts parts = Depth(0);
   parts.rows.replace(0, 5, std::string("\0\x01\x02\xFF\xFE", 5));
-  const cv::Mat depth = DecodePngDepth(parts.File());
+  const cv::Mat depth = AsDepth(parts.File());
   EXPECT_EQ(depth.at<uint16_t>(0, 0), 0x0102);
   EXPECT_EQ(depth.at<uint16_t>(0, 1), 0xFFFE);
 }
@@ -111,16 +141,25 @@ TEST(PngDecoderTest, SkipsChunksThatLeaveThePixelsAlone) {
 }
 
 TEST(PngDecoderTest, LeavesOtherKindsToOpenCv) {
-  EXPECT_TRUE(DecodePngDepth(Color().File()).empty());
-  EXPECT_TRUE(DecodePngToGray(Depth().File()).empty());
-  PngParts gray = Color();
-  gray.kind[1] = 0;
-  gray.rows = RandomRows(kWidth);
-  ExpectLeft(gray.File());
+  EXPECT_TRUE(AsDepth(Color().File()).empty());
+  EXPECT_TRUE(AsGray(Depth().File()).empty());
+  EXPECT_TRUE(AsDepth(Gray().File()).empty());
   PngParts deep = Color();
   deep.kind[0] = 16;
   deep.rows = RandomRows(6 * kWidth);
   ExpectLeft(deep.File());
+}
+
+// Their rows are decompressed once, by OpenCV: here nobody looks at them.
+TEST(PngDecoderTest, DoesNotDecompressWhatIsLeftToOpenCv) {
+  PngParts palette = Gray();
+  palette.kind[1] = 3;
+  PngParts gamma = Color();
+  gamma.before_image = Chunk("gAMA", BigEndian(45455));
+  for (PngParts parts : {palette, gamma}) {
+    parts.rows.resize(kWidth);  // the others are missing
+    EXPECT_FALSE(IsDamaged(parts.File()));
+  }
 }
 
 TEST(PngDecoderTest, LeavesColorSpacesToOpenCv) {
@@ -133,7 +172,7 @@ TEST(PngDecoderTest, LeavesColorSpacesToOpenCv) {
 
 TEST(PngDecoderTest, LeavesDamagedFilesToOpenCv) {
   const std::string good = Color().File();
-  ASSERT_FALSE(DecodePngToGray(good).empty());
+  ASSERT_FALSE(AsGray(good).empty());
   for (size_t i = 0; i < good.size(); ++i) {
     std::string file = good;
     file[i] ^= 1;
@@ -144,16 +183,16 @@ TEST(PngDecoderTest, LeavesDamagedFilesToOpenCv) {
 
 TEST(PngDecoderTest, KnowsADamagedFile) {
   const std::string good = Color().File();
-  EXPECT_FALSE(IsDamagedPng(good));
-  EXPECT_FALSE(IsDamagedPng(good + "more behind the end"));
-  EXPECT_FALSE(IsDamagedPng("no PNG at all"));
-  EXPECT_FALSE(IsDamagedPng(""));
+  EXPECT_FALSE(IsDamaged(good));
+  EXPECT_FALSE(IsDamaged(good + "more behind the end"));
+  EXPECT_FALSE(IsDamaged("no PNG at all"));
+  EXPECT_FALSE(IsDamaged(""));
   const size_t kSignature = 8;
   for (size_t i = kSignature; i < good.size(); ++i) {
-    EXPECT_TRUE(IsDamagedPng(good.substr(0, i)));
+    EXPECT_TRUE(IsDamaged(good.substr(0, i)));
     std::string file = good;
     file[i] ^= 1;
-    EXPECT_TRUE(IsDamagedPng(file)) << i;
+    EXPECT_TRUE(IsDamaged(file)) << i;
   }
 }
 
@@ -162,7 +201,7 @@ TEST(PngDecoderTest, ADamagedCommentIsNoDamage) {
   PngParts parts = Color();
   parts.before_image = Chunk("tEXt", std::string("Comment\0kitchen", 15));
   parts.before_image.back() ^= 1;
-  EXPECT_FALSE(IsDamagedPng(parts.File()));
+  EXPECT_FALSE(IsDamaged(parts.File()));
   ExpectLeft(parts.File());
 }
 
@@ -194,20 +233,20 @@ TEST(PngDecoderTest, LeavesContradictoryFilesToOpenCv) {
 // What libpng would tell stderr about.
 TEST(PngDecoderTest, FindsDamageWithoutWrongChecksums) {
   PngParts parts = Depth();
-  EXPECT_FALSE(IsDamagedPng(parts.File()));
+  EXPECT_FALSE(IsDamaged(parts.File()));
   parts.rows.pop_back();
-  EXPECT_TRUE(IsDamagedPng(parts.File())) << "a byte is missing";
+  EXPECT_TRUE(IsDamaged(parts.File())) << "a byte is missing";
   parts = Depth(4);
   parts.rows[2 * kWidth + 1] = 5;
-  EXPECT_TRUE(IsDamagedPng(parts.File())) << "no such filter";
+  EXPECT_TRUE(IsDamaged(parts.File())) << "no such filter";
   parts = Depth();
   parts.kind[1] = 5;
-  EXPECT_TRUE(IsDamagedPng(parts.File())) << "no such kind of colour";
+  EXPECT_TRUE(IsDamaged(parts.File())) << "no such kind of colour";
   parts = Depth();
   parts.width = parts.height = 16384;  // not to be taken memory for
-  EXPECT_TRUE(IsDamagedPng(parts.File()));
+  EXPECT_TRUE(IsDamaged(parts.File()));
   parts.width = 16385;
-  EXPECT_TRUE(IsDamagedPng(parts.File()));
+  EXPECT_TRUE(IsDamaged(parts.File()));
 }
 
 }  // namespace
