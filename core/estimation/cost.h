@@ -110,7 +110,7 @@ class Cost {
 
   // Adds the bound matches to a problem in the parameters x[6] that count from
   // `origin`. The problem must own its cost functions as BlockOwnership says
-  // and no losses; origin, loss and this cost must outlive it.
+  // and no losses; origin, loss and this cost must outlive it, unchanged.
   virtual void AddTo(Assembly assembly, const MotionOrigin& origin,
                      ceres::LossFunction* loss, double* x,
                      ceres::Problem* problem) = 0;

@@ -6,13 +6,15 @@
 
 // Arithmetic that residuals share, for double, ceres::Jet and vectors of
 // doubles (core/util/vector_lanes.h) and mixes of them. Results come by
-// pointer: how vectors are returned depends on the instruction set.
+// pointer: how vectors are returned depends on the instruction set. Always
+// inlined: GCC's budget for it ends within costs/cost_factory.cc, and a call
+// here makes a whole solve slower by half.
 
 namespace rgbd_pose {
 
 // The square root, lane by lane.
 template <typename T>
-void Sqrt(const T& x, T* root) {
+[[gnu::always_inline]] inline void Sqrt(const T& x, T* root) {
   if constexpr (std::is_floating_point_v<T> || std::is_class_v<T>) {
     using std::sqrt;
     *root = sqrt(x);
@@ -25,14 +27,16 @@ void Sqrt(const T& x, T* root) {
 
 // x where it exceeds `lowest`, else `lowest`, lane by lane.
 template <typename T>
-void AtLeast(const T& x, double lowest, T* result) {
+[[gnu::always_inline]] inline void AtLeast(const T& x, double lowest,
+                                           T* result) {
   const T limit = T{} + lowest;
   *result = x > limit ? x : limit;
 }
 
 // y = A x.
 template <typename M, typename D, typename T>
-void Multiply(const Eigen::Matrix<M, 3, 3>& A, const D* x, T* y) {
+[[gnu::always_inline]] inline void Multiply(const Eigen::Matrix<M, 3, 3>& A,
+                                            const D* x, T* y) {
   for (int i = 0; i < 3; ++i) {
     y[i] = A(i, 0) * x[0] + A(i, 1) * x[1] + A(i, 2) * x[2];
   }
@@ -40,7 +44,8 @@ void Multiply(const Eigen::Matrix<M, 3, 3>& A, const D* x, T* y) {
 
 // y = A^T x.
 template <typename M, typename D, typename T>
-void MultiplyTransposed(const Eigen::Matrix<M, 3, 3>& A, const D* x, T* y) {
+[[gnu::always_inline]] inline void MultiplyTransposed(
+    const Eigen::Matrix<M, 3, 3>& A, const D* x, T* y) {
   for (int i = 0; i < 3; ++i) {
     y[i] = A(0, i) * x[0] + A(1, i) * x[1] + A(2, i) * x[2];
   }
@@ -48,7 +53,7 @@ void MultiplyTransposed(const Eigen::Matrix<M, 3, 3>& A, const D* x, T* y) {
 
 // c = a x b.
 template <typename A, typename B, typename T>
-void Cross(const A* a, const B* b, T* c) {
+[[gnu::always_inline]] inline void Cross(const A* a, const B* b, T* c) {
   c[0] = a[1] * b[2] - a[2] * b[1];
   c[1] = a[2] * b[0] - a[0] * b[2];
   c[2] = a[0] * b[1] - a[1] * b[0];

@@ -7,7 +7,6 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 // One Ceres residual block that stands for a whole sum of robustified ones.
@@ -22,8 +21,9 @@
 //   r = [ L^-1 g ; sqrt(2 c - |L^-1 g|^2) ],  J = [ L^T ; 0 ],  H = L L^T,
 //
 // since r^T r / 2 = c, J^T r = g and J^T J = H: Ceres takes the very steps that
-// it takes with N blocks and losses whose rho'' <= 0 (all common ones). This
-// header needs nothing else of the project.
+// it takes with N blocks. The sums are those for losses with rho'' <= 0; where
+// rho'' > 0 Ceres adds sum 2 rho'' J_i^T r_i r_i^T J_i to H. This header needs
+// nothing else of the project.
 
 namespace rgbd_pose {
 
@@ -38,16 +38,19 @@ struct CompressedSums {
 
 // Residuals r[K + 1] and, row by row, the Jacobian J[K + 1][K] that stand for
 // sums whose hessian is whole, not a triangle. Null J: r stands for the cost
-// alone. False if a number is not finite.
+// alone and the other sums are not read. False if a number is not finite.
 template <int K>
 bool FactorSums(const CompressedSums<K>& sums, double* residuals,
                 double* jacobian);
 
-// `Evaluator` is called as bool(const double* x, CompressedSums<K>* sums) with
-// x[K] and zeroed sums; it fills all of them. False makes Ceres reject the
-// step. Ceres asks for the cost of a trial step first and for its derivatives
-// after it has accepted it: the sums of the last x are kept, so both take one
-// evaluation. One block serves one thread.
+// `Evaluator` is called as
+//
+//   bool(const double* x, bool with_derivatives, CompressedSums<K>* sums) const
+//
+// with x[K] and zeroed sums; it fills the cost and, if asked for derivatives,
+// the rest. False makes Ceres reject the step. The block keeps nothing between
+// calls: losses and data may change between two solves, as in plain Ceres, and
+// it serves as many threads as its evaluator.
 template <int K, typename Evaluator>
 class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
   static_assert(K >= 1 && K <= 12, "dense sums suit small problems");
@@ -55,32 +58,19 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
  public:
   // Keeps the evaluator.
   explicit CompressedBlock(Evaluator evaluator)
-      : evaluator_(std::move(evaluator)) {
-    x_.setConstant(std::numeric_limits<double>::quiet_NaN());
-  }
+      : evaluator_(std::move(evaluator)) {}
 
   // The K + 1 rows, as Ceres asks for them.
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    return UpdateSums(parameters[0]) &&
-           FactorSums(sums_, residuals,
-                      jacobians != nullptr ? jacobians[0] : nullptr);
+    double* const jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
+    CompressedSums<K> sums;
+    return evaluator_(parameters[0], jacobian != nullptr, &sums) &&
+           FactorSums(sums, residuals, jacobian);
   }
 
  private:
-  bool UpdateSums(const double* at) const {
-    const Eigen::Map<const Eigen::Matrix<double, K, 1>> x(at);
-    if (x == x_) return true;
-    x_.setConstant(std::numeric_limits<double>::quiet_NaN());
-    sums_ = CompressedSums<K>();
-    if (!evaluator_(at, &sums_)) return false;
-    x_ = x;
-    return true;
-  }
-
   Evaluator evaluator_;
-  mutable Eigen::Matrix<double, K, 1> x_;  // of sums_; NaN: of none
-  mutable CompressedSums<K> sums_;
 };
 
 namespace compressed {
@@ -122,10 +112,12 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
   // Row by row, as Ceres has it; Eigen wants a single column by column.
   using RowMajor = Eigen::Matrix<double, K + 1, K,
                                  K == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+  if (!std::isfinite(sums.cost)) return false;
   Eigen::Map<Eigen::Matrix<double, K + 1, 1>> r(residuals);
   r.setZero();
   r[K] = std::sqrt(std::max(0.0, 2.0 * sums.cost));
   if (jacobian == nullptr) return true;
+  if (!sums.gradient.allFinite() || !sums.hessian.allFinite()) return false;
   Eigen::Map<RowMajor> J(jacobian);
   J.setZero();
   const Eigen::LLT<Eigen::Matrix<double, K, K>> cholesky(sums.hessian);

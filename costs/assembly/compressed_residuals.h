@@ -16,14 +16,14 @@
 //   bool operator()(const double* x, double* r, double* J) const;
 //
 // with x[kParameters], r[kRows] and J[kRows * kParameters], a row after the
-// other. Returning false rejects the step, as in Ceres.
+// other; J is null where only residuals are asked for. Returning false, or a
+// number that is not finite, rejects the step, as in Ceres.
 
 namespace rgbd_pose {
 
-// The sums over all residuals under one loss (null: none). Exactly what Ceres
-// makes of one block a residual where rho'' <= 0, as for all losses of Ceres
-// and of this project; a loss with rho'' > 0 would be weighted by rho' alone.
-// Time and memory are linear in the number of residuals; nothing is allocated.
+// The sums over all residuals under one loss (null: none): exactly what Ceres
+// makes of one block a residual, whatever the sign of rho''. Time and memory
+// are linear in the number of residuals; nothing is allocated.
 template <typename Residual>
 class CompressedResiduals {
  public:
@@ -35,19 +35,25 @@ class CompressedResiduals {
                       const ceres::LossFunction* loss)
       : residuals_(residuals), loss_(loss) {}
 
-  bool operator()(const double* x, CompressedSums<K>* sums) const {
+  bool operator()(const double* x, bool with_derivatives,
+                  CompressedSums<K>* sums) const {
     constexpr int kRows = Residual::kRows;
     Eigen::Matrix<double, kRows, 1> r;
     // Eigen stores a single column only column by column.
     Eigen::Matrix<double, kRows, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor>
         J;
+    double* const derivatives = with_derivatives ? J.data() : nullptr;
     for (const Residual& residual : *residuals_) {
-      if (!residual(x, r.data(), J.data())) return false;
+      // A loss may take what is not finite for an outlier.
+      if (!residual(x, r.data(), derivatives) || !r.allFinite()) return false;
       double rho[3] = {r.squaredNorm(), 1.0, 0.0};
       if (loss_ != nullptr) loss_->Evaluate(r.squaredNorm(), rho);
       sums->cost += 0.5 * rho[0];
-      sums->gradient.noalias() += rho[1] * (J.transpose() * r);
+      if (!with_derivatives) continue;
+      const Eigen::Matrix<double, K, 1> g = J.transpose() * r;
+      sums->gradient += rho[1] * g;
       sums->hessian.noalias() += rho[1] * (J.transpose() * J);
+      if (rho[2] > 0.0) sums->hessian += 2.0 * rho[2] * (g * g.transpose());
     }
     return true;
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string_view>
@@ -160,17 +161,29 @@ class CostOf final : public Cost {
  private:
   static constexpr int kColumns = Residual::kColumns;
 
-  // What the compressed block asks for its sums.
+  // What the compressed block asks for its sums. Ceres asks for the cost of a
+  // trial step first and for its derivatives once it has accepted it: the sums
+  // of the last x are kept, so both take one evaluation. Nothing but x changes
+  // while the block lives (see Cost::AddTo).
   struct SumsAt {
     const CostOf* cost;
     const MotionOrigin* origin;
     const ceres::LossFunction* loss;
+    mutable MotionVector kept_x = MotionVector::Constant(NAN);
+    mutable CompressedSums<6> kept = {};
 
-    bool operator()(const double* x, CompressedSums<6>* sums) const {
-      NormalEquations sum;
-      cost->Linearise(origin->DerivativesAt(x), loss, &sum);
-      *sums = {sum.hessian, sum.gradient, sum.cost};
-      return true;
+    bool operator()(const double* x, bool /*with_derivatives*/,
+                    CompressedSums<6>* sums) const {
+      if (Eigen::Map<const MotionVector>(x) != kept_x) {
+        NormalEquations sum;
+        cost->Linearise(origin->DerivativesAt(x), loss, &sum);
+        kept = {sum.hessian, sum.gradient, sum.cost};
+        kept_x = Eigen::Map<const MotionVector>(x);
+      }
+      *sums = kept;
+      // Also where only the cost is asked for: a loss may take a residual that
+      // is not finite for an outlier, with a cost that is.
+      return sums->gradient.allFinite() && sums->hessian.allFinite();
     }
   };
 

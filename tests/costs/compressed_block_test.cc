@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <initializer_list>
 #include <memory>
 #include <vector>
 
@@ -26,11 +27,14 @@ struct WaveResidual {
     r[0] = x[0] * x[0] * std::sin(t) - y;
     for (int k = 0; k < K; ++k) {
       r[0] += x[k] * std::cos(k * t);
+    }
+    r[1] = 0.1 * x[0];
+    if (J == nullptr) return true;
+    for (int k = 0; k < K; ++k) {
       J[k] = std::cos(k * t);
       J[K + k] = k == 0 ? 0.1 : 0.0;
     }
     J[0] += 2.0 * x[0] * std::sin(t);
-    r[1] = 0.1 * x[0];
     return true;
   }
 };
@@ -43,9 +47,8 @@ class PlainBlock final
   explicit PlainBlock(const Residual& residual) : residual_(residual) {}
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    double unused[Residual::kRows * Residual::kParameters];
-    const bool wanted = jacobians != nullptr && jacobians[0] != nullptr;
-    return residual_(parameters[0], residuals, wanted ? jacobians[0] : unused);
+    return residual_(parameters[0], residuals,
+                     jacobians != nullptr ? jacobians[0] : nullptr);
   }
 
  private:
@@ -69,27 +72,42 @@ struct Solved {
   ceres::Solver::Summary summary;
 };
 
-template <int K>
-Solved<K> Solve(const std::vector<WaveResidual<K>>& residuals,
-                ceres::LossFunction* loss, bool compressed) {
-  Solved<K> solved;
-  ceres::Problem::Options problem_options;
-  problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem problem(problem_options);
+template <typename Residual>
+void AddTo(ceres::Problem* problem, const std::vector<Residual>& residuals,
+           ceres::LossFunction* loss, bool compressed, double* x) {
   if (compressed) {
-    problem.AddResidualBlock(MakeCompressedBlock(&residuals, loss), nullptr,
-                             solved.x.data());
-  } else {
-    for (const auto& residual : residuals) {
-      problem.AddResidualBlock(new PlainBlock<WaveResidual<K>>(residual), loss,
-                               solved.x.data());
-    }
+    problem->AddResidualBlock(MakeCompressedBlock(&residuals, loss), nullptr,
+                              x);
+    return;
   }
+  for (const Residual& residual : residuals) {
+    problem->AddResidualBlock(new PlainBlock<Residual>(residual), loss, x);
+  }
+}
+
+ceres::Problem::Options KeepingLosses() {
+  ceres::Problem::Options options;
+  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  return options;
+}
+
+ceres::Solver::Summary Solve(ceres::Problem* problem) {
   ceres::Solver::Options options;
   options.logging_type = ceres::SILENT;
   options.linear_solver_type = ceres::DENSE_QR;
   options.max_num_iterations = 12;
-  ceres::Solve(options, &problem, &solved.summary);
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, problem, &summary);
+  return summary;
+}
+
+template <int K>
+Solved<K> Solve(const std::vector<WaveResidual<K>>& residuals,
+                ceres::LossFunction* loss, bool compressed) {
+  Solved<K> solved;
+  ceres::Problem problem(KeepingLosses());
+  AddTo(&problem, residuals, loss, compressed, solved.x.data());
+  solved.summary = Solve(&problem);
   return solved;
 }
 
@@ -111,10 +129,9 @@ void ExpectTheSameSteps(ceres::LossFunction* loss) {
 TEST(CompressedBlockTest, TakesTheStepsOfPlainCeres) {
   ceres::HuberLoss huber(0.5);
   ceres::CauchyLoss cauchy(0.5);
-  for (ceres::LossFunction* loss :
-       {static_cast<ceres::LossFunction*>(nullptr),
-        static_cast<ceres::LossFunction*>(&huber),
-        static_cast<ceres::LossFunction*>(&cauchy)}) {
+  ceres::TolerantLoss tolerant(1.0, 0.5);  // rho'' > 0
+  for (ceres::LossFunction* loss : std::initializer_list<ceres::LossFunction*>{
+           nullptr, &huber, &cauchy, &tolerant}) {
     ExpectTheSameSteps<1>(loss);
     ExpectTheSameSteps<3>(loss);
     ExpectTheSameSteps<6>(loss);
@@ -146,6 +163,7 @@ struct BlindResidual {
   double y;
   bool operator()(const double* x, double* r, double* J) const {
     r[0] = x[0] - y;
+    if (J == nullptr) return true;
     J[0] = 1.0;
     J[1] = 0.0;
     return true;
@@ -180,6 +198,91 @@ TEST(CompressedBlockTest, PassesOnAFailure) {
   const double* parameters[] = {&x};
   double r[2];
   EXPECT_FALSE(block->Evaluate(parameters, r, nullptr));
+}
+
+// From x = 10 the first steps lead to x < 0, where the residual is NaN.
+struct LogResidual {
+  static constexpr int kRows = 1, kParameters = 1;
+  double y;
+  bool operator()(const double* x, double* r, double* J) const {
+    r[0] = std::log(x[0]) - y;
+    if (J != nullptr) J[0] = 1.0 / x[0];
+    return true;
+  }
+};
+
+TEST(CompressedBlockTest, RejectsStepsToWhereResidualsAreNotFinite) {
+  const std::vector<LogResidual> residuals = {{0.1}, {0.3}};
+  ceres::TukeyLoss tukey(20.0);  // for which NaN is an outlier
+  for (ceres::LossFunction* loss :
+       std::initializer_list<ceres::LossFunction*>{nullptr, &tukey}) {
+    double x[2] = {10.0, 10.0};
+    ceres::Solver::Summary summaries[2];
+    for (const bool compressed : {false, true}) {
+      ceres::Problem problem(KeepingLosses());
+      AddTo(&problem, residuals, loss, compressed, &x[compressed]);
+      summaries[compressed] = Solve(&problem);
+    }
+    ASSERT_EQ(summaries[0].termination_type, ceres::CONVERGENCE);
+    EXPECT_EQ(summaries[1].termination_type, ceres::CONVERGENCE);
+    EXPECT_EQ(summaries[1].iterations.size(), summaries[0].iterations.size());
+    EXPECT_GT(summaries[0].num_unsuccessful_steps, 0) << "a vacuous problem";
+    EXPECT_NEAR(x[1], std::exp(0.2), 1e-4);
+  }
+}
+
+TEST(CompressedBlockTest, SumsThatAreNotFiniteAreAFailedEvaluation) {
+  const double kNan = std::nan("");
+  const CompressedSums<1> good = {Eigen::Matrix<double, 1, 1>(2.0),
+                                  Eigen::Matrix<double, 1, 1>(1.0), 1.0};
+  double r[2], J[2];
+  EXPECT_TRUE(FactorSums(good, r, J));
+  CompressedSums<1> bad = good;
+  bad.cost = kNan;
+  EXPECT_FALSE(FactorSums(bad, r, static_cast<double*>(nullptr)));
+  EXPECT_FALSE(FactorSums(bad, r, J));
+  bad = good;
+  bad.gradient[0] = kNan;
+  EXPECT_FALSE(FactorSums(bad, r, J));
+  bad = good;
+  bad.hessian(0, 0) = kNan;
+  EXPECT_FALSE(FactorSums(bad, r, J));
+}
+
+// x - y.
+struct Distance {
+  static constexpr int kRows = 1, kParameters = 1;
+  double y;
+  bool operator()(const double* x, double* r, double* J) const {
+    r[0] = x[0] - y;
+    if (J != nullptr) J[0] = 1.0;
+    return true;
+  }
+};
+
+// Both may change while x stays: nothing of an earlier solve may be left.
+TEST(CompressedBlockTest, FollowsALossAndDataThatChangeBetweenSolves) {
+  std::vector<Distance> residuals = {{0.0}, {0.1}, {10.0}};
+  ceres::LossFunctionWrapper loss(nullptr, ceres::TAKE_OWNERSHIP);
+  double x = 3.0;
+  ceres::Problem problem(KeepingLosses());
+  AddTo(&problem, residuals, &loss, /*compressed=*/true, &x);
+  const auto gradient = [&problem] {
+    std::vector<double> sum;
+    problem.Evaluate({}, nullptr, nullptr, &sum, nullptr);
+    return sum[0];
+  };
+  Solve(&problem);
+  EXPECT_NEAR(x, 10.1 / 3.0, 1e-2);  // Ceres damps
+  double cost;
+  problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  loss.Reset(new ceres::HuberLoss(0.5), ceres::TAKE_OWNERSHIP);
+  EXPECT_NEAR(gradient(), 0.5, 1e-6);  // two up, one down
+  EXPECT_GT(Solve(&problem).num_successful_steps, 1);
+  EXPECT_NEAR(x, 0.3, 1e-2);  // 2 x - 0.1 = 0.5
+  problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  residuals[2].y = -10.0;
+  EXPECT_NEAR(gradient(), 1.0, 1e-2);
 }
 
 }  // namespace
