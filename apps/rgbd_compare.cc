@@ -150,7 +150,7 @@ void AddSequence(const std::string& title, const std::string& figure,
                  FrameSource* source, const std::optional<Trajectory>& truth,
                  bool returns_to_start, SequenceResults* results) {
   OdometrySettings settings;
-  settings.cost = FLAGS_cost;
+  settings.estimator.cost = FLAGS_cost;
   settings.frontend = FLAGS_frontend;
   PrepareOutput();
   const std::vector<LossRun> runs =

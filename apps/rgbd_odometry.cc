@@ -8,40 +8,21 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <opencv2/core.hpp>
 #include <optional>
 
 #include "apps/pipeline/odometry_run.h"
 #include "apps/report/report_page.h"
-#include "apps/results/cloud_preview.h"
-#include "apps/results/evaluation_report.h"
-#include "apps/results/frame_errors.h"
-#include "apps/results/residual_histogram.h"
-#include "apps/results/run_folder.h"
-#include "apps/results/run_summary.h"
+#include "apps/results/run_output.h"
 #include "apps/shell/available_cores.h"
-#include "apps/shell/frame_selection.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
-#include "core/evaluation/evaluation.h"
-#include "core/evaluation/pose_pairs.h"
-#include "core/evaluation/trajectory.h"
-#include "core/geometry/depth_noise.h"
+#include "apps/shell/setting_flags.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
-#include "core/util/text_file.h"
-#include "costs/cost_factory.h"
-#include "frontend/features/frontend.h"
-#include "frontend/features/match_overlay.h"
 #include "frontend/image/depth_scale.h"
-#include "frontend/map/cloud_fusion.h"
-#include "frontend/map/ply_writer.h"
 #include "frontend/sources/camera_file.h"
-#include "frontend/sources/image_file.h"
 #include "frontend/sources/tum_dataset.h"
-#include "robust/m_estimator.h"
-#include "robust/scale.h"
 
 DEFINE_string(dataset, "", "folder of a sequence in TUM RGB-D layout");
 DEFINE_string(associations, "",
@@ -52,26 +33,9 @@ DEFINE_string(camera, "",
               "preset");
 DEFINE_double(depth_scale, 0.0,
               "raw depth units per metre; 0: as the camera says");
-DEFINE_string(depth_noise, "khoshelham", "depth noise model");
-DEFINE_string(cost, "bidirectional_point",
-              "cost of a match; several added up: a+b");
-DEFINE_string(loss, "tukey", "M-estimator; one for each of several costs: a,b");
-DEFINE_string(assembly, "compressed",
-              "how matches become Ceres residual blocks");
-DEFINE_string(scale, "fixed",
-              "spread of the residuals: as the noise model says or estimated");
-DEFINE_string(robust_schedule, "gnc",
-              "losses at their widths at once, or wide at first and narrowed "
-              "step by step");
-DEFINE_string(initial_guess, "last", "where the solver starts in a frame");
-DEFINE_string(on_lost, "new_segment",
-              "what to do with frames whose motion is not found; they are "
-              "searched for among earlier references in any case but stop");
 DEFINE_string(motion_guess, "",
               "trajectory (TUM text) that tells roughly how the camera moved "
               "between frames: wheels, an inertial sensor; empty: none");
-DEFINE_string(frontend, "patch", "where matches come from");
-DEFINE_int32(max_features, 600, "features wanted in a reference frame");
 DEFINE_int32(threads, 0,
              "threads that read images ahead and track; 0: one a core; the "
              "result does not depend on it");
@@ -95,6 +59,16 @@ DEFINE_string(output, "", "folder for the results, made if missing");
 namespace rgbd_pose {
 namespace {
 
+OdometrySettings& Settings() {
+  static OdometrySettings settings;
+  return settings;
+}
+
+const SettingFlags& Flags() {
+  static const SettingFlags flags(SettingTable(&Settings()));
+  return flags;
+}
+
 ProgramInfo Info() {
   ProgramInfo info;
   info.name = "rgbd_odometry";
@@ -102,24 +76,14 @@ ProgramInfo Info() {
   info.example =
       "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
       "--output=runs/fr1_xyz";
-  info.flag_groups = {
-      {"Input",
-       {"dataset", "associations", "camera", "depth_scale", "depth_noise",
-        "motion_guess", "groundtruth", "validate_only"}},
-      {"Estimation",
-       {"cost", "loss", "scale", "robust_schedule", "initial_guess", "on_lost",
-        "assembly", "frontend", "max_features", "threads"}},
-      {"Output", {"output", "report", "debug_images", "save_cloud", "voxel"}}};
-  info.choices = {{"camera", CameraPresetNames()},
-                  {"depth_noise", DepthNoiseModelNames()},
-                  {"cost", CostNames()},
-                  {"loss", MEstimatorNames()},
-                  {"scale", ScaleEstimatorNames()},
-                  {"robust_schedule", RobustScheduleNames()},
-                  {"initial_guess", OdometryGuessNames()},
-                  {"on_lost", LostPolicyNames()},
-                  {"assembly", AssemblyNames()},
-                  {"frontend", FrontendNames()}};
+  info.flag_groups = {{"Input",
+                       {"dataset", "associations", "camera", "depth_scale",
+                        "motion_guess", "groundtruth", "validate_only"}}};
+  info.choices = {{"camera", CameraPresetNames()}};
+  Flags().Describe(&info);
+  info.flag_groups.push_back(
+      {"Output",
+       {"output", "report", "debug_images", "save_cloud", "voxel", "threads"}});
   return info;
 }
 
@@ -144,21 +108,6 @@ int NumThreads() {
   return std::min(AvailableCores(), kMaxThreads);
 }
 
-OdometrySettings SettingsFromFlags() {
-  OdometrySettings settings;
-  settings.cost = FLAGS_cost;
-  settings.loss = FLAGS_loss;
-  settings.frontend = FLAGS_frontend;
-  settings.assembly = FLAGS_assembly;
-  settings.scale = FLAGS_scale;
-  settings.robust_schedule = FLAGS_robust_schedule;
-  settings.initial_guess = FLAGS_initial_guess;
-  settings.on_lost = FLAGS_on_lost;
-  settings.depth_noise = FLAGS_depth_noise;
-  settings.max_features = FLAGS_max_features;
-  return settings;
-}
-
 TumDataset OpenDataset() {
   TumDatasetOptions options;
   options.folder = FLAGS_dataset;
@@ -179,84 +128,15 @@ std::optional<Trajectory> FindGroundTruth() {
   return ReadTrajectory(path.string());
 }
 
-// A ground truth of another time is better told before the work than after it.
-void CheckOverlap(const Dataset& dataset, const Trajectory& truth) {
-  Trajectory frames(dataset.size());
-  for (int i = 0; i < dataset.size(); ++i) {
-    frames[i].timestamp = dataset.timestamp(i);
+// A help to look at a run; a program built without the library that it needs
+// says so and goes on.
+std::string WriteReport(const std::filesystem::path& folder) {
+  if (!FLAGS_report) return "";
+  if (!HasReportLibrary()) {
+    return std::string("report in   ") + kNoReportLibrary + "\n";
   }
-  PairPoses(frames, truth, EvaluationOptions().max_time_difference);
-}
-
-// Nothing where none of the poses that were found can be compared.
-std::optional<EvaluationReport> TryToEvaluate(const Trajectory& trajectory,
-                                              const Trajectory& truth) {
-  if (trajectory.empty()) return std::nullopt;
-  try {
-    return Evaluate(trajectory, truth, {});
-  } catch (const InputError& error) {
-    LOG(WARNING) << "no errors: " << error.what();
-    return std::nullopt;
-  }
-}
-
-// Draws what the odometry has made of the frame into a folder.
-void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
-                     const TrackedFrame& tracked, const Camera& camera,
-                     const Odometry& odometry) {
-  char name[32];
-  std::snprintf(name, sizeof(name), "%06d.png", tracked.index);
-  std::string caption = "frame " + std::to_string(tracked.index) + "  " +
-                        ToString(tracked.status);
-  if (tracked.reference >= 0) {
-    caption += "  " + std::to_string(tracked.inliers) + " of " +
-               std::to_string(tracked.matches) + " matches agree  reference " +
-               std::to_string(tracked.reference);
-  }
-  WritePngFile((folder / name).string(),
-               DrawMatches(frame, camera, odometry.last_matches(),
-                           odometry.last_estimate(), caption));
-}
-
-// Of the cloud that --save_cloud asks for; none if it asks for none.
-std::optional<CloudFusion> MakeCloudFusion(const Camera& camera) {
-  CloudFusionOptions options;
-  options.camera = camera;
-  options.voxel_size = FLAGS_voxel;
-  const std::string problem = options.Check();
-  if (!problem.empty()) throw InputError("--voxel: " + problem);
-  if (FLAGS_save_cloud.empty()) return std::nullopt;
-  return CloudFusion(options);
-}
-
-// Writes the cloud, and a few of its points in the world that the page of the
-// run shows; returns what metrics.json says of it.
-nlohmann::json SaveCloud(const CloudFusion& fusion,
-                         const Rigid3d& shown_from_world,
-                         const std::filesystem::path& folder,
-                         std::string* text) {
-  WritePly(FLAGS_save_cloud, fusion.cloud().Points());
-  *text += "cloud       " + std::to_string(fusion.cloud().size()) +
-           " points of " + std::to_string(fusion.frames()) + " frames in " +
-           FLAGS_save_cloud + "\n";
-  WriteFileAtomically(
-      (folder / kCloudPreviewFile).string(),
-      CloudPreview(fusion.cloud().Thin(kMaxPreviewPoints), shown_from_world)
-          .dump());
-  return {{"points", fusion.cloud().size()},
-          {"frames", fusion.frames()},
-          {"voxel_m", FLAGS_voxel}};
-}
-
-// The page is a help to look at a run; a program built without the library that
-// it needs says so and goes on.
-void WriteReport(const std::filesystem::path& folder, std::string* text) {
-  if (!FLAGS_report) return;
-  if (HasReportLibrary()) WriteRunReport(folder.string());
-  *text += "report in   " +
-           (HasReportLibrary() ? FLAGS_output + "/report.html"
-                               : std::string(kNoReportLibrary)) +
-           "\n";
+  WriteRunReport(folder.string());
+  return "report in   " + FLAGS_output + "/report.html\n";
 }
 
 int ValidateOnly(TumDataset* dataset, int threads) {
@@ -264,8 +144,11 @@ int ValidateOnly(TumDataset* dataset, int threads) {
   std::vector<double> decode_ms;
   {
     ProgressBar bar("reading", dataset->size());
-    decode_ms =
-        ReadAllFrames(dataset, threads, [&bar](int done) { bar.Update(done); });
+    FrameStream stream(dataset, nullptr, threads);
+    while (const auto next = stream.Next()) {
+      decode_ms.push_back(next->decode_ms);
+      bar.Update(static_cast<int>(decode_ms.size()));
+    }
   }
   std::printf("frames      %d, all readable\n", dataset->size());
   std::printf(
@@ -286,25 +169,22 @@ int Main() {
   // All that can be wrong with the input is looked at before the work starts
   // and before anything is written.
   TumDataset dataset = OpenDataset();
+  const Camera& camera = dataset.camera().camera;
   if (FLAGS_validate_only) return ValidateOnly(&dataset, threads);
-  Odometry odometry =
-      MakeOdometry(SettingsFromFlags(), dataset.camera().camera);
+  Flags().Apply();
   const std::optional<Trajectory> truth = FindGroundTruth();
-  if (truth.has_value()) CheckOverlap(dataset, *truth);
+  if (truth.has_value()) RequireOverlap(dataset, *truth);
   std::optional<MotionGuess> motion_guess;
   if (!FLAGS_motion_guess.empty()) {
     motion_guess.emplace(ReadTrajectory(FLAGS_motion_guess));
   }
-  const FrameSelection drawn("debug_images", FLAGS_debug_images);
+  OdometryRun run(Settings(), camera,
+                  {motion_guess.has_value() ? &*motion_guess : nullptr,
+                   truth.has_value() ? &*truth : nullptr});
   const std::string warning = DepthScaleWarning(dataset.Read(0));
-  std::optional<CloudFusion> fusion = MakeCloudFusion(dataset.camera().camera);
-  RunFolder folder(FLAGS_output);
-  const std::filesystem::path& output = folder.aside();
-  const std::filesystem::path debug_folder = output / "debug";
-  if (!FLAGS_debug_images.empty()) {
-    std::filesystem::create_directory(debug_folder);
-  }
-  if (fusion.has_value()) RequireWritable(FLAGS_save_cloud);
+  RunOutput output({FLAGS_dataset, FLAGS_output, FLAGS_debug_images,
+                    FLAGS_save_cloud, FLAGS_voxel},
+                   dataset);
   if (!warning.empty()) LOG(WARNING) << warning;
   if (dataset.unmatched_color() > 0) {
     LOG(WARNING) << dataset.unmatched_color()
@@ -312,72 +192,31 @@ int Main() {
                     "are left out";
   }
 
-  std::vector<TrackedFrame> frames;
-  ResidualHistogram residuals;
   {
     ProgressBar bar("tracking", dataset.size());
-    RunOptions options;
-    options.threads = threads;
-    if (motion_guess.has_value()) options.motion_guess = &*motion_guess;
-    options.on_frame = [&](const Frame& frame, const TrackedFrame& tracked) {
-      if (drawn.Contains(tracked.index)) {
-        WriteDebugImage(debug_folder, frame, tracked, dataset.camera().camera,
-                        odometry);
-      }
-      if (fusion.has_value() && fusion->Wants(tracked)) {
-        fusion->Add(frame, dataset.ReadColor(tracked.index),
-                    tracked.world_from_cam);
-      }
-      if (tracked.status != TrackingStatus::kLost && tracked.matches > 0) {
-        residuals.Add(odometry.last_estimate());
-      }
-      bar.Update(tracked.index + 1);
-    };
-    frames = RunOdometry(&dataset, &odometry, options);
+    TrackAll(&dataset, threads, {&run}, [&](const Frame& frame) {
+      output.Add(frame, run);
+      bar.Update(frame.index + 1);
+    });
   }
   const double seconds = SecondsSince(start);
 
-  const Trajectory trajectory = TrackedTrajectory(frames);
-  const RunSummary summary = Summarise(frames, threads, seconds);
-  std::string text = FormatSummary(summary);
-  nlohmann::json metrics = {{"program", "rgbd_odometry"},
-                            {"dataset", FLAGS_dataset},
-                            {"unmatched_color", dataset.unmatched_color()},
-                            {"peak_rss_mb", PeakMemoryMb()},
-                            {"run", SummaryToJson(summary)},
-                            {"residuals", residuals.ToJson()}};
-  Rigid3d shown_from_world;
-  std::optional<EvaluationReport> report;
-  if (truth.has_value()) report = TryToEvaluate(trajectory, *truth);
-  if (report.has_value()) {
-    text += FormatEvaluation(*report);
-    metrics["evaluation"] = EvaluationToJson(*report);
-    shown_from_world = report->truth_from_estimate;
-    WriteFileAtomically((output / "errors.csv").string(),
-                        FormatErrorsCsv(frames, *truth, *report));
+  const RunResults results = std::move(run).Finish();
+  if (!results.no_evaluation.empty()) {
+    LOG(WARNING) << "no errors: " << results.no_evaluation;
   }
-  if (fusion.has_value()) {
-    metrics["cloud"] = SaveCloud(*fusion, shown_from_world, output, &text);
-  }
-  WriteFileAtomically((output / "trajectory.txt").string(),
-                      FormatTrajectory(trajectory));
-  WriteFileAtomically((output / "frames.csv").string(),
-                      FormatFramesCsv(frames));
-  WriteFileAtomically((output / "config.flags").string(),
-                      FormatFlagFile(Info()));
-  // The name of the dataset may be no UTF-8.
-  WriteFileAtomically((output / "metrics.json").string(),
-                      metrics.dump(2, ' ', /*ensure_ascii=*/false,
-                                   nlohmann::json::error_handler_t::replace) +
-                          "\n");
-  WriteReport(output, &text);
-  folder.Publish();
+  std::string text =
+      output.Write(results, Summarise(results.frames, threads, seconds),
+                   truth.has_value() ? &*truth : nullptr,
+                   FormatFlagFile(Info()));
+  text += WriteReport(output.aside());
+  output.Publish();
   std::printf("%sresults in  %s\n", text.c_str(), FLAGS_output.c_str());
-  if (summary.TrackedShare() >= kMinTrackedShare) return kExitOk;
+  if (results.TrackedShare() >= kMinTrackedShare) return kExitOk;
   std::fprintf(stderr,
                "rgbd_odometry: only %.1f %% of the frames were tracked; "
                "%s/frames.csv says why\n",
-               100.0 * summary.TrackedShare(), FLAGS_output.c_str());
+               100.0 * results.TrackedShare(), FLAGS_output.c_str());
   return kExitTrackingFailed;
 }
 

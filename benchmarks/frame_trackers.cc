@@ -4,7 +4,7 @@
 #include <limits>
 #include <opencv2/core/eigen.hpp>
 
-#include "apps/pipeline/odometry_run.h"
+#include "apps/pipeline/settings.h"
 
 #ifdef RGBD_POSE_HAS_OPENCV_RGBD
 #include <opencv2/rgbd.hpp>

@@ -2,8 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 
+#include "apps/shell/format.h"
 #include "benchmarks/machine.h"
 #include "costs/cost_factory.h"
 
@@ -13,9 +13,7 @@ namespace {
 constexpr int kSizes[] = {30, 100, 300, 1000, 10000, 100000};
 
 std::string Fixed(double value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof(text), "%.*f", decimals, value);
-  return text;
+  return Format("%.*f", decimals, value);
 }
 
 // With three significant digits.

@@ -16,11 +16,15 @@ std::vector<std::string> CostNames();
 // The cost of that name, or null.
 std::unique_ptr<Cost> MakeCost(std::string_view name);
 
+// What is taken where nobody says otherwise.
+inline constexpr char kDefaultCost[] = "bidirectional_point";
+inline constexpr char kDefaultLoss[] = "tukey";
+
 // Costs by name ("bidirectional_point+motion_prior"), each with its loss: one
 // name for all or one each ("tukey", "tukey,none"). Throws InputError listing
 // the names there are.
 std::vector<RobustCost> MakeRobustCosts(
-    const std::string& cost_names = "bidirectional_point",
-    const std::string& loss_names = "tukey");
+    const std::string& cost_names = kDefaultCost,
+    const std::string& loss_names = kDefaultLoss);
 
 }  // namespace rgbd_pose

@@ -1,10 +1,10 @@
 #include "apps/batch/batch_summary.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <optional>
 
+#include "apps/shell/format.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
@@ -76,10 +76,7 @@ std::string FormatCell(const ordered_json& value) {
 
 std::string FormatScaled(const ordered_json& value, double factor, int digits) {
   if (!value.is_number()) return "-";
-  char text[64];
-  std::snprintf(text, sizeof(text), "%.*f", digits,
-                factor * value.get<double>());
-  return text;
+  return Format("%.*f", digits, factor * value.get<double>());
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
 #include "apps/compare/compare_paths.h"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "apps/figures/svg_chart.h"
+#include "apps/shell/format.h"
 #include "core/evaluation/pose_pairs.h"
 
 namespace rgbd_pose {
@@ -65,10 +65,11 @@ ComparedPath PathOf(const LossRun& run, const ComparedPath* truth) {
         pose.angle = error.Angle();
       }
     }
-    if (run.report.has_value() && next_error < run.report->poses.size() &&
-        run.report->poses[next_error].timestamp == frame.timestamp) {
-      pose.rpe_translation = run.report->poses[next_error].rpe_translation;
-      pose.rpe_rotation = run.report->poses[next_error].rpe_rotation;
+    if (run.evaluation.has_value() &&
+        next_error < run.evaluation->poses.size() &&
+        run.evaluation->poses[next_error].timestamp == frame.timestamp) {
+      pose.rpe_translation = run.evaluation->poses[next_error].rpe_translation;
+      pose.rpe_rotation = run.evaluation->poses[next_error].rpe_rotation;
       ++next_error;
     }
     path.poses.push_back(pose);
@@ -78,11 +79,7 @@ ComparedPath PathOf(const LossRun& run, const ComparedPath* truth) {
 
 void AddCell(const std::optional<double>& value, double factor,
              std::string* row) {
-  char text[64] = ",";
-  if (value.has_value()) {
-    std::snprintf(text, sizeof(text), ",%.6f", *value * factor);
-  }
-  *row += text;
+  *row += value.has_value() ? Format(",%.6f", *value * factor) : ",";
 }
 
 void AddPose(const std::optional<Rigid3d>& pose, std::string* row) {

@@ -2,9 +2,9 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include "apps/shell/format.h"
 #include "core/geometry/motion.h"
 #include "core/util/text_file.h"
 
@@ -41,31 +41,27 @@ struct PathErrors {
 
 PathErrors ErrorsOf(const LossRun& run) {
   PathErrors errors;
-  if (!run.report.has_value()) return errors;
-  errors.ate_mm = run.report->ate.rmse * kMillimetres;
-  const RelativePoseError& relative = run.report->rpe_seconds;
+  if (!run.evaluation.has_value()) return errors;
+  errors.ate_mm = run.evaluation->ate.rmse * kMillimetres;
+  const RelativePoseError& relative = run.evaluation->rpe_seconds;
   if (relative.translation.count > 0) {
     errors.rpe_mm = relative.translation.rmse * kMillimetres;
     errors.rpe_deg = relative.rotation.rmse * kDegrees;
   }
-  if (run.report->final_pose.has_value()) {
-    errors.end_mm = run.report->final_pose->translation * kMillimetres;
-    errors.end_deg = run.report->final_pose->angle * kDegrees;
+  if (run.evaluation->final_pose.has_value()) {
+    errors.end_mm = run.evaluation->final_pose->translation * kMillimetres;
+    errors.end_deg = run.evaluation->final_pose->angle * kDegrees;
   }
   return errors;
 }
 
 // A cell of a table with so many decimals.
 std::string Cell(const std::optional<double>& value, int decimals) {
-  char text[64];
-  std::snprintf(text, sizeof(text), " %.*f |", decimals, value.value_or(0.0));
-  return value.has_value() ? text : " n/a |";
+  return value.has_value() ? Format(" %.*f |", decimals, *value) : " n/a |";
 }
 
 void AddCsvCell(const std::optional<double>& value, std::string* row) {
-  char text[64] = ",";
-  if (value.has_value()) std::snprintf(text, sizeof(text), ",%.6g", *value);
-  *row += text;
+  *row += value.has_value() ? Format(",%.6g", *value) : ",";
 }
 
 }  // namespace
@@ -110,9 +106,7 @@ std::string PathErrorTable(const std::vector<LossRun>& runs) {
 std::string TrackedLine(const std::vector<LossRun>& runs) {
   std::vector<std::string> shares;
   for (const LossRun& run : runs) {
-    char text[32];
-    std::snprintf(text, sizeof(text), " %.1f", run.TrackedShare() * 100.0);
-    shares.push_back(run.loss + text);
+    shares.push_back(run.loss + Format(" %.1f", run.TrackedShare() * 100.0));
   }
   return "Frames tracked (%): " + Join(shares) + ".\n";
 }

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "apps/shell/format.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
 
@@ -28,7 +29,7 @@ MedianBand FindMedianBand(std::vector<double> values) {
   const int count = static_cast<int>(values.size());
   const int rank = MedianBandRank(count);
   MedianBand band;
-  band.median = (values[(count - 1) / 2] + values[count / 2]) / 2.0;
+  band.median = Median(values);
   band.low = values[rank];
   band.high = values[count - 1 - rank];
   band.p90 = values[std::max(0, (9 * count + 9) / 10 - 1)];

@@ -1,62 +1,85 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/estimator_settings.h"
-#include "core/estimation/estimator.h"
+#include "apps/pipeline/residual_histogram.h"
+#include "apps/pipeline/settings.h"
+#include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
-#include "core/geometry/camera.h"
 #include "frontend/sources/frame_source.h"
+#include "frontend/sources/frame_stream.h"
 #include "frontend/tracking/motion_guess.h"
 #include "frontend/tracking/odometry.h"
 
 namespace rgbd_pose {
 
-// The settings of a run by name, as programs take them.
-struct OdometrySettings : EstimatorSettings {
-  std::string frontend = "patch";
-  std::string initial_guess = "last";
-  std::string on_lost = "new_segment";
-  std::string depth_noise = "khoshelham";
-  int max_features = 600;
+// What is known of a sequence beside its frames; null: nothing. Must outlive
+// the run.
+struct RunInputs {
+  const MotionGuess* motion_guess = nullptr;
+  const Trajectory* ground_truth = nullptr;  // world from camera
 };
 
-// The names of initial guesses: last (the last pose), velocity (moved on as it
-// moved last) or one of core/initial_guess/initial_guess.h.
-std::vector<std::string> OdometryGuessNames();
+// What becomes of a sequence.
+struct RunResults {
+  std::vector<TrackedFrame> frames;  // one an input frame, in order
+  Trajectory trajectory;             // of the frames that were not lost
+  ResidualHistogram residuals;       // of their matches
 
-// What to do with lost frames (LostPolicy).
-std::vector<std::string> LostPolicyNames();
+  // Against the ground truth. Nothing where there is none, or where no pose can
+  // be compared: then no_evaluation says why.
+  std::optional<EvaluationReport> evaluation;
+  std::string no_evaluation;
 
-// An odometry with these settings. Throws InputError for unknown names.
-Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
-
-struct RunOptions {
-  int threads = 1;  // that read frames ahead and track
-
-  const MotionGuess* motion_guess = nullptr;  // null: nothing else is known
-
-  // Hears of each frame after it was tracked; may be empty.
-  std::function<void(const Frame& frame, const TrackedFrame& tracked)> on_frame;
+  // Share of frames with a pose, 0 to 1.
+  double TrackedShare() const {
+    return frames.empty() ? 0.0
+                          : static_cast<double>(trajectory.size()) /
+                                static_cast<double>(frames.size());
+  }
 };
 
-// Tracks all frames of a source: one result a frame, in order.
-std::vector<TrackedFrame> RunOdometry(FrameSource* source, Odometry* odometry,
-                                      const RunOptions& options);
+// Tracks a sequence frame by frame and collects what becomes of it.
+class OdometryRun {
+ public:
+  // Throws InputError for settings that are of no use.
+  OdometryRun(const OdometrySettings& settings, const Camera& camera,
+              const RunInputs& inputs = {});
 
-// Reads all frames of a source in the same way and does nothing with them.
-// Returns how long each frame took (ms); throws InputError for the first
-// unreadable one.
-std::vector<double> ReadAllFrames(
-    FrameSource* source, int threads,
-    const std::function<void(int done)>& progress);
+  // Tracks the next frame.
+  void Add(const StreamedFrame& next);
+
+  // What the last frame was tracked by, and what may be done ahead.
+  const Odometry& odometry() const { return odometry_; }
+
+  // The frames so far.
+  const std::vector<TrackedFrame>& frames() const { return results_.frames; }
+
+  // After the last frame.
+  RunResults Finish() &&;
+
+ private:
+  RunInputs inputs_;
+  Odometry odometry_;
+  RunResults results_;
+};
+
+// Sends all frames of a source through one or several runs of the same
+// frontend, each frame read and prepared once, by `threads` >= 1 threads ahead.
+// `on_frame` hears of each frame that all have tracked; may be empty. Throws
+// InputError for an unreadable frame.
+void TrackAll(FrameSource* source, int threads,
+              const std::vector<OdometryRun*>& runs,
+              const std::function<void(const Frame& frame)>& on_frame);
+
+// Throws InputError if no frame of the source is near in time to the ground
+// truth, as far as that is known before the work, when it is better told.
+void RequireOverlap(const FrameSource& source, const Trajectory& truth);
 
 // The poses of all frames that were not lost.
 Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
-
-// frames.csv: a header and one row an input frame.
-std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames);
 
 }  // namespace rgbd_pose

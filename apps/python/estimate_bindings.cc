@@ -1,21 +1,22 @@
 #include <pybind11/pybind11.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/estimator_settings.h"
+#include "apps/pipeline/setting_table.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/estimate_rows.h"
+#include "apps/python/setting_arguments.h"
 #include "core/estimation/correspondences.h"
 #include "core/estimation/estimator.h"
 #include "core/geometry/camera.h"
 #include "core/initial_guess/initial_guess.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
-#include "costs/cost_factory.h"
 
 namespace py = pybind11;
 
@@ -67,17 +68,15 @@ std::optional<MotionPrior> PriorFrom(const py::object& prior) {
   return result;
 }
 
-EstimatorOptions OptionsFrom(const EstimatorSettings& settings,
-                             int max_iterations, int threads) {
-  EstimatorOptions options = MakeEstimatorOptions(settings);
-  options.max_iterations = max_iterations;
-  options.threads = threads;
-  const std::string problem = options.Check();
-  if (!problem.empty()) throw InputError(problem);
-  if (threads > kMaxThreads) {
-    throw InputError("threads must not exceed " + std::to_string(kMaxThreads));
-  }
-  return options;
+// The rows that are about matches alone.
+std::vector<Setting> EstimateTable(OdometrySettings* settings) {
+  std::vector<Setting> table = SettingTable(settings);
+  table.erase(std::remove_if(table.begin(), table.end(),
+                             [](const Setting& setting) {
+                               return setting.group != kEstimationGroup;
+                             }),
+              table.end());
+  return table;
 }
 
 void CheckSizes(const NumberArray& prev, const std::string& prev_name,
@@ -97,12 +96,10 @@ void BindFunction(py::module_* module, const char* name,
                   const char* doc) {
   const auto estimate =
       [=](const py::object& prev_object, const py::object& cur_object,
-          const RgbdCamera* camera, const std::string& cost,
-          const std::string& loss, const std::string& scale,
-          const std::string& robust_schedule, const py::object& initial_guess,
-          double sigma_px, const std::string& depth_noise,
-          const py::object& normals_object, const py::object& prior_object,
-          const std::string& assembly, int max_iterations, int threads) {
+          const RgbdCamera* camera, const py::object& initial_guess,
+          double sigma_px, const py::object& normals_object,
+          const py::object& prior_object, int threads,
+          const py::kwargs& keywords) {
         const NumberArray prev(prev_object, prev_name, {NumberArray::kAny, 3});
         const NumberArray cur(cur_object, cur_name, {NumberArray::kAny, 3});
         CheckSizes(prev, prev_name, cur, cur_name);
@@ -117,31 +114,33 @@ void BindFunction(py::module_* module, const char* name,
         }
         const Start start(initial_guess);
         const std::optional<MotionPrior> prior = PriorFrom(prior_object);
-        const DepthNoiseModel& noise = *DepthNoiseByName(depth_noise);
-        Estimator estimator(
-            OptionsFrom({cost, loss, assembly, scale, robust_schedule},
-                        max_iterations, threads),
-            MakeRobustCosts(cost, loss));
+        OdometrySettings settings;
+        SetFromKeywords(name, keywords, EstimateTable(&settings));
+        settings.estimator.options.threads = threads;
+        if (threads > kMaxThreads) {
+          throw InputError("threads must not exceed " +
+                           std::to_string(kMaxThreads));
+        }
+        Estimator estimator = MakeEstimator(settings.estimator);
         const Camera seen_by = camera == nullptr ? Camera() : camera->camera;
 
         const py::gil_scoped_release no_gil;
-        const RowMatches matches = MakeMatches(
-            seen_by, to_observation, prev, cur,
-            normals.has_value() ? &*normals : nullptr, sigma_px, noise);
+        const RowMatches matches =
+            MakeMatches(seen_by, to_observation, prev, cur,
+                        normals.has_value() ? &*normals : nullptr, sigma_px,
+                        *settings.features.depth_noise);
         return MakeResult(
             estimator.Estimate(matches.matches, start.Find(matches.matches),
                                prior.has_value() ? &*prior : nullptr),
             matches, prev.size());
       };
-  module->def(
-      name, estimate, doc, py::arg(prev_name), py::arg(cur_name),
-      camera_argument, py::kw_only(), py::arg("cost") = "bidirectional_point",
-      py::arg("loss") = "tukey", py::arg("scale") = "fixed",
-      py::arg("robust_schedule") = "gnc", py::arg("initial_guess") = "identity",
-      py::arg("sigma_px") = 0.5, py::arg("depth_noise") = "khoshelham",
-      py::arg("normals_cur") = py::none(), py::arg("prior") = py::none(),
-      py::arg("assembly") = "compressed", py::arg("max_iterations") = 50,
-      py::arg("threads") = 1);
+  OdometrySettings settings;
+  DefineWithSettings(module, name, estimate, EstimateTable(&settings), doc,
+                     py::arg(prev_name), py::arg(cur_name), camera_argument,
+                     py::kw_only(), py::arg("initial_guess") = "identity",
+                     py::arg("sigma_px") = 0.5,
+                     py::arg("normals_cur") = py::none(),
+                     py::arg("prior") = py::none(), py::arg("threads") = 1);
 }
 
 }  // namespace
@@ -156,22 +155,13 @@ points_prev, points_cur: (N, 3) x y z in camera axes (m; x right, y down, z
     are read without a copy. Rows that are not finite, or whose z is 0 or less,
     are no match and get the weight 0.
 camera: says, with sigma_px, how noisy points are sideways; None: fx = fy = 525.
-cost: what a match is compared by (costs()); several add up: "a+b".
-loss: M-estimator (losses()); one for all costs or one for each: "a,b".
-scale: spread of the residuals: "fixed" (as the noise model says) or estimated
-    by "mad", "sn" or "qn".
-robust_schedule: "gnc" (losses start wide and narrow) or "direct".
 initial_guess: where the solver starts: "identity", "ransac", "clique", or a
     (4, 4) cur_from_prev.
 sigma_px: standard deviation of u and of v in each frame (px).
-depth_noise: model of the standard deviation of depths: "khoshelham", "nguyen"
-    or "constant".
 normals_cur: (N, 3) unit normals of the surface in the current camera's axes,
     zeros where not known; for the cost point_to_plane.
 prior: a pair of a (4, 4) cur_from_prev and its (6, 6) covariance; for the cost
     motion_prior.
-assembly: "compressed", "per_match" or "autodiff": the same problem.
-max_iterations: of the solver's last stage.
 threads: for sums over tens of thousands of matches; the result is the same.
 
 Bad data is a status of the estimate that is returned, never an exception;

@@ -2,14 +2,17 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
-#include "apps/pipeline/odometry_run.h"
+#include "apps/pipeline/setting_table.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"
+#include "apps/python/setting_arguments.h"
 #include "apps/python/shared_odometry.h"
 #include "apps/python/trajectory_arrays.h"
 #include "core/evaluation/trajectory.h"
@@ -21,23 +24,12 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-std::unique_ptr<SharedOdometry> MakeSharedOdometry(
-    const RgbdCamera& camera, const std::string& frontend,
-    const std::string& cost, const std::string& loss, const std::string& scale,
-    const std::string& robust_schedule, const std::string& initial_guess,
-    const std::string& on_lost, const std::string& depth_noise,
-    const std::string& assembly, int max_features) {
+std::unique_ptr<SharedOdometry> MakeSharedOdometry(const RgbdCamera& camera,
+                                                   const std::string& frontend,
+                                                   const py::kwargs& keywords) {
   OdometrySettings settings;
-  settings.cost = cost;
-  settings.loss = loss;
-  settings.assembly = assembly;
-  settings.scale = scale;
-  settings.robust_schedule = robust_schedule;
   settings.frontend = frontend;
-  settings.initial_guess = initial_guess;
-  settings.on_lost = on_lost;
-  settings.depth_noise = depth_noise;
-  settings.max_features = max_features;
+  SetFromKeywords("Odometry", keywords, SettingTable(&settings));
   return std::make_unique<SharedOdometry>(settings, camera);
 }
 
@@ -119,27 +111,37 @@ void BindTrackedFrame(py::module_* module) {
       .def("__repr__", &InWords);
 }
 
+// Keyword-only settings; the frontend may also stand in its place.
+std::string InitSignature() {
+  OdometrySettings settings;
+  std::vector<Setting> table = SettingTable(&settings);
+  const auto frontend =
+      std::find_if(table.begin(), table.end(), [](const Setting& setting) {
+        return setting.name == std::string("frontend");
+      });
+  const std::string first = ArgumentsOf({*frontend});
+  table.erase(frontend);
+  return "__init__(self: rgbd_pose.Odometry, camera: rgbd_pose.Camera, " +
+         first + ", *, " + ArgumentsOf(table) +
+         ") -> None\n\nInputError for unknown names and values out of range.";
+}
+
 void BindSharedOdometry(py::module_* module) {
-  py::class_<SharedOdometry>(*module, "Odometry", R"(
+  OdometrySettings settings;
+  const std::string doc = R"(
 Tracks a camera frame by frame against a reference frame. Calls of one object
 from several threads wait for each other; objects do not share anything.
 
-frontend: where matches come from (frontends()).
-cost, loss, scale, robust_schedule, depth_noise, assembly: of estimate_motion.
-initial_guess: where the solver starts in a frame: "last" (the last pose),
-    "velocity", "identity", "ransac" or "clique".
-on_lost: what to do with frames whose motion is not found: "stop", "hold",
-    "predict" or "new_segment".
-max_features: wanted in a reference frame.)")
-      .def(py::init(&MakeSharedOdometry), "InputError for unknown names.",
-           py::arg("camera").none(false), py::arg("frontend") = "patch",
-           py::kw_only(), py::arg("cost") = "bidirectional_point",
-           py::arg("loss") = "tukey", py::arg("scale") = "fixed",
-           py::arg("robust_schedule") = "gnc",
-           py::arg("initial_guess") = "last",
-           py::arg("on_lost") = "new_segment",
-           py::arg("depth_noise") = "khoshelham",
-           py::arg("assembly") = "compressed", py::arg("max_features") = 600)
+)" + HelpOf(SettingTable(&settings));
+  py::class_<SharedOdometry> odometry(*module, "Odometry", doc.c_str());
+  {
+    py::options options;
+    options.disable_function_signatures();
+    odometry.def(py::init(&MakeSharedOdometry), InitSignature().c_str(),
+                 py::arg("camera").none(false),
+                 py::arg("frontend") = settings.frontend);
+  }
+  odometry
       .def("track", &Track, R"(
 Tracks the next frame. The GIL is released.
 

@@ -1,9 +1,9 @@
 #include "apps/results/frame_errors.h"
 
 #include <cmath>
-#include <cstdio>
 #include <optional>
 
+#include "apps/shell/format.h"
 #include "core/evaluation/pose_pairs.h"
 
 namespace rgbd_pose {
@@ -12,9 +12,7 @@ namespace {
 constexpr double kDegreesPerRadian = 57.29577951308232;
 
 void AddNumber(double value, std::string* row) {
-  char text[64];
-  std::snprintf(text, sizeof(text), ",%.6f", value);
-  *row += text;
+  *row += Format(",%.6f", value);
 }
 
 void AddPosition(const Eigen::Vector3d& position, std::string* row) {
@@ -33,9 +31,7 @@ std::string FormatErrorsCsv(const std::vector<TrackedFrame>& frames,
   for (const StampedPose& pose : truth) times.push_back(pose.timestamp);
   auto error = report.poses.begin();
   for (const TrackedFrame& frame : frames) {
-    char stamp[64];
-    std::snprintf(stamp, sizeof(stamp), "%.6f", frame.timestamp);
-    text += stamp;
+    text += Format("%.6f", frame.timestamp);
     const size_t nearest = NearestTime(times, frame.timestamp);
     if (std::abs(times[nearest] - frame.timestamp) <=
         report.options.max_time_difference) {

@@ -1,5 +1,6 @@
 #include "apps/shell/format.h"
 
+#include <charconv>
 #include <cstdarg>
 #include <cstdio>
 
@@ -16,6 +17,13 @@ std::string Format(const char* format, ...) {
   std::vsnprintf(text.data(), text.size() + 1, format, again);
   va_end(again);
   return text;
+}
+
+std::string ShortNumber(double value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof(text), value,
+                              std::chars_format::general)
+                    .ptr};
 }
 
 }  // namespace rgbd_pose

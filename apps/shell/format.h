@@ -7,4 +7,7 @@ namespace rgbd_pose {
 // What printf would print.
 [[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...);
 
+// As few digits as tell the number from all others: 0.2, not 0.2000...01.
+std::string ShortNumber(double value);
+
 }  // namespace rgbd_pose

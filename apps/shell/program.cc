@@ -6,11 +6,13 @@
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <stdexcept>
 #include <system_error>
 
 #include "apps/shell/flag_reader.h"
+#include "apps/shell/format.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
@@ -30,6 +32,14 @@ bool IsHelp(const std::string& argument) {
          argument == "--helpfull" || argument == "--helpshort";
 }
 
+// gflags prints all 17 digits of a number.
+std::string FlagValue(const gflags::CommandLineFlagInfo& flag,
+                      const std::string& value) {
+  return flag.type == "double"
+             ? ShortNumber(std::strtod(value.c_str(), nullptr))
+             : value;
+}
+
 void PrintHelp(const ProgramInfo& info) {
   std::printf("%s: %s\n\nExample:\n  %s\n", info.name.c_str(),
               info.summary.c_str(), info.example.c_str());
@@ -39,7 +49,8 @@ void PrintHelp(const ProgramInfo& info) {
       const auto flag = gflags::GetCommandLineFlagInfoOrDie(name.c_str());
       std::printf("  --%s (%s", name.c_str(), flag.type.c_str());
       if (!flag.default_value.empty()) {
-        std::printf(", default %s", flag.default_value.c_str());
+        std::printf(", default %s",
+                    FlagValue(flag, flag.default_value).c_str());
       }
       std::printf(")\n      %s\n", flag.description.c_str());
       const auto choices = info.choices.find(name);
@@ -109,7 +120,7 @@ std::string FormatFlagFile(const ProgramInfo& info) {
     text += "# " + group.title + "\n";
     for (const std::string& name : group.flags) {
       const auto flag = gflags::GetCommandLineFlagInfoOrDie(name.c_str());
-      text += "--" + name + "=" + flag.current_value + "\n";
+      text += "--" + name + "=" + FlagValue(flag, flag.current_value) + "\n";
     }
   }
   return text;

@@ -7,6 +7,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "apps/shell/format.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -52,17 +54,13 @@ std::string FormatDuration(double seconds) {
   constexpr int64_t kMinute = 60;
   constexpr int64_t kHour = 60 * kMinute;
   const int64_t whole = std::llround(seconds);
-  char text[64];
-  if (whole < kMinute) {
-    std::snprintf(text, sizeof(text), "%" PRId64 " s", whole);
-  } else if (whole < kHour) {
-    std::snprintf(text, sizeof(text), "%" PRId64 " min %02" PRId64 " s",
-                  whole / kMinute, whole % kMinute);
-  } else {
-    std::snprintf(text, sizeof(text), "%" PRId64 " h %02" PRId64 " min",
-                  whole / kHour, whole % kHour / kMinute);
+  if (whole < kMinute) return Format("%" PRId64 " s", whole);
+  if (whole < kHour) {
+    return Format("%" PRId64 " min %02" PRId64 " s", whole / kMinute,
+                  whole % kMinute);
   }
-  return text;
+  return Format("%" PRId64 " h %02" PRId64 " min", whole / kHour,
+                whole % kHour / kMinute);
 }
 
 }  // namespace rgbd_pose

@@ -2,16 +2,14 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-#include "costs/cost_factory.h"
+#include "apps/pipeline/settings.h"
 #include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/tracking/odometry.h"
 
 int main() {
   const rgbd_pose::SyntheticDataset camera({"room", "pan_tilt", 60});  // yours
-  const rgbd_pose::FrontendOptions options{camera.camera().camera};
-  rgbd_pose::Odometry odometry({}, options.camera,
-                               rgbd_pose::MakeFrontend("patch", options),
-                               {{}, rgbd_pose::MakeRobustCosts()});
+  const rgbd_pose::OdometrySettings settings;
+  rgbd_pose::Odometry odometry =
+      rgbd_pose::MakeOdometry(settings, camera.camera().camera);
   rgbd_pose::Frame frame;  // its memory serves for all of them
   for (int i = 0; i < camera.size(); ++i) {
     const rgbd_pose::RgbdImages images = camera.ReadImages(i);

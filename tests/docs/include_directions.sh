@@ -48,8 +48,9 @@ room frontend/map 'core/|frontend/' "$opencv"
 room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h"
+# A library: neither flags nor JSON.
+room apps/pipeline 'core/|robust|costs|frontend/' 'Eigen/'
 room apps/shell 'core/|apps/' "$libraries"
-room apps/pipeline "$programs" 'Eigen/|opencv2/|ceres/'
 room apps/figures 'core/|apps/' 'none'
 room apps/results "$programs" "$libraries"
 room apps/compare "$programs" "$libraries"

@@ -44,7 +44,8 @@ cmake --install "$build" --prefix "$work/first" >"$work/log" 2>&1 ||
 mv "$work/first" "$prefix"
 ! grep -rlF -e "$source/" -e "$build/" "$prefix" >"$work/log" ||
   fail "these files tell where they were built"
-[ ! -e "$prefix/include/rgbd_pose/apps" ] || fail "headers of apps"
+[ "$(ls "$prefix/include/rgbd_pose/apps")" = pipeline ] ||
+  fail "headers of the programs"
 
 # The examples, in the middle of nowhere.
 cp -r "$source/docs/examples" "$work/examples"

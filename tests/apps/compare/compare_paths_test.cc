@@ -48,7 +48,7 @@ Trajectory Truth(int frames) {
 TEST(ComparePathsTest, PathsStartAtThePoseOfTheTruth) {
   const Trajectory truth = Truth(4);
   std::vector<LossRun> runs = {MakeRun("none", 4, 1.5)};
-  runs[0].report = Evaluate(runs[0].trajectory, truth);
+  runs[0].evaluation = Evaluate(runs[0].trajectory, truth);
   const std::vector<ComparedPath> paths = ComparePaths(runs, truth);
   ASSERT_EQ(paths.size(), 2u);
   EXPECT_EQ(paths[0].name, kTruthName);
@@ -67,7 +67,7 @@ TEST(ComparePathsTest, PathsStartAtThePoseOfTheTruth) {
 TEST(ComparePathsTest, MotionsOverOneSecondAreThoseOfTheirFrame) {
   const Trajectory truth = Truth(13);
   std::vector<LossRun> runs = {MakeRun("none", 13, 1.5)};
-  runs[0].report = Evaluate(runs[0].trajectory, truth);
+  runs[0].evaluation = Evaluate(runs[0].trajectory, truth);
   const std::vector<ComparedPath> paths = ComparePaths(runs, truth);
   EXPECT_NEAR(*paths[1].poses[2].rpe_translation, 5.0, 1e-9);
   EXPECT_FALSE(paths[1].poses[1].rpe_translation.has_value());
@@ -97,7 +97,7 @@ TEST(CompareTablesTest, WhatIsNotKnownIsNotZero) {
   LossRun lost = MakeRun("none", 3, 1.0);
   lost.trajectory.clear();
   LossRun brief = MakeRun("tukey", 3, 1.0);
-  brief.report = Evaluate(brief.trajectory, Truth(3));
+  brief.evaluation = Evaluate(brief.trajectory, Truth(3));
   const std::vector<LossRun> runs = {lost, brief};
   const std::string errors = PathErrorTable(runs);
   EXPECT_THAT(errors,

@@ -1,9 +1,9 @@
-#include "apps/results/residual_histogram.h"
+#include "apps/pipeline/residual_histogram.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numeric>
-#include <vector>
 
 namespace rgbd_pose {
 namespace {
@@ -16,19 +16,17 @@ TEST(ResidualHistogram, CountsMatchesThatSomeCostCouldUse) {
   ResidualHistogram histogram;
   histogram.Add(estimate);
   histogram.Add(estimate);
-  const nlohmann::json json = histogram.ToJson();
-  EXPECT_EQ(json.at("matches"), 10);
-  const std::vector<int> norms = json.at("norm_counts");
+  EXPECT_EQ(histogram.matches, 10);
+  const auto& norms = histogram.norms;
   EXPECT_EQ(norms.front(), 4);
   EXPECT_EQ(norms.back(), 2);
   EXPECT_EQ(std::accumulate(norms.begin(), norms.end(), 0), 6);
-  EXPECT_EQ(json.at("norms_above"), 4);
-  const std::vector<int> weights = json.at("weight_counts");
-  EXPECT_EQ(weights.front(), 4);
-  EXPECT_EQ(weights[10], 2);
-  EXPECT_EQ(weights.back(), 4);
-  EXPECT_EQ(json.at("weights_zero"), 4);
-  EXPECT_EQ(json.at("degrees_counts"), nlohmann::json({0, 0, 2, 8, 0, 0, 0}));
+  EXPECT_EQ(histogram.norms_above, 4);
+  EXPECT_EQ(histogram.weights.front(), 4);
+  EXPECT_EQ(histogram.weights[10], 2);
+  EXPECT_EQ(histogram.weights.back(), 4);
+  EXPECT_EQ(histogram.weights_zero, 4);
+  EXPECT_THAT(histogram.degrees, testing::ElementsAre(0, 0, 2, 8, 0, 0, 0));
 }
 
 }  // namespace

@@ -1,7 +1,5 @@
 #pragma once
 
-#include <nlohmann/json.hpp>
-#include <string>
 #include <vector>
 
 #include "frontend/tracking/tracked_frame.h"
@@ -44,14 +42,5 @@ struct RunSummary {
 
 RunSummary Summarise(const std::vector<TrackedFrame>& frames, int threads,
                      double wall_seconds);
-
-// As the program prints it: lines of a title and figures.
-std::string FormatSummary(const RunSummary& summary);
-
-// For metrics.json.
-nlohmann::json SummaryToJson(const RunSummary& summary);
-
-// The most memory (MB) that this process has had so far.
-double PeakMemoryMb();
 
 }  // namespace rgbd_pose

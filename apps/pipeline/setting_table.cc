@@ -1,0 +1,188 @@
+#include "apps/pipeline/setting_table.h"
+
+#include <algorithm>
+#include <iterator>
+
+#include "core/initial_guess/initial_guess.h"
+#include "core/util/named_values.h"
+#include "robust/m_estimator.h"
+#include "robust/scale.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr char kFeatures[] = "Features";
+constexpr char kTracking[] = "Tracking";
+
+constexpr Named<Assembly> kAssemblies[] = {
+    {"compressed", Assembly::kCompressed},
+    {"per_match", Assembly::kPerMatch},
+    {"autodiff", Assembly::kAutodiff},
+};
+
+constexpr Named<RobustSchedule> kRobustSchedules[] = {
+    {"gnc", RobustSchedule::kGnc},
+    {"direct", RobustSchedule::kDirect},
+};
+
+constexpr Named<LostPolicy> kLostPolicies[] = {
+    {"stop", LostPolicy::kStop},
+    {"hold", LostPolicy::kHold},
+    {"predict", LostPolicy::kPredict},
+    {"new_segment", LostPolicy::kNewSegment},
+};
+
+// What the name means is found out when the piece is made.
+NamedSetting Text(std::string* text) {
+  return {[=] { return *text; },
+          [=](const std::string& name) { *text = name; }};
+}
+
+template <typename Value, size_t N>
+NamedSetting ByName(const Named<Value> (&rows)[N], const char* what,
+                    Value* value) {
+  return {[&rows, value]() -> std::string {
+            return std::find_if(std::begin(rows), std::end(rows),
+                                [=](const Named<Value>& row) {
+                                  return row.value == *value;
+                                })
+                ->name;
+          },
+          [&rows, what, value](const std::string& name) {
+            *value = ValueOf(rows, what, name);
+          }};
+}
+
+NamedSetting ScaleByName(decltype(EstimatorOptions::scale)* scale) {
+  return {[=] {
+            for (const ScaleEstimator& row : ScaleEstimators()) {
+              if (row.estimate == *scale) return std::string(row.name);
+            }
+            return std::string("a function of its own");
+          },
+          [=](const std::string& name) {
+            const ScaleEstimator* row = FindScaleEstimator(name);
+            if (row == nullptr) {
+              throw UnknownName("scale", name, ScaleEstimatorNames());
+            }
+            *scale = row->estimate;
+          }};
+}
+
+// last (the last pose), velocity (moved on as it moved last) or one of
+// core/initial_guess/initial_guess.h.
+std::vector<std::string> GuessNames() {
+  std::vector<std::string> names = {"last", "velocity"};
+  for (const InitialGuess& row : InitialGuesses()) names.emplace_back(row.name);
+  return names;
+}
+
+NamedSetting GuessByName(OdometryOptions* options) {
+  return {[=]() -> std::string {
+            if (options->initial_guess != nullptr) {
+              return std::string(options->initial_guess->name);
+            }
+            return options->predict_velocity ? "velocity" : "last";
+          },
+          [=](const std::string& name) {
+            options->predict_velocity = name == "velocity";
+            options->initial_guess = FindInitialGuess(name);
+            if (options->initial_guess == nullptr && name != "last" &&
+                name != "velocity") {
+              throw UnknownName("initial guess", name, GuessNames());
+            }
+          }};
+}
+
+NamedSetting DepthNoiseByName(const DepthNoiseModel** model) {
+  return {[=] { return std::string((*model)->name); },
+          [=](const std::string& name) {
+            const DepthNoiseModel* row = FindDepthNoiseModel(name);
+            if (row == nullptr) {
+              throw UnknownName("depth noise", name, DepthNoiseModelNames());
+            }
+            *model = row;
+          }};
+}
+
+}  // namespace
+
+std::vector<Setting> SettingTable(OdometrySettings* settings) {
+  EstimatorSettings* estimator = &settings->estimator;
+  EstimatorOptions* options = &estimator->options;
+  FrontendOptions* features = &settings->features;
+  OdometryOptions* odometry = &settings->odometry;
+  return {
+      {"cost", kEstimationGroup, "cost of a match; several added up: a+b",
+       Text(&estimator->cost), CostNames()},
+      {"loss", kEstimationGroup,
+       "M-estimator; one for each of several costs: a,b",
+       Text(&estimator->loss), MEstimatorNames()},
+      {"scale", kEstimationGroup,
+       "spread of the residuals: as the noise model says or estimated",
+       ScaleByName(&options->scale), ScaleEstimatorNames()},
+      {"robust_schedule", kEstimationGroup,
+       "losses at their widths at once, or wide at first and narrowed step by "
+       "step",
+       ByName(kRobustSchedules, "robust schedule", &options->schedule),
+       NamesOf(kRobustSchedules)},
+      {"gnc_factor", kEstimationGroup,
+       "by which each of these steps narrows the losses", &options->gnc_factor},
+      {"max_iterations", kEstimationGroup, "of the solver in its last stage",
+       &options->max_iterations},
+      {"min_inlier_share", kEstimationGroup,
+       "a motion that a smaller share of matches agrees with is inconsistent",
+       &options->min_inlier_share},
+      {"max_scale", kEstimationGroup,
+       "a motion whose residuals spread wider than this is inconsistent",
+       &options->max_scale},
+      {"max_standard_deviation", kEstimationGroup,
+       "a motion with a direction less certain than this (rad or m) is "
+       "degenerate",
+       &options->max_standard_deviation},
+      {"depth_noise", kEstimationGroup, "how uncertain a depth is",
+       DepthNoiseByName(&features->depth_noise), DepthNoiseModelNames()},
+      {"assembly", kEstimationGroup, "how matches become Ceres residual blocks",
+       ByName(kAssemblies, "assembly", &options->assembly),
+       NamesOf(kAssemblies)},
+      {"frontend", kFeatures, "where matches come from",
+       Text(&settings->frontend), FrontendNames()},
+      {"max_features", kFeatures, "features wanted in a reference frame",
+       &features->max_features},
+      {"min_depth", kFeatures, "nearer depths (m) are not used",
+       &features->min_depth},
+      {"max_depth", kFeatures, "farther depths (m) are not used",
+       &features->max_depth},
+      {"initial_guess", kTracking, "where the solver starts in a frame",
+       GuessByName(odometry), GuessNames()},
+      {"on_lost", kTracking,
+       "what to do with frames whose motion is not found; they are searched "
+       "for among earlier references in any case but stop",
+       ByName(kLostPolicies, "policy", &odometry->on_lost),
+       NamesOf(kLostPolicies)},
+      {"new_segment_after", kTracking,
+       "how long (s) the old segment is searched for before a new one starts",
+       &odometry->new_segment_after},
+      {"min_inliers", kTracking, "a frame with fewer is lost",
+       &odometry->min_inliers},
+      {"min_inliers_ok", kTracking, "a frame with fewer is degraded",
+       &odometry->min_inliers_ok},
+      {"min_inlier_share_ok", kTracking,
+       "a frame of whose matches a smaller share agrees is degraded",
+       &odometry->min_inlier_share_ok},
+      {"min_reference_share", kTracking,
+       "a new reference is taken if a smaller share of its features agrees",
+       &odometry->min_reference_share},
+      {"max_flow_px", kTracking,
+       "or if the inliers have moved further than this on average (px)",
+       &odometry->max_flow_px},
+      {"prior_sigma_rotation", kTracking,
+       "standard deviation of the motion between two frames (rad), for costs "
+       "with a prior",
+       &odometry->prior_sigma_rotation},
+      {"prior_sigma_translation", kTracking, "the same (m)",
+       &odometry->prior_sigma_translation},
+  };
+}
+
+}  // namespace rgbd_pose

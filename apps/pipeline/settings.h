@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "core/estimation/estimator.h"
+#include "core/geometry/camera.h"
+#include "costs/cost_factory.h"
+#include "frontend/features/frontend.h"
+#include "frontend/tracking/odometry.h"
+
+namespace rgbd_pose {
+
+// What an estimator is made of. Defaults are those of the parts.
+struct EstimatorSettings {
+  std::string cost = kDefaultCost;  // of a match; several add up: "a+b"
+  std::string loss = kDefaultLoss;  // one for all costs or one each: "a,b"
+  EstimatorOptions options;
+};
+
+// What an odometry is made of: the one place for programs, Python and
+// benchmarks. setting_table.h gives each value that a user may want a name.
+struct OdometrySettings {
+  EstimatorSettings estimator;
+  std::string frontend = "patch";  // where matches come from
+  FrontendOptions features;        // the camera aside
+  OdometryOptions odometry;
+};
+
+// An estimator or odometry with these settings. Throws InputError for unknown
+// names and values that make no sense.
+Estimator MakeEstimator(const EstimatorSettings& settings);
+Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
+
+}  // namespace rgbd_pose

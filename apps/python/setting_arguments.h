@@ -1,0 +1,45 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <string>
+#include <vector>
+
+#include "apps/pipeline/setting_table.h"
+
+// Keyword arguments from a table of settings: functions take py::kwargs and
+// write their own signatures, which pybind11 could only say of fixed ones.
+
+namespace rgbd_pose {
+
+// Sets what the keywords say. Raises TypeError for a keyword that is no row or
+// a value of another type; InputError for unknown names.
+void SetFromKeywords(const std::string& function,
+                     const pybind11::kwargs& keywords,
+                     const std::vector<Setting>& table);
+
+// The rows as arguments of a signature, as "cost: str = 'epipolar', ...".
+std::string ArgumentsOf(const std::vector<Setting>& table);
+
+// The rows in words, a paragraph each.
+std::string HelpOf(const std::vector<Setting>& table);
+
+// Defines a function whose last argument is py::kwargs: its signature and help
+// say the rows of the table in their place.
+template <typename Function, typename... Extra>
+void DefineWithSettings(pybind11::module_* module, const char* name,
+                        const Function& function,
+                        const std::vector<Setting>& table, const char* help,
+                        const Extra&... extra) {
+  const pybind11::cpp_function probe(function, pybind11::name(name), extra...);
+  auto signature = probe.attr("__doc__").template cast<std::string>();
+  const std::string keywords = "**kwargs";
+  signature.replace(signature.find(keywords), keywords.size(),
+                    ArgumentsOf(table));
+  const std::string text = signature + help + "\n\n" + HelpOf(table);
+  pybind11::options options;
+  options.disable_function_signatures();
+  module->def(name, function, text.c_str(), extra...);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,127 @@
+#include "apps/results/run_output.h"
+
+#include "apps/results/cloud_preview.h"
+#include "apps/results/evaluation_report.h"
+#include "apps/results/frame_errors.h"
+#include "apps/results/frames_csv.h"
+#include "apps/results/run_metrics.h"
+#include "apps/shell/format.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/features/match_overlay.h"
+#include "frontend/map/ply_writer.h"
+#include "frontend/sources/image_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr char kDebug[] = "debug";
+
+CloudFusionOptions CloudOptions(const Camera& camera, double voxel) {
+  CloudFusionOptions options;
+  options.camera = camera;
+  options.voxel_size = voxel;
+  const std::string problem = options.Check();
+  if (!problem.empty()) throw InputError("--voxel: " + problem);
+  return options;
+}
+
+// What the odometry has made of its last frame.
+void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
+                     const TrackedFrame& tracked, const Camera& camera,
+                     const Odometry& odometry) {
+  std::string caption = "frame " + std::to_string(tracked.index) + "  " +
+                        ToString(tracked.status);
+  if (tracked.reference >= 0) {
+    caption += "  " + std::to_string(tracked.inliers) + " of " +
+               std::to_string(tracked.matches) + " matches agree  reference " +
+               std::to_string(tracked.reference);
+  }
+  WritePngFile((folder / Format("%06d.png", tracked.index)).string(),
+               DrawMatches(frame, camera, odometry.last_matches(),
+                           odometry.last_estimate(), caption));
+}
+
+}  // namespace
+
+RunOutput::RunOutput(const RunOutputOptions& options, const TumDataset& dataset)
+    : options_(options),
+      dataset_(dataset),
+      drawn_("debug_images", options.debug_images),
+      cloud_options_(CloudOptions(dataset.camera().camera, options.voxel)),
+      folder_(options.output) {
+  if (!options.debug_images.empty()) {
+    std::filesystem::create_directory(aside() / kDebug);
+  }
+  if (!options.save_cloud.empty()) {
+    cloud_.emplace(cloud_options_);
+    RequireWritable(options.save_cloud);
+  }
+}
+
+void RunOutput::Add(const Frame& frame, const OdometryRun& run) {
+  const TrackedFrame& tracked = run.frames().back();
+  if (drawn_.Contains(tracked.index)) {
+    WriteDebugImage(aside() / kDebug, frame, tracked, dataset_.camera().camera,
+                    run.odometry());
+  }
+  if (cloud_.has_value() && cloud_->Wants(tracked)) {
+    cloud_->Add(frame, dataset_.ReadColor(tracked.index),
+                tracked.world_from_cam);
+  }
+}
+
+std::string RunOutput::Write(const RunResults& results,
+                             const RunSummary& summary, const Trajectory* truth,
+                             const std::string& flags) {
+  std::string text = FormatSummary(summary);
+  nlohmann::json metrics = {{"program", "rgbd_odometry"},
+                            {"dataset", options_.dataset},
+                            {"unmatched_color", dataset_.unmatched_color()},
+                            {"peak_rss_mb", PeakMemoryMb()},
+                            {"run", SummaryToJson(summary)},
+                            {"residuals", ResidualsToJson(results.residuals)}};
+  Rigid3d shown_from_world;
+  if (results.evaluation.has_value()) {
+    text += FormatEvaluation(*results.evaluation);
+    metrics["evaluation"] = EvaluationToJson(*results.evaluation);
+    shown_from_world = results.evaluation->truth_from_estimate;
+    WriteFile("errors.csv",
+              FormatErrorsCsv(results.frames, *truth, *results.evaluation));
+  }
+  if (cloud_.has_value()) {
+    metrics["cloud"] = WriteCloud(shown_from_world, &text);
+  }
+  WriteFile("trajectory.txt", FormatTrajectory(results.trajectory));
+  WriteFile("frames.csv", FormatFramesCsv(results.frames));
+  WriteFile("config.flags", flags);
+  // The name of the dataset may be no UTF-8.
+  WriteFile("metrics.json",
+            metrics.dump(2, ' ', /*ensure_ascii=*/false,
+                         nlohmann::json::error_handler_t::replace) +
+                "\n");
+  return text;
+}
+
+void RunOutput::WriteFile(const char* name, const std::string& content) const {
+  WriteFileAtomically((aside() / name).string(), content);
+}
+
+// And a few of its points in the world that the page of the run shows. Returns
+// what metrics.json says of it.
+nlohmann::json RunOutput::WriteCloud(const Rigid3d& shown_from_world,
+                                     std::string* text) const {
+  const VoxelCloud& points = cloud_->cloud();
+  WritePly(options_.save_cloud, points.Points());
+  *text += "cloud       " + std::to_string(points.size()) + " points of " +
+           std::to_string(cloud_->frames()) + " frames in " +
+           options_.save_cloud + "\n";
+  WriteFile(
+      kCloudPreviewFile,
+      CloudPreview(points.Thin(kMaxPreviewPoints), shown_from_world).dump());
+  return {{"points", points.size()},
+          {"frames", cloud_->frames()},
+          {"voxel_m", options_.voxel}};
+}
+
+}  // namespace rgbd_pose

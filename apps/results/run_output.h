@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "apps/pipeline/odometry_run.h"
+#include "apps/pipeline/run_summary.h"
+#include "apps/results/run_folder.h"
+#include "apps/shell/frame_selection.h"
+#include "frontend/map/cloud_fusion.h"
+#include "frontend/sources/tum_dataset.h"
+
+namespace rgbd_pose {
+
+// What a run of rgbd_odometry is to leave behind, by the names of its flags.
+struct RunOutputOptions {
+  std::string dataset;       // as metrics.json calls it
+  std::string output;        // folder
+  std::string debug_images;  // FrameSelection
+  std::string save_cloud;    // file; empty: no cloud
+  double voxel = 0.01;       // side of the cloud's cubes, m
+};
+
+// The files of a run: drawn and fused as frames come, written at the end.
+class RunOutput {
+ public:
+  // Makes what must be there before the work begins. Throws InputError if it
+  // cannot, or for options that make no sense. The dataset must outlive it.
+  RunOutput(const RunOutputOptions& options, const TumDataset& dataset);
+
+  // After the run has tracked a frame.
+  void Add(const Frame& frame, const OdometryRun& run);
+
+  // Where files are until they are published, see RunFolder.
+  const std::filesystem::path& aside() const { return folder_.aside(); }
+
+  // Writes all files but the page and `flags` into config.flags; `truth` may be
+  // null. Returns what the program prints of them.
+  std::string Write(const RunResults& results, const RunSummary& summary,
+                    const Trajectory* truth, const std::string& flags);
+
+  // Puts all files into their places.
+  void Publish() { folder_.Publish(); }
+
+ private:
+  void WriteFile(const char* name, const std::string& content) const;
+  nlohmann::json WriteCloud(const Rigid3d& shown_from_world,
+                            std::string* text) const;
+
+  RunOutputOptions options_;
+  const TumDataset& dataset_;
+  FrameSelection drawn_;
+  CloudFusionOptions cloud_options_;
+  std::optional<CloudFusion> cloud_;
+  RunFolder folder_;
+};
+
+}  // namespace rgbd_pose

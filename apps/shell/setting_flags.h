@@ -1,0 +1,36 @@
+#pragma once
+
+#include <deque>
+#include <string>
+#include <vector>
+
+#include "apps/pipeline/setting_table.h"
+#include "apps/shell/program.h"
+
+namespace rgbd_pose {
+
+// A flag of gflags for each row of a table of settings. Must live as long as
+// flags are read.
+class SettingFlags {
+ public:
+  // Rows whose names are in `without` make no flag.
+  explicit SettingFlags(const std::vector<Setting>& table,
+                        const std::vector<std::string>& without = {});
+
+  // Adds them to what --help says of a program.
+  void Describe(ProgramInfo* info) const;
+
+  // The flags write numbers into the settings themselves; this, when they have
+  // been read, sets what goes by name. Throws InputError for unknown names.
+  void Apply() const;
+
+ private:
+  std::vector<Setting> settings_;
+  std::deque<std::string> names_;  // what flags hold, a row each
+  // What gflags has as the defaults; in deques, where they stay.
+  std::deque<std::string> default_names_;
+  std::deque<int> default_ints_;
+  std::deque<double> default_doubles_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,93 @@
+#include "apps/pipeline/setting_table.h"
+
+#include <gtest/gtest.h>
+
+#include <set>
+#include <string>
+
+#include "tests/support/expect_input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+const Setting& Row(const std::vector<Setting>& table, const std::string& name) {
+  for (const Setting& row : table) {
+    if (row.name == name) return row;
+  }
+  throw std::out_of_range(name);
+}
+
+TEST(SettingTableTest, EveryRowHasANameOfItsOwn) {
+  OdometrySettings settings;
+  std::set<std::string> names;
+  for (const Setting& row : SettingTable(&settings)) {
+    EXPECT_TRUE(names.insert(row.name).second) << row.name;
+    EXPECT_STRNE(row.help, "") << row.name;
+  }
+}
+
+TEST(SettingTableTest, EveryRowIsAPlaceOfItsOwn) {
+  OdometrySettings settings;
+  std::set<const void*> places;
+  for (const Setting& row : SettingTable(&settings)) {
+    if (int* const* whole = std::get_if<int*>(&row.value)) {
+      EXPECT_TRUE(places.insert(*whole).second) << row.name;
+    } else if (double* const* real = std::get_if<double*>(&row.value)) {
+      EXPECT_TRUE(places.insert(*real).second) << row.name;
+    }
+  }
+}
+
+TEST(SettingTableTest, EveryChoiceIsTakenAndToldAgain) {
+  OdometrySettings settings;
+  for (const Setting& row : SettingTable(&settings)) {
+    const NamedSetting* named = std::get_if<NamedSetting>(&row.value);
+    ASSERT_EQ(named == nullptr, row.choices.empty()) << row.name;
+    for (const std::string& choice : row.choices) {
+      named->set(choice);
+      EXPECT_EQ(named->get(), choice) << row.name;
+    }
+  }
+}
+
+TEST(SettingTableTest, NamesReachTheOptions) {
+  OdometrySettings settings;
+  const std::vector<Setting> table = SettingTable(&settings);
+  const auto set = [&table](const char* name, const char* value) {
+    std::get<NamedSetting>(Row(table, name).value).set(value);
+  };
+  set("robust_schedule", "direct");
+  set("assembly", "per_match");
+  set("initial_guess", "velocity");
+  set("on_lost", "hold");
+  EXPECT_EQ(settings.estimator.options.schedule, RobustSchedule::kDirect);
+  EXPECT_EQ(settings.estimator.options.assembly, Assembly::kPerMatch);
+  EXPECT_TRUE(settings.odometry.predict_velocity);
+  EXPECT_EQ(settings.odometry.on_lost, LostPolicy::kHold);
+  set("initial_guess", "ransac");
+  EXPECT_FALSE(settings.odometry.predict_velocity);
+  ExpectInputError([&] { set("scale", "iqr"); }, {"scale", "'iqr'", "mad"});
+}
+
+TEST(SettingTableTest, WhatMakesNoSenseMakesNoOdometry) {
+  const auto refused = [](const char* name, double value) {
+    OdometrySettings settings;
+    const std::vector<Setting> table = SettingTable(&settings);
+    const Setting& row = Row(table, name);
+    if (int* const* whole = std::get_if<int*>(&row.value)) {
+      **whole = static_cast<int>(value);
+    } else {
+      *std::get<double*>(row.value) = value;
+    }
+    ExpectInputError([&] { MakeOdometry(settings, Camera()); }, {name});
+  };
+  refused("gnc_factor", 1.0);
+  refused("max_iterations", 0.0);
+  refused("max_features", 2.0);
+  refused("min_inliers", 2.0);
+  refused("max_flow_px", 0.0);
+  refused("new_segment_after", -1.0);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
