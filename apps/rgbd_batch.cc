@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/batch/batch_hash.h"
 #include "apps/batch/batch_list.h"
 #include "apps/batch/batch_lock.h"
 #include "apps/batch/batch_plan.h"
@@ -94,8 +95,8 @@ std::string ProgramPath() {
 }
 
 // All that changes the result of a run beside its place in the plan.
-std::string SettingsText() {
-  return "version " + ProgramVersion() + "\nprogram " + FLAGS_program + "\n" +
+std::string SettingsText(const std::string& program) {
+  return "program " + HashProgram(program) + "\n" +
          (FLAGS_settings.empty() ? "" : ReadTextFile(FLAGS_settings));
 }
 
@@ -222,12 +223,12 @@ int Main() {
   const BatchGrid grid =
       ParseGrid(FLAGS_costs, FLAGS_losses, FLAGS_frontends, FLAGS_repeats);
   const BatchShard shard = FLAGS_merge ? BatchShard() : ParseShard(FLAGS_shard);
-  const std::vector<BatchRun> plan =
-      MakePlan(ReadSequenceList(FLAGS_sequences), grid, shard, SettingsText());
+  const std::string program = ProgramPath();
+  const std::vector<BatchRun> plan = MakePlan(
+      ReadSequenceList(FLAGS_sequences), grid, shard, SettingsText(program));
   const BatchFolder folder(fs::absolute(FLAGS_output).string());
   if (FLAGS_dry_run) return PrintPlan(plan, folder);
 
-  const std::string program = FLAGS_merge ? "" : ProgramPath();
   std::error_code error;
   fs::create_directories(folder.output(), error);
   if (error) {

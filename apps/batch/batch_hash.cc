@@ -1,5 +1,7 @@
 #include "apps/batch/batch_hash.h"
 
+#include <link.h>
+
 #include <cstdio>
 #include <filesystem>
 
@@ -19,6 +21,14 @@ bool IsFile(const fs::path& path) {
 void AddFile(const fs::path& path, TextHash* hash) {
   hash->Add(IsFile(path) ? "file" : "none");
   if (IsFile(path)) hash->Add(ReadTextFile(path.string()));
+}
+
+int AddOwnLibrary(dl_phdr_info* library, size_t /*size*/, void* hash) {
+  const fs::path path = library->dlpi_name;
+  if (path.filename().string().rfind("librgbd_pose_", 0) == 0) {
+    AddFile(path, static_cast<TextHash*>(hash));
+  }
+  return 0;  // go on
 }
 
 // Lines of any kind are taken; whether they make sense is found out by the run.
@@ -51,6 +61,13 @@ std::string TextHash::Hex() const {
   std::snprintf(text, sizeof(text), "%016llx",
                 static_cast<unsigned long long>(state_));
   return text;
+}
+
+std::string HashProgram(const std::string& path) {
+  TextHash hash;
+  AddFile(path, &hash);
+  dl_iterate_phdr(AddOwnLibrary, &hash);
+  return hash.Hex();
 }
 
 std::string HashSequence(const BatchSequence& sequence) {

@@ -15,7 +15,7 @@ struct BatchRun {
   std::string loss;
   std::string frontend;
   int repeat = 1;
-  std::string hash;  // of settings, version and inputs: same hash, same result
+  std::string hash;  // of settings, program and inputs: same hash, same result
 
   // Where it is kept: "<sequence>/<cost>-<loss>-<frontend>-r<repeat>".
   std::string Name() const;

@@ -18,8 +18,6 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr char kVersion[] = "0.1.0";
-
 // A call without what the program needs.
 class UsageError : public std::runtime_error {
  public:
@@ -105,14 +103,12 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
       return kExitOk;
     }
     if (std::string(argv[i]) == "--version") {
-      std::printf("%s %s\n", info.name.c_str(), kVersion);
+      std::printf("%s %s\n", info.name.c_str(), RGBD_POSE_VERSION);
       return kExitOk;
     }
   }
   return Run(argc, argv, info, body);
 }
-
-std::string ProgramVersion() { return kVersion; }
 
 std::string FormatFlagFile(const ProgramInfo& info) {
   std::string text;

@@ -39,9 +39,6 @@ struct ProgramInfo {
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body);
 
-// The version that --version prints.
-std::string ProgramVersion();
-
 // All flags of the program's groups as a file for --flagfile.
 std::string FormatFlagFile(const ProgramInfo& info);
 

@@ -47,7 +47,7 @@ room frontend/tracking 'core/|frontend/' "$opencv"
 room frontend/map 'core/|frontend/' "$opencv"
 room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
-libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h"
+libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"
 # A library: neither flags nor JSON.
 room apps/pipeline 'core/|robust|costs|frontend/' 'Eigen/'
 room apps/shell 'core/|apps/' "$libraries"

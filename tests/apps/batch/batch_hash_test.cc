@@ -27,6 +27,17 @@ TEST(TextHashTest, TellsTextsApart) {
   EXPECT_NE(HashOf("a", "b"), HashOf("b", "a"));
 }
 
+TEST(HashProgramTest, IsOfItsContentWhereverItIs) {
+  const TempFolder folder;
+  folder.Write("a/program", "one");
+  folder.Write("b/program", "one");
+  folder.Write("c/program", "two");
+  EXPECT_EQ(HashProgram(folder / "a/program"),
+            HashProgram(folder / "b/program"));
+  EXPECT_NE(HashProgram(folder / "a/program"),
+            HashProgram(folder / "c/program"));
+}
+
 class HashSequenceTest : public testing::Test {
  protected:
   HashSequenceTest() { WriteSequence("s"); }

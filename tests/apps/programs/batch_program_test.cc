@@ -193,6 +193,17 @@ TEST_F(BatchProgramTest, RunsThePlanAndWhatIsMissingOfItLater) {
   EXPECT_EQ(CountLines(Run(Call("runs") + " --resume").err), 4);
 }
 
+TEST_F(BatchProgramTest, AChangedProgramMakesItsRunsAnew) {
+  const std::string call = kBatch + " --sequences=" + (folder_ / "list.txt") +
+                           " --output=" + (folder_ / "runs") + FakeProgram();
+  ASSERT_EQ(Run(call).exit_code, 0);
+  EXPECT_THAT(Run(call + " --dry_run").out, HasSubstr("2 runs, 0 of them to"));
+  folder_.Write("program.sh", Read("program.sh") + "# a later version\n");
+  fs::permissions(folder_ / "program.sh", fs::perms::owner_all);
+  EXPECT_THAT(Run(call + " --dry_run").out, HasSubstr("2 runs, 2 of them to"));
+  EXPECT_EQ(CountLines(Run(call + " --resume").err), 2);
+}
+
 TEST_F(BatchProgramTest, OneThatFailsDoesNotStopTheOthers) {
   Link("slow");
   Link("crash");
