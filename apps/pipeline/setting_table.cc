@@ -77,17 +77,17 @@ std::vector<std::string> GuessNames() {
   return names;
 }
 
-NamedSetting GuessByName(OdometryOptions* options) {
+NamedSetting GuessByName(TrackerOptions* tracking, OdometryOptions* odometry) {
   return {[=]() -> std::string {
-            if (options->initial_guess != nullptr) {
-              return std::string(options->initial_guess->name);
+            if (tracking->initial_guess != nullptr) {
+              return std::string(tracking->initial_guess->name);
             }
-            return options->predict_velocity ? "velocity" : "last";
+            return odometry->predict_velocity ? "velocity" : "last";
           },
           [=](const std::string& name) {
-            options->predict_velocity = name == "velocity";
-            options->initial_guess = FindInitialGuess(name);
-            if (options->initial_guess == nullptr && name != "last" &&
+            odometry->predict_velocity = name == "velocity";
+            tracking->initial_guess = FindInitialGuess(name);
+            if (tracking->initial_guess == nullptr && name != "last" &&
                 name != "velocity") {
               throw UnknownName("initial guess", name, GuessNames());
             }
@@ -111,6 +111,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
   EstimatorSettings* estimator = &settings->estimator;
   EstimatorOptions* options = &estimator->options;
   FrontendOptions* features = &settings->features;
+  TrackerOptions* tracking = &settings->tracking;
   OdometryOptions* odometry = &settings->odometry;
   return {
       {"cost", kEstimationGroup, "cost of a match; several added up: a+b",
@@ -153,8 +154,10 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        &features->min_depth},
       {"max_depth", kFeatures, "farther depths (m) are not used",
        &features->max_depth},
+      {"tracker", kTracking, "how a frame is followed",
+       Text(&settings->tracker), TrackerNames()},
       {"initial_guess", kTracking, "where the solver starts in a frame",
-       GuessByName(odometry), GuessNames()},
+       GuessByName(tracking, odometry), GuessNames()},
       {"on_lost", kTracking,
        "what to do with frames whose motion is not found; they are searched "
        "for among earlier references in any case but stop",
@@ -164,12 +167,12 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        "how long (s) the old segment is searched for before a new one starts",
        &odometry->new_segment_after},
       {"min_inliers", kTracking, "a frame with fewer is lost",
-       &odometry->min_inliers},
+       &tracking->min_inliers},
       {"min_inliers_ok", kTracking, "a frame with fewer is degraded",
-       &odometry->min_inliers_ok},
+       &tracking->min_inliers_ok},
       {"min_inlier_share_ok", kTracking,
        "a frame of whose matches a smaller share agrees is degraded",
-       &odometry->min_inlier_share_ok},
+       &tracking->min_inlier_share_ok},
       {"min_reference_share", kTracking,
        "a new reference is taken if a smaller share of its features agrees",
        &odometry->min_reference_share},
@@ -179,9 +182,9 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
       {"prior_sigma_rotation", kTracking,
        "standard deviation of the motion between two frames (rad), for costs "
        "with a prior",
-       &odometry->prior_sigma_rotation},
+       &tracking->prior_sigma_rotation},
       {"prior_sigma_translation", kTracking, "the same (m)",
-       &odometry->prior_sigma_translation},
+       &tracking->prior_sigma_translation},
   };
 }
 

@@ -18,12 +18,12 @@ Estimator MakeEstimator(const EstimatorSettings& settings) {
 }
 
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
-  Require(settings.odometry.Check());
   FrontendOptions features = settings.features;
   features.camera = camera;
-  return Odometry(settings.odometry, camera,
-                  MakeFrontend(settings.frontend, features),
-                  MakeEstimator(settings.estimator));
+  return Odometry(settings.odometry,
+                  MakeTracker(settings.tracker,
+                              {settings.tracking, features, settings.frontend,
+                               MakeEstimator(settings.estimator)}));
 }
 
 }  // namespace rgbd_pose

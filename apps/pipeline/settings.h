@@ -7,6 +7,7 @@
 #include "costs/cost_factory.h"
 #include "frontend/features/frontend.h"
 #include "frontend/tracking/odometry.h"
+#include "frontend/tracking/tracker_factory.h"
 
 namespace rgbd_pose {
 
@@ -23,6 +24,8 @@ struct OdometrySettings {
   EstimatorSettings estimator;
   std::string frontend = "patch";  // where matches come from
   FrontendOptions features;        // the camera aside
+  std::string tracker = "features";
+  TrackerOptions tracking;
   OdometryOptions odometry;
 };
 

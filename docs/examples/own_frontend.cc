@@ -22,8 +22,7 @@ struct Flow final : rgbd_pose::PointFrontend {
 int main() {
   const rgbd_pose::SyntheticDataset room({"room", "pan_tilt", 60});  // or yours
   const rgbd_pose::FrontendOptions options{room.camera().camera};
-  rgbd_pose::Odometry odometry({}, options.camera,
-                               std::make_unique<Flow>(options),
+  rgbd_pose::Odometry odometry({}, std::make_unique<Flow>(options),
                                {{}, rgbd_pose::MakeRobustCosts()});
   for (int i = 0; i < room.size(); ++i) odometry.Track(room.Read(i));
   std::printf("error %.4f m\n", odometry.WorldFromCam().translation.norm());

@@ -33,13 +33,6 @@ struct DescribedFrame final : PreparedFrame {
 
 }  // namespace
 
-DescriptorFrontend::DescriptorFrontend(const FrontendOptions& options,
-                                       const DescriptorMethod& method)
-    : options_(options),
-      method_(method),
-      depth_options_{options.depth_noise, options.min_depth,
-                     options.max_depth} {}
-
 std::unique_ptr<const PreparedFrame> DescriptorFrontend::Prepare(
     const Frame& frame) const {
   auto prepared = std::make_unique<DescribedFrame>(frame);

@@ -5,7 +5,6 @@
 
 #include "frontend/features/descriptor_method.h"
 #include "frontend/features/frontend.h"
-#include "frontend/image/depth_lookup.h"
 
 namespace rgbd_pose {
 
@@ -17,7 +16,8 @@ class DescriptorFrontend final : public Frontend {
  public:
   // `method` must outlive the frontend.
   DescriptorFrontend(const FrontendOptions& options,
-                     const DescriptorMethod& method);
+                     const DescriptorMethod& method)
+      : Frontend(options), method_(method) {}
 
   bool finds_all_in_view() const override { return false; }
   std::unique_ptr<const PreparedFrame> Prepare(
@@ -31,9 +31,7 @@ class DescriptorFrontend final : public Frontend {
   Observation ObserveKeypoint(const Frame& frame,
                               const cv::KeyPoint& keypoint) const;
 
-  FrontendOptions options_;
   const DescriptorMethod& method_;
-  DepthLookupOptions depth_options_;
 };
 
 }  // namespace rgbd_pose

@@ -9,6 +9,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_noise.h"
 #include "core/geometry/rigid3.h"
+#include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
 
 namespace rgbd_pose {
@@ -26,6 +27,11 @@ struct FrontendOptions {
   // Depths beyond these limits (m) are not used.
   double min_depth = 0.3;
   double max_depth = 8.0;
+
+  // How depths are looked up.
+  DepthLookupOptions DepthLookup() const {
+    return {depth_noise, min_depth, max_depth};
+  }
 
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
@@ -63,7 +69,13 @@ struct FeatureMatches {
 // thread.
 class Frontend {
  public:
+  // The options must be sound (see Check).
+  explicit Frontend(const FrontendOptions& options)
+      : options_(options), depth_options_(options.DepthLookup()) {}
   virtual ~Frontend() = default;
+
+  // Those it was made with.
+  const FrontendOptions& options() const { return options_; }
 
   // Whether it should find every feature that is in view and not hidden.
   // Detectors need not fire in the same place twice.
@@ -85,6 +97,10 @@ class Frontend {
   virtual void Match(const FeatureSet& reference, const PreparedFrame& frame,
                      const Rigid3d& cur_from_ref_guess,
                      FeatureMatches* matches) = 0;
+
+ protected:
+  const FrontendOptions options_;
+  const DepthLookupOptions depth_options_;
 };
 
 // The names of all frontends.

@@ -113,11 +113,6 @@ AlignedPatch FindPatch(const PatchStack& patch,
 
 }  // namespace
 
-PatchFrontend::PatchFrontend(const FrontendOptions& options)
-    : options_(options),
-      depth_options_{options.depth_noise, options.min_depth,
-                     options.max_depth} {}
-
 std::unique_ptr<const PreparedFrame> PatchFrontend::Prepare(
     const Frame& frame) const {
   return std::make_unique<PatchFrame>(frame);

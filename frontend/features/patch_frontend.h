@@ -1,7 +1,6 @@
 #pragma once
 
 #include "frontend/features/frontend.h"
-#include "frontend/image/depth_lookup.h"
 
 namespace rgbd_pose {
 
@@ -14,7 +13,7 @@ class PatchFrontend final : public Frontend {
  public:
   static constexpr char kName[] = "patch";
 
-  explicit PatchFrontend(const FrontendOptions& options);
+  using Frontend::Frontend;
 
   std::unique_ptr<const PreparedFrame> Prepare(
       const Frame& frame) const override;
@@ -22,10 +21,6 @@ class PatchFrontend final : public Frontend {
   void Match(const FeatureSet& reference, const PreparedFrame& frame,
              const Rigid3d& cur_from_ref_guess,
              FeatureMatches* matches) override;
-
- private:
-  FrontendOptions options_;
-  DepthLookupOptions depth_options_;
 };
 
 }  // namespace rgbd_pose

@@ -19,11 +19,6 @@ struct PointFeatures : FeatureSet {
 
 }  // namespace
 
-PointFrontend::PointFrontend(const FrontendOptions& options)
-    : options_(options),
-      depth_options_{options.depth_noise, options.min_depth,
-                     options.max_depth} {}
-
 std::unique_ptr<FeatureSet> PointFrontend::Detect(const PreparedFrame& frame) {
   auto features = std::make_unique<PointFeatures>();
   Points points;

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "frontend/features/frontend.h"
-#include "frontend/image/depth_lookup.h"
 
 namespace rgbd_pose {
 
@@ -14,8 +13,7 @@ namespace rgbd_pose {
 // distortion are seen to here.
 class PointFrontend : public Frontend {
  public:
-  // The options must be sound (see Check).
-  explicit PointFrontend(const FrontendOptions& options);
+  using Frontend::Frontend;
 
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) final;
   void Match(const FeatureSet& reference, const PreparedFrame& frame,
@@ -42,14 +40,9 @@ class PointFrontend : public Frontend {
     return Prepare(frame);
   }
 
-  // Those it was made with.
-  const FrontendOptions& options() const { return options_; }
-
  private:
   Observation ObserveAt(const Frame& frame, const cv::Point2f& point) const;
 
-  FrontendOptions options_;
-  DepthLookupOptions depth_options_;
   Points moved_;
   Found found_;
 };

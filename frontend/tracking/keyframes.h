@@ -3,10 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/features/frontend.h"
-#include "frontend/tracking/feature_trust.h"
+#include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
 
@@ -15,8 +13,7 @@ struct Keyframe {
   int index = 0;    // of the frame
   int segment = 0;  // see TrackedFrame
   Rigid3d world_from_cam;
-  std::unique_ptr<FeatureSet> features;
-  FeatureTrust trust;
+  std::unique_ptr<Reference> reference;
 };
 
 // The latest keyframes, for when the view returns to one of them. Bounded: the
@@ -26,24 +23,20 @@ class Keyframes {
   // So many are kept: some seconds of fast motion; about 0.5 MB each.
   static constexpr size_t kMaxKeyframes = 20;
 
-  explicit Keyframes(const Camera& camera) : camera_(camera) {}
-
   // The keyframe stays where it is as long as it is kept.
   Keyframe* Add(Keyframe keyframe);
 
   // The keyframe of that frame index, or null if it is not kept.
   Keyframe* Find(int index) const;
 
-  // The keyframe of that segment whose features a camera at `world_from_cam`
-  // should see nearest to where they were; null if none has
-  // `min_share` of them in view within `max_flow_px` on average. `except` is
-  // left out.
+  // The keyframe of that segment whose view a camera at `world_from_cam` should
+  // see nearest to where it was; null if none has `min_share` of it in view
+  // within `max_flow_px` on average. `except` is left out.
   Keyframe* FindNearest(const Rigid3d& world_from_cam, int segment,
                         double min_share, double max_flow_px,
                         const Keyframe* except) const;
 
  private:
-  Camera camera_;
   std::vector<std::unique_ptr<Keyframe>> keyframes_;  // the oldest first
 };
 

@@ -1,29 +1,13 @@
 #include "frontend/tracking/odometry.h"
 
-#include <chrono>
-#include <cmath>
 #include <utility>
+
+#include "core/util/input_error.h"
+#include "core/util/stage_timer.h"
+#include "frontend/tracking/feature_tracker.h"
 
 namespace rgbd_pose {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// Adds the time it lives to a sum.
-class StageTimer {
- public:
-  explicit StageTimer(double* sum_ms) : sum_ms_(sum_ms) {}
-  ~StageTimer() {
-    *sum_ms_ += std::chrono::duration<double, std::milli>(Clock::now() - start_)
-                    .count();
-  }
-  StageTimer(const StageTimer&) = delete;
-  StageTimer& operator=(const StageTimer&) = delete;
-
- private:
-  double* sum_ms_;
-  Clock::time_point start_ = Clock::now();
-};
 
 // An earlier reference is taken up again if so much of it is in view, near to
 // where it was (as a share of max_flow_px): otherwise it would have to be left
@@ -31,38 +15,36 @@ class StageTimer {
 constexpr double kMinReturnShare = 0.7;
 constexpr double kMaxReturnFlow = 0.5;
 
-std::string OnlyInliers(int inliers) {
-  return "only " + std::to_string(inliers) + " inliers";
-}
-
 }  // namespace
 
 std::string OdometryOptions::Check() const {
-  if (min_inliers < 3) return "min_inliers must be at least 3";
-  if (min_inliers_ok < min_inliers) {
-    return "min_inliers_ok must not be below min_inliers";
+  if (!(min_reference_share <= 1.0)) {
+    return "min_reference_share must not be above 1";
   }
   if (!(max_flow_px > 0.0)) return "max_flow_px must be positive";
-  if (!(prior_sigma_rotation > 0.0) || !(prior_sigma_translation > 0.0)) {
-    return "the prior's standard deviations must be positive";
-  }
   if (!(new_segment_after >= 0.0)) {
     return "new_segment_after must not be negative";
   }
   return "";
 }
 
-Odometry::Odometry(const OdometryOptions& options, const Camera& camera,
-                   std::unique_ptr<Frontend> frontend, Estimator estimator)
+Odometry::Odometry(const OdometryOptions& options,
+                   std::unique_ptr<Tracker> tracker)
     : options_(options),
-      frontend_(std::move(frontend)),
-      estimator_(std::move(estimator)),
-      keyframes_(camera),
-      relocaliser_(camera),
-      found_{Correspondences(camera), {}},
-      doubted_(found_),
-      other_found_(found_),
-      other_doubted_(found_) {}
+      tracker_(std::move(tracker)),
+      relocaliser_(tracker_->images().camera),
+      tracked_(tracker_->images().camera),
+      other_(tracked_) {
+  const std::string error = options.Check();
+  if (!error.empty()) throw InputError("odometry: " + error);
+}
+
+Odometry::Odometry(const OdometryOptions& options,
+                   std::unique_ptr<Frontend> frontend, Estimator estimator,
+                   const TrackerOptions& tracker_options)
+    : Odometry(options, std::make_unique<FeatureTracker>(std::move(frontend),
+                                                         std::move(estimator),
+                                                         tracker_options)) {}
 
 TrackedFrame Odometry::Track(const Frame& frame,
                              const Rigid3d* cur_from_prev_guess) {
@@ -122,7 +104,7 @@ bool Odometry::Follow(const PreparedFrame& frame,
   if (!tracked || (is_lost_ && result->status != TrackingStatus::kOk)) {
     return false;
   }
-  cur_from_ref_ = estimate_.cur_from_prev;
+  cur_from_ref_ = tracked_.estimate.cur_from_prev;
   cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
   Accept(frame, result);
   return true;
@@ -143,7 +125,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   }
   reference_ = keyframe;
   segment_ = keyframe->segment;
-  cur_from_ref_ = estimate_.cur_from_prev;
+  cur_from_ref_ = tracked_.estimate.cur_from_prev;
   cur_from_prev_ = Rigid3d();
   result->relocalised = true;
   Accept(frame, result);
@@ -174,70 +156,33 @@ void Odometry::Lose(const PreparedFrame& frame, TrackedFrame* result) {
   result->reason = "a new segment: the motion since it was lost is unknown";
 }
 
-bool Odometry::Try(const PreparedFrame& frame, const Keyframe& reference,
+bool Odometry::Try(const PreparedFrame& frame, const Keyframe& keyframe,
                    const Rigid3d& cur_from_ref_guess, TrackedFrame* result) {
-  {
-    const StageTimer timer(&result->match_ms);
-    frontend_->Match(*reference.features, frame, cur_from_ref_guess, &found_);
-    reference.trust.Split(&found_, &doubted_);
-  }
-  Estimate(cur_from_ref_guess);
-  const int inliers = estimate_.num_inliers;
-  result->reference = reference.index;
-  result->solve_ms += estimate_.solve_ms;
-  result->matches = static_cast<int>(found_.matches.size());
-  result->inliers = inliers;
-  result->iterations += estimate_.iterations;
-  result->sigma = estimate_.sigma;
-  result->status = TrackingStatus::kLost;
-  result->reason = estimate_.reason;
-  const bool usable = estimate_.status == EstimateStatus::kOk ||
-                      estimate_.status == EstimateStatus::kNotConverged;
-  if (!usable) return false;
-  if (inliers < options_.min_inliers) {
-    result->reason = OnlyInliers(inliers);
-    return false;
-  }
-  result->status =
-      estimate_.ok() ? TrackingStatus::kOk : TrackingStatus::kDegraded;
-  if (inliers < options_.min_inliers_ok) {
-    result->status = TrackingStatus::kDegraded;
-    result->reason = OnlyInliers(inliers);
-  } else if (inliers < options_.min_inlier_share_ok * estimate_.num_used) {
-    result->status = TrackingStatus::kDegraded;
-    result->reason = "only " + std::to_string(inliers) + " of " +
-                     std::to_string(estimate_.num_used) + " matches agree";
-  }
-  return true;
-}
-
-void Odometry::Estimate(const Rigid3d& cur_from_ref_guess) {
-  Rigid3d guess = cur_from_ref_guess;
-  if (options_.initial_guess != nullptr) {
-    guess = options_.initial_guess->find(found_.matches).value_or(guess);
-  }
-  MotionPrior prior;
-  prior.cur_from_prev = cur_from_ref_guess;
-  const double turn = options_.prior_sigma_rotation;
-  const double shift = options_.prior_sigma_translation;
-  prior.covariance.diagonal() << turn * turn, turn * turn, turn * turn,
-      shift * shift, shift * shift, shift * shift;
-  estimator_.Estimate(found_.matches, guess, &prior, &estimate_);
+  tracker_->Track(*keyframe.reference, frame, cur_from_ref_guess, &tracked_);
+  const MotionEstimate& estimate = tracked_.estimate;
+  result->status = tracked_.status;
+  result->reason = tracked_.reason;
+  result->reference = keyframe.index;
+  result->matches = static_cast<int>(tracked_.matches.matches.size());
+  result->inliers = estimate.num_inliers;
+  result->iterations += estimate.iterations;
+  result->sigma = estimate.sigma;
+  result->match_ms += tracked_.match_ms;
+  result->solve_ms += estimate.solve_ms;
+  return tracked_.status != TrackingStatus::kLost;
 }
 
 void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
-  reference_->trust.Learn(doubted_, cur_from_ref_);
+  tracker_->Believe(reference_->reference.get(), &tracked_);
   if (NeedsNewReference()) ChangeReference(frame, result);
 }
 
 bool Odometry::NeedsNewReference() const {
-  const int inliers = estimate_.num_inliers;
-  return inliers <
-             options_.min_reference_share * reference_->trust.num_trusted() ||
-         inliers < options_.min_inliers_ok ||
-         MeanInlierFlowPx() > options_.max_flow_px;
+  return tracked_.is_scarce ||
+         tracked_.overlap.share < options_.min_reference_share ||
+         tracked_.overlap.flow_px > options_.max_flow_px;
 }
 
 void Odometry::ChangeReference(const PreparedFrame& frame,
@@ -257,68 +202,40 @@ bool Odometry::ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
                         const Rigid3d& cur_from_earlier_guess,
                         TrackedFrame* result) {
   TrackedFrame attempt = *result;
-  SwapAttempts();
-  std::swap(reference_, earlier);
-  if (Try(frame, *reference_, cur_from_earlier_guess, &attempt) &&
+  std::swap(tracked_, other_);
+  if (Try(frame, *earlier, cur_from_earlier_guess, &attempt) &&
       attempt.status == TrackingStatus::kOk && !NeedsNewReference()) {
-    cur_from_ref_ = estimate_.cur_from_prev;
+    reference_ = earlier;
+    cur_from_ref_ = tracked_.estimate.cur_from_prev;
     *result = attempt;
     return true;
   }
-  SwapAttempts();
-  std::swap(reference_, earlier);
+  std::swap(tracked_, other_);
   result->match_ms = attempt.match_ms;
   result->solve_ms = attempt.solve_ms;
   return false;
-}
-
-void Odometry::SwapAttempts() {
-  std::swap(found_, other_found_);
-  std::swap(doubted_, other_doubted_);
-  std::swap(estimate_, other_estimate_);
 }
 
 bool Odometry::TakeReference(const PreparedFrame& frame,
                              const Rigid3d& world_from_cam,
                              TrackedFrame* result) {
   const StageTimer timer(&result->reference_ms);
-  std::unique_ptr<FeatureSet> features = frontend_->Detect(frame);
-  // Trust is passed on from reference to reference as long as they are tracked;
-  // where hardly any feature would have it the doubt itself is in doubt.
-  const bool was_tracked =
-      reference_ != nullptr && result->status != TrackingStatus::kLost;
-  const FeatureTrust trust =
-      was_tracked ? FeatureTrust(*reference_->features, found_, doubted_,
-                                 estimate_, frontend_->finds_all_in_view(),
-                                 *features, 2 * options_.min_inliers_ok)
-                  : FeatureTrust(features->observations.size());
-  const size_t count = features->observations.size();
-  if (count < static_cast<size_t>(options_.min_inliers)) {
-    if (result->status == TrackingStatus::kLost) {
-      result->reason = "only " + std::to_string(count) +
-                       " features with depth to start from";
-    }
+  const bool is_lost = result->status == TrackingStatus::kLost;
+  const bool was_tracked = reference_ != nullptr && !is_lost;
+  std::string why_not;
+  std::unique_ptr<Reference> reference = tracker_->MakeReference(
+      frame, was_tracked ? reference_->reference.get() : nullptr,
+      was_tracked ? &tracked_ : nullptr, &why_not);
+  if (reference == nullptr) {
+    if (is_lost) result->reason = why_not;
     return false;
   }
   reference_ = keyframes_.Add(
-      {frame.index, segment_, world_from_cam, std::move(features), trust});
+      {frame.index, segment_, world_from_cam, std::move(reference)});
   relocaliser_.Add(frame, frame.index);
   cur_from_ref_ = Rigid3d();
   result->is_reference = true;
   return true;
-}
-
-double Odometry::MeanInlierFlowPx() const {
-  double sum = 0.0;
-  int count = 0;
-  for (size_t i = 0; i < found_.matches.size(); ++i) {
-    if (!estimate_.is_inlier[i]) continue;
-    const Observation& prev = found_.matches[i].prev;
-    const Observation& cur = found_.matches[i].cur;
-    sum += std::hypot(cur.u - prev.u, cur.v - prev.v);
-    ++count;
-  }
-  return count > 0 ? sum / count : 0.0;
 }
 
 Rigid3d Odometry::WorldFromCam() const {

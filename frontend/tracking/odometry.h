@@ -5,11 +5,11 @@
 
 #include "core/estimation/estimator.h"
 #include "core/geometry/rigid3.h"
-#include "core/initial_guess/initial_guess.h"
 #include "frontend/features/frontend.h"
 #include "frontend/places/relocaliser.h"
 #include "frontend/tracking/keyframes.h"
 #include "frontend/tracking/tracked_frame.h"
+#include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
 
@@ -23,29 +23,16 @@ enum class LostPolicy {
   kNewSegment,  // as kHold, and after a while a new segment starts
 };
 
-// When to believe a motion, change the reference, give up.
+// When to change the reference, where to look, when to give up.
 struct OdometryOptions {
-  // A frame is lost with fewer inliers, degraded with fewer than the second.
-  int min_inliers = 15;
-  int min_inliers_ok = 40;
-
-  // A frame is degraded if a smaller share of its matches agrees.
-  double min_inlier_share_ok = 0.35;
-
-  // A new reference is taken when fewer of the reference's features agree, or
-  // when the inliers have moved further than this on average.
+  // A new reference is taken when less of the reference agrees, or when that
+  // has moved further than this on average.
   double min_reference_share = 0.5;
   double max_flow_px = 60.0;
 
-  // Where the solver starts: the last pose, moved on at constant velocity if
-  // asked for, unless `initial_guess` finds a motion in the matches themselves.
+  // What tracking starts from: the last pose, moved on at constant velocity if
+  // asked for.
   bool predict_velocity = false;
-  const InitialGuess* initial_guess = nullptr;
-
-  // Standard deviations of the motion between two frames around that start,
-  // for costs with a prior.
-  double prior_sigma_rotation = 0.05;     // rad
-  double prior_sigma_translation = 0.05;  // m
 
   // What becomes of frames whose motion is not found.
   LostPolicy on_lost = LostPolicy::kNewSegment;
@@ -62,9 +49,12 @@ struct OdometryOptions {
 // Every frame gets a result.
 class Odometry {
  public:
-  // The options must be sound (see Check), the frontend made for that camera.
-  Odometry(const OdometryOptions& options, const Camera& camera,
-           std::unique_ptr<Frontend> frontend, Estimator estimator);
+  // Throws InputError for options that are not sound (see Check).
+  Odometry(const OdometryOptions& options, std::unique_ptr<Tracker> tracker);
+
+  // By features: with a FeatureTracker.
+  Odometry(const OdometryOptions& options, std::unique_ptr<Frontend> frontend,
+           Estimator estimator, const TrackerOptions& tracker_options = {});
 
   // `cur_from_prev_guess`: the motion since the frame before, if something else
   // tells (wheels, an inertial sensor); tried first, and believed only as far
@@ -74,14 +64,14 @@ class Odometry {
                      const Rigid3d* cur_from_prev_guess = nullptr);
 
   // The same for a frame that Prepare has made, here or in an odometry with the
-  // same frontend.
+  // same tracker and frontend.
   TrackedFrame Track(const PreparedFrame& frame,
                      const Rigid3d* cur_from_prev_guess = nullptr);
 
   // Works out what does not depend on other frames: may be done ahead, from any
   // thread, as long as this lives.
   std::unique_ptr<const PreparedFrame> Prepare(const Frame& frame) const {
-    return frontend_->Prepare(frame);
+    return tracker_->Prepare(frame);
   }
 
   // The pose after the last frame, found or not (see LostPolicy).
@@ -89,8 +79,8 @@ class Odometry {
 
   // The matches that the last frame was tracked by (prev: its reference) and
   // what the estimator made of them.
-  const FeatureMatches& last_matches() const { return found_; }
-  const MotionEstimate& last_estimate() const { return estimate_; }
+  const FeatureMatches& last_matches() const { return tracked_.matches; }
+  const MotionEstimate& last_estimate() const { return tracked_.estimate; }
 
  private:
   void Start(const PreparedFrame& frame, TrackedFrame* result);
@@ -99,13 +89,11 @@ class Odometry {
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
   void Lose(const PreparedFrame& frame, TrackedFrame* result);
 
-  // Tries to track against a reference from one guess; true if the result,
-  // in estimate_, is a pose.
-  bool Try(const PreparedFrame& frame, const Keyframe& reference,
+  // Tries to track against a keyframe from one guess; true if the result, in
+  // tracked_, is a pose.
+  bool Try(const PreparedFrame& frame, const Keyframe& keyframe,
            const Rigid3d& cur_from_ref_guess, TrackedFrame* result);
-  // Fills estimate_ from found_.
-  void Estimate(const Rigid3d& cur_from_ref_guess);
-  // What follows from a frame tracked against reference_ as in estimate_.
+  // What follows from a frame tracked against reference_ as in tracked_.
   void Accept(const PreparedFrame& frame, TrackedFrame* result);
   void ChangeReference(const PreparedFrame& frame, TrackedFrame* result);
   bool NeedsNewReference() const;
@@ -113,24 +101,16 @@ class Odometry {
   // if it does not serve.
   bool ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
                 const Rigid3d& cur_from_earlier_guess, TrackedFrame* result);
-  // Sets what the last Try has made aside, or takes it up again.
-  void SwapAttempts();
-  // False, and nothing has changed, if the frame has too few features.
+  // False, and nothing has changed, if the frame shows too little.
   bool TakeReference(const PreparedFrame& frame, const Rigid3d& world_from_cam,
                      TrackedFrame* result);
-  double MeanInlierFlowPx() const;
 
   OdometryOptions options_;
-  std::unique_ptr<Frontend> frontend_;
-  Estimator estimator_;
+  std::unique_ptr<Tracker> tracker_;
   Keyframes keyframes_;
   Relocaliser relocaliser_;
-  FeatureMatches found_;
-  MotionEstimate estimate_;
-  FeatureMatches doubted_;      // of the last frame, see FeatureTrust
-  FeatureMatches other_found_;  // see SwapAttempts
-  FeatureMatches other_doubted_;
-  MotionEstimate other_estimate_;
+  Tracked tracked_;                // the last frame
+  Tracked other_;                  // the same, see ReturnTo
   Keyframe* reference_ = nullptr;  // null: none yet
   Rigid3d cur_from_ref_;           // of the last frame
   Rigid3d cur_from_prev_;          // between the last two frames

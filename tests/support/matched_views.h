@@ -76,7 +76,7 @@ class MatchedViews {
   // Takes the frontend. `max_error`: of the last position, m.
   void ExpectTracksAlongItsAxes(double max_error) {
     Odometry odometry(
-        OdometryOptions(), dataset_.camera().camera, std::move(frontend_),
+        OdometryOptions(), std::move(frontend_),
         Estimator(EstimatorOptions(),
                   MakeRobustCosts("bidirectional_point", "tukey")));
     constexpr int kLast = 19;

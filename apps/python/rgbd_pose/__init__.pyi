@@ -206,6 +206,7 @@ class Odometry:
         max_features: int = 600,
         min_depth: float = 0.3,
         max_depth: float = 8.0,
+        tracker: str = "features",
         initial_guess: str = "last",
         on_lost: str = "new_segment",
         new_segment_after: float = 1.5,

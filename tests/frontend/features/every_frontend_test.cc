@@ -49,7 +49,7 @@ TEST_P(EveryFrontendTest, KeepsNothingOfTheCallersImages) {
   frontend.camera = camera.camera().camera;
   std::vector<Odometry> odometries;  // of new frames, of reused ones
   for (int i = 0; i < 2; ++i) {
-    odometries.emplace_back(OdometryOptions(), frontend.camera,
+    odometries.emplace_back(OdometryOptions(),
                             MakeFrontend(GetParam(), frontend),
                             Estimator({}, MakeRobustCosts()));
   }

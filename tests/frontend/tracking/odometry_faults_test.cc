@@ -36,7 +36,7 @@ constexpr int kRecoveryFrames = 5;
 Odometry MakeOdometry(const Camera& camera) {
   FrontendOptions frontend;
   frontend.camera = camera;
-  return Odometry(OdometryOptions(), camera, MakeFrontend("patch", frontend),
+  return Odometry(OdometryOptions(), MakeFrontend("patch", frontend),
                   Estimator(EstimatorOptions(),
                             MakeRobustCosts("bidirectional_point", "tukey")));
 }

@@ -25,7 +25,7 @@ Odometry MakeOdometry(const Camera& camera, const std::string& loss,
                       const OdometryOptions& options = {}) {
   FrontendOptions frontend;
   frontend.camera = camera;
-  return Odometry(options, camera, MakeFrontend("patch", frontend),
+  return Odometry(options, MakeFrontend("patch", frontend),
                   Estimator(EstimatorOptions(),
                             MakeRobustCosts("bidirectional_point", loss)));
 }

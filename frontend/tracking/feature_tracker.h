@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/estimation/estimator.h"
+#include "frontend/features/frontend.h"
+#include "frontend/tracking/feature_trust.h"
+#include "frontend/tracking/tracker.h"
+
+namespace rgbd_pose {
+
+// The features of a frame, and which of them have a say.
+class FeatureReference final : public Reference {
+ public:
+  FeatureReference(const Camera& camera, std::unique_ptr<FeatureSet> features,
+                   FeatureTrust trust);
+
+  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override;
+
+  const FeatureSet& features() const { return *features_; }
+  FeatureTrust trust;
+
+ private:
+  Camera camera_;
+  std::unique_ptr<FeatureSet> features_;
+};
+
+// Finds the features of the reference again (Frontend) and estimates the motion
+// from the matches.
+class FeatureTracker final : public Tracker {
+ public:
+  static constexpr char kName[] = "features";
+
+  // Throws InputError for options that are not sound (see Check).
+  FeatureTracker(std::unique_ptr<Frontend> frontend, Estimator estimator,
+                 const TrackerOptions& options = {});
+
+  std::unique_ptr<const PreparedFrame> Prepare(
+      const Frame& frame) const override {
+    return frontend_->Prepare(frame);
+  }
+  std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
+                                           const Reference* last,
+                                           const Tracked* tracked,
+                                           std::string* why_not) override;
+  void Track(const Reference& reference, const PreparedFrame& frame,
+             const Rigid3d& cur_from_ref_guess, Tracked* tracked) override;
+  void Believe(Reference* reference, Tracked* tracked) override;
+  const FrontendOptions& images() const override {
+    return frontend_->options();
+  }
+
+ private:
+  void Estimate(const Rigid3d& cur_from_ref_guess, Tracked* tracked);
+  // Sets status and reason from the estimate.
+  void Judge(Tracked* tracked) const;
+
+  std::unique_ptr<Frontend> frontend_;
+  Estimator estimator_;
+  TrackerOptions options_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,19 @@
+#include "frontend/tracking/tracker.h"
+
+namespace rgbd_pose {
+
+std::string TrackerOptions::Check() const {
+  if (min_inliers < 3) return "min_inliers must be at least 3";
+  if (min_inliers_ok < min_inliers) {
+    return "min_inliers_ok must not be below min_inliers";
+  }
+  if (!(min_inlier_share_ok <= 1.0)) {
+    return "min_inlier_share_ok must not be above 1";
+  }
+  if (!(prior_sigma_rotation > 0.0) || !(prior_sigma_translation > 0.0)) {
+    return "the prior's standard deviations must be positive";
+  }
+  return "";
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/estimation/motion_estimate.h"
+#include "core/geometry/rigid3.h"
+#include "core/initial_guess/initial_guess.h"
+#include "frontend/features/frontend.h"
+#include "frontend/tracking/tracked_frame.h"
+
+namespace rgbd_pose {
+
+// What all trackers share.
+struct TrackerOptions {
+  // A frame is lost with fewer inliers, degraded with fewer than the second.
+  int min_inliers = 15;
+  int min_inliers_ok = 40;
+
+  // A frame is degraded if a smaller share of its matches agrees.
+  double min_inlier_share_ok = 0.35;
+
+  // Where the solver starts unless null: a motion found in the matches
+  // themselves, instead of the guess.
+  const InitialGuess* initial_guess = nullptr;
+
+  // Standard deviations of the motion between two frames around the guess, for
+  // costs with a prior.
+  double prior_sigma_rotation = 0.05;     // rad
+  double prior_sigma_translation = 0.05;  // m
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+// How much of one view another one shows.
+struct Overlap {
+  double share = 0.0;    // 0 to 1
+  double flow_px = 0.0;  // mean distance to where it was, px
+};
+
+// What a tracker keeps of a frame that others are tracked against, and what it
+// has learnt of it since; of the frame's images, copies.
+class Reference {
+ public:
+  virtual ~Reference() = default;
+
+  // How much of it a camera there should see.
+  virtual Overlap SeenFrom(const Rigid3d& cur_from_ref) const = 0;
+};
+
+// How a frame was tracked against a reference.
+struct Tracked {
+  explicit Tracked(const Camera& camera)
+      : matches{Correspondences(camera), {}}, doubted(matches) {}
+
+  TrackingStatus status = TrackingStatus::kLost;
+  std::string reason;  // of the status, in words; empty if ok
+
+  // The motion with its covariance, counts and time. prev: the reference.
+  MotionEstimate estimate;
+
+  // What of the reference was found in the frame and agrees with the motion.
+  Overlap overlap;
+
+  // That is so little that the next frames need another reference, whatever
+  // share it is.
+  bool is_scarce = false;
+
+  double match_ms = 0.0;  // time of all but the estimation
+
+  // Of trackers that match features: what the estimate was made of, and what
+  // had no say in it (FeatureTrust).
+  FeatureMatches matches;
+  FeatureMatches doubted;
+};
+
+// Finds the motion between a reference and a frame. References and prepared
+// frames are for trackers of the type that made them. One object serves one
+// thread.
+class Tracker {
+ public:
+  virtual ~Tracker() = default;
+
+  // Works out what does not depend on other frames. May be called from several
+  // threads.
+  virtual std::unique_ptr<const PreparedFrame> Prepare(
+      const Frame& frame) const = 0;
+
+  // The frame as a reference for others; null, and why, if it shows too little.
+  // Where the frame itself was tracked, `last` and `tracked` say against what
+  // and how; both are null otherwise.
+  virtual std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
+                                                   const Reference* last,
+                                                   const Tracked* tracked,
+                                                   std::string* why_not) = 0;
+
+  // Fills `tracked` (of the camera of images()), whose memory is used again.
+  virtual void Track(const Reference& reference, const PreparedFrame& frame,
+                     const Rigid3d& cur_from_ref_guess, Tracked* tracked) = 0;
+
+  // The motion is believed and gone on from: the reference may learn from it,
+  // and `tracked` say what is shared in this light.
+  virtual void Believe(Reference* /*reference*/, Tracked* /*tracked*/) {}
+
+  // The camera and how its depths are to be taken.
+  virtual const FrontendOptions& images() const = 0;
+};
+
+}  // namespace rgbd_pose

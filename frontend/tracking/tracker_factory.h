@@ -1,0 +1,29 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/estimation/estimator.h"
+#include "frontend/features/frontend.h"
+#include "frontend/tracking/tracker.h"
+
+namespace rgbd_pose {
+
+// What trackers are made of; each takes what it needs.
+struct TrackerParts {
+  TrackerOptions options;
+  FrontendOptions images;
+  std::string frontend = "patch";  // where features come from
+  Estimator estimator;
+};
+
+// The names of all trackers.
+std::vector<std::string> TrackerNames();
+
+// The tracker of that name. Throws InputError listing the names there are, or
+// saying what is wrong with the options.
+std::unique_ptr<Tracker> MakeTracker(std::string_view name, TrackerParts parts);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,127 @@
+#include "frontend/tracking/feature_tracker.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+#include <string>
+#include <utility>
+
+#include "core/util/input_error.h"
+#include "costs/cost_factory.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/tracker_factory.h"
+#include "tests/support/expect_input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+const Camera kCamera = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
+
+// 15 x 11 features on a wall at 2 m.
+FeatureReference Wall() {
+  auto features = std::make_unique<FeatureSet>();
+  for (int v = 40; v < 480; v += 40) {
+    for (int u = 40; u < 640; u += 40) {
+      features->observations.push_back({1.0 * u, 1.0 * v, 2.0, 0.5, 0.01});
+    }
+  }
+  const FeatureTrust trust(features->observations.size());
+  return FeatureReference(kCamera, std::move(features), trust);
+}
+
+TEST(FeatureReferenceTest, SaysWhatAnotherCameraSeesOfIt) {
+  const FeatureReference wall = Wall();
+  // 525 px / 2 m: a metre is 262.5 px, and 9 of the 15 columns are left.
+  const Overlap aside =
+      wall.SeenFrom(Rigid3d(Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0}));
+  EXPECT_NEAR(aside.share, 9.0 / 15.0, 1e-12);
+  EXPECT_NEAR(aside.flow_px, 262.5, 1e-9);
+  // Behind the camera nothing is in view.
+  const Rigid3d turned(
+      Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY())),
+      Eigen::Vector3d::Zero());
+  EXPECT_EQ(wall.SeenFrom(turned).share, 0.0);
+}
+
+class TrackerTest : public ::testing::TestWithParam<std::string> {
+ protected:
+  std::unique_ptr<Tracker> Make(const TrackerOptions& options = {}) const {
+    return MakeTracker(GetParam(), {options,
+                                    {room_.camera().camera},
+                                    "patch",
+                                    Estimator({}, MakeRobustCosts())});
+  }
+
+  SyntheticDataset room_{SyntheticOptions()};
+};
+
+// What the odometry relies on, whatever the tracker works by.
+TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
+  const auto tracker = Make();
+  std::string why_not;
+  const auto reference = tracker->MakeReference(
+      *tracker->Prepare(room_.Read(0)), nullptr, nullptr, &why_not);
+  ASSERT_NE(reference, nullptr) << why_not;
+  Tracked tracked(tracker->images().camera);
+  double share = 1.0, flow = 0.0;
+  for (const int frame : {5, 15}) {
+    tracker->Track(*reference, *tracker->Prepare(room_.Read(frame)), Rigid3d(),
+                   &tracked);
+    ASSERT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
+    const Rigid3d truth =
+        room_.WorldFromCam(frame).Inverse() * room_.WorldFromCam(0);
+    const MotionEstimate& estimate = tracked.estimate;
+    EXPECT_LE((estimate.cur_from_prev * truth.Inverse()).translation.norm(),
+              0.003);
+    EXPECT_GT(estimate.covariance.trace(), 0.0);
+    EXPECT_LT(tracked.overlap.share, share);
+    EXPECT_GT(tracked.overlap.flow_px, flow);
+    share = tracked.overlap.share;
+    flow = tracked.overlap.flow_px;
+    // What is measured is near to what depth and motion let expect.
+    EXPECT_NEAR(reference->SeenFrom(truth).flow_px, flow, 0.1 * flow + 1.0);
+  }
+  EXPECT_GT(share, 0.5);
+  EXPECT_FALSE(tracked.is_scarce);
+}
+
+TEST_P(TrackerTest, SaysWhyAFrameIsNoReferenceOrNotTracked) {
+  const auto tracker = Make();
+  const Frame good = room_.Read(0);
+  Frame black = good;
+  black.gray = cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0));
+  std::string why_not;
+  EXPECT_EQ(tracker->MakeReference(*tracker->Prepare(black), nullptr, nullptr,
+                                   &why_not),
+            nullptr);
+  EXPECT_NE(why_not, "");
+  const auto reference = tracker->MakeReference(*tracker->Prepare(good),
+                                                nullptr, nullptr, &why_not);
+  Tracked tracked(tracker->images().camera);
+  tracker->Track(*reference, *tracker->Prepare(black), Rigid3d(), &tracked);
+  EXPECT_EQ(tracked.status, TrackingStatus::kLost);
+  EXPECT_NE(tracked.reason, "");
+}
+
+TEST_P(TrackerTest, RefusesOptionsThatAreNotSound) {
+  TrackerOptions options;
+  options.min_inliers_ok = options.min_inliers - 1;
+  ExpectInputError([&] { Make(options); }, {"min_inliers_ok"});
+}
+
+INSTANTIATE_TEST_SUITE_P(Trackers, TrackerTest,
+                         ::testing::ValuesIn(TrackerNames()),
+                         [](const auto& info) { return info.param; });
+
+TEST(TrackerFactoryTest, ListsTheNamesThereAre) {
+  ExpectInputError(
+      [] {
+        MakeTracker("none",
+                    {{}, {}, "patch", Estimator({}, MakeRobustCosts())});
+      },
+      {"tracker", "none", "features"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose
