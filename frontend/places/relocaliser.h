@@ -1,21 +1,39 @@
 #pragma once
 
 #include <cstddef>
-#include <deque>
-#include <memory>
 #include <optional>
+#include <vector>
 
+#include "core/estimation/correspondences.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
+#include "frontend/features/descriptor_matching.h"
 #include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
 
 namespace rgbd_pose {
 
+// A keyframe as the relocaliser knows it: a copy of its images until it is
+// first looked at, its described features from then on.
+class Place {
+ public:
+  // `id` is the caller's, another one for each place.
+  Place(const Frame& keyframe, int id);
+
+ private:
+  friend class Relocaliser;
+
+  int id_;
+  Frame frame_;  // its images are let go once it is described
+  bool is_described_ = false;
+  DescribedKeypoints described_;
+  std::vector<Observation> observations_;  // of each keypoint
+};
+
 // Where a lost frame was found again.
 struct Relocalisation {
-  int keyframe_id = 0;
-  Rigid3d cur_from_keyframe;
+  int place_id = 0;
+  Rigid3d cur_from_place;
   int inliers = 0;  // matches that agree with the motion
 };
 
@@ -24,32 +42,29 @@ struct Relocalisation {
 // samples (core/initial_guess/ransac.h). Accepts only what chance cannot bring
 // about; the motion is good enough to track from, not more.
 //
-// Keyframes cost a copy of their images until they are first looked at; they
-// are described then, a few in each search, so that a search takes some tens
-// of milliseconds at most. The same calls give the same results. One object
-// serves one thread.
+// Places are described as they are first looked at, a few in each search, so
+// that a search takes some tens of milliseconds at most. The same calls give
+// the same results. One object serves one thread.
 class Relocaliser {
  public:
   explicit Relocaliser(const Camera& camera,
-                       const DepthLookupOptions& depth_options = {});
-  ~Relocaliser();
-  Relocaliser(Relocaliser&&) noexcept;
-  Relocaliser& operator=(Relocaliser&&) noexcept;
+                       const DepthLookupOptions& depth_options = {})
+      : camera_(camera), depth_options_(depth_options) {}
 
-  // Keeps a keyframe under an id of the caller's; the oldest makes way.
-  void Add(const Frame& keyframe, int id);
-
-  // Looks for the frame, in the latest keyframe first and in some more, others
-  // in each call. Nothing if it is not found among them.
-  std::optional<Relocalisation> Find(const Frame& frame);
+  // Looks for the frame among places (the latest first): in the latest and in
+  // some more, others in each call. Nothing if it is not found among them.
+  std::optional<Relocalisation> Find(const Frame& frame,
+                                     const std::vector<Place*>& places);
 
  private:
-  struct Place;
+  void Describe(Place* place) const;
+  Observation ObserveKeypoint(const Frame& frame,
+                              const cv::KeyPoint& keypoint) const;
 
   Camera camera_;
   DepthLookupOptions depth_options_;
-  std::deque<std::unique_ptr<Place>> places_;  // the latest first
-  size_t next_ = 0;                            // of places_, for the next Find
+  int latest_id_ = -1;  // of the places of the last Find
+  size_t next_ = 1;     // of them, for the next Find
 };
 
 }  // namespace rgbd_pose

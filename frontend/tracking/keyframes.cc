@@ -9,11 +9,19 @@ Keyframe* Keyframes::Add(Keyframe keyframe) {
   return keyframes_.back().get();
 }
 
-Keyframe* Keyframes::Find(int index) const {
+Keyframe* Keyframes::Find(int id) const {
   for (const auto& keyframe : keyframes_) {
-    if (keyframe->index == index) return keyframe.get();
+    if (keyframe->id == id) return keyframe.get();
   }
   return nullptr;
+}
+
+std::vector<Place*> Keyframes::Places() const {
+  std::vector<Place*> places;
+  for (const auto& keyframe : keyframes_) {
+    places.insert(places.begin(), keyframe->place.get());
+  }
+  return places;
 }
 
 Keyframe* Keyframes::FindNearest(const Rigid3d& world_from_cam, int segment,

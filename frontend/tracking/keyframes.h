@@ -3,31 +3,38 @@
 #include <memory>
 #include <vector>
 
+#include "core/estimation/edge.h"
 #include "core/geometry/rigid3.h"
+#include "frontend/places/relocaliser.h"
 #include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
 
-// A frame that others are tracked against.
+// A frame that others are tracked against, and all that is kept of it.
 struct Keyframe {
-  int index = 0;    // of the frame
+  int id = 0;       // TrackedFrame::index of the frame
   int segment = 0;  // see TrackedFrame
   Rigid3d world_from_cam;
-  std::unique_ptr<Reference> reference;
+  std::unique_ptr<Reference> reference;  // for the tracker that made it
+  std::unique_ptr<Place> place;          // for the relocaliser
+  std::vector<Edge> edges;  // to keyframes that it was tracked against itself
 };
 
 // The latest keyframes, for when the view returns to one of them. Bounded: the
 // oldest makes way.
 class Keyframes {
  public:
-  // So many are kept: some seconds of fast motion; about 0.5 MB each.
+  // So many are kept: some seconds of fast motion; up to 1.5 MB each.
   static constexpr size_t kMaxKeyframes = 20;
 
   // The keyframe stays where it is as long as it is kept.
   Keyframe* Add(Keyframe keyframe);
 
-  // The keyframe of that frame index, or null if it is not kept.
-  Keyframe* Find(int index) const;
+  // The keyframe of that id, or null if it is not kept.
+  Keyframe* Find(int id) const;
+
+  // All as places, the latest first.
+  std::vector<Place*> Places() const;
 
   // The keyframe of that segment whose view a camera at `world_from_cam` should
   // see nearest to where it was; null if none has `min_share` of it in view

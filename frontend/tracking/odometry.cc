@@ -62,7 +62,7 @@ TrackedFrame Odometry::Track(const Frame& frame,
 TrackedFrame Odometry::Track(const PreparedFrame& frame,
                              const Rigid3d* cur_from_prev_guess) {
   TrackedFrame result;
-  result.index = frame.index;
+  result.index = num_frames_++;
   result.timestamp = frame.timestamp;
   {
     const StageTimer timer(&result.track_ms);
@@ -114,12 +114,11 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   std::optional<Relocalisation> place;
   {
     const StageTimer timer(&result->relocalise_ms);
-    place = relocaliser_.Find(frame);
+    place = relocaliser_.Find(frame, keyframes_.Places());
   }
   if (!place.has_value()) return false;
-  Keyframe* keyframe = keyframes_.Find(place->keyframe_id);
-  if (keyframe == nullptr ||
-      !Try(frame, *keyframe, place->cur_from_keyframe, result) ||
+  Keyframe* keyframe = keyframes_.Find(place->place_id);
+  if (!Try(frame, *keyframe, place->cur_from_place, result) ||
       result->status != TrackingStatus::kOk) {
     return false;
   }
@@ -162,7 +161,7 @@ bool Odometry::Try(const PreparedFrame& frame, const Keyframe& keyframe,
   const MotionEstimate& estimate = tracked_.estimate;
   result->status = tracked_.status;
   result->reason = tracked_.reason;
-  result->reference = keyframe.index;
+  result->reference = keyframe.id;
   result->matches = static_cast<int>(tracked_.matches.matches.size());
   result->inliers = estimate.num_inliers;
   result->iterations += estimate.iterations;
@@ -172,9 +171,18 @@ bool Odometry::Try(const PreparedFrame& frame, const Keyframe& keyframe,
   return tracked_.status != TrackingStatus::kLost;
 }
 
+void Odometry::AddEdge(TrackedFrame* result) const {
+  const MotionEstimate& estimate = tracked_.estimate;
+  if (!estimate.ok()) return;
+  result->edges.insert(result->edges.begin(),
+                       {reference_->id, result->index, estimate.cur_from_prev,
+                        estimate.covariance});
+}
+
 void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
+  AddEdge(result);
   tracker_->Believe(reference_->reference.get(), &tracked_);
   if (NeedsNewReference()) ChangeReference(frame, result);
 }
@@ -208,6 +216,7 @@ bool Odometry::ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
     reference_ = earlier;
     cur_from_ref_ = tracked_.estimate.cur_from_prev;
     *result = attempt;
+    AddEdge(result);
     return true;
   }
   std::swap(tracked_, other_);
@@ -231,8 +240,8 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
     return false;
   }
   reference_ = keyframes_.Add(
-      {frame.index, segment_, world_from_cam, std::move(reference)});
-  relocaliser_.Add(frame, frame.index);
+      {result->index, segment_, world_from_cam, std::move(reference),
+       std::make_unique<Place>(frame, result->index), result->edges});
   cur_from_ref_ = Rigid3d();
   result->is_reference = true;
   return true;

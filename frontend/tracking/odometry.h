@@ -93,6 +93,8 @@ class Odometry {
   // tracked_, is a pose.
   bool Try(const PreparedFrame& frame, const Keyframe& keyframe,
            const Rigid3d& cur_from_ref_guess, TrackedFrame* result);
+  // Puts the motion of tracked_ since reference_ before other edges.
+  void AddEdge(TrackedFrame* result) const;
   // What follows from a frame tracked against reference_ as in tracked_.
   void Accept(const PreparedFrame& frame, TrackedFrame* result);
   void ChangeReference(const PreparedFrame& frame, TrackedFrame* result);
@@ -112,8 +114,9 @@ class Odometry {
   Tracked tracked_;                // the last frame
   Tracked other_;                  // the same, see ReturnTo
   Keyframe* reference_ = nullptr;  // null: none yet
-  Rigid3d cur_from_ref_;           // of the last frame
-  Rigid3d cur_from_prev_;          // between the last two frames
+  int num_frames_ = 0;
+  Rigid3d cur_from_ref_;   // of the last frame
+  Rigid3d cur_from_prev_;  // between the last two frames
   int segment_ = 0;
   double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
   bool is_lost_ = false;

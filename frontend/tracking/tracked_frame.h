@@ -1,7 +1,9 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "core/estimation/edge.h"
 #include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
@@ -18,7 +20,7 @@ const char* ToString(TrackingStatus status);
 
 // What became of one input frame.
 struct TrackedFrame {
-  int index = 0;           // place in the sequence, from 0
+  int index = 0;           // the odometry's own count of frames, from 0
   double timestamp = 0.0;  // s
   TrackingStatus status = TrackingStatus::kLost;  // with its reason:
   std::string reason;                             // in words; empty if ok
@@ -32,6 +34,12 @@ struct TrackedFrame {
   int reference = -1;  // index of the frame it was tracked against; -1: none
   bool is_reference = false;  // became the reference of the frames that follow
   bool relocalised = false;   // found again among earlier references
+
+  // The motions that it was tracked by, their frames named by their index: the
+  // first gives the pose; a second, where the reference changes to an earlier
+  // one, leads to the one that was left. None where no motion was found or its
+  // covariance is not known.
+  std::vector<Edge> edges;
 
   int matches = 0;     // with the reference
   int inliers = 0;     // of these, in agreement with the motion

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <memory>
+#include <utility>
+#include <vector>
 
 namespace rgbd_pose {
 namespace {
@@ -24,11 +26,11 @@ Rigid3d CameraAt(double x) {
   return Rigid3d(Eigen::Quaterniond::Identity(), {x, 0.0, 0.0});
 }
 
-Keyframe MakeKeyframe(int index, int segment, double x) {
-  return {index, segment, CameraAt(x), std::make_unique<Wall>()};
+Keyframe MakeKeyframe(int id, int segment, double x) {
+  return {id, segment, CameraAt(x), std::make_unique<Wall>(), nullptr, {}};
 }
 
-TEST(KeyframesTest, FindsByIndexAndForgetsTheOldest) {
+TEST(KeyframesTest, FindsByIdAndForgetsTheOldest) {
   Keyframes keyframes;
   Keyframe* const second = [&] {
     keyframes.Add(MakeKeyframe(0, 0, 0.0));
@@ -40,6 +42,19 @@ TEST(KeyframesTest, FindsByIndexAndForgetsTheOldest) {
   EXPECT_EQ(keyframes.Find(0), nullptr);
   EXPECT_EQ(keyframes.Find(1), second) << "moved";
   EXPECT_EQ(keyframes.Find(99), nullptr);
+}
+
+TEST(KeyframesTest, ThePlacesAreThoseOfTheKeyframesTheLatestFirst) {
+  Keyframes keyframes;
+  std::vector<Place*> expected;
+  for (int i = 0; i < static_cast<int>(Keyframes::kMaxKeyframes) + 3; ++i) {
+    Keyframe keyframe = MakeKeyframe(i, 0, 0.0);
+    keyframe.place = std::make_unique<Place>(Frame(), i);
+    expected.insert(expected.begin(), keyframe.place.get());
+    keyframes.Add(std::move(keyframe));
+  }
+  expected.resize(Keyframes::kMaxKeyframes);
+  EXPECT_EQ(keyframes.Places(), expected);
 }
 
 TEST(KeyframesTest, TheNearestIsTheOneWithTheSmallestFlow) {

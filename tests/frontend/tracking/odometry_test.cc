@@ -265,6 +265,45 @@ TEST(OdometryTest, AMotionGuessIsTriedFirst) {
   }
 }
 
+// A camera that has passed its way before: references change, also to earlier
+// ones. Nobody numbers the frames.
+TEST(OdometryTest, EveryTrackedFrameCarriesItsEdges) {
+  const SyntheticDataset dataset = Room("pan_tilt", 60);
+  Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
+  std::vector<TrackedFrame> frames;
+  int references = 0, returns = 0;
+  for (int i = 0; i < dataset.size(); ++i) {
+    Frame frame = dataset.Read(i);
+    frame.index = 0;
+    frames.push_back(odometry.Track(frame));
+    const TrackedFrame& tracked = frames.back();
+    ASSERT_EQ(tracked.index, i);
+    ASSERT_EQ(tracked.edges.empty(), i == 0) << i;
+    references += tracked.is_reference;
+    returns += tracked.edges.size() > 1;
+    for (size_t k = 0; k < tracked.edges.size(); ++k) {
+      const Edge& edge = tracked.edges[k];
+      EXPECT_EQ(edge.cur, i);
+      ASSERT_LT(edge.ref, i);
+      EXPECT_TRUE(frames[edge.ref].is_reference);
+      EXPECT_GT(edge.covariance.ldlt().vectorD().minCoeff(), 0.0);
+      const Rigid3d truth =
+          dataset.WorldFromCam(i).Inverse() * dataset.WorldFromCam(edge.ref);
+      const Rigid3d error = edge.cur_from_ref * truth.Inverse();
+      EXPECT_LE(error.translation.norm(), 0.005) << i;
+      EXPECT_LE(error.Angle(), 0.3 * M_PI / 180.0) << i;
+      if (k > 0) continue;
+      EXPECT_EQ(edge.ref, tracked.reference);
+      const Rigid3d pose =
+          frames[edge.ref].world_from_cam * edge.cur_from_ref.Inverse();
+      EXPECT_LE((pose.Inverse() * tracked.world_from_cam).translation.norm(),
+                1e-12);
+    }
+  }
+  EXPECT_GE(references, 5) << "the test is vacuous";
+  EXPECT_GE(returns, 1) << "the test is vacuous";
+}
+
 TEST(OdometryTest, GivesTheSameBytesTwice) {
   const SyntheticDataset dataset = Room("xyz", 12);
   EXPECT_EQ(FormatTrajectory(TrackAll(dataset, "tukey").trajectory),
