@@ -32,12 +32,6 @@ constexpr Named<LostPolicy> kLostPolicies[] = {
     {"new_segment", LostPolicy::kNewSegment},
 };
 
-// What the name means is found out when the piece is made.
-NamedSetting Text(std::string* text) {
-  return {[=] { return *text; },
-          [=](const std::string& name) { *text = name; }};
-}
-
 template <typename Value, size_t N>
 NamedSetting ByName(const Named<Value> (&rows)[N], const char* what,
                     Value* value) {
@@ -106,6 +100,11 @@ NamedSetting DepthNoiseByName(const DepthNoiseModel** model) {
 }
 
 }  // namespace
+
+NamedSetting Text(std::string* text) {
+  return {[=] { return *text; },
+          [=](const std::string& name) { *text = name; }};
+}
 
 std::vector<Setting> SettingTable(OdometrySettings* settings) {
   EstimatorSettings* estimator = &settings->estimator;

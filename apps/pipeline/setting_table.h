@@ -26,6 +26,9 @@ struct Setting {
   std::vector<std::string> choices = {};  // the names there are, if by name
 };
 
+// Any text: whether it makes sense is found out where it is used.
+NamedSetting Text(std::string* text);
+
 // Rows that are about matches alone.
 inline constexpr char kEstimationGroup[] = "Estimation";
 

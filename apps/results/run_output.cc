@@ -44,18 +44,39 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
 
 }  // namespace
 
-RunOutput::RunOutput(const RunOutputOptions& options, const TumDataset& dataset)
-    : options_(options),
+std::vector<Setting> SettingTable(RunOutputSettings* settings) {
+  constexpr std::string_view kGroup = "Output";
+  return {
+      {"output", kGroup, "folder for the results, made if missing",
+       Text(&settings->output)},
+      {"debug_images", kGroup,
+       "frames whose matches are drawn into OUTPUT/debug, coloured by robust "
+       "weight: all, or numbers and ranges such as 10,20-40:5",
+       Text(&settings->debug_images)},
+      {"save_cloud", kGroup,
+       "file for a coloured point cloud of what was seen (PLY), in the world "
+       "of "
+       "the trajectory; empty: none",
+       Text(&settings->save_cloud)},
+      {"voxel", kGroup,
+       "side of the cubes (m) that the cloud's points are merged in",
+       &settings->voxel},
+  };
+}
+
+RunOutput::RunOutput(const RunOutputSettings& settings,
+                     const TumDataset& dataset)
+    : settings_(settings),
       dataset_(dataset),
-      drawn_("debug_images", options.debug_images),
-      cloud_options_(CloudOptions(dataset.camera().camera, options.voxel)),
-      folder_(options.output) {
-  if (!options.debug_images.empty()) {
+      drawn_("debug_images", settings.debug_images),
+      cloud_options_(CloudOptions(dataset.camera().camera, settings.voxel)),
+      folder_(settings.output) {
+  if (!settings.debug_images.empty()) {
     std::filesystem::create_directory(aside() / kDebug);
   }
-  if (!options.save_cloud.empty()) {
+  if (!settings.save_cloud.empty()) {
     cloud_.emplace(cloud_options_);
-    RequireWritable(options.save_cloud);
+    RequireWritable(settings.save_cloud);
   }
 }
 
@@ -73,10 +94,11 @@ void RunOutput::Add(const Frame& frame, const OdometryRun& run) {
 
 std::string RunOutput::Write(const RunResults& results,
                              const RunSummary& summary, const Trajectory* truth,
+                             const std::string& dataset,
                              const std::string& flags) {
   std::string text = FormatSummary(summary);
   nlohmann::json metrics = {{"program", "rgbd_odometry"},
-                            {"dataset", options_.dataset},
+                            {"dataset", dataset},
                             {"unmatched_color", dataset_.unmatched_color()},
                             {"peak_rss_mb", PeakMemoryMb()},
                             {"run", SummaryToJson(summary)},
@@ -112,16 +134,16 @@ void RunOutput::WriteFile(const char* name, const std::string& content) const {
 nlohmann::json RunOutput::WriteCloud(const Rigid3d& shown_from_world,
                                      std::string* text) const {
   const VoxelCloud& points = cloud_->cloud();
-  WritePly(options_.save_cloud, points.Points());
+  WritePly(settings_.save_cloud, points.Points());
   *text += "cloud       " + std::to_string(points.size()) + " points of " +
            std::to_string(cloud_->frames()) + " frames in " +
-           options_.save_cloud + "\n";
+           settings_.save_cloud + "\n";
   WriteFile(
       kCloudPreviewFile,
       CloudPreview(points.Thin(kMaxPreviewPoints), shown_from_world).dump());
   return {{"points", points.size()},
           {"frames", cloud_->frames()},
-          {"voxel_m", options_.voxel}};
+          {"voxel_m", settings_.voxel}};
 }
 
 }  // namespace rgbd_pose

@@ -4,9 +4,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/run_summary.h"
+#include "apps/pipeline/setting_table.h"
 #include "apps/results/run_folder.h"
 #include "apps/shell/frame_selection.h"
 #include "frontend/map/cloud_fusion.h"
@@ -15,20 +17,22 @@
 namespace rgbd_pose {
 
 // What a run of rgbd_odometry is to leave behind, by the names of its flags.
-struct RunOutputOptions {
-  std::string dataset;       // as metrics.json calls it
+struct RunOutputSettings {
   std::string output;        // folder
   std::string debug_images;  // FrameSelection
   std::string save_cloud;    // file; empty: no cloud
   double voxel = 0.01;       // side of the cloud's cubes, m
 };
 
+// Their rows.
+std::vector<Setting> SettingTable(RunOutputSettings* settings);
+
 // The files of a run: drawn and fused as frames come, written at the end.
 class RunOutput {
  public:
   // Makes what must be there before the work begins. Throws InputError if it
   // cannot, or for options that make no sense. The dataset must outlive it.
-  RunOutput(const RunOutputOptions& options, const TumDataset& dataset);
+  RunOutput(const RunOutputSettings& settings, const TumDataset& dataset);
 
   // After the run has tracked a frame.
   void Add(const Frame& frame, const OdometryRun& run);
@@ -36,10 +40,11 @@ class RunOutput {
   // Where files are until they are published, see RunFolder.
   const std::filesystem::path& aside() const { return folder_.aside(); }
 
-  // Writes all files but the page and `flags` into config.flags; `truth` may be
-  // null. Returns what the program prints of them.
+  // Writes all files but the page: `flags` into config.flags, `dataset` into
+  // metrics.json. `truth` may be null. Returns what the program prints of them.
   std::string Write(const RunResults& results, const RunSummary& summary,
-                    const Trajectory* truth, const std::string& flags);
+                    const Trajectory* truth, const std::string& dataset,
+                    const std::string& flags);
 
   // Puts all files into their places.
   void Publish() { folder_.Publish(); }
@@ -49,7 +54,7 @@ class RunOutput {
   nlohmann::json WriteCloud(const Rigid3d& shown_from_world,
                             std::string* text) const;
 
-  RunOutputOptions options_;
+  RunOutputSettings settings_;
   const TumDataset& dataset_;
   FrameSelection drawn_;
   CloudFusionOptions cloud_options_;

@@ -2,8 +2,6 @@
 
 #include <gflags/gflags.h>
 
-#include <algorithm>
-
 namespace rgbd_pose {
 namespace {
 
@@ -18,11 +16,11 @@ void Register(const Setting& setting, Value* current,
 
 }  // namespace
 
-SettingFlags::SettingFlags(const std::vector<Setting>& table,
-                           const std::vector<std::string>& without) {
-  for (const Setting& setting : table) {
-    if (std::count(without.begin(), without.end(), setting.name) > 0) continue;
-    settings_.push_back(setting);
+SettingFlags::SettingFlags(const std::vector<std::vector<Setting>>& tables) {
+  for (const std::vector<Setting>& table : tables) {
+    settings_.insert(settings_.end(), table.begin(), table.end());
+  }
+  for (const Setting& setting : settings_) {
     names_.emplace_back();
     if (int* const* whole = std::get_if<int*>(&setting.value)) {
       Register(setting, *whole, &default_ints_);

@@ -9,13 +9,11 @@
 
 namespace rgbd_pose {
 
-// A flag of gflags for each row of a table of settings. Must live as long as
-// flags are read.
+// A flag of gflags for each row of some tables of settings. Must live as long
+// as flags are read.
 class SettingFlags {
  public:
-  // Rows whose names are in `without` make no flag.
-  explicit SettingFlags(const std::vector<Setting>& table,
-                        const std::vector<std::string>& without = {});
+  explicit SettingFlags(const std::vector<std::vector<Setting>>& tables);
 
   // Adds them to what --help says of a program.
   void Describe(ProgramInfo* info) const;
