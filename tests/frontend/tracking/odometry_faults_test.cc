@@ -15,12 +15,12 @@
 #include "costs/cost_factory.h"
 #include "frontend/features/frontend.h"
 #include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/simulation/synthetic_faults.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/simulation/synthetic_scene.h"
 #include "frontend/simulation/synthetic_sensor.h"
 #include "frontend/tracking/odometry.h"
+#include "tests/support/synthetic_faults.h"
 
 namespace rgbd_pose {
 namespace {

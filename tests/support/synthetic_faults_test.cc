@@ -1,4 +1,4 @@
-#include "frontend/simulation/synthetic_faults.h"
+#include "tests/support/synthetic_faults.h"
 
 #include <gtest/gtest.h>
 
