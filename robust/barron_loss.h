@@ -17,8 +17,7 @@ namespace rgbd_pose {
 // positive, which the compressed block cannot do with.)
 class BarronLoss final : public ceres::LossFunction {
  public:
-  // Half-way between Cauchy and Geman-McClure. robust/barron_alpha.h finds the
-  // shape that fits given residuals.
+  // Half-way between Cauchy and Geman-McClure.
   static constexpr double kDefaultAlpha = -1.0;
 
   explicit BarronLoss(double width, double alpha = kDefaultAlpha)

@@ -20,7 +20,6 @@ struct MEstimator {
 
   std::string_view name;     // as programs take it
   std::string_view formula;  // weight w(x) of the norm x, c the width
-  bool is_redescending;      // far matches lose all influence: w(x) x -> 0
 
   // Makes the loss of a given width; null: no loss (least squares).
   std::unique_ptr<ceres::LossFunction> (*make)(double width);

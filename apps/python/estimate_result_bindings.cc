@@ -94,8 +94,8 @@ or False for rows that no cost could use.)");
           "(6, 6), of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a "
           "small\nrotation about the axes of the current camera, R_true = "
           "Exp(omega) R; C (m)\nis the centre of the current camera in the "
-          "axes of the previous one. Zero\nunless the status is 'ok' or "
-          "'inconsistent'.")
+          "axes of the previous one. Zero\nwhere the motion was not "
+          "judged: too few matches, degenerate, or no usable\nstep.")
       .def_property_readonly("weights", &List<&MotionEstimate::weights>,
                              "(N,) float64: robust weights in [0, 1]")
       .def_property_readonly(

@@ -76,6 +76,11 @@ class Cost {
   // that knows no directions, say) their scatter has to be measured.
   virtual bool is_whitened() const = 0;
 
+  // Below which 99 % of the squared norms of right matches lie, for the k-th
+  // bound match. Asked of costs that are not whitened only: of others it is a
+  // quantile of chi^2.
+  virtual double InlierLimit(int k) const = 0;
+
   // Takes in the matches this cost can use. Keeps nothing of earlier ones but
   // memory.
   virtual void Bind(const CostInput& input) = 0;

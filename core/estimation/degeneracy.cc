@@ -38,8 +38,8 @@ std::string Describe(const MotionVector& direction, double deviation) {
   return text + " is not determined (standard deviation " + number + ")";
 }
 
-// Variance of the weakest direction of a block of a covariance, and the joint
-// change of all six that goes with it.
+// The largest standard deviation within three rows of a covariance, and how all
+// six change along with it.
 struct WeakDirection {
   double deviation;
   MotionVector direction;

@@ -21,8 +21,10 @@ constexpr int kIterationsPerEarlyStage = 2;
 constexpr double kScaleTolerance = 0.01;
 constexpr int kMaxScaleRounds = 10;
 
-// Frozen weights are taken as right within this (rad and m).
-constexpr double kFrozenWithin = 2e-3;
+// Frozen weights are taken as right within this (rad and m): a turn by it adds
+// 1 % of the variance along the ray to that across it, where noise is ten times
+// larger along the ray.
+constexpr double kFrozenWithin = 1e-2;
 constexpr int kMaxBindRounds = 3;
 
 std::vector<RobustCost> TermsOf(std::unique_ptr<Cost> cost,
@@ -36,14 +38,15 @@ std::vector<RobustCost> TermsOf(std::unique_ptr<Cost> cost,
 }  // namespace
 
 std::string EstimatorOptions::Check() const {
-  if (gnc_factor <= 1.0) return "gnc_factor must exceed 1";
+  // Written so that a NaN fails each of them.
+  if (!(gnc_factor >= 1.01)) return "gnc_factor must be at least 1.01";
   if (max_iterations < 1) return "max_iterations must be at least 1";
-  if (min_inlier_share < 0.0 || min_inlier_share > 1.0) {
+  if (!(min_inlier_share >= 0.0 && min_inlier_share <= 1.0)) {
     return "min_inlier_share must lie between 0 and 1";
   }
-  if (max_scale <= 0.0) return "max_scale must be positive";
+  if (!(max_scale > 0.0)) return "max_scale must be positive";
   if (threads < 1) return "threads must be at least 1";
-  if (max_standard_deviation <= 0.0) {
+  if (!(max_standard_deviation > 0.0)) {
     return "max_standard_deviation must be positive";
   }
   return "";
@@ -53,7 +56,10 @@ std::string EstimatorOptions::Check() const {
 class Estimator::Solve {
  public:
   Solve(const EstimatorOptions& options, std::vector<RobustCost> costs)
-      : options_(options), terms_(std::move(costs)) {}
+      : options_(options), terms_(std::move(costs)) {
+    const std::string problem = options.Check();
+    if (!problem.empty()) throw InputError("estimator: " + problem);
+  }
 
   void Run(const Correspondences& matches, const Rigid3d& guess,
            const MotionPrior* prior, MotionEstimate* estimate) {
@@ -68,9 +74,8 @@ class Estimator::Solve {
       }
       return;
     }
-    out_->initial_cost = terms_.Linearise(MotionNow()).cost;
     if (MinimiseWithScale()) {
-      Judge();
+      Judge(guess);
     } else {
       JudgeGuess(guess);
     }
@@ -91,9 +96,11 @@ class Estimator::Solve {
     out_->residual_degrees.assign(matches.size(), 0);
     out_->num_inliers = 0;
     out_->sigma = 0.0;
+    out_->initial_cost = 0.0;
     out_->final_cost = 0.0;
     out_->iterations = 0;
     converged_ = false;
+    bound_at_ = guess;
     terms_.Bind(Input());
     out_->num_used = terms_.num_used();
   }
@@ -103,16 +110,25 @@ class Estimator::Solve {
     return {*matches_, out_->cur_from_prev, prior_, options_.threads};
   }
 
-  // Where weights are frozen: at the motion so far. False if none are.
+  // Freezes weights at the motion so far. False if none are, or if they were
+  // frozen near enough.
   bool BindAgain() {
+    const Rigid3d moved = bound_at_.Inverse() * out_->cur_from_prev;
+    if (moved.Angle() < kFrozenWithin &&
+        moved.translation.norm() < kFrozenWithin) {
+      return false;
+    }
+    bound_at_ = out_->cur_from_prev;
     const bool changed = terms_.BindAgain(Input());
     out_->num_used = terms_.num_used();
     return changed;
   }
 
-  MotionDerivatives MotionNow() const {
+  MotionDerivatives MotionNow() const { return At(out_->cur_from_prev); }
+
+  static MotionDerivatives At(const Rigid3d& cur_from_prev) {
     const MotionVector zero = MotionVector::Zero();
-    return MotionOrigin(out_->cur_from_prev).DerivativesAt(zero.data());
+    return MotionOrigin(cur_from_prev).DerivativesAt(zero.data());
   }
 
   bool MinimiseWithScale() {
@@ -151,15 +167,8 @@ class Estimator::Solve {
   // Weights that were frozen at a motion too far away ask for another round.
   bool MinimiseLastStage() {
     for (int round = 1;; ++round) {
-      const Rigid3d before = out_->cur_from_prev;
       if (!MinimiseStage(options_.max_iterations)) return false;
-      const Rigid3d moved = before.Inverse() * out_->cur_from_prev;
-      if (round == kMaxBindRounds ||
-          (moved.Angle() < kFrozenWithin &&
-           moved.translation.norm() < kFrozenWithin)) {
-        return true;
-      }
-      if (!BindAgain()) return true;
+      if (round == kMaxBindRounds || !BindAgain()) return true;
       if (out_->num_used < kMinMatches) return false;
     }
   }
@@ -184,7 +193,9 @@ class Estimator::Solve {
     solver.parameter_tolerance = 1e-9;
     ceres::Solver::Summary summary;
     ceres::Solve(solver, &problem, &summary);
-    out_->iterations += static_cast<int>(summary.iterations.size()) - 1;
+    // There are none if the cost at the start is not finite.
+    out_->iterations +=
+        std::max(static_cast<int>(summary.iterations.size()) - 1, 0);
     converged_ = summary.termination_type == ceres::CONVERGENCE;
     if (!summary.IsSolutionUsable() || !x.allFinite()) return false;
     out_->cur_from_prev = origin.CurFromPrev(x.data());
@@ -206,10 +217,11 @@ class Estimator::Solve {
                                             : "the solver found no usable step";
   }
 
-  void Judge() {
+  void Judge(const Rigid3d& guess) {
     out_->sigma = terms_.UpdateNorms(MotionNow());
     const LossSums loss_sums = terms_.JudgeMatches(scale_, out_);
     const NormalEquations sum = terms_.Linearise(MotionNow());
+    out_->initial_cost = terms_.Linearise(At(guess)).cost;
     out_->final_cost = sum.cost;
     const Degeneracy degeneracy = FindDegeneracy(
         sum.hessian, FeignedInformation(*matches_, out_->weights),
@@ -247,6 +259,7 @@ class Estimator::Solve {
   const Correspondences* matches_ = nullptr;
   const MotionPrior* prior_ = nullptr;
   MotionEstimate* out_ = nullptr;
+  Rigid3d bound_at_;  // the motion at which weights are frozen
   double scale_ = 1.0;
   bool converged_ = false;
 };

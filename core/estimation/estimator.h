@@ -28,8 +28,8 @@ struct EstimatorOptions {
   // How losses get to their widths.
   RobustSchedule schedule = RobustSchedule::kGnc;
 
-  // Each stage of the graduation narrows the losses by this factor, or at once
-  // to the spread of the residuals.
+  // Each stage of the graduation narrows the losses by this factor (at least
+  // 1.01), or at once to the spread of the residuals.
   double gnc_factor = 2.0;
 
   // Estimates the spread of residual components in units of the noise model,
@@ -64,7 +64,8 @@ struct EstimatorOptions {
 // object serves one thread at a time.
 class Estimator {
  public:
-  // Minimises the sum of these costs.
+  // Minimises the sum of these costs. Throws InputError for options that are
+  // not sound (see Check).
   Estimator(const EstimatorOptions& options, std::vector<RobustCost> costs);
   // Of one cost; a null loss is least squares. Throws InputError without cost.
   Estimator(const EstimatorOptions& options, std::unique_ptr<Cost> cost,

@@ -26,12 +26,14 @@ struct MotionEstimate {
   EstimateStatus status = EstimateStatus::kTooFewMatches;
   std::string reason;  // in words; empty if ok
 
-  Rigid3d cur_from_prev;  // the guess, if the status is too_few_matches
+  Rigid3d cur_from_prev;  // the guess, if the motion was not judged
 
   // Covariance of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a small
   // rotation about the axes of the current camera, R_true = Exp(omega) R; C (m)
   // is the centre of the current camera in the axes of the previous one. Zero
-  // unless the status is ok or inconsistent.
+  // where the motion was not judged: too few matches, degenerate, or no usable
+  // step; a solver that was stopped early has the covariance of where it
+  // stands.
   MotionMatrix covariance = MotionMatrix::Zero();
 
   // Per match, in the order of the Correspondences: robust weight in [0, 1]
@@ -52,7 +54,8 @@ struct MotionEstimate {
   int num_inliers = 0;  // of these, in agreement
 
   double sigma = 0.0;  // robust spread of the whitened residuals; ideally 1
-  double initial_cost = 0.0;  // robust cost at the guess, at final loss widths
+  double initial_cost = 0.0;  // robust cost at the guess, as the last stage
+                              // has it: at final loss widths, scale, weights
   double final_cost = 0.0;    // the same at the estimate
   int iterations = 0;         // of the solver, all stages together
   double solve_ms = 0.0;      // time of the whole estimation

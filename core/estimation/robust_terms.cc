@@ -133,7 +133,9 @@ LossSums RobustTerms::JudgeMatches(double scale, MotionEstimate* estimate) {
     const Cost& cost = *costs_[i].cost;
     for (size_t k = 0; k < norms_[i].size(); ++k) {
       const int p = cost.degrees()[k];
-      const double limit = ChiSquared99(p) * scale * scale;
+      const double limit =
+          scale * scale *
+          (cost.is_whitened() ? ChiSquared99(p) : cost.InlierLimit(k));
       const double s = norms_[i][k];
       double rho[3];
       losses_[i].Evaluate(s, rho);

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "core/estimation/cost.h"
+#include "core/util/chi_squared.h"
+#include "core/util/lane_math.h"
 #include "core/util/parallel_for.h"
 #include "core/util/vector_lanes.h"
 #include "costs/assembly/autodiff_jacobian.h"
@@ -36,6 +38,10 @@ namespace rgbd_pose {
 //
 //   Degrees(columns)                              see Cost::degrees
 //
+// and one that is not whitened may tell how long right residuals get by
+//
+//   InlierLimit(columns)                          see Cost::InlierLimit
+//
 // A type that packs the prior instead of matches says so by kIsPrior; it is
 // called with i = 0 if there is a prior.
 template <typename Residual, typename = void>
@@ -48,6 +54,12 @@ template <typename Residual, typename = void>
 struct HasDegrees : std::false_type {};
 template <typename Residual>
 struct HasDegrees<Residual, std::void_t<decltype(&Residual::Degrees)>>
+    : std::true_type {};
+
+template <typename Residual, typename = void>
+struct HasInlierLimit : std::false_type {};
+template <typename Residual>
+struct HasInlierLimit<Residual, std::void_t<decltype(&Residual::InlierLimit)>>
     : std::true_type {};
 
 // Compiled once, in cost_factory.cc: Eigen's factorisations take seconds.
@@ -70,6 +82,17 @@ class CostOf final : public Cost {
   bool freezes_weights() const override { return Residual::kFreezesWeights; }
 
   bool is_whitened() const override { return Residual::kIsWhitened; }
+
+  double InlierLimit(int k) const override {
+    if constexpr (HasInlierLimit<Residual>()) {
+      double columns[kColumns];
+      for (int i = 0; i < kColumns; ++i) {
+        columns[i] = packed_.values[i * packed_.stride + k];
+      }
+      return Residual::InlierLimit(columns);
+    }
+    return ChiSquared99(degrees_[k]);
+  }
 
   void Bind(const CostInput& input) override {
     const size_t count = Count(input);

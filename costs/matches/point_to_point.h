@@ -14,20 +14,32 @@ namespace rgbd_pose {
 //
 // A depth camera errs many times more along the ray than across it. One sigma
 // for both wastes what the image knows, and the rows are not of unit variance:
-// not whitened, so the covariance comes from their scatter.
+// not whitened, so the covariance comes from their scatter, and their squared
+// norm has longer tails than chi^2 of three degrees.
 struct PointToPoint {
   static constexpr char kName[] = "point_to_point";
   static constexpr int kRows = 3;
   static constexpr int kIndependentRows = 3;
   static constexpr bool kFreezesWeights = false;
   static constexpr bool kIsWhitened = false;
-  static constexpr int kColumns = ForwardError::kColumns + 1;
+  static constexpr int kColumns = ForwardError::kColumns + 2;
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     if (!ForwardError::Pack(input, i, columns)) return false;
-    columns[6] =
-        1.0 / std::sqrt(ForwardError::Covariance(input, i).trace() / 3);
+    const Eigen::Matrix3d S = ForwardError::Covariance(input, i);
+    columns[6] = 1.0 / std::sqrt(S.trace() / 3);
+    columns[7] = S.trace() * S.trace() / S.squaredNorm();
     return true;
+  }
+
+  // The squared norm is a sum of squares of unequal variances. It has mean 3
+  // and the variance of 3 / h times chi^2 of h degrees, 1 <= h <= 3
+  // (Satterthwaite 1946), whose quantile is that of Wilson & Hilferty 1931.
+  static double InlierLimit(const double* columns) {
+    constexpr double kNormal99 = 2.3263;
+    const double v = 2.0 / (9.0 * columns[7]);
+    const double root = 1.0 - v + kNormal99 * std::sqrt(v);
+    return 3.0 * root * root * root;
   }
 
   template <typename M, typename D, typename T>

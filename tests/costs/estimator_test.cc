@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "core/util/input_error.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
+#include "robust/scale.h"
 
 namespace rgbd_pose {
 namespace {
@@ -119,6 +122,34 @@ TEST(EstimatorTest, ResidualNormsExplainTheWeights) {
   EXPECT_NEAR(sum_of_squares / 2000, 3.0, 0.3);
 }
 
+// 99 % of right matches are inliers, whatever the cost: 20 000 matches leave
+// 0.0007 of doubt.
+class InlierShareTest : public ::testing::TestWithParam<std::string> {};
+
+TEST_P(InlierShareTest, Is99Percent) {
+  Estimator estimator({}, MakeRobustCosts(GetParam(), "huber"));
+  int used = 0, inliers = 0;
+  for (int seed = 0; seed < 20; ++seed) {
+    RandomWorld world(500 + seed);
+    const bool no_depth = GetParam() == "epipolar";
+    Rigid3d truth = world.Motion(0.05, 0.05);
+    truth.translation.x() += no_depth ? 0.5 : 0.0;
+    const Correspondences matches =
+        world.Matches(1000, 0.0, truth, /*noise=*/true, no_depth ? 1.0 : 0.0);
+    const MotionEstimate estimate = estimator.Estimate(matches, truth);
+    used += estimate.num_used;
+    inliers += estimate.num_inliers;
+  }
+  EXPECT_NEAR(static_cast<double>(inliers) / used, 0.99, 0.0025);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Costs, InlierShareTest,
+    ::testing::Values("bidirectional_point", "bidirectional_image",
+                      "point_to_point", "mahalanobis_point", "point_to_plane",
+                      "reprojection", "reprojection_depth"),
+    [](const auto& info) { return info.param; });
+
 TEST(EstimatorTest, TooFewMatchesAreAStatus) {
   RandomWorld world(13);
   for (const int count : {0, 1, 2}) {
@@ -180,6 +211,80 @@ TEST(EstimatorTest, DoesTheSameEachTime) {
   EXPECT_EQ(first.cur_from_prev.translation, second.cur_from_prev.translation);
   EXPECT_EQ(first.weights, second.weights);
   EXPECT_EQ(first.final_cost, second.final_cost);
+}
+
+TEST(EstimatorOptionsTest, WhatIsNotSoundIsRefused) {
+  constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+  std::vector<EstimatorOptions> bad;
+  for (const double value : {kNan, -1.0}) {
+    for (double EstimatorOptions::*field :
+         {&EstimatorOptions::gnc_factor, &EstimatorOptions::min_inlier_share,
+          &EstimatorOptions::max_scale,
+          &EstimatorOptions::max_standard_deviation}) {
+      bad.emplace_back().*field = value;
+    }
+  }
+  bad.emplace_back().gnc_factor = 1.0;
+  bad.emplace_back().min_inlier_share = 1.1;
+  bad.emplace_back().max_iterations = 0;
+  bad.emplace_back().threads = 0;
+  for (const EstimatorOptions& options : bad) {
+    EXPECT_THROW(Estimator(options, MakeRobustCosts()), InputError)
+        << options.Check();
+  }
+  EXPECT_EQ(EstimatorOptions().Check(), "");
+}
+
+TEST(EstimatorTest, AGuessThatIsNoneTakesNoIterations) {
+  RandomWorld world(17);
+  const Correspondences matches = world.Matches(100, 0.0, Rigid3d());
+  Rigid3d guess;
+  guess.translation.x() = std::nan("");
+  const MotionEstimate estimate =
+      MakeEstimator("tukey").Estimate(matches, guess);
+  EXPECT_FALSE(estimate.ok());
+  EXPECT_EQ(estimate.iterations, 0);
+}
+
+// Odometry goes on from such a motion, and the edge needs its covariance.
+TEST(EstimatorTest, OneThatWasStoppedHasACovariance) {
+  RandomWorld world(18);
+  const Correspondences matches =
+      world.Matches(100, 0.0, world.Motion(0.2, 0.3));
+  EstimatorOptions options;
+  options.max_iterations = 1;
+  const MotionEstimate estimate =
+      Estimator(options, MakeRobustCosts()).Estimate(matches);
+  ASSERT_EQ(estimate.status, EstimateStatus::kNotConverged) << estimate.reason;
+  EXPECT_GT(estimate.covariance.diagonal().minCoeff(), 0.0);
+}
+
+// Noise four times the model's: at the widths that go with it, and so with as
+// much of it in both.
+TEST(EstimatorTest, BothCostsCountTheScale) {
+  RandomWorld world(19);
+  const Camera camera;
+  Correspondences matches(camera);
+  for (int i = 0; i < 300; ++i) {
+    Observation prev, cur;
+    world.Match(camera, Rigid3d(), &prev, &cur);
+    for (int k = 0; k < 16; ++k) {
+      world.AddNoise(&prev);
+      world.AddNoise(&cur);
+    }
+    matches.Add(prev, cur);
+  }
+  EstimatorOptions options;
+  options.scale = FindScaleEstimator("mad")->estimate;
+  Estimator estimator(options, MakeRobustCosts("bidirectional_point", "tukey"));
+  const MotionEstimate estimate = estimator.Estimate(matches);
+  ASSERT_TRUE(estimate.ok()) << estimate.reason;
+  MotionEstimate reused = estimate;
+  estimator.Estimate(matches, estimate.cur_from_prev, nullptr, &reused);
+  EXPECT_NEAR(reused.initial_cost, reused.final_cost, 0.01 * reused.final_cost);
+  EXPECT_GE(estimate.initial_cost, estimate.final_cost);
+  estimator.Estimate(Correspondences(camera), Rigid3d(), nullptr, &reused);
+  EXPECT_EQ(reused.initial_cost, 0.0);
 }
 
 TEST(CostFactoryTest, NamesWhatIsUnknown) {

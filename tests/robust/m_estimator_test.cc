@@ -201,20 +201,6 @@ TEST(MEstimatorTest, AScaledLossIsTheLossOfScaledWidth) {
   }
 }
 
-// psi = w(x) x of a residual 10^6 widths off against its largest value.
-TEST(MEstimatorTest, RedescendingMeansNoInfluenceFromAfar) {
-  for (const MEstimator& row : MEstimators()) {
-    double largest = 0.0, last = 0.0;
-    for (double x = 1e-3; x < 1e6; x *= 1.1) {
-      last = row.make ? Evaluate(*row.make(1.0), x * x).first * x : x;
-      largest = std::max(largest, last);
-    }
-    constexpr double kNone =
-        1e-4;  // 1 / x falls to 2e-6, a constant not at all
-    EXPECT_EQ(last < kNone * largest, row.is_redescending) << row.name;
-  }
-}
-
 TEST(BarronLossTest, LeadsFromLeastSquaresToWelsch) {
   const double c = 1.5;
   for (double s = 0.01; s < 100.0; s *= 2.0) {

@@ -12,6 +12,7 @@
 
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
+#include "core/util/input_error.h"
 #include "costs/cost_factory.h"
 #include "frontend/features/frontend.h"
 #include "frontend/simulation/synthetic_dataset.h"
@@ -65,6 +66,24 @@ Frame Black(const Frame& frame) {
   Frame black = frame;
   black.gray = cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(0));
   return black;
+}
+
+TEST(OdometryOptionsTest, NoFieldMayBeNan) {
+  for (double OdometryOptions::*field :
+       {&OdometryOptions::min_reference_share, &OdometryOptions::max_flow_px,
+        &OdometryOptions::new_segment_after}) {
+    OdometryOptions options;
+    options.*field = std::nan("");
+    EXPECT_THROW(MakeOdometry(Camera(), "tukey", options), InputError);
+  }
+  for (double TrackerOptions::*field :
+       {&TrackerOptions::min_inlier_share_ok,
+        &TrackerOptions::prior_sigma_rotation,
+        &TrackerOptions::prior_sigma_translation}) {
+    TrackerOptions options;
+    options.*field = std::nan("");
+    EXPECT_NE(options.Check(), "");
+  }
 }
 
 TEST(OdometryTest, FollowsTheCameraAlongItsAxes) {
