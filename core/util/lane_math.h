@@ -5,25 +5,74 @@
 #include <type_traits>
 
 // Arithmetic that residuals share, for double, ceres::Jet and vectors of
-// doubles (core/util/vector_lanes.h) and mixes of them. Results come by
-// pointer: how vectors are returned depends on the instruction set. Always
-// inlined: GCC's budget for it ends within costs/cost_factory.cc, and a call
-// here makes a whole solve slower by half.
+// doubles (core/util/vector_lanes.h) and mixes of them. Always inlined: GCC's
+// budget for it ends within costs/cost_factory.cc, and a call here makes a
+// whole solve slower by half. What else is called gives results by pointer: how
+// vectors are returned depends on the instruction set.
 
 namespace rgbd_pose {
 
-// The square root, lane by lane.
+// They return vectors, but are always inlined, so that no rule of how to return
+// one applies. Not restored below: what calls them is warned of, too.
+#pragma GCC diagnostic ignored "-Wpsabi"
+
+// The usual functions for all scalars. A residual outside this namespace says
+// `using rgbd_pose::log;` as others say `using std::log;`: a vector of doubles
+// belongs to no namespace in which a compiler would look by itself (a Jet
+// does).
 template <typename T>
-[[gnu::always_inline]] inline void Sqrt(const T& x, T* root) {
-  if constexpr (std::is_floating_point_v<T> || std::is_class_v<T>) {
-    using std::sqrt;
-    *root = sqrt(x);
-  } else {
-    for (size_t lane = 0; lane < sizeof(T) / sizeof(double); ++lane) {
-      (*root)[lane] = std::sqrt(x[lane]);
-    }
+constexpr bool kIsLanes = !std::is_arithmetic_v<T> && !std::is_class_v<T>;
+
+#define RGBD_POSE_LANE_FUNCTION(f)                              \
+  using std::f;                                                 \
+  template <typename T, std::enable_if_t<kIsLanes<T>, int> = 0> \
+  [[gnu::always_inline]] inline T f(const T& x) {               \
+    T y = x;                                                    \
+    for (size_t i = 0; i < sizeof(T) / sizeof(double); ++i) {   \
+      y[i] = std::f(x[i]);                                      \
+    }                                                           \
+    return y;                                                   \
   }
-}
+RGBD_POSE_LANE_FUNCTION(abs)
+RGBD_POSE_LANE_FUNCTION(sqrt)
+RGBD_POSE_LANE_FUNCTION(cbrt)
+RGBD_POSE_LANE_FUNCTION(exp)
+RGBD_POSE_LANE_FUNCTION(log)
+RGBD_POSE_LANE_FUNCTION(sin)
+RGBD_POSE_LANE_FUNCTION(cos)
+RGBD_POSE_LANE_FUNCTION(tan)
+RGBD_POSE_LANE_FUNCTION(asin)
+RGBD_POSE_LANE_FUNCTION(acos)
+RGBD_POSE_LANE_FUNCTION(atan)
+RGBD_POSE_LANE_FUNCTION(tanh)
+#undef RGBD_POSE_LANE_FUNCTION
+
+// Of two arguments, of which one may be a number for all lanes (or for a Jet,
+// where Ceres leaves that out).
+#define RGBD_POSE_LANE_FUNCTION(f, mixes)                       \
+  using std::f;                                                 \
+  template <typename T, std::enable_if_t<kIsLanes<T>, int> = 0> \
+  [[gnu::always_inline]] inline T f(const T& x, const T& y) {   \
+    T z = x;                                                    \
+    for (size_t i = 0; i < sizeof(T) / sizeof(double); ++i) {   \
+      z[i] = std::f(x[i], y[i]);                                \
+    }                                                           \
+    return z;                                                   \
+  }                                                             \
+  template <typename T, std::enable_if_t<mixes<T>, int> = 0>    \
+  [[gnu::always_inline]] inline T f(const T& x, double y) {     \
+    return f(x, T(T{} + y));                                    \
+  }                                                             \
+  template <typename T, std::enable_if_t<mixes<T>, int> = 0>    \
+  [[gnu::always_inline]] inline T f(double x, const T& y) {     \
+    return f(T(T{} + x), y);                                    \
+  }
+template <typename T>
+constexpr bool kIsNoNumber = !std::is_arithmetic_v<T>;
+RGBD_POSE_LANE_FUNCTION(pow, kIsLanes)
+RGBD_POSE_LANE_FUNCTION(atan2, kIsNoNumber)
+RGBD_POSE_LANE_FUNCTION(hypot, kIsNoNumber)
+#undef RGBD_POSE_LANE_FUNCTION
 
 // x where it exceeds `lowest`, else `lowest`, lane by lane.
 template <typename T>

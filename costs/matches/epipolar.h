@@ -135,7 +135,7 @@ struct Epipolar {
                         columns[5] * line_cur[1] * line_cur[1] +
                         columns[6] * line_prev[0] * line_prev[0] +
                         columns[7] * line_prev[1] * line_prev[1] + columns[8];
-      Sqrt(squared, &sigma);
+      sigma = sqrt(squared);
       r = N / sigma;
     }
 

@@ -3,13 +3,48 @@
 #include "costs/assembly/autodiff_jacobian.h"
 
 #include <ceres/loss_function.h>
+#include <ceres/problem.h>
 #include <gtest/gtest.h>
+
+#include <memory>
+#include <vector>
 
 #include "core/estimation/estimator.h"
 #include "core/util/input_error.h"
+#include "core/util/lane_math.h"
 #include "costs/assembly/cost_of.h"
 #include "costs/cost_list.h"
 #include "frontend/simulation/synthetic_matches.h"
+
+namespace {
+
+// A cost that stands outside the project and calls all functions there are, on
+// the match's numbers and on the motion's: of e = 0 all are 0.
+struct WithFunctions : rgbd_pose::ForwardError {
+  static constexpr char kName[] = "with_functions";
+  static constexpr int kRows = 3, kIndependentRows = 3;
+  static constexpr bool kFreezesWeights = false, kIsWhitened = false;
+
+  template <typename M, typename D, typename T>
+  static void Residual(const rgbd_pose::MotionPose<M>& motion, const D* columns,
+                       T* r) {
+    using rgbd_pose::abs, rgbd_pose::sqrt, rgbd_pose::cbrt, rgbd_pose::exp,
+        rgbd_pose::log, rgbd_pose::sin, rgbd_pose::cos, rgbd_pose::tan,
+        rgbd_pose::asin, rgbd_pose::acos, rgbd_pose::atan, rgbd_pose::tanh,
+        rgbd_pose::pow, rgbd_pose::atan2, rgbd_pose::hypot;
+    T e[3];
+    Error(motion, columns, e);
+    const D depth = log(exp(columns[5])) + 0.1 * cbrt(abs(columns[0]));
+    const T x = e[0] / depth, y = e[1] / depth, z = e[2] / depth;
+    r[0] = atan(x) + sin(y) * cos(y) + 0.1 * tanh(y) * sqrt(1.0 + x * x);
+    r[1] = tan(y) + asin(0.5 * y) - acos(0.5 * y) + acos(0.0 * y) +
+           atan2(y, depth) + atan2(y, 2.0);
+    r[2] = log(1.0 + pow(z, 2.0) + z) + pow(2.0, z) - pow(depth / depth, z) +
+           hypot(z, 1.0 + 0.0 * z) - 1.0;
+  }
+};
+
+}  // namespace
 
 namespace rgbd_pose {
 namespace {
@@ -80,6 +115,37 @@ TEST(AutodiffJacobianTest, AllAssembliesFindTheMotion) {
     const Rigid3d error = estimate.cur_from_prev.Inverse() * truth;
     EXPECT_LT(error.translation.norm(), 1e-9);
     EXPECT_LT(error.Angle(), 1e-9);
+  }
+}
+
+// Lane by lane as one by one, and as Jets differentiate.
+TEST(AutodiffJacobianTest, FunctionsAreThereForAllScalars) {
+  RandomWorld world(5);
+  const Rigid3d truth = world.Motion(0.1, 0.1);
+  const Correspondences matches = world.Matches(kMatches, 0.1, truth);
+  const MotionOrigin origin(world.Motion(0.01, 0.01) * truth);
+  const std::unique_ptr<Cost> cost = MakeCost<WithFunctions>();
+  cost->Bind({matches, truth});
+  ceres::HuberLoss loss(0.1);
+  double costs[3];
+  MotionVector gradients[3];
+  const Assembly assemblies[] = {Assembly::kPerMatch, Assembly::kAutodiff,
+                                 Assembly::kCompressed};
+  for (int i = 0; i < 3; ++i) {
+    ceres::Problem::Options options;
+    options.cost_function_ownership = BlockOwnership(assemblies[i]);
+    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+    ceres::Problem problem(options);
+    MotionVector x = MotionVector::Constant(0.01);
+    cost->AddTo(assemblies[i], origin, &loss, x.data(), &problem);
+    std::vector<double> gradient;
+    ASSERT_TRUE(problem.Evaluate({}, &costs[i], nullptr, &gradient, nullptr));
+    gradients[i] = Eigen::Map<MotionVector>(gradient.data());
+  }
+  EXPECT_GT(costs[0], 0.1);
+  for (int i = 1; i < 3; ++i) {
+    EXPECT_NEAR(costs[i], costs[0], 1e-12 * costs[0]);
+    EXPECT_TRUE(gradients[i].isApprox(gradients[0], 1e-12));
   }
 }
 
