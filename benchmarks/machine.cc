@@ -51,7 +51,7 @@ std::string EigenVersion() {
 
 std::string InstructionSetName() {
 #if defined(__x86_64__)
-  switch (packed::BestInstructionSet()) {
+  switch (packed::ChosenInstructionSet()) {
     case packed::InstructionSet::kAvx512:
       return "AVX-512";
     case packed::InstructionSet::kAvx2:

@@ -80,12 +80,15 @@ std::string Count(const BenchmarkResult& result, const std::string& name) {
 
 std::string SolveRows(const BenchmarkResults& results) {
   const std::string rows[][3] = {
+      {"plain", "QR", "plain/qr"},
+      {"plain", "Cholesky", "plain/cholesky"},
       {"autodiff", "QR", "autodiff/qr"},
       {"autodiff", "Cholesky", "autodiff/cholesky"},
       {"per_match", "QR", "per_match/qr"},
       {"per_match", "Cholesky", "per_match/cholesky"},
       {"compressed", "QR", "compressed/qr"},
       {"compressed", "Cholesky", "compressed/cholesky"},
+      {"compressed, SSE2 only", "Cholesky", "compressed_sse2/cholesky"},
       {"tiny_solver", "its own", "tiny_solver"},
       {"bare_loop", "LDLT", "bare_loop"}};
   std::string text;

@@ -1,11 +1,12 @@
 // One pose solve from matches, building the problem and solving it: by every
 // assembly and linear solver, beside the same steps without Ceres.
 //
-// Names: solve/<assembly>/<linear solver>/<loss>/<matches>,
+// Names: solve/<assembly or plain>/<linear solver>/<loss>/<matches>,
 // solve/<bare_loop or tiny_solver>/<loss>/<matches>,
 // estimate/<assembly>/<loss>/<matches>.
 
 #include <benchmark/benchmark.h>
+#include <ceres/autodiff_cost_function.h>
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -15,10 +16,13 @@
 #include <cmath>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <utility>
 
 #include "core/estimation/cost.h"
 #include "core/estimation/estimator.h"
+#include "core/util/vector_lanes.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
@@ -64,7 +68,71 @@ ceres::Problem::Options ProblemOptions(Assembly assembly) {
   return options;
 }
 
-void SolveWithCeres(benchmark::State& state, Assembly assembly,
+// The yardstick of `autodiff`: BidirectionalPoint as one would write it for
+// ceres::AutoDiffCostFunction without this project, from a first motion of 0.
+struct PlainResidual {
+  explicit PlainResidual(const Camera& camera, const Observation& o_prev,
+                         const Observation& o_cur)
+      : prev(camera, o_prev), cur(camera, o_cur) {}
+
+  template <typename T>
+  bool operator()(const T* x, T* r) const {
+    using std::cos;
+    using std::sin;
+    const T sa = sin(x[0]), ca = cos(x[0]);
+    const T sb = sin(x[1]), cb = cos(x[1]);
+    const T sg = sin(x[2]), cg = cos(x[2]);
+    const T R[3][3] = {
+        {cb * cg, sa * sb * cg - ca * sg, ca * sb * cg + sa * sg},
+        {cb * sg, sa * sb * sg + ca * cg, ca * sb * sg - sa * cg},
+        {-sb, sa * cb, ca * cb}};
+    const T* C = x + 3;
+    const T d[3] = {prev.x[0] - C[0], prev.x[1] - C[1], prev.x[2] - C[2]};
+    T e_c[3], e_p[3];
+    for (int i = 0; i < 3; ++i) {
+      e_c[i] = cur.x[i] - (R[i][0] * d[0] + R[i][1] * d[1] + R[i][2] * d[2]);
+      e_p[i] = prev.x[i] - (R[0][i] * cur.x[0] + R[1][i] * cur.x[1] +
+                            R[2][i] * cur.x[2] + C[i]);
+    }
+    cur.Whiten(e_c, r);
+    prev.Whiten(e_p, r + 3);
+    return true;
+  }
+
+  struct Point {
+    Point(const Camera& camera, const Observation& o)
+        : a((o.u - camera.cx) / camera.fx),
+          b((o.v - camera.cy) / camera.fy),
+          x{a * o.depth, b * o.depth, o.depth},
+          w_u(0.5 * camera.fx / (o.depth * o.sigma_px)),
+          w_v(0.5 * camera.fy / (o.depth * o.sigma_px)),
+          w_z(0.5 / o.sigma_depth) {}
+
+    template <typename T>
+    void Whiten(const T* e, T* r) const {
+      r[0] = w_u * (e[0] - a * e[2]);
+      r[1] = w_v * (e[1] - b * e[2]);
+      r[2] = w_z * e[2];
+    }
+
+    double a, b, x[3], w_u, w_v, w_z;
+  };
+
+  Point prev, cur;
+};
+
+void AddPlainBlocks(const World& world, double* x, ceres::Problem* problem) {
+  const Correspondences& matches = world.matches;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    problem->AddResidualBlock(
+        new ceres::AutoDiffCostFunction<PlainResidual, 6, 6>(new PlainResidual(
+            matches.camera(), matches[i].prev, matches[i].cur)),
+        world.loss.get(), x);
+  }
+}
+
+// By an assembly or, without one, by the plain blocks.
+void SolveWithCeres(benchmark::State& state, std::optional<Assembly> assembly,
                     ceres::LinearSolverType linear, const std::string& loss) {
   World world(static_cast<int>(state.range(0)), loss);
   const MotionOrigin origin;
@@ -77,15 +145,33 @@ void SolveWithCeres(benchmark::State& state, Assembly assembly,
   ceres::Solver::Summary summary;
   for (auto _ : state) {
     MotionVector x = MotionVector::Zero();
-    world.cost->Bind({world.matches, Rigid3d()});
-    ceres::Problem problem(ProblemOptions(assembly));
-    world.cost->AddTo(assembly, origin, world.loss.get(), x.data(), &problem);
+    ceres::Problem problem(
+        ProblemOptions(assembly.value_or(Assembly::kAutodiff)));
+    if (assembly) {
+      world.cost->Bind({world.matches, Rigid3d()});
+      world.cost->AddTo(*assembly, origin, world.loss.get(), x.data(),
+                        &problem);
+    } else {
+      AddPlainBlocks(world, x.data(), &problem);
+    }
     ceres::Solve(options, &problem, &summary);
     benchmark::DoNotOptimize(x);
   }
   // Ceres counts the starting point's as a Jacobian's.
   state.counters["evaluations"] = summary.num_residual_evaluations + 1;
 }
+
+#if defined(__x86_64__)
+// What the block gains without wide vectors.
+void SolveBySse2(benchmark::State& state, const std::string& loss) {
+  packed::InstructionSet& chosen = packed::ChosenInstructionSet();
+  const packed::InstructionSet best =
+      std::exchange(chosen, packed::InstructionSet::kBaseline);
+  SolveWithCeres(state, Assembly::kCompressed, ceres::DENSE_NORMAL_CHOLESKY,
+                 loss);
+  chosen = best;
+}
+#endif
 
 // The limit: Gauss-Newton on the same sums without Ceres.
 void BareLoop(benchmark::State& state, const std::string& loss) {
@@ -174,10 +260,11 @@ void Register(const std::string& name, int matches, Run run, Args... args) {
 }
 
 void RegisterSize(int matches, const std::string& loss) {
+  using Named = std::pair<const char*, std::optional<Assembly>>;
   for (const auto& [assembly_name, assembly] :
-       {std::pair("compressed", Assembly::kCompressed),
-        std::pair("per_match", Assembly::kPerMatch),
-        std::pair("autodiff", Assembly::kAutodiff)}) {
+       {Named("compressed", Assembly::kCompressed),
+        Named("per_match", Assembly::kPerMatch),
+        Named("autodiff", Assembly::kAutodiff), Named("plain", {})}) {
     for (const auto& [linear_name, linear] :
          {std::pair("qr", ceres::DENSE_QR),
           std::pair("cholesky", ceres::DENSE_NORMAL_CHOLESKY)}) {
@@ -186,6 +273,10 @@ void RegisterSize(int matches, const std::string& loss) {
                matches, SolveWithCeres, assembly, linear, loss);
     }
   }
+#if defined(__x86_64__)
+  Register("solve/compressed_sse2/cholesky/" + loss, matches, SolveBySse2,
+           loss);
+#endif
   Register("solve/tiny_solver/" + loss, matches, SolveWithTinySolver, loss);
   Register("solve/bare_loop/" + loss, matches, BareLoop, loss);
 }

@@ -46,11 +46,11 @@ void AddSolves(const std::string& key, const std::string& loss, int matches,
                  aims.per_match);
   collector->Add(key + "_compressed_over_bare_loop", ours,
                  {"solve/bare_loop/" + loss + "/" + size}, aims.bare_loop);
-  const char* solvers[] = {"qr", "cholesky"};  // as SolveNames has them
+  const char* solvers[] = {"qr", "cholesky"};  // the order of SolveNames
   for (int i = 0; i < 2; ++i) {
     const std::string same = key + "_" + solvers[i];
     collector->Add(same + "_compressed_over_autodiff", {ours[i]},
-                   {autodiff[i]});
+                   {autodiff[i], autodiff[i + 2]});
     collector->Add(same + "_compressed_over_per_match", {ours[i]},
                    {per_match[i]});
   }
@@ -61,8 +61,13 @@ void AddSolves(const std::string& key, const std::string& loss, int matches,
 std::vector<std::string> SolveNames(const std::string& assembly,
                                     const std::string& loss, int matches) {
   const std::string rest = "/" + loss + "/" + std::to_string(matches);
-  return {"solve/" + assembly + "/qr" + rest,
-          "solve/" + assembly + "/cholesky" + rest};
+  std::vector<std::string> names = {"solve/" + assembly + "/qr" + rest,
+                                    "solve/" + assembly + "/cholesky" + rest};
+  if (assembly == "autodiff") {
+    names.push_back("solve/plain/qr" + rest);
+    names.push_back("solve/plain/cholesky" + rest);
+  }
+  return names;
 }
 
 std::vector<std::string> TrackedSequences(const BenchmarkResults& results) {

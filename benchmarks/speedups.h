@@ -19,7 +19,8 @@ struct SpeedupRow {
 // name one (qr, cholesky) have it on both sides.
 std::vector<SpeedupRow> FindSpeedups(const BenchmarkResults& results);
 
-// The benchmarks of one solve by an assembly, one for each linear solver.
+// The benchmarks of one solve by an assembly, one for each linear solver;
+// `autodiff` has those of the plain Ceres blocks after its own.
 std::vector<std::string> SolveNames(const std::string& assembly,
                                     const std::string& loss, int matches);
 

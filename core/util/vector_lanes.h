@@ -48,8 +48,10 @@ void RunBaseline(Args... args) {
 
 enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 
-inline InstructionSet BestInstructionSet() {
-  static const InstructionSet best = [] {
+// What kernels are run with: the best the machine has, unless a benchmark or a
+// test sets less while none runs.
+inline InstructionSet& ChosenInstructionSet() {
+  static InstructionSet chosen = [] {
     if (__builtin_cpu_supports("avx512f") &&
         __builtin_cpu_supports("avx512dq") &&
         __builtin_cpu_supports("avx512vl")) {
@@ -59,7 +61,7 @@ inline InstructionSet BestInstructionSet() {
                ? InstructionSet::kAvx2
                : InstructionSet::kBaseline;
   }();
-  return best;
+  return chosen;
 }
 
 }  // namespace packed
@@ -70,7 +72,7 @@ inline InstructionSet BestInstructionSet() {
 template <typename Kernel, typename... Args>
 void RunVectorised(const Args&... args) {
 #if defined(__x86_64__)
-  switch (packed::BestInstructionSet()) {
+  switch (packed::ChosenInstructionSet()) {
     case packed::InstructionSet::kAvx512:
       return packed::RunAvx512<Kernel>(&args...);
     case packed::InstructionSet::kAvx2:
