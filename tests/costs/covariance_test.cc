@@ -109,5 +109,85 @@ INSTANTIATE_TEST_SUITE_P(
               kOther}),
     SceneName);
 
+// Matches, all of them right, on which the noise of the two frames differs: in
+// size, or in the direction in which it reaches over from one to the other.
+struct UnequalNoise {
+  const char* cost;
+  const char* scene;    // of kPixelNoise or kBaseline
+  double nees;          // as above, expected mean
+  double inlier_share;  // expected
+};
+constexpr char kPixelNoise[] = "pixel_noise";  // 2 px against 0.5 px
+constexpr char kBaseline[] = "baseline";       // 45 degrees, 2 m
+
+Correspondences MatchesOf(const UnequalNoise& scene, int seed, Rigid3d* truth) {
+  RandomWorld world(3000 + seed);
+  const Camera camera;
+  const bool is_wide = std::string(scene.scene) == kBaseline;
+  *truth = world.Motion(0.05, 0.05);
+  if (is_wide) {
+    // Round a point 2.6 m ahead, which stays where it is in the image.
+    const Eigen::Vector3d ahead(0.0, 0.0, 2.6);
+    truth->rotation = Eigen::AngleAxisd(M_PI / 4.0, Eigen::Vector3d::UnitY());
+    truth->translation = ahead - truth->rotation * ahead;
+  }
+  Correspondences matches(camera);
+  for (int i = 0; i < kMatches; ++i) {
+    Observation prev, cur;
+    world.Match(camera, *truth, &prev, &cur);
+    if (!is_wide) prev.sigma_px = 2.0;
+    world.AddNoise(&prev);
+    world.AddNoise(&cur);
+    cur.normal = -world.Vector(1.0).cwiseAbs().normalized();
+    matches.Add(prev, cur);
+  }
+  return matches;
+}
+
+class UnequalNoiseTest : public ::testing::TestWithParam<UnequalNoise> {};
+
+// What each cost makes of it (docs/costs.md), from the truth.
+TEST_P(UnequalNoiseTest, IsAsDocumented) {
+  const UnequalNoise& scene = GetParam();
+  constexpr int kSeeds = 300;
+  Estimator estimator({}, MakeRobustCosts(scene.cost, "tukey"));
+  double nees = 0.0, inliers = 0.0;
+  for (int seed = 0; seed < kSeeds; ++seed) {
+    Rigid3d truth;
+    const Correspondences matches = MatchesOf(scene, seed, &truth);
+    const MotionEstimate estimate = estimator.Estimate(matches, truth);
+    ASSERT_TRUE(estimate.ok()) << estimate.reason << ", seed " << seed;
+    const MotionVector error = ErrorOf(estimate.cur_from_prev, truth);
+    nees += error.dot(estimate.covariance.ldlt().solve(error)) / kSeeds;
+    inliers += 1.0 * estimate.num_inliers / estimate.num_used / kSeeds;
+  }
+  RecordProperty("nees", std::to_string(nees));
+  RecordProperty("inlier_share", std::to_string(inliers));
+  EXPECT_NEAR(nees, scene.nees, kOther);
+  EXPECT_NEAR(inliers, scene.inlier_share, 0.02);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Costs, UnequalNoiseTest,
+    ::testing::Values(
+        // It takes both frames for equally noisy.
+        UnequalNoise{"bidirectional_point", kPixelNoise, 9.2, 0.68},
+        UnequalNoise{"bidirectional_point", kBaseline, 6.0, 0.785},
+        UnequalNoise{"bidirectional_image", kPixelNoise, 6.0, 0.99},
+        UnequalNoise{"bidirectional_image", kBaseline, 6.0, 0.99},
+        UnequalNoise{"point_to_point", kPixelNoise, 6.0, 0.99},
+        UnequalNoise{"point_to_point", kBaseline, 6.0, 0.99},
+        UnequalNoise{"mahalanobis_point", kPixelNoise, 6.0, 0.99},
+        UnequalNoise{"mahalanobis_point", kBaseline, 6.0, 0.99},
+        UnequalNoise{"point_to_plane", kPixelNoise, 6.0, 0.99},
+        UnequalNoise{"point_to_plane", kBaseline, 6.0, 0.99},
+        UnequalNoise{"reprojection", kPixelNoise, 6.0, 0.99},
+        UnequalNoise{"reprojection", kBaseline, 6.0, 0.99},
+        UnequalNoise{"reprojection_depth", kPixelNoise, 6.0, 0.99},
+        UnequalNoise{"reprojection_depth", kBaseline, 6.0, 0.99}),
+    [](const auto& info) {
+      return std::string(info.param.cost) + "_" + info.param.scene;
+    });
+
 }  // namespace
 }  // namespace rgbd_pose
