@@ -183,21 +183,23 @@ struct RowSums {
 template <typename Residual, typename D>
 struct TermSums {
   void Add(const MotionDerivatives& motion, const D* m, const D& weight) {
-    PointTerm<D> forward_term, backward_term;
-    Residual::PointTerms(motion, m, &forward_term, &backward_term);
-    forward.Add(forward_term, weight);
-    backward.Add(backward_term, weight);
+    PointTerm<D> terms[kTerms];
+    Residual::PointTerms(motion, m, terms);
+    for (int i = 0; i < kTerms; ++i) sums[i].Add(terms[i], weight);
   }
 
   // d(R (X - C)) = omega x q - R dC;  d(R^T X + C) = -(R^T omega) x q + dC.
   void AddTo(const MotionDerivatives& motion, NormalEquations* sum) const {
     const Eigen::Matrix3d turn = TurnOfAngles(motion);
-    forward.AddTo(turn, -motion.R, sum);
-    backward.AddTo(-(motion.R.transpose() * turn), Eigen::Matrix3d::Identity(),
-                   sum);
+    sums[0].AddTo(turn, -motion.R, sum);
+    if constexpr (kTerms == 2) {
+      sums[1].AddTo(-(motion.R.transpose() * turn), Eigen::Matrix3d::Identity(),
+                    sum);
+    }
   }
 
-  PointSums<D> forward, backward;
+  static constexpr int kTerms = Residual::kPointTerms;
+  PointSums<D> sums[kTerms];
 };
 
 // The robustified normal equations, weighted by rho', of the matches from

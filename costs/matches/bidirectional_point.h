@@ -92,11 +92,13 @@ struct BidirectionalPoint {
   // The same for the compressed sums (point_sums.h): e_c depends on the motion
   // through q = R (X_prev - C), e_p through q = R^T X_cur + C, and both fall by
   // as much as q rises: A = -W.
-  static constexpr bool kHasPointTerms = true;
+  static constexpr int kPointTerms = 2;
 
   template <typename D>
   static void PointTerms(const MotionDerivatives& motion, const D* columns,
-                         PointTerm<D>* forward, PointTerm<D>* backward) {
+                         PointTerm<D>* terms) {
+    PointTerm<D>* const forward = &terms[0];
+    PointTerm<D>* const backward = &terms[1];
     const RayWhitening<D> prev(columns);
     const RayWhitening<D> cur(columns + RayWhitening<D>::kColumns);
     Forward::Move(motion, prev.point, forward->q);

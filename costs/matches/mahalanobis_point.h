@@ -2,6 +2,8 @@
 
 #include "core/estimation/cost.h"
 #include "costs/parts/forward_error.h"
+#include "costs/parts/moved_point.h"
+#include "costs/parts/point_sums.h"
 #include "costs/parts/whitening.h"
 
 namespace rgbd_pose {
@@ -46,6 +48,29 @@ struct MahalanobisPoint {
       ForwardError::Derivative(motion, columns, parameter, de);
       whitening.WhitenColumn(de, J, parameter);
     }
+  }
+
+  // The same for the compressed sums (point_sums.h): r = W e falls by W q, so
+  // A = -W with the lower triangle W = L^T.
+  static constexpr int kPointTerms = 1;
+
+  template <typename D>
+  static void PointTerms(const MotionDerivatives& motion, const D* columns,
+                         PointTerm<D>* term) {
+    const D* w = columns + ForwardError::kColumns;
+    Forward::Move(motion, columns, term->q);
+    D e[3], r[3];
+    for (int i = 0; i < 3; ++i) e[i] = columns[3 + i] - term->q[i];
+    Whitening<3, D>(w).Whiten(e, r);
+    term->normal[0] = w[0] * w[0] + w[1] * w[1] + w[3] * w[3];
+    term->normal[1] = w[1] * w[2] + w[3] * w[4];
+    term->normal[2] = w[3] * w[5];
+    term->normal[3] = w[2] * w[2] + w[4] * w[4];
+    term->normal[4] = w[4] * w[5];
+    term->normal[5] = w[5] * w[5];
+    term->force[0] = -(w[0] * r[0] + w[1] * r[1] + w[3] * r[2]);
+    term->force[1] = -(w[2] * r[1] + w[4] * r[2]);
+    term->force[2] = -(w[5] * r[2]);
   }
 };
 

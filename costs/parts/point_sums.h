@@ -120,13 +120,13 @@ inline Eigen::Matrix3d TurnOfAngles(const MotionDerivatives& motion) {
   return turn;
 }
 
-// Whether a residual type says its terms: the forward point R (X_prev - C) and
-// the backward point R^T X_cur + C, by
-//   PointTerms(motion, columns, forward, backward).
+// Whether a residual type says its terms, kPointTerms of them: that of the
+// forward point R (X_prev - C) and, if 2, that of R^T X_cur + C after it, by
+//   PointTerms(motion, columns, terms).
 template <typename Residual, typename = void>
 struct HasPointTerms : std::false_type {};
 template <typename Residual>
-struct HasPointTerms<Residual, std::void_t<decltype(Residual::kHasPointTerms)>>
+struct HasPointTerms<Residual, std::void_t<decltype(Residual::kPointTerms)>>
     : std::true_type {};
 
 }  // namespace rgbd_pose

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 
 namespace rgbd_pose {
 
@@ -56,19 +57,31 @@ class Whitening {
 };
 
 // The columns of the whitening by a covariance; false if that is not positive
-// definite.
+// definite. Written out, since some costs do this for every match at every
+// motion they are bound to.
 template <int N>
 bool PackWhitening(const Eigen::Matrix<double, N, N>& covariance,
                    double* columns) {
-  using Matrix = Eigen::Matrix<double, N, N>;
-  const Eigen::LLT<Matrix> cholesky(covariance);
-  if (cholesky.info() != Eigen::Success) return false;
-  const Matrix w = cholesky.matrixL().solve(Matrix::Identity());
-  if (!w.allFinite()) return false;
-  for (int row = 0; row < N; ++row) {
-    for (int k = 0; k <= row; ++k) *columns++ = w(row, k);
+  double K[N][N], W[N][N];  // K K^T = covariance, W = K^-1; lower triangles
+  for (int i = 0; i < N; ++i) {
+    double variance = covariance(i, i);
+    for (int j = 0; j < i; ++j) {
+      double sum = covariance(i, j);
+      for (int k = 0; k < j; ++k) sum -= K[i][k] * K[j][k];
+      K[i][j] = sum * W[j][j];
+      variance -= K[i][j] * K[i][j];
+    }
+    W[i][i] = 1.0 / std::sqrt(variance);
+    if (!(variance > 0.0) || !std::isfinite(W[i][i])) return false;
+    for (int j = 0; j < i; ++j) {
+      double sum = 0.0;
+      for (int k = j; k < i; ++k) sum += K[i][k] * W[k][j];
+      W[i][j] = -W[i][i] * sum;
+    }
+    columns = std::copy_n(W[i], i + 1, columns);
   }
-  return true;
+  return std::all_of(columns - Whitening<N, double>::kColumns, columns,
+                     [](double w) { return std::isfinite(w); });
 }
 
 }  // namespace rgbd_pose
