@@ -26,7 +26,7 @@
 #include "frontend/features/frontend.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/sources/camera_file.h"
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/open_source.h"
 #include "robust/m_estimator.h"
 
 DEFINE_string(
@@ -203,20 +203,20 @@ void AddRecorded(const std::string& name, SequenceResults* results) {
       (std::filesystem::path(FLAGS_experiment) / "groundtruth.txt").string();
   std::optional<Trajectory> truth;
   if (std::filesystem::exists(truth_file)) truth = ReadTrajectory(truth_file);
-  TumDatasetOptions options;
-  options.folder = FLAGS_experiment;
+  SourceOptions options;
+  options.path = FLAGS_experiment;
   options.camera = ResolveCamera(FLAGS_camera);
   std::vector<double> scales = {options.camera.depth_scale};
   if (FLAGS_camera == "tum_fr2") scales.push_back(kOtherFr2DepthScale);
   for (const double scale : scales) {
     options.camera.depth_scale = scale;
-    TumDataset dataset(options);
+    const std::unique_ptr<FrameSource> source = OpenSource("auto", options);
     char units[32];
     std::snprintf(units, sizeof(units), "%.10g", scale);
     AddSequence(name + ", " + units + " raw depth units per metre",
                 scales.size() == 1 ? "paths.svg"
                                    : std::string("paths_") + units + ".svg",
-                &dataset, truth, /*returns_to_start=*/false, results);
+                source.get(), truth, /*returns_to_start=*/false, results);
   }
 }
 

@@ -96,21 +96,22 @@ std::string WriteReport(const std::filesystem::path& folder) {
   return "report in   " + Settings().output.output + "/report.html\n";
 }
 
-int ValidateOnly(TumDataset* dataset, int threads) {
+int ValidateOnly(FrameSource* source, int threads) {
   const Clock::time_point start = Clock::now();
   std::vector<double> decode_ms;
   {
-    ProgressBar bar("reading", dataset->size());
-    FrameStream stream(dataset, nullptr, threads);
+    ProgressBar bar("reading", static_cast<int>(source->timestamps().size()));
+    FrameStream stream(source, nullptr, threads);
     while (const auto next = stream.Next()) {
       decode_ms.push_back(next->decode_ms);
       bar.Update(static_cast<int>(decode_ms.size()));
     }
   }
-  std::printf("frames      %d, all readable\n", dataset->size());
+  const auto frames = static_cast<int>(decode_ms.size());
+  std::printf("frames      %d, all readable\n", frames);
   std::printf(
       "decoding    %.1f frames/s with %d thread(s), %.2f ms per frame median\n",
-      dataset->size() / SecondsSince(start), threads, Median(decode_ms));
+      frames / SecondsSince(start), threads, Median(decode_ms));
   return kExitOk;
 }
 
@@ -127,25 +128,27 @@ int Main() {
 
   // All that can be wrong with the input is looked at before the work starts
   // and before anything is written.
-  const Sequence sequence = OpenSequence(settings.sequence);
-  TumDataset& dataset = *sequence.source;
-  if (FLAGS_validate_only) return ValidateOnly(&dataset, threads);
+  const bool keep_color = !settings.output.save_cloud.empty();
+  const Sequence sequence = OpenSequence(settings.sequence, keep_color);
+  FrameSource& source = *sequence.source;
+  if (FLAGS_validate_only) return ValidateOnly(&source, threads);
   const RunInputs inputs = sequence.inputs();
-  OdometryRun run(settings.odometry, dataset.camera().camera, inputs);
-  const std::string warning = DepthScaleWarning(dataset.Read(0));
-  RunOutput output(settings.output, dataset);
-  if (!warning.empty()) LOG(WARNING) << warning;
-  if (dataset.unmatched_color() > 0) {
-    LOG(WARNING) << dataset.unmatched_color()
+  OdometryRun run(settings.odometry, source.camera().camera, inputs);
+  RunOutput output(settings.output, source);
+  if (source.unmatched_color() > 0) {
+    LOG(WARNING) << source.unmatched_color()
                  << " colour images have no depth image within 0.02 s and "
                     "are left out";
   }
 
   {
-    ProgressBar bar("tracking", dataset.size());
-    TrackAll(&dataset, threads, {&run}, [&](const Frame& frame) {
+    ProgressBar bar("tracking", static_cast<int>(source.timestamps().size()));
+    TrackAll(&source, threads, {&run}, [&](const Frame& frame) {
+      const bool is_first = run.frames().size() == 1;
+      const std::string warning = is_first ? DepthScaleWarning(frame) : "";
+      if (!warning.empty()) LOG(WARNING) << warning;
       output.Add(frame, run);
-      bar.Update(frame.index + 1);
+      bar.Update(static_cast<int>(run.frames().size()));
     });
   }
   const double seconds = SecondsSince(start);

@@ -8,10 +8,11 @@
 #include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
+#include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_scene.h"
-#include "frontend/simulation/tum_writer.h"
 #include "frontend/sources/camera_file.h"
+#include "frontend/sources/tum_writer.h"
 
 DEFINE_string(scene, "room", "what to look at");
 DEFINE_string(path, "xyz", "how to move");
@@ -39,13 +40,13 @@ int Simulate() {
   options.exposure_s = FLAGS_shutter;
   options.exposure_drift = FLAGS_exposure_drift;
   options.camera = ResolveCamera(FLAGS_camera);
-  const SyntheticDataset dataset(options);
+  SyntheticDataset dataset(options);
   {
     ProgressBar bar("rendering", dataset.size());
     TumWriterOptions writer;
     writer.threads = AvailableCores();
     writer.progress = [&bar](int done) { bar.Update(done); };
-    WriteTumSequence(dataset, FLAGS_output, writer);
+    WriteTumSequence(&dataset, dataset.ground_truth(), FLAGS_output, writer);
   }
   std::printf("%s: %d frames of path %s in scene %s, with ground truth\n",
               FLAGS_output.c_str(), dataset.size(), FLAGS_path.c_str(),

@@ -68,8 +68,8 @@ Sequence LoadRoom() {
 
 Sequence LoadFolder() {
   RequireFlag("camera", FLAGS_camera);
-  TumDatasetOptions options;
-  options.folder = FLAGS_dataset;
+  SourceOptions options;
+  options.path = FLAGS_dataset;
   options.camera = ResolveCamera(FLAGS_camera);
   const std::filesystem::path folder =
       std::filesystem::absolute(FLAGS_dataset).lexically_normal();

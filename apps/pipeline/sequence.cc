@@ -4,14 +4,18 @@
 
 #include "core/util/input_error.h"
 #include "frontend/sources/camera_file.h"
+#include "frontend/sources/open_source.h"
 
 namespace rgbd_pose {
 
 std::vector<Setting> SettingTable(SequenceSettings* settings) {
   constexpr std::string_view kGroup = "Input";
   return {
-      {"dataset", kGroup, "folder of a sequence in TUM RGB-D layout",
+      {"dataset", kGroup,
+       "recording of an RGB-D camera: a folder in TUM RGB-D layout",
        Text(&settings->dataset)},
+      {"source", kGroup, "kind of recording", Text(&settings->source),
+       SourceNames()},
       {"associations", kGroup,
        "file that pairs colour and depth images, either column order; empty: "
        "rgb.txt and depth.txt are paired by time",
@@ -38,9 +42,10 @@ RunInputs Sequence::inputs() const {
           ground_truth.has_value() ? &*ground_truth : nullptr};
 }
 
-Sequence OpenSequence(const SequenceSettings& settings) {
-  TumDatasetOptions options;
-  options.folder = settings.dataset;
+Sequence OpenSequence(const SequenceSettings& settings, bool keep_color) {
+  SourceOptions options;
+  options.path = settings.dataset;
+  options.keep_color = keep_color;
   options.associations_file = settings.associations;
   options.camera = ResolveCamera(settings.camera);
   if (!(settings.depth_scale >= 0.0)) {
@@ -50,7 +55,7 @@ Sequence OpenSequence(const SequenceSettings& settings) {
     options.camera.depth_scale = settings.depth_scale;
   }
   Sequence sequence;
-  sequence.source = std::make_unique<TumDataset>(options);
+  sequence.source = OpenSource(settings.source, options);
   std::string truth = settings.groundtruth;
   if (truth.empty()) {
     const std::filesystem::path path =

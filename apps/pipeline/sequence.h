@@ -8,19 +8,20 @@
 #include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/setting_table.h"
 #include "core/evaluation/trajectory.h"
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/frame_source.h"
 #include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 
 // A sequence and what is known of it, as users say it; empty: none.
 struct SequenceSettings {
-  std::string dataset;       // folder in TUM layout
-  std::string associations;  // file
-  std::string camera;        // file or preset
-  double depth_scale = 0.0;  // raw units per metre; 0: the camera's
-  std::string motion_guess;  // file
-  std::string groundtruth;   // file; empty: that of the dataset, if any
+  std::string dataset;          // path of a recording
+  std::string source = "auto";  // its kind, see OpenSource
+  std::string associations;     // file
+  std::string camera;           // file or preset
+  double depth_scale = 0.0;     // raw units per metre; 0: the camera's
+  std::string motion_guess;     // file
+  std::string groundtruth;      // file; empty: that of the dataset, if any
 };
 
 // Their rows.
@@ -28,7 +29,7 @@ std::vector<Setting> SettingTable(SequenceSettings* settings);
 
 // A sequence that is open.
 struct Sequence {
-  std::unique_ptr<TumDataset> source;
+  std::unique_ptr<FrameSource> source;
   std::optional<Trajectory> ground_truth;
   std::optional<MotionGuess> motion_guess;
 
@@ -36,8 +37,9 @@ struct Sequence {
   RunInputs inputs() const;
 };
 
-// Throws InputError for all that can be wrong with it before its images are
-// read.
-Sequence OpenSequence(const SequenceSettings& settings);
+// `keep_color`: in Frame::color. Throws InputError for all that can be wrong
+// with it before its images are read.
+Sequence OpenSequence(const SequenceSettings& settings,
+                      bool keep_color = false);
 
 }  // namespace rgbd_pose

@@ -179,8 +179,8 @@ InputError and count as no frame.)",
 std::unique_ptr<TumDataset> OpenTumDataset(const py::object& folder,
                                            const RgbdCamera& camera,
                                            const py::object& associations) {
-  TumDatasetOptions options;
-  options.folder = PathFrom(folder);
+  SourceOptions options;
+  options.path = PathFrom(folder);
   if (!associations.is_none()) {
     options.associations_file = PathFrom(associations);
   }

@@ -55,8 +55,7 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
        Text(&settings->debug_images)},
       {"save_cloud", kGroup,
        "file for a coloured point cloud of what was seen (PLY), in the world "
-       "of "
-       "the trajectory; empty: none",
+       "of the trajectory; empty: none",
        Text(&settings->save_cloud)},
       {"voxel", kGroup,
        "side of the cubes (m) that the cloud's points are merged in",
@@ -65,11 +64,11 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
 }
 
 RunOutput::RunOutput(const RunOutputSettings& settings,
-                     const TumDataset& dataset)
+                     const FrameSource& source)
     : settings_(settings),
-      dataset_(dataset),
+      source_(source),
       drawn_("debug_images", settings.debug_images),
-      cloud_options_(CloudOptions(dataset.camera().camera, settings.voxel)),
+      cloud_options_(CloudOptions(source.camera().camera, settings.voxel)),
       folder_(settings.output) {
   if (!settings.debug_images.empty()) {
     std::filesystem::create_directory(aside() / kDebug);
@@ -83,12 +82,11 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
 void RunOutput::Add(const Frame& frame, const OdometryRun& run) {
   const TrackedFrame& tracked = run.frames().back();
   if (drawn_.Contains(tracked.index)) {
-    WriteDebugImage(aside() / kDebug, frame, tracked, dataset_.camera().camera,
+    WriteDebugImage(aside() / kDebug, frame, tracked, source_.camera().camera,
                     run.odometry());
   }
   if (cloud_.has_value() && cloud_->Wants(tracked)) {
-    cloud_->Add(frame, dataset_.ReadColor(tracked.index),
-                tracked.world_from_cam);
+    cloud_->Add(frame, tracked.world_from_cam);
   }
 }
 
@@ -99,7 +97,7 @@ std::string RunOutput::Write(const RunResults& results,
   std::string text = FormatSummary(summary);
   nlohmann::json metrics = {{"program", "rgbd_odometry"},
                             {"dataset", dataset},
-                            {"unmatched_color", dataset_.unmatched_color()},
+                            {"unmatched_color", source_.unmatched_color()},
                             {"peak_rss_mb", PeakMemoryMb()},
                             {"run", SummaryToJson(summary)},
                             {"residuals", ResidualsToJson(results.residuals)}};

@@ -12,7 +12,7 @@
 #include "apps/results/run_folder.h"
 #include "apps/shell/frame_selection.h"
 #include "frontend/map/cloud_fusion.h"
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {
 
@@ -31,8 +31,9 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings);
 class RunOutput {
  public:
   // Makes what must be there before the work begins. Throws InputError if it
-  // cannot, or for options that make no sense. The dataset must outlive it.
-  RunOutput(const RunOutputSettings& settings, const TumDataset& dataset);
+  // cannot, or for options that make no sense. The source must outlive it and
+  // keep colours for a cloud.
+  RunOutput(const RunOutputSettings& settings, const FrameSource& source);
 
   // After the run has tracked a frame.
   void Add(const Frame& frame, const OdometryRun& run);
@@ -55,7 +56,7 @@ class RunOutput {
                             std::string* text) const;
 
   RunOutputSettings settings_;
-  const TumDataset& dataset_;
+  const FrameSource& source_;
   FrameSelection drawn_;
   CloudFusionOptions cloud_options_;
   std::optional<CloudFusion> cloud_;

@@ -12,7 +12,7 @@ int main() {
       rgbd_pose::MakeOdometry(settings, camera.camera().camera);
   rgbd_pose::Frame frame;  // its memory serves for all of them
   for (int i = 0; i < camera.size(); ++i) {
-    const rgbd_pose::RgbdImages images = camera.ReadImages(i);
+    const rgbd_pose::Frame images = camera.Read(i);
     frame.index = i;
     frame.timestamp = i / 30.0;  // s
     cv::cvtColor(images.color, frame.gray, cv::COLOR_BGR2GRAY);

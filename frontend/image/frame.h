@@ -7,11 +7,15 @@ namespace rgbd_pose {
 
 // One RGB-D image pair of a sequence.
 struct Frame {
-  int index = 0;                // place in its dataset, from 0
+  int index = 0;                // place in its source, from 0
   double timestamp = 0.0;       // of the colour image, seconds
   cv::Mat gray;                 // CV_8UC1
   cv::Mat depth;                // CV_16UC1, registered to gray, the same size
   double depth_scale = 5000.0;  // raw depth units per metre
+
+  // Of gray's size, CV_8UC3 in the order blue, green, red; empty unless its
+  // source was asked to keep it.
+  cv::Mat color;
 
   // Depth in metres at a whole pixel; 0 where there is none.
   double DepthAt(int column, int row) const {

@@ -77,8 +77,7 @@ bool CloudFusion::Wants(const TrackedFrame& tracked) const {
          last_from_cam.Angle() >= options_.min_angle_deg * kRadFromDeg;
 }
 
-void CloudFusion::Add(const Frame& frame, const cv::Mat& color,
-                      const Rigid3d& world_from_cam) {
+void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
   const Eigen::Matrix3f rotation =
       world_from_cam.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = world_from_cam.translation.cast<float>();
@@ -97,7 +96,7 @@ void CloudFusion::Add(const Frame& frame, const cv::Mat& color,
         continue;
       }
       point.position = rotation * (z * rays[x]) + translation;
-      const cv::Vec3b& bgr = color.at<cv::Vec3b>(y, x);
+      const cv::Vec3b& bgr = frame.color.at<cv::Vec3b>(y, x);
       point.blue = bgr[0];
       point.green = bgr[1];
       point.red = bgr[2];

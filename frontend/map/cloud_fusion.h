@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -48,9 +47,8 @@ class CloudFusion {
   // moved, and how the frame lies to the first one is known (its segment).
   bool Wants(const TrackedFrame& tracked) const;
 
-  // `color`: the frame's colour image, CV_8UC3 in the order blue, green, red.
-  void Add(const Frame& frame, const cv::Mat& color,
-           const Rigid3d& world_from_cam);
+  // The frame must have its colour.
+  void Add(const Frame& frame, const Rigid3d& world_from_cam);
 
   // What has come together, and of how many frames.
   const VoxelCloud& cloud() const { return cloud_; }

@@ -67,7 +67,7 @@ Rigid3d SyntheticDataset::WorldFromCam(int index) const {
   return WorldFromCamAt(Time(index));
 }
 
-RgbdImages SyntheticDataset::ReadImages(int index) const {
+Frame SyntheticDataset::Read(int index) const {
   const double t = Time(index);
   Rendering rendering =
       Expose(renderer_, options_.camera.camera.fx,
@@ -81,18 +81,13 @@ RgbdImages SyntheticDataset::ReadImages(int index) const {
     rendering.depth = MeasureDepth(rendering.depth, options_.camera.camera.fx,
                                    sequence + frame + (uint64_t{1} << 40));
   }
-  return {rendering.color,
-          EncodeDepth(rendering.depth, options_.camera.depth_scale)};
-}
-
-Frame SyntheticDataset::Read(int index) const {
-  const RgbdImages images = ReadImages(index);
   Frame frame;
   frame.index = index;
   frame.timestamp = timestamp(index);
-  cv::cvtColor(images.color, frame.gray, cv::COLOR_BGR2GRAY);
-  frame.depth = images.depth;
+  frame.color = rendering.color;
+  cv::cvtColor(frame.color, frame.gray, cv::COLOR_BGR2GRAY);
   frame.depth_scale = options_.camera.depth_scale;
+  frame.depth = EncodeDepth(rendering.depth, frame.depth_scale);
   return frame;
 }
 

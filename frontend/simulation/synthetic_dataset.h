@@ -33,12 +33,6 @@ struct SyntheticOptions {
   std::optional<Rigid3d> path_from_cam = {};
 };
 
-// The images of one time, as cameras give them.
-struct RgbdImages {
-  cv::Mat color;  // CV_8UC3, blue, green, red
-  cv::Mat depth;  // CV_16UC1, raw units, 0 = none
-};
-
 // An RGB-D sequence rendered as it is read, with exact poses. The same options
 // give the same bytes, whatever the order or the number of threads. Time
 // stamps start at 1000 s and are whole microseconds, as TUM files hold them.
@@ -49,15 +43,9 @@ class SyntheticDataset : public Dataset {
 
   int size() const override { return options_.frames; }
   double timestamp(int index) const override;
+  // With its colour.
   Frame Read(int index) const override;
   const RgbdCamera& camera() const override { return options_.camera; }
-
-  // Colour and depth of a frame; Read gives the same with colour turned to
-  // gray by cv::cvtColor.
-  RgbdImages ReadImages(int index) const;
-
-  // Colour of a frame, CV_8UC3.
-  cv::Mat ReadColor(int index) const { return ReadImages(index).color; }
 
   // The pose in the middle of the exposure.
   Rigid3d WorldFromCam(int index) const;

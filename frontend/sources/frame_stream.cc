@@ -60,7 +60,6 @@ void FrameStream::ReadOne(Lock* lock) {
   const int index = num_begun_++;
   is_asking_ = true;
   lock->unlock();
-  const auto start = std::chrono::steady_clock::now();
   std::optional<RgbdFrame> next;
   try {
     next = source_->Next();
@@ -76,6 +75,7 @@ void FrameStream::ReadOne(Lock* lock) {
   if (!next.has_value()) return;
 
   lock->unlock();
+  const auto start = std::chrono::steady_clock::now();
   Result result;
   try {
     const Frame frame = next->read();

@@ -118,6 +118,7 @@ Frame FaultyDataset::Read(int index) const {
   const int source_index = source_[index];
   Frame frame = Source(source_index).Read(source_index);
   frame.index = index;
+  frame.color.release();  // faults are of gray and depth
   for (const Fault& fault : faults_) {
     if (!Befalls(fault, source_index)) continue;
     switch (fault.kind) {

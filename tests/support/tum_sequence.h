@@ -59,7 +59,7 @@ class TumSequenceTest : public testing::Test {
       WriteImage(folder_ / ("depth/" + std::to_string(k) + ".png"),
                  DepthImage(k));
     }
-    options_.folder = folder_.path();
+    options_.path = folder_.path();
     options_.camera = SmallCamera();
   }
 
@@ -78,7 +78,7 @@ class TumSequenceTest : public testing::Test {
   }
 
   TempFolder folder_;
-  TumDatasetOptions options_;
+  SourceOptions options_;
 };
 
 }  // namespace rgbd_pose

@@ -24,15 +24,15 @@ Frame WallAndPlate(const Camera& camera, int between_px) {
   frame.depth.colRange(0, 200).setTo(5000);
   // What sensors make of the edge: depths in between.
   frame.depth.colRange(200, 200 + between_px).setTo(7500);
+  frame.color.create(frame.depth.size(), CV_8UC3);
+  frame.color.setTo(cv::Scalar(10, 20, 30));
   return frame;
 }
 
 TEST(CloudFusionTest, LeavesOutPointsBetweenTwoSurfaces) {
   const Camera camera;
   CloudFusion fusion(Options(camera));
-  const cv::Mat color(camera.height, camera.width, CV_8UC3,
-                      cv::Scalar(10, 20, 30));
-  fusion.Add(WallAndPlate(camera, 1), color, Rigid3d());
+  fusion.Add(WallAndPlate(camera, 1), Rigid3d());
   ASSERT_GT(fusion.cloud().size(), 10000);
   for (const ColoredPoint& point : fusion.cloud().Points()) {
     const float z = point.position.z();
@@ -45,14 +45,14 @@ TEST(CloudFusionTest, LeavesOutPointsBetweenTwoSurfaces) {
 
 TEST(CloudFusionTest, LeavesOutWhatIsTooNearTooFarOrMissing) {
   const Camera camera;
-  const cv::Mat color(camera.height, camera.width, CV_8UC3, cv::Scalar());
   // 0.3 m and 8 m are 1500 and 40000 units.
   for (const int raw : {0, 1499, 40001, 65535}) {
     CloudFusion fusion(Options(camera));
     Frame frame;
     frame.depth.create(camera.height, camera.width, CV_16UC1);
     frame.depth.setTo(raw);
-    fusion.Add(frame, color, Rigid3d());
+    frame.color = cv::Mat::zeros(frame.depth.size(), CV_8UC3);
+    fusion.Add(frame, Rigid3d());
     EXPECT_TRUE(fusion.cloud().empty()) << raw;
   }
 }
@@ -67,7 +67,7 @@ TEST(CloudFusionTest, PutsDistortedViewsTogetherToTheRoom) {
   const SyntheticDataset dataset(options);
   CloudFusion fusion(Options(dataset.camera().camera));
   for (int i = 0; i < dataset.size(); ++i) {
-    fusion.Add(dataset.Read(i), dataset.ReadColor(i), dataset.WorldFromCam(i));
+    fusion.Add(dataset.Read(i), dataset.WorldFromCam(i));
   }
   // The room is 5 x 4 x 2.6 m around the world's z axis.
   constexpr float kTolerance = 0.005F;  // a step of depth, 0.2 mm, and slant
@@ -87,8 +87,7 @@ TEST(CloudFusionTest, WantsGoodFramesThatMoved) {
   EXPECT_FALSE(fusion.Wants(tracked));
   tracked.status = TrackingStatus::kOk;
   EXPECT_TRUE(fusion.Wants(tracked));
-  const cv::Mat color(480, 640, CV_8UC3, cv::Scalar());
-  fusion.Add(WallAndPlate(Camera(), 0), color, tracked.world_from_cam);
+  fusion.Add(WallAndPlate(Camera(), 0), tracked.world_from_cam);
   EXPECT_FALSE(fusion.Wants(tracked));
   tracked.world_from_cam.translation.x() = 0.049;
   EXPECT_FALSE(fusion.Wants(tracked));

@@ -40,9 +40,9 @@ TEST(SyntheticDatasetTest, SameOptionsGiveTheSameBytes) {
 TEST(SyntheticDatasetTest, SeedsGiveOtherBytesOfTheSameGeometry) {
   SyntheticOptions options = PathOptions("xyz");
   options.noise = false;
-  const RgbdImages one = SyntheticDataset(options).ReadImages(0);
+  const Frame one = SyntheticDataset(options).Read(0);
   options.seed = 2;
-  const RgbdImages two = SyntheticDataset(options).ReadImages(0);
+  const Frame two = SyntheticDataset(options).Read(0);
   EXPECT_GT(Difference(one.color, two.color), 0.0);
   EXPECT_EQ(Difference(one.depth, two.depth), 0.0);
 }
@@ -68,7 +68,7 @@ TEST(SyntheticDatasetTest, FramesFitTheInterface) {
   EXPECT_EQ(frame.depth.size(), cv::Size(640, 480));
   EXPECT_EQ(frame.depth_scale, dataset.camera().depth_scale);
   cv::Mat gray;
-  cv::cvtColor(dataset.ReadColor(31), gray, cv::COLOR_BGR2GRAY);
+  cv::cvtColor(frame.color, gray, cv::COLOR_BGR2GRAY);
   EXPECT_EQ(Difference(gray, frame.gray), 0.0);
 }
 
@@ -194,8 +194,8 @@ TEST(SyntheticDatasetTest, ExposureChangesColourAlone) {
   options.exposure_drift = 0.3;
   const SyntheticDataset exposed(options);
   constexpr int kBrightest = 30;  // a quarter of the drift's period
-  const RgbdImages before = plain.ReadImages(kBrightest);
-  const RgbdImages after = exposed.ReadImages(kBrightest);
+  const Frame before = plain.Read(kBrightest);
+  const Frame after = exposed.Read(kBrightest);
   EXPECT_EQ(Difference(before.depth, after.depth), 0.0);
   EXPECT_EQ(plain.WorldFromCam(kBrightest).translation,
             exposed.WorldFromCam(kBrightest).translation);

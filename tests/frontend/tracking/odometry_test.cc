@@ -341,9 +341,9 @@ class RealSequenceTest : public ::testing::Test {
   }
 
   TumDataset Open(const std::string& sequence) const {
-    TumDatasetOptions options;
-    options.folder = folder_ + "/" + sequence;
-    options.camera = ResolveCamera(options.folder + "/camera.yaml");
+    SourceOptions options;
+    options.path = folder_ + "/" + sequence;
+    options.camera = ResolveCamera(options.path + "/camera.yaml");
     return TumDataset(options);
   }
 

@@ -1,4 +1,4 @@
-#include "frontend/simulation/tum_writer.h"
+#include "frontend/sources/tum_writer.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/util/input_error.h"
+#include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/sources/camera_file.h"
 #include "frontend/sources/tum_dataset.h"
 
@@ -33,29 +34,40 @@ class TumWriterTest : public testing::Test {
   }
   ~TumWriterTest() override { fs::remove_all(parent_); }
 
+  static void Write(SyntheticDataset* dataset, const std::string& folder,
+                    const TumWriterOptions& writer) {
+    WriteTumSequence(dataset, dataset->ground_truth(), folder, writer);
+  }
+
+  void Write(const std::string& folder, const TumWriterOptions& writer = {}) {
+    SyntheticDataset dataset(options_);
+    Write(&dataset, folder, writer);
+  }
+
   fs::path parent_;
   fs::path folder_;
   SyntheticOptions options_;
 };
 
 TEST_F(TumWriterTest, ReadsBackAsWritten) {
-  const SyntheticDataset dataset(options_);
+  SyntheticDataset dataset(options_);
   std::vector<int> told;
   TumWriterOptions writer;
   writer.progress = [&told](int done) { told.push_back(done); };
-  WriteTumSequence(dataset, folder_.string() + "/", writer);
+  Write(&dataset, folder_.string() + "/", writer);
   EXPECT_EQ(told, (std::vector<int>{1, 2, 3, 4}));
 
-  TumDatasetOptions options;
-  options.folder = folder_.string();
+  SourceOptions options;
+  options.path = folder_.string();
   options.camera = ReadCameraFile((folder_ / "camera.yaml").string());
+  options.keep_color = true;
   const TumDataset read(options);
   ASSERT_EQ(read.size(), dataset.size());
   for (int i = 0; i < dataset.size(); ++i) {
-    const RgbdImages images = dataset.ReadImages(i);
+    const Frame written = dataset.Read(i), frame = read.Read(i);
     EXPECT_EQ(read.timestamp(i), dataset.timestamp(i));
-    EXPECT_EQ(cv::norm(read.ReadColor(i), images.color, cv::NORM_INF), 0.0);
-    EXPECT_EQ(cv::norm(read.Read(i).depth, images.depth, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(frame.color, written.color, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(frame.depth, written.depth, cv::NORM_INF), 0.0);
   }
   const Trajectory truth =
       ReadTrajectory((folder_ / "groundtruth.txt").string());
@@ -71,7 +83,7 @@ TEST_F(TumWriterTest, ReadsBackAsWritten) {
 }
 
 TEST_F(TumWriterTest, CameraReadsBackExactly) {
-  WriteTumSequence(SyntheticDataset(options_), folder_.string());
+  Write(folder_.string());
   const RgbdCamera camera = ReadCameraFile((folder_ / "camera.yaml").string());
   EXPECT_EQ(camera.depth_scale, 1000.0);
   EXPECT_EQ(camera.camera.width, 160);
@@ -89,14 +101,12 @@ TEST_F(TumWriterTest, CameraReadsBackExactly) {
 
 TEST_F(TumWriterTest, TakesAnEmptyFolderButNoOther) {
   fs::create_directories(folder_);
-  WriteTumSequence(SyntheticDataset(options_), folder_.string());
+  Write(folder_.string());
   EXPECT_TRUE(fs::exists(folder_ / "rgb.txt"));
-  EXPECT_THROW(WriteTumSequence(SyntheticDataset(options_), folder_.string()),
-               InputError);
+  EXPECT_THROW(Write(folder_.string()), InputError);
   const fs::path file = parent_ / "file";
   std::ofstream(file.string()) << "text";
-  EXPECT_THROW(WriteTumSequence(SyntheticDataset(options_), file.string()),
-               InputError);
+  EXPECT_THROW(Write(file.string()), InputError);
 }
 
 TEST_F(TumWriterTest, LeavesNothingIfItFails) {
@@ -104,9 +114,7 @@ TEST_F(TumWriterTest, LeavesNothingIfItFails) {
   writer.progress = [](int done) {
     if (done == 2) throw std::runtime_error("stop");
   };
-  EXPECT_THROW(
-      WriteTumSequence(SyntheticDataset(options_), folder_.string(), writer),
-      std::runtime_error);
+  EXPECT_THROW(Write(folder_.string(), writer), std::runtime_error);
   EXPECT_TRUE(fs::is_empty(folder_.parent_path()));
 }
 
@@ -114,7 +122,7 @@ TEST_F(TumWriterTest, IsUndisturbedByWhatAnEarlierRunLeft) {
   const fs::path left = folder_.string() + ".partial";
   fs::create_directories(left);
   std::ofstream((left / "old.txt").string()) << "text";
-  WriteTumSequence(SyntheticDataset(options_), folder_.string());
+  Write(folder_.string());
   EXPECT_FALSE(fs::exists(folder_ / "old.txt"));
   EXPECT_FALSE(fs::exists(left));
 }

@@ -1,19 +1,17 @@
-#include "frontend/simulation/tum_writer.h"
+#include "frontend/sources/tum_writer.h"
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <charconv>
 #include <filesystem>
-#include <future>
-#include <mutex>
+#include <memory>
 #include <opencv2/imgcodecs.hpp>
+#include <optional>
 #include <system_error>
-#include <vector>
 
-#include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/sources/frame_stream.h"
 #include "frontend/sources/image_file.h"
 
 namespace rgbd_pose {
@@ -42,16 +40,6 @@ std::string ImagePath(const std::string& kind, double timestamp) {
   return kind + "/" + FormatStamp(timestamp) + ".png";
 }
 
-std::string FormatList(const SyntheticDataset& dataset,
-                       const std::string& kind) {
-  std::string text = "# timestamp filename\n";
-  for (int i = 0; i < dataset.size(); ++i) {
-    const double timestamp = dataset.timestamp(i);
-    text += FormatStamp(timestamp) + " " + ImagePath(kind, timestamp) + "\n";
-  }
-  return text;
-}
-
 void WritePng(const fs::path& path, const cv::Mat& image) {
   // Sensor noise leaves no repetitions worth a search.
   WritePngFile(path.string(), image,
@@ -59,48 +47,47 @@ void WritePng(const fs::path& path, const cv::Mat& image) {
                 cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY});
 }
 
-void WriteImages(const SyntheticDataset& dataset, const fs::path& folder,
+// Images are written by the threads that read them, the lists afterwards.
+void WriteFrames(FrameSource* source, const fs::path& folder,
                  const TumWriterOptions& options) {
-  std::atomic<int> next = 0;
-  std::mutex mutex;
+  FrameStream stream(
+      source,
+      [&folder](const Frame& frame) {
+        WritePng(folder / ImagePath("rgb", frame.timestamp),
+                 frame.color.empty() ? frame.gray : frame.color);
+        WritePng(folder / ImagePath("depth", frame.timestamp), frame.depth);
+        return std::make_unique<const PreparedFrame>(frame);
+      },
+      std::max(1, options.threads));
+  const char* const kinds[] = {"rgb", "depth"};
+  std::string lists[] = {"# timestamp filename\n", "# timestamp filename\n"};
   int done = 0;
-  const auto work = [&] {
-    for (int i = next++; i < dataset.size(); i = next++) {
-      try {
-        const RgbdImages images = dataset.ReadImages(i);
-        const double timestamp = dataset.timestamp(i);
-        WritePng(folder / ImagePath("rgb", timestamp), images.color);
-        WritePng(folder / ImagePath("depth", timestamp), images.depth);
-      } catch (...) {
-        next = dataset.size();  // so that the others stop, too
-        throw;
-      }
-      const std::lock_guard<std::mutex> lock(mutex);
-      ++done;
-      if (options.progress) options.progress(done);
+  while (const std::optional<StreamedFrame> next = stream.Next()) {
+    const double timestamp = next->frame->timestamp;
+    for (int i = 0; i < 2; ++i) {
+      lists[i] +=
+          FormatStamp(timestamp) + " " + ImagePath(kinds[i], timestamp) + "\n";
     }
-  };
-  std::vector<std::future<void>> workers;
-  for (int i = 0; i < std::max(1, options.threads); ++i) {
-    workers.push_back(std::async(std::launch::async, work));
+    ++done;
+    if (options.progress) options.progress(done);
   }
-  for (std::future<void>& worker : workers) worker.wait();
-  for (std::future<void>& worker : workers) worker.get();
+  for (int i = 0; i < 2; ++i) {
+    WriteFileAtomically((folder / (std::string(kinds[i]) + ".txt")).string(),
+                        lists[i]);
+  }
 }
 
-void WriteAll(const SyntheticDataset& dataset, const fs::path& folder,
-              const TumWriterOptions& options) {
+void WriteAll(FrameSource* source, const Trajectory& ground_truth,
+              const fs::path& folder, const TumWriterOptions& options) {
   fs::create_directories(folder / "rgb");
   fs::create_directories(folder / "depth");
-  WriteImages(dataset, folder, options);
-  for (const std::string kind : {"rgb", "depth"}) {
-    WriteFileAtomically((folder / (kind + ".txt")).string(),
-                        FormatList(dataset, kind));
+  WriteFrames(source, folder, options);
+  if (!ground_truth.empty()) {
+    WriteFileAtomically((folder / "groundtruth.txt").string(),
+                        FormatTrajectory(ground_truth));
   }
-  WriteFileAtomically((folder / "groundtruth.txt").string(),
-                      FormatTrajectory(dataset.ground_truth()));
   WriteFileAtomically((folder / "camera.yaml").string(),
-                      FormatCameraYaml(dataset.camera()));
+                      FormatCameraYaml(source->camera()));
 }
 
 }  // namespace
@@ -127,7 +114,7 @@ std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
   return text;
 }
 
-void WriteTumSequence(const SyntheticDataset& dataset,
+void WriteTumSequence(FrameSource* source, const Trajectory& ground_truth,
                       const std::string& folder,
                       const TumWriterOptions& options) {
   fs::path target = fs::path(folder).lexically_normal();
@@ -143,7 +130,7 @@ void WriteTumSequence(const SyntheticDataset& dataset,
     }
     fs::remove_all(aside);
     try {
-      WriteAll(dataset, aside, options);
+      WriteAll(source, ground_truth, aside, options);
       fs::rename(aside, target);
     } catch (...) {
       std::error_code ignored;

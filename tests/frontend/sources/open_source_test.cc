@@ -1,0 +1,40 @@
+#include "frontend/sources/open_source.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/tum_sequence.h"
+
+namespace rgbd_pose {
+namespace {
+
+using OpenSourceTest = TumSequenceTest;
+
+TEST_F(OpenSourceTest, GivesTheFramesInOrderByAnyName) {
+  for (const char* name : {"auto", "tum"}) {
+    const std::unique_ptr<FrameSource> source = OpenSource(name, options_);
+    EXPECT_EQ(source->timestamps(), (std::vector<double>{1.00, 1.04, 1.10}));
+    EXPECT_EQ(source->unmatched_color(), 1);
+    EXPECT_EQ(source->camera().depth_scale, kDepthScale);
+    for (const double timestamp : source->timestamps()) {
+      const std::optional<RgbdFrame> next = source->Next();
+      ASSERT_TRUE(next.has_value());
+      EXPECT_EQ(next->timestamp, timestamp);
+      EXPECT_EQ(next->read().timestamp, timestamp);
+    }
+    EXPECT_FALSE(source->Next().has_value());
+  }
+}
+
+TEST_F(OpenSourceTest, RefusesWhatItDoesNotKnow) {
+  ExpectInputError([&] { OpenSource("lidar", options_); },
+                   {"unknown source 'lidar'", "auto", "tum"});
+  options_.path = folder_ / "rgb.txt";
+  ExpectInputError([&] { OpenSource("auto", options_); },
+                   {options_.path, "no known kind", "rgb.txt and depth.txt"});
+  options_.path = folder_ / "nowhere";
+  ExpectInputError([&] { OpenSource("auto", options_); },
+                   {options_.path, "no such folder"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose
