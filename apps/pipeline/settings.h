@@ -15,18 +15,18 @@ namespace rgbd_pose {
 struct EstimatorSettings {
   std::string cost = kDefaultCost;  // of a match; several add up: "a+b"
   std::string loss = kDefaultLoss;  // one for all costs or one each: "a,b"
-  EstimatorOptions options;
+  EstimatorOptions options;         // how it is minimised
 };
 
 // What an odometry is made of: the one place for programs, Python and
 // benchmarks. setting_table.h gives each value that a user may want a name.
 struct OdometrySettings {
-  EstimatorSettings estimator;
-  std::string frontend = "patch";  // where matches come from
-  FrontendOptions features;        // the camera aside
-  std::string tracker = "features";
-  TrackerOptions tracking;
-  OdometryOptions odometry;
+  EstimatorSettings estimator;       // what explains the matches
+  std::string frontend = "patch";    // where matches come from
+  FrontendOptions features;          // the camera aside
+  std::string tracker = "features";  // how a frame is followed
+  TrackerOptions tracking;           // what of that is believed
+  OdometryOptions odometry;          // when to go on, and what if lost
 };
 
 // An estimator or odometry with these settings. Throws InputError for unknown

@@ -20,7 +20,8 @@ struct Observation {
 
 // One scene point (or so it is believed) in both frames.
 struct Match {
-  Observation prev, cur;
+  Observation prev;  // of the previous frame
+  Observation cur;   // of the current one
 };
 
 // Matches between a previous and a current frame of one pinhole camera.

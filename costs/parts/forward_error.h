@@ -34,6 +34,7 @@ struct ForwardError {
            R * PointCovariance(camera, input.matches[i].prev) * R.transpose();
   }
 
+  // e (m), from the columns of a match.
   template <typename M, typename D, typename T>
   static void Error(const MotionPose<M>& motion, const D* columns, T* e) {
     T q[3];

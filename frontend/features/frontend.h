@@ -99,8 +99,8 @@ class Frontend {
                      FeatureMatches* matches) = 0;
 
  protected:
-  const FrontendOptions options_;
-  const DepthLookupOptions depth_options_;
+  const FrontendOptions options_;           // as it was made with
+  const DepthLookupOptions depth_options_;  // what follows of them for depths
 };
 
 // The names of all frontends.

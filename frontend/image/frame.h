@@ -31,6 +31,7 @@ struct Frame {
 // by the frontend that is to use it, which knows what has been added. It shares
 // the images, which must stay as they are for as long as it is in use.
 struct PreparedFrame : Frame {
+  // With nothing added yet.
   explicit PreparedFrame(const Frame& frame) : Frame(frame) {}
   virtual ~PreparedFrame() = default;
 };

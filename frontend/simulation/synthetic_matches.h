@@ -16,21 +16,27 @@ namespace rgbd_pose {
 // on every platform with the same standard library.
 class RandomWorld {
  public:
+  // Another world for each seed.
   explicit RandomWorld(unsigned seed)
       : generator_(seed), extra_generator_(~seed) {}
 
+  // A number between the two.
   double Uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(generator_);
   }
 
+  // A number of mean 0 and this standard deviation.
   double Normal(double sigma) {
     return std::normal_distribution<double>(0.0, sigma)(generator_);
   }
 
+  // A vector in the cube of -size to size.
   Eigen::Vector3d Vector(double size) {
     return {Uniform(-size, size), Uniform(-size, size), Uniform(-size, size)};
   }
 
+  // About any axis by up to `max_angle` (rad), and up to `max_translation` (m)
+  // along each axis.
   Rigid3d Motion(double max_angle, double max_translation) {
     // One statement a draw: compilers differ in the order of arguments.
     const Eigen::Vector3d axis = Vector(1.0).normalized();

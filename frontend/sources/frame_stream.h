@@ -18,8 +18,8 @@ namespace rgbd_pose {
 
 // A frame, and how long reading and preparing it took, in whichever thread.
 struct StreamedFrame {
-  std::unique_ptr<const PreparedFrame> frame;
-  double decode_ms = 0.0;  // to read and to prepare it
+  std::unique_ptr<const PreparedFrame> frame;  // never null
+  double decode_ms = 0.0;                      // to read and to prepare it
 };
 
 // The frames of a source in order, read and prepared ahead by several threads.

@@ -9,7 +9,7 @@ for program in doxygen dot; do
 done
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-cp -r "$1"/{core,robust,costs,frontend,docs,scripts} "$folder"
+cp -r "$1"/{core,robust,costs,frontend,apps,docs,scripts} "$folder"
 "$folder/scripts/api_docs"
 [ -s "$folder/build/api/html/classrgbd__pose_1_1Estimator.html" ] || {
   echo "no page of class Estimator"

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# reach_test.sh SOURCE: scripts/mutants sees every cost and loss, and
+# docs/Doxyfile every header that the examples include, wherever they are.
+set -euo pipefail
+cd "$1"
+command -v python3 >/dev/null || {
+  echo "skipped: needs python3"
+  exit 77
+}
+status=0
+missing() {
+  echo "$*"
+  status=1
+}
+
+mutants=$(scripts/mutants --list)
+for file in costs/matches/*.h robust/*_loss.h; do
+  grep -qF "$file:" <<<"$mutants" || missing "no mutant of $file"
+done
+
+input=$(sed -n '/^INPUT = /,/[^\\]$/p' docs/Doxyfile | tr -d '\\' | tr ' ' '\n' |
+  grep '\.h$')
+for file in $input; do
+  [ -f "$file" ] || missing "docs/Doxyfile: there is no $file"
+done
+included=$(sed -n 's/^#include "\(.*\)"/\1/p' docs/examples/*.cc docs/*.md)
+for file in $(sort -u <<<"$included"); do
+  grep -qxF "$file" <<<"$input" ||
+    missing "docs/Doxyfile: $file is missing, which examples include"
+done
+exit $status
