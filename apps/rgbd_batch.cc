@@ -30,7 +30,7 @@
 DEFINE_string(sequences, "",
               "list of sequences, one a line: folder (or pattern) and maybe "
               "camera (preset or YAML file; without: camera.yaml in it)");
-DEFINE_string(costs, "bidirectional_point",
+DEFINE_string(costs, rgbd_pose::kDefaultCost,
               "costs, set apart by commas; a+b is one that adds up");
 DEFINE_string(losses, "tukey", "M-estimators, set apart by commas");
 DEFINE_string(frontends, "patch", "frontends, set apart by commas");

@@ -67,8 +67,7 @@ const std::vector<Trial>& Trials() {
 using Method = std::optional<Rigid3d> (*)(const Trial&);
 
 std::optional<Rigid3d> Estimate(const Trial& trial) {
-  static Estimator estimator({},
-                             MakeRobustCosts("bidirectional_point", "tukey"));
+  static Estimator estimator({}, MakeRobustCosts());
   static MotionEstimate estimate;
   estimator.Estimate(trial.matches, Rigid3d(), nullptr, &estimate);
   if (!estimate.ok()) return std::nullopt;
