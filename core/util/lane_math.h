@@ -48,7 +48,7 @@ RGBD_POSE_LANE_FUNCTION(tanh)
 #undef RGBD_POSE_LANE_FUNCTION
 
 // Of two arguments, of which one may be a number for all lanes (or for a Jet,
-// where Ceres leaves that out).
+// where Ceres leaves that out). NOLINTBEGIN(bugprone-macro-parentheses)
 #define RGBD_POSE_LANE_FUNCTION(f, mixes)                       \
   using std::f;                                                 \
   template <typename T, std::enable_if_t<kIsLanes<T>, int> = 0> \
@@ -72,7 +72,7 @@ constexpr bool kIsNoNumber = !std::is_arithmetic_v<T>;
 RGBD_POSE_LANE_FUNCTION(pow, kIsLanes)
 RGBD_POSE_LANE_FUNCTION(atan2, kIsNoNumber)
 RGBD_POSE_LANE_FUNCTION(hypot, kIsNoNumber)
-#undef RGBD_POSE_LANE_FUNCTION
+#undef RGBD_POSE_LANE_FUNCTION  // NOLINTEND(bugprone-macro-parentheses)
 
 // x where it exceeds `lowest`, else `lowest`, lane by lane.
 template <typename T>
