@@ -33,9 +33,9 @@ std::unique_ptr<SharedOdometry> MakeSharedOdometry(const RgbdCamera& camera,
   return std::make_unique<SharedOdometry>(settings, camera);
 }
 
-TrackedResult Track(SharedOdometry* odometry, const py::object& image,
-                    const py::object& depth, std::optional<double> timestamp,
-                    const py::object& motion_guess) {
+TrackedFrame Track(SharedOdometry* odometry, const py::object& image,
+                   const py::object& depth, std::optional<double> timestamp,
+                   const py::object& motion_guess) {
   Frame frame = FrameFromArrays(image, depth, odometry->camera());
   std::optional<Rigid3d> guess;
   if (!motion_guess.is_none()) {
@@ -50,7 +50,7 @@ Trajectory TrajectoryOf(SharedOdometry* odometry) {
   return odometry->trajectory();
 }
 
-std::string InWords(const TrackedResult& frame) {
+std::string InWords(const TrackedFrame& frame) {
   std::string text = "TrackedFrame(" + std::to_string(frame.index) + ": " +
                      ToString(frame.status);
   if (!frame.reason.empty()) text += ", " + frame.reason;
@@ -59,54 +59,72 @@ std::string InWords(const TrackedResult& frame) {
 }
 
 void BindTrackedFrame(py::module_* module) {
-  py::class_<TrackedResult>(*module, "TrackedFrame",
-                            "What became of one input frame.")
-      .def_readonly("index", &TrackedResult::index, "of the frame, from 0")
-      .def_readonly("timestamp", &TrackedResult::timestamp, "s")
+  py::class_<Edge>(*module, "Edge",
+                   "A measured motion between two frames, by their index.")
+      .def_readonly("ref", &Edge::ref, "index of the reference")
+      .def_readonly("cur", &Edge::cur, "index of the frame")
+      .def_property_readonly(
+          "cur_from_ref",
+          [](const Edge& self) {
+            return ArrayFromMatrix(MatrixFromRigid(self.cur_from_ref));
+          },
+          "(4, 4): point_in_cur = cur_from_ref @ point_in_ref (m)")
+      .def_property_readonly(
+          "covariance",
+          [](const Edge& self) { return ArrayFromMatrix(self.covariance); },
+          "(6, 6), as that of MotionEstimate");
+  py::class_<TrackedFrame>(*module, "TrackedFrame",
+                           "What became of one input frame.")
+      .def_readonly("index", &TrackedFrame::index, "of the frame, from 0")
+      .def_readonly("timestamp", &TrackedFrame::timestamp, "s")
       .def_property_readonly(
           "status",
-          [](const TrackedResult& self) { return ToString(self.status); },
+          [](const TrackedFrame& self) { return ToString(self.status); },
           "'ok', 'degraded' (a pose, but from few or contradicting matches) "
           "or\n'lost' (no pose was found: see on_lost for the one reported)")
-      .def_readonly("reason", &TrackedResult::reason,
+      .def_readonly("reason", &TrackedFrame::reason,
                     "of the status, in words; empty if ok")
       .def_property_readonly(
           "world_from_cam",
-          [](const TrackedResult& self) {
+          [](const TrackedFrame& self) {
             return ArrayFromMatrix(MatrixFromRigid(self.world_from_cam));
           },
           "(4, 4): point_in_world = world_from_cam @ point_in_cam (m); the "
           "world\nis the camera of the first frame")
       .def_property_readonly(
           "covariance",
-          [](const TrackedResult& self) -> py::object {
-            if (!self.covariance.has_value()) return py::none();
-            return ArrayFromMatrix(*self.covariance);
+          [](const TrackedFrame& self) -> py::object {
+            if (self.edges.empty()) return py::none();
+            return ArrayFromMatrix(self.edges.front().covariance);
           },
-          "(6, 6), of the motion since the reference frame, as that of\n"
-          "MotionEstimate; None if it was tracked against none")
-      .def_readonly("segment", &TrackedResult::segment,
+          "(6, 6), of the motion since the reference frame: that of the first\n"
+          "edge; None if there is none")
+      .def_readonly("edges", &TrackedFrame::edges,
+                    "list of Edge: the motions that it was tracked by; the "
+                    "first gives the\npose, a second, where the reference "
+                    "changes to an earlier one, leads to\nthe one that was "
+                    "left")
+      .def_readonly("segment", &TrackedFrame::segment,
                     "frames of one segment hang together")
-      .def_readonly("reference", &TrackedResult::reference,
+      .def_readonly("reference", &TrackedFrame::reference,
                     "index of the frame it was tracked against; -1: none")
-      .def_readonly("is_reference", &TrackedResult::is_reference,
+      .def_readonly("is_reference", &TrackedFrame::is_reference,
                     "whether it became the reference of those that follow")
-      .def_readonly("relocalised", &TrackedResult::relocalised,
+      .def_readonly("relocalised", &TrackedFrame::relocalised,
                     "whether it was found again among earlier references")
-      .def_readonly("matches", &TrackedResult::matches, "with the reference")
-      .def_readonly("inliers", &TrackedResult::inliers,
-                    "of these, in agreement")
-      .def_readonly("iterations", &TrackedResult::iterations, "of the solver")
-      .def_readonly("sigma", &TrackedResult::sigma,
+      .def_readonly("matches", &TrackedFrame::matches, "with the reference")
+      .def_readonly("inliers", &TrackedFrame::inliers, "of these, in agreement")
+      .def_readonly("iterations", &TrackedFrame::iterations, "of the solver")
+      .def_readonly("sigma", &TrackedFrame::sigma,
                     "spread of the whitened residuals, ideally 1")
-      .def_readonly("track_ms", &TrackedResult::track_ms,
+      .def_readonly("track_ms", &TrackedFrame::track_ms,
                     "time of all the tracking, ms")
-      .def_readonly("match_ms", &TrackedResult::match_ms, "of it: matching")
-      .def_readonly("solve_ms", &TrackedResult::solve_ms,
+      .def_readonly("match_ms", &TrackedFrame::match_ms, "of it: matching")
+      .def_readonly("solve_ms", &TrackedFrame::solve_ms,
                     "of it: motion estimation")
-      .def_readonly("reference_ms", &TrackedResult::reference_ms,
+      .def_readonly("reference_ms", &TrackedFrame::reference_ms,
                     "of it: features of a new reference")
-      .def_readonly("relocalise_ms", &TrackedResult::relocalise_ms,
+      .def_readonly("relocalise_ms", &TrackedFrame::relocalise_ms,
                     "of it: search for the place when lost")
       .def("__repr__", &InWords);
 }

@@ -16,9 +16,8 @@ SharedOdometry::SharedOdometry(const OdometrySettings& settings,
                                const RgbdCamera& camera)
     : camera_(camera), odometry_(MakeOdometry(settings, camera.camera)) {}
 
-TrackedResult SharedOdometry::Track(Frame frame,
-                                    std::optional<double> timestamp,
-                                    const std::optional<Rigid3d>& guess) {
+TrackedFrame SharedOdometry::Track(Frame frame, std::optional<double> timestamp,
+                                   const std::optional<Rigid3d>& guess) {
   const std::lock_guard<std::mutex> lock(mutex_);
   frame.index = static_cast<int>(frames_.size());
   frame.timestamp = timestamp.value_or(NextTime());
@@ -28,14 +27,9 @@ TrackedResult SharedOdometry::Track(Frame frame,
                      " s is not after that of the frame before; frames must "
                      "come in the order of time");
   }
-  TrackedResult result;
-  static_cast<TrackedFrame&>(result) =
-      odometry_.Track(frame, guess.has_value() ? &*guess : nullptr);
-  if (result.status != TrackingStatus::kLost && result.reference >= 0) {
-    result.covariance = odometry_.last_estimate().covariance;
-  }
-  frames_.push_back(result);
-  return result;
+  frames_.push_back(
+      odometry_.Track(frame, guess.has_value() ? &*guess : nullptr));
+  return frames_.back();
 }
 
 Trajectory SharedOdometry::trajectory() {

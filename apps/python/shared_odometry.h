@@ -7,18 +7,12 @@
 #include "apps/pipeline/odometry_run.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
-#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/image/frame.h"
 #include "frontend/tracking/odometry.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {
-
-// What became of a frame, and how sure that is.
-struct TrackedResult : TrackedFrame {
-  std::optional<MotionMatrix> covariance;
-};
 
 // An odometry for many threads: calls wait for each other, so they must not
 // hold the GIL. Remembers what became of all frames.
@@ -30,8 +24,8 @@ class SharedOdometry {
 
   // Tracks the next frame. Without a time stamp, frames come at 30 Hz. Throws
   // InputError, and nothing has changed, if time does not go on.
-  TrackedResult Track(Frame frame, std::optional<double> timestamp,
-                      const std::optional<Rigid3d>& guess);
+  TrackedFrame Track(Frame frame, std::optional<double> timestamp,
+                     const std::optional<Rigid3d>& guess);
 
   // Of the frames that were not lost.
   Trajectory trajectory();

@@ -20,8 +20,8 @@ constexpr char kAside[] = ".rgbd_odometry.partial";
 constexpr char kLock[] = "lock";
 constexpr char kLast[] = "metrics.json";
 constexpr const char* kResults[] = {
-    kLast,        "report.html",  "errors.csv",        "trajectory.txt",
-    "frames.csv", "config.flags", "cloud_preview.json"};
+    kLast,        "report.html", "errors.csv",   "trajectory.txt",
+    "frames.csv", "edges.csv",   "config.flags", "cloud_preview.json"};
 
 [[noreturn]] void Fail(const fs::path& folder, const std::error_code& error) {
   throw InputError("--output: " + folder.string() +

@@ -3,7 +3,7 @@
 #include "apps/results/cloud_preview.h"
 #include "apps/results/evaluation_report.h"
 #include "apps/results/frame_errors.h"
-#include "apps/results/frames_csv.h"
+#include "apps/results/frame_tables.h"
 #include "apps/results/run_metrics.h"
 #include "apps/shell/format.h"
 #include "core/util/input_error.h"
@@ -114,6 +114,7 @@ std::string RunOutput::Write(const RunResults& results,
   }
   WriteFile("trajectory.txt", FormatTrajectory(results.trajectory));
   WriteFile("frames.csv", FormatFramesCsv(results.frames));
+  WriteFile("edges.csv", FormatEdgesCsv(results.frames));
   WriteFile("config.flags", flags);
   // The name of the dataset may be no UTF-8.
   WriteFile("metrics.json",

@@ -102,6 +102,15 @@ def test_covariance(dataset, camera):
         deviation = np.sqrt(np.diag(frame.covariance))
         assert (deviation > 1e-6).all() and (deviation < 0.01).all()
         np.linalg.cholesky(frame.covariance)
+        edge = frame.edges[0]
+        assert (edge.ref, edge.cur) == (frame.reference, frame.index)
+        np.testing.assert_array_equal(edge.covariance, frame.covariance)
+        np.testing.assert_allclose(
+            edge.cur_from_ref,
+            np.linalg.inv(frame.world_from_cam)
+            @ frames[edge.ref].world_from_cam,
+            atol=1e-12,
+        )
 
 
 @pytest.mark.parametrize("dtype", [np.float32, np.float64])

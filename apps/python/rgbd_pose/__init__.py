@@ -11,6 +11,7 @@ from ._rgbd_pose import __version__
 __all__ = [
     "AteResult",
     "Camera",
+    "Edge",
     "Errors",
     "EstimateError",
     "Frame",

@@ -146,6 +146,16 @@ def estimate_motion_pixels(
     assembly: str = "compressed",
 ) -> MotionEstimate: ...
 
+class Edge:
+    @property
+    def ref(self) -> int: ...
+    @property
+    def cur(self) -> int: ...
+    @property
+    def cur_from_ref(self) -> _Floats: ...  # (4, 4), m
+    @property
+    def covariance(self) -> _Floats: ...  # (6, 6), rad and m
+
 class TrackedFrame:
     @property
     def index(self) -> int: ...
@@ -159,6 +169,8 @@ class TrackedFrame:
     def world_from_cam(self) -> _Floats: ...  # (4, 4), m
     @property
     def covariance(self) -> Optional[_Floats]: ...  # (6, 6), rad and m
+    @property
+    def edges(self) -> List[Edge]: ...
     @property
     def segment(self) -> int: ...
     @property

@@ -1,0 +1,55 @@
+#include "apps/results/frame_tables.h"
+
+#include "apps/shell/format.h"
+
+namespace rgbd_pose {
+
+std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
+  std::string text =
+      "timestamp,status,reason,segment,reference,is_reference,relocalised,"
+      "matches,inliers,iterations,sigma,decode_ms,track_ms,match_ms,solve_ms,"
+      "reference_ms,relocalise_ms\n";
+  for (const TrackedFrame& frame : frames) {
+    // Reasons are our own words and hold no quotes.
+    text += Format(
+        "%.6f,%s,\"%s\",%d,%d,%d,%d,%d,%d,%d,%.4f,%.3f,%.3f,%.3f,%.3f,%.3f,"
+        "%.3f\n",
+        frame.timestamp, ToString(frame.status), frame.reason.c_str(),
+        frame.segment, frame.reference, frame.is_reference, frame.relocalised,
+        frame.matches, frame.inliers, frame.iterations, frame.sigma,
+        frame.decode_ms, frame.track_ms, frame.match_ms, frame.solve_ms,
+        frame.reference_ms, frame.relocalise_ms);
+  }
+  return text;
+}
+
+std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames) {
+  constexpr const char* kParts[] = {"wx", "wy", "wz", "cx", "cy", "cz"};
+  std::string text = "ref,cur,tx,ty,tz,qx,qy,qz,qw";
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) {
+      text += Format(",cov_%s_%s", kParts[i], kParts[j]);
+    }
+  }
+  text += "\n";
+  for (const TrackedFrame& frame : frames) {
+    for (const Edge& edge : frame.edges) {
+      text += Format("%d,%d", edge.ref, edge.cur);
+      for (const double value : edge.cur_from_ref.translation) {
+        text += Format(",%.9g", value);
+      }
+      for (const double value : edge.cur_from_ref.rotation.coeffs()) {
+        text += Format(",%.9g", value);
+      }
+      for (int i = 0; i < 6; ++i) {
+        for (int j = i; j < 6; ++j) {
+          text += Format(",%.9g", edge.covariance(i, j));
+        }
+      }
+      text += "\n";
+    }
+  }
+  return text;
+}
+
+}  // namespace rgbd_pose
