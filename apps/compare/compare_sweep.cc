@@ -3,10 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "core/estimation/estimator.h"
 #include "core/initial_guess/ransac.h"
 #include "core/util/parallel_for.h"
-#include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {
@@ -40,11 +38,11 @@ std::vector<SweepMethod> Methods(const std::vector<std::string>& losses) {
   return methods;
 }
 
-Estimator MakeEstimator(const std::string& cost, const SweepMethod& method) {
-  EstimatorOptions options;
-  options.schedule =
+Estimator MakeEstimator(EstimatorSettings settings, const SweepMethod& method) {
+  settings.loss = method.loss;
+  settings.options.schedule =
       method.schedule == "gnc" ? RobustSchedule::kGnc : RobustSchedule::kDirect;
-  return Estimator(options, MakeRobustCosts(cost, method.loss));
+  return MakeEstimator(settings);
 }
 
 // The errors of all methods on the matches of one seed.
@@ -74,7 +72,7 @@ std::vector<SweepCell> RunSweep(const SweepOptions& options) {
   std::vector<std::vector<Estimator>> estimators(options.threads);
   for (std::vector<Estimator>& own : estimators) {
     for (const SweepMethod& method : methods) {
-      own.push_back(MakeEstimator(options.cost, method));
+      own.push_back(MakeEstimator(options.estimator, method));
     }
   }
   std::vector<SweepCell> cells(methods.size() * kSweepShares);

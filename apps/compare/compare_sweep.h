@@ -4,15 +4,16 @@
 #include <vector>
 
 #include "apps/compare/compare_statistics.h"
+#include "apps/pipeline/settings.h"
 
 namespace rgbd_pose {
 
 struct SweepOptions {
   std::vector<std::string> losses;
-  std::string cost = "bidirectional_point";
-  int seeds = 200;    // random motions with their matches, per share
-  int matches = 300;  // right and wrong ones
-  int threads = 1;    // the result does not depend on it
+  EstimatorSettings estimator;  // loss and schedule aside
+  int seeds = 200;              // random motions with their matches, per share
+  int matches = 300;            // right and wrong ones
+  int threads = 1;              // the result does not depend on it
 };
 
 // A way to get from matches to a motion: the loss and how it is helped.

@@ -187,4 +187,13 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
   };
 }
 
+std::vector<Setting> WithoutRow(std::string_view name,
+                                std::vector<Setting> table) {
+  table.erase(
+      std::remove_if(table.begin(), table.end(),
+                     [name](const Setting& row) { return row.name == name; }),
+      table.end());
+  return table;
+}
+
 }  // namespace rgbd_pose

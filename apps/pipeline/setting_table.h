@@ -36,4 +36,8 @@ inline constexpr char kEstimationGroup[] = "Estimation";
 // outlive them.
 std::vector<Setting> SettingTable(OdometrySettings* settings);
 
+// A table without the row of that name.
+std::vector<Setting> WithoutRow(std::string_view name,
+                                std::vector<Setting> table);
+
 }  // namespace rgbd_pose

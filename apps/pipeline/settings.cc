@@ -1,18 +1,8 @@
 #include "apps/pipeline/settings.h"
 
-#include "core/util/input_error.h"
-
 namespace rgbd_pose {
-namespace {
-
-void Require(const std::string& problem) {
-  if (!problem.empty()) throw InputError(problem);
-}
-
-}  // namespace
 
 Estimator MakeEstimator(const EstimatorSettings& settings) {
-  Require(settings.options.Check());
   return Estimator(settings.options,
                    MakeRobustCosts(settings.cost, settings.loss));
 }

@@ -132,15 +132,14 @@ void BindTrackedFrame(py::module_* module) {
 // Keyword-only settings; the frontend may also stand in its place.
 std::string InitSignature() {
   OdometrySettings settings;
-  std::vector<Setting> table = SettingTable(&settings);
+  const std::vector<Setting> table = SettingTable(&settings);
   const auto frontend =
       std::find_if(table.begin(), table.end(), [](const Setting& setting) {
         return setting.name == std::string("frontend");
       });
-  const std::string first = ArgumentsOf({*frontend});
-  table.erase(frontend);
   return "__init__(self: rgbd_pose.Odometry, camera: rgbd_pose.Camera, " +
-         first + ", *, " + ArgumentsOf(table) +
+         ArgumentsOf({*frontend}) + ", *, " +
+         ArgumentsOf(WithoutRow("frontend", table)) +
          ") -> None\n\nInputError for unknown names and values out of range.";
 }
 

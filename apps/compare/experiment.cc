@@ -1,0 +1,69 @@
+#include "apps/compare/experiment.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <sstream>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "robust/m_estimator.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Of a folder.
+constexpr Experiment kRecorded = {"", SequenceLosses, RunRecorded};
+
+Experiment FindExperiment(const std::string& name) {
+  std::string names;
+  for (const Experiment& experiment : Experiments()) {
+    if (experiment.name == name) return experiment;
+    if (!names.empty()) {
+      names += &experiment == &Experiments().back() ? " or " : ", ";
+    }
+    names += experiment.name;
+  }
+  std::error_code error;
+  if (std::filesystem::is_directory(name, error)) return kRecorded;
+  throw InputError("--experiment=" + name + " is neither " + names +
+                   " nor a folder");
+}
+
+std::vector<std::string> ParseLosses(const std::string& text) {
+  std::vector<std::string> losses;
+  std::istringstream words(text);
+  for (std::string loss; std::getline(words, loss, ',');) {
+    if (FindMEstimator(loss) == nullptr) {
+      throw InputError("--losses: unknown loss '" + loss + "'; there are " +
+                       Join(MEstimatorNames()));
+    }
+    if (std::find(losses.begin(), losses.end(), loss) != losses.end()) {
+      throw InputError("--losses: '" + loss + "' is there twice");
+    }
+    losses.push_back(loss);
+  }
+  if (losses.empty()) throw InputError("--losses holds no names");
+  return losses;
+}
+
+}  // namespace
+
+const std::vector<Experiment>& Experiments() {
+  static const std::vector<Experiment> rows = {
+      {"pan_tilt", SequenceLosses, RunSimulated},
+      {"xyz", SequenceLosses, RunSimulated},
+      {"sweep", MEstimatorNames, RunSweepOfMatches},
+  };
+  return rows;
+}
+
+ExperimentResult RunExperiment(const ExperimentSettings& settings,
+                               CompareOutput* output) {
+  const Experiment experiment = FindExperiment(settings.experiment);
+  return experiment.run(settings,
+                        settings.losses.empty() ? experiment.losses()
+                                                : ParseLosses(settings.losses),
+                        output);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "apps/compare/compare_output.h"
+#include "apps/pipeline/settings.h"
+
+namespace rgbd_pose {
+
+// What an experiment is run with.
+struct ExperimentSettings {
+  std::string experiment;  // a name or a folder
+  std::string losses;      // separated by commas; empty: the experiment's own
+  std::string camera;      // file or preset; empty: ros_default if simulated
+  int frames = 150;        // of a simulated sequence
+  int seeds = 200;         // of a sweep, at each share of wrong matches
+  OdometrySettings odometry;  // all but the loss
+};
+
+// What becomes of it: report.md, and whether enough was tracked to compare.
+struct ExperimentResult {
+  std::string report;
+  bool is_usable = true;
+};
+
+// A way to compare M-estimators.
+struct Experiment {
+  std::string_view name;                 // as --experiment takes it
+  std::vector<std::string> (*losses)();  // where the user names none
+
+  // Writes all files but the report. Throws InputError before anything is
+  // written if the settings make no sense.
+  ExperimentResult (*run)(const ExperimentSettings& settings,
+                          const std::vector<std::string>& losses,
+                          CompareOutput* output);
+};
+
+// One file and one row here make an experiment.
+const std::vector<Experiment>& Experiments();
+
+// Runs the experiment of that name, or if it is a folder that on a recorded
+// sequence. Throws InputError for anything else and for unknown losses.
+ExperimentResult RunExperiment(const ExperimentSettings& settings,
+                               CompareOutput* output);
+
+// The rows' own, in files of their names.
+std::vector<std::string> SequenceLosses();
+ExperimentResult RunSimulated(const ExperimentSettings& settings,
+                              const std::vector<std::string>& losses,
+                              CompareOutput* output);
+ExperimentResult RunRecorded(const ExperimentSettings& settings,
+                             const std::vector<std::string>& losses,
+                             CompareOutput* output);
+ExperimentResult RunSweepOfMatches(const ExperimentSettings& settings,
+                                   const std::vector<std::string>& losses,
+                                   CompareOutput* output);
+
+}  // namespace rgbd_pose
