@@ -17,7 +17,7 @@ std::vector<std::string> CostNames();
 std::unique_ptr<Cost> MakeCost(std::string_view name);
 
 // What is taken where nobody says otherwise.
-inline constexpr char kDefaultCost[] = "mahalanobis_point";
+inline constexpr char kDefaultCost[] = "bidirectional_point";
 inline constexpr char kDefaultLoss[] = "tukey";
 
 // Costs by name ("bidirectional_point+motion_prior"), each with its loss: one
