@@ -140,7 +140,7 @@ TEST_F(BadInputTest, Flags) {
           {"too few inliers", nullptr, "--min_inliers=2", 2,
            "min_inliers must be at least 3"},
           {"a graduation that stands still", nullptr, "--gnc_factor=1", 2,
-           "gnc_factor must exceed 1"},
+           "gnc_factor must be at least 1.01"},
           {"no whole number", nullptr, "--max_iterations=1.5", 2,
            "'1.5' is no int32 for --max_iterations"},
           {"far too many features", nullptr, "--max_features=2000000000", 2,
