@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/shell/format.h"
 #include "benchmarks/machine.h"
+#include "core/util/format.h"
 #include "costs/cost_factory.h"
 
 namespace rgbd_pose {

@@ -1,22 +1,11 @@
 #include "robust/scale.h"
 
-#include <algorithm>
 #include <cmath>
 
+#include "core/util/quantile.h"
 #include "robust/small_sample.h"
 
 namespace rgbd_pose {
-namespace {
-
-// The mean of the two middle values if their number is even.
-double Median(std::vector<double>* values) {
-  const auto middle = values->begin() + values->size() / 2;
-  std::nth_element(values->begin(), middle, values->end());
-  if (values->size() % 2 == 1) return *middle;
-  return 0.5 * (*middle + *std::max_element(values->begin(), middle));
-}
-
-}  // namespace
 
 double MadScale(std::vector<double>* values) {
   // 1 / (upper quartile of the normal distribution).
@@ -24,9 +13,10 @@ double MadScale(std::vector<double>* values) {
   constexpr SmallSample kSmallSample = {
       {1.196, 1.495, 1.363, 1.206, 1.200, 1.140, 1.129, 1.107}, -0.8, -0.8};
   if (values->size() < 2) return 0.0;
-  const double centre = Median(values);
+  const double centre = QuantileInPlace(values, 0.5);
   for (double& value : *values) value = std::abs(value - centre);
-  return kConsistency * kSmallSample.Factor(values->size()) * Median(values);
+  return kConsistency * kSmallSample.Factor(values->size()) *
+         QuantileInPlace(values, 0.5);
 }
 
 const std::vector<ScaleEstimator>& ScaleEstimators() {

@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {

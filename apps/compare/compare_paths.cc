@@ -4,8 +4,8 @@
 #include <limits>
 
 #include "apps/figures/svg_chart.h"
-#include "apps/shell/format.h"
 #include "core/evaluation/pose_pairs.h"
+#include "core/util/format.h"
 
 namespace rgbd_pose {
 namespace {

@@ -4,8 +4,8 @@
 #include <cmath>
 #include <optional>
 
-#include "apps/shell/format.h"
 #include "core/geometry/motion.h"
+#include "core/util/format.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {

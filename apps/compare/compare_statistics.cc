@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {

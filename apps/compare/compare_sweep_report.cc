@@ -2,7 +2,7 @@
 
 #include "apps/figures/svg_chart.h"
 #include "apps/shell/csv_table.h"
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {

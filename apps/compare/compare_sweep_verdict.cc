@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {

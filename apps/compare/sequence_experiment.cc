@@ -9,8 +9,8 @@
 #include "apps/compare/experiment.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/shell/available_cores.h"
-#include "apps/shell/format.h"
 #include "apps/shell/program.h"
+#include "core/util/format.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/sources/camera_file.h"
 

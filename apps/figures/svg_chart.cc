@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "apps/figures/chart_axis.h"
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 
 namespace rgbd_pose {
 namespace {

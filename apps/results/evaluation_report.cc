@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 
 namespace rgbd_pose {
 namespace {

@@ -3,8 +3,8 @@
 #include <cmath>
 #include <optional>
 
-#include "apps/shell/format.h"
 #include "core/evaluation/pose_pairs.h"
+#include "core/util/format.h"
 
 namespace rgbd_pose {
 namespace {

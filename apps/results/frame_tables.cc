@@ -1,6 +1,6 @@
 #include "apps/results/frame_tables.h"
 
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 
 namespace rgbd_pose {
 

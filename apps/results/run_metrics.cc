@@ -2,7 +2,7 @@
 
 #include <sys/resource.h>
 
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 
 namespace rgbd_pose {
 

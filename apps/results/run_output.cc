@@ -5,7 +5,7 @@
 #include "apps/results/frame_errors.h"
 #include "apps/results/frame_tables.h"
 #include "apps/results/run_metrics.h"
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/features/match_overlay.h"

@@ -12,7 +12,7 @@
 #include <system_error>
 
 #include "apps/shell/flag_reader.h"
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {

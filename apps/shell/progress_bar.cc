@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <utility>
 
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 
 namespace rgbd_pose {
 namespace {

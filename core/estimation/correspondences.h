@@ -54,8 +54,7 @@ class Correspondences {
 
   // Point in camera axes (m) of an observation with a depth.
   Eigen::Vector3d Point(const Observation& o) const {
-    return {(o.u - camera_.cx) / camera_.fx * o.depth,
-            (o.v - camera_.cy) / camera_.fy * o.depth, o.depth};
+    return camera_.Ray(o.u, o.v) * o.depth;
   }
 
  private:

@@ -4,8 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
+
+#include "core/util/format.h"
 
 namespace rgbd_pose {
 namespace {
@@ -32,10 +33,8 @@ std::string Describe(const MotionVector& direction, double deviation) {
       text += std::string(" with ") + kDirections[order[i]];
     }
   }
-  char number[64];
-  std::snprintf(number, sizeof(number), "%.2g %s", deviation,
-                order[0] < 3 ? "rad" : "m");
-  return text + " is not determined (standard deviation " + number + ")";
+  return text + Format(" is not determined (standard deviation %.2g %s)",
+                       deviation, order[0] < 3 ? "rad" : "m");
 }
 
 // The largest standard deviation within three rows of a covariance, and how all

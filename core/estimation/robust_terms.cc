@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/util/chi_squared.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
 namespace {
@@ -99,9 +100,7 @@ double RobustTerms::UpdateNorms(const MotionDerivatives& motion) {
     }
   }
   if (values_.empty()) return 0.0;
-  const auto middle = values_.begin() + values_.size() / 2;
-  std::nth_element(values_.begin(), middle, values_.end());
-  return std::sqrt(*middle);
+  return std::sqrt(UpperMedian(&values_));
 }
 
 double RobustTerms::EstimateScale(

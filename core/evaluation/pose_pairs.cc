@@ -1,10 +1,10 @@
 #include "core/evaluation/pose_pairs.h"
 
 #include <algorithm>
-#include <cstdio>
 #include <string>
 
 #include "core/evaluation/association.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
@@ -19,10 +19,7 @@ std::vector<double> Times(const Trajectory& trajectory) {
 
 std::string TimeRange(const std::vector<double>& times) {
   if (times.empty()) return "no poses";
-  char text[96];
-  std::snprintf(text, sizeof(text), "%.6f s to %.6f s", times.front(),
-                times.back());
-  return text;
+  return Format("%.6f s to %.6f s", times.front(), times.back());
 }
 
 }  // namespace
@@ -48,10 +45,8 @@ std::vector<PosePair> PairPoses(const Trajectory& estimate,
                      estimate[i].world_from_cam});
   }
   if (pairs.empty()) {
-    char difference[32];
-    std::snprintf(difference, sizeof(difference), "%g", max_time_difference);
     throw InputError("no pose of the estimate (" + TimeRange(estimate_times) +
-                     ") is within " + difference +
+                     ") is within " + Format("%g", max_time_difference) +
                      " s of one of the ground truth (" +
                      TimeRange(truth_times) +
                      "); check that both belong to the same sequence");

@@ -1,11 +1,10 @@
 #include "core/evaluation/trajectory.h"
 
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <string_view>
-#include <system_error>
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 
@@ -46,15 +45,6 @@ StampedPose ParsePose(const TextLine& line, const std::string& path) {
   return {value[0], pose};
 }
 
-// Unlike printf, it does not depend on the locale.
-void AppendNumber(double value, int decimals, std::string* text) {
-  std::array<char, 400> buffer;  // the largest double has 309 digits
-  const std::to_chars_result result =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
-                    std::chars_format::fixed, decimals);
-  text->append(buffer.data(), result.ptr);
-}
-
 }  // namespace
 
 Trajectory ReadTrajectory(const std::string& path) {
@@ -82,11 +72,11 @@ std::string FormatTrajectory(const Trajectory& trajectory) {
   for (const StampedPose& pose : trajectory) {
     const Eigen::Vector3d& t = pose.world_from_cam.translation;
     const Eigen::Quaterniond& q = pose.world_from_cam.rotation;
-    AppendNumber(pose.timestamp, kTimeDecimals, &text);
+    text += FixedNumber(pose.timestamp, kTimeDecimals);
     for (const double value :
          {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
       text += ' ';
-      AppendNumber(value, kPoseDecimals, &text);
+      text += FixedNumber(value, kPoseDecimals);
     }
     text += '\n';
   }

@@ -104,7 +104,7 @@ Vector2d Camera::Project(const Eigen::Vector3d& point) const {
 Vector2d Camera::Undistort(const Vector2d& pixel) const {
   if (!HasDistortion()) return pixel;
   const Vector2d plane =
-      RemoveDistortion(*this, {(pixel.x() - cx) / fx, (pixel.y() - cy) / fy});
+      RemoveDistortion(*this, Ray(pixel.x(), pixel.y()).head<2>());
   return {fx * plane.x() + cx, fy * plane.y() + cy};
 }
 
@@ -115,7 +115,7 @@ void Camera::UndistortPoints(std::vector<Vector2d>* pixels) const {
 
 Eigen::Vector3d Camera::Unproject(const Vector2d& pixel, double depth) const {
   const Vector2d ideal = Undistort(pixel);
-  return {(ideal.x() - cx) / fx * depth, (ideal.y() - cy) / fy * depth, depth};
+  return Ray(ideal.x(), ideal.y()) * depth;
 }
 
 std::optional<RgbdCamera> CameraPreset(std::string_view name) {

@@ -45,6 +45,12 @@ struct Camera {
   // Undistorts many image points at once, in place.
   void UndistortPoints(std::vector<Eigen::Vector2d>* pixels) const;
 
+  // The ray (a, b, 1) in camera axes of an ideal pixel: its point is depth
+  // times as far.
+  Eigen::Vector3d Ray(double u, double v) const {
+    return {(u - cx) / fx, (v - cy) / fy, 1.0};
+  }
+
   // Point in camera axes (m) of an image pixel (distorted) at a depth z (m).
   Eigen::Vector3d Unproject(const Eigen::Vector2d& pixel, double depth) const;
 

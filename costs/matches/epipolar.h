@@ -7,7 +7,6 @@
 #include "core/estimation/cost.h"
 #include "core/geometry/motion.h"
 #include "core/util/lane_math.h"
-#include "costs/parts/ray.h"
 
 namespace rgbd_pose {
 
@@ -55,8 +54,8 @@ struct Epipolar {
     if (!SeesBaseline(camera, input.cur_from_prev, prev, cur)) return false;
     const double s[] = {cur.sigma_px / camera.fx, cur.sigma_px / camera.fy,
                         prev.sigma_px / camera.fx, prev.sigma_px / camera.fy};
-    std::copy_n(Ray(camera, prev).data(), 2, columns);
-    std::copy_n(Ray(camera, cur).data(), 2, columns + 2);
+    std::copy_n(camera.Ray(prev.u, prev.v).data(), 2, columns);
+    std::copy_n(camera.Ray(cur.u, cur.v).data(), 2, columns + 2);
     columns[8] = 0.0;
     for (int k = 0; k < 4; ++k) {
       columns[4 + k] = s[k] * s[k];
@@ -107,7 +106,8 @@ struct Epipolar {
   // the baseline across the ray.
   static bool SeesBaseline(const Camera& camera, const Rigid3d& cur_from_prev,
                            const Observation& prev, const Observation& cur) {
-    const Eigen::Vector3d x_prev = Ray(camera, prev), x_cur = Ray(camera, cur);
+    const Eigen::Vector3d x_prev = camera.Ray(prev.u, prev.v),
+                          x_cur = camera.Ray(cur.u, cur.v);
     const Eigen::Vector3d C = cur_from_prev.Inverse().translation;
     const Eigen::Vector3d y = cur_from_prev.rotation.conjugate() * x_cur;
     const Eigen::Vector3d across = C.cross(y);

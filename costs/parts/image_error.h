@@ -9,7 +9,6 @@
 #include "costs/parts/moved_point.h"
 #include "costs/parts/point_covariance.h"
 #include "costs/parts/projection.h"
-#include "costs/parts/ray.h"
 #include "costs/parts/whitening.h"
 
 namespace rgbd_pose {
@@ -95,7 +94,7 @@ bool PackImageError(const Correspondences& matches,
       target_from_source * point);
   const bool has_depth = target.depth > 0.0;
   const double w = has_depth ? 1.0 / target.depth : 0.0;
-  Eigen::Vector3d measured = Ray(camera, target);
+  Eigen::Vector3d measured = camera.Ray(target.u, target.v);
   measured.z() = w;
   const Eigen::Vector3d sigma(target.sigma_px / camera.fx,
                               target.sigma_px / camera.fy,

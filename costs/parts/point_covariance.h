@@ -3,7 +3,6 @@
 #include <Eigen/Core>
 
 #include "core/estimation/correspondences.h"
-#include "costs/parts/ray.h"
 
 namespace rgbd_pose {
 
@@ -16,7 +15,7 @@ namespace rgbd_pose {
 // ray_whitening.h is its inverse square root.
 inline Eigen::Matrix3d PointCovariance(const Camera& camera,
                                        const Observation& o) {
-  const Eigen::Vector3d ray = Ray(camera, o);
+  const Eigen::Vector3d ray = camera.Ray(o.u, o.v);
   const Eigen::Vector3d image(o.depth * o.sigma_px / camera.fx,
                               o.depth * o.sigma_px / camera.fy, 0.0);
   Eigen::Matrix3d S = o.sigma_depth * o.sigma_depth * (ray * ray.transpose());

@@ -90,8 +90,9 @@ inline void PackRay(const Camera& camera, const Observation& o,
   const double sigma = o.depth * o.sigma_px;
   const double inverse = 1.0 / (sigma_factor * sigma * o.sigma_depth);
   const double image = inverse * o.sigma_depth;
-  columns[0] = (o.u - camera.cx) / camera.fx;
-  columns[1] = (o.v - camera.cy) / camera.fy;
+  const Eigen::Vector3d ray = camera.Ray(o.u, o.v);
+  columns[0] = ray.x();
+  columns[1] = ray.y();
   columns[2] = o.depth;
   columns[3] = camera.fx * image;
   columns[4] = camera.fy * image;

@@ -92,9 +92,7 @@ CoarseReference::Level CoarseReference::MakeLevel(const Frame& frame,
       const Eigen::Vector2d ideal = c.Undistort(Eigen::Vector2d(u, v));
       Point point;
       point.distortion = (Eigen::Vector2d(u, v) - ideal).cast<float>();
-      point.place = Eigen::Vector3d((ideal.x() - c.cx) / c.fx * depth,
-                                    (ideal.y() - c.cy) / c.fy * depth, depth)
-                        .cast<float>();
+      point.place = (c.Ray(ideal.x(), ideal.y()) * depth).cast<float>();
       const Eigen::Vector3f& X = point.place;
       const float a = gx * static_cast<float>(c.fx) / X.z();
       const float b = gy * static_cast<float>(c.fy) / X.z();

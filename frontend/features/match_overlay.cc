@@ -137,8 +137,7 @@ int Fixed(double px) { return cvRound(px * (1 << kShift)); }
 
 // Where an observation is in the image as taken, in fixed point.
 cv::Point ImagePoint(const Camera& camera, const Observation& o) {
-  const Eigen::Vector2d pixel = camera.Project(
-      {(o.u - camera.cx) / camera.fx, (o.v - camera.cy) / camera.fy, 1.0});
+  const Eigen::Vector2d pixel = camera.Project(camera.Ray(o.u, o.v));
   // Far outside is far enough; the rest would not fit into an int.
   constexpr double kFarPx = 1e5;
   const Eigen::Vector2d near = pixel.cwiseMax(-kFarPx).cwiseMin(kFarPx);

@@ -16,8 +16,7 @@ constexpr double kMinIncidence = 0.26;
 //   dX/du = z / fx (e_x - n_x / (n . r) r), and v likewise.
 Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
                           const Rigid3d& cur_from_ref) {
-  const Eigen::Vector3d ray((ref.u - camera.cx) / camera.fx,
-                            (ref.v - camera.cy) / camera.fy, 1.0);
+  const Eigen::Vector3d ray = camera.Ray(ref.u, ref.v);
   Eigen::Vector3d normal = ref.normal;
   if (std::abs(normal.dot(ray)) < kMinIncidence * ray.norm()) {
     normal = Eigen::Vector3d::UnitZ();

@@ -1,8 +1,9 @@
 #include "frontend/image/depth_scale.h"
 
-#include <algorithm>
-#include <cstdio>
 #include <vector>
+
+#include "core/util/format.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
 
@@ -18,15 +19,12 @@ std::string DepthScaleWarning(const Frame& frame) {
     }
   }
   if (depths.empty()) return "";
-  const auto middle = depths.begin() + depths.size() / 2;
-  std::nth_element(depths.begin(), middle, depths.end());
-  if (*middle >= kMinPlausible && *middle <= kMaxPlausible) return "";
-  char text[200];
-  std::snprintf(text, sizeof(text),
-                "frame %d: the median depth is %.3g m; check the depth scale "
-                "(%.6g raw units per metre)",
-                frame.index, *middle, frame.depth_scale);
-  return text;
+  const double median = UpperMedian(&depths);
+  if (median >= kMinPlausible && median <= kMaxPlausible) return "";
+  return Format(
+      "frame %d: the median depth is %.3g m; check the depth scale (%.6g raw "
+      "units per metre)",
+      frame.index, median, frame.depth_scale);
 }
 
 }  // namespace rgbd_pose

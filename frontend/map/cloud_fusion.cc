@@ -60,9 +60,7 @@ CloudFusion::CloudFusion(const CloudFusionOptions& options)
   camera.UndistortPoints(&pixels);
   rays_.reserve(pixels.size());
   for (const Eigen::Vector2d& pixel : pixels) {
-    rays_.push_back(Eigen::Vector3d((pixel.x() - camera.cx) / camera.fx,
-                                    (pixel.y() - camera.cy) / camera.fy, 1.0)
-                        .cast<float>());
+    rays_.push_back(camera.Ray(pixel.x(), pixel.y()).cast<float>());
   }
 }
 

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/util/floor.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -11,12 +13,6 @@ constexpr uint64_t kMask = (uint64_t{1} << kBits) - 1;
 constexpr int kHalfRange = 1 << (kBits - 1);
 
 constexpr int kFirstSlotBits = 10;
-
-// The largest whole number below; quicker than std::floor, which is a call.
-int Floor(float x) {
-  const int whole = static_cast<int>(x);
-  return whole - static_cast<int>(x < static_cast<float>(whole));
-}
 
 uint8_t Mean(uint32_t sum, uint32_t count) {
   return static_cast<uint8_t>((sum + count / 2) / count);
@@ -36,7 +32,7 @@ void VoxelCloud::Add(const ColoredPoint& point) {
     const float x = point.position[i] * voxels_per_metre_;
     // Written so that it holds for no NaN.
     if (!(x >= -kHalfRange && x < kHalfRange)) return;
-    key = key << kBits | static_cast<uint64_t>(Floor(x) + kHalfRange);
+    key = key << kBits | static_cast<uint64_t>(FloorToInt(x) + kHalfRange);
   }
   Voxel* voxel = FindOrInsert(key);
   const Eigen::Vector3f center = Center(key);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/util/floor.h"
 #include "frontend/simulation/synthetic_hash.h"
 
 namespace rgbd_pose {
@@ -23,11 +24,6 @@ constexpr float kWordLength = 11.0f;  // in blocks
 constexpr float kLineHeight = 5.0f;
 constexpr float kGlyphHeight = 3.0f;
 
-int Floor(float x) {
-  const int i = static_cast<int>(x);
-  return i - (x < static_cast<float>(i));
-}
-
 float Clamp01(float x) { return std::min(std::max(x, 0.0f), 1.0f); }
 
 // One byte of a hash as -1..1.
@@ -43,8 +39,8 @@ float Visible(float cell, float footprint) {
 
 // Value noise in -1..1 with cells of size 1.
 float SmoothNoise(float x, float y, uint32_t seed) {
-  const int i = Floor(x);
-  const int j = Floor(y);
+  const int i = FloorToInt(x);
+  const int j = FloorToInt(y);
   const float fx = x - static_cast<float>(i);
   const float fy = y - static_cast<float>(j);
   const float wx = fx * fx * (3.0f - 2.0f * fx);
@@ -83,8 +79,8 @@ float Grain(const SurfacePoint& point, uint32_t seed) {
 template <typename Use>
 void ForCellsUnderPixel(float x, float y, float footprint_x, float footprint_y,
                         uint32_t seed, Use use) {
-  const int i = Floor(x - 0.5f);
-  const int j = Floor(y - 0.5f);
+  const int i = FloorToInt(x - 0.5f);
+  const int j = FloorToInt(y - 0.5f);
   const float wx =
       Clamp01((x - 1.0f - static_cast<float>(i)) / footprint_x + 0.5f);
   const float wy =
@@ -129,7 +125,7 @@ float Ink(const Material& material, const SurfacePoint& p, uint32_t seed) {
                      });
   if (word == 0.0f) return 0.0f;
   const float line =
-      y - kLineHeight * static_cast<float>(Floor(y / kLineHeight));
+      y - kLineHeight * static_cast<float>(FloorToInt(y / kLineHeight));
   word *= Clamp01(line / height) * Clamp01((kGlyphHeight - line) / height);
   float bit = 0.0f;
   ForCellsUnderPixel(x, y, width, height, seed + 1,

@@ -1,14 +1,13 @@
 #include "frontend/sources/tum_writer.h"
 
 #include <algorithm>
-#include <array>
-#include <charconv>
 #include <filesystem>
 #include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <system_error>
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/sources/frame_stream.h"
@@ -19,22 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::string FormatStamp(double timestamp) {
-  constexpr int kDecimals = 6;
-  std::array<char, 400> buffer;  // the largest double has 309 digits
-  const auto result =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), timestamp,
-                    std::chars_format::fixed, kDecimals);
-  return std::string(buffer.data(), result.ptr);
-}
-
-// The shortest text that reads back as the same number.
-std::string FormatExactly(double value) {
-  std::array<char, 32> buffer;
-  const auto result =
-      std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
-  return std::string(buffer.data(), result.ptr);
-}
+std::string FormatStamp(double timestamp) { return FixedNumber(timestamp, 6); }
 
 std::string ImagePath(const std::string& kind, double timestamp) {
   return kind + "/" + FormatStamp(timestamp) + ".png";
@@ -109,7 +93,7 @@ std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
       {"Camera.height", camera.height},
       {"DepthMapFactor", rgbd_camera.depth_scale}};
   for (const auto& [key, value] : values) {
-    text += std::string(key) + ": " + FormatExactly(value) + "\n";
+    text += std::string(key) + ": " + ShortNumber(value) + "\n";
   }
   return text;
 }

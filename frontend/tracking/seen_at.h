@@ -15,10 +15,7 @@ inline std::optional<Eigen::Vector2d> SeenAt(const Camera& camera,
                                              const Rigid3d& cur_from_ref,
                                              const Observation& o) {
   if (o.depth <= 0.0) return std::nullopt;
-  const Eigen::Vector3d point =
-      cur_from_ref * Eigen::Vector3d((o.u - camera.cx) / camera.fx * o.depth,
-                                     (o.v - camera.cy) / camera.fy * o.depth,
-                                     o.depth);
+  const Eigen::Vector3d point = cur_from_ref * (camera.Ray(o.u, o.v) * o.depth);
   if (point.z() <= 0.0) return std::nullopt;
   return Eigen::Vector2d(camera.fx * point.x() / point.z() + camera.cx,
                          camera.fy * point.y() / point.z() + camera.cy);

@@ -1,4 +1,4 @@
-#include "apps/shell/format.h"
+#include "core/util/format.h"
 
 #include <charconv>
 #include <cstdarg>
@@ -17,6 +17,13 @@ std::string Format(const char* format, ...) {
   std::vsnprintf(text.data(), text.size() + 1, format, again);
   va_end(again);
   return text;
+}
+
+std::string FixedNumber(double value, int decimals) {
+  char text[400];  // the largest double has 309 digits
+  return {text, std::to_chars(text, text + sizeof(text), value,
+                              std::chars_format::fixed, decimals)
+                    .ptr};
 }
 
 std::string ShortNumber(double value) {

@@ -7,6 +7,9 @@ namespace rgbd_pose {
 // What printf would print.
 [[gnu::format(printf, 1, 2)]] std::string Format(const char* format, ...);
 
+// With so many decimals, whatever the locale.
+std::string FixedNumber(double value, int decimals);
+
 // As few digits as tell the number from all others: 0.2, not 0.2000...01.
 std::string ShortNumber(double value);
 

@@ -1,0 +1,12 @@
+#pragma once
+
+namespace rgbd_pose {
+
+// The largest whole number that is not above x, which must fit into an int;
+// quicker than std::floor, which is a call.
+inline int FloorToInt(float x) {
+  const int whole = static_cast<int>(x);
+  return whole - static_cast<int>(x < static_cast<float>(whole));
+}
+
+}  // namespace rgbd_pose
