@@ -160,14 +160,15 @@ void PrintRow(const Method& method) {
 // both frames the Fisher information of the motion is the Hessian of the fully
 // whitened 3D cost at the truth, from noiseless matches.
 void PrintBound(const std::vector<Method>& methods) {
-  std::unique_ptr<Cost> cost = MakeCost("mahalanobis_point");
+  std::unique_ptr<MotionCost> cost = MakeCost("mahalanobis_point");
   double deg2 = 0.0, mm2 = 0.0;
   for (int seed = 0; seed < FLAGS_seeds; ++seed) {
     RandomWorld world(5000 + seed);
     const Rigid3d truth = world.Motion(kMaxAngle, kMaxTranslation);
     const Correspondences matches =
         world.Matches(FLAGS_matches, 0.0, truth, /*noise=*/false);
-    cost->Bind({matches, truth});
+    cost->Bind({&matches});
+    cost->Associate(truth);
     const MotionVector zero = MotionVector::Zero();
     NormalEquations sum;
     cost->Linearise(MotionOrigin(truth).DerivativesAt(zero.data()), nullptr,

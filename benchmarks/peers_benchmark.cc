@@ -69,7 +69,7 @@ using Method = std::optional<Rigid3d> (*)(const Trial&);
 std::optional<Rigid3d> Estimate(const Trial& trial) {
   static Estimator estimator({}, MakeRobustCosts());
   static MotionEstimate estimate;
-  estimator.Estimate(trial.matches, Rigid3d(), nullptr, &estimate);
+  estimator.Estimate({&trial.matches}, Rigid3d(), &estimate);
   if (!estimate.ok()) return std::nullopt;
   return estimate.cur_from_prev;
 }

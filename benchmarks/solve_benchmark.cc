@@ -20,8 +20,8 @@
 #include <string>
 #include <utility>
 
-#include "core/estimation/cost.h"
 #include "core/estimation/estimator.h"
+#include "core/estimation/motion_cost.h"
 #include "core/util/vector_lanes.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
@@ -51,7 +51,7 @@ const Correspondences& Matches(int count, double max_motion) {
 // finds it: what is compared is the solve, not the graduation.
 struct World {
   const Correspondences& matches;
-  std::unique_ptr<Cost> cost;
+  std::unique_ptr<MotionCost> cost;
   std::unique_ptr<ceres::LossFunction> loss;
 
   World(int count, const std::string& loss_name)
@@ -148,7 +148,8 @@ void SolveWithCeres(benchmark::State& state, std::optional<Assembly> assembly,
     ceres::Problem problem(
         ProblemOptions(assembly.value_or(Assembly::kAutodiff)));
     if (assembly) {
-      world.cost->Bind({world.matches, Rigid3d()});
+      world.cost->Bind({&world.matches});
+      world.cost->Associate(Rigid3d());
       world.cost->AddTo(*assembly, origin, world.loss.get(), x.data(),
                         &problem);
     } else {
@@ -180,7 +181,8 @@ void BareLoop(benchmark::State& state, const std::string& loss) {
   int evaluations = 0;
   for (auto _ : state) {
     MotionVector x = MotionVector::Zero();
-    world.cost->Bind({world.matches, Rigid3d()});
+    world.cost->Bind({&world.matches});
+    world.cost->Associate(Rigid3d());
     double last_cost = 0.0;
     for (evaluations = 1; evaluations <= kMaxIterations; ++evaluations) {
       NormalEquations sum;
@@ -223,7 +225,8 @@ void SolveWithTinySolver(benchmark::State& state, const std::string& loss) {
   const MotionOrigin origin;
   for (auto _ : state) {
     MotionVector x = MotionVector::Zero();
-    world.cost->Bind({world.matches, Rigid3d()});
+    world.cost->Bind({&world.matches});
+    world.cost->Associate(Rigid3d());
     ceres::Problem problem(ProblemOptions(Assembly::kCompressed));
     world.cost->AddTo(Assembly::kCompressed, origin, world.loss.get(), x.data(),
                       &problem);
@@ -248,7 +251,7 @@ void Estimate(benchmark::State& state, Assembly assembly,
   Estimator estimator(options, MakeRobustCosts(kCost, loss));
   MotionEstimate estimate;
   for (auto _ : state) {
-    estimator.Estimate(matches, Rigid3d(), nullptr, &estimate);
+    estimator.Estimate({&matches}, Rigid3d(), &estimate);
     benchmark::DoNotOptimize(estimate.cur_from_prev);
   }
   state.counters["iterations"] = estimate.iterations;

@@ -17,7 +17,7 @@ namespace {
 
 struct CostEntry {
   std::string_view name;
-  std::unique_ptr<Cost> (*make)();
+  std::unique_ptr<MotionCost> (*make)();
 };
 
 template <typename... Residuals>
@@ -46,7 +46,7 @@ std::vector<std::string> CostNames() {
   return names;
 }
 
-std::unique_ptr<Cost> MakeCost(std::string_view name) {
+std::unique_ptr<MotionCost> MakeCost(std::string_view name) {
   for (const CostEntry& entry : EntriesOf(ResidualTypes())) {
     if (entry.name == name) return entry.make();
   }
@@ -65,7 +65,7 @@ std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,
   }
   std::vector<RobustCost> terms;
   for (size_t i = 0; i < costs.size(); ++i) {
-    std::unique_ptr<Cost> cost = MakeCost(costs[i]);
+    std::unique_ptr<MotionCost> cost = MakeCost(costs[i]);
     if (cost == nullptr) {
       throw InputError("unknown cost '" + costs[i] + "'; there are " +
                        Join(CostNames()));

@@ -5,8 +5,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/estimation/cost.h"
 #include "core/estimation/estimator.h"
+#include "core/estimation/motion_cost.h"
 
 namespace rgbd_pose {
 
@@ -14,7 +14,7 @@ namespace rgbd_pose {
 std::vector<std::string> CostNames();
 
 // The cost of that name, or null.
-std::unique_ptr<Cost> MakeCost(std::string_view name);
+std::unique_ptr<MotionCost> MakeCost(std::string_view name);
 
 // What is taken where nobody says otherwise.
 inline constexpr char kDefaultCost[] = "bidirectional_point";

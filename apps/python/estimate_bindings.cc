@@ -60,11 +60,16 @@ std::optional<MotionPrior> PriorFrom(const py::object& prior) {
   }
   const py::sequence pair = prior;
   MotionPrior result;
-  result.cur_from_prev = RigidFromArray(pair[0], "prior[0]");
+  result.mean = RigidFromArray(pair[0], "prior[0]");
   const NumberArray covariance(pair[1], "prior[1]", {6, 6});
+  MotionMatrix matrix;
   for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j) result.covariance(i, j) = covariance(i, j);
+    for (int j = 0; j < 6; ++j) matrix(i, j) = covariance(i, j);
   }
+  // That of a failed estimate is zero: nothing is known.
+  const Eigen::LLT<MotionMatrix> cholesky(matrix);
+  if (cholesky.info() != Eigen::Success) return std::nullopt;
+  result.information = cholesky.solve(MotionMatrix::Identity());
   return result;
 }
 

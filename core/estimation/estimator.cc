@@ -17,17 +17,24 @@ namespace {
 constexpr int kMinMatches = 3;
 constexpr int kIterationsPerEarlyStage = 2;
 
-// Scale and motion are estimated in turn until the scale moves by less.
-constexpr double kScaleTolerance = 0.01;
+// Scale and motion are estimated in turn, at most so often.
 constexpr int kMaxScaleRounds = 10;
 
 // Frozen weights are taken as right within this (rad and m): a turn by it adds
 // 1 % of the variance along the ray to that across it, where noise is ten times
 // larger along the ray.
 constexpr double kFrozenWithin = 1e-2;
-constexpr int kMaxBindRounds = 3;
 
-std::vector<RobustCost> TermsOf(std::unique_ptr<Cost> cost,
+// Where residuals are chosen at every step, one that moves by less (rad and m)
+// is the last.
+constexpr double kSettledWithin = 1e-6;
+
+bool IsWithin(const Rigid3d& a, const Rigid3d& b, double limit) {
+  const Rigid3d moved = a.Inverse() * b;
+  return moved.Angle() < limit && moved.translation.norm() < limit;
+}
+
+std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
                                 std::unique_ptr<ceres::LossFunction> loss) {
   if (cost == nullptr) throw InputError("an estimator needs a cost");
   std::vector<RobustCost> terms;
@@ -45,6 +52,9 @@ std::string EstimatorOptions::Check() const {
     return "min_inlier_share must lie between 0 and 1";
   }
   if (!(max_scale > 0.0)) return "max_scale must be positive";
+  if (max_association_rounds < 1) {
+    return "max_association_rounds must be at least 1";
+  }
   if (threads < 1) return "threads must be at least 1";
   if (!(max_standard_deviation > 0.0)) {
     return "max_standard_deviation must be positive";
@@ -61,20 +71,20 @@ class Estimator::Solve {
     if (!problem.empty()) throw InputError("estimator: " + problem);
   }
 
-  void Run(const Correspondences& matches, const Rigid3d& guess,
-           const MotionPrior* prior, MotionEstimate* estimate) {
-    Reset(matches, guess, prior, estimate);
+  void Run(const PairData& pair, const Rigid3d& guess,
+           MotionEstimate* estimate) {
+    Reset(pair, guess, estimate);
     if (out_->num_used < kMinMatches) {
       out_->status = EstimateStatus::kTooFewMatches;
       out_->reason =
           std::to_string(out_->num_used) + " usable matches, 3 are needed";
-      if (matches.rejected() > 0) {
-        out_->reason += "; " + std::to_string(matches.rejected()) +
+      if (matches_->rejected() > 0) {
+        out_->reason += "; " + std::to_string(matches_->rejected()) +
                         " rejected as not finite";
       }
       return;
     }
-    if (MinimiseWithScale()) {
+    if (MinimiseCoarseToFine()) {
       Judge(guess);
     } else {
       JudgeGuess(guess);
@@ -82,46 +92,48 @@ class Estimator::Solve {
   }
 
  private:
-  void Reset(const Correspondences& matches, const Rigid3d& guess,
-             const MotionPrior* prior, MotionEstimate* estimate) {
-    matches_ = &matches;
-    prior_ = prior;
+  void Reset(const PairData& pair, const Rigid3d& guess,
+             MotionEstimate* estimate) {
+    static const Correspondences kNone;
+    matches_ = pair.matches != nullptr ? pair.matches : &kNone;
     out_ = estimate;
     out_->reason.clear();
     out_->cur_from_prev = guess;
     out_->covariance.setZero();
-    out_->weights.assign(matches.size(), 0.0);
-    out_->is_inlier.assign(matches.size(), false);
-    out_->residual_norms.assign(matches.size(), 0.0);
-    out_->residual_degrees.assign(matches.size(), 0);
+    out_->weights.assign(matches_->size(), 0.0);
+    out_->is_inlier.assign(matches_->size(), false);
+    out_->residual_norms.assign(matches_->size(), 0.0);
+    out_->residual_degrees.assign(matches_->size(), 0);
     out_->num_inliers = 0;
     out_->sigma = 0.0;
     out_->initial_cost = 0.0;
     out_->final_cost = 0.0;
     out_->iterations = 0;
     converged_ = false;
-    bound_at_ = guess;
-    terms_.Bind(Input());
+    associated_at_ = guess;
+    PairData data = pair;
+    data.threads = options_.threads;
+    terms_.Bind(data, guess);
     out_->num_used = terms_.num_used();
   }
 
-  // At the motion so far.
-  CostInput Input() const {
-    return {*matches_, out_->cur_from_prev, prior_, options_.threads};
-  }
-
-  // Freezes weights at the motion so far. False if none are, or if they were
-  // frozen near enough.
-  bool BindAgain() {
-    const Rigid3d moved = bound_at_.Inverse() * out_->cur_from_prev;
-    if (moved.Angle() < kFrozenWithin &&
-        moved.translation.norm() < kFrozenWithin) {
-      return false;
+  // At the motion so far. False if no cost asks for it so often, or if what is
+  // frozen was so near enough.
+  bool Associate(Association least) {
+    const Rigid3d& motion = out_->cur_from_prev;
+    if (least != Association::kEveryStep) {
+      if (IsWithin(associated_at_, motion, kFrozenWithin)) return false;
+      associated_at_ = motion;
     }
-    bound_at_ = out_->cur_from_prev;
-    const bool changed = terms_.BindAgain(Input());
+    const bool changed = terms_.Associate(least, motion);
     out_->num_used = terms_.num_used();
     return changed;
+  }
+
+  void SetLevel(int level) {
+    associated_at_ = out_->cur_from_prev;
+    terms_.SetLevel(level, out_->cur_from_prev);
+    out_->num_used = terms_.num_used();
   }
 
   MotionDerivatives MotionNow() const { return At(out_->cur_from_prev); }
@@ -131,14 +143,20 @@ class Estimator::Solve {
     return MotionOrigin(cur_from_prev).DerivativesAt(zero.data());
   }
 
+  bool MinimiseCoarseToFine() {
+    const int levels = terms_.num_levels();
+    for (int level = levels - 1; level >= 0; --level) {
+      if (levels > 1) SetLevel(level);
+      if (out_->num_used < kMinMatches || !MinimiseWithScale()) return false;
+    }
+    return true;
+  }
+
   bool MinimiseWithScale() {
-    scale_ = 1.0;
+    terms_.ResetScales();
     if (!Minimise()) return false;
     for (int i = 0; options_.scale != nullptr && i < kMaxScaleRounds; ++i) {
-      const double scale = terms_.EstimateScale(MotionNow(), options_.scale);
-      const bool settled = std::abs(scale - scale_) <= kScaleTolerance * scale_;
-      if (settled) break;
-      scale_ = scale;
+      if (!terms_.UpdateScales(MotionNow(), options_.scale)) break;
       if (!Minimise()) return false;
     }
     return true;
@@ -148,19 +166,19 @@ class Estimator::Solve {
   bool Minimise() {
     double width = 1.0;
     if (terms_.has_losses() && options_.schedule == RobustSchedule::kGnc) {
-      width = terms_.UpdateNorms(MotionNow()) / scale_;
+      width = terms_.UpdateNorms(MotionNow());
     }
     while (width > 1.0) {
-      terms_.SetLosses(scale_ * width);
+      terms_.SetLosses(width);
       if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
-      BindAgain();
+      Associate(Association::kWhenMoved);
       if (out_->num_used < kMinMatches) return false;
       // Where over half of the matches are right they soon agree, and most
       // stages are saved.
       width = std::min(width / options_.gnc_factor,
-                       terms_.UpdateNorms(MotionNow()) / scale_);
+                       terms_.UpdateNorms(MotionNow()));
     }
-    terms_.SetLosses(scale_);
+    terms_.SetLosses(1.0);
     return MinimiseLastStage();
   }
 
@@ -168,12 +186,31 @@ class Estimator::Solve {
   bool MinimiseLastStage() {
     for (int round = 1;; ++round) {
       if (!MinimiseStage(options_.max_iterations)) return false;
-      if (round == kMaxBindRounds || !BindAgain()) return true;
+      if (round == options_.max_association_rounds ||
+          !Associate(Association::kWhenMoved)) {
+        return true;
+      }
       if (out_->num_used < kMinMatches) return false;
     }
   }
 
   bool MinimiseStage(int max_iterations) {
+    if (!terms_.AsksFor(Association::kEveryStep)) {
+      return SolveOnce(max_iterations);
+    }
+    converged_ = false;
+    for (int i = 0; i < max_iterations && !converged_; ++i) {
+      const Rigid3d before = out_->cur_from_prev;
+      if (!SolveOnce(1)) return false;
+      converged_ = IsWithin(before, out_->cur_from_prev, kSettledWithin);
+      Associate(Association::kEveryStep);
+      if (out_->num_used < kMinMatches) return false;
+    }
+    return true;
+  }
+
+  // Of the residuals as they are associated.
+  bool SolveOnce(int max_iterations) {
     const MotionOrigin origin(out_->cur_from_prev);
     MotionVector x = MotionVector::Zero();
     ceres::Problem::Options problem_options;
@@ -206,7 +243,7 @@ class Estimator::Solve {
   // matches at the guess, taken as right, may tell why.
   void JudgeGuess(const Rigid3d& guess) {
     out_->cur_from_prev = guess;
-    BindAgain();
+    SetLevel(0);
     const NormalEquations sum = terms_.LineariseWithoutLosses(MotionNow());
     const Degeneracy degeneracy =
         FindDegeneracy(sum.hessian, FeignedInformation(*matches_, {}),
@@ -218,9 +255,9 @@ class Estimator::Solve {
   }
 
   void Judge(const Rigid3d& guess) {
-    out_->sigma = terms_.UpdateNorms(MotionNow());
-    const LossSums loss_sums = terms_.JudgeMatches(scale_, out_);
-    const NormalEquations sum = terms_.Linearise(MotionNow());
+    out_->sigma = terms_.UpdateNorms(MotionNow()) * terms_.scale();
+    terms_.JudgeMatches(out_);
+    const NormalEquations sum = terms_.LineariseShares(MotionNow());
     out_->initial_cost = terms_.Linearise(At(guess)).cost;
     out_->final_cost = sum.cost;
     const Degeneracy degeneracy = FindDegeneracy(
@@ -231,14 +268,13 @@ class Estimator::Solve {
       out_->reason = degeneracy.reason;
       return;
     }
-    out_->covariance =
-        terms_.Covariance(MotionNow(), loss_sums, degeneracy.inverse);
+    out_->covariance = terms_.Covariance(MotionNow(), degeneracy.inverse);
     const double share =
         static_cast<double>(out_->num_inliers) / out_->num_used;
     out_->status = EstimateStatus::kOk;
-    if (scale_ > options_.max_scale) {
+    if (terms_.scale() > options_.max_scale) {
       out_->status = EstimateStatus::kInconsistent;
-      out_->reason = "residuals are " + std::to_string(scale_) +
+      out_->reason = "residuals are " + std::to_string(terms_.scale()) +
                      " times what the noise model says";
     } else if (share < options_.min_inlier_share) {
       out_->status = EstimateStatus::kInconsistent;
@@ -257,10 +293,8 @@ class Estimator::Solve {
 
   // Of the call at hand.
   const Correspondences* matches_ = nullptr;
-  const MotionPrior* prior_ = nullptr;
   MotionEstimate* out_ = nullptr;
-  Rigid3d bound_at_;  // the motion at which weights are frozen
-  double scale_ = 1.0;
+  Rigid3d associated_at_;  // the motion at which weights are frozen
   bool converged_ = false;
 };
 
@@ -269,7 +303,7 @@ Estimator::Estimator(const EstimatorOptions& options,
     : solve_(std::make_unique<Solve>(options, std::move(costs))) {}
 
 Estimator::Estimator(const EstimatorOptions& options,
-                     std::unique_ptr<Cost> cost,
+                     std::unique_ptr<MotionCost> cost,
                      std::unique_ptr<ceres::LossFunction> loss)
     : Estimator(options, TermsOf(std::move(cost), std::move(loss))) {}
 
@@ -281,15 +315,15 @@ MotionEstimate Estimator::Estimate(const Correspondences& matches,
                                    const Rigid3d& guess,
                                    const MotionPrior* prior) {
   MotionEstimate estimate;
-  Estimate(matches, guess, prior, &estimate);
+  Estimate({&matches, prior}, guess, &estimate);
   return estimate;
 }
 
-void Estimator::Estimate(const Correspondences& matches, const Rigid3d& guess,
-                         const MotionPrior* prior, MotionEstimate* estimate) {
+void Estimator::Estimate(const PairData& pair, const Rigid3d& guess,
+                         MotionEstimate* estimate) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  solve_->Run(matches, guess, prior, estimate);
+  solve_->Run(pair, guess, estimate);
   estimate->solve_ms =
       std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }

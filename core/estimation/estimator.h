@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/estimation/correspondences.h"
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "core/estimation/motion_estimate.h"
 #include "core/estimation/robust_terms.h"
 
@@ -37,6 +37,10 @@ struct EstimatorOptions {
   // noise model is taken as it is.
   double (*scale)(std::vector<double>* residuals) = nullptr;
 
+  // How often costs whose residuals or weights depend on the motion choose them
+  // anew in the last stage, where the motion goes on changing.
+  int max_association_rounds = 3;
+
   // Of the solver, in the last stage; the stages before take at most two.
   int max_iterations = 50;
 
@@ -59,16 +63,16 @@ struct EstimatorOptions {
   std::string Check() const;
 };
 
-// Estimates the motion between two frames from matches: minimises the sum of
-// all costs under their losses with Ceres. Keeps its memory between calls; one
-// object serves one thread at a time.
+// Estimates the motion between two frames: minimises the sum of all costs under
+// their losses with Ceres, coarse to fine where costs have levels. Keeps its
+// memory between calls; one object serves one thread at a time.
 class Estimator {
  public:
   // Minimises the sum of these costs. Throws InputError for options that are
   // not sound (see Check).
   Estimator(const EstimatorOptions& options, std::vector<RobustCost> costs);
   // Of one cost; a null loss is least squares. Throws InputError without cost.
-  Estimator(const EstimatorOptions& options, std::unique_ptr<Cost> cost,
+  Estimator(const EstimatorOptions& options, std::unique_ptr<MotionCost> cost,
             std::unique_ptr<ceres::LossFunction> loss);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
@@ -80,9 +84,10 @@ class Estimator {
                           const Rigid3d& guess = Rigid3d(),
                           const MotionPrior* prior = nullptr);
 
-  // The same into an estimate whose memory is used again.
-  void Estimate(const Correspondences& matches, const Rigid3d& guess,
-                const MotionPrior* prior, MotionEstimate* estimate);
+  // The same of whatever the two frames share, into an estimate whose memory is
+  // used again. The options say how many threads, not the pair.
+  void Estimate(const PairData& pair, const Rigid3d& guess,
+                MotionEstimate* estimate);
 
  private:
   class Solve;

@@ -1,46 +1,47 @@
 #pragma once
 
-#include <ceres/loss_function.h>
-
 #include <vector>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
 
 namespace rgbd_pose {
 
 // What the covariance of an M-estimate needs of the losses: sums over residual
-// blocks of s = |r|^2, p independent rows and weight rho'.
+// blocks of s = |r|^2 (r whitened, by the estimated scale too), p independent
+// rows and the loss' rho' and rho'' at s.
 struct LossSums {
   double psi2 = 0.0;      // rho'^2 s
   double weight_p = 0.0;  // rho' p
   double slope_p = 0.0;   // rho' p + 2 s rho''
-  double weight = 0.0;    // rho'
   int blocks = 0;
 
-  void Add(const double rho[3], double s, int p) {
-    psi2 += rho[1] * rho[1] * s;
-    weight_p += rho[1] * p;
-    slope_p += rho[1] * p + 2.0 * s * rho[2];
-    weight += rho[1];
-    ++blocks;
+  LossSums& operator+=(const LossSums& other) {
+    psi2 += other.psi2;
+    weight_p += other.weight_p;
+    slope_p += other.slope_p;
+    blocks += other.blocks;
+    return *this;
   }
 };
 
-// A cost and its loss at its present width (null: least squares).
-struct WeightedCost {
-  const Cost* cost;
-  const ceres::LossFunction* loss;
+// A cost's share in the covariance.
+struct CovarianceTerm {
+  MotionMatrix hessian;  // weighted by rho'
+  MotionMatrix scatter;  // sum rho'^2 J^T r r^T J, unless `is_whitened`
+  bool is_whitened;
+  int scale_group;  // as MotionCost's
+  LossSums sums;
 };
 
-// Sandwich A^-1 B A^-1 of an M-estimate (Huber, Robust Statistics, 6.3). A is
-// the weighted Hessian, whose `inverse` is given, times the mean slope of psi
-// against its mean weight; B is that Hessian times the mean of psi^2 against
-// the mean weight, or, for costs that do not whiten fully, the scatter of their
-// matches. Last the usual correction for six fitted parameters.
-MotionMatrix RobustCovariance(const std::vector<WeightedCost>& costs,
-                              const MotionDerivatives& motion,
-                              const LossSums& sums,
+// Sandwich A^-1 B A^-1 of an M-estimate (Huber, Robust Statistics, 6.3) over
+// all costs. A sums up the weighted Hessians, times the mean slope of psi
+// against its mean weight; B sums up the same times the mean of psi^2 against
+// the mean weight or, for costs that do not whiten fully, the scatter of their
+// blocks, with the usual correction for fitted parameters. Means are those of a
+// scale group. The Hessian of exact sigmas (a prior) is in both as it is.
+// `inverse` is that of the sum of all Hessians.
+MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
                               const MotionMatrix& inverse);
 
 }  // namespace rgbd_pose

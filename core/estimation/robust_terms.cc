@@ -16,11 +16,15 @@ constexpr size_t kMinResidualsForScale = 10;
 // equal) or a huge one (over half of the matches wrong) has no use.
 constexpr double kMinScale = 0.05;
 constexpr double kMaxScale = 20.0;
+// Scale and motion are estimated in turn until no scale moves by more.
+constexpr double kScaleTolerance = 0.01;
 
 }  // namespace
 
 RobustTerms::RobustTerms(std::vector<RobustCost> costs)
-    : costs_(std::move(costs)), norms_(costs_.size()) {}
+    : costs_(std::move(costs)), norms_(costs_.size()) {
+  ResetScales();
+}
 
 bool RobustTerms::has_losses() const {
   return std::any_of(costs_.begin(), costs_.end(), [](const RobustCost& term) {
@@ -28,47 +32,68 @@ bool RobustTerms::has_losses() const {
   });
 }
 
-void RobustTerms::Bind(const CostInput& input) {
-  for (const RobustCost& term : costs_) term.cost->Bind(input);
-  CountMatches(input.matches.size());
+int RobustTerms::num_levels() const {
+  int most = 1;
+  for (const RobustCost& term : costs_) {
+    most = std::max(most, term.cost->num_levels());
+  }
+  return most;
+}
+
+void RobustTerms::Bind(const PairData& pair, const Rigid3d& cur_from_prev) {
+  num_matches_ = pair.matches != nullptr ? pair.matches->size() : 0;
+  ResetScales();
+  for (const RobustCost& term : costs_) term.cost->Bind(pair);
+  Associate(Association::kOnce, cur_from_prev);
   SetLosses(1.0);
 }
 
-bool RobustTerms::BindAgain(const CostInput& input) {
-  bool changed = false;
+void RobustTerms::SetLevel(int level, const Rigid3d& cur_from_prev) {
   for (const RobustCost& term : costs_) {
-    if (!term.cost->freezes_weights()) continue;
-    term.cost->Bind(input);
-    changed = true;
+    term.cost->SetLevel(std::min(level, term.cost->num_levels() - 1));
   }
-  if (changed) CountMatches(input.matches.size());
-  return changed;
+  Associate(Association::kOnce, cur_from_prev);
 }
 
-void RobustTerms::CountMatches(size_t num_matches) {
-  num_blocks_ = 0;
-  counted_.assign(num_matches, false);
+bool RobustTerms::AsksFor(Association least) const {
+  return std::any_of(costs_.begin(), costs_.end(), [=](const auto& term) {
+    return term.cost->association() >= least;
+  });
+}
+
+bool RobustTerms::Associate(Association least, const Rigid3d& cur_from_prev) {
+  if (!AsksFor(least)) return false;
   for (const RobustCost& term : costs_) {
+    if (term.cost->association() >= least) term.cost->Associate(cur_from_prev);
+  }
+  CountMatches();
+  return true;
+}
+
+void RobustTerms::CountMatches() {
+  num_used_ = 0;
+  counted_.assign(num_matches_, false);
+  for (const RobustCost& term : costs_) {
+    if (!HasScale(*term.cost)) continue;
     for (const int match : term.cost->matches()) {
+      if (match >= 0 && counted_[match]) continue;
       if (match >= 0) counted_[match] = true;
+      ++num_used_;
     }
-    num_blocks_ += static_cast<int>(term.cost->matches().size());
   }
-  num_used_ =
-      static_cast<int>(std::count(counted_.begin(), counted_.end(), true));
 }
 
-void RobustTerms::SetLosses(double scale) {
+void RobustTerms::SetLosses(double width) {
   losses_.clear();
-  for (const RobustCost& term : costs_) {
-    losses_.emplace_back(term.loss.get(), scale);
+  for (size_t i = 0; i < costs_.size(); ++i) {
+    losses_.emplace_back(costs_[i].loss.get(), scales_[i] * width, Factor(i));
   }
 }
 
 void RobustTerms::AddTo(Assembly assembly, const MotionOrigin& origin,
                         double* x, ceres::Problem* problem) {
   for (size_t i = 0; i < costs_.size(); ++i) {
-    ceres::LossFunction* const loss = costs_[i].loss ? &losses_[i] : nullptr;
+    ceres::LossFunction* const loss = Loss(i) ? &losses_[i] : nullptr;
     costs_[i].cost->AddTo(assembly, origin, loss, x, problem);
   }
 }
@@ -93,23 +118,52 @@ NormalEquations RobustTerms::LineariseWithoutLosses(
 double RobustTerms::UpdateNorms(const MotionDerivatives& motion) {
   values_.clear();
   for (size_t i = 0; i < costs_.size(); ++i) {
-    const Cost& cost = *costs_[i].cost;
+    const MotionCost& cost = *costs_[i].cost;
     cost.SquaredNorms(motion, &norms_[i]);
+    if (!HasScale(cost)) continue;
+    const double scale2 = scales_[i] * scales_[i];
     for (size_t k = 0; k < norms_[i].size(); ++k) {
-      values_.push_back(norms_[i][k] / ChiSquaredMedian(cost.degrees()[k]));
+      const double median = ChiSquaredMedian(cost.degrees()[k]);
+      values_.push_back(norms_[i][k] / (scale2 * median));
     }
   }
   if (values_.empty()) return 0.0;
   return std::sqrt(UpperMedian(&values_));
 }
 
-double RobustTerms::EstimateScale(
+bool RobustTerms::UpdateScales(
     const MotionDerivatives& motion,
+    double (*scale)(std::vector<double>* residuals)) {
+  bool has_changed = false;
+  new_scales_.assign(costs_.size(), 1.0);
+  for (size_t i = 0; i < costs_.size(); ++i) {
+    if (!HasScale(*costs_[i].cost)) continue;
+    const int group = costs_[i].cost->scale_group();
+    size_t first = 0;
+    while (costs_[first].cost->scale_group() != group) ++first;
+    new_scales_[i] =
+        first < i ? new_scales_[first] : EstimateScale(group, motion, scale);
+    const double change = std::abs(new_scales_[i] - scales_[i]);
+    if (change > kScaleTolerance * scales_[i]) has_changed = true;
+  }
+  if (has_changed) scales_ = new_scales_;
+  return has_changed;
+}
+
+double RobustTerms::scale() const {
+  double largest = 0.0;
+  for (size_t i = 0; i < costs_.size(); ++i) {
+    if (HasScale(*costs_[i].cost)) largest = std::max(largest, scales_[i]);
+  }
+  return largest;
+}
+
+double RobustTerms::EstimateScale(
+    int group, const MotionDerivatives& motion,
     double (*scale)(std::vector<double>* residuals)) {
   values_.clear();
   for (const RobustCost& term : costs_) {
-    // The prior is no sample of the matches' noise.
-    if (term.cost->matches().empty() || term.cost->matches()[0] < 0) continue;
+    if (term.cost->scale_group() != group) continue;
     term.cost->Residuals(motion, &residuals_);
     // Rows that repeat each other are smaller by the root of how often.
     const int rows = term.cost->rows();
@@ -125,24 +179,36 @@ double RobustTerms::EstimateScale(
   return std::clamp(scale(&values_), kMinScale, kMaxScale);
 }
 
-LossSums RobustTerms::JudgeMatches(double scale, MotionEstimate* estimate) {
-  LossSums sums;
-  counted_.assign(estimate->weights.size(), false);
+void RobustTerms::JudgeMatches(MotionEstimate* estimate) {
+  counted_.assign(num_matches_, false);
+  shares_.resize(costs_.size());
+  estimate->num_inliers = 0;
   for (size_t i = 0; i < costs_.size(); ++i) {
-    const Cost& cost = *costs_[i].cost;
+    const MotionCost& cost = *costs_[i].cost;
+    const double scale2 = scales_[i] * scales_[i];
+    const double information = cost.information_factor();
+    LossSums& sums = shares_[i].sums;
+    sums = LossSums();
     for (size_t k = 0; k < norms_[i].size(); ++k) {
       const int p = cost.degrees()[k];
-      const double limit =
-          scale * scale *
-          (cost.is_whitened() ? ChiSquared99(p) : cost.InlierLimit(k));
       const double s = norms_[i][k];
       double rho[3];
       losses_[i].Evaluate(s, rho);
-      sums.Add(rho, s, p);
+      const double weight = rho[1] / Factor(i);
+      sums.psi2 += information * weight * weight * s / scale2;
+      sums.weight_p += information * weight * p;
+      sums.slope_p += information * (weight * p + 2.0 * s * rho[2] / Factor(i));
+      ++sums.blocks;
+      const double limit =
+          cost.is_whitened() ? ChiSquared99(p) : cost.InlierLimit(k);
+      const bool agrees = s <= limit * scale2;
       const int match = cost.matches()[k];
-      if (match < 0) continue;
+      if (match < 0) {
+        if (agrees && HasScale(cost)) ++estimate->num_inliers;
+        continue;
+      }
       // Losses that are steeper than least squares near 0 weigh above 1.
-      JudgeMatch(match, std::min(rho[1], 1.0), s <= limit, estimate);
+      JudgeMatch(match, std::min(weight, 1.0), agrees, estimate);
       const double norm = std::sqrt(s);
       if (norm >= estimate->residual_norms[match]) {
         estimate->residual_norms[match] = norm;
@@ -150,9 +216,8 @@ LossSums RobustTerms::JudgeMatches(double scale, MotionEstimate* estimate) {
       }
     }
   }
-  estimate->num_inliers = static_cast<int>(
+  estimate->num_inliers += static_cast<int>(
       std::count(estimate->is_inlier.begin(), estimate->is_inlier.end(), true));
-  return sums;
 }
 
 // A match that several costs use is an inlier if all of them agree.
@@ -165,14 +230,33 @@ void RobustTerms::JudgeMatch(int match, double weight, bool agrees,
   counted_[match] = true;
 }
 
-MotionMatrix RobustTerms::Covariance(const MotionDerivatives& motion,
-                                     const LossSums& sums,
-                                     const MotionMatrix& inverse) {
-  weighted_.clear();
+NormalEquations RobustTerms::LineariseShares(const MotionDerivatives& motion) {
+  NormalEquations sum;
+  shares_.resize(costs_.size());
   for (size_t i = 0; i < costs_.size(); ++i) {
-    weighted_.push_back({costs_[i].cost.get(), Loss(i)});
+    NormalEquations share;
+    costs_[i].cost->Linearise(motion, Loss(i), &share);
+    shares_[i].hessian = share.hessian;
+    sum.hessian += share.hessian;
+    sum.gradient += share.gradient;
+    sum.cost += share.cost;
   }
-  return RobustCovariance(weighted_, motion, sums, inverse);
+  return sum;
+}
+
+MotionMatrix RobustTerms::Covariance(const MotionDerivatives& motion,
+                                     const MotionMatrix& inverse) {
+  for (size_t i = 0; i < costs_.size(); ++i) {
+    const MotionCost& cost = *costs_[i].cost;
+    shares_[i].is_whitened = cost.is_whitened();
+    shares_[i].scale_group = cost.scale_group();
+    shares_[i].scatter.setZero();
+    if (cost.is_whitened()) continue;
+    cost.AddScatter(motion, Loss(i), &shares_[i].scatter);
+    // Blocks that tell the same scatter together.
+    shares_[i].scatter /= cost.information_factor();
+  }
+  return RobustCovariance(shares_, inverse);
 }
 
 }  // namespace rgbd_pose

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "core/estimation/motion_estimate.h"
 #include "core/estimation/robust_covariance.h"
 #include "core/estimation/scaled_loss.h"
@@ -15,31 +15,39 @@ namespace rgbd_pose {
 
 // A cost and the loss on each of its residual blocks.
 struct RobustCost {
-  std::unique_ptr<Cost> cost;                 // must not be null
+  std::unique_ptr<MotionCost> cost;           // must not be null
   std::unique_ptr<ceres::LossFunction> loss;  // null: least squares
 };
 
-// The sum that an estimator minimises: costs under their losses, bound to the
-// matches of one estimation at a time, with the memory they share.
+// The sum that an estimator minimises: costs under their losses, bound to one
+// pair at a time, with the memory they share.
 class RobustTerms {
  public:
   explicit RobustTerms(std::vector<RobustCost> costs);
 
   bool has_losses() const;
 
-  // Binds all costs; with their losses at their nominal widths.
-  void Bind(const CostInput& input);
+  // The number of levels of the cost that has most.
+  int num_levels() const;
 
-  // Binds the costs again that freeze weights, where the matches used may
-  // change with the motion too. False if no cost freezes any.
-  bool BindAgain(const CostInput& input);
+  // Binds all costs at the finest level, with their losses at their nominal
+  // widths, and associates them.
+  void Bind(const PairData& pair, const Rigid3d& cur_from_prev);
 
-  // Matches that some cost uses, and residual blocks of all costs.
+  // Costs with fewer levels stay at their coarsest as long.
+  void SetLevel(int level, const Rigid3d& cur_from_prev);
+
+  // Whether a cost asks to be associated at least as often as `least`.
+  bool AsksFor(Association least) const;
+
+  // Associates the costs again that do. False if there are none.
+  bool Associate(Association least, const Rigid3d& cur_from_prev);
+
+  // Matches that some cost uses and blocks that need none; a prior is neither.
   int num_used() const { return num_used_; }
-  int num_blocks() const { return num_blocks_; }
 
-  // Widens all losses by a factor on their nominal widths.
-  void SetLosses(double scale);
+  // Widens all losses by a factor on their widths at the scales in force.
+  void SetLosses(double width);
 
   void AddTo(Assembly assembly, const MotionOrigin& origin, double* x,
              ceres::Problem* problem);
@@ -48,39 +56,62 @@ class RobustTerms {
   NormalEquations LineariseWithoutLosses(const MotionDerivatives& motion) const;
 
   // Squared norms of all blocks; returns their robust spread in units of the
-  // noise model, which is 1 for right matches.
+  // noise model at the scales in force, which is 1 for right matches.
   double UpdateNorms(const MotionDerivatives& motion);
 
-  // The spread of residual components by a scale estimator.
-  double EstimateScale(const MotionDerivatives& motion,
-                       double (*scale)(std::vector<double>* residuals));
+  // By how much the noise of each group of costs exceeds its model: 1, or as a
+  // scale estimator finds it in the residuals' components. False if that is no
+  // news: nothing has changed then.
+  void ResetScales() { scales_.assign(costs_.size(), 1.0); }
+  bool UpdateScales(const MotionDerivatives& motion,
+                    double (*scale)(std::vector<double>* residuals));
 
-  // Fills weights, inliers and residual norms of the estimate, for residuals of
-  // `scale` times the nominal spread; sums up what the covariance needs.
-  LossSums JudgeMatches(double scale, MotionEstimate* estimate);
+  // The largest of these.
+  double scale() const;
 
-  // Covariance of the estimate, `inverse` being that of the Hessian.
-  MotionMatrix Covariance(const MotionDerivatives& motion, const LossSums& sums,
+  // Fills weights, inliers and residual norms of the estimate.
+  void JudgeMatches(MotionEstimate* estimate);
+
+  // Linearise, which keeps each cost's share for Covariance. That is called
+  // after both, `inverse` being that of the whole Hessian.
+  NormalEquations LineariseShares(const MotionDerivatives& motion);
+  MotionMatrix Covariance(const MotionDerivatives& motion,
                           const MotionMatrix& inverse);
 
  private:
-  void CountMatches(size_t num_matches);
+  void CountMatches();
   void JudgeMatch(int match, double weight, bool agrees,
                   MotionEstimate* estimate);
 
-  // The loss of a term at its present width; null for least squares.
+  // Whether a cost's sigmas are as uncertain as the matches' noise.
+  static bool HasScale(const MotionCost& cost) {
+    return cost.scale_group() != MotionCost::kExactSigmas;
+  }
+  double EstimateScale(int group, const MotionDerivatives& motion,
+                       double (*scale)(std::vector<double>* residuals));
+
+  // The weight of a term in the sum, apart from its loss.
+  double Factor(size_t term) const {
+    return costs_[term].cost->information_factor() /
+           (scales_[term] * scales_[term]);
+  }
+
+  // The loss of a term at its present width; null for least squares as it is.
   const ceres::LossFunction* Loss(size_t term) const {
-    return costs_[term].loss ? &losses_[term] : nullptr;
+    const bool is_plain = costs_[term].loss == nullptr && Factor(term) == 1.0;
+    return is_plain ? nullptr : &losses_[term];
   }
 
   const std::vector<RobustCost> costs_;
   std::vector<ScaledLoss> losses_;
+  std::vector<double> scales_;  // of each cost, equal within a group
   std::vector<std::vector<double>> norms_;  // squared, of each cost's blocks
   int num_used_ = 0;
-  int num_blocks_ = 0;
+  size_t num_matches_ = 0;
 
   // Memory that is used again.
-  std::vector<WeightedCost> weighted_;
+  std::vector<CovarianceTerm> shares_;
+  std::vector<double> new_scales_;
   std::vector<double> values_;
   std::vector<double> residuals_;
   std::vector<bool> counted_;

@@ -1,31 +1,29 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <string_view>
 #include <type_traits>
 #include <vector>
 
-#include "core/estimation/cost.h"
-#include "core/util/chi_squared.h"
+#include "core/estimation/motion_cost.h"
 #include "core/util/lane_math.h"
 #include "core/util/parallel_for.h"
 #include "core/util/vector_lanes.h"
 #include "costs/assembly/autodiff_jacobian.h"
-#include "costs/assembly/compressed_block.h"
 #include "costs/assembly/match_blocks.h"
+#include "costs/assembly/motion_block.h"
 #include "costs/assembly/packed_sum.h"
+#include "costs/parts/cost_input.h"
 
 namespace rgbd_pose {
 
-// The Cost of a residual type: binding, sums and the three assemblies. A
-// residual type is stateless and says
+// The MotionCost of a residual type over matches: binding, sums and the three
+// assemblies. A residual type is stateless and says
 //
 //   kName, kRows, kIndependentRows, kColumns
-//   kFreezesWeights                               see Cost::freezes_weights
-//   kIsWhitened                                   see Cost::is_whitened
+//   kIsWhitened                                   see MotionCost::is_whitened
 //   Pack(input, i, columns) -> usable             of match i
 //   Residual(motion pose, columns, r)             for any scalars
 //
@@ -34,13 +32,18 @@ namespace rgbd_pose {
 //
 //   Jacobian(motion derivatives, columns, r, J)   by hand
 //
+// A type whose weights or choice of matches depend on the motion that Pack is
+// given says when to pack again by
+//
+//   kAssociation                                  see MotionCost::association
+//
 // A type whose matches may lack measurements tells how many there are by
 //
-//   Degrees(columns)                              see Cost::degrees
+//   Degrees(columns)                              see MotionCost::degrees
 //
 // and one that is not whitened may tell how long right residuals get by
 //
-//   InlierLimit(columns)                          see Cost::InlierLimit
+//   InlierLimit(columns)                          see MotionCost::InlierLimit
 //
 // A type that packs the prior instead of matches says so by kIsPrior; it is
 // called with i = 0 if there is a prior.
@@ -49,6 +52,15 @@ struct IsPrior : std::false_type {};
 template <typename Residual>
 struct IsPrior<Residual, std::void_t<decltype(Residual::kIsPrior)>>
     : std::true_type {};
+
+template <typename Residual, typename = void>
+struct AssociationOf {
+  static constexpr Association kValue = Association::kOnce;
+};
+template <typename Residual>
+struct AssociationOf<Residual, std::void_t<decltype(Residual::kAssociation)>> {
+  static constexpr Association kValue = Residual::kAssociation;
+};
 
 template <typename Residual, typename = void>
 struct HasDegrees : std::false_type {};
@@ -62,13 +74,9 @@ template <typename Residual>
 struct HasInlierLimit<Residual, std::void_t<decltype(&Residual::InlierLimit)>>
     : std::true_type {};
 
-// Compiled once, in cost_factory.cc: Eigen's factorisations take seconds.
-extern template bool FactorSums<6>(const CompressedSums<6>& sums,
-                                   double* residuals, double* jacobian);
-
 // Of a residual type as described above.
 template <typename Type>
-class CostOf final : public Cost {
+class CostOf final : public MotionCost {
   using Residual = std::conditional_t<HasJacobian<Type>::value, Type,
                                       WithAutodiffJacobian<Type>>;
 
@@ -79,8 +87,6 @@ class CostOf final : public Cost {
   const std::vector<int>& degrees() const override { return degrees_; }
 
   int rows() const override { return Residual::kRows; }
-  bool freezes_weights() const override { return Residual::kFreezesWeights; }
-
   bool is_whitened() const override { return Residual::kIsWhitened; }
 
   double InlierLimit(int k) const override {
@@ -91,27 +97,35 @@ class CostOf final : public Cost {
       }
       return Residual::InlierLimit(columns);
     }
-    return ChiSquared99(degrees_[k]);
+    return MotionCost::InlierLimit(k);
   }
 
-  void Bind(const CostInput& input) override {
-    const size_t count = Count(input);
-    packed_.stride =
-        static_cast<ptrdiff_t>((count + kMaxLanes - 1) / kMaxLanes * kMaxLanes);
-    packed_.values.resize(packed_.stride * kColumns);
-    matches_.clear();
-    degrees_.clear();
-    double columns[kColumns];
-    for (size_t i = 0; i < count; ++i) {
-      if (!Residual::Pack(input, i, columns)) continue;
-      Store(matches_.size(), columns);
-      matches_.push_back(IsPrior<Residual>() ? -1 : static_cast<int>(i));
-      degrees_.push_back(Degrees(columns));
+  int scale_group() const override {
+    return IsPrior<Residual>() ? kExactSigmas : 0;
+  }
+
+  Association association() const override {
+    return AssociationOf<Residual>::kValue;
+  }
+
+  // Keeps matches only where they have to be packed again.
+  void Bind(const PairData& pair) override {
+    threads_ = pair.threads;
+    if (association() != Association::kOnce) {
+      if (pair.matches != nullptr) {
+        kept_ = *pair.matches;
+      } else {
+        kept_.Clear();
+      }
+      return;
     }
-    packed_.size = static_cast<int>(matches_.size());
-    Pad();
-    threads_ = input.threads;
-    chunks_.resize((packed_.size + packed::kChunk - 1) / packed::kChunk);
+    static const Correspondences none;
+    PackAll({pair.matches != nullptr ? *pair.matches : none, Rigid3d(),
+             pair.prior});
+  }
+
+  void Associate(const Rigid3d& cur_from_prev) override {
+    if (association() != Association::kOnce) PackAll({kept_, cur_from_prev});
   }
 
   void Residuals(const MotionDerivatives& motion,
@@ -163,7 +177,7 @@ class CostOf final : public Cost {
              ceres::Problem* problem) override {
     if (matches_.empty()) return;
     if (assembly == Assembly::kCompressed) {
-      block_.emplace(SumsAt{this, &origin, loss});
+      block_.emplace(MotionSums(this, &origin, loss));
       problem->AddResidualBlock(&*block_, nullptr, x);
       return;
     }
@@ -184,31 +198,24 @@ class CostOf final : public Cost {
  private:
   static constexpr int kColumns = Residual::kColumns;
 
-  // What the compressed block asks for its sums. Ceres asks for the cost of a
-  // trial step first and for its derivatives once it has accepted it: the sums
-  // of the last x are kept, so both take one evaluation. Nothing but x changes
-  // while the block lives (see Cost::AddTo).
-  struct SumsAt {
-    const CostOf* cost;
-    const MotionOrigin* origin;
-    const ceres::LossFunction* loss;
-    mutable MotionVector kept_x = MotionVector::Constant(NAN);
-    mutable CompressedSums<6> kept = {};
-
-    bool operator()(const double* x, bool /*with_derivatives*/,
-                    CompressedSums<6>* sums) const {
-      if (Eigen::Map<const MotionVector>(x) != kept_x) {
-        NormalEquations sum;
-        cost->Linearise(origin->DerivativesAt(x), loss, &sum);
-        kept = {sum.hessian, sum.gradient, sum.cost};
-        kept_x = Eigen::Map<const MotionVector>(x);
-      }
-      *sums = kept;
-      // Also where only the cost is asked for: a loss may take a residual that
-      // is not finite for an outlier, with a cost that is.
-      return sums->gradient.allFinite() && sums->hessian.allFinite();
+  void PackAll(const CostInput& input) {
+    const size_t count = Count(input);
+    packed_.stride =
+        static_cast<ptrdiff_t>((count + kMaxLanes - 1) / kMaxLanes * kMaxLanes);
+    packed_.values.resize(packed_.stride * kColumns);
+    matches_.clear();
+    degrees_.clear();
+    double columns[kColumns];
+    for (size_t i = 0; i < count; ++i) {
+      if (!Residual::Pack(input, i, columns)) continue;
+      Store(matches_.size(), columns);
+      matches_.push_back(IsPrior<Residual>() ? -1 : static_cast<int>(i));
+      degrees_.push_back(Degrees(columns));
     }
-  };
+    packed_.size = static_cast<int>(matches_.size());
+    Pad();
+    chunks_.resize((packed_.size + packed::kChunk - 1) / packed::kChunk);
+  }
 
   static size_t Count(const CostInput& input) {
     if (IsPrior<Residual>()) return input.prior != nullptr ? 1 : 0;
@@ -248,19 +255,20 @@ class CostOf final : public Cost {
     }
   }
 
+  Correspondences kept_;  // see Bind
   std::vector<int> matches_;
   std::vector<int> degrees_;
   PackedColumns packed_;
   int threads_ = 1;
   mutable std::vector<NormalEquations> chunks_;  // see Linearise
   std::vector<double> rows_;                     // see Unpack
-  std::optional<CompressedBlock<6, SumsAt>> block_;
+  std::optional<MotionBlock> block_;
 };
 
 // The cost of a residual type of your own; costs/cost_factory.h makes those of
 // this project by name.
 template <typename Residual>
-std::unique_ptr<Cost> MakeCost() {
+std::unique_ptr<MotionCost> MakeCost() {
   return std::make_unique<CostOf<Residual>>();
 }
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "core/estimation/batch_loss.h"
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
 #include "core/util/vector_lanes.h"
 #include "costs/parts/point_sums.h"

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
+#include "costs/parts/cost_input.h"
 #include "costs/parts/image_error.h"
 
 namespace rgbd_pose {
@@ -26,7 +27,7 @@ struct BidirectionalImage {
   static constexpr char kName[] = "bidirectional_image";
   static constexpr int kRows = 6;
   static constexpr int kIndependentRows = 3;
-  static constexpr bool kFreezesWeights = true;
+  static constexpr Association kAssociation = Association::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kForwardColumns =
       ImageError<3, Forward, double>::kColumns;

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "core/estimation/cost.h"
 #include "core/geometry/motion.h"
 #include "core/util/lane_math.h"
+#include "costs/parts/cost_input.h"
 #include "costs/parts/moved_point.h"
 #include "costs/parts/point_sums.h"
 #include "costs/parts/ray_whitening.h"
@@ -25,7 +25,6 @@ struct BidirectionalPoint {
   static constexpr char kName[] = "bidirectional_point";
   static constexpr int kRows = 6;
   static constexpr int kIndependentRows = 3;
-  static constexpr bool kFreezesWeights = false;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = 2 * RayWhitening<double>::kColumns;
 

@@ -4,9 +4,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
 #include "core/util/lane_math.h"
+#include "costs/parts/cost_input.h"
 
 namespace rgbd_pose {
 
@@ -35,7 +36,7 @@ struct Epipolar {
   static constexpr char kName[] = "epipolar";
   static constexpr int kRows = 1;
   static constexpr int kIndependentRows = 1;
-  static constexpr bool kFreezesWeights = true;
+  static constexpr Association kAssociation = Association::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   // a_prev, b_prev, a_cur, b_cur, su_cur^2, sv_cur^2, su_prev^2, sv_prev^2,
   // eps^2

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
+#include "costs/parts/cost_input.h"
 #include "costs/parts/forward_error.h"
 #include "costs/parts/moved_point.h"
 #include "costs/parts/point_sums.h"
@@ -20,7 +21,7 @@ struct MahalanobisPoint {
   static constexpr char kName[] = "mahalanobis_point";
   static constexpr int kRows = 3;
   static constexpr int kIndependentRows = 3;
-  static constexpr bool kFreezesWeights = true;
+  static constexpr Association kAssociation = Association::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns =
       ForwardError::kColumns + Whitening<3, double>::kColumns;

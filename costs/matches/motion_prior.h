@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <algorithm>
 
-#include "core/estimation/cost.h"
 #include "core/util/lane_math.h"
+#include "costs/parts/cost_input.h"
 #include "costs/parts/whitening.h"
 
 namespace rgbd_pose {
@@ -14,29 +14,27 @@ namespace rgbd_pose {
 //
 //   r = L^T [ 1/2 vee(R R_p^T - R_p R^T) ; C - C_p ]
 //
-// with L L^T the inverse of MotionPrior::covariance. The upper half is axis
+// with L L^T = MotionPrior::information. The upper half is axis
 // times sine of the rotation Exp(omega) = R R_p^T, about the current axes. It
 // shrinks again beyond 90 degrees: the prediction has to be nearer than that. A
-// prior whose covariance is not positive definite (that of an estimate which
-// failed is zero) says nothing and is not used.
+// prior without information is not used.
 struct MotionPriorCost {
   static constexpr char kName[] = "motion_prior";
   static constexpr int kRows = 6;
   static constexpr int kIndependentRows = 6;
-  static constexpr bool kFreezesWeights = false;
   static constexpr bool kIsWhitened = true;
   static constexpr bool kIsPrior = true;
   static constexpr int kPose = 9 + 3;  // R_p, column by column, and C_p
   static constexpr int kColumns = kPose + Whitening<6, double>::kColumns;
 
   static bool Pack(const CostInput& input, size_t /*i*/, double* columns) {
-    const Rigid3d& motion = input.prior->cur_from_prev;
+    const Rigid3d& motion = input.prior->mean;
     const Eigen::Matrix3d R = motion.rotation.toRotationMatrix();
     const Eigen::Vector3d C = motion.Inverse().translation;
     std::copy_n(R.data(), 9, columns);
     std::copy_n(C.data(), 3, columns + 9);
     return motion.IsFinite() &&
-           PackWhitening<6>(input.prior->covariance, columns + kPose);
+           PackInformation<6>(input.prior->information, columns + kPose);
   }
 
   template <typename M, typename D, typename T>

@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
+#include "costs/parts/cost_input.h"
 #include "costs/parts/forward_error.h"
 
 namespace rgbd_pose {
@@ -21,7 +22,7 @@ struct PointToPlane {
   static constexpr char kName[] = "point_to_plane";
   static constexpr int kRows = 1;
   static constexpr int kIndependentRows = 1;
-  static constexpr bool kFreezesWeights = true;
+  static constexpr Association kAssociation = Association::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = ForwardError::kColumns + 3;  // n / sigma
 

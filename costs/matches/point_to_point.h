@@ -2,7 +2,8 @@
 
 #include <cmath>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
+#include "costs/parts/cost_input.h"
 #include "costs/parts/forward_error.h"
 
 namespace rgbd_pose {
@@ -15,12 +16,13 @@ namespace rgbd_pose {
 // A depth camera errs many times more along the ray than across it. One sigma
 // for both wastes what the image knows, and the rows are not of unit variance:
 // not whitened, so the covariance comes from their scatter, and their squared
-// norm has longer tails than chi^2 of three degrees.
+// norm has longer tails than chi^2 of three degrees: how long depends on the
+// motion that was bound.
 struct PointToPoint {
   static constexpr char kName[] = "point_to_point";
   static constexpr int kRows = 3;
   static constexpr int kIndependentRows = 3;
-  static constexpr bool kFreezesWeights = false;
+  static constexpr Association kAssociation = Association::kWhenMoved;
   static constexpr bool kIsWhitened = false;
   static constexpr int kColumns = ForwardError::kColumns + 2;
 

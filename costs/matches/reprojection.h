@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
+#include "costs/parts/cost_input.h"
 #include "costs/parts/image_error.h"
 
 namespace rgbd_pose {
@@ -17,7 +18,7 @@ struct Reprojection {
   static constexpr char kName[] = "reprojection";
   static constexpr int kRows = 2;
   static constexpr int kIndependentRows = 2;
-  static constexpr bool kFreezesWeights = true;
+  static constexpr Association kAssociation = Association::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = ImageError<2, Forward, double>::kColumns;
 

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
+#include "costs/parts/cost_input.h"
 #include "costs/parts/image_error.h"
 
 namespace rgbd_pose {
@@ -18,7 +19,7 @@ struct ReprojectionDepth {
   static constexpr char kName[] = "reprojection_depth";
   static constexpr int kRows = 3;
   static constexpr int kIndependentRows = 3;
-  static constexpr bool kFreezesWeights = true;
+  static constexpr Association kAssociation = Association::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = ImageError<3, Forward, double>::kColumns;
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "core/estimation/cost.h"
 #include "core/geometry/motion.h"
+#include "costs/parts/cost_input.h"
 #include "costs/parts/moved_point.h"
 #include "costs/parts/point_covariance.h"
 

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <type_traits>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
 
 // A short cut for residuals that depend on the motion through one moved point:

@@ -84,4 +84,31 @@ bool PackWhitening(const Eigen::Matrix<double, N, N>& covariance,
                      [](double w) { return std::isfinite(w); });
 }
 
+// The same by an information matrix, which may be singular: rows w of a lower
+// triangle with w^T w = information, from the last one on. False if it is zero
+// or not positive semidefinite.
+template <int N>
+bool PackInformation(const Eigen::Matrix<double, N, N>& information,
+                     double* columns) {
+  using Matrix = Eigen::Matrix<double, N, N>;
+  constexpr double kRounding = 1e-12;
+  Matrix rest = information, w = Matrix::Zero();
+  for (int row = N - 1; row >= 0; --row) {
+    const double pivot = rest(row, row);
+    if (pivot > kRounding * information(row, row)) {
+      w.row(row).head(row + 1) = rest.row(row).head(row + 1) / std::sqrt(pivot);
+      rest -= w.row(row).transpose() * w.row(row);
+    }
+  }
+  const double size = information.norm();
+  if (!w.allFinite() || !(size > 0.0) ||
+      (w.transpose() * w - information).norm() > 1e-6 * size) {
+    return false;
+  }
+  for (int row = 0; row < N; ++row) {
+    for (int k = 0; k <= row; ++k) *columns++ = w(row, k);
+  }
+  return true;
+}
+
 }  // namespace rgbd_pose

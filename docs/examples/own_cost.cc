@@ -9,7 +9,7 @@
 struct RelativeError : rgbd_pose::ForwardError {  // kColumns and Pack of that
   static constexpr char kName[] = "relative_error";
   static constexpr int kRows = 3, kIndependentRows = 3;
-  static constexpr bool kFreezesWeights = false, kIsWhitened = false;
+  static constexpr bool kIsWhitened = false;
   template <typename M, typename D, typename T>
   static void Residual(const rgbd_pose::MotionPose<M>& motion, const D* columns,
                        T* r) {

@@ -2,10 +2,11 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <random>
 
 #include "core/estimation/correspondences.h"
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_prior.h"
 #include "core/geometry/depth_noise.h"
 #include "core/geometry/rigid3.h"
 
@@ -109,7 +110,8 @@ class RandomWorld {
     MotionMatrix spread = MotionMatrix::Identity();
     for (double& value : spread.reshaped()) value += Extra(-0.5, 0.5);
     MotionPrior prior;
-    prior.covariance = sigma * sigma * spread * spread.transpose();
+    const MotionMatrix covariance = sigma * sigma * spread * spread.transpose();
+    prior.information = covariance.inverse();
     MotionVector unit;
     std::normal_distribution<double> normal;
     for (double& value : unit) value = normal(extra_generator_);
@@ -118,8 +120,8 @@ class RandomWorld {
     const Eigen::Quaterniond rotation(
         Eigen::AngleAxisd(omega.norm(), omega.normalized()));
     const Eigen::Vector3d C = truth.Inverse().translation - error.tail<3>();
-    prior.cur_from_prev.rotation = rotation * truth.rotation;
-    prior.cur_from_prev.translation = -(prior.cur_from_prev.rotation * C);
+    prior.mean.rotation = rotation * truth.rotation;
+    prior.mean.translation = -(prior.mean.rotation * C);
     return prior;
   }
 

@@ -124,12 +124,12 @@ void FeatureTracker::Estimate(const Rigid3d& cur_from_ref_guess,
     guess = options_.initial_guess->find(matches).value_or(guess);
   }
   MotionPrior prior;
-  prior.cur_from_prev = cur_from_ref_guess;
-  const double turn = options_.prior_sigma_rotation;
-  const double shift = options_.prior_sigma_translation;
-  prior.covariance.diagonal() << turn * turn, turn * turn, turn * turn,
+  prior.mean = cur_from_ref_guess;
+  const double turn = 1.0 / options_.prior_sigma_rotation;
+  const double shift = 1.0 / options_.prior_sigma_translation;
+  prior.information.diagonal() << turn * turn, turn * turn, turn * turn,
       shift * shift, shift * shift, shift * shift;
-  estimator_.Estimate(matches, guess, &prior, &tracked->estimate);
+  estimator_.Estimate({&matches, &prior}, guess, &tracked->estimate);
 }
 
 void FeatureTracker::Judge(Tracked* tracked) const {

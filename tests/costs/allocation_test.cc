@@ -80,14 +80,15 @@ TEST(AllocationTest, CostsKeepTheirMemory) {
   const MotionVector x = MotionVector::Zero();
   const MotionDerivatives motion = origin.DerivativesAt(x.data());
   for (const std::string& name : CostNames()) {
-    const std::unique_ptr<Cost> cost = MakeCost(name);
+    const std::unique_ptr<MotionCost> cost = MakeCost(name);
     const auto loss =
         FindMEstimator("tukey")->MakeLoss(cost->independent_rows());
     std::vector<double> residuals, norms;
     NormalEquations sum;
     MotionMatrix scatter = MotionMatrix::Zero();
     const auto use = [&] {
-      cost->Bind({matches, truth, &prior});
+      cost->Bind({&matches, &prior});
+      cost->Associate(truth);
       cost->Residuals(motion, &residuals);
       cost->SquaredNorms(motion, &norms);
       cost->Linearise(motion, loss.get(), &sum);
@@ -102,8 +103,9 @@ TEST(AllocationTest, CostsKeepTheirMemory) {
 TEST(AllocationTest, TheCompressedBlockAllocatesNothing) {
   RandomWorld world(2);
   const Correspondences matches = world.Matches(500, 0.2, Rigid3d());
-  const std::unique_ptr<Cost> cost = MakeCost("bidirectional_point");
-  cost->Bind({matches, Rigid3d()});
+  const std::unique_ptr<MotionCost> cost = MakeCost("bidirectional_point");
+  cost->Bind({&matches});
+  cost->Associate(Rigid3d());
   const MotionOrigin origin;
   MotionVector x = MotionVector::Zero();
   ceres::Problem::Options options;
@@ -135,9 +137,7 @@ TEST(AllocationTest, EstimateAllocatesTheSameForAnyNumberOfMatches) {
     Estimator estimator(options,
                         MakeRobustCosts("bidirectional_point", "tukey"));
     MotionEstimate estimate;
-    const auto use = [&] {
-      estimator.Estimate(matches, truth, nullptr, &estimate);
-    };
+    const auto use = [&] { estimator.Estimate({&matches}, truth, &estimate); };
     use();
     use();
     counts.push_back(AllocationsOf(use));

@@ -11,7 +11,7 @@
 #include <tuple>
 #include <vector>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
@@ -55,12 +55,15 @@ class AssemblyTest
           world.Matches(1, outlier_share, truth,
                         /*noise=*/true, kMissingDepthShare);
       matches_.Add(one[0].prev, one[0].cur);
-      cost_->Bind({one, guess, &prior});
+      cost_->Bind({&one, &prior});
+      cost_->Associate(guess);
       usable += static_cast<int>(cost_->matches().size());
     }
-    cost_->Bind({matches_, guess, &prior});
-    const MotionPrior here{guess, 1e-4 * MotionMatrix::Identity()};
-    anchor_->Bind({matches_, guess, &here});
+    cost_->Bind({&matches_, &prior});
+    cost_->Associate(guess);
+    const MotionPrior here{guess, 1e4 * MotionMatrix::Identity()};
+    anchor_->Bind({&matches_, &here});
+    anchor_->Associate(guess);
     const bool is_prior = cost_->matches()[0] < 0;
     ASSERT_EQ(cost_->matches().size(), is_prior ? 1u : count);
   }
@@ -109,8 +112,8 @@ class AssemblyTest
 
   MotionOrigin origin_;
   Correspondences matches_;
-  std::unique_ptr<Cost> cost_;
-  std::unique_ptr<Cost> anchor_ = MakeCost("motion_prior");
+  std::unique_ptr<MotionCost> cost_;
+  std::unique_ptr<MotionCost> anchor_ = MakeCost("motion_prior");
   std::unique_ptr<ceres::LossFunction> loss_;
 };
 

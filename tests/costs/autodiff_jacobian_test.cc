@@ -23,7 +23,7 @@ namespace {
 struct WithFunctions : rgbd_pose::ForwardError {
   static constexpr char kName[] = "with_functions";
   static constexpr int kRows = 3, kIndependentRows = 3;
-  static constexpr bool kFreezesWeights = false, kIsWhitened = false;
+  static constexpr bool kIsWhitened = false;
 
   template <typename M, typename D, typename T>
   static void Residual(const rgbd_pose::MotionPose<M>& motion, const D* columns,
@@ -54,7 +54,7 @@ struct WithoutJacobian : ForwardError {
   static constexpr char kName[] = "without_jacobian";
   static constexpr int kRows = 3;
   static constexpr int kIndependentRows = 3;
-  static constexpr bool kFreezesWeights = false;
+  static constexpr Association kAssociation = PointToPoint::kAssociation;
   static constexpr bool kIsWhitened = false;
   static constexpr int kColumns = PointToPoint::kColumns;
 
@@ -88,10 +88,11 @@ TEST(AutodiffJacobianTest, SumsAreThoseOfTheJacobianByHand) {
   const ceres::HuberLoss loss(1.5);
   NormalEquations sums[2];
   MotionMatrix scatters[2] = {MotionMatrix::Zero(), MotionMatrix::Zero()};
-  const std::unique_ptr<Cost> costs[2] = {MakeCost<PointToPoint>(),
-                                          MakeCost<WithoutJacobian>()};
+  const std::unique_ptr<MotionCost> costs[2] = {MakeCost<PointToPoint>(),
+                                                MakeCost<WithoutJacobian>()};
   for (int i = 0; i < 2; ++i) {
-    costs[i]->Bind({matches, truth});
+    costs[i]->Bind({&matches});
+    costs[i]->Associate(truth);
     costs[i]->Linearise(motion, &loss, &sums[i]);
     costs[i]->AddScatter(motion, &loss, &scatters[i]);
   }
@@ -124,8 +125,9 @@ TEST(AutodiffJacobianTest, FunctionsAreThereForAllScalars) {
   const Rigid3d truth = world.Motion(0.1, 0.1);
   const Correspondences matches = world.Matches(kMatches, 0.1, truth);
   const MotionOrigin origin(world.Motion(0.01, 0.01) * truth);
-  const std::unique_ptr<Cost> cost = MakeCost<WithFunctions>();
-  cost->Bind({matches, truth});
+  const std::unique_ptr<MotionCost> cost = MakeCost<WithFunctions>();
+  cost->Bind({&matches});
+  cost->Associate(truth);
   ceres::HuberLoss loss(0.1);
   double costs[3];
   MotionVector gradients[3];

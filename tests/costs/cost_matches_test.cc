@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "costs/cost_factory.h"
 #include "costs/matches/epipolar.h"
 #include "frontend/simulation/synthetic_matches.h"
@@ -45,11 +45,12 @@ const std::map<std::string, std::vector<int>>& UsedMatches() {
 
 TEST(CostMatchesTest, EachCostTakesWhatItCanUse) {
   const Correspondences matches = MatchesOfAllKinds();
-  const MotionPrior prior;
+  const MotionPrior prior{Rigid3d(), MotionMatrix::Identity()};
   for (const std::string& name : CostNames()) {
-    const std::unique_ptr<Cost> cost = MakeCost(name);
+    const std::unique_ptr<MotionCost> cost = MakeCost(name);
     ASSERT_TRUE(UsedMatches().count(name)) << name << " is missing above";
-    cost->Bind({matches, Motion(), &prior});
+    cost->Bind({&matches, &prior});
+    cost->Associate(Motion());
     EXPECT_EQ(cost->matches(), UsedMatches().at(name)) << name;
   }
 }
@@ -57,10 +58,11 @@ TEST(CostMatchesTest, EachCostTakesWhatItCanUse) {
 // Of one frame's depth bidirectional_image has u and v alone.
 TEST(CostMatchesTest, DegreesTellWhatIsMissing) {
   const Correspondences matches = MatchesOfAllKinds();
-  const MotionPrior prior;
+  const MotionPrior prior{Rigid3d(), MotionMatrix::Identity()};
   for (const std::string& name : CostNames()) {
-    const std::unique_ptr<Cost> cost = MakeCost(name);
-    cost->Bind({matches, Motion(), &prior});
+    const std::unique_ptr<MotionCost> cost = MakeCost(name);
+    cost->Bind({&matches, &prior});
+    cost->Associate(Motion());
     std::vector<int> expected(cost->matches().size(), cost->independent_rows());
     if (name == "bidirectional_image") expected = {3, 2, 2, 3};
     EXPECT_EQ(cost->degrees(), expected) << name;
@@ -82,8 +84,9 @@ TEST(CostMatchesTest, EpipolarNeedsABaselineAndAPointInFront) {
     prev.v = cur.v = camera.cy;
     Correspondences matches(camera);
     matches.Add(prev, cur);
-    const std::unique_ptr<Cost> cost = MakeCost("epipolar");
-    cost->Bind({matches, motion});
+    const std::unique_ptr<MotionCost> cost = MakeCost("epipolar");
+    cost->Bind({&matches});
+    cost->Associate(motion);
     return !cost->matches().empty();
   };
   EXPECT_TRUE(uses(0.3, 2.0));
@@ -100,11 +103,13 @@ TEST(CostMatchesTest, EpipolarNeedsABaselineAndAPointInFront) {
 // Costs keep nothing of what they were bound to before.
 TEST(CostMatchesTest, BindingToNothingLeavesNothing) {
   const Correspondences matches = MatchesOfAllKinds();
-  const MotionPrior prior;
+  const MotionPrior prior{Rigid3d(), MotionMatrix::Identity()};
   for (const std::string& name : CostNames()) {
-    const std::unique_ptr<Cost> cost = MakeCost(name);
-    cost->Bind({matches, Motion(), &prior});
-    cost->Bind({Correspondences(), Rigid3d()});
+    const std::unique_ptr<MotionCost> cost = MakeCost(name);
+    cost->Bind({&matches, &prior});
+    cost->Associate(Motion());
+    cost->Bind({});
+    cost->Associate(Rigid3d());
     EXPECT_TRUE(cost->matches().empty()) << name;
     NormalEquations sum;
     const MotionVector zero = MotionVector::Zero();

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "costs/cost_factory.h"
 #include "costs/matches/epipolar.h"
 #include "frontend/simulation/synthetic_matches.h"
@@ -107,8 +107,9 @@ class CostValuesTest : public ::testing::Test {
   // Compares all residuals of a cost with those of a function of the match.
   void Expect(const std::string& name,
               const std::function<Eigen::VectorXd(size_t)>& expected) {
-    const std::unique_ptr<Cost> cost = MakeCost(name);
-    cost->Bind({matches_, bound_, &prior_});
+    const std::unique_ptr<MotionCost> cost = MakeCost(name);
+    cost->Bind({&matches_, &prior_});
+    cost->Associate(bound_);
     const MotionVector zero = MotionVector::Zero();
     std::vector<double> residuals;
     cost->Residuals(MotionOrigin(motion_).DerivativesAt(zero.data()),
@@ -256,26 +257,49 @@ TEST_F(CostValuesTest, Epipolar) {
 TEST_F(CostValuesTest, MotionPrior) {
   // R = Exp(omega) R_p: the residual holds the axis times the sine.
   const Eigen::AngleAxisd turn(motion_.rotation *
-                               prior_.cur_from_prev.rotation.inverse());
+                               prior_.mean.rotation.inverse());
   MotionVector e;
   e << std::sin(turn.angle()) * turn.axis(),
-      C() - prior_.cur_from_prev.Inverse().translation;
-  Expect("motion_prior", [&](int) { return Whiten(prior_.covariance, e); });
+      C() - prior_.mean.Inverse().translation;
+  Expect("motion_prior",
+         [&](int) { return Whiten(prior_.information.inverse(), e); });
 }
 
 TEST_F(CostValuesTest, APriorThatIsNoneIsNotUsed) {
-  const std::unique_ptr<Cost> cost = MakeCost("motion_prior");
-  cost->Bind({matches_, bound_, &prior_});
+  const std::unique_ptr<MotionCost> cost = MakeCost("motion_prior");
+  cost->Bind({&matches_, &prior_});
+  cost->Associate(bound_);
   EXPECT_EQ(cost->matches(), std::vector<int>{-1});
-  cost->Bind({matches_, bound_});
+  cost->Bind({&matches_});
+  cost->Associate(bound_);
   EXPECT_TRUE(cost->matches().empty());
-  MotionPrior zero = prior_, not_finite = prior_;
-  zero.covariance.setZero();
-  not_finite.covariance(3, 2) = std::nan("");
-  for (const MotionPrior& prior : {zero, not_finite}) {
-    cost->Bind({matches_, bound_, &prior});
+  MotionPrior zero = prior_, not_finite = prior_, indefinite = prior_;
+  zero.information.setZero();
+  not_finite.information(3, 2) = std::nan("");
+  indefinite.information(3, 3) = -1.0;
+  for (const MotionPrior& prior : {zero, not_finite, indefinite}) {
+    cost->Bind({&matches_, &prior});
+    cost->Associate(bound_);
     EXPECT_TRUE(cost->matches().empty());
   }
+}
+
+// An inertial sensor tells of rotation alone.
+TEST_F(CostValuesTest, APriorMayTellOfSomeDirectionsOnly) {
+  const MotionMatrix all = prior_.information;
+  prior_.information.setZero();
+  prior_.information.topLeftCorner<3, 3>() = all.topLeftCorner<3, 3>();
+  const Eigen::AngleAxisd turn(motion_.rotation *
+                               prior_.mean.rotation.inverse());
+  const Eigen::Vector3d e = std::sin(turn.angle()) * turn.axis();
+  const std::unique_ptr<MotionCost> cost = MakeCost("motion_prior");
+  cost->Bind({&matches_, &prior_});
+  ASSERT_EQ(cost->matches(), std::vector<int>{-1});
+  const MotionVector zero = MotionVector::Zero();
+  std::vector<double> norms;
+  cost->SquaredNorms(MotionOrigin(motion_).DerivativesAt(zero.data()), &norms);
+  const double expected = e.dot(all.topLeftCorner<3, 3>() * e);
+  EXPECT_NEAR(norms[0], expected, 1e-9 * expected);
 }
 
 }  // namespace

@@ -5,12 +5,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <cmath>
 #include <ostream>
 #include <string>
 
 #include "core/estimation/estimator.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
+#include "robust/scale.h"
 
 namespace rgbd_pose {
 namespace {
@@ -65,6 +67,67 @@ TEST_P(CovarianceTest, IsHonest) {
   }
   RecordProperty("nees", std::to_string(nees / kTrials));
   EXPECT_NEAR(nees / kTrials, 6.0, scene.tolerance);
+}
+
+// The same matches as told by a noise model of other sigmas: their noise is
+// `noise` times that.
+Correspondences WithNoise(const Correspondences& matches, double noise) {
+  Correspondences result(matches.camera());
+  for (Match match : matches) {
+    for (Observation* o : {&match.prev, &match.cur}) {
+      o->sigma_px /= noise;
+      o->sigma_depth /= noise;
+    }
+    result.Add(match.prev, match.cur);
+  }
+  return result;
+}
+
+// Where a prior tells nearly all its covariance is that of the estimate,
+// however far the matches scatter.
+TEST(CovarianceOfAPriorTest, DoesNotDependOnTheNoiseOfMatches) {
+  RandomWorld world(5);
+  const Rigid3d truth = world.Motion(0.05, 0.05);
+  const Correspondences matches = world.Matches(kMatches, 0.0, truth);
+  const MotionPrior prior{truth, 1e12 * MotionMatrix::Identity()};
+  for (const char* loss : {"none", "tukey"}) {
+    Estimator estimator({}, MakeRobustCosts("reprojection_depth+motion_prior",
+                                            std::string(loss) + ",none"));
+    for (const double noise : {1.0 / 3.0, 1.0, 3.0}) {
+      const MotionEstimate estimate =
+          estimator.Estimate(WithNoise(matches, noise), truth, &prior);
+      for (int i = 0; i < 6; ++i) {
+        EXPECT_NEAR(std::sqrt(estimate.covariance(i, i)), 1e-6, 1e-8)
+            << loss << ", noise " << noise << ", parameter " << i;
+      }
+    }
+  }
+}
+
+// Matches and prior tell about the same. The noise model is off, and a scale
+// estimator sees it: both have their due in the motion and in its covariance.
+TEST(CovarianceOfAPriorTest, IsHonestWhereTheScaleIsEstimated) {
+  EstimatorOptions options;
+  options.scale = FindScaleEstimator("mad")->estimate;
+  Estimator estimator(
+      options,
+      MakeRobustCosts("reprojection_depth+motion_prior", "tukey,none"));
+  for (const double noise : {1.0 / 3.0, 3.0}) {
+    double nees = 0.0;
+    for (int seed = 0; seed < kTrials; ++seed) {
+      RandomWorld world(3000 + seed);
+      const Rigid3d truth = world.Motion(0.05, 0.05);
+      const Correspondences matches =
+          WithNoise(world.Matches(kMatches, 0.0, truth), noise);
+      const MotionPrior prior = world.Prior(truth, kPriorSigma);
+      const MotionEstimate estimate =
+          estimator.Estimate(matches, Rigid3d(), &prior);
+      ASSERT_TRUE(estimate.ok()) << estimate.reason << ", seed " << seed;
+      const MotionVector error = ErrorOf(estimate.cur_from_prev, truth);
+      nees += error.dot(estimate.covariance.ldlt().solve(error));
+    }
+    EXPECT_NEAR(nees / kTrials, 6.0, 0.6) << "noise " << noise;
+  }
 }
 
 std::string SceneName(const ::testing::TestParamInfo<Scene>& info) {

@@ -219,9 +219,8 @@ TEST(DegenerateScenesTest, APriorHelpsOnOnePlane) {
   const MotionPrior prior = world.Prior(truth, 0.01);
   Estimator estimator(
       {}, MakeRobustCosts("point_to_plane+motion_prior", "tukey,none"));
-  const MotionEstimate estimate =
-      estimator.Estimate(MatchesOnAPlane(150, 2.0, truth, /*noise=*/true),
-                         prior.cur_from_prev, &prior);
+  const MotionEstimate estimate = estimator.Estimate(
+      MatchesOnAPlane(150, 2.0, truth, /*noise=*/true), prior.mean, &prior);
   EXPECT_TRUE(estimate.ok()) << estimate.reason;
   ExpectSane(estimate);
 }

@@ -41,10 +41,11 @@ class DenseSumsTest : public ::testing::TestWithParam<std::string> {
   }
 
   NormalEquations Sum(const Correspondences& matches, int threads) const {
-    const std::unique_ptr<Cost> cost = MakeCost(GetParam());
+    const std::unique_ptr<MotionCost> cost = MakeCost(GetParam());
     const auto loss =
         FindMEstimator("huber")->MakeLoss(cost->independent_rows());
-    cost->Bind({matches, truth_, nullptr, threads});
+    cost->Bind({&matches, nullptr, nullptr, nullptr, threads});
+    cost->Associate(truth_);
     NormalEquations sum;
     const MotionOrigin origin(truth_);
     const MotionVector x = MotionVector::Constant(0.001);

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "costs/cost_factory.h"
 #include "robust/m_estimator.h"
 
@@ -67,7 +67,7 @@ TEST_F(CostsDocumentTest, HasEveryCostWithItsRows) {
   for (const std::string& name : CostNames()) {
     EXPECT_EQ(sections_[name], 1) << "no section on " << name;
     ASSERT_TRUE(table_.count(name)) << name << " is missing in the table";
-    const std::unique_ptr<Cost> cost = MakeCost(name);
+    const std::unique_ptr<MotionCost> cost = MakeCost(name);
     EXPECT_EQ(table_[name].rows, std::to_string(cost->rows())) << name;
     EXPECT_EQ(table_[name].independent_rows,
               std::to_string(cost->independent_rows()))

@@ -280,10 +280,10 @@ TEST(EstimatorTest, BothCostsCountTheScale) {
   const MotionEstimate estimate = estimator.Estimate(matches);
   ASSERT_TRUE(estimate.ok()) << estimate.reason;
   MotionEstimate reused = estimate;
-  estimator.Estimate(matches, estimate.cur_from_prev, nullptr, &reused);
+  estimator.Estimate({&matches}, estimate.cur_from_prev, &reused);
   EXPECT_NEAR(reused.initial_cost, reused.final_cost, 0.01 * reused.final_cost);
   EXPECT_GE(estimate.initial_cost, estimate.final_cost);
-  estimator.Estimate(Correspondences(camera), Rigid3d(), nullptr, &reused);
+  estimator.Estimate({}, Rigid3d(), &reused);
   EXPECT_EQ(reused.initial_cost, 0.0);
 }
 

@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "core/estimation/cost.h"
+#include "core/estimation/motion_cost.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 
@@ -76,8 +76,9 @@ TEST(ProjectionTest, PointsBehindTheCameraCostMore) {
   const MotionVector zero = MotionVector::Zero();
   for (const char* name :
        {"reprojection", "reprojection_depth", "bidirectional_image"}) {
-    const std::unique_ptr<Cost> cost = MakeCost(name);
-    cost->Bind({matches, truth});
+    const std::unique_ptr<MotionCost> cost = MakeCost(name);
+    cost->Bind({&matches});
+    cost->Associate(truth);
     std::vector<double> in_front, behind;
     cost->SquaredNorms(MotionOrigin(truth).DerivativesAt(zero.data()),
                        &in_front);

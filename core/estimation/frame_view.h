@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/camera.h"
+
+namespace rgbd_pose {
+
+// An image that somebody else owns, row by row.
+template <typename Pixel>
+struct ImageView {
+  const Pixel* data = nullptr;  // null: none
+  int width = 0, height = 0;
+  ptrdiff_t stride = 0;  // pixels from one row to the next
+
+  Pixel At(int column, int row) const { return data[row * stride + column]; }
+};
+
+// What a cost may see of an RGB-D frame, without OpenCV. The images must stay
+// as they are for as long as a cost is bound to them.
+struct FrameView {
+  // A gray image and the camera of its pixels, ideal ones (no distortion).
+  struct Level {
+    ImageView<uint8_t> gray;
+    Camera camera;
+  };
+
+  // From the full resolution on, each about half as large as the one before.
+  std::vector<Level> levels;
+
+  // Registered to levels[0] and of its size.
+  ImageView<uint16_t> depth;
+  double depth_scale = 5000.0;  // raw units per metre
+
+  // Metres at a whole pixel of levels[0]; 0 where there is none: sensors mark
+  // that by 0 or by the largest value.
+  double DepthAt(int column, int row) const {
+    const uint16_t raw = depth.At(column, row);
+    return raw == UINT16_MAX ? 0.0 : raw / depth_scale;
+  }
+};
+
+}  // namespace rgbd_pose
