@@ -112,6 +112,8 @@ void BindTrackedFrame(py::module_* module) {
                     "whether it became the reference of those that follow")
       .def_readonly("relocalised", &TrackedFrame::relocalised,
                     "whether it was found again among earlier references")
+      .def_readonly("is_predicted", &TrackedFrame::is_predicted,
+                    "whether it is lost, but its pose follows motion_guess")
       .def_readonly("matches", &TrackedFrame::matches, "with the reference")
       .def_readonly("inliers", &TrackedFrame::inliers, "of these, in agreement")
       .def_readonly("iterations", &TrackedFrame::iterations, "of the solver")

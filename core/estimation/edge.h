@@ -8,8 +8,9 @@ namespace rgbd_pose {
 // A measured motion between two frames of a sequence: what poses can be
 // corrected by later.
 struct Edge {
-  int ref = 0, cur = 0;  // the two frames
-  Rigid3d cur_from_ref;
+  int ref = 0;                                     // the one frame
+  int cur = 0;                                     // the other
+  Rigid3d cur_from_ref;                            // as measured
   MotionMatrix covariance = MotionMatrix::Zero();  // as MotionEstimate's
 };
 

@@ -51,6 +51,24 @@ Rigid3d MotionOrigin::CurFromPrev(const double* x) const {
   return Rigid3d(Eigen::Quaterniond(pose.R), -(pose.R * pose.C));
 }
 
+MotionMatrix ComposedCovariance(const Rigid3d& c_from_b,
+                                const MotionMatrix& covariance_cb,
+                                const Rigid3d& b_from_a,
+                                const MotionMatrix& covariance_ba) {
+  const Eigen::Matrix3d R_cb = c_from_b.rotation.toRotationMatrix();
+  const Eigen::Matrix3d R_ab = b_from_a.rotation.toRotationMatrix().transpose();
+  const Eigen::Vector3d C = -(R_cb.transpose() * c_from_b.translation);
+  Eigen::Matrix3d cross;
+  cross << 0, -C.z(), C.y(), C.z(), 0, -C.x(), -C.y(), C.x(), 0;
+  MotionMatrix by_cb = MotionMatrix::Identity();
+  by_cb.bottomRightCorner<3, 3>() = R_ab;
+  MotionMatrix by_ba = MotionMatrix::Identity();
+  by_ba.topLeftCorner<3, 3>() = R_cb;
+  by_ba.bottomLeftCorner<3, 3>() = R_ab * cross;
+  return by_cb * covariance_cb * by_cb.transpose() +
+         by_ba * covariance_ba * by_ba.transpose();
+}
+
 MotionVector MotionFromRigid(const Rigid3d& cur_from_prev) {
   const Eigen::Matrix3d R = cur_from_prev.rotation.toRotationMatrix();
   MotionVector x;

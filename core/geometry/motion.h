@@ -100,6 +100,16 @@ class MotionOrigin {
   mutable MotionDerivatives shared_;
 };
 
+// Covariance of c_from_b * b_from_a, from those of the two independent motions;
+// all of [omega C] as MotionEstimate has them, to first order:
+//
+//   omega = omega_cb + R_cb omega_ba
+//   C     = C_ba + R_ba^T (C_cb + [C_cb]x omega_ba)     (errors; C_cb a place)
+MotionMatrix ComposedCovariance(const Rigid3d& c_from_b,
+                                const MotionMatrix& covariance_cb,
+                                const Rigid3d& b_from_a,
+                                const MotionMatrix& covariance_ba);
+
 // The thesis' six parameters of a motion and back (origin: the identity).
 // |beta| <= pi/2; at beta = +-pi/2 alpha and gamma are not unique, and the
 // vector returned is one that gives the motion back.

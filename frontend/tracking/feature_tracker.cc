@@ -1,5 +1,6 @@
 #include "frontend/tracking/feature_tracker.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <utility>
 
@@ -93,6 +94,7 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
 void FeatureTracker::Track(const Reference& reference,
                            const PreparedFrame& frame,
                            const Rigid3d& cur_from_ref_guess,
+                           const MotionMatrix* guess_covariance,
                            Tracked* tracked) {
   const auto& ours = dynamic_cast<const FeatureReference&>(reference);
   tracked->match_ms = 0.0;
@@ -102,7 +104,7 @@ void FeatureTracker::Track(const Reference& reference,
                      &tracked->matches);
     ours.trust.Split(&tracked->matches, &tracked->doubted);
   }
-  Estimate(cur_from_ref_guess, tracked);
+  Estimate(cur_from_ref_guess, guess_covariance, tracked);
   Judge(tracked);
   if (tracked->status == TrackingStatus::kLost) return;
   tracked->overlap = {ShareOf(ours, *tracked),
@@ -117,6 +119,7 @@ void FeatureTracker::Believe(Reference* reference, Tracked* tracked) {
 }
 
 void FeatureTracker::Estimate(const Rigid3d& cur_from_ref_guess,
+                              const MotionMatrix* guess_covariance,
                               Tracked* tracked) {
   const Correspondences& matches = tracked->matches.matches;
   Rigid3d guess = cur_from_ref_guess;
@@ -129,6 +132,9 @@ void FeatureTracker::Estimate(const Rigid3d& cur_from_ref_guess,
   const double shift = 1.0 / options_.prior_sigma_translation;
   prior.information.diagonal() << turn * turn, turn * turn, turn * turn,
       shift * shift, shift * shift, shift * shift;
+  if (guess_covariance != nullptr) {
+    prior.information = guess_covariance->inverse();
+  }
   estimator_.Estimate({&matches, &prior}, guess, &tracked->estimate);
 }
 

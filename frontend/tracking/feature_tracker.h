@@ -13,13 +13,16 @@ namespace rgbd_pose {
 // The features of a frame, and which of them have a say.
 class FeatureReference final : public Reference {
  public:
+  // One trust for each feature.
   FeatureReference(const Camera& camera, std::unique_ptr<FeatureSet> features,
                    FeatureTrust trust);
 
   Overlap SeenFrom(const Rigid3d& cur_from_ref) const override;
 
+  // Those it was made with.
   const FeatureSet& features() const { return *features_; }
-  FeatureTrust trust;
+
+  FeatureTrust trust;  // in each of them
 
  private:
   Camera camera_;
@@ -30,7 +33,7 @@ class FeatureReference final : public Reference {
 // from the matches.
 class FeatureTracker final : public Tracker {
  public:
-  static constexpr char kName[] = "features";
+  static constexpr char kName[] = "features";  // as programs take it
 
   // Throws InputError for options that are not sound (see Check).
   FeatureTracker(std::unique_ptr<Frontend> frontend, Estimator estimator,
@@ -45,14 +48,16 @@ class FeatureTracker final : public Tracker {
                                            const Tracked* tracked,
                                            std::string* why_not) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
-             const Rigid3d& cur_from_ref_guess, Tracked* tracked) override;
+             const Rigid3d& cur_from_ref_guess,
+             const MotionMatrix* guess_covariance, Tracked* tracked) override;
   void Believe(Reference* reference, Tracked* tracked) override;
   const FrontendOptions& images() const override {
     return frontend_->options();
   }
 
  private:
-  void Estimate(const Rigid3d& cur_from_ref_guess, Tracked* tracked);
+  void Estimate(const Rigid3d& cur_from_ref_guess,
+                const MotionMatrix* guess_covariance, Tracked* tracked);
   // Sets status and reason from the estimate.
   void Judge(Tracked* tracked) const;
 

@@ -1,5 +1,6 @@
 #include "frontend/tracking/odometry.h"
 
+#include <optional>
 #include <utility>
 
 #include "core/util/input_error.h"
@@ -25,6 +26,9 @@ std::string OdometryOptions::Check() const {
   if (!(new_segment_after >= 0.0)) {
     return "new_segment_after must not be negative";
   }
+  if (!(guess_sigma_rotation > 0.0) || !(guess_sigma_translation > 0.0)) {
+    return "the guess's standard deviations must be positive";
+  }
   return "";
 }
 
@@ -47,37 +51,58 @@ Odometry::Odometry(const OdometryOptions& options,
                                                          tracker_options)) {}
 
 TrackedFrame Odometry::Track(const Frame& frame,
-                             const Rigid3d* cur_from_prev_guess) {
+                             const Rigid3d* cur_from_prev_guess,
+                             const MotionMatrix* guess_covariance) {
   double prepare_ms = 0.0;
   std::unique_ptr<const PreparedFrame> prepared;
   {
     const StageTimer timer(&prepare_ms);
     prepared = Prepare(frame);
   }
-  TrackedFrame result = Track(*prepared, cur_from_prev_guess);
+  TrackedFrame result = Track(*prepared, cur_from_prev_guess, guess_covariance);
   result.track_ms += prepare_ms;
   return result;
 }
 
 TrackedFrame Odometry::Track(const PreparedFrame& frame,
-                             const Rigid3d* cur_from_prev_guess) {
+                             const Rigid3d* cur_from_prev_guess,
+                             const MotionMatrix* guess_covariance) {
   TrackedFrame result;
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;
   {
     const StageTimer timer(&result.track_ms);
+    std::optional<Prediction> predicted;
+    if (cur_from_prev_guess != nullptr) {
+      predicted = Predict(*cur_from_prev_guess, guess_covariance);
+    }
+    const Prediction* prediction = predicted ? &*predicted : nullptr;
     if (reference_ == nullptr) {
       Start(frame, &result);
     } else if (is_lost_ && options_.on_lost == LostPolicy::kStop) {
       result.reason = "stopped after an earlier frame was lost";
-    } else if (!Follow(frame, cur_from_prev_guess, &result) &&
+    } else if (!Follow(frame, prediction, &result) &&
                !Relocalise(frame, &result)) {
-      Lose(frame, &result);
+      Lose(frame, prediction, &result);
     }
   }
   result.world_from_cam = WorldFromCam();
   result.segment = segment_;
   return result;
+}
+
+Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
+                                       const MotionMatrix* covariance) const {
+  const double turn = options_.guess_sigma_rotation;
+  const double shift = options_.guess_sigma_translation;
+  MotionMatrix usual = MotionMatrix::Zero();
+  usual.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
+      shift * shift, shift * shift;
+  const bool is_certain = covariance != nullptr;
+  return {cur_from_prev, cur_from_prev * cur_from_ref_,
+          ComposedCovariance(cur_from_prev, is_certain ? *covariance : usual,
+                             cur_from_ref_, covariance_),
+          is_certain};
 }
 
 void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
@@ -88,23 +113,23 @@ void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
 
 // First from the last pose. A constant velocity is only a second try: as the
 // first it can lock onto its own false motion.
-bool Odometry::Follow(const PreparedFrame& frame,
-                      const Rigid3d* cur_from_prev_guess,
+bool Odometry::Follow(const PreparedFrame& frame, const Prediction* prediction,
                       TrackedFrame* result) {
   const Rigid3d last = cur_from_ref_;
   const Rigid3d predicted = cur_from_prev_ * last;
   const Rigid3d first = options_.predict_velocity ? predicted : last;
   const Rigid3d second = options_.predict_velocity ? last : predicted;
   const bool tracked =
-      (cur_from_prev_guess != nullptr &&
-       Try(frame, *reference_, *cur_from_prev_guess * last, result)) ||
+      (prediction != nullptr &&
+       Try(frame, *reference_, prediction->cur_from_ref, result,
+           prediction->is_certain ? &prediction->covariance : nullptr)) ||
       Try(frame, *reference_, first, result) ||
       Try(frame, *reference_, second, result);
   // A doubtful pose is no way back from being lost.
   if (!tracked || (is_lost_ && result->status != TrackingStatus::kOk)) {
     return false;
   }
-  cur_from_ref_ = tracked_.estimate.cur_from_prev;
+  TakeMotion(result);
   cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
   Accept(frame, result);
   return true;
@@ -124,21 +149,33 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   }
   reference_ = keyframe;
   segment_ = keyframe->segment;
-  cur_from_ref_ = tracked_.estimate.cur_from_prev;
+  TakeMotion(result);
   cur_from_prev_ = Rigid3d();
   result->relocalised = true;
   Accept(frame, result);
   return true;
 }
 
-void Odometry::Lose(const PreparedFrame& frame, TrackedFrame* result) {
+void Odometry::Lose(const PreparedFrame& frame, const Prediction* prediction,
+                    TrackedFrame* result) {
+  // One frame that nobody tells of, and the way since is no longer known.
+  is_predicted_ = prediction != nullptr && (is_predicted_ || !is_lost_);
   is_lost_ = true;
   result->status = TrackingStatus::kLost;
-  if (options_.on_lost == LostPolicy::kPredict) {
+  result->is_predicted = is_predicted_;
+  if (prediction != nullptr) {
+    cur_from_prev_ = prediction->cur_from_prev;
+    cur_from_ref_ = prediction->cur_from_ref;
+    covariance_ = prediction->covariance;
+  } else if (options_.on_lost == LostPolicy::kPredict) {
     cur_from_ref_ = cur_from_prev_ * cur_from_ref_;
-    return;
+  } else {
+    cur_from_prev_ = Rigid3d();
   }
-  cur_from_prev_ = Rigid3d();
+  if (is_predicted_) {
+    result->edges = {
+        {reference_->id, result->index, cur_from_ref_, covariance_}};
+  }
   if (options_.on_lost != LostPolicy::kNewSegment ||
       frame.timestamp - tracked_at_ < options_.new_segment_after) {
     return;
@@ -152,12 +189,16 @@ void Odometry::Lose(const PreparedFrame& frame, TrackedFrame* result) {
   tracked_at_ = frame.timestamp;
   result->reference = -1;
   result->status = TrackingStatus::kDegraded;
-  result->reason = "a new segment: the motion since it was lost is unknown";
+  result->reason =
+      std::string("a new segment: the motion since it was lost is ") +
+      (is_predicted_ ? "only predicted" : "unknown");
 }
 
 bool Odometry::Try(const PreparedFrame& frame, const Keyframe& keyframe,
-                   const Rigid3d& cur_from_ref_guess, TrackedFrame* result) {
-  tracker_->Track(*keyframe.reference, frame, cur_from_ref_guess, &tracked_);
+                   const Rigid3d& cur_from_ref_guess, TrackedFrame* result,
+                   const MotionMatrix* guess_covariance) {
+  tracker_->Track(*keyframe.reference, frame, cur_from_ref_guess,
+                  guess_covariance, &tracked_);
   const MotionEstimate& estimate = tracked_.estimate;
   result->status = tracked_.status;
   result->reason = tracked_.reason;
@@ -171,18 +212,18 @@ bool Odometry::Try(const PreparedFrame& frame, const Keyframe& keyframe,
   return tracked_.status != TrackingStatus::kLost;
 }
 
-void Odometry::AddEdge(TrackedFrame* result) const {
+void Odometry::TakeMotion(TrackedFrame* result) {
   const MotionEstimate& estimate = tracked_.estimate;
+  cur_from_ref_ = estimate.cur_from_prev;
+  covariance_ = estimate.covariance;
   if (!estimate.ok()) return;
-  result->edges.insert(result->edges.begin(),
-                       {reference_->id, result->index, estimate.cur_from_prev,
-                        estimate.covariance});
+  result->edges.insert(result->edges.begin(), {reference_->id, result->index,
+                                               cur_from_ref_, covariance_});
 }
 
 void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
-  AddEdge(result);
   tracker_->Believe(reference_->reference.get(), &tracked_);
   if (NeedsNewReference()) ChangeReference(frame, result);
 }
@@ -214,9 +255,8 @@ bool Odometry::ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
   if (Try(frame, *earlier, cur_from_earlier_guess, &attempt) &&
       attempt.status == TrackingStatus::kOk && !NeedsNewReference()) {
     reference_ = earlier;
-    cur_from_ref_ = tracked_.estimate.cur_from_prev;
     *result = attempt;
-    AddEdge(result);
+    TakeMotion(result);
     return true;
   }
   std::swap(tracked_, other_);
@@ -243,6 +283,7 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
       {result->index, segment_, world_from_cam, std::move(reference),
        std::make_unique<Place>(frame, result->index), result->edges});
   cur_from_ref_ = Rigid3d();
+  covariance_.setZero();
   result->is_reference = true;
   return true;
 }

@@ -40,6 +40,11 @@ struct OdometryOptions {
   // How long (s) the old segment is searched for before a new one starts.
   double new_segment_after = 1.5;
 
+  // Standard deviations of a motion guess between two frames that comes without
+  // a covariance.
+  double guess_sigma_rotation = 0.01;     // rad
+  double guess_sigma_translation = 0.01;  // m
+
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
@@ -58,15 +63,19 @@ class Odometry {
 
   // `cur_from_prev_guess`: the motion since the frame before, if something else
   // tells (wheels, an inertial sensor); tried first, and believed only as far
-  // as the images agree. What is kept of the images is copied: the next ones
-  // may be written into the same memory.
+  // as the images agree. While lost, the pose follows it. Its covariance, as
+  // that of MotionEstimate, becomes the prior of costs that have one; null: not
+  // known (see OdometryOptions). What is kept of the images is copied: the next
+  // ones may be written into the same memory.
   TrackedFrame Track(const Frame& frame,
-                     const Rigid3d* cur_from_prev_guess = nullptr);
+                     const Rigid3d* cur_from_prev_guess = nullptr,
+                     const MotionMatrix* guess_covariance = nullptr);
 
   // The same for a frame that Prepare has made, here or in an odometry with the
   // same tracker and frontend.
   TrackedFrame Track(const PreparedFrame& frame,
-                     const Rigid3d* cur_from_prev_guess = nullptr);
+                     const Rigid3d* cur_from_prev_guess = nullptr,
+                     const MotionMatrix* guess_covariance = nullptr);
 
   // Works out what does not depend on other frames: may be done ahead, from any
   // thread, as long as this lives.
@@ -83,18 +92,30 @@ class Odometry {
   const MotionEstimate& last_estimate() const { return tracked_.estimate; }
 
  private:
+  // What a motion guess makes of the last pose.
+  struct Prediction {
+    Rigid3d cur_from_prev, cur_from_ref;
+    MotionMatrix covariance;  // of cur_from_ref
+    bool is_certain = false;  // the guess came with its covariance
+  };
+
+  Prediction Predict(const Rigid3d& cur_from_prev,
+                     const MotionMatrix* covariance) const;
   void Start(const PreparedFrame& frame, TrackedFrame* result);
-  bool Follow(const PreparedFrame& frame, const Rigid3d* cur_from_prev_guess,
+  bool Follow(const PreparedFrame& frame, const Prediction* prediction,
               TrackedFrame* result);
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
-  void Lose(const PreparedFrame& frame, TrackedFrame* result);
+  void Lose(const PreparedFrame& frame, const Prediction* prediction,
+            TrackedFrame* result);
 
   // Tries to track against a keyframe from one guess; true if the result, in
-  // tracked_, is a pose.
+  // tracked_, is a pose. `guess_covariance`: null: not known.
   bool Try(const PreparedFrame& frame, const Keyframe& keyframe,
-           const Rigid3d& cur_from_ref_guess, TrackedFrame* result);
-  // Puts the motion of tracked_ since reference_ before other edges.
-  void AddEdge(TrackedFrame* result) const;
+           const Rigid3d& cur_from_ref_guess, TrackedFrame* result,
+           const MotionMatrix* guess_covariance = nullptr);
+  // Takes the motion of tracked_ since reference_ for that of the pose, and
+  // puts it before other edges.
+  void TakeMotion(TrackedFrame* result);
   // What follows from a frame tracked against reference_ as in tracked_.
   void Accept(const PreparedFrame& frame, TrackedFrame* result);
   void ChangeReference(const PreparedFrame& frame, TrackedFrame* result);
@@ -115,11 +136,13 @@ class Odometry {
   Tracked other_;                  // the same, see ReturnTo
   Keyframe* reference_ = nullptr;  // null: none yet
   int num_frames_ = 0;
-  Rigid3d cur_from_ref_;   // of the last frame
+  Rigid3d cur_from_ref_;                            // of the last frame
+  MotionMatrix covariance_ = MotionMatrix::Zero();  // of cur_from_ref_
   Rigid3d cur_from_prev_;  // between the last two frames
   int segment_ = 0;
   double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
   bool is_lost_ = false;
+  bool is_predicted_ = false;  // see TrackedFrame
 };
 
 }  // namespace rgbd_pose

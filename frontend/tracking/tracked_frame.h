@@ -35,10 +35,15 @@ struct TrackedFrame {
   bool is_reference = false;  // became the reference of the frames that follow
   bool relocalised = false;   // found again among earlier references
 
+  // Lost, but the pose follows what others say of the motion since it was not
+  // (the motion guess of Odometry::Track).
+  bool is_predicted = false;
+
   // The motions that it was tracked by, their frames named by their index: the
   // first gives the pose; a second, where the reference changes to an earlier
-  // one, leads to the one that was left. None where no motion was found or its
-  // covariance is not known.
+  // one, leads to the one that was left. Of a predicted frame, the prediction,
+  // less certain with every frame. None where no motion is known or not how
+  // certain it is.
   std::vector<Edge> edges;
 
   int matches = 0;     // with the reference

@@ -24,8 +24,8 @@ struct TrackerOptions {
   // themselves, instead of the guess.
   const InitialGuess* initial_guess = nullptr;
 
-  // Standard deviations of the motion between two frames around the guess, for
-  // costs with a prior.
+  // Standard deviations of the motion between two frames around a guess that
+  // comes without a covariance, for costs with a prior.
   double prior_sigma_rotation = 0.05;     // rad
   double prior_sigma_translation = 0.05;  // m
 
@@ -51,11 +51,13 @@ class Reference {
 
 // How a frame was tracked against a reference.
 struct Tracked {
+  // Of that camera.
   explicit Tracked(const Camera& camera)
       : matches{Correspondences(camera), {}}, doubted(matches) {}
 
+  // Whether the motion can be gone on from.
   TrackingStatus status = TrackingStatus::kLost;
-  std::string reason;  // of the status, in words; empty if ok
+  std::string reason;  // in words; empty if ok
 
   // The motion with its covariance, counts and time. prev: the reference.
   MotionEstimate estimate;
@@ -96,8 +98,12 @@ class Tracker {
                                                    std::string* why_not) = 0;
 
   // Fills `tracked` (of the camera of images()), whose memory is used again.
+  // `guess_covariance` becomes the prior of costs that have one; null: not
+  // known.
   virtual void Track(const Reference& reference, const PreparedFrame& frame,
-                     const Rigid3d& cur_from_ref_guess, Tracked* tracked) = 0;
+                     const Rigid3d& cur_from_ref_guess,
+                     const MotionMatrix* guess_covariance,
+                     Tracked* tracked) = 0;
 
   // The motion is believed and gone on from: the reference may learn from it,
   // and `tracked` say what is shared in this light.

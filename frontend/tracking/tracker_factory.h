@@ -13,10 +13,10 @@ namespace rgbd_pose {
 
 // What trackers are made of; each takes what it needs.
 struct TrackerParts {
-  TrackerOptions options;
-  FrontendOptions images;
+  TrackerOptions options;          // when to be content
+  FrontendOptions images;          // the camera, and which depths to use
   std::string frontend = "patch";  // where features come from
-  Estimator estimator;
+  Estimator estimator;             // makes motions of what is matched
 };
 
 // The names of all trackers.

@@ -180,6 +180,8 @@ class TrackedFrame:
     @property
     def relocalised(self) -> bool: ...
     @property
+    def is_predicted(self) -> bool: ...
+    @property
     def matches(self) -> int: ...
     @property
     def inliers(self) -> int: ...
@@ -222,6 +224,8 @@ class Odometry:
         initial_guess: str = "last",
         on_lost: str = "new_segment",
         new_segment_after: float = 1.5,
+        guess_sigma_rotation: float = 0.01,
+        guess_sigma_translation: float = 0.01,
         min_inliers: int = 15,
         min_inliers_ok: int = 40,
         min_inlier_share_ok: float = 0.35,

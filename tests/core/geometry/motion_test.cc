@@ -116,5 +116,49 @@ TEST(Rigid3Test, AngleIsExactForTinyRotations) {
   EXPECT_NEAR(tiny.Angle(), 1e-9, 1e-15);
 }
 
+// Against finite differences of the composed motion.
+TEST(MotionTest, CovariancesOfComposedMotionsAddUp) {
+  const auto rotation = [](const Eigen::Vector3d& omega) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(
+        omega.norm(), omega.norm() > 0.0 ? omega.normalized().eval()
+                                         : Eigen::Vector3d::UnitX().eval()));
+  };
+  // The motion with an error [omega C] of its own.
+  const auto with_error = [&](const Rigid3d& motion, const MotionVector& e) {
+    const Eigen::Vector3d centre = motion.Inverse().translation + e.tail<3>();
+    const Eigen::Quaterniond turned = rotation(e.head<3>()) * motion.rotation;
+    return Rigid3d(turned, -(turned * centre));
+  };
+  const Rigid3d c_from_b(rotation({0.3, -0.8, 0.5}), {0.4, -1.0, 2.0});
+  const Rigid3d b_from_a(rotation({-1.1, 0.2, 0.7}), {-0.6, 0.3, 1.5});
+  const Rigid3d c_from_a = c_from_b * b_from_a;
+  constexpr double kStep = 1e-6;
+  MotionMatrix by_cb, by_ba;
+  for (int i = 0; i < 6; ++i) {
+    const MotionVector step = kStep * MotionVector::Unit(i);
+    const auto error_of = [&](const Rigid3d& moved) {
+      const Eigen::AngleAxisd turned(moved.rotation *
+                                     c_from_a.rotation.conjugate());
+      MotionVector error;
+      error << turned.angle() * turned.axis(),
+          moved.Inverse().translation - c_from_a.Inverse().translation;
+      return (error / kStep).eval();
+    };
+    by_cb.col(i) = error_of(with_error(c_from_b, step) * b_from_a);
+    by_ba.col(i) = error_of(c_from_b * with_error(b_from_a, step));
+  }
+  MotionMatrix cb, ba;  // any two covariances
+  for (int i = 0; i < 36; ++i) {
+    cb(i) = std::sin(1.0 + i);
+    ba(i) = std::cos(2.0 * i);
+  }
+  cb = (cb * cb.transpose()).eval();
+  ba = (ba * ba.transpose()).eval();
+  const MotionMatrix expected =
+      by_cb * cb * by_cb.transpose() + by_ba * ba * by_ba.transpose();
+  const MotionMatrix actual = ComposedCovariance(c_from_b, cb, b_from_a, ba);
+  EXPECT_LE((actual - expected).norm(), 1e-4 * expected.norm());
+}
+
 }  // namespace
 }  // namespace rgbd_pose

@@ -67,7 +67,7 @@ TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
   double share = 1.0, flow = 0.0;
   for (const int frame : {5, 15}) {
     tracker->Track(*reference, *tracker->Prepare(room_.Read(frame)), Rigid3d(),
-                   &tracked);
+                   nullptr, &tracked);
     ASSERT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
     const Rigid3d truth =
         room_.WorldFromCam(frame).Inverse() * room_.WorldFromCam(0);
@@ -86,6 +86,32 @@ TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
   EXPECT_FALSE(tracked.is_scarce);
 }
 
+// The covariance of a guess is the prior of the costs that have one.
+TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
+  const auto tracker = MakeTracker(
+      GetParam(),
+      {{},
+       {room_.camera().camera},
+       "patch",
+       Estimator({}, MakeRobustCosts("bidirectional_point+motion_prior",
+                                     "tukey,none"))});
+  std::string why_not;
+  const auto reference = tracker->MakeReference(
+      *tracker->Prepare(room_.Read(0)), nullptr, nullptr, &why_not);
+  const auto frame = tracker->Prepare(room_.Read(3));
+  const Rigid3d truth = room_.WorldFromCam(3).Inverse() * room_.WorldFromCam(0);
+  const Rigid3d off(Eigen::Quaterniond::Identity(), {0.01, 0.0, 0.0});
+  Tracked tracked(tracker->images().camera);
+  const auto pulled = [&](double sigma) {
+    const MotionMatrix covariance = sigma * sigma * MotionMatrix::Identity();
+    tracker->Track(*reference, *frame, off * truth, &covariance, &tracked);
+    return (tracked.estimate.cur_from_prev * truth.Inverse())
+        .translation.norm();
+  };
+  EXPECT_LE(pulled(1.0), 0.002);
+  EXPECT_GE(pulled(1e-6), 0.009);
+}
+
 TEST_P(TrackerTest, SaysWhyAFrameIsNoReferenceOrNotTracked) {
   const auto tracker = Make();
   const Frame good = room_.Read(0);
@@ -99,7 +125,8 @@ TEST_P(TrackerTest, SaysWhyAFrameIsNoReferenceOrNotTracked) {
   const auto reference = tracker->MakeReference(*tracker->Prepare(good),
                                                 nullptr, nullptr, &why_not);
   Tracked tracked(tracker->images().camera);
-  tracker->Track(*reference, *tracker->Prepare(black), Rigid3d(), &tracked);
+  tracker->Track(*reference, *tracker->Prepare(black), Rigid3d(), nullptr,
+                 &tracked);
   EXPECT_EQ(tracked.status, TrackingStatus::kLost);
   EXPECT_NE(tracked.reason, "");
 }

@@ -6,6 +6,7 @@
 
 #include <cmath>
 #include <cstdlib>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -286,6 +287,77 @@ TEST(OdometryTest, AMotionGuessIsTriedFirst) {
 
 // A camera that has passed its way before: references change, also to earlier
 // ones. Nobody numbers the frames.
+// Half a second of darkness, with wheels that go on counting.
+class DarknessTest : public ::testing::TestWithParam<LostPolicy> {
+ protected:
+  static constexpr int kFrames = 40;
+  static constexpr int kDark = 15, kLight = 30;
+
+  // `told(i)`: whether the motion up to frame i is.
+  std::vector<TrackedFrame> Run(const std::function<bool(int)>& told) {
+    OdometryOptions options;
+    options.on_lost = GetParam();
+    Odometry odometry = MakeOdometry(room_.camera().camera, "tukey", options);
+    std::vector<TrackedFrame> frames;
+    for (int i = 0; i < kFrames; ++i) {
+      const Frame frame = room_.Read(i);
+      Rigid3d guess;
+      if (i > 0)
+        guess = room_.WorldFromCam(i).Inverse() * room_.WorldFromCam(i - 1);
+      frames.push_back(
+          odometry.Track(i >= kDark && i < kLight ? Black(frame) : frame,
+                         i > 0 && told(i) ? &guess : nullptr));
+    }
+    return frames;
+  }
+  Rigid3d Truth(int i) const {
+    return room_.WorldFromCam(0).Inverse() * room_.WorldFromCam(i);
+  }
+  double ErrorOf(const TrackedFrame& frame) const {
+    return (Truth(frame.index).Inverse() * frame.world_from_cam)
+        .translation.norm();
+  }
+
+  SyntheticDataset room_ = Room("circle", 120);
+};
+
+TEST_P(DarknessTest, AMotionGuessIsFollowedAndSaidToBe) {
+  const std::vector<TrackedFrame> frames = Run([](int) { return true; });
+  const Rigid3d moved = Truth(kDark - 1).Inverse() * Truth(kLight - 1);
+  ASSERT_GT(moved.translation.norm(), 0.1) << "the test is vacuous";
+  for (const TrackedFrame& frame : frames) {
+    EXPECT_LE(ErrorOf(frame), 0.005) << frame.index;
+    const bool dark = frame.index >= kDark && frame.index < kLight;
+    EXPECT_EQ(frame.status == TrackingStatus::kLost, dark) << frame.reason;
+    EXPECT_EQ(frame.is_predicted, dark);
+    if (!dark) continue;
+    // The way of the darkness is as uncertain as its steps together.
+    ASSERT_EQ(frame.edges.size(), 1u);
+    const Edge& edge = frame.edges[0];
+    const int steps = frame.index - kDark + 1;
+    EXPECT_NEAR(edge.covariance(0, 0), steps * 1e-4, 1e-5);
+    EXPECT_GE(edge.covariance(3, 3), steps * 1e-4);
+    const Rigid3d pose =
+        frames[edge.ref].world_from_cam * edge.cur_from_ref.Inverse();
+    EXPECT_LE((pose.Inverse() * frame.world_from_cam).translation.norm(),
+              1e-12);
+  }
+}
+
+TEST_P(DarknessTest, AGapInTheGuessEndsThePrediction) {
+  const std::vector<TrackedFrame> frames =
+      Run([](int i) { return i != kDark + 5; });
+  for (int i = kDark; i < kLight; ++i) {
+    EXPECT_EQ(frames[i].is_predicted, i < kDark + 5) << i;
+    EXPECT_EQ(frames[i].edges.empty(), i >= kDark + 5) << i;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Policies, DarknessTest,
+                         ::testing::Values(LostPolicy::kHold,
+                                           LostPolicy::kPredict,
+                                           LostPolicy::kNewSegment));
+
 TEST(OdometryTest, EveryTrackedFrameCarriesItsEdges) {
   const SyntheticDataset dataset = Room("pan_tilt", 60);
   Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
