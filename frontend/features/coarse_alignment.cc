@@ -56,6 +56,20 @@ Camera AtLevel(Camera camera, int level) {
 
 }  // namespace
 
+Eigen::Matrix<float, 8, 1> PhotometricJacobian(const Eigen::Vector3f& place,
+                                               float grey,
+                                               const Eigen::Vector2f& gradient,
+                                               const Camera& camera) {
+  const Eigen::Vector3f& X = place;
+  const float a = gradient.x() * static_cast<float>(camera.fx) / X.z();
+  const float b = gradient.y() * static_cast<float>(camera.fy) / X.z();
+  const float d = -(a * X.x() + b * X.y()) / X.z();
+  Eigen::Matrix<float, 8, 1> row;
+  row << X.y() * d - X.z() * b, X.z() * a - X.x() * d, X.x() * b - X.y() * a, a,
+      b, d, grey, 1.0F;
+  return row;
+}
+
 CoarseReference::CoarseReference(const Frame& frame,
                                  const std::vector<cv::Mat>& pyramid,
                                  const Camera& camera) {
@@ -93,13 +107,8 @@ CoarseReference::Level CoarseReference::MakeLevel(const Frame& frame,
       Point point;
       point.distortion = (Eigen::Vector2d(u, v) - ideal).cast<float>();
       point.place = (c.Ray(ideal.x(), ideal.y()) * depth).cast<float>();
-      const Eigen::Vector3f& X = point.place;
-      const float a = gx * static_cast<float>(c.fx) / X.z();
-      const float b = gy * static_cast<float>(c.fy) / X.z();
-      const float d = -(a * X.x() + b * X.y()) / X.z();
       point.grey = row[u];
-      point.step << X.y() * d - X.z() * b, X.z() * a - X.x() * d,
-          X.x() * b - X.y() * a, a, b, d, point.grey, 1.0F;
+      point.step = PhotometricJacobian(point.place, point.grey, {gx, gy}, c);
       level.points.push_back(point);
       sum += point.grey;
       squares += point.grey * point.grey;

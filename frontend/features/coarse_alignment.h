@@ -11,6 +11,15 @@
 
 namespace rgbd_pose {
 
+// How the grey level that a pixel predicts, gain * grey + bias, changes with
+// [rotation (rad), translation (m), gain, bias] at no motion and a gain of 1.
+// `place`: what it shows, in camera axes (m); `gradient`: of the image there,
+// grey levels per px; `camera`: undistorted.
+Eigen::Matrix<float, 8, 1> PhotometricJacobian(const Eigen::Vector3f& place,
+                                               float grey,
+                                               const Eigen::Vector2f& gradient,
+                                               const Camera& camera);
+
 // The coarse levels of a frame's pyramid as points in space, to be found again
 // in another frame as a whole: by inverse-compositional Lucas-Kanade over the
 // six parameters of the motion and a common gain and bias (their Jacobian does

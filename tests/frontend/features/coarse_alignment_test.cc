@@ -1,5 +1,7 @@
 #include "frontend/features/coarse_alignment.h"
 
+#include <ceres/jet.h>
+#include <ceres/rotation.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
@@ -134,6 +136,32 @@ TEST(PlaneWarpTest, IsTheDerivativeOfTheMapOfThePlane) {
                   .lpNorm<Eigen::Infinity>(),
               1e-6);
     EXPECT_GT((expected - Eigen::Matrix2d::Identity()).norm(), 0.1);
+  }
+}
+
+// Of an image with an even gradient, by ceres::Jet.
+TEST(PhotometricJacobianTest, EqualsAutodiff) {
+  using Jet = ceres::Jet<double, 8>;
+  const Camera camera = {640, 480, 520, 530, 320, 240, 0, 0, 0};
+  const Eigen::Vector2d gradient(3.0, -2.0);
+  constexpr double kGrey = 120.0;
+  for (const Eigen::Vector3d& place :
+       {Eigen::Vector3d(0.4, -0.3, 1.5), Eigen::Vector3d(-1.0, 0.7, 4.0)}) {
+    Jet x[8];
+    for (int i = 0; i < 8; ++i) x[i] = Jet(i == 6 ? 1.0 : 0.0, i);
+    Eigen::Matrix<Jet, 3, 1> moved;
+    ceres::AngleAxisRotatePoint(x, place.cast<Jet>().eval().data(),
+                                moved.data());
+    for (int i = 0; i < 3; ++i) moved[i] += x[3 + i];
+    const Jet du = camera.fx * (moved[0] / moved[2] - place.x() / place.z());
+    const Jet dv = camera.fy * (moved[1] / moved[2] - place.y() / place.z());
+    const Jet predicted =
+        x[6] * (kGrey + gradient.x() * du + gradient.y() * dv) + x[7];
+    const Eigen::Matrix<double, 8, 1> row =
+        PhotometricJacobian(place.cast<float>(), kGrey, gradient.cast<float>(),
+                            camera)
+            .cast<double>();
+    EXPECT_LE((row - predicted.v).norm(), 1e-6 * predicted.v.norm());
   }
 }
 
