@@ -134,7 +134,8 @@ int Main() {
   if (FLAGS_validate_only) return ValidateOnly(&source, threads);
   const RunInputs inputs = sequence.inputs();
   OdometryRun run(settings.odometry, source.camera().camera, inputs);
-  RunOutput output(settings.output, source);
+  RunOutput output(settings.output, source,
+                   settings.odometry.features.DepthLookup());
   if (source.unmatched_color() > 0) {
     LOG(WARNING) << source.unmatched_color()
                  << " colour images have no depth image within 0.02 s and "

@@ -17,10 +17,12 @@ namespace {
 
 constexpr char kDebug[] = "debug";
 
-CloudFusionOptions CloudOptions(const Camera& camera, double voxel) {
+CloudFusionOptions CloudOptions(const Camera& camera, double voxel,
+                                const DepthLookupOptions& depth) {
   CloudFusionOptions options;
   options.camera = camera;
   options.voxel_size = voxel;
+  options.depth = depth;
   const std::string problem = options.Check();
   if (!problem.empty()) throw InputError("--voxel: " + problem);
   return options;
@@ -64,11 +66,12 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
 }
 
 RunOutput::RunOutput(const RunOutputSettings& settings,
-                     const FrameSource& source)
+                     const FrameSource& source, const DepthLookupOptions& depth)
     : settings_(settings),
       source_(source),
       drawn_("debug_images", settings.debug_images),
-      cloud_options_(CloudOptions(source.camera().camera, settings.voxel)),
+      cloud_options_(
+          CloudOptions(source.camera().camera, settings.voxel, depth)),
       folder_(settings.output) {
   if (!settings.debug_images.empty()) {
     std::filesystem::create_directory(aside() / kDebug);

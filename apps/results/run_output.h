@@ -33,7 +33,8 @@ class RunOutput {
   // Makes what must be there before the work begins. Throws InputError if it
   // cannot, or for options that make no sense. The source must outlive it and
   // keep colours for a cloud.
-  RunOutput(const RunOutputSettings& settings, const FrameSource& source);
+  RunOutput(const RunOutputSettings& settings, const FrameSource& source,
+            const DepthLookupOptions& depth);
 
   // After the run has tracked a frame.
   void Add(const Frame& frame, const OdometryRun& run);

@@ -13,20 +13,22 @@ constexpr double kMinVoxelSize = 0.001;  // m
 constexpr double kMaxVoxelSize = 1.0;    // m
 
 // Neighbouring pixels on one surface differ by noise and by slope. Noise: 4
-// standard deviations of a difference, 4 sqrt(2) 1.425e-3 z^2 (Khoshelham and
-// Elberink 2012). Slope: a surface seen at 80 degrees, at f = 525 px.
-constexpr float kMaxNoiseStep = 0.00806F;  // m at 1 m
-constexpr float kMaxSlopeStep = 0.011F;    // of the depth
+// standard deviations of a difference, which has sqrt(2) times that of a depth.
+// Slope: a surface seen at 80 degrees, at f = 525 px.
+constexpr double kMaxNoiseStep = 4.0 * M_SQRT2;  // of the depth's sigma
+constexpr double kMaxSlopeStep = 0.011;          // of the depth
 
 // A pixel with fewer neighbours (of 4) hangs in the air.
 constexpr int kMinNeighbours = 2;
 
 // Whether a pixel lies on a surface with its neighbours. At the edges of
 // objects sensors report depths between the object and what is behind it.
-bool IsOnSurface(const cv::Mat& depth, int x, int y, float metres_per_unit) {
+bool IsOnSurface(const cv::Mat& depth, int x, int y, double metres_per_unit,
+                 const DepthNoiseModel& noise) {
   const int raw = depth.at<uint16_t>(y, x);
-  const float z = raw * metres_per_unit;
-  const float limit = (kMaxNoiseStep * z + kMaxSlopeStep) * raw;
+  const double z = raw * metres_per_unit;
+  const double limit =
+      (kMaxNoiseStep * noise.sigma(z) + kMaxSlopeStep * z) / metres_per_unit;
   int neighbours = 0;
   for (const uint16_t other :
        {depth.at<uint16_t>(y, x - 1), depth.at<uint16_t>(y, x + 1),
@@ -44,7 +46,8 @@ std::string CloudFusionOptions::Check() const {
   if (!(voxel_size >= kMinVoxelSize && voxel_size <= kMaxVoxelSize)) {
     return "the voxel size must be 0.001 to 1 m";
   }
-  if (!(min_depth > 0.0) || !(max_depth > min_depth)) {
+  if (depth.noise == nullptr) return "a depth noise model is needed";
+  if (!(depth.min_depth > 0.0) || !(depth.max_depth > depth.min_depth)) {
     return "depth limits must satisfy 0 < min_depth < max_depth";
   }
   return camera.Check();
@@ -80,8 +83,8 @@ void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
       world_from_cam.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f translation = world_from_cam.translation.cast<float>();
   const auto metres_per_unit = static_cast<float>(1.0 / frame.depth_scale);
-  const auto min_depth = static_cast<float>(options_.min_depth);
-  const auto max_depth = static_cast<float>(options_.max_depth);
+  const auto min_depth = static_cast<float>(options_.depth.min_depth);
+  const auto max_depth = static_cast<float>(options_.depth.max_depth);
   ColoredPoint point;
   for (int y = 1; y < frame.depth.rows - 1; ++y) {
     const Eigen::Vector3f* rays =
@@ -90,7 +93,8 @@ void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
       const uint16_t raw = frame.depth.at<uint16_t>(y, x);
       const float z = raw * metres_per_unit;
       if (raw == Frame::kNoDepth || z < min_depth || z > max_depth ||
-          !IsOnSurface(frame.depth, x, y, metres_per_unit)) {
+          !IsOnSurface(frame.depth, x, y, metres_per_unit,
+                       *options_.depth.noise)) {
         continue;
       }
       point.position = rotation * (z * rays[x]) + translation;

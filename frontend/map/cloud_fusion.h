@@ -7,6 +7,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
+#include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
 #include "frontend/map/voxel_cloud.h"
 #include "frontend/tracking/tracked_frame.h"
@@ -21,9 +22,8 @@ struct CloudFusionOptions {
   // the sensor, the cloud holds more noise, not more detail.
   double voxel_size = 0.01;
 
-  // Depths outside are left out (m), as the frontends do.
-  double min_depth = 0.3;
-  double max_depth = 8.0;
+  // Which depths are used, and how far noise puts neighbours apart.
+  DepthLookupOptions depth;
 
   // A frame adds to the cloud if the camera has moved or turned by this since
   // the last one that did. Of a view 57 degrees wide, 3 degrees bring 5 % that

@@ -48,7 +48,7 @@ struct Relocalisation {
 class Relocaliser {
  public:
   explicit Relocaliser(const Camera& camera,
-                       const DepthLookupOptions& depth_options = {})
+                       const DepthLookupOptions& depth_options)
       : camera_(camera), depth_options_(depth_options) {}
 
   // Looks for the frame among places (the latest first): in the latest and in

@@ -36,7 +36,7 @@ Odometry::Odometry(const OdometryOptions& options,
                    std::unique_ptr<Tracker> tracker)
     : options_(options),
       tracker_(std::move(tracker)),
-      relocaliser_(tracker_->images().camera),
+      relocaliser_(tracker_->images().camera, tracker_->images().DepthLookup()),
       tracked_(tracker_->images().camera),
       other_(tracked_) {
   const std::string error = options.Check();

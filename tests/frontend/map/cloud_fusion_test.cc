@@ -102,6 +102,23 @@ TEST(CloudFusionTest, WantsGoodFramesThatMoved) {
   EXPECT_FALSE(fusion.Wants(tracked));
 }
 
+// Rows of pixels in turns 1 m and 1.03 m away: noise of one model, not of the
+// other.
+TEST(CloudFusionTest, NoiseIsWhatTheDepthNoiseModelSays) {
+  const Camera camera;
+  Frame frame = WallAndPlate(camera, 0);
+  frame.depth.setTo(5000);
+  for (int y = 0; y < frame.depth.rows; y += 2) frame.depth.row(y).setTo(5150);
+  for (const bool constant : {false, true}) {
+    CloudFusionOptions options = Options(camera);
+    options.depth.noise =
+        FindDepthNoiseModel(constant ? "constant" : "khoshelham");
+    CloudFusion fusion(options);
+    fusion.Add(frame, Rigid3d());
+    EXPECT_EQ(fusion.cloud().size() > 0, constant);
+  }
+}
+
 TEST(CloudFusionTest, ChecksItsOptions) {
   for (const double bad : {0.0, -0.01, 0.0009, 1.1, std::nan("")}) {
     CloudFusionOptions options;

@@ -70,7 +70,7 @@ Rigid3d Moved(double x, double y, double z) {
 // A relocaliser with the keyframes to look among.
 class Search {
  public:
-  explicit Search(const Camera& camera) : relocaliser_(camera) {}
+  explicit Search(const Camera& camera) : relocaliser_(camera, {}) {}
 
   void Add(const Frame& keyframe, int id) {
     kept_.push_front(std::make_unique<Place>(keyframe, id));

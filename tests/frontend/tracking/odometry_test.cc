@@ -395,6 +395,33 @@ TEST(OdometryTest, EveryTrackedFrameCarriesItsEdges) {
   EXPECT_GE(returns, 1) << "the test is vacuous";
 }
 
+// A room four times as large, beyond the depths that are used by default, left
+// and entered again with the camera turned.
+TEST(OdometryTest, WhatIsSaidOfDepthsReachesTheRelocaliser) {
+  SyntheticOptions options;
+  options.path = "still";
+  options.frames = 2;
+  const SyntheticDataset here(options);
+  options.path_from_cam = Rigid3d(
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.4, Eigen::Vector3d::UnitY())),
+      Eigen::Vector3d::Zero());
+  const SyntheticDataset turned(options);
+  FrontendOptions frontend{here.camera().camera};
+  frontend.max_depth = 50.0;
+  Odometry odometry({}, MakeFrontend("patch", frontend),
+                    {{}, MakeRobustCosts()});
+  const auto larger = [](Frame frame) {
+    frame.depth_scale /= 4.0;
+    return frame;
+  };
+  ASSERT_EQ(odometry.Track(larger(here.Read(0))).status, TrackingStatus::kOk);
+  EXPECT_EQ(odometry.Track(Black(larger(here.Read(1)))).status,
+            TrackingStatus::kLost);
+  const TrackedFrame found = odometry.Track(larger(turned.Read(1)));
+  EXPECT_EQ(found.status, TrackingStatus::kOk) << found.reason;
+  EXPECT_TRUE(found.relocalised);
+}
+
 TEST(OdometryTest, GivesTheSameBytesTwice) {
   const SyntheticDataset dataset = Room("xyz", 12);
   EXPECT_EQ(FormatTrajectory(TrackAll(dataset, "tukey").trajectory),
