@@ -14,7 +14,7 @@ namespace rgbd_pose {
 // The shape a <= 2 leads from least squares (2) by L1-L2 (1), Cauchy (0) and
 // Geman-McClure (-2) towards Welsch (minus infinity): the lower, the less far
 // residuals count. Below 1 it is redescending. (The R'' of shapes above 2 is
-// positive, which the compressed block cannot do with.)
+// positive, which the compressed block does not support.)
 class BarronLoss final : public ceres::LossFunction {
  public:
   // Half-way between Cauchy and Geman-McClure.

@@ -43,9 +43,9 @@ double ShortestInterval(const std::vector<double>& x, size_t h) {
 }
 
 // The k-th smallest difference (k >= 1) of sorted values, which is known not to
-// exceed `high`. There are too many to look at, but it is quick to count those
-// up to a limit: halves the interval (low, high] that the wanted one lies in
-// until no more than n are in it.
+// exceed `high`. There are too many differences to list, but counting those up
+// to a limit is quick: the interval (low, high] that holds the wanted one is
+// halved until no more than n differences are in it.
 double KthDifference(const std::vector<double>& x, int64_t k, double high) {
   double low = 0.0;
   int64_t below = CountUpTo(x, low);
@@ -72,7 +72,7 @@ double KthDifference(const std::vector<double>& x, int64_t k, double high) {
 }  // namespace
 
 double QnScale(std::vector<double>* values) {
-  // The 2.2219 printed in 1993 is a slip of the pen.
+  // The 2.2219 printed in 1993 is a known misprint.
   constexpr double kConsistency = 2.21914;
   constexpr SmallSample kSmallSample = {
       {0.399, 0.994, 0.512, 0.844, 0.611, 0.857, 0.669, 0.872}, 3.8, 1.4};

@@ -6,11 +6,11 @@
 
 namespace rgbd_pose {
 
-// Robust estimators of the spread of values: the sigma of normal ones, though
-// up to half of them may be anything. In: finite values; they may be reordered.
-// Out: sigma >= 0 in their unit, consistent for large n and about unbiased for
-// small; 0 for fewer than two values or if more than half of them are equal.
-// All three take O(n log n).
+// Robust estimators of the standard deviation of normally distributed values,
+// of which up to half may be outliers. In: finite values; they may be
+// reordered. Out: sigma >= 0 in their unit, consistent for large n and about
+// unbiased for small; 0 for fewer than two values or if more than half of them
+// are equal. All three take O(n log n).
 
 // Median absolute deviation from the median. Efficiency 37 %.
 double MadScale(std::vector<double>* values);
@@ -19,14 +19,14 @@ double MadScale(std::vector<double>* values);
 // of |x_i - x_j|; needs no centre and no symmetry. Efficiency 58 %.
 double SnScale(std::vector<double>* values);
 
-// The same authors: about the lower quartile of all |x_i - x_j|, i < j.
+// By the same authors: about the lower quartile of all |x_i - x_j|, i < j.
 // Efficiency 82 %.
 double QnScale(std::vector<double>* values);
 
 // A row of the table of scale estimators.
 struct ScaleEstimator {
   std::string_view name;                            // as programs take it
-  double (*estimate)(std::vector<double>* values);  // null: takes sigma as 1
+  double (*estimate)(std::vector<double>* values);  // null: sigma is 1
 };
 
 // All scale estimators.

@@ -5,11 +5,11 @@
 
 namespace rgbd_pose {
 
-// What makes a scale estimator unbiased for few values: a factor each for 2 to
-// 9 values and n / (n + shift) beyond, by the parity of n. After Croux and
-// Rousseeuw, Time-Efficient Algorithms for Two Highly Robust Estimators of
-// Scale (COMPSTAT 1992); tests/robust/scale_test.cc finds them again by
-// simulation.
+// The factors that make a scale estimator unbiased for few values: one for each
+// n from 2 to 9, and n / (n + shift) above, with one shift for even and one for
+// odd n. From Croux and Rousseeuw, Time-Efficient Algorithms for Two Highly
+// Robust Estimators of Scale (COMPSTAT 1992); tests/robust/scale_test.cc
+// confirms them by simulation.
 struct SmallSample {
   std::array<double, 8> factors;  // for n = 2 ... 9
   double shift_even;

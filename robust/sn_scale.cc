@@ -16,9 +16,9 @@ double SnScale(std::vector<double>* values) {
 
   // The inner high median is the distance of x_i to its h-th nearest value,
   // itself included. In sorted order these h values lie side by side: some
-  // window from x_l to x_(l+h-1), of which the farther end is nearest. With l
-  // the near end at first gets nearer and then the far end gets farther, so the
-  // best is found where they are equal; and that place moves up with i.
+  // window from x_l to x_(l+h-1), the one whose farther end is nearest to x_i.
+  // As l grows the lower end comes nearer to x_i and the upper end moves away,
+  // so the best window is where both distances are equal; it moves up with i.
   const size_t h = n / 2 + 1;
   std::vector<double> medians(n);
   size_t l = 0;

@@ -8,8 +8,8 @@ namespace rgbd_pose {
 namespace {
 
 // How much the orientation of the first pair counts against the spread of the
-// positions: enough to outweigh their rounding errors, too little to turn a
-// rotation that they determine (by about 1e-9 rad).
+// positions: enough to outweigh their rounding errors, too little to change a
+// rotation that they determine by more than about 1e-9 rad.
 constexpr double kShareOfSpread = 1e-9;
 constexpr double kLeastSpread = 1e-18;  // m^2 a pair: a spread of 1 nm
 

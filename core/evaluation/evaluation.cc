@@ -34,7 +34,7 @@ ErrorStatistics Summarise(std::vector<double> errors) {
   return result;
 }
 
-// E of core/evaluation/evaluation.h.
+// E of RelativePoseError.
 Rigid3d RelativeError(const PosePair& i, const PosePair& j) {
   const Rigid3d truth_i_from_j = i.truth.Inverse() * j.truth;
   const Rigid3d estimate_i_from_j = i.estimate.Inverse() * j.estimate;
@@ -137,7 +137,7 @@ std::string EvaluationOptions::Check() const {
   if (!(max_time_difference >= 0.0)) {
     return "the largest time difference must not be negative";
   }
-  // An interval no longer than its own tolerance could end where it starts.
+  // An interval shorter than its tolerance could end where it starts.
   if (!(rpe_delta_seconds > max_time_difference)) {
     return "the interval of the relative error in seconds must be longer than "
            "the largest time difference";

@@ -24,13 +24,13 @@ struct EvaluationOptions {
   std::string Check() const;
 };
 
-// Sums up errors; all 0 if there are none.
+// Statistics of a list of errors; all 0 if it is empty.
 struct ErrorStatistics {
-  int count = 0;        // of errors
-  double rmse = 0.0;    // root of their mean square
-  double mean = 0.0;    // their mean
+  int count = 0;
+  double rmse = 0.0;
+  double mean = 0.0;
   double median = 0.0;  // of an even number, the mean of the two in the middle
-  double max = 0.0;     // the largest
+  double max = 0.0;
 };
 
 // Errors of motions between two poses i and j of the camera (Sturm 2012):

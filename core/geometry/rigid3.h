@@ -14,8 +14,7 @@ struct Rigid3d {
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
-  // No motion, or these two.
-  Rigid3d() = default;
+  Rigid3d() = default;  // the identity
   Rigid3d(const Eigen::Quaterniond& target_from_source_rotation,
           const Eigen::Vector3d& source_origin_in_target)
       : rotation(target_from_source_rotation.normalized()),
@@ -44,7 +43,7 @@ struct Rigid3d {
     return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
   }
 
-  // Whether all of its numbers are.
+  // No NaN and no infinity.
   bool IsFinite() const {
     return rotation.coeffs().allFinite() && translation.allFinite();
   }

@@ -16,12 +16,12 @@ struct Consensus {
 };
 
 struct ConsensusOptions {
-  // So many matches have to agree, in number and as a share of those with a
-  // depth on both sides, before it counts as more than chance.
+  // A motion counts as found if at least this many matches agree with it, and
+  // at least this share of those with a depth on both sides.
   int min_inliers = 6;
   double min_inlier_share = 0.1;
 
-  // How often the motion is fitted anew to those that agree with it.
+  // How often the motion is fitted again to the matches that agree with it.
   int refits = 2;
 
   // One line that says what is wrong with the options, or empty.
@@ -32,16 +32,16 @@ struct ConsensusOptions {
 // that of 99 % of the right ones.
 double MaxSquaredDistance();
 
-// The motion that fits the matches of these places in closed form.
+// The closed-form motion of the matches at these indices.
 std::optional<Rigid3d> FitTo(const std::vector<PointMatch>& matches,
                              const std::vector<int>& chosen);
 
-// The places of the matches that agree with a motion.
+// The indices of the matches that agree with a motion.
 void FindInliers(const std::vector<PointMatch>& matches,
                  const Rigid3d& cur_from_prev, std::vector<int>* inliers);
 
-// Fits the motion anew to those that agree with it, some times over. Nothing
-// if too few agree or those that do leave the motion open.
+// Fits the motion again to the matches that agree with it, several times.
+// Nothing if too few agree or if those that do leave the motion undetermined.
 std::optional<Consensus> FindConsensus(const std::vector<PointMatch>& matches,
                                        const Rigid3d& cur_from_prev,
                                        const ConsensusOptions& options);

@@ -12,8 +12,8 @@ namespace rgbd_pose {
 // A way to guess the motion from the matches alone, without a place to start.
 struct InitialGuess {
   std::string_view name;  // as programs take it
-  // cur_from_prev, or nothing where the matches do not tell; whoever asks then
-  // falls back to a guess of their own (the last motion, say).
+  // cur_from_prev, or nothing if the matches do not determine it; the caller
+  // then uses a guess of its own, such as the last motion.
   std::optional<Rigid3d> (*find)(const Correspondences& matches);
 };
 

@@ -61,8 +61,8 @@ struct PointMatch {
   }
 };
 
-// The matches with a depth on both sides; of more than `max_count`, so many
-// evenly spread over the list.
+// The matches with a depth on both sides: all, or `max_count` of them evenly
+// spread over the list.
 std::vector<PointMatch> PointMatches(const Correspondences& matches,
                                      size_t max_count);
 

@@ -10,18 +10,18 @@
 namespace rgbd_pose {
 
 struct RansacOptions {
-  // Samples of three matches that are drawn at most.
+  // The most samples of three matches to draw.
   int max_samples = 500;
 
-  // Drawing ends earlier when, at the share of inliers seen so far, a sample
-  // of right matches only has come up with this probability.
+  // Sampling ends early when, at the share of inliers seen so far, a sample of
+  // right matches only has been drawn with this probability.
   double confidence = 0.999;
 
-  // A sample is given up where a motion would have to change a distance
-  // between two of its points by more standard deviations.
+  // A sample is rejected if a distance between two of its points changes from
+  // frame to frame by more than this many standard deviations.
   double max_distance_sigmas = 3.0;
 
-  // Of more matches, so many evenly spread over the list are looked at.
+  // Of more matches, this many are used, evenly spread over the list.
   int max_matches = 1000;
 
   uint64_t seed = 1;
@@ -36,9 +36,9 @@ struct RansacOptions {
 // and closed form (Fischler & Bolles 1981), each new best one fitted anew to
 // those that agree with it (Chum, Matas & Kittler 2003). Distances are whitened
 // by the noise of both frames; matches without a depth on both sides do not
-// count. The same input gives the same bytes. Nothing if no motion has enough
-// agreement or the agreeing matches leave it open. Throws InputError if the
-// options are wrong.
+// count. The same input gives the same bytes. Nothing if too few matches agree
+// with any motion or those that do leave it undetermined. Throws InputError if
+// the options are wrong.
 std::optional<Consensus> FindByRansac(const Correspondences& matches,
                                       const RansacOptions& options = {});
 

@@ -10,7 +10,7 @@ namespace rgbd_pose {
 // (SplitMix64; Steele, Lea & Flood 2014).
 class CounterRandom {
  public:
-  // What counters go up by, and 64 well-mixed bits of one.
+  // The step of the counter, and the 64 well-mixed bits of one count.
   static constexpr uint64_t kStep = 0x9e3779b97f4a7c15u;
   static uint64_t Mix(uint64_t x) {
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;

@@ -11,7 +11,7 @@ namespace rgbd_pose {
 // characters of quoted input become spaces, so that it stays one line.
 class InputError : public std::runtime_error {
  public:
-  // The message, with the place it is about if there is one.
+  // The message; the second form puts the place (file:line) before it.
   explicit InputError(const std::string& message)
       : std::runtime_error(OneLine(message)) {}
   InputError(const std::string& file, int line, const std::string& message)
