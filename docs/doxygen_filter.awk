@@ -1,6 +1,17 @@
 # Marks the plain // comments of our headers for Doxygen:
 # - /// above what they describe; they hold for all lines up to a blank one;
 # - ///< beside it, where they may go on below in the same column.
+# Members that explain themselves need none: destructors, constructors and
+# operators that are defaulted, deleted, move or convert in one line, accessors
+# `x() { return x_; }`, and fields whose names say all.
+function is_trivial(line) {
+  return line ~ /^ *explicit [A-Z][A-Za-z0-9]*\(const [A-Z][A-Za-z0-9]*& [a-z]+\) : .*\{\}$/ ||
+         line ~ /^ *(virtual )?~?[A-Z][A-Za-z0-9]*\([A-Za-z0-9&, ]*\) *(= (default|delete)|noexcept)?;$/ ||
+         line ~ /^ *[A-Z][A-Za-z0-9]*& operator=\(.*\) *(= (default|delete)|noexcept);$/ ||
+         line ~ /^ *[a-zA-Z:<>_&* ]+ ([a-z_]+)\(\) const \{ return [a-z_]+_(\.size\(\))?; \}$/ ||
+         line ~ /^ *(int|double|size_t) (count|rmse|mean|max|min|size|width|height)( = 0(\.0)?)?;$/ ||
+         line ~ /^ *[A-Za-z:<>_ ]+ (frame|camera|prev|cur);$/
+}
 {
   place = index($0, "//")
   before = place ? substr($0, 1, place - 1) : $0
@@ -42,9 +53,12 @@ place && before ~ /^ *$/ {
   is_new = is_first || (ended && indent == above_indent)
   own = place && before ~ /[;,{)] *$/ && before !~ /^ *#/
   if (above != "" && is_new && (is_first || !own)) printf "%s", above
+  is_bare = above == "" || !is_new
   is_first = 0
   ended = before ~ /[;}] *$/
-  if (own) {
+  if (!own && is_bare && is_trivial($0)) {
+    print $0 " ///< &nbsp;"
+  } else if (own) {
     beside = place
     print before "///<" substr($0, place + 2)
   } else {

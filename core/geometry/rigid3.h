@@ -15,6 +15,8 @@ struct Rigid3d {
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
   Rigid3d() = default;  // the identity
+
+  // The rotation is normalised; translation in metres.
   Rigid3d(const Eigen::Quaterniond& target_from_source_rotation,
           const Eigen::Vector3d& source_origin_in_target)
       : rotation(target_from_source_rotation.normalized()),
