@@ -12,9 +12,11 @@ namespace rgbd_pose {
 template <typename Pixel>
 struct ImageView {
   const Pixel* data = nullptr;  // null: none
-  int width = 0, height = 0;
+  int width = 0;
+  int height = 0;
   ptrdiff_t stride = 0;  // pixels from one row to the next
 
+  // Neither is checked.
   Pixel At(int column, int row) const { return data[row * stride + column]; }
 };
 
@@ -23,7 +25,7 @@ struct ImageView {
 struct FrameView {
   // A gray image and the camera of its pixels, ideal ones (no distortion).
   struct Level {
-    ImageView<uint8_t> gray;
+    ImageView<uint8_t> gray;  // gray levels
     Camera camera;
   };
 

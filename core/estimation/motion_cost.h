@@ -46,7 +46,7 @@ struct PairData {
   const Correspondences* matches = nullptr;  // null: none
   const MotionPrior* prior = nullptr;        // null: nothing is known
   const FrameView* prev = nullptr;           // null: no images
-  const FrameView* cur = nullptr;
+  const FrameView* cur = nullptr;            // likewise
   int threads = 1;  // for sums over many residuals; results do not depend on it
 };
 

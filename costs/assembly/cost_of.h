@@ -53,14 +53,12 @@ template <typename Residual>
 struct IsPrior<Residual, std::void_t<decltype(Residual::kIsPrior)>>
     : std::true_type {};
 
+// How a residual type is associated: its kAssociation, else once.
 template <typename Residual, typename = void>
-struct AssociationOf {
-  static constexpr Association kValue = Association::kOnce;
-};
+struct HasAssociation : std::false_type {};
 template <typename Residual>
-struct AssociationOf<Residual, std::void_t<decltype(Residual::kAssociation)>> {
-  static constexpr Association kValue = Residual::kAssociation;
-};
+struct HasAssociation<Residual, std::void_t<decltype(Residual::kAssociation)>>
+    : std::true_type {};
 
 template <typename Residual, typename = void>
 struct HasDegrees : std::false_type {};
@@ -105,7 +103,8 @@ class CostOf final : public MotionCost {
   }
 
   Association association() const override {
-    return AssociationOf<Residual>::kValue;
+    if constexpr (HasAssociation<Residual>()) return Residual::kAssociation;
+    return Association::kOnce;
   }
 
   // Keeps matches only where they have to be packed again.
