@@ -395,7 +395,7 @@ TEST(OdometryTest, EveryTrackedFrameCarriesItsEdges) {
   EXPECT_GE(returns, 1) << "the test is vacuous";
 }
 
-// A room four times as large, beyond the depths that are used by default, left
+// A room ten times as large, beyond the depths that are used by default, left
 // and entered again with the camera turned.
 TEST(OdometryTest, WhatIsSaidOfDepthsReachesTheRelocaliser) {
   SyntheticOptions options;
@@ -407,11 +407,11 @@ TEST(OdometryTest, WhatIsSaidOfDepthsReachesTheRelocaliser) {
       Eigen::Vector3d::Zero());
   const SyntheticDataset turned(options);
   FrontendOptions frontend{here.camera().camera};
-  frontend.max_depth = 50.0;
+  frontend.max_depth = 100.0;
   Odometry odometry({}, MakeFrontend("patch", frontend),
                     {{}, MakeRobustCosts()});
   const auto larger = [](Frame frame) {
-    frame.depth_scale /= 4.0;
+    frame.depth_scale /= 10.0;
     return frame;
   };
   ASSERT_EQ(odometry.Track(larger(here.Read(0))).status, TrackingStatus::kOk);
