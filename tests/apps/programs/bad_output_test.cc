@@ -71,7 +71,7 @@ TEST_F(BadInputTest, FullDisks) {
   ExpectEach(
       "", {
               {"figures", nullptr, WithFullDisk(2, Odometry()), 2,
-               "metrics.json: writing failed (File too large)"},
+               "edges.csv: writing failed (File too large)"},
               {"pictures", nullptr,
                WithFullDisk(40, Odometry() + "--debug_images=all"), 2,
                "debug/000000.png: writing failed (File too large)"},
