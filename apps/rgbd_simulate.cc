@@ -2,7 +2,8 @@
 
 #include <gflags/gflags.h>
 
-#include <algorithm>
+#include <Eigen/Geometry>
+#include <cmath>
 #include <cstdio>
 
 #include "apps/shell/available_cores.h"
@@ -23,6 +24,17 @@ DEFINE_double(shutter, 0.0, "how long the shutter is open (s): blurs motion");
 DEFINE_double(exposure_drift, 0.0,
               "swing of the automatic exposure in 4 s, 0..1: gains from "
               "exp(-this) to exp(this)");
+DEFINE_double(readout, 0.0,
+              "rolling shutter: time from the first row to the last (s)");
+DEFINE_double(depth_delay, 0.0,
+              "how much later depth is exposed and stamped (s); negative: "
+              "earlier");
+DEFINE_double(registration_shift, 0.0,
+              "error of the registration of depth: everything is so far (m) to "
+              "the right, along the camera's x axis");
+DEFINE_double(registration_turn, 0.0,
+              "the same: and is turned so far (degrees) to the right, around "
+              "its y axis");
 DEFINE_string(camera, "ros_default", "preset or YAML file");
 DEFINE_string(output, "", "folder to make, in TUM RGB-D layout");
 
@@ -39,6 +51,12 @@ int Simulate() {
   options.noise = FLAGS_noise;
   options.exposure_s = FLAGS_shutter;
   options.exposure_drift = FLAGS_exposure_drift;
+  options.readout_s = FLAGS_readout;
+  options.depth_delay_s = FLAGS_depth_delay;
+  options.registration_error = Rigid3d(
+      Eigen::Quaterniond(Eigen::AngleAxisd(
+          FLAGS_registration_turn * M_PI / 180.0, Eigen::Vector3d::UnitY())),
+      {FLAGS_registration_shift, 0.0, 0.0});
   options.camera = ResolveCamera(FLAGS_camera);
   SyntheticDataset dataset(options);
   {
@@ -64,7 +82,8 @@ int main(int argc, char** argv) {
       "rgbd_simulate --path=pan_tilt --frames=150 --output=pan_tilt",
       {{"Sequence",
         {"scene", "path", "frames", "seed", "noise", "shutter",
-         "exposure_drift", "camera"}},
+         "exposure_drift", "readout", "depth_delay", "registration_shift",
+         "registration_turn", "camera"}},
        {"Output", {"output"}}},
       {{"scene", rgbd_pose::SceneNames()},
        {"path", rgbd_pose::SyntheticPathNames()},

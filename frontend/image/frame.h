@@ -9,6 +9,7 @@ namespace rgbd_pose {
 struct Frame {
   int index = 0;                // place in its source, from 0
   double timestamp = 0.0;       // of the colour image, seconds
+  double depth_delay = 0.0;     // of the depth image, seconds after it
   cv::Mat gray;                 // CV_8UC1
   cv::Mat depth;                // CV_16UC1, registered to gray, the same size
   double depth_scale = 5000.0;  // raw depth units per metre

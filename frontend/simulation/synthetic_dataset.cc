@@ -38,6 +38,23 @@ const SyntheticOptions& Checked(const SyntheticOptions& options) {
                      std::to_string(1.0 / options.rate_hz) +
                      " s, the time from frame to frame");
   }
+  if (!(options.readout_s >= 0.0 &&
+        options.readout_s <= 1.0 / options.rate_hz)) {
+    throw InputError("the readout of a synthetic sequence must be in 0.." +
+                     std::to_string(1.0 / options.rate_hz) +
+                     " s, the time from frame to frame");
+  }
+  if (!(std::abs(options.depth_delay_s) < 0.5 / options.rate_hz)) {
+    throw InputError("the depth delay of a synthetic sequence must be below " +
+                     std::to_string(0.5 / options.rate_hz) +
+                     " s, half the time from frame to frame");
+  }
+  if (!(options.registration_error.Angle() < M_PI / 4) ||
+      !(options.registration_error.translation.norm() < 1.0)) {
+    throw InputError(
+        "the registration error of a synthetic sequence must be below 1 m and "
+        "45 degrees");
+  }
   if (!(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0)) {
     throw InputError("exposure_drift of a synthetic sequence must be in 0..1");
   }
@@ -67,12 +84,29 @@ Rigid3d SyntheticDataset::WorldFromCam(int index) const {
   return WorldFromCamAt(Time(index));
 }
 
-Frame SyntheticDataset::Read(int index) const {
-  const double t = Time(index);
-  Rendering rendering =
-      Expose(renderer_, options_.camera.camera.fx,
+// What is seen from world_from_cam * E^-1 lies at E * X in those axes.
+Rendering SyntheticDataset::Render(double t) const {
+  const double focal_px = options_.camera.camera.fx;
+  Rendering seen =
+      Expose(renderer_, focal_px,
              [this](double time) { return WorldFromCamAt(time); }, t,
-             {options_.exposure_s, DriftingGain(options_.exposure_drift, t)});
+             {options_.exposure_s, DriftingGain(options_.exposure_drift, t),
+              options_.readout_s});
+  const Rigid3d cam_from_depth = options_.registration_error.Inverse();
+  if (options_.depth_delay_s != 0.0 || cam_from_depth.Angle() != 0.0 ||
+      !cam_from_depth.translation.isZero(0.0)) {
+    seen.depth =
+        Expose(
+            renderer_, focal_px,
+            [&](double time) { return WorldFromCamAt(time) * cam_from_depth; },
+            t + options_.depth_delay_s, {0.0, 1.0, options_.readout_s})
+            .depth;
+  }
+  return seen;
+}
+
+Frame SyntheticDataset::Read(int index) const {
+  Rendering rendering = Render(Time(index));
   if (options_.noise) {
     // One key an image; images take less than 2^40 numbers after theirs.
     const uint64_t sequence = HashCounter(options_.seed);
@@ -84,6 +118,7 @@ Frame SyntheticDataset::Read(int index) const {
   Frame frame;
   frame.index = index;
   frame.timestamp = timestamp(index);
+  frame.depth_delay = options_.depth_delay_s;
   frame.color = rendering.color;
   cv::cvtColor(frame.color, frame.gray, cv::COLOR_BGR2GRAY);
   frame.depth_scale = options_.camera.depth_scale;

@@ -26,6 +26,19 @@ struct SyntheticOptions {
   // frame to half of it after; at most the time from frame to frame.
   double exposure_s = 0.0;
 
+  // Rolling shutter of both images: the time (s) from the exposure of the first
+  // row to that of the last, the pose of a frame being that of the middle; at
+  // most the time from frame to frame.
+  double readout_s = 0.0;
+
+  // How much later than colour depth is exposed and stamped (s; negative:
+  // earlier); less than half the time from frame to frame.
+  double depth_delay_s = 0.0;
+
+  // An error of the calibration between both cameras: depth images have a point
+  // X (in camera axes, m) where they should have registration_error * X.
+  Rigid3d registration_error = {};
+
   // Swing of the automatic exposure, 0..1: see DriftingGain.
   double exposure_drift = 0.0;
 
@@ -57,6 +70,8 @@ class SyntheticDataset : public Dataset {
   // Seconds since the first frame.
   double Time(int index) const { return index / options_.rate_hz; }
   Rigid3d WorldFromCamAt(double t) const;
+  // Colour as exposed at time t and depth, exact, as exposed and registered.
+  Rendering Render(double t) const;
 
   SyntheticOptions options_;
   SyntheticPath path_;

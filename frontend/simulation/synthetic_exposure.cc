@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <opencv2/core.hpp>
+#include <vector>
 
 namespace rgbd_pose {
 namespace {
@@ -19,6 +20,20 @@ double BlurLength(const Rigid3d& motion, const cv::Mat& depth,
   return focal_px * (motion.Angle() + shift);
 }
 
+// What the camera sees in an instant, or row after row with time t in the
+// middle of the readout.
+Rendering RenderAt(const Renderer& renderer,
+                   const std::function<Rigid3d(double t)>& world_from_cam,
+                   double t, double readout_s) {
+  if (readout_s == 0.0) return renderer.Render(world_from_cam(t));
+  std::vector<Rigid3d> poses(renderer.num_bands());
+  for (size_t i = 0; i < poses.size(); ++i) {
+    const double share = (i + 0.5) / poses.size() - 0.5;
+    poses[i] = world_from_cam(t + share * readout_s);
+  }
+  return renderer.Render(poses);
+}
+
 }  // namespace
 
 double DriftingGain(double amplitude, double t) {
@@ -29,7 +44,7 @@ Rendering Expose(const Renderer& renderer, double focal_px,
                  const std::function<Rigid3d(double t)>& world_from_cam,
                  double t, const Exposure& exposure) {
   const double half_time = exposure.shutter_s / 2.0;
-  Rendering out = renderer.Render(world_from_cam(t));
+  Rendering out = RenderAt(renderer, world_from_cam, t, exposure.readout_s);
   const Rigid3d closing_from_opening =
       world_from_cam(t + half_time).Inverse() * world_from_cam(t - half_time);
   const double length = BlurLength(closing_from_opening, out.depth, focal_px);
@@ -43,8 +58,8 @@ Rendering Expose(const Renderer& renderer, double focal_px,
   for (int i = 1; i <= pairs; ++i) {
     const double offset = exposure.shutter_s * i / renderings;
     for (const double side : {-1.0, 1.0}) {
-      const Rendering moved =
-          renderer.Render(world_from_cam(t + side * offset));
+      const Rendering moved = RenderAt(renderer, world_from_cam,
+                                       t + side * offset, exposure.readout_s);
       cv::add(sum, moved.color, sum, cv::noArray(), CV_32F);
     }
   }

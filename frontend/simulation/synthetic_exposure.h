@@ -11,6 +11,7 @@ namespace rgbd_pose {
 struct Exposure {
   double shutter_s = 0.0;  // 0: the image of an instant
   double gain = 1.0;
+  double readout_s = 0.0;  // from the first row's exposure to the last one's
 };
 
 // The gain at time t (s) of an automatic exposure that swings slowly around 1:
@@ -22,7 +23,8 @@ double DriftingGain(double amplitude, double t);
 // of an odd number of renderings, evenly spread over the shutter time with t in
 // its middle and never much more than kMaxBlurStep apart in the image, times
 // the gain, rounded once and cut off at 255. Depth is that of time t. Gray
-// levels are taken as proportional to light.
+// levels are taken as proportional to light. With a rolling shutter t is the
+// time of the middle row, of both images.
 constexpr double kMaxBlurStep = 2.0;  // px; finer than that the lens blurs
 Rendering Expose(const Renderer& renderer, double focal_px,
                  const std::function<Rigid3d(double t)>& world_from_cam,

@@ -135,15 +135,26 @@ Rigid3d Handheld(double t, double /*duration*/) {
 
 Rigid3d Still(double /*t*/, double duration) { return Xyz(0.0, duration); }
 
+// Straight on at a walking pace and back, along the world's x axis.
+Rigid3d Walk(double t, double /*duration*/) {
+  constexpr double kWay = 3.0;    // m
+  constexpr double kRound = 8.0;  // s, there and back
+  const double x = kWay * 0.5 * (1.0 - std::cos(2.0 * M_PI * t / kRound));
+  const double step = 2.0 * M_PI * 1.8 * t;
+  return LookAt({-1.10, -0.35, 1.35}, {1.0, -0.25, 1.20}) *
+         Shift({0.015 * std::sin(step / 2), 0.02 * std::sin(step), 0.0}) *
+         Rigid3d(Quaterniond(AngleAxisd(0.02 * std::sin(step / 2 + 0.4),
+                                        Vector3d::UnitZ())),
+                 Vector3d(0, 0, x));
+}
+
 struct NamedPath {
   const char* name;
   SyntheticPath path;
 };
-constexpr NamedPath kPaths[] = {{"xyz", Xyz},
-                                {"pan_tilt", PanTilt},
-                                {"circle", Circle},
-                                {"still", Still},
-                                {"handheld", Handheld}};
+constexpr NamedPath kPaths[] = {{"xyz", Xyz},       {"pan_tilt", PanTilt},
+                                {"circle", Circle}, {"still", Still},
+                                {"walk", Walk},     {"handheld", Handheld}};
 
 }  // namespace
 

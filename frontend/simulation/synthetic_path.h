@@ -8,7 +8,7 @@
 namespace rgbd_pose {
 
 // The pose world_from_cam at time t of a path that lasts `duration` (both in
-// seconds, 0 <= t <= duration, or half a shutter time outside).
+// seconds, 0 <= t <= duration, or a frame outside).
 using SyntheticPath = Rigid3d (*)(double t, double duration);
 
 // A path through the scene "room" known by name. Throws InputError that lists
@@ -23,6 +23,8 @@ using SyntheticPath = Rigid3d (*)(double t, double duration);
 //             first
 //   circle    a level circle of 0.3 m radius once in 9 s, looking at the desk
 //   still     no motion
+//   walk      straight on at a walking pace, 3 m within 4 s, and back, with a
+//             step's sway: for the scene "corridor"
 //   handheld  swings of arm and hand on all six axes, up to 1.0 m/s and 90
 //             deg/s (0.96 and 87 reached within the first 5 s)
 SyntheticPath FindSyntheticPath(const std::string& name);

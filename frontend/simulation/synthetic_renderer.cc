@@ -33,6 +33,14 @@ float Brightness(const Vector3f& to_lamp) {
   return kAmbient + kLamp * cosine / (1.0f + distance2 / kHalfDistance2);
 }
 
+// The lamp's mirror image on a glossy surface (Blinn 1977): it moves with the
+// camera, which no surface does.
+float Highlight(const Vector3f& to_lamp, const Vector3f& to_camera) {
+  constexpr float kSharpness = 40.0f;
+  const Vector3f half = to_lamp.normalized() + to_camera.normalized();
+  return std::pow(std::max(0.0f, half.normalized().z()), kSharpness);
+}
+
 // Range of an image of one channel.
 void FindRange(const cv::Mat& image, float* min, float* max) {
   double low = 0.0;
@@ -63,16 +71,23 @@ Renderer::Renderer(Scene scene, const Camera& camera)
       rays_y_.at<float>(v, u) = static_cast<float>(ray.y());
     }
   }
-  const cv::Rect image(0, 0, camera.width, camera.height);
-  for (int v = 0; v < camera.height; v += kTileSize) {
-    for (int u = 0; u < camera.width; u += kTileSize) {
+  tiles_ = MakeTiles(kTileSize);
+  band_tiles_ = MakeTiles(kBandRows);
+}
+
+std::vector<Renderer::Tile> Renderer::MakeTiles(int rows) const {
+  const cv::Rect image(0, 0, rays_x_.cols, rays_x_.rows);
+  std::vector<Tile> tiles;
+  for (int v = 0; v < image.height; v += rows) {
+    for (int u = 0; u < image.width; u += kTileSize) {
       Tile tile;
-      tile.pixels = cv::Rect(u, v, kTileSize, kTileSize) & image;
+      tile.pixels = cv::Rect(u, v, kTileSize, rows) & image;
       FindRange(rays_x_(tile.pixels), &tile.min.x(), &tile.max.x());
       FindRange(rays_y_(tile.pixels), &tile.min.y(), &tile.max.y());
-      tiles_.push_back(tile);
+      tiles.push_back(tile);
     }
   }
+  return tiles;
 }
 
 Renderer::NearestFaces Renderer::FindNearest(
@@ -124,30 +139,46 @@ void Renderer::Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
       const Matrix2f slope =
           (h.topLeftCorner<2, 2>() - on_face * h.block<1, 2>(2, 0)) * z;
       const Vector2f footprint = (slope * pixel_.asDiagonal()).rowwise().norm();
-      const float brightness =
-          Brightness(visible.lamp - Vector3f(on_face.x(), on_face.y(), 0.0f));
-      const cv::Vec3f color =
-          Paint(visible.face->material, visible.face->seed,
-                {on_face.x(), on_face.y(), footprint.x(), footprint.y()});
-      out->color.at<cv::Vec3b>(pixel) = color * (255.0f * brightness);
+      const Vector3f point(on_face.x(), on_face.y(), 0.0f);
+      const Material& material = visible.face->material;
+      cv::Vec3f color =
+          Paint(material, visible.face->seed,
+                {on_face.x(), on_face.y(), footprint.x(), footprint.y()}) *
+          (255.0f * Brightness(visible.lamp - point));
+      if (material.gloss > 0.0f) {
+        const float light =
+            Highlight(visible.lamp - point, visible.camera - point);
+        color += cv::Vec3f::all(255.0f * material.gloss * light);
+      }
+      out->color.at<cv::Vec3b>(pixel) = color;
       out->depth.at<float>(pixel) = z;
     }
   }
 }
 
 Rendering Renderer::Render(const Rigid3d& world_from_cam) const {
-  const std::vector<VisibleFace> faces =
-      FindVisibleFaces(scene_, world_from_cam);
+  return Render(std::vector<Rigid3d>{world_from_cam});
+}
+
+Rendering Renderer::Render(const std::vector<Rigid3d>& world_from_cam) const {
+  std::vector<std::vector<VisibleFace>> faces;
+  for (const Rigid3d& pose : world_from_cam) {
+    faces.push_back(FindVisibleFaces(scene_, pose));
+  }
+  const bool has_bands = faces.size() > 1;
+  const std::vector<Tile>& tiles = has_bands ? band_tiles_ : tiles_;
   Rendering out;
   out.color = cv::Mat::zeros(rays_x_.size(), CV_8UC3);
   out.depth = cv::Mat::zeros(rays_x_.size(), CV_32FC1);
-  cv::parallel_for_(cv::Range(0, static_cast<int>(tiles_.size())),
-                    [&](const cv::Range& range) {
-                      for (int i = range.start; i < range.end; ++i) {
-                        Shade(faces, tiles_[i], FindNearest(faces, tiles_[i]),
-                              &out);
-                      }
-                    });
+  cv::parallel_for_(
+      cv::Range(0, static_cast<int>(tiles.size())),
+      [&](const cv::Range& range) {
+        for (int i = range.start; i < range.end; ++i) {
+          const auto& visible =
+              faces[has_bands ? tiles[i].pixels.y / kBandRows : 0];
+          Shade(visible, tiles[i], FindNearest(visible, tiles[i]), &out);
+        }
+      });
   cv::GaussianBlur(out.color, out.color, cv::Size(3, 3), kLensBlur);
   return out;
 }

@@ -27,6 +27,12 @@ class Renderer {
 
   Rendering Render(const Rigid3d& world_from_cam) const;
 
+  // With a pose for each band of kBandRows rows, top down, num_bands() in all:
+  // what a rolling shutter sees.
+  static constexpr int kBandRows = 8;
+  int num_bands() const { return (rays_x_.rows + kBandRows - 1) / kBandRows; }
+  Rendering Render(const std::vector<Rigid3d>& world_from_cam) const;
+
  private:
   // A block of the image and the range of its rays on the plane z = 1.
   struct Tile {
@@ -36,6 +42,7 @@ class Renderer {
   };
   struct NearestFaces;
 
+  std::vector<Tile> MakeTiles(int rows) const;
   NearestFaces FindNearest(const std::vector<VisibleFace>& faces,
                            const Tile& tile) const;
   void Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
@@ -46,6 +53,7 @@ class Renderer {
   cv::Mat rays_y_;
   Eigen::Vector2f pixel_;  // size of a pixel on that plane
   std::vector<Tile> tiles_;
+  std::vector<Tile> band_tiles_;  // none reaches into two bands
 };
 
 }  // namespace rgbd_pose

@@ -124,4 +124,15 @@ Scene MakeRoom(uint32_t seed) {
   return scene;
 }
 
+Scene MakeGlossyRoom(uint32_t seed) {
+  constexpr float kGloss = 0.6f;
+  Scene scene = MakeRoom(seed);
+  for (SceneFace& face : scene.faces) {
+    for (const Material* shiny : {&kWood, &kScreen, &kParquet, &kPoster}) {
+      if (face.material.color == shiny->color) face.material.gloss = kGloss;
+    }
+  }
+  return scene;
+}
+
 }  // namespace rgbd_pose

@@ -5,6 +5,7 @@
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/simulation/synthetic_bare_scenes.h"
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_room.h"
 
@@ -17,7 +18,11 @@ struct NamedScene {
   const char* name;
   Scene (*make)(uint32_t seed);
 };
-constexpr NamedScene kScenes[] = {{"room", MakeRoom}};
+constexpr NamedScene kScenes[] = {{"room", MakeRoom},
+                                  {"plain_room", MakePlainRoom},
+                                  {"glossy_room", MakeGlossyRoom},
+                                  {"corridor", MakeCorridor},
+                                  {"poster_wall", MakePosterWall}};
 
 }  // namespace
 

@@ -43,8 +43,14 @@ void AddBox(const SceneBox& box, bool from_within,
             const std::array<Material, 6>& materials, uint32_t seed,
             Scene* scene);
 
-// A scene known by name; "room" is MakeRoom's. Throws InputError that lists the
-// names for another one. `seed` picks the textures, never the geometry.
+// A scene known by name. Throws InputError that lists the names for another
+// one. `seed` picks the textures, never the geometry.
+//   room         furnished and textured everywhere
+//   plain_room   furnished, of one colour each: edges and shading alone
+//   glossy_room  room with highlights that move with the camera
+//   corridor     40 m along the world's x axis, without texture: nothing tells
+//                how far along it one is
+//   poster_wall  one textured plane: depth tells nothing that it does not
 Scene MakeScene(const std::string& name, uint32_t seed);
 
 // The names of all scenes.

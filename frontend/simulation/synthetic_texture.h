@@ -16,6 +16,7 @@ struct Material {
   float tile_tint = 0.0f;                // spread of their colour
   float glyph = 0.01f;                   // size of one block of a glyph
   float glyph_density = 0.0f;            // share of the surface under words
+  float gloss = 0.0f;                    // height of the lamp's highlight
 };
 
 // Where a pixel meets a surface, in the surface's own axes (m).

@@ -37,6 +37,14 @@ bool FindRange(const SceneFace& face, const Vector3d& camera,
   return corners_in_front > 0;
 }
 
+// A point along u, along v and above the face (m).
+Eigen::Vector3f InFaceAxes(const SceneFace& face, const Vector3d& point) {
+  const Vector3d from_origin = point - face.origin;
+  return Vector3d(face.u_axis.dot(from_origin), face.v_axis.dot(from_origin),
+                  face.normal.dot(from_origin))
+      .cast<float>();
+}
+
 }  // namespace
 
 std::vector<VisibleFace> FindVisibleFaces(const Scene& scene,
@@ -62,10 +70,8 @@ std::vector<VisibleFace> FindVisibleFaces(const Scene& scene,
                   face.v_axis.dot(from_origin) * rows.row(2);
     visible.face = &face;
     visible.face_from_ray = rows.cast<float>();
-    const Vector3d to_lamp = scene.lamp - face.origin;
-    visible.lamp = Vector3d(face.u_axis.dot(to_lamp), face.v_axis.dot(to_lamp),
-                            face.normal.dot(to_lamp))
-                       .cast<float>();
+    visible.lamp = InFaceAxes(face, scene.lamp);
+    visible.camera = InFaceAxes(face, camera);
     faces.push_back(visible);
   }
   return faces;

@@ -15,9 +15,10 @@ namespace rgbd_pose {
 struct VisibleFace {
   const SceneFace* face = nullptr;
   Eigen::Matrix3f face_from_ray;
-  Eigen::Vector3f lamp;  // along u, along v, above the face (m)
-  Eigen::Vector2f min;   // range of the face on the plane z = 1; without end
-  Eigen::Vector2f max;   // where it reaches behind the camera
+  Eigen::Vector3f lamp;    // along u, along v, above the face (m)
+  Eigen::Vector3f camera;  // likewise
+  Eigen::Vector2f min;     // range of the face on the plane z = 1; without end
+  Eigen::Vector2f max;     // where it reaches behind the camera
 };
 
 // The faces of a scene whose front is turned to the camera and which are not

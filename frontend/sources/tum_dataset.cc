@@ -27,6 +27,7 @@ Frame TumDataset::Read(int index) const {
   Frame frame;
   frame.index = index;
   frame.timestamp = pair.timestamp;
+  frame.depth_delay = pair.depth_delay;
   frame.gray =
       ReadGrayImageFile(pair.color_path, keep_color_ ? &frame.color : nullptr);
   frame.depth = ReadDepthImageFile(pair.depth_path);

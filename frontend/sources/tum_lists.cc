@@ -32,6 +32,11 @@ std::string Quote(const TextLine& line) {
   return "'" + text + "'";
 }
 
+ImagePair PairOf(const ListedImage& color, const ListedImage& depth) {
+  return {color.timestamp, depth.timestamp - color.timestamp, color.path,
+          depth.path};
+}
+
 // The lines of a list, each with `columns` words.
 std::vector<TextLine> ReadLines(const std::string& list, size_t columns,
                                 const std::string& wanted) {
@@ -130,7 +135,7 @@ TumLists ReadTumLists(const std::string& folder, double max_time_difference) {
        Associate(Timestamps(color), Timestamps(depth), max_time_difference)) {
     CheckExists((fs::path(folder) / "rgb.txt").string(), color[i]);
     CheckExists((fs::path(folder) / "depth.txt").string(), depth[j]);
-    lists.pairs.push_back({color[i].timestamp, color[i].path, depth[j].path});
+    lists.pairs.push_back(PairOf(color[i], depth[j]));
   }
   if (lists.pairs.empty()) {
     throw InputError(folder + ": no image of rgb.txt is within " +
@@ -165,7 +170,7 @@ TumLists ReadTumAssociations(const std::string& folder,
   CheckTimeOrder(associations_file, color);
   TumLists lists;
   for (size_t i = 0; i < color.size(); ++i) {
-    lists.pairs.push_back({color[i].timestamp, color[i].path, depth[i].path});
+    lists.pairs.push_back(PairOf(color[i], depth[i]));
   }
   return lists;
 }

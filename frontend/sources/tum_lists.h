@@ -7,7 +7,8 @@ namespace rgbd_pose {
 
 // A colour image and its depth image.
 struct ImagePair {
-  double timestamp = 0.0;  // of the colour image, s
+  double timestamp = 0.0;    // of the colour image, s
+  double depth_delay = 0.0;  // of the depth image, s after it
   std::string color_path;
   std::string depth_path;
 };

@@ -20,6 +20,10 @@ namespace fs = std::filesystem;
 
 std::string FormatStamp(double timestamp) { return FixedNumber(timestamp, 6); }
 
+double DepthStamp(const Frame& frame) {
+  return frame.timestamp + frame.depth_delay;
+}
+
 std::string ImagePath(const std::string& kind, double timestamp) {
   return kind + "/" + FormatStamp(timestamp) + ".png";
 }
@@ -39,7 +43,7 @@ void WriteFrames(FrameSource* source, const fs::path& folder,
       [&folder](const Frame& frame) {
         WritePng(folder / ImagePath("rgb", frame.timestamp),
                  frame.color.empty() ? frame.gray : frame.color);
-        WritePng(folder / ImagePath("depth", frame.timestamp), frame.depth);
+        WritePng(folder / ImagePath("depth", DepthStamp(frame)), frame.depth);
         return std::make_unique<const PreparedFrame>(frame);
       },
       std::max(1, options.threads));
@@ -47,10 +51,10 @@ void WriteFrames(FrameSource* source, const fs::path& folder,
   std::string lists[] = {"# timestamp filename\n", "# timestamp filename\n"};
   int done = 0;
   while (const std::optional<StreamedFrame> next = stream.Next()) {
-    const double timestamp = next->frame->timestamp;
+    const double stamps[] = {next->frame->timestamp, DepthStamp(*next->frame)};
     for (int i = 0; i < 2; ++i) {
       lists[i] +=
-          FormatStamp(timestamp) + " " + ImagePath(kinds[i], timestamp) + "\n";
+          FormatStamp(stamps[i]) + " " + ImagePath(kinds[i], stamps[i]) + "\n";
     }
     ++done;
     if (options.progress) options.progress(done);

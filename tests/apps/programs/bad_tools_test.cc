@@ -78,6 +78,13 @@ TEST_F(BadInputTest, Simulate) {
            "the shutter time of a"},
           {"infinite drift", nullptr, "--exposure_drift=inf", 2,
            "exposure_drift of"},
+          {"slow readout", nullptr, "--readout=0.04", 2, "the readout of a"},
+          {"depth of the next frame", nullptr, "--depth_delay=0.02", 2,
+           "the depth delay of a"},
+          {"a shift out of sight", nullptr, "--registration_shift=2", 2,
+           "the registration error of a"},
+          {"a turn that is no number", nullptr, "--registration_turn=nan", 2,
+           "the registration error of a"},
           {"camera", nullptr, "--camera=kinect", 2, "camera 'kinect'"},
       });
 }

@@ -205,6 +205,58 @@ TEST(SyntheticDatasetTest, ExposureChangesColourAlone) {
   EXPECT_LT(gain, 1.36);
 }
 
+TEST(SyntheticDatasetTest, DelayedDepthIsThatOfAnotherTime) {
+  SyntheticOptions options = PathOptions("handheld");
+  options.noise = false;
+  const Frame same_time = SyntheticDataset(options).Read(30);
+  options.rate_hz = 100.0;
+  const SyntheticDataset finer(options);  // the same path, every 10 ms
+  options.rate_hz = 30.0;
+  for (const double delay : {0.01, -0.01}) {
+    options.depth_delay_s = delay;
+    const SyntheticDataset dataset(options);
+    const Frame frame = dataset.Read(30);
+    EXPECT_EQ(frame.timestamp, same_time.timestamp);
+    EXPECT_EQ(frame.depth_delay, delay);
+    EXPECT_EQ(Difference(frame.color, same_time.color), 0.0);
+    EXPECT_GT(Difference(frame.depth, same_time.depth), 1000.0);
+    const Frame then = finer.Read(delay > 0.0 ? 101 : 99);
+    EXPECT_LE(Difference(frame.depth, then.depth), 1.0);  // time is rounded
+  }
+}
+
+TEST(SyntheticDatasetTest, RegistrationErrorMovesPoints) {
+  SyntheticOptions options = PathOptions("xyz");
+  options.noise = false;
+  const Frame exact = SyntheticDataset(options).Read(0);
+  const Rigid3d error(
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.02, Vector3d(0.0, 1.0, 0.0))),
+      {0.01, 0.0, 0.0});
+  options.registration_error = error;
+  const SyntheticDataset dataset(options);
+  const Frame frame = dataset.Read(0);
+  EXPECT_EQ(Difference(frame.color, exact.color), 0.0);
+  const Camera& camera = dataset.camera().camera;
+  int seen = 0;
+  int agree = 0;
+  for (int v = 4; v < camera.height; v += 9) {
+    for (int u = 4; u < camera.width; u += 9) {
+      const Vector3d moved =
+          error * camera.Unproject({u, v}, exact.DepthAt(u, v));
+      const Vector2d pixel = camera.Project(moved);
+      if (!camera.Contains(pixel, 1.0)) continue;
+      EXPECT_GT(pixel.x(), u + 8.0);  // 0.02 rad are 10.5 px
+      ++seen;
+      const double depth =
+          frame.DepthAt(static_cast<int>(std::lround(pixel.x())),
+                        static_cast<int>(std::lround(pixel.y())));
+      agree += std::abs(depth - moved.z()) < 0.01;
+    }
+  }
+  ASSERT_GT(seen, 2500);
+  EXPECT_GT(agree, 0.95 * seen);  // the rest lies at depth edges
+}
+
 TEST(SyntheticDatasetTest, RefusesOptionsWithoutSense) {
   SyntheticOptions options;
   options.frames = 0;
@@ -226,6 +278,19 @@ TEST(SyntheticDatasetTest, RefusesOptionsWithoutSense) {
     options.exposure_s = bad;
     EXPECT_THROW(SyntheticDataset{options}, InputError) << bad;
   }
+  for (const double bad : {-0.001, 0.034, std::nan("")}) {
+    options = {};
+    options.readout_s = bad;
+    EXPECT_THROW(SyntheticDataset{options}, InputError) << bad;
+  }
+  for (const double bad : {-0.017, 0.017, std::nan("")}) {
+    options = {};
+    options.depth_delay_s = bad;
+    EXPECT_THROW(SyntheticDataset{options}, InputError) << bad;
+  }
+  options = {};
+  options.registration_error.translation.x() = std::nan("");
+  EXPECT_THROW(SyntheticDataset{options}, InputError);
   for (const double bad : {-0.1, 1.1, std::nan("")}) {
     options = {};
     options.exposure_drift = bad;

@@ -71,6 +71,32 @@ TEST(SyntheticExposureTest, BlurIsTheMeanAroundTheMiddle) {
   EXPECT_GT(difference(kMiddle - kShutter), 3.0 * centred);
 }
 
+TEST(SyntheticExposureTest, ReadoutShowsEachBandAtItsTime) {
+  const Renderer renderer = RoomRenderer();
+  constexpr double kMiddle = 1.0;    // s; fast there
+  constexpr double kReadout = 0.03;  // s
+  const Rendering rolled =
+      Expose(renderer, kFocal, Handheld, kMiddle, {0.0, 1.0, kReadout});
+  const Rendering instant = renderer.Render(Handheld(kMiddle));
+  const int bands = renderer.num_bands();
+  ASSERT_EQ(bands, 15);
+  for (int band = 0; band < bands; ++band) {
+    const cv::Range rows(band * Renderer::kBandRows,
+                         (band + 1) * Renderer::kBandRows);
+    const double time = kMiddle + ((band + 0.5) / bands - 0.5) * kReadout;
+    const cv::Mat then = renderer.Render(Handheld(time)).depth.rowRange(rows);
+    // A pixel or two at edges, where faces overlap.
+    EXPECT_LE(cv::countNonZero(then != rolled.depth.rowRange(rows)), 2) << band;
+    const int moved = cv::countNonZero(instant.depth.rowRange(rows) !=
+                                       rolled.depth.rowRange(rows));
+    if (band == bands / 2) {
+      EXPECT_LE(moved, 2);
+    } else {
+      EXPECT_GT(moved, 500) << band;
+    }
+  }
+}
+
 TEST(SyntheticExposureTest, AStillCameraBlursNothing) {
   const Renderer renderer = RoomRenderer();
   const auto still = [](double) { return Handheld(1.0); };

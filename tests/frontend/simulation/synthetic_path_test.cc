@@ -157,8 +157,9 @@ TEST(SyntheticPathTest, UnknownNameListsTheNames) {
     FAIL() << "no error";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("spiral"));
-    EXPECT_THAT(error.what(),
-                testing::HasSubstr("xyz, pan_tilt, circle, still, handheld"));
+    EXPECT_THAT(
+        error.what(),
+        testing::HasSubstr("xyz, pan_tilt, circle, still, walk, handheld"));
   }
 }
 

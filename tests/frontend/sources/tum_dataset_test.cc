@@ -100,6 +100,16 @@ TEST_F(TumDatasetTest, TakesAssociationsInEitherOrder) {
   ExpectFrames(TumDataset(options_));
 }
 
+TEST_F(TumDatasetTest, SaysHowMuchLaterDepthIs) {
+  UseAssociations(
+      "1.005 depth/0.png 1.00 rgb/0.png\n"
+      "1.039 depth/1.png 1.04 rgb/1.jpg\n");
+  const TumDataset dataset(options_);
+  constexpr double kRounding = 1e-9;  // s
+  EXPECT_NEAR(dataset.Read(0).depth_delay, 0.005, kRounding);
+  EXPECT_NEAR(dataset.Read(1).depth_delay, -0.001, kRounding);
+}
+
 TEST_F(TumDatasetTest, TellsAssociatedImagesApartByLookingAtThem) {
   std::filesystem::rename(folder_ / "depth", folder_ / "d");
   UseAssociations("1.00 rgb/0.png 1.005 d/0.png\n");

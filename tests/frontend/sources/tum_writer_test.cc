@@ -82,6 +82,20 @@ TEST_F(TumWriterTest, ReadsBackAsWritten) {
   }
 }
 
+TEST_F(TumWriterTest, DepthHasItsOwnTime) {
+  options_.depth_delay_s = -0.0125;
+  Write(folder_.string());
+  SourceOptions options;
+  options.path = folder_.string();
+  options.camera = options_.camera;
+  const TumDataset read(options);
+  ASSERT_EQ(read.size(), 4);
+  for (int i = 0; i < read.size(); ++i) {
+    EXPECT_EQ(read.timestamp(i), SyntheticDataset(options_).timestamp(i));
+    EXPECT_NEAR(read.Read(i).depth_delay, -0.0125, 1e-6);  // the text's digits
+  }
+}
+
 TEST_F(TumWriterTest, CameraReadsBackExactly) {
   Write(folder_.string());
   const RgbdCamera camera = ReadCameraFile((folder_ / "camera.yaml").string());
