@@ -162,6 +162,10 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        "for among earlier references in any case but stop",
        ByName(kLostPolicies, "policy", &odometry->on_lost),
        NamesOf(kLostPolicies)},
+      {"ignore_stamp_offset", kTracking,
+       "take depth as measured at the time of colour, whatever its time stamp "
+       "says",
+       &odometry->ignore_stamp_offset},
       {"new_segment_after", kTracking,
        "how long (s) the old segment is searched for before a new one starts",
        &odometry->new_segment_after},

@@ -22,7 +22,7 @@ struct Setting {
   const char* name;        // as users write it
   std::string_view group;  // of those that belong together
   const char* help;        // what it means, with its unit
-  std::variant<int*, double*, NamedSetting> value;
+  std::variant<int*, double*, bool*, NamedSetting> value;
   std::vector<std::string> choices = {};  // the names there are, if by name
 };
 

@@ -35,8 +35,9 @@ std::unique_ptr<SharedOdometry> MakeSharedOdometry(const RgbdCamera& camera,
 
 TrackedFrame Track(SharedOdometry* odometry, const py::object& image,
                    const py::object& depth, std::optional<double> timestamp,
-                   const py::object& motion_guess) {
+                   const py::object& motion_guess, double depth_delay) {
   Frame frame = FrameFromArrays(image, depth, odometry->camera());
+  frame.depth_delay = depth_delay;
   std::optional<Rigid3d> guess;
   if (!motion_guess.is_none()) {
     guess = RigidFromArray(motion_guess, "motion_guess");
@@ -173,13 +174,14 @@ depth: (height, width), registered to the image: uint16 in raw units
 timestamp: s, later than that of the frame before; None: 1/30 s after it.
 motion_guess: (4, 4) cur_from_prev since the frame before, if something else
     tells; tried first, believed only as far as the images agree.
+depth_delay: how much later than the image depth was measured, s.
 
 Both images are copied: what becomes of the arrays afterwards does not matter.
 A frame that is lost is a status; images of a wrong shape or type raise
 InputError and count as no frame.)",
            py::arg("image"), py::arg("depth"),
            py::arg("timestamp") = py::none(),
-           py::arg("motion_guess") = py::none())
+           py::arg("motion_guess") = py::none(), py::arg("depth_delay") = 0.0)
       .def_property_readonly(
           "trajectory",
           [](SharedOdometry* self) {
@@ -221,6 +223,8 @@ void BindTumDataset(py::module_* module) {
   py::class_<Frame>(*module, "Frame", "One RGB-D image pair of a sequence.")
       .def_readonly("index", &Frame::index, "place in its dataset, from 0")
       .def_readonly("timestamp", &Frame::timestamp, "of the colour image, s")
+      .def_readonly("depth_delay", &Frame::depth_delay,
+                    "of the depth image, s after the colour image")
       .def_property_readonly(
           "gray",
           [](const py::object& self) {

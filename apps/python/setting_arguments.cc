@@ -22,6 +22,9 @@ Argument ArgumentOf(const Setting& setting) {
   if (double* const* real = std::get_if<double*>(&setting.value)) {
     return {"float", py::float_(**real)};
   }
+  if (bool* const* yes = std::get_if<bool*>(&setting.value)) {
+    return {"bool", py::bool_(**yes)};
+  }
   return {"str", py::str(std::get<NamedSetting>(setting.value).get())};
 }
 
@@ -30,6 +33,8 @@ void Set(const Setting& setting, const py::handle& value) {
     **whole = value.cast<int>();
   } else if (double* const* real = std::get_if<double*>(&setting.value)) {
     **real = value.cast<double>();
+  } else if (bool* const* yes = std::get_if<bool*>(&setting.value)) {
+    **yes = value.cast<bool>();
   } else {
     std::get<NamedSetting>(setting.value).set(value.cast<std::string>());
   }

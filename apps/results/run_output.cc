@@ -89,7 +89,9 @@ void RunOutput::Add(const Frame& frame, const OdometryRun& run) {
                     run.odometry());
   }
   if (cloud_.has_value() && cloud_->Wants(tracked)) {
-    cloud_->Add(frame, tracked.world_from_cam);
+    Frame seen = frame;
+    seen.depth = run.odometry().last_depth();
+    cloud_->Add(seen, tracked.world_from_cam);
   }
 }
 

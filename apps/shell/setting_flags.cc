@@ -26,6 +26,8 @@ SettingFlags::SettingFlags(const std::vector<std::vector<Setting>>& tables) {
       Register(setting, *whole, &default_ints_);
     } else if (double* const* real = std::get_if<double*>(&setting.value)) {
       Register(setting, *real, &default_doubles_);
+    } else if (bool* const* yes = std::get_if<bool*>(&setting.value)) {
+      Register(setting, *yes, &default_bools_);
     } else {
       names_.back() = std::get<NamedSetting>(setting.value).get();
       Register(setting, &names_.back(), &default_names_);

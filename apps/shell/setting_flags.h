@@ -29,6 +29,7 @@ class SettingFlags {
   std::deque<std::string> default_names_;
   std::deque<int> default_ints_;
   std::deque<double> default_doubles_;
+  std::deque<bool> default_bools_;
 };
 
 }  // namespace rgbd_pose

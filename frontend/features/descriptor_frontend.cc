@@ -27,6 +27,9 @@ struct DescribedFeatures : FeatureSet {
 
 struct DescribedFrame final : PreparedFrame {
   using PreparedFrame::PreparedFrame;
+  std::unique_ptr<PreparedFrame> Copy() const override {
+    return std::make_unique<DescribedFrame>(*this);
+  }
 
   DescribedKeypoints described;
 };

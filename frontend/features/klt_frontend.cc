@@ -20,6 +20,9 @@ struct KltFrame final : PreparedFrame {
     cv::buildOpticalFlowPyramid(gray, pyramid, kWindow, kMaxLevel,
                                 with_derivatives);
   }
+  std::unique_ptr<PreparedFrame> Copy() const override {
+    return std::make_unique<KltFrame>(*this);
+  }
 
   std::vector<cv::Mat> pyramid;
 };

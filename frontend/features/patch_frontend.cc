@@ -55,6 +55,9 @@ struct PatchFrame final : PreparedFrame {
   explicit PatchFrame(const Frame& frame) : PreparedFrame(frame) {
     BuildImagePyramid(gray, kLevels, &pyramid);
   }
+  std::unique_ptr<PreparedFrame> Copy() const override {
+    return std::make_unique<PatchFrame>(*this);
+  }
 
   std::vector<cv::Mat> pyramid;
 };

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <opencv2/core.hpp>
 
 namespace rgbd_pose {
@@ -30,11 +31,18 @@ struct Frame {
 
 // A frame with what whoever tracks it needs of it alone (a pyramid, say): made
 // by the frontend that is to use it, which knows what has been added. It shares
-// the images, which must stay as they are for as long as it is in use.
+// the images, which must stay as they are for as long as it is in use. Nothing
+// of depth is prepared: that is moved to the time of colour once the motion is
+// known.
 struct PreparedFrame : Frame {
   // With nothing added yet.
   explicit PreparedFrame(const Frame& frame) : Frame(frame) {}
   virtual ~PreparedFrame() = default;
+
+  // One of the same type, that shares the images.
+  virtual std::unique_ptr<PreparedFrame> Copy() const {
+    return std::make_unique<PreparedFrame>(*this);
+  }
 };
 
 }  // namespace rgbd_pose

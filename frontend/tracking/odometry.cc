@@ -16,6 +16,10 @@ namespace {
 constexpr double kMinReturnShare = 0.7;
 constexpr double kMaxReturnFlow = 0.5;
 
+// Where both frames have stamp offsets that differ, what they make of a motion
+// may be as far off as the motion, the other way: half of that each time.
+constexpr int kFirstRounds = 3;
+
 }  // namespace
 
 std::string OdometryOptions::Check() const {
@@ -38,7 +42,8 @@ Odometry::Odometry(const OdometryOptions& options,
       tracker_(std::move(tracker)),
       relocaliser_(tracker_->images().camera, tracker_->images().DepthLookup()),
       tracked_(tracker_->images().camera),
-      other_(tracked_) {
+      other_(tracked_),
+      stamp_offset_(tracker_->images().camera) {
   const std::string error = options.Check();
   if (!error.empty()) throw InputError("odometry: " + error);
 }
@@ -70,6 +75,9 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   TrackedFrame result;
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;
+  interval_ = result.index > 0 ? frame.timestamp - timestamp_ : 0.0;
+  timestamp_ = frame.timestamp;
+  depth_ = frame.depth;
   {
     const StageTimer timer(&result.track_ms);
     std::optional<Prediction> predicted;
@@ -113,25 +121,46 @@ void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
 
 // First from the last pose. A constant velocity is only a second try: as the
 // first it can lock onto its own false motion.
-bool Odometry::Follow(const PreparedFrame& frame, const Prediction* prediction,
-                      TrackedFrame* result) {
+bool Odometry::Follow(const PreparedFrame& measured,
+                      const Prediction* prediction, TrackedFrame* result) {
   const Rigid3d last = cur_from_ref_;
   const Rigid3d predicted = cur_from_prev_ * last;
   const Rigid3d first = options_.predict_velocity ? predicted : last;
   const Rigid3d second = options_.predict_velocity ? last : predicted;
-  const bool tracked =
-      (prediction != nullptr &&
-       Try(frame, *reference_, prediction->cur_from_ref, result,
-           prediction->is_certain ? &prediction->covariance : nullptr)) ||
-      Try(frame, *reference_, first, result) ||
-      Try(frame, *reference_, second, result);
+  const auto track = [&](const PreparedFrame& frame) {
+    return (prediction != nullptr &&
+            Try(frame, *reference_, prediction->cur_from_ref, result,
+                prediction->is_certain ? &prediction->covariance : nullptr)) ||
+           Try(frame, *reference_, first, result) ||
+           Try(frame, *reference_, second, result);
+  };
+  auto moved = AtColorTime(
+      measured, prediction == nullptr
+                    ? recent_motion_
+                    : RecentMotion(prediction->cur_from_prev, interval_));
+  bool tracked = track(moved == nullptr ? measured : *moved);
+  // Once more where it matters, since the motion is now known better.
+  const int rounds = early_reference_.has_value() ? kFirstRounds : 1;
+  Rigid3d motion = tracked_.estimate.cur_from_prev * last.Inverse();
+  for (int round = 0; tracked && !is_lost_ && round < rounds; ++round) {
+    const bool has_mended = MendReference(RecentMotion(motion, interval_));
+    auto better = AtColorTime(measured, RecentMotion(motion, interval_));
+    if (better != nullptr) moved = std::move(better);
+    if (!has_mended && moved == nullptr) break;
+    tracked = track(moved == nullptr ? measured : *moved);
+    const Rigid3d found = tracked_.estimate.cur_from_prev * last.Inverse();
+    motion = motion * RecentMotion(motion.Inverse() * found, 1.0).During(0.5);
+  }
+  early_reference_.reset();
   // A doubtful pose is no way back from being lost.
   if (!tracked || (is_lost_ && result->status != TrackingStatus::kOk)) {
     return false;
   }
   TakeMotion(result);
   cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
-  Accept(frame, result);
+  recent_motion_ =
+      is_lost_ ? RecentMotion() : RecentMotion(cur_from_prev_, interval_);
+  Accept(moved == nullptr ? measured : *moved, result);
   return true;
 }
 
@@ -151,6 +180,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   segment_ = keyframe->segment;
   TakeMotion(result);
   cur_from_prev_ = Rigid3d();
+  recent_motion_ = RecentMotion();
   result->relocalised = true;
   Accept(frame, result);
   return true;
@@ -161,6 +191,7 @@ void Odometry::Lose(const PreparedFrame& frame, const Prediction* prediction,
   // One frame that nobody tells of, and the way since is no longer known.
   is_predicted_ = prediction != nullptr && (is_predicted_ || !is_lost_);
   is_lost_ = true;
+  recent_motion_ = RecentMotion();
   result->status = TrackingStatus::kLost;
   result->is_predicted = is_predicted_;
   if (prediction != nullptr) {
@@ -224,8 +255,28 @@ void Odometry::TakeMotion(TrackedFrame* result) {
 void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
+  depth_ = frame.depth;
   tracker_->Believe(reference_->reference.get(), &tracked_);
   if (NeedsNewReference()) ChangeReference(frame, result);
+}
+
+std::unique_ptr<const PreparedFrame> Odometry::AtColorTime(
+    const PreparedFrame& frame, const RecentMotion& motion) {
+  if (options_.ignore_stamp_offset) return nullptr;
+  return stamp_offset_.Undo(frame, motion);
+}
+
+bool Odometry::MendReference(const RecentMotion& motion) {
+  if (!early_reference_.has_value()) return false;
+  const auto measured = Prepare(*early_reference_);
+  const auto moved = AtColorTime(*measured, motion);
+  if (moved == nullptr) return false;
+  std::string why_not;
+  auto mended = tracker_->MakeReference(*moved, nullptr, nullptr, &why_not);
+  if (mended == nullptr) return false;
+  reference_->reference = std::move(mended);
+  reference_->place = std::make_unique<Place>(*moved, reference_->id);
+  return true;
 }
 
 bool Odometry::NeedsNewReference() const {
@@ -282,6 +333,13 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   reference_ = keyframes_.Add(
       {result->index, segment_, world_from_cam, std::move(reference),
        std::make_unique<Place>(frame, result->index), result->edges});
+  early_reference_.reset();
+  if (HasStampOffset(frame) && !options_.ignore_stamp_offset) {
+    early_reference_ = frame;
+    early_reference_->gray = frame.gray.clone();
+    early_reference_->depth = frame.depth.clone();
+    early_reference_->color.release();
+  }
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   result->is_reference = true;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "core/estimation/estimator.h"
@@ -8,6 +9,7 @@
 #include "frontend/features/frontend.h"
 #include "frontend/places/relocaliser.h"
 #include "frontend/tracking/keyframes.h"
+#include "frontend/tracking/stamp_offset.h"
 #include "frontend/tracking/tracked_frame.h"
 #include "frontend/tracking/tracker.h"
 
@@ -36,6 +38,10 @@ struct OdometryOptions {
 
   // What becomes of frames whose motion is not found.
   LostPolicy on_lost = LostPolicy::kNewSegment;
+
+  // Depth is taken as measured at the time of colour, whatever its stamp says;
+  // otherwise it is moved to that time by the motion just found.
+  bool ignore_stamp_offset = false;
 
   // How long (s) the old segment is searched for before a new one starts.
   double new_segment_after = 1.5;
@@ -91,6 +97,10 @@ class Odometry {
   const FeatureMatches& last_matches() const { return tracked_.matches; }
   const MotionEstimate& last_estimate() const { return tracked_.estimate; }
 
+  // The depth image of the last frame as it was tracked by: moved to the time
+  // of its colour image, if that is another one. Good until the next frame.
+  const cv::Mat& last_depth() const { return depth_; }
+
  private:
   // What a motion guess makes of the last pose.
   struct Prediction {
@@ -104,6 +114,12 @@ class Odometry {
   void Start(const PreparedFrame& frame, TrackedFrame* result);
   bool Follow(const PreparedFrame& frame, const Prediction* prediction,
               TrackedFrame* result);
+  // With depth moved to the time of colour; null where there is nothing to do
+  // (see StampOffset).
+  std::unique_ptr<const PreparedFrame> AtColorTime(const PreparedFrame& frame,
+                                                   const RecentMotion& motion);
+  // Makes the reference anew if it was made before any motion was known.
+  bool MendReference(const RecentMotion& motion);
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
   void Lose(const PreparedFrame& frame, const Prediction* prediction,
             TrackedFrame* result);
@@ -138,7 +154,14 @@ class Odometry {
   int num_frames_ = 0;
   Rigid3d cur_from_ref_;                            // of the last frame
   MotionMatrix covariance_ = MotionMatrix::Zero();  // of cur_from_ref_
-  Rigid3d cur_from_prev_;  // between the last two frames
+  Rigid3d cur_from_prev_;       // between the last two frames
+  RecentMotion recent_motion_;  // as far as it was found
+  double timestamp_ = 0.0;      // of the last frame, s
+  double interval_ = 0.0;       // since the one before, s
+  StampOffset stamp_offset_;
+  // The last frame, if it became the reference with a stamp offset.
+  std::optional<Frame> early_reference_;
+  cv::Mat depth_;  // see last_depth
   int segment_ = 0;
   double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
   bool is_lost_ = false;

@@ -54,6 +54,31 @@ def test_tracks_as_the_program_does(
     ).read_bytes()
 
 
+def test_depth_of_another_time_is_moved(tmp_path):
+    folder = tmp_path / "late"
+    run_program(
+        "rgbd_simulate", "--path=handheld", "--frames=4",
+        "--depth_delay=0.015", f"--output={folder}",
+    )
+    camera = rgbd_pose.Camera.load(folder / "camera.yaml")
+    frames = list(rgbd_pose.TumDataset(folder, camera))
+
+    def last_pose(delays, **settings):
+        odometry = rgbd_pose.Odometry(camera, **settings)
+        for frame, delay in zip(frames, delays):
+            pose = odometry.track(
+                frame.gray, frame.depth, frame.timestamp, depth_delay=delay
+            ).world_from_cam
+        return pose
+
+    delays = [frame.depth_delay for frame in frames]
+    assert delays == pytest.approx([0.015] * 4, abs=1e-6)
+    as_it_comes = last_pose([0.0] * 4)
+    ignored = last_pose(delays, ignore_stamp_offset=True)
+    assert np.array_equal(ignored, as_it_comes)
+    assert np.abs(last_pose(delays) - as_it_comes).max() > 1e-4
+
+
 def test_settings_are_those_of_the_program(
     sequence, dataset, camera, tmp_path
 ):

@@ -223,6 +223,7 @@ class Odometry:
         tracker: str = "features",
         initial_guess: str = "last",
         on_lost: str = "new_segment",
+        ignore_stamp_offset: bool = False,
         new_segment_after: float = 1.5,
         guess_sigma_rotation: float = 0.01,
         guess_sigma_translation: float = 0.01,
@@ -242,6 +243,7 @@ class Odometry:
         ],
         timestamp: Optional[float] = None,
         motion_guess: Optional[ArrayLike] = None,
+        depth_delay: float = 0.0,
     ) -> TrackedFrame: ...
     @property
     def trajectory(self) -> Tuple[_Floats, _Floats]: ...  # (N,), (N, 4, 4)
@@ -252,6 +254,8 @@ class Frame:
     def index(self) -> int: ...
     @property
     def timestamp(self) -> float: ...
+    @property
+    def depth_delay(self) -> float: ...  # of depth, s after the colour image
     @property
     def gray(self) -> NDArray[np.uint8]: ...  # (height, width)
     @property

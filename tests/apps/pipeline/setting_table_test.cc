@@ -34,6 +34,8 @@ TEST(SettingTableTest, EveryRowIsAPlaceOfItsOwn) {
       EXPECT_TRUE(places.insert(*whole).second) << row.name;
     } else if (double* const* real = std::get_if<double*>(&row.value)) {
       EXPECT_TRUE(places.insert(*real).second) << row.name;
+    } else if (bool* const* yes = std::get_if<bool*>(&row.value)) {
+      EXPECT_TRUE(places.insert(*yes).second) << row.name;
     }
   }
 }

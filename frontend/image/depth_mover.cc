@@ -1,0 +1,311 @@
+#include "frontend/image/depth_mover.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <opencv2/core/hal/intrin.hpp>
+
+#include "core/util/floor.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kBlock = 8;  // px; the flow is the same all over a block
+
+// Within a block, and from one try to the next, this much (px) is the same
+// place.
+constexpr float kSamePlacePx = 0.5F;
+
+// Neighbours that differ by more than this part of the nearer one lie on two
+// surfaces: 1.6 % is 4 sigmas of a Kinect at 3 m, and the step from pixel to
+// pixel on a surface seen at 83 degrees.
+constexpr int kMaxStepShift = 6;  // 2^-6
+
+// None of them may be 0, unless all are.
+bool IsOneSurface(uint16_t a, uint16_t b, uint16_t c, uint16_t d) {
+  const uint16_t low = std::min(std::min(a, b), std::min(c, d));
+  const uint16_t high = std::max(std::max(a, b), std::max(c, d));
+  return static_cast<uint16_t>(high - low) <=
+         static_cast<uint16_t>(low >> kMaxStepShift);
+}
+
+float Between(uint16_t a, uint16_t b, uint16_t c, uint16_t d, float right,
+              float down) {
+  const float top = a + right * static_cast<float>(b - a);
+  const float bottom = c + right * static_cast<float>(d - c);
+  return top + down * (bottom - top);
+}
+
+// How eight neighbours move alike: where between the pixels they were, and what
+// has to be done to their depths.
+struct EightMoves {
+  float right, down, scale, offset;
+};
+
+// Sample and Encode for eight pixels at once, of the upper and the lower row
+// and of the one of them and the column that are nearer.
+void MoveEight(const uint16_t* top, const uint16_t* bottom,
+               const uint16_t* nearest, const EightMoves& by, uint16_t* to) {
+  static_assert(kBlock == cv::v_uint16x8::nlanes);
+  const cv::v_uint16x8 a = cv::v_load(top);
+  const cv::v_uint16x8 b = cv::v_load(top + 1);
+  const cv::v_uint16x8 c = cv::v_load(bottom);
+  const cv::v_uint16x8 d = cv::v_load(bottom + 1);
+  const cv::v_uint16x8 near = cv::v_load(nearest);
+  const cv::v_uint16x8 low = cv::v_min(cv::v_min(a, b), cv::v_min(c, d));
+  const cv::v_uint16x8 high = cv::v_max(cv::v_max(a, b), cv::v_max(c, d));
+  const cv::v_uint16x8 is_one = (high - low) <= (low >> kMaxStepShift);
+
+  const cv::v_float32x4 right = cv::v_setall_f32(by.right);
+  const cv::v_float32x4 down = cv::v_setall_f32(by.down);
+  const cv::v_float32x4 scale = cv::v_setall_f32(by.scale);
+  const cv::v_float32x4 offset = cv::v_setall_f32(by.offset);
+  const auto halves = [](const cv::v_uint16x8& raw) {
+    std::array<cv::v_uint32x4, 2> whole;
+    cv::v_expand(raw, whole[0], whole[1]);
+    return std::array<cv::v_float32x4, 2>{
+        cv::v_cvt_f32(cv::v_reinterpret_as_s32(whole[0])),
+        cv::v_cvt_f32(cv::v_reinterpret_as_s32(whole[1]))};
+  };
+  const auto encode = [&](const std::array<cv::v_float32x4, 2>& raw) {
+    return cv::v_pack_u(cv::v_round(cv::v_muladd(raw[0], scale, offset)),
+                        cv::v_round(cv::v_muladd(raw[1], scale, offset)));
+  };
+  const auto fa = halves(a), fb = halves(b), fc = halves(c), fd = halves(d);
+  std::array<cv::v_float32x4, 2> between;
+  for (int i = 0; i < 2; ++i) {
+    const cv::v_float32x4 above = cv::v_muladd(fb[i] - fa[i], right, fa[i]);
+    const cv::v_float32x4 below = cv::v_muladd(fd[i] - fc[i], right, fc[i]);
+    between[i] = cv::v_muladd(below - above, down, above);
+  }
+  const cv::v_uint16x8 moved =
+      cv::v_select(is_one, encode(between), encode(halves(near)));
+  const cv::v_uint16x8 most = cv::v_setall_u16(Frame::kNoDepth - 1);
+  const cv::v_uint16x8 none = near == cv::v_setzero_u16();
+  cv::v_store(to, cv::v_min(moved, most) & ~none);
+}
+
+// In raw units; what does not fit is unknown.
+uint16_t Encode(float raw) {
+  return raw > 0.0F && raw < static_cast<float>(Frame::kNoDepth)
+             ? static_cast<uint16_t>(raw + 0.5F)
+             : 0;
+}
+
+}  // namespace
+
+DepthMover::DepthMover(const Camera& camera)
+    : camera_(camera),
+      columns_((camera.width + kBlock - 1) / kBlock),
+      rows_((camera.height + kBlock - 1) / kBlock),
+      ranges_(static_cast<size_t>(columns_) * rows_) {
+  constexpr double kMiddle = (kBlock - 1) / 2.0;
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      rays_.push_back(camera.Unproject(
+          {column * kBlock + kMiddle, row * kBlock + kMiddle}, 1.0));
+    }
+  }
+}
+
+const cv::Mat& DepthMover::Move(const Frame& frame,
+                                const Rigid3d& moved_from_measured) {
+  frame.depth.copyTo(measured_);
+  measured_.setTo(0, measured_ == Frame::kNoDepth);
+  moved_.create(measured_.size(), CV_16UC1);
+  depth_scale_ = frame.depth_scale;
+  FindRanges();
+  const Rigid3d measured_from_moved = moved_from_measured.Inverse();
+  advance_ =
+      static_cast<float>(measured_from_moved.translation.z() * depth_scale_);
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      const cv::Rect block = BlockAt(column, row);
+      const Flow flow = FlowAt(static_cast<size_t>(row) * columns_ + column,
+                               measured_from_moved);
+      const Range range = RangeAround(column, row, flow);
+      if (range.min > range.max) {
+        moved_(block).setTo(0);
+        continue;
+      }
+      const auto units = static_cast<float>(depth_scale_);
+      const float nearest = units / range.min;
+      const float farthest = units / range.max;
+      const float shift =
+          std::max(std::abs(flow.shift_u), std::abs(flow.shift_v));
+      if (shift * (nearest - farthest) > kSamePlacePx) {
+        MoveEach(block, flow, range, &moved_);
+        continue;
+      }
+      const float middle = 0.5F * (nearest + farthest);
+      MoveTogether(block, flow, flow.turn_u + middle * flow.shift_u,
+                   flow.turn_v + middle * flow.shift_v, &moved_);
+    }
+  }
+  return moved_;
+}
+
+cv::Rect DepthMover::BlockAt(int column, int row) const {
+  return cv::Rect(column * kBlock, row * kBlock, kBlock, kBlock) &
+         cv::Rect(0, 0, camera_.width, camera_.height);
+}
+
+// Of columns first: the compiler makes vectors of that.
+void DepthMover::FindRanges() {
+  for (int row = 0; row < rows_; ++row) {
+    // One less and wrapped around: no depth is the largest number.
+    column_min_.assign(measured_.cols, Frame::kNoDepth);
+    column_max_.assign(measured_.cols, 0);
+    const int end = std::min((row + 1) * kBlock, measured_.rows);
+    for (int v = row * kBlock; v < end; ++v) {
+      const auto* raw = measured_.ptr<uint16_t>(v);
+      for (int u = 0; u < measured_.cols; ++u) {
+        const auto less = static_cast<uint16_t>(raw[u] - 1);
+        column_min_[u] = std::min(column_min_[u], less);
+        column_max_[u] = std::max(column_max_[u], raw[u]);
+      }
+    }
+    for (int column = 0; column < columns_; ++column) {
+      const int u = column * kBlock;
+      const int size = std::min(kBlock, measured_.cols - u);
+      const auto low = column_min_.begin() + u;
+      const auto high = column_max_.begin() + u;
+      const int min = *std::min_element(low, low + size) + 1;
+      const uint16_t max = *std::max_element(high, high + size);
+      ranges_[static_cast<size_t>(row) * columns_ + column] = {
+          static_cast<uint16_t>(max == 0 ? 1 : min), max};
+    }
+  }
+}
+
+DepthMover::Flow DepthMover::FlowAt(size_t block,
+                                    const Rigid3d& measured_from_moved) const {
+  constexpr double kInverseDepth = 0.5;  // 1/m, that of a thing in a room
+  const Eigen::Vector2d pixel = camera_.Project(rays_[block]);
+  const Eigen::Vector3d turned = measured_from_moved.rotation * rays_[block];
+  const Eigen::Vector2d turn = camera_.Project(turned) - pixel;
+  const Eigen::Vector2d both =
+      camera_.Project(turned +
+                      kInverseDepth * measured_from_moved.translation) -
+      pixel;
+  const Eigen::Vector2d shift = (both - turn) / kInverseDepth;
+  return {static_cast<float>(turn.x()), static_cast<float>(turn.y()),
+          static_cast<float>(shift.x()), static_cast<float>(shift.y()),
+          static_cast<float>(turned.z())};
+}
+
+// Of all blocks that pixels of a block may come from, at any depth.
+DepthMover::Range DepthMover::RangeAround(int column, int row,
+                                          const Flow& flow) const {
+  constexpr float kMaxInverseDepth = 2.0F;  // 1/m
+  const auto first = [](float turn, float shift) {
+    return static_cast<int>(
+        std::floor((turn + std::min(0.0F, kMaxInverseDepth * shift)) / kBlock));
+  };
+  const auto last = [](float turn, float shift) {
+    return static_cast<int>(
+        std::ceil((turn + std::max(0.0F, kMaxInverseDepth * shift)) / kBlock));
+  };
+  Range range = {1, 0};
+  const int end_v = std::min(row + last(flow.turn_v, flow.shift_v), rows_ - 1);
+  const int end_u =
+      std::min(column + last(flow.turn_u, flow.shift_u), columns_ - 1);
+  for (int v = std::max(row + first(flow.turn_v, flow.shift_v), 0); v <= end_v;
+       ++v) {
+    for (int u = std::max(column + first(flow.turn_u, flow.shift_u), 0);
+         u <= end_u; ++u) {
+      const Range& here = ranges_[static_cast<size_t>(v) * columns_ + u];
+      if (here.max == 0) continue;
+      range.min = range.max == 0 ? here.min : std::min(range.min, here.min);
+      range.max = std::max(range.max, here.max);
+    }
+  }
+  return range;
+}
+
+void DepthMover::MoveTogether(const cv::Rect& block, const Flow& flow, float u,
+                              float v, cv::Mat* out) const {
+  const int left = FloorToInt(u);
+  const int above = FloorToInt(v);
+  const float right = u - static_cast<float>(left);
+  const float down = v - static_cast<float>(above);
+  const float scale = 1.0F / flow.stretch;
+  const float offset = -advance_ / flow.stretch;
+  const cv::Rect source = block + cv::Point(left, above);
+  const bool is_inside = block.width == kBlock && source.x >= 0 &&
+                         source.y >= 0 && source.br().x < measured_.cols &&
+                         source.br().y < measured_.rows;
+  for (int y = 0; y < block.height; ++y) {
+    auto* to = out->ptr<uint16_t>(block.y + y) + block.x;
+    if (!is_inside) {
+      for (int x = 0; x < block.width; ++x) {
+        const float raw = Sample(u + static_cast<float>(block.x + x),
+                                 v + static_cast<float>(block.y + y));
+        to[x] = raw > 0.0F ? Encode(raw * scale + offset) : 0;
+      }
+      continue;
+    }
+    const uint16_t* top = measured_.ptr<uint16_t>(source.y + y) + source.x;
+    const uint16_t* bottom =
+        measured_.ptr<uint16_t>(source.y + y + 1) + source.x;
+    const uint16_t* nearest = (down < 0.5F ? top : bottom) + (right >= 0.5F);
+    MoveEight(top, bottom, nearest, {right, down, scale, offset}, to);
+  }
+}
+
+// Which surface a pixel sees decides where it was, and where it was which
+// surface that is: looked for from the nearest depth around, so that what is
+// hidden is found only if nothing hides it.
+void DepthMover::MoveEach(const cv::Rect& block, const Flow& flow, Range range,
+                          cv::Mat* out) const {
+  constexpr int kMaxSteps = 3;
+  const auto units = static_cast<float>(depth_scale_);
+  const float shift = std::max(std::abs(flow.shift_u), std::abs(flow.shift_v));
+  for (int v = block.y; v < block.br().y; ++v) {
+    auto* to = out->ptr<uint16_t>(v);
+    for (int u = block.x; u < block.br().x; ++u) {
+      to[u] = 0;
+      for (const uint16_t start : {range.min, range.max}) {
+        float inverse = units / start;
+        for (int step = 0; step < kMaxSteps && to[u] == 0; ++step) {
+          const float raw = Sample(
+              static_cast<float>(u) + flow.turn_u + inverse * flow.shift_u,
+              static_cast<float>(v) + flow.turn_v + inverse * flow.shift_v);
+          const float moved = (raw - advance_) / flow.stretch;
+          if (raw <= 0.0F || moved <= 0.0F) break;
+          const float last = inverse;
+          inverse = units / moved;
+          if (shift * std::abs(inverse - last) < kSamePlacePx) {
+            to[u] = Encode(moved);
+          }
+        }
+        if (to[u] != 0) break;
+      }
+    }
+  }
+}
+
+float DepthMover::Sample(float u, float v) const {
+  const int left = FloorToInt(u);
+  const int above = FloorToInt(v);
+  const float right = u - static_cast<float>(left);
+  const float down = v - static_cast<float>(above);
+  const int column = left + (right >= 0.5F);
+  const int row = above + (down >= 0.5F);
+  if (column < 0 || row < 0 || column >= measured_.cols ||
+      row >= measured_.rows) {
+    return 0.0F;
+  }
+  const uint16_t nearest = measured_.at<uint16_t>(row, column);
+  if (nearest == 0 || left < 0 || above < 0 || left + 1 >= measured_.cols ||
+      above + 1 >= measured_.rows) {
+    return nearest;
+  }
+  const auto* top = measured_.ptr<uint16_t>(above) + left;
+  const auto* bottom = measured_.ptr<uint16_t>(above + 1) + left;
+  return IsOneSurface(top[0], top[1], bottom[0], bottom[1])
+             ? Between(top[0], top[1], bottom[0], bottom[1], right, down)
+             : nearest;
+}
+
+}  // namespace rgbd_pose
