@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
 #include "frontend/tracking/seen_at.h"
@@ -160,6 +161,10 @@ void FeatureTracker::Judge(Tracked* tracked) const {
     tracked->status = TrackingStatus::kDegraded;
     tracked->reason = "only " + std::to_string(inliers) + " of " +
                       std::to_string(estimate.num_used) + " matches agree";
+  } else if (estimate.sigma > options_.max_sigma_ok) {
+    tracked->status = TrackingStatus::kDegraded;
+    tracked->reason =
+        "residuals spread by " + ShortNumber(estimate.sigma) + " sigmas";
   }
 }
 

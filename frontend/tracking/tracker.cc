@@ -10,6 +10,7 @@ std::string TrackerOptions::Check() const {
   if (!(min_inlier_share_ok <= 1.0)) {
     return "min_inlier_share_ok must not be above 1";
   }
+  if (!(max_sigma_ok > 0.0)) return "max_sigma_ok must be positive";
   if (!(prior_sigma_rotation > 0.0) || !(prior_sigma_translation > 0.0)) {
     return "the prior's standard deviations must be positive";
   }

@@ -20,6 +20,10 @@ struct TrackerOptions {
   // A frame is degraded if a smaller share of its matches agrees.
   double min_inlier_share_ok = 0.35;
 
+  // A frame is degraded if its residuals spread wider than this, in sigmas:
+  // then most matches do not agree. Good frames stay below 3.
+  double max_sigma_ok = 5.0;
+
   // Where the solver starts unless null: a motion found in the matches
   // themselves, instead of the guess.
   const InitialGuess* initial_guess = nullptr;

@@ -230,6 +230,7 @@ class Odometry:
         min_inliers: int = 15,
         min_inliers_ok: int = 40,
         min_inlier_share_ok: float = 0.35,
+        max_sigma_ok: float = 5.0,
         min_reference_share: float = 0.5,
         max_flow_px: float = 60.0,
         prior_sigma_rotation: float = 0.05,

@@ -44,6 +44,56 @@ TEST(FeatureReferenceTest, SaysWhatAnotherCameraSeesOfIt) {
   EXPECT_EQ(wall.SeenFrom(turned).share, 0.0);
 }
 
+// Matches in pairs, one of two where it should be and one far from it: as many
+// agree as are asked for, but the spread is that of the others.
+class HalfWrongFrontend final : public Frontend {
+ public:
+  explicit HalfWrongFrontend(double error_px)
+      : Frontend({kCamera}), error_px_(error_px) {}
+
+  std::unique_ptr<FeatureSet> Detect(const PreparedFrame&) override {
+    return std::make_unique<FeatureSet>(Wall().features());
+  }
+  void Match(const FeatureSet& reference, const PreparedFrame&, const Rigid3d&,
+             FeatureMatches* matches) override {
+    matches->Clear();
+    for (size_t i = 0; i < reference.observations.size(); ++i) {
+      Observation found = reference.observations[i];
+      const double turn = 2.4 * static_cast<double>(i);  // any direction
+      if (i % 9 < 5) {
+        found.u += error_px_ * std::cos(turn);
+        found.v += error_px_ * std::sin(turn);
+      }
+      matches->Add(reference, static_cast<int>(i), found);
+    }
+  }
+
+ private:
+  double error_px_;
+};
+
+TEST(FeatureTrackerTest, AMotionThatMostMatchesAreFarFromIsDoubtful) {
+  for (const bool doubtful : {false, true}) {
+    FeatureTracker tracker(
+        std::make_unique<HalfWrongFrontend>(doubtful ? 30.0 : 0.0),
+        Estimator({}, MakeRobustCosts()));
+    const PreparedFrame frame{Frame()};
+    std::string why_not;
+    const auto reference =
+        tracker.MakeReference(frame, nullptr, nullptr, &why_not);
+    ASSERT_NE(reference, nullptr) << why_not;
+    Tracked tracked(kCamera);
+    tracker.Track(*reference, frame, Rigid3d(), nullptr, &tracked);
+    EXPECT_GT(tracked.estimate.num_inliers, 60);
+    EXPECT_LT(tracked.estimate.cur_from_prev.translation.norm(), 0.005);
+    EXPECT_EQ(tracked.status,
+              doubtful ? TrackingStatus::kDegraded : TrackingStatus::kOk)
+        << tracked.estimate.sigma;
+    EXPECT_EQ(tracked.reason.find("residuals spread by") == 0, doubtful)
+        << tracked.reason;
+  }
+}
+
 class TrackerTest : public ::testing::TestWithParam<std::string> {
  protected:
   std::unique_ptr<Tracker> Make(const TrackerOptions& options = {}) const {

@@ -79,7 +79,7 @@ TEST(OdometryOptionsTest, NoFieldMayBeNan) {
     EXPECT_THROW(MakeOdometry(Camera(), "tukey", options), InputError);
   }
   for (double TrackerOptions::*field :
-       {&TrackerOptions::min_inlier_share_ok,
+       {&TrackerOptions::min_inlier_share_ok, &TrackerOptions::max_sigma_ok,
         &TrackerOptions::prior_sigma_rotation,
         &TrackerOptions::prior_sigma_translation}) {
     TrackerOptions options;
