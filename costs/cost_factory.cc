@@ -55,6 +55,16 @@ std::unique_ptr<MotionCost> MakeCost(std::string_view name) {
 
 std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,
                                         const std::string& loss_names) {
+  return MakeRobustCosts(
+      cost_names, loss_names, CostNames(),
+      [](const std::string& name) { return MakeCost(name); });
+}
+
+std::vector<RobustCost> MakeRobustCosts(
+    const std::string& cost_names, const std::string& loss_names,
+    const std::vector<std::string>& names,
+    const std::function<std::unique_ptr<MotionCost>(const std::string& name)>&
+        make) {
   const std::vector<std::string> costs = Split(cost_names, '+');
   const std::vector<std::string> losses = Split(loss_names, ',');
   if (losses.size() != 1 && losses.size() != costs.size()) {
@@ -65,10 +75,10 @@ std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,
   }
   std::vector<RobustCost> terms;
   for (size_t i = 0; i < costs.size(); ++i) {
-    std::unique_ptr<MotionCost> cost = MakeCost(costs[i]);
+    std::unique_ptr<MotionCost> cost = make(costs[i]);
     if (cost == nullptr) {
       throw InputError("unknown cost '" + costs[i] + "'; there are " +
-                       Join(CostNames()));
+                       Join(names));
     }
     const std::string& loss_name = losses[losses.size() == 1 ? 0 : i];
     const MEstimator* row = FindMEstimator(loss_name);

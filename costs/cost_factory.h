@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -26,5 +27,13 @@ inline constexpr char kDefaultLoss[] = "tukey";
 std::vector<RobustCost> MakeRobustCosts(
     const std::string& cost_names = kDefaultCost,
     const std::string& loss_names = kDefaultLoss);
+
+// The same of costs made otherwise: `make` gives the cost of a name, null if it
+// is none of `names`.
+std::vector<RobustCost> MakeRobustCosts(
+    const std::string& cost_names, const std::string& loss_names,
+    const std::vector<std::string>& names,
+    const std::function<std::unique_ptr<MotionCost>(const std::string& name)>&
+        make);
 
 }  // namespace rgbd_pose

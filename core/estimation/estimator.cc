@@ -17,17 +17,10 @@ namespace {
 constexpr int kMinMatches = 3;
 constexpr int kIterationsPerEarlyStage = 2;
 
-// Scale and motion are estimated in turn, at most so often.
-constexpr int kMaxScaleRounds = 10;
-
 // Frozen weights are taken as right within this (rad and m): a turn by it adds
 // 1 % of the variance along the ray to that across it, where noise is ten times
 // larger along the ray.
 constexpr double kFrozenWithin = 1e-2;
-
-// Where residuals are chosen at every step, one that moves by less (rad and m)
-// is the last.
-constexpr double kSettledWithin = 1e-6;
 
 bool IsWithin(const Rigid3d& a, const Rigid3d& b, double limit) {
   const Rigid3d moved = a.Inverse() * b;
@@ -52,10 +45,12 @@ std::string EstimatorOptions::Check() const {
     return "min_inlier_share must lie between 0 and 1";
   }
   if (!(max_scale > 0.0)) return "max_scale must be positive";
+  if (max_scale_rounds < 0) return "max_scale_rounds must not be negative";
   if (max_association_rounds < 1) {
     return "max_association_rounds must be at least 1";
   }
   if (threads < 1) return "threads must be at least 1";
+  if (!(settled_within > 0.0)) return "settled_within must be positive";
   if (!(max_standard_deviation > 0.0)) {
     return "max_standard_deviation must be positive";
   }
@@ -110,6 +105,8 @@ class Estimator::Solve {
     out_->final_cost = 0.0;
     out_->iterations = 0;
     converged_ = false;
+    level_ = 0;
+    max_levels_ = pair.num_levels;
     associated_at_ = guess;
     PairData data = pair;
     data.threads = options_.threads;
@@ -131,6 +128,7 @@ class Estimator::Solve {
   }
 
   void SetLevel(int level) {
+    level_ = level;
     associated_at_ = out_->cur_from_prev;
     terms_.SetLevel(level, out_->cur_from_prev);
     out_->num_used = terms_.num_used();
@@ -144,22 +142,32 @@ class Estimator::Solve {
   }
 
   bool MinimiseCoarseToFine() {
-    const int levels = terms_.num_levels();
+    int levels = terms_.num_levels();
+    if (max_levels_ > 0) levels = std::min(levels, max_levels_);
     for (int level = levels - 1; level >= 0; --level) {
       if (levels > 1) SetLevel(level);
-      if (out_->num_used < kMinMatches || !MinimiseWithScale()) return false;
+      if (out_->num_used < kMinMatches) return false;
+      if (!MinimiseWithScale(level)) return false;
     }
     return true;
   }
 
-  bool MinimiseWithScale() {
+  bool MinimiseWithScale(int level) {
     terms_.ResetScales();
     if (!Minimise()) return false;
-    for (int i = 0; options_.scale != nullptr && i < kMaxScaleRounds; ++i) {
+    if (options_.scale == nullptr) return true;
+    for (int i = 0; i < MaxScaleRounds(level); ++i) {
       if (!terms_.UpdateScales(MotionNow(), options_.scale)) break;
       if (!Minimise()) return false;
     }
     return true;
+  }
+
+  // Where residuals are chosen at every step, coarse levels only lead on.
+  int MaxScaleRounds(int level) const {
+    return level > 0 && terms_.AsksFor(Association::kEveryStep)
+               ? 0
+               : options_.max_scale_rounds;
   }
 
   // All stages at one scale. False if the solver found no finite step.
@@ -198,15 +206,25 @@ class Estimator::Solve {
     if (!terms_.AsksFor(Association::kEveryStep)) {
       return SolveOnce(max_iterations);
     }
+    // Step by step, each of the residuals as they are: were they chosen anew
+    // within a step's trial, the solver would compare costs of other residuals.
     converged_ = false;
     for (int i = 0; i < max_iterations && !converged_; ++i) {
       const Rigid3d before = out_->cur_from_prev;
       if (!SolveOnce(1)) return false;
-      converged_ = IsWithin(before, out_->cur_from_prev, kSettledWithin);
-      Associate(Association::kEveryStep);
+      converged_ =
+          converged_ || IsWithin(before, out_->cur_from_prev, SettledWithin());
+      terms_.Follow(out_->cur_from_prev);
+      out_->num_used = terms_.num_used();
       if (out_->num_used < kMinMatches) return false;
     }
     return true;
+  }
+
+  // Pixels of each level are twice as large as those of the next finer one, and
+  // need be hit half as well: that goes on from there.
+  double SettledWithin() const {
+    return options_.settled_within * (1 << 2 * level_);
   }
 
   // Of the residuals as they are associated.
@@ -295,6 +313,8 @@ class Estimator::Solve {
   const Correspondences* matches_ = nullptr;
   MotionEstimate* out_ = nullptr;
   Rigid3d associated_at_;  // the motion at which weights are frozen
+  int level_ = 0;
+  int max_levels_ = 0;  // see PairData
   bool converged_ = false;
 };
 

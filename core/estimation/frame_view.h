@@ -23,7 +23,11 @@ struct ImageView {
 // What a cost may see of an RGB-D frame, without OpenCV. The images must stay
 // as they are for as long as a cost is bound to them.
 struct FrameView {
-  // A gray image and the camera of its pixels, ideal ones (no distortion).
+  // Frames with the same id are the same, so that a cost may keep what it has
+  // made of one; 0: not known.
+  uint64_t id = 0;
+
+  // A gray image and the camera of its pixels.
   struct Level {
     ImageView<uint8_t> gray;  // gray levels
     Camera camera;
@@ -34,7 +38,8 @@ struct FrameView {
 
   // Registered to levels[0] and of its size.
   ImageView<uint16_t> depth;
-  double depth_scale = 5000.0;  // raw units per metre
+  double depth_scale = 5000.0;                    // raw units per metre
+  double (*depth_sigma)(double depth) = nullptr;  // see DepthNoiseModel
 
   // Metres at a whole pixel of levels[0]; 0 where there is none: sensors mark
   // that by 0 or by the largest value.

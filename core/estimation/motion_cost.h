@@ -47,6 +47,10 @@ struct PairData {
   const MotionPrior* prior = nullptr;        // null: nothing is known
   const FrameView* prev = nullptr;           // null: no images
   const FrameView* cur = nullptr;            // likewise
+  // From a guess that is near only the finest levels need to be gone through;
+  // 0: all that costs have.
+  int num_levels = 0;
+
   int threads = 1;  // for sums over many residuals; results do not depend on it
 };
 
@@ -56,7 +60,7 @@ struct PairData {
 enum class Association {
   kOnce,       // at the guess
   kWhenMoved,  // when the motion has changed a good deal since
-  kEveryStep,  // after every step
+  kEveryStep,  // wherever the solver tries a motion
 };
 
 // All that the estimator sees of a cost: whitened residual blocks over whatever
@@ -118,6 +122,12 @@ class MotionCost {
   // Decides which residuals take part, and freezes their weights, at a motion.
   virtual void Associate(const Rigid3d& cur_from_prev) = 0;
 
+  // The same within a solve, for costs that are associated at every step: what
+  // has to be one number for a whole solve (a change of brightness, say) stays.
+  virtual void Follow(const Rigid3d& cur_from_prev) {
+    Associate(cur_from_prev);
+  }
+
   // For each block its match's place within the Correspondences, increasing; -1
   // for a block that belongs to no match (a pixel, a prior).
   virtual const std::vector<int>& matches() const = 0;
@@ -145,6 +155,12 @@ class MotionCost {
   virtual void AddScatter(const MotionDerivatives& motion,
                           const ceres::LossFunction* loss,
                           MotionMatrix* scatter) const = 0;
+
+  // Adds what noise of the derivatives themselves (of an image, of a surface's
+  // slope) feigns to tell: the Hessian of rows that are nothing but this noise,
+  // in units of the estimated scale. Exact derivatives have none.
+  virtual void AddFeigned(const MotionDerivatives& /*motion*/,
+                          MotionMatrix* /*hessian*/) const {}
 
   // Adds the blocks to a problem in the parameters x[6] that count from
   // `origin`. The problem must own its cost functions as BlockOwnership says

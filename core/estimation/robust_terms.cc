@@ -12,6 +12,12 @@ namespace {
 
 // Fewer residuals say nothing about their spread.
 constexpr size_t kMinResidualsForScale = 10;
+// So many tell it to 2 %: of more (pixels), every second, third, ... is asked.
+constexpr size_t kMaxResidualsForScale = 2000;
+// By how much what noise feigns may exceed its model: depths come in steps, so
+// that slopes of surfaces seen at an angle are noisier.
+constexpr double kFeignedMargin = 4.0;
+
 // What a scale may come to: a spread of zero (over half of the residuals
 // equal) or a huge one (over half of the matches wrong) has no use.
 constexpr double kMinScale = 0.05;
@@ -68,6 +74,15 @@ bool RobustTerms::Associate(Association least, const Rigid3d& cur_from_prev) {
   }
   CountMatches();
   return true;
+}
+
+void RobustTerms::Follow(const Rigid3d& cur_from_prev) {
+  for (const RobustCost& term : costs_) {
+    if (term.cost->association() == Association::kEveryStep) {
+      term.cost->Follow(cur_from_prev);
+    }
+  }
+  CountMatches();
 }
 
 void RobustTerms::CountMatches() {
@@ -169,7 +184,8 @@ double RobustTerms::EstimateScale(
     const int rows = term.cost->rows();
     const int degrees = term.cost->independent_rows();
     const double unit = std::sqrt(static_cast<double>(rows) / degrees);
-    for (size_t i = 0; i < residuals_.size(); ++i) {
+    const size_t step = residuals_.size() / kMaxResidualsForScale + 1;
+    for (size_t i = 0; i < residuals_.size(); i += step) {
       // What a match did not measure leaves rows of zeros.
       if (term.cost->degrees()[i / rows] < degrees) continue;
       values_.push_back(unit * residuals_[i]);
@@ -236,6 +252,19 @@ NormalEquations RobustTerms::LineariseShares(const MotionDerivatives& motion) {
   for (size_t i = 0; i < costs_.size(); ++i) {
     NormalEquations share;
     costs_[i].cost->Linearise(motion, Loss(i), &share);
+    MotionMatrix feigned = MotionMatrix::Zero();
+    costs_[i].cost->AddFeigned(motion, &feigned);
+    // Residuals that are larger than their noise do not make slopes noisier.
+    const double excess = std::max(1.0, scales_[i]);
+    double times = kFeignedMargin * costs_[i].cost->information_factor() /
+                   (excess * excess);
+    // Of an image that shows nothing there is not even noise to take off.
+    for (int k = 0; k < 6; ++k) {
+      if (times * feigned(k, k) > share.hessian(k, k)) {
+        times = share.hessian(k, k) / feigned(k, k);
+      }
+    }
+    share.hessian -= times * feigned;
     shares_[i].hessian = share.hessian;
     sum.hessian += share.hessian;
     sum.gradient += share.gradient;

@@ -43,6 +43,9 @@ class RobustTerms {
   // Associates the costs again that do. False if there are none.
   bool Associate(Association least, const Rigid3d& cur_from_prev);
 
+  // MotionCost::Follow of the costs that are associated at every step.
+  void Follow(const Rigid3d& cur_from_prev);
+
   // Matches that some cost uses and blocks that need none; a prior is neither.
   int num_used() const { return num_used_; }
 
@@ -72,8 +75,9 @@ class RobustTerms {
   // Fills weights, inliers and residual norms of the estimate.
   void JudgeMatches(MotionEstimate* estimate);
 
-  // Linearise, which keeps each cost's share for Covariance. That is called
-  // after both, `inverse` being that of the whole Hessian.
+  // Linearise, less what noise feigns (MotionCost::AddFeigned), which keeps
+  // each cost's share for Covariance. That is called after both, `inverse`
+  // being that of the whole Hessian.
   NormalEquations LineariseShares(const MotionDerivatives& motion);
   MotionMatrix Covariance(const MotionDerivatives& motion,
                           const MotionMatrix& inverse);

@@ -27,6 +27,18 @@ struct PackedColumns {
   int size = 0;
 };
 
+// Fills the last lanes by copies of the last match: no numbers that could
+// overflow there.
+inline void PadColumns(PackedColumns* columns) {
+  if (columns->size == 0) return;
+  for (size_t k = 0; k < columns->values.size(); k += columns->stride) {
+    double* const column = &columns->values[k];
+    for (int i = columns->size; i % kMaxLanes != 0; ++i) {
+      column[i] = column[columns->size - 1];
+    }
+  }
+}
+
 namespace packed {
 
 // W matches starting at i: their columns and how many of them are real.

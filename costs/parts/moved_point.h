@@ -31,6 +31,19 @@ struct Forward {
   }
 };
 
+// A row of a Jacobian: that of a residual with the derivatives `gradient` by
+// its moved point q.
+template <typename D>
+[[gnu::always_inline]] inline void RowOfPoint(const MotionDerivatives& motion, const D* point,
+                const D (&gradient)[3], D* row) {
+  for (int parameter = 0; parameter < 6; ++parameter) {
+    D dq[3];
+    Forward::Derivative(motion, point, parameter, dq);
+    row[parameter] =
+        gradient[0] * dq[0] + gradient[1] * dq[1] + gradient[2] * dq[2];
+  }
+}
+
 // p = R^T X_cur + C: a point of the current frame in previous axes.
 struct Backward {
   template <typename M, typename D, typename T>

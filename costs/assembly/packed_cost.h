@@ -1,0 +1,226 @@
+#pragma once
+
+#include <algorithm>
+#include <optional>
+#include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "core/estimation/motion_cost.h"
+#include "core/util/parallel_for.h"
+#include "core/util/vector_lanes.h"
+#include "costs/assembly/autodiff_jacobian.h"
+#include "costs/assembly/match_blocks.h"
+#include "costs/assembly/motion_block.h"
+#include "costs/assembly/packed_sum.h"
+
+namespace rgbd_pose {
+
+template <typename Residual, typename = void>
+struct HasDegrees : std::false_type {};
+template <typename Residual>
+struct HasDegrees<Residual, std::void_t<decltype(&Residual::Degrees)>>
+    : std::true_type {};
+
+template <typename Residual, typename = void>
+struct HasInlierLimit : std::false_type {};
+template <typename Residual>
+struct HasInlierLimit<Residual, std::void_t<decltype(&Residual::InlierLimit)>>
+    : std::true_type {};
+
+// What the costs of all residual types share, whatever their blocks come from:
+// the blocks as columns, the sums over them and the three assemblies. A derived
+// class fills the columns by BeginBlocks, AddBlock, EndBlocks.
+template <typename Type>
+class PackedCost : public MotionCost {
+ protected:
+  // With a Jacobian, if the type has none of its own.
+  using Residual = std::conditional_t<HasJacobian<Type>::value, Type,
+                                      WithAutodiffJacobian<Type>>;
+
+ public:
+  std::string_view name() const override { return Residual::kName; }
+  int independent_rows() const override { return Residual::kIndependentRows; }
+  const std::vector<int>& matches() const override { return matches_; }
+  const std::vector<int>& degrees() const override { return degrees_; }
+
+  int rows() const override { return Residual::kRows; }
+  bool is_whitened() const override { return Residual::kIsWhitened; }
+
+  double InlierLimit(int k) const override {
+    if constexpr (HasInlierLimit<Residual>()) {
+      double columns[kColumns];
+      for (int i = 0; i < kColumns; ++i) {
+        columns[i] = packed_.values[i * packed_.stride + k];
+      }
+      return Residual::InlierLimit(columns);
+    }
+    return MotionCost::InlierLimit(k);
+  }
+
+  void Residuals(const MotionDerivatives& motion,
+                 std::vector<double>* residuals) const override {
+    residuals->resize(matches_.size() * Residual::kRows);
+    RunVectorised<packed::ResidualsKernel<Residual>>(motion, packed_,
+                                                     residuals->data());
+  }
+
+  void SquaredNorms(const MotionDerivatives& motion,
+                    std::vector<double>* squared_norms) const override {
+    squared_norms->resize(packed_.stride);
+    RunVectorised<packed::SquaredNormsKernel<Residual>>(motion, packed_,
+                                                        squared_norms->data());
+    squared_norms->resize(matches_.size());
+  }
+
+  void Linearise(const MotionDerivatives& motion,
+                 const ceres::LossFunction* loss,
+                 NormalEquations* sum) const override {
+    using Kernel = packed::LineariseKernel<Residual>;
+    if (packed_.size <= packed::kChunk) {
+      RunVectorised<Kernel>(motion, packed_, loss, 0, packed_.size, sum);
+      return;
+    }
+    ParallelFor(static_cast<int>(chunks_.size()), threads_, [&](int i) {
+      const int first = i * packed::kChunk;
+      const int last = std::min(first + packed::kChunk, packed_.size);
+      chunks_[i] = NormalEquations();
+      NormalEquations* const chunk = &chunks_[i];
+      RunVectorised<Kernel>(motion, packed_, loss, first, last, chunk);
+    });
+    for (const NormalEquations& chunk : chunks_) {
+      sum->hessian += chunk.hessian;
+      sum->gradient += chunk.gradient;
+      sum->cost += chunk.cost;
+    }
+  }
+
+  void AddScatter(const MotionDerivatives& motion,
+                  const ceres::LossFunction* loss,
+                  MotionMatrix* scatter) const override {
+    RunVectorised<packed::ScatterKernel<Residual>>(motion, packed_, loss,
+                                                   scatter);
+  }
+
+  void AddTo(Assembly assembly, const MotionOrigin& origin,
+             ceres::LossFunction* loss, double* x,
+             ceres::Problem* problem) override {
+    if (matches_.empty()) return;
+    if (assembly == Assembly::kCompressed) {
+      block_.emplace(MotionSums(this, &origin, loss));
+      problem->AddResidualBlock(&*block_, nullptr, x);
+      return;
+    }
+    Unpack();
+    for (size_t i = 0; i < matches_.size(); ++i) {
+      const double* columns = &rows_[i * kColumns];
+      ceres::CostFunction* block;
+      if (assembly == Assembly::kPerMatch) {
+        block = new AnalyticBlock<Residual>(origin, columns);
+      } else {
+        block = new OracleBlock<Residual>(
+            new OracleFunctor<Residual>(origin, columns));
+      }
+      problem->AddResidualBlock(block, loss, x);
+    }
+  }
+
+ protected:
+  static constexpr int kColumns = Residual::kColumns;  // of a block
+
+  // See PairData::threads.
+  void SetThreads(int threads) { threads_ = threads; }
+
+  // Takes all blocks out and makes room for so many. Blocks without a match may
+  // be written to the columns, and their number told, by the caller.
+  PackedColumns* BeginBlocks(size_t max_blocks) {
+    // And one more lane, to be written in vain.
+    packed_.stride = static_cast<ptrdiff_t>((max_blocks + kMaxLanes) /
+                                            kMaxLanes * kMaxLanes);
+    packed_.values.resize(packed_.stride * kColumns);
+    packed_.size = 0;
+    matches_.clear();
+    degrees_.clear();
+    return &packed_;
+  }
+
+  // `match` as MotionCost::matches.
+  void AddBlock(const double* columns, int match) {
+    Store(packed_.size++, columns);
+    matches_.push_back(match);
+    degrees_.push_back(Degrees(columns));
+  }
+
+  // Adds the Hessian of every step-th block, as often as it stands for others,
+  // each in `variants` that change(variant, columns) makes of its columns.
+  template <typename Change>
+  void AddSample(const MotionDerivatives& motion, int step, int variants,
+                 const Change& change, MotionMatrix* hessian) const {
+    PackedColumns& sample = sample_;
+    const int rows = (packed_.size + step - 1) / step * variants;
+    sample.stride = (rows + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
+    sample.values.resize(sample.stride * kColumns);
+    sample.size = 0;
+    double columns[kColumns];
+    for (int i = 0; i < packed_.size; i += step) {
+      for (int variant = 0; variant < variants; ++variant) {
+        for (int k = 0; k < kColumns; ++k) {
+          columns[k] = packed_.values[k * packed_.stride + i];
+        }
+        change(variant, columns);
+        for (int k = 0; k < kColumns; ++k) {
+          sample.values[k * sample.stride + sample.size] = columns[k];
+        }
+        ++sample.size;
+      }
+    }
+    PadColumns(&sample);
+    NormalEquations sum;
+    NormalEquations* const to = &sum;
+    const ceres::LossFunction* const none = nullptr;
+    RunVectorised<packed::LineariseKernel<Residual>>(motion, sample, none, 0,
+                                                     sample.size, to);
+    *hessian += step * sum.hessian;
+  }
+
+  // After the last block.
+  void EndBlocks() {
+    matches_.resize(packed_.size, -1);
+    degrees_.resize(packed_.size, Residual::kIndependentRows);
+    PadColumns(&packed_);
+    chunks_.resize((packed_.size + packed::kChunk - 1) / packed::kChunk);
+  }
+
+ private:
+  static int Degrees(const double* columns) {
+    if constexpr (HasDegrees<Residual>()) return Residual::Degrees(columns);
+    return Residual::kIndependentRows;
+  }
+
+  void Store(size_t i, const double* columns) {
+    for (int k = 0; k < kColumns; ++k) {
+      packed_.values[k * packed_.stride + i] = columns[k];
+    }
+  }
+
+  // A match after the other, for the assemblies that go match by match.
+  void Unpack() {
+    rows_.resize(matches_.size() * kColumns);
+    for (size_t i = 0; i < matches_.size(); ++i) {
+      for (int k = 0; k < kColumns; ++k) {
+        rows_[i * kColumns + k] = packed_.values[k * packed_.stride + i];
+      }
+    }
+  }
+
+  std::vector<int> matches_;
+  std::vector<int> degrees_;
+  PackedColumns packed_;
+  int threads_ = 1;
+  mutable std::vector<NormalEquations> chunks_;  // see Linearise
+  mutable PackedColumns sample_;                 // see AddSample
+  std::vector<double> rows_;                     // see Unpack
+  std::optional<MotionBlock> block_;
+};
+
+}  // namespace rgbd_pose

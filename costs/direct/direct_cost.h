@@ -1,0 +1,276 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "core/estimation/motion_cost.h"
+#include "core/util/vector_lanes.h"
+#include "costs/assembly/packed_cost.h"
+#include "costs/direct/brightness.h"
+#include "costs/direct/direct_input.h"
+#include "costs/direct/direct_points.h"
+
+namespace rgbd_pose {
+
+// How a direct cost takes its points.
+struct DirectOptions {
+  // At the finest level; 0: as many as are good for the kind (kMaxPoints).
+  int max_points = 0;
+  // At the others, which only lead there.
+  int max_coarse_points = 1000;
+
+  // Which pixels count: gray levels a pixel, and depths in m.
+  double min_gradient = 3.0;
+  double min_depth = 0.3;
+  double max_depth = 8.0;
+
+  // How many levels; fewer where the images are small.
+  int num_levels = 4;
+  // The finest level is so much coarser than the image: 1 is half of its size,
+  // where interpolation does no harm to gray levels. Depths are always those of
+  // the whole image.
+  int finest_level = 1;
+
+  // See MotionCost::information_factor; 0: that of the kind (kInformation).
+  double information_factor = 0.0;
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+// Columns of all points that are seen. Arithmetic takes several points at a
+// time, what reads an image or decides goes one by one: in passes over some
+// hundred points, so that neither has to wait for the other.
+template <typename Residual>
+struct LookUpKernel {
+  template <int W>
+  [[gnu::always_inline]] static void Run(const DirectInput& input,
+                                         const PackedColumns& points,
+                                         PackedColumns* seen) {
+    Tile tile;
+    std::memset(tile.reads, 0, sizeof(tile.reads));
+    seen->size = 0;
+    for (int begin = 0; begin < points.size; begin += kTile) {
+      const int size = std::min(kTile, points.size - begin);
+      for (int i = 0; i < size; i += W)
+        Locate<W>(input, points, begin, i, &tile);
+      Read(input, size, &tile);
+      for (int i = 0; i < size; i += W)
+        LookUp<W>(input, points, begin, i, &tile);
+      Append(tile, size, seen);
+    }
+  }
+
+ private:
+  static constexpr int kTile = 256;
+
+  // A tile of points on its way.
+  struct Tile {
+    alignas(64) double u[kTile], v[kTile], z[kTile];
+    alignas(64) float reads[Residual::kReads][kTile];
+    alignas(64) double columns[Residual::kColumns][kTile];
+    alignas(64) double doubt[kTile];
+    bool is_read[kTile];
+  };
+
+  template <typename D>
+  [[gnu::always_inline]] static void Load(const PackedColumns& points, int i,
+                                          D* point) {
+    for (int k = 0; k < Residual::kPointColumns; ++k) {
+      std::memcpy(&point[k], &points.values[k * points.stride + i], sizeof(D));
+    }
+  }
+
+  template <int W>
+  [[gnu::always_inline]] static void Locate(const DirectInput& input,
+                                            const PackedColumns& points,
+                                            int begin, int i, Tile* tile) {
+    using D = typename Lanes<W>::Type;
+    D point[Residual::kPointColumns];
+    Load(points, begin + i, point);
+    PlaceInImage<D> place;
+    Residual::Locate(input, point, &place);
+    std::memcpy(&tile->u[i], &place.u, sizeof(D));
+    std::memcpy(&tile->v[i], &place.v, sizeof(D));
+    std::memcpy(&tile->z[i], &place.z, sizeof(D));
+  }
+
+  // What is not read keeps what another point has read: numbers at least.
+  [[gnu::always_inline]] static void Read(const DirectInput& input, int size,
+                                          Tile* tile) {
+    for (int i = 0; i < size; ++i) {
+      tile->is_read[i] = tile->z[i] > DirectInput::kMinDepth &&
+                         Residual::Read(input, tile->u[i], tile->v[i], kTile,
+                                        &tile->reads[0][i]);
+    }
+  }
+
+  template <int W>
+  [[gnu::always_inline]] static void LookUp(const DirectInput& input,
+                                            const PackedColumns& points,
+                                            int begin, int i, Tile* tile) {
+    using D = typename Lanes<W>::Type;
+    typedef float Floats __attribute__((vector_size(sizeof(D) / 2)));
+    D point[Residual::kPointColumns], reads[Residual::kReads];
+    D columns[Residual::kColumns], doubt;
+    Load(points, begin + i, point);
+    for (int k = 0; k < Residual::kReads; ++k) {
+      Floats floats;
+      std::memcpy(&floats, &tile->reads[k][i], sizeof(Floats));
+      reads[k] = __builtin_convertvector(floats, D);
+    }
+    Residual::LookUp(input, point, reads, columns, &doubt);
+    for (int k = 0; k < Residual::kColumns; ++k) {
+      std::memcpy(&tile->columns[k][i], &columns[k], sizeof(D));
+    }
+    std::memcpy(&tile->doubt[i], &doubt, sizeof(D));
+  }
+
+  [[gnu::always_inline]] static void Append(const Tile& tile, int size,
+                                            PackedColumns* seen) {
+    int kept[kTile + 1];
+    int count = 0;
+    for (int i = 0; i < size; ++i) {
+      kept[count] = i;
+      count += tile.is_read[i] && tile.doubt[i] < 1.0;
+    }
+    for (int k = 0; k < Residual::kColumns; ++k) {
+      double* const to = &seen->values[k * seen->stride + seen->size];
+      for (int i = 0; i < count; ++i) to[i] = tile.columns[k][kept[i]];
+    }
+    seen->size += count;
+  }
+};
+
+// The MotionCost of a direct residual type (photometric.h): its points are made
+// once of each previous frame, and looked up in the current one wherever the
+// solver tries a motion. A residual type says
+//
+//   kName, kRows, kIndependentRows, kColumns, kIsWhitened, kScaleGroup
+//   kPointColumns, kMaxPoints, kInformation
+//   Points(frame, level, selection, points)  of the previous frame
+//   Locate(input, point, place)              of vectors of doubles: where it is
+//   Read(input, u, v, stride, reads)         what is read there, kReads numbers
+//   LookUp(input, point, reads, columns, doubt)  of vectors of doubles; points
+//                                            are kept with a doubt below 1
+//   Residual(motion pose, columns, r)        for any scalars
+//   Jacobian(motion derivatives, columns, r, J)
+//   Feign(input, axis, columns)              makes a row one of noise alone
+template <typename Type>
+class DirectCostOf final : public PackedCost<Type> {
+  using Residual = typename PackedCost<Type>::Residual;
+
+ public:
+  // The options must be sound (see Check).
+  explicit DirectCostOf(const DirectOptions& options)
+      : options_(options), points_(options.num_levels) {}
+
+  Association association() const override { return Association::kEveryStep; }
+  int scale_group() const override { return Residual::kScaleGroup; }
+  double information_factor() const override {
+    return options_.information_factor > 0.0 ? options_.information_factor
+                                             : Residual::kInformation;
+  }
+
+  int num_levels() const override { return options_.num_levels; }
+  void SetLevel(int level) override { level_ = level; }
+
+  // Points of a previous frame with an id are kept as long as the frames bound
+  // have the same.
+  void Bind(const PairData& pair) override {
+    this->SetThreads(pair.threads);
+    level_ = 0;
+    input_ = DirectInput();
+    input_.cur = pair.cur;
+    if (pair.prev == nullptr || pair.cur == nullptr) {
+      for (PackedColumns& points : points_) points.size = 0;
+      points_of_ = 0;
+      return;
+    }
+    input_.has_distortion = pair.cur->levels[0].camera.HasDistortion();
+    if (pair.prev->id != 0 && pair.prev->id == points_of_) return;
+    points_of_ = pair.prev->id;
+    for (int level = 0; level < options_.num_levels; ++level) {
+      Residual::Points(*pair.prev, ImageLevel(*pair.prev, level),
+                       Selection(level), &points_[level]);
+    }
+  }
+
+  void Associate(const Rigid3d& cur_from_prev) override {
+    if (input_.cur == nullptr) {
+      this->BeginBlocks(0);
+      this->EndBlocks();
+      return;
+    }
+    MoveTo(cur_from_prev);
+    if constexpr (Residual::kSeesBrightness) {
+      EstimateBrightness(points_[level_], &input_);
+    }
+    LookUp();
+  }
+
+  void Follow(const Rigid3d& cur_from_prev) override {
+    if (input_.cur != nullptr && MoveTo(cur_from_prev)) LookUp();
+  }
+
+  void AddFeigned(const MotionDerivatives& motion,
+                  MotionMatrix* hessian) const override {
+    if (input_.cur == nullptr) return;
+    this->AddSample(
+        motion, kFeignedStep, 2,
+        [this](int axis, double* columns) {
+          Residual::Feign(input_, axis, columns);
+        },
+        hessian);
+  }
+
+ private:
+  // Of so many points, one tells for all what noise feigns.
+  static constexpr int kFeignedStep = 8;
+
+  PointSelection Selection(int level) const {
+    const int finest =
+        options_.max_points > 0 ? options_.max_points : Residual::kMaxPoints;
+    return {level == 0 ? finest : std::min(finest, options_.max_coarse_points),
+            options_.min_gradient, options_.min_depth, options_.max_depth};
+  }
+
+  // Small images have fewer levels.
+  int ImageLevel(const FrameView& frame, int level) const {
+    return std::min(options_.finest_level + level,
+                    static_cast<int>(frame.levels.size()) - 1);
+  }
+
+  // False if that is where it is, but for rounding.
+  bool MoveTo(const Rigid3d& cur_from_prev) {
+    constexpr double kRounding = 1e-12;
+    const Eigen::Matrix3d R = cur_from_prev.rotation.toRotationMatrix();
+    const Eigen::Vector3d& t = cur_from_prev.translation;
+    const int level = ImageLevel(*input_.cur, level_);
+    const bool is_there = level == input_.level &&
+                          (R - input_.R).cwiseAbs().maxCoeff() <= kRounding &&
+                          (t - input_.t).cwiseAbs().maxCoeff() <= kRounding;
+    input_.level = level;
+    input_.R = R;
+    input_.t = t;
+    return !is_there;
+  }
+
+  void LookUp() {
+    const PackedColumns& points = points_[level_];
+    PackedColumns* const seen = this->BeginBlocks(points.size);
+    RunVectorised<LookUpKernel<Residual>>(input_, points, seen);
+    this->EndBlocks();
+  }
+
+  DirectOptions options_;
+  std::vector<PackedColumns> points_;  // by level
+  uint64_t points_of_ = 0;             // the id of their frame
+  DirectInput input_;
+  int level_ = 0;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/estimation/frame_view.h"
+
+namespace rgbd_pose {
+
+// Where direct costs look their points up: in the current frame, at one level
+// of it, as seen after one motion. Around the place where a point is seen the
+// image counts as a plane (its value and derivatives there), so that what the
+// residuals are made of are columns of numbers, no longer an image; the columns
+// are made anew wherever the solver tries a motion.
+struct DirectInput {
+  const FrameView* cur = nullptr;
+  int level = 0;
+  Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  // cur_from_prev
+  Eigen::Vector3d t = Eigen::Vector3d::Zero();      // m
+
+  bool has_distortion = false;  // of the current camera
+
+  // The change of brightness from the previous frame to the current one: gray
+  // levels there are gain * gray + bias.
+  double gain = 1.0;
+  double bias = 0.0;
+
+  static constexpr double kMinDepth = 0.1;  // m; what is nearer is not seen
+};
+
+// Where a point is seen, in px of the image that is read there, and its depth
+// (m).
+template <typename D>
+struct PlaceInImage {
+  D u, v, z;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,200 @@
+#include "costs/direct/direct_points.h"
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+#include <initializer_list>
+#include <limits>
+
+#include "costs/direct/surface.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Pixels around a point that its neighbours reach.
+constexpr int kBorder = 7;
+
+int CellSize(double pixels, int max_points) {
+  return std::max(1, static_cast<int>(std::sqrt(pixels / max_points)));
+}
+
+// Depths that a slope is told from are so far apart, px.
+constexpr int kSlopeStep = 3;
+
+// Appends to columns that have no padding yet.
+class ColumnWriter {
+ public:
+  ColumnWriter(PackedColumns* points, int columns, size_t max_points)
+      : points_(points) {
+    points->stride = static_cast<ptrdiff_t>((max_points + kMaxLanes - 1) /
+                                            kMaxLanes * kMaxLanes);
+    points->values.resize(points->stride * columns);
+    points->size = 0;
+  }
+
+  void Add(std::initializer_list<double> point) {
+    double* at = points_->values.data() + points_->size++;
+    for (const double value : point) {
+      *at = value;
+      at += points_->stride;
+    }
+  }
+
+  void Finish() { PadColumns(points_); }
+
+ private:
+  PackedColumns* points_;
+};
+
+// Whether the 3 x 3 pixels around have depths of one surface, as steep as 75
+// degrees or so.
+bool IsOneSurface(const FrameView& frame, int column, int row) {
+  constexpr double kMaxRelativeStep = 0.02;
+  double low = std::numeric_limits<double>::infinity(), high = 0.0;
+  for (int v = row - 1; v <= row + 1; ++v) {
+    for (int u = column - 1; u <= column + 1; ++u) {
+      const double z = frame.DepthAt(u, v);
+      low = std::min(low, z);
+      high = std::max(high, z);
+    }
+  }
+  return low > 0.0 && high - low < kMaxRelativeStep * low;
+}
+
+// The depth in the middle of a level's pixel, of which (column, row) is the
+// lower right one of the four pixels there; at level 0 the pixel itself.
+double DepthBefore(const FrameView& frame, int column, int row, int scale) {
+  if (scale == 1) return frame.DepthAt(column, row);
+  return 0.25 *
+         (frame.DepthAt(column, row) + frame.DepthAt(column - 1, row) +
+          frame.DepthAt(column, row - 1) + frame.DepthAt(column - 1, row - 1));
+}
+
+// The plane through 5 x 5 inverse depths around a pixel of the full resolution:
+// 1 / z = inverse_depth + slope . (pixel - here).
+struct InverseDepthPlane {
+  double inverse_depth = 0.0;                       // 1 / m
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  // 1 / m a pixel
+};
+
+// False at holes, and where the depths are no plane: an edge.
+bool FitInverseDepthPlane(const FrameView& frame, int column, int row,
+                          InverseDepthPlane* plane) {
+  // Neighbours further from it are another surface.
+  constexpr double kMaxSigmas = 4.0;
+  constexpr int kSide = 5;
+  constexpr double kSquares = 50.0;  // sum of i^2 over the 25 places
+  double inverse[kSide * kSide], sum = 0.0, du = 0.0, dv = 0.0;
+  for (int k = 0; k < kSide * kSide; ++k) {
+    const int i = k % kSide - 2, j = k / kSide - 2;
+    const double depth =
+        frame.DepthAt(column + i * kSlopeStep, row + j * kSlopeStep);
+    if (depth <= 0.0) return false;
+    inverse[k] = 1.0 / depth;
+    sum += inverse[k];
+    du += i * inverse[k];
+    dv += j * inverse[k];
+  }
+  du /= kSquares;
+  dv /= kSquares;
+  plane->inverse_depth = sum / (kSide * kSide);
+  plane->slope = {du / kSlopeStep, dv / kSlopeStep};
+  const double depth = 1.0 / plane->inverse_depth;
+  const double limit = kMaxSigmas * frame.depth_sigma(depth) *
+                       plane->inverse_depth * plane->inverse_depth;
+  for (int k = 0; k < kSide * kSide; ++k) {
+    const double fit =
+        plane->inverse_depth + (k % kSide - 2) * du + (k / kSide - 2) * dv;
+    if (!(std::abs(inverse[k] - fit) <= limit)) return false;
+  }
+  return true;
+}
+
+// The steepest pixel of a cell, (-1, -1) if all are flatter than the limit
+// (gray levels between the neighbours, squared).
+Eigen::Vector2i SteepestPixel(const ImageView<uint8_t>& gray, int left, int top,
+                              int right, int bottom, int limit) {
+  Eigen::Vector2i steepest(-1, -1);
+  for (int v = top; v < bottom; ++v) {
+    const uint8_t* const row = gray.data + v * gray.stride;
+    for (int u = left; u < right; ++u) {
+      const int du = row[u + 1] - row[u - 1];
+      const int dv = row[u + gray.stride] - row[u - gray.stride];
+      const int square = du * du + dv * dv;
+      if (square <= limit) continue;
+      limit = square;
+      steepest = {u, v};
+    }
+  }
+  return steepest;
+}
+
+}  // namespace
+
+void TexturedPoints(const FrameView& frame, int level_index,
+                    const PointSelection& selection, PackedColumns* points) {
+  const FrameView::Level& level = frame.levels[level_index];
+  const ImageView<uint8_t>& gray = level.gray;
+  const int cell = CellSize(static_cast<double>(gray.width) * gray.height,
+                            selection.max_points);
+  const int scale = 1 << level_index;
+  const int border = std::max(2, (kBorder + scale - 1) / scale);
+  const int flat =
+      static_cast<int>(4.0 * selection.min_gradient * selection.min_gradient);
+  ColumnWriter writer(
+      points, 5,
+      static_cast<size_t>(gray.width / cell + 1) * (gray.height / cell + 1));
+  for (int top = border; top < gray.height - border; top += cell) {
+    const int bottom = std::min(top + cell, gray.height - border);
+    for (int left = border; left < gray.width - border; left += cell) {
+      const int right = std::min(left + cell, gray.width - border);
+      const Eigen::Vector2i at =
+          SteepestPixel(gray, left, top, right, bottom, flat);
+      if (at.x() < 0) continue;
+      // The middle of the level's pixel, in the full resolution.
+      const int u = at.x() * scale + scale / 2;
+      const int v = at.y() * scale + scale / 2;
+      if (!IsOneSurface(frame, u, v)) continue;
+      const double depth = DepthBefore(frame, u, v, scale);
+      if (depth < selection.min_depth || depth > selection.max_depth) continue;
+      const Eigen::Vector3d X =
+          level.camera.Unproject(at.cast<double>(), depth);
+      writer.Add({X.x(), X.y(), X.z(), frame.depth_sigma(depth),
+                  static_cast<double>(gray.At(at.x(), at.y()))});
+    }
+  }
+  writer.Finish();
+}
+
+void SmoothPoints(const FrameView& frame, const PointSelection& selection,
+                  PackedColumns* points) {
+  // A ray and a surface closer than that (15 degrees) tell little.
+  constexpr double kMinCosine = 0.25;
+  const Camera& camera = frame.levels[0].camera;
+  const int width = frame.depth.width, height = frame.depth.height;
+  const int cell =
+      CellSize(static_cast<double>(width) * height, selection.max_points);
+  ColumnWriter writer(
+      points, 7, static_cast<size_t>(width / cell + 1) * (height / cell + 1));
+  for (int v = kBorder + cell / 2; v < height - kBorder; v += cell) {
+    for (int u = kBorder + cell / 2; u < width - kBorder; u += cell) {
+      InverseDepthPlane fit;
+      if (!FitInverseDepthPlane(frame, u, v, &fit)) continue;
+      const double depth = 1.0 / fit.inverse_depth;
+      if (depth < selection.min_depth || depth > selection.max_depth) continue;
+      const Eigen::Vector3d X = camera.Unproject(Eigen::Vector2d(u, v), depth);
+      // d pixel / d (x / z, y / z) but for distortion, which hardly turns it.
+      const Eigen::Vector2d slope(fit.slope.x() * camera.fx,
+                                  fit.slope.y() * camera.fy);
+      const Eigen::Vector3d ray = X / depth;
+      const Eigen::Vector3d N(slope.x(), slope.y(),
+                              fit.inverse_depth - slope.dot(ray.head<2>()));
+      if (!(N.dot(ray) > kMinCosine * N.norm() * ray.norm())) continue;
+      writer.Add(
+          {X.x(), X.y(), X.z(), N.x(), N.y(), N.z(), frame.depth_sigma(depth)});
+    }
+  }
+  writer.Finish();
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,84 @@
+#pragma once
+
+#include "core/estimation/motion_cost.h"
+#include "core/util/lane_math.h"
+#include "costs/direct/direct_input.h"
+#include "costs/direct/direct_points.h"
+#include "costs/direct/surface.h"
+#include "costs/parts/moved_point.h"
+
+namespace rgbd_pose {
+
+// The difference in inverse depth between the surface that the current frame
+// measures and a point of the previous frame, moved there:
+//
+//   r = (1 / Z_cur - 1 / q_z) / sigma,   q = R (X_prev - C)
+//
+// in the unit in which the noise of a structured-light camera is constant. With
+// the plane N of the surface (surface.h), 1 / Z_cur = N . q / q_z:
+//
+//   r = (N . q - 1) / (sigma q_z)
+struct InverseDepth : Surface {
+  static constexpr char kName[] = "inverse_depth";
+  static constexpr int kRows = 1;
+  static constexpr int kIndependentRows = 1;
+  static constexpr bool kIsWhitened = true;
+  static constexpr int kScaleGroup = 2;  // depths
+  static constexpr bool kSeesBrightness = false;
+  static constexpr int kColumns = 7;  // X_prev, N / sigma, 1 / sigma
+
+  static void Points(const FrameView& frame, int /*level*/,
+                     const PointSelection& selection, PackedColumns* points) {
+    SmoothPoints(frame, selection, points);
+  }
+
+  template <typename D>
+  [[gnu::always_inline]] static void LookUp(const DirectInput& input,
+                                            const D* point, const D* reads,
+                                            D* columns, D* doubt) {
+    // Beyond, another surface hides the point, or is hidden by it.
+    constexpr double kMaxRelativeStep = 0.1;
+    MeasuredSurface<D> surface;
+    Measure(input, point, reads, &surface);
+    const D w = point[2] * point[2] / (kSurfaceSigma * point[6]);
+    for (int i = 0; i < 3; ++i) {
+      columns[i] = point[i];
+      columns[3 + i] = w * surface.plane[i];
+    }
+    columns[6] = w;
+    const D step = surface.excess * (1.0 / kMaxRelativeStep);
+    *doubt = surface.doubt + step * step;
+  }
+
+  // A row that is the noise of the plane's slope along an axis of the image.
+  static void Feign(const DirectInput& input, int axis, double* columns) {
+    const Camera& camera = input.cur->levels[0].camera;
+    columns[3] = axis == 0 ? kSlopeNoise * camera.fx : 0.0;
+    columns[4] = axis == 1 ? kSlopeNoise * camera.fy : 0.0;
+    columns[5] = columns[6] = 0.0;  // no part in the derivative
+  }
+
+  template <typename M, typename D, typename T>
+  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+    T q[3];
+    Forward::Move(motion, columns, q);
+    r[0] = (columns[3] * q[0] + columns[4] * q[1] + columns[5] * q[2] -
+            columns[6]) /
+           q[2];
+  }
+
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
+    D q[3];
+    Forward::Move(motion, columns, q);
+    const D inverse = 1.0 / q[2];
+    const D a = columns[3] * inverse;
+    const D b = columns[4] * inverse;
+    const D flow = a * q[0] + b * q[1] - columns[6] * inverse;
+    r[0] = columns[5] + flow;
+    RowOfPoint(motion, columns, {a, b, -flow * inverse}, J[0]);
+  }
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,72 @@
+#pragma once
+
+#include "core/estimation/frame_view.h"
+#include "core/geometry/camera.h"
+#include "core/util/lane_math.h"
+
+// What direct costs do with images, for double and for vectors of doubles (one
+// lane a point, core/util/vector_lanes.h).
+
+namespace rgbd_pose {
+
+// Where a point (current axes) is seen, px, and how that place changes with
+// x / z and y / z, its normalised image coordinates; both with distortion.
+template <typename D>
+struct SeenPixel {
+  D u, v;
+  D u_x, u_y, v_x, v_y;  // du / d(x / z), ...
+};
+
+// Of x / z and y / z.
+template <typename D>
+[[gnu::always_inline]] inline void SeePixel(const Camera& camera,
+                                            bool has_distortion, const D& x,
+                                            const D& y, SeenPixel<D>* p) {
+  const D zero = x - x;
+  if (!has_distortion) {
+    p->u = camera.fx * x + camera.cx;
+    p->v = camera.fy * y + camera.cy;
+    p->u_x = zero + camera.fx;
+    p->v_y = zero + camera.fy;
+    p->u_y = p->v_x = zero;
+    return;
+  }
+  const double k1 = camera.k1, k2 = camera.k2, k3 = camera.k3;
+  const double p1 = camera.p1, p2 = camera.p2;
+  const D r2 = x * x + y * y;
+  const D radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
+  const D by_r2 = k1 + r2 * (2.0 * k2 + r2 * (3.0 * k3));
+  const D cross = 2.0 * (x * y * by_r2 + p1 * x + p2 * y);
+  const D xd = x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x);
+  const D yd = y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y;
+  p->u = camera.fx * xd + camera.cx;
+  p->v = camera.fy * yd + camera.cy;
+  p->u_x =
+      camera.fx * (radial + 2.0 * x * x * by_r2 + 2.0 * p1 * y + 6.0 * p2 * x);
+  p->u_y = camera.fx * cross;
+  p->v_x = camera.fy * cross;
+  p->v_y =
+      camera.fy * (radial + 2.0 * y * y * by_r2 + 6.0 * p1 * y + 2.0 * p2 * x);
+}
+
+// An image between its pixels, by bilinear interpolation: the value at a place
+// and its exact derivatives there, per pixel.
+template <typename D>
+struct ImageSample {
+  D value, du, dv;
+};
+
+// At (s, t) within a pixel, of its own gray level, that of its right, lower and
+// lower right neighbour.
+template <typename D>
+[[gnu::always_inline]] inline void Interpolate(const D& s, const D& t,
+                                               const D* gray,
+                                               ImageSample<D>* sample) {
+  const D top = gray[1] - gray[0], bottom = gray[3] - gray[2];
+  const D above = gray[0] + s * top, below = gray[2] + s * bottom;
+  sample->value = above + t * (below - above);
+  sample->du = top + t * (bottom - top);
+  sample->dv = below - above;
+}
+
+}  // namespace rgbd_pose

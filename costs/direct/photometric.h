@@ -1,0 +1,163 @@
+#pragma once
+
+#include "core/estimation/motion_cost.h"
+#include "core/util/lane_math.h"
+#include "costs/direct/direct_input.h"
+#include "costs/direct/direct_points.h"
+#include "costs/direct/lane_image.h"
+#include "costs/parts/moved_point.h"
+
+namespace rgbd_pose {
+
+// The difference in gray level between a point of the previous frame and where
+// it is seen in the current image (Kerl, Sturm & Cremers, ICRA 2013; Engel,
+// Koltun & Cremers, PAMI 2018):
+//
+//   r = (I_cur(u(q)) - gain I_prev - bias) / sigma,   q = R (X_prev - C)
+//
+// With the image as a plane around u (direct_input.h), in the normalised image
+// coordinates x = q_x / q_z, y = q_y / q_z:
+//
+//   r = k_0 + k_x x + k_y y
+//
+// sigma^2 = sigma_gray^2 (1 + gain^2) + (dI / d depth)^2 sigma_depth^2: the
+// noise of both images, and the wrong place that a wrong depth leads to.
+struct Photometric {
+  static constexpr char kName[] = "photometric";
+  static constexpr int kRows = 1;
+  static constexpr int kIndependentRows = 1;
+  static constexpr bool kIsWhitened = true;
+  static constexpr int kScaleGroup = 1;  // gray levels
+  static constexpr bool kSeesBrightness = true;
+  static constexpr int kColumns = 6;  // X_prev, k_0, k_x, k_y
+
+  // The noise of a gray level, with that of its interpolation.
+  static constexpr double kSigmaGray = 2.0;
+
+  static constexpr int kMaxPoints = 4000;
+
+  // Interpolation and blur err alike in neighbouring pixels: the share of its
+  // information by which the covariance is honest in simulated sequences
+  // (docs/direct.md).
+  static constexpr double kInformation = 0.17;
+
+  // X_prev (m), the sigma of its depth (m), its gray level.
+  static constexpr int kPointColumns = 5;
+
+  static void Points(const FrameView& frame, int level,
+                     const PointSelection& selection, PackedColumns* points) {
+    TexturedPoints(frame, level, selection, points);
+  }
+
+  template <typename D>
+  [[gnu::always_inline]] static void Locate(const DirectInput& input,
+                                            const D* point,
+                                            PlaceInImage<D>* place) {
+    Seen<D> seen;
+    See(input, point, &seen);
+    *place = {seen.pixel.u, seen.pixel.v, seen.z};
+  }
+
+  // Where in the pixel the place is (0 to 1, to the right and down) and the
+  // four gray levels around.
+  static constexpr int kReads = 6;
+  [[gnu::always_inline]] static bool Read(const DirectInput& input, double u,
+                                          double v, ptrdiff_t stride,
+                                          float* reads) {
+    const ImageView<uint8_t>& gray = input.cur->levels[input.level].gray;
+    if (!(u >= 1.0 && v >= 1.0 && u < gray.width - 2.0 &&
+          v < gray.height - 2.0)) {
+      return false;
+    }
+    const int column = static_cast<int>(u), row = static_cast<int>(v);
+    const uint8_t* const at = gray.data + row * gray.stride + column;
+    reads[0 * stride] = static_cast<float>(u - column);
+    reads[1 * stride] = static_cast<float>(v - row);
+    reads[2 * stride] = at[0];
+    reads[3 * stride] = at[1];
+    reads[4 * stride] = at[gray.stride];
+    reads[5 * stride] = at[gray.stride + 1];
+    return true;
+  }
+
+  template <typename D>
+  [[gnu::always_inline]] static void LookUp(const DirectInput& input,
+                                            const D* point, const D* reads,
+                                            D* columns, D* doubt) {
+    Seen<D> seen;
+    See(input, point, &seen);
+    ImageSample<D> gray;
+    Interpolate(reads[0], reads[1], reads + 2, &gray);
+    const D slope_x = seen.pixel.u_x * gray.du + seen.pixel.v_x * gray.dv;
+    const D slope_y = seen.pixel.u_y * gray.du + seen.pixel.v_y * gray.dv;
+    // Along the ray of the previous frame: dq / d depth = R X / z.
+    const D by_depth = (slope_x * (seen.turned[0] - seen.x * seen.turned[2]) +
+                        slope_y * (seen.turned[1] - seen.y * seen.turned[2])) /
+                       (seen.z * point[2]);
+    const D depth_part = by_depth * point[3];
+    const D variance =
+        kSigmaGray * kSigmaGray * (1.0 + input.gain * input.gain) +
+        depth_part * depth_part;
+    const D w = 1.0 / sqrt(variance);
+    const D r = gray.value - input.gain * point[4] - input.bias;
+    for (int i = 0; i < 3; ++i) columns[i] = point[i];
+    columns[3] = w * (r - slope_x * seen.x - slope_y * seen.y);
+    columns[4] = w * slope_x;
+    columns[5] = w * slope_y;
+    *doubt = D{};
+  }
+
+  // A row that is the noise of a slope along an axis of the image (0: u, 1: v),
+  // at the sigma of a residual per pixel.
+  static void Feign(const DirectInput& input, int axis, double* columns) {
+    // Of a smooth pyramid's differences between neighbours, against those
+    // between two images.
+    constexpr double kSlopeNoise = 0.55;
+    const Camera& camera = input.cur->levels[input.level].camera;
+    columns[3] = 0.0;
+    columns[4] = axis == 0 ? kSlopeNoise * camera.fx : 0.0;
+    columns[5] = axis == 1 ? kSlopeNoise * camera.fy : 0.0;
+  }
+
+  template <typename M, typename D, typename T>
+  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+    T q[3];
+    Forward::Move(motion, columns, q);
+    r[0] = columns[3] + (columns[4] * q[0] + columns[5] * q[1]) / q[2];
+  }
+
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
+    D q[3];
+    Forward::Move(motion, columns, q);
+    const D inverse = 1.0 / q[2];
+    const D a = columns[4] * inverse;
+    const D b = columns[5] * inverse;
+    const D flow = a * q[0] + b * q[1];
+    r[0] = columns[3] + flow;
+    RowOfPoint(motion, columns, {a, b, -flow * inverse}, J[0]);
+  }
+
+  // Where a point is seen.
+  template <typename D>
+  struct Seen {
+    D turned[3];  // R X, m
+    D x, y, z;    // normalised image coordinates; depth, m
+    SeenPixel<D> pixel;
+  };
+
+  template <typename D>
+  [[gnu::always_inline]] static void See(const DirectInput& input,
+                                         const D* point, Seen<D>* seen) {
+    Multiply(input.R, point, seen->turned);
+    seen->z = seen->turned[2] + input.t[2];
+    const D inverse = 1.0 / seen->z;
+    seen->x = (seen->turned[0] + input.t[0]) * inverse;
+    seen->y = (seen->turned[1] + input.t[1]) * inverse;
+    SeePixel(input.cur->levels[input.level].camera, input.has_distortion,
+             seen->x, seen->y, &seen->pixel);
+  }
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,86 @@
+#pragma once
+
+#include "core/estimation/motion_cost.h"
+#include "core/util/lane_math.h"
+#include "costs/direct/direct_input.h"
+#include "costs/direct/direct_points.h"
+#include "costs/direct/surface.h"
+#include "costs/parts/moved_point.h"
+
+namespace rgbd_pose {
+
+// The distance of a point of the previous frame, moved, from the plane of the
+// surface that the current frame measures there (Chen & Medioni 1992; Newcombe
+// et al., ISMAR 2011):
+//
+//   r = n . (q - p) / sigma,   q = R (X_prev - C)
+//
+// With the plane N (surface.h), n = N / |N|:
+//
+//   r = (N . q - 1) / (|N| sigma)
+//
+// sigma: that of the depths, as far as it lies along n. A depth error moves a
+// point along its ray (x, y, 1), of which N . ray / |N| = 1 / (z |N|) does.
+struct ProjectivePlane : Surface {
+  static constexpr char kName[] = "projective_plane";
+  static constexpr int kRows = 1;
+  static constexpr int kIndependentRows = 1;
+  static constexpr bool kIsWhitened = true;
+  static constexpr int kScaleGroup = 2;  // depths
+  static constexpr bool kSeesBrightness = false;
+  static constexpr int kColumns = 7;  // X_prev, w N, w with w = 1 / (|N| sigma)
+
+  static void Points(const FrameView& frame, int /*level*/,
+                     const PointSelection& selection, PackedColumns* points) {
+    SmoothPoints(frame, selection, points);
+  }
+
+  template <typename D>
+  [[gnu::always_inline]] static void LookUp(const DirectInput& input,
+                                            const D* point, const D* reads,
+                                            D* columns, D* doubt) {
+    constexpr double kMaxDistance = 0.2;  // m; beyond is another surface
+    MeasuredSurface<D> surface;
+    Measure(input, point, reads, &surface);
+    const D* const N = surface.plane;
+    const D length2 = N[0] * N[0] + N[1] * N[1] + N[2] * N[2];
+    const D w = surface.q[2] / (kSurfaceSigma * point[6]);
+    for (int i = 0; i < 3; ++i) {
+      columns[i] = point[i];
+      columns[3 + i] = w * N[i];
+    }
+    columns[6] = w;
+    constexpr double kMaxDistance2 = kMaxDistance * kMaxDistance;
+    *doubt = surface.doubt +
+             surface.excess * surface.excess / (kMaxDistance2 * length2);
+  }
+
+  // A row that is the noise of the plane's slope along an axis of the image:
+  // N + noise (1, 0, -x), where |N| is about 1 / z.
+  static void Feign(const DirectInput& input, int axis, double* columns) {
+    const Camera& camera = input.cur->levels[0].camera;
+    const double focal = axis == 0 ? camera.fx : camera.fy;
+    const double noise = kSlopeNoise * focal / columns[2];
+    columns[3] = axis == 0 ? noise : 0.0;
+    columns[4] = axis == 1 ? noise : 0.0;
+    columns[5] = -noise * columns[axis] / columns[2];
+    columns[6] = 0.0;
+  }
+
+  template <typename M, typename D, typename T>
+  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+    T q[3];
+    Forward::Move(motion, columns, q);
+    r[0] =
+        columns[3] * q[0] + columns[4] * q[1] + columns[5] * q[2] - columns[6];
+  }
+
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
+    Residual(motion, columns, r);
+    RowOfPoint(motion, columns, {columns[3], columns[4], columns[5]}, J[0]);
+  }
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,129 @@
+#pragma once
+
+#include "core/estimation/frame_view.h"
+#include "core/util/lane_math.h"
+#include "costs/direct/direct_input.h"
+#include "costs/direct/lane_image.h"
+
+namespace rgbd_pose {
+
+// Depths of a plane are so many pixels apart: next to each other they share
+// their noise, and slopes are too noisy.
+constexpr int kSurfaceStep = 4;
+
+// A point of the previous frame's surface as it is seen in the current frame,
+// and the plane N . p = 1 (p in current axes, m; N in 1 / m) of the surface
+// that is measured there. Its slope is that of the previous surface, moved; how
+// far it is away is the mean of nine measured inverse depths. In normalised
+// image coordinates the inverse depth of a plane is linear: 1 / z = N . (x, y,
+// 1).
+template <typename D>
+struct MeasuredSurface {
+  D q[3];      // m
+  D x, y;      // normalised image coordinates
+  D plane[3];  // N, 1 / m
+  D excess;    // N . q - 1: 0 on the surface, about (q_z - z) / z
+  D doubt;     // 1 or more: it is none, but an edge
+};
+
+// The noise of a surface's slope a pixel, in sigmas of a residual: of a plane
+// through 5 x 5 depths, 3 px apart.
+constexpr double kSlopeNoise = 0.0667;
+
+// The sigma of a surface point in that of one depth, as simulated pairs have it:
+// the means of nine depths here and 25 there, whose noise is correlated,
+// leave half of it each.
+constexpr double kSurfaceSigma = 0.707;
+
+// What the costs on surfaces share. Columns of a point (see SmoothPoints):
+// X_prev (m), the plane N . X_prev = 1 (1 / m), the sigma of its depth (m).
+struct Surface {
+  static constexpr int kPointColumns = 7;
+  static constexpr int kMaxPoints = 3000;
+
+  // As Photometric's: noise of depths reaches over some pixels.
+  static constexpr double kInformation = 0.75;
+
+  template <typename D>
+  [[gnu::always_inline]] static void Locate(const DirectInput& input,
+                                            const D* point,
+                                            PlaceInImage<D>* place) {
+    D q[3];
+    Multiply(input.R, point, q);
+    for (int i = 0; i < 3; ++i) q[i] += input.t[i];
+    const D inverse = 1.0 / q[2];
+    SeenPixel<D> pixel;
+    SeePixel(input.cur->levels[0].camera, input.has_distortion,
+             D(q[0] * inverse), D(q[1] * inverse), &pixel);
+    *place = {pixel.u, pixel.v, q[2]};
+  }
+
+  // From the nearest whole pixel to the place (px, to the right and down), and
+  // 3 x 3 raw depths around that pixel.
+  static constexpr int kReads = 11;
+  [[gnu::always_inline]] static bool Read(const DirectInput& input, double u,
+                                          double v, ptrdiff_t stride,
+                                          float* reads) {
+    constexpr double kBorder = kSurfaceStep + 1.0;
+    const ImageView<uint16_t>& depth = input.cur->depth;
+    if (!(u >= kBorder && v >= kBorder && u < depth.width - 1.0 - kBorder &&
+          v < depth.height - 1.0 - kBorder)) {
+      return false;
+    }
+    const int column = static_cast<int>(u + 0.5);
+    const int row = static_cast<int>(v + 0.5);
+    const uint16_t* at = depth.data + row * depth.stride + column;
+    reads[0] = static_cast<float>(u - column);
+    reads[stride] = static_cast<float>(v - row);
+    // Two values mean no depth; both become 0 by adding 1.
+    bool is_measured = true;
+    for (int k = 0; k < 9; ++k) {
+      const uint16_t raw = at[(k / 3 - 1) * kSurfaceStep * depth.stride +
+                              (k % 3 - 1) * kSurfaceStep];
+      is_measured &= static_cast<uint16_t>(raw + 1) > 1;
+      reads[(2 + k) * stride] = raw;
+    }
+    return is_measured;
+  }
+
+  template <typename D>
+  [[gnu::always_inline]] static void Measure(const DirectInput& input,
+                                             const D* point, const D* reads,
+                                             MeasuredSurface<D>* s) {
+    // 99 % of chi^2 of eight degrees.
+    constexpr double kMaxSquares = 20.1;
+    const Camera& camera = input.cur->levels[0].camera;
+    const double per_u = 1.0 / camera.fx, per_v = 1.0 / camera.fy;
+    Multiply(input.R, point, s->q);
+    for (int i = 0; i < 3; ++i) s->q[i] += input.t[i];
+    const D inverse_z = 1.0 / s->q[2];
+    s->x = s->q[0] * inverse_z;
+    s->y = s->q[1] * inverse_z;
+    // The moved plane n . p = 1 + n . t; near q only its slope counts.
+    D n[3];
+    Multiply(input.R, point + 3, n);
+    const D scale = 1.0 / (n[0] * s->q[0] + n[1] * s->q[1] + n[2] * s->q[2]);
+    for (int i = 0; i < 3; ++i) n[i] *= scale;
+    D sum = {}, squares = {};
+    for (int k = 0; k < 9; ++k) {
+      const int i = (k % 3 - 1) * kSurfaceStep, j = (k / 3 - 1) * kSurfaceStep;
+      const D off = input.cur->depth_scale / reads[2 + k] - inverse_z -
+                    (n[0] * (i * per_u) + n[1] * (j * per_v));
+      sum += off;
+      squares += off * off;
+    }
+    const D mean = sum * (1.0 / 9.0);
+    // From the nearest pixel to the place. Over half a pixel distortion does
+    // not matter.
+    const D measured = inverse_z + mean + n[0] * (reads[0] * per_u) +
+                       n[1] * (reads[1] * per_v);
+    s->plane[0] = n[0];
+    s->plane[1] = n[1];
+    s->plane[2] = measured - n[0] * s->x - n[1] * s->y;
+    s->excess = measured * s->q[2] - 1.0;
+    const D sigma = point[6] / (point[2] * point[2]);
+    s->doubt = (squares - 9.0 * mean * mean) / (kMaxSquares * sigma * sigma);
+  }
+};
+
+}  // namespace rgbd_pose

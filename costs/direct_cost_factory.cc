@@ -1,0 +1,90 @@
+#include "costs/direct_cost_factory.h"
+
+#include "core/util/input_error.h"
+#include "costs/cost_factory.h"
+#include "costs/direct_cost_list.h"
+#include "robust/scale.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct Entry {
+  std::string_view name;
+  std::unique_ptr<MotionCost> (*make)(const DirectOptions& options);
+};
+
+template <typename Residual>
+std::unique_ptr<MotionCost> Make(const DirectOptions& options) {
+  return std::make_unique<DirectCostOf<Residual>>(options);
+}
+
+template <typename... Residuals>
+std::vector<Entry> EntriesOf(TypeList<Residuals...>) {
+  return {Entry{Residuals::kName, &Make<Residuals>}...};
+}
+
+}  // namespace
+
+std::string DirectOptions::Check() const {
+  if (max_points < 0 || max_coarse_points < 1) {
+    return "the number of points must be positive";
+  }
+  if (!(min_gradient >= 0.0)) return "min_gradient must not be negative";
+  if (!(min_depth > 0.0 && min_depth < max_depth)) {
+    return "depths must have 0 < min_depth < max_depth";
+  }
+  if (num_levels < 1 || finest_level < 0) {
+    return "at least one level of the pyramid is needed";
+  }
+  if (!(information_factor >= 0.0)) {
+    return "information_factor must not be negative";
+  }
+  return "";
+}
+
+EstimatorOptions DirectEstimatorOptions() {
+  EstimatorOptions options;
+  // The pyramid widens the basin, and a scale that starts wide.
+  options.schedule = RobustSchedule::kDirect;
+  options.scale = FindScaleEstimator("mad")->estimate;
+  // More rounds do not tell scale and motion more exactly.
+  options.max_scale_rounds = 1;
+  options.max_iterations = 8;
+  // 0.02 px of a half-size image with a focal length of 260 px.
+  options.settled_within = 8e-5;
+  options.max_scale = 5.0;
+  options.max_standard_deviation = 0.05;
+  return options;
+}
+
+std::vector<std::string> DirectCostNames() {
+  std::vector<std::string> names;
+  for (const Entry& entry : EntriesOf(DirectResidualTypes())) {
+    names.emplace_back(entry.name);
+  }
+  return names;
+}
+
+std::unique_ptr<MotionCost> MakeDirectCost(std::string_view name,
+                                           const DirectOptions& options) {
+  const std::string error = options.Check();
+  if (!error.empty()) throw InputError("direct cost: " + error);
+  for (const Entry& entry : EntriesOf(DirectResidualTypes())) {
+    if (entry.name == name) return entry.make(options);
+  }
+  return nullptr;
+}
+
+std::vector<RobustCost> MakeDirectCosts(const std::string& cost_names,
+                                        const std::string& loss_names,
+                                        const DirectOptions& options) {
+  std::vector<std::string> names = DirectCostNames();
+  names.emplace_back(MotionPriorCost::kName);
+  return MakeRobustCosts(
+      cost_names, loss_names, names, [&](const std::string& name) {
+        return name == MotionPriorCost::kName ? MakeCost(name)
+                                              : MakeDirectCost(name, options);
+      });
+}
+
+}  // namespace rgbd_pose

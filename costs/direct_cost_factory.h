@@ -1,0 +1,34 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/estimation/estimator.h"
+#include "core/estimation/motion_cost.h"
+#include "costs/direct/direct_cost.h"
+
+namespace rgbd_pose {
+
+// The names of all direct costs, in the order of the type list.
+std::vector<std::string> DirectCostNames();
+
+// The direct cost of that name, or null.
+std::unique_ptr<MotionCost> MakeDirectCost(std::string_view name,
+                                           const DirectOptions& options);
+
+// What is taken where nobody says otherwise.
+inline constexpr char kDefaultDirectCost[] = "photometric+projective_plane";
+inline constexpr char kDefaultDirectLoss[] = "huber";
+
+// As MakeRobustCosts, of direct costs and motion_prior.
+std::vector<RobustCost> MakeDirectCosts(
+    const std::string& cost_names = kDefaultDirectCost,
+    const std::string& loss_names = kDefaultDirectLoss,
+    const DirectOptions& options = {});
+
+// How estimators minimise direct costs.
+EstimatorOptions DirectEstimatorOptions();
+
+}  // namespace rgbd_pose
