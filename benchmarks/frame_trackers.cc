@@ -13,10 +13,16 @@
 namespace rgbd_pose {
 namespace {
 
+OdometrySettings TrackedBy(const char* tracker) {
+  OdometrySettings settings;
+  settings.tracker = tracker;
+  return settings;
+}
+
 class OurTracker : public FrameTracker {
  public:
-  explicit OurTracker(const Camera& camera)
-      : odometry_(MakeOdometry(OdometrySettings(), camera)) {}
+  OurTracker(const char* tracker, const Camera& camera)
+      : odometry_(MakeOdometry(TrackedBy(tracker), camera)) {}
 
   std::optional<Rigid3d> Track(const BenchmarkFrame& frame) override {
     const TrackedFrame tracked = odometry_.Track(frame.frame);
@@ -65,6 +71,16 @@ class OpenCvTracker : public FrameTracker {
 
 #endif
 
+std::unique_ptr<FrameTracker> MakeByFeatures(const Camera& camera) {
+  return std::make_unique<OurTracker>("features", camera);
+}
+std::unique_ptr<FrameTracker> MakeDirect(const Camera& camera) {
+  return std::make_unique<OurTracker>("direct", camera);
+}
+std::unique_ptr<FrameTracker> MakeHybrid(const Camera& camera) {
+  return std::make_unique<OurTracker>("hybrid", camera);
+}
+
 template <typename Tracker>
 std::unique_ptr<FrameTracker> Make(const Camera& camera) {
   return std::make_unique<Tracker>(camera);
@@ -80,7 +96,9 @@ BenchmarkFrame::BenchmarkFrame(const Frame& images) : frame(images) {
 
 std::vector<FrameTrackerType> FrameTrackerTypes() {
   return {
-      {"rgbd_pose", Make<OurTracker>},
+      {"rgbd_pose", MakeByFeatures},
+      {"rgbd_pose_direct", MakeDirect},
+      {"rgbd_pose_hybrid", MakeHybrid},
 #ifdef RGBD_POSE_HAS_OPENCV_RGBD
       {"opencv_rgbd", Make<OpenCvTracker<cv::rgbd::RgbdOdometry>>},
       {"opencv_icp", Make<OpenCvTracker<cv::rgbd::ICPOdometry>>},

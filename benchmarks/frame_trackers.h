@@ -36,7 +36,8 @@ struct FrameTrackerType {
   std::unique_ptr<FrameTracker> (*make)(const Camera& camera);
 };
 
-// This project's Odometry with default settings, first; then, where OpenCV has
+// This project's odometry by features, by pixels and by both, otherwise with
+// default settings; then, where OpenCV has
 // its rgbd module, cv::rgbd's RgbdOdometry, ICPOdometry and RgbdICPOdometry,
 // all with default settings and from frame to frame as in OpenCV's own sample:
 // each frame is tracked against the one before, which keeps what was computed

@@ -6,6 +6,7 @@
 #include "benchmarks/machine.h"
 #include "core/util/format.h"
 #include "costs/cost_factory.h"
+#include "costs/direct_cost_factory.h"
 
 namespace rgbd_pose {
 namespace {
@@ -158,6 +159,26 @@ std::string JacobianRows(const BenchmarkResults& results) {
   return text;
 }
 
+std::string DirectRows(const BenchmarkResults& results) {
+  std::string text;
+  for (const std::string& cost : DirectCostNames()) {
+    const auto find = [&](const std::string& what) {
+      return results.Find("direct/" + what + "/10000");
+    };
+    const BenchmarkResult* rows = find("linearise/" + cost);
+    if (rows == nullptr) continue;
+    const BenchmarkResult* bare =
+        cost == "photometric" ? find("linearise/bare_loop") : nullptr;
+    const std::string alone = "jacobian/alone/" + cost;
+    const BenchmarkResult* by_hand = results.Find(alone + "/analytic");
+    const BenchmarkResult* by_jet = results.Find(alone + "/autodiff");
+    text += Row({"`" + cost + "`", Time(rows), Time(bare),
+                 Time(find("look_up/" + cost)), Time(by_hand), Time(by_jet),
+                 Ratio(by_hand, by_jet)});
+  }
+  return text;
+}
+
 std::string PeerRows(const BenchmarkResults& results) {
   std::string text;
   for (const char* method : {"estimator", "ransac", "umeyama_ransac",
@@ -176,7 +197,8 @@ std::string FrameRows(const BenchmarkResults& results) {
   std::string text;
   for (const std::string& sequence : TrackedSequences(results)) {
     for (const char* method :
-         {"rgbd_pose", "opencv_rgbd", "opencv_icp", "opencv_rgbdicp"}) {
+         {"rgbd_pose", "rgbd_pose_direct", "rgbd_pose_hybrid", "opencv_rgbd",
+          "opencv_icp", "opencv_rgbdicp"}) {
       const BenchmarkResult* result =
           results.Find("frames/" + sequence + "/" + method);
       if (result == nullptr) continue;
@@ -253,6 +275,7 @@ std::map<std::string, std::string> ReportTables(
           {"SIZES", SizeRows(results)},
           {"ESTIMATE", EstimateRows(results)},
           {"JACOBIANS", JacobianRows(results)},
+          {"DIRECT", DirectRows(results)},
           {"PEERS", PeerRows(results)},
           {"FRAMES", FrameRows(results)},
           {"SPEEDUPS", SpeedupRows(speedups)}};

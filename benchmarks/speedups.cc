@@ -1,6 +1,7 @@
 #include "benchmarks/speedups.h"
 
 #include "costs/cost_factory.h"
+#include "costs/direct_cost_factory.h"
 
 namespace rgbd_pose {
 namespace {
@@ -104,6 +105,14 @@ std::vector<SpeedupRow> FindSpeedups(const BenchmarkResults& results) {
     collector.Add("jacobian_in_ceres_" + cost + "_analytic_over_autodiff",
                   {in_ceres + "/analytic"}, {in_ceres + "/autodiff"});
   }
+  for (const std::string& cost : DirectCostNames()) {
+    const std::string alone = "jacobian/alone/" + cost;
+    collector.Add("jacobian_" + cost + "_analytic_over_autodiff",
+                  {alone + "/analytic"}, {alone + "/autodiff"}, 2.0);
+  }
+  collector.Add("direct_photometric_over_bare_loop",
+                {"direct/linearise/photometric/10000"},
+                {"direct/linearise/bare_loop/10000"}, 1.0 / 1.5);
   for (const std::string& peer : kMatchPeers) {
     collector.Add("estimate_over_" + peer, {"peers/estimator"},
                   {"peers/" + peer});

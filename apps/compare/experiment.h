@@ -9,6 +9,13 @@
 
 namespace rgbd_pose {
 
+// Of features alone: pixels would hide what M-estimators do to wrong matches.
+inline OdometrySettings ByFeatures() {
+  OdometrySettings settings;
+  settings.tracker = "features";
+  return settings;
+}
+
 // What an experiment is run with.
 struct ExperimentSettings {
   std::string experiment;  // a name or a folder
@@ -16,7 +23,7 @@ struct ExperimentSettings {
   std::string camera;      // file or preset; empty: ros_default if simulated
   int frames = 150;        // of a simulated sequence
   int seeds = 200;         // of a sweep, at each share of wrong matches
-  OdometrySettings odometry;  // all but the loss
+  OdometrySettings odometry = ByFeatures();  // all but the loss
 };
 
 // What becomes of it: report.md, and whether enough was tracked to compare.

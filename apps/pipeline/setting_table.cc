@@ -112,6 +112,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
   FrontendOptions* features = &settings->features;
   TrackerOptions* tracking = &settings->tracking;
   OdometryOptions* odometry = &settings->odometry;
+  DirectSettings* direct = &settings->direct;
   return {
       {"cost", kEstimationGroup, "cost of a match; several added up: a+b",
        Text(&estimator->cost), CostNames()},
@@ -155,6 +156,24 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        &features->max_depth},
       {"tracker", kTracking, "how a frame is followed",
        Text(&settings->tracker), TrackerNames()},
+      {"direct_cost", kTracking, "cost of a pixel; several added up: a+b",
+       Text(&direct->cost), DirectCostNames()},
+      {"direct_loss", kTracking, "M-estimator of pixels, one for each cost",
+       Text(&direct->loss), MEstimatorNames()},
+      {"direct_points", kTracking,
+       "pixels compared for each cost; 0: what is good for it",
+       &direct->points.max_points},
+      {"direct_levels", kTracking,
+       "sizes of the image, halved each time, at which pixels are compared",
+       &direct->points.num_levels},
+      {"direct_information", kTracking,
+       "share of its information that a pixel brings; 0: what is honest for "
+       "the "
+       "cost",
+       &direct->points.information_factor},
+      {"min_seen_share", kTracking,
+       "tracked by pixels, a frame that shows less of its reference is lost",
+       &settings->direct_tracking.min_seen_share},
       {"initial_guess", kTracking, "where the solver starts in a frame",
        GuessByName(tracking, odometry), GuessNames()},
       {"on_lost", kTracking,

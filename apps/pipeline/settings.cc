@@ -7,13 +7,24 @@ Estimator MakeEstimator(const EstimatorSettings& settings) {
                    MakeRobustCosts(settings.cost, settings.loss));
 }
 
+Estimator MakeDirectEstimator(const DirectSettings& settings) {
+  return Estimator(
+      settings.options,
+      MakeDirectCosts(settings.cost, settings.loss, settings.points));
+}
+
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
   FrontendOptions features = settings.features;
   features.camera = camera;
-  return Odometry(settings.odometry,
-                  MakeTracker(settings.tracker,
-                              {settings.tracking, features, settings.frontend,
-                               MakeEstimator(settings.estimator)}));
+  DirectSettings direct = settings.direct;
+  direct.points.min_depth = features.min_depth;
+  direct.points.max_depth = features.max_depth;
+  return Odometry(
+      settings.odometry,
+      MakeTracker(settings.tracker,
+                  {settings.tracking, features, settings.frontend,
+                   MakeEstimator(settings.estimator),
+                   MakeDirectEstimator(direct), settings.direct_tracking}));
 }
 
 }  // namespace rgbd_pose

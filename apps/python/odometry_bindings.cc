@@ -115,7 +115,15 @@ void BindTrackedFrame(py::module_* module) {
                     "whether it was found again among earlier references")
       .def_readonly("is_predicted", &TrackedFrame::is_predicted,
                     "whether it is lost, but its pose follows motion_guess")
-      .def_readonly("matches", &TrackedFrame::matches, "with the reference")
+      .def_property_readonly(
+          "carried_by",
+          [](const TrackedFrame& frame) {
+            return std::string(frame.carried_by);
+          },
+          "what its motion comes from: 'features', 'direct' (pixels),\n"
+          "'features+direct', or '' if it has none")
+      .def_readonly("matches", &TrackedFrame::matches,
+                    "with the reference: of features, or pixels")
       .def_readonly("inliers", &TrackedFrame::inliers, "of these, in agreement")
       .def_readonly("iterations", &TrackedFrame::iterations, "of the solver")
       .def_readonly("sigma", &TrackedFrame::sigma,

@@ -7,18 +7,21 @@ namespace rgbd_pose {
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
   std::string text =
       "timestamp,status,reason,segment,reference,is_reference,relocalised,"
-      "predicted,matches,inliers,iterations,sigma,decode_ms,track_ms,match_ms,"
+      "predicted,carried_by,matches,inliers,iterations,sigma,decode_ms,track_"
+      "ms,match_ms,"
       "solve_ms,reference_ms,relocalise_ms\n";
   for (const TrackedFrame& frame : frames) {
     // Reasons are our own words and hold no quotes.
     text += Format(
-        "%.6f,%s,\"%s\",%d,%d,%d,%d,%d,%d,%d,%d,%.4f,%.3f,%.3f,%.3f,%.3f,%.3f,"
+        "%.6f,%s,\"%s\",%d,%d,%d,%d,%d,%s,%d,%d,%d,%.4f,%.3f,%.3f,%.3f,%.3f,%."
+        "3f,"
         "%.3f\n",
         frame.timestamp, ToString(frame.status), frame.reason.c_str(),
         frame.segment, frame.reference, frame.is_reference, frame.relocalised,
-        frame.is_predicted, frame.matches, frame.inliers, frame.iterations,
-        frame.sigma, frame.decode_ms, frame.track_ms, frame.match_ms,
-        frame.solve_ms, frame.reference_ms, frame.relocalise_ms);
+        frame.is_predicted, std::string(frame.carried_by).c_str(),
+        frame.matches, frame.inliers, frame.iterations, frame.sigma,
+        frame.decode_ms, frame.track_ms, frame.match_ms, frame.solve_ms,
+        frame.reference_ms, frame.relocalise_ms);
   }
   return text;
 }

@@ -11,6 +11,7 @@
 #include "frontend/features/match_overlay.h"
 #include "frontend/map/ply_writer.h"
 #include "frontend/sources/image_file.h"
+#include "frontend/tracking/residual_image.h"
 
 namespace rgbd_pose {
 namespace {
@@ -42,6 +43,14 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
   WritePngFile((folder / Format("%06d.png", tracked.index)).string(),
                DrawMatches(frame, camera, odometry.last_matches(),
                            odometry.last_estimate(), caption));
+  const Reference* reference = odometry.FindReference(tracked.reference);
+  if (tracked.status != TrackingStatus::kLost && reference != nullptr &&
+      reference->images() != nullptr) {
+    WritePngFile(
+        (folder / Format("%06d_residuals.png", tracked.index)).string(),
+        DrawResiduals(*reference->images(), frame,
+                      odometry.last_estimate().cur_from_prev));
+  }
 }
 
 }  // namespace
@@ -53,7 +62,8 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
        Text(&settings->output)},
       {"debug_images", kGroup,
        "frames whose matches are drawn into OUTPUT/debug, coloured by robust "
-       "weight: all, or numbers and ranges such as 10,20-40:5",
+       "weight, and what pixels differ by: all, or numbers and ranges such as "
+       "10,20-40:5",
        Text(&settings->debug_images)},
       {"save_cloud", kGroup,
        "file for a coloured point cloud of what was seen (PLY), in the world "

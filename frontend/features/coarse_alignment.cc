@@ -45,15 +45,6 @@ Eigen::Quaterniond SmallTurn(const Eigen::Vector3d& turn) {
                             0.5 * turn.z());
 }
 
-Camera AtLevel(Camera camera, int level) {
-  const double scale = 1.0 / (1 << level);
-  camera.fx *= scale;
-  camera.fy *= scale;
-  camera.cx = (camera.cx + 0.5) * scale - 0.5;
-  camera.cy = (camera.cy + 0.5) * scale - 0.5;
-  return camera;
-}
-
 }  // namespace
 
 Eigen::Matrix<float, 8, 1> PhotometricJacobian(const Eigen::Vector3f& place,
@@ -89,7 +80,7 @@ CoarseReference::Level CoarseReference::MakeLevel(const Frame& frame,
                                                   const Camera& camera) {
   Level level;
   level.level = index;
-  level.camera = AtLevel(camera, index);
+  level.camera = CameraOfLevel(camera, index);
   const Camera& c = level.camera;
   double sum = 0.0, squares = 0.0;
   for (int v = 1; v + 1 < image.rows; ++v) {

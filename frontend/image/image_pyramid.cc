@@ -27,4 +27,28 @@ void BuildImagePyramid(const cv::Mat& gray, int levels,
   }
 }
 
+void BuildSmoothPyramid(const cv::Mat& gray, int levels,
+                        std::vector<cv::Mat>* pyramid) {
+  constexpr double kSigmaPx = 1.0;
+  std::vector<cv::Mat> sharp;
+  BuildImagePyramid(gray, levels, &sharp);
+  pyramid->resize(sharp.size());
+  (*pyramid)[0] = gray;
+  for (size_t level = 1; level < sharp.size(); ++level) {
+    cv::GaussianBlur(sharp[level], (*pyramid)[level], {3, 3}, kSigmaPx);
+  }
+}
+
+Camera CameraOfLevel(const Camera& camera, int level) {
+  Camera result = camera;
+  const double scale = 1.0 / (1 << level);
+  result.fx *= scale;
+  result.fy *= scale;
+  result.cx = (camera.cx + 0.5) * scale - 0.5;
+  result.cy = (camera.cy + 0.5) * scale - 0.5;
+  result.width >>= level;
+  result.height >>= level;
+  return result;
+}
+
 }  // namespace rgbd_pose

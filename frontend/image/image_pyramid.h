@@ -3,6 +3,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "core/geometry/camera.h"
+
 namespace rgbd_pose {
 
 // An image (CV_8UC1) and `levels - 1` more, each half as wide and high as the
@@ -10,6 +12,14 @@ namespace rgbd_pose {
 // `gray`. Fewer levels if the image becomes smaller than 8 pixels.
 void BuildImagePyramid(const cv::Mat& gray, int levels,
                        std::vector<cv::Mat>* pyramid);
+
+// The same but for level 0, blurred: for costs that interpolate gray levels,
+// which is more exact, and from farther away, where images are smooth.
+void BuildSmoothPyramid(const cv::Mat& gray, int levels,
+                        std::vector<cv::Mat>* pyramid);
+
+// The camera of the pixels of a level.
+Camera CameraOfLevel(const Camera& camera, int level);
 
 // A coordinate (px) of level 0 in another level: the centre of the first 2 x 2
 // pixels, at 0.5, becomes 0.

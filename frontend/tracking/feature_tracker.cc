@@ -1,6 +1,5 @@
 #include "frontend/tracking/feature_tracker.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <utility>
 
@@ -105,6 +104,8 @@ void FeatureTracker::Track(const Reference& reference,
                      &tracked->matches);
     ours.trust.Split(&tracked->matches, &tracked->doubted);
   }
+  tracked->carried_by = kName;
+  tracked->num_found = static_cast<int>(tracked->matches.matches.size());
   Estimate(cur_from_ref_guess, guess_covariance, tracked);
   Judge(tracked);
   if (tracked->status == TrackingStatus::kLost) return;
@@ -127,15 +128,8 @@ void FeatureTracker::Estimate(const Rigid3d& cur_from_ref_guess,
   if (options_.initial_guess != nullptr) {
     guess = options_.initial_guess->find(matches).value_or(guess);
   }
-  MotionPrior prior;
-  prior.mean = cur_from_ref_guess;
-  const double turn = 1.0 / options_.prior_sigma_rotation;
-  const double shift = 1.0 / options_.prior_sigma_translation;
-  prior.information.diagonal() << turn * turn, turn * turn, turn * turn,
-      shift * shift, shift * shift, shift * shift;
-  if (guess_covariance != nullptr) {
-    prior.information = guess_covariance->inverse();
-  }
+  const MotionPrior prior =
+      PriorOf(options_, cur_from_ref_guess, guess_covariance);
   estimator_.Estimate({&matches, &prior}, guess, &tracked->estimate);
 }
 

@@ -131,8 +131,7 @@ bool Odometry::Follow(const PreparedFrame& measured,
     return (prediction != nullptr &&
             Try(frame, *reference_, prediction->cur_from_ref, result,
                 prediction->is_certain ? &prediction->covariance : nullptr)) ||
-           Try(frame, *reference_, first, result) ||
-           Try(frame, *reference_, second, result);
+           TryEither(frame, first, second, result);
   };
   auto moved = AtColorTime(
       measured, prediction == nullptr
@@ -234,13 +233,34 @@ bool Odometry::Try(const PreparedFrame& frame, const Keyframe& keyframe,
   result->status = tracked_.status;
   result->reason = tracked_.reason;
   result->reference = keyframe.id;
-  result->matches = static_cast<int>(tracked_.matches.matches.size());
+  result->carried_by = tracked_.carried_by;
+  result->matches = tracked_.num_found;
   result->inliers = estimate.num_inliers;
   result->iterations += estimate.iterations;
   result->sigma = estimate.sigma;
   result->match_ms += tracked_.match_ms;
   result->solve_ms += estimate.solve_ms;
   return tracked_.status != TrackingStatus::kLost;
+}
+
+bool Odometry::TryEither(const PreparedFrame& frame, const Rigid3d& first,
+                         const Rigid3d& second, TrackedFrame* result) {
+  if (!Try(frame, *reference_, first, result)) {
+    return Try(frame, *reference_, second, result);
+  }
+  if (result->status == TrackingStatus::kOk) return true;
+  const TrackedFrame doubtful = *result;
+  std::swap(tracked_, other_);
+  if (Try(frame, *reference_, second, result) &&
+      result->status == TrackingStatus::kOk) {
+    return true;
+  }
+  std::swap(tracked_, other_);
+  const double match_ms = result->match_ms, solve_ms = result->solve_ms;
+  *result = doubtful;
+  result->match_ms = match_ms;
+  result->solve_ms = solve_ms;
+  return true;
 }
 
 void Odometry::TakeMotion(TrackedFrame* result) {
@@ -344,6 +364,11 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   covariance_.setZero();
   result->is_reference = true;
   return true;
+}
+
+const Reference* Odometry::FindReference(int id) const {
+  const Keyframe* keyframe = keyframes_.Find(id);
+  return keyframe != nullptr ? keyframe->reference.get() : nullptr;
 }
 
 Rigid3d Odometry::WorldFromCam() const {

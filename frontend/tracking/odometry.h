@@ -97,6 +97,10 @@ class Odometry {
   const FeatureMatches& last_matches() const { return tracked_.matches; }
   const MotionEstimate& last_estimate() const { return tracked_.estimate; }
 
+  // The reference of that number (TrackedFrame::reference); null if there is
+  // none any more.
+  const Reference* FindReference(int id) const;
+
   // The depth image of the last frame as it was tracked by: moved to the time
   // of its colour image, if that is another one. Good until the next frame.
   const cv::Mat& last_depth() const { return depth_; }
@@ -129,6 +133,10 @@ class Odometry {
   bool Try(const PreparedFrame& frame, const Keyframe& keyframe,
            const Rigid3d& cur_from_ref_guess, TrackedFrame* result,
            const MotionMatrix* guess_covariance = nullptr);
+  // The same against reference_ from two guesses: the second counts where the
+  // first leads to no pose, or to a doubtful one and itself to a good one.
+  bool TryEither(const PreparedFrame& frame, const Rigid3d& first,
+                 const Rigid3d& second, TrackedFrame* result);
   // Takes the motion of tracked_ since reference_ for that of the pose, and
   // puts it before other edges.
   void TakeMotion(TrackedFrame* result);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/estimation/edge.h"
@@ -46,7 +47,10 @@ struct TrackedFrame {
   // certain it is.
   std::vector<Edge> edges;
 
-  int matches = 0;     // with the reference
+  // What it was tracked by, see Tracked::carried_by; empty: not at all.
+  std::string_view carried_by;
+
+  int matches = 0;     // with the reference: of features, or pixels
   int inliers = 0;     // of these, in agreement with the motion
   int iterations = 0;  // of the solver, all attempts together
   double sigma = 0.0;  // spread of whitened residuals; ideally 1

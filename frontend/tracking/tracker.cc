@@ -1,5 +1,7 @@
 #include "frontend/tracking/tracker.h"
 
+#include <Eigen/LU>
+
 namespace rgbd_pose {
 
 std::string TrackerOptions::Check() const {
@@ -15,6 +17,21 @@ std::string TrackerOptions::Check() const {
     return "the prior's standard deviations must be positive";
   }
   return "";
+}
+
+MotionPrior PriorOf(const TrackerOptions& options, const Rigid3d& guess,
+                    const MotionMatrix* covariance) {
+  MotionPrior prior;
+  prior.mean = guess;
+  if (covariance != nullptr) {
+    prior.information = covariance->inverse();
+    return prior;
+  }
+  const double turn = 1.0 / options.prior_sigma_rotation;
+  const double shift = 1.0 / options.prior_sigma_translation;
+  prior.information.diagonal() << turn * turn, turn * turn, turn * turn,
+      shift * shift, shift * shift, shift * shift;
+  return prior;
 }
 
 }  // namespace rgbd_pose

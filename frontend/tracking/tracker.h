@@ -2,8 +2,11 @@
 
 #include <memory>
 #include <string>
+#include <string_view>
 
+#include "core/estimation/frame_view.h"
 #include "core/estimation/motion_estimate.h"
+#include "core/estimation/motion_prior.h"
 #include "core/geometry/rigid3.h"
 #include "core/initial_guess/initial_guess.h"
 #include "frontend/features/frontend.h"
@@ -37,6 +40,11 @@ struct TrackerOptions {
   std::string Check() const;
 };
 
+// What is known of a motion by a guess and its covariance; null: by the
+// options' standard deviations.
+MotionPrior PriorOf(const TrackerOptions& options, const Rigid3d& guess,
+                    const MotionMatrix* covariance);
+
 // How much of one view another one shows.
 struct Overlap {
   double share = 0.0;    // 0 to 1
@@ -51,6 +59,9 @@ class Reference {
 
   // How much of it a camera there should see.
   virtual Overlap SeenFrom(const Rigid3d& cur_from_ref) const = 0;
+
+  // Its images, if they are kept; else null.
+  virtual const FrameView* images() const { return nullptr; }
 };
 
 // How a frame was tracked against a reference.
@@ -72,6 +83,11 @@ struct Tracked {
   // That is so little that the next frames need another reference, whatever
   // share it is.
   bool is_scarce = false;
+
+  // What the motion comes from: "features", "direct" (pixels) or
+  // "features+direct" (pixels, from where features led).
+  std::string_view carried_by = "features";
+  int num_found = 0;  // matches, or pixels
 
   double match_ms = 0.0;  // time of all but the estimation
 

@@ -2,23 +2,49 @@
 
 #include <utility>
 
+#include "core/util/input_error.h"
 #include "core/util/named_values.h"
+#include "frontend/tracking/direct_tracker.h"
 #include "frontend/tracking/feature_tracker.h"
+#include "frontend/tracking/hybrid_tracker.h"
 
 namespace rgbd_pose {
 namespace {
 
 using Make = std::unique_ptr<Tracker> (*)(TrackerParts parts);
 
-std::unique_ptr<Tracker> MakeFeatureTracker(TrackerParts parts) {
+std::unique_ptr<FeatureTracker> ByFeatures(TrackerParts* parts) {
   return std::make_unique<FeatureTracker>(
-      MakeFrontend(parts.frontend, parts.images), std::move(parts.estimator),
-      parts.options);
+      MakeFrontend(parts->frontend, parts->images), std::move(parts->estimator),
+      parts->options);
+}
+
+std::unique_ptr<DirectTracker> ByPixels(TrackerParts* parts) {
+  if (!parts->direct_estimator.has_value()) {
+    throw InputError("a direct tracker needs an estimator of direct costs");
+  }
+  return std::make_unique<DirectTracker>(parts->images,
+                                         *std::move(parts->direct_estimator),
+                                         parts->options, parts->direct_options);
+}
+
+std::unique_ptr<Tracker> MakeFeatureTracker(TrackerParts parts) {
+  return ByFeatures(&parts);
+}
+
+std::unique_ptr<Tracker> MakeDirectTracker(TrackerParts parts) {
+  return ByPixels(&parts);
+}
+
+std::unique_ptr<Tracker> MakeHybridTracker(TrackerParts parts) {
+  return std::make_unique<HybridTracker>(ByFeatures(&parts), ByPixels(&parts));
 }
 
 // One header and one row here make a tracker.
 constexpr Named<Make> kTrackers[] = {
     {FeatureTracker::kName, MakeFeatureTracker},
+    {DirectTracker::kName, MakeDirectTracker},
+    {HybridTracker::kName, MakeHybridTracker},
 };
 
 }  // namespace

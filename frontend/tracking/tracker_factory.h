@@ -1,12 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/estimation/estimator.h"
 #include "frontend/features/frontend.h"
+#include "frontend/tracking/direct_tracker.h"
 #include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
@@ -17,6 +19,11 @@ struct TrackerParts {
   FrontendOptions images;          // the camera, and which depths to use
   std::string frontend = "patch";  // where features come from
   Estimator estimator;             // makes motions of what is matched
+
+  // Of trackers that look at the images: makes motions of pixels (of direct
+  // costs), and when to be content with them.
+  std::optional<Estimator> direct_estimator = std::nullopt;
+  DirectTrackerOptions direct_options = {};
 };
 
 // The names of all trackers.

@@ -36,6 +36,7 @@ TEST_F(BenchmarkProgramsTest, MakeThePageAndTheSpeedups) {
   std::string results =
       Measure(SOLVE_BENCHMARK, "^(solve|estimate)/.*/(huber|tukey)/300$");
   results += "," + Measure(JACOBIAN_BENCHMARK, "bidirectional_point");
+  results += "," + Measure(DIRECT_BENCHMARK, "photometric|bare_loop");
   results += "," + Measure(PEERS_BENCHMARK, "estimator|pnp_ransac$");
   const std::string frames = folder_ / "frames.json";
   const RunResult tracked =
@@ -58,11 +59,13 @@ TEST_F(BenchmarkProgramsTest, MakeThePageAndTheSpeedups) {
   EXPECT_THAT(text, HasSubstr("| machine | a test"));
   EXPECT_THAT(text, Not(HasSubstr("@"))) << "a mark was left";
   const nlohmann::json ratios = nlohmann::json::parse(ReadTextFile(speedups));
-  for (const char* key : {"solve_n300_compressed_over_autodiff",
-                          "solve_n300_compressed_over_per_match",
-                          "solve_n300_compressed_over_bare_loop",
-                          "jacobian_bidirectional_point_analytic_over_autodiff",
-                          "estimate_over_pnp_ransac"}) {
+  for (const char* key :
+       {"solve_n300_compressed_over_autodiff",
+        "solve_n300_compressed_over_per_match",
+        "solve_n300_compressed_over_bare_loop",
+        "jacobian_bidirectional_point_analytic_over_autodiff",
+        "jacobian_photometric_analytic_over_autodiff",
+        "direct_photometric_over_bare_loop", "estimate_over_pnp_ransac"}) {
     ASSERT_TRUE(ratios.contains(key)) << key;
     EXPECT_GT(ratios[key].get<double>(), 0.0) << key;
   }

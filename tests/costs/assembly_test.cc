@@ -1,7 +1,6 @@
 // The three assemblies are one problem: equal cost, gradient, J^T J and, step
 // for step, equal iterations of Ceres.
 
-#include <ceres/crs_matrix.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 #include <gtest/gtest.h>
@@ -15,6 +14,7 @@
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
+#include "tests/support/evaluate_problem.h"
 
 namespace rgbd_pose {
 namespace {
@@ -68,37 +68,16 @@ class AssemblyTest
     ASSERT_EQ(cost_->matches().size(), is_prior ? 1u : count);
   }
 
-  std::unique_ptr<ceres::Problem> Build(Assembly assembly, double* x) {
-    ceres::Problem::Options options;
-    options.cost_function_ownership = BlockOwnership(assembly);
-    options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-    auto problem = std::make_unique<ceres::Problem>(options);
-    cost_->AddTo(assembly, origin_, loss_.get(), x, problem.get());
-    return problem;
-  }
-
-  NormalEquations Evaluate(Assembly assembly, MotionVector x) {
-    auto problem = Build(assembly, x.data());
-    NormalEquations result;
-    std::vector<double> gradient;
-    ceres::CRSMatrix crs;
-    problem->Evaluate({}, &result.cost, nullptr, &gradient, &crs);
-    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(crs.num_rows, 6);
-    for (int row = 0; row < crs.num_rows; ++row) {
-      for (int k = crs.rows[row]; k < crs.rows[row + 1]; ++k) {
-        J(row, crs.cols[k]) = crs.values[k];
-      }
-    }
-    result.hessian = J.transpose() * J;
-    result.gradient = Eigen::Map<MotionVector>(gradient.data());
-    return result;
+  NormalEquations Evaluate(Assembly assembly, const MotionVector& x) {
+    return EvaluateProblem(cost_.get(), assembly, origin_, loss_.get(), x);
   }
 
   // Together with an anchor of 1 cm and 0.6 degrees, the same for all: epipolar
   // matches alone leave the scale open, where steps are only rounding, and a
   // prior alone is met exactly, so that costs are only rounding.
   ceres::Solver::Summary Solve(Assembly assembly, MotionVector* x) {
-    auto problem = Build(assembly, x->data());
+    auto problem =
+        BuildProblem(cost_.get(), assembly, origin_, loss_.get(), x->data());
     anchor_->AddTo(assembly, origin_, nullptr, x->data(), problem.get());
     ceres::Solver::Options options;
     options.logging_type = ceres::SILENT;

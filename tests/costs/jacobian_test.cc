@@ -8,10 +8,10 @@
 #include <string>
 
 #include "core/geometry/motion.h"
-#include "costs/assembly/match_blocks.h"
 #include "costs/cost_list.h"
 #include "frontend/simulation/residual_sample.h"
 #include "frontend/simulation/synthetic_matches.h"
+#include "tests/support/both_jacobians.h"
 
 namespace rgbd_pose {
 namespace {
@@ -21,48 +21,12 @@ namespace {
 constexpr double kTolerance = 1e-12;
 constexpr int kSamples = 1000;
 
-template <typename List>
-struct AsGTestTypes;
-template <typename... Types>
-struct AsGTestTypes<TypeList<Types...>> {
-  using type = ::testing::Types<Types...>;
-};
-
 template <typename Residual>
-class JacobianTest : public ::testing::Test {
+class JacobianTest : public ::testing::Test, protected BothJacobians<Residual> {
  protected:
-  using Rows = Eigen::Matrix<double, Residual::kRows, 1>;
-  using Jacobian = Eigen::Matrix<double, Residual::kRows, 6, Eigen::RowMajor>;
-
-  // Residual and Jacobian by hand and by ceres::Jet at one sample.
+  using BothJacobians<Residual>::EvaluateBoth;
   void EvaluateBoth(const ResidualSample<Residual>& sample) {
-    const double* parameters[] = {sample.x.data()};
-    double* by_hand[] = {hand_J_.data()};
-    ASSERT_TRUE(AnalyticBlock<Residual>(sample.origin, sample.columns)
-                    .Evaluate(parameters, hand_r_.data(), by_hand));
-    double* by_jet[] = {jet_J_.data()};
-    OracleBlock<Residual> oracle(
-        new OracleFunctor<Residual>(sample.origin, sample.columns));
-    ASSERT_TRUE(oracle.Evaluate(parameters, jet_r_.data(), by_jet));
-  }
-
-  // Relative to the oracle's row; absolute where that is zero.
-  double RowError(int row, int first_column, int columns) const {
-    const double size = jet_J_.row(row).template lpNorm<Eigen::Infinity>();
-    const double error = (hand_J_.row(row) - jet_J_.row(row))
-                             .segment(first_column, columns)
-                             .template lpNorm<Eigen::Infinity>();
-    return size > 0.0 ? error / size : error;
-  }
-
-  Rows hand_r_, jet_r_;
-  Jacobian hand_J_, jet_J_;
-};
-
-struct CostName {
-  template <typename Residual>
-  static std::string GetName(int /*index*/) {
-    return Residual::kName;
+    EvaluateBoth(sample.origin, sample.x, sample.columns);
   }
 };
 

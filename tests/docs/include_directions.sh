@@ -37,6 +37,7 @@ room robust 'core/|robust' 'ceres/'
 room costs/parts 'core/|costs/' 'Eigen/'
 room costs/matches 'core/|costs/' 'Eigen/'
 room costs/assembly 'core/|costs/' 'Eigen/|ceres/'
+room costs/direct 'core/|costs/' 'Eigen/'
 room costs 'core/|costs|robust' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
 room frontend/image 'core/|frontend/' "$opencv"

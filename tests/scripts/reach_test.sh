@@ -14,7 +14,8 @@ missing() {
 }
 
 mutants=$(scripts/mutants --list)
-for file in costs/matches/*.h robust/*_loss.h; do
+direct=$(sed -n 's/^#include "\(costs\/direct\/.*\)"/\1/p' costs/direct_cost_list.h)
+for file in costs/matches/*.h $direct robust/*_loss.h; do
   grep -qF "$file:" <<<"$mutants" || missing "no mutant of $file"
 done
 

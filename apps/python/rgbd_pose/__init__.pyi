@@ -182,6 +182,8 @@ class TrackedFrame:
     @property
     def is_predicted(self) -> bool: ...
     @property
+    def carried_by(self) -> str: ...
+    @property
     def matches(self) -> int: ...
     @property
     def inliers(self) -> int: ...
@@ -220,7 +222,13 @@ class Odometry:
         max_features: int = 600,
         min_depth: float = 0.3,
         max_depth: float = 8.0,
-        tracker: str = "features",
+        tracker: str = "hybrid",
+        direct_cost: str = "photometric+projective_plane",
+        direct_loss: str = "huber",
+        direct_points: int = 0,
+        direct_levels: int = 4,
+        direct_information: float = 0.0,
+        min_seen_share: float = 0.15,
         initial_guess: str = "last",
         on_lost: str = "new_segment",
         ignore_stamp_offset: bool = False,

@@ -69,7 +69,8 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
   const std::string csv = ReadTextFile(folder_ / "run/frames.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "timestamp,status,reason,segment,reference,is_reference,"
-            "relocalised,predicted,matches,inliers,iterations,sigma,decode_ms,"
+            "relocalised,predicted,carried_by,matches,inliers,iterations,sigma,"
+            "decode_ms,"
             "track_ms,"
             "match_ms,solve_ms,reference_ms,relocalise_ms");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kFrames);

@@ -12,8 +12,6 @@
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
-#include "costs/cost_factory.h"
-#include "frontend/features/frontend.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
@@ -21,6 +19,7 @@
 #include "frontend/simulation/synthetic_sensor.h"
 #include "frontend/tracking/odometry.h"
 #include "tests/support/synthetic_faults.h"
+#include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
 namespace {
@@ -32,14 +31,6 @@ constexpr double kMaxShift = 0.020;      // m
 constexpr double kMaxShiftShare = 0.01;  // of the way so far
 constexpr double kMaxTurnDeg = 0.5;
 constexpr int kRecoveryFrames = 5;
-
-Odometry MakeOdometry(const Camera& camera) {
-  FrontendOptions frontend;
-  frontend.camera = camera;
-  return Odometry(OdometryOptions(), MakeFrontend("patch", frontend),
-                  Estimator(EstimatorOptions(),
-                            MakeRobustCosts("bidirectional_point", "tukey")));
-}
 
 // One frame, and how far its pose is off the truth; both are relative to the
 // first frame.
@@ -63,8 +54,10 @@ std::ostream& operator<<(std::ostream& out, const Outcome& outcome) {
              << " matches";
 }
 
-std::vector<Outcome> Track(const Dataset& dataset, const Trajectory& truth) {
-  Odometry odometry = MakeOdometry(dataset.camera().camera);
+std::vector<Outcome> Track(const std::string& tracker, const Dataset& dataset,
+                           const Trajectory& truth) {
+  Odometry odometry(OdometryOptions(),
+                    MakeTracker(tracker, PartsFor(dataset.camera().camera)));
   std::vector<Outcome> outcomes;
   double way = 0.0;
   const Rigid3d first_from_world = truth[0].world_from_cam.Inverse();
@@ -86,13 +79,15 @@ std::vector<Outcome> Track(const Dataset& dataset, const Trajectory& truth) {
   return outcomes;
 }
 
-std::vector<Outcome> TrackFaulty(const std::string& path, int frames,
+std::vector<Outcome> TrackFaulty(const std::string& tracker,
+                                 const std::string& path, int frames,
                                  const std::vector<Fault>& faults) {
   SyntheticOptions options;
   options.path = path;
   options.frames = frames;
   const FaultyDataset dataset(options, faults);
-  std::vector<Outcome> outcomes = Track(dataset, dataset.ground_truth());
+  std::vector<Outcome> outcomes =
+      Track(tracker, dataset, dataset.ground_truth());
   EXPECT_EQ(outcomes.size(), static_cast<size_t>(dataset.size()));
   return outcomes;
 }
@@ -127,52 +122,64 @@ void ExpectRecovery(const std::vector<Outcome>& outcomes, int end) {
       << "at the end: " << outcomes.back();
 }
 
-TEST(OdometryFaultsTest, BlackFramesAreLostAndLeftBehind) {
+class OdometryFaultsTest : public ::testing::TestWithParam<std::string> {};
+INSTANTIATE_TEST_SUITE_P(Trackers, OdometryFaultsTest,
+                         ::testing::ValuesIn(TrackerNames()),
+                         [](const auto& info) { return info.param; });
+
+TEST_P(OdometryFaultsTest, BlackFramesAreLeftBehind) {
   const auto outcomes =
-      TrackFaulty("circle", 50, {{FaultKind::kBlack, 15, 35}});
-  ExpectLost(outcomes, 15, 35);
+      TrackFaulty(GetParam(), "circle", 50, {{FaultKind::kBlack, 15, 35}});
+  // Trackers that look at depths need not be lost.
+  if (GetParam() == "features") ExpectLost(outcomes, 15, 35);
   ExpectNoWrongOk(outcomes);
   ExpectRecovery(outcomes, 35);
 }
 
-TEST(OdometryFaultsTest, CoveredDepthIsLostAndLeftBehind) {
-  const auto outcomes =
-      TrackFaulty("circle", 60, {{FaultKind::kCovered, 15, 45}});  // 1 s
-  ExpectLost(outcomes, 15, 45);
+TEST_P(OdometryFaultsTest, CoveredDepthIsLeftBehind) {
+  const auto outcomes = TrackFaulty(GetParam(), "circle", 60,
+                                    {{FaultKind::kCovered, 15, 45}});  // 1 s
+  // Pixels have the depths of their reference.
+  if (GetParam() == "features") {
+    ExpectLost(outcomes, 15, 45);
+  } else {
+    ExpectNeverLost(outcomes);
+  }
   ExpectNoWrongOk(outcomes);
   ExpectRecovery(outcomes, 45);
 }
 
-TEST(OdometryFaultsTest, FindsItselfAfterAKnock) {
+TEST_P(OdometryFaultsTest, FindsItselfAfterAKnock) {
   constexpr int kKnock = 20;
   const auto outcomes =
-      TrackFaulty("circle", 40, {{FaultKind::kTurned, kKnock}});
+      TrackFaulty(GetParam(), "circle", 40, {{FaultKind::kTurned, kKnock}});
   ExpectNoWrongOk(outcomes);
   ExpectRecovery(outcomes, kKnock);
 }
 
-TEST(OdometryFaultsTest, DoesNotFollowABoxThatFillsMuchOfTheImage) {
-  const auto outcomes = TrackFaulty("circle", 60, {{FaultKind::kBox, 15, 50}});
+TEST_P(OdometryFaultsTest, DoesNotFollowABoxThatFillsMuchOfTheImage) {
+  const auto outcomes =
+      TrackFaulty(GetParam(), "circle", 60, {{FaultKind::kBox, 15, 50}});
   ExpectNeverLost(outcomes);
   ExpectNoWrongOk(outcomes);
   ExpectRecovery(outcomes, 50);
 }
 
 // A pan that reaches 48 deg/s, 44 px from frame to frame at 10 Hz.
-TEST(OdometryFaultsTest, TracksAThirdOfTheFrames) {
-  const auto outcomes =
-      TrackFaulty("pan_tilt", 120, {{FaultKind::kThinned, 15, 105}});
+TEST_P(OdometryFaultsTest, TracksAThirdOfTheFrames) {
+  const auto outcomes = TrackFaulty(GetParam(), "pan_tilt", 120,
+                                    {{FaultKind::kThinned, 15, 105}});
   ASSERT_EQ(outcomes.size(), 60u);
   ExpectNeverLost(outcomes);
   ExpectNoWrongOk(outcomes);
   ExpectRecovery(outcomes, 15 + 30);
 }
 
-TEST(OdometryFaultsTest, TracksThroughStepsOfTheExposure) {
+TEST_P(OdometryFaultsTest, TracksThroughStepsOfTheExposure) {
   for (const double gain : {2.0, 0.5}) {
     SCOPED_TRACE("gain " + std::to_string(gain));
-    const auto outcomes =
-        TrackFaulty("circle", 40, {{FaultKind::kGain, 15, 30, gain}});
+    const auto outcomes = TrackFaulty(GetParam(), "circle", 40,
+                                      {{FaultKind::kGain, 15, 30, gain}});
     ExpectNeverLost(outcomes);
     ExpectNoWrongOk(outcomes);
     ExpectRecovery(outcomes, 15);
@@ -181,7 +188,7 @@ TEST(OdometryFaultsTest, TracksThroughStepsOfTheExposure) {
 }
 
 // Half the resolution: blurred frames take several renderings each.
-TEST(OdometryFaultsTest, TracksAFastHandWithBlurAndDriftingExposure) {
+TEST_P(OdometryFaultsTest, TracksAFastHandWithBlurAndDriftingExposure) {
   SyntheticOptions options;
   options.path = "handheld";
   options.frames = 150;
@@ -189,7 +196,7 @@ TEST(OdometryFaultsTest, TracksAFastHandWithBlurAndDriftingExposure) {
   options.exposure_drift = 0.3;
   options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
   const SyntheticDataset dataset(options);
-  const auto outcomes = Track(dataset, dataset.ground_truth());
+  const auto outcomes = Track(GetParam(), dataset, dataset.ground_truth());
   ASSERT_EQ(outcomes.size(), 150u);
   ExpectNeverLost(outcomes);
   ExpectNoWrongOk(outcomes);
@@ -228,7 +235,7 @@ class NoisyView : public Dataset {
   Rendering view_;
 };
 
-TEST(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
+TEST_P(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
   constexpr int kFrames = 300;  // 10 s
   const NoisyView dataset(kFrames);
   Trajectory truth;
@@ -237,7 +244,7 @@ TEST(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
   }
   // A frame's own noise, from hundreds of corners of 0.5 px, is a quarter of
   // this; more would be drift.
-  for (const Outcome& outcome : Track(dataset, truth)) {
+  for (const Outcome& outcome : Track(GetParam(), dataset, truth)) {
     EXPECT_TRUE(outcome.ok()) << outcome;
     EXPECT_LT(outcome.shift, 0.001) << outcome;
     EXPECT_LT(outcome.turn_deg, 0.05) << outcome;

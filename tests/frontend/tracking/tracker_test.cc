@@ -1,5 +1,3 @@
-#include "frontend/tracking/feature_tracker.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -10,8 +8,12 @@
 #include "core/util/input_error.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/direct_tracker.h"
+#include "frontend/tracking/feature_tracker.h"
+#include "frontend/tracking/odometry.h"
 #include "frontend/tracking/tracker_factory.h"
 #include "tests/support/expect_input_error.h"
+#include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
 namespace {
@@ -97,10 +99,7 @@ TEST(FeatureTrackerTest, AMotionThatMostMatchesAreFarFromIsDoubtful) {
 class TrackerTest : public ::testing::TestWithParam<std::string> {
  protected:
   std::unique_ptr<Tracker> Make(const TrackerOptions& options = {}) const {
-    return MakeTracker(GetParam(), {options,
-                                    {room_.camera().camera},
-                                    "patch",
-                                    Estimator({}, MakeRobustCosts())});
+    return MakeTracker(GetParam(), PartsFor(room_.camera().camera, options));
   }
 
   SyntheticDataset room_{SyntheticOptions()};
@@ -138,13 +137,13 @@ TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
 
 // The covariance of a guess is the prior of the costs that have one.
 TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
-  const auto tracker = MakeTracker(
-      GetParam(),
-      {{},
-       {room_.camera().camera},
-       "patch",
-       Estimator({}, MakeRobustCosts("bidirectional_point+motion_prior",
-                                     "tukey,none"))});
+  TrackerParts parts = PartsFor(room_.camera().camera);
+  parts.estimator = Estimator(
+      {}, MakeRobustCosts("bidirectional_point+motion_prior", "tukey,none"));
+  parts.direct_estimator =
+      Estimator(DirectEstimatorOptions(),
+                MakeDirectCosts("photometric+motion_prior", "huber,none"));
+  const auto tracker = MakeTracker(GetParam(), std::move(parts));
   std::string why_not;
   const auto reference = tracker->MakeReference(
       *tracker->Prepare(room_.Read(0)), nullptr, nullptr, &why_not);
@@ -165,8 +164,10 @@ TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
 TEST_P(TrackerTest, SaysWhyAFrameIsNoReferenceOrNotTracked) {
   const auto tracker = Make();
   const Frame good = room_.Read(0);
+  // Depth alone may do for trackers that look at it.
   Frame black = good;
   black.gray = cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0));
+  black.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
   std::string why_not;
   EXPECT_EQ(tracker->MakeReference(*tracker->Prepare(black), nullptr, nullptr,
                                    &why_not),
@@ -192,12 +193,96 @@ INSTANTIATE_TEST_SUITE_P(Trackers, TrackerTest,
                          [](const auto& info) { return info.param; });
 
 TEST(TrackerFactoryTest, ListsTheNamesThereAre) {
-  ExpectInputError(
-      [] {
-        MakeTracker("none",
-                    {{}, {}, "patch", Estimator({}, MakeRobustCosts())});
-      },
-      {"tracker", "none", "features"});
+  ExpectInputError([] { MakeTracker("none", PartsFor(Camera())); },
+                   {"tracker", "none", "features", "direct", "hybrid"});
+}
+
+TEST(TrackerFactoryTest, PixelsNeedAnEstimatorOfTheirOwn) {
+  for (const char* name : {"direct", "hybrid"}) {
+    ExpectInputError(
+        [name] {
+          MakeTracker(name,
+                      {{}, {}, "patch", Estimator({}, MakeRobustCosts())});
+        },
+        {"direct"});
+  }
+}
+
+// Of a path in a scene, the status of all frames and how far the last is off.
+struct Tracks {
+  int lost = 0;
+  int by_pixels_alone = 0;
+  double off = 0.0;    // m
+  std::string reason;  // of the last frame that is lost
+};
+
+Tracks Follow(const char* tracker, const char* scene, const char* path,
+              int frames, const OdometryOptions& policy = {}) {
+  SyntheticOptions options;
+  options.scene = scene;
+  options.path = path;
+  options.frames = frames;
+  const SyntheticDataset dataset(options);
+  Odometry odometry(policy,
+                    MakeTracker(tracker, PartsFor(dataset.camera().camera)));
+  Tracks tracks;
+  for (int i = 0; i < frames; ++i) {
+    const TrackedFrame frame = odometry.Track(dataset.Read(i));
+    if (frame.status == TrackingStatus::kLost) {
+      ++tracks.lost;
+      tracks.reason = frame.reason;
+    }
+    tracks.by_pixels_alone += frame.carried_by == DirectTracker::kName;
+    const Rigid3d truth =
+        dataset.WorldFromCam(0).Inverse() * dataset.WorldFromCam(i);
+    if (frame.status == TrackingStatus::kOk) {
+      tracks.off = (truth.Inverse() * frame.world_from_cam).translation.norm();
+    }
+  }
+  return tracks;
+}
+
+TEST(DirectTrackerTest, IsNotLostWithoutTexture) {
+  EXPECT_GT(Follow("features", "plain_room", "pan_tilt", 40).lost, 5);
+  const Tracks direct = Follow("direct", "plain_room", "pan_tilt", 40);
+  EXPECT_EQ(direct.lost, 0);
+  EXPECT_EQ(direct.by_pixels_alone, 39);
+  EXPECT_LE(direct.off, 0.003);
+  const Tracks hybrid = Follow("hybrid", "plain_room", "pan_tilt", 40);
+  EXPECT_EQ(hybrid.lost, 0);
+  EXPECT_LE(hybrid.off, 0.003);
+}
+
+// Nothing tells how far the camera is along a bare corridor: noise of slopes
+// must not be taken for it.
+TEST(DirectTrackerTest, SaysWhichDirectionACorridorHides) {
+  OdometryOptions hold;
+  hold.on_lost = LostPolicy::kHold;
+  const Tracks tracks = Follow("direct", "corridor", "walk", 8, hold);
+  EXPECT_EQ(tracks.lost, 7);
+  EXPECT_NE(tracks.reason.find("translation along z"), std::string::npos)
+      << tracks.reason;
+}
+
+TEST(HybridTrackerTest, PixelsMakeMotionsMoreAccurate) {
+  const Tracks features = Follow("features", "room", "xyz", 12);
+  const Tracks hybrid = Follow("hybrid", "room", "xyz", 12);
+  EXPECT_EQ(hybrid.by_pixels_alone, 0);
+  EXPECT_LE(hybrid.off, 0.7 * features.off)
+      << hybrid.off << " against " << features.off;
+}
+
+TEST(DirectTrackerOptionsTest, NoFieldMayBeNan) {
+  for (double DirectTrackerOptions::*field :
+       {&DirectTrackerOptions::min_seen_share,
+        &DirectTrackerOptions::min_seen_share_ok,
+        &DirectTrackerOptions::max_sigma_rotation,
+        &DirectTrackerOptions::max_sigma_translation}) {
+    DirectTrackerOptions options;
+    EXPECT_EQ(options.Check(), "");
+    options.*field = std::nan("");
+    EXPECT_NE(options.Check(), "");
+  }
 }
 
 }  // namespace

@@ -1,0 +1,188 @@
+#include "frontend/tracking/direct_tracker.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/util/format.h"
+#include "core/util/input_error.h"
+#include "core/util/stage_timer.h"
+#include "frontend/image/image_pyramid.h"
+#include "frontend/image/view_frame.h"
+
+namespace rgbd_pose {
+namespace {
+
+// 640 x 480 to 20 x 15.
+constexpr int kLevels = 6;
+
+// Overlaps are told by pixels so far apart.
+constexpr int kSampleStepPx = 20;
+// A reference with fewer of them (of 768) tells little.
+constexpr size_t kMinSamples = 40;
+
+// The largest standard deviation of three directions of a covariance.
+double LargestSigma(const Eigen::Matrix3d& covariance) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
+      covariance, Eigen::EigenvaluesOnly);
+  return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
+}
+
+}  // namespace
+
+std::string DirectTrackerOptions::Check() const {
+  if (!(min_seen_share >= 0.0 && min_seen_share <= min_seen_share_ok &&
+        min_seen_share_ok <= 1.0)) {
+    return "shares must have 0 <= min_seen_share <= min_seen_share_ok <= 1";
+  }
+  if (min_pixels < 6) return "min_pixels must be at least 6";
+  if (!(max_sigma_rotation > 0.0) || !(max_sigma_translation > 0.0)) {
+    return "standard deviations must be positive";
+  }
+  return "";
+}
+
+DirectReference::DirectReference(const Frame& frame,
+                                 const std::vector<cv::Mat>& pyramid,
+                                 const FrontendOptions& images, uint64_t id)
+    : camera_(images.camera), depth_(frame.depth.clone()) {
+  for (const cv::Mat& level : pyramid) pyramid_.push_back(level.clone());
+  Frame kept = frame;
+  kept.depth = depth_;
+  view_ = ViewFrame(kept, pyramid_, camera_, *images.depth_noise);
+  view_.id = id;
+  for (int v = kSampleStepPx / 2; v < depth_.rows; v += kSampleStepPx) {
+    for (int u = kSampleStepPx / 2; u < depth_.cols; u += kSampleStepPx) {
+      const double depth = kept.DepthAt(u, v);
+      if (depth < images.min_depth || depth > images.max_depth) continue;
+      samples_.push_back(camera_.Unproject(Eigen::Vector2d(u, v), depth));
+    }
+  }
+}
+
+Overlap DirectReference::SeenFrom(const Rigid3d& cur_from_ref) const {
+  Overlap overlap;
+  int seen = 0;
+  for (const Eigen::Vector3d& sample : samples_) {
+    const Eigen::Vector3d point = cur_from_ref * sample;
+    if (!(point.z() > 0.0)) continue;
+    // Lens distortion does not matter here.
+    const Eigen::Vector2d focal(camera_.fx, camera_.fy);
+    const Eigen::Vector2d pixel =
+        focal.cwiseProduct(point.head<2>() / point.z());
+    if (!camera_.Contains(pixel + Eigen::Vector2d(camera_.cx, camera_.cy))) {
+      continue;
+    }
+    ++seen;
+    overlap.flow_px +=
+        (pixel - focal.cwiseProduct(sample.head<2>() / sample.z())).norm();
+  }
+  if (seen == 0) return overlap;
+  overlap.share = static_cast<double>(seen) / samples_.size();
+  overlap.flow_px /= seen;
+  return overlap;
+}
+
+DirectTracker::DirectFrame::DirectFrame(const Frame& frame)
+    : PreparedFrame(frame) {
+  BuildSmoothPyramid(gray, kLevels, &pyramid);
+}
+
+DirectTracker::DirectTracker(const FrontendOptions& images, Estimator estimator,
+                             const TrackerOptions& common,
+                             const DirectTrackerOptions& options)
+    : images_(images),
+      estimator_(std::move(estimator)),
+      common_(common),
+      options_(options) {
+  for (const std::string& error :
+       {images.Check(), common.Check(), options.Check()}) {
+    if (!error.empty()) throw InputError("tracker: " + error);
+  }
+}
+
+std::unique_ptr<Reference> DirectTracker::MakeReference(
+    const PreparedFrame& frame, const Reference* /*last*/,
+    const Tracked* /*tracked*/, std::string* why_not) {
+  auto reference = std::make_unique<DirectReference>(
+      frame, dynamic_cast<const DirectFrame&>(frame).pyramid, images_,
+      ++last_id_);
+  if (reference->num_samples() < kMinSamples) {
+    *why_not = "too few depths to start from";
+    return nullptr;
+  }
+  return reference;
+}
+
+void DirectTracker::Track(const Reference& reference,
+                          const PreparedFrame& frame,
+                          const Rigid3d& cur_from_ref_guess,
+                          const MotionMatrix* guess_covariance, int num_levels,
+                          Tracked* tracked) {
+  const auto& ours = dynamic_cast<const DirectReference&>(reference);
+  const FrameView view =
+      ViewFrame(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
+                images_.camera, *images_.depth_noise);
+  tracked->matches.Clear();
+  tracked->doubted.Clear();
+  tracked->match_ms = 0.0;
+  tracked->carried_by = kName;
+  const MotionPrior prior =
+      PriorOf(common_, cur_from_ref_guess, guess_covariance);
+  PairData pair;
+  pair.prior = &prior;
+  pair.prev = ours.images();
+  pair.cur = &view;
+  pair.num_levels = num_levels;
+  estimator_.Estimate(pair, cur_from_ref_guess, &tracked->estimate);
+  const MotionEstimate& estimate = tracked->estimate;
+  tracked->num_found = estimate.num_used;
+  tracked->overlap = ours.SeenFrom(estimate.cur_from_prev);
+  if (estimate.num_used > 0) {
+    tracked->overlap.share *=
+        static_cast<double>(estimate.num_inliers) / estimate.num_used;
+  }
+  Judge(tracked);
+  tracked->is_scarce = tracked->status != TrackingStatus::kLost &&
+                       tracked->overlap.share < options_.min_seen_share_ok;
+}
+
+void DirectTracker::Judge(Tracked* tracked) const {
+  const MotionEstimate& estimate = tracked->estimate;
+  const double share = tracked->overlap.share;
+  tracked->status = TrackingStatus::kLost;
+  tracked->reason = estimate.reason;
+  // A last step of some hundredths of a pixel is no reason to doubt.
+  if (!estimate.ok() && estimate.status != EstimateStatus::kNotConverged) {
+    return;
+  }
+  if (estimate.num_used < options_.min_pixels) {
+    tracked->reason = Format("only %d pixels to compare", estimate.num_used);
+    return;
+  }
+  if (share < options_.min_seen_share) {
+    tracked->reason =
+        Format("only %.0f %% of the reference agrees", 100.0 * share);
+    return;
+  }
+  const double rotation =
+      LargestSigma(estimate.covariance.topLeftCorner<3, 3>());
+  const double translation =
+      LargestSigma(estimate.covariance.bottomRightCorner<3, 3>());
+  tracked->status = TrackingStatus::kDegraded;
+  if (share < options_.min_seen_share_ok) {
+    tracked->reason =
+        Format("only %.0f %% of the reference agrees", 100.0 * share);
+  } else if (rotation > options_.max_sigma_rotation) {
+    tracked->reason = Format("a rotation is only known to %.4f rad", rotation);
+  } else if (translation > options_.max_sigma_translation) {
+    tracked->reason =
+        Format("a direction is only known to %.4f m", translation);
+  } else {
+    tracked->status = TrackingStatus::kOk;
+    tracked->reason.clear();
+  }
+}
+
+}  // namespace rgbd_pose

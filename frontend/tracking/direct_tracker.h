@@ -1,0 +1,108 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
+
+#include "core/estimation/estimator.h"
+#include "core/estimation/frame_view.h"
+#include "frontend/features/frontend.h"
+#include "frontend/tracking/tracker.h"
+
+namespace rgbd_pose {
+
+// What is believed of a motion that is estimated from pixels.
+struct DirectTrackerOptions {
+  // A frame is lost if less of its reference is seen where it should be, and
+  // degraded below the second.
+  double min_seen_share = 0.15;
+  double min_seen_share_ok = 0.3;
+
+  // It is lost with fewer pixels.
+  int min_pixels = 200;
+
+  // It is degraded where a direction is known no better than this.
+  double max_sigma_rotation = 0.005;    // rad
+  double max_sigma_translation = 0.01;  // m
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+// The images of a frame that direct costs look at, kept.
+class DirectReference final : public Reference {
+ public:
+  // Of a frame with its smooth pyramid. `id`: another one for each reference.
+  DirectReference(const Frame& frame, const std::vector<cv::Mat>& pyramid,
+                  const FrontendOptions& images, uint64_t id);
+
+  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override;
+
+  const FrameView* images() const override { return &view_; }
+  // Pixels with depth, of a grid over the image.
+  size_t num_samples() const { return samples_.size(); }
+
+ private:
+  Camera camera_;
+  cv::Mat depth_;
+  std::vector<cv::Mat> pyramid_;
+  FrameView view_;
+  std::vector<Eigen::Vector3d> samples_;  // points in its axes, m
+};
+
+// Finds the motion by direct costs alone: no features, so nothing to be lost in
+// a room without texture, but a basin of some pixels of the coarsest level.
+class DirectTracker final : public Tracker {
+ public:
+  static constexpr char kName[] = "direct";  // as programs take it
+
+  // A frame with its smooth pyramid.
+  struct DirectFrame final : PreparedFrame {
+    // Builds it.
+    explicit DirectFrame(const Frame& frame);
+    std::unique_ptr<PreparedFrame> Copy() const override {
+      return std::make_unique<DirectFrame>(*this);
+    }
+    std::vector<cv::Mat> pyramid;  // see image_pyramid.h
+  };
+
+  // `estimator`: of direct costs. Throws InputError for options that are not
+  // sound (see Check).
+  DirectTracker(const FrontendOptions& images, Estimator estimator,
+                const TrackerOptions& common = {},
+                const DirectTrackerOptions& options = {});
+
+  std::unique_ptr<const PreparedFrame> Prepare(
+      const Frame& frame) const override {
+    return std::make_unique<DirectFrame>(frame);
+  }
+  std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
+                                           const Reference* last,
+                                           const Tracked* tracked,
+                                           std::string* why_not) override;
+  void Track(const Reference& reference, const PreparedFrame& frame,
+             const Rigid3d& cur_from_ref_guess,
+             const MotionMatrix* guess_covariance, Tracked* tracked) override {
+    Track(reference, frame, cur_from_ref_guess, guess_covariance, 0, tracked);
+  }
+  // From a guess that is so good that this many levels will do; 0: all.
+  void Track(const Reference& reference, const PreparedFrame& frame,
+             const Rigid3d& cur_from_ref_guess,
+             const MotionMatrix* guess_covariance, int num_levels,
+             Tracked* tracked);
+  const FrontendOptions& images() const override { return images_; }
+
+ private:
+  // Sets status and reason from estimate and overlap.
+  void Judge(Tracked* tracked) const;
+
+  FrontendOptions images_;
+  Estimator estimator_;
+  TrackerOptions common_;
+  DirectTrackerOptions options_;
+  uint64_t last_id_ = 0;  // of references
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,171 @@
+#include "frontend/tracking/hybrid_tracker.h"
+
+#include <Eigen/Cholesky>
+#include <utility>
+
+namespace rgbd_pose {
+namespace {
+
+constexpr char kBoth[] = "features+direct";
+
+// From features direct costs start within a pixel or two: the finest levels do.
+constexpr int kLevelsFromFeatures = 1;
+
+// Features and pixels contradict each other if their motions differ by more
+// than so many sigmas of the features' (in which what both share counts twice,
+// and calibration not at all: a wide limit).
+constexpr double kMaxDifference = 8.0;
+
+struct HybridFrame final : PreparedFrame {
+  using PreparedFrame::PreparedFrame;
+  std::unique_ptr<PreparedFrame> Copy() const override {
+    return std::make_unique<HybridFrame>(*this);
+  }
+
+  std::shared_ptr<const PreparedFrame> features, direct;
+};
+
+// A part with the depth of the whole, which may have been moved since.
+std::shared_ptr<const PreparedFrame> PartOf(
+    const HybridFrame& whole,
+    const std::shared_ptr<const PreparedFrame>& part) {
+  if (part->depth.data == whole.depth.data) return part;
+  std::shared_ptr<PreparedFrame> moved = part->Copy();
+  moved->depth = whole.depth;
+  moved->depth_delay = whole.depth_delay;
+  return moved;
+}
+
+// One of the two may be null.
+struct HybridReference final : Reference {
+  std::unique_ptr<Reference> features, direct;
+
+  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
+    return (features != nullptr ? features : direct)->SeenFrom(cur_from_ref);
+  }
+  const FrameView* images() const override {
+    return direct != nullptr ? direct->images() : nullptr;
+  }
+};
+
+// The difference of two motions as MotionEstimate::covariance counts it.
+MotionVector Difference(const Rigid3d& a, const Rigid3d& b) {
+  const Eigen::AngleAxisd turn(a.rotation * b.rotation.conjugate());
+  MotionVector difference;
+  difference << turn.angle() * turn.axis(),
+      a.Inverse().translation - b.Inverse().translation;
+  return difference;
+}
+
+bool Agree(const MotionEstimate& features, const MotionEstimate& pixels) {
+  const MotionVector d =
+      Difference(pixels.cur_from_prev, features.cur_from_prev);
+  const MotionMatrix covariance = features.covariance + pixels.covariance;
+  const double square = d.dot(covariance.ldlt().solve(d));
+  return square <= 6.0 * kMaxDifference * kMaxDifference;  // false for NaN
+}
+
+}  // namespace
+
+HybridTracker::HybridTracker(std::unique_ptr<FeatureTracker> features,
+                             std::unique_ptr<DirectTracker> direct)
+    : features_(std::move(features)),
+      direct_(std::move(direct)),
+      pixels_(features_->images().camera) {}
+
+std::unique_ptr<const PreparedFrame> HybridTracker::Prepare(
+    const Frame& frame) const {
+  auto prepared = std::make_unique<HybridFrame>(frame);
+  prepared->features = features_->Prepare(frame);
+  prepared->direct = direct_->Prepare(frame);
+  return prepared;
+}
+
+std::unique_ptr<Reference> HybridTracker::MakeReference(
+    const PreparedFrame& frame, const Reference* last, const Tracked* tracked,
+    std::string* why_not) {
+  const auto& ours = dynamic_cast<const HybridFrame&>(frame);
+  const auto with_features = PartOf(ours, ours.features);
+  const auto with_pixels = PartOf(ours, ours.direct);
+  const auto* before = dynamic_cast<const HybridReference*>(last);
+  // Where pixels alone have carried the frame nothing is known of its features.
+  const bool by_features = before != nullptr && before->features != nullptr &&
+                           tracked->carried_by != DirectTracker::kName;
+  auto reference = std::make_unique<HybridReference>();
+  reference->features = features_->MakeReference(
+      *with_features, by_features ? before->features.get() : nullptr,
+      by_features ? tracked : nullptr, why_not);
+  std::string why_not_direct;
+  reference->direct =
+      direct_->MakeReference(*with_pixels, nullptr, nullptr, &why_not_direct);
+  if (reference->features == nullptr && reference->direct == nullptr) {
+    return nullptr;
+  }
+  return reference;
+}
+
+void HybridTracker::Track(const Reference& reference,
+                          const PreparedFrame& frame,
+                          const Rigid3d& cur_from_ref_guess,
+                          const MotionMatrix* guess_covariance,
+                          Tracked* tracked) {
+  const auto& ours = dynamic_cast<const HybridReference&>(reference);
+  const auto& both = dynamic_cast<const HybridFrame&>(frame);
+  const auto with_features = PartOf(both, both.features);
+  const auto with_pixels = PartOf(both, both.direct);
+  tracked->status = TrackingStatus::kLost;
+  tracked->reason = "the reference has no features";
+  if (ours.features != nullptr) {
+    features_->Track(*ours.features, *with_features, cur_from_ref_guess,
+                     guess_covariance, tracked);
+  }
+  if (ours.direct == nullptr) return;
+  const bool found = tracked->status != TrackingStatus::kLost;
+  if (found) {
+    direct_->Track(*ours.direct, *with_pixels, tracked->estimate.cur_from_prev,
+                   guess_covariance, kLevelsFromFeatures, &pixels_);
+    tracked->estimate.iterations += pixels_.estimate.iterations;
+    tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
+    if (tracked->status == TrackingStatus::kOk &&
+        (pixels_.status != TrackingStatus::kOk ||
+         !Agree(tracked->estimate, pixels_.estimate))) {
+      return;
+    }
+  }
+  if (!found || pixels_.status != TrackingStatus::kOk) {
+    // Few features, or none, may lead astray: pixels find the way alone.
+    direct_->Track(*ours.direct, *with_pixels, cur_from_ref_guess,
+                   guess_covariance, 0, &pixels_);
+    pixels_.match_ms += tracked->match_ms;
+    if (pixels_.status == TrackingStatus::kOk ||
+        (!found && pixels_.status == TrackingStatus::kDegraded)) {
+      std::swap(*tracked, pixels_);
+    } else if (!found) {
+      tracked->reason += "; by pixels: " + pixels_.reason;
+    }
+    return;
+  }
+  tracked->carried_by = kBoth;
+  tracked->status = TrackingStatus::kOk;
+  tracked->reason.clear();
+  tracked->estimate.cur_from_prev = pixels_.estimate.cur_from_prev;
+  tracked->estimate.covariance = pixels_.estimate.covariance;
+  // A reference is as good as what is seen of it, if its features are few.
+  if (tracked->is_scarce) {
+    tracked->is_scarce = false;
+    tracked->overlap = pixels_.overlap;
+  }
+}
+
+void HybridTracker::Believe(Reference* reference, Tracked* tracked) {
+  auto& ours = dynamic_cast<HybridReference&>(*reference);
+  if (ours.features == nullptr || tracked->carried_by == DirectTracker::kName) {
+    return;
+  }
+  const Overlap overlap = tracked->overlap;
+  features_->Believe(ours.features.get(), tracked);
+  // What pixels have said of it (see Track) stays.
+  if (overlap.share > tracked->overlap.share) tracked->overlap = overlap;
+}
+
+}  // namespace rgbd_pose

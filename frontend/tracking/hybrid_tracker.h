@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "frontend/tracking/direct_tracker.h"
+#include "frontend/tracking/feature_tracker.h"
+#include "frontend/tracking/tracker.h"
+
+namespace rgbd_pose {
+
+// Features first, for their wide basin; from there direct costs against the
+// same reference, for their accuracy. Where features are few or fail, direct
+// costs alone.
+class HybridTracker final : public Tracker {
+ public:
+  static constexpr char kName[] = "hybrid";  // as programs take it
+
+  // None may be null; both of the same camera.
+  HybridTracker(std::unique_ptr<FeatureTracker> features,
+                std::unique_ptr<DirectTracker> direct);
+
+  std::unique_ptr<const PreparedFrame> Prepare(
+      const Frame& frame) const override;
+  std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
+                                           const Reference* last,
+                                           const Tracked* tracked,
+                                           std::string* why_not) override;
+  void Track(const Reference& reference, const PreparedFrame& frame,
+             const Rigid3d& cur_from_ref_guess,
+             const MotionMatrix* guess_covariance, Tracked* tracked) override;
+  void Believe(Reference* reference, Tracked* tracked) override;
+  const FrontendOptions& images() const override { return features_->images(); }
+
+ private:
+  std::unique_ptr<FeatureTracker> features_;
+  std::unique_ptr<DirectTracker> direct_;
+  Tracked pixels_;  // what direct costs make of a frame
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,77 @@
+#include "frontend/tracking/residual_image.h"
+
+#include <algorithm>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+#include "frontend/image/image_pyramid.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kFullColor = 20.0;  // gray levels
+// Gray levels of both images fill the lower half of the scale, so that colours
+// stand out.
+constexpr double kDimmed = 0.5;
+
+// Where the frame shows each pixel of the reference's level 1: px of the
+// frame's, (-1, -1) where it does not.
+cv::Mat FindPlaces(const FrameView& reference, const Rigid3d& cur_from_ref) {
+  const FrameView::Level& level = reference.levels[1];
+  cv::Mat places(level.gray.height, level.gray.width, CV_32FC2,
+                 cv::Scalar(-1.0, -1.0));
+  for (int v = 0; v < places.rows; ++v) {
+    for (int u = 0; u < places.cols; ++u) {
+      const double depth = reference.DepthAt(2 * u + 1, 2 * v + 1);
+      if (depth <= 0.0) continue;
+      const Eigen::Vector3d point =
+          cur_from_ref * level.camera.Unproject(Eigen::Vector2d(u, v), depth);
+      if (!(point.z() > 0.0)) continue;
+      const Eigen::Vector2d pixel = level.camera.Project(point);
+      if (!level.camera.Contains(pixel)) continue;
+      places.at<cv::Vec2f>(v, u) = {static_cast<float>(pixel.x()),
+                                    static_cast<float>(pixel.y())};
+    }
+  }
+  return places;
+}
+
+}  // namespace
+
+cv::Mat DrawResiduals(const FrameView& reference, const Frame& frame,
+                      const Rigid3d& cur_from_ref) {
+  const ImageView<uint8_t>& gray = reference.levels[1].gray;
+  std::vector<cv::Mat> pyramid;
+  BuildSmoothPyramid(frame.gray, 2, &pyramid);
+  const cv::Mat places = FindPlaces(reference, cur_from_ref);
+  cv::Mat seen;
+  cv::remap(pyramid[1], seen, places, cv::Mat(), cv::INTER_LINEAR);
+  const cv::Mat before(gray.height, gray.width, CV_8UC1,
+                       const_cast<uint8_t*>(gray.data), gray.stride);
+  cv::Mat column, valid;
+  cv::extractChannel(places, column, 0);
+  cv::compare(column, 0.0, valid, cv::CMP_GE);
+  cv::Scalar mean_before, deviation_before, mean_now, deviation_now;
+  cv::meanStdDev(before, mean_before, deviation_before, valid);
+  cv::meanStdDev(seen, mean_now, deviation_now, valid);
+  const double gain =
+      deviation_before[0] > 1.0 ? deviation_now[0] / deviation_before[0] : 1.0;
+  cv::Mat picture(places.size(), CV_8UC3, cv::Scalar::all(0));
+  for (int v = 0; v < places.rows; ++v) {
+    for (int u = 0; u < places.cols; ++u) {
+      if (valid.at<uint8_t>(v, u) == 0) continue;
+      const double now = seen.at<uint8_t>(v, u);
+      const double expected =
+          mean_now[0] + gain * (before.at<uint8_t>(v, u) - mean_before[0]);
+      const double off = std::clamp((now - expected) / kFullColor, -1.0, 1.0);
+      const double plain = kDimmed * now * (1.0 - std::abs(off));
+      const cv::Vec3d color(plain + 255.0 * std::max(0.0, -off), plain,
+                            plain + 255.0 * std::max(0.0, off));
+      picture.at<cv::Vec3b>(v, u) = color;
+    }
+  }
+  return picture;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,98 @@
+// The three assemblies of direct costs are one problem: equal cost, gradient
+// and J^T J, and the estimator ends at the same motion.
+
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <string>
+#include <tuple>
+
+#include "core/estimation/estimator.h"
+#include "costs/direct_cost_factory.h"
+#include "robust/m_estimator.h"
+#include "tests/support/direct_pair.h"
+#include "tests/support/evaluate_problem.h"
+#include "tests/support/motion_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+const DirectPair& Pair() {
+  static const DirectPair pair(SyntheticDataset(SmallImages()), 10, 12);
+  return pair;
+}
+
+DirectOptions FewPoints() {
+  DirectOptions options;
+  options.max_points = options.max_coarse_points = 800;
+  return options;
+}
+
+class DirectAssemblyTest
+    : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+TEST_P(DirectAssemblyTest, CostGradientAndHessianAreEqual) {
+  const auto& [cost_name, loss_name] = GetParam();
+  const auto cost = MakeDirectCost(cost_name, FewPoints());
+  const auto loss =
+      FindMEstimator(loss_name)->MakeLoss(cost->independent_rows());
+  const Rigid3d motion =
+      Rigid3d(Eigen::Quaterniond::Identity(), {0.004, 0.002, -0.003}) *
+      Pair().cur_from_prev;
+  cost->Bind(Pair().data());
+  cost->Associate(motion);
+  EXPECT_GE(cost->matches().size(), 200u);
+  // Where it is associated: elsewhere the compressed block looks again.
+  const MotionOrigin origin(motion);
+  const MotionVector x = MotionVector::Zero();
+  const NormalEquations expected =
+      EvaluateProblem(cost.get(), Assembly::kPerMatch, origin, loss.get(), x);
+  constexpr double kEqual = 1e-10;  // sums of some hundred terms
+  for (const Assembly assembly : {Assembly::kAutodiff, Assembly::kCompressed}) {
+    const NormalEquations actual =
+        EvaluateProblem(cost.get(), assembly, origin, loss.get(), x);
+    EXPECT_NEAR(actual.cost, expected.cost, kEqual * expected.cost);
+    EXPECT_LE((actual.gradient - expected.gradient).norm(),
+              kEqual * expected.gradient.norm());
+    EXPECT_LE((actual.hessian - expected.hessian).norm(),
+              kEqual * expected.hessian.norm());
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CostsAndLosses, DirectAssemblyTest,
+    ::testing::Combine(::testing::ValuesIn(DirectCostNames()),
+                       ::testing::ValuesIn(MEstimatorNames())),
+    [](const auto& info) {
+      return std::get<0>(info.param) + "_" + std::get<1>(info.param);
+    });
+
+// To a hundredth of what noise does: all go the same steps.
+TEST(DirectEstimateTest, IsTheSameByAllAssemblies) {
+  for (const char* cost : {"photometric", "inverse_depth", "projective_plane",
+                           "photometric+projective_plane"}) {
+    const auto estimate = [cost](Assembly assembly) {
+      EstimatorOptions options = DirectEstimatorOptions();
+      options.assembly = assembly;
+      options.max_iterations = 50;
+      options.settled_within = 1e-7;
+      MotionEstimate result;
+      Estimator(options, MakeDirectCosts(cost, "huber"))
+          .Estimate(Pair().data(), Rigid3d(), &result);
+      EXPECT_FALSE(result.covariance.isZero()) << result.reason;
+      return result;
+    };
+    const MotionEstimate expected = estimate(Assembly::kPerMatch);
+    const MotionVector sigma = expected.covariance.diagonal().cwiseSqrt();
+    for (const Assembly assembly :
+         {Assembly::kAutodiff, Assembly::kCompressed}) {
+      const MotionError off =
+          ErrorOf(estimate(assembly).cur_from_prev, expected.cur_from_prev);
+      EXPECT_LE(off.angle, 0.01 * sigma.head<3>().norm()) << cost;
+      EXPECT_LE(off.translation, 0.01 * sigma.tail<3>().norm()) << cost;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,51 @@
+// The hand-written Jacobians of direct costs against ceres::Jet, exactly, on
+// columns that rendered images give.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "costs/direct_cost_list.h"
+#include "tests/support/both_jacobians.h"
+#include "tests/support/direct_columns.h"
+
+namespace rgbd_pose {
+namespace {
+
+// As in costs/jacobian_test.cc.
+constexpr double kTolerance = 1e-12;
+constexpr int kMinSamples = 300;
+
+template <typename Residual>
+class DirectJacobianTest : public ::testing::Test,
+                           protected BothJacobians<Residual> {};
+TYPED_TEST_SUITE(DirectJacobianTest, AsGTestTypes<DirectResidualTypes>::type,
+                 CostName);
+
+TYPED_TEST(DirectJacobianTest, EqualsTheOracle) {
+  for (const bool is_distorted : {false, true}) {
+    const DirectPair pair(SyntheticDataset(SmallImages(is_distorted)), 10, 12);
+    const PackedColumns seen =
+        SeenColumns<TypeParam>(InputOf(pair, 1, pair.cur_from_prev),
+                               PointsOf<TypeParam>(pair, 1, 1000));
+    ASSERT_GE(seen.size, kMinSamples);
+    const MotionOrigin origin(pair.cur_from_prev);
+    MotionVector x;
+    x << 0.01, -0.02, 0.015, 0.02, 0.01, -0.03;
+    for (int i = 0; i < seen.size; ++i) {
+      double columns[TypeParam::kColumns];
+      for (int k = 0; k < TypeParam::kColumns; ++k) {
+        columns[k] = seen.values[k * seen.stride + i];
+      }
+      this->EvaluateBoth(origin, x, columns);
+      const double size = std::max(1.0, std::abs(this->jet_r_[0]));
+      EXPECT_NEAR(this->hand_r_[0], this->jet_r_[0], kTolerance * size) << i;
+      EXPECT_LE(this->RowError(0, 0, 6), kTolerance) << i;
+      EXPECT_GT(this->jet_J_.norm(), 0.1)
+          << "a point that tells nothing: " << i;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,222 @@
+// What direct costs linearise against the image itself: each point moved,
+// projected and interpolated in ceres::Jet, one after the other, as the
+// formulas of the costs are written.
+
+#include <ceres/jet.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "costs/direct_cost_list.h"
+#include "tests/support/both_jacobians.h"
+#include "tests/support/direct_columns.h"
+
+namespace rgbd_pose {
+namespace {
+
+// By the motion, and by the depth of the point along its ray.
+using Jet = ceres::Jet<double, 7>;
+
+struct Sums {
+  NormalEquations normal;
+  int rows = 0;
+
+  void Add(double w, const Jet& r) {
+    const MotionVector J = w * r.v.head<6>();
+    normal.cost += 0.5 * w * w * r.a * r.a;
+    normal.gradient += w * r.a * J;
+    normal.hessian += J * J.transpose();
+    ++rows;
+  }
+};
+
+// q = R (X - C) at the motion x = 0.
+Eigen::Matrix<Jet, 3, 1> Move(const Rigid3d& cur_from_prev,
+                              const Eigen::Vector3d& X) {
+  Jet x[6];
+  for (int i = 0; i < 6; ++i) x[i] = Jet(0.0, i);
+  const MotionPose<Jet> pose = MotionOrigin(cur_from_prev).PoseAt(x);
+  const Jet farther = Jet(1.0) + Jet(0.0, 6) / X.z();
+  const Eigen::Matrix<Jet, 3, 1> from_centre = X.cast<Jet>() * farther - pose.C;
+  return pose.R * from_centre;
+}
+
+// OpenCV's plumb-bob model, px.
+Eigen::Matrix<Jet, 2, 1> Project(const Camera& camera,
+                                 const Eigen::Matrix<Jet, 3, 1>& q) {
+  const Jet x = q[0] / q[2], y = q[1] / q[2], r2 = x * x + y * y;
+  const Jet radial =
+      1.0 + camera.k1 * r2 + camera.k2 * r2 * r2 + camera.k3 * r2 * r2 * r2;
+  const Jet xd =
+      x * radial + 2.0 * camera.p1 * x * y + camera.p2 * (r2 + 2.0 * x * x);
+  const Jet yd =
+      y * radial + 2.0 * camera.p2 * x * y + camera.p1 * (r2 + 2.0 * y * y);
+  return {camera.fx * xd + camera.cx, camera.fy * yd + camera.cy};
+}
+
+Eigen::VectorXd Column(const PackedColumns& points, int size, int i) {
+  Eigen::VectorXd point(size);
+  for (int k = 0; k < size; ++k) {
+    point[k] = points.values[k * points.stride + i];
+  }
+  return point;
+}
+
+void AddOf(Photometric, const DirectInput& input, const Rigid3d& motion,
+           const Eigen::VectorXd& point, Sums* sums) {
+  const FrameView::Level& level = input.cur->levels[input.level];
+  const Eigen::Matrix<Jet, 3, 1> q = Move(motion, point.head<3>());
+  if (!(q[2].a > DirectInput::kMinDepth)) return;
+  const Eigen::Matrix<Jet, 2, 1> at = Project(level.camera, q);
+  if (!(at[0].a >= 1.0 && at[1].a >= 1.0 && at[0].a < level.gray.width - 2 &&
+        at[1].a < level.gray.height - 2)) {
+    return;
+  }
+  const int u = static_cast<int>(at[0].a), v = static_cast<int>(at[1].a);
+  const Jet s = at[0] - static_cast<double>(u);
+  const Jet t = at[1] - static_cast<double>(v);
+  const auto gray = [&](int i, int j) {
+    return Jet(level.gray.At(u + i, v + j));
+  };
+  const Jet r = (1.0 - s) * (1.0 - t) * gray(0, 0) +
+                s * (1.0 - t) * gray(1, 0) + (1.0 - s) * t * gray(0, 1) +
+                s * t * gray(1, 1) - input.gain * point[4] - input.bias;
+  const double sigma_gray = Photometric::kSigmaGray;
+  const double sigma = std::hypot(
+      sigma_gray * std::sqrt(1.0 + input.gain * input.gain), r.v[6] * point[3]);
+  sums->Add(1.0 / sigma, r);
+}
+
+// The plane N . p = 1 in current axes: as steep as the previous one, as far as
+// nine inverse depths say. False where they are no plane.
+struct PlaneOracle {
+  Eigen::Vector3d N;
+  double chi2 = 0.0;  // of the nine, in units of the 99 % of eight degrees
+
+  bool Measure(const FrameView& cur, const Rigid3d& motion,
+               const Eigen::VectorXd& point) {
+    const Eigen::Vector3d q = motion * Eigen::Vector3d(point.head<3>());
+    if (!(q.z() > DirectInput::kMinDepth)) return false;
+    const Camera& camera = cur.levels[0].camera;
+    const Eigen::Vector2d at = camera.Project(q);
+    const double border = kSurfaceStep + 1.0;
+    if (!(at.minCoeff() >= border && at.x() < camera.width - 1.0 - border &&
+          at.y() < camera.height - 1.0 - border)) {
+      return false;
+    }
+    const int u = static_cast<int>(std::lround(at.x()));
+    const int v = static_cast<int>(std::lround(at.y()));
+    N = motion.rotation * Eigen::Vector3d(point.segment<3>(3));
+    N /= N.dot(q);
+    const Eigen::Vector2d per_px(N.x() / camera.fx, N.y() / camera.fy);
+    Eigen::Matrix<double, 9, 1> off;
+    for (int k = 0; k < 9; ++k) {
+      const Eigen::Vector2i step(kSurfaceStep * (k % 3 - 1),
+                                 kSurfaceStep * (k / 3 - 1));
+      const double z = cur.DepthAt(u + step.x(), v + step.y());
+      if (z == 0.0) return false;
+      off[k] = 1.0 / z - per_px.dot(step.cast<double>());
+    }
+    const double sigma = point[6] / (point[2] * point[2]);
+    chi2 = (off.array() - off.mean()).square().sum() / (sigma * sigma) / 20.1;
+    const double inverse_z =
+        off.mean() + per_px.dot(at - Eigen::Vector2d(u, v));
+    N.z() = inverse_z - (N.x() * q.x() + N.y() * q.y()) / q.z();
+    return true;
+  }
+};
+
+void AddOf(ProjectivePlane, const DirectInput& input, const Rigid3d& motion,
+           const Eigen::VectorXd& point, Sums* sums) {
+  PlaneOracle plane;
+  if (!plane.Measure(*input.cur, motion, point)) return;
+  const Eigen::Matrix<Jet, 3, 1> q = Move(motion, point.head<3>());
+  const Eigen::Vector3d n = plane.N.normalized();
+  const double distance = 1.0 / plane.N.norm();
+  const Jet r = n.x() * q[0] + n.y() * q[1] + n.z() * q[2] - distance;
+  const double far = r.a / 0.2;
+  if (plane.chi2 + far * far >= 1.0) return;
+  // How much of a depth error lies along n.
+  const double sigma = kSurfaceSigma * point[6] * distance / q[2].a;
+  sums->Add(1.0 / sigma, r);
+}
+
+void AddOf(InverseDepth, const DirectInput& input, const Rigid3d& motion,
+           const Eigen::VectorXd& point, Sums* sums) {
+  PlaneOracle plane;
+  if (!plane.Measure(*input.cur, motion, point)) return;
+  const Eigen::Matrix<Jet, 3, 1> q = Move(motion, point.head<3>());
+  const Jet measured =
+      plane.N.x() * q[0] / q[2] + plane.N.y() * q[1] / q[2] + plane.N.z();
+  const Jet r = measured - 1.0 / q[2];
+  const double far = r.a * q[2].a / 0.1;
+  if (plane.chi2 + far * far >= 1.0) return;
+  const double sigma = kSurfaceSigma * point[6] / (point[2] * point[2]);
+  sums->Add(1.0 / sigma, r);
+}
+
+// A little more and another exposure than in the previous frame.
+void Brighten(DirectFrame* frame) {
+  frame->frame.gray.convertTo(frame->frame.gray, -1, 1.2, -10.0);
+  frame->Build();
+}
+
+template <typename Residual>
+class DirectOracleTest : public ::testing::Test {
+ protected:
+  void Compare(bool is_distorted, int level) {
+    DirectPair pair(SyntheticDataset(SmallImages(is_distorted)), 10, 12);
+    Brighten(&pair.cur);
+    // Some millimetres off, so that there is a gradient.
+    const Rigid3d motion = Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(
+                                       0.002, Eigen::Vector3d::UnitY())),
+                                   Eigen::Vector3d(0.003, -0.002, 0.004)) *
+                           pair.cur_from_prev;
+    DirectOptions options;
+    options.max_points = kMaxPoints;
+    options.finest_level = level;
+    DirectCostOf<Residual> cost(options);
+    cost.Bind(pair.data());
+    cost.Associate(motion);
+    NormalEquations actual;
+    const MotionVector zero = MotionVector::Zero();
+    cost.Linearise(MotionOrigin(motion).DerivativesAt(zero.data()), nullptr,
+                   &actual);
+    const PackedColumns points = PointsOf<Residual>(pair, level, kMaxPoints);
+    DirectInput input = InputOf(pair, level, motion);
+    if (Residual::kSeesBrightness) EstimateBrightness(points, &input);
+    Sums expected;
+    for (int i = 0; i < points.size; ++i) {
+      AddOf(Residual(), input, motion,
+            Column(points, Residual::kPointColumns, i), &expected);
+    }
+    EXPECT_GT(expected.rows, 300);
+    EXPECT_LT(expected.rows, points.size) << "all are seen: no test of that";
+    EXPECT_EQ(cost.matches().size(), expected.rows);
+    // Places within a pixel are floats.
+    constexpr double kRounding = 1e-6;
+    const NormalEquations& normal = expected.normal;
+    EXPECT_NEAR(actual.cost, normal.cost, kRounding * normal.cost);
+    EXPECT_LE((actual.gradient - normal.gradient).norm(),
+              kRounding * normal.gradient.norm());
+    EXPECT_LE((actual.hessian - normal.hessian).norm(),
+              kRounding * normal.hessian.norm());
+  }
+
+  static constexpr int kMaxPoints = 1000;
+};
+TYPED_TEST_SUITE(DirectOracleTest, AsGTestTypes<DirectResidualTypes>::type,
+                 CostName);
+
+TYPED_TEST(DirectOracleTest, SumsAreThoseThroughTheImage) {
+  this->Compare(/*is_distorted=*/false, 0);
+  this->Compare(/*is_distorted=*/false, 1);
+}
+
+TYPED_TEST(DirectOracleTest, WithLensDistortion) {
+  this->Compare(/*is_distorted=*/true, 0);
+  this->Compare(/*is_distorted=*/true, 1);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

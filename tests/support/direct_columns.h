@@ -1,0 +1,44 @@
+#pragma once
+
+#include "costs/direct/direct_cost.h"
+#include "tests/support/direct_pair.h"
+
+namespace rgbd_pose {
+
+// The points of a pair's previous frame, so many at most.
+template <typename Residual>
+PackedColumns PointsOf(const DirectPair& pair, int level, int max_points) {
+  const DirectOptions options;
+  PackedColumns points;
+  Residual::Points(
+      pair.prev.view, level,
+      {max_points, options.min_gradient, options.min_depth, options.max_depth},
+      &points);
+  return points;
+}
+
+// Where a pair's current frame is looked at.
+inline DirectInput InputOf(const DirectPair& pair, int level,
+                           const Rigid3d& cur_from_prev) {
+  DirectInput input;
+  input.cur = &pair.cur.view;
+  input.level = level;
+  input.R = cur_from_prev.rotation.toRotationMatrix();
+  input.t = cur_from_prev.translation;
+  input.has_distortion = pair.cur.camera.HasDistortion();
+  return input;
+}
+
+// The columns of the points that are seen.
+template <typename Residual>
+PackedColumns SeenColumns(const DirectInput& input,
+                          const PackedColumns& points) {
+  PackedColumns seen;
+  seen.stride = points.stride + kMaxLanes;
+  seen.values.resize(seen.stride * Residual::kColumns);
+  PackedColumns* const out = &seen;
+  RunVectorised<LookUpKernel<Residual>>(input, points, out);
+  return seen;
+}
+
+}  // namespace rgbd_pose

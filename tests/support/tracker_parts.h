@@ -1,0 +1,22 @@
+#pragma once
+
+#include <string>
+
+#include "core/geometry/camera.h"
+#include "costs/cost_factory.h"
+#include "costs/direct_cost_factory.h"
+#include "frontend/tracking/tracker_factory.h"
+
+namespace rgbd_pose {
+
+// The parts that any tracker needs, as programs take them by default.
+inline TrackerParts PartsFor(const Camera& camera,
+                             const TrackerOptions& options = {}) {
+  TrackerParts parts{options, {}, "patch", Estimator({}, MakeRobustCosts())};
+  parts.images.camera = camera;
+  parts.direct_estimator =
+      Estimator(DirectEstimatorOptions(), MakeDirectCosts());
+  return parts;
+}
+
+}  // namespace rgbd_pose
