@@ -30,8 +30,8 @@ struct MeasuredSurface {
 // through 5 x 5 depths, 3 px apart.
 constexpr double kSlopeNoise = 0.0667;
 
-// The sigma of a surface point in that of one depth, as simulated pairs have it:
-// the means of nine depths here and 25 there, whose noise is correlated,
+// The sigma of a surface point in that of one depth, as simulated pairs have
+// it: the means of nine depths here and 25 there, whose noise is correlated,
 // leave half of it each.
 constexpr double kSurfaceSigma = 0.707;
 

@@ -34,8 +34,9 @@ struct Forward {
 // A row of a Jacobian: that of a residual with the derivatives `gradient` by
 // its moved point q.
 template <typename D>
-[[gnu::always_inline]] inline void RowOfPoint(const MotionDerivatives& motion, const D* point,
-                const D (&gradient)[3], D* row) {
+[[gnu::always_inline]] inline void RowOfPoint(const MotionDerivatives& motion,
+                                              const D* point,
+                                              const D (&gradient)[3], D* row) {
   for (int parameter = 0; parameter < 6; ++parameter) {
     D dq[3];
     Forward::Derivative(motion, point, parameter, dq);
