@@ -16,7 +16,7 @@ constexpr size_t kMinResidualsForScale = 10;
 constexpr size_t kMaxResidualsForScale = 2000;
 // By how much what noise feigns may exceed its model: depths come in steps, so
 // that slopes of surfaces seen at an angle are noisier.
-constexpr double kFeignedMargin = 4.0;
+constexpr double kFeignedMargin = 6.0;
 
 // What a scale may come to: a spread of zero (over half of the residuals
 // equal) or a huge one (over half of the matches wrong) has no use.
