@@ -60,7 +60,7 @@ struct PairData {
 enum class Association {
   kOnce,       // at the guess
   kWhenMoved,  // when the motion has changed a good deal since
-  kEveryStep,  // wherever the solver tries a motion
+  kEveryStep,  // after every step
 };
 
 // All that the estimator sees of a cost: whitened residual blocks over whatever

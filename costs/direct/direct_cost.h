@@ -146,8 +146,8 @@ struct LookUpKernel {
 };
 
 // The MotionCost of a direct residual type (photometric.h): its points are made
-// once of each previous frame, and looked up in the current one wherever the
-// solver tries a motion. A residual type says
+// once of each previous frame, and looked up in the current one after
+// every step. A residual type says
 //
 //   kName, kRows, kIndependentRows, kColumns, kIsWhitened, kScaleGroup
 //   kPointColumns, kMaxPoints, kInformation
