@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/estimation/motion_cost.h"
+#include "core/util/input_error.h"
 #include "core/util/vector_lanes.h"
 #include "costs/assembly/packed_cost.h"
 #include "costs/direct/brightness.h"
@@ -191,6 +192,9 @@ class DirectCostOf final : public PackedCost<Type> {
       return;
     }
     input_.has_distortion = pair.cur->levels[0].camera.HasDistortion();
+    if (pair.prev->depth_sigma == nullptr) {
+      throw InputError("direct cost: the view of a frame has no depth_sigma");
+    }
     if (pair.prev->id != 0 && pair.prev->id == points_of_) return;
     points_of_ = pair.prev->id;
     for (int level = 0; level < options_.num_levels; ++level) {

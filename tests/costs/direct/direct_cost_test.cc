@@ -151,6 +151,16 @@ TEST_P(DirectCostTest, PointsAreKeptForFramesOfOneId) {
 }
 
 // Over 8192 rows, so that there are several chunks of sums.
+TEST_P(DirectCostTest, AViewWithoutItsDepthNoiseIsRefused) {
+  const DirectPair pair = SmallPair();
+  FrameView view = pair.prev.view;
+  view.depth_sigma = nullptr;
+  PairData data = pair.data();
+  data.prev = &view;
+  const auto cost = Make();
+  ExpectInputError([&] { cost->Bind(data); }, {"depth_sigma"});
+}
+
 TEST_P(DirectCostTest, ThreadsDoNotChangeABit) {
   SyntheticOptions whole = SmallImages();
   whole.camera = RgbdCamera();
