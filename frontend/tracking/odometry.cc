@@ -16,10 +16,6 @@ namespace {
 constexpr double kMinReturnShare = 0.7;
 constexpr double kMaxReturnFlow = 0.5;
 
-// Where both frames have stamp offsets that differ, what they make of a motion
-// may be as far off as the motion, the other way: half of that each time.
-constexpr int kFirstRounds = 3;
-
 }  // namespace
 
 std::string OdometryOptions::Check() const {
@@ -41,9 +37,8 @@ Odometry::Odometry(const OdometryOptions& options,
     : options_(options),
       tracker_(std::move(tracker)),
       relocaliser_(tracker_->images().camera, tracker_->images().DepthLookup()),
-      tracked_(tracker_->images().camera),
-      other_(tracked_),
-      stamp_offset_(tracker_->images().camera) {
+      attempts_(tracker_.get()),
+      color_time_(tracker_.get(), options.ignore_stamp_offset) {
   const std::string error = options.Check();
   if (!error.empty()) throw InputError("odometry: " + error);
 }
@@ -127,39 +122,31 @@ bool Odometry::Follow(const PreparedFrame& measured,
   const Rigid3d predicted = cur_from_prev_ * last;
   const Rigid3d first = options_.predict_velocity ? predicted : last;
   const Rigid3d second = options_.predict_velocity ? last : predicted;
-  const auto track = [&](const PreparedFrame& frame) {
-    return (prediction != nullptr &&
-            Try(frame, *reference_, prediction->cur_from_ref, result,
-                prediction->is_certain ? &prediction->covariance : nullptr)) ||
-           TryEither(frame, first, second, result);
+  const auto track = [&](const PreparedFrame& frame) -> std::optional<Rigid3d> {
+    if ((prediction != nullptr &&
+         attempts_.Try(
+             frame, *reference_, prediction->cur_from_ref, result,
+             prediction->is_certain ? &prediction->covariance : nullptr)) ||
+        attempts_.TryEither(frame, *reference_, first, second, result)) {
+      return attempts_.kept().estimate.cur_from_prev * last.Inverse();
+    }
+    return std::nullopt;
   };
-  auto moved = AtColorTime(
-      measured, prediction == nullptr
-                    ? recent_motion_
-                    : RecentMotion(prediction->cur_from_prev, interval_));
-  bool tracked = track(moved == nullptr ? measured : *moved);
-  // Once more where it matters, since the motion is now known better.
-  const int rounds = early_reference_.has_value() ? kFirstRounds : 1;
-  Rigid3d motion = tracked_.estimate.cur_from_prev * last.Inverse();
-  for (int round = 0; tracked && !is_lost_ && round < rounds; ++round) {
-    const bool has_mended = MendReference(RecentMotion(motion, interval_));
-    auto better = AtColorTime(measured, RecentMotion(motion, interval_));
-    if (better != nullptr) moved = std::move(better);
-    if (!has_mended && moved == nullptr) break;
-    tracked = track(moved == nullptr ? measured : *moved);
-    const Rigid3d found = tracked_.estimate.cur_from_prev * last.Inverse();
-    motion = motion * RecentMotion(motion.Inverse() * found, 1.0).During(0.5);
-  }
-  early_reference_.reset();
+  const PreparedFrame* const frame = color_time_.Follow(
+      measured,
+      prediction == nullptr
+          ? recent_motion_
+          : RecentMotion(prediction->cur_from_prev, interval_),
+      interval_, is_lost_, reference_, track);
   // A doubtful pose is no way back from being lost.
-  if (!tracked || (is_lost_ && result->status != TrackingStatus::kOk)) {
+  if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
     return false;
   }
   TakeMotion(result);
   cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
   recent_motion_ =
       is_lost_ ? RecentMotion() : RecentMotion(cur_from_prev_, interval_);
-  Accept(moved == nullptr ? measured : *moved, result);
+  Accept(*frame, result);
   return true;
 }
 
@@ -171,7 +158,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   }
   if (!place.has_value()) return false;
   Keyframe* keyframe = keyframes_.Find(place->place_id);
-  if (!Try(frame, *keyframe, place->cur_from_place, result) ||
+  if (!attempts_.Try(frame, *keyframe, place->cur_from_place, result) ||
       result->status != TrackingStatus::kOk) {
     return false;
   }
@@ -224,47 +211,8 @@ void Odometry::Lose(const PreparedFrame& frame, const Prediction* prediction,
       (is_predicted_ ? "only predicted" : "unknown");
 }
 
-bool Odometry::Try(const PreparedFrame& frame, const Keyframe& keyframe,
-                   const Rigid3d& cur_from_ref_guess, TrackedFrame* result,
-                   const MotionMatrix* guess_covariance) {
-  tracker_->Track(*keyframe.reference, frame, cur_from_ref_guess,
-                  guess_covariance, &tracked_);
-  const MotionEstimate& estimate = tracked_.estimate;
-  result->status = tracked_.status;
-  result->reason = tracked_.reason;
-  result->reference = keyframe.id;
-  result->carried_by = tracked_.carried_by;
-  result->matches = tracked_.num_found;
-  result->inliers = estimate.num_inliers;
-  result->iterations += estimate.iterations;
-  result->sigma = estimate.sigma;
-  result->match_ms += tracked_.match_ms;
-  result->solve_ms += estimate.solve_ms;
-  return tracked_.status != TrackingStatus::kLost;
-}
-
-bool Odometry::TryEither(const PreparedFrame& frame, const Rigid3d& first,
-                         const Rigid3d& second, TrackedFrame* result) {
-  if (!Try(frame, *reference_, first, result)) {
-    return Try(frame, *reference_, second, result);
-  }
-  if (result->status == TrackingStatus::kOk) return true;
-  const TrackedFrame doubtful = *result;
-  std::swap(tracked_, other_);
-  if (Try(frame, *reference_, second, result) &&
-      result->status == TrackingStatus::kOk) {
-    return true;
-  }
-  std::swap(tracked_, other_);
-  const double match_ms = result->match_ms, solve_ms = result->solve_ms;
-  *result = doubtful;
-  result->match_ms = match_ms;
-  result->solve_ms = solve_ms;
-  return true;
-}
-
 void Odometry::TakeMotion(TrackedFrame* result) {
-  const MotionEstimate& estimate = tracked_.estimate;
+  const MotionEstimate& estimate = last_estimate();
   cur_from_ref_ = estimate.cur_from_prev;
   covariance_ = estimate.covariance;
   if (!estimate.ok()) return;
@@ -276,33 +224,15 @@ void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
   depth_ = frame.depth;
-  tracker_->Believe(reference_->reference.get(), &tracked_);
+  tracker_->Believe(reference_->reference.get(), attempts_.mutable_kept());
   if (NeedsNewReference()) ChangeReference(frame, result);
 }
 
-std::unique_ptr<const PreparedFrame> Odometry::AtColorTime(
-    const PreparedFrame& frame, const RecentMotion& motion) {
-  if (options_.ignore_stamp_offset) return nullptr;
-  return stamp_offset_.Undo(frame, motion);
-}
-
-bool Odometry::MendReference(const RecentMotion& motion) {
-  if (!early_reference_.has_value()) return false;
-  const auto measured = Prepare(*early_reference_);
-  const auto moved = AtColorTime(*measured, motion);
-  if (moved == nullptr) return false;
-  std::string why_not;
-  auto mended = tracker_->MakeReference(*moved, nullptr, nullptr, &why_not);
-  if (mended == nullptr) return false;
-  reference_->reference = std::move(mended);
-  reference_->place = std::make_unique<Place>(*moved, reference_->id);
-  return true;
-}
-
 bool Odometry::NeedsNewReference() const {
-  return tracked_.is_scarce ||
-         tracked_.overlap.share < options_.min_reference_share ||
-         tracked_.overlap.flow_px > options_.max_flow_px;
+  const Tracked& tracked = attempts_.kept();
+  return tracked.is_scarce ||
+         tracked.overlap.share < options_.min_reference_share ||
+         tracked.overlap.flow_px > options_.max_flow_px;
 }
 
 void Odometry::ChangeReference(const PreparedFrame& frame,
@@ -321,19 +251,13 @@ void Odometry::ChangeReference(const PreparedFrame& frame,
 bool Odometry::ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
                         const Rigid3d& cur_from_earlier_guess,
                         TrackedFrame* result) {
-  TrackedFrame attempt = *result;
-  std::swap(tracked_, other_);
-  if (Try(frame, *earlier, cur_from_earlier_guess, &attempt) &&
-      attempt.status == TrackingStatus::kOk && !NeedsNewReference()) {
-    reference_ = earlier;
-    *result = attempt;
-    TakeMotion(result);
-    return true;
+  if (!attempts_.TryInstead(frame, *earlier, cur_from_earlier_guess, result,
+                            [&] { return !NeedsNewReference(); })) {
+    return false;
   }
-  std::swap(tracked_, other_);
-  result->match_ms = attempt.match_ms;
-  result->solve_ms = attempt.solve_ms;
-  return false;
+  reference_ = earlier;
+  TakeMotion(result);
+  return true;
 }
 
 bool Odometry::TakeReference(const PreparedFrame& frame,
@@ -345,7 +269,7 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   std::string why_not;
   std::unique_ptr<Reference> reference = tracker_->MakeReference(
       frame, was_tracked ? reference_->reference.get() : nullptr,
-      was_tracked ? &tracked_ : nullptr, &why_not);
+      was_tracked ? &attempts_.kept() : nullptr, &why_not);
   if (reference == nullptr) {
     if (is_lost) result->reason = why_not;
     return false;
@@ -353,13 +277,7 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   reference_ = keyframes_.Add(
       {result->index, segment_, world_from_cam, std::move(reference),
        std::make_unique<Place>(frame, result->index), result->edges});
-  early_reference_.reset();
-  if (HasStampOffset(frame) && !options_.ignore_stamp_offset) {
-    early_reference_ = frame;
-    early_reference_->gray = frame.gray.clone();
-    early_reference_->depth = frame.depth.clone();
-    early_reference_->color.release();
-  }
+  color_time_.AddReference(frame);
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   result->is_reference = true;

@@ -8,10 +8,12 @@
 #include "core/geometry/rigid3.h"
 #include "frontend/features/frontend.h"
 #include "frontend/places/relocaliser.h"
+#include "frontend/tracking/color_time.h"
 #include "frontend/tracking/keyframes.h"
-#include "frontend/tracking/stamp_offset.h"
+#include "frontend/tracking/recent_motion.h"
 #include "frontend/tracking/tracked_frame.h"
 #include "frontend/tracking/tracker.h"
+#include "frontend/tracking/tracking_attempts.h"
 
 namespace rgbd_pose {
 
@@ -94,8 +96,12 @@ class Odometry {
 
   // The matches that the last frame was tracked by (prev: its reference) and
   // what the estimator made of them.
-  const FeatureMatches& last_matches() const { return tracked_.matches; }
-  const MotionEstimate& last_estimate() const { return tracked_.estimate; }
+  const FeatureMatches& last_matches() const {
+    return attempts_.kept().matches;
+  }
+  const MotionEstimate& last_estimate() const {
+    return attempts_.kept().estimate;
+  }
 
   // The reference of that number (TrackedFrame::reference); null if there is
   // none any more.
@@ -118,29 +124,14 @@ class Odometry {
   void Start(const PreparedFrame& frame, TrackedFrame* result);
   bool Follow(const PreparedFrame& frame, const Prediction* prediction,
               TrackedFrame* result);
-  // With depth moved to the time of colour; null where there is nothing to do
-  // (see StampOffset).
-  std::unique_ptr<const PreparedFrame> AtColorTime(const PreparedFrame& frame,
-                                                   const RecentMotion& motion);
-  // Makes the reference anew if it was made before any motion was known.
-  bool MendReference(const RecentMotion& motion);
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
   void Lose(const PreparedFrame& frame, const Prediction* prediction,
             TrackedFrame* result);
 
-  // Tries to track against a keyframe from one guess; true if the result, in
-  // tracked_, is a pose. `guess_covariance`: null: not known.
-  bool Try(const PreparedFrame& frame, const Keyframe& keyframe,
-           const Rigid3d& cur_from_ref_guess, TrackedFrame* result,
-           const MotionMatrix* guess_covariance = nullptr);
-  // The same against reference_ from two guesses: the second counts where the
-  // first leads to no pose, or to a doubtful one and itself to a good one.
-  bool TryEither(const PreparedFrame& frame, const Rigid3d& first,
-                 const Rigid3d& second, TrackedFrame* result);
-  // Takes the motion of tracked_ since reference_ for that of the pose, and
+  // Takes the motion since reference_ that was found for that of the pose, and
   // puts it before other edges.
   void TakeMotion(TrackedFrame* result);
-  // What follows from a frame tracked against reference_ as in tracked_.
+  // What follows from a frame tracked against reference_.
   void Accept(const PreparedFrame& frame, TrackedFrame* result);
   void ChangeReference(const PreparedFrame& frame, TrackedFrame* result);
   bool NeedsNewReference() const;
@@ -156,8 +147,8 @@ class Odometry {
   std::unique_ptr<Tracker> tracker_;
   Keyframes keyframes_;
   Relocaliser relocaliser_;
-  Tracked tracked_;                // the last frame
-  Tracked other_;                  // the same, see ReturnTo
+  TrackingAttempts attempts_;  // at the last frame
+  ColorTime color_time_;
   Keyframe* reference_ = nullptr;  // null: none yet
   int num_frames_ = 0;
   Rigid3d cur_from_ref_;                            // of the last frame
@@ -166,10 +157,7 @@ class Odometry {
   RecentMotion recent_motion_;  // as far as it was found
   double timestamp_ = 0.0;      // of the last frame, s
   double interval_ = 0.0;       // since the one before, s
-  StampOffset stamp_offset_;
-  // The last frame, if it became the reference with a stamp offset.
-  std::optional<Frame> early_reference_;
-  cv::Mat depth_;  // see last_depth
+  cv::Mat depth_;               // see last_depth
   int segment_ = 0;
   double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
   bool is_lost_ = false;

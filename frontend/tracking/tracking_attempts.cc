@@ -1,0 +1,56 @@
+#include "frontend/tracking/tracking_attempts.h"
+
+#include <utility>
+
+namespace rgbd_pose {
+
+bool TrackingAttempts::Try(const PreparedFrame& frame, const Keyframe& keyframe,
+                           const Rigid3d& cur_from_ref_guess,
+                           TrackedFrame* result,
+                           const MotionMatrix* guess_covariance) {
+  tracker_->Track(*keyframe.reference, frame, cur_from_ref_guess,
+                  guess_covariance, &tracked_);
+  const MotionEstimate& estimate = tracked_.estimate;
+  result->status = tracked_.status;
+  result->reason = tracked_.reason;
+  result->reference = keyframe.id;
+  result->carried_by = tracked_.carried_by;
+  result->matches = tracked_.num_found;
+  result->inliers = estimate.num_inliers;
+  result->iterations += estimate.iterations;
+  result->sigma = estimate.sigma;
+  result->match_ms += tracked_.match_ms;
+  result->solve_ms += estimate.solve_ms;
+  return tracked_.status != TrackingStatus::kLost;
+}
+
+bool TrackingAttempts::TryEither(const PreparedFrame& frame,
+                                 const Keyframe& keyframe, const Rigid3d& first,
+                                 const Rigid3d& second, TrackedFrame* result) {
+  if (!Try(frame, keyframe, first, result)) {
+    return Try(frame, keyframe, second, result);
+  }
+  if (result->status != TrackingStatus::kOk) {
+    TryInstead(frame, keyframe, second, result);
+  }
+  return true;
+}
+
+bool TrackingAttempts::TryInstead(const PreparedFrame& frame,
+                                  const Keyframe& keyframe,
+                                  const Rigid3d& cur_from_ref_guess,
+                                  TrackedFrame* result, const Accept& accept) {
+  TrackedFrame attempt = *result;
+  std::swap(tracked_, other_);
+  if (Try(frame, keyframe, cur_from_ref_guess, &attempt) &&
+      attempt.status == TrackingStatus::kOk && (!accept || accept())) {
+    *result = std::move(attempt);
+    return true;
+  }
+  std::swap(tracked_, other_);
+  result->match_ms = attempt.match_ms;
+  result->solve_ms = attempt.solve_ms;
+  return false;
+}
+
+}  // namespace rgbd_pose

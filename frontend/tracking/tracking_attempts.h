@@ -1,0 +1,54 @@
+#pragma once
+
+#include <functional>
+
+#include "core/estimation/motion_estimate.h"
+#include "core/geometry/rigid3.h"
+#include "frontend/tracking/keyframes.h"
+#include "frontend/tracking/tracked_frame.h"
+#include "frontend/tracking/tracker.h"
+
+namespace rgbd_pose {
+
+// Tracks one frame in several ways and keeps the best of them. A result's times
+// and iterations add up.
+class TrackingAttempts {
+ public:
+  using Accept = std::function<bool()>;
+
+  // `tracker` must outlive this.
+  explicit TrackingAttempts(Tracker* tracker)
+      : tracker_(tracker),
+        tracked_(tracker->images().camera),
+        other_(tracked_) {}
+
+  // Against a keyframe from one guess; true if the result is a pose.
+  // `guess_covariance`: null: not known.
+  bool Try(const PreparedFrame& frame, const Keyframe& keyframe,
+           const Rigid3d& cur_from_ref_guess, TrackedFrame* result,
+           const MotionMatrix* guess_covariance = nullptr);
+
+  // The same from two guesses: the second counts where the first leads to no
+  // pose, or to a doubtful one and itself to a good one.
+  bool TryEither(const PreparedFrame& frame, const Keyframe& keyframe,
+                 const Rigid3d& first, const Rigid3d& second,
+                 TrackedFrame* result);
+
+  // Another one after a pose was found: it counts if it is good and accepted
+  // (asked when kept() is the new one). False, and nothing has changed but the
+  // times, if not.
+  bool TryInstead(const PreparedFrame& frame, const Keyframe& keyframe,
+                  const Rigid3d& cur_from_ref_guess, TrackedFrame* result,
+                  const Accept& accept = nullptr);
+
+  // What the tracker said of the attempt that counts.
+  const Tracked& kept() const { return tracked_; }
+  Tracked* mutable_kept() { return &tracked_; }
+
+ private:
+  Tracker* tracker_;
+  Tracked tracked_;
+  Tracked other_;  // made aside
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/evaluation/trajectory.h"
+#include "costs/cost_factory.h"
+#include "frontend/features/frontend.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/odometry.h"
+
+namespace rgbd_pose {
+
+// By patches and one cost.
+inline Odometry MakeOdometry(const Camera& camera, const std::string& loss,
+                             const OdometryOptions& options = {}) {
+  FrontendOptions frontend;
+  frontend.camera = camera;
+  return Odometry(options, MakeFrontend("patch", frontend),
+                  Estimator(EstimatorOptions(),
+                            MakeRobustCosts("bidirectional_point", loss)));
+}
+
+// A sequence tracked, and what came of it.
+struct TrackedSequence {
+  std::vector<TrackedFrame> frames;
+  Trajectory trajectory;
+
+  int Count(TrackingStatus status) const {
+    int count = 0;
+    for (const TrackedFrame& frame : frames) count += frame.status == status;
+    return count;
+  }
+};
+
+inline TrackedSequence TrackAll(const Dataset& dataset, const std::string& loss,
+                                const OdometryOptions& options = {}) {
+  Odometry odometry = MakeOdometry(dataset.camera().camera, loss, options);
+  TrackedSequence run;
+  for (int i = 0; i < dataset.size(); ++i) {
+    run.frames.push_back(odometry.Track(dataset.Read(i)));
+    run.trajectory.push_back(
+        {run.frames.back().timestamp, run.frames.back().world_from_cam});
+  }
+  return run;
+}
+
+// The room as a camera sees it that moves along that path.
+inline SyntheticDataset Room(const std::string& path, int frames) {
+  SyntheticOptions options;
+  options.path = path;
+  options.frames = frames;
+  return SyntheticDataset(options);
+}
+
+// The same with nothing to see. A matrix of its own: assigning cv::Mat::zeros
+// would write into the shared one.
+inline Frame Black(const Frame& frame) {
+  Frame black = frame;
+  black.gray = cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(0));
+  return black;
+}
+
+}  // namespace rgbd_pose
