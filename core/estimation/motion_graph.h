@@ -1,0 +1,136 @@
+#pragma once
+
+#include <ceres/loss_function.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/estimation/edge.h"
+#include "core/estimation/motion_cost.h"
+#include "core/estimation/motion_prior.h"
+#include "core/estimation/robust_terms.h"
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// How a graph is solved.
+struct MotionGraphOptions {
+  // How live pairs become residual blocks, and edges: by hand, or with
+  // kAutodiff by automatic differentiation. The result does not depend on it.
+  Assembly assembly = Assembly::kCompressed;
+
+  // Losses on edges are so wide at first that all edges count, then narrower
+  // step by step: for poses that may be far off. Else at once.
+  bool graduated = false;
+
+  // Between solves poses are the origins anew, and live pairs choose their
+  // residuals again; at most so often.
+  int max_rounds = 10;
+
+  // Where no pose moves by more (rad and m), nothing further is gained.
+  double settled_within = 1e-6;
+
+  // Of the solver in each round.
+  int max_iterations = 30;
+
+  // A pose is not determined if, all others held where they are or known no
+  // better, some direction of it has a larger standard deviation (rad or m).
+  double max_standard_deviation = 0.5;
+
+  // Of the solver. The result is the same for one number, not for all.
+  int threads = 1;
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+// How far a solved graph can be believed.
+enum class GraphStatus {
+  kOk,
+  kBadInput,      // a pose, edge or prior is none
+  kNotAnchored,   // some poses hang on nothing that is fixed or known
+  kSingular,      // some pose is not determined
+  kNotConverged,  // the solver gave up; the poses are those before
+};
+
+// "ok", "bad_input", ...
+const char* ToString(GraphStatus status);
+
+// What came of a solve.
+struct GraphSolution {
+  GraphStatus status = GraphStatus::kOk;
+  std::string reason;  // in words; empty if ok
+
+  double initial_cost = 0.0;  // with the losses at their own widths
+  double final_cost = 0.0;
+  int iterations = 0;  // of the solver, all rounds together
+  int rounds = 0;
+
+  bool ok() const { return status == GraphStatus::kOk; }
+};
+
+// Poses that are moved together until they agree best with all that is known of
+// the motions between them: a Ceres problem without landmarks. Edges are
+// motions with their covariances; live pairs are whole MotionCosts, which are
+// linearised anew at each step; priors are about one pose. Each under a loss
+// or, null, none. Bad data is a status of Solve, never an abort.
+class MotionGraph {
+ public:
+  // Throws InputError for options that are not sound (see Check).
+  explicit MotionGraph(const MotionGraphOptions& options = {});
+  ~MotionGraph();
+  MotionGraph(MotionGraph&&) noexcept;
+  MotionGraph& operator=(MotionGraph&&) noexcept;
+
+  // Returns its number: 0, 1, 2, ... A fixed pose stays where it is.
+  int AddPose(const Rigid3d& world_from_cam, bool is_fixed = false);
+
+  // `edge.ref` and `edge.cur` are numbers of poses. The loss must outlive the
+  // graph and sees the whole edge: 6 whitened rows.
+  int AddEdge(const Edge& edge, const ceres::LossFunction* loss = nullptr);
+
+  // What is known of one pose: `prior` is about cam_from_world.
+  void AddPrior(int pose, const MotionPrior& prior,
+                const ceres::LossFunction* loss = nullptr);
+
+  // A live pair: costs with their losses, bound to what both frames share (see
+  // MotionCost::Bind for how long that has to stay).
+  void AddPair(int ref, int cur, const PairData& pair,
+               std::vector<RobustCost> costs);
+
+  void SetPose(int pose, const Rigid3d& world_from_cam);
+  void SetFixed(int pose, bool is_fixed);
+
+  // Moves the poses that are not fixed. What lies between fixed poses alone is
+  // left out.
+  GraphSolution Solve();
+
+  int num_poses() const;
+  // world_from_cam.
+  const Rigid3d& pose(int pose) const;
+
+  // By how many sigmas, squared, an edge disagrees with the poses: chi^2 of 6
+  // degrees for right edges between poses that are known well.
+  double SquaredNormOf(int edge) const;
+
+  // Covariances of poses, [omega (rad), C (m)] with omega about the axes of the
+  // camera and C its centre in the world, after a Solve that was ok; zero for
+  // fixed poses. They count each edge as independent of others: see Redundancy.
+  // Empty where they cannot be told.
+  std::vector<MotionMatrix> Covariances(const std::vector<int>& poses) const;
+
+  // How often edges tell the same: their number by the number of motions that
+  // poses have (a tree: 1). Edges between frames that see the same features
+  // share those features' noise, so that k frames matched each with each know
+  // no more than k - 1 edges do, though they have k (k - 1) / 2: their
+  // covariances are too small by this factor. An upper bound: for edges that
+  // are independent (wheels, other features) it is 1.
+  double Redundancy() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rgbd_pose
