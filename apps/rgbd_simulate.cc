@@ -17,7 +17,11 @@
 
 DEFINE_string(scene, "room", "what to look at");
 DEFINE_string(path, "xyz", "how to move");
-DEFINE_int32(frames, 150, "number of frames, at 30 Hz");
+DEFINE_int32(frames, 150, "number of frames");
+DEFINE_double(rate, 30.0, "frames a second");
+DEFINE_int32(laps, 1,
+             "how often the path is gone within these frames, to and fro in "
+             "turn");
 DEFINE_uint32(seed, 1, "seed of textures and noise");
 DEFINE_bool(noise, true, "add the noise of a real sensor");
 DEFINE_double(shutter, 0.0, "how long the shutter is open (s): blurs motion");
@@ -47,6 +51,8 @@ int Simulate() {
   options.scene = FLAGS_scene;
   options.path = FLAGS_path;
   options.frames = FLAGS_frames;
+  options.rate_hz = FLAGS_rate;
+  options.laps = FLAGS_laps;
   options.seed = FLAGS_seed;
   options.noise = FLAGS_noise;
   options.exposure_s = FLAGS_shutter;
@@ -81,7 +87,7 @@ int main(int argc, char** argv) {
       "renders a synthetic RGB-D sequence with exact poses to files",
       "rgbd_simulate --path=pan_tilt --frames=150 --output=pan_tilt",
       {{"Sequence",
-        {"scene", "path", "frames", "seed", "noise", "shutter",
+        {"scene", "path", "frames", "rate", "laps", "seed", "noise", "shutter",
          "exposure_drift", "readout", "depth_delay", "registration_shift",
          "registration_turn", "camera"}},
        {"Output", {"output"}}},

@@ -21,6 +21,10 @@ const SyntheticOptions& Checked(const SyntheticOptions& options) {
                      std::to_string(kMaxFrames) + " frames, not " +
                      std::to_string(options.frames));
   }
+  if (options.laps < 1) {
+    throw InputError("a synthetic sequence has 1 or more laps, not " +
+                     std::to_string(options.laps));
+  }
   // Time stamps are whole microseconds and must differ.
   if (!(options.rate_hz > 0.0 && options.rate_hz <= 1e5)) {
     throw InputError("the rate of a synthetic sequence must be in 0..1e5 Hz");
@@ -74,7 +78,10 @@ double SyntheticDataset::timestamp(int index) const {
 }
 
 Rigid3d SyntheticDataset::WorldFromCamAt(double t) const {
-  const Rigid3d world_from_path = path_(t, Time(options_.frames - 1));
+  const double lap = Time(options_.frames - 1) / options_.laps;
+  const double on_path =
+      options_.laps == 1 ? t : lap * 0.5 * (1.0 - std::cos(M_PI * t / lap));
+  const Rigid3d world_from_path = path_(on_path, lap);
   return options_.path_from_cam.has_value()
              ? world_from_path * *options_.path_from_cam
              : world_from_path;

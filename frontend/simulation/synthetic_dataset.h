@@ -17,6 +17,7 @@ struct SyntheticOptions {
   std::string scene = "room";  // see MakeScene
   std::string path = "xyz";    // see FindSyntheticPath
   int frames = 150;            // how many
+  int laps = 1;                // the path is gone so often, see below
   uint32_t seed = 1;           // of textures and noise
   double rate_hz = 30.0;       // frames a second
   bool noise = true;           // of a real sensor, see synthetic_sensor.h
@@ -45,6 +46,10 @@ struct SyntheticOptions {
   // How the camera is mounted on what moves along the path, if not straight.
   std::optional<Rigid3d> path_from_cam = {};
 };
+
+// The path lasts as long as all frames. With several laps each lasts an equal
+// part of that, and they go to and fro in turn, starting and stopping softly:
+// at up to pi/2 times the path's own pace.
 
 // An RGB-D sequence rendered as it is read, with exact poses. The same options
 // give the same bytes, whatever the order or the number of threads. Time

@@ -5,6 +5,7 @@
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/simulation/synthetic_tours.h"
 
 namespace rgbd_pose {
 namespace {
@@ -15,16 +16,6 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 constexpr double kDegree = M_PI / 180.0;
-
-// A camera at a place that looks at a point, its x axis level.
-Rigid3d LookAt(const Vector3d& place, const Vector3d& target) {
-  Matrix3d world_from_cam;
-  world_from_cam.col(2) = (target - place).normalized();
-  world_from_cam.col(0) =
-      world_from_cam.col(2).cross(Vector3d::UnitZ()).normalized();
-  world_from_cam.col(1) = world_from_cam.col(2).cross(world_from_cam.col(0));
-  return Rigid3d(Quaterniond(world_from_cam), place);
-}
 
 Rigid3d Turn(double angle, const Vector3d& axis) {
   return Rigid3d(Quaterniond(AngleAxisd(angle, axis)), Vector3d::Zero());
@@ -152,11 +143,27 @@ struct NamedPath {
   const char* name;
   SyntheticPath path;
 };
-constexpr NamedPath kPaths[] = {{"xyz", Xyz},       {"pan_tilt", PanTilt},
-                                {"circle", Circle}, {"still", Still},
-                                {"walk", Walk},     {"handheld", Handheld}};
+constexpr NamedPath kPaths[] = {{"xyz", Xyz},
+                                {"pan_tilt", PanTilt},
+                                {"circle", Circle},
+                                {"still", Still},
+                                {"walk", Walk},
+                                {"handheld", Handheld},
+                                {"table", TableTour},
+                                {"two_rooms", TwoRoomsTour},
+                                {"twin_corridors", TwinCorridorsTour},
+                                {"depot", DepotTour}};
 
 }  // namespace
+
+Rigid3d LookAt(const Vector3d& place, const Vector3d& target) {
+  Matrix3d world_from_cam;
+  world_from_cam.col(2) = (target - place).normalized();
+  world_from_cam.col(0) =
+      world_from_cam.col(2).cross(Vector3d::UnitZ()).normalized();
+  world_from_cam.col(1) = world_from_cam.col(2).cross(world_from_cam.col(0));
+  return Rigid3d(Quaterniond(world_from_cam), place);
+}
 
 SyntheticPath FindSyntheticPath(const std::string& name) {
   for (const NamedPath& path : kPaths) {

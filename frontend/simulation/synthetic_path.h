@@ -7,12 +7,16 @@
 
 namespace rgbd_pose {
 
+// A camera at a place that looks at a point, its x axis level.
+Rigid3d LookAt(const Eigen::Vector3d& place, const Eigen::Vector3d& target);
+
 // The pose world_from_cam at time t of a path that lasts `duration` (both in
 // seconds, 0 <= t <= duration, or a frame outside).
 using SyntheticPath = Rigid3d (*)(double t, double duration);
 
-// A path through the scene "room" known by name. Throws InputError that lists
-// the names for another one. Camera axes: x right, y down, z forward.
+// A path known by name, of the scene "room" unless it says another. Throws
+// InputError that lists the names for another one. Camera axes: x right, y
+// down, z forward.
 //   xyz       0.2 m along the camera's x, y and z axis and back, then the same
 //             towards the other side; 5 s a round at 0.24 m/s on average (0.38
 //             at most) with turns of about 1 degree, as TUM's freiburg1_xyz
@@ -27,6 +31,14 @@ using SyntheticPath = Rigid3d (*)(double t, double duration);
 //             step's sway: for the scene "corridor"
 //   handheld  swings of arm and hand on all six axes, up to 1.0 m/s and 90
 //             deg/s (0.96 and 87 reached within the first 5 s)
+// and through the scenes of the same name, by hand, up to 0.6 m/s (depot 0.8)
+// and 40 deg/s:
+//   table           19 m around the desks in 56 s, then again
+//   two_rooms       22 m through both rooms and the door, and back, in 57 s,
+//                   then again; where it returns it looks another way
+//   twin_corridors  18 m through both in 55 s, and back in the next 55
+//   depot           229 m along all aisles and back to the start in 340 s: a
+//                   thousand views that differ
 SyntheticPath FindSyntheticPath(const std::string& name);
 
 // The names of all paths.

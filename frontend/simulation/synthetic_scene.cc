@@ -6,6 +6,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/simulation/synthetic_bare_scenes.h"
+#include "frontend/simulation/synthetic_buildings.h"
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_room.h"
 
@@ -22,7 +23,11 @@ constexpr NamedScene kScenes[] = {{"room", MakeRoom},
                                   {"plain_room", MakePlainRoom},
                                   {"glossy_room", MakeGlossyRoom},
                                   {"corridor", MakeCorridor},
-                                  {"poster_wall", MakePosterWall}};
+                                  {"poster_wall", MakePosterWall},
+                                  {"table", MakeTableRoom},
+                                  {"two_rooms", MakeTwoRooms},
+                                  {"twin_corridors", MakeTwinCorridors},
+                                  {"depot", MakeDepot}};
 
 }  // namespace
 

@@ -51,6 +51,11 @@ void AddBox(const SceneBox& box, bool from_within,
 //   corridor     40 m along the world's x axis, without texture: nothing tells
 //                how far along it one is
 //   poster_wall  one textured plane: depth tells nothing that it does not
+// and to walk through, with paths of the same name (synthetic_buildings.h):
+//   table           a room with two desks in its middle
+//   two_rooms       with a door between them
+//   twin_corridors  that look exactly alike, a hall between them
+//   depot           shelves along 229 m of way
 Scene MakeScene(const std::string& name, uint32_t seed);
 
 // The names of all scenes.

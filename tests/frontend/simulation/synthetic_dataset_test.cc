@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
@@ -186,6 +187,32 @@ TEST(SyntheticDatasetTest, HandheldAlwaysSeesTextureAndDepth) {
   }
 }
 
+TEST(SyntheticDatasetTest, LapsGoToAndFro) {
+  SyntheticOptions options = PathOptions("table");
+  options.frames = 601;
+  const SyntheticDataset once(options);
+  options.frames = 2401;
+  options.laps = 4;
+  const SyntheticDataset laps(options);
+  for (const int end : {0, 1200, 2400}) {
+    EXPECT_TRUE(laps.WorldFromCam(end).translation.isApprox(
+        once.WorldFromCam(0).translation, 1e-12));
+  }
+  for (const int end : {600, 1800}) {
+    EXPECT_TRUE(laps.WorldFromCam(end).translation.isApprox(
+        once.WorldFromCam(600).translation, 1e-12));
+  }
+  EXPECT_TRUE(laps.WorldFromCam(300).translation.isApprox(
+      once.WorldFromCam(300).translation, 1e-12));
+  double fastest = 0.0;
+  for (int i = 1; i <= 2400; ++i) {
+    fastest = std::max(fastest, (laps.WorldFromCam(i).translation -
+                                 laps.WorldFromCam(i - 1).translation)
+                                    .norm());
+  }
+  EXPECT_LT(fastest * options.rate_hz, 0.8);  // m/s
+}
+
 TEST(SyntheticDatasetTest, ExposureChangesColourAlone) {
   SyntheticOptions options = PathOptions("handheld");
   options.noise = false;
@@ -260,6 +287,9 @@ TEST(SyntheticDatasetTest, RegistrationErrorMovesPoints) {
 TEST(SyntheticDatasetTest, RefusesOptionsWithoutSense) {
   SyntheticOptions options;
   options.frames = 0;
+  EXPECT_THROW(SyntheticDataset{options}, InputError);
+  options = {};
+  options.laps = 0;
   EXPECT_THROW(SyntheticDataset{options}, InputError);
   options = {};
   options.rate_hz = 0.0;

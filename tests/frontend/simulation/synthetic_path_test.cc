@@ -114,13 +114,14 @@ double Distance(const SceneFace& face, const Eigen::Vector3d& point) {
                     face.normal.dot(from_origin));
 }
 
-// By differences over a tenth of a millisecond, every 5 ms.
-Peaks FindPeaks(const std::string& name, double seconds) {
+// By differences over a tenth of a millisecond, every 5 ms unless told.
+Peaks FindPeaks(const std::string& name, double seconds,
+                const std::string& scene = "room", double every = 0.005) {
   const SyntheticPath path = FindSyntheticPath(name);
-  const Scene room = MakeScene("room", 1);
+  const Scene room = MakeScene(scene, 1);
   constexpr double kStep = 1e-4;  // s
   Peaks peaks;
-  for (double t = 0.0; t < seconds; t += 0.005) {
+  for (double t = 0.0; t < seconds; t += every) {
     const Rigid3d before = path(t - kStep, seconds);
     const Rigid3d now = path(t, seconds);
     const Rigid3d after = path(t + kStep, seconds);
@@ -151,6 +152,42 @@ TEST(SyntheticPathTest, HandheldIsFastButKeepsItsLimits) {
   EXPECT_GE(default_length.turn_rate, 85.0 * kDegree);
 }
 
+struct Tour {
+  const char* name;
+  double seconds;  // until the camera is where it was
+  double length;   // m
+  double speed;    // m/s at most
+};
+
+class SyntheticTours : public testing::TestWithParam<Tour> {};
+
+TEST_P(SyntheticTours, AreCarriedByHandAndReturn) {
+  const Tour tour = GetParam();
+  const Peaks peaks =
+      FindPeaks(tour.name, tour.seconds, tour.name, tour.seconds / 1000.0);
+  EXPECT_LE(peaks.speed, tour.speed);
+  EXPECT_LE(peaks.turn_rate, 40.0 * kDegree);
+  EXPECT_LE(peaks.change_of_speed, 2.0);
+  EXPECT_GE(peaks.clearance, 0.4);
+  const SyntheticPath path = FindSyntheticPath(tour.name);
+  double way = 0.0;
+  for (double t = 0.0; t < tour.seconds; t += 0.5) {
+    way += (path(t + 0.5, 1.0).translation - path(t, 1.0).translation).norm();
+  }
+  EXPECT_NEAR(way, tour.length, 1.0);
+  // Back, but for the sway of the hand.
+  const Rigid3d back = path(0.0, 1.0).Inverse() * path(tour.seconds, 1.0);
+  EXPECT_LT(back.translation.norm(), 0.06);
+  EXPECT_LT(back.Angle(), 5.0 * kDegree);
+}
+
+INSTANTIATE_TEST_SUITE_P(Tours, SyntheticTours,
+                         testing::Values(Tour{"table", 56.0, 19.0, 0.5},
+                                         Tour{"two_rooms", 57.0, 22.0, 0.5},
+                                         Tour{"twin_corridors", 110.0, 36.0,
+                                              0.6},
+                                         Tour{"depot", 340.0, 229.0, 0.8}));
+
 TEST(SyntheticPathTest, UnknownNameListsTheNames) {
   try {
     FindSyntheticPath("spiral");
@@ -159,7 +196,8 @@ TEST(SyntheticPathTest, UnknownNameListsTheNames) {
     EXPECT_THAT(error.what(), testing::HasSubstr("spiral"));
     EXPECT_THAT(
         error.what(),
-        testing::HasSubstr("xyz, pan_tilt, circle, still, walk, handheld"));
+        testing::HasSubstr("xyz, pan_tilt, circle, still, walk, handheld, "
+                           "table, two_rooms, twin_corridors, depot"));
   }
 }
 

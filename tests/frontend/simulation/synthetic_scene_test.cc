@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <string>
+#include <vector>
 
+#include "frontend/simulation/synthetic_buildings.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
 
@@ -42,7 +46,12 @@ double TexturedShare(const Rendering& image) {
 
 TEST(SyntheticSceneTest, AllAreSeenAndTheSameEachTime) {
   for (const std::string& name : SceneNames()) {
-    const std::string path = name == "corridor" ? "walk" : "xyz";
+    const std::vector<std::string> paths = SyntheticPathNames();
+    const bool has_path =
+        std::find(paths.begin(), paths.end(), name) != paths.end();
+    const std::string path = has_path             ? name
+                             : name == "corridor" ? "walk"
+                                                  : "xyz";
     const Rendering one = Look(name, PoseOf(path, 1.0));
     const Rendering two = Look(name, PoseOf(path, 1.0));
     EXPECT_EQ(cv::norm(one.color, two.color, cv::NORM_INF), 0.0) << name;
@@ -107,6 +116,36 @@ TEST(SyntheticSceneTest, PosterWallIsOneTexturedPlane) {
       }
     }
     EXPECT_GT(TexturedShare(image), 0.5) << path;
+  }
+}
+
+TEST(SyntheticSceneTest, TwinCorridorsLookAlikeAndTheHallDoesNot) {
+  for (const double t : {2.0, 9.0, 15.0}) {
+    const Rigid3d here = PoseOf("twin_corridors", t);
+    Rigid3d there = here;
+    there.translation.x() += kTwinShift;
+    const Rendering a = Look("twin_corridors", here);
+    const Rendering b = Look("twin_corridors", there);
+    EXPECT_LT(cv::norm(a.depth, b.depth, cv::NORM_INF), 1e-3) << t;  // m
+    EXPECT_LT(cv::norm(a.color, b.color, cv::NORM_L1) / a.color.total(), 0.1);
+    EXPECT_GT(TexturedShare(a), 0.35) << t;
+    there.translation.x() = here.translation.x() + kTwinShift / 2.0;
+    EXPECT_GT(
+        cv::norm(a.depth, Look("twin_corridors", there).depth, cv::NORM_INF),
+        0.5)
+        << t;
+  }
+}
+
+TEST(SyntheticSceneTest, ToursSeeTextureWithinReach) {
+  for (const char* name : {"table", "two_rooms", "twin_corridors", "depot"}) {
+    for (double t = 0.0; t < 340.0; t += 17.0) {
+      const Rendering image = Look(name, PoseOf(name, t));
+      EXPECT_GT(TexturedShare(image), 0.35) << name << " " << t;
+      const cv::Mat within = (image.depth > 0.5) & (image.depth < 8.0);
+      EXPECT_GT(cv::countNonZero(within), 0.75 * within.total())
+          << name << " " << t;
+    }
   }
 }
 
