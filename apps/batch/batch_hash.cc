@@ -2,11 +2,11 @@
 
 #include <link.h>
 
-#include <cstdio>
 #include <filesystem>
 
 #include "core/geometry/camera.h"
 #include "core/util/text_file.h"
+#include "core/util/text_hash.h"
 
 namespace rgbd_pose {
 namespace {
@@ -44,24 +44,6 @@ void AddImagesOf(const fs::path& folder, const char* list, TextHash* hash) {
 }
 
 }  // namespace
-
-void TextHash::AddByte(unsigned char byte) {
-  state_ = (state_ ^ byte) * 0x100000001b3u;
-}
-
-void TextHash::Add(std::string_view text) {
-  for (const char c : text) AddByte(static_cast<unsigned char>(c));
-  for (uint64_t size = text.size(), i = 0; i < 8; ++i, size >>= 8) {
-    AddByte(static_cast<unsigned char>(size & 0xff));
-  }
-}
-
-std::string TextHash::Hex() const {
-  char text[17];
-  std::snprintf(text, sizeof(text), "%016llx",
-                static_cast<unsigned long long>(state_));
-  return text;
-}
 
 std::string HashProgram(const std::string& path) {
   TextHash hash;

@@ -5,6 +5,7 @@
 #include "apps/batch/batch_hash.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "core/util/text_hash.h"
 #include "costs/cost_factory.h"
 #include "frontend/features/frontend.h"
 #include "robust/m_estimator.h"

@@ -72,8 +72,10 @@ const std::array<Preset, 4> kPresets = {{
 
 std::string Camera::Check() const {
   if (width <= 0 || height <= 0) return "image size must be positive";
-  for (const double value : {fx, fy, cx, cy, k1, k2, p1, p2, k3}) {
-    if (!std::isfinite(value)) return "intrinsics must be finite numbers";
+  for (const CameraParameter& parameter : kCameraParameters) {
+    if (!std::isfinite(this->*parameter.value)) {
+      return "intrinsics must be finite numbers";
+    }
   }
   if (fx <= 0.0 || fy <= 0.0) {
     return "fx and fy must be positive (ICL-NUIM's fy = -480: mirror the "

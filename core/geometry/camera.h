@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -61,6 +62,24 @@ struct Camera {
            pixel.y() <= height - 1 - border_px;
   }
 };
+
+// A number of a camera by its name: all but the size of the image.
+struct CameraParameter {
+  const char* name;       // as in Camera
+  double Camera::*value;  // where it is
+};
+
+// In the order in which Camera has them.
+inline constexpr std::array<CameraParameter, 9> kCameraParameters = {
+    {{"fx", &Camera::fx},
+     {"fy", &Camera::fy},
+     {"cx", &Camera::cx},
+     {"cy", &Camera::cy},
+     {"k1", &Camera::k1},
+     {"k2", &Camera::k2},
+     {"p1", &Camera::p1},
+     {"p2", &Camera::p2},
+     {"k3", &Camera::k3}}};
 
 // A camera together with how its depth images count.
 struct RgbdCamera {

@@ -1,5 +1,8 @@
 #include "core/util/text_file.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <charconv>
 #include <cmath>
@@ -33,9 +36,6 @@ std::vector<std::string> SplitWords(std::string_view line) {
   }
   return words;
 }
-
-// What is written aside until it is whole.
-std::string AsideOf(const std::string& path) { return path + ".partial"; }
 
 // "(No space left on device)"; of the last call that failed.
 std::string Reason() {
@@ -74,7 +74,10 @@ std::string ReadTextFile(const std::string& path) {
 }
 
 std::vector<TextLine> ReadTextTable(const std::string& path) {
-  const std::string content = ReadTextFile(path);
+  return SplitTextTable(ReadTextFile(path));
+}
+
+std::vector<TextLine> SplitTextTable(std::string_view content) {
   std::string_view rest = WithoutByteOrderMark(content);
   std::vector<TextLine> lines;
   for (int number = 1; !rest.empty(); ++number) {
@@ -134,18 +137,31 @@ double ParseTimestamp(std::string_view word, const std::string& path,
   return seconds;
 }
 
-void WriteFileAtomically(const std::string& path, std::string_view content) {
+std::string AsideOf(const std::string& path) { return path + ".partial"; }
+
+void WriteFileAtomically(const std::string& path, std::string_view content,
+                         Survives survives) {
   const std::string aside = AsideOf(path);
   std::FILE* file = OpenToWrite(path);
   const bool written =
       std::fwrite(content.data(), 1, content.size(), file) == content.size() &&
-      std::fflush(file) == 0;
+      std::fflush(file) == 0 &&
+      (survives == Survives::kCrash || fsync(fileno(file)) == 0);
   std::string reason = written ? "" : Reason();
   if (std::fclose(file) != 0 && written) reason = Reason();
   if (reason.empty() && std::rename(aside.c_str(), path.c_str()) == 0) return;
   if (reason.empty()) reason = Reason();
   std::remove(aside.c_str());
   throw InputError(path + ": writing failed " + reason);
+}
+
+void SyncFolder(const std::string& path) {
+  const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  // Some network file systems keep names by themselves, and say EINVAL.
+  const bool is_done = folder >= 0 && (fsync(folder) == 0 || errno == EINVAL);
+  const std::string reason = is_done ? "" : Reason();
+  if (folder >= 0) close(folder);
+  if (!is_done) throw InputError(path + ": cannot be synchronised " + reason);
 }
 
 void RequireWritable(const std::string& path) {

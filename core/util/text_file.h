@@ -17,6 +17,9 @@ struct TextLine {
 // and a byte order mark are taken out. Throws InputError if it cannot be read.
 std::vector<TextLine> ReadTextTable(const std::string& path);
 
+// The same of a file's content.
+std::vector<TextLine> SplitTextTable(std::string_view content);
+
 // A text without the byte order mark that some editors put before it.
 std::string_view WithoutByteOrderMark(std::string_view text);
 
@@ -35,9 +38,23 @@ double ParseTimestamp(std::string_view word, const std::string& path, int line);
 // The whole content of a file. Throws InputError if it cannot be read.
 std::string ReadTextFile(const std::string& path);
 
-// Writes a file as a whole or not at all: aside first, then renamed. Throws
-// InputError if it cannot (folder missing, disk full).
-void WriteFileAtomically(const std::string& path, std::string_view content);
+// What a file that is being written survives: the old one or the new is there.
+enum class Survives {
+  kCrash,      // of the program
+  kPowerLoss,  // too: its bytes are on the disk before it takes its name
+};
+
+// Writes a file as a whole or not at all: aside first (AsideOf), then renamed.
+// Throws InputError if it cannot (folder missing, disk full).
+void WriteFileAtomically(const std::string& path, std::string_view content,
+                         Survives survives = Survives::kCrash);
+
+// Where WriteFileAtomically writes a file until it is whole.
+std::string AsideOf(const std::string& path);
+
+// Has the names in a folder on the disk, new, changed and removed ones. Throws
+// InputError if it cannot.
+void SyncFolder(const std::string& path);
 
 // Throws InputError if WriteFileAtomically could not write the file: to be told
 // before the work rather than after it. Leaves everything as it was.

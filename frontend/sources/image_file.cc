@@ -25,11 +25,13 @@ bool IsCutOffJpeg(std::string_view bytes) {
          bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
 }
 
-cv::Mat DecodeByOpenCv(const std::string& path, std::string* bytes, int flags) {
+cv::Mat DecodeByOpenCv(const std::string& bytes, const std::string& path,
+                       int flags) {
   cv::Mat image;
   try {
-    const cv::Mat buffer(1, static_cast<int>(bytes->size()), CV_8UC1,
-                         bytes->data());
+    // It is only read from.
+    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1,
+                         const_cast<char*>(bytes.data()));
     image = cv::imdecode(buffer, flags | cv::IMREAD_IGNORE_ORIENTATION);
   } catch (const cv::Exception& error) {
     throw InputError(path + ": cannot be decoded: " + error.err);
@@ -41,9 +43,9 @@ cv::Mat DecodeByOpenCv(const std::string& path, std::string* bytes, int flags) {
   return image;
 }
 
-// Reads an image, in colour as well if `color` is not null.
-cv::Mat Read(const std::string& path, int flags, cv::Mat* color) {
-  std::string bytes = ReadTextFile(path);
+// Decodes an image, in colour as well if `color` is not null.
+cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
+               cv::Mat* color) {
   if (bytes.empty()) throw InputError(path + ": is empty; copy it again");
   bool is_damaged = IsCutOffJpeg(bytes);
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
@@ -64,19 +66,25 @@ cv::Mat Read(const std::string& path, int flags, cv::Mat* color) {
     throw InputError(path + ": is damaged or cut off; copy it again");
   }
   if (color != nullptr) {
-    *color = DecodeByOpenCv(path, &bytes, cv::IMREAD_COLOR);
+    *color = DecodeByOpenCv(bytes, path, cv::IMREAD_COLOR);
   }
-  return DecodeByOpenCv(path, &bytes, flags);
+  return DecodeByOpenCv(bytes, path, flags);
 }
 
 }  // namespace
 
 cv::Mat ReadImageFile(const std::string& path, int flags) {
-  return Read(path, flags, nullptr);
+  return Decode(ReadTextFile(path), path, flags, nullptr);
 }
 
 cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color) {
-  cv::Mat gray = Read(path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH, color);
+  return DecodeGrayImage(ReadTextFile(path), path, color);
+}
+
+cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
+                        cv::Mat* color) {
+  cv::Mat gray =
+      Decode(bytes, path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH, color);
   if (gray.type() != CV_8UC1) {
     throw InputError(path +
                      ": a colour image must have 8 bits a channel, this one "
@@ -86,7 +94,11 @@ cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color) {
 }
 
 cv::Mat ReadDepthImageFile(const std::string& path) {
-  cv::Mat depth = ReadImageFile(path, cv::IMREAD_UNCHANGED);
+  return DecodeDepthImage(ReadTextFile(path), path);
+}
+
+cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path) {
+  cv::Mat depth = Decode(bytes, path, cv::IMREAD_UNCHANGED, nullptr);
   if (depth.type() != CV_16UC1) {
     throw InputError(path +
                      ": a depth image must have 16 bits and 1 channel, "
@@ -98,13 +110,16 @@ cv::Mat ReadDepthImageFile(const std::string& path) {
   return depth;
 }
 
+std::string EncodePng(const cv::Mat& image, const std::vector<int>& settings) {
+  std::vector<uchar> bytes;
+  cv::imencode(".png", image, bytes, settings);
+  return {bytes.begin(), bytes.end()};
+}
+
 // OpenCV does not notice a disk that gets full at the end of a file.
 void WritePngFile(const std::string& path, const cv::Mat& image,
                   const std::vector<int>& settings) {
-  std::vector<uchar> bytes;
-  cv::imencode(".png", image, bytes, settings);
-  WriteFileAtomically(
-      path, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  WriteFileAtomically(path, EncodePng(image, settings));
 }
 
 }  // namespace rgbd_pose

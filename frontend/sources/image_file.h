@@ -23,8 +23,16 @@ cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color = nullptr);
 // any other, too.
 cv::Mat ReadDepthImageFile(const std::string& path);
 
-// Writes an image as a PNG file, as a whole or not at all; `settings` as for
-// cv::imwrite. Throws InputError if it cannot.
+// The same of the bytes of a file; `path` is for messages.
+cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
+                        cv::Mat* color = nullptr);
+cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path);
+
+// The bytes of an image as a PNG file; `settings` as for cv::imwrite.
+std::string EncodePng(const cv::Mat& image,
+                      const std::vector<int>& settings = {});
+
+// Writes these, as a whole or not at all. Throws InputError if it cannot.
 void WritePngFile(const std::string& path, const cv::Mat& image,
                   const std::vector<int>& settings = {});
 

@@ -83,22 +83,15 @@ void WriteAll(FrameSource* source, const Trajectory& ground_truth,
 std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
   const Camera& camera = rgbd_camera.camera;
   std::string text = "%YAML:1.0\n";
-  const std::pair<const char*, double> values[] = {
-      {"Camera.fx", camera.fx},
-      {"Camera.fy", camera.fy},
-      {"Camera.cx", camera.cx},
-      {"Camera.cy", camera.cy},
-      {"Camera.k1", camera.k1},
-      {"Camera.k2", camera.k2},
-      {"Camera.p1", camera.p1},
-      {"Camera.p2", camera.p2},
-      {"Camera.k3", camera.k3},
-      {"Camera.width", camera.width},
-      {"Camera.height", camera.height},
-      {"DepthMapFactor", rgbd_camera.depth_scale}};
-  for (const auto& [key, value] : values) {
-    text += std::string(key) + ": " + ShortNumber(value) + "\n";
+  const auto add = [&text](const std::string& key, double value) {
+    text += key + ": " + ShortNumber(value) + "\n";
+  };
+  for (const CameraParameter& parameter : kCameraParameters) {
+    add(std::string("Camera.") + parameter.name, camera.*parameter.value);
   }
+  add("Camera.width", camera.width);
+  add("Camera.height", camera.height);
+  add("DepthMapFactor", rgbd_camera.depth_scale);
   return text;
 }
 

@@ -4,8 +4,9 @@
 - Links lead to files of the project and to headings that are there.
 - Every page of docs/ can be reached from README.md.
 - A ```cpp block is the file that the comment before it names
-  (<!-- docs/examples/x.cc -->), which a test compiles and runs. With --write
-  blocks are brought up to date instead.
+  (<!-- docs/examples/x.cc -->), which a test compiles and runs; so is any
+  other block with such a comment. With --write blocks are brought up to date
+  instead.
 - Blocks have a language that something reads: sh is run by
   tests/docs/docs_commands.py, python by tests/python/test_docs.py.
 """
@@ -67,7 +68,7 @@ def check_blocks(source, name, text, write):
         if language not in LANGUAGES:
             problems.append(f'{name}: a block must be one of {LANGUAGES}, not '
                             f'"{language}": {content.splitlines()[0]}')
-        if language != 'cpp' or name in COMPILED:
+        if (language != 'cpp' and not example) or name in COMPILED:
             return match.group()
         if not example:
             problems.append(f'{name}: a cpp block without the name of its file')
@@ -79,7 +80,7 @@ def check_blocks(source, name, text, write):
         if content != code and not write:
             problems.append(f'{name}: differs from {example}; '
                             'tests/docs/docs_pages.py . --write renews it')
-        return f'{comment}```cpp\n{code}```'
+        return f'{comment}```{language}\n{code}```'
 
     return problems, BLOCK.sub(renew, text)
 
@@ -96,14 +97,14 @@ def main():
     for name, text in pages.items():
         more, renewed = check_blocks(source, name, text, write)
         problems += more
-        examples |= set(re.findall(r'docs/examples/[a-z_]+\.cc', text))
+        examples |= set(re.findall(r'docs/examples/[a-z_]+\.\w+', text))
         if write and renewed != text:
             (source / name).write_text(renewed)
     problems += [f'tests/docs/docs_exceptions.py: there is no page {name}'
                  for name in {**docs_exceptions.EXCEPTIONS,
                               **docs_exceptions.BEFORE} if name not in pages]
     problems += [f'{path.name}: no page mentions docs/examples/{path.name}'
-                 for path in sorted((source / 'docs/examples').glob('*.cc'))
+                 for path in sorted((source / 'docs/examples').glob('*.[cp]*'))
                  if f'docs/examples/{path.name}' not in examples]
     if problems:
         sys.exit('\n'.join(problems))

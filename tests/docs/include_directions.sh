@@ -28,7 +28,7 @@ room() {
   fi
 }
 
-room core/util core 'Eigen/|ceres/'
+room core/util core 'Eigen/|ceres/|fcntl.h|unistd.h'
 room core/geometry core 'Eigen/'
 room core/estimation core 'Eigen/|ceres/'
 room core/initial_guess core 'Eigen/'
@@ -45,7 +45,7 @@ room frontend/sources 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h"
 room frontend/features 'core/|frontend/' "$opencv"
 room frontend/places 'core/|frontend/' "$opencv"
 room frontend/tracking 'core/|frontend/' "$opencv"
-room frontend/map 'core/|frontend/' "$opencv"
+room frontend/map 'core/|frontend/' "$opencv|fcntl.h|unistd.h|sys/file.h"
 room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"

@@ -9,24 +9,6 @@
 namespace rgbd_pose {
 namespace {
 
-std::string HashOf(const std::string& a, const std::string& b) {
-  TextHash hash;
-  hash.Add(a);
-  hash.Add(b);
-  return hash.Hex();
-}
-
-TEST(TextHashTest, IsFnv1a) {
-  EXPECT_EQ(TextHash().Hex(), "cbf29ce484222325");  // its offset basis
-}
-
-TEST(TextHashTest, TellsTextsApart) {
-  EXPECT_EQ(HashOf("a", "bc"), HashOf("a", "bc"));
-  EXPECT_NE(HashOf("a", "bc"), HashOf("ab", "c"));
-  EXPECT_NE(HashOf("", "a"), HashOf("a", ""));
-  EXPECT_NE(HashOf("a", "b"), HashOf("b", "a"));
-}
-
 TEST(HashProgramTest, IsOfItsContentWhereverItIs) {
   const TempFolder folder;
   folder.Write("a/program", "one");

@@ -99,6 +99,16 @@ TEST(TextFileTest, ReplacesAFileAsAWhole) {
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
 }
 
+// That it is on the disk cannot be seen from here; that it is written can.
+TEST(TextFileTest, WritesToTheDisk) {
+  const TempFolder folder;
+  WriteFileAtomically(folder / "a.txt", "new", Survives::kPowerLoss);
+  SyncFolder(folder.path());
+  EXPECT_EQ(ReadTextFile(folder / "a.txt"), "new");
+  ExpectInputError([&] { SyncFolder(folder / "none"); },
+                   {folder / "none: cannot be synchronised"});
+}
+
 TEST(TextFileTest, NamesTheFileItCannotWrite) {
   const TempFolder folder;
   ExpectInputError([&] { WriteFileAtomically(folder / "none/a.txt", "x"); },

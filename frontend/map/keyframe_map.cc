@@ -1,0 +1,87 @@
+#include "frontend/map/keyframe_map.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+#include <set>
+
+#include "core/util/format.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Of rounding, but far below what anybody would call a wrong quaternion.
+constexpr double kMaxLengthError = 1e-6;
+
+bool IsMotion(const Rigid3d& motion) {
+  return motion.IsFinite() &&
+         std::abs(motion.rotation.norm() - 1.0) <= kMaxLengthError;
+}
+
+bool IsCovariance(const MotionMatrix& matrix) {
+  if (!matrix.allFinite() || !matrix.isApprox(matrix.transpose())) return false;
+  const Eigen::LLT<MotionMatrix> cholesky(matrix);
+  // A product that is too large for a double leaves a NaN, but no complaint.
+  return cholesky.info() == Eigen::Success &&
+         cholesky.matrixLLT().diagonal().minCoeff() > 0.0 &&
+         cholesky.matrixLLT().allFinite();
+}
+
+std::string CheckEdge(const Edge& edge, const std::set<int>& ids) {
+  for (const int id : {edge.ref, edge.cur}) {
+    if (ids.count(id) == 0) {
+      return "there is no keyframe " + std::to_string(id);
+    }
+  }
+  if (edge.ref == edge.cur) return "it must join two keyframes";
+  if (!IsMotion(edge.cur_from_ref)) {
+    return "the motion must be of finite numbers, the quaternion of length 1";
+  }
+  if (!IsCovariance(edge.covariance)) {
+    return "the covariance must be symmetric and positive definite";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string KeyframeMap::Check() const {
+  const std::string wrong_camera = camera.Check();
+  if (!wrong_camera.empty()) return "camera: " + wrong_camera;
+  std::set<int> ids;
+  for (const MapKeyframe& keyframe : keyframes) {
+    const std::string name = "keyframe " + std::to_string(keyframe.id) + ": ";
+    if (!ids.insert(keyframe.id).second) return name + "is there twice";
+    if (!IsMotion(keyframe.map_from_cam)) {
+      return name +
+             "the pose must be of finite numbers, the quaternion of length 1";
+    }
+    const std::string wrong_images =
+        keyframe.images.Check(camera.width, camera.height);
+    if (!wrong_images.empty()) return name + wrong_images;
+  }
+  for (const Edge& edge : edges) {
+    const std::string wrong = CheckEdge(edge, ids);
+    if (!wrong.empty()) {
+      return Format("edge from keyframe %d to %d: ", edge.ref, edge.cur) +
+             wrong;
+    }
+  }
+  return "";
+}
+
+std::string KeyframeMap::CheckCamera(const Camera& other) const {
+  if (other.width != camera.width || other.height != camera.height) {
+    return Format("the map's images have %d x %d pixels, the camera's %d x %d",
+                  camera.width, camera.height, other.width, other.height);
+  }
+  for (const auto& [name, value] : kCameraParameters) {
+    if (camera.*value != other.*value) {
+      return Format("%s is %s in the map, %s in the camera", name,
+                    ShortNumber(camera.*value).c_str(),
+                    ShortNumber(other.*value).c_str());
+    }
+  }
+  return "";
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,198 @@
+#include "frontend/map/map_folder.h"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <filesystem>
+#include <set>
+#include <vector>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/map/map_index.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kIndex[] = "map.txt";
+constexpr char kImageType[] = ".png";
+
+// Keeps a folder for this process until it ends, however it ends.
+class FolderLock {
+ public:
+  explicit FolderLock(const fs::path& folder)
+      : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+    // File systems without locks have to do without.
+    if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+      close(file_);
+      throw InputError(folder.string() +
+                       ": another program saves a map here; wait for it or "
+                       "choose another folder");
+    }
+  }
+  ~FolderLock() { close(file_); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  const int file_;
+};
+
+// Whether a file is an image of a map, whole or still aside.
+bool IsImage(const fs::path& file) {
+  const std::string name = file.filename().string();
+  const std::string checksum = name.substr(0, name.find('.'));
+  const std::string whole = checksum + kImageType;
+  return IsImageName(checksum) && (name == whole || name == AsideOf(whole));
+}
+
+// Makes a folder and those above it, all of them on the disk.
+void MakeFolder(const fs::path& folder) {
+  std::vector<fs::path> above;
+  for (fs::path path = fs::absolute(folder); !fs::exists(path);) {
+    path = path.parent_path();
+    above.push_back(path);
+  }
+  fs::create_directories(folder);
+  for (const fs::path& path : above) SyncFolder(path.string());
+}
+
+// Nobody's pictures are to get a map among them by a mistyped path.
+void RequireNoOtherThings(const fs::path& folder) {
+  if (fs::exists(folder / kIndex)) return;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    // Of a program that was killed before its first map was whole.
+    if (IsImage(entry.path()) || entry.path().filename() == AsideOf(kIndex)) {
+      continue;
+    }
+    throw InputError(folder.string() +
+                     ": holds other things than a map; name an empty folder "
+                     "or a new one");
+  }
+}
+
+// Returns the name of the image's file.
+std::string SaveImage(const fs::path& folder, const PngBytes& image) {
+  std::string name = image.checksum + kImageType;
+  std::error_code error;
+  // A size of -1, if there is none.
+  if (fs::file_size(folder / name, error) != image.bytes.size()) {
+    WriteFileAtomically((folder / name).string(), image.bytes,
+                        Survives::kPowerLoss);
+  }
+  return name;
+}
+
+void Save(const fs::path& folder, const KeyframeMap& map) {
+  MapIndex index = {map, {}};
+  std::set<std::string> used;
+  for (const MapKeyframe& keyframe : map.keyframes) {
+    const StoredImages& images = keyframe.images;
+    used.insert(SaveImage(folder, *images.gray));
+    used.insert(SaveImage(folder, *images.depth));
+    index.images.push_back({images.gray->checksum, images.depth->checksum});
+  }
+  // What the index names has to be there before it, and what the old one names
+  // until the new one has taken its place.
+  SyncFolder(folder.string());
+  WriteFileAtomically((folder / kIndex).string(), FormatMapIndex(index),
+                      Survives::kPowerLoss);
+  SyncFolder(folder.string());
+  std::vector<fs::path> unused;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const fs::path& file = entry.path();
+    if (IsImage(file) && used.count(file.filename().string()) == 0) {
+      unused.push_back(file);
+    }
+  }
+  for (const fs::path& file : unused) fs::remove(file);
+}
+
+std::shared_ptr<const PngBytes> LoadImage(const fs::path& folder,
+                                          const std::string& checksum) {
+  const fs::path file = folder / (checksum + kImageType);
+  std::error_code error;
+  if (!fs::exists(file, error)) {
+    throw InputError(file.string() +
+                     ": is missing, a keyframe of the map needs it; take a "
+                     "copy of the map or map anew");
+  }
+  auto image = std::make_shared<const PngBytes>(ReadTextFile(file.string()));
+  if (image->checksum != checksum) {
+    throw InputError(file.string() +
+                     ": is damaged, its checksum is not its name; take a copy "
+                     "of the map or map anew");
+  }
+  return image;
+}
+
+KeyframeMap LoadIndexed(const fs::path& folder, const std::string& text) {
+  const std::string path = (folder / kIndex).string();
+  MapIndex index = ParseMapIndex(text, path);
+  for (size_t i = 0; i < index.images.size(); ++i) {
+    StoredImages& images = index.map.keyframes[i].images;
+    images.gray = LoadImage(folder, index.images[i].gray);
+    images.depth = LoadImage(folder, index.images[i].depth);
+  }
+  const std::string wrong = index.map.Check();
+  if (!wrong.empty()) throw InputError(path + ": " + wrong);
+  return std::move(index.map);
+}
+
+// Runs a call on a folder; what the file system says becomes an InputError.
+template <typename Call>
+void InFolder(const std::string& folder, Call call) {
+  try {
+    call();
+  } catch (const fs::filesystem_error& error) {
+    throw InputError(folder + ": no map can be saved here (" +
+                     error.code().message() + ")");
+  }
+}
+
+}  // namespace
+
+void SaveMap(const std::string& folder, const KeyframeMap& map) {
+  const std::string wrong = map.Check();
+  if (!wrong.empty()) throw InputError(folder + ": not saved: " + wrong);
+  InFolder(folder, [&] {
+    MakeFolder(folder);
+    const FolderLock lock(folder);
+    RequireNoOtherThings(folder);
+    Save(folder, map);
+  });
+}
+
+void RequireMapFolder(const std::string& folder) {
+  InFolder(folder, [&] {
+    MakeFolder(folder);
+    const FolderLock lock(folder);
+    RequireNoOtherThings(folder);
+    RequireWritable((fs::path(folder) / kIndex).string());
+  });
+}
+
+KeyframeMap LoadMap(const std::string& folder) {
+  const std::string path = (fs::path(folder) / kIndex).string();
+  std::error_code error;
+  if (!fs::exists(path, error)) {
+    throw InputError(folder +
+                     ": holds no map (there is no map.txt); name a folder that "
+                     "a map was saved to");
+  }
+  for (;;) {
+    const std::string text = ReadTextFile(path);
+    try {
+      return LoadIndexed(folder, text);
+    } catch (const InputError&) {
+      // Images that a program which saves meanwhile has just removed?
+      if (ReadTextFile(path) == text) throw;
+    }
+  }
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,345 @@
+#include "frontend/map/map_folder.h"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <map>
+#include <random>
+#include <thread>
+
+#include "core/util/text_file.h"
+#include "frontend/map/map_index.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/map_parts.h"
+#include "tests/support/run_program.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::UnorderedElementsAreArray;
+
+// The names of the files of a folder.
+std::vector<std::string> Names(const std::string& folder) {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    names.push_back(entry.path().filename().string());
+  }
+  return names;
+}
+
+// The names that a map's files should have.
+std::vector<std::string> NamesOf(const KeyframeMap& map) {
+  std::vector<std::string> names = {"map.txt"};
+  for (const MapKeyframe& keyframe : map.keyframes) {
+    names.push_back(keyframe.images.gray->checksum + ".png");
+    names.push_back(keyframe.images.depth->checksum + ".png");
+  }
+  return names;
+}
+
+// When a file was made: another one if it was written anew.
+std::pair<ino_t, fs::file_time_type> Identity(const std::string& file) {
+  struct stat status = {};
+  stat(file.c_str(), &status);
+  return {status.st_ino, fs::last_write_time(file)};
+}
+
+class MapFolderTest : public testing::Test {
+ protected:
+  void ExpectLoadRefused(const std::vector<std::string>& message_parts) {
+    ExpectInputError([this] { LoadMap(map_); }, message_parts);
+  }
+
+  const TempFolder folder_;
+  const std::string map_ = folder_ / "maps/kitchen";
+};
+
+TEST_F(MapFolderTest, GivesBackWhatWasSaved) {
+  const KeyframeMap saved = NoiseMap(5, 0);
+  SaveMap(map_, saved);
+  const KeyframeMap loaded = LoadMap(map_);
+  EXPECT_TRUE(IsSameMap(loaded, saved));
+  EXPECT_TRUE(std::signbit(loaded.keyframes[0].map_from_cam.translation.y()));
+  const std::string index = ReadTextFile(map_ + "/map.txt");
+  SaveMap(map_, loaded);
+  EXPECT_EQ(ReadTextFile(map_ + "/map.txt"), index);
+}
+
+TEST_F(MapFolderTest, TakesAnEmptyMap) {
+  SaveMap(map_, NoiseMap(0, 0));
+  EXPECT_TRUE(IsSameMap(LoadMap(map_), NoiseMap(0, 0)));
+}
+
+TEST_F(MapFolderTest, WritesOnlyWhatIsNew) {
+  const KeyframeMap small = NoiseMap(3, 0);
+  SaveMap(map_, small);
+  std::map<std::string, std::pair<ino_t, fs::file_time_type>> before;
+  for (const std::string& name : NamesOf(small)) {
+    before[name] = Identity(map_ + "/" + name);
+  }
+  const KeyframeMap grown = NoiseMap(5, 0);
+  SaveMap(map_, grown);
+  EXPECT_TRUE(IsSameMap(LoadMap(map_), grown));
+  for (const auto& [name, identity] : before) {
+    EXPECT_EQ(Identity(map_ + "/" + name) == identity, name != "map.txt");
+  }
+}
+
+TEST_F(MapFolderTest, RemovesWhatNoMapNeeds) {
+  SaveMap(map_, NoiseMap(5, 0));
+  WriteFileAtomically(map_ + "/0123456789abcdef.png.partial", "x");
+  WriteFileAtomically(map_ + "/map.txt.partial", "x");
+  WriteFileAtomically(map_ + "/notes.txt", "the user's");
+  WriteFileAtomically(map_ + "/0123456789abcdef.txt", "the user's");
+  const KeyframeMap other = NoiseMap(2, 1);
+  SaveMap(map_, other);
+  std::vector<std::string> expected = NamesOf(other);
+  expected.push_back("notes.txt");
+  expected.push_back("0123456789abcdef.txt");
+  EXPECT_THAT(Names(map_), UnorderedElementsAreArray(expected));
+}
+
+// A file of another size than its name promises is not taken for the image.
+TEST_F(MapFolderTest, MendsACutImage) {
+  const KeyframeMap map = NoiseMap(2, 0);
+  SaveMap(map_, map);
+  fs::resize_file(map_ + "/" + NamesOf(map)[1], 10);
+  SaveMap(map_, map);
+  EXPECT_TRUE(IsSameMap(LoadMap(map_), map));
+}
+
+TEST_F(MapFolderTest, RefusesWhatIsNoMap) {
+  ExpectLoadRefused({map_, "holds no map (there is no map.txt)"});
+  fs::create_directories(map_);
+  ExpectLoadRefused({map_, "holds no map"});
+  folder_.Write("maps/kitchen/map.txt", "a map of the kitchen\n");
+  ExpectLoadRefused({map_ + "/map.txt: is no map"});
+  folder_.Write("maps/kitchen/map.txt", "");
+  ExpectLoadRefused({map_ + "/map.txt: is no map"});
+}
+
+TEST_F(MapFolderTest, RefusesANewerVersion) {
+  const std::string text = "rgbd_pose_map 2\nsubmap 1\n";
+  folder_.Write("maps/kitchen/map.txt", text + ChecksumLine(text));
+  ExpectLoadRefused({map_ + "/map.txt: has format version 2, this program "
+                            "reads version 1 only; use a newer one"});
+}
+
+TEST_F(MapFolderTest, RefusesAChangedByteOfTheIndex) {
+  SaveMap(map_, NoiseMap(2, 0));
+  const std::string text = ReadTextFile(map_ + "/map.txt");
+  for (size_t i = 0; i < text.size(); ++i) {
+    SCOPED_TRACE(i);
+    std::string changed = text;
+    changed[i] ^= 1 << i % 8;
+    folder_.Write("maps/kitchen/map.txt", changed);
+    ExpectLoadRefused({map_ + "/map.txt: "});
+  }
+  for (size_t size = 0; size < text.size(); size += 7) {
+    folder_.Write("maps/kitchen/map.txt", text.substr(0, size));
+    ExpectLoadRefused({map_ + "/map.txt: "});
+  }
+  folder_.Write("maps/kitchen/map.txt", text + "\n");
+  ExpectLoadRefused({map_ + "/map.txt: is damaged or edited"});
+}
+
+TEST_F(MapFolderTest, RefusesAChangedByteOfAnImage) {
+  const KeyframeMap map = NoiseMap(1, 0);
+  SaveMap(map_, map);
+  for (const std::string& name : {NamesOf(map)[1], NamesOf(map)[2]}) {
+    const std::string bytes = ReadTextFile(map_ + "/" + name);
+    for (size_t i = 0; i < bytes.size(); i += 3) {
+      SCOPED_TRACE(i);
+      std::string changed = bytes;
+      changed[i] ^= 1 << i % 8;
+      folder_.Write("maps/kitchen/" + name, changed);
+      ExpectLoadRefused({name + ": is damaged, its checksum is not its name"});
+    }
+    folder_.Write("maps/kitchen/" + name, bytes);
+  }
+  EXPECT_NO_THROW(LoadMap(map_));
+  fs::remove(map_ + "/" + NamesOf(map)[2]);
+  ExpectLoadRefused({NamesOf(map)[2] + ": is missing, a keyframe of the map"});
+}
+
+TEST_F(MapFolderTest, RefusesWrongLines) {
+  const std::string kStart = "rgbd_pose_map 1\n";
+  const std::string kCamera = "camera 32 24 30 30 15.5 11.5 0 0 0 0 0\n";
+  const std::string kPose = " 0 0 1 5000 0 0 0 0 0 0 1 ";
+  const std::string kName = "0123456789abcdef";
+  const struct {
+    std::string lines;
+    std::string message;
+  } kCases[] = {
+      {"", "map.txt: has no camera"},
+      {"keyframe 0\n", "map.txt:2: the camera must come first, and once"},
+      {kCamera + kCamera, "map.txt:3: the camera must come first, and once"},
+      {"camera 32\n", "map.txt:2: a line 'camera' must have 12 words"},
+      {"camera 3.5" + kCamera.substr(9), "map.txt:2: '3.5' must be an integer"},
+      {kCamera + "landmark 1\n", "map.txt:3: 'landmark' is none of camera"},
+      {kCamera + "keyframe 0" + kPose + kName + " ../secret\n",
+       "map.txt:3: '../secret' must be an image's checksum"},
+      {kCamera + "keyframe 9999999999" + kPose + kName + " " + kName + "\n",
+       "map.txt:3: '9999999999' must be an integer"},
+      {kCamera + "keyframe x" + kPose + kName + " " + kName + "\n",
+       "map.txt:3: 'x' is no finite number for a keyframe"},
+      {kCamera + "edge 0 1 nan\n", "map.txt:3: a line 'edge' must have 46"},
+      {"camera 32 24 0" + kCamera.substr(15), "map.txt: camera: fx and fy"},
+  };
+  for (const auto& c : kCases) {
+    const std::string text = kStart + c.lines;
+    folder_.Write("maps/kitchen/map.txt", text + ChecksumLine(text));
+    ExpectLoadRefused({c.message});
+  }
+}
+
+TEST_F(MapFolderTest, SavesNothingThatIsNotSound) {
+  const KeyframeMap good = NoiseMap(2, 0);
+  SaveMap(map_, good);
+  KeyframeMap wrong = NoiseMap(2, 1);
+  wrong.edges[0].cur = 77;
+  ExpectInputError([&] { SaveMap(map_, wrong); },
+                   {map_ + ": not saved: edge from keyframe -3 to 77"});
+  EXPECT_THAT(Names(map_), UnorderedElementsAreArray(NamesOf(good)));
+}
+
+TEST_F(MapFolderTest, RefusesFoldersOfOtherThings) {
+  const auto expect_refused = [](const std::string& folder,
+                                 const std::string& message) {
+    ExpectInputError([&] { SaveMap(folder, NoiseMap(1, 0)); }, {message});
+    ExpectInputError([&] { RequireMapFolder(folder); }, {message});
+  };
+  folder_.Write("photos/cat.png", "x");
+  expect_refused(folder_ / "photos",
+                 folder_ / "photos: holds other things than a map");
+  EXPECT_THAT(Names(folder_ / "photos"), testing::ElementsAre("cat.png"));
+  expect_refused(folder_ / "photos/cat.png", "no map can be saved here (");
+  expect_refused("/proc/none/map", "no map can be saved here (");
+  RequireMapFolder(map_);
+  EXPECT_TRUE(fs::is_empty(map_));
+  // What a program leaves that is killed before its first map is whole.
+  folder_.Write("maps/kitchen/0123456789abcdef.png", "x");
+  folder_.Write("maps/kitchen/fedcba9876543210.png.partial", "x");
+  folder_.Write("maps/kitchen/map.txt.partial", "x");
+  ExpectLoadRefused({"holds no map"});
+  SaveMap(map_, NoiseMap(1, 0));
+  EXPECT_THAT(Names(map_), UnorderedElementsAreArray(NamesOf(NoiseMap(1, 0))));
+}
+
+TEST_F(MapFolderTest, OneAtATimeSaves) {
+  SaveMap(map_, NoiseMap(1, 0));
+  const int other = open(map_.c_str(), O_RDONLY);
+  ASSERT_EQ(flock(other, LOCK_EX), 0);
+  for (const auto& call :
+       {+[](const std::string& folder) { SaveMap(folder, NoiseMap(2, 1)); },
+        +[](const std::string& folder) { RequireMapFolder(folder); }}) {
+    ExpectInputError([&] { call(map_); },
+                     {map_ + ": another program saves a map here; wait for it "
+                             "or choose another folder"});
+  }
+  EXPECT_TRUE(IsSameMap(LoadMap(map_), NoiseMap(1, 0)));
+  close(other);
+  SaveMap(map_, NoiseMap(2, 1));
+}
+
+// The reader of docs/maps.md.
+TEST_F(MapFolderTest, IsReadByAFewLinesOfPython) {
+  if (std::system("command -v python3 >/dev/null") != 0) {
+    GTEST_SKIP() << "no python3";
+  }
+  const KeyframeMap map = NoiseMap(2, 0);
+  SaveMap(map_, map);
+  const std::string command =
+      "python3 -B " RGBD_POSE_EXAMPLES "/read_map.py " + map_;
+  const RunResult run = RunCommand(command, folder_);
+  EXPECT_EQ(run.err, "");
+  const auto line = [&](int i, const std::string& place) {
+    return "keyframe " + std::to_string(map.keyframes[i].id) + " at " + place +
+           " " + map_ + "/" + NamesOf(map)[1 + 2 * i] + " " + map_ + "/" +
+           NamesOf(map)[2 + 2 * i] + "\n";
+  };
+  EXPECT_EQ(run.out,
+            line(0, "1.0471975511965976 -0 3.141592653589793e-300") +
+                line(1, "4.1887902047863905 -0 3.141592653589793e-300") +
+                "edge from -3 to 4\n");
+  WriteFileAtomically(map_ + "/" + NamesOf(map)[3], "x");
+  EXPECT_NE(RunCommand(command, folder_).exit_code, 0);
+}
+
+// A process that saves two maps in turn until it is killed.
+class Saver {
+ public:
+  Saver(const std::string& folder, const KeyframeMap (&maps)[2], int first)
+      : process_(fork()) {
+    if (process_ != 0) return;
+    try {
+      for (int i = first;; ++i) SaveMap(folder, maps[i % 2]);
+    } catch (...) {
+      _exit(1);
+    }
+  }
+  ~Saver() {
+    kill(process_, SIGKILL);
+    int status = 0;
+    waitpid(process_, &status, 0);
+    EXPECT_TRUE(WIFSIGNALED(status)) << "ended by itself";
+  }
+
+ private:
+  const pid_t process_;
+};
+
+// Two maps without a common image, so that each takes much from the other.
+class SavedMapTest : public MapFolderTest {
+ protected:
+  SavedMapTest() { SaveMap(map_, maps_[0]); }
+
+  // Expects that the folder holds one of the two.
+  void ExpectEither() {
+    const KeyframeMap loaded = LoadMap(map_);
+    const bool is_second = IsSameMap(loaded, maps_[1]);
+    EXPECT_TRUE(is_second || IsSameMap(loaded, maps_[0]));
+    ++found_[is_second];
+  }
+
+  const KeyframeMap maps_[2] = {NoiseMap(4, 1), NoiseMap(3, 2)};
+  int found_[2] = {};
+};
+
+TEST_F(SavedMapTest, SurvivesKills) {
+  std::mt19937 random(1);
+  std::uniform_int_distribution<int> microseconds(0, 12000);
+  for (int i = 0; i < 100; ++i) {
+    SCOPED_TRACE(i);
+    {
+      const Saver saver(map_, maps_, i);
+      const std::chrono::microseconds time(microseconds(random));
+      std::this_thread::sleep_for(time);
+    }
+    ExpectEither();
+  }
+  EXPECT_GT(found_[0], 0);
+  EXPECT_GT(found_[1], 0);
+  SaveMap(map_, maps_[0]);
+  EXPECT_THAT(Names(map_), UnorderedElementsAreArray(NamesOf(maps_[0])));
+}
+
+TEST_F(SavedMapTest, IsLoadedWhileAnotherSaves) {
+  const Saver saver(map_, maps_, 1);
+  for (int i = 0; i < 200; ++i) ExpectEither();
+  EXPECT_GT(found_[0], 0);
+  EXPECT_GT(found_[1], 0);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
