@@ -1,0 +1,52 @@
+// The text file of a map, as it stands and with a checksum that fits.
+
+#include <algorithm>
+
+#include "frontend/map/map_index.h"
+#include "tests/fuzz/fuzz_input.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Images of the size of the camera, unless that takes long.
+void AddImages(KeyframeMap* map) {
+  constexpr int kMaxSide = 64;
+  const Camera& camera = map->camera;
+  if (!camera.Check().empty() ||
+      std::max(camera.width, camera.height) > kMaxSide) {
+    return;
+  }
+  Frame frame;
+  frame.gray = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
+  frame.depth = cv::Mat::zeros(camera.height, camera.width, CV_16UC1);
+  const StoredImages images(frame);
+  for (MapKeyframe& keyframe : map->keyframes) {
+    keyframe.images.gray = images.gray;
+    keyframe.images.depth = images.depth;
+  }
+}
+
+void Read(const std::string& text) {
+  MayRefuse([&] {
+    MapIndex index = ParseMapIndex(text, "map.txt");
+    Require(index.images.size() == index.map.keyframes.size(),
+            "names for each keyframe");
+    const std::string again = FormatMapIndex(index);
+    Require(FormatMapIndex(ParseMapIndex(again, "map.txt")) == again,
+            "what is written is read back");
+    AddImages(&index.map);
+    const std::string wrong = index.map.Check();
+    Require(wrong.find('\n') == std::string::npos, "one line");
+  });
+}
+
+}  // namespace
+}  // namespace rgbd_pose
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace rgbd_pose;
+  const std::string text(FuzzText(data, size));
+  Read(text);
+  Read(text + ChecksumLine(text));
+  return 0;
+}
