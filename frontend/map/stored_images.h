@@ -20,7 +20,7 @@ struct PngBytes {
 };
 
 // What a map keeps of a frame: its grey and depth image, compressed without
-// loss (VGA: about 0.3 MB instead of 0.9; 10 ms to store, 2 ms to restore), its
+// loss (VGA: about 0.3 MB instead of 0.9; 5 ms to store, 2 ms to restore), its
 // time and its depth scale. Copies share the images.
 struct StoredImages {
   // None.

@@ -7,6 +7,7 @@
 #include "core/util/text_file.h"
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
 #include "frontend/sources/png_decoder.h"
+#include "frontend/sources/png_encoder.h"
 #endif
 
 namespace rgbd_pose {
@@ -111,6 +112,12 @@ cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path) {
 }
 
 std::string EncodePng(const cv::Mat& image, const std::vector<int>& settings) {
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+  const bool is_ours = image.type() == CV_8UC1 || image.type() == CV_16UC1;
+  if (settings.empty() && is_ours && !image.empty()) {
+    return EncodePngByLibdeflate(image);
+  }
+#endif
   std::vector<uchar> bytes;
   cv::imencode(".png", image, bytes, settings);
   return {bytes.begin(), bytes.end()};
