@@ -1,15 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
-#include "core/estimation/correspondences.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/features/descriptor_matching.h"
 #include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
+#include "frontend/places/place_features.h"
+#include "frontend/places/place_index.h"
 
 namespace rgbd_pose {
 
@@ -25,9 +26,7 @@ class Place {
 
   int id_;
   Frame frame_;  // its images are let go once it is described
-  bool is_described_ = false;
-  DescribedKeypoints described_;
-  std::vector<Observation> observations_;  // of each keypoint
+  std::optional<PlaceFeatures> features_;
 };
 
 // Where a lost frame was found again.
@@ -37,10 +36,7 @@ struct Relocalisation {
   int inliers = 0;  // matches that agree with the motion
 };
 
-// Finds a frame again among keyframes, without a guess: ORB features (Rublee et
-// al. 2011) of both are matched by their descriptors, the motion by random
-// samples (core/initial_guess/ransac.h). Accepts only what chance cannot bring
-// about; the motion is good enough to track from, not more.
+// Finds a frame again among keyframes, without a guess: see FindRoughMotion.
 //
 // Places are described as they are first looked at, a few in each search, so
 // that a search takes some tens of milliseconds at most. The same calls give
@@ -56,11 +52,14 @@ class Relocaliser {
   std::optional<Relocalisation> Find(const Frame& frame,
                                      const std::vector<Place*>& places);
 
- private:
-  void Describe(Place* place) const;
-  Observation ObserveKeypoint(const Frame& frame,
-                              const cv::KeyPoint& keypoint) const;
+  // Looks for the frame in a whole map: among the keyframes of the index that
+  // are most like it, whose features the caller has.
+  std::optional<Relocalisation> FindInMap(
+      const Frame& frame, const PlaceIndex& index,
+      const std::function<const PlaceFeatures&(int keyframe)>& features_of)
+      const;
 
+ private:
   Camera camera_;
   DepthLookupOptions depth_options_;
   int latest_id_ = -1;  // of the places of the last Find

@@ -124,6 +124,32 @@ TEST(RelocaliserTest, FindsOldKeyframesAfterSomeSearches) {
   EXPECT_EQ(found->place_id, 7);
 }
 
+// Views all around, of which the index picks the few to look at.
+TEST(RelocaliserTest, FindsAFrameInTheWholeMap) {
+  Room room(1);
+  const Relocaliser relocaliser(room.camera(), {});
+  PlaceIndex index;
+  std::vector<PlaceFeatures> map;
+  const auto features_of = [&](int id) -> const PlaceFeatures& {
+    return map[id];
+  };
+  for (int i = 0; i < 12; ++i) {
+    map.push_back(
+        DescribeKeyframe(room.See(Turned(30.0 * i)), room.camera(), {}));
+    index.Add(i, map.back().described.descriptors);
+  }
+  for (const int i : {0, 1, 5, 11}) {
+    const Rigid3d pose = Turned(30.0 * i) * Moved(0.1, 0.0, 0.1) * Turned(5.0);
+    const std::optional<Relocalisation> found =
+        relocaliser.FindInMap(room.See(pose), index, features_of);
+    ASSERT_TRUE(found.has_value()) << i;
+    ExpectFound(found, pose.Inverse() * Turned(30.0 * found->place_id));
+  }
+  Room other(2);
+  EXPECT_FALSE(
+      relocaliser.FindInMap(other.See(Turned(10.0)), index, features_of));
+}
+
 TEST(RelocaliserTest, LooksOnlyAmongTheKeyframesThatAreKept) {
   Room room(1);
   Search relocaliser(room.camera());

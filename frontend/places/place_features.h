@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "core/estimation/correspondences.h"
+#include "core/geometry/camera.h"
+#include "core/initial_guess/consensus.h"
+#include "frontend/features/descriptor_matching.h"
+#include "frontend/image/depth_lookup.h"
+#include "frontend/image/frame.h"
+
+namespace rgbd_pose {
+
+// What a frame is recognised by: ORB features (Rublee et al. 2011).
+struct PlaceFeatures {
+  DescribedKeypoints described;
+  std::vector<Observation> observations;  // of each keypoint
+};
+
+// Those of a keyframe that others are to be found at: up to about 400, spread
+// over the image and with a depth. Takes about 7 ms.
+PlaceFeatures DescribeKeyframe(const Frame& frame, const Camera& camera,
+                               const DepthLookupOptions& depth_options);
+
+// Those of a frame that looks for its place: all that are found, up to 1500.
+PlaceFeatures DescribeFrame(const Frame& frame, const Camera& camera,
+                            const DepthLookupOptions& depth_options);
+
+// What two frames share by their descriptors alone.
+Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,
+                            const Camera& camera);
+
+// The motion between two frames without a guess, by random samples
+// (core/initial_guess/ransac.h) of such matches: nothing unless more agree than
+// chance brings about. Good enough to track from, not more. The same input
+// gives the same bytes.
+std::optional<Consensus> FindRoughMotion(const Correspondences& matches);
+
+}  // namespace rgbd_pose
