@@ -20,7 +20,7 @@ std::vector<LossRun> CompareLosses(FrameSource* source,
     settings.estimator.loss = loss;
     runs.emplace_back(settings, source->camera().camera, inputs);
   }
-  std::vector<OdometryRun*> all;
+  std::vector<SequenceRun*> all;
   for (OdometryRun& run : runs) all.push_back(&run);
   {
     ProgressBar bar("tracking", static_cast<int>(source->timestamps().size()));

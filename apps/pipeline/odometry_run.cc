@@ -9,26 +9,27 @@ namespace rgbd_pose {
 
 OdometryRun::OdometryRun(const OdometrySettings& settings, const Camera& camera,
                          const RunInputs& inputs)
-    : inputs_(inputs), odometry_(MakeOdometry(settings, camera)) {}
+    : SequenceRun(inputs), odometry_(MakeOdometry(settings, camera)) {}
 
-void OdometryRun::Add(const StreamedFrame& next) {
+Trajectory OdometryRun::FinishPath() { return TrackedTrajectory(frames()); }
+
+void SequenceRun::Add(const StreamedFrame& next) {
   std::vector<TrackedFrame>& frames = results_.frames;
   std::optional<Rigid3d> guess;
   if (inputs_.motion_guess != nullptr && !frames.empty()) {
     guess = inputs_.motion_guess->CurFromPrev(frames.back().timestamp,
                                               next.frame->timestamp);
   }
-  frames.push_back(
-      odometry_.Track(*next.frame, guess.has_value() ? &*guess : nullptr));
+  frames.push_back(Track(*next.frame, guess.has_value() ? &*guess : nullptr));
   TrackedFrame& tracked = frames.back();
   tracked.decode_ms = next.decode_ms;
   if (tracked.status != TrackingStatus::kLost && tracked.matches > 0) {
-    results_.residuals.Add(odometry_.last_estimate());
+    results_.residuals.Add(odometry().last_estimate());
   }
 }
 
-RunResults OdometryRun::Finish() && {
-  results_.trajectory = TrackedTrajectory(results_.frames);
+RunResults SequenceRun::Finish() && {
+  results_.trajectory = FinishPath();
   if (inputs_.ground_truth != nullptr && !results_.trajectory.empty()) {
     try {
       results_.evaluation =
@@ -41,14 +42,14 @@ RunResults OdometryRun::Finish() && {
 }
 
 void TrackAll(FrameSource* source, int threads,
-              const std::vector<OdometryRun*>& runs,
+              const std::vector<SequenceRun*>& runs,
               const std::function<void(const Frame& frame)>& on_frame) {
   const Odometry& first = runs.front()->odometry();
   FrameStream stream(
       source, [&first](const Frame& frame) { return first.Prepare(frame); },
       threads);
   while (const std::optional<StreamedFrame> next = stream.Next()) {
-    for (OdometryRun* run : runs) run->Add(*next);
+    for (SequenceRun* run : runs) run->Add(*next);
     if (on_frame) on_frame(*next->frame);
   }
 }

@@ -43,17 +43,16 @@ struct RunResults {
 };
 
 // Tracks a sequence frame by frame and collects what becomes of it.
-class OdometryRun {
+class SequenceRun {
  public:
-  // Throws InputError for settings that are of no use.
-  OdometryRun(const OdometrySettings& settings, const Camera& camera,
-              const RunInputs& inputs = {});
+  explicit SequenceRun(const RunInputs& inputs) : inputs_(inputs) {}
+  virtual ~SequenceRun() = default;
 
   // Tracks the next frame.
   void Add(const StreamedFrame& next);
 
   // What the last frame was tracked by, and what may be done ahead.
-  const Odometry& odometry() const { return odometry_; }
+  virtual const Odometry& odometry() const = 0;
 
   // The frames so far.
   const std::vector<TrackedFrame>& frames() const { return results_.frames; }
@@ -61,10 +60,34 @@ class OdometryRun {
   // After the last frame.
   RunResults Finish() &&;
 
+ protected:
+  virtual TrackedFrame Track(const PreparedFrame& frame,
+                             const Rigid3d* cur_from_prev_guess) = 0;
+  // The poses of all frames that were not lost, after the last one.
+  virtual Trajectory FinishPath() = 0;
+
  private:
   RunInputs inputs_;
-  Odometry odometry_;
   RunResults results_;
+};
+
+// By an Odometry.
+class OdometryRun final : public SequenceRun {
+ public:
+  // Throws InputError for settings that are of no use.
+  OdometryRun(const OdometrySettings& settings, const Camera& camera,
+              const RunInputs& inputs = {});
+
+  const Odometry& odometry() const override { return odometry_; }
+
+ private:
+  TrackedFrame Track(const PreparedFrame& frame,
+                     const Rigid3d* cur_from_prev_guess) override {
+    return odometry_.Track(frame, cur_from_prev_guess);
+  }
+  Trajectory FinishPath() override;
+
+  Odometry odometry_;
 };
 
 // Sends all frames of a source through one or several runs of the same
@@ -72,7 +95,7 @@ class OdometryRun {
 // `on_frame` hears of each frame that all have tracked; may be empty. Throws
 // InputError for an unreadable frame.
 void TrackAll(FrameSource* source, int threads,
-              const std::vector<OdometryRun*>& runs,
+              const std::vector<SequenceRun*>& runs,
               const std::function<void(const Frame& frame)>& on_frame);
 
 // Throws InputError if no frame of the source is near in time to the ground

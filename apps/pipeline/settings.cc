@@ -13,18 +13,21 @@ Estimator MakeDirectEstimator(const DirectSettings& settings) {
       MakeDirectCosts(settings.cost, settings.loss, settings.points));
 }
 
-Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
+std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
+                                     const Camera& camera) {
   FrontendOptions features = settings.features;
   features.camera = camera;
   DirectSettings direct = settings.direct;
   direct.points.min_depth = features.min_depth;
   direct.points.max_depth = features.max_depth;
-  return Odometry(
-      settings.odometry,
-      MakeTracker(settings.tracker,
-                  {settings.tracking, features, settings.frontend,
-                   MakeEstimator(settings.estimator),
-                   MakeDirectEstimator(direct), settings.direct_tracking}));
+  return MakeTracker(settings.tracker,
+                     {settings.tracking, features, settings.frontend,
+                      MakeEstimator(settings.estimator),
+                      MakeDirectEstimator(direct), settings.direct_tracking});
+}
+
+Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
+  return Odometry(settings.odometry, MakeTracker(settings, camera));
 }
 
 }  // namespace rgbd_pose

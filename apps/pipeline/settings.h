@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 
 #include "core/estimation/estimator.h"
@@ -40,10 +41,12 @@ struct OdometrySettings {
   OdometryOptions odometry;              // when to go on, and what if lost
 };
 
-// An estimator or odometry with these settings. Throws InputError for unknown
-// names and values that make no sense.
+// An estimator, tracker or odometry with these settings. Throws InputError for
+// unknown names and values that make no sense.
 Estimator MakeEstimator(const EstimatorSettings& settings);
 Estimator MakeDirectEstimator(const DirectSettings& settings);
+std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
+                                     const Camera& camera);
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
 
 }  // namespace rgbd_pose

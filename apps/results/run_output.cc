@@ -92,7 +92,7 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
   }
 }
 
-void RunOutput::Add(const Frame& frame, const OdometryRun& run) {
+void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
   const TrackedFrame& tracked = run.frames().back();
   if (drawn_.Contains(tracked.index)) {
     WriteDebugImage(aside() / kDebug, frame, tracked, source_.camera().camera,
@@ -108,14 +108,17 @@ void RunOutput::Add(const Frame& frame, const OdometryRun& run) {
 std::string RunOutput::Write(const RunResults& results,
                              const RunSummary& summary, const Trajectory* truth,
                              const std::string& dataset,
-                             const std::string& flags) {
+                             const std::string& flags,
+                             const std::string& program,
+                             const nlohmann::json& more) {
   std::string text = FormatSummary(summary);
-  nlohmann::json metrics = {{"program", "rgbd_odometry"},
+  nlohmann::json metrics = {{"program", program},
                             {"dataset", dataset},
                             {"unmatched_color", source_.unmatched_color()},
                             {"peak_rss_mb", PeakMemoryMb()},
                             {"run", SummaryToJson(summary)},
                             {"residuals", ResidualsToJson(results.residuals)}};
+  if (more.is_object()) metrics.update(more);
   Rigid3d shown_from_world;
   if (results.evaluation.has_value()) {
     text += FormatEvaluation(*results.evaluation);

@@ -37,22 +37,27 @@ class RunOutput {
             const DepthLookupOptions& depth);
 
   // After the run has tracked a frame.
-  void Add(const Frame& frame, const OdometryRun& run);
+  void Add(const Frame& frame, const SequenceRun& run);
 
   // Where files are until they are published, see RunFolder.
   const std::filesystem::path& aside() const { return folder_.aside(); }
 
-  // Writes all files but the page: `flags` into config.flags, `dataset` into
-  // metrics.json. `truth` may be null. Returns what the program prints of them.
+  // Writes all files but the page: `flags` into config.flags, `dataset`, the
+  // program's name and `more` (an object) into metrics.json. `truth` may be
+  // null. Returns what the program prints of them.
   std::string Write(const RunResults& results, const RunSummary& summary,
                     const Trajectory* truth, const std::string& dataset,
-                    const std::string& flags);
+                    const std::string& flags,
+                    const std::string& program = "rgbd_odometry",
+                    const nlohmann::json& more = nullptr);
+
+  // A further file, by its name.
+  void WriteFile(const char* name, const std::string& content) const;
 
   // Puts all files into their places.
   void Publish() { folder_.Publish(); }
 
  private:
-  void WriteFile(const char* name, const std::string& content) const;
   nlohmann::json WriteCloud(const Rigid3d& shown_from_world,
                             std::string* text) const;
 

@@ -1,5 +1,7 @@
 #include "core/estimation/robust_terms.h"
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -24,6 +26,30 @@ constexpr double kMinScale = 0.05;
 constexpr double kMaxScale = 20.0;
 // Scale and motion are estimated in turn until no scale moves by more.
 constexpr double kScaleTolerance = 0.01;
+
+// Information less what of it is feigned: none, not less, in directions where
+// all is. (An indefinite share would make that of other costs smaller.)
+MotionMatrix LessFeigned(const MotionMatrix& hessian,
+                         const MotionMatrix& feigned) {
+  if (feigned.isZero() || !feigned.allFinite()) return hessian;
+  MotionVector unit = hessian.diagonal();
+  for (double& value : unit) value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
+  constexpr double kSingular = 1e-12;
+  MotionMatrix scaled = unit.asDiagonal() * hessian * unit.asDiagonal();
+  scaled.diagonal().array() += kSingular;
+  const Eigen::LLT<MotionMatrix> llt(scaled);
+  if (llt.info() != Eigen::Success) return MotionMatrix::Zero();
+  const MotionMatrix L = llt.matrixL();
+  const MotionMatrix half =
+      llt.matrixL().solve(unit.asDiagonal() * feigned * unit.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
+      llt.matrixL().solve(half.transpose()));
+  const MotionVector left =
+      (1.0 - eigen.eigenvalues().array()).cwiseMax(0.0).sqrt();
+  const MotionMatrix root = unit.cwiseInverse().asDiagonal() * L *
+                            eigen.eigenvectors() * left.asDiagonal();
+  return root * root.transpose();
+}
 
 }  // namespace
 
@@ -256,15 +282,9 @@ NormalEquations RobustTerms::LineariseShares(const MotionDerivatives& motion) {
     costs_[i].cost->AddFeigned(motion, &feigned);
     // Residuals that are larger than their noise do not make slopes noisier.
     const double excess = std::max(1.0, scales_[i]);
-    double times = kFeignedMargin * costs_[i].cost->information_factor() /
-                   (excess * excess);
-    // Of an image that shows nothing there is not even noise to take off.
-    for (int k = 0; k < 6; ++k) {
-      if (times * feigned(k, k) > share.hessian(k, k)) {
-        times = share.hessian(k, k) / feigned(k, k);
-      }
-    }
-    share.hessian -= times * feigned;
+    const double times = kFeignedMargin * costs_[i].cost->information_factor() /
+                         (excess * excess);
+    share.hessian = LessFeigned(share.hessian, times * feigned);
     shares_[i].hessian = share.hessian;
     sum.hessian += share.hessian;
     sum.gradient += share.gradient;

@@ -46,42 +46,14 @@ std::string DirectTrackerOptions::Check() const {
 DirectReference::DirectReference(const Frame& frame,
                                  const std::vector<cv::Mat>& pyramid,
                                  const FrontendOptions& images, uint64_t id)
-    : camera_(images.camera), depth_(frame.depth.clone()) {
+    : depth_(frame.depth.clone()),
+      samples_(frame, images.camera, kSampleStepPx, images.min_depth,
+               images.max_depth) {
   for (const cv::Mat& level : pyramid) pyramid_.push_back(level.clone());
   Frame kept = frame;
   kept.depth = depth_;
-  view_ = ViewFrame(kept, pyramid_, camera_, *images.depth_noise);
+  view_ = ViewFrame(kept, pyramid_, images.camera, *images.depth_noise);
   view_.id = id;
-  for (int v = kSampleStepPx / 2; v < depth_.rows; v += kSampleStepPx) {
-    for (int u = kSampleStepPx / 2; u < depth_.cols; u += kSampleStepPx) {
-      const double depth = kept.DepthAt(u, v);
-      if (depth < images.min_depth || depth > images.max_depth) continue;
-      samples_.push_back(camera_.Unproject(Eigen::Vector2d(u, v), depth));
-    }
-  }
-}
-
-Overlap DirectReference::SeenFrom(const Rigid3d& cur_from_ref) const {
-  Overlap overlap;
-  int seen = 0;
-  for (const Eigen::Vector3d& sample : samples_) {
-    const Eigen::Vector3d point = cur_from_ref * sample;
-    if (!(point.z() > 0.0)) continue;
-    // Lens distortion does not matter here.
-    const Eigen::Vector2d focal(camera_.fx, camera_.fy);
-    const Eigen::Vector2d pixel =
-        focal.cwiseProduct(point.head<2>() / point.z());
-    if (!camera_.Contains(pixel + Eigen::Vector2d(camera_.cx, camera_.cy))) {
-      continue;
-    }
-    ++seen;
-    overlap.flow_px +=
-        (pixel - focal.cwiseProduct(sample.head<2>() / sample.z())).norm();
-  }
-  if (seen == 0) return overlap;
-  overlap.share = static_cast<double>(seen) / samples_.size();
-  overlap.flow_px /= seen;
-  return overlap;
 }
 
 DirectTracker::DirectFrame::DirectFrame(const Frame& frame)

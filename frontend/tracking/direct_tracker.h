@@ -38,18 +38,19 @@ class DirectReference final : public Reference {
   DirectReference(const Frame& frame, const std::vector<cv::Mat>& pyramid,
                   const FrontendOptions& images, uint64_t id);
 
-  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override;
+  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
+    return samples_.SeenFrom(cur_from_ref);
+  }
 
   const FrameView* images() const override { return &view_; }
   // Pixels with depth, of a grid over the image.
   size_t num_samples() const { return samples_.size(); }
 
  private:
-  Camera camera_;
   cv::Mat depth_;
   std::vector<cv::Mat> pyramid_;
   FrameView view_;
-  std::vector<Eigen::Vector3d> samples_;  // points in its axes, m
+  ViewSamples samples_;
 };
 
 // Finds the motion by direct costs alone: no features, so nothing to be lost in

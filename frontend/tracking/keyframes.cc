@@ -1,12 +1,24 @@
 #include "frontend/tracking/keyframes.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace rgbd_pose {
-Keyframe* Keyframes::Add(Keyframe keyframe) {
-  if (keyframes_.size() == kMaxKeyframes) keyframes_.erase(keyframes_.begin());
+
+Keyframe* Keyframes::Add(Keyframe keyframe, const Keyframe* in_use) {
+  if (keyframes_.size() == kMaxKeyframes) {
+    keyframes_.erase(keyframes_.begin() +
+                     (keyframes_.front().get() == in_use ? 1 : 0));
+  }
   keyframes_.push_back(std::make_unique<Keyframe>(std::move(keyframe)));
   return keyframes_.back().get();
+}
+
+void Keyframes::Renew(const Keyframe* keyframe) {
+  const auto at = std::find_if(
+      keyframes_.begin(), keyframes_.end(),
+      [=](const auto& kept) { return kept.get() == keyframe; });
+  if (at != keyframes_.end()) std::rotate(at, at + 1, keyframes_.end());
 }
 
 Keyframe* Keyframes::Find(int id) const {

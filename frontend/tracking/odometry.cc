@@ -215,6 +215,7 @@ void Odometry::TakeMotion(TrackedFrame* result) {
   const MotionEstimate& estimate = last_estimate();
   cur_from_ref_ = estimate.cur_from_prev;
   covariance_ = estimate.covariance;
+  result->cur_from_reference = cur_from_ref_;
   if (!estimate.ok()) return;
   result->edges.insert(result->edges.begin(), {reference_->id, result->index,
                                                cur_from_ref_, covariance_});
@@ -281,6 +282,27 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   result->is_reference = true;
+  return true;
+}
+
+bool Odometry::Adopt(const Frame& frame, int id,
+                     const Rigid3d& world_from_cam) {
+  Keyframe* keyframe = keyframes_.Find(id);
+  if (keyframe != nullptr && keyframe == reference_) return true;
+  if (keyframe != nullptr) {
+    keyframe->world_from_cam = world_from_cam;
+    keyframe->segment = segment_;
+    keyframes_.Renew(keyframe);
+    return true;
+  }
+  const std::unique_ptr<const PreparedFrame> prepared = Prepare(frame);
+  std::string why_not;
+  std::unique_ptr<Reference> reference =
+      tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
+  if (reference == nullptr) return false;
+  keyframes_.Add({id, segment_, world_from_cam, std::move(reference),
+                  std::make_unique<Place>(frame, id), {}},
+                 reference_);
   return true;
 }
 

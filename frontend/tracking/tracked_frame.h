@@ -33,7 +33,8 @@ struct TrackedFrame {
   int segment = 0;
 
   int reference = -1;  // index of the frame it was tracked against; -1: none
-  bool is_reference = false;  // became the reference of the frames that follow
+  Rigid3d cur_from_reference;  // the motion since then
+  bool is_reference = false;   // became the reference of the frames that follow
   bool relocalised = false;   // found again among earlier references
 
   // Lost, but the pose follows what others say of the motion since it was not

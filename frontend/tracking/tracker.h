@@ -10,6 +10,7 @@
 #include "core/geometry/rigid3.h"
 #include "core/initial_guess/initial_guess.h"
 #include "frontend/features/frontend.h"
+#include "frontend/image/view_samples.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {
@@ -44,12 +45,6 @@ struct TrackerOptions {
 // options' standard deviations.
 MotionPrior PriorOf(const TrackerOptions& options, const Rigid3d& guess,
                     const MotionMatrix* covariance);
-
-// How much of one view another one shows.
-struct Overlap {
-  double share = 0.0;    // 0 to 1
-  double flow_px = 0.0;  // mean distance to where it was, px
-};
 
 // What a tracker keeps of a frame that others are tracked against, and what it
 // has learnt of it since; of the frame's images, copies.

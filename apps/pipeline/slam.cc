@@ -1,0 +1,217 @@
+#include "apps/pipeline/slam.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "core/util/input_error.h"
+#include "core/util/stage_timer.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A copy: the next frame may be written into the same memory.
+Frame CopyOf(const Frame& frame, const cv::Mat& depth) {
+  Frame copy = frame;
+  copy.gray = frame.gray.clone();
+  copy.depth = depth.clone();
+  copy.depth_delay = 0.0;
+  copy.color.release();
+  return copy;
+}
+
+}  // namespace
+
+Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
+           const Camera& camera)
+    : settings_(settings),
+      odometry_(MakeOdometry(odometry, camera)),
+      mapper_(settings.mapping, MakeTracker(odometry, camera)) {
+  if (settings.update_delay < 0) {
+    throw InputError("slam: update_delay must not be negative");
+  }
+}
+
+Slam::~Slam() = default;
+
+void Slam::Load(KeyframeMap map, bool is_held) {
+  // Names may be those of an earlier map.
+  const int first_id = first_id_, first_segment = first_segment_;
+  for (MapKeyframe& keyframe : map.keyframes) {
+    keyframe.id += first_id;
+    keyframe.segment += first_segment;
+    // The odometry has no names from -1 on for what is not its own.
+    first_id_ = std::max(first_id_, keyframe.id + 2);
+    first_segment_ = std::max(first_segment_, keyframe.segment + 1);
+    map_from_keyframe_[keyframe.id] = keyframe.map_from_cam;
+    segments_[keyframe.id] = keyframe.segment;
+  }
+  for (Edge& edge : map.edges) {
+    edge.ref += first_id;
+    edge.cur += first_id;
+  }
+  mapper_.Load(map, is_held);
+}
+
+SlamFrame Slam::Track(const Frame& frame, const Rigid3d* cur_from_prev_guess,
+                      const MotionMatrix* guess_covariance) {
+  double prepare_ms = 0.0;
+  std::unique_ptr<const PreparedFrame> prepared;
+  {
+    const StageTimer timer(&prepare_ms);
+    prepared = Prepare(frame);
+  }
+  SlamFrame result = Track(*prepared, cur_from_prev_guess, guess_covariance);
+  result.tracked.track_ms += prepare_ms;
+  return result;
+}
+
+SlamFrame Slam::Track(const PreparedFrame& frame,
+                      const Rigid3d* cur_from_prev_guess,
+                      const MotionMatrix* guess_covariance) {
+  SlamFrame result;
+  result.tracked =
+      odometry_.Track(frame, cur_from_prev_guess, guess_covariance);
+  const TrackedFrame& tracked = result.tracked;
+  Follow(tracked);
+  if (tracked.is_reference) AddKeyframe(frame, tracked);
+  if (tracked.status == TrackingStatus::kLost) SearchMap(frame, tracked.index);
+  TakeUp(tracked.index, &result);
+  result.odom_from_cam = odom_from_cam_;
+  result.map_from_odom = map_from_odom_;
+  result.segment = reference_.has_value() ? segments_.at(*reference_) : 0;
+  return result;
+}
+
+// Moves odom_from_cam_ on, without a jump where the reference changes.
+void Slam::Follow(const TrackedFrame& tracked) {
+  const Rigid3d moved = world_from_cam_.Inverse() * tracked.world_from_cam;
+  world_from_cam_ = tracked.world_from_cam;
+  if (tracked.status == TrackingStatus::kLost) {
+    if (tracked.is_predicted) odom_from_cam_ = odom_from_cam_ * moved;
+    return;
+  }
+  const int id = MapId(tracked.index);
+  if (tracked.reference == -1) {
+    path_.push_back({tracked.timestamp, id, Rigid3d()});
+  } else {
+    const int reference = MapId(tracked.reference);
+    const Rigid3d& cur_from_ref = tracked.cur_from_reference;
+    if (reference != reference_) {
+      // To an earlier one: the motion since the one that was left, if known.
+      const auto left = std::find_if(
+          tracked.edges.begin(), tracked.edges.end(), [&](const Edge& edge) {
+            return MapId(edge.ref) == reference_ && edge.cur == tracked.index;
+          });
+      if (left != tracked.edges.end()) {
+        odom_from_cam_ = odom_from_reference_ * left->cur_from_ref.Inverse();
+      } else if (!tracked.relocalised) {
+        odom_from_cam_ = odom_from_cam_ * moved;
+      }
+      reference_ = reference;
+      odom_from_reference_ = odom_from_cam_ * cur_from_ref;
+    }
+    odom_from_cam_ = odom_from_reference_ * cur_from_ref.Inverse();
+    path_.push_back({tracked.timestamp, reference, cur_from_ref.Inverse()});
+    map_from_odom_ =
+        map_from_keyframe_.at(reference) * odom_from_reference_.Inverse();
+  }
+  if (!tracked.is_reference) return;
+  map_from_keyframe_[id] = map_from_odom_ * odom_from_cam_;
+  segments_[id] = tracked.reference == -1 || !reference_.has_value()
+                      ? first_segment_ + tracked.segment
+                      : segments_.at(*reference_);
+  reference_ = id;
+  odom_from_reference_ = odom_from_cam_;
+}
+
+void Slam::AddKeyframe(const PreparedFrame& frame,
+                       const TrackedFrame& tracked) {
+  NewKeyframe keyframe;
+  keyframe.id = MapId(tracked.index);
+  keyframe.frame = CopyOf(frame, odometry_.last_depth());
+  keyframe.segment = segments_.at(keyframe.id);
+  keyframe.map_from_cam = map_from_keyframe_.at(keyframe.id);
+  if (tracked.reference != -1) keyframe.edges = tracked.edges;
+  for (Edge& edge : keyframe.edges) edge.ref = MapId(edge.ref);
+  updates_.push_back(
+      {tracked.index + settings_.update_delay,
+       worker_.Do([this, keyframe = std::move(keyframe)]() mutable {
+         return mapper_.Add(std::move(keyframe));
+       })});
+}
+
+void Slam::SearchMap(const PreparedFrame& frame, int index) {
+  if (search_.has_value()) return;
+  search_ = {index + settings_.update_delay,
+             worker_.Do([this, lost = CopyOf(frame, frame.depth)] {
+               return mapper_.Find(lost);
+             })};
+}
+
+void Slam::TakeUp(int frame, SlamFrame* result) {
+  while (!updates_.empty() && updates_.front().frame <= frame) {
+    MapUpdate update;
+    {
+      const StageTimer timer(&result->wait_ms);
+      update = updates_.front().result.get();
+    }
+    updates_.pop_front();
+    Apply(std::move(update), result);
+  }
+  if (!search_.has_value() || search_->frame > frame) return;
+  std::optional<FoundKeyframe> found;
+  {
+    const StageTimer timer(&result->wait_ms);
+    found = search_->result.get();
+  }
+  search_.reset();
+  const bool is_lost = result->tracked.status == TrackingStatus::kLost;
+  if (found.has_value() && is_lost) Adopt(*found);
+}
+
+void Slam::Apply(MapUpdate update, SlamFrame* result) {
+  for (const auto& [id, pose] : update.map_from_keyframe) {
+    map_from_keyframe_[id] = pose;
+  }
+  for (const auto& [id, segment] : update.segments) segments_[id] = segment;
+  if (reference_.has_value()) {
+    map_from_odom_ =
+        map_from_keyframe_.at(*reference_) * odom_from_reference_.Inverse();
+  }
+  result->pairs += update.pairs;
+  result->loops += update.loops;
+  result->joined += update.joined;
+  result->map_ms += update.ms;
+  if (!update.trouble.empty()) result->trouble = update.trouble;
+  if (update.returned_to.has_value()) Adopt(*update.returned_to);
+}
+
+// The odometry has it where the map has it, seen from where the camera is.
+void Slam::Adopt(const FoundKeyframe& keyframe) {
+  const Rigid3d map_from_cam = map_from_odom_ * odom_from_cam_;
+  odometry_.Adopt(keyframe.frame, OdometryId(keyframe.id),
+                  world_from_cam_ * map_from_cam.Inverse() *
+                      map_from_keyframe_.at(keyframe.id));
+}
+
+void Slam::Finish() {
+  SlamFrame unused;
+  while (!updates_.empty()) {
+    Apply(updates_.front().result.get(), &unused);
+    updates_.pop_front();
+  }
+  if (search_.has_value()) search_->result.wait();
+  search_.reset();
+  Apply(worker_.Do([this] { return mapper_.Finish(); }).get(), &unused);
+}
+
+Trajectory Slam::Path() const {
+  Trajectory path;
+  for (const PathFrame& frame : path_) {
+    path.push_back({frame.timestamp, map_from_keyframe_.at(frame.keyframe) *
+                                         frame.keyframe_from_cam});
+  }
+  return path;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,141 @@
+#pragma once
+
+#include <deque>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/pipeline/mapper.h"
+#include "apps/pipeline/settings.h"
+#include "apps/pipeline/slam_settings.h"
+#include "core/evaluation/trajectory.h"
+#include "core/util/worker.h"
+#include "frontend/tracking/odometry.h"
+
+namespace rgbd_pose {
+
+// What became of one frame. Its pose in the map, as known now, is map_from_odom
+// * odom_from_cam.
+struct SlamFrame {
+  TrackedFrame tracked;  // in the odometry's own world
+
+  // Moves on smoothly, whatever is corrected behind it.
+  Rigid3d odom_from_cam;
+  // The correction: changes at keyframes and loops.
+  Rigid3d map_from_odom;
+
+  // Of the map. Segments that nothing joins have worlds of their own.
+  int segment = 0;
+
+  // What was taken up here of the work behind, as MapUpdate has it.
+  int pairs = 0;
+  int loops = 0;
+  int joined = 0;
+  std::string trouble;
+  double map_ms = 0.0;
+  double wait_ms = 0.0;  // that it was late
+
+  Rigid3d map_from_cam() const { return map_from_odom * odom_from_cam; }
+};
+
+// Tracks a camera (Odometry) and builds a map of its keyframes behind it, in a
+// thread of its own: where the view returns, the path is corrected. The same
+// frames give the same bytes. One object serves one thread.
+class Slam {
+ public:
+  // Throws InputError for settings that are of no use.
+  Slam(const OdometrySettings& odometry, const SlamSettings& settings,
+       const Camera& camera);
+
+  // Begins with maps of the same camera; to be called before the first frame.
+  // The first frames have a segment of their own, which is joined to the map
+  // where they meet it, and maps are joined where a camera sees both.
+  // `is_held`: tracks within the map without changing it. Throws InputError for
+  // a map of another camera or one that is not sound.
+  void Load(KeyframeMap map, bool is_held);
+  ~Slam();
+
+  SlamFrame Track(const Frame& frame,
+                  const Rigid3d* cur_from_prev_guess = nullptr,
+                  const MotionMatrix* guess_covariance = nullptr);
+
+  // The same for a frame that Prepare has made.
+  SlamFrame Track(const PreparedFrame& frame,
+                  const Rigid3d* cur_from_prev_guess = nullptr,
+                  const MotionMatrix* guess_covariance = nullptr);
+  std::unique_ptr<const PreparedFrame> Prepare(const Frame& frame) const {
+    return odometry_.Prepare(frame);
+  }
+
+  // Waits for the work behind and solves for all keyframes once more. The last
+  // call but for the following.
+  void Finish();
+
+  // After Finish: the map, and the covariances of its keyframes' poses in their
+  // order ([omega (rad), C (m)] as MotionGraph has them; empty if they cannot
+  // be told), and the pairs it is held together by.
+  KeyframeMap Map() const { return mapper_.Map(); }
+  std::vector<MotionMatrix> Covariances() const {
+    return mapper_.Covariances();
+  }
+  const KeyframeGraph& graph() const { return mapper_.graph(); }
+
+  // The poses of all frames that were not lost, map_from_cam, as known now.
+  Trajectory Path() const;
+
+  const Odometry& odometry() const { return odometry_; }
+
+ private:
+  // Work behind, and the frame that it is due at.
+  template <typename Result>
+  struct Due {
+    int frame = 0;
+    std::future<Result> result;
+  };
+  // A frame by the keyframe that it was tracked against.
+  struct PathFrame {
+    double timestamp = 0.0;
+    int keyframe = 0;
+    Rigid3d keyframe_from_cam;
+  };
+
+  // A keyframe's name in the map and in the odometry, which counts its own
+  // frames from 0.
+  int MapId(int frame) const { return frame + first_id_; }
+  int OdometryId(int keyframe) const { return keyframe - first_id_; }
+
+  void Follow(const TrackedFrame& tracked);
+  void AddKeyframe(const PreparedFrame& frame, const TrackedFrame& tracked);
+  void SearchMap(const PreparedFrame& frame, int index);
+  void TakeUp(int frame, SlamFrame* result);
+  void Apply(MapUpdate update, SlamFrame* result);
+  void Adopt(const FoundKeyframe& keyframe);
+
+  const SlamSettings settings_;
+  Odometry odometry_;
+  Mapper mapper_;  // of worker_, once it has begun
+
+  // As last taken up.
+  std::map<int, Rigid3d> map_from_keyframe_;
+  std::map<int, int> segments_;
+
+  // Where the last frame is.
+  std::optional<int> reference_;  // by its name in the map
+  Rigid3d odom_from_reference_;
+  Rigid3d odom_from_cam_;
+  Rigid3d map_from_odom_;
+  Rigid3d world_from_cam_;  // of the odometry
+
+  int first_id_ = 0;       // of new keyframes
+  int first_segment_ = 0;  // of new ones
+
+  std::vector<PathFrame> path_;
+  std::deque<Due<MapUpdate>> updates_;
+  std::optional<Due<std::optional<FoundKeyframe>>> search_;
+  Worker worker_;  // the last: it works with what is above
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,185 @@
+#include "apps/results/slam_output.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "core/util/format.h"
+#include "core/util/quantile.h"
+
+namespace rgbd_pose {
+namespace {
+
+// tx ty tz qx qy qz qw, each after `separator`.
+std::string FormatPose(const Rigid3d& pose, const char* separator) {
+  std::string text;
+  for (const double value : pose.translation) {
+    text += separator + Format("%.9g", value);
+  }
+  for (const double value : pose.rotation.coeffs()) {
+    text += separator + Format("%.9g", value);
+  }
+  return text;
+}
+
+template <typename PoseOf>
+std::string FormatPath(const std::vector<SlamFrame>& frames, PoseOf pose_of) {
+  Trajectory path;
+  for (const SlamFrame& frame : frames) {
+    if (frame.tracked.status == TrackingStatus::kLost) continue;
+    path.push_back({frame.tracked.timestamp, pose_of(frame)});
+  }
+  return FormatTrajectory(path);
+}
+
+// g2o's error of an edge is [t, vec q] of measured^-1 * true, ref_from_cur; of
+// ours it is [R c, -omega / 2] with R of cur_from_ref.
+MotionMatrix G2oInformation(const Edge& edge) {
+  MotionMatrix J = MotionMatrix::Zero();
+  J.topRightCorner<3, 3>() = edge.cur_from_ref.rotation.toRotationMatrix();
+  J.bottomLeftCorner<3, 3>() = -0.5 * Eigen::Matrix3d::Identity();
+  return (J * edge.covariance * J.transpose()).inverse();
+}
+
+}  // namespace
+
+std::string FormatSlamCsv(const std::vector<SlamFrame>& frames) {
+  std::string text = "timestamp,status,segment";
+  for (const char* pose : {"odom", "map"}) {
+    for (const char* part : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
+      text += std::string(",") + pose + "_" + part;
+    }
+  }
+  text += ",pairs,loops,joined,map_ms,wait_ms\n";
+  for (const SlamFrame& frame : frames) {
+    text += Format("%.6f,%s,%d", frame.tracked.timestamp,
+                   ToString(frame.tracked.status), frame.segment) +
+            FormatPose(frame.odom_from_cam, ",") +
+            FormatPose(frame.map_from_odom, ",") +
+            Format(",%d,%d,%d,%.3f,%.3f\n", frame.pairs, frame.loops,
+                   frame.joined, frame.map_ms, frame.wait_ms);
+  }
+  return text;
+}
+
+std::string FormatOnlineTrajectory(const std::vector<SlamFrame>& frames) {
+  return FormatPath(frames,
+                    [](const SlamFrame& f) { return f.map_from_cam(); });
+}
+
+std::string FormatOdometryTrajectory(const std::vector<SlamFrame>& frames) {
+  return FormatPath(frames, [](const SlamFrame& f) { return f.odom_from_cam; });
+}
+
+std::string FormatKeyframesCsv(const KeyframeMap& map,
+                               const std::vector<MotionMatrix>& covariances) {
+  constexpr const char* kParts[] = {"wx", "wy", "wz", "cx", "cy", "cz"};
+  std::string text = "keyframe,timestamp,segment,tx,ty,tz,qx,qy,qz,qw";
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) {
+      text += Format(",cov_%s_%s", kParts[i], kParts[j]);
+    }
+  }
+  text += "\n";
+  for (size_t k = 0; k < map.keyframes.size(); ++k) {
+    const MapKeyframe& keyframe = map.keyframes[k];
+    text += Format("%d,%.6f,%d", keyframe.id, keyframe.images.timestamp,
+                   keyframe.segment) +
+            FormatPose(keyframe.map_from_cam, ",");
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j) {
+        text += covariances.empty() ? std::string(",")
+                                    : Format(",%.9g", covariances[k](i, j));
+      }
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+std::string FormatG2o(const KeyframeMap& map) {
+  std::string text;
+  std::map<int, int> first_of_segment;
+  for (const MapKeyframe& keyframe : map.keyframes) {
+    text += Format("VERTEX_SE3:QUAT %d", keyframe.id) +
+            FormatPose(keyframe.map_from_cam, " ") + "\n";
+    if (first_of_segment.emplace(keyframe.segment, keyframe.id).second) {
+      text += Format("FIX %d\n", keyframe.id);
+    }
+  }
+  for (const Edge& edge : map.edges) {
+    text += Format("EDGE_SE3:QUAT %d %d", edge.ref, edge.cur) +
+            FormatPose(edge.cur_from_ref.Inverse(), " ");
+    const MotionMatrix information = G2oInformation(edge);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j) text += Format(" %.9g", information(i, j));
+    }
+    text += "\n";
+  }
+  return text;
+}
+
+nlohmann::json SlamToJson(const Slam& slam,
+                          const std::vector<SlamFrame>& frames) {
+  const KeyframeGraph& graph = slam.graph();
+  int tracked = 0, pairs = 0, loops = 0, joined = 0, dropped = 0;
+  double map_ms = 0.0;
+  std::vector<double> waits, works;
+  for (const SlamFrame& frame : frames) {
+    joined += frame.joined;
+    map_ms += frame.map_ms;
+    waits.push_back(frame.wait_ms);
+    if (frame.map_ms > 0.0) works.push_back(frame.map_ms);
+  }
+  nlohmann::json keyframes = nlohmann::json::array();
+  for (int at = 0; at < graph.size(); ++at) {
+    dropped += graph.IsDropped(at);
+    const Eigen::Vector3d& t = graph.pose(at).translation;
+    keyframes.push_back(
+        {t.x(), t.y(), t.z(), graph.segment(at), graph.IsDropped(at)});
+  }
+  nlohmann::json edges = nlohmann::json::array();
+  for (const KeyframeGraph::Pair& pair : graph.pairs()) {
+    tracked += pair.is_tracked;
+    loops += pair.is_loop;
+    pairs += !pair.is_tracked;
+    edges.push_back({pair.edge.ref, pair.edge.cur,
+                     pair.is_tracked ? 0
+                     : pair.is_loop  ? 2
+                                     : 1});
+  }
+  return {{"keyframes", graph.size() - dropped},
+          {"keyframes_dropped", dropped},
+          {"tracked_pairs", tracked},
+          {"pairs", pairs},
+          {"loops", loops},
+          {"segments_joined", joined},
+          {"slack", graph.slack()},
+          {"map_ms_per_frame", frames.empty() ? 0.0 : map_ms / frames.size()},
+          {"map_ms_per_keyframe", works.empty() ? 0.0 : Median(works)},
+          {"wait_ms_p99", waits.empty() ? 0.0 : Quantile(waits, 0.99)},
+          {"wait_ms_max",
+           waits.empty() ? 0.0 : *std::max_element(waits.begin(), waits.end())},
+          {"graph_keyframes", keyframes},
+          {"graph_pairs", edges}};
+}
+
+std::string FormatSlamSummary(const nlohmann::json& slam) {
+  return Format(
+             "map         %d keyframes (%d more made way), %d pairs, %d "
+             "loops, %d segments joined\n",
+             slam.at("keyframes").get<int>(),
+             slam.at("keyframes_dropped").get<int>(),
+             slam.at("tracked_pairs").get<int>() + slam.at("pairs").get<int>(),
+             slam.at("loops").get<int>(),
+             slam.at("segments_joined").get<int>()) +
+         Format(
+             "behind      %.2f ms a frame, %.1f ms a keyframe median; "
+             "tracking waited %.1f ms at most\n",
+             slam.at("map_ms_per_frame").get<double>(),
+             slam.at("map_ms_per_keyframe").get<double>(),
+             slam.at("wait_ms_max").get<double>());
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,214 @@
+// A map of an RGB-D sequence and the camera's path in it: as rgbd_odometry,
+// with loops closed, maps kept and places found again.
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <sstream>
+#include <utility>
+
+#include "apps/pipeline/sequence.h"
+#include "apps/pipeline/slam_run.h"
+#include "apps/report/report_page.h"
+#include "apps/results/run_output.h"
+#include "apps/results/slam_output.h"
+#include "apps/shell/available_cores.h"
+#include "apps/shell/program.h"
+#include "apps/shell/progress_bar.h"
+#include "apps/shell/setting_flags.h"
+#include "core/util/input_error.h"
+#include "frontend/image/depth_scale.h"
+#include "frontend/map/map_folder.h"
+
+DEFINE_int32(threads, 0,
+             "threads that read images ahead and track; 0: one a core; the "
+             "result does not depend on it");
+DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
+
+namespace rgbd_pose {
+namespace {
+
+struct ProgramSettings {
+  SequenceSettings sequence;
+  OdometrySettings odometry;
+  SlamSettings slam;
+  MapSettings maps;
+  RunOutputSettings output;
+};
+
+ProgramSettings& Settings() {
+  static ProgramSettings settings;
+  return settings;
+}
+
+// All other flags.
+const SettingFlags& Flags() {
+  static const SettingFlags flags(
+      {SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
+       SettingTable(&Settings().slam), SettingTable(&Settings().maps),
+       SettingTable(&Settings().output)});
+  return flags;
+}
+
+ProgramInfo Info() {
+  ProgramInfo info;
+  info.name = "rgbd_slam";
+  info.summary =
+      "maps what an RGB-D camera sees, and finds its path in the map.";
+  info.example =
+      "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
+      "--output=runs/fr1_room --save_map=maps/room";
+  Flags().Describe(&info);
+  info.flag_groups.push_back({"Run", {"report", "threads"}});
+  return info;
+}
+
+// A run that tracked less of its frames than this has failed.
+constexpr double kMinTrackedShare = 0.5;
+
+// More than any machine can use for this.
+constexpr int kMaxThreads = 256;
+
+using Clock = std::chrono::steady_clock;
+
+double SecondsSince(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+int NumThreads() {
+  if (FLAGS_threads < 0 || FLAGS_threads > kMaxThreads) {
+    throw InputError("--threads must be 0 (one a core) to " +
+                     std::to_string(kMaxThreads));
+  }
+  if (FLAGS_threads > 0) return FLAGS_threads;
+  return std::min(AvailableCores(), kMaxThreads);
+}
+
+// A help to look at a run; a program built without the library that it needs
+// says so and goes on.
+std::string WriteReport(const std::filesystem::path& folder) {
+  if (!FLAGS_report) return "";
+  if (!HasReportLibrary()) {
+    return std::string("report in   ") + kNoReportLibrary + "\n";
+  }
+  WriteRunReport(folder.string());
+  return "report in   " + Settings().output.output + "/report.html\n";
+}
+
+// The folders of --load_map.
+std::vector<std::string> MapFolders() {
+  std::vector<std::string> folders;
+  std::stringstream list(Settings().maps.load_map);
+  for (std::string folder; std::getline(list, folder, ',');) {
+    if (!folder.empty()) folders.push_back(folder);
+  }
+  return folders;
+}
+
+void LoadMaps(SlamRun* run) {
+  const MapSettings& maps = Settings().maps;
+  const std::vector<std::string> folders = MapFolders();
+  if (maps.localise_only && folders.empty()) {
+    throw InputError("--localise_only needs --load_map");
+  }
+  if (maps.localise_only && !maps.save_map.empty()) {
+    throw InputError(
+        "--localise_only leaves the map as it is: there is nothing to save "
+        "for --save_map");
+  }
+  for (const std::string& folder : folders) {
+    try {
+      run->Load(LoadMap(folder), maps.localise_only);
+    } catch (const InputError& error) {
+      throw InputError("--load_map=" + folder + ": " + error.what());
+    }
+  }
+}
+
+int Main() {
+  const Clock::time_point start = Clock::now();
+  Flags().Apply();
+  const ProgramSettings& settings = Settings();
+  RequireFlag("dataset", settings.sequence.dataset);
+  RequireFlag("camera", settings.sequence.camera);
+  RequireFlag("output", settings.output.output);
+  const int threads = NumThreads();
+  // The threads are ours: OpenCV's own would only compete with them.
+  cv::setNumThreads(1);
+
+  // All that can be wrong with the input is looked at before the work starts
+  // and before anything is written.
+  const bool keep_color = !settings.output.save_cloud.empty();
+  const Sequence sequence = OpenSequence(settings.sequence, keep_color);
+  FrameSource& source = *sequence.source;
+  const RunInputs inputs = sequence.inputs();
+  if (!settings.maps.save_map.empty()) RequireMapFolder(settings.maps.save_map);
+  SlamRun run(settings.odometry, settings.slam, source.camera().camera, inputs);
+  LoadMaps(&run);
+  RunOutput output(settings.output, source,
+                   settings.odometry.features.DepthLookup());
+  if (source.unmatched_color() > 0) {
+    LOG(WARNING) << source.unmatched_color()
+                 << " colour images have no depth image within 0.02 s and "
+                    "are left out";
+  }
+
+  {
+    ProgressBar bar("tracking", static_cast<int>(source.timestamps().size()));
+    TrackAll(&source, threads, {&run}, [&](const Frame& frame) {
+      const bool is_first = run.frames().size() == 1;
+      const std::string warning = is_first ? DepthScaleWarning(frame) : "";
+      if (!warning.empty()) LOG(WARNING) << warning;
+      output.Add(frame, run);
+      bar.Update(static_cast<int>(run.frames().size()));
+    });
+  }
+  const double seconds = SecondsSince(start);
+
+  const RunResults results = std::move(run).Finish();
+  const Slam& slam = run.slam();
+  if (!results.no_evaluation.empty()) {
+    LOG(WARNING) << "no errors: " << results.no_evaluation;
+  }
+  const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
+  std::string text =
+      output.Write(results, Summarise(results.frames, threads, seconds),
+                   inputs.ground_truth, settings.sequence.dataset,
+                   FormatFlagFile(Info()), Info().name, {{"slam", map_json}});
+  text += FormatSlamSummary(map_json);
+  const KeyframeMap map = slam.Map();
+  output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
+  output.WriteFile("trajectory_online.txt",
+                   FormatOnlineTrajectory(run.slam_frames()));
+  output.WriteFile("trajectory_odometry.txt",
+                   FormatOdometryTrajectory(run.slam_frames()));
+  output.WriteFile("keyframes.csv",
+                   FormatKeyframesCsv(map, slam.Covariances()));
+  output.WriteFile("graph.g2o", FormatG2o(map));
+  text += WriteReport(output.aside());
+  if (!settings.maps.save_map.empty()) {
+    SaveMap(settings.maps.save_map, map);
+    text += "map in      " + settings.maps.save_map + "\n";
+  }
+  output.Publish();
+  std::printf("%sresults in  %s\n", text.c_str(),
+              settings.output.output.c_str());
+  if (results.TrackedShare() >= kMinTrackedShare) return kExitOk;
+  std::fprintf(stderr,
+               "rgbd_slam: only %.1f %% of the frames were tracked; "
+               "%s/frames.csv says why\n",
+               100.0 * results.TrackedShare(), settings.output.output.c_str());
+  return kExitTrackingFailed;
+}
+
+}  // namespace
+}  // namespace rgbd_pose
+
+int main(int argc, char** argv) {
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+}

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <future>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+namespace rgbd_pose {
+
+// One thread that does what it is given, in that order.
+class Worker {
+ public:
+  Worker() : thread_([this] { Work(); }) {}
+
+  // Finishes the task at hand and leaves the others.
+  ~Worker() {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      is_over_ = true;
+    }
+    changed_.notify_one();
+    thread_.join();
+  }
+  Worker(const Worker&) = delete;
+  Worker& operator=(const Worker&) = delete;
+
+  // What the task returns, or throws, by the future.
+  template <typename Task>
+  auto Do(Task task) -> std::future<decltype(task())> {
+    auto packaged = std::make_shared<std::packaged_task<decltype(task())()>>(
+        std::move(task));
+    auto result = packaged->get_future();
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      tasks_.push_back([packaged] { (*packaged)(); });
+    }
+    changed_.notify_one();
+    return result;
+  }
+
+ private:
+  void Work() {
+    while (true) {
+      std::function<void()> task;
+      {
+        std::unique_lock<std::mutex> lock(mutex_);
+        changed_.wait(lock, [this] { return is_over_ || !tasks_.empty(); });
+        if (is_over_) return;
+        task = std::move(tasks_.front());
+        tasks_.pop_front();
+      }
+      task();
+    }
+  }
+
+  std::mutex mutex_;  // of all that follows
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> tasks_;
+  bool is_over_ = false;
+  std::thread thread_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+#include "frontend/image/frame.h"
+
+namespace rgbd_pose {
+
+// How much of one view another one shows.
+struct Overlap {
+  double share = 0.0;    // 0 to 1
+  double flow_px = 0.0;  // mean distance to where it was, px
+};
+
+// Points of a view, far apart: enough to tell what of it others see.
+class ViewSamples {
+ public:
+  // None.
+  ViewSamples() = default;
+
+  // Of a frame, at pixels so far apart that have a depth between the two (m).
+  ViewSamples(const Frame& frame, const Camera& camera, int step_px,
+              double min_depth, double max_depth);
+
+  // How much of it a camera there should see. What hides what is not known.
+  Overlap SeenFrom(const Rigid3d& cur_from_view) const;
+
+  size_t size() const { return points_.size(); }
+
+ private:
+  Camera camera_;
+  std::vector<Eigen::Vector3d> points_;  // in the view's axes, m
+};
+
+}  // namespace rgbd_pose
