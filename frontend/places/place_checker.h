@@ -28,14 +28,14 @@ struct PlaceCheckerOptions {
 
 // What came of it.
 struct PlaceCheck {
-  bool ok = false;
+  bool ok = false;     // they show the same place, and the motion is this
   std::string reason;  // why not, in words; empty if ok
 
-  Rigid3d cur_from_ref;
+  Rigid3d cur_from_ref;                            // as estimated
   MotionMatrix covariance = MotionMatrix::Zero();  // as MotionEstimate's
-  int num_matches = 0;
-  int num_inliers = 0;
-  double sigma = 0.0;  // as MotionEstimate's
+  int num_matches = 0;  // of the frontend, from the rough motion or the guess
+  int num_inliers = 0;  // of these, in agreement
+  double sigma = 0.0;   // as MotionEstimate's
 };
 
 // Says whether two frames show the same place, and the motion between them: as

@@ -14,7 +14,7 @@ namespace rgbd_pose {
 
 // What a frame is recognised by: ORB features (Rublee et al. 2011).
 struct PlaceFeatures {
-  DescribedKeypoints described;
+  DescribedKeypoints described;           // where, and what they look like
   std::vector<Observation> observations;  // of each keypoint
 };
 

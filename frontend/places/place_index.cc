@@ -129,13 +129,22 @@ void PlaceIndex::FindAlike(const Descriptor& descriptor, int mark,
                            std::vector<int>* marks,
                            std::vector<int>* blocks) const {
   const auto* bytes = reinterpret_cast<const uchar*>(descriptor.data());
+  std::array<int, kWords> next;
   for (int word = 0; word < kWords; ++word) {
-    int entry = tables_[word].Of(descriptor[word]).first;
-    for (; entry != kEnd; entry = At(entry).next[word]) {
-      const int block = entry / kMaxDescriptors;
+    next[word] = tables_[word].Of(descriptor[word]).first;
+  }
+  // All buckets at once: while one entry is looked at, others come from memory.
+  for (bool is_done = false; !is_done;) {
+    is_done = true;
+    for (int word = 0; word < kWords; ++word) {
+      if (next[word] == kEnd) continue;
+      is_done = false;
+      const int block = next[word] / kMaxDescriptors;
+      const Entry& entry = At(next[word]);
+      next[word] = entry.next[word];
+      if (next[word] != kEnd) __builtin_prefetch(&At(next[word]));
       if ((*marks)[block] == mark) continue;
-      const auto* other =
-          reinterpret_cast<const uchar*>(At(entry).words.data());
+      const auto* other = reinterpret_cast<const uchar*>(entry.words.data());
       if (cv::hal::normHamming(bytes, other, kBytes) > kMaxDistance) continue;
       (*marks)[block] = mark;
       blocks->push_back(block);

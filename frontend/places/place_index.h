@@ -11,7 +11,7 @@ namespace rgbd_pose {
 
 // A keyframe that may show what a frame shows.
 struct PlaceCandidate {
-  int keyframe = 0;
+  int keyframe = 0;    // as it was added
   double score = 0.0;  // 0 to 1: the share of what the frame's features tell
                        // that the keyframe has as well
 };

@@ -32,6 +32,15 @@ class BenchmarkProgramsTest : public testing::Test {
   int files_ = 0;
 };
 
+TEST_F(BenchmarkProgramsTest, PlacesAreFound) {
+  const std::string results =
+      ReadTextFile(Measure(PLACES_BENCHMARK, "places/query/100/"));
+  for (const auto& run : nlohmann::json::parse(results)["benchmarks"]) {
+    if (run["run_type"] != "iteration") continue;
+    EXPECT_EQ(run["found"], 1.0);
+  }
+}
+
 TEST_F(BenchmarkProgramsTest, MakeThePageAndTheSpeedups) {
   std::string results =
       Measure(SOLVE_BENCHMARK, "^(solve|estimate)/.*/(huber|tukey)/300$");

@@ -62,6 +62,7 @@ check "$examples/own_cost" '^error 0\.[0-9]+ mm$'
 check "$examples/own_loss" '^error 0\.[0-9]+ mm$'
 check "$examples/own_frontend" '^error 0\.00[0-9]+ m$'
 check "$examples/camera_loop" '^back at the start within 0\.[0-9]+ mm$'
+check "$examples/find_places" '^28 shows what 0 shows, from 0\.0[0-9] m away$'
 
 # One component needs no more than its own dependencies.
 project costs CXX REQUIRED COMPONENTS costs
