@@ -9,6 +9,7 @@ void BindCamera(pybind11::module_* module);
 void BindEstimateResult(pybind11::module_* module);
 void BindEstimate(pybind11::module_* module);
 void BindOdometry(pybind11::module_* module);
+void BindSlam(pybind11::module_* module);
 void BindEvaluation(pybind11::module_* module);
 
 }  // namespace rgbd_pose

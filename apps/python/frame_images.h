@@ -4,6 +4,8 @@
 #include <pybind11/pybind11.h>
 
 #include <opencv2/core.hpp>
+#include <optional>
+#include <utility>
 
 #include "apps/python/arrays.h"
 #include "core/geometry/camera.h"
@@ -16,6 +18,21 @@ namespace rgbd_pose {
 // into the same memory. Throws InputError for images of a wrong shape or type.
 Frame FrameFromArrays(const pybind11::object& image,
                       const pybind11::object& depth, const RgbdCamera& camera);
+
+// Odometry.track and Slam.track.
+template <typename Shared>
+auto TrackArrays(Shared* shared, const pybind11::object& image,
+                 const pybind11::object& depth, std::optional<double> timestamp,
+                 const pybind11::object& motion_guess, double depth_delay) {
+  Frame frame = FrameFromArrays(image, depth, shared->camera());
+  frame.depth_delay = depth_delay;
+  std::optional<Rigid3d> guess;
+  if (!motion_guess.is_none()) {
+    guess = RigidFromArray(motion_guess, "motion_guess");
+  }
+  const pybind11::gil_scoped_release no_gil;
+  return shared->Track(std::move(frame), timestamp, guess);
+}
 
 // An image that an object holds, seen as an array that keeps it alive; no copy.
 template <typename T>

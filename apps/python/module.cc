@@ -29,6 +29,7 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   BindEstimateResult(&m);
   BindEstimate(&m);
   BindOdometry(&m);
+  BindSlam(&m);
   BindEvaluation(&m);
   m.attr("__name__") = own_name;
 }

@@ -2,9 +2,7 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <algorithm>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,19 +29,6 @@ std::unique_ptr<SharedOdometry> MakeSharedOdometry(const RgbdCamera& camera,
   settings.frontend = frontend;
   SetFromKeywords("Odometry", keywords, SettingTable(&settings));
   return std::make_unique<SharedOdometry>(settings, camera);
-}
-
-TrackedFrame Track(SharedOdometry* odometry, const py::object& image,
-                   const py::object& depth, std::optional<double> timestamp,
-                   const py::object& motion_guess, double depth_delay) {
-  Frame frame = FrameFromArrays(image, depth, odometry->camera());
-  frame.depth_delay = depth_delay;
-  std::optional<Rigid3d> guess;
-  if (!motion_guess.is_none()) {
-    guess = RigidFromArray(motion_guess, "motion_guess");
-  }
-  const py::gil_scoped_release no_gil;
-  return odometry->Track(std::move(frame), timestamp, guess);
 }
 
 Trajectory TrajectoryOf(SharedOdometry* odometry) {
@@ -140,20 +125,6 @@ void BindTrackedFrame(py::module_* module) {
       .def("__repr__", &InWords);
 }
 
-// Keyword-only settings; the frontend may also stand in its place.
-std::string InitSignature() {
-  OdometrySettings settings;
-  const std::vector<Setting> table = SettingTable(&settings);
-  const auto frontend =
-      std::find_if(table.begin(), table.end(), [](const Setting& setting) {
-        return setting.name == std::string("frontend");
-      });
-  return "__init__(self: rgbd_pose.Odometry, camera: rgbd_pose.Camera, " +
-         ArgumentsOf({*frontend}) + ", *, " +
-         ArgumentsOf(WithoutRow("frontend", table)) +
-         ") -> None\n\nInputError for unknown names and values out of range.";
-}
-
 void BindSharedOdometry(py::module_* module) {
   OdometrySettings settings;
   const std::string doc = R"(
@@ -165,12 +136,13 @@ from several threads wait for each other; objects do not share anything.
   {
     py::options options;
     options.disable_function_signatures();
-    odometry.def(py::init(&MakeSharedOdometry), InitSignature().c_str(),
+    odometry.def(py::init(&MakeSharedOdometry),
+                 InitSignature("Odometry", SettingTable(&settings)).c_str(),
                  py::arg("camera").none(false),
                  py::arg("frontend") = settings.frontend);
   }
   odometry
-      .def("track", &Track, R"(
+      .def("track", &TrackArrays<SharedOdometry>, R"(
 Tracks the next frame. The GIL is released.
 
 image: (height, width) uint8 grey, or (height, width, 3) uint8 in the order red,

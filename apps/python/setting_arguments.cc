@@ -73,6 +73,18 @@ std::string ArgumentsOf(const std::vector<Setting>& table) {
   return text;
 }
 
+std::string InitSignature(const std::string& class_name,
+                          const std::vector<Setting>& table) {
+  const auto frontend =
+      std::find_if(table.begin(), table.end(), [](const Setting& setting) {
+        return setting.name == std::string("frontend");
+      });
+  return "__init__(self: rgbd_pose." + class_name +
+         ", camera: rgbd_pose.Camera, " + ArgumentsOf({*frontend}) + ", *, " +
+         ArgumentsOf(WithoutRow("frontend", table)) +
+         ") -> None\n\nInputError for unknown names and values out of range.";
+}
+
 std::string HelpOf(const std::vector<Setting>& table) {
   std::string text;
   for (const Setting& setting : table) {

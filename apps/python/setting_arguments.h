@@ -21,6 +21,11 @@ void SetFromKeywords(const std::string& function,
 // The rows as arguments of a signature, as "cost: str = 'epipolar', ...".
 std::string ArgumentsOf(const std::vector<Setting>& table);
 
+// The signature of a class that is made of a camera and settings: these are
+// keyword-only, but the frontend may also stand in its place.
+std::string InitSignature(const std::string& class_name,
+                          const std::vector<Setting>& table);
+
 // The rows in words, a paragraph each.
 std::string HelpOf(const std::vector<Setting>& table);
 

@@ -12,6 +12,19 @@ constexpr double kDefaultFrameRate = 30.0;  // Hz
 
 }  // namespace
 
+void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
+                Frame* frame) {
+  frame->index = last == nullptr ? 0 : last->index + 1;
+  frame->timestamp = timestamp.value_or(
+      last == nullptr ? 0.0 : last->timestamp + 1.0 / kDefaultFrameRate);
+  if (!std::isfinite(frame->timestamp) ||
+      (last != nullptr && frame->timestamp <= last->timestamp)) {
+    throw InputError("timestamp: " + std::to_string(frame->timestamp) +
+                     " s is not after that of the frame before; frames must "
+                     "come in the order of time");
+  }
+}
+
 SharedOdometry::SharedOdometry(const OdometrySettings& settings,
                                const RgbdCamera& camera)
     : camera_(camera), odometry_(MakeOdometry(settings, camera.camera)) {}
@@ -19,14 +32,7 @@ SharedOdometry::SharedOdometry(const OdometrySettings& settings,
 TrackedFrame SharedOdometry::Track(Frame frame, std::optional<double> timestamp,
                                    const std::optional<Rigid3d>& guess) {
   const std::lock_guard<std::mutex> lock(mutex_);
-  frame.index = static_cast<int>(frames_.size());
-  frame.timestamp = timestamp.value_or(NextTime());
-  if (!std::isfinite(frame.timestamp) ||
-      (!frames_.empty() && frame.timestamp <= frames_.back().timestamp)) {
-    throw InputError("timestamp: " + std::to_string(frame.timestamp) +
-                     " s is not after that of the frame before; frames must "
-                     "come in the order of time");
-  }
+  StampFrame(timestamp, frames_.empty() ? nullptr : &frames_.back(), &frame);
   frames_.push_back(
       odometry_.Track(frame, guess.has_value() ? &*guess : nullptr));
   return frames_.back();
@@ -35,11 +41,6 @@ TrackedFrame SharedOdometry::Track(Frame frame, std::optional<double> timestamp,
 Trajectory SharedOdometry::trajectory() {
   const std::lock_guard<std::mutex> lock(mutex_);
   return TrackedTrajectory(frames_);
-}
-
-double SharedOdometry::NextTime() const {
-  return frames_.empty() ? 0.0
-                         : frames_.back().timestamp + 1.0 / kDefaultFrameRate;
 }
 
 }  // namespace rgbd_pose

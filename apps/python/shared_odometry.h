@@ -14,6 +14,12 @@
 
 namespace rgbd_pose {
 
+// Numbers a frame and says when it was taken: without a time stamp, frames come
+// at 30 Hz. `last`: the one before, or null. Throws InputError if time does not
+// go on.
+void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
+                Frame* frame);
+
 // An odometry for many threads: calls wait for each other, so they must not
 // hold the GIL. Remembers what became of all frames.
 class SharedOdometry {
@@ -22,8 +28,8 @@ class SharedOdometry {
 
   const RgbdCamera& camera() const { return camera_; }
 
-  // Tracks the next frame. Without a time stamp, frames come at 30 Hz. Throws
-  // InputError, and nothing has changed, if time does not go on.
+  // Tracks the next frame. Throws InputError, and nothing has changed, if time
+  // does not go on (see StampFrame).
   TrackedFrame Track(Frame frame, std::optional<double> timestamp,
                      const std::optional<Rigid3d>& guess);
 
@@ -31,8 +37,6 @@ class SharedOdometry {
   Trajectory trajectory();
 
  private:
-  double NextTime() const;
-
   const RgbdCamera camera_;
   std::mutex mutex_;
   Odometry odometry_;

@@ -66,6 +66,8 @@ def test_reading_and_tracking_release_it(counter, sequence, camera):
     frame = dataset[0]
     odometry = rgbd_pose.Odometry(camera)
     assert advances(counter, lambda: odometry.track(frame.gray, frame.depth))
+    slam = rgbd_pose.Slam(camera)
+    assert advances(counter, lambda: slam.track(frame.gray, frame.depth))
 
 
 def test_many_threads_get_the_same(counter):

@@ -53,7 +53,7 @@ configure "$work/examples" || fail "examples: find_package"
 cmake --build "$work/examples/build" --parallel 2 >"$work/log" 2>&1 ||
   fail "examples: build"
 check() {
-  "$1" >"$work/log" 2>&1 || fail "$1"
+  (cd "$work" && "$1") >"$work/log" 2>&1 || fail "$1"
   says "$2" "$1"
 }
 readonly examples=$work/examples/build
@@ -61,6 +61,7 @@ check "$examples/estimate_motion" '^ok, 160 of 200 matches .* 0\.000 mm$'
 check "$examples/own_cost" '^error 0\.[0-9]+ mm$'
 check "$examples/own_loss" '^error 0\.[0-9]+ mm$'
 check "$examples/own_frontend" '^error 0\.00[0-9]+ m$'
+check "$examples/map_loop" '^[1-9][0-9]* keyframes, .* within 0\.[0-9]+ mm$'
 check "$examples/camera_loop" '^back at the start within 0\.[0-9]+ mm$'
 check "$examples/find_places" '^28 shows what 0 shows, from 0\.0[0-9] m away$'
 

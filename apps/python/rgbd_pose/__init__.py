@@ -1,4 +1,5 @@
-"""RGB-D odometry: the motion of a camera from colour and depth images.
+"""RGB-D odometry and mapping: the motion of a camera from colour and depth
+images.
 
 Poses are named target_from_source: point_in_target = target_from_source @
 point_in_source. Lengths are in metres, angles in radians, times in seconds
@@ -16,9 +17,12 @@ __all__ = [
     "EstimateError",
     "Frame",
     "InputError",
+    "Keyframe",
     "MotionEstimate",
     "Odometry",
     "RpeResult",
+    "Slam",
+    "SlamFrame",
     "TrackedFrame",
     "TumDataset",
     "camera_presets",

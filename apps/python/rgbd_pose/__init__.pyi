@@ -258,6 +258,107 @@ class Odometry:
     def trajectory(self) -> Tuple[_Floats, _Floats]: ...  # (N,), (N, 4, 4)
     def save_trajectory(self, path: _Path) -> None: ...
 
+class SlamFrame(TrackedFrame):
+    @property
+    def odom_from_cam(self) -> _Floats: ...  # (4, 4), m
+    @property
+    def map_from_odom(self) -> _Floats: ...  # (4, 4), m
+    @property
+    def map_from_cam(self) -> _Floats: ...  # (4, 4), m
+    @property
+    def segment(self) -> int: ...
+    @property
+    def pairs(self) -> int: ...
+    @property
+    def loops(self) -> int: ...
+    @property
+    def joined(self) -> int: ...
+    @property
+    def trouble(self) -> str: ...
+    @property
+    def map_ms(self) -> float: ...
+    @property
+    def wait_ms(self) -> float: ...
+
+class Keyframe:
+    @property
+    def id(self) -> int: ...
+    @property
+    def segment(self) -> int: ...
+    @property
+    def timestamp(self) -> float: ...
+    @property
+    def map_from_cam(self) -> _Floats: ...  # (4, 4), m
+    @property
+    def covariance(self) -> Optional[_Floats]: ...  # (6, 6), rad and m
+
+class Slam:
+    def __init__(
+        self,
+        camera: Camera,
+        frontend: str = "patch",
+        *,
+        cost: str = "bidirectional_point",
+        loss: str = "tukey",
+        scale: str = "fixed",
+        robust_schedule: str = "gnc",
+        gnc_factor: float = 2.0,
+        max_iterations: int = 50,
+        min_inlier_share: float = 0.2,
+        max_scale: float = 5.0,
+        max_standard_deviation: float = 0.5,
+        depth_noise: str = "khoshelham",
+        assembly: str = "compressed",
+        max_features: int = 600,
+        min_depth: float = 0.3,
+        max_depth: float = 8.0,
+        tracker: str = "hybrid",
+        direct_cost: str = "photometric+projective_plane",
+        direct_loss: str = "huber",
+        direct_points: int = 0,
+        direct_levels: int = 4,
+        direct_information: float = 0.0,
+        min_seen_share: float = 0.15,
+        initial_guess: str = "last",
+        on_lost: str = "new_segment",
+        ignore_stamp_offset: bool = False,
+        new_segment_after: float = 1.5,
+        guess_sigma_rotation: float = 0.01,
+        guess_sigma_translation: float = 0.01,
+        min_inliers: int = 15,
+        min_inliers_ok: int = 40,
+        min_inlier_share_ok: float = 0.35,
+        max_sigma_ok: float = 5.0,
+        min_reference_share: float = 0.5,
+        max_flow_px: float = 60.0,
+        prior_sigma_rotation: float = 0.05,
+        prior_sigma_translation: float = 0.05,
+        max_pairs: int = 8,
+        min_pair_share: float = 0.4,
+        max_lookalikes: int = 4,
+        drift: float = 0.01,
+        window: int = 10,
+        update_delay: int = 10,
+    ) -> None: ...
+    def track(
+        self,
+        image: NDArray[np.uint8],
+        depth: Union[
+            NDArray[np.uint16], NDArray[np.float32], NDArray[np.float64]
+        ],
+        timestamp: Optional[float] = None,
+        motion_guess: Optional[ArrayLike] = None,
+        depth_delay: float = 0.0,
+    ) -> SlamFrame: ...
+    def finish(self) -> None: ...
+    @property
+    def trajectory(self) -> Tuple[_Floats, _Floats]: ...  # (N,), (N, 4, 4)
+    def save_trajectory(self, path: _Path) -> None: ...
+    def keyframes(self) -> List[Keyframe]: ...
+    def edges(self) -> List[Edge]: ...
+    def save_map(self, folder: _Path) -> None: ...
+    def load_map(self, folder: _Path, localise_only: bool = False) -> None: ...
+
 class Frame:
     @property
     def index(self) -> int: ...

@@ -1,0 +1,197 @@
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/slam_settings.h"
+#include "apps/python/arrays.h"
+#include "apps/python/bindings.h"
+#include "apps/python/frame_images.h"
+#include "apps/python/setting_arguments.h"
+#include "apps/python/shared_slam.h"
+#include "apps/python/trajectory_arrays.h"
+#include "core/util/text_file.h"
+
+namespace py = pybind11;
+
+namespace rgbd_pose {
+namespace {
+
+struct Settings {
+  OdometrySettings odometry;
+  SlamSettings slam;
+
+  std::vector<Setting> Table() {
+    std::vector<Setting> table = SettingTable(&odometry);
+    for (const Setting& setting : SettingTable(&slam)) table.push_back(setting);
+    return table;
+  }
+};
+
+std::unique_ptr<SharedSlam> MakeSharedSlam(const RgbdCamera& camera,
+                                           const std::string& frontend,
+                                           const py::kwargs& keywords) {
+  Settings settings;
+  settings.odometry.frontend = frontend;
+  SetFromKeywords("Slam", keywords, settings.Table());
+  return std::make_unique<SharedSlam>(settings.odometry, settings.slam, camera);
+}
+
+Trajectory TrajectoryOf(SharedSlam* slam) {
+  const py::gil_scoped_release no_gil;
+  return slam->trajectory();
+}
+
+// A pose of FrameInMap or KeyframePose as an array.
+template <typename Frame, typename PoseOf>
+auto Pose(PoseOf pose_of) {
+  return [pose_of](const Frame& self) {
+    return ArrayFromMatrix(MatrixFromRigid(pose_of(self)));
+  };
+}
+
+// Of what was taken up of the work behind.
+template <typename T>
+auto Taken(T SlamFrame::*member) {
+  return [member](const FrameInMap& self) { return self.slam.*member; };
+}
+
+void BindFrames(py::module_* module) {
+  py::class_<FrameInMap, TrackedFrame>(
+      *module, "SlamFrame",
+      "What became of one input frame: all that Odometry says of it, and where "
+      "the\nmap has it.")
+      .def_property_readonly(
+          "odom_from_cam",
+          Pose<FrameInMap>([](const auto& f) { return f.slam.odom_from_cam; }),
+          "(4, 4), m: never jumps, whatever is corrected; drifts")
+      .def_property_readonly(
+          "map_from_odom",
+          Pose<FrameInMap>([](const auto& f) { return f.slam.map_from_odom; }),
+          "(4, 4), m: the correction; changes at keyframes and loops")
+      .def_property_readonly(
+          "map_from_cam",
+          Pose<FrameInMap>([](const auto& f) { return f.slam.map_from_cam(); }),
+          "(4, 4), m: map_from_odom @ odom_from_cam, the pose in the map as "
+          "known now")
+      .def_property_readonly("segment", Taken(&SlamFrame::segment),
+                             "of the map: frames of one segment hang together")
+      .def_property_readonly("pairs", Taken(&SlamFrame::pairs),
+                             "of keyframes, that the map got since the frame "
+                             "before")
+      .def_property_readonly("loops", Taken(&SlamFrame::loops),
+                             "of these pairs: that join what was far apart")
+      .def_property_readonly("joined", Taken(&SlamFrame::joined),
+                             "segments that became one with another")
+      .def_property_readonly("trouble", Taken(&SlamFrame::trouble),
+                             "why poses were not corrected; empty: they were")
+      .def_property_readonly("map_ms", Taken(&SlamFrame::map_ms),
+                             "time of that work, behind the tracking, ms")
+      .def_property_readonly("wait_ms", Taken(&SlamFrame::wait_ms),
+                             "for which the tracking waited, ms");
+  py::class_<KeyframePose>(*module, "Keyframe", "A keyframe of the map.")
+      .def_readonly("id", &KeyframePose::id,
+                    "its name in the map; without a loaded map the index of "
+                    "its frame")
+      .def_readonly("segment", &KeyframePose::segment,
+                    "poses of one segment share one map")
+      .def_readonly("timestamp", &KeyframePose::timestamp, "s")
+      .def_property_readonly(
+          "map_from_cam",
+          Pose<KeyframePose>([](const auto& k) { return k.map_from_cam; }),
+          "(4, 4), m")
+      .def_property_readonly(
+          "covariance",
+          [](const KeyframePose& self) -> py::object {
+            if (!self.covariance.has_value()) return py::none();
+            return ArrayFromMatrix(*self.covariance);
+          },
+          "(6, 6), of a small rotation about the axes of the camera (rad) and "
+          "of its\ncentre in the map (m); zero for the first of a segment, "
+          "None if it cannot\nbe told");
+}
+
+void BindSlamClass(py::module_* module) {
+  Settings settings;
+  const std::string doc = R"(
+Tracks a camera as Odometry does and builds a map of its keyframes behind it, in
+a thread of its own: where the view returns, the path is corrected. The same
+frames give the same result, to the last bit. Calls of one object from several
+threads wait for each other; objects do not share anything.
+
+)" + HelpOf(settings.Table());
+  py::class_<SharedSlam> slam(*module, "Slam", doc.c_str());
+  {
+    py::options options;
+    options.disable_function_signatures();
+    slam.def(py::init(&MakeSharedSlam),
+             InitSignature("Slam", settings.Table()).c_str(),
+             py::arg("camera").none(false),
+             py::arg("frontend") = settings.odometry.frontend);
+  }
+  const py::call_guard<py::gil_scoped_release> no_gil;
+  slam.def("track", &TrackArrays<SharedSlam>,
+           "Tracks the next frame; arguments are those of Odometry.track. The "
+           "GIL is\nreleased. InputError after finish().",
+           py::arg("image"), py::arg("depth"),
+           py::arg("timestamp") = py::none(),
+           py::arg("motion_guess") = py::none(), py::arg("depth_delay") = 0.0)
+      .def("finish", &SharedSlam::Finish, no_gil,
+           "Waits for the work behind and corrects all poses once more. No "
+           "frame can be\ntracked afterwards.")
+      .def_property_readonly(
+          "trajectory",
+          [](SharedSlam* self) {
+            return ArraysFromTrajectory(TrajectoryOf(self));
+          },
+          "(timestamps (N,), map_from_cam (N, 4, 4)) of frames not lost, as "
+          "corrected by\nnow")
+      .def(
+          "save_trajectory",
+          [](SharedSlam* self, const py::object& path) {
+            WriteFileAtomically(PathFrom(path),
+                                FormatTrajectory(TrajectoryOf(self)));
+          },
+          "Writes the trajectory as TUM text.", py::arg("path"))
+      .def("keyframes", &SharedSlam::Keyframes, no_gil,
+           "After finish(): list of Keyframe, in the order of the map.")
+      .def("edges", &SharedSlam::Edges, no_gil,
+           "After finish(): list of Edge, the motions that hold the map "
+           "together; ref and\ncur are ids of keyframes.")
+      .def(
+          "save_map",
+          [](SharedSlam* self, const py::object& folder) {
+            const std::string path = PathFrom(folder);
+            const py::gil_scoped_release released;
+            self->SaveMap(path);
+          },
+          "After finish(): keeps the map in a folder, in place of the one that "
+          "is there.\nInputError if that cannot be.",
+          py::arg("folder"))
+      .def(
+          "load_map",
+          [](SharedSlam* self, const py::object& folder, bool localise_only) {
+            const std::string path = PathFrom(folder);
+            const py::gil_scoped_release released;
+            self->LoadMap(path, localise_only);
+          },
+          "Before the first frame: begins with a map that was saved, or "
+          "several "
+          "that are\njoined where they meet. localise_only: the map stays as "
+          "it is. InputError for a\nfolder that holds none and for a map of "
+          "another camera.",
+          py::arg("folder"), py::arg("localise_only") = false);
+}
+
+}  // namespace
+
+void BindSlam(py::module_* module) {
+  BindFrames(module);
+  BindSlamClass(module);
+}
+
+}  // namespace rgbd_pose
