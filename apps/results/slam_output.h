@@ -21,7 +21,7 @@ std::string FormatKeyframesCsv(const KeyframeMap& map,
                                const std::vector<MotionMatrix>& covariances);
 
 // graph.g2o: VERTEX_SE3:QUAT and EDGE_SE3:QUAT as g2o has them, from_from_to
-// and its information of [t, 2 vec q] in the axes of the edge's end.
+// and its information of [t, vec q] in the axes of the edge's end.
 std::string FormatG2o(const KeyframeMap& map);
 
 // For the page: keyframes and pairs.
