@@ -31,4 +31,10 @@ std::vector<RobustCost> MakeDirectCosts(
 // How estimators minimise direct costs.
 EstimatorOptions DirectEstimatorOptions();
 
+// What leads from far away to where finer images or matches go on: images of
+// 80 x 60 pixels and fewer, with the depths there, which keep it off what has
+// come before the camera, and a prior where they tell nothing. Of `options`
+// only the limits of depth count.
+Estimator MakeCoarseEstimator(const DirectOptions& options = {});
+
 }  // namespace rgbd_pose

@@ -20,10 +20,11 @@ std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
   DirectSettings direct = settings.direct;
   direct.points.min_depth = features.min_depth;
   direct.points.max_depth = features.max_depth;
-  return MakeTracker(settings.tracker,
-                     {settings.tracking, features, settings.frontend,
-                      MakeEstimator(settings.estimator),
-                      MakeDirectEstimator(direct), settings.direct_tracking});
+  return MakeTracker(
+      settings.tracker,
+      {settings.tracking, features, settings.frontend,
+       MakeEstimator(settings.estimator), MakeDirectEstimator(direct),
+       MakeCoarseEstimator(direct.points), settings.direct_tracking});
 }
 
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {

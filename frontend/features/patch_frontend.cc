@@ -5,7 +5,6 @@
 #include <cmath>
 #include <memory>
 
-#include "frontend/features/coarse_alignment.h"
 #include "frontend/features/grid_corners.h"
 #include "frontend/features/patch.h"
 #include "frontend/features/patch_alignment.h"
@@ -28,18 +27,12 @@ constexpr double kNoiseFactor = 5.0;
 // sigma.
 constexpr float kMinCorrelation = 0.7F;
 
-// 640 x 480 to 20 x 15; patches are looked for in the first three.
-constexpr int kLevels = 6;
-constexpr int kPatchLevels = 3;
+// 640 x 480 to 160 x 120.
+constexpr int kLevels = 3;
 
 // Patches are made anew when their shape has changed by this: an error of up
 // to a quarter of a pixel at their corners.
 constexpr float kWarpStep = 0.125F;
-
-// As many levels as there are: small images have fewer.
-int PatchLevels(const std::vector<cv::Mat>& pyramid) {
-  return std::min(kPatchLevels, static_cast<int>(pyramid.size()));
-}
 
 // A surface that has become larger or smaller than this (in area), or is seen
 // from behind, does not look like its patch any more.
@@ -48,7 +41,7 @@ constexpr float kMaxScale = 4.0F;
 // The patches of a feature, one a level, as a motion makes them look.
 struct PatchStack {
   Eigen::Matrix2f ref_from_patch = Eigen::Matrix2f::Zero();  // none yet
-  std::array<Patch, kPatchLevels> levels;
+  std::array<Patch, kLevels> levels;
 };
 
 struct PatchFrame final : PreparedFrame {
@@ -63,11 +56,8 @@ struct PatchFrame final : PreparedFrame {
 };
 
 struct PatchFeatures : FeatureSet {
-  PatchFeatures(const PatchFrame& frame, const Camera& camera)
-      : coarse(frame, frame.pyramid, camera) {
-    for (int level = 0; level < PatchLevels(frame.pyramid); ++level) {
-      pyramid.push_back(frame.pyramid[level].clone());
-    }
+  explicit PatchFeatures(const PatchFrame& frame) {
+    for (const cv::Mat& level : frame.pyramid) pyramid.push_back(level.clone());
   }
 
   // The patches of a feature for a warp near to `ref_from_patch`: a function
@@ -79,7 +69,7 @@ struct PatchFeatures : FeatureSet {
     PatchStack& patch = patches[i];
     if (patch.ref_from_patch == rounded) return patch;
     patch.ref_from_patch = rounded;
-    for (int level = 0; level < PatchLevels(pyramid); ++level) {
+    for (size_t level = 0; level < pyramid.size(); ++level) {
       MakePatch(pyramid[level],
                 {ToLevel(corners[i].x, level), ToLevel(corners[i].y, level)},
                 rounded, &patch.levels[level]);
@@ -87,8 +77,7 @@ struct PatchFeatures : FeatureSet {
     return patch;
   }
 
-  std::vector<cv::Mat> pyramid;  // the levels that patches are taken from
-  CoarseReference coarse;
+  std::vector<cv::Mat> pyramid;
   std::vector<cv::Point2f> corners;
   mutable std::vector<PatchStack> patches;  // see Patches
 };
@@ -101,7 +90,7 @@ AlignedPatch FindPatch(const PatchStack& patch,
   auto u = static_cast<float>(start.x());
   auto v = static_cast<float>(start.y());
   AlignedPatch found;
-  for (int level = PatchLevels(pyramid) - 1; level >= 0; --level) {
+  for (int level = static_cast<int>(pyramid.size()) - 1; level >= 0; --level) {
     PatchAlignmentOptions options;
     // A coarse level need not be better than the start of the next.
     if (level > 0) options.min_step_px *= 4.0F;
@@ -122,8 +111,8 @@ std::unique_ptr<const PreparedFrame> PatchFrontend::Prepare(
 }
 
 std::unique_ptr<FeatureSet> PatchFrontend::Detect(const PreparedFrame& frame) {
-  auto features = std::make_unique<PatchFeatures>(
-      dynamic_cast<const PatchFrame&>(frame), options_.camera);
+  auto features =
+      std::make_unique<PatchFeatures>(dynamic_cast<const PatchFrame&>(frame));
   features->corners = DetectGridCorners(
       frame.gray, options_.max_features, [&](const cv::Point2f& pixel) {
         return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
@@ -145,16 +134,15 @@ void PatchFrontend::Match(const FeatureSet& reference,
   if (features.corners.empty()) return;
   const std::vector<cv::Mat>& pyramid =
       dynamic_cast<const PatchFrame&>(frame).pyramid;
-  const Rigid3d cur_from_ref =
-      features.coarse.Align(pyramid, cur_from_ref_guess);
   const Camera& camera = options_.camera;
   for (size_t i = 0; i < features.corners.size(); ++i) {
     const Observation& ref = features.observations[i];
-    const Eigen::Vector3d point = cur_from_ref * matches->matches.Point(ref);
+    const Eigen::Vector3d point =
+        cur_from_ref_guess * matches->matches.Point(ref);
     if (!(point.z() >= options_.min_depth)) continue;
     const Eigen::Vector2d start = camera.Project(point);
     if (!camera.Contains(start)) continue;
-    const Eigen::Matrix2f warp = PlaneWarp(camera, ref, cur_from_ref);
+    const Eigen::Matrix2f warp = PlaneWarp(camera, ref, cur_from_ref_guess);
     const float scale = warp.determinant();
     if (!(scale > 1.0F / kMaxScale && scale < kMaxScale)) continue;
     const PatchStack& patches = features.Patches(i, warp.inverse());

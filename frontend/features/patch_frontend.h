@@ -5,10 +5,9 @@
 namespace rgbd_pose {
 
 // Corners of the reference frame, each found again by aligning small patches
-// coarse to fine (patch_alignment.h), whatever the exposure. First both frames
-// are aligned as a whole (coarse_alignment.h), so that every patch starts
-// near, from a place that the images confirm; and patches are stretched and
-// turned as depth, surface normal and motion have it.
+// coarse to fine (patch_alignment.h), whatever the exposure, from within some
+// pixels (see DirectTracker::FindStart). Patches are stretched and turned as
+// depth, surface normal and motion have it.
 class PatchFrontend final : public Frontend {
  public:
   static constexpr char kName[] = "patch";

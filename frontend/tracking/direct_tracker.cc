@@ -62,10 +62,12 @@ DirectTracker::DirectFrame::DirectFrame(const Frame& frame)
 }
 
 DirectTracker::DirectTracker(const FrontendOptions& images, Estimator estimator,
+                             std::optional<Estimator> coarse,
                              const TrackerOptions& common,
                              const DirectTrackerOptions& options)
     : images_(images),
       estimator_(std::move(estimator)),
+      coarse_(std::move(coarse)),
       common_(common),
       options_(options) {
   for (const std::string& error :
@@ -93,21 +95,12 @@ void DirectTracker::Track(const Reference& reference,
                           const MotionMatrix* guess_covariance, int num_levels,
                           Tracked* tracked) {
   const auto& ours = dynamic_cast<const DirectReference&>(reference);
-  const FrameView view =
-      ViewFrame(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
-                images_.camera, *images_.depth_noise);
   tracked->matches.Clear();
   tracked->doubted.Clear();
   tracked->match_ms = 0.0;
   tracked->carried_by = kName;
-  const MotionPrior prior =
-      PriorOf(common_, cur_from_ref_guess, guess_covariance);
-  PairData pair;
-  pair.prior = &prior;
-  pair.prev = ours.images();
-  pair.cur = &view;
-  pair.num_levels = num_levels;
-  estimator_.Estimate(pair, cur_from_ref_guess, &tracked->estimate);
+  Estimate(ours, frame, cur_from_ref_guess, guess_covariance, num_levels,
+           &estimator_, &tracked->estimate);
   const MotionEstimate& estimate = tracked->estimate;
   tracked->num_found = estimate.num_used;
   tracked->overlap = ours.SeenFrom(estimate.cur_from_prev);
@@ -118,6 +111,37 @@ void DirectTracker::Track(const Reference& reference,
   Judge(tracked);
   tracked->is_scarce = tracked->status != TrackingStatus::kLost &&
                        tracked->overlap.share < options_.min_seen_share_ok;
+}
+
+Rigid3d DirectTracker::FindStart(const Reference& reference,
+                                 const PreparedFrame& frame,
+                                 const Rigid3d& cur_from_ref_guess,
+                                 const MotionMatrix* guess_covariance) {
+  if (!coarse_.has_value()) return cur_from_ref_guess;
+  Estimate(reference, frame, cur_from_ref_guess, guess_covariance, 0, &*coarse_,
+           &start_);
+  const bool is_found =
+      start_.ok() || start_.status == EstimateStatus::kNotConverged;
+  return is_found ? start_.cur_from_prev : cur_from_ref_guess;
+}
+
+void DirectTracker::Estimate(const Reference& reference,
+                             const PreparedFrame& frame,
+                             const Rigid3d& cur_from_ref_guess,
+                             const MotionMatrix* guess_covariance,
+                             int num_levels, Estimator* estimator,
+                             MotionEstimate* estimate) const {
+  const FrameView view =
+      ViewFrame(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
+                images_.camera, *images_.depth_noise);
+  const MotionPrior prior =
+      PriorOf(common_, cur_from_ref_guess, guess_covariance);
+  PairData pair;
+  pair.prior = &prior;
+  pair.prev = reference.images();
+  pair.cur = &view;
+  pair.num_levels = num_levels;
+  estimator->Estimate(pair, cur_from_ref_guess, estimate);
 }
 
 void DirectTracker::Judge(Tracked* tracked) const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -69,9 +70,10 @@ class DirectTracker final : public Tracker {
     std::vector<cv::Mat> pyramid;  // see image_pyramid.h
   };
 
-  // `estimator`: of direct costs. Throws InputError for options that are not
-  // sound (see Check).
+  // `estimator`: of direct costs; `coarse`: of those that find a start, null:
+  // none. Throws InputError for options that are not sound (see Check).
   DirectTracker(const FrontendOptions& images, Estimator estimator,
+                std::optional<Estimator> coarse = std::nullopt,
                 const TrackerOptions& common = {},
                 const DirectTrackerOptions& options = {});
 
@@ -93,14 +95,25 @@ class DirectTracker final : public Tracker {
              const Rigid3d& cur_from_ref_guess,
              const MotionMatrix* guess_covariance, int num_levels,
              Tracked* tracked);
+  // The motion that shows the coarse images of the reference in those of the
+  // frame: where to begin. The guess itself if they do not tell one.
+  Rigid3d FindStart(const Reference& reference, const PreparedFrame& frame,
+                    const Rigid3d& cur_from_ref_guess,
+                    const MotionMatrix* guess_covariance);
   const FrontendOptions& images() const override { return images_; }
 
  private:
+  void Estimate(const Reference& reference, const PreparedFrame& frame,
+                const Rigid3d& cur_from_ref_guess,
+                const MotionMatrix* guess_covariance, int num_levels,
+                Estimator* estimator, MotionEstimate* estimate) const;
   // Sets status and reason from estimate and overlap.
   void Judge(Tracked* tracked) const;
 
   FrontendOptions images_;
   Estimator estimator_;
+  std::optional<Estimator> coarse_;
+  MotionEstimate start_;
   TrackerOptions common_;
   DirectTrackerOptions options_;
   uint64_t last_id_ = 0;  // of references

@@ -93,6 +93,7 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
 
 void FeatureTracker::Track(const Reference& reference,
                            const PreparedFrame& frame,
+                           const Rigid3d& cur_from_ref_start,
                            const Rigid3d& cur_from_ref_guess,
                            const MotionMatrix* guess_covariance,
                            Tracked* tracked) {
@@ -100,13 +101,14 @@ void FeatureTracker::Track(const Reference& reference,
   tracked->match_ms = 0.0;
   {
     const StageTimer timer(&tracked->match_ms);
-    frontend_->Match(ours.features(), frame, cur_from_ref_guess,
+    frontend_->Match(ours.features(), frame, cur_from_ref_start,
                      &tracked->matches);
     ours.trust.Split(&tracked->matches, &tracked->doubted);
   }
   tracked->carried_by = kName;
   tracked->num_found = static_cast<int>(tracked->matches.matches.size());
-  Estimate(cur_from_ref_guess, guess_covariance, tracked);
+  Estimate(cur_from_ref_guess,
+           PriorOf(options_, cur_from_ref_guess, guess_covariance), tracked);
   Judge(tracked);
   if (tracked->status == TrackingStatus::kLost) return;
   tracked->overlap = {ShareOf(ours, *tracked),
@@ -120,17 +122,14 @@ void FeatureTracker::Believe(Reference* reference, Tracked* tracked) {
   tracked->overlap.share = ShareOf(ours, *tracked);
 }
 
-void FeatureTracker::Estimate(const Rigid3d& cur_from_ref_guess,
-                              const MotionMatrix* guess_covariance,
-                              Tracked* tracked) {
+void FeatureTracker::Estimate(const Rigid3d& cur_from_ref_start,
+                              const MotionPrior& prior, Tracked* tracked) {
   const Correspondences& matches = tracked->matches.matches;
-  Rigid3d guess = cur_from_ref_guess;
+  Rigid3d start = cur_from_ref_start;
   if (options_.initial_guess != nullptr) {
-    guess = options_.initial_guess->find(matches).value_or(guess);
+    start = options_.initial_guess->find(matches).value_or(start);
   }
-  const MotionPrior prior =
-      PriorOf(options_, cur_from_ref_guess, guess_covariance);
-  estimator_.Estimate({&matches, &prior}, guess, &tracked->estimate);
+  estimator_.Estimate({&matches, &prior}, start, &tracked->estimate);
 }
 
 void FeatureTracker::Judge(Tracked* tracked) const {

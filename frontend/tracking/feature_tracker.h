@@ -49,15 +49,23 @@ class FeatureTracker final : public Tracker {
                                            std::string* why_not) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
              const Rigid3d& cur_from_ref_guess,
-             const MotionMatrix* guess_covariance, Tracked* tracked) override;
+             const MotionMatrix* guess_covariance, Tracked* tracked) override {
+    Track(reference, frame, cur_from_ref_guess, cur_from_ref_guess,
+          guess_covariance, tracked);
+  }
+  // From a better start than the guess, which only is what the prior is about.
+  void Track(const Reference& reference, const PreparedFrame& frame,
+             const Rigid3d& cur_from_ref_start,
+             const Rigid3d& cur_from_ref_guess,
+             const MotionMatrix* guess_covariance, Tracked* tracked);
   void Believe(Reference* reference, Tracked* tracked) override;
   const FrontendOptions& images() const override {
     return frontend_->options();
   }
 
  private:
-  void Estimate(const Rigid3d& cur_from_ref_guess,
-                const MotionMatrix* guess_covariance, Tracked* tracked);
+  void Estimate(const Rigid3d& cur_from_ref_start, const MotionPrior& prior,
+                Tracked* tracked);
   // Sets status and reason from the estimate.
   void Judge(Tracked* tracked) const;
 

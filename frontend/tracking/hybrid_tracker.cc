@@ -3,6 +3,8 @@
 #include <Eigen/Cholesky>
 #include <utility>
 
+#include "core/util/stage_timer.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -68,9 +70,11 @@ bool Agree(const MotionEstimate& features, const MotionEstimate& pixels) {
 }  // namespace
 
 HybridTracker::HybridTracker(std::unique_ptr<FeatureTracker> features,
-                             std::unique_ptr<DirectTracker> direct)
+                             std::unique_ptr<DirectTracker> direct,
+                             bool refines)
     : features_(std::move(features)),
       direct_(std::move(direct)),
+      refines_(refines),
       pixels_(features_->images().camera) {}
 
 std::unique_ptr<const PreparedFrame> HybridTracker::Prepare(
@@ -98,7 +102,8 @@ std::unique_ptr<Reference> HybridTracker::MakeReference(
   std::string why_not_direct;
   reference->direct =
       direct_->MakeReference(*with_pixels, nullptr, nullptr, &why_not_direct);
-  if (reference->features == nullptr && reference->direct == nullptr) {
+  if (reference->features == nullptr &&
+      (!refines_ || reference->direct == nullptr)) {
     return nullptr;
   }
   return reference;
@@ -116,10 +121,18 @@ void HybridTracker::Track(const Reference& reference,
   tracked->status = TrackingStatus::kLost;
   tracked->reason = "the reference has no features";
   if (ours.features != nullptr) {
-    features_->Track(*ours.features, *with_features, cur_from_ref_guess,
+    double start_ms = 0.0;
+    Rigid3d start = cur_from_ref_guess;
+    if (ours.direct != nullptr) {
+      const StageTimer timer(&start_ms);
+      start = direct_->FindStart(*ours.direct, *with_pixels, cur_from_ref_guess,
+                                 guess_covariance);
+    }
+    features_->Track(*ours.features, *with_features, start, cur_from_ref_guess,
                      guess_covariance, tracked);
+    tracked->match_ms += start_ms;
   }
-  if (ours.direct == nullptr) return;
+  if (!refines_ || ours.direct == nullptr) return;
   const bool found = tracked->status != TrackingStatus::kLost;
   if (found) {
     direct_->Track(*ours.direct, *with_pixels, tracked->estimate.cur_from_prev,

@@ -9,16 +9,17 @@
 
 namespace rgbd_pose {
 
-// Features first, for their wide basin; from there direct costs against the
-// same reference, for their accuracy. Where features are few or fail, direct
-// costs alone.
+// Features first, from where coarse images lead; from there direct costs
+// against the same reference, for their accuracy. Where features are few or
+// fail, direct costs alone.
 class HybridTracker final : public Tracker {
  public:
   static constexpr char kName[] = "hybrid";  // as programs take it
 
-  // None may be null; both of the same camera.
+  // None may be null; both of the same camera. Unless it `refines`, pixels only
+  // say where to begin, and the motion is that of features.
   HybridTracker(std::unique_ptr<FeatureTracker> features,
-                std::unique_ptr<DirectTracker> direct);
+                std::unique_ptr<DirectTracker> direct, bool refines);
 
   std::unique_ptr<const PreparedFrame> Prepare(
       const Frame& frame) const override;
@@ -35,6 +36,7 @@ class HybridTracker final : public Tracker {
  private:
   std::unique_ptr<FeatureTracker> features_;
   std::unique_ptr<DirectTracker> direct_;
+  bool refines_;
   Tracked pixels_;  // what direct costs make of a frame
 };
 

@@ -101,11 +101,11 @@ class Odometry {
   // The pose after the last frame, found or not (see LostPolicy).
   Rigid3d WorldFromCam() const;
 
-  // The matches that the last frame was tracked by (prev: its reference) and
-  // what the estimator made of them.
+  // The matches that the last frame was tracked by (prev: its reference).
   const FeatureMatches& last_matches() const {
     return attempts_.kept().matches;
   }
+  // What the estimator made of them.
   const MotionEstimate& last_estimate() const {
     return attempts_.kept().estimate;
   }

@@ -25,11 +25,14 @@ std::unique_ptr<DirectTracker> ByPixels(TrackerParts* parts) {
   }
   return std::make_unique<DirectTracker>(parts->images,
                                          *std::move(parts->direct_estimator),
+                                         std::move(parts->coarse_estimator),
                                          parts->options, parts->direct_options);
 }
 
 std::unique_ptr<Tracker> MakeFeatureTracker(TrackerParts parts) {
-  return ByFeatures(&parts);
+  if (!parts.direct_estimator.has_value()) return ByFeatures(&parts);
+  return std::make_unique<HybridTracker>(ByFeatures(&parts), ByPixels(&parts),
+                                         /*refines=*/false);
 }
 
 std::unique_ptr<Tracker> MakeDirectTracker(TrackerParts parts) {
@@ -37,7 +40,8 @@ std::unique_ptr<Tracker> MakeDirectTracker(TrackerParts parts) {
 }
 
 std::unique_ptr<Tracker> MakeHybridTracker(TrackerParts parts) {
-  return std::make_unique<HybridTracker>(ByFeatures(&parts), ByPixels(&parts));
+  return std::make_unique<HybridTracker>(ByFeatures(&parts), ByPixels(&parts),
+                                         /*refines=*/true);
 }
 
 // One header and one row here make a tracker.

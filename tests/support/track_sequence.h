@@ -1,24 +1,24 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
 #include "costs/cost_factory.h"
-#include "frontend/features/frontend.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/tracking/odometry.h"
+#include "frontend/tracking/tracker_factory.h"
+#include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
 
-// By patches and one cost.
+// By features and one cost.
 inline Odometry MakeOdometry(const Camera& camera, const std::string& loss,
                              const OdometryOptions& options = {}) {
-  FrontendOptions frontend;
-  frontend.camera = camera;
-  return Odometry(options, MakeFrontend("patch", frontend),
-                  Estimator(EstimatorOptions(),
-                            MakeRobustCosts("bidirectional_point", loss)));
+  TrackerParts parts = PartsFor(camera);
+  parts.estimator = Estimator({}, MakeRobustCosts(kDefaultCost, loss));
+  return Odometry(options, MakeTracker("features", std::move(parts)));
 }
 
 // A sequence tracked, and what came of it.

@@ -16,6 +16,7 @@ inline TrackerParts PartsFor(const Camera& camera,
   parts.images.camera = camera;
   parts.direct_estimator =
       Estimator(DirectEstimatorOptions(), MakeDirectCosts());
+  parts.coarse_estimator = MakeCoarseEstimator();
   return parts;
 }
 

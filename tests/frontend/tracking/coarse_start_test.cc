@@ -1,0 +1,126 @@
+// Where trackers begin: the motion that coarse images tell.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <memory>
+#include <string>
+
+#include "costs/direct_cost_factory.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/direct_tracker.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A fifth of a pixel of the finest level, 80 x 60, as of the full image.
+constexpr double kGoodPx = 1.6;
+constexpr double kRounding = 1e-9;
+
+class CoarseStartTest : public ::testing::Test {
+ protected:
+  CoarseStartTest()
+      : dataset_(SyntheticOptions()),
+        camera_(dataset_.camera().camera),
+        ref_(dataset_.Read(0)),
+        cur_(dataset_.Read(15)),
+        cur_from_ref_(dataset_.WorldFromCam(15).Inverse() *
+                      dataset_.WorldFromCam(0)),
+        tracker_({camera_},
+                 Estimator(DirectEstimatorOptions(), MakeDirectCosts()),
+                 MakeCoarseEstimator()) {}
+
+  Rigid3d StartOf(const Frame& ref, const Frame& cur, const Rigid3d& guess,
+                  const MotionMatrix* guess_covariance = nullptr) {
+    std::string why_not;
+    const auto reference = tracker_.MakeReference(*tracker_.Prepare(ref),
+                                                  nullptr, nullptr, &why_not);
+    return tracker_.FindStart(*reference, *tracker_.Prepare(cur), guess,
+                              guess_covariance);
+  }
+
+  // How far (px, RMS over a grid) points are from where the truth has them.
+  double ErrorPx(const Rigid3d& motion) const {
+    double squares = 0.0;
+    int count = 0;
+    for (int v = 40; v < ref_.depth.rows - 40; v += 40) {
+      for (int u = 40; u < ref_.depth.cols - 40; u += 40) {
+        const double depth = ref_.DepthAt(u, v);
+        if (depth <= 0.0) continue;
+        const Eigen::Vector3d point =
+            camera_.Unproject(Eigen::Vector2d(u, v), depth);
+        squares += (camera_.Project(motion * point) -
+                    camera_.Project(cur_from_ref_ * point))
+                       .squaredNorm();
+        ++count;
+      }
+    }
+    return std::sqrt(squares / count);
+  }
+
+  Rigid3d OffBy(double px, const Eigen::Vector3d& axis) const {
+    return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(px / camera_.fx, axis)),
+                   Eigen::Vector3d::Zero()) *
+           cur_from_ref_;
+  }
+
+  SyntheticDataset dataset_;
+  Camera camera_;
+  Frame ref_, cur_;
+  Rigid3d cur_from_ref_;
+  DirectTracker tracker_;
+};
+
+TEST_F(CoarseStartTest, IsFoundFromFarAway) {
+  ASSERT_GT(ErrorPx(Rigid3d()), 10.0) << "the motion is vacuous";
+  EXPECT_LT(ErrorPx(StartOf(ref_, cur_, Rigid3d())), kGoodPx);
+  for (const double px : {-40.0, 40.0}) {
+    for (int i = 0; i < 3; ++i) {
+      const Eigen::Vector3d axis = Eigen::Vector3d::Unit(i);
+      SCOPED_TRACE(testing::Message() << px << " " << axis.transpose());
+      EXPECT_LT(ErrorPx(StartOf(ref_, cur_, OffBy(px, axis))), kGoodPx);
+    }
+  }
+}
+
+TEST_F(CoarseStartTest, DoesNotMindTheExposure) {
+  for (const double gain : {0.5, 1.5}) {
+    Frame cur = cur_;
+    cur_.gray.convertTo(cur.gray, CV_8UC1, gain, -10.0);
+    EXPECT_LT(ErrorPx(StartOf(ref_, cur, Rigid3d())), kGoodPx) << gain;
+  }
+}
+
+// And no depth, which would tell as well.
+TEST_F(CoarseStartTest, IsTheGuessWhereThereIsNothingToSee) {
+  const Rigid3d guess = OffBy(7.0, Eigen::Vector3d::UnitY());
+  Frame blind = cur_;
+  blind.gray = cv::Mat(cur_.gray.size(), CV_8UC1, cv::Scalar(50));
+  blind.depth = cv::Mat(cur_.depth.size(), CV_16UC1, cv::Scalar(0));
+  const Rigid3d start = StartOf(ref_, blind, guess);
+  EXPECT_LT((start * guess.Inverse()).Angle(), kRounding);
+  EXPECT_LT((start.translation - guess.translation).norm(), kRounding);
+}
+
+// Of another place: what fits best is no start.
+TEST_F(CoarseStartTest, IsTheGuessWhereTooFewAgree) {
+  const Rigid3d guess = OffBy(7.0, Eigen::Vector3d::UnitY());
+  Frame other = cur_;
+  cv::rotate(cur_.gray, other.gray, cv::ROTATE_180);
+  cv::rotate(cur_.depth, other.depth, cv::ROTATE_180);
+  const Rigid3d start = StartOf(ref_, other, guess);
+  EXPECT_EQ(start.translation, guess.translation);
+  EXPECT_EQ(start.rotation.coeffs(), guess.rotation.coeffs());
+}
+
+// As far as its covariance says so.
+TEST_F(CoarseStartTest, StaysWithACertainGuess) {
+  const Rigid3d guess = OffBy(40.0, Eigen::Vector3d::UnitY());
+  const MotionMatrix certain = 1e-12 * MotionMatrix::Identity();
+  const Rigid3d start = StartOf(ref_, cur_, guess, &certain);
+  EXPECT_NEAR(ErrorPx(start), 40.0, 5.0);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
