@@ -27,7 +27,7 @@ const cv::Mat& Seen() {
     SyntheticOptions options;
     options.scene = "depot";
     options.path = "depot";
-    options.rate_hz = kViews / 340.0;
+    options.rate_hz = kViews / 500.0;
     options.frames = kViews;
     options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
     const SyntheticDataset dataset(options);

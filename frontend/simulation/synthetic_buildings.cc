@@ -261,15 +261,14 @@ Scene MakeTwinCorridors(uint32_t seed) {
 }
 
 Scene MakeDepot(uint32_t seed) {
-  constexpr double kPitch = 3.4;   // m, from aisle to aisle
   constexpr double kReach = 7.5;   // half of a row's length
   constexpr double kThick = 0.34;  // of a row's back
   Scene scene;
   scene.lamp = {0.0, 0.0, 1000.0};
-  PutRoom({0, 0}, {36.0, 22.0}, seed, &scene);
-  FurnishRoom({0, 0}, {36.0, 22.0}, 1, seed, &scene);
-  for (int i = -4; i <= 4; ++i) {
-    const double x = kPitch * i;
+  PutRoom({0, 0}, {kDepotPitch * kDepotAisles, 22.0}, seed, &scene);
+  FurnishRoom({0, 0}, {kDepotPitch * kDepotAisles, 22.0}, 1, seed, &scene);
+  for (int i = 1; i < kDepotAisles; ++i) {
+    const double x = kDepotPitch * (i - kDepotAisles / 2.0);
     Put({{x, 0.0, 0.0}, {kThick, 2 * kReach, 2.2}}, kWallpaper, seed, &scene);
     const double right = x + kThick / 2;
     const double left = x - kThick / 2;

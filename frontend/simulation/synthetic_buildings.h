@@ -20,7 +20,9 @@ Scene MakeTwoRooms(uint32_t seed);
 constexpr double kTwinShift = 14.0;  // m
 Scene MakeTwinCorridors(uint32_t seed);
 
-// A depot of 36 x 22 m, nine rows of shelves and ten aisles along y.
+// A depot of 42 x 22 m, rows of shelves along y and aisles beside them.
+constexpr int kDepotAisles = 14;
+constexpr double kDepotPitch = 3.0;  // m, from aisle to aisle
 Scene MakeDepot(uint32_t seed);
 
 }  // namespace rgbd_pose

@@ -37,7 +37,7 @@ using SyntheticPath = Rigid3d (*)(double t, double duration);
 //   two_rooms       22 m through both rooms and the door, and back, in 57 s,
 //                   then again; where it returns it looks another way
 //   twin_corridors  18 m through both in 55 s, and back in the next 55
-//   depot           229 m along all aisles and back to the start in 340 s: a
+//   depot           313 m along all aisles and back to the start in 500 s: a
 //                   thousand views that differ
 SyntheticPath FindSyntheticPath(const std::string& name);
 

@@ -55,7 +55,7 @@ void AddBox(const SceneBox& box, bool from_within,
 //   table           a room with two desks in its middle
 //   two_rooms       with a door between them
 //   twin_corridors  that look exactly alike, a hall between them
-//   depot           shelves along 229 m of way
+//   depot           shelves along 313 m of way
 Scene MakeScene(const std::string& name, uint32_t seed);
 
 // The names of all scenes.

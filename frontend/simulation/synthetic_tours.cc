@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "frontend/simulation/synthetic_buildings.h"
 #include "frontend/simulation/synthetic_path.h"
 
 namespace rgbd_pose {
@@ -143,10 +144,9 @@ Rigid3d TwinCorridorsTour(double t, double /*duration*/) {
 // Up one aisle, down the next, and along the wall back to the first.
 Rigid3d DepotTour(double t, double /*duration*/) {
   static const Way way = [] {
-    constexpr double kPitch = 3.4;  // m, as the depot's
     std::vector<Vector2d> corners;
-    for (int aisle = 0; aisle < 10; ++aisle) {
-      const double x = kPitch * (aisle - 4.5);
+    for (int aisle = 0; aisle < kDepotAisles; ++aisle) {
+      const double x = kDepotPitch * (aisle - (kDepotAisles - 1) / 2.0);
       const double y = aisle % 2 == 0 ? -8.6 : 8.6;
       corners.emplace_back(x, y);
       corners.emplace_back(x, -y);
@@ -155,8 +155,8 @@ Rigid3d DepotTour(double t, double /*duration*/) {
     corners.emplace_back(corners.front().x(), -9.4);
     return Way(corners, true);
   }();
-  constexpr double kRound = 340.0;  // s
-  return LookAhead(way, way.length() * t / kRound, 2.6, 50.0 * kDegree, 1.35,
+  constexpr double kRound = 500.0;  // s
+  return LookAhead(way, way.length() * t / kRound, 2.6, 75.0 * kDegree, 1.35,
                    0.15) *
          Sway(t);
 }

@@ -186,7 +186,7 @@ INSTANTIATE_TEST_SUITE_P(Tours, SyntheticTours,
                                          Tour{"two_rooms", 57.0, 22.0, 0.5},
                                          Tour{"twin_corridors", 110.0, 36.0,
                                               0.6},
-                                         Tour{"depot", 340.0, 229.0, 0.8}));
+                                         Tour{"depot", 500.0, 313.0, 0.8}));
 
 TEST(SyntheticPathTest, UnknownNameListsTheNames) {
   try {
