@@ -17,7 +17,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kRows = 400;  // descriptors of a keyframe
+constexpr int kRows = 800;  // descriptors of a keyframe
 constexpr int kViews = 60;
 
 // All descriptors of views along the simulated depot: how bits of ORB are

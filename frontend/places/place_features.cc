@@ -8,54 +8,39 @@
 namespace rgbd_pose {
 namespace {
 
-// Detected in a frame; of them, kept of a keyframe.
-constexpr int kMaxKeypoints = 1500;
-constexpr int kMaxFeatures = 400;
+// Detected in a frame; of them, kept. With half as many half as many pairs of
+// real keyframes are found to show the same place (docs/places.md).
+constexpr int kMaxKeypoints = 2000;
+constexpr int kMaxFeatures = 800;
 
 // A motion is believed with so many inliers, in number and as a share of the
 // matches. Of the matches between different places fewer than 6 agree on a
 // motion, as three points fix it and a fourth agrees by chance once in some
 // thousand; the rest is a margin for texture that repeats itself.
-constexpr int kMinInliers = 15;
-constexpr double kMinInlierShare = 0.3;
-
-DescribedKeypoints DescribeImage(const cv::Mat& gray) {
-  DescribedKeypoints all;
-  Orb()
-      .make(kMaxKeypoints)
-      ->detectAndCompute(gray, cv::noArray(), all.keypoints, all.descriptors);
-  return all;
-}
-
-PlaceFeatures Observed(DescribedKeypoints described, const Frame& frame,
-                       const Camera& camera,
-                       const DepthLookupOptions& depth_options) {
-  PlaceFeatures features;
-  for (const cv::KeyPoint& keypoint : described.keypoints) {
-    features.observations.push_back(
-        Observe(frame, camera, keypoint.pt.x, keypoint.pt.y,
-                Orb().SigmaPx(keypoint), depth_options));
-  }
-  features.described = std::move(described);
-  return features;
-}
+constexpr int kMinInliers = 10;
+constexpr double kMinInlierShare = 0.1;
 
 }  // namespace
 
 PlaceFeatures DescribeKeyframe(const Frame& frame, const Camera& camera,
                                const DepthLookupOptions& depth_options) {
-  const DescribedKeypoints all = DescribeImage(frame.gray);
+  DescribedKeypoints all;
+  Orb()
+      .make(kMaxKeypoints)
+      ->detectAndCompute(frame.gray, cv::noArray(), all.keypoints,
+                         all.descriptors);
   const auto has_depth = [&](const cv::Point2f& pixel) {
     return LookUpDepth(frame, pixel.x, pixel.y, depth_options).depth > 0.0;
   };
-  return Observed(all.Select(SelectOverGrid(all.keypoints, frame.gray.size(),
-                                            kMaxFeatures, has_depth)),
-                  frame, camera, depth_options);
-}
-
-PlaceFeatures DescribeFrame(const Frame& frame, const Camera& camera,
-                            const DepthLookupOptions& depth_options) {
-  return Observed(DescribeImage(frame.gray), frame, camera, depth_options);
+  PlaceFeatures features;
+  features.described = all.Select(SelectOverGrid(
+      all.keypoints, frame.gray.size(), kMaxFeatures, has_depth));
+  for (const cv::KeyPoint& keypoint : features.described.keypoints) {
+    features.observations.push_back(
+        Observe(frame, camera, keypoint.pt.x, keypoint.pt.y,
+                Orb().SigmaPx(keypoint), depth_options));
+  }
+  return features;
 }
 
 Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,

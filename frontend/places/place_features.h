@@ -18,14 +18,9 @@ struct PlaceFeatures {
   std::vector<Observation> observations;  // of each keypoint
 };
 
-// Those of a keyframe that others are to be found at: up to about 400, spread
-// over the image and with a depth. Takes about 7 ms.
+// Up to about 800, spread over the image and with a depth. Takes about 8 ms.
 PlaceFeatures DescribeKeyframe(const Frame& frame, const Camera& camera,
                                const DepthLookupOptions& depth_options);
-
-// Those of a frame that looks for its place: all that are found, up to 1500.
-PlaceFeatures DescribeFrame(const Frame& frame, const Camera& camera,
-                            const DepthLookupOptions& depth_options);
 
 // What two frames share by their descriptors alone.
 Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,

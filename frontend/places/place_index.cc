@@ -87,7 +87,8 @@ void PlaceIndex::Add(int keyframe, const cv::Mat& descriptors) {
   std::vector<Entry>& entries = blocks_[block].entries;
   entries.resize(std::min(descriptors.rows, kMaxDescriptors));
   for (size_t i = 0; i < entries.size(); ++i) {
-    entries[i].words = WordsOf<Descriptor>(descriptors, static_cast<int>(i));
+    const size_t row = i * descriptors.rows / entries.size();
+    entries[i].words = WordsOf<Descriptor>(descriptors, static_cast<int>(row));
     ++num_entries_;
     for (int word = 0; word < kWords; ++word) {
       Table& table = tables_[word];

@@ -29,8 +29,9 @@ struct PlaceCandidate {
 // Queries may be made from several threads at once.
 class PlaceIndex {
  public:
-  // Of a keyframe, at most so many descriptors are taken: the first ones.
-  static constexpr int kMaxDescriptors = 512;
+  // Of a keyframe, at most so many descriptors are taken, evenly spread over
+  // the rows.
+  static constexpr int kMaxDescriptors = 400;
 
   // `descriptors`: CV_8U, n x 32, a row each. Throws InputError for others, or
   // for a keyframe that is there already.

@@ -52,8 +52,8 @@ class Relocaliser {
   std::optional<Relocalisation> Find(const Frame& frame,
                                      const std::vector<Place*>& places);
 
-  // Looks for the frame in a whole map: among the keyframes of the index that
-  // are most like it, whose features the caller has.
+  // Looks for the frame in a whole map: of the keyframes of the index that are
+  // most like it, whose features the caller has, the one most matches agree to.
   std::optional<Relocalisation> FindInMap(
       const Frame& frame, const PlaceIndex& index,
       const std::function<const PlaceFeatures&(int keyframe)>& features_of)

@@ -113,6 +113,25 @@ TEST(PlaceIndexTest, AsksWhichMayBe) {
   EXPECT_LT(found[0].keyframe + found[1].keyframe, 2);
 }
 
+// Of a keyframe with more than are taken, all of the image counts.
+TEST(PlaceIndexTest, TakesFromAllRows) {
+  std::mt19937 rng(9);
+  PlaceIndex index;
+  std::vector<cv::Mat> all;
+  for (int k = 0; k < 20; ++k) {
+    all.push_back(RandomDescriptors(2 * PlaceIndex::kMaxDescriptors, &rng));
+    index.Add(k, all.back());
+  }
+  const int rows = all[7].rows;
+  for (const int first : {0, rows - 100}) {
+    const std::vector<PlaceCandidate> found =
+        index.Query(all[7].rowRange(first, first + 100), 1);
+    ASSERT_EQ(found.size(), 1u);
+    EXPECT_EQ(found[0].keyframe, 7);
+    EXPECT_NEAR(found[0].score, 0.5, 0.05);
+  }
+}
+
 // A camera that stands still: buckets are full, and the place is still found,
 // where it was first.
 TEST(PlaceIndexTest, OnePlaceManyTimesIsFoundWhereItWasFirst) {
