@@ -37,6 +37,7 @@ std::string MappingOptions::Check() const {
   if (!(min_pair_share > 0.0 && min_pair_share <= 1.0)) {
     return "min_pair_share must be above 0 and at most 1";
   }
+  if (!(max_pair_zoom >= 1.0)) return "max_pair_zoom must be at least 1";
   if (loop_hops < 1) return "loop_hops must be at least 1";
   if (max_lookalikes < 0) return "max_lookalikes must not be negative";
   if (!(max_pair_rotation > 0.0) || !(max_pair_translation > 0.0)) {
@@ -117,6 +118,14 @@ const Reference* Mapper::ReferenceOf(int at) {
   return references_.front().second.get();
 }
 
+double Mapper::SharedView(int ref, int cur, const Rigid3d& cur_from_ref) const {
+  const Overlap there = keyframes_[ref].samples.SeenFrom(cur_from_ref);
+  if (there.share < options_.min_pair_share) return 0.0;
+  const Overlap back = keyframes_[cur].samples.SeenFrom(cur_from_ref.Inverse());
+  if (std::max(there.zoom, back.zoom) > options_.max_pair_zoom) return 0.0;
+  return std::min(there.share, back.share);
+}
+
 std::vector<int> Mapper::SeeingTheSame(int newest) const {
   std::vector<std::pair<double, int>> seen;
   for (int at = 0; at < newest; ++at) {
@@ -126,12 +135,8 @@ std::vector<int> Mapper::SeeingTheSame(int newest) const {
     }
     const Rigid3d cur_from_ref =
         graph_.pose(newest).Inverse() * graph_.pose(at);
-    const double there = keyframes_[at].samples.SeenFrom(cur_from_ref).share;
-    if (there < options_.min_pair_share) continue;
-    const double back =
-        keyframes_[newest].samples.SeenFrom(cur_from_ref.Inverse()).share;
-    if (back < options_.min_pair_share) continue;
-    seen.emplace_back(-std::min(there, back), at);
+    const double share = SharedView(at, newest, cur_from_ref);
+    if (share >= options_.min_pair_share) seen.emplace_back(-share, at);
   }
   std::sort(seen.begin(), seen.end());
   const size_t most = options_.max_pairs;
@@ -156,6 +161,8 @@ std::optional<Edge> Mapper::MakePair(int ref, int cur,
   const MotionEstimate& estimate = tracked_.estimate;
   if (tracked_.status != TrackingStatus::kOk || !estimate.ok() ||
       estimate.num_inliers < min_inlier_share * estimate.num_used ||
+      estimate.sigma > options_.max_pair_sigma ||
+      tracked_.overlap.share < options_.min_seen_share ||
       !IsWithin(estimate.cur_from_prev, cur_from_ref_guess,
                 options_.max_pair_rotation, options_.max_pair_translation)) {
     return std::nullopt;
@@ -198,7 +205,10 @@ void Mapper::PairByLooks(int newest, const PreparedFrame& frame,
     if (!rough.has_value()) continue;
     const auto edge = MakePair(at, newest, frame, rough->cur_from_prev,
                                options_.min_lookalike_inliers);
-    if (!edge.has_value()) continue;
+    if (!edge.has_value() ||
+        SharedView(at, newest, edge->cur_from_ref) == 0.0) {
+      continue;
+    }
     if (graph_.segment(at) != graph_.segment(newest)) {
       if (!AgreesWithOthers(*edge, frame) && !HaveMetBefore(*edge)) continue;
       graph_.Join(*edge);
@@ -219,8 +229,7 @@ bool Mapper::AgreesWithOthers(const Edge& edge, const PreparedFrame& frame) {
   for (const int at : beside) {
     const Rigid3d guess =
         edge.cur_from_ref * graph_.pose(edge.ref).Inverse() * graph_.pose(at);
-    const double share = keyframes_[at].samples.SeenFrom(guess).share;
-    if (share < options_.min_pair_share) continue;
+    if (SharedView(at, edge.cur, guess) < options_.min_pair_share) continue;
     const auto other =
         MakePair(at, edge.cur, frame, guess, options_.min_lookalike_inliers);
     if (other.has_value() && IsWithin(other->cur_from_ref, guess,

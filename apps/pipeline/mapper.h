@@ -31,6 +31,10 @@ struct MappingOptions {
   // Two see the same if each shows such a share of the other.
   double min_pair_share = 0.4;
 
+  // And neither shows things so much larger than the other: what one sees from
+  // near by the other sees from far away, where depth is not to be trusted.
+  double max_pair_zoom = 1.5;
+
   // A pair closes a loop if it joins keyframes that were more than so many
   // pairs apart.
   int loop_hops = 4;
@@ -43,6 +47,11 @@ struct MappingOptions {
   // more than this.
   double max_pair_rotation = 0.2;     // rad
   double max_pair_translation = 0.3;  // m
+
+  // Of a good pair the tracker sees at least such a share, and its residuals
+  // spread by no more sigmas.
+  double min_seen_share = 0.1;
+  double max_pair_sigma = 3.0;
 
   // A pair found by looks alone needs such a share of inliers.
   double min_lookalike_inliers = 0.5;
@@ -133,6 +142,9 @@ class Mapper {
   int AddKeyframe(int id, const Frame& frame, const Rigid3d& map_from_cam,
                   int segment, bool is_held);
   const Reference* ReferenceOf(int at);
+  // How much of each of the two the other one sees, the less of both; 0 if one
+  // sees it too much larger.
+  double SharedView(int ref, int cur, const Rigid3d& cur_from_ref) const;
   std::vector<int> SeeingTheSame(int newest) const;
   // The motion from `ref` to a frame near a guess, if it is a good pair.
   std::optional<Edge> MakePair(int ref, int cur, const PreparedFrame& frame,

@@ -116,6 +116,11 @@ void Slam::Follow(const TrackedFrame& tracked) {
         map_from_keyframe_.at(reference) * odom_from_reference_.Inverse();
   }
   if (!tracked.is_reference) return;
+  pending_.push_back({id, std::nullopt, Rigid3d()});
+  if (tracked.reference != -1) {
+    pending_.back().ref = *reference_;
+    pending_.back().ref_from_cam = tracked.cur_from_reference.Inverse();
+  }
   map_from_keyframe_[id] = map_from_odom_ * odom_from_cam_;
   segments_[id] = tracked.reference == -1 || !reference_.has_value()
                       ? first_segment_ + tracked.segment
@@ -174,6 +179,7 @@ void Slam::Apply(MapUpdate update, SlamFrame* result) {
     map_from_keyframe_[id] = pose;
   }
   for (const auto& [id, segment] : update.segments) segments_[id] = segment;
+  MoveNewer();
   if (reference_.has_value()) {
     map_from_odom_ =
         map_from_keyframe_.at(*reference_) * odom_from_reference_.Inverse();
@@ -184,6 +190,18 @@ void Slam::Apply(MapUpdate update, SlamFrame* result) {
   result->map_ms += update.ms;
   if (!update.trouble.empty()) result->trouble = update.trouble;
   if (update.returned_to.has_value()) Adopt(*update.returned_to);
+}
+
+// Keyframes that are newer than the update move along with those they were
+// tracked against.
+void Slam::MoveNewer() {
+  if (!pending_.empty()) pending_.pop_front();  // the one it is of
+  for (const Pending& keyframe : pending_) {
+    if (!keyframe.ref.has_value()) continue;
+    map_from_keyframe_[keyframe.id] =
+        map_from_keyframe_.at(*keyframe.ref) * keyframe.ref_from_cam;
+    segments_[keyframe.id] = segments_.at(*keyframe.ref);
+  }
 }
 
 // The odometry has it where the map has it, seen from where the camera is.

@@ -112,6 +112,7 @@ class Slam {
   void SearchMap(const PreparedFrame& frame, int index);
   void TakeUp(int frame, SlamFrame* result);
   void Apply(MapUpdate update, SlamFrame* result);
+  void MoveNewer();
   void Adopt(const FoundKeyframe& keyframe);
 
   const SlamSettings settings_;
@@ -133,6 +134,14 @@ class Slam {
   int first_segment_ = 0;  // of new ones
 
   std::vector<PathFrame> path_;
+  // Keyframes that no update has taken in yet, the oldest first, by the one
+  // that they were tracked against.
+  struct Pending {
+    int id = 0;
+    std::optional<int> ref;
+    Rigid3d ref_from_cam;
+  };
+  std::deque<Pending> pending_;
   std::deque<Due<MapUpdate>> updates_;
   std::optional<Due<std::optional<FoundKeyframe>>> search_;
   Worker worker_;  // the last: it works with what is above

@@ -13,6 +13,7 @@ namespace rgbd_pose {
 struct Overlap {
   double share = 0.0;    // 0 to 1
   double flow_px = 0.0;  // mean distance to where it was, px
+  double zoom = 1.0;     // mean of how much larger things look there
 };
 
 // Points of a view, far apart: enough to tell what of it others see.
@@ -25,7 +26,8 @@ class ViewSamples {
   ViewSamples(const Frame& frame, const Camera& camera, int step_px,
               double min_depth, double max_depth);
 
-  // How much of it a camera there should see. What hides what is not known.
+  // How much of it a camera there should see. What hides what is not known, but
+  // what is looked at from another side (by 60 degrees) is another surface.
   Overlap SeenFrom(const Rigid3d& cur_from_view) const;
 
   size_t size() const { return points_.size(); }
