@@ -80,7 +80,7 @@ EdgeTerm EdgeTerm::Of(const Rigid3d& cur_from_ref, const MotionMatrix& root) {
   return term;
 }
 
-MotionVector EdgeTerm::ResidualAt(const PosePair& pair,
+MotionVector EdgeTerm::ResidualAt(const RelativeMotion& pair,
                                   PosePairJacobian* jacobian) const {
   Eigen::Quaterniond q(pair.motion.R * measured.R.transpose());
   if (q.w() < 0.0) q.coeffs() = -q.coeffs();
@@ -99,7 +99,8 @@ MotionVector EdgeTerm::ResidualAt(const PosePair& pair,
 
 bool EdgeBlock::Evaluate(double const* const* parameters, double* residuals,
                          double** jacobians) const {
-  const PosePair pair = PosePairAt(*ref_, parameters[0], *cur_, parameters[1]);
+  const RelativeMotion pair =
+      RelativeMotionAt(*ref_, parameters[0], *cur_, parameters[1]);
   PosePairJacobian jacobian;
   Eigen::Map<MotionVector>(residuals, 6) =
       term_.ResidualAt(pair, jacobians != nullptr ? &jacobian : nullptr);
@@ -146,8 +147,8 @@ bool LiveBlock::Evaluate(double const* const* parameters, double* residuals,
       by_poses.row(i) = jets[i].v;
     }
   } else {
-    const PosePair pair =
-        PosePairAt(*ref_, parameters[0], *cur_, parameters[1]);
+    const RelativeMotion pair =
+        RelativeMotionAt(*ref_, parameters[0], *cur_, parameters[1]);
     x = ParametersOf(pair.motion, motion_R_, motion_C_);
     by_poses = pair.jacobian;
     by_poses.topRows<3>() =

@@ -52,7 +52,7 @@ struct EdgeTerm {
   }
 
   // The same with d r / d[x_ref x_cur].
-  MotionVector ResidualAt(const PosePair& pair,
+  MotionVector ResidualAt(const RelativeMotion& pair,
                           PosePairJacobian* jacobian) const;
 };
 

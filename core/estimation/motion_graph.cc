@@ -143,7 +143,7 @@ class MotionGraph::Impl {
 
 double MotionGraph::Impl::SquaredNorm(const EdgeOf& edge) const {
   const Rigid3d motion = Between(edge.ref, edge.cur);
-  PosePair pair;
+  RelativeMotion pair;
   pair.motion = {motion.rotation.toRotationMatrix(),
                  motion.Inverse().translation};
   return EdgeTerm::Of(edge.cur_from_ref, edge.root)

@@ -32,7 +32,7 @@ inline Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
   return m;
 }
 
-// For any scalar: the oracle of PosePairAt.
+// For any scalar: the oracle of RelativeMotionAt.
 template <typename T>
 MotionPose<T> MotionBetween(const MotionPose<T>& ref,
                             const MotionPose<T>& cur) {
@@ -54,18 +54,19 @@ inline Eigen::Matrix3d AxesOfAngles(const double* x) {
 }
 
 // The motion between two poses and its derivatives.
-struct PosePair {
+struct RelativeMotion {
   MotionPose<double> motion;
   // d[omega C] / d[x_ref x_cur], omega (rad) a small rotation about the axes of
   // `cur`, as MotionEstimate's covariance has it.
   PosePairJacobian jacobian;
 };
 
-inline PosePair PosePairAt(const MotionOrigin& ref_origin, const double* x_ref,
-                           const MotionOrigin& cur_origin,
-                           const double* x_cur) {
+inline RelativeMotion RelativeMotionAt(const MotionOrigin& ref_origin,
+                                       const double* x_ref,
+                                       const MotionOrigin& cur_origin,
+                                       const double* x_cur) {
   const MotionPose<double> ref = ref_origin.PoseAt(x_ref);
-  PosePair pair;
+  RelativeMotion pair;
   pair.motion = MotionBetween(ref, cur_origin.PoseAt(x_cur));
   const Eigen::Matrix3d axes = AxesOfAngles(x_ref);
   pair.jacobian.setZero();
