@@ -9,6 +9,9 @@
 #ifdef RGBD_POSE_HAS_OPENCV_RGBD
 #include <opencv2/rgbd.hpp>
 #endif
+#ifdef RGBD_POSE_HAS_OPEN3D
+#include "benchmarks/open3d_tracker.h"
+#endif
 
 namespace rgbd_pose {
 namespace {
@@ -103,6 +106,9 @@ std::vector<FrameTrackerType> FrameTrackerTypes() {
       {"opencv_rgbd", Make<OpenCvTracker<cv::rgbd::RgbdOdometry>>},
       {"opencv_icp", Make<OpenCvTracker<cv::rgbd::ICPOdometry>>},
       {"opencv_rgbdicp", Make<OpenCvTracker<cv::rgbd::RgbdICPOdometry>>},
+#endif
+#ifdef RGBD_POSE_HAS_OPEN3D
+      {"open3d_hybrid", MakeOpen3dHybrid},
 #endif
   };
 }

@@ -41,7 +41,8 @@ struct FrameTrackerType {
 // its rgbd module, cv::rgbd's RgbdOdometry, ICPOdometry and RgbdICPOdometry,
 // all with default settings and from frame to frame as in OpenCV's own sample:
 // each frame is tracked against the one before, which keeps what was computed
-// of it (pyramids, normals), and a frame that fails is taken as no motion.
+// of it (pyramids, normals), and a frame that fails is taken as no motion;
+// then, where it is installed, Open3D's (open3d_tracker.h).
 std::vector<FrameTrackerType> FrameTrackerTypes();
 
 }  // namespace rgbd_pose

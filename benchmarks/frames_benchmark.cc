@@ -1,6 +1,7 @@
-// Whole frames, images in and pose out, by this project and by OpenCV: time on
-// one core and errors against the ground truth. Writes JSON as Google Benchmark
-// does, one entry a round and method; times are medians over the frames.
+// Whole frames, images in and pose out, by this project, OpenCV and Open3D:
+// time on one core and errors against the ground truth. Writes JSON as Google
+// Benchmark does, one entry a round and method; times are medians over the
+// frames.
 //
 // Names: frames/<sequence>/<method>.
 
@@ -163,7 +164,7 @@ int Main() {
 int main(int argc, char** argv) {
   const rgbd_pose::ProgramInfo info = {
       "frames_benchmark",
-      "tracks sequences by this project and by OpenCV: times and errors",
+      "tracks sequences by this project, OpenCV and Open3D: times and errors",
       "frames_benchmark --frames=90 --rounds=5 --output=frames.json",
       {{"Input", {"frames", "rounds", "path", "dataset", "camera"}},
        {"Output", {"output"}}},

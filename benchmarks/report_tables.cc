@@ -198,7 +198,7 @@ std::string FrameRows(const BenchmarkResults& results) {
   for (const std::string& sequence : TrackedSequences(results)) {
     for (const char* method :
          {"rgbd_pose", "rgbd_pose_direct", "rgbd_pose_hybrid", "opencv_rgbd",
-          "opencv_icp", "opencv_rgbdicp"}) {
+          "opencv_icp", "opencv_rgbdicp", "open3d_hybrid"}) {
       const BenchmarkResult* result =
           results.Find("frames/" + sequence + "/" + method);
       if (result == nullptr) continue;

@@ -1,5 +1,7 @@
 #include "benchmarks/speedups.h"
 
+#include <algorithm>
+
 #include "costs/cost_factory.h"
 #include "costs/direct_cost_factory.h"
 
@@ -9,7 +11,7 @@ namespace {
 const std::string kMatchPeers[] = {"pnp_ransac", "pnp_ransac_refined",
                                    "umeyama_ransac"};
 const std::string kFramePeers[] = {"opencv_rgbd", "opencv_icp",
-                                   "opencv_rgbdicp"};
+                                   "opencv_rgbdicp", "open3d_hybrid"};
 
 class Collector {
  public:
@@ -76,8 +78,8 @@ std::vector<std::string> TrackedSequences(const BenchmarkResults& results) {
   const std::string suffix = "/rgbd_pose";
   std::vector<std::string> sequences;
   for (const auto& [name, result] : results.benchmarks) {
-    const size_t end = name.rfind(suffix);
-    if (name.rfind(prefix, 0) != 0 || end == std::string::npos) continue;
+    const size_t end = name.size() - std::min(name.size(), suffix.size());
+    if (name.rfind(prefix, 0) != 0 || name.substr(end) != suffix) continue;
     sequences.push_back(name.substr(prefix.size(), end - prefix.size()));
   }
   return sequences;

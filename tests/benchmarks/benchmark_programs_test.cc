@@ -67,6 +67,12 @@ TEST_F(BenchmarkProgramsTest, MakeThePageAndTheSpeedups) {
   const std::string text = ReadTextFile(page);
   EXPECT_THAT(text, HasSubstr("| machine | a test"));
   EXPECT_THAT(text, Not(HasSubstr("@"))) << "a mark was left";
+  for (const char* method :
+       {"rgbd_pose", "rgbd_pose_direct", "rgbd_pose_hybrid"}) {
+    const std::string row = std::string("| `room_xyz` | `") + method + "` |";
+    ASSERT_THAT(text, HasSubstr(row));
+    EXPECT_EQ(text.find(row), text.rfind(row)) << "twice: " << row;
+  }
   const nlohmann::json ratios = nlohmann::json::parse(ReadTextFile(speedups));
   for (const char* key :
        {"solve_n300_compressed_over_autodiff",

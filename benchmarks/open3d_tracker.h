@@ -1,0 +1,13 @@
+#pragma once
+
+#include <memory>
+
+#include "benchmarks/frame_trackers.h"
+
+namespace rgbd_pose {
+
+// Open3D's ComputeRGBDOdometry with its hybrid term (Park, Zhou & Koltun, ICCV
+// 2017) and default settings, from frame to frame, from no motion.
+std::unique_ptr<FrameTracker> MakeOpen3dHybrid(const Camera& camera);
+
+}  // namespace rgbd_pose
