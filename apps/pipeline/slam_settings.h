@@ -10,7 +10,7 @@ namespace rgbd_pose {
 
 // What a Slam is made of beside its odometry.
 struct SlamSettings {
-  MappingOptions mapping;
+  MappingOptions mapping;  // which keyframes are joined to which
 
   // What is found out behind the tracking is taken up so many frames after the
   // keyframe that it follows from, and waited for if it is late: so results do
@@ -28,6 +28,7 @@ struct MapSettings {
   bool localise_only = false;  // the loaded map stays as it is
 };
 
+// Their rows.
 std::vector<Setting> SettingTable(MapSettings* settings);
 
 }  // namespace rgbd_pose

@@ -59,14 +59,16 @@ const char* ToString(GraphStatus status);
 
 // What came of a solve.
 struct GraphSolution {
+  // Whether the poses may be used.
   GraphStatus status = GraphStatus::kOk;
   std::string reason;  // in words; empty if ok
 
   double initial_cost = 0.0;  // with the losses at their own widths
-  double final_cost = 0.0;
-  int iterations = 0;  // of the solver, all rounds together
-  int rounds = 0;
+  double final_cost = 0.0;    // likewise, at the new poses
+  int iterations = 0;         // of the solver, all rounds together
+  int rounds = 0;             // see MotionGraphOptions::max_rounds
 
+  // Whether the poses are those that agree best.
   bool ok() const { return status == GraphStatus::kOk; }
 };
 
@@ -99,13 +101,16 @@ class MotionGraph {
   void AddPair(int ref, int cur, const PairData& pair,
                std::vector<RobustCost> costs);
 
+  // Where the next Solve begins, or stays if it is fixed.
   void SetPose(int pose, const Rigid3d& world_from_cam);
+  // Whether it is, from now on.
   void SetFixed(int pose, bool is_fixed);
 
   // Moves the poses that are not fixed. What lies between fixed poses alone is
   // left out.
   GraphSolution Solve();
 
+  // How many there are.
   int num_poses() const;
   // world_from_cam.
   const Rigid3d& pose(int pose) const;

@@ -15,9 +15,9 @@ Keyframe* Keyframes::Add(Keyframe keyframe, const Keyframe* in_use) {
 }
 
 void Keyframes::Renew(const Keyframe* keyframe) {
-  const auto at = std::find_if(
-      keyframes_.begin(), keyframes_.end(),
-      [=](const auto& kept) { return kept.get() == keyframe; });
+  const auto at =
+      std::find_if(keyframes_.begin(), keyframes_.end(),
+                   [=](const auto& kept) { return kept.get() == keyframe; });
   if (at != keyframes_.end()) std::rotate(at, at + 1, keyframes_.end());
 }
 

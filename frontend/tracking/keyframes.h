@@ -27,8 +27,8 @@ class Keyframes {
   // So many are kept: some seconds of fast motion; up to 1.5 MB each.
   static constexpr size_t kMaxKeyframes = 20;
 
-  // The keyframe stays where it is as long as it is kept. `in_use` does not make
-  // way; may be null.
+  // The keyframe stays where it is as long as it is kept. `in_use` does not
+  // make way; may be null.
   Keyframe* Add(Keyframe keyframe, const Keyframe* in_use = nullptr);
 
   // Makes a kept keyframe the latest.

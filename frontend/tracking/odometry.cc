@@ -300,8 +300,12 @@ bool Odometry::Adopt(const Frame& frame, int id,
   std::unique_ptr<Reference> reference =
       tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
   if (reference == nullptr) return false;
-  keyframes_.Add({id, segment_, world_from_cam, std::move(reference),
-                  std::make_unique<Place>(frame, id), {}},
+  keyframes_.Add({id,
+                  segment_,
+                  world_from_cam,
+                  std::move(reference),
+                  std::make_unique<Place>(frame, id),
+                  {}},
                  reference_);
   return true;
 }

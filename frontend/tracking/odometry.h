@@ -91,11 +91,12 @@ class Odometry {
     return tracker_->Prepare(frame);
   }
 
-  // Takes a frame of elsewhere (a map, an earlier visit) for a keyframe that was
-  // seen a moment ago: where the view returns to it, frames are tracked against
-  // it, and a lost one is searched for there first. `id`: that of the frame if
-  // it was one of these, else one below -1; `world_from_cam`: in the world of
-  // these poses. False, and nothing has changed, if the frame shows too little.
+  // Takes a frame of elsewhere (a map, an earlier visit) for a keyframe that
+  // was seen a moment ago: where the view returns to it, frames are tracked
+  // against it, and a lost one is searched for there first. `id`: that of the
+  // frame if it was one of these, else one below -1; `world_from_cam`: in the
+  // world of these poses. False, and nothing has changed, if the frame shows
+  // too little.
   bool Adopt(const Frame& frame, int id, const Rigid3d& world_from_cam);
 
   // The pose after the last frame, found or not (see LostPolicy).

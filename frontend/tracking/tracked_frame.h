@@ -35,7 +35,7 @@ struct TrackedFrame {
   int reference = -1;  // index of the frame it was tracked against; -1: none
   Rigid3d cur_from_reference;  // the motion since then
   bool is_reference = false;   // became the reference of the frames that follow
-  bool relocalised = false;   // found again among earlier references
+  bool relocalised = false;    // found again among earlier references
 
   // Lost, but the pose follows what others say of the motion since it was not
   // (the motion guess of Odometry::Track).

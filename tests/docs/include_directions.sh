@@ -50,7 +50,7 @@ room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"
 # A library: neither flags nor JSON.
-room apps/pipeline 'core/|robust|costs|frontend/' 'Eigen/'
+room apps/pipeline 'core/|robust|costs|frontend/' 'Eigen/|ceres/'
 room apps/shell 'core/|apps/' "$libraries"
 room apps/figures 'core/|apps/' 'none'
 room apps/results "$programs" "$libraries"
