@@ -1,10 +1,9 @@
 // Keyframes of a path that returns: which of them show the same place?
 #include <cstdio>
-#include <memory>
 #include <vector>
 
-#include "costs/cost_factory.h"
-#include "frontend/places/place_checker.h"
+#include "frontend/image/depth_lookup.h"
+#include "frontend/places/place_features.h"
 #include "frontend/places/place_index.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
@@ -14,29 +13,21 @@ int main() {
   tour.frames = 31;
   tour.rate_hz = 0.5;  // a keyframe every 2 s
   const rgbd_pose::SyntheticDataset sequence(tour);
-  rgbd_pose::FrontendOptions options;
-  options.camera = sequence.camera().camera;
-  rgbd_pose::PlaceChecker checker(
-      rgbd_pose::MakeFrontend("patch", options),
-      rgbd_pose::Estimator({}, rgbd_pose::MakeRobustCosts()));
+  const rgbd_pose::Camera camera = sequence.camera().camera;
   rgbd_pose::PlaceIndex index;
   std::vector<rgbd_pose::PlaceFeatures> places;
-  std::vector<std::unique_ptr<rgbd_pose::FeatureSet>> features;
   for (int i = 0; i < sequence.size(); ++i) {
-    const auto frame = checker.frontend().Prepare(sequence.Read(i));
-    places.push_back(rgbd_pose::DescribeKeyframe(*frame, options.camera,
-                                                 options.DepthLookup()));
+    places.push_back(rgbd_pose::DescribeKeyframe(sequence.Read(i), camera, {}));
     const cv::Mat& descriptors = places[i].described.descriptors;
     const auto is_old = [i](int keyframe) { return keyframe < i - 5; };
     for (const auto& [old, score] : index.Query(descriptors, 3, is_old)) {
-      const rgbd_pose::PlaceCheck check =
-          checker.Check(places[old], *features[old], places[i], *frame);
-      if (!check.ok) continue;  // check.reason says why
+      const auto rough = rgbd_pose::FindRoughMotion(
+          rgbd_pose::MatchPlaces(places[old], places[i], camera));
+      if (!rough.has_value()) continue;  // another place
       std::printf("%d shows what %d shows, from %.2f m away\n", i, old,
-                  check.cur_from_ref.translation.norm());
+                  rough->cur_from_prev.translation.norm());
     }
     index.Add(i, descriptors);
-    features.push_back(checker.frontend().Detect(*frame));
   }
   return 0;
 }
