@@ -179,6 +179,25 @@ std::string DirectRows(const BenchmarkResults& results) {
   return text;
 }
 
+std::string GraphRows(const BenchmarkResults& results) {
+  std::string text;
+  for (const char* keyframes : {"100", "1000"}) {
+    for (const char* way :
+         {"odometry", "edges", "compressed", "per_match", "autodiff", "map",
+          "bundle_adjustment", "map_window", "pairs"}) {
+      const BenchmarkResult* result =
+          results.Find(std::string("graph/") + way + "/" + keyframes);
+      if (result == nullptr) continue;
+      text +=
+          Row({keyframes, Count(*result, "pairs"), std::string("`") + way + "`",
+               std::string(way) == "odometry" ? "" : Time(result),
+               Count(*result, "steps"), Counter(*result, "error_mm"),
+               Counter(*result, "wrong_focal_mm")});
+    }
+  }
+  return text;
+}
+
 std::string PeerRows(const BenchmarkResults& results) {
   std::string text;
   for (const char* method : {"estimator", "ransac", "umeyama_ransac",
@@ -276,6 +295,7 @@ std::map<std::string, std::string> ReportTables(
           {"ESTIMATE", EstimateRows(results)},
           {"JACOBIANS", JacobianRows(results)},
           {"DIRECT", DirectRows(results)},
+          {"GRAPHS", GraphRows(results)},
           {"PEERS", PeerRows(results)},
           {"FRAMES", FrameRows(results)},
           {"SPEEDUPS", SpeedupRows(speedups)}};

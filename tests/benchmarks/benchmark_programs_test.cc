@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 
@@ -33,11 +34,27 @@ class BenchmarkProgramsTest : public testing::Test {
 };
 
 TEST_F(BenchmarkProgramsTest, PlacesAreFound) {
-  const std::string results =
-      ReadTextFile(Measure(PLACES_BENCHMARK, "places/query/100/"));
-  for (const auto& run : nlohmann::json::parse(results)["benchmarks"]) {
+  const nlohmann::json results = nlohmann::json::parse(
+      ReadTextFile(Measure(PLACES_BENCHMARK, "places/query/100/")));
+  int runs = 0;
+  for (const auto& run : results.at("benchmarks")) {
     if (run["run_type"] != "iteration") continue;
     EXPECT_EQ(run["found"], 1.0);
+    ++runs;
+  }
+  EXPECT_EQ(runs, 2);
+}
+
+TEST_F(BenchmarkProgramsTest, GraphsTakeDriftBack) {
+  const nlohmann::json results = nlohmann::json::parse(ReadTextFile(Measure(
+      GRAPH_BENCHMARK, "graph/(odometry|edges|map|bundle_adjustment)/100$")));
+  std::map<std::string, double> errors;
+  for (const auto& run : results.at("benchmarks")) {
+    if (run["run_type"] == "iteration") errors[run["name"]] = run["error_mm"];
+  }
+  EXPECT_GT(errors.at("graph/odometry/100"), 4.0);
+  for (const char* way : {"edges", "map", "bundle_adjustment"}) {
+    EXPECT_LT(errors.at(std::string("graph/") + way + "/100"), 2.5) << way;
   }
 }
 
@@ -46,6 +63,7 @@ TEST_F(BenchmarkProgramsTest, MakeThePageAndTheSpeedups) {
       Measure(SOLVE_BENCHMARK, "^(solve|estimate)/.*/(huber|tukey)/300$");
   results += "," + Measure(JACOBIAN_BENCHMARK, "bidirectional_point");
   results += "," + Measure(DIRECT_BENCHMARK, "photometric|bare_loop");
+  results += "," + Measure(GRAPH_BENCHMARK, "graph/(edges|compressed)/100$");
   results += "," + Measure(PEERS_BENCHMARK, "estimator|pnp_ransac$");
   const std::string frames = folder_ / "frames.json";
   const RunResult tracked =
@@ -80,7 +98,8 @@ TEST_F(BenchmarkProgramsTest, MakeThePageAndTheSpeedups) {
         "solve_n300_compressed_over_bare_loop",
         "jacobian_bidirectional_point_analytic_over_autodiff",
         "jacobian_photometric_analytic_over_autodiff",
-        "direct_photometric_over_bare_loop", "estimate_over_pnp_ransac"}) {
+        "direct_photometric_over_bare_loop", "graph_edges_over_compressed",
+        "estimate_over_pnp_ransac"}) {
     ASSERT_TRUE(ratios.contains(key)) << key;
     EXPECT_GT(ratios[key].get<double>(), 0.0) << key;
   }

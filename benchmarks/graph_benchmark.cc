@@ -1,0 +1,214 @@
+// A graph of keyframes solved by frozen edges, by live pairs, and by a bundle
+// adjustment of landmarks: time and what each leaves of the error.
+//
+// Names: graph/<way>/<keyframes>.
+
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/pipeline/keyframe_graph.h"
+#include "benchmarks/bundle_adjustment.h"
+#include "benchmarks/simulated_graph.h"
+#include "core/estimation/motion_graph.h"
+#include "costs/cost_factory.h"
+#include "robust/m_estimator.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kWorlds = 5;                // errors are of so many
+constexpr double kWrongFocal = 1.02;      // and with a camera so far off
+constexpr int kMostWithWrongFocal = 100;  // keyframes
+
+struct World {
+  World(int keyframes, unsigned seed, double focal_factor)
+      : graph(keyframes, seed, focal_factor),
+        edges(graph.Edges()),
+        start(OdometryOf(graph, edges)) {}
+
+  const SimulatedGraph graph;
+  const std::vector<Edge> edges;
+  const std::vector<Rigid3d> start;
+};
+
+// What is timed; made once.
+const World& TimedWorld(int keyframes) {
+  static std::map<int, World> made;
+  return made.try_emplace(keyframes, keyframes, 1, 1.0).first->second;
+}
+
+struct Solved {
+  std::vector<Rigid3d> poses;
+  int iterations = 0;
+};
+
+using Way = std::function<Solved(const World&)>;
+
+Solved Solve(MotionGraph* graph) {
+  const GraphSolution solution = graph->Solve();
+  Solved solved;
+  if (!solution.ok()) return solved;
+  solved.iterations = solution.iterations;
+  for (int i = 0; i < graph->num_poses(); ++i) {
+    solved.poses.push_back(graph->pose(i));
+  }
+  return solved;
+}
+
+Solved ByEdges(const World& world) {
+  MotionGraph graph;
+  for (size_t i = 0; i < world.start.size(); ++i) {
+    graph.AddPose(world.start[i], i == 0);
+  }
+  for (const Edge& edge : world.edges) graph.AddEdge(edge);
+  return Solve(&graph);
+}
+
+Solved ByLivePairs(const World& world, Assembly assembly) {
+  MotionGraphOptions options;
+  options.assembly = assembly;
+  MotionGraph graph(options);
+  for (size_t i = 0; i < world.start.size(); ++i) {
+    graph.AddPose(world.start[i], i == 0);
+  }
+  for (const SimulatedGraph::Pair& pair : world.graph.pairs) {
+    PairData data;
+    data.matches = &pair.matches;
+    graph.AddPair(pair.ref, pair.cur, data,
+                  MakeRobustCosts("mahalanobis_point", "huber"));
+  }
+  return Solve(&graph);
+}
+
+Solved ByBundle(const World& world) {
+  const auto loss = FindMEstimator("huber")->MakeLoss(3);
+  BundleSolution solution = AdjustBundle(world.graph, world.start, loss.get());
+  return {std::move(solution.poses), solution.iterations};
+}
+
+// As a map solves it: losses, slack and stages of its own.
+std::unique_ptr<KeyframeGraph> KeyframeGraphOf(const World& world) {
+  auto graph = std::make_unique<KeyframeGraph>(KeyframeGraphOptions());
+  for (const Rigid3d& pose : world.start) graph->Add(pose, 0);
+  for (const Edge& edge : world.edges) {
+    graph->AddPair(edge, edge.cur == edge.ref + 1);
+  }
+  return graph;
+}
+
+Solved ByMap(const World& world) {
+  const auto graph = KeyframeGraphOf(world);
+  Solved solved;
+  if (!graph->SolveAll(/*graduated=*/true).empty()) return solved;
+  for (int i = 0; i < graph->size(); ++i) {
+    solved.poses.push_back(graph->pose(i));
+  }
+  return solved;
+}
+
+// Odometry alone: where all others start.
+Solved ByOdometry(const World& world) { return {world.start, 0}; }
+
+// Root mean square over worlds, mm; NaN where a solve failed.
+double MeanError(const Way& way, int keyframes, double focal_factor) {
+  double sum = 0.0;
+  for (int seed = 1; seed <= kWorlds; ++seed) {
+    const World world(keyframes, seed, focal_factor);
+    const Solved solved = way(world);
+    if (solved.poses.empty()) return std::nan("");
+    sum += std::pow(RmsError(solved.poses, world.graph.truth), 2);
+  }
+  return 1e3 * std::sqrt(sum / kWorlds);
+}
+
+void Run(benchmark::State& state, const std::string& name, const Way& way,
+         int keyframes) {
+  const World& world = TimedWorld(keyframes);
+  Solved solved;
+  for (auto _ : state) solved = way(world);
+  if (solved.poses.empty()) return state.SkipWithError("was not solved");
+  // A benchmark is run several times.
+  static std::map<std::string, std::pair<double, double>> errors;
+  const auto [error, is_new] = errors.try_emplace(name);
+  if (is_new) {
+    error->second.first = MeanError(way, keyframes, 1.0);
+    error->second.second = keyframes > kMostWithWrongFocal
+                               ? std::nan("")
+                               : MeanError(way, keyframes, kWrongFocal);
+  }
+  state.counters["pairs"] = static_cast<double>(world.edges.size());
+  if (solved.iterations > 0) state.counters["steps"] = solved.iterations;
+  state.counters["error_mm"] = error->second.first;
+  if (!std::isnan(error->second.second)) {
+    state.counters["wrong_focal_mm"] = error->second.second;
+  }
+}
+
+// What all but bundle adjustment need once: the motions of the pairs.
+void EstimatePairs(benchmark::State& state, int keyframes) {
+  const World& world = TimedWorld(keyframes);
+  for (auto _ : state) benchmark::DoNotOptimize(world.graph.Edges());
+  state.counters["pairs"] = static_cast<double>(world.edges.size());
+}
+
+// What a map does at each new keyframe.
+void SolveWindow(benchmark::State& state, int keyframes) {
+  const World& world = TimedWorld(keyframes);
+  const auto graph = KeyframeGraphOf(world);
+  graph->SolveAll(/*graduated=*/true);
+  for (auto _ : state) {
+    if (!graph->SolveNear(keyframes - 1).empty()) {
+      state.SkipWithError("was not solved");
+    }
+  }
+  state.counters["pairs"] = static_cast<double>(world.edges.size());
+}
+
+const bool kRegistered = [] {
+  const auto live = [](Assembly assembly) {
+    return [assembly](const World& w) { return ByLivePairs(w, assembly); };
+  };
+  const std::pair<const char*, Way> ways[] = {
+      {"odometry", ByOdometry},
+      {"edges", ByEdges},
+      {"compressed", live(Assembly::kCompressed)},
+      {"per_match", live(Assembly::kPerMatch)},
+      {"autodiff", live(Assembly::kAutodiff)},
+      {"bundle_adjustment", ByBundle},
+      {"map", ByMap}};
+  const auto name = [](const char* what, int keyframes) {
+    return std::string("graph/") + what + "/" + std::to_string(keyframes);
+  };
+  const auto add = [](const std::string& full, auto run) {
+    benchmark::RegisterBenchmark(full.c_str(), run)
+        ->Unit(benchmark::kMillisecond);
+  };
+  for (const int keyframes : {100, 1000}) {
+    for (const auto& [what, way] : ways) {
+      // By per_match and autodiff the greater one takes gigabytes.
+      const std::string full = name(what, keyframes);
+      const bool is_heavy = full.find("per_match") != std::string::npos ||
+                            full.find("autodiff") != std::string::npos;
+      if (keyframes > 100 && is_heavy) continue;
+      add(full, [=, way = way](benchmark::State& state) {
+        Run(state, full, way, keyframes);
+      });
+    }
+    for (const auto& [what, run] :
+         {std::pair("pairs", EstimatePairs), {"map_window", SolveWindow}}) {
+      add(name(what, keyframes),
+          [=, run = run](benchmark::State& state) { run(state, keyframes); });
+    }
+  }
+  return true;
+}();
+
+}  // namespace
+}  // namespace rgbd_pose
