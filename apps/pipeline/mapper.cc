@@ -43,6 +43,9 @@ std::string MappingOptions::Check() const {
   if (!(max_pair_rotation > 0.0) || !(max_pair_translation > 0.0)) {
     return "what a pair may differ by must be positive";
   }
+  if (!(min_seen_share >= 0.0) || !(max_pair_sigma > 0.0)) {
+    return "min_seen_share must not be negative, max_pair_sigma be positive";
+  }
   if (!(min_lookalike_inliers >= 0.0 && min_lookalike_inliers <= 1.0)) {
     return "min_lookalike_inliers must lie between 0 and 1";
   }

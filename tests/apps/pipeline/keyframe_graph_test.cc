@@ -1,0 +1,170 @@
+#include "apps/pipeline/keyframe_graph.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/support/graph_world.h"
+#include "tests/support/motion_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kPoses = 40;
+
+// Once round a circle, as odometry tells it.
+struct Circle {
+  explicit Circle(unsigned seed = 1)
+      : world(seed), truth(CircleOfPoses(kPoses, 3.0)), graph({}) {
+    graph.Add(truth[0], 0);
+    for (int i = 1; i < kPoses; ++i) {
+      const Edge edge = Measured(i - 1, i);
+      graph.Add(graph.pose(i - 1) * edge.cur_from_ref.Inverse(), 0);
+      graph.AddPair(edge, /*is_tracked=*/true);
+    }
+  }
+
+  Edge Measured(int ref, int cur) {
+    return MeasuredEdge(truth, ref, cur, 0.001, 0.002, &world);
+  }
+  double LastError() const {
+    return ErrorOf(graph.pose(kPoses - 1), truth[kPoses - 1]).translation;
+  }
+
+  RandomWorld world;
+  std::vector<Rigid3d> truth;
+  KeyframeGraph graph;
+};
+
+TEST(KeyframeGraphTest, HopsCountPairs) {
+  const Circle circle;
+  EXPECT_EQ(circle.graph.Hops(3, 3, 5), 0);
+  EXPECT_EQ(circle.graph.Hops(3, 7, 9), 4);
+  EXPECT_EQ(circle.graph.Hops(3, 7, 2), 2);
+  EXPECT_TRUE(circle.graph.AreJoined(3, 4));
+  EXPECT_FALSE(circle.graph.AreJoined(3, 5));
+}
+
+TEST(KeyframeGraphTest, ALoopTakesDriftBack) {
+  Circle circle;
+  const double drift = circle.LastError();
+  ASSERT_GT(drift, 0.02);
+  const Edge loop = circle.Measured(0, kPoses - 1);
+  EXPECT_TRUE(circle.graph.IsPlausible(loop));
+  circle.graph.AddPair(loop, /*is_tracked=*/false, /*is_loop=*/true);
+  EXPECT_EQ(circle.graph.SolveAll(/*graduated=*/false), "");
+  EXPECT_LT(circle.LastError(), 0.3 * drift);
+}
+
+// A place that looks the same, 5 m from where the path has come to.
+TEST(KeyframeGraphTest, ALoopThatThePathForbidsIsNotPlausible) {
+  Circle circle;
+  Edge twin = circle.Measured(0, kPoses - 1);
+  twin.cur_from_ref.translation.x() += 5.0;
+  EXPECT_FALSE(circle.graph.IsPlausible(twin));
+  // Nearby it is enough to be some centimetres off.
+  Edge near = circle.Measured(0, 2);
+  EXPECT_TRUE(circle.graph.IsPlausible(near));
+  near.cur_from_ref.translation.x() += 0.1;
+  EXPECT_FALSE(circle.graph.IsPlausible(near));
+}
+
+TEST(KeyframeGraphTest, ASegmentMovesAsAWholeWhereItIsJoined) {
+  Circle circle;
+  const int first = circle.graph.Add(Rigid3d(), 7);
+  const int second = circle.graph.Add(Rigid3d(), 7);
+  Edge step;
+  step.ref = first;
+  step.cur = second;
+  step.cur_from_ref.translation.x() = 0.5;
+  step.covariance = 1e-6 * MotionMatrix::Identity();
+  circle.graph.AddPair(step, /*is_tracked=*/true);
+  EXPECT_FALSE(circle.graph.IsPlausible({3, second, {}, step.covariance}));
+  Edge met = step;
+  met.ref = 5;
+  met.cur = second;
+  met.cur_from_ref = circle.world.Motion(1.0, 1.0);
+  const Rigid3d before =
+      circle.graph.pose(first).Inverse() * circle.graph.pose(second);
+  circle.graph.Join(met);
+  EXPECT_EQ(circle.graph.segment(first), 0);
+  EXPECT_EQ(circle.graph.segment(second), 0);
+  const Rigid3d after =
+      circle.graph.pose(first).Inverse() * circle.graph.pose(second);
+  EXPECT_LT(ErrorOf(before, after).translation, 1e-12);
+  EXPECT_LT(ErrorOf(circle.graph.pose(5) * met.cur_from_ref.Inverse(),
+                    circle.graph.pose(second))
+                .translation,
+            1e-12);
+}
+
+TEST(KeyframeGraphTest, WhatIsDroppedStaysWhereItWasToItsAnchor) {
+  Circle circle;
+  EXPECT_FALSE(circle.graph.CanDoWithout(0));   // the first stays
+  EXPECT_FALSE(circle.graph.CanDoWithout(10));  // it holds the chain together
+  circle.graph.AddPair(circle.Measured(9, 11), /*is_tracked=*/false);
+  ASSERT_TRUE(circle.graph.CanDoWithout(10));
+  const Rigid3d before = circle.graph.pose(9).Inverse() * circle.graph.pose(10);
+  circle.graph.Drop(10, 9);
+  EXPECT_TRUE(circle.graph.IsDropped(10));
+  for (const KeyframeGraph::Pair& pair : circle.graph.pairs()) {
+    EXPECT_TRUE(pair.edge.ref != 10 && pair.edge.cur != 10);
+  }
+  circle.graph.AddPair(circle.Measured(0, kPoses - 1), false, true);
+  ASSERT_EQ(circle.graph.SolveAll(false), "");
+  const Rigid3d after = circle.graph.pose(9).Inverse() * circle.graph.pose(10);
+  EXPECT_LT(ErrorOf(before, after).translation, 1e-9);
+
+  // A motion measured to it holds for its anchor.
+  const Edge edge = circle.Measured(10, 12);
+  const Edge anchored = circle.graph.Anchored(edge);
+  EXPECT_EQ(anchored.ref, 9);
+  EXPECT_LT(ErrorOf(anchored.cur_from_ref,
+                    circle.truth[12].Inverse() * circle.truth[9])
+                .translation,
+            0.05);
+  EXPECT_GT(anchored.covariance.trace(), edge.covariance.trace());
+}
+
+TEST(KeyframeGraphTest, WhatIsHeldNeverMoves) {
+  Circle circle;
+  KeyframeGraph graph({});
+  for (int i = 0; i < 3; ++i) {
+    graph.Add(circle.truth[i], 0, /*is_held=*/true);
+  }
+  const int newest = graph.Add(circle.truth[3], 0);
+  for (int i = 0; i < 3; ++i) graph.AddPair(circle.Measured(i, newest), false);
+  graph.AddPair(circle.Measured(0, 1), false);
+  ASSERT_EQ(graph.SolveAll(false), "");
+  for (int i = 0; i < 3; ++i) {
+    EXPECT_EQ(graph.pose(i).translation, circle.truth[i].translation);
+    EXPECT_FALSE(graph.CanDoWithout(i));
+  }
+  EXPECT_LT(ErrorOf(graph.pose(newest), circle.truth[3]).translation, 0.02);
+}
+
+// Turns that are off by 5 % of themselves, far beyond their covariances.
+TEST(KeyframeGraphTest, SlackIsTheShareThatMotionsAreOffBy) {
+  for (const double wrong : {1e-9, 0.05}) {
+    Circle circle;
+    KeyframeGraph graph({});
+    for (const Rigid3d& pose : circle.truth) graph.Add(pose, 0);
+    for (int step : {1, 3, 5}) {
+      for (int i = 0; i < kPoses; ++i) {
+        Edge edge = circle.Measured(i, (i + step) % kPoses);
+        const Eigen::AngleAxisd turn(edge.cur_from_ref.rotation);
+        edge.cur_from_ref.rotation = Eigen::AngleAxisd(
+            (1.0 + circle.world.Normal(wrong)) * turn.angle(), turn.axis());
+        graph.AddPair(edge, false);
+      }
+    }
+    ASSERT_EQ(graph.SolveAll(false), "");
+    if (wrong < 0.01) {
+      EXPECT_LT(graph.slack(), 0.003);
+    } else {
+      EXPECT_GT(graph.slack(), 0.004);  // one of six directions is off
+      EXPECT_LT(graph.slack(), 0.1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

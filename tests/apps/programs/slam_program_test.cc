@@ -1,0 +1,102 @@
+// rgbd_simulate and rgbd_slam from end to end: files in, files out.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "core/evaluation/trajectory.h"
+#include "core/util/text_file.h"
+#include "tests/support/run_program.h"
+
+namespace rgbd_pose {
+namespace {
+
+using testing::HasSubstr;
+
+const std::string kSimulate = RGBD_SIMULATE;
+const std::string kSlam = RGBD_SLAM;
+constexpr size_t kFrames = 40;
+
+class SlamProgramTest : public testing::Test {
+ protected:
+  SlamProgramTest() {
+    // Small images are rendered in a quarter of the time.
+    WriteFileAtomically(folder_ / "half.yaml",
+                        "Camera.fx: 262.5\nCamera.fy: 262.5\n"
+                        "Camera.cx: 159.5\nCamera.cy: 119.5\n"
+                        "Camera.width: 320\nCamera.height: 240\n");
+    const RunResult run = RunCommand(
+        kSimulate +
+            " --path=handheld --camera=" + std::string(folder_ / "half.yaml") +
+            " --frames=" + std::to_string(kFrames) + " --output=" + Sequence(),
+        folder_);
+    EXPECT_EQ(run.exit_code, 0) << run.err;
+  }
+
+  std::string Sequence() const { return folder_ / "sequence"; }
+
+  RunResult Run(const std::string& output, const std::string& flags) const {
+    return RunCommand(
+        kSlam + " --dataset=" + Sequence() + " --camera=" + Sequence() +
+            "/camera.yaml --noreport --output=" + (folder_ / output) + " " +
+            flags,
+        folder_);
+  }
+  std::string Read(const std::string& file) const {
+    return ReadTextFile(folder_ / file);
+  }
+
+  const TempFolder folder_;
+};
+
+TEST_F(SlamProgramTest, LeavesItsFilesAndKeepsAMapToTrackIn) {
+  const std::string map = folder_ / "map";
+  const RunResult first = Run("first", "--save_map=" + map);
+  ASSERT_EQ(first.exit_code, 0) << first.err;
+  EXPECT_THAT(first.out, HasSubstr("keyframes"));
+  for (const char* file :
+       {"trajectory.txt", "trajectory_online.txt", "trajectory_odometry.txt"}) {
+    EXPECT_EQ(ReadTrajectory(folder_ / ("first/" + std::string(file))).size(),
+              kFrames)
+        << file;
+  }
+  EXPECT_THAT(Read("first/graph.g2o"), HasSubstr("VERTEX_SE3:QUAT 0 0 0 0"));
+  EXPECT_THAT(Read("first/keyframes.csv"), HasSubstr("cov_wx_wx"));
+  EXPECT_THAT(Read("first/slam.csv"), HasSubstr("odom_tx"));
+  const auto metrics = nlohmann::json::parse(Read("first/metrics.json"));
+  EXPECT_EQ(metrics.at("program"), "rgbd_slam");
+  EXPECT_GE(metrics.at("slam").at("keyframes"), 1);
+  EXPECT_EQ(metrics.at("slam").at("keyframes_dropped"), 0);
+
+  const std::string before = ReadTextFile(map + "/map.txt");
+  const RunResult again = Run("again", "--localise_only --load_map=" + map);
+  ASSERT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_EQ(ReadTextFile(map + "/map.txt"), before);
+  EXPECT_THAT(again.out, HasSubstr("1 segments joined"));
+}
+
+TEST_F(SlamProgramTest, SaysInOneLineWhatIsWrongWithMaps) {
+  const struct {
+    const char* flags;
+    const char* says;
+  } cases[] = {
+      {"--localise_only", "--localise_only needs --load_map"},
+      {"--load_map=nowhere", "--load_map=nowhere: "},
+
+      {"--max_pairs=0", "max_pairs must be at least 1"},
+  };
+  for (const auto& [flags, says] : cases) {
+    const RunResult run = Run("bad", flags);
+    EXPECT_EQ(run.exit_code, 2) << flags;
+    EXPECT_THAT(run.err, HasSubstr(says));
+    EXPECT_EQ(std::count(run.err.begin(), run.err.end(), '\n'), 1) << run.err;
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "bad/trajectory.txt"));
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose
