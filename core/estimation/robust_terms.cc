@@ -28,7 +28,7 @@ constexpr double kMaxScale = 20.0;
 constexpr double kScaleTolerance = 0.01;
 
 // Information less what of it is feigned: none, not less, in directions where
-// all is. (An indefinite share would make that of other costs smaller.)
+// all is: a covariance is made of it.
 MotionMatrix LessFeigned(const MotionMatrix& hessian,
                          const MotionMatrix& feigned) {
   if (feigned.isZero() || !feigned.allFinite()) return hessian;
@@ -282,10 +282,17 @@ NormalEquations RobustTerms::LineariseShares(const MotionDerivatives& motion) {
     costs_[i].cost->AddFeigned(motion, &feigned);
     // Residuals that are larger than their noise do not make slopes noisier.
     const double excess = std::max(1.0, scales_[i]);
-    const double times = kFeignedMargin * costs_[i].cost->information_factor() /
-                         (excess * excess);
-    share.hessian = LessFeigned(share.hessian, times * feigned);
-    shares_[i].hessian = share.hessian;
+    double times = kFeignedMargin * costs_[i].cost->information_factor() /
+                   (excess * excess);
+    // Of an image that shows nothing there is not even noise to take off.
+    for (int k = 0; k < 6; ++k) {
+      if (times * feigned(k, k) > share.hessian(k, k)) {
+        times = share.hessian(k, k) / feigned(k, k);
+      }
+    }
+    // The sum may well be indefinite: then some direction is not determined.
+    shares_[i].hessian = LessFeigned(share.hessian, times * feigned);
+    share.hessian -= times * feigned;
     sum.hessian += share.hessian;
     sum.gradient += share.gradient;
     sum.cost += share.cost;
