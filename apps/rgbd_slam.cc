@@ -189,7 +189,7 @@ int Main() {
                    FormatOdometryTrajectory(run.slam_frames()));
   output.WriteFile("keyframes.csv",
                    FormatKeyframesCsv(map, slam.Covariances()));
-  output.WriteFile("graph.g2o", FormatG2o(map));
+  output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
   text += WriteReport(output.aside());
   if (!settings.maps.save_map.empty()) {
     SaveMap(settings.maps.save_map, map);

@@ -219,6 +219,17 @@ MotionMatrix KeyframeGraph::CovarianceOf(const Edge& edge, double slack) const {
   return covariance;
 }
 
+MotionMatrix KeyframeGraph::CovarianceAsSolved(const Pair& pair) const {
+  const MotionMatrix covariance = CovarianceOf(pair.edge, slack_);
+  const MotionVector e =
+      Difference(pose(pair.edge.cur).Inverse() * pose(pair.edge.ref),
+                 pair.edge.cur_from_ref);
+  double rho[3];
+  (pair.is_tracked ? tracked_loss_ : pair_loss_)
+      ->Evaluate(e.dot(covariance.ldlt().solve(e)), rho);
+  return covariance / std::max(rho[1], 1e-9);
+}
+
 // The slack with which half of the pairs agree with the poses as well as their
 // covariances say.
 double KeyframeGraph::FindSlack() const {

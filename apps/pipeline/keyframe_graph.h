@@ -92,6 +92,11 @@ class KeyframeGraph {
   // redundancy: zero for those that do not move, empty if they cannot be told.
   std::vector<MotionMatrix> Covariances() const;
 
+  // The covariance with which a pair counts at the present poses: with its
+  // floor and the slack, and larger the less its loss lets it count. Whoever
+  // solves for the poses by least squares with these finds what is here.
+  MotionMatrix CovarianceAsSolved(const Pair& pair) const;
+
   // By what share of itself a motion is off beyond its covariance, as the pairs
   // disagree: 0 where the camera is as its calibration says.
   double slack() const { return slack_; }

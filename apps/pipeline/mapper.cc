@@ -366,7 +366,7 @@ void Mapper::Fill(MapUpdate* update) const {
   }
 }
 
-KeyframeMap Mapper::Map() const {
+KeyframeMap Mapper::Map(bool as_solved) const {
   KeyframeMap map;
   map.camera = tracker_->images().camera;
   for (int at = 0; at < graph_.size(); ++at) {
@@ -378,6 +378,7 @@ KeyframeMap Mapper::Map() const {
     Edge edge = pair.edge;
     edge.ref = keyframes_[pair.edge.ref].id;
     edge.cur = keyframes_[pair.edge.cur].id;
+    if (as_solved) edge.covariance = graph_.CovarianceAsSolved(pair);
     map.edges.push_back(edge);
   }
   return map;

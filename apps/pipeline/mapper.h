@@ -118,8 +118,9 @@ class Mapper {
   // Solves for all poses.
   MapUpdate Finish();
 
-  // All keyframes that have not made way, and their pairs.
-  KeyframeMap Map() const;
+  // All keyframes that have not made way, and their pairs: as they were
+  // measured, or `as_solved`, see KeyframeGraph::CovarianceAsSolved.
+  KeyframeMap Map(bool as_solved = false) const;
 
   // By the places of its keyframes in Map(): see KeyframeGraph.
   std::vector<MotionMatrix> Covariances() const;

@@ -35,21 +35,22 @@ Slam::~Slam() = default;
 
 void Slam::Load(KeyframeMap map, bool is_held) {
   // Names may be those of an earlier map.
-  const int first_id = first_id_, first_segment = first_segment_;
   for (MapKeyframe& keyframe : map.keyframes) {
-    keyframe.id += first_id;
-    keyframe.segment += first_segment;
+    keyframe.id += first_id_;
+    keyframe.segment += first_segment_;
+  }
+  for (Edge& edge : map.edges) {
+    edge.ref += first_id_;
+    edge.cur += first_id_;
+  }
+  mapper_.Load(map, is_held);
+  for (const MapKeyframe& keyframe : map.keyframes) {
     // The odometry has no names from -1 on for what is not its own.
     first_id_ = std::max(first_id_, keyframe.id + 2);
     first_segment_ = std::max(first_segment_, keyframe.segment + 1);
     map_from_keyframe_[keyframe.id] = keyframe.map_from_cam;
     segments_[keyframe.id] = keyframe.segment;
   }
-  for (Edge& edge : map.edges) {
-    edge.ref += first_id;
-    edge.cur += first_id;
-  }
-  mapper_.Load(map, is_held);
 }
 
 SlamFrame Slam::Track(const Frame& frame, const Rigid3d* cur_from_prev_guess,
@@ -116,6 +117,7 @@ void Slam::Follow(const TrackedFrame& tracked) {
         map_from_keyframe_.at(reference) * odom_from_reference_.Inverse();
   }
   if (!tracked.is_reference) return;
+  path_.back() = {tracked.timestamp, id, Rigid3d()};
   pending_.push_back({id, std::nullopt, Rigid3d()});
   if (tracked.reference != -1) {
     pending_.back().ref = *reference_;

@@ -77,7 +77,9 @@ class Slam {
   // After Finish: the map, and the covariances of its keyframes' poses in their
   // order ([omega (rad), C (m)] as MotionGraph has them; empty if they cannot
   // be told), and the pairs it is held together by.
-  KeyframeMap Map() const { return mapper_.Map(); }
+  KeyframeMap Map(bool as_solved = false) const {
+    return mapper_.Map(as_solved);
+  }
   std::vector<MotionMatrix> Covariances() const {
     return mapper_.Covariances();
   }

@@ -98,7 +98,7 @@ def test_poses_hang_together(mapped, frames):
         assert tracked[index].is_reference
         assert keyframe.timestamp == frames[index].timestamp
         np.testing.assert_allclose(
-            keyframe.map_from_cam, poses[index], atol=1e-3
+            keyframe.map_from_cam, poses[index], atol=1e-9
         )
     edges = slam.edges()
     assert len(edges) >= len(keyframes)

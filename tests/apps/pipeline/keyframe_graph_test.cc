@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/support/graph_world.h"
 #include "tests/support/motion_error.h"
 
@@ -139,6 +141,39 @@ TEST(KeyframeGraphTest, WhatIsHeldNeverMoves) {
     EXPECT_FALSE(graph.CanDoWithout(i));
   }
   EXPECT_LT(ErrorOf(graph.pose(newest), circle.truth[3]).translation, 0.02);
+}
+
+// With wrong pairs among them: least squares without losses must find the same.
+TEST(KeyframeGraphTest, CovariancesAsSolvedLetOthersFindTheSame) {
+  Circle circle;
+  for (int i = 0; i + 7 < kPoses; ++i) {
+    Edge edge = circle.Measured(i, i + 7);
+    if (i % 5 == 0) edge.cur_from_ref.translation.x() += 0.05;
+    circle.graph.AddPair(edge, /*is_tracked=*/false);
+  }
+  ASSERT_EQ(circle.graph.SolveAll(/*graduated=*/false), "");
+  MotionGraph as_solved, as_measured;
+  for (int i = 0; i < kPoses; ++i) {
+    as_solved.AddPose(circle.graph.pose(i), i == 0);
+    as_measured.AddPose(circle.graph.pose(i), i == 0);
+  }
+  for (const KeyframeGraph::Pair& pair : circle.graph.pairs()) {
+    Edge edge = pair.edge;
+    as_measured.AddEdge(edge);
+    edge.covariance = circle.graph.CovarianceAsSolved(pair);
+    as_solved.AddEdge(edge);
+  }
+  ASSERT_TRUE(as_solved.Solve().ok());
+  ASSERT_TRUE(as_measured.Solve().ok());
+  double moved = 0.0, moved_as_measured = 0.0;
+  for (int i = 0; i < kPoses; ++i) {
+    const Rigid3d& pose = circle.graph.pose(i);
+    moved = std::max(moved, ErrorOf(as_solved.pose(i), pose).translation);
+    moved_as_measured = std::max(
+        moved_as_measured, ErrorOf(as_measured.pose(i), pose).translation);
+  }
+  EXPECT_LT(moved, 1e-4);
+  EXPECT_GT(moved_as_measured, 1e-3);
 }
 
 // Turns that are off by 5 % of themselves, far beyond their covariances.
