@@ -30,7 +30,8 @@ set(folder ${CMAKE_CURRENT_SOURCE_DIR}/report/page)
 rgbd_pose_embed(page kPage ${folder}/page.html)
 rgbd_pose_embed(style kStyle ${folder}/style.css)
 rgbd_pose_embed(script kScript ${folder}/plots.js ${folder}/run.js
-                ${folder}/run_paths.js ${folder}/run_cloud.js
+                ${folder}/run_paths.js ${folder}/run_map.js
+                ${folder}/run_cloud.js
                 ${folder}/run_times.js
                 ${folder}/run_residuals.js ${folder}/batch.js
                 ${folder}/compare.js ${folder}/sweep.js ${folder}/main.js)

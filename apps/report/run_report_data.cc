@@ -82,9 +82,9 @@ json FrameColumns(const CsvTable& frames, const ReportThinning& thinning) {
   return columns;
 }
 
-// Positions of all frames, null where lost; trajectory.txt has the others.
-json EstimatedPath(const CsvTable& frames, const std::string& trajectory_file,
-                   const ReportThinning& thinning) {
+// The poses of all frames that were not lost.
+Trajectory TrackedPoses(const CsvTable& frames,
+                        const std::string& trajectory_file) {
   const std::vector<double> status = StatusCodes(frames);
   const size_t tracked = std::count_if(status.begin(), status.end(),
                                        [](double code) { return code < 2; });
@@ -96,6 +96,13 @@ json EstimatedPath(const CsvTable& frames, const std::string& trajectory_file,
                      std::to_string(tracked) +
                      " frames of frames.csv have one; repeat the run");
   }
+  return trajectory;
+}
+
+// Positions of all frames, null where lost.
+json PathOf(const CsvTable& frames, const Trajectory& trajectory,
+            const ReportThinning& thinning) {
+  const std::vector<double> status = StatusCodes(frames);
   std::vector<double> axes[3];
   size_t next = 0;
   for (const double code : status) {
@@ -108,6 +115,23 @@ json EstimatedPath(const CsvTable& frames, const std::string& trajectory_file,
   return {{"x", thinning.First(axes[0], 4)},
           {"y", thinning.First(axes[1], 4)},
           {"z", thinning.First(axes[2], 4)}};
+}
+
+// The paths before and after all that the map has corrected, from the same
+// first pose.
+json OdometryPath(const CsvTable& frames, const std::string& odometry_file,
+                  const std::string& trajectory_file,
+                  const ReportThinning& thinning) {
+  Trajectory before = TrackedPoses(frames, odometry_file);
+  const Trajectory after = TrackedPoses(frames, trajectory_file);
+  if (before.empty()) return nullptr;
+  const Rigid3d map_from_odom =
+      after[0].world_from_cam * before[0].world_from_cam.Inverse();
+  for (StampedPose& pose : before) {
+    pose.world_from_cam = map_from_odom * pose.world_from_cam;
+  }
+  return {{"before", PathOf(frames, before, thinning)},
+          {"after", PathOf(frames, after, thinning)}};
 }
 
 // The path in the world of the ground truth, and the errors of each frame.
@@ -196,7 +220,14 @@ json RunReportData(const std::string& run_folder) {
   if (std::filesystem::exists(folder / "errors.csv")) {
     AddErrors(file("errors.csv"), thinning, &data);
   } else {
-    data["path"] = EstimatedPath(frames, file("trajectory.txt"), thinning);
+    data["path"] =
+        PathOf(frames, TrackedPoses(frames, file("trajectory.txt")), thinning);
+  }
+  if (data["metrics"].contains("slam") &&
+      std::filesystem::exists(folder / "trajectory_odometry.txt")) {
+    data["odometry_path"] =
+        OdometryPath(frames, file("trajectory_odometry.txt"),
+                     file("trajectory.txt"), thinning);
   }
   data["loss"] = LossCurve(data, file("metrics.json"));
   // Older files of the folder's name may be of another run.

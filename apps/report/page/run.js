@@ -35,9 +35,8 @@ function header(data) {
   }
   add(digits(100 * run.tracked_share, 3) + ' %',
       `of frames tracked (${run.ok} ok, ${run.degraded} degraded, ${run.lost} lost)`);
-  if (run.segments > 1) {
-    add(String(run.segments), 'segments; what joins them is unknown');
-  }
+  const segments = mapSegments(data.metrics.slam) || run.segments;
+  if (segments > 1) add(String(segments), 'segments; what joins them is unknown');
   add(digits(run.track_ms_median, 3) + ' ms', 'tracking a frame, median');
   add(digits(run.frames_per_second, 3),
       `frames/s with decoding, ${run.threads} thread${run.threads === 1 ? '' : 's'}`);
@@ -118,10 +117,11 @@ function metrics(data) {
 function showRun(data) {
   header(data);
   paths(data);
+  map(data);
   errors(data);
   tracking(data);
   times(data);
   residuals(data);
   metrics(data);
-  settings(data, 'rgbd_odometry');
+  settings(data, data.metrics.slam ? 'rgbd_slam' : 'rgbd_odometry');
 }

@@ -187,6 +187,46 @@ TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
   EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));  // its legend
 }
 
+// A map as rgbd_slam tells of it: three keyframes, one more made way.
+TEST_F(ReportTest, TheMapOfARunIsShown) {
+  Simulate();
+  Track();
+  const std::string metrics = ReadTextFile(folder_ / "run/metrics.json");
+  const auto write = [&](const std::string& slam) {
+    folder_.Write(
+        "run/metrics.json",
+        "{\"slam\": " + slam + "," + metrics.substr(metrics.find('{') + 1));
+    const RunResult report = Run(RGBD_REPORT " --run=" + (folder_ / "run"));
+    EXPECT_EQ(report.exit_code, 0) << report.err;
+  };
+  folder_.Write("run/trajectory_odometry.txt",
+                ReadTextFile(folder_ / "run/trajectory.txt"));
+  write(R"({"keyframes": 3, "keyframes_dropped": 1, "tracked_pairs": 2,
+            "pairs": 1, "loops": 1, "segments_joined": 0,
+            "graph_keyframes": [[0, 0, 0, 0, false], [0, 0, 1, 0, true],
+                                [1, 0, 1, 0, false], [1, 0, 0, 0, false]],
+            "graph_pairs": [[0, 2, 0], [2, 3, 0], [0, 3, 2]]})");
+  if (!HasBrowser()) GTEST_SKIP() << "no chromium";
+  const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
+  EXPECT_EQ(Console(browser), "");
+  EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+  EXPECT_EQ(Count(browser.out, "<div id=\"map\""), 1);
+  EXPECT_THAT(browser.out, HasSubstr("3 keyframes (1 more made way"));
+  for (const std::string name :
+       {"path of the odometry", "path at the end", "tracked pairs (2)",
+        "loops (1)", "made way (1)", "keyframes (3)"}) {
+    EXPECT_EQ(Count(browser.out, ">" + name + "</text>"), 1) << name;
+  }
+  EXPECT_EQ(Count(browser.out, "further pairs"), 1);  // in the script alone
+  EXPECT_THAT(browser.out, HasSubstr("up to 0 mm from that of the odometry"));
+  EXPECT_THAT(browser.out, HasSubstr("rgbd_slam --flagfile=config.flags"));
+
+  write("{}");  // nothing to draw
+  const RunResult empty = Browse("--window-size=1280,4000 --dump-dom");
+  EXPECT_EQ(Console(empty), "");
+  EXPECT_EQ(Count(empty.out, "<div id=\"map\""), 0);
+}
+
 // Of a comparison: what rgbd_compare writes, rgbd_report writes again.
 class ComparisonReportTest : public ReportTest {
  protected:
