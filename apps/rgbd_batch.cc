@@ -36,7 +36,7 @@ DEFINE_string(losses, "tukey", "M-estimators, set apart by commas");
 DEFINE_string(frontends, "patch", "frontends, set apart by commas");
 DEFINE_int32(repeats, 1, "how often each combination is run");
 DEFINE_string(settings, "",
-              "flag file of rgbd_odometry for all runs; paths in it must be "
+              "flag file of the program for all runs; paths in it must be "
               "absolute; empty: its defaults");
 DEFINE_string(output, "", "folder for the results, made if missing");
 DEFINE_bool(resume, false,
@@ -51,8 +51,8 @@ DEFINE_string(shard, "",
               "i/n: only every n-th sequence, beginning with number i (from "
               "0); empty: as the Slurm job array says, or all");
 DEFINE_string(program, "",
-              "program to run for each item; empty: rgbd_odometry beside this "
-              "one");
+              "program to run for each item: name of one beside this one "
+              "(rgbd_slam) or a path; empty: rgbd_odometry");
 
 namespace rgbd_pose {
 namespace {
@@ -63,8 +63,9 @@ ProgramInfo Info() {
   ProgramInfo info;
   info.name = "rgbd_batch";
   info.summary =
-      "runs rgbd_odometry on many sequences with many settings, each run in a "
-      "process and a folder of its own, and makes one table of it.";
+      "runs rgbd_odometry, or rgbd_slam, on many sequences with many settings, "
+      "each run in a process and a folder of its own, and makes one table of "
+      "it.";
   info.example =
       "rgbd_batch --sequences=list.txt --losses=huber,tukey --repeats=2 "
       "--output=runs";
@@ -82,11 +83,13 @@ ProgramInfo Info() {
 
 std::string ProgramPath() {
   std::error_code error;
+  const fs::path beside =
+      fs::read_symlink("/proc/self/exe", error).parent_path() /
+      (FLAGS_program.empty() ? "rgbd_odometry" : FLAGS_program);
+  const bool is_beside = FLAGS_program.find('/') == std::string::npos &&
+                         fs::is_regular_file(beside, error);
   const fs::path path =
-      FLAGS_program.empty()
-          ? fs::read_symlink("/proc/self/exe", error).parent_path() /
-                "rgbd_odometry"
-          : fs::absolute(FLAGS_program);
+      is_beside || FLAGS_program.empty() ? beside : fs::absolute(FLAGS_program);
   if (!fs::is_regular_file(path, error) || access(path.c_str(), X_OK) != 0) {
     throw InputError(path.string() +
                      ": no program that can be run; give it by --program");

@@ -144,6 +144,23 @@ class BatchProgramTest : public testing::Test {
 constexpr size_t kStatus = 5;
 constexpr size_t kExitCode = 6;
 
+TEST_F(BatchProgramTest, ProgramsBesideItHaveNames) {
+  const RunResult slam =
+      Run(kBatch + " --sequences=" + (folder_ / "list.txt") +
+          " --program=rgbd_slam --output=" + (folder_ / "runs"));
+  EXPECT_EQ(slam.exit_code, 0) << slam.err;
+  EXPECT_THAT(Column("runs/summary.csv", kStatus), ElementsAre("ok", "ok"));
+  const std::string run = "runs/xyz/bidirectional_point-tukey-patch-r1/";
+  EXPECT_THAT(Read(run + "metrics.json"), HasSubstr("\"graph_keyframes\""));
+  EXPECT_THAT(Read(run + "graph.g2o"), StartsWith("VERTEX_SE3:QUAT 0 "));
+
+  const RunResult none =
+      Run(kBatch + " --sequences=" + (folder_ / "list.txt") +
+          " --program=rgbd_none --output=" + (folder_ / "none"));
+  EXPECT_EQ(none.exit_code, 2);
+  EXPECT_THAT(none.err, HasSubstr("rgbd_none: no program that can be run"));
+}
+
 TEST_F(BatchProgramTest, RunsThePlanAndWhatIsMissingOfItLater) {
   const RunResult dry = Run(Call("runs") + " --dry_run");
   EXPECT_EQ(dry.exit_code, 0);
