@@ -38,6 +38,7 @@ struct KeyframeGraphOptions {
 // segment stays where it is.
 class KeyframeGraph {
  public:
+  // A measured motion between two keyframes.
   struct Pair {
     Edge edge;                // between numbers
     bool is_tracked = false;  // by the odometry; hardly ever wrong
@@ -47,13 +48,16 @@ class KeyframeGraph {
   // Throws InputError for options that are not sound (see Check).
   explicit KeyframeGraph(const KeyframeGraphOptions& options);
 
+  // How many there are, those that were dropped among them.
   int size() const { return static_cast<int>(nodes_.size()); }
+  // Of one: map_from_cam, its segment, all pairs, and those it is paired with.
   const Rigid3d& pose(int at) const { return nodes_[at].map_from_cam; }
   int segment(int at) const { return nodes_[at].segment; }
   const std::vector<Pair>& pairs() const { return pairs_; }
   const std::vector<int>& neighbours(int at) const {
     return nodes_[at].neighbours;
   }
+  // Whether a pair joins the two.
   bool AreJoined(int a, int b) const;
 
   // Returns its number. `is_held`: it never moves (a map that is only read).

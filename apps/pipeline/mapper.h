@@ -78,7 +78,7 @@ struct NewKeyframe {
 
 // A frame of the map, with its images.
 struct FoundKeyframe {
-  int id = 0;
+  int id = 0;  // as in NewKeyframe
   Frame frame;
 };
 
@@ -110,6 +110,7 @@ class Mapper {
   // Throws InputError for a map of another camera or one that is not sound.
   void Load(const KeyframeMap& map, bool is_held);
 
+  // Takes a keyframe in.
   MapUpdate Add(NewKeyframe keyframe);
 
   // Looks for a lost frame in the whole map.

@@ -38,6 +38,7 @@ struct SlamFrame {
   double map_ms = 0.0;
   double wait_ms = 0.0;  // that it was late
 
+  // As known now.
   Rigid3d map_from_cam() const { return map_from_odom * odom_from_cam; }
 };
 
@@ -58,6 +59,7 @@ class Slam {
   void Load(KeyframeMap map, bool is_held);
   ~Slam();
 
+  // As Odometry::Track.
   SlamFrame Track(const Frame& frame,
                   const Rigid3d* cur_from_prev_guess = nullptr,
                   const MotionMatrix* guess_covariance = nullptr);
@@ -74,20 +76,24 @@ class Slam {
   // call but for the following.
   void Finish();
 
-  // After Finish: the map, and the covariances of its keyframes' poses in their
-  // order ([omega (rad), C (m)] as MotionGraph has them; empty if they cannot
-  // be told), and the pairs it is held together by.
+  // After Finish: the map, see Mapper::Map.
   KeyframeMap Map(bool as_solved = false) const {
     return mapper_.Map(as_solved);
   }
+
+  // After Finish: covariances of its keyframes' poses in their order, [omega
+  // (rad), C (m)] as MotionGraph has them; empty if they cannot be told.
   std::vector<MotionMatrix> Covariances() const {
     return mapper_.Covariances();
   }
+
+  // After Finish: the pairs it is held together by.
   const KeyframeGraph& graph() const { return mapper_.graph(); }
 
   // The poses of all frames that were not lost, map_from_cam, as known now.
   Trajectory Path() const;
 
+  // What the last frame was tracked by.
   const Odometry& odometry() const { return odometry_; }
 
  private:
