@@ -81,6 +81,22 @@ void KeyframeGraph::AddPair(const Edge& edge, bool is_tracked, bool is_loop) {
   nodes_[edge.cur].neighbours.push_back(edge.ref);
 }
 
+std::vector<bool> KeyframeGraph::Within(int from, int hops) const {
+  std::vector<bool> seen(nodes_.size(), false);
+  std::vector<int> reached = {from};
+  seen[from] = true;
+  size_t next = 0;
+  for (int hop = 0; hop < hops; ++hop) {
+    for (const size_t end = reached.size(); next < end; ++next) {
+      for (const int beside : nodes_[reached[next]].neighbours) {
+        if (!seen[beside]) reached.push_back(beside);
+        seen[beside] = true;
+      }
+    }
+  }
+  return seen;
+}
+
 int KeyframeGraph::Hops(int from, int to, int most) const {
   std::vector<int> reached = {from};
   std::vector<bool> seen(nodes_.size(), false);
@@ -150,6 +166,7 @@ bool KeyframeGraph::CanDoWithout(int without) const {
     return false;
   }
   const std::vector<int>& around = nodes_[without].neighbours;
+  if (around.empty()) return false;
   std::vector<int> reached = {around.front()};
   std::vector<bool> seen(nodes_.size(), false);
   seen[without] = seen[around.front()] = true;

@@ -66,6 +66,9 @@ class KeyframeGraph {
   // Within a segment.
   void AddPair(const Edge& edge, bool is_tracked, bool is_loop = false);
 
+  // Whether each keyframe is within so many pairs of one.
+  std::vector<bool> Within(int from, int hops) const;
+
   // The number of pairs on the shortest way between two, at most `most`.
   int Hops(int from, int to, int most) const;
 

@@ -194,10 +194,8 @@ void Mapper::PairByLooks(int newest, const PreparedFrame& frame,
                          MapUpdate* update) {
   if (options_.max_lookalikes == 0) return;
   const PlaceFeatures& cur = keyframes_[newest].features;
-  const auto may_be = [&](int at) {
-    return graph_.segment(at) != graph_.segment(newest) ||
-           graph_.Hops(newest, at, options_.loop_hops + 1) > options_.loop_hops;
-  };
+  const std::vector<bool> is_near = graph_.Within(newest, options_.loop_hops);
+  const auto may_be = [&](int at) { return !is_near[at]; };
   const std::vector<PlaceCandidate> alike =
       index_.Query(cur.described.descriptors, options_.max_lookalikes, may_be);
   for (const PlaceCandidate& candidate : alike) {

@@ -41,6 +41,9 @@ TEST(KeyframeGraphTest, HopsCountPairs) {
   EXPECT_EQ(circle.graph.Hops(3, 3, 5), 0);
   EXPECT_EQ(circle.graph.Hops(3, 7, 9), 4);
   EXPECT_EQ(circle.graph.Hops(3, 7, 2), 2);
+  const std::vector<bool> near = circle.graph.Within(3, 2);
+  EXPECT_EQ(std::count(near.begin(), near.end(), true), 5);
+  EXPECT_TRUE(near[1] && near[5]);
   EXPECT_TRUE(circle.graph.AreJoined(3, 4));
   EXPECT_FALSE(circle.graph.AreJoined(3, 5));
 }
