@@ -71,22 +71,10 @@ ProgramInfo Info() {
 // A run that tracked less of its frames than this has failed.
 constexpr double kMinTrackedShare = 0.5;
 
-// More than any machine can use for this.
-constexpr int kMaxThreads = 256;
-
 using Clock = std::chrono::steady_clock;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-int NumThreads() {
-  if (FLAGS_threads < 0 || FLAGS_threads > kMaxThreads) {
-    throw InputError("--threads must be 0 (one a core) to " +
-                     std::to_string(kMaxThreads));
-  }
-  if (FLAGS_threads > 0) return FLAGS_threads;
-  return std::min(AvailableCores(), kMaxThreads);
 }
 
 // A help to look at a run; a program built without the library that it needs
@@ -137,7 +125,7 @@ int Main() {
   RequireFlag("dataset", settings.sequence.dataset);
   RequireFlag("camera", settings.sequence.camera);
   RequireFlag("output", settings.output.output);
-  const int threads = NumThreads();
+  const int threads = NumThreads(FLAGS_threads);
   // The threads are ours: OpenCV's own would only compete with them.
   cv::setNumThreads(1);
 
@@ -191,11 +179,12 @@ int Main() {
                    FormatKeyframesCsv(map, slam.Covariances()));
   output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
   text += WriteReport(output.aside());
+  output.Publish();
+  // The results stay if the map cannot be saved.
   if (!settings.maps.save_map.empty()) {
     SaveMap(settings.maps.save_map, map);
     text += "map in      " + settings.maps.save_map + "\n";
   }
-  output.Publish();
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
   if (results.TrackedShare() >= kMinTrackedShare) return kExitOk;
