@@ -133,7 +133,7 @@ std::vector<int> Mapper::SeeingTheSame(int newest) const {
   std::vector<std::pair<double, int>> seen;
   for (int at = 0; at < newest; ++at) {
     if (graph_.IsDropped(at) || graph_.segment(at) != graph_.segment(newest) ||
-        graph_.AreJoined(at, newest)) {
+        graph_.links().AreJoined(at, newest)) {
       continue;
     }
     const Rigid3d cur_from_ref =
@@ -177,7 +177,8 @@ void Mapper::PairByPose(int newest, const PreparedFrame& frame,
                         MapUpdate* update) {
   for (const int at : SeeingTheSame(newest)) {
     const bool is_loop =
-        graph_.Hops(newest, at, options_.loop_hops + 1) > options_.loop_hops;
+        graph_.links().Hops(newest, at, options_.loop_hops + 1) >
+        options_.loop_hops;
     const auto edge =
         MakePair(at, newest, frame,
                  graph_.pose(newest).Inverse() * graph_.pose(at), 0.0);
@@ -194,7 +195,8 @@ void Mapper::PairByLooks(int newest, const PreparedFrame& frame,
                          MapUpdate* update) {
   if (options_.max_lookalikes == 0) return;
   const PlaceFeatures& cur = keyframes_[newest].features;
-  const std::vector<bool> is_near = graph_.Within(newest, options_.loop_hops);
+  const std::vector<bool> is_near =
+      graph_.links().Within(newest, options_.loop_hops);
   const auto may_be = [&](int at) { return !is_near[at]; };
   const std::vector<PlaceCandidate> alike =
       index_.Query(cur.described.descriptors, options_.max_lookalikes, may_be);
@@ -226,7 +228,7 @@ void Mapper::PairByLooks(int newest, const PreparedFrame& frame,
 // Whether a keyframe beside edge.ref, as its segment has it, makes a pair that
 // tells the same.
 bool Mapper::AgreesWithOthers(const Edge& edge, const PreparedFrame& frame) {
-  const std::vector<int> beside = graph_.neighbours(edge.ref);
+  const std::vector<int> beside = graph_.links().Beside(edge.ref);
   for (const int at : beside) {
     const Rigid3d guess =
         edge.cur_from_ref * graph_.pose(edge.ref).Inverse() * graph_.pose(at);
@@ -331,7 +333,7 @@ void Mapper::FindReturn(int newest, MapUpdate* update) const {
 void Mapper::MakeWay(int newest) {
   const int at = newest - options_.graph.window;
   if (at < 0 || graph_.IsDropped(at) || !graph_.CanDoWithout(at)) return;
-  for (const int beside : graph_.neighbours(at)) {
+  for (const int beside : graph_.links().Beside(at)) {
     if (beside > at) continue;
     const Overlap overlap = keyframes_[at].samples.SeenFrom(
         graph_.pose(beside).Inverse() * graph_.pose(at));
@@ -372,7 +374,7 @@ KeyframeMap Mapper::Map(bool as_solved) const {
     map.keyframes.push_back({keyframes_[at].id, graph_.segment(at),
                              graph_.pose(at), keyframes_[at].images});
   }
-  for (const KeyframeGraph::Pair& pair : graph_.pairs()) {
+  for (const KeyframePair& pair : graph_.pairs()) {
     Edge edge = pair.edge;
     edge.ref = keyframes_[pair.edge.ref].id;
     edge.cur = keyframes_[pair.edge.cur].id;

@@ -19,7 +19,7 @@ std::vector<Setting> SettingTable(SlamSettings* settings) {
       {"drift", kGroup,
        "what a loop may correct: standard deviation as a share of the way and "
        "of the turns",
-       &mapping->graph.drift},
+       &mapping->graph.trust.drift},
       {"window", kGroup,
        "keyframes whose poses are solved for at each new one; after a loop all "
        "are",

@@ -140,7 +140,7 @@ nlohmann::json SlamToJson(const Slam& slam,
         {t.x(), t.y(), t.z(), graph.segment(at), graph.IsDropped(at)});
   }
   nlohmann::json edges = nlohmann::json::array();
-  for (const KeyframeGraph::Pair& pair : graph.pairs()) {
+  for (const KeyframePair& pair : graph.pairs()) {
     tracked += pair.is_tracked;
     loops += pair.is_loop;
     pairs += !pair.is_tracked;

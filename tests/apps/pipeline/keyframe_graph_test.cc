@@ -36,18 +36,6 @@ struct Circle {
   KeyframeGraph graph;
 };
 
-TEST(KeyframeGraphTest, HopsCountPairs) {
-  const Circle circle;
-  EXPECT_EQ(circle.graph.Hops(3, 3, 5), 0);
-  EXPECT_EQ(circle.graph.Hops(3, 7, 9), 4);
-  EXPECT_EQ(circle.graph.Hops(3, 7, 2), 2);
-  const std::vector<bool> near = circle.graph.Within(3, 2);
-  EXPECT_EQ(std::count(near.begin(), near.end(), true), 5);
-  EXPECT_TRUE(near[1] && near[5]);
-  EXPECT_TRUE(circle.graph.AreJoined(3, 4));
-  EXPECT_FALSE(circle.graph.AreJoined(3, 5));
-}
-
 TEST(KeyframeGraphTest, ALoopTakesDriftBack) {
   Circle circle;
   const double drift = circle.LastError();
@@ -110,7 +98,7 @@ TEST(KeyframeGraphTest, WhatIsDroppedStaysWhereItWasToItsAnchor) {
   const Rigid3d before = circle.graph.pose(9).Inverse() * circle.graph.pose(10);
   circle.graph.Drop(10, 9);
   EXPECT_TRUE(circle.graph.IsDropped(10));
-  for (const KeyframeGraph::Pair& pair : circle.graph.pairs()) {
+  for (const KeyframePair& pair : circle.graph.pairs()) {
     EXPECT_TRUE(pair.edge.ref != 10 && pair.edge.cur != 10);
   }
   circle.graph.AddPair(circle.Measured(0, kPoses - 1), false, true);
@@ -160,7 +148,7 @@ TEST(KeyframeGraphTest, CovariancesAsSolvedLetOthersFindTheSame) {
     as_solved.AddPose(circle.graph.pose(i), i == 0);
     as_measured.AddPose(circle.graph.pose(i), i == 0);
   }
-  for (const KeyframeGraph::Pair& pair : circle.graph.pairs()) {
+  for (const KeyframePair& pair : circle.graph.pairs()) {
     Edge edge = pair.edge;
     as_measured.AddEdge(edge);
     edge.covariance = circle.graph.CovarianceAsSolved(pair);
