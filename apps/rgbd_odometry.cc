@@ -108,7 +108,6 @@ int Main() {
   Flags().Apply();
   const ProgramSettings& settings = Settings();
   RequireFlag("dataset", settings.sequence.dataset);
-  RequireFlag("camera", settings.sequence.camera);
   if (!FLAGS_validate_only) RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
   // The threads are ours: OpenCV's own would only compete with them.
@@ -117,7 +116,7 @@ int Main() {
   // All that can be wrong with the input is looked at before the work starts
   // and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
-  const Sequence sequence = OpenSequence(settings.sequence, keep_color);
+  Sequence sequence = OpenSequence(settings.sequence, keep_color);
   FrameSource& source = *sequence.source;
   if (FLAGS_validate_only) return ValidateOnly(&source, threads);
   const RunInputs inputs = sequence.inputs();
@@ -142,13 +141,13 @@ int Main() {
   }
   const double seconds = SecondsSince(start);
 
-  const RunResults results = std::move(run).Finish();
+  const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
   if (!results.no_evaluation.empty()) {
     LOG(WARNING) << "no errors: " << results.no_evaluation;
   }
   std::string text = output.Write(
-      results, Summarise(results.frames, threads, seconds), inputs.ground_truth,
-      settings.sequence.dataset, FormatFlagFile(Info()));
+      results, Summarise(results.frames, threads, seconds),
+      sequence.TruthOfAll(), settings.sequence.dataset, FormatFlagFile(Info()));
   text += WriteReport(output.aside());
   output.Publish();
   std::printf("%sresults in  %s\n", text.c_str(),

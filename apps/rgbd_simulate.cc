@@ -70,7 +70,7 @@ int Simulate() {
     TumWriterOptions writer;
     writer.threads = AvailableCores();
     writer.progress = [&bar](int done) { bar.Update(done); };
-    WriteTumSequence(&dataset, dataset.ground_truth(), FLAGS_output, writer);
+    WriteTumSequence(&dataset, FLAGS_output, writer);
   }
   std::printf("%s: %d frames of path %s in scene %s, with ground truth\n",
               FLAGS_output.c_str(), dataset.size(), FLAGS_path.c_str(),

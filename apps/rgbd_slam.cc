@@ -123,7 +123,6 @@ int Main() {
   Flags().Apply();
   const ProgramSettings& settings = Settings();
   RequireFlag("dataset", settings.sequence.dataset);
-  RequireFlag("camera", settings.sequence.camera);
   RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
   // The threads are ours: OpenCV's own would only compete with them.
@@ -132,7 +131,7 @@ int Main() {
   // All that can be wrong with the input is looked at before the work starts
   // and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
-  const Sequence sequence = OpenSequence(settings.sequence, keep_color);
+  Sequence sequence = OpenSequence(settings.sequence, keep_color);
   FrameSource& source = *sequence.source;
   const RunInputs inputs = sequence.inputs();
   if (!settings.maps.save_map.empty()) RequireMapFolder(settings.maps.save_map);
@@ -158,7 +157,7 @@ int Main() {
   }
   const double seconds = SecondsSince(start);
 
-  const RunResults results = std::move(run).Finish();
+  const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
   const Slam& slam = run.slam();
   if (!results.no_evaluation.empty()) {
     LOG(WARNING) << "no errors: " << results.no_evaluation;
@@ -166,7 +165,7 @@ int Main() {
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
   std::string text =
       output.Write(results, Summarise(results.frames, threads, seconds),
-                   inputs.ground_truth, settings.sequence.dataset,
+                   sequence.TruthOfAll(), settings.sequence.dataset,
                    FormatFlagFile(Info()), Info().name, {{"slam", map_json}});
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();

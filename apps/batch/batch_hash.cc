@@ -2,7 +2,10 @@
 
 #include <link.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "core/geometry/camera.h"
 #include "core/util/text_file.h"
@@ -43,6 +46,27 @@ void AddImagesOf(const fs::path& folder, const char* list, TextHash* hash) {
   }
 }
 
+// What is below a folder of another kind, or a file: names, sizes and texts.
+void AddAllOf(const fs::path& recording, TextHash* hash) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  if (IsFile(recording)) files.push_back(recording);
+  for (const fs::directory_entry& entry :
+       fs::recursive_directory_iterator(recording, error)) {
+    if (entry.is_regular_file(error)) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    hash->Add(file.lexically_relative(recording).string());
+    const auto size = fs::file_size(file, error);
+    hash->Add(error ? "none" : std::to_string(size));
+    const std::string type = file.extension().string();
+    if (type == ".txt" || type == ".json" || type == ".log") {
+      AddFile(file, hash);
+    }
+  }
+}
+
 }  // namespace
 
 std::string HashProgram(const std::string& path) {
@@ -54,9 +78,13 @@ std::string HashProgram(const std::string& path) {
 
 std::string HashSequence(const BatchSequence& sequence) {
   TextHash hash;
-  AddImagesOf(sequence.folder, "rgb.txt", &hash);
-  AddImagesOf(sequence.folder, "depth.txt", &hash);
-  AddFile(fs::path(sequence.folder) / "groundtruth.txt", &hash);
+  if (IsFile(fs::path(sequence.folder) / "rgb.txt")) {
+    AddImagesOf(sequence.folder, "rgb.txt", &hash);
+    AddImagesOf(sequence.folder, "depth.txt", &hash);
+    AddFile(fs::path(sequence.folder) / "groundtruth.txt", &hash);
+  } else {
+    AddAllOf(sequence.folder, &hash);
+  }
   if (CameraPreset(sequence.camera)) {
     hash.Add(sequence.camera);
   } else {

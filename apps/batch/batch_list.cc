@@ -14,15 +14,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The folders that match a pattern, sorted; a path without wildcards matches
-// itself.
+bool IsRecording(const fs::path& path) {
+  std::error_code error;
+  return fs::is_directory(path, error) || path.extension() == ".bag" ||
+         path.extension() == ".db3";
+}
+
+// The folders and bags that match a pattern, sorted; a path without wildcards
+// matches itself.
 std::vector<std::string> MatchingFolders(const std::string& pattern) {
   glob_t matches = {};
   std::vector<std::string> folders;
   if (glob(pattern.c_str(), 0, nullptr, &matches) == 0) {
     for (size_t i = 0; i < matches.gl_pathc; ++i) {
-      std::error_code error;
-      if (fs::is_directory(matches.gl_pathv[i], error)) {
+      if (IsRecording(matches.gl_pathv[i])) {
         folders.emplace_back(matches.gl_pathv[i]);
       }
     }
@@ -100,6 +105,9 @@ class ListReader {
     std::string file =
         given ? FromBase(line.words[1]) : (folder / "camera.yaml").string();
     std::error_code error;
+    // Recordings of other kinds say it themselves, or else their run says so.
+    const bool is_tum = fs::is_regular_file(folder / "rgb.txt", error);
+    if (!given && !is_tum && !fs::is_regular_file(file, error)) return "";
     if (!fs::is_regular_file(file, error)) {
       throw InputError(path_, line.number,
                        "no camera: " + file +

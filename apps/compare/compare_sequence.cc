@@ -10,15 +10,11 @@ std::vector<LossRun> CompareLosses(FrameSource* source,
                                    const std::optional<Trajectory>& truth,
                                    const std::vector<std::string>& losses,
                                    OdometrySettings settings, int threads) {
-  RunInputs inputs;
-  if (truth.has_value()) {
-    RequireOverlap(*source, *truth);
-    inputs.ground_truth = &*truth;
-  }
+  if (truth.has_value()) RequireOverlap(*source, *truth);
   std::vector<OdometryRun> runs;
   for (const std::string& loss : losses) {
     settings.estimator.loss = loss;
-    runs.emplace_back(settings, source->camera().camera, inputs);
+    runs.emplace_back(settings, source->camera().camera);
   }
   std::vector<SequenceRun*> all;
   for (OdometryRun& run : runs) all.push_back(&run);
@@ -29,7 +25,9 @@ std::vector<LossRun> CompareLosses(FrameSource* source,
   }
   std::vector<LossRun> results;
   for (size_t i = 0; i < losses.size(); ++i) {
-    results.push_back({std::move(runs[i]).Finish(), losses[i]});
+    results.push_back(
+        {std::move(runs[i]).Finish(truth.has_value() ? &*truth : nullptr),
+         losses[i]});
   }
   return results;
 }

@@ -133,7 +133,7 @@ ExperimentResult RunRecorded(const ExperimentSettings& settings,
   SequenceExperiment experiment(name, settings, losses, *output);
   for (const double scale : scales) {
     files.depth_scale = scale;
-    const Sequence sequence = OpenSequence(files);
+    Sequence sequence = OpenSequence(files);
     const std::string units = Format("%.10g", scale);
     experiment.Add(name + ", " + units + " raw depth units per metre",
                    scales.size() == 1 ? "paths.svg" : "paths_" + units + ".svg",

@@ -28,12 +28,11 @@ void SequenceRun::Add(const StreamedFrame& next) {
   }
 }
 
-RunResults SequenceRun::Finish() && {
+RunResults SequenceRun::Finish(const Trajectory* ground_truth) && {
   results_.trajectory = FinishPath();
-  if (inputs_.ground_truth != nullptr && !results_.trajectory.empty()) {
+  if (ground_truth != nullptr && !results_.trajectory.empty()) {
     try {
-      results_.evaluation =
-          Evaluate(results_.trajectory, *inputs_.ground_truth);
+      results_.evaluation = Evaluate(results_.trajectory, *ground_truth);
     } catch (const InputError& error) {
       results_.no_evaluation = error.what();
     }

@@ -20,7 +20,6 @@ namespace rgbd_pose {
 // the run.
 struct RunInputs {
   const MotionGuess* motion_guess = nullptr;
-  const Trajectory* ground_truth = nullptr;  // world from camera
 };
 
 // What becomes of a sequence.
@@ -57,8 +56,9 @@ class SequenceRun {
   // The frames so far.
   const std::vector<TrackedFrame>& frames() const { return results_.frames; }
 
-  // After the last frame.
-  RunResults Finish() &&;
+  // After the last frame; compared with a ground truth (world from camera)
+  // unless it is null.
+  RunResults Finish(const Trajectory* ground_truth) &&;
 
  protected:
   virtual TrackedFrame Track(const PreparedFrame& frame,

@@ -1,69 +1,117 @@
 #include "apps/pipeline/sequence.h"
 
-#include <filesystem>
+#include <utility>
 
 #include "core/util/input_error.h"
 #include "frontend/sources/camera_file.h"
+#include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
 
 namespace rgbd_pose {
+namespace {
+
+constexpr char kNoGroundTruth[] = "none";
+
+}  // namespace
 
 std::vector<Setting> SettingTable(SequenceSettings* settings) {
   constexpr std::string_view kGroup = "Input";
   return {
       {"dataset", kGroup,
-       "recording of an RGB-D camera: a folder in TUM RGB-D layout",
+       "recording of an RGB-D camera: a folder or file of a known kind (see "
+       "source)",
        Text(&settings->dataset)},
-      {"source", kGroup, "kind of recording", Text(&settings->source),
-       SourceNames()},
+      {"source", kGroup, "kind of recording; auto: found by looking at it",
+       Text(&settings->source), SourceNames()},
+      {"frames", kGroup,
+       "part of the recording: first-last[:step] by number from 0, such as "
+       "100-400:2, or by seconds from its start, such as 2.5s-10s; empty: all",
+       Text(&settings->frames)},
       {"associations", kGroup,
        "file that pairs colour and depth images, either column order; empty: "
        "rgb.txt and depth.txt are paired by time",
        Text(&settings->associations)},
       {"camera", kGroup,
-       "YAML file (ORB-SLAM2/3, ROS camera_info or Kalibr layout) or preset",
+       "YAML file (ORB-SLAM2/3, ROS camera_info or Kalibr layout) or preset; "
+       "empty: what the recording says itself",
        Text(&settings->camera), CameraPresetNames()},
+      {"depth_camera", kGroup,
+       "which camera of a Kalibr file (cam1, say) took the depth images: they "
+       "are registered to colour; empty: they are already",
+       Text(&settings->depth_camera)},
       {"depth_scale", kGroup,
-       "raw depth units per metre; 0: as the camera says",
+       "raw depth units per metre; 0: as the camera or the recording says",
        &settings->depth_scale},
       {"motion_guess", kGroup,
        "trajectory (TUM text) that tells roughly how the camera moved between "
        "frames: wheels, an inertial sensor; empty: none",
        Text(&settings->motion_guess)},
       {"groundtruth", kGroup,
-       "trajectory to compare with (TUM text); empty: groundtruth.txt of the "
-       "dataset if it is there",
+       "trajectory to compare with (TUM text); empty: that of the recording, "
+       "if it has one; none: compare with nothing",
        Text(&settings->groundtruth)},
   };
 }
 
 RunInputs Sequence::inputs() const {
-  return {motion_guess.has_value() ? &*motion_guess : nullptr,
-          ground_truth.has_value() ? &*ground_truth : nullptr};
+  return {motion_guess.has_value() ? &*motion_guess : nullptr};
 }
 
-Sequence OpenSequence(const SequenceSettings& settings, bool keep_color) {
+const Trajectory* Sequence::TruthOfAll() {
+  if (!ground_truth.has_value() && compares) {
+    ground_truth = source->ground_truth();
+  }
+  const bool is_there = ground_truth.has_value() && !ground_truth->empty();
+  return is_there ? &*ground_truth : nullptr;
+}
+
+namespace {
+
+SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color) {
   SourceOptions options;
   options.path = settings.dataset;
   options.keep_color = keep_color;
   options.associations_file = settings.associations;
-  options.camera = ResolveCamera(settings.camera);
-  if (!(settings.depth_scale >= 0.0)) {
-    throw InputError("depth_scale must be positive (raw units per metre)");
+  options.depth_scale = settings.depth_scale;
+  if (!settings.camera.empty()) {
+    options.camera = ResolveCameraSetup(settings.camera, settings.depth_camera);
+  } else if (!settings.depth_camera.empty()) {
+    throw InputError("depth_camera '" + settings.depth_camera +
+                     "': needs the Kalibr file that it is of (camera)");
   }
-  if (settings.depth_scale > 0.0) {
-    options.camera.depth_scale = settings.depth_scale;
+  return options;
+}
+
+// A recording, or what of it is asked for.
+std::unique_ptr<FrameSource> OpenPart(const SequenceSettings& settings,
+                                      bool keep_color) {
+  const FrameRange range = ParseFrameRange(settings.frames);
+  std::unique_ptr<FrameSource> whole =
+      OpenSource(settings.source, OptionsOf(settings, keep_color));
+  const size_t frames = whole->timestamps().size();
+  std::unique_ptr<FrameSource> part = PartOf(std::move(whole), range);
+  if (frames > 0 && part->timestamps().empty()) {
+    throw InputError("frames '" + settings.frames + "': " + settings.dataset +
+                     " has none of them, only " + std::to_string(frames) +
+                     " frames in all");
   }
+  return part;
+}
+
+}  // namespace
+
+Sequence OpenSequence(const SequenceSettings& settings, bool keep_color) {
   Sequence sequence;
-  sequence.source = OpenSource(settings.source, options);
-  std::string truth = settings.groundtruth;
-  if (truth.empty()) {
-    const std::filesystem::path path =
-        std::filesystem::path(settings.dataset) / "groundtruth.txt";
-    if (std::filesystem::exists(path)) truth = path.string();
+  sequence.source = OpenPart(settings, keep_color);
+  sequence.compares = settings.groundtruth != kNoGroundTruth;
+  if (sequence.compares && !settings.groundtruth.empty()) {
+    sequence.ground_truth = ReadTrajectory(settings.groundtruth);
+  } else if (sequence.compares && !sequence.source->timestamps().empty()) {
+    // What comes with the frames is there after them, if not before.
+    Trajectory truth = sequence.source->ground_truth();
+    if (!truth.empty()) sequence.ground_truth = std::move(truth);
   }
-  if (!truth.empty()) {
-    sequence.ground_truth = ReadTrajectory(truth);
+  if (sequence.ground_truth.has_value()) {
     RequireOverlap(*sequence.source, *sequence.ground_truth);
   }
   if (!settings.motion_guess.empty()) {

@@ -17,11 +17,13 @@ namespace rgbd_pose {
 struct SequenceSettings {
   std::string dataset;          // path of a recording
   std::string source = "auto";  // its kind, see OpenSource
+  std::string frames;           // part of it, see ParseFrameRange
   std::string associations;     // file
-  std::string camera;           // file or preset
-  double depth_scale = 0.0;     // raw units per metre; 0: the camera's
+  std::string camera;           // file or preset; empty: the recording's own
+  std::string depth_camera;     // of that file; empty: depth is registered
+  double depth_scale = 0.0;     // raw units per metre; 0: as they say
   std::string motion_guess;     // file
-  std::string groundtruth;      // file; empty: that of the dataset, if any
+  std::string groundtruth;      // file, or none; empty: the recording's own
 };
 
 // Their rows.
@@ -30,11 +32,16 @@ std::vector<Setting> SettingTable(SequenceSettings* settings);
 // A sequence that is open.
 struct Sequence {
   std::unique_ptr<FrameSource> source;
-  std::optional<Trajectory> ground_truth;
+  std::optional<Trajectory> ground_truth;  // if it is known before the frames
+  bool compares = true;                    // with the recording's own
   std::optional<MotionGuess> motion_guess;
 
   // For a run, as long as this lives.
   RunInputs inputs() const;
+
+  // The ground truth once all frames have been read, when that of any recording
+  // is known; null: there is none. As long as this lives.
+  const Trajectory* TruthOfAll();
 };
 
 // `keep_color`: in Frame::color. Throws InputError for all that can be wrong

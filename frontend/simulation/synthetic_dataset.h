@@ -69,7 +69,7 @@ class SyntheticDataset : public Dataset {
   Rigid3d WorldFromCam(int index) const;
 
   // The exact pose of every frame.
-  Trajectory ground_truth() const;
+  Trajectory ground_truth() const override;
 
  private:
   // Seconds since the first frame.

@@ -1,6 +1,7 @@
 #include "frontend/sources/camera_file.h"
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -58,8 +59,8 @@ Camera ReadRosCameraInfo(const YamlSection& file) {
   return camera;
 }
 
-Camera ReadKalibr(const YamlSection& file) {
-  const YamlSection cam = file.Child("cam0");
+Camera ReadKalibr(const YamlSection& file, const std::string& name) {
+  const YamlSection cam = file.Child(name);
   cam.CheckWord("camera_model", {"pinhole"});
   cam.CheckWord("distortion_model", {"radtan"});
   Camera camera;
@@ -75,20 +76,52 @@ Camera ReadKalibr(const YamlSection& file) {
   return camera;
 }
 
+// `camera_from_before` of a camera that is not the first, 4 x 4 row by row.
+Rigid3d ReadKalibrMotion(const YamlSection& file, const std::string& name) {
+  const YamlSection cam = file.Child(name);
+  const std::vector<double> m = cam.Matrix("T_cn_cnm1", 4, 4);
+  Eigen::Matrix3d rotation;
+  rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  const bool is_rigid =
+      (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() <
+          1e-3 &&
+      rotation.determinant() > 0.0;
+  if (!is_rigid) cam.Fail("T_cn_cnm1", "holds no rotation");
+  return Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
+}
+
+DepthCamera ReadDepthCamera(const std::string& path, const YamlSection& file,
+                            const std::string& name) {
+  constexpr int kMaxCameras = 16;
+  Rigid3d cam_from_color;
+  for (int i = 1; i < kMaxCameras; ++i) {
+    const std::string next = "cam" + std::to_string(i);
+    if (!file.Has(next)) break;
+    cam_from_color = ReadKalibrMotion(file, next) * cam_from_color;
+    if (next != name) continue;
+    DepthCamera depth = {ReadKalibr(file, name), cam_from_color.Inverse()};
+    const std::string problem = depth.camera.Check();
+    if (!problem.empty()) throw InputError(path + ": " + name + ": " + problem);
+    return depth;
+  }
+  throw InputError(path + ": has no camera '" + name +
+                   "' for depth; name cam1 or a later one of a Kalibr file");
+}
+
 Camera ReadAnyLayout(const std::string& path, const YamlSection& file) {
   if (file.HasKeyStartingWith("Camera.") ||
       file.HasKeyStartingWith("Camera1.")) {
     return ReadOrbSlam(file);
   }
   if (file.Has("camera_matrix")) return ReadRosCameraInfo(file);
-  if (file.Has("cam0")) return ReadKalibr(file);
+  if (file.Has("cam0")) return ReadKalibr(file, "cam0");
   throw InputError(path +
                    ": no camera in here; known layouts are ORB-SLAM "
                    "(Camera.fx), ROS camera_info (camera_matrix) and Kalibr "
                    "(cam0)");
 }
 
-double ReadDepthScale(const YamlSection& file) {
+std::optional<double> ReadDepthScale(const YamlSection& file) {
   for (const char* key : {"DepthMapFactor", "RGBD.DepthMapFactor"}) {
     if (!file.Has(key)) continue;
     const double scale = file.Number(key);
@@ -99,30 +132,48 @@ double ReadDepthScale(const YamlSection& file) {
     }
     return scale;
   }
-  return RgbdCamera{}.depth_scale;
+  return std::nullopt;
 }
 
 }  // namespace
 
-RgbdCamera ReadCameraFile(const std::string& path) {
+CameraSetup ReadCameraFile(const std::string& path,
+                           const std::string& depth_camera) {
   const YamlSection file = YamlSection::FromFile(path);
-  RgbdCamera result;
+  CameraSetup result;
   result.camera = ReadAnyLayout(path, file);
   result.depth_scale = ReadDepthScale(file);
   const std::string problem = result.camera.Check();
   if (!problem.empty()) throw InputError(path + ": " + problem);
+  if (!depth_camera.empty()) {
+    result.depth_camera = ReadDepthCamera(path, file, depth_camera);
+  }
   return result;
 }
 
-RgbdCamera ResolveCamera(const std::string& file_or_preset) {
-  if (const auto preset = CameraPreset(file_or_preset)) return *preset;
+CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
+                               const std::string& depth_camera) {
   std::error_code error;
-  if (std::filesystem::exists(file_or_preset, error)) {
-    return ReadCameraFile(file_or_preset);
+  const auto preset = CameraPreset(file_or_preset);
+  if (!preset && std::filesystem::exists(file_or_preset, error)) {
+    return ReadCameraFile(file_or_preset, depth_camera);
+  }
+  // Presets are of registered depth. Their scale is the benchmark's: what a
+  // recording says of its own comes before it.
+  if (preset && depth_camera.empty()) return CameraSetup(preset->camera);
+  if (preset) {
+    throw InputError("camera '" + file_or_preset +
+                     "' is a preset, which has "
+                     "no depth camera '" +
+                     depth_camera + "'; give a Kalibr file of both cameras");
   }
   throw InputError("camera '" + file_or_preset +
                    "' is neither a file nor one of the presets: " +
                    Join(CameraPresetNames()));
+}
+
+RgbdCamera ResolveCamera(const std::string& file_or_preset) {
+  return RegisteredCamera(ResolveCameraSetup(file_or_preset));
 }
 
 }  // namespace rgbd_pose

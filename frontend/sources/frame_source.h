@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "frontend/image/frame.h"
 
@@ -36,6 +37,10 @@ class FrameSource {
   // The time stamps of all frames (s) if they are known ahead, as those of a
   // recording are; empty otherwise.
   virtual std::vector<double> timestamps() const { return {}; }
+
+  // The true path (world from camera) that came with the frames so far; empty
+  // if there is none. Throws InputError if it cannot be read.
+  virtual Trajectory ground_truth() const { return {}; }
 
   // How many colour images make no frame since they have no depth image.
   virtual int unmatched_color() const { return 0; }

@@ -1,61 +1,109 @@
 #include "frontend/sources/open_source.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <functional>
+#include <set>
 
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
+#include "core/util/text_file.h"
+#include "frontend/sources/numbered_dataset.h"
 #include "frontend/sources/tum_dataset.h"
 
 namespace rgbd_pose {
 namespace {
 
+namespace fs = std::filesystem;
+
 constexpr char kAuto[] = "auto";
 
 struct SourceType {
-  const char* name;
-  const char* what;  // it is, in words
-  bool (*recognises)(const std::string& path);
-  std::unique_ptr<FrameSource> (*open)(const SourceOptions& options);
+  std::string name;
+  std::string what;  // it is, in words
+  std::function<bool(const SourceOptions& options)> recognises;
+  std::function<std::unique_ptr<FrameSource>(const SourceOptions& options)>
+      open;
 };
 
-template <typename Source>
-std::unique_ptr<FrameSource> Open(const SourceOptions& options) {
-  return std::make_unique<Source>(options);
+bool HasFile(const SourceOptions& options, const char* name) {
+  std::error_code error;
+  return fs::exists(fs::path(options.path) / name, error);
 }
 
 // The first that recognises a path has it.
-constexpr SourceType kTypes[] = {
-    {"tum", "a folder with rgb.txt and depth.txt",
-     [](const std::string& path) {
-       std::error_code error;  // what is missing in it, TumDataset says
-       return std::filesystem::is_directory(path, error);
-     },
-     Open<TumDataset>},
-};
+const std::vector<SourceType>& Types() {
+  static const std::vector<SourceType> types = [] {
+    std::vector<SourceType> all = {
+        {"tum", "TUM RGB-D (rgb.txt and depth.txt)",
+         [](const SourceOptions& options) {
+           return !options.associations_file.empty() ||
+                  HasFile(options, "rgb.txt") || HasFile(options, "depth.txt");
+         },
+         [](const SourceOptions& options) {
+           return std::make_unique<TumDataset>(options);
+         }},
+    };
+    for (const NumberedLayout& layout : NumberedLayouts()) {
+      all.push_back({layout.name, layout.what,
+                     [&layout](const SourceOptions& options) {
+                       return NumberedDataset::Recognises(layout, options.path);
+                     },
+                     [&layout](const SourceOptions& options) {
+                       return std::make_unique<NumberedDataset>(layout,
+                                                                options);
+                     }});
+    }
+    return all;
+  }();
+  return types;
+}
+
+// What a folder holds, in a few words for a message.
+std::string Content(const std::string& folder) {
+  constexpr size_t kMaxNames = 6;
+  std::set<std::string> names;
+  std::error_code error;
+  for (const fs::directory_entry& entry :
+       fs::directory_iterator(folder, error)) {
+    names.insert(entry.path().filename().string() +
+                 (entry.is_directory(error) ? "/" : ""));
+  }
+  if (names.empty()) return "nothing";
+  const size_t count = names.size();
+  std::vector<std::string> some(names.begin(), names.end());
+  some.resize(std::min(count, kMaxNames));
+  return Join(some) + (count > kMaxNames ? ", ..." : "");
+}
 
 }  // namespace
 
 std::vector<std::string> SourceNames() {
-  std::vector<std::string> names = NamesOf(kTypes);
-  names.insert(names.begin(), kAuto);
+  std::vector<std::string> names = {kAuto};
+  for (const SourceType& type : Types()) names.push_back(type.name);
   return names;
 }
 
 std::unique_ptr<FrameSource> OpenSource(const std::string& name,
                                         const SourceOptions& options) {
+  std::error_code error;
   std::string known;
-  for (const SourceType& type : kTypes) {
-    if (name == kAuto ? type.recognises(options.path) : name == type.name) {
+  for (const SourceType& type : Types()) {
+    if (name == kAuto ? type.recognises(options) : name == type.name) {
       return type.open(options);
     }
-    known += std::string(known.empty() ? "" : "; ") + type.what;
+    known += (known.empty() ? "" : "; ") + type.what;
   }
   if (name != kAuto) throw UnknownName("source", name, SourceNames());
-  std::error_code error;
-  if (!std::filesystem::exists(options.path, error)) {
-    throw InputError(options.path + ": no such folder");
+  if (!fs::exists(options.path, error)) {
+    throw InputError(options.path + ": no such file or folder");
   }
-  throw InputError(options.path + ": is no known kind of recording: " + known);
+  if (!fs::is_directory(options.path, error)) {
+    throw InputError(options.path +
+                     ": is no known kind of recording; known are: " + known);
+  }
+  throw InputError(options.path + ": is no known kind of recording: it holds " +
+                   Content(options.path) + "; known are: " + known);
 }
 
 }  // namespace rgbd_pose

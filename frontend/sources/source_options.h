@@ -1,19 +1,52 @@
 #pragma once
 
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/geometry/camera.h"
+#include "frontend/image/depth_registration.h"
 
 namespace rgbd_pose {
 
+// What is known of an RGB-D camera, by a calibration file or by a recording.
+struct CameraSetup {
+  CameraSetup() = default;
+  explicit CameraSetup(const Camera& color) : camera(color) {}
+
+  // With its depth scale as it is there.
+  CameraSetup(const RgbdCamera& rgbd)  // NOLINT(*-explicit-*): says the same
+      : camera(rgbd.camera), depth_scale(rgbd.depth_scale) {}
+
+  Camera camera;  // of the colour image
+
+  // Raw units of the depth image per metre; nothing: not said.
+  std::optional<double> depth_scale;
+
+  // Nothing: the depth images are registered to colour.
+  std::optional<DepthCamera> depth_camera;
+};
+
 // Where a recording is, and how to read it.
 struct SourceOptions {
-  std::string path;  // of its folder
+  std::string path;  // of its folder or file
 
   // Lines `time colour_image time depth_image`, or depth first; taken as they
   // are. Empty: the recording says itself which images belong together.
   std::string associations_file;
-  RgbdCamera camera;
+
+  // Of a bag: colour, depth and, if it is not the one that belongs to colour,
+  // camera_info. Empty: found by their types.
+  std::vector<std::string> topics;
+
+  // What it says comes before what the recording says; nothing: the recording
+  // must say all.
+  std::optional<CameraSetup> camera;
+
+  // Raw units per metre, before all others; 0: as the camera, the recording or,
+  // if they do not, the TUM benchmark says (5000).
+  double depth_scale = 0.0;
+
   // Seconds between a colour image and its depth image, at most.
   double max_time_difference = 0.02;
   bool keep_color = false;  // in Frame::color
@@ -21,5 +54,13 @@ struct SourceOptions {
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
+
+// What to read a recording with, by what is asked for and what it says itself.
+// Throws InputError if nobody says what camera it was.
+CameraSetup ChooseCamera(const SourceOptions& options,
+                         const std::optional<CameraSetup>& of_recording = {});
+
+// As it is once depth is registered.
+RgbdCamera RegisteredCamera(const CameraSetup& setup);
 
 }  // namespace rgbd_pose

@@ -1,51 +1,95 @@
 #include "frontend/sources/tum_dataset.h"
 
 #include <filesystem>
+#include <optional>
+#include <vector>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/sources/camera_file.h"
 #include "frontend/sources/image_file.h"
 
 namespace rgbd_pose {
+namespace {
 
-TumDataset::TumDataset(const SourceOptions& options)
-    : camera_(options.camera), keep_color_(options.keep_color) {
+namespace fs = std::filesystem;
+
+TumLists ReadLists(const SourceOptions& options) {
   const std::string problem = options.Check();
   if (!problem.empty()) throw InputError(problem);
   std::error_code error;
-  if (!std::filesystem::is_directory(options.path, error)) {
+  if (!fs::is_directory(options.path, error)) {
     throw InputError(options.path +
                      ": no such folder; give the folder of a TUM RGB-D "
                      "sequence");
   }
-  lists_ = options.associations_file.empty()
-               ? ReadTumLists(options.path, options.max_time_difference)
-               : ReadTumAssociations(options.path, options.associations_file);
+  return options.associations_file.empty()
+             ? ReadTumLists(options.path, options.max_time_difference)
+             : ReadTumAssociations(options.path, options.associations_file);
 }
+
+// The size is that of the first image: the file does not say it.
+CameraSetup ReadCalibrationText(const std::string& path,
+                                const std::string& first_image) {
+  const std::vector<TextLine> lines = ReadTextTable(path);
+  if (lines.empty() || lines.front().words.size() != 4) {
+    throw InputError(path + ": needs one line, fx fy cx cy");
+  }
+  double numbers[4];
+  for (int i = 0; i < 4; ++i) {
+    numbers[i] = ParseNumber(lines.front().words[i], path, lines.front().number,
+                             "fx fy cx cy");
+  }
+  const cv::Mat image = ReadGrayImageFile(first_image);
+  Camera camera;
+  camera.width = image.cols;
+  camera.height = image.rows;
+  camera.fx = numbers[0];
+  camera.fy = numbers[1];
+  camera.cx = numbers[2];
+  camera.cy = numbers[3];
+  const std::string problem = camera.Check();
+  if (!problem.empty()) throw InputError(path + ": " + problem);
+  return CameraSetup(camera);
+}
+
+std::optional<CameraSetup> OwnCamera(const SourceOptions& options,
+                                     const TumLists& lists) {
+  if (options.camera.has_value()) return std::nullopt;  // nobody asks for it
+  const fs::path folder = options.path;
+  std::error_code error;
+  if (fs::exists(folder / "camera.yaml", error)) {
+    return ReadCameraFile((folder / "camera.yaml").string());
+  }
+  if (fs::exists(folder / "calibration.txt", error)) {
+    return ReadCalibrationText((folder / "calibration.txt").string(),
+                               lists.pairs.front().color_path);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+TumDataset::TumDataset(const SourceOptions& options)
+    : folder_(options.path),
+      lists_(ReadLists(options)),
+      assembly_(ChooseCamera(options, OwnCamera(options, lists_)),
+                options.keep_color) {}
 
 Frame TumDataset::Read(int index) const {
   const ImagePair& pair = lists_.pairs[index];
-  Frame frame;
+  Frame frame = assembly_.Read(pair.color_path, pair.depth_path);
   frame.index = index;
   frame.timestamp = pair.timestamp;
   frame.depth_delay = pair.depth_delay;
-  frame.gray =
-      ReadGrayImageFile(pair.color_path, keep_color_ ? &frame.color : nullptr);
-  frame.depth = ReadDepthImageFile(pair.depth_path);
-  frame.depth_scale = camera_.depth_scale;
-  CheckSize(frame.gray, pair.color_path);
-  CheckSize(frame.depth, pair.depth_path);
   return frame;
 }
 
-void TumDataset::CheckSize(const cv::Mat& image,
-                           const std::string& path) const {
-  const Camera& camera = camera_.camera;
-  if (image.cols == camera.width && image.rows == camera.height) return;
-  throw InputError(path + ": is " + std::to_string(image.cols) + " x " +
-                   std::to_string(image.rows) + " pixels, the camera has " +
-                   std::to_string(camera.width) + " x " +
-                   std::to_string(camera.height) +
-                   "; is it the right camera file or preset?");
+Trajectory TumDataset::ground_truth() const {
+  const fs::path path = fs::path(folder_) / "groundtruth.txt";
+  std::error_code error;
+  if (!fs::exists(path, error)) return {};
+  return ReadTrajectory(path.string());
 }
 
 }  // namespace rgbd_pose

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <opencv2/core.hpp>
 #include <string>
 
 #include "frontend/sources/dataset.h"
+#include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/source_options.h"
 #include "frontend/sources/tum_lists.h"
 
@@ -11,6 +11,8 @@ namespace rgbd_pose {
 
 // A sequence in the layout of the TUM RGB-D benchmark. A frame is a colour
 // image and its depth image; its time stamp is that of the colour image.
+// Its own camera is camera.yaml, as rgbd_simulate writes it, or calibration.txt
+// (fx fy cx cy), as ETH3D does.
 class TumDataset : public Dataset {
  public:
   // Checks all that can be known without decoding the images: the lists, their
@@ -23,17 +25,18 @@ class TumDataset : public Dataset {
     return lists_.pairs[index].timestamp;
   }
   Frame Read(int index) const override;
-  const RgbdCamera& camera() const override { return camera_; }
+  const RgbdCamera& camera() const override { return assembly_.camera(); }
+
+  // Of groundtruth.txt, if it is there.
+  Trajectory ground_truth() const override;
 
   // Of rgb.txt; 0 with an associations file.
   int unmatched_color() const override { return lists_.unmatched_color; }
 
  private:
-  void CheckSize(const cv::Mat& image, const std::string& path) const;
-
-  RgbdCamera camera_;
-  bool keep_color_;
+  std::string folder_;
   TumLists lists_;
+  FrameAssembly assembly_;
 };
 
 }  // namespace rgbd_pose

@@ -65,11 +65,13 @@ void WriteFrames(FrameSource* source, const fs::path& folder,
   }
 }
 
-void WriteAll(FrameSource* source, const Trajectory& ground_truth,
-              const fs::path& folder, const TumWriterOptions& options) {
+void WriteAll(FrameSource* source, const fs::path& folder,
+              const TumWriterOptions& options) {
   fs::create_directories(folder / "rgb");
   fs::create_directories(folder / "depth");
   WriteFrames(source, folder, options);
+  const Trajectory ground_truth =
+      options.ground_truth ? options.ground_truth() : source->ground_truth();
   if (!ground_truth.empty()) {
     WriteFileAtomically((folder / "groundtruth.txt").string(),
                         FormatTrajectory(ground_truth));
@@ -95,8 +97,7 @@ std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
   return text;
 }
 
-void WriteTumSequence(FrameSource* source, const Trajectory& ground_truth,
-                      const std::string& folder,
+void WriteTumSequence(FrameSource* source, const std::string& folder,
                       const TumWriterOptions& options) {
   fs::path target = fs::path(folder).lexically_normal();
   if (!target.has_filename()) target = target.parent_path();  // "folder/"
@@ -111,7 +112,7 @@ void WriteTumSequence(FrameSource* source, const Trajectory& ground_truth,
     }
     fs::remove_all(aside);
     try {
-      WriteAll(source, ground_truth, aside, options);
+      WriteAll(source, aside, options);
       fs::rename(aside, target);
     } catch (...) {
       std::error_code ignored;

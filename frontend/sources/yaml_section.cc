@@ -74,6 +74,23 @@ std::vector<double> YamlSection::Numbers(
   Fail(key, "needs a list of " + wanted + " numbers");
 }
 
+std::vector<double> YamlSection::Matrix(const std::string& key, size_t rows,
+                                        size_t columns) const {
+  const YAML::Node list = Find(key);
+  if (list.IsSequence() && list.size() == rows * columns) {
+    return Numbers(key, {rows * columns});
+  }
+  std::vector<double> numbers;
+  for (size_t i = 0; list.IsSequence() && i < list.size(); ++i) {
+    const YAML::Node row = list[i];
+    if (!row.IsSequence() || row.size() != columns) break;
+    for (const auto& item : row) numbers.push_back(ToNumber(key, item));
+  }
+  if (numbers.size() == rows * columns && list.size() == rows) return numbers;
+  Fail(key, "needs a list of " + std::to_string(rows) + " lists of " +
+                std::to_string(columns) + " numbers");
+}
+
 int YamlSection::Pixels(const std::string& key) const {
   return Pixels(key, Number(key));
 }

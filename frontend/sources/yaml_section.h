@@ -28,6 +28,11 @@ class YamlSection {
   std::vector<double> Numbers(const std::string& key,
                               const std::vector<size_t>& lengths) const;
 
+  // A matrix: a list of `rows` lists of `columns` numbers each, or all of them
+  // in one list. Row by row.
+  std::vector<double> Matrix(const std::string& key, size_t rows,
+                             size_t columns) const;
+
   // A positive whole number of pixels: the value of a key, or a number already
   // read from there.
   int Pixels(const std::string& key) const;

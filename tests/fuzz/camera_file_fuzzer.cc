@@ -10,11 +10,18 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const FuzzFolder folder;
   const std::string file = folder.Write("camera.yaml", FuzzText(data, size));
   MayRefuse([&] {
-    const RgbdCamera camera = ReadCameraFile(file);
+    const CameraSetup camera = ReadCameraFile(file);
     Require(camera.camera.Check().empty(), "a camera that can be used");
-    Require(std::isfinite(camera.depth_scale) && camera.depth_scale >= 1.0,
+    const double scale = camera.depth_scale.value_or(1.0);
+    Require(std::isfinite(scale) && scale >= 1.0,
             "a depth scale that can be used");
     camera.camera.Unproject({0.0, 0.0}, 1.0);
+  });
+  MayRefuse([&] {
+    const CameraSetup rig = ReadCameraFile(file, "cam1");
+    Require(rig.depth_camera->camera.Check().empty() &&
+                rig.depth_camera->color_from_depth.IsFinite(),
+            "a depth camera that can be used");
   });
   return 0;
 }

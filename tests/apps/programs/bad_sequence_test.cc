@@ -119,7 +119,7 @@ TEST_F(BadInputTest, Lists) {
       Odometry(),
       {
           {"no folder", nullptr, "--dataset={seq}/none", 2,
-           "{seq}/none: no such folder"},
+           "{seq}/none: no such file or folder"},
           {"no rgb.txt", Gone("rgb.txt"), "", 2, kRgb + ": missing"},
           {"no depth.txt", Gone("depth.txt"), "", 2,
            "{seq}/depth.txt: missing"},

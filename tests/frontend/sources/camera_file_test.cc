@@ -43,10 +43,11 @@ class GoodCameraFileTest : public testing::TestWithParam<GoodFile> {};
 
 TEST_P(GoodCameraFileTest, IsRead) {
   const TempFolder folder;
-  const RgbdCamera camera =
+  const CameraSetup setup =
       ReadCameraFile(folder.Write("camera.yaml", GetParam().text));
-  ExpectCamera(camera.camera, GetParam().camera);
-  EXPECT_EQ(camera.depth_scale, GetParam().depth_scale);
+  ExpectCamera(setup.camera, GetParam().camera);
+  EXPECT_EQ(RegisteredCamera(setup).depth_scale, GetParam().depth_scale);
+  EXPECT_FALSE(setup.depth_camera.has_value());
 }
 
 const Camera kOrbSlam2Camera = {640,    480,     517.3,   516.5,  318.6, 255.3,
@@ -200,6 +201,91 @@ INSTANTIATE_TEST_SUITE_P(
                 Replace(kKalibr, "[848, 480]", "[848, -480]"),
                 {"yaml:6:", "cam0.resolution"}}),
     [](const auto& info) { return info.param.name; });
+
+// As Kalibr writes its result: cam1 a quarter turn around z and 0.1 m along the
+// new x away from cam0, cam2 0.2 m along z from cam1.
+constexpr char kRig[] = R"(
+cam0:
+  camera_model: pinhole
+  intrinsics: [600.5, 601.5, 424.25, 240.75]
+  distortion_model: radtan
+  distortion_coeffs: [0.0, 0.0, 0.0, 0.0]
+  resolution: [848, 480]
+cam1:
+  T_cn_cnm1:
+  - [0.0, 1.0, 0.0, 0.1]
+  - [-1.0, 0.0, 0.0, 0.0]
+  - [0.0, 0.0, 1.0, 0.0]
+  - [0.0, 0.0, 0.0, 1.0]
+  camera_model: pinhole
+  intrinsics: [400.0, 401.0, 320.0, 240.0]
+  distortion_model: radtan
+  distortion_coeffs: [0.1, 0.0, 0.0, 0.0]
+  resolution: [640, 480]
+cam2:
+  T_cn_cnm1: [1, 0, 0, 0,  0, 1, 0, 0,  0, 0, 1, 0.2,  0, 0, 0, 1]
+  camera_model: pinhole
+  intrinsics: [402.0, 403.0, 320.0, 240.0]
+  distortion_model: radtan
+  distortion_coeffs: [0.0, 0.0, 0.0, 0.0]
+  resolution: [640, 480]
+)";
+
+TEST(DepthCameraTest, IsReadFromARig) {
+  const TempFolder folder;
+  const std::string path = folder.Write("rig.yaml", kRig);
+  EXPECT_FALSE(ReadCameraFile(path).depth_camera.has_value());
+  const CameraSetup setup = ReadCameraFile(path, "cam1");
+  EXPECT_EQ(setup.camera.fx, 600.5);
+  EXPECT_FALSE(setup.depth_scale.has_value());
+  ASSERT_TRUE(setup.depth_camera.has_value());
+  EXPECT_EQ(setup.depth_camera->camera.fy, 401.0);
+  EXPECT_EQ(setup.depth_camera->camera.k1, 0.1);
+  EXPECT_EQ(setup.depth_camera->camera.width, 640);
+  // cam1_from_cam0 takes cam0's (0, 0, 1) to (0.1, 0, 1), and so on.
+  const Rigid3d& of_cam1 = setup.depth_camera->color_from_depth;
+  EXPECT_LT((of_cam1 * Eigen::Vector3d(0.1, 0.0, 1.0) -
+             Eigen::Vector3d(0.0, 0.0, 1.0))
+                .norm(),
+            1e-12);
+  EXPECT_LT((of_cam1 * Eigen::Vector3d(2.1, -1.0, 1.0) -
+             Eigen::Vector3d(1.0, 2.0, 1.0))
+                .norm(),
+            1e-12);
+  const CameraSetup third = ReadCameraFile(path, "cam2");
+  EXPECT_EQ(third.depth_camera->camera.fx, 402.0);
+  EXPECT_LT(
+      (third.depth_camera->color_from_depth * Eigen::Vector3d(2.1, -1.0, 1.2) -
+       Eigen::Vector3d(1.0, 2.0, 1.0))
+          .norm(),
+      1e-12);
+}
+
+TEST(DepthCameraTest, RefusesWhatIsNoRig) {
+  const TempFolder folder;
+  const std::string path = folder.Write("rig.yaml", kRig);
+  for (const char* name : {"cam0", "cam3", "depth"}) {
+    ExpectInputError([&] { ReadCameraFile(path, name); },
+                     {path, name, "cam1 or a later one"});
+  }
+  std::string text = kRig;
+  text.replace(text.find("- [0.0, 1.0"), 11, "- [0.0, 1.5");
+  const std::string bent = folder.Write("bent.yaml", text);
+  ExpectInputError([&] { ReadCameraFile(bent, "cam1"); },
+                   {bent, "cam1.T_cn_cnm1", "no rotation"});
+  text = kRig;
+  text.replace(text.find("  - [0.0, 0.0, 0.0, 1.0]\n"), 25, "");
+  const std::string cut = folder.Write("cut.yaml", text);
+  ExpectInputError([&] { ReadCameraFile(cut, "cam1"); },
+                   {cut, "T_cn_cnm1", "4 lists of 4"});
+  ExpectInputError([&] { ResolveCameraSetup("tum_fr1", "cam1"); },
+                   {"tum_fr1", "cam1", "Kalibr"});
+}
+
+TEST(ResolveCameraTest, LeavesTheScaleOfPresetsToRecordings) {
+  EXPECT_FALSE(ResolveCameraSetup("tum_fr1").depth_scale.has_value());
+  EXPECT_EQ(ResolveCamera("tum_fr1").depth_scale, 5000.0);
+}
 
 TEST(ResolveCameraTest, KnowsPresetsAndFiles) {
   ExpectCamera(ResolveCamera("tum_fr1").camera,

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/support/temp_folder.h"
 #include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {
@@ -28,12 +29,19 @@ TEST_F(OpenSourceTest, GivesTheFramesInOrderByAnyName) {
 TEST_F(OpenSourceTest, RefusesWhatItDoesNotKnow) {
   ExpectInputError([&] { OpenSource("lidar", options_); },
                    {"unknown source 'lidar'", "auto", "tum"});
-  options_.path = folder_ / "rgb.txt";
+  options_.path = folder_ / "rgb/0.png";
   ExpectInputError([&] { OpenSource("auto", options_); },
                    {options_.path, "no known kind", "rgb.txt and depth.txt"});
+  const TempFolder other;
+  std::filesystem::create_directory(other / "images");
+  other.Write("notes.txt", "");
+  options_.path = other.path();
+  ExpectInputError(
+      [&] { OpenSource("auto", options_); },
+      {options_.path, "it holds images/, notes.txt; known are", "7-Scenes"});
   options_.path = folder_ / "nowhere";
   ExpectInputError([&] { OpenSource("auto", options_); },
-                   {options_.path, "no such folder"});
+                   {options_.path, "no such file or folder"});
 }
 
 }  // namespace

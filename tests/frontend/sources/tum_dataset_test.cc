@@ -152,10 +152,10 @@ TEST_F(TumDatasetTest, RefusesBadOptions) {
   options_.max_time_difference = -0.1;
   ExpectRefused({"time difference"});
   options_.max_time_difference = 0.02;
-  options_.camera.depth_scale = 0.0;
+  options_.camera->depth_scale = 0.0;
   ExpectRefused({"depth scale"});
   options_.camera = SmallCamera();
-  options_.camera.camera.fx = 0.0;
+  options_.camera->camera.fx = 0.0;
   ExpectRefused({"camera: ", "fx"});
 }
 

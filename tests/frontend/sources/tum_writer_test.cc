@@ -36,7 +36,7 @@ class TumWriterTest : public testing::Test {
 
   static void Write(SyntheticDataset* dataset, const std::string& folder,
                     const TumWriterOptions& writer) {
-    WriteTumSequence(dataset, dataset->ground_truth(), folder, writer);
+    WriteTumSequence(dataset, folder, writer);
   }
 
   void Write(const std::string& folder, const TumWriterOptions& writer = {}) {
@@ -98,7 +98,7 @@ TEST_F(TumWriterTest, DepthHasItsOwnTime) {
 
 TEST_F(TumWriterTest, CameraReadsBackExactly) {
   Write(folder_.string());
-  const RgbdCamera camera = ReadCameraFile((folder_ / "camera.yaml").string());
+  const CameraSetup camera = ReadCameraFile((folder_ / "camera.yaml").string());
   EXPECT_EQ(camera.depth_scale, 1000.0);
   EXPECT_EQ(camera.camera.width, 160);
   EXPECT_EQ(camera.camera.height, 120);

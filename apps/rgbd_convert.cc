@@ -1,0 +1,78 @@
+// Any recording in, a TUM RGB-D folder out.
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+
+#include <cstdio>
+#include <opencv2/core.hpp>
+
+#include "apps/pipeline/sequence.h"
+#include "apps/shell/available_cores.h"
+#include "apps/shell/program.h"
+#include "apps/shell/progress_bar.h"
+#include "apps/shell/setting_flags.h"
+#include "frontend/sources/tum_writer.h"
+
+DEFINE_string(output, "", "folder to make, in TUM RGB-D layout");
+DEFINE_int32(threads, 0,
+             "threads that read and write images; 0: one a core; the result "
+             "does not depend on it");
+
+namespace rgbd_pose {
+namespace {
+
+SequenceSettings& Settings() {
+  static SequenceSettings settings;
+  return settings;
+}
+
+const SettingFlags& Flags() {
+  static const SettingFlags flags({SettingTable(&Settings())});
+  return flags;
+}
+
+ProgramInfo Info() {
+  ProgramInfo info;
+  info.name = "rgbd_convert";
+  info.summary =
+      "writes a recording of any kind, or part of it, as a TUM RGB-D folder.";
+  info.example = "rgbd_convert --dataset=scene0000_00 --output=scene_tum";
+  Flags().Describe(&info);
+  info.flag_groups.push_back({"Run", {"output", "threads"}});
+  return info;
+}
+
+int Main() {
+  Flags().Apply();
+  RequireFlag("dataset", Settings().dataset);
+  RequireFlag("output", FLAGS_output);
+  cv::setNumThreads(1);  // the threads are ours
+  Sequence sequence = OpenSequence(Settings(), /*keep_color=*/true);
+  FrameSource& source = *sequence.source;
+  TumWriterOptions writer;
+  writer.threads = NumThreads(FLAGS_threads);
+  writer.ground_truth = [&sequence] {
+    const Trajectory* truth = sequence.TruthOfAll();
+    return truth == nullptr ? Trajectory() : *truth;
+  };
+  int frames = 0;
+  {
+    ProgressBar bar("converting", static_cast<int>(source.timestamps().size()));
+    writer.progress = [&](int done) { bar.Update(frames = done); };
+    WriteTumSequence(&source, FLAGS_output, writer);
+  }
+  if (source.unmatched_color() > 0) {
+    LOG(WARNING) << source.unmatched_color()
+                 << " colour images have no depth image and are left out";
+  }
+  std::printf("%s: %d frames%s\n", FLAGS_output.c_str(), frames,
+              sequence.TruthOfAll() == nullptr ? "" : ", with ground truth");
+  return kExitOk;
+}
+
+}  // namespace
+}  // namespace rgbd_pose
+
+int main(int argc, char** argv) {
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+}

@@ -1,0 +1,158 @@
+#include "frontend/sources/frame_range.h"
+
+#include <charconv>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+// One end of a range: a number, followed by s if it is a time.
+struct End {
+  bool is_given = false;
+  bool is_time = false;
+  double value = 0.0;
+};
+
+// Takes an end off the front of the text; false if it is wrong.
+bool TakeEnd(std::string_view* text, End* end) {
+  if (text->empty() || text->front() == '-') return true;  // none is there
+  const char* begin = text->data();
+  const auto [rest, error] = std::from_chars(
+      begin, begin + text->size(), end->value, std::chars_format::fixed);
+  if (error != std::errc()) return text->front() == ':';
+  text->remove_prefix(rest - begin);
+  end->is_given = true;
+  if (!text->empty() && text->front() == 's') {
+    end->is_time = true;
+    text->remove_prefix(1);
+  }
+  const bool is_number =
+      end->is_time || (end->value == std::floor(end->value) &&
+                       end->value < std::numeric_limits<int>::max());
+  return std::isfinite(end->value) && end->value >= 0.0 && is_number;
+}
+
+bool Parse(std::string_view text, FrameRange* range) {
+  End first;
+  End last;
+  if (!TakeEnd(&text, &first) || text.empty() || text.front() != '-') {
+    return false;
+  }
+  text.remove_prefix(1);
+  if (!TakeEnd(&text, &last)) return false;
+  if (!text.empty()) {
+    const char* end = text.data() + text.size();
+    if (text.front() != ':') return false;
+    const auto [rest, error] =
+        std::from_chars(text.data() + 1, end, range->step);
+    if (error != std::errc() || rest != end || range->step < 1) return false;
+  }
+  if (!first.is_given && !last.is_given) return false;
+  const bool is_time = first.is_given ? first.is_time : last.is_time;
+  if (first.is_given && last.is_given &&
+      (first.is_time != last.is_time || last.value < first.value)) {
+    return false;
+  }
+  if (is_time) {
+    range->begin_s = first.value;
+    if (last.is_given) range->end_s = last.value;
+  } else {
+    range->first = static_cast<int>(first.value);
+    if (last.is_given) range->last = static_cast<int>(last.value);
+  }
+  return true;
+}
+
+// Asks the whole source for frames until one is in the range.
+class PartialSource final : public FrameSource {
+ public:
+  PartialSource(std::unique_ptr<FrameSource> whole, const FrameRange& range)
+      : whole_(std::move(whole)), picker_(range) {}
+
+  std::optional<RgbdFrame> Next() override {
+    while (!picker_.IsOver()) {
+      std::optional<RgbdFrame> next = whole_->Next();
+      if (!next.has_value()) return std::nullopt;
+      if (!picker_.Takes(next->timestamp)) continue;
+      const int index = num_taken_++;
+      return RgbdFrame{next->timestamp, [read = std::move(next->read), index] {
+                         Frame frame = read();
+                         frame.index = index;
+                         return frame;
+                       }};
+    }
+    return std::nullopt;
+  }
+
+  const RgbdCamera& camera() const override { return whole_->camera(); }
+
+  std::vector<double> timestamps() const override {
+    std::vector<double> part;
+    Picker picker(picker_.range);
+    for (const double timestamp : whole_->timestamps()) {
+      if (picker.IsOver()) break;
+      if (picker.Takes(timestamp)) part.push_back(timestamp);
+    }
+    return part;
+  }
+
+  Trajectory ground_truth() const override { return whole_->ground_truth(); }
+
+  // Of the whole recording.
+  int unmatched_color() const override { return whole_->unmatched_color(); }
+
+ private:
+  // Goes through the frames in order.
+  struct Picker {
+    explicit Picker(const FrameRange& of_range) : range(of_range) {}
+
+    // The next frame's turn.
+    bool Takes(double timestamp) {
+      if (number++ == 0) start = timestamp;
+      after_s = timestamp - start;
+      const bool is_in = number > range.first && number - 1 <= range.last &&
+                         after_s >= range.begin_s && after_s <= range.end_s;
+      return is_in && num_in++ % range.step == 0;
+    }
+    bool IsOver() const { return number > range.last || after_s > range.end_s; }
+
+    FrameRange range;
+    double start = 0.0;
+    double after_s = 0.0;
+    int number = 0;
+    int num_in = 0;
+  };
+
+  std::unique_ptr<FrameSource> whole_;
+  Picker picker_;
+  int num_taken_ = 0;
+};
+
+}  // namespace
+
+bool FrameRange::IsWhole() const {
+  const FrameRange whole;
+  return first == whole.first && last == whole.last &&
+         begin_s == whole.begin_s && end_s == whole.end_s && step == 1;
+}
+
+FrameRange ParseFrameRange(const std::string& text) {
+  FrameRange range;
+  if (text.empty() || Parse(text, &range)) return range;
+  throw InputError("frames '" + text +
+                   "': is no part of a recording; give first-last such as "
+                   "0-99, 100-400:2 (every second) or 100-, or seconds from "
+                   "the start such as 2.5s-10s");
+}
+
+std::unique_ptr<FrameSource> PartOf(std::unique_ptr<FrameSource> whole,
+                                    const FrameRange& range) {
+  if (range.IsWhole()) return whole;
+  return std::make_unique<PartialSource>(std::move(whole), range);
+}
+
+}  // namespace rgbd_pose

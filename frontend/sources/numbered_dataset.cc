@@ -1,0 +1,137 @@
+#include "frontend/sources/numbered_dataset.h"
+
+#include <charconv>
+#include <filesystem>
+#include <map>
+#include <optional>
+
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The number between prefix and suffix; nothing for another name.
+std::optional<int> NumberIn(const std::string& name,
+                            const NumberedFiles& files) {
+  const size_t around = files.prefix.size() + files.suffix.size();
+  if (name.size() <= around ||
+      name.compare(0, files.prefix.size(), files.prefix) != 0 ||
+      name.compare(name.size() - files.suffix.size(), files.suffix.size(),
+                   files.suffix) != 0) {
+    return std::nullopt;
+  }
+  const char* begin = name.data() + files.prefix.size();
+  const char* end = name.data() + name.size() - files.suffix.size();
+  int number = 0;
+  const auto [rest, error] = std::from_chars(begin, end, number);
+  if (error != std::errc() || rest != end || number < 0) return std::nullopt;
+  return number;
+}
+
+// The images of the first alternative that has any, by their numbers.
+std::map<int, std::string> List(const std::string& folder,
+                                const std::vector<NumberedFiles>& choices) {
+  std::map<int, std::string> found;
+  for (const NumberedFiles& files : choices) {
+    std::error_code error;
+    for (const fs::directory_entry& entry :
+         fs::directory_iterator(fs::path(folder) / files.folder, error)) {
+      const std::string name = entry.path().filename().string();
+      const std::optional<int> number = NumberIn(name, files);
+      if (number.has_value()) found[*number] = entry.path().string();
+    }
+    if (!found.empty()) break;
+  }
+  return found;
+}
+
+// "color/123.jpg or rgb/123.png"
+std::string Examples(const std::vector<NumberedFiles>& choices) {
+  std::string text;
+  for (const NumberedFiles& files : choices) {
+    text += (text.empty() ? "" : " or ") + files.folder +
+            (files.folder.empty() ? "" : "/") + files.prefix + "123" +
+            files.suffix;
+  }
+  return text;
+}
+
+}  // namespace
+
+NumberedDataset::NumberedDataset(const NumberedLayout& layout,
+                                 const SourceOptions& options)
+    : layout_(layout),
+      folder_(options.path),
+      frames_(FindFrames()),
+      assembly_(MakeAssembly(options)) {}
+
+bool NumberedDataset::Recognises(const NumberedLayout& layout,
+                                 const std::string& folder) {
+  std::error_code error;
+  return fs::exists(fs::path(folder) / layout.mark, error) &&
+         !List(folder, layout.color).empty() &&
+         !List(folder, layout.depth).empty();
+}
+
+std::vector<NumberedDataset::NumberedFrame> NumberedDataset::FindFrames() {
+  const std::map<int, std::string> color = List(folder_, layout_.color);
+  const std::map<int, std::string> depth = List(folder_, layout_.depth);
+  if (color.empty()) {
+    throw InputError(folder_ + ": has no colour images " +
+                     Examples(layout_.color) + ", as " + layout_.what + " has");
+  }
+  std::vector<NumberedFrame> frames;
+  for (const auto& [number, path] : color) {
+    const auto match = depth.find(number);
+    if (match == depth.end()) {
+      ++unmatched_color_;
+    } else {
+      frames.push_back({number, path, match->second});
+    }
+  }
+  if (frames.empty()) {
+    throw InputError(folder_ + ": none of its " + std::to_string(color.size()) +
+                     " colour images has a depth image " +
+                     Examples(layout_.depth) + " of the same number");
+  }
+  return frames;
+}
+
+FrameAssembly NumberedDataset::MakeAssembly(
+    const SourceOptions& options) const {
+  std::optional<CameraSetup> own;
+  if (!options.camera.has_value()) {
+    own = layout_.camera(folder_, frames_.front().color_path,
+                         frames_.front().depth_path);
+  }
+  SourceOptions said = options;
+  if (own.has_value() && !own->depth_scale) {
+    own->depth_scale = layout_.depth_scale;
+  }
+  if (said.camera.has_value() && !said.camera->depth_scale) {
+    said.camera->depth_scale = layout_.depth_scale;
+  }
+  return FrameAssembly(ChooseCamera(said, own), options.keep_color);
+}
+
+Frame NumberedDataset::Read(int index) const {
+  const NumberedFrame& files = frames_[index];
+  Frame frame = assembly_.Read(files.color_path, files.depth_path);
+  frame.index = index;
+  frame.timestamp = timestamp(index);
+  return frame;
+}
+
+Trajectory NumberedDataset::ground_truth() const {
+  std::vector<int> numbers;
+  for (const NumberedFrame& frame : frames_) numbers.push_back(frame.number);
+  Trajectory truth;
+  for (const auto& [number, pose] : layout_.poses(folder_, numbers)) {
+    truth.push_back({number / layout_.rate_hz, pose});
+  }
+  return truth;
+}
+
+}  // namespace rgbd_pose

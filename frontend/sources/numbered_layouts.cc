@@ -1,0 +1,182 @@
+#include "frontend/sources/numbered_layouts.h"
+
+#include <filesystem>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/sources/image_file.h"
+#include "frontend/sources/yaml_section.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool IsThere(const fs::path& path) {
+  std::error_code error;
+  return fs::exists(path, error);
+}
+
+std::optional<CameraSetup> NoCamera(const std::string&, const std::string&,
+                                    const std::string&) {
+  return std::nullopt;
+}
+
+// The camera of ICL-NUIM's renderer, the y axis of its images down.
+std::optional<CameraSetup> IclCamera(const std::string&, const std::string&,
+                                     const std::string&) {
+  Camera camera;
+  camera.fx = 481.2;
+  camera.fy = 480.0;
+  return CameraSetup(camera);
+}
+
+// intrinsic.json: width, height, intrinsic_matrix column by column. JSON is
+// YAML, too.
+std::optional<CameraSetup> Open3dCamera(const std::string& folder,
+                                        const std::string&,
+                                        const std::string&) {
+  const fs::path path = fs::path(folder) / "intrinsic.json";
+  if (!IsThere(path)) return std::nullopt;
+  const YamlSection file = YamlSection::FromFile(path.string());
+  Camera camera;
+  camera.width = file.Pixels("width");
+  camera.height = file.Pixels("height");
+  const std::vector<double> k = file.Numbers("intrinsic_matrix", {9});
+  camera.fx = k[0];
+  camera.fy = k[4];
+  camera.cx = k[6];
+  camera.cy = k[7];
+  CameraSetup setup(camera);
+  if (file.Has("depth_scale")) setup.depth_scale = file.Number("depth_scale");
+  return setup;
+}
+
+// ../cam_params.json, one for all rooms.
+std::optional<CameraSetup> ReplicaCamera(const std::string& folder,
+                                         const std::string&,
+                                         const std::string&) {
+  for (const char* name : {"cam_params.json", "../cam_params.json"}) {
+    const fs::path path = fs::path(folder) / name;
+    if (!IsThere(path)) continue;
+    const YamlSection file =
+        YamlSection::FromFile(path.string()).Child("camera");
+    Camera camera;
+    camera.width = file.Pixels("w");
+    camera.height = file.Pixels("h");
+    camera.fx = file.Number("fx");
+    camera.fy = file.Number("fy");
+    camera.cx = file.Number("cx");
+    camera.cy = file.Number("cy");
+    CameraSetup setup(camera);
+    if (file.Has("scale")) setup.depth_scale = file.Number("scale");
+    return setup;
+  }
+  return std::nullopt;
+}
+
+// A 4 x 4 matrix of a camera; its size is that of an image.
+Camera ReadIntrinsicText(const fs::path& file, const std::string& image_path) {
+  const std::string path = file.string();
+  const std::vector<TextLine> lines = ReadTextTable(path);
+  if (lines.size() < 3 || lines[0].words.size() < 3 ||
+      lines[1].words.size() < 3) {
+    throw InputError(path + ": needs a camera matrix, row by row");
+  }
+  const auto number = [&](int row, int column) {
+    return ParseNumber(lines[row].words[column], path, lines[row].number,
+                       "camera matrix");
+  };
+  const cv::Mat image = ReadImageFile(image_path, cv::IMREAD_UNCHANGED);
+  Camera camera;
+  camera.width = image.cols;
+  camera.height = image.rows;
+  camera.fx = number(0, 0);
+  camera.fy = number(1, 1);
+  camera.cx = number(0, 2);
+  camera.cy = number(1, 2);
+  const std::string problem = camera.Check();
+  if (!problem.empty()) throw InputError(path + ": " + problem);
+  return camera;
+}
+
+// Two cameras of different sizes. Their extrinsic_*.txt are the identity in
+// what the exporter writes, so nothing but that is known of where they are.
+std::optional<CameraSetup> ScanNetCamera(const std::string& folder,
+                                         const std::string& first_color,
+                                         const std::string& first_depth) {
+  const fs::path intrinsic = fs::path(folder) / "intrinsic";
+  CameraSetup setup(
+      ReadIntrinsicText(intrinsic / "intrinsic_color.txt", first_color));
+  const fs::path of_depth = intrinsic / "intrinsic_depth.txt";
+  if (IsThere(of_depth)) {
+    setup.depth_camera =
+        DepthCamera{ReadIntrinsicText(of_depth, first_depth), Rigid3d()};
+  }
+  return setup;
+}
+
+}  // namespace
+
+const std::vector<NumberedLayout>& NumberedLayouts() {
+  static const std::vector<NumberedLayout> layouts = {
+      {"7scenes",
+       "7-Scenes (frame-000000.color.png, .depth.png, .pose.txt)",
+       {{"", "frame-", ".color.png"}, {"", "frame-", ".color.jpg"}},
+       {{"", "frame-", ".depth.png"}},
+       "",
+       1000.0,
+       30.0,
+       NoCamera,
+       ReadFramePoses},
+      {"scannet",
+       "ScanNet as exported (color/0.jpg, depth/0.png, pose/0.txt, intrinsic/)",
+       {{"color", "", ".jpg"}, {"color", "", ".png"}},
+       {{"depth", "", ".png"}},
+       "intrinsic/intrinsic_color.txt",
+       1000.0,
+       30.0,
+       ScanNetCamera,
+       ReadPoseFolder},
+      {"replica",
+       "Replica as NICE-SLAM ships it (results/frame000000.jpg, "
+       "depth000000.png, traj.txt)",
+       {{"results", "frame", ".jpg"}, {"results", "frame", ".png"}},
+       {{"results", "depth", ".png"}},
+       "",
+       6553.5,
+       30.0,
+       ReplicaCamera,
+       ReadPoseLines},
+      {"icl_nuim",
+       "ICL-NUIM in TUM's PNG files (rgb/0.png, depth/0.png, "
+       "associations.txt)",
+       {{"rgb", "", ".png"}},
+       {{"depth", "", ".png"}},
+       "associations.txt",
+       5000.0,
+       30.0,
+       IclCamera,
+       ReadMirroredPoses},
+      {"open3d",
+       "Open3D, Redwood (color/, rgb/ or image/, and depth/ with numbered "
+       "images, intrinsic.json)",
+       {{"color", "", ".jpg"},
+        {"color", "", ".png"},
+        {"rgb", "", ".jpg"},
+        {"rgb", "", ".png"},
+        {"image", "", ".jpg"},
+        {"image", "", ".png"}},
+       {{"depth", "", ".png"}},
+       "",
+       1000.0,
+       30.0,
+       Open3dCamera,
+       ReadPoseLog},
+  };
+  return layouts;
+}
+
+}  // namespace rgbd_pose

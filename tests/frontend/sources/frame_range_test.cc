@@ -1,0 +1,87 @@
+#include "frontend/sources/frame_range.h"
+
+#include <gtest/gtest.h>
+
+#include "frontend/sources/dataset.h"
+#include "tests/support/expect_input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Ten frames, half a second apart, the first at 100 s; each may be asked for
+// once it is read only.
+class TenFrames : public Dataset {
+ public:
+  int size() const override { return 10; }
+  double timestamp(int index) const override { return 100.0 + 0.5 * index; }
+  Frame Read(int index) const override {
+    Frame frame;
+    frame.index = index;
+    frame.timestamp = timestamp(index);
+    ++reads;
+    return frame;
+  }
+  const RgbdCamera& camera() const override { return camera_; }
+  Trajectory ground_truth() const override { return {{100.0, {}}}; }
+  mutable int reads = 0;
+
+ private:
+  RgbdCamera camera_;
+};
+
+// The whole recording's numbers of the frames in a part of it.
+std::vector<int> NumbersIn(const std::string& text) {
+  auto whole = std::make_unique<TenFrames>();
+  const TenFrames& frames = *whole;
+  const std::unique_ptr<FrameSource> part =
+      PartOf(std::move(whole), ParseFrameRange(text));
+  const std::vector<double> announced = part->timestamps();
+  std::vector<int> numbers;
+  while (const std::optional<RgbdFrame> next = part->Next()) {
+    const Frame frame = next->read();
+    EXPECT_EQ(frame.index, static_cast<int>(numbers.size()));
+    EXPECT_EQ(frame.timestamp, next->timestamp);
+    EXPECT_LT(numbers.size(), announced.size());
+    EXPECT_EQ(frame.timestamp, announced.at(numbers.size()));
+    numbers.push_back(static_cast<int>((frame.timestamp - 100.0) / 0.5 + 0.5));
+  }
+  EXPECT_EQ(numbers.size(), announced.size());
+  EXPECT_EQ(frames.reads, static_cast<int>(numbers.size()));
+  EXPECT_EQ(part->ground_truth().size(), 1u);
+  EXPECT_FALSE(part->Next().has_value());
+  return numbers;
+}
+
+TEST(FrameRangeTest, TakesPartsByNumber) {
+  EXPECT_EQ(NumbersIn("0-0"), (std::vector<int>{0}));
+  EXPECT_EQ(NumbersIn("2-4"), (std::vector<int>{2, 3, 4}));
+  EXPECT_EQ(NumbersIn("7-"), (std::vector<int>{7, 8, 9}));
+  EXPECT_EQ(NumbersIn("-2"), (std::vector<int>{0, 1, 2}));
+  EXPECT_EQ(NumbersIn("1-8:3"), (std::vector<int>{1, 4, 7}));
+  EXPECT_EQ(NumbersIn("5-1000:2"), (std::vector<int>{5, 7, 9}));
+  EXPECT_EQ(NumbersIn("10-20"), (std::vector<int>{}));
+}
+
+TEST(FrameRangeTest, TakesPartsByTime) {
+  EXPECT_EQ(NumbersIn("1s-2.5s"), (std::vector<int>{2, 3, 4, 5}));
+  EXPECT_EQ(NumbersIn("3.9s-"), (std::vector<int>{8, 9}));
+  EXPECT_EQ(NumbersIn("-0.7s"), (std::vector<int>{0, 1}));
+  EXPECT_EQ(NumbersIn("0s-4s:4"), (std::vector<int>{0, 4, 8}));
+}
+
+TEST(FrameRangeTest, LeavesTheWholeAsItIs) {
+  auto whole = std::make_unique<TenFrames>();
+  const FrameSource* address = whole.get();
+  EXPECT_EQ(PartOf(std::move(whole), ParseFrameRange("")).get(), address);
+}
+
+TEST(FrameRangeTest, RefusesWhatIsNoPart) {
+  for (const char* text :
+       {"100", "-", "a-b", "4-2", "2s-1s", "1-2s", "1.5-3", "1-2:0", "1-2:x",
+        "1-2:3:4", "1-2 ", "1--2", "nan-", "0-99999999999", "1s", "-:2"}) {
+    ExpectInputError([&] { ParseFrameRange(text); }, {text, "0-99", "2.5s"});
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

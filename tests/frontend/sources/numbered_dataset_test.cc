@@ -1,0 +1,256 @@
+#include "frontend/sources/numbered_dataset.h"
+
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <opencv2/imgproc.hpp>
+
+#include "frontend/sources/open_source.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+#include "tests/support/tum_sequence.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int kFrames = 3;
+
+// Half a turn around y and a step to the right a frame.
+std::string PoseText(int k, const char* end_of_row) {
+  const std::string end = end_of_row;
+  return "-1 0 0 " + std::to_string(k) + end + "0 1 0 0.5" + end + "0 0 -1 2" +
+         end + "0 0 0 1" + end;
+}
+
+void ExpectPose(const Rigid3d& pose, int k) {
+  EXPECT_NEAR(pose.Angle(), M_PI, 1e-9);
+  EXPECT_LT((pose.translation - Eigen::Vector3d(k, 0.5, 2.0)).norm(), 1e-12);
+  EXPECT_LT((pose * Eigen::Vector3d(1, 2, 3) - Eigen::Vector3d(k - 1, 2.5, -1))
+                .norm(),
+            1e-9);
+}
+
+std::string Padded(int k) {
+  const std::string digits = std::to_string(k);
+  return std::string(6 - digits.size(), '0') + digits;
+}
+
+class NumberedDatasetTest : public testing::Test {
+ protected:
+  void Write(const std::string& name, const cv::Mat& image) {
+    const std::string path = folder_ / name;
+    fs::create_directories(fs::path(path).parent_path());
+    WriteImage(path, image);
+  }
+  void WriteText(const std::string& name, const std::string& text) {
+    const std::string path = folder_ / name;
+    fs::create_directories(fs::path(path).parent_path());
+    folder_.Write(name, text);
+  }
+  SourceOptions Options() const {
+    SourceOptions options;
+    options.path = folder_.path();
+    return options;
+  }
+  SourceOptions WithCamera() const {
+    SourceOptions options = Options();
+    options.camera = CameraSetup(SmallCamera().camera);
+    return options;
+  }
+
+  // Reads what has been written and compares it with how it was written.
+  std::unique_ptr<FrameSource> ExpectRead(const std::string& name,
+                                          const SourceOptions& options,
+                                          double depth_scale) {
+    auto source = OpenSource("auto", options);
+    EXPECT_EQ(OpenSource(name, options)->timestamps(), source->timestamps());
+    EXPECT_EQ(source->camera().depth_scale, depth_scale);
+    EXPECT_EQ(source->camera().camera.width, kWidth);
+    for (int k = 0; k < kFrames; ++k) {
+      const std::optional<RgbdFrame> next = source->Next();
+      EXPECT_TRUE(next.has_value());
+      if (!next.has_value()) break;
+      const Frame frame = next->read();
+      EXPECT_EQ(frame.index, k);
+      EXPECT_NEAR(frame.timestamp, k / 30.0, 1e-12);
+      EXPECT_EQ(frame.depth_delay, 0.0);
+      EXPECT_EQ(frame.depth.at<uint16_t>(5, 5), 1000 + k);
+      EXPECT_NEAR(frame.gray.at<uint8_t>(5, 5), 68 + k, 3);
+    }
+    EXPECT_FALSE(source->Next().has_value());
+    return source;
+  }
+
+  void ExpectPoses(const FrameSource& source, int count = kFrames) {
+    const Trajectory truth = source.ground_truth();
+    ASSERT_EQ(truth.size(), static_cast<size_t>(count));
+    for (int k = 0; k < count; ++k) {
+      EXPECT_NEAR(truth[k].timestamp, k / 30.0, 1e-12);
+      ExpectPose(truth[k].world_from_cam, k);
+    }
+  }
+
+  void WriteSevenScenes() {
+    for (int k = 0; k < kFrames; ++k) {
+      const std::string stem = "frame-" + Padded(k);
+      Write(stem + ".color.png", ColorImage(k));
+      Write(stem + ".depth.png", DepthImage(k));
+      WriteText(stem + ".pose.txt", PoseText(k, "\t\n"));
+    }
+  }
+
+  TempFolder folder_;
+};
+
+TEST_F(NumberedDatasetTest, ReadsSevenScenes) {
+  WriteSevenScenes();
+  ExpectPoses(*ExpectRead("7scenes", WithCamera(), 1000.0));
+}
+
+TEST_F(NumberedDatasetTest, ReadsScanNet) {
+  for (int k = 0; k < kFrames; ++k) {
+    const std::string number = std::to_string(k);
+    Write("color/" + number + ".jpg", ColorImage(k));
+    Write("depth/" + number + ".png", DepthImage(k));
+    WriteText("pose/" + number + ".txt", PoseText(k, "\n"));
+  }
+  const std::string matrix = "30 0 15.5 0\n0 30 11.5 0\n0 0 1 0\n0 0 0 1\n";
+  WriteText("intrinsic/intrinsic_color.txt", matrix);
+  WriteText("intrinsic/intrinsic_depth.txt", matrix);
+  const auto source = ExpectRead("scannet", Options(), 1000.0);
+  EXPECT_EQ(source->camera().camera.fx, 30.0);
+  EXPECT_EQ(source->camera().camera.cy, 11.5);
+  ExpectPoses(*source);
+
+  // The last frame was lost.
+  WriteText("pose/2.txt",
+            "-inf -inf -inf -inf\n-inf -inf -inf -inf\n"
+            "-inf -inf -inf -inf\n-inf -inf -inf -inf\n");
+  ExpectPoses(*OpenSource("auto", Options()), 2);
+}
+
+TEST_F(NumberedDatasetTest, RegistersScanNetsSmallerDepth) {
+  const cv::Size twice(2 * kWidth, 2 * kHeight);
+  cv::Mat color;
+  cv::resize(ColorImage(0), color, twice);
+  Write("color/0.jpg", color);
+  Write("depth/0.png", DepthImage(0));
+  WriteText("intrinsic/intrinsic_color.txt",
+            "60 0 31.5 0\n0 60 23.5 0\n0 0 1 0\n0 0 0 1\n");
+  WriteText("intrinsic/intrinsic_depth.txt",
+            "30 0 15.5 0\n0 30 11.5 0\n0 0 1 0\n0 0 0 1\n");
+  const Frame frame = OpenSource("auto", Options())->Next()->read();
+  EXPECT_EQ(frame.depth.size(), twice);
+  EXPECT_EQ(cv::countNonZero(frame.depth == 1000), 4 * (kWidth * kHeight - 2));
+  EXPECT_EQ(frame.depth.at<uint16_t>(0, 3), 0) << "kNoDepth is none";
+}
+
+TEST_F(NumberedDatasetTest, ReadsReplica) {
+  std::string poses;
+  for (int k = 0; k < kFrames; ++k) {
+    Write("room0/results/frame" + Padded(k) + ".jpg", ColorImage(k));
+    Write("room0/results/depth" + Padded(k) + ".png", DepthImage(k));
+    poses += PoseText(k, " ") + "\n";
+  }
+  WriteText("room0/traj.txt", poses);
+  WriteText("cam_params.json",
+            R"({"camera": {"w": 32, "h": 24, "fx": 30.0, "fy": 30.0,
+                           "cx": 15.5, "cy": 11.5, "scale": 6553.5}})");
+  SourceOptions options = Options();
+  options.path = folder_ / "room0";
+  ExpectPoses(*ExpectRead("replica", options, 6553.5));
+}
+
+TEST_F(NumberedDatasetTest, ReadsOpen3d) {
+  std::string poses;
+  for (int k = 0; k < kFrames; ++k) {
+    Write("color/" + Padded(k) + ".jpg", ColorImage(k));
+    Write("depth/" + Padded(k) + ".png", DepthImage(k));
+    poses += "0 0 " + std::to_string(k) + "\n" + PoseText(k, "\n");
+  }
+  WriteText("trajectory.log", poses);
+  WriteText("intrinsic.json",
+            R"({"width": 32, "height": 24, "depth_scale": 4000.0,
+                "intrinsic_matrix": [30, 0, 0, 0, 31, 0, 15.5, 11.5, 1]})");
+  const auto source = ExpectRead("open3d", Options(), 4000.0);
+  EXPECT_EQ(source->camera().camera.fy, 31.0);
+  EXPECT_EQ(source->camera().camera.cx, 15.5);
+  ExpectPoses(*source);
+}
+
+TEST_F(NumberedDatasetTest, MirrorsIclNuim) {
+  WriteText("associations.txt", "0 depth/0.png 0 rgb/0.png\n");
+  for (int k = 0; k < kFrames; ++k) {
+    const std::string number = std::to_string(k);
+    Write("rgb/" + number + ".png", ColorImage(k));
+    Write("depth/" + number + ".png", DepthImage(k));
+  }
+  // A quarter turn around x in the mirrored world is one the other way round.
+  WriteText("livingRoom0.gt.freiburg",
+            "1 0.1 0.2 0.3 0.70710678 0 0 0.70710678\n"
+            "2 0 1 0 0 0 0 1\n");
+  const auto source = ExpectRead("icl_nuim", WithCamera(), 5000.0);
+  const Trajectory truth = source->ground_truth();
+  ASSERT_EQ(truth.size(), 2u);
+  const Eigen::Vector3d moved =
+      truth[0].world_from_cam * Eigen::Vector3d(0.0, 0.0, 1.0);
+  EXPECT_LT((moved - Eigen::Vector3d(0.1, 0.8, 0.3)).norm(), 1e-6);
+  EXPECT_NEAR(truth[1].timestamp, 1 / 30.0, 1e-12);
+}
+
+TEST_F(NumberedDatasetTest, LeavesOutWhatHasNoPartner) {
+  WriteSevenScenes();
+  fs::remove(folder_ / ("frame-" + Padded(1) + ".depth.png"));
+  const auto source = OpenSource("auto", WithCamera());
+  EXPECT_EQ(source->timestamps(), (std::vector<double>{0.0, 2.0 / 30.0}));
+  EXPECT_EQ(source->unmatched_color(), 1);
+  EXPECT_EQ(source->ground_truth().size(), 2u);
+}
+
+TEST_F(NumberedDatasetTest, TakesADepthScaleThatIsAskedFor) {
+  WriteSevenScenes();
+  SourceOptions options = WithCamera();
+  options.depth_scale = 5000.0;
+  EXPECT_EQ(OpenSource("auto", options)->camera().depth_scale, 5000.0);
+  options.depth_scale = 0.0;
+  options.camera->depth_scale = 2000.0;
+  EXPECT_EQ(OpenSource("auto", options)->camera().depth_scale, 2000.0);
+}
+
+TEST_F(NumberedDatasetTest, RefusesWhatCannotBeUsed) {
+  WriteSevenScenes();
+  const auto refuses = [this](const std::vector<std::string>& parts) {
+    ExpectInputError([this] { OpenSource("auto", Options()); }, parts);
+  };
+  refuses({folder_.path(), "does not say what camera", "preset"});
+  ExpectInputError([this] { OpenSource("scannet", WithCamera()); },
+                   {folder_.path(), "no colour images", "color/123.jpg"});
+  const auto expect_bad_pose = [this](const std::string& text,
+                                      const std::string& problem) {
+    WriteText("frame-000001.pose.txt", text);
+    const auto source = OpenSource("auto", WithCamera());
+    ExpectInputError([&] { source->ground_truth(); },
+                     {"frame-000001.pose.txt", problem});
+  };
+  expect_bad_pose("1 0 0 0\n0 1 0 0\n", "needs 4 rows");
+  expect_bad_pose("1 0 0 0\n0 1 0 0\n0 0 1 x\n0 0 0 1", ":3");
+  expect_bad_pose("1 0 0 0\n0 2 0 0\n0 0 1 0\n0 0 0 1", "no rotation");
+  expect_bad_pose(PoseText(0, "\n") + "1", "more than");
+  for (int k = 0; k < kFrames; ++k) {
+    fs::rename(folder_ / ("frame-" + Padded(k) + ".depth.png"),
+               folder_ / ("frame-" + Padded(k + 10) + ".depth.png"));
+  }
+  ExpectInputError([this] { OpenSource("auto", WithCamera()); },
+                   {folder_.path(), "none of its 3 colour images"});
+  // An image that is cut off.
+  WriteText("frame-000010.color.png", "");
+  const auto source = OpenSource("auto", WithCamera());
+  ExpectInputError([&] { source->Next()->read(); }, {"frame-000010.color.png"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose
