@@ -1,44 +1,14 @@
 #include "frontend/map/cloud_fusion.h"
 
-#include <cmath>
+#include "frontend/image/surface_pixel.h"
 
 namespace rgbd_pose {
 namespace {
-
-constexpr double kRadFromDeg = M_PI / 180.0;
 
 // Below, there are more cubes than any sensor has noise-free points for;
 // above, rooms are no longer recognised.
 constexpr double kMinVoxelSize = 0.001;  // m
 constexpr double kMaxVoxelSize = 1.0;    // m
-
-// Neighbouring pixels on one surface differ by noise and by slope. Noise: 4
-// standard deviations of a difference, which has sqrt(2) times that of a depth.
-// Slope: a surface seen at 80 degrees, at f = 525 px.
-constexpr double kMaxNoiseStep = 4.0 * M_SQRT2;  // of the depth's sigma
-constexpr double kMaxSlopeStep = 0.011;          // of the depth
-
-// A pixel with fewer neighbours (of 4) hangs in the air.
-constexpr int kMinNeighbours = 2;
-
-// Whether a pixel lies on a surface with its neighbours. At the edges of
-// objects sensors report depths between the object and what is behind it.
-bool IsOnSurface(const cv::Mat& depth, int x, int y, double metres_per_unit,
-                 const DepthNoiseModel& noise) {
-  const int raw = depth.at<uint16_t>(y, x);
-  const double z = raw * metres_per_unit;
-  const double limit =
-      (kMaxNoiseStep * noise.sigma(z) + kMaxSlopeStep * z) / metres_per_unit;
-  int neighbours = 0;
-  for (const uint16_t other :
-       {depth.at<uint16_t>(y, x - 1), depth.at<uint16_t>(y, x + 1),
-        depth.at<uint16_t>(y - 1, x), depth.at<uint16_t>(y + 1, x)}) {
-    if (other == 0 || other == Frame::kNoDepth) continue;
-    if (std::abs(other - raw) > limit) return false;
-    ++neighbours;
-  }
-  return neighbours >= kMinNeighbours;
-}
 
 }  // namespace
 
@@ -72,10 +42,8 @@ bool CloudFusion::Wants(const TrackedFrame& tracked) const {
     return false;
   }
   if (!last_world_from_cam_.has_value()) return true;
-  const Rigid3d last_from_cam =
-      last_world_from_cam_->Inverse() * tracked.world_from_cam;
-  return last_from_cam.translation.norm() >= options_.min_distance ||
-         last_from_cam.Angle() >= options_.min_angle_deg * kRadFromDeg;
+  return options_.step.IsReached(last_world_from_cam_->Inverse() *
+                                 tracked.world_from_cam);
 }
 
 void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
@@ -93,8 +61,10 @@ void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
       const uint16_t raw = frame.depth.at<uint16_t>(y, x);
       const float z = raw * metres_per_unit;
       if (raw == Frame::kNoDepth || z < min_depth || z > max_depth ||
-          !IsOnSurface(frame.depth, x, y, metres_per_unit,
-                       *options_.depth.noise)) {
+          !IsOnSurface(
+              frame.depth, x, y,
+              static_cast<int>(MaxSurfaceStep(z, *options_.depth.noise) *
+                               frame.depth_scale))) {
         continue;
       }
       point.position = rotation * (z * rays[x]) + translation;

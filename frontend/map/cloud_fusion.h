@@ -9,6 +9,7 @@
 #include "core/geometry/rigid3.h"
 #include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
+#include "frontend/map/view_step.h"
 #include "frontend/map/voxel_cloud.h"
 #include "frontend/tracking/tracked_frame.h"
 
@@ -25,12 +26,9 @@ struct CloudFusionOptions {
   // Which depths are used, and how far noise puts neighbours apart.
   DepthLookupOptions depth;
 
-  // A frame adds to the cloud if the camera has moved or turned by this since
-  // the last one that did. Of a view 57 degrees wide, 3 degrees bring 5 % that
-  // were not seen before, and so do 5 cm at a distance of 1 m; nearer frames
-  // would cost time and bring the same again.
-  double min_distance = 0.05;  // m
-  double min_angle_deg = 3.0;
+  // A frame adds to the cloud if it is so far from the last one that did:
+  // nearer ones would cost time and bring the same again.
+  ViewStep step;
 
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;

@@ -1,47 +1,57 @@
 #include "frontend/map/ply_writer.h"
 
 #include <cstdint>
-#include <cstring>
 
 #include "core/util/text_file.h"
+#include "frontend/map/little_endian.h"
 
 namespace rgbd_pose {
-namespace {
 
-// By shifts, so that the bytes do not depend on those of the machine.
-void AppendLittleEndian(float value, std::string* bytes) {
-  uint32_t bits;
-  std::memcpy(&bits, &value, sizeof(bits));
-  for (int shift = 0; shift < 32; shift += 8) {
-    bytes->push_back(static_cast<char>(bits >> shift & 0xFF));
-  }
-}
-
-}  // namespace
-
-std::string FormatPly(const std::vector<ColoredPoint>& points) {
+std::string FormatPly(const TriangleMesh& mesh) {
   constexpr size_t kVertexBytes = 3 * sizeof(float) + 3;
+  constexpr size_t kFaceBytes = 3 * sizeof(uint32_t) + 1;
   std::string bytes =
       "ply\n"
       "format binary_little_endian 1.0\n"
       "element vertex " +
-      std::to_string(points.size()) +
+      std::to_string(mesh.vertices.size()) +
       "\n"
       "property float x\n"
       "property float y\n"
       "property float z\n"
       "property uchar red\n"
       "property uchar green\n"
-      "property uchar blue\n"
-      "end_header\n";
-  bytes.reserve(bytes.size() + kVertexBytes * points.size());
-  for (const ColoredPoint& point : points) {
+      "property uchar blue\n";
+  // A cloud has no such element at all.
+  if (!mesh.triangles.empty()) {
+    bytes += "element face " + std::to_string(mesh.triangles.size()) +
+             "\n"
+             "property list uchar int vertex_indices\n";
+  }
+  bytes += "end_header\n";
+  bytes.reserve(bytes.size() + kVertexBytes * mesh.vertices.size() +
+                kFaceBytes * mesh.triangles.size());
+  for (const ColoredPoint& point : mesh.vertices) {
     for (int i = 0; i < 3; ++i) AppendLittleEndian(point.position[i], &bytes);
     for (const uint8_t value : {point.red, point.green, point.blue}) {
       bytes.push_back(static_cast<char>(value));
     }
   }
+  for (const Eigen::Vector3i& triangle : mesh.triangles) {
+    bytes.push_back(3);
+    for (const int vertex : triangle) {
+      AppendLittleEndian(static_cast<uint32_t>(vertex), &bytes);
+    }
+  }
   return bytes;
+}
+
+std::string FormatPly(const std::vector<ColoredPoint>& points) {
+  return FormatPly(TriangleMesh{points, {}});
+}
+
+void WritePly(const std::string& path, const TriangleMesh& mesh) {
+  WriteFileAtomically(path, FormatPly(mesh));
 }
 
 void WritePly(const std::string& path,

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/map/colored_point.h"
+#include "frontend/map/triangle_mesh.h"
 
 namespace rgbd_pose {
 
@@ -12,7 +12,11 @@ namespace rgbd_pose {
 // 1994.)
 std::string FormatPly(const std::vector<ColoredPoint>& points);
 
+// A mesh: the same, and per face three vertex_indices (int).
+std::string FormatPly(const TriangleMesh& mesh);
+
 // Writes it as a whole or not at all. Throws InputError if it cannot.
 void WritePly(const std::string& path, const std::vector<ColoredPoint>& points);
+void WritePly(const std::string& path, const TriangleMesh& mesh);
 
 }  // namespace rgbd_pose

@@ -46,6 +46,7 @@ room frontend/features 'core/|frontend/' "$opencv"
 room frontend/places 'core/|frontend/' "$opencv"
 room frontend/tracking 'core/|frontend/' "$opencv"
 room frontend/map 'core/|frontend/' "$opencv|fcntl.h|unistd.h|sys/file.h"
+room frontend/mesh 'core/|frontend/' "$opencv|openvdb/"
 room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"
@@ -57,6 +58,7 @@ room apps/results "$programs" "$libraries"
 room apps/compare "$programs" "$libraries"
 room apps/batch "$programs" "$libraries"
 room apps/report "$programs" "$libraries"
+room apps/export "$programs" "$libraries"
 room apps/python "$programs" "$libraries|pybind11/"
 
 # Circles within a room, too.

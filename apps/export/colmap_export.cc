@@ -1,0 +1,74 @@
+// A COLMAP model as text (colmap.github.io/format.html) with its images, laid
+// out as colmap and those who learn from it expect: images/, sparse/0/.
+
+#include "apps/export/export_format.h"
+#include "apps/export/output_folder.h"
+#include "apps/export/view_images.h"
+#include "core/util/format.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+// COLMAP's upper left pixel has its centre at (0.5, 0.5), ours at (0, 0).
+constexpr double kPixelCentre = 0.5;
+
+std::string FormatCamera(const Camera& camera) {
+  const char* model = !camera.HasDistortion() ? "PINHOLE"
+                      : camera.k3 == 0.0      ? "OPENCV"
+                                              : "FULL_OPENCV";
+  std::string text = Format("1 %s %d %d %.12g %.12g %.12g %.12g", model,
+                            camera.width, camera.height, camera.fx, camera.fy,
+                            camera.cx + kPixelCentre, camera.cy + kPixelCentre);
+  if (camera.HasDistortion()) {
+    text += Format(" %.12g %.12g %.12g %.12g", camera.k1, camera.k2, camera.p1,
+                   camera.p2);
+    if (camera.k3 != 0.0) text += Format(" %.12g 0 0 0", camera.k3);
+  }
+  return "# camera, model, width, height, parameters\n" + text + "\n";
+}
+
+// cam_from_world with w first, and an empty second line an image: no features.
+std::string FormatImages(const ViewImages& images) {
+  std::string text = "# image, qw qx qy qz tx ty tz, camera, name; features\n";
+  for (size_t i = 0; i < images.names.size(); ++i) {
+    const Rigid3d cam_from_world = images.world_from_cam[i].Inverse();
+    const Eigen::Quaterniond& q = cam_from_world.rotation;
+    const Eigen::Vector3d& t = cam_from_world.translation;
+    text += Format("%zu %.12g %.12g %.12g %.12g %.12g %.12g %.12g 1 %s\n\n",
+                   i + 1, q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(),
+                   images.names[i].c_str());
+  }
+  return text;
+}
+
+// Points of depth, which no features have seen: errors unknown, no tracks.
+std::string FormatPoints(const std::vector<ColoredPoint>& points) {
+  std::string text = "# point, x y z, red green blue, error, track\n";
+  for (size_t i = 0; i < points.size(); ++i) {
+    const ColoredPoint& p = points[i];
+    text += Format("%zu %.6g %.6g %.6g %d %d %d 0\n", i + 1, p.position.x(),
+                   p.position.y(), p.position.z(), p.red, p.green, p.blue);
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string ExportColmap(const FinishedRun& run, const ExportOptions& options) {
+  OutputFolder folder(options.output, {"images", "sparse"}, options.overwrite);
+  const ViewImages images =
+      WriteViewImages(run, options, folder.MakeFolder("images"));
+  const std::filesystem::path model = folder.MakeFolder("sparse/0");
+  WriteFileAtomically((model / "cameras.txt").string(),
+                      FormatCamera(images.camera));
+  WriteFileAtomically((model / "images.txt").string(), FormatImages(images));
+  WriteFileAtomically((model / "points3D.txt").string(),
+                      FormatPoints(images.cloud));
+  folder.Publish();
+  return std::to_string(images.names.size()) + " images, " +
+         std::to_string(images.cloud.size()) + " points in " + options.output +
+         "\n";
+}
+
+}  // namespace rgbd_pose

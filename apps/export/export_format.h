@@ -1,0 +1,41 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "apps/export/export_options.h"
+#include "apps/export/finished_run.h"
+
+namespace rgbd_pose {
+
+// A form that a run can be given to other tools in. To add one, write a file
+// with such a function and give it a row of the table in export_format.cc.
+struct ExportFormat {
+  const char* name;            // as users write it
+  const char* default_output;  // file, or folder, in that of the run
+  // Writes it, as a whole or not at all; returns what the program prints.
+  // Throws InputError.
+  std::string (*write)(const FinishedRun& run, const ExportOptions& options);
+};
+
+// Poses alone.
+std::string ExportTum(const FinishedRun& run, const ExportOptions& options);
+std::string ExportKitti(const FinishedRun& run, const ExportOptions& options);
+std::string ExportG2o(const FinishedRun& run, const ExportOptions& options);
+
+// Images with poses.
+std::string ExportColmap(const FinishedRun& run, const ExportOptions& options);
+std::string ExportNerfstudio(const FinishedRun& run,
+                             const ExportOptions& options);
+
+// What was seen.
+std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);
+std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);
+
+// The names of all formats.
+std::vector<std::string> ExportFormatNames();
+
+// The format of that name. Throws InputError that lists the names.
+const ExportFormat& FindExportFormat(const std::string& name);
+
+}  // namespace rgbd_pose

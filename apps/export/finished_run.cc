@@ -1,0 +1,176 @@
+#include "apps/export/finished_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <set>
+
+#include "apps/pipeline/settings.h"
+#include "apps/report/report_settings.h"
+#include "apps/shell/csv_table.h"
+#include "apps/shell/progress_bar.h"
+#include "core/util/format.h"
+#include "core/util/input_error.h"
+#include "frontend/sources/frame_stream.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Trajectories have 6 decimals.
+constexpr double kSameTime = 1e-5;  // s
+
+// Sets what the flags of a run say, as far as the table has it.
+void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
+  for (const Setting& setting : table) {
+    const std::string text = SettingOf(flags, setting.name);
+    if (auto* named = std::get_if<NamedSetting>(&setting.value)) {
+      named->set(text);
+    } else if (text.empty()) {
+      continue;
+    } else if (int* const* whole = std::get_if<int*>(&setting.value)) {
+      **whole = std::atoi(text.c_str());
+    } else if (double* const* real = std::get_if<double*>(&setting.value)) {
+      **real = std::strtod(text.c_str(), nullptr);
+    } else {
+      *std::get<bool*>(setting.value) = text == "true";
+    }
+  }
+}
+
+// Without settings by name that the run does not have, as one of an earlier
+// version.
+std::vector<Setting> Known(const nlohmann::json& flags,
+                           std::vector<Setting> table) {
+  table.erase(std::remove_if(table.begin(), table.end(),
+                             [&](const Setting& setting) {
+                               return SettingOf(flags, setting.name).empty();
+                             }),
+              table.end());
+  return table;
+}
+
+// Segments that rgbd_slam has joined keep their numbers in frames.csv.
+bool IsOneSegment(const std::string& keyframes_file) {
+  if (!fs::exists(keyframes_file)) return false;
+  const std::vector<std::string> words =
+      CsvTable::Read(keyframes_file).Words("segment");
+  return std::set<std::string>(words.begin(), words.end()).size() == 1;
+}
+
+// The frames of a source that were taken at given times.
+class PickedFrames final : public FrameSource {
+ public:
+  PickedFrames(FrameSource* source, std::vector<double> times)
+      : source_(source), times_(std::move(times)) {}
+
+  std::optional<RgbdFrame> Next() override {
+    if (next_ == times_.size()) return std::nullopt;
+    while (std::optional<RgbdFrame> frame = source_->Next()) {
+      if (frame->timestamp < times_[next_] - kSameTime) continue;
+      if (frame->timestamp > times_[next_] + kSameTime) break;
+      ++next_;
+      return frame;
+    }
+    throw InputError(
+        "the recording has no frame of the time " +
+        Format("%.6f", times_[next_]) +
+        " s, but the run has: it is of another recording (--dataset)");
+  }
+  const RgbdCamera& camera() const override { return source_->camera(); }
+
+ private:
+  FrameSource* source_;
+  std::vector<double> times_;
+  size_t next_ = 0;
+};
+
+}  // namespace
+
+FinishedRun::FinishedRun(const std::string& folder, const std::string& dataset,
+                         const std::string& camera)
+    : folder_(folder) {
+  const fs::path path(folder);
+  if (!fs::is_directory(path)) {
+    throw InputError("--run: " + folder + ": no such folder");
+  }
+  for (const char* file : {"frames.csv", "config.flags"}) {
+    if (!fs::exists(path / file)) {
+      throw InputError("--run: " + folder + " has no " + file +
+                       ": it is no folder that rgbd_odometry or rgbd_slam has "
+                       "written its results to");
+    }
+  }
+  const nlohmann::json flags = ReadReportSettings(path / "config.flags");
+  Apply(flags, Known(flags, SettingTable(&sequence_)));
+  OdometrySettings odometry;
+  Apply(flags, Known(flags, SettingTable(&odometry)));
+  depth_ = odometry.features.DepthLookup();
+  if (!dataset.empty()) sequence_.dataset = dataset;
+  if (!camera.empty()) sequence_.camera = camera;
+
+  const CsvTable table = CsvTable::Read(path / "frames.csv");
+  const std::vector<std::string> status = table.Words("status");
+  const std::vector<double> segment = table.Numbers("segment");
+  const bool is_one = IsOneSegment(path / "keyframes.csv");
+  for (size_t i = 0; i < status.size(); ++i) {
+    if (status[i] == "lost") continue;
+    frames_.push_back(static_cast<int>(i));
+    segments_.push_back(is_one ? 0 : static_cast<int>(segment[i]));
+  }
+  lost_ = static_cast<int>(status.size() - frames_.size());
+  if (frames_.empty()) {
+    throw InputError("--run: " + folder + ": no frame of the run has a pose");
+  }
+  trajectory_ = ReadTrajectory(path / "trajectory.txt");
+  if (trajectory_.size() != frames_.size()) {
+    throw InputError("--run: " + folder + ": trajectory.txt has " +
+                     std::to_string(trajectory_.size()) + " poses, but " +
+                     std::to_string(frames_.size()) +
+                     " frames of frames.csv have one; repeat the run");
+  }
+}
+
+std::vector<int> FinishedRun::PickViews(const ViewStep& step) const {
+  std::vector<int> views;
+  for (size_t i = 0; i < trajectory_.size(); ++i) {
+    if (segments_[i] != segments_[0]) continue;
+    if (views.empty() ||
+        step.IsReached(trajectory_[views.back()].world_from_cam.Inverse() *
+                       trajectory_[i].world_from_cam)) {
+      views.push_back(static_cast<int>(i));
+    }
+  }
+  return views;
+}
+
+RunRecording::RunRecording(const FinishedRun& run) : run_(run) {
+  SequenceSettings settings = run.sequence();
+  if (!fs::exists(settings.dataset)) {
+    throw InputError("the recording of the run, " + settings.dataset +
+                     ", is not there; --dataset says where it is");
+  }
+  // Frames are all that is wanted of it.
+  settings.motion_guess.clear();
+  settings.groundtruth = "none";
+  sequence_ = OpenSequence(settings, /*keep_color=*/true);
+}
+
+void RunRecording::ReadViews(const std::vector<int>& views, int threads,
+                             const OnView& on_view) {
+  const Trajectory& poses = run_.trajectory();
+  std::vector<double> times;
+  for (const int view : views) times.push_back(poses[view].timestamp);
+  PickedFrames picked(sequence_.source.get(), times);
+  ProgressBar bar("reading", static_cast<int>(views.size()));
+  FrameStream stream(&picked, nullptr, threads);
+  for (size_t i = 0; i < views.size(); ++i) {
+    const std::optional<StreamedFrame> next = stream.Next();
+    on_view(*next->frame, poses[views[i]].world_from_cam);
+    bar.Update(static_cast<int>(i) + 1);
+  }
+}
+
+}  // namespace rgbd_pose

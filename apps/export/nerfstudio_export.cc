@@ -1,0 +1,80 @@
+// transforms.json with images, depth and points, as nerfstudio has it
+// (docs.nerf.studio/quickstart/data_conventions.html).
+
+#include <nlohmann/json.hpp>
+
+#include "apps/export/export_format.h"
+#include "apps/export/output_folder.h"
+#include "apps/export/view_images.h"
+#include "core/util/text_file.h"
+#include "frontend/map/ply_writer.h"
+
+namespace rgbd_pose {
+namespace {
+
+// As COLMAP's: the upper left pixel has its centre at (0.5, 0.5).
+constexpr double kPixelCentre = 0.5;
+
+// world_from_cam with the camera's axes as OpenGL has them: x right, y up, z
+// back.
+nlohmann::json TransformMatrix(const Rigid3d& world_from_cam) {
+  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+  matrix.topLeftCorner<3, 3>() = world_from_cam.rotation.toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = world_from_cam.translation;
+  matrix.col(1) *= -1.0;
+  matrix.col(2) *= -1.0;
+  nlohmann::json rows = nlohmann::json::array();
+  for (int i = 0; i < 4; ++i) {
+    rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)});
+  }
+  return rows;
+}
+
+nlohmann::json Transforms(const ViewImages& images) {
+  const Camera& camera = images.camera;
+  nlohmann::json json = {
+      {"camera_model", "OPENCV"},
+      {"w", camera.width},
+      {"h", camera.height},
+      {"fl_x", camera.fx},
+      {"fl_y", camera.fy},
+      {"cx", camera.cx + kPixelCentre},
+      {"cy", camera.cy + kPixelCentre},
+      {"k1", camera.k1},
+      {"k2", camera.k2},
+      {"k3", camera.k3},
+      {"p1", camera.p1},
+      {"p2", camera.p2},
+      {"depth_unit_scale_factor", 0.001},
+      // None: the world is that of our trajectory.
+      {"applied_transform", {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
+      {"ply_file_path", "points.ply"},
+      {"frames", nlohmann::json::array()}};
+  for (size_t i = 0; i < images.names.size(); ++i) {
+    json["frames"].push_back(
+        {{"file_path", "images/" + images.names[i]},
+         {"depth_file_path", "depth/" + images.names[i]},
+         {"transform_matrix", TransformMatrix(images.world_from_cam[i])}});
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string ExportNerfstudio(const FinishedRun& run,
+                             const ExportOptions& options) {
+  OutputFolder folder(options.output,
+                      {"images", "depth", "points.ply", "transforms.json"},
+                      options.overwrite);
+  const ViewImages images = WriteViewImages(
+      run, options, folder.MakeFolder("images"), folder.MakeFolder("depth"));
+  WritePly((folder.aside() / "points.ply").string(), images.cloud);
+  WriteFileAtomically((folder.aside() / "transforms.json").string(),
+                      Transforms(images).dump(1) + "\n");
+  folder.Publish();
+  return std::to_string(images.names.size()) + " images, " +
+         std::to_string(images.cloud.size()) + " points in " + options.output +
+         "\n";
+}
+
+}  // namespace rgbd_pose

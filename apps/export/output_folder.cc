@@ -1,0 +1,63 @@
+#include "apps/export/output_folder.h"
+
+#include <system_error>
+
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void Fail(const fs::path& path, const std::error_code& error) {
+  throw InputError("--output: " + path.string() + " cannot be made (" +
+                   error.message() + ")");
+}
+
+}  // namespace
+
+OutputFolder::OutputFolder(const std::string& path,
+                           const std::set<std::string>& entries, bool overwrite)
+    : path_(fs::absolute(path).lexically_normal()) {
+  if (!path_.has_filename()) path_ = path_.parent_path();
+  aside_ = path_.string() + ".partial";
+  std::error_code error;
+  if (fs::exists(path_) && !fs::is_directory(path_)) {
+    throw InputError("--output: " + path + " is a file; a folder is needed");
+  }
+  if (!overwrite && fs::is_directory(path_) && !fs::is_empty(path_)) {
+    throw InputError("--output: " + path +
+                     " is there and not empty; --overwrite replaces it");
+  }
+  for (const auto& entry : fs::directory_iterator(path_, error)) {
+    const std::string name = entry.path().filename();
+    if (entries.count(name) == 0) {
+      throw InputError("--output: " + path + " holds other things, as " + name +
+                       "; choose another folder");
+    }
+  }
+  fs::remove_all(aside_, error);  // of an export that was killed
+  fs::create_directories(aside_, error);
+  if (error) Fail(path, error);
+}
+
+OutputFolder::~OutputFolder() {
+  std::error_code ignored;
+  fs::remove_all(aside_, ignored);
+}
+
+fs::path OutputFolder::MakeFolder(const std::string& name) const {
+  std::error_code error;
+  fs::create_directories(aside_ / name, error);
+  if (error) Fail(aside_ / name, error);
+  return aside_ / name;
+}
+
+void OutputFolder::Publish() {
+  std::error_code error;
+  fs::remove_all(path_, error);
+  fs::rename(aside_, path_, error);
+  if (error) Fail(path_, error);
+}
+
+}  // namespace rgbd_pose

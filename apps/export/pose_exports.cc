@@ -1,0 +1,122 @@
+// Poses alone: TUM, KITTI, g2o.
+
+#include <filesystem>
+#include <map>
+
+#include "apps/export/export_format.h"
+#include "apps/export/output_folder.h"
+#include "apps/results/slam_output.h"
+#include "apps/shell/csv_table.h"
+#include "core/util/format.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+std::string Said(const char* what, size_t count, const std::string& output) {
+  return std::to_string(count) + " " + what + " in " + output + "\n";
+}
+
+int Count(std::string_view word, std::string_view text) {
+  int count = 0;
+  for (size_t at = 0; (at = text.find(word, at)) != text.npos; ++at) ++count;
+  return count;
+}
+
+// What rgbd_odometry has measured, as a graph of all frames with a pose.
+KeyframeMap GraphOfFrames(const FinishedRun& run) {
+  KeyframeMap graph;
+  std::map<int, bool> has_pose;
+  for (size_t i = 0; i < run.frames().size(); ++i) {
+    MapKeyframe keyframe;
+    keyframe.id = run.frames()[i];
+    keyframe.segment = run.segments()[i];
+    keyframe.map_from_cam = run.trajectory()[i].world_from_cam;
+    graph.keyframes.push_back(keyframe);
+    has_pose[keyframe.id] = true;
+  }
+  const CsvTable table = CsvTable::Read(
+      (std::filesystem::path(run.folder()) / "edges.csv").string());
+  const auto column = [&](const std::string& name) {
+    return table.Numbers(name);
+  };
+  const std::vector<double> ref = column("ref"), cur = column("cur");
+  std::vector<std::vector<double>> pose, covariance;
+  for (const char* name : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
+    pose.push_back(column(name));
+  }
+  constexpr const char* kParts[] = {"wx", "wy", "wz", "cx", "cy", "cz"};
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) {
+      covariance.push_back(
+          column(std::string("cov_") + kParts[i] + "_" + kParts[j]));
+    }
+  }
+  for (size_t row = 0; row < table.size(); ++row) {
+    Edge edge;
+    edge.ref = static_cast<int>(ref[row]);
+    edge.cur = static_cast<int>(cur[row]);
+    if (has_pose.count(edge.ref) == 0 || has_pose.count(edge.cur) == 0) {
+      continue;
+    }
+    edge.cur_from_ref = Rigid3d(Eigen::Quaterniond(pose[6][row], pose[3][row],
+                                                   pose[4][row], pose[5][row]),
+                                {pose[0][row], pose[1][row], pose[2][row]});
+    size_t at = 0;
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j, ++at) {
+        edge.covariance(i, j) = edge.covariance(j, i) = covariance[at][row];
+      }
+    }
+    graph.edges.push_back(edge);
+  }
+  return graph;
+}
+
+}  // namespace
+
+std::string ExportTum(const FinishedRun& run, const ExportOptions& options) {
+  WriteFileAtomically(options.output, FormatTrajectory(run.trajectory()));
+  return Said("poses", run.trajectory().size(), options.output);
+}
+
+// One line a pose, the upper three rows of world_from_cam; KITTI has no times
+// there but in a file of their own.
+std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
+  OutputFolder folder(options.output, {"poses.txt", "times.txt"},
+                      options.overwrite);
+  std::string poses, times;
+  for (const StampedPose& pose : run.trajectory()) {
+    const Eigen::Matrix3d R = pose.world_from_cam.rotation.toRotationMatrix();
+    for (int i = 0; i < 3; ++i) {
+      poses += Format("%s%.9g %.9g %.9g %.9g", i > 0 ? " " : "", R(i, 0),
+                      R(i, 1), R(i, 2), pose.world_from_cam.translation[i]);
+    }
+    poses += "\n";
+    times += Format("%.6f\n", pose.timestamp - run.trajectory()[0].timestamp);
+  }
+  WriteFileAtomically((folder.aside() / "poses.txt").string(), poses);
+  WriteFileAtomically((folder.aside() / "times.txt").string(), times);
+  folder.Publish();
+  std::string text = Said("poses", run.trajectory().size(), options.output);
+  if (run.lost() > 0) {
+    text += std::to_string(run.lost()) +
+            " frames have no pose and no line: lines are not frames; "
+            "times.txt says which they are\n";
+  }
+  return text;
+}
+
+std::string ExportG2o(const FinishedRun& run, const ExportOptions& options) {
+  const std::filesystem::path solved =
+      std::filesystem::path(run.folder()) / "graph.g2o";
+  const std::string text = std::filesystem::exists(solved)
+                               ? ReadTextFile(solved.string())
+                               : FormatG2o(GraphOfFrames(run));
+  WriteFileAtomically(options.output, text);
+  return Format("%d vertices, %d edges in %s\n", Count("VERTEX_", text),
+                Count("EDGE_", text), options.output.c_str());
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,68 @@
+#include "apps/export/view_images.h"
+
+#include <opencv2/imgcodecs.hpp>
+
+#include "core/util/format.h"
+#include "core/util/input_error.h"
+#include "frontend/map/cloud_fusion.h"
+#include "frontend/sources/image_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kMillimetres = 1000.0;
+
+// Colour images are large, and time goes where they are made small.
+const std::vector<int> kQuick = {cv::IMWRITE_PNG_COMPRESSION, 1};
+
+cv::Mat InMillimetres(const Frame& frame) {
+  cv::Mat depth = frame.depth.clone();
+  depth.setTo(0, frame.depth == Frame::kNoDepth);
+  depth.convertTo(depth, CV_16UC1, kMillimetres / frame.depth_scale);
+  return depth;
+}
+
+}  // namespace
+
+CloudFusionOptions CloudOptions(const Camera& camera, const FinishedRun& run,
+                                const ExportOptions& options) {
+  CloudFusionOptions cloud;
+  cloud.camera = camera;
+  cloud.voxel_size = options.voxel;
+  cloud.depth = run.depth();
+  if (options.max_depth > 0.0) cloud.depth.max_depth = options.max_depth;
+  const std::string problem = cloud.Check();
+  if (!problem.empty()) throw InputError("--voxel or --max_depth: " + problem);
+  return cloud;
+}
+
+ViewImages WriteViewImages(const FinishedRun& run, const ExportOptions& options,
+                           const std::filesystem::path& color_folder,
+                           const std::filesystem::path& depth_folder) {
+  ViewImages images;
+  RunRecording recording(run);
+  const Camera& camera = recording.camera().camera;
+  const Undistorter undistorter(camera);
+  images.camera = options.undistort ? undistorter.camera() : camera;
+  CloudFusion cloud(CloudOptions(camera, run, options));
+  const std::vector<int> views = run.PickViews(options.step);
+  recording.ReadViews(
+      views, options.threads,
+      [&](const Frame& frame, const Rigid3d& world_from_cam) {
+        const int number = run.frames()[views[images.names.size()]];
+        const std::string name = Format("%06d.png", number);
+        cloud.Add(frame, world_from_cam);
+        const Frame shown =
+            options.undistort ? undistorter.Undistort(frame) : frame;
+        WritePngFile((color_folder / name).string(), shown.color, kQuick);
+        if (!depth_folder.empty()) {
+          WritePngFile((depth_folder / name).string(), InMillimetres(shown));
+        }
+        images.names.push_back(name);
+        images.world_from_cam.push_back(world_from_cam);
+      });
+  images.cloud = cloud.cloud().Thin(options.max_points);
+  return images;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "apps/export/export_options.h"
+#include "apps/export/finished_run.h"
+#include "frontend/image/undistorter.h"
+#include "frontend/map/cloud_fusion.h"
+
+namespace rgbd_pose {
+
+// The images of some views as files of their own, for tools that want a folder
+// of images, whatever the recording was; and what is seen in them.
+struct ViewImages {
+  Camera camera;  // of the images
+  std::vector<std::string> names;
+  std::vector<Rigid3d> world_from_cam;
+  std::vector<ColoredPoint> cloud;
+};
+
+// Writes them, named by their frames. Depth images, if there is a folder for
+// them, are in whole millimetres, 0 where there is none.
+ViewImages WriteViewImages(const FinishedRun& run, const ExportOptions& options,
+                           const std::filesystem::path& color_folder,
+                           const std::filesystem::path& depth_folder = {});
+
+// How the cloud is fused. Throws InputError for options that make no sense.
+CloudFusionOptions CloudOptions(const Camera& camera, const FinishedRun& run,
+                                const ExportOptions& options);
+
+}  // namespace rgbd_pose
