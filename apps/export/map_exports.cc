@@ -58,7 +58,7 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
   if (ending == ".glb") {
     WriteGlb(options.output, mesh);
   } else {
-    WritePly(options.output, mesh);
+    WriteMeshPly(options.output, mesh);
   }
   return Format("%zu triangles, %zu vertices of %zu frames in %s\n",
                 mesh.triangles.size(), mesh.vertices.size(), views.size(),

@@ -7,7 +7,7 @@
 
 namespace rgbd_pose {
 
-std::string FormatPly(const TriangleMesh& mesh) {
+std::string FormatMeshPly(const TriangleMesh& mesh) {
   constexpr size_t kVertexBytes = 3 * sizeof(float) + 3;
   constexpr size_t kFaceBytes = 3 * sizeof(uint32_t) + 1;
   std::string bytes =
@@ -47,11 +47,11 @@ std::string FormatPly(const TriangleMesh& mesh) {
 }
 
 std::string FormatPly(const std::vector<ColoredPoint>& points) {
-  return FormatPly(TriangleMesh{points, {}});
+  return FormatMeshPly(TriangleMesh{points, {}});
 }
 
-void WritePly(const std::string& path, const TriangleMesh& mesh) {
-  WriteFileAtomically(path, FormatPly(mesh));
+void WriteMeshPly(const std::string& path, const TriangleMesh& mesh) {
+  WriteFileAtomically(path, FormatMeshPly(mesh));
 }
 
 void WritePly(const std::string& path,

@@ -13,10 +13,10 @@ namespace rgbd_pose {
 std::string FormatPly(const std::vector<ColoredPoint>& points);
 
 // A mesh: the same, and per face three vertex_indices (int).
-std::string FormatPly(const TriangleMesh& mesh);
+std::string FormatMeshPly(const TriangleMesh& mesh);
 
 // Writes it as a whole or not at all. Throws InputError if it cannot.
 void WritePly(const std::string& path, const std::vector<ColoredPoint>& points);
-void WritePly(const std::string& path, const TriangleMesh& mesh);
+void WriteMeshPly(const std::string& path, const TriangleMesh& mesh);
 
 }  // namespace rgbd_pose

@@ -24,13 +24,13 @@ constexpr double kMaxVoxelSize = 1.0;    // m
 constexpr int kSide = FloatGrid::TreeType::LeafNodeType::DIM;  // of a block
 constexpr int kLog2Side = FloatGrid::TreeType::LeafNodeType::LOG2DIM;
 
-// What a depth means for the surface.
+// What is done with a depth, by steps of depth so small that the table stays
+// near the processor.
 struct DepthValue {
-  float depth = 0.0F;       // m
   float truncation = 0.0F;  // m
-  float weight = 0.0F;      // 1 / m^2; 0: no depth
-  int max_step = 0;         // to neighbours on its surface, in raw units
+  float weight = 0.0F;      // 1 / m^2; 0: too near or too far
 };
+constexpr double kStepsPerMetre = 512.0;
 
 // Blocks as numbers that can be sorted: 21 bits an axis.
 constexpr int kBits = 21;
@@ -84,6 +84,7 @@ struct MeshFusion::Volume {
   explicit Volume(const MeshFusionOptions& options);
 
   void SetDepthScale(double depth_scale);
+  const DepthValue& ValueOf(float depth) const;
   void KeepSurfacePixels(const Frame& frame);
   std::vector<uint64_t> FindBlocks(const Rigid3d& world_from_cam) const;
   void AddToBlock(const Coord& block, const Rigid3d& cam_from_world);
@@ -96,8 +97,9 @@ struct MeshFusion::Volume {
   MeshFusionOptions options;
   Undistorter undistorter;
   double depth_scale = 0.0;
-  std::vector<DepthValue> values;  // by raw depth
-  cv::Mat depth;                   // of the frame at hand: 0 off surfaces
+  std::vector<DepthValue> values;  // by steps of depth
+  std::vector<int> max_steps;      // to neighbours, by raw depth; -1: no depth
+  cv::Mat depth;  // of the frame at hand: CV_32FC1, m, 0 off surfaces
   cv::Mat color;
   size_t num_blocks = 0;
 
@@ -113,6 +115,15 @@ struct MeshFusion::Volume {
 
 MeshFusion::Volume::Volume(const MeshFusionOptions& options)
     : options(options), undistorter(options.camera) {
+  const auto steps =
+      static_cast<int>(options.depth.max_depth * kStepsPerMetre) + 2;
+  for (int i = 0; i < steps; ++i) {
+    const double sigma = options.depth.noise->sigma((i + 0.5) / kStepsPerMetre);
+    values.push_back({static_cast<float>(std::max(
+                          options.truncation_voxels * options.voxel_size,
+                          options.truncation_sigmas * sigma)),
+                      static_cast<float>(1.0 / (sigma * sigma))});
+  }
   distances->setTransform(
       openvdb::math::Transform::createLinearTransform(options.voxel_size));
 }
@@ -120,33 +131,33 @@ MeshFusion::Volume::Volume(const MeshFusionOptions& options)
 void MeshFusion::Volume::SetDepthScale(double scale) {
   if (scale == depth_scale) return;
   depth_scale = scale;
-  values.assign(Frame::kNoDepth + 1, {});
+  max_steps.assign(Frame::kNoDepth + 1, -1);
   for (int raw = 1; raw < Frame::kNoDepth; ++raw) {
     const double z = raw / scale;
     if (z < options.depth.min_depth || z > options.depth.max_depth) continue;
-    const double sigma = options.depth.noise->sigma(z);
-    values[raw] = {
-        static_cast<float>(z),
-        static_cast<float>(
-            std::max(options.truncation_voxels * options.voxel_size,
-                     options.truncation_sigmas * sigma)),
-        static_cast<float>(1.0 / (sigma * sigma)),
-        static_cast<int>(MaxSurfaceStep(z, *options.depth.noise) * scale)};
+    max_steps[raw] = static_cast<int>(
+        std::lround(MaxSurfaceStep(z, *options.depth.noise) * scale));
   }
+}
+
+const DepthValue& MeshFusion::Volume::ValueOf(float depth) const {
+  return values[static_cast<size_t>(depth *
+                                    static_cast<float>(kStepsPerMetre))];
 }
 
 void MeshFusion::Volume::KeepSurfacePixels(const Frame& frame) {
   const Frame ideal = undistorter.Undistort(frame);
+  const auto metres_per_unit = static_cast<float>(1.0 / depth_scale);
   color = ideal.color;
-  depth.create(ideal.depth.size(), CV_16UC1);
-  depth.setTo(0);
+  depth.create(ideal.depth.size(), CV_32FC1);
+  depth.setTo(0.0F);
   for (int y = 1; y < depth.rows - 1; ++y) {
     const uint16_t* raw = ideal.depth.ptr<uint16_t>(y);
-    uint16_t* kept = depth.ptr<uint16_t>(y);
+    float* kept = depth.ptr<float>(y);
     for (int x = 1; x < depth.cols - 1; ++x) {
-      if (values[raw[x]].weight > 0.0F &&
-          IsOnSurface(ideal.depth, x, y, values[raw[x]].max_step)) {
-        kept[x] = raw[x];
+      const int max_step = max_steps[raw[x]];
+      if (max_step >= 0 && IsOnSurface(ideal.depth, x, y, max_step)) {
+        kept[x] = static_cast<float>(raw[x]) * metres_per_unit;
       }
     }
   }
@@ -169,17 +180,18 @@ std::vector<uint64_t> MeshFusion::Volume::FindBlocks(
   for (int y = 0; y < depth.rows; y += kStride) {
     last.clear();
     for (int x = 0; x < depth.cols; x += kStride) {
-      const DepthValue& value = values[depth.at<uint16_t>(y, x)];
-      if (value.weight == 0.0F) continue;
+      const float end = depth.at<float>(y, x);
+      if (end == 0.0F) continue;
+      const DepthValue& value = ValueOf(end);
       const Eigen::Vector3f ray = R * camera.Ray(x, y).cast<float>();
       const int steps =
           static_cast<int>(std::ceil(2.0F * value.truncation / step));
       last.resize(std::max<size_t>(last.size(), steps + 1), ~uint64_t{0});
       for (int i = 0; i <= steps; ++i) {
         const float z =
-            value.depth + value.truncation * (2.0F * static_cast<float>(i) /
-                                                  static_cast<float>(steps) -
-                                              1.0F);
+            end + value.truncation * (2.0F * static_cast<float>(i) /
+                                          static_cast<float>(steps) -
+                                      1.0F);
         const Eigen::Vector3f at = (z * ray + t) * blocks_per_metre;
         if (!(at.cwiseAbs().maxCoeff() < kHalfRange)) continue;
         const uint64_t key = KeyOf(Coord(static_cast<int>(std::floor(at.x())),
@@ -243,9 +255,11 @@ void MeshFusion::Volume::AddToBlock(const Coord& block,
           continue;
         }
         const int x = static_cast<int>(u), y = static_cast<int>(v);
-        const DepthValue& value = values[depth.ptr<uint16_t>(y)[x]];
-        const float before = value.depth - z;
-        if (value.weight == 0.0F || before < -value.truncation) continue;
+        const float end = depth.ptr<float>(y)[x];
+        if (end == 0.0F) continue;
+        const DepthValue& value = ValueOf(end);
+        const float before = end - z;
+        if (before < -value.truncation) continue;
         const int at = i << 2 * kLog2Side | j << kLog2Side | k;
         const float sum = weight[at] + value.weight;
         const float share = value.weight / sum;
