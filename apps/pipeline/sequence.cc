@@ -82,27 +82,13 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color) {
   return options;
 }
 
-// A recording, or what of it is asked for.
-std::unique_ptr<FrameSource> OpenPart(const SequenceSettings& settings,
-                                      bool keep_color) {
-  const FrameRange range = ParseFrameRange(settings.frames);
-  std::unique_ptr<FrameSource> whole =
-      OpenSource(settings.source, OptionsOf(settings, keep_color));
-  const size_t frames = whole->timestamps().size();
-  std::unique_ptr<FrameSource> part = PartOf(std::move(whole), range);
-  if (frames > 0 && part->timestamps().empty()) {
-    throw InputError("frames '" + settings.frames + "': " + settings.dataset +
-                     " has none of them, only " + std::to_string(frames) +
-                     " frames in all");
-  }
-  return part;
-}
-
 }  // namespace
 
 Sequence OpenSequence(const SequenceSettings& settings, bool keep_color) {
   Sequence sequence;
-  sequence.source = OpenPart(settings, keep_color);
+  const FrameRange range = ParseFrameRange(settings.frames);
+  sequence.source = PartOf(
+      OpenSource(settings.source, OptionsOf(settings, keep_color)), range);
   sequence.compares = settings.groundtruth != kNoGroundTruth;
   if (sequence.compares && !settings.groundtruth.empty()) {
     sequence.ground_truth = ReadTrajectory(settings.groundtruth);

@@ -8,6 +8,7 @@ namespace rgbd_pose {
 void BindCamera(pybind11::module_* module);
 void BindEstimateResult(pybind11::module_* module);
 void BindEstimate(pybind11::module_* module);
+void BindRecording(pybind11::module_* module);
 void BindOdometry(pybind11::module_* module);
 void BindSlam(pybind11::module_* module);
 void BindEvaluation(pybind11::module_* module);

@@ -28,6 +28,7 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   BindCamera(&m);
   BindEstimateResult(&m);
   BindEstimate(&m);
+  BindRecording(&m);
   BindOdometry(&m);
   BindSlam(&m);
   BindEvaluation(&m);

@@ -177,76 +177,11 @@ InputError and count as no frame.)",
           "Writes the trajectory as TUM text.", py::arg("path"));
 }
 
-std::unique_ptr<TumDataset> OpenTumDataset(const py::object& folder,
-                                           const RgbdCamera& camera,
-                                           const py::object& associations) {
-  SourceOptions options;
-  options.path = PathFrom(folder);
-  if (!associations.is_none()) {
-    options.associations_file = PathFrom(associations);
-  }
-  options.camera = camera;
-  return std::make_unique<TumDataset>(options);
-}
-
-Frame ReadFrame(const TumDataset& dataset, int index) {
-  if (index < 0) index += dataset.size();
-  if (index < 0 || index >= dataset.size()) {
-    throw py::index_error("the dataset has " + std::to_string(dataset.size()) +
-                          " frames");
-  }
-  const py::gil_scoped_release no_gil;
-  return dataset.Read(index);
-}
-
-void BindTumDataset(py::module_* module) {
-  py::class_<Frame>(*module, "Frame", "One RGB-D image pair of a sequence.")
-      .def_readonly("index", &Frame::index, "place in its dataset, from 0")
-      .def_readonly("timestamp", &Frame::timestamp, "of the colour image, s")
-      .def_readonly("depth_delay", &Frame::depth_delay,
-                    "of the depth image, s after the colour image")
-      .def_property_readonly(
-          "gray",
-          [](const py::object& self) {
-            return ArrayOfImage<uint8_t>(self.cast<const Frame&>().gray, self);
-          },
-          "(height, width) uint8")
-      .def_property_readonly(
-          "depth",
-          [](const py::object& self) {
-            return ArrayOfImage<uint16_t>(self.cast<const Frame&>().depth,
-                                          self);
-          },
-          "(height, width) uint16, raw units; 0 and 65535: none");
-  py::class_<TumDataset>(*module, "TumDataset", R"(
-A sequence in the layout of the TUM RGB-D benchmark, as a sequence of Frame.
-
-folder: with rgb.txt and depth.txt, which are paired by time.
-associations: file that pairs colour and depth images instead.
-
-InputError (file:line) for what cannot be read; the images are read as they are
-asked for, with the GIL released.)")
-      .def(py::init(&OpenTumDataset), "InputError for what cannot be read.",
-           py::arg("folder"), py::arg("camera").none(false),
-           py::arg("associations") = py::none())
-      .def("__len__", &TumDataset::size)
-      .def("__getitem__", &ReadFrame, py::arg("index"))
-      .def("__iter__",
-           [](const py::object& self) {
-             return py::reinterpret_steal<py::iterator>(
-                 PySeqIter_New(self.ptr()));
-           })
-      .def_property_readonly(
-          "camera", [](const TumDataset& self) { return self.camera(); },
-          "that all frames share");
-}
-
 }  // namespace
 
 void BindOdometry(py::module_* module) {
   BindTrackedFrame(module);
   BindSharedOdometry(module);
-  BindTumDataset(module);
 }
 
 }  // namespace rgbd_pose

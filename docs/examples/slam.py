@@ -3,7 +3,7 @@ import numpy as np
 import rgbd_pose
 
 camera = rgbd_pose.Camera.load("sequence/camera.yaml")
-frames = list(rgbd_pose.TumDataset("sequence", camera))
+frames = list(rgbd_pose.Recording("sequence"))
 
 slam = rgbd_pose.Slam(camera)
 for frame in frames:

@@ -152,7 +152,14 @@ FrameRange ParseFrameRange(const std::string& text) {
 std::unique_ptr<FrameSource> PartOf(std::unique_ptr<FrameSource> whole,
                                     const FrameRange& range) {
   if (range.IsWhole()) return whole;
-  return std::make_unique<PartialSource>(std::move(whole), range);
+  const size_t frames = whole->timestamps().size();
+  auto part = std::make_unique<PartialSource>(std::move(whole), range);
+  if (frames > 0 && part->timestamps().empty()) {
+    throw InputError(
+        "frames: the recording has none of those asked for, only " +
+        std::to_string(frames) + " in all");
+  }
+  return part;
 }
 
 }  // namespace rgbd_pose

@@ -20,6 +20,7 @@ __all__ = [
     "Keyframe",
     "MotionEstimate",
     "Odometry",
+    "Recording",
     "RpeResult",
     "Slam",
     "SlamFrame",

@@ -371,6 +371,26 @@ class Frame:
     @property
     def depth(self) -> NDArray[np.uint16]: ...  # (height, width), raw units
 
+class Recording:
+    def __init__(
+        self,
+        path: _Path,
+        camera: Union[None, Camera, _Path] = None,
+        *,
+        source: str = "auto",
+        frames: str = "",
+        associations: Optional[_Path] = None,
+        depth_camera: str = "",
+        depth_scale: float = 0.0,
+        topics: Sequence[str] = (),
+    ) -> None: ...
+    def __iter__(self) -> Iterator[Frame]: ...
+    @property
+    def camera(self) -> Camera: ...
+    @property
+    def timestamps(self) -> _Floats: ...  # (N,), s
+    def ground_truth(self) -> Tuple[_Floats, _Floats]: ...  # (N,), (N, 4, 4)
+
 class TumDataset:
     def __init__(
         self,

@@ -1,0 +1,76 @@
+"""Recordings of all kinds as sequences of frames."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+import rgbd_pose
+
+
+@pytest.fixture(scope="module")
+def whole(sequence):
+    return list(rgbd_pose.Recording(sequence))
+
+
+def test_brings_its_camera_and_its_path(sequence, camera, whole):
+    recording = rgbd_pose.Recording(sequence)
+    assert recording.camera.fx == camera.fx
+    assert recording.camera.depth_scale == camera.depth_scale
+    stamps, poses = recording.ground_truth()
+    assert poses.shape == (len(whole), 4, 4)
+    np.testing.assert_allclose(stamps, recording.timestamps, atol=1e-6)
+    np.testing.assert_array_equal(
+        recording.timestamps, [frame.timestamp for frame in whole]
+    )
+
+
+def test_gives_the_frames_of_a_tum_folder(sequence, camera, whole):
+    dataset = rgbd_pose.TumDataset(sequence, camera)
+    assert len(whole) == len(dataset)
+    for frame, expected in zip(whole, dataset):
+        assert frame.index == expected.index
+        np.testing.assert_array_equal(frame.gray, expected.gray)
+        np.testing.assert_array_equal(frame.depth, expected.depth)
+
+
+def test_each_loop_reads_it_anew(sequence):
+    recording = rgbd_pose.Recording(sequence, frames="1-3")
+    first = [frame.timestamp for frame in recording]
+    again = [frame.timestamp for frame in recording]
+    assert first == again and len(first) == 3
+
+
+def test_parts_are_numbered_from_zero(sequence, whole):
+    part = list(rgbd_pose.Recording(sequence, frames="2-6:2"))
+    assert [frame.index for frame in part] == [0, 1, 2]
+    assert [frame.timestamp for frame in part] == [
+        whole[i].timestamp for i in (2, 4, 6)
+    ]
+
+
+def test_finds_out_what_kind_it_is(sequence, camera, whole, tmp_path):
+    for kind, name in (("rgb", "color"), ("depth", "depth")):
+        images = sorted((sequence / kind).iterdir())
+        for i, image in enumerate(images[:3]):
+            shutil.copy(image, tmp_path / f"frame-{i:06}.{name}.png")
+    recording = rgbd_pose.Recording(tmp_path, camera)
+    frames = list(recording)
+    np.testing.assert_allclose(recording.timestamps, np.arange(3) / 30)
+    np.testing.assert_array_equal(frames[1].gray, whole[1].gray)
+    assert len(recording.ground_truth()[0]) == 0
+    scaled = rgbd_pose.Recording(tmp_path, "ros_default")
+    assert scaled.camera.depth_scale == 1000
+
+
+def test_refuses_what_it_cannot_read(sequence, tmp_path):
+    for match, path, settings in [
+        ("no such file or folder", tmp_path / "none", {}),
+        ("no known kind", tmp_path, {}),
+        ("unknown source 'lidar'", sequence, {"source": "lidar"}),
+        ("frames", sequence, {"frames": "all"}),
+        ("none of those", sequence, {"frames": "9999-"}),
+        ("camera 'kinect'", sequence, {"camera": "kinect"}),
+    ]:
+        with pytest.raises(rgbd_pose.InputError, match=match):
+            rgbd_pose.Recording(path, **settings)
