@@ -32,15 +32,23 @@ endfunction()
 function(rgbd_pose_install_package)
   set(source ${PROJECT_SOURCE_DIR}/cmake)
   set(binary ${PROJECT_BINARY_DIR})
+  set(RGBD_POSE_OPTIONAL)
+  foreach(package Libdeflate RosbagStorage)
+    if(${package}_FOUND)
+      list(APPEND RGBD_POSE_OPTIONAL ${package})
+    endif()
+  endforeach()
   configure_file(${source}/rgbd_poseConfig.cmake.in
                  ${binary}/rgbd_poseConfig.cmake @ONLY)
   write_basic_package_version_file(${binary}/rgbd_poseConfigVersion.cmake
                                    COMPATIBILITY SameMinorVersion)
-  configure_file(${PROJECT_SOURCE_DIR}/cmake/FindLibdeflate.cmake
-                 ${binary}/FindLibdeflate.cmake COPYONLY)
+  set(finders ${binary}/FindLibdeflate.cmake ${binary}/FindRosbagStorage.cmake)
+  foreach(finder FindLibdeflate FindRosbagStorage)
+    configure_file(${source}/${finder}.cmake ${binary}/${finder}.cmake COPYONLY)
+  endforeach()
   install(FILES ${binary}/rgbd_poseConfig.cmake
                 ${binary}/rgbd_poseConfigVersion.cmake
-                ${binary}/FindLibdeflate.cmake
+                ${finders}
           DESTINATION ${RGBD_POSE_CMAKE_DIR} COMPONENT development)
   rgbd_pose_configure_pkg_config(${source}/rgbd_pose.pc.in
                                  ${binary}/rgbd_pose.pc)
@@ -68,6 +76,13 @@ function(rgbd_pose_configure_pkg_config input output)
   if(NOT BUILD_SHARED_LIBS)
     list(APPEND requires ${requires_private})
     set(requires_private)
+  endif()
+  # What has no pkg-config file of use.
+  set(RGBD_POSE_PC_LIBS)
+  if(RosbagStorage_FOUND AND NOT BUILD_SHARED_LIBS)
+    get_target_property(libraries RosbagStorage::RosbagStorage
+                        INTERFACE_LINK_LIBRARIES)
+    list(JOIN libraries " " RGBD_POSE_PC_LIBS)
   endif()
   list(TRANSFORM OpenCV_INCLUDE_DIRS PREPEND -I OUTPUT_VARIABLE flags)
   list(JOIN requires " " RGBD_POSE_PC_REQUIRES)

@@ -1,5 +1,6 @@
 #include "apps/pipeline/sequence.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/util/input_error.h"
@@ -31,6 +32,10 @@ std::vector<Setting> SettingTable(SequenceSettings* settings) {
        "file that pairs colour and depth images, either column order; empty: "
        "rgb.txt and depth.txt are paired by time",
        Text(&settings->associations)},
+      {"topics", kGroup,
+       "of a bag: COLOUR,DEPTH or COLOUR,DEPTH,CAMERA_INFO; empty: found by "
+       "their types",
+       Text(&settings->topics)},
       {"camera", kGroup,
        "YAML file (ORB-SLAM2/3, ROS camera_info or Kalibr layout) or preset; "
        "empty: what the recording says itself",
@@ -72,6 +77,12 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color) {
   options.path = settings.dataset;
   options.keep_color = keep_color;
   options.associations_file = settings.associations;
+  for (size_t from = 0; from < settings.topics.size();) {
+    const size_t to =
+        std::min(settings.topics.find(',', from), settings.topics.size());
+    options.topics.push_back(settings.topics.substr(from, to - from));
+    from = to + 1;
+  }
   options.depth_scale = settings.depth_scale;
   if (!settings.camera.empty()) {
     options.camera = ResolveCameraSetup(settings.camera, settings.depth_camera);

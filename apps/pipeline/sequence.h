@@ -19,6 +19,7 @@ struct SequenceSettings {
   std::string source = "auto";  // its kind, see OpenSource
   std::string frames;           // part of it, see ParseFrameRange
   std::string associations;     // file
+  std::string topics;           // of a bag: COLOUR,DEPTH[,CAMERA_INFO]
   std::string camera;           // file or preset; empty: the recording's own
   std::string depth_camera;     // of that file; empty: depth is registered
   double depth_scale = 0.0;     // raw units per metre; 0: as they say

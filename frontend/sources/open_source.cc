@@ -4,11 +4,14 @@
 #include <filesystem>
 #include <functional>
 #include <set>
+#include <string_view>
 
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
+#include "frontend/sources/bag_source.h"
 #include "frontend/sources/numbered_dataset.h"
+#include "frontend/sources/ros1_bag.h"
 #include "frontend/sources/tum_dataset.h"
 
 namespace rgbd_pose {
@@ -31,6 +34,17 @@ bool HasFile(const SourceOptions& options, const char* name) {
   return fs::exists(fs::path(options.path) / name, error);
 }
 
+bool EndsWith(const std::string& path, std::string_view ending) {
+  return path.size() > ending.size() &&
+         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
+}
+
+bool IsFile(const SourceOptions& options, std::string_view ending) {
+  std::error_code error;
+  return EndsWith(options.path, ending) &&
+         fs::is_regular_file(options.path, error);
+}
+
 // The first that recognises a path has it.
 const std::vector<SourceType>& Types() {
   static const std::vector<SourceType> types = [] {
@@ -42,6 +56,12 @@ const std::vector<SourceType>& Types() {
          },
          [](const SourceOptions& options) {
            return std::make_unique<TumDataset>(options);
+         }},
+        {"rosbag", "ROS 1 bag (.bag, also the RealSense viewer's)",
+         [](const SourceOptions& options) { return IsFile(options, ".bag"); },
+         [](const SourceOptions& options) {
+           return std::make_unique<BagSource>(OpenRos1Bag(options.path),
+                                              options);
          }},
     };
     for (const NumberedLayout& layout : NumberedLayouts()) {

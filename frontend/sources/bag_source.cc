@@ -1,0 +1,146 @@
+#include "frontend/sources/bag_source.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "core/util/input_error.h"
+#include "frontend/sources/bag_camera.h"
+#include "frontend/sources/ros_image.h"
+#include "frontend/sources/ros_messages.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr char kWorld[] = "world";
+
+std::string Seconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof(text), "%.6f s", seconds);
+  return text;
+}
+
+CameraSetup Setup(BagReader* bag, const BagTopics& topics,
+                  const SourceOptions& options) {
+  return ChooseCamera(options,
+                      CameraOfBag(bag, topics, options.camera.has_value()));
+}
+
+}  // namespace
+
+BagSource::BagSource(std::unique_ptr<BagReader> bag,
+                     const SourceOptions& options)
+    : bag_(std::move(bag)),
+      topics_(ChooseTopics(bag_.get(), options.topics)),
+      max_time_difference_(options.max_time_difference),
+      assembly_(Setup(bag_.get(), topics_, options), options.keep_color),
+      pairing_(options.max_time_difference) {
+  std::vector<int> wanted = topics_.transforms;
+  wanted.push_back(topics_.color);
+  wanted.push_back(topics_.depth);
+  bag_->Select(wanted);
+}
+
+std::string BagSource::NameOf(int topic, double stamp) const {
+  return bag_->path() + ": " + bag_->topics()[topic].name + " at " +
+         Seconds(stamp);
+}
+
+void BagSource::Add(const BagMessage& message) {
+  const WireFormat format = bag_->format();
+  const bool is_color = message.topic == topics_.color;
+  if (!is_color && message.topic != topics_.depth) {
+    const WireReader reader(*message.bytes, format);
+    for (const RosTransform& transform : ReadRosTransforms(reader)) {
+      transforms_.Add(std::string(transform.header.frame_id),
+                      std::string(transform.child_frame_id),
+                      transform.header.stamp, transform.parent_from_child);
+    }
+    return;
+  }
+  const RosHeader header =
+      ReadImageOf(bag_->topics()[message.topic], message, format).header;
+  // Who does not say when an image was taken leaves it to the recorder.
+  const double stamp = header.stamp > 0.0 ? header.stamp : message.received;
+  if (!is_color) {
+    if (num_depth_++ == 0) first_depth_ = stamp;
+    pairing_.AddDepth({stamp, message.bytes});
+    return;
+  }
+  if (num_color_++ == 0) {
+    first_color_ = stamp;
+    color_frame_ = header.frame_id;
+  }
+  if (!pairing_.AddColor({stamp, message.bytes})) {
+    throw InputError(NameOf(message.topic, stamp) +
+                     ": comes after later images, further than " +
+                     std::to_string(ImagePairing::kWindow) +
+                     " images out of order; write the bag anew in the order "
+                     "of its header stamps");
+  }
+}
+
+std::optional<RgbdFrame> BagSource::Next() {
+  if (is_over_) return std::nullopt;
+  try {
+    while (true) {
+      if (std::optional<StampedPair> pair = pairing_.Take()) {
+        return MakeFrame(*pair);
+      }
+      const std::optional<BagMessage> message = bag_->Next();
+      if (message.has_value()) {
+        Add(*message);
+        continue;
+      }
+      pairing_.Finish();
+      if (std::optional<StampedPair> pair = pairing_.Take()) {
+        return MakeFrame(*pair);
+      }
+      break;
+    }
+  } catch (...) {
+    is_over_ = true;  // what follows cannot be told
+    throw;
+  }
+  is_over_ = true;
+  if (num_frames_ > 0) return std::nullopt;
+  throw InputError(bag_->path() + ": none of " + std::to_string(num_color_) +
+                   " colour and " + std::to_string(num_depth_) +
+                   " depth images are of the same time (" +
+                   Seconds(max_time_difference_) +
+                   " apart at most); the first ones are " +
+                   Seconds(first_depth_ - first_color_) +
+                   " apart; are their clocks the same?");
+}
+
+RgbdFrame BagSource::MakeFrame(const StampedPair& pair) {
+  const int index = num_frames_++;
+  const double timestamp = pair.color.stamp;
+  return {
+      timestamp, [this, index, pair] {
+        const BagTopic& color_topic = bag_->topics()[topics_.color];
+        const BagTopic& depth_topic = bag_->topics()[topics_.depth];
+        const WireFormat format = bag_->format();
+        const std::string color_name = NameOf(topics_.color, pair.color.stamp);
+        const std::string depth_name = NameOf(topics_.depth, pair.depth.stamp);
+        cv::Mat color;
+        const cv::Mat gray = DecodeRosGray(
+            ReadImageOf(color_topic, {0, 0.0, pair.color.message}, format),
+            color_name, assembly_.keep_color() ? &color : nullptr);
+        const cv::Mat depth = DecodeRosDepth(
+            ReadImageOf(depth_topic, {0, 0.0, pair.depth.message}, format),
+            depth_name, assembly_.camera().depth_scale);
+        Frame frame =
+            assembly_.Make({gray, color_name}, color, {depth, depth_name});
+        frame.index = index;
+        frame.timestamp = pair.color.stamp;
+        frame.depth_delay = pair.depth.stamp - pair.color.stamp;
+        return frame;
+      }};
+}
+
+Trajectory BagSource::ground_truth() const {
+  return transforms_.PathOf(kWorld, color_frame_);
+}
+
+}  // namespace rgbd_pose

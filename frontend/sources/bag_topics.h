@@ -1,0 +1,33 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "frontend/sources/bag_reader.h"
+#include "frontend/sources/ros_image.h"
+#include "frontend/sources/source_options.h"
+
+namespace rgbd_pose {
+
+// What of a bag makes an RGB-D recording: places among BagReader::topics.
+struct BagTopics {
+  int color = -1;
+  int depth = -1;
+  int color_info = -1;  // CameraInfo; -1: there is none
+  int depth_info = -1;
+  std::vector<int> transforms;  // of /tf and /tf_static
+};
+
+// Those that `names` says (colour, depth and, if it is not the one beside
+// colour, CameraInfo), or else those that types, encodings and names tell:
+// depth that is registered to colour before such that is not, raw images before
+// compressed ones. Throws InputError with the topics there are if there is none
+// or several will do.
+BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names);
+
+// A message of an image topic, compressed or not.
+RosImage ReadImageOf(const BagTopic& topic, const BagMessage& message,
+                     WireFormat format);
+
+}  // namespace rgbd_pose
