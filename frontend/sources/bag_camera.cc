@@ -29,8 +29,7 @@ ImageTraits TraitsOf(BagReader* bag, int topic) {
     throw InputError(bag->path() + ": " + bag->topics()[topic].name +
                      ": has no messages");
   }
-  const RosImage image =
-      ReadImageOf(bag->topics()[topic], first.front(), bag->format());
+  const RosImage image = ReadImageOf(*bag, first.front());
   return {std::string(image.header.frame_id),
           UseOfEncoding(std::string(image.encoding))};
 }
@@ -40,8 +39,7 @@ std::optional<Camera> ReadCamera(BagReader* bag, int info_topic,
   if (info_topic < 0) return std::nullopt;
   const std::vector<BagMessage> first = bag->First(info_topic, 1);
   if (first.empty()) return std::nullopt;
-  const WireReader reader(*first.front().bytes, bag->format());
-  return CameraOfInfo(ReadRosCameraInfo(reader),
+  return CameraOfInfo(ReadMessage(*bag, first.front(), ReadRosCameraInfo),
                       Contains(bag->topics()[image_topic].name, "rect"),
                       bag->path() + ": " + bag->topics()[info_topic].name);
 }
@@ -73,8 +71,9 @@ std::optional<double> ViewerDepthScale(BagReader* bag, int depth) {
     if (bag->topics()[i].name != name) continue;
     const auto first = bag->First(static_cast<int>(i), 1);
     if (first.empty() || bag->topics()[i].type != "std_msgs/Float32") break;
-    WireReader reader(*first.front().bytes, bag->format());
-    const double metres = reader.Number<float>();
+    const double metres =
+        ReadMessage(*bag, first.front(),
+                    [](WireReader reader) { return reader.Number<float>(); });
     if (!(metres > 1e-6 && metres < 1.0)) break;
     // The float that 0.001 is becomes 1000 again.
     return std::round(1e3 / metres) / 1e3;
@@ -96,8 +95,9 @@ std::map<std::string, Rigid3d> ViewerTransforms(BagReader* bag, int topic) {
     }
     const auto first = bag->First(static_cast<int>(i), 1);
     if (first.empty()) continue;
-    WireReader reader(*first.front().bytes, bag->format());
-    Rigid3d transform = ReadRosTransform(&reader);
+    Rigid3d transform = ReadMessage(*bag, first.front(), [](WireReader reader) {
+      return ReadRosTransform(&reader);
+    });
     if (!transform.IsFinite() || transform.rotation.norm() < 0.5) continue;
     transform.rotation.normalize();
     transforms[candidate.name.substr(prefix.size())] = transform;
@@ -113,8 +113,8 @@ std::optional<Rigid3d> FixedTransform(BagReader* bag, const BagTopics& topics,
   TransformTree tree;
   for (const int topic : topics.transforms) {
     for (const BagMessage& message : bag->First(topic, kManyMessages)) {
-      const WireReader reader(*message.bytes, bag->format());
-      for (const RosTransform& transform : ReadRosTransforms(reader)) {
+      for (const RosTransform& transform :
+           ReadMessage(*bag, message, ReadRosTransforms)) {
         tree.Add(std::string(transform.header.frame_id),
                  std::string(transform.child_frame_id), transform.header.stamp,
                  transform.parent_from_child);

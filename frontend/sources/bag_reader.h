@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "core/util/input_error.h"
 #include "frontend/sources/wire_reader.h"
 
 namespace rgbd_pose {
@@ -44,5 +45,17 @@ class BagReader {
   // the last one.
   virtual std::optional<BagMessage> Next() = 0;
 };
+
+// Has a message read by `read`, which takes a WireReader. What that throws
+// says which message it is of.
+template <typename Read>
+auto ReadMessage(const BagReader& bag, const BagMessage& message, Read read) {
+  try {
+    return read(WireReader(*message.bytes, bag.format()));
+  } catch (const InputError& error) {
+    throw InputError(bag.path() + ": " + bag.topics()[message.topic].name +
+                     ": " + error.what());
+  }
+}
 
 }  // namespace rgbd_pose

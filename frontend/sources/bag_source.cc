@@ -47,19 +47,17 @@ std::string BagSource::NameOf(int topic, double stamp) const {
 }
 
 void BagSource::Add(const BagMessage& message) {
-  const WireFormat format = bag_->format();
   const bool is_color = message.topic == topics_.color;
   if (!is_color && message.topic != topics_.depth) {
-    const WireReader reader(*message.bytes, format);
-    for (const RosTransform& transform : ReadRosTransforms(reader)) {
+    for (const RosTransform& transform :
+         ReadMessage(*bag_, message, ReadRosTransforms)) {
       transforms_.Add(std::string(transform.header.frame_id),
                       std::string(transform.child_frame_id),
                       transform.header.stamp, transform.parent_from_child);
     }
     return;
   }
-  const RosHeader header =
-      ReadImageOf(bag_->topics()[message.topic], message, format).header;
+  const RosHeader header = ReadImageOf(*bag_, message).header;
   // Who does not say when an image was taken leaves it to the recorder.
   const double stamp = header.stamp > 0.0 ? header.stamp : message.received;
   if (!is_color) {
@@ -118,17 +116,14 @@ RgbdFrame BagSource::MakeFrame(const StampedPair& pair) {
   const double timestamp = pair.color.stamp;
   return {
       timestamp, [this, index, pair] {
-        const BagTopic& color_topic = bag_->topics()[topics_.color];
-        const BagTopic& depth_topic = bag_->topics()[topics_.depth];
-        const WireFormat format = bag_->format();
         const std::string color_name = NameOf(topics_.color, pair.color.stamp);
         const std::string depth_name = NameOf(topics_.depth, pair.depth.stamp);
         cv::Mat color;
         const cv::Mat gray = DecodeRosGray(
-            ReadImageOf(color_topic, {0, 0.0, pair.color.message}, format),
+            ReadImageOf(*bag_, {topics_.color, 0.0, pair.color.message}),
             color_name, assembly_.keep_color() ? &color : nullptr);
         const cv::Mat depth = DecodeRosDepth(
-            ReadImageOf(depth_topic, {0, 0.0, pair.depth.message}, format),
+            ReadImageOf(*bag_, {topics_.depth, 0.0, pair.depth.message}),
             depth_name, assembly_.camera().depth_scale);
         Frame frame =
             assembly_.Make({gray, color_name}, color, {depth, depth_name});

@@ -67,7 +67,7 @@ Fitness FitnessOf(BagReader* bag, int index) {
   const BagTopic& topic = bag->topics()[index];
   const std::vector<BagMessage> first = bag->First(index, 1);
   if (first.empty()) return {};
-  const RosImage image = ReadImageOf(topic, first.front(), bag->format());
+  const RosImage image = ReadImageOf(*bag, first.front());
   const std::string name = LowerCase(topic.name);
   const bool is_raw = topic.type == kImage;
   const bool is_called_depth = Contains(name, "depth");
@@ -168,11 +168,10 @@ int Named(const BagReader& bag, const std::string& name, bool is_image) {
 
 }  // namespace
 
-RosImage ReadImageOf(const BagTopic& topic, const BagMessage& message,
-                     WireFormat format) {
-  const WireReader reader(*message.bytes, format);
-  return topic.type == kImage ? ReadRosImage(reader)
-                              : ReadRosCompressedImage(reader);
+RosImage ReadImageOf(const BagReader& bag, const BagMessage& message) {
+  const bool is_raw = bag.topics()[message.topic].type == kImage;
+  return ReadMessage(bag, message,
+                     is_raw ? ReadRosImage : ReadRosCompressedImage);
 }
 
 BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {

@@ -27,7 +27,6 @@ struct BagTopics {
 BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names);
 
 // A message of an image topic, compressed or not.
-RosImage ReadImageOf(const BagTopic& topic, const BagMessage& message,
-                     WireFormat format);
+RosImage ReadImageOf(const BagReader& bag, const BagMessage& message);
 
 }  // namespace rgbd_pose

@@ -12,6 +12,7 @@
 #include "frontend/sources/bag_source.h"
 #include "frontend/sources/numbered_dataset.h"
 #include "frontend/sources/ros1_bag.h"
+#include "frontend/sources/ros2_bag.h"
 #include "frontend/sources/tum_dataset.h"
 
 namespace rgbd_pose {
@@ -61,6 +62,12 @@ const std::vector<SourceType>& Types() {
          [](const SourceOptions& options) { return IsFile(options, ".bag"); },
          [](const SourceOptions& options) {
            return std::make_unique<BagSource>(OpenRos1Bag(options.path),
+                                              options);
+         }},
+        {"rosbag2", "ROS 2 bag (.db3, or a folder of such)",
+         [](const SourceOptions& options) { return IsRos2Bag(options.path); },
+         [](const SourceOptions& options) {
+           return std::make_unique<BagSource>(OpenRos2Bag(options.path),
                                               options);
          }},
     };

@@ -1,6 +1,7 @@
 #include "frontend/sources/ros_messages.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 
 namespace rgbd_pose {
 namespace {
