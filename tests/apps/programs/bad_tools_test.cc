@@ -89,6 +89,28 @@ TEST_F(BadInputTest, Simulate) {
       });
 }
 
+TEST_F(BadInputTest, Convert) {
+  ExpectEach(
+      RGBD_CONVERT " --dataset={seq} --output={dir}/out ",
+      {
+          {"no dataset", nullptr, "--dataset=", 1, "--dataset is needed"},
+          {"no output", nullptr, "--output=", 1, "--output is needed"},
+          {"of no kind", nullptr, "--dataset={dir}", 2,
+           "{dir}: is no known kind of recording: it holds"},
+          {"an output that is there", nullptr, "--output={seq}", 2,
+           "{seq}: is there already and no empty folder"},
+          {"a broken image, late",
+           [](const Seq& s) { s.Cut("depth/1000.066667.png", 100); }, "", 2,
+           "depth/1000.066667.png: is damaged"},
+          {"a broken ground truth",
+           [](const Seq& s) { s.Write("groundtruth.txt", "1 2 3\n"); }, "", 2,
+           "{seq}/groundtruth.txt:1"},
+          {"unwanted ground truth",
+           [](const Seq& s) { s.Write("groundtruth.txt", "1 2 3\n"); },
+           "--groundtruth=none", 0, ""},
+      });
+}
+
 TEST_F(BadInputTest, Compare) {
   ExpectEach(
       RGBD_COMPARE " --frames=2 --output={dir}/out ",
