@@ -40,6 +40,10 @@ DEFINE_double(registration_turn, 0.0,
               "the same: and is turned so far (degrees) to the right, around "
               "its y axis");
 DEFINE_string(camera, "ros_default", "preset or YAML file");
+DEFINE_string(
+    depth_camera, "",
+    "which camera of a Kalibr file (--camera) takes the depth images, "
+    "which are not registered to colour then; empty: the same one");
 DEFINE_string(output, "", "folder to make, in TUM RGB-D layout");
 
 namespace rgbd_pose {
@@ -63,7 +67,10 @@ int Simulate() {
       Eigen::Quaterniond(Eigen::AngleAxisd(
           FLAGS_registration_turn * M_PI / 180.0, Eigen::Vector3d::UnitY())),
       {FLAGS_registration_shift, 0.0, 0.0});
-  options.camera = ResolveCamera(FLAGS_camera);
+  const CameraSetup setup =
+      ResolveCameraSetup(FLAGS_camera, FLAGS_depth_camera);
+  options.camera = RegisteredCamera(setup);
+  options.depth_camera = setup.depth_camera;
   SyntheticDataset dataset(options);
   {
     ProgressBar bar("rendering", dataset.size());
@@ -89,7 +96,7 @@ int main(int argc, char** argv) {
       {{"Sequence",
         {"scene", "path", "frames", "rate", "laps", "seed", "noise", "shutter",
          "exposure_drift", "readout", "depth_delay", "registration_shift",
-         "registration_turn", "camera"}},
+         "registration_turn", "camera", "depth_camera"}},
        {"Output", {"output"}}},
       {{"scene", rgbd_pose::SceneNames()},
        {"path", rgbd_pose::SyntheticPathNames()},

@@ -1,8 +1,6 @@
 #include "frontend/image/depth_registration.h"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
 
 #include "core/util/input_error.h"
@@ -23,6 +21,16 @@ constexpr double kOverlap = 1.1;
 // Beyond this square of its tangent a ray is outside every lens that radial
 // distortion describes: its polynomial may fold such rays back into the image.
 constexpr float kMaxTangentSquared = 4.0F;
+
+// Values of up to kBlock pixels; the library makes vectors of what is done with
+// them.
+using Block = Eigen::Array<float, Eigen::Dynamic, 1, 0, kBlock, 1>;
+using Places = Eigen::Array<int, Eigen::Dynamic, 1, 0, kBlock, 1>;
+
+// The least whole numbers that are not below x, between 0 and `end`.
+Places CeilWithin(const Block& x, float end) {
+  return x.max(0.0F).min(end).ceil().cast<int>();
+}
 
 void RequireCamera(const Camera& camera, const char* what) {
   const std::string problem = camera.Check();
@@ -80,61 +88,46 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
   const auto k3 = static_cast<float>(color_.k3);
   const auto p1 = static_cast<float>(color_.p1);
   const auto p2 = static_cast<float>(color_.p2);
-  const float tx = translation_.x();
-  const float ty = translation_.y();
-  const float tz = translation_.z();
-  std::array<float, kBlock> left, right, top, bottom, units_there;
+  const auto columns = static_cast<float>(registered->cols);
+  const auto rows = static_cast<float>(registered->rows);
+  using Raw = Eigen::Array<uint16_t, Eigen::Dynamic, 1>;
   for (int begin = 0; begin < width_; begin += kBlock) {
     const int n = std::min(kBlock, width_ - begin);
     const size_t first = static_cast<size_t>(row) * width_ + begin;
-    const float* ray_x = &ray_x_[first];
-    const float* ray_y = &ray_y_[first];
-    const float* ray_z = &ray_z_[first];
-    const uint16_t* raw = depth + begin;
-    // Without branches, so that the compiler makes vectors of it.
+    using Rays = Eigen::Map<const Eigen::ArrayXf>;
+    const Block raw = Eigen::Map<const Raw>(depth + begin, n).cast<float>();
+    const Block z = raw * metres;
+    const Block there_z = z * Rays(&ray_z_[first], n) + translation_.z();
+    const Block inverse = there_z.max(kMinDepth).inverse();
+    const Block a = (z * Rays(&ray_x_[first], n) + translation_.x()) * inverse;
+    const Block b = (z * Rays(&ray_y_[first], n) + translation_.y()) * inverse;
+    const Block ray_r2 = a * a + b * b;
+    const Block r2 = ray_r2.min(kMaxTangentSquared);
+    const Block radial = 1.0F + r2 * (k1 + r2 * (k2 + r2 * k3));
+    const Block ab = 2.0F * a * b;
+    const Block u = fx * (a * radial + p1 * ab + p2 * (r2 + 2.0F * a * a)) + cx;
+    const Block v = fy * (b * radial + p1 * (r2 + 2.0F * b * b) + p2 * ab) + cy;
+    const Block nearer = z * inverse;
+    const Block there = there_z * units + 0.5F;
+    const auto is_seen = raw > 0.0F && raw < Frame::kNoDepth &&
+                         there_z > kMinDepth && ray_r2 < kMaxTangentSquared &&
+                         there < Frame::kNoDepth;
+    // Half-open rectangles: those of neighbours do not overlap. What is not
+    // seen has none.
+    const Block right = is_seen.select(u + half_width_ * nearer, 0.0F);
+    const Places u0 = CeilWithin(u - half_width_ * nearer, columns);
+    const Places u1 = CeilWithin(right, columns);
+    const Places v0 = CeilWithin(v - half_height_ * nearer, rows);
+    const Places v1 = CeilWithin(v + half_height_ * nearer, rows);
     for (int i = 0; i < n; ++i) {
-      const float z = static_cast<float>(raw[i]) * metres;
-      const float there_z = z * ray_z[i] + tz;
-      const float safe_z = std::max(there_z, kMinDepth);
-      const float inverse = 1.0F / safe_z;
-      const float a = (z * ray_x[i] + tx) * inverse;
-      const float b = (z * ray_y[i] + ty) * inverse;
-      const float r2 = a * a + b * b;
-      const float radial = 1.0F + r2 * (k1 + r2 * (k2 + r2 * k3));
-      const float ab = a * b;
-      const float u =
-          fx * (a * radial + 2.0F * p1 * ab + p2 * (r2 + 2.0F * a * a)) + cx;
-      const float v =
-          fy * (b * radial + p1 * (r2 + 2.0F * b * b) + 2.0F * p2 * ab) + cy;
-      const float nearer = z * inverse;
-      left[i] = u - half_width_ * nearer;
-      right[i] = u + half_width_ * nearer;
-      top[i] = v - half_height_ * nearer;
-      bottom[i] = v + half_height_ * nearer;
-      const bool is_seen = (raw[i] != 0) & (raw[i] != Frame::kNoDepth) &
-                           (there_z > kMinDepth) & (r2 < kMaxTangentSquared);
-      units_there[i] = is_seen ? there_z * units + 0.5F : 0.0F;
-    }
-    for (int i = 0; i < n; ++i) {
-      // Half-open rectangles: those of neighbours do not overlap.
-      const float last_column = static_cast<float>(registered->cols);
-      const float last_row = static_cast<float>(registered->rows);
-      const bool is_inside = units_there[i] >= 1.0F &&
-                             units_there[i] < Frame::kNoDepth &&
-                             right[i] > 0.0F && bottom[i] > 0.0F &&
-                             left[i] < last_column && top[i] < last_row;
-      if (!is_inside) continue;
-      const auto value = static_cast<uint16_t>(units_there[i]);
-      const int u0 = std::max(0, static_cast<int>(std::ceil(left[i])));
-      const int u1 =
-          std::min(registered->cols, static_cast<int>(std::ceil(right[i])));
-      const int v0 = std::max(0, static_cast<int>(std::ceil(top[i])));
-      const int v1 =
-          std::min(registered->rows, static_cast<int>(std::ceil(bottom[i])));
-      for (int v = v0; v < v1; ++v) {
-        auto* out = registered->ptr<uint16_t>(v);
-        for (int u = u0; u < u1; ++u) {
-          if (out[u] == 0 || value < out[u]) out[u] = value;
+      if (u0[i] >= u1[i]) continue;
+      // One less, so that none (0) is farther than all others.
+      const auto value = static_cast<uint16_t>(static_cast<int>(there[i]) - 1);
+      for (int at_v = v0[i]; at_v < v1[i]; ++at_v) {
+        auto* out = registered->ptr<uint16_t>(at_v);
+        for (int at_u = u0[i]; at_u < u1[i]; ++at_u) {
+          const auto before = static_cast<uint16_t>(out[at_u] - 1);
+          out[at_u] = static_cast<uint16_t>(std::min(before, value) + 1);
         }
       }
     }

@@ -59,6 +59,12 @@ const SyntheticOptions& Checked(const SyntheticOptions& options) {
         "the registration error of a synthetic sequence must be below 1 m and "
         "45 degrees");
   }
+  if (options.depth_camera.has_value()) {
+    const std::string depth_problem = options.depth_camera->camera.Check();
+    if (!depth_problem.empty()) {
+      throw InputError("depth camera: " + depth_problem);
+    }
+  }
   if (!(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0)) {
     throw InputError("exposure_drift of a synthetic sequence must be in 0..1");
   }
@@ -71,6 +77,10 @@ SyntheticDataset::SyntheticDataset(const SyntheticOptions& options)
     : options_(Checked(options)),
       path_(FindSyntheticPath(options.path)),
       renderer_(MakeScene(options.scene, options.seed), options.camera.camera) {
+  if (options.depth_camera.has_value()) {
+    depth_renderer_.emplace(MakeScene(options.scene, options.seed),
+                            options.depth_camera->camera);
+  }
 }
 
 double SyntheticDataset::timestamp(int index) const {
@@ -99,12 +109,17 @@ Rendering SyntheticDataset::Render(double t) const {
              [this](double time) { return WorldFromCamAt(time); }, t,
              {options_.exposure_s, DriftingGain(options_.exposure_drift, t),
               options_.readout_s});
-  const Rigid3d cam_from_depth = options_.registration_error.Inverse();
-  if (options_.depth_delay_s != 0.0 || cam_from_depth.Angle() != 0.0 ||
+  Rigid3d cam_from_depth = options_.registration_error.Inverse();
+  if (depth_renderer_.has_value()) {
+    cam_from_depth = cam_from_depth * options_.depth_camera->color_from_depth;
+  }
+  if (depth_renderer_.has_value() || options_.depth_delay_s != 0.0 ||
+      cam_from_depth.Angle() != 0.0 ||
       !cam_from_depth.translation.isZero(0.0)) {
     seen.depth =
         Expose(
-            renderer_, focal_px,
+            depth_renderer_.has_value() ? *depth_renderer_ : renderer_,
+            focal_px,
             [&](double time) { return WorldFromCamAt(time) * cam_from_depth; },
             t + options_.depth_delay_s, {0.0, 1.0, options_.readout_s})
             .depth;
@@ -119,7 +134,10 @@ Frame SyntheticDataset::Read(int index) const {
     const uint64_t sequence = HashCounter(options_.seed);
     const uint64_t frame = static_cast<uint64_t>(index) << 41;
     AddColorNoise(sequence + frame, &rendering.color);
-    rendering.depth = MeasureDepth(rendering.depth, options_.camera.camera.fx,
+    const Camera& measures = depth_renderer_.has_value()
+                                 ? options_.depth_camera->camera
+                                 : options_.camera.camera;
+    rendering.depth = MeasureDepth(rendering.depth, measures.fx,
                                    sequence + frame + (uint64_t{1} << 40));
   }
   Frame frame;

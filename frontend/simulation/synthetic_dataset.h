@@ -6,6 +6,7 @@
 
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
+#include "frontend/image/depth_registration.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/sources/dataset.h"
@@ -39,6 +40,10 @@ struct SyntheticOptions {
   // An error of the calibration between both cameras: depth images have a point
   // X (in camera axes, m) where they should have registration_error * X.
   Rigid3d registration_error = {};
+
+  // Takes the depth images, which are not registered to colour then and may
+  // have another size: a raw recording. Nothing: they are.
+  std::optional<DepthCamera> depth_camera = {};
 
   // Swing of the automatic exposure, 0..1: see DriftingGain.
   double exposure_drift = 0.0;
@@ -81,6 +86,7 @@ class SyntheticDataset : public Dataset {
   SyntheticOptions options_;
   SyntheticPath path_;
   Renderer renderer_;
+  std::optional<Renderer> depth_renderer_;  // if another camera takes depth
 };
 
 }  // namespace rgbd_pose

@@ -48,17 +48,17 @@ TEST(DepthRegistrationTest, IsWhatTheColourCameraWouldHaveSeen) {
   options.camera.camera.k2 = -0.2;
   options.camera.camera.p1 = 0.002;
   const SyntheticDataset color(options);
-  SyntheticOptions of_depth = options;
-  of_depth.camera.camera = SmallCamera(400, 300, 290.0);
-  of_depth.camera.camera.k1 = -0.05;
+  Camera depth_camera = SmallCamera(400, 300, 290.0);
+  depth_camera.k1 = -0.05;
   const Rigid3d color_from_depth(
       Eigen::Quaterniond(Eigen::AngleAxisd(
           0.02, Eigen::Vector3d(1.0, -2.0, 0.5).normalized())),
       {0.025, -0.003, 0.004});
-  of_depth.path_from_cam = color_from_depth;
-  const SyntheticDataset depth(of_depth);
-  const DepthRegistration registration(
-      {of_depth.camera.camera, color_from_depth}, options.camera.camera);
+  SyntheticOptions raw = options;
+  raw.depth_camera = DepthCamera{depth_camera, color_from_depth};
+  const SyntheticDataset depth(raw);
+  const DepthRegistration registration(*raw.depth_camera,
+                                       options.camera.camera);
   for (int k = 0; k < 3; ++k) {
     const Frame truth = color.Read(k);
     const cv::Mat registered =
