@@ -106,7 +106,7 @@ std::unique_ptr<KeyframeGraph> KeyframeGraphOf(const World& world) {
 Solved ByMap(const World& world) {
   const auto graph = KeyframeGraphOf(world);
   Solved solved;
-  if (!graph->SolveAll(/*graduated=*/true).empty()) return solved;
+  if (!graph->SolveAll().empty()) return solved;
   for (int i = 0; i < graph->size(); ++i) {
     solved.poses.push_back(graph->pose(i));
   }
@@ -162,7 +162,7 @@ void EstimatePairs(benchmark::State& state, int keyframes) {
 void SolveWindow(benchmark::State& state, int keyframes) {
   const World& world = TimedWorld(keyframes);
   const auto graph = KeyframeGraphOf(world);
-  graph->SolveAll(/*graduated=*/true);
+  graph->SolveAll();
   for (auto _ : state) {
     if (!graph->SolveNear(keyframes - 1).empty()) {
       state.SkipWithError("was not solved");

@@ -193,14 +193,14 @@ std::vector<int> KeyframeGraph::All() const {
   return all;
 }
 
-std::string KeyframeGraph::SolveAll(bool graduated) {
-  std::string trouble;
-  for (int round = 0; round < kMaxSlackRounds; ++round) {
-    trouble = Solve(All(), graduated);
+std::string KeyframeGraph::SolveAll() {
+  std::string trouble = Solve(All(), /*graduated=*/true);
+  for (int round = 1; round < kMaxSlackRounds && trouble.empty(); ++round) {
     const double before = slack();
     FitSlack();
-    const bool is_settled = std::abs(slack() - before) <= 0.1 * before;
-    if (!trouble.empty() || is_settled) break;
+    if (slack() == before) break;
+    trouble = Solve(All(), /*graduated=*/true);
+    if (std::abs(slack() - before) <= 0.1 * before) break;
   }
   return trouble;
 }

@@ -66,10 +66,10 @@ class KeyframeGraph {
   // anchor; others are given back as they are.
   Edge Anchored(Edge edge) const;
 
-  // Solves for the poses around the newest keyframe, or for all. Why it could
-  // not, or empty.
+  // Solves for the poses around the newest keyframe, or for all, wherever they
+  // are. Why it could not, or empty.
   std::string SolveNear(int newest);
-  std::string SolveAll(bool graduated);
+  std::string SolveAll();
 
   // Covariances of all poses after SolveAll, as MotionGraph has them, times its
   // redundancy: zero for those that do not move, empty if they cannot be told.

@@ -287,9 +287,8 @@ MapUpdate Mapper::Add(NewKeyframe added) {
   if (update.joined > 0) PairByPose(newest, *prepared, &update);
   index_.Add(newest, keyframes_[newest].features.described.descriptors);
 
-  update.trouble = update.loops > 0
-                       ? graph_.SolveAll(/*graduated=*/update.joined > 0)
-                       : graph_.SolveNear(newest);
+  update.trouble =
+      update.loops > 0 ? graph_.SolveAll() : graph_.SolveNear(newest);
   FindReturn(newest, &update);
   MakeWay(newest);
   Fill(&update);
@@ -354,7 +353,7 @@ void Mapper::MakeWay(int newest) {
 MapUpdate Mapper::Finish() {
   MapUpdate update;
   const StageTimer timer(&update.ms);
-  if (graph_.size() > 0) update.trouble = graph_.SolveAll(/*graduated=*/true);
+  if (graph_.size() > 0) update.trouble = graph_.SolveAll();
   Fill(&update);
   return update;
 }

@@ -15,8 +15,8 @@ namespace rgbd_pose {
 struct PairTrustOptions {
   // What noise models do not know (calibration, stamps): at least so much is a
   // pair off.
-  double min_sigma_rotation = 2e-4;     // rad
-  double min_sigma_translation = 5e-4;  // m
+  double min_sigma_rotation = 1e-4;       // rad
+  double min_sigma_translation = 2.5e-4;  // m
 
   // By what share of the way and of the turns a path drifts at most, as one
   // standard deviation: what a loop may correct.

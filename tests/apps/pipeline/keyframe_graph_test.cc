@@ -43,7 +43,7 @@ TEST(KeyframeGraphTest, ALoopTakesDriftBack) {
   const Edge loop = circle.Measured(0, kPoses - 1);
   EXPECT_TRUE(circle.graph.IsPlausible(loop));
   circle.graph.AddPair(loop, /*is_tracked=*/false, /*is_loop=*/true);
-  EXPECT_EQ(circle.graph.SolveAll(/*graduated=*/false), "");
+  EXPECT_EQ(circle.graph.SolveAll(), "");
   EXPECT_LT(circle.LastError(), 0.3 * drift);
 }
 
@@ -102,7 +102,7 @@ TEST(KeyframeGraphTest, WhatIsDroppedStaysWhereItWasToItsAnchor) {
     EXPECT_TRUE(pair.edge.ref != 10 && pair.edge.cur != 10);
   }
   circle.graph.AddPair(circle.Measured(0, kPoses - 1), false, true);
-  ASSERT_EQ(circle.graph.SolveAll(false), "");
+  ASSERT_EQ(circle.graph.SolveAll(), "");
   const Rigid3d after = circle.graph.pose(9).Inverse() * circle.graph.pose(10);
   EXPECT_LT(ErrorOf(before, after).translation, 1e-9);
 
@@ -126,7 +126,7 @@ TEST(KeyframeGraphTest, WhatIsHeldNeverMoves) {
   const int newest = graph.Add(circle.truth[3], 0);
   for (int i = 0; i < 3; ++i) graph.AddPair(circle.Measured(i, newest), false);
   graph.AddPair(circle.Measured(0, 1), false);
-  ASSERT_EQ(graph.SolveAll(false), "");
+  ASSERT_EQ(graph.SolveAll(), "");
   for (int i = 0; i < 3; ++i) {
     EXPECT_EQ(graph.pose(i).translation, circle.truth[i].translation);
     EXPECT_FALSE(graph.CanDoWithout(i));
@@ -142,7 +142,7 @@ TEST(KeyframeGraphTest, CovariancesAsSolvedLetOthersFindTheSame) {
     if (i % 5 == 0) edge.cur_from_ref.translation.x() += 0.05;
     circle.graph.AddPair(edge, /*is_tracked=*/false);
   }
-  ASSERT_EQ(circle.graph.SolveAll(/*graduated=*/false), "");
+  ASSERT_EQ(circle.graph.SolveAll(), "");
   MotionGraph as_solved, as_measured;
   for (int i = 0; i < kPoses; ++i) {
     as_solved.AddPose(circle.graph.pose(i), i == 0);
@@ -182,7 +182,7 @@ TEST(KeyframeGraphTest, SlackIsTheShareThatMotionsAreOffBy) {
         graph.AddPair(edge, false);
       }
     }
-    ASSERT_EQ(graph.SolveAll(false), "");
+    ASSERT_EQ(graph.SolveAll(), "");
     if (wrong < 0.01) {
       EXPECT_LT(graph.slack(), 0.003);
     } else {
