@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/mesh/mesh_fusion.h"
+#include "frontend/map/mesh_fusion.h"
 
 namespace rgbd_pose {
 

@@ -8,10 +8,8 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/map/glb_writer.h"
+#include "frontend/map/mesh_fusion.h"
 #include "frontend/map/ply_writer.h"
-#ifdef RGBD_POSE_HAS_OPENVDB
-#include "frontend/mesh/mesh_fusion.h"
-#endif
 
 namespace rgbd_pose {
 
@@ -28,8 +26,6 @@ std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
                 cloud.frames(), options.output.c_str());
 }
 
-#ifdef RGBD_POSE_HAS_OPENVDB
-
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
   const std::string ending =
       std::filesystem::path(options.output).extension().string();
@@ -41,6 +37,7 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
   MeshFusionOptions fusion_options;
   fusion_options.camera = recording.camera().camera;
   fusion_options.voxel_size = options.voxel;
+  fusion_options.threads = options.threads;
   fusion_options.depth = run.depth();
   if (options.max_depth > 0.0) {
     fusion_options.depth.max_depth = options.max_depth;
@@ -64,15 +61,5 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
                 mesh.triangles.size(), mesh.vertices.size(), views.size(),
                 options.output.c_str());
 }
-
-#else
-
-std::string ExportMesh(const FinishedRun&, const ExportOptions&) {
-  throw InputError(
-      "built without OpenVDB, which meshes need; scripts/install_dependencies "
-      "formats installs it, then configure and build again");
-}
-
-#endif
 
 }  // namespace rgbd_pose

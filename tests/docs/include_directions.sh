@@ -46,7 +46,6 @@ room frontend/features 'core/|frontend/' "$opencv"
 room frontend/places 'core/|frontend/' "$opencv"
 room frontend/tracking 'core/|frontend/' "$opencv"
 room frontend/map 'core/|frontend/' "$opencv|fcntl.h|unistd.h|sys/file.h"
-room frontend/mesh 'core/|frontend/' "$opencv|openvdb/"
 room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"

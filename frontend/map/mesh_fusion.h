@@ -1,13 +1,17 @@
 #pragma once
 
 #include <cstddef>
-#include <memory>
+#include <cstdint>
+#include <opencv2/core.hpp>
 #include <string>
+#include <vector>
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
+#include "frontend/image/undistorter.h"
+#include "frontend/map/distance_volume.h"
 #include "frontend/map/triangle_mesh.h"
 
 namespace rgbd_pose {
@@ -16,8 +20,8 @@ namespace rgbd_pose {
 struct MeshFusionOptions {
   Camera camera;  // of all frames; may have distortion
 
-  // Side of the cubes (m) in which distances to the surface are kept: details
-  // of this size are left.
+  // Side of the cubes (m) at whose corners distances to the surface are kept:
+  // details of this size are left.
   double voxel_size = 0.01;
 
   // Which depths are used, and how much each counts: by 1 / sigma^2.
@@ -33,6 +37,9 @@ struct MeshFusionOptions {
   // wide.
   double max_sigma = 0.0;
 
+  // Threads that Add works on; the mesh does not depend on it.
+  int threads = 1;
+
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
@@ -40,14 +47,12 @@ struct MeshFusionOptions {
 // Puts the depth images of frames with known poses together to a mesh in the
 // world of their poses: the zero of a truncated signed distance, averaged over
 // all frames (B. Curless & M. Levoy, A Volumetric Method for Building Complex
-// Models from Range Images, SIGGRAPH 1996). Kept in blocks of OpenVDB, so
-// memory grows with the surface seen. The same frames in the same order give
-// the same mesh.
+// Models from Range Images, SIGGRAPH 1996). The same frames in the same order
+// give the same mesh.
 class MeshFusion {
  public:
   // The options must be sound, see Check.
   explicit MeshFusion(const MeshFusionOptions& options);
-  ~MeshFusion();
 
   // The frame must have its colour.
   void Add(const Frame& frame, const Rigid3d& world_from_cam);
@@ -56,11 +61,31 @@ class MeshFusion {
   TriangleMesh Mesh() const;
 
   // What is kept of the frames, in bytes.
-  size_t MemoryBytes() const;
+  size_t MemoryBytes() const { return volume_.MemoryBytes(); }
 
  private:
-  struct Volume;
-  std::unique_ptr<Volume> volume_;
+  // What is done with a depth.
+  struct DepthUse {
+    float truncation;  // m
+    float weight;      // 1 / m^2
+  };
+
+  void SetDepthScale(double depth_scale);
+  const DepthUse& UseOf(float depth) const;
+  void KeepSurfacePixels(const Frame& frame);
+  std::vector<uint64_t> FindBlocks(const Rigid3d& world_from_cam) const;
+  void AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
+                  DistanceVolume::Block* block) const;
+
+  MeshFusionOptions options_;
+  Undistorter undistorter_;
+  // By steps of depth so small that the table stays near the processor.
+  std::vector<DepthUse> uses_;
+  double depth_scale_ = 0.0;
+  std::vector<int> max_steps_;  // to neighbours, by raw depth; -1: no depth
+  cv::Mat depth_;  // of the frame at hand: CV_32FC1, m, 0 off surfaces
+  cv::Mat color_;
+  DistanceVolume volume_;
 };
 
 }  // namespace rgbd_pose

@@ -1,0 +1,41 @@
+#include "frontend/map/distance_volume.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kBits = 21;
+constexpr uint64_t kMask = (uint64_t{1} << kBits) - 1;
+
+}  // namespace
+
+uint64_t DistanceVolume::KeyOf(const Eigen::Vector3i& block) {
+  uint64_t key = 0;
+  for (int i = 0; i < 3; ++i) {
+    key = key << kBits | static_cast<uint64_t>(block[i] + kHalfRange);
+  }
+  return key;
+}
+
+Eigen::Vector3i DistanceVolume::BlockOf(uint64_t key) {
+  Eigen::Vector3i block;
+  for (int i = 2; i >= 0; --i, key >>= kBits) {
+    block[i] = static_cast<int>(key & kMask) - kHalfRange;
+  }
+  return block;
+}
+
+DistanceVolume::Block* DistanceVolume::FindOrInsert(uint64_t key) {
+  const auto [place, is_new] = index_.emplace(key, size());
+  if (is_new) {
+    keys_.push_back(key);
+    blocks_.push_back(std::make_unique<Block>());
+  }
+  return blocks_[place->second].get();
+}
+
+int DistanceVolume::Find(uint64_t key) const {
+  const auto place = index_.find(key);
+  return place == index_.end() ? -1 : place->second;
+}
+
+}  // namespace rgbd_pose
