@@ -11,6 +11,7 @@
 #include <opencv2/core.hpp>
 #include <utility>
 
+#include "apps/export/export_format.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/report/report_page.h"
 #include "apps/results/run_output.h"
@@ -150,6 +151,7 @@ int Main() {
       sequence.TruthOfAll(), settings.sequence.dataset, FormatFlagFile(Info()));
   text += WriteReport(output.aside());
   output.Publish();
+  text += SaveMesh(settings.output, threads);
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
   if (results.TrackedShare() >= kMinTrackedShare) return kExitOk;

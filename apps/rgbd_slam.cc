@@ -12,6 +12,7 @@
 #include <sstream>
 #include <utility>
 
+#include "apps/export/export_format.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/pipeline/slam_run.h"
 #include "apps/report/report_page.h"
@@ -179,6 +180,7 @@ int Main() {
   output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
   text += WriteReport(output.aside());
   output.Publish();
+  text += SaveMesh(settings.output, threads);
   // The results stay if the map cannot be saved.
   if (!settings.maps.save_map.empty()) {
     SaveMap(settings.maps.save_map, map);

@@ -5,6 +5,7 @@
 
 #include "apps/export/export_options.h"
 #include "apps/export/finished_run.h"
+#include "apps/results/run_output.h"
 
 namespace rgbd_pose {
 
@@ -31,6 +32,10 @@ std::string ExportNerfstudio(const FinishedRun& run,
 // What was seen.
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);
+
+// The mesh that a run which has just ended was asked for, if it was; returns
+// what the program prints.
+std::string SaveMesh(const RunOutputSettings& settings, int threads);
 
 // The names of all formats.
 std::vector<std::string> ExportFormatNames();

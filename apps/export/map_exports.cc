@@ -1,17 +1,68 @@
 // What was seen: a point cloud or a mesh.
 
+#include <glog/logging.h>
+
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "apps/export/export_format.h"
 #include "apps/export/view_images.h"
+#include "apps/report/report_page.h"
+#include "apps/results/cloud_preview.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/map/glb_writer.h"
+#include "frontend/map/mesh_file.h"
 #include "frontend/map/mesh_fusion.h"
+#include "frontend/map/mesh_thinning.h"
 #include "frontend/map/ply_writer.h"
 
 namespace rgbd_pose {
+namespace {
+
+MeshFusionOptions MeshOptions(const Camera& camera, const FinishedRun& run,
+                              const ExportOptions& options) {
+  MeshFusionOptions fusion;
+  fusion.camera = camera;
+  fusion.voxel_size = options.voxel;
+  fusion.threads = options.threads;
+  fusion.depth = run.depth();
+  if (options.max_depth > 0.0) fusion.depth.max_depth = options.max_depth;
+  const std::string problem = fusion.Check();
+  if (!problem.empty()) throw InputError("--voxel or --max_depth: " + problem);
+  return fusion;
+}
+
+// In the page of the run, if it has one. Whoever may only read the run has the
+// mesh nevertheless.
+void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
+              size_t frames, const ExportOptions& options) {
+  TriangleMesh thin = mesh;
+  for (int most = kMaxPreviewTriangles;
+       thin.triangles.size() > kMaxPreviewTriangles ||
+       thin.vertices.size() > kMaxPreviewVertices;
+       most = most * 3 / 4) {
+    thin = ThinMesh(mesh, static_cast<float>(options.voxel), most);
+  }
+  nlohmann::json preview = MeshPreview(thin, Rigid3d());
+  preview["file"] = options.output;
+  preview["all_triangles"] = mesh.triangles.size();
+  preview["frames"] = frames;
+  const std::filesystem::path path(folder);
+  try {
+    WriteFileAtomically(
+        (path / kMeshPreviewFile).string(),
+        preview.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
+    if (HasReportLibrary() && std::filesystem::exists(path / "report.html")) {
+      WriteRunReport(folder);
+    }
+  } catch (const InputError& error) {
+    LOG(WARNING) << "the page of the run does not show the mesh: "
+                 << error.what();
+  }
+}
+
+}  // namespace
 
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
   RunRecording recording(run);
@@ -27,39 +78,28 @@ std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
 }
 
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
-  const std::string ending =
-      std::filesystem::path(options.output).extension().string();
-  if (ending != ".ply" && ending != ".glb") {
-    throw InputError("--output: " + options.output +
-                     ": meshes are .ply or .glb files");
-  }
+  RequireMeshFile(options.output);
   RunRecording recording(run);
-  MeshFusionOptions fusion_options;
-  fusion_options.camera = recording.camera().camera;
-  fusion_options.voxel_size = options.voxel;
-  fusion_options.threads = options.threads;
-  fusion_options.depth = run.depth();
-  if (options.max_depth > 0.0) {
-    fusion_options.depth.max_depth = options.max_depth;
-  }
-  const std::string problem = fusion_options.Check();
-  if (!problem.empty()) throw InputError("--voxel or --max_depth: " + problem);
-  RequireWritable(options.output);
-  MeshFusion fusion(fusion_options);
+  MeshFusion fusion(MeshOptions(recording.camera().camera, run, options));
   const std::vector<int> views = run.PickViews(options.step);
   recording.ReadViews(views, options.threads,
                       [&](const Frame& frame, const Rigid3d& world_from_cam) {
                         fusion.Add(frame, world_from_cam);
                       });
   const TriangleMesh mesh = fusion.Mesh();
-  if (ending == ".glb") {
-    WriteGlb(options.output, mesh);
-  } else {
-    WriteMeshPly(options.output, mesh);
-  }
-  return Format("%zu triangles, %zu vertices of %zu frames in %s\n",
-                mesh.triangles.size(), mesh.vertices.size(), views.size(),
-                options.output.c_str());
+  WriteMesh(options.output, mesh);
+  ShowMesh(run.folder(), mesh, views.size(), options);
+  return Format("mesh        %zu triangles of %zu frames in %s\n",
+                mesh.triangles.size(), views.size(), options.output.c_str());
+}
+
+std::string SaveMesh(const RunOutputSettings& settings, int threads) {
+  if (settings.save_mesh.empty()) return "";
+  ExportOptions options;
+  options.output = settings.save_mesh;
+  options.voxel = settings.voxel;
+  options.threads = threads;
+  return ExportMesh(FinishedRun(settings.output), options);
 }
 
 }  // namespace rgbd_pose

@@ -235,6 +235,10 @@ json RunReportData(const std::string& run_folder) {
       std::filesystem::exists(folder / kCloudPreviewFile)) {
     data["cloud"] = ParseJson(file(kCloudPreviewFile));
   }
+  // Written last, by whoever made the mesh; a new run removes it.
+  if (std::filesystem::exists(folder / kMeshPreviewFile)) {
+    data["mesh"] = ParseJson(file(kMeshPreviewFile));
+  }
   return data;
 }
 

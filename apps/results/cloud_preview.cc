@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <string>
 
+#include "frontend/map/little_endian.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -55,8 +57,7 @@ nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
     for (int k = 0; k < 3; ++k) {
       const auto steps =
           static_cast<uint16_t>(std::lround((positions[i](k) - low(k)) / step));
-      position_bytes += static_cast<char>(steps & 0xFF);
-      position_bytes += static_cast<char>(steps >> 8);
+      AppendLittleEndian(steps, &position_bytes);
     }
     for (const uint8_t value :
          {points[i].red, points[i].green, points[i].blue}) {
@@ -68,6 +69,20 @@ nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
           {"step_m", step},
           {"positions", Base64(position_bytes)},
           {"colors", Base64(color_bytes)}};
+}
+
+nlohmann::json MeshPreview(const TriangleMesh& mesh,
+                           const Rigid3d& shown_from_world) {
+  nlohmann::json preview = CloudPreview(mesh.vertices, shown_from_world);
+  std::string corners;
+  for (const Eigen::Vector3i& triangle : mesh.triangles) {
+    for (const int vertex : triangle) {
+      AppendLittleEndian(static_cast<uint16_t>(vertex), &corners);
+    }
+  }
+  preview["triangles"] = mesh.triangles.size();
+  preview["corners"] = Base64(corners);
+  return preview;
 }
 
 }  // namespace rgbd_pose

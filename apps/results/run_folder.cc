@@ -19,9 +19,15 @@ namespace fs = std::filesystem;
 constexpr char kAside[] = ".rgbd_odometry.partial";
 constexpr char kLock[] = "lock";
 constexpr char kLast[] = "metrics.json";
-constexpr const char* kResults[] = {
-    kLast,        "report.html", "errors.csv",   "trajectory.txt",
-    "frames.csv", "edges.csv",   "config.flags", "cloud_preview.json"};
+constexpr const char* kResults[] = {kLast,
+                                    "report.html",
+                                    "errors.csv",
+                                    "trajectory.txt",
+                                    "frames.csv",
+                                    "edges.csv",
+                                    "config.flags",
+                                    "cloud_preview.json",
+                                    "mesh_preview.json"};
 
 [[noreturn]] void Fail(const fs::path& folder, const std::error_code& error) {
   throw InputError("--output: " + folder.string() +

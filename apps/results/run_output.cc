@@ -9,6 +9,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/features/match_overlay.h"
+#include "frontend/map/mesh_file.h"
 #include "frontend/map/ply_writer.h"
 #include "frontend/sources/image_file.h"
 #include "frontend/tracking/residual_image.h"
@@ -69,8 +70,14 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
        "file for a coloured point cloud of what was seen (PLY), in the world "
        "of the trajectory; empty: none",
        Text(&settings->save_cloud)},
+      {"save_mesh", kGroup,
+       "file for a coloured mesh of what was seen (.ply or .glb), made of the "
+       "final poses after the run, for which the frames are read again; empty: "
+       "none",
+       Text(&settings->save_mesh)},
       {"voxel", kGroup,
-       "side of the cubes (m) that the cloud's points are merged in",
+       "side of the cubes (m) that the cloud's points are merged in, and of "
+       "those of the mesh",
        &settings->voxel},
   };
 }
@@ -86,6 +93,7 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
   if (!settings.debug_images.empty()) {
     std::filesystem::create_directory(aside() / kDebug);
   }
+  if (!settings.save_mesh.empty()) RequireMeshFile(settings.save_mesh);
   if (!settings.save_cloud.empty()) {
     cloud_.emplace(cloud_options_);
     RequireWritable(settings.save_cloud);

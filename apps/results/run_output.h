@@ -21,7 +21,8 @@ struct RunOutputSettings {
   std::string output;        // folder
   std::string debug_images;  // FrameSelection
   std::string save_cloud;    // file; empty: no cloud
-  double voxel = 0.01;       // side of the cloud's cubes, m
+  std::string save_mesh;     // file; empty: no mesh
+  double voxel = 0.01;       // side of the cubes of both, m
 };
 
 // Their rows.

@@ -1,36 +1,74 @@
 'use strict';
 
-// What the camera saw: a few points of the cloud, beside the path in 3D.
+// What the camera saw: a thinned mesh, or a few points of the cloud, beside the
+// path in 3D.
 
 function bytesOf(base64) {
   return Uint8Array.from(atob(base64), character => character.charCodeAt(0));
 }
 
+function wordsOf(base64) {
+  const view = new DataView(bytesOf(base64).buffer);
+  return Array.from({length: view.byteLength / 2}, (_, i) => view.getUint16(2 * i, true));
+}
+
+// x, y, z and colours of the points of a preview.
+function previewPoints(preview, move = point => point) {
+  const steps = wordsOf(preview.positions), color = bytesOf(preview.colors);
+  const points = [...Array(preview.points).keys()].map(i => move([0, 1, 2].map(
+      k => preview.origin_m[k] + preview.step_m * steps[3 * i + k])));
+  return {
+    x: points.map(p => p[0]), y: points.map(p => p[1]), z: points.map(p => p[2]),
+    colors: points.map((_, i) =>
+        `rgb(${color[3 * i]},${color[3 * i + 1]},${color[3 * i + 2]})`),
+  };
+}
+
 function cloudTraces(data) {
   const cloud = data.cloud;
   if (!cloud || cloud.points === 0) return [];
-  const steps = new DataView(bytesOf(cloud.positions).buffer);
-  const color = bytesOf(cloud.colors);
-  const place = (point, k) =>
-      cloud.origin_m[k] + cloud.step_m * steps.getUint16(6 * point + 2 * k, true);
-  const each = [...Array(cloud.points).keys()];
+  const {x, y, z, colors} = previewPoints(cloud);
   return [{
     type: 'scatter3d', mode: 'markers', name: 'what was seen', hoverinfo: 'skip',
-    x: each.map(i => place(i, 0)), y: each.map(i => place(i, 1)),
-    z: each.map(i => place(i, 2)),
-    marker: {size: 2, color: each.map(
-        i => `rgb(${color[3 * i]},${color[3 * i + 1]},${color[3 * i + 2]})`)},
+    x, y, z, marker: {size: 2, color: colors},
   }];
 }
 
-function cloudNote(data, element) {
-  const all = data.metrics.cloud;
-  if (!all) return;
+// The mesh is in the world of the trajectory.
+function meshTraces(data) {
+  const mesh = data.mesh;
+  const {x, y, z, colors} = previewPoints(mesh, truthFromMap(data));
+  const corners = wordsOf(mesh.corners);
+  const at = k => corners.filter((_, i) => i % 3 === k);
+  return [{
+    type: 'mesh3d', name: 'what was seen', hoverinfo: 'skip', showlegend: true,
+    x, y, z, i: at(0), j: at(1), k: at(2), vertexcolor: colors,
+    // The colours have their light already.
+    lighting: {ambient: 1, diffuse: 0, specular: 0, fresnel: 0},
+    lightposition: {x: 0, y: 0, z: 0},
+  }];
+}
+
+function seenTraces(data) {
+  return data.mesh && data.mesh.triangles ? meshTraces(data) : cloudTraces(data);
+}
+
+function seenNote(data, element) {
   const number = count => count.toLocaleString('en');
-  element.append(make('p', {class: 'soft caption screen', id: 'cloud-note'}, data.cloud
-      ? `What was seen: ${number(data.cloud.points)} of the ` +
-        `${number(all.points)} points of ${setting(data, 'save_cloud')}, from ` +
-        `${all.frames} frame${all.frames === 1 ? '' : 's'}. A click on its name hides it.`
-      : 'The points of what was seen are not shown: this run has no ' +
-        'cloud_preview.json; repeat it with this version.'));
+  const frames = count => `${number(count)} frame${count === 1 ? '' : 's'}`;
+  const note = text => element.append(
+      make('p', {class: 'soft caption screen', id: 'cloud-note'}, text));
+  const all = data.metrics.cloud;
+  if (data.mesh) {
+    note(`What was seen: ${number(data.mesh.triangles)} triangles of the mesh ` +
+         `${data.mesh.file}, which has ${number(data.mesh.all_triangles)}, from ` +
+         `${frames(data.mesh.frames)}. A click on its name hides it.`);
+  } else if (all) {
+    note(data.cloud
+        ? `What was seen: ${number(data.cloud.points)} of the ` +
+          `${number(all.points)} points of ${setting(data, 'save_cloud')}, from ` +
+          `${frames(all.frames)}. A click on its name hides it.`
+        : 'The points of what was seen are not shown: this run has no ' +
+          'cloud_preview.json; repeat it with this version.');
+  }
 }

@@ -172,9 +172,9 @@ function paths(data) {
   for (const name of ['x', 'y', 'z']) {
     positions[name] = data.path[name].concat(data.path['true_' + name] || []);
   }
-  const sizes = ['small', data.cloud ? 'tall' : 'large'];
+  const sizes = ['small', data.cloud || data.mesh ? 'tall' : 'large'];
   pathViews(element, '', sizes, positions, downVector(data), (axes, type, line) => (
-      (type === 'scatter3d' ? cloudTraces(data) : []).concat(
+      (type === 'scatter3d' ? seenTraces(data) : []).concat(
           pathTraces(data, axes, type, line))));
-  cloudNote(data, element);
+  seenNote(data, element);
 }

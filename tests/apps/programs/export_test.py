@@ -1,0 +1,340 @@
+"""Exports of a simulated run, read by other means than they are written by.
+
+usage: export_test.py BIN_FOLDER [--colmap]
+
+What is seen has to be where depth images say, by each format's own conventions;
+files of meshes have to hold what their formats ask for. With --colmap the model
+is read by colmap; 77, for a skipped test, where there is none.
+"""
+
+import json
+import math
+import os
+import shutil
+import struct
+import subprocess
+import sys
+import tempfile
+import zlib
+
+FRAMES = 12
+
+
+def run(*command):
+    result = subprocess.run(command, capture_output=True, text=True, check=False)
+    if result.returncode != 0:
+        sys.exit(f'{" ".join(command)}\n{result.stdout}{result.stderr}')
+    return result.stdout
+
+
+def check(condition, *what):
+    if not condition:
+        sys.exit('FAILED: ' + ' '.join(str(word) for word in what))
+
+
+def read_lines(*path):
+    with open(os.path.join(*path), encoding='utf-8') as file:
+        return file.read().splitlines()
+
+
+def numbers(line):
+    return [float(word) for word in line.split()]
+
+
+def data_lines(*path):
+    return [line for line in read_lines(*path) if not line.startswith('#')]
+
+
+# Poses as rows of a 3 x 4 matrix.
+
+
+def matrix_of(qw, qx, qy, qz, tx, ty, tz):
+    check(abs(qw * qw + qx * qx + qy * qy + qz * qz - 1) < 1e-6, 'no unit quaternion')
+    return [
+        [1 - 2 * (qy * qy + qz * qz), 2 * (qx * qy - qw * qz),
+         2 * (qx * qz + qw * qy), tx],
+        [2 * (qx * qy + qw * qz), 1 - 2 * (qx * qx + qz * qz),
+         2 * (qy * qz - qw * qx), ty],
+        [2 * (qx * qz - qw * qy), 2 * (qy * qz + qw * qx),
+         1 - 2 * (qx * qx + qy * qy), tz],
+    ]
+
+
+def moved(matrix, point):
+    return [sum(row[k] * point[k] for k in range(3)) + row[3] for row in matrix]
+
+
+def inverse(matrix):
+    transposed = [[matrix[k][i] for k in range(3)] for i in range(3)]
+    return [row + [-sum(row[k] * matrix[k][3] for k in range(3))] for row in transposed]
+
+
+def product(a, b):
+    return [[sum(a[i][k] * b[k][j] for k in range(3)) + (a[i][3] if j == 3 else 0)
+             for j in range(4)] for i in range(3)]
+
+
+def same(a, b, tolerance=1e-6):
+    return all(abs(x - y) < tolerance for r, s in zip(a, b) for x, y in zip(r, s))
+
+
+def read_png(path):
+    """Rows of a PNG of 8 or 16 bits without a palette, each a list of numbers."""
+    with open(path, 'rb') as file:
+        data = file.read()
+    check(data[:8] == b'\x89PNG\r\n\x1a\n', path, 'is no PNG')
+    at, packed = 8, b''
+    while at < len(data):
+        size, kind = struct.unpack('>I4s', data[at:at + 8])
+        if kind == b'IHDR':
+            width, height, bits, color = struct.unpack('>IIBB', data[at + 8:at + 18])
+        if kind == b'IDAT':
+            packed += data[at + 8:at + 8 + size]
+        at += 12 + size
+    pixel = {0: 1, 2: 3}[color] * bits // 8
+    raw, above, rows = zlib.decompress(packed), bytes(width * pixel), []
+    for y in range(height):
+        begin = y * (width * pixel + 1)
+        method, line = raw[begin], bytearray(raw[begin + 1:begin + 1 + width * pixel])
+        for i in range(len(line)):
+            left = line[i - pixel] if i >= pixel else 0
+            corner = above[i - pixel] if i >= pixel else 0
+            if method == 4:
+                guess = left + above[i] - corner
+                nearest = min((abs(guess - left), 0, left),
+                              (abs(guess - above[i]), 1, above[i]),
+                              (abs(guess - corner), 2, corner))[2]
+            else:
+                nearest = [0, left, above[i], (left + above[i]) // 2][method]
+            line[i] = (line[i] + nearest) & 255
+        above = bytes(line)
+        if bits == 16:
+            rows.append(struct.unpack(f'>{len(line) // 2}H', above))
+        else:
+            rows.append(above)
+    return rows
+
+
+def read_ply(path):
+    """Vertices (x, y, z, red, green, blue) and faces of a binary PLY."""
+    with open(path, 'rb') as file:
+        header, body = file.read().split(b'end_header\n', 1)
+    counts = {line.split()[1]: int(line.split()[2])
+              for line in header.decode().splitlines() if line.startswith('element')}
+    check(header.startswith(b'ply\nformat binary_little_endian 1.0\n'), header)
+    vertices = list(struct.iter_unpack('<3f3B', body[:15 * counts['vertex']]))
+    faces = list(struct.iter_unpack('<B3i', body[15 * counts['vertex']:]))
+    check(len(faces) == counts.get('face', 0), path, 'faces')
+    check(all(face[0] == 3 for face in faces), path, 'is not of triangles')
+    return vertices, [face[1:] for face in faces]
+
+
+def read_glb(path):
+    """Positions, colours (0..1, linear) and faces, by the accessors of the file."""
+    with open(path, 'rb') as file:
+        data = file.read()
+    magic, version, total = struct.unpack('<4sII', data[:12])
+    check((magic, version, total) == (b'glTF', 2, len(data)), 'header of', path)
+    size, kind = struct.unpack('<I4s', data[12:20])
+    check(kind == b'JSON' and size % 4 == 0, 'first chunk')
+    scene = json.loads(data[20:20 + size])
+    binary_size, kind = struct.unpack('<I4s', data[20 + size:28 + size])
+    binary = data[28 + size:]
+    check(kind == b'BIN\0' and binary_size == len(binary) and binary_size % 4 == 0,
+          'second chunk')
+    check(scene['buffers'][0]['byteLength'] == len(binary), 'buffer')
+    mesh = scene['meshes'][scene['nodes'][scene['scenes'][0]['nodes'][0]]['mesh']]
+    (primitive,) = mesh['primitives']
+
+    def values(index):
+        accessor = scene['accessors'][index]
+        view = scene['bufferViews'][accessor['bufferView']]
+        code, largest = {5126: ('f', 1), 5123: ('H', 65535), 5125: ('I', 1)}[
+            accessor['componentType']]
+        count = {'SCALAR': 1, 'VEC3': 3, 'VEC4': 4}[accessor['type']]
+        begin = view.get('byteOffset', 0)
+        check(begin % 4 == 0, 'alignment')
+        rows = list(struct.iter_unpack(f'<{count}{code}',
+                                       binary[begin:begin + view['byteLength']]))
+        check(len(rows) == accessor['count'], 'count')
+        if 'min' in accessor:
+            for k in range(count):
+                check(abs(min(row[k] for row in rows) - accessor['min'][k]) < 1e-5 and
+                      abs(max(row[k] for row in rows) - accessor['max'][k]) < 1e-5,
+                      'bounds')
+        return [[value / largest for value in row] for row in rows]
+
+    indices = [int(row[0]) for row in values(primitive['indices'])]
+    faces = list(zip(indices[::3], indices[1::3], indices[2::3]))
+    return (values(primitive['attributes']['POSITION']),
+            values(primitive['attributes']['COLOR_0']), faces)
+
+
+def check_views(points, views, project):
+    """Points of the world have the depth and colour of pixels that they fall on.
+
+    `views`: camera_from_world and the files of the depth image, in millimetres,
+    and the colour image.
+    """
+    for cam_from_world, depth_file, color_file in views:
+        depth = [[value / 1000 for value in row] for row in read_png(depth_file)]
+        color = read_png(color_file)
+        depth_errors, color_errors = [], []
+        for point in points:
+            x, y, z = moved(cam_from_world, point[:3])
+            if z <= 0:
+                continue
+            u, v = project(x / z, y / z)
+            # The pixel whose square it is in: its upper left corner counts.
+            row, column = math.floor(v), math.floor(u)
+            if not (0 <= row < len(depth) and 0 <= column < len(depth[0])):
+                continue
+            if depth[row][column] == 0:
+                continue
+            depth_errors.append(abs(depth[row][column] - z))
+            seen = color[row][3 * column:3 * column + 3]
+            color_errors.append(max(abs(a - b) for a, b in zip(seen, point[3:])))
+        check(len(depth_errors) > 500, 'only', len(depth_errors), 'points in a view')
+        depth_errors.sort()
+        color_errors.sort()
+        middle = len(depth_errors) // 2
+        check(depth_errors[middle] < 0.02, 'depth off by', depth_errors[middle])
+        check(color_errors[middle] < 25, 'colour off by', color_errors[middle])
+
+
+def check_colmap(folder, poses, depth_folder):
+    camera = data_lines(folder, 'sparse/0/cameras.txt')[0].split()
+    check(camera[1] == 'PINHOLE' and camera[2:4] == ['320', '240'], camera)
+    fx, fy, cx, cy = [float(word) for word in camera[4:8]]
+    check((cx, cy) == (160.0, 120.0), 'COLMAP counts from corners of pixels')
+    lines = data_lines(folder, 'sparse/0/images.txt')
+    check(all(line == '' for line in lines[1::2]), 'lines of features')
+    points = [numbers(line)[1:7]
+              for line in data_lines(folder, 'sparse/0/points3D.txt')]
+    views = []
+    for line in lines[::2]:
+        words = line.split()
+        name = words[9]
+        cam_from_world = matrix_of(*[float(word) for word in words[1:8]])
+        frame = int(name.split('.')[0])
+        check(same(inverse(cam_from_world), poses[frame]), 'pose of', name)
+        views.append((cam_from_world, os.path.join(depth_folder, name),
+                      os.path.join(folder, 'images', name)))
+    check(len(views) == FRAMES, len(views), 'images')
+    check_views(points[::7], views[::6], lambda x, y: (fx * x + cx, fy * y + cy))
+
+
+def check_nerfstudio(folder, poses):
+    with open(os.path.join(folder, 'transforms.json'), encoding='utf-8') as file:
+        scene = json.load(file)
+    check(len(scene['frames']) == FRAMES, 'frames')
+    check((scene['w'], scene['h'], scene['cx'], scene['k1']) == (320, 240, 160, 0), scene)
+    check(scene['depth_unit_scale_factor'] == 0.001, 'unit of depth')
+    points, _ = read_ply(os.path.join(folder, scene['ply_file_path']))
+    views = []
+    for frame in scene['frames']:
+        matrix = frame['transform_matrix']
+        check(matrix[3] == [0, 0, 0, 1], matrix)
+        # OpenGL's axes: y up, z back.
+        world_from_cam = [[row[0], -row[1], -row[2], row[3]] for row in matrix[:3]]
+        number = int(os.path.basename(frame['file_path']).split('.')[0])
+        check(same(world_from_cam, poses[number]), 'pose of', frame['file_path'])
+        views.append((inverse(world_from_cam),
+                      os.path.join(folder, frame['depth_file_path']),
+                      os.path.join(folder, frame['file_path'])))
+    check_views(points[::7], views[2:8:5],
+                lambda x, y: (scene['fl_x'] * x + scene['cx'],
+                              scene['fl_y'] * y + scene['cy']))
+
+
+def check_meshes(ply, glb):
+    vertices, faces = read_ply(ply)
+    positions, colors, glb_faces = read_glb(glb)
+    check(len(faces) > 10000 and faces == glb_faces, 'faces of', ply, glb)
+    check(max(max(face) for face in faces) < len(vertices), 'corners')
+    for (x, y, z, *rgb), position, color in zip(vertices, positions, colors):
+        check(max(abs(a - b) for a, b in zip((x, -y, -z), position)) < 1e-6,
+              'y and z of glTF point up and back')
+        for value, linear in zip(rgb, color):
+            c = value / 255
+            c = c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+            check(abs(c - linear) < 1e-4, 'colours of glTF are linear')
+        check(color[3] == 1, 'opaque')
+    return vertices
+
+
+def check_g2o(path, poses):
+    vertices, edges = {}, 0
+    for line in read_lines(path):
+        words = line.split()
+        if words[0] == 'VERTEX_SE3:QUAT':
+            x = [float(word) for word in words[2:9]]
+            vertices[int(words[1])] = matrix_of(x[6], *x[3:6], *x[:3])
+        if words[0] == 'EDGE_SE3:QUAT':
+            edges += 1
+            check(len(words) == 3 + 7 + 21, line)
+            x = [float(word) for word in words[3:10]]
+            measured = matrix_of(x[6], *x[3:6], *x[:3])
+            of_poses = product(inverse(vertices[int(words[1])]), vertices[int(words[2])])
+            check(same(measured, of_poses, 0.01), line)
+    check(len(vertices) == FRAMES and edges >= FRAMES - 1, len(vertices), edges)
+    check(all(same(vertices[i], poses[i]) for i in vertices), 'vertices')
+
+
+def main(bin_folder, work, colmap):
+    program = lambda name: os.path.join(bin_folder, name)
+    with open(os.path.join(work, 'half.yaml'), 'w', encoding='utf-8') as file:
+        file.write('Camera.fx: 262.5\nCamera.fy: 262.5\nCamera.cx: 159.5\n'
+                   'Camera.cy: 119.5\nCamera.width: 320\nCamera.height: 240\n')
+    sequence, result = os.path.join(work, 'sequence'), os.path.join(work, 'run')
+    run(program('rgbd_simulate'), '--path=handheld', f'--frames={FRAMES}',
+        '--rate=10', f'--camera={work}/half.yaml', f'--output={sequence}')
+    run(program('rgbd_odometry'), f'--dataset={sequence}',
+        f'--camera={sequence}/camera.yaml', f'--output={result}', '--noreport',
+        f'--save_mesh={work}/of_run.ply', '--voxel=0.02')
+    poses = [matrix_of(x[7], *x[4:7], *x[1:4])
+             for x in map(numbers, data_lines(result, 'trajectory.txt'))]
+    check(len(poses) == FRAMES, 'lost frames')
+
+    def export(name, output, *flags):
+        run(program('rgbd_export'), f'--run={result}', f'--to={name}',
+            f'--output={work}/{output}', *flags)
+        return os.path.join(work, output)
+
+    if colmap:
+        model = os.path.join(export('colmap', 'model'), 'sparse/0')
+        said = run('colmap', 'model_analyzer', '--path', model)
+        points = len(data_lines(model, 'points3D.txt'))
+        images = len(data_lines(model, 'images.txt')) // 2
+        check(f'Registered images: {images}\n' in said, said)
+        check(f'Points: {points}\n' in said, said)
+        return
+
+    every = '--min_distance=0'
+    nerfstudio = export('nerfstudio', 'nerfstudio', every)
+    check_nerfstudio(nerfstudio, poses)
+    check_colmap(export('colmap', 'colmap', every), poses,
+                 os.path.join(nerfstudio, 'depth'))
+    vertices = check_meshes(export('mesh', 'mesh.ply', '--voxel=0.02'),
+                            export('mesh', 'mesh.glb', '--voxel=0.02'))
+    with open(os.path.join(work, 'of_run.ply'), 'rb') as of_run:
+        with open(os.path.join(work, 'mesh.ply'), 'rb') as mesh:
+            check(of_run.read() == mesh.read(), '--save_mesh is another mesh')
+    cloud, no_faces = read_ply(export('cloud', 'cloud.ply'))
+    check(len(cloud) > len(vertices) // 2 and not no_faces, 'cloud')
+    kitti = export('kitti', 'kitti')
+    for line, pose in zip(read_lines(kitti, 'poses.txt'), poses):
+        check(same([numbers(line)[4 * i:4 * i + 4] for i in range(3)], pose), line)
+    check(len(read_lines(kitti, 'times.txt')) == FRAMES, 'times')
+    tum = export('tum', 'tum.txt')
+    check(read_lines(tum) == read_lines(result, 'trajectory.txt'), 'TUM')
+    check_g2o(export('g2o', 'graph.g2o'), poses)
+
+
+if __name__ == '__main__':
+    if '--colmap' in sys.argv and shutil.which('colmap') is None:
+        print('skipped: needs colmap')
+        sys.exit(77)
+    with tempfile.TemporaryDirectory() as folder:
+        main(sys.argv[1], folder, '--colmap' in sys.argv)
+    print('ok')
