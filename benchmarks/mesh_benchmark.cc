@@ -1,6 +1,7 @@
 // Meshes of simulated scenes, whose true surfaces are known: how far off and
-// how complete they are, how long they take and how much memory. A row a
-// process: memory is that of the process at its largest.
+// how complete they are, how long they take and how much memory, for the tables
+// of docs/exports.md. A row a process: memory is that of the process at its
+// largest.
 
 #include <gflags/gflags.h>
 #include <sys/resource.h>
@@ -13,6 +14,7 @@
 
 #include "apps/shell/program.h"
 #include "benchmarks/mesh_makers.h"
+#include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
 #include "frontend/map/voxel_cloud.h"
 #include "frontend/simulation/synthetic_dataset.h"
@@ -25,10 +27,16 @@ DEFINE_string(by, "rgbd_pose", "whose mesh");
 DEFINE_double(voxel, 0.01, "side of a voxel (m)");
 DEFINE_double(max_depth, 8.0, "depths beyond are left out (m)");
 DEFINE_double(truncation_voxels,
-              rgbd_pose::MeshFusionOptions().truncation_voxels, "");
+              rgbd_pose::MeshFusionOptions().truncation_voxels,
+              "how far around the surface distances are kept, in voxels");
 DEFINE_double(truncation_sigmas,
-              rgbd_pose::MeshFusionOptions().truncation_sigmas, "");
-DEFINE_double(max_sigma, 0.0, "");
+              rgbd_pose::MeshFusionOptions().truncation_sigmas,
+              "the same in standard deviations of depth");
+DEFINE_double(max_sigma, 0.0,
+              "what is known no better (m) is left out; 0: a voxel");
+DEFINE_string(poses, "",
+              "trajectory (TUM text) of a run on the same sequence, in place "
+              "of the true poses, all from the same first one");
 
 namespace rgbd_pose {
 
@@ -172,6 +180,24 @@ void PrintCompleteness(const TriangleMesh& mesh, SyntheticOptions options) {
               truth.size());
 }
 
+std::vector<Rigid3d> Poses(const SyntheticDataset& dataset) {
+  std::vector<Rigid3d> poses;
+  for (int i = 0; i < dataset.size(); ++i) {
+    poses.push_back(dataset.WorldFromCam(i));
+  }
+  if (FLAGS_poses.empty()) return poses;
+  const Trajectory estimate = ReadTrajectory(FLAGS_poses);
+  if (static_cast<int>(estimate.size()) != dataset.size()) {
+    throw InputError(FLAGS_poses + ": has not a pose for every frame");
+  }
+  const Rigid3d truth_from_estimate =
+      poses[0] * estimate[0].world_from_cam.Inverse();
+  for (int i = 0; i < dataset.size(); ++i) {
+    poses[i] = truth_from_estimate * estimate[i].world_from_cam;
+  }
+  return poses;
+}
+
 int Main() {
   cv::setNumThreads(1);
   SyntheticOptions options;
@@ -192,13 +218,14 @@ int Main() {
     if (type.name == FLAGS_by) maker = type.make(fusion);
   }
   if (maker == nullptr) throw InputError("--by: unknown " + FLAGS_by);
+  const std::vector<Rigid3d> world_from_cam = Poses(dataset);
   double seconds = 0.0;
   std::vector<double> each;
   const double before_mb = PeakMb();
   for (int i = 0; i < dataset.size(); ++i) {
     const Frame frame = dataset.Read(i);
     const double start = CpuSeconds();
-    maker->Add(frame, dataset.WorldFromCam(i));
+    maker->Add(frame, world_from_cam[i]);
     each.push_back(CpuSeconds() - start);
     seconds += each.back();
   }
@@ -226,6 +253,6 @@ int main(int argc, char** argv) {
       "mesh_benchmark --by=rgbd_pose",
       {{"All",
         {"scene", "path", "frames", "rate", "by", "voxel", "max_depth",
-         "truncation_voxels", "truncation_sigmas", "max_sigma"}}}};
+         "truncation_voxels", "truncation_sigmas", "max_sigma", "poses"}}}};
   return rgbd_pose::RunProgram(argc, argv, info, rgbd_pose::Main);
 }

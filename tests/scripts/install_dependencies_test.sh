@@ -39,7 +39,7 @@ for script in demo frontends accuracy benchmark test check coverage fuzz; do
   grep -qx libceres-dev "$work/asked" || fail "$script does without Ceres"
 done
 asked_by demo >"$work/asked"
-! grep -E 'slurm|munge|openvdb|colmap|rosbag|chromium|doxygen|pytest|gtest|benchmark|clang|pybind' \
+! grep -E 'slurm|munge|colmap|rosbag|chromium|doxygen|pytest|gtest|benchmark|clang|pybind' \
   "$work/asked" || fail "the demo needs none of these"
 grep -qx jq "$work/asked" || fail "the demo runs jq"
 asked_by test | grep -qx slurmctld || fail "no Slurm for the tests"

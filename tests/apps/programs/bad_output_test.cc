@@ -26,20 +26,23 @@ std::string WithFullDisk(int blocks, const std::string& command) {
 
 TEST_F(BadInputTest, OutputsThatCannotBe) {
   const auto file = [](const Seq& seq) { seq.Write("file", "mine"); };
-  ExpectEach(Odometry(),
-             {
-                 {"below a file", file, "--output={seq}/file/out", 2,
-                  "--output: {seq}/file/out cannot be made"},
-                 {"a file", file, "--output={seq}/file", 2,
-                  "--output: {seq}/file cannot be made"},
-                 {"where none can be made", nullptr, "--output=/proc/none", 2,
-                  "--output: /proc/none cannot be made"},
-                 {"the cloud's folder is missing", nullptr,
-                  "--save_cloud={seq}/none/cloud.ply", 2,
-                  "{seq}/none/cloud.ply: cannot be written (No such file"},
-                 {"the cloud is a folder", nullptr, "--save_cloud={seq}", 2,
-                  "{seq}: is a folder, a file is needed here"},
-             });
+  ExpectEach(
+      Odometry(),
+      {
+          {"below a file", file, "--output={seq}/file/out", 2,
+           "--output: {seq}/file/out cannot be made"},
+          {"a file", file, "--output={seq}/file", 2,
+           "--output: {seq}/file cannot be made"},
+          {"where none can be made", nullptr, "--output=/proc/none", 2,
+           "--output: /proc/none cannot be made"},
+          {"the cloud's folder is missing", nullptr,
+           "--save_cloud={seq}/none/cloud.ply", 2,
+           "{seq}/none/cloud.ply: cannot be written (No such file"},
+          {"a mesh of an unknown kind", nullptr, "--save_mesh={dir}/mesh.obj",
+           2, "mesh.obj: the name of a mesh must end in one of .ply, .glb"},
+          {"the cloud is a folder", nullptr, "--save_cloud={seq}", 2,
+           "{seq}: is a folder, a file is needed here"},
+      });
   ExpectEach(
       "",
       {

@@ -1,5 +1,8 @@
 // Bad input of the programs beside rgbd_odometry.
 
+#include <filesystem>
+#include <functional>
+
 #include "tests/support/bad_input.h"
 
 namespace rgbd_pose {
@@ -203,6 +206,91 @@ TEST_F(BadInputTest, Report) {
              s.Write("trajectory.txt", "");
            },
            "--run={seq}", 2, "{seq}/trajectory.txt: holds no poses"},
+      });
+}
+
+// What a run in the folder of its recording would have left.
+void LeaveRun(const Seq& s) {
+  s.Write("config.flags", "# Input\n--dataset=" + s.path +
+                              "\n--camera=" + s / "camera.yaml" + "\n");
+  s.Write("frames.csv",
+          "timestamp,status,segment\n0,ok,0\n0,ok,0\n0,ok,0\n0,ok,0\n");
+  s.Write("trajectory.txt", s.Read("groundtruth.txt"));
+}
+
+auto RunAnd(const std::function<void(const Seq&)>& spoil) {
+  return [spoil](const Seq& s) {
+    LeaveRun(s);
+    spoil(s);
+  };
+}
+
+TEST_F(BadInputTest, Export) {
+  ExpectEach(
+      RGBD_EXPORT " --run={seq} --to=colmap --output={dir}/out ",
+      {
+          {"no run named", LeaveRun, "--run=", 1, "--run is needed"},
+          {"no format", LeaveRun, "--to=", 1, "--to is needed"},
+          {"unknown format", LeaveRun, "--to=obj", 2,
+           "unknown format 'obj'; there are mesh, cloud, colmap, nerfstudio"},
+          {"the run is missing", nullptr, "--run={dir}/none", 2,
+           "--run: {dir}/none: no such folder"},
+          {"no run", nullptr, "", 2, "{seq} has no frames.csv"},
+          {"a run without flags",
+           RunAnd([](const Seq& s) { s.Remove("config.flags"); }), "", 2,
+           "{seq} has no config.flags"},
+          {"a run without poses",
+           RunAnd([](const Seq& s) { s.Remove("trajectory.txt"); }), "", 2,
+           "{seq}/trajectory.txt: cannot be opened"},
+          {"frames that have no pose", RunAnd([](const Seq& s) {
+             s.Write("frames.csv", "timestamp,status,segment\n0,ok,0\n");
+           }),
+           "", 2, "4 poses, but 1 frames of frames.csv have one"},
+          {"all lost", RunAnd([](const Seq& s) {
+             s.Write("frames.csv", "timestamp,status,segment\n0,lost,0\n");
+           }),
+           "", 2, "no frame of the run has a pose"},
+          {"the recording is gone", RunAnd([](const Seq& s) {
+             s.Replace("config.flags", s.path, "/nowhere");
+           }),
+           "", 2, "/nowhere, is not there; --dataset says where it is"},
+          {"images are gone", RunAnd([](const Seq& s) { s.Remove("rgb"); }), "",
+           2, "{seq}/rgb"},
+          {"of another recording", RunAnd([](const Seq& s) {
+             s.Write("trajectory.txt",
+                     "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n"
+                     "4 0 0 0 0 0 0 1\n");
+           }),
+           "", 2, "the recording has no frame of the time 1.000000 s"},
+          {"an image is cut off", RunAnd([](const Seq& s) {
+             for (const auto& file :
+                  std::filesystem::directory_iterator(s / "rgb")) {
+               std::filesystem::resize_file(file, 1000);
+             }
+           }),
+           "", 2, "{seq}/rgb/"},
+          {"a mesh of an unknown kind", LeaveRun,
+           "--to=mesh --output={dir}/mesh.obj", 2,
+           "mesh.obj: the name of a mesh must end in one of .ply, .glb"},
+          {"a mesh nowhere", LeaveRun, "--to=mesh --output={dir}/none/mesh.ply",
+           2, "{dir}/none/mesh.ply: cannot be written"},
+          {"voxels without size", LeaveRun,
+           "--to=mesh --output={dir}/mesh.ply --voxel=0", 2,
+           "--voxel or --max_depth: the voxel size must be 0.001 to 1 m"},
+          {"no depth at all", LeaveRun,
+           "--to=cloud --output={dir}/cloud.ply --max_depth=0.1", 2,
+           "--voxel or --max_depth: depth limits must satisfy"},
+          {"a negative turn", LeaveRun, "--min_angle=-1", 2,
+           "must not be negative"},
+          {"no points", LeaveRun, "--max_points=1", 2,
+           "--max_points must be 8 or more"},
+          {"a folder that is not empty", LeaveRun, "--output={seq}", 2,
+           "{seq} is there and not empty; --overwrite replaces it"},
+          {"a folder of others", LeaveRun, "--output={seq} --overwrite", 2,
+           "{seq} holds other things"},
+          {"a file for a folder", LeaveRun, "--output={seq}/rgb.txt", 2,
+           "{seq}/rgb.txt is a file; a folder is needed"},
+          {"all is well", LeaveRun, "", 0, ""},
       });
 }
 
