@@ -18,7 +18,6 @@ constexpr double kMinVoxelSize = 0.001;  // m
 constexpr double kMaxVoxelSize = 1.0;    // m
 
 constexpr int kSide = DistanceVolume::kSide;
-constexpr double kDepthStepsPerMetre = 512.0;
 
 // Of the fixed point that colours are kept in.
 constexpr float kColorSteps = 256.0F;
@@ -94,11 +93,6 @@ void MeshFusion::SetDepthScale(double depth_scale) {
     max_steps_[raw] = static_cast<int>(
         std::lround(MaxSurfaceStep(z, *options_.depth.noise) * depth_scale));
   }
-}
-
-const MeshFusion::DepthUse& MeshFusion::UseOf(float depth) const {
-  return uses_[static_cast<size_t>(depth *
-                                   static_cast<float>(kDepthStepsPerMetre))];
 }
 
 void MeshFusion::KeepSurfacePixels(const Frame& frame) {

@@ -70,8 +70,12 @@ class MeshFusion {
     float weight;      // 1 / m^2
   };
 
+  static constexpr int kDepthStepsPerMetre = 512;
+
   void SetDepthScale(double depth_scale);
-  const DepthUse& UseOf(float depth) const;
+  const DepthUse& UseOf(float depth) const {
+    return uses_[static_cast<int>(depth * float{kDepthStepsPerMetre})];
+  }
   void KeepSurfacePixels(const Frame& frame);
   std::vector<uint64_t> FindBlocks(const Rigid3d& world_from_cam) const;
   void AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
@@ -79,7 +83,7 @@ class MeshFusion {
 
   MeshFusionOptions options_;
   Undistorter undistorter_;
-  // By steps of depth so small that the table stays near the processor.
+  // By steps of depth: few, so that the table stays near the processor.
   std::vector<DepthUse> uses_;
   double depth_scale_ = 0.0;
   std::vector<int> max_steps_;  // to neighbours, by raw depth; -1: no depth
