@@ -1,6 +1,7 @@
 // Judges an estimated trajectory against the ground truth.
 
 #include <gflags/gflags.h>
+#include <glog/logging.h>
 
 #include <cstdio>
 
@@ -61,6 +62,8 @@ int Main() {
   if (!FLAGS_aligned.empty()) {
     WriteAligned(estimate, report.truth_from_estimate, FLAGS_aligned);
   }
+  const std::string warning = LikenessWarning(report.likeness, report.ate.rmse);
+  if (!warning.empty()) LOG(WARNING) << warning;
   const std::string text = FLAGS_json ? EvaluationToJson(report).dump(2) + "\n"
                                       : FormatEvaluation(report);
   std::fputs(text.c_str(), stdout);

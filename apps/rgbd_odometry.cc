@@ -146,6 +146,9 @@ int Main() {
   if (!results.no_evaluation.empty()) {
     LOG(WARNING) << "no errors: " << results.no_evaluation;
   }
+  if (const std::string warning = results.Warning(); !warning.empty()) {
+    LOG(WARNING) << warning;
+  }
   std::string text = output.Write(
       results, Summarise(results.frames, threads, seconds),
       sequence.TruthOfAll(), settings.sequence.dataset, FormatFlagFile(Info()));

@@ -163,6 +163,9 @@ int Main() {
   if (!results.no_evaluation.empty()) {
     LOG(WARNING) << "no errors: " << results.no_evaluation;
   }
+  if (const std::string warning = results.Warning(); !warning.empty()) {
+    LOG(WARNING) << warning;
+  }
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
   std::string text =
       output.Write(results, Summarise(results.frames, threads, seconds),

@@ -33,6 +33,13 @@ struct RunResults {
   std::optional<EvaluationReport> evaluation;
   std::string no_evaluation;
 
+  // One line on what the errors say of the input, or empty.
+  std::string Warning() const {
+    return evaluation.has_value()
+               ? LikenessWarning(evaluation->likeness, evaluation->ate.rmse)
+               : "";
+  }
+
   // Share of frames with a pose, 0 to 1.
   double TrackedShare() const {
     return frames.empty() ? 0.0

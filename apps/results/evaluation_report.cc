@@ -74,6 +74,8 @@ std::string FormatEvaluation(const EvaluationReport& report) {
       Format("%-32s%12s%12s%12s%12s\n", "", "RMSE", "median", "mean", "max");
   text += Format("ATE, %s (%d poses)\n", kAteDefinition, report.ate.count);
   text += FormatStatistics("position (m)", report.ate);
+  text += Format("  %-30s%12.5f  at %.5f times the size\n", "  with scale",
+                 report.likeness.rest, report.likeness.truth_per_estimate);
   for (const RelativeEntry& entry : RelativeEntries(report)) {
     text += Format("RPE, %s (%d pairs)\n", entry.definition.c_str(),
                    entry.error.translation.count);
@@ -100,6 +102,9 @@ json EvaluationToJson(const EvaluationReport& report) {
        {{"definition", kAteDefinition},
         {"count", report.ate.count},
         {"position_m", StatisticsToJson(report.ate)}}},
+      {"with_scale",
+       {{"truth_per_estimate", report.likeness.truth_per_estimate},
+        {"position_rmse_m", report.likeness.rest}}},
       {"truth_from_estimate", PoseToJson(report.truth_from_estimate)},
       {"final_pose", nullptr}};
   for (const RelativeEntry& entry : RelativeEntries(report)) {

@@ -165,6 +165,7 @@ EvaluationReport Evaluate(const Trajectory& estimate,
   report.duration = times.back() - times.front();
   report.path_length = path.back();
   report.truth_from_estimate = AlignRigidly(pairs);
+  report.likeness = Compare(pairs, report.truth_from_estimate);
   const std::vector<Interval> intervals = TimeIntervals(
       times, options.rpe_delta_seconds, options.max_time_difference);
   report.poses = PoseErrors(pairs, report.truth_from_estimate, intervals);

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluation/likeness.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/rigid3.h"
 
@@ -69,6 +70,9 @@ struct EvaluationReport {
   // alignment, without scale, by truth_from_estimate (of worlds).
   ErrorStatistics ate;
   Rigid3d truth_from_estimate;
+
+  // The same with scale, and what it says of the input.
+  Likeness likeness;
 
   // Relative pose errors at fixed intervals. Every paired pose that has its
   // counterpart is a start:

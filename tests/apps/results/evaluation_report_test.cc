@@ -20,6 +20,7 @@ EvaluationReport MakeReport() {
   report.rpe_frame = {{399, 0.5, 0.4, 0.3, 0.6}, {399, kHalfTurn, 0, 0, 0}};
   report.rpe_seconds = {{370, 1.5, 1.4, 1.3, 1.6},
                         {370, 0, kHalfTurn / 2, kHalfTurn / 4, kHalfTurn}};
+  report.likeness = {1.02, 2.0, 0.12};
   report.final_pose = {0.75, kHalfTurn / 180};
   return report;
 }
@@ -35,6 +36,7 @@ TEST(EvaluationReportTest, TableSaysWhatIsMeasuredAndHow) {
       "ATE, rigid alignment, no scale (400 poses)\n"
       "  position (m)                       0.25000     0.12500     0.20000"
       "     1.50000\n"
+      "    with scale                       0.12000  at 1.02000 times the size\n"
       "RPE, fixed delta 1 frame, consecutive poses (399 pairs)\n"
       "  translation (m)                    0.50000     0.30000     0.40000"
       "     0.60000\n"
@@ -58,6 +60,8 @@ TEST(EvaluationReportTest, JsonHasTheSameFigures) {
   EXPECT_EQ(json.at("estimated_poses"), 500);
   EXPECT_EQ(json.at("paired_poses"), 400);
   EXPECT_EQ(json.at("duration_s"), 13.3);
+  EXPECT_EQ(json.at("with_scale").at("truth_per_estimate"), 1.02);
+  EXPECT_EQ(json.at("with_scale").at("position_rmse_m"), 0.12);
   EXPECT_EQ(json.at("path_length_m"), 3.0155);
   EXPECT_EQ(json.at("max_time_difference_s"), 0.02);
   EXPECT_EQ(json.at("ate").at("definition"), "rigid alignment, no scale");
