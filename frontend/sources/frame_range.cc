@@ -104,6 +104,7 @@ class PartialSource final : public FrameSource {
 
   // Of the whole recording.
   int unmatched_color() const override { return whole_->unmatched_color(); }
+  int dropped() const override { return whole_->dropped(); }
 
  private:
   // Goes through the frames in order.

@@ -44,6 +44,10 @@ class FrameSource {
 
   // How many colour images make no frame since they have no depth image.
   virtual int unmatched_color() const { return 0; }
+
+  // How many frames of a camera came faster than they were asked for, and were
+  // left out.
+  virtual int dropped() const { return 0; }
 };
 
 }  // namespace rgbd_pose

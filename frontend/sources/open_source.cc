@@ -11,6 +11,7 @@
 #include "core/util/text_file.h"
 #include "frontend/sources/bag_source.h"
 #include "frontend/sources/numbered_dataset.h"
+#include "frontend/sources/openni2_source.h"
 #include "frontend/sources/ros1_bag.h"
 #include "frontend/sources/ros2_bag.h"
 #include "frontend/sources/tum_dataset.h"
@@ -70,6 +71,9 @@ const std::vector<SourceType>& Types() {
            return std::make_unique<BagSource>(OpenRos2Bag(options.path),
                                               options);
          }},
+        // It looks like no path.
+        {"openni2", "camera by OpenNI 2 (source=openni2, dataset=any)",
+         [](const SourceOptions&) { return false; }, OpenOpenNi2},
     };
     for (const NumberedLayout& layout : NumberedLayouts()) {
       all.push_back({layout.name, layout.what,

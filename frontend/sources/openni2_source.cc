@@ -1,0 +1,295 @@
+#include "frontend/sources/openni2_source.h"
+
+#include "core/util/input_error.h"
+#ifdef RGBD_POSE_HAS_OPENNI2
+#include <OpenNI.h>
+
+#include <chrono>
+#include <cmath>
+#include <opencv2/imgproc.hpp>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "frontend/sources/frame_assembly.h"
+#include "frontend/sources/latest_frame.h"
+#endif
+
+namespace rgbd_pose {
+
+#ifdef RGBD_POSE_HAS_OPENNI2
+
+namespace {
+
+constexpr char kAny[] = "any";
+constexpr int kPatienceMs = 3000;
+constexpr std::chrono::milliseconds kFewFrames(150);
+
+// What OpenNI says of its last failure, as part of a line.
+std::string Reason() {
+  std::string reason = openni::OpenNI::getExtendedError();
+  while (!reason.empty() &&
+         std::isspace(static_cast<unsigned char>(reason.back()))) {
+    reason.pop_back();
+  }
+  while (!reason.empty() &&
+         std::isspace(static_cast<unsigned char>(reason.front()))) {
+    reason.erase(0, 1);
+  }
+  return reason;
+}
+
+// Starts the library, once. It is never shut down: it would unload drivers,
+// some of which have threads that still run.
+void RequireLibrary() {
+  static const openni::Status status = openni::OpenNI::initialize();
+  if (status != openni::STATUS_OK) {
+    throw InputError("OpenNI 2 does not start: " + Reason());
+  }
+}
+
+// One that has as many pixels as TUM's recordings, or the next best.
+openni::VideoMode ChooseMode(const openni::SensorInfo& sensor,
+                             const std::vector<openni::PixelFormat>& formats,
+                             const std::string& name) {
+  constexpr int kWidth = 640;
+  constexpr int kHeight = 480;
+  constexpr int kRate = 30;
+  const openni::VideoMode* best = nullptr;
+  int best_score = -1;
+  const auto& modes = sensor.getSupportedVideoModes();
+  for (int i = 0; i < modes.getSize(); ++i) {
+    const openni::VideoMode& mode = modes[i];
+    int score = 0;
+    for (size_t k = 0; k < formats.size(); ++k) {
+      if (mode.getPixelFormat() == formats[k]) {
+        score = 10 * static_cast<int>(formats.size() - k);
+      }
+    }
+    if (score == 0) continue;
+    if (mode.getResolutionX() == kWidth && mode.getResolutionY() == kHeight) {
+      score += 100;
+    }
+    if (mode.getFps() == kRate) score += 1;
+    if (score > best_score) {
+      best = &mode;
+      best_score = score;
+    }
+  }
+  if (best == nullptr) {
+    throw InputError(name + ": has no images in a format that can be read");
+  }
+  return *best;
+}
+
+// An image as it came; the frame that holds it belongs to the driver, which has
+// few.
+struct Image {
+  bool is_color = false;
+  double stamp = 0.0;  // s
+  cv::Mat pixels;
+};
+
+class OpenNi2Source final : public FrameSource {
+ public:
+  explicit OpenNi2Source(const SourceOptions& options)
+      : name_(options.path), max_time_difference_(options.max_time_difference) {
+    RequireLibrary();
+    Open(options);
+    assembly_ = std::make_unique<FrameAssembly>(
+        ChooseCamera(options, OwnCamera(options.camera.has_value())),
+        options.keep_color);
+    Start(&color_);
+    Start(&depth_);
+  }
+  ~OpenNi2Source() override {
+    color_.stop();
+    depth_.stop();
+    // Not every driver waits for its threads: they end after their next frame.
+    std::this_thread::sleep_for(kFewFrames);
+    color_.destroy();
+    depth_.destroy();
+    device_.close();
+  }
+
+  std::optional<RgbdFrame> Next() override {
+    std::optional<Image> color;
+    std::optional<Image> depth;
+    // In whatever order they come: the next one is not given before.
+    while (true) {
+      Image image = Read();
+      if (image.is_color && color.has_value()) ++unmatched_color_;
+      (image.is_color ? color : depth) = std::move(image);
+      if (!color.has_value() || !depth.has_value()) continue;
+      const double delay = depth->stamp - color->stamp;
+      if (delay > max_time_difference_) {
+        ++unmatched_color_;
+        color.reset();
+      } else if (delay < -max_time_difference_ ||
+                 color->stamp <= last_stamp_) {  // the camera began anew
+        depth.reset();
+      } else {
+        last_stamp_ = color->stamp;
+        return MakeFrame(*color, *depth);
+      }
+    }
+  }
+
+  const RgbdCamera& camera() const override { return assembly_->camera(); }
+  int unmatched_color() const override { return unmatched_color_; }
+
+ private:
+  void Check(openni::Status status, const char* what) const {
+    if (status == openni::STATUS_OK) return;
+    const std::string reason = Reason();
+    throw InputError(name_ + ": " + what +
+                     (reason.empty() ? "" : ": " + reason));
+  }
+
+  void Open(const SourceOptions& options) {
+    Check(device_.open(name_ == kAny ? openni::ANY_DEVICE : name_.c_str()),
+          "cannot be opened; is the camera plugged in, and may you use it "
+          "(OpenNI's udev rules)?");
+    Create(openni::SENSOR_COLOR, "colour",
+           {openni::PIXEL_FORMAT_RGB888, openni::PIXEL_FORMAT_GRAY8}, &color_);
+    Create(openni::SENSOR_DEPTH, "depth",
+           {openni::PIXEL_FORMAT_DEPTH_1_MM, openni::PIXEL_FORMAT_DEPTH_100_UM},
+           &depth_);
+    const bool has_depth_camera =
+        options.camera.has_value() && options.camera->depth_camera.has_value();
+    if (!has_depth_camera && device_.isImageRegistrationModeSupported(
+                                 openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR)) {
+      Check(device_.setImageRegistrationMode(
+                openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR),
+            "does not register depth to colour");
+    }
+    // Not every camera can; stamps are looked at anyway.
+    device_.setDepthColorSyncEnabled(true);
+  }
+
+  void Create(openni::SensorType type, const char* what,
+              const std::vector<openni::PixelFormat>& formats,
+              openni::VideoStream* stream) {
+    const openni::SensorInfo* sensor = device_.getSensorInfo(type);
+    if (sensor == nullptr) {
+      throw InputError(name_ + ": has no " + what + " images");
+    }
+    Check(stream->create(device_, type), "gives no images");
+    const openni::VideoMode mode = ChooseMode(*sensor, formats, name_);
+    // Who has one only need not take orders.
+    if (sensor->getSupportedVideoModes().getSize() > 1) {
+      Check(stream->setVideoMode(mode), "does not take a size that it offers");
+    }
+    stream->setMirroringEnabled(false);
+  }
+
+  void Start(openni::VideoStream* stream) {
+    Check(stream->start(), "does not start");
+  }
+
+  // With `has_camera` only how depth counts.
+  std::optional<CameraSetup> OwnCamera(bool has_camera) const {
+    CameraSetup setup;
+    setup.depth_scale = depth_.getVideoMode().getPixelFormat() ==
+                                openni::PIXEL_FORMAT_DEPTH_100_UM
+                            ? 10000.0
+                            : 1000.0;
+    if (has_camera) return setup;
+    const openni::VideoMode mode = color_.getVideoMode();
+    Camera& camera = setup.camera;
+    camera.width = mode.getResolutionX();
+    camera.height = mode.getResolutionY();
+    const double across = color_.getHorizontalFieldOfView();  // rad
+    const double down = color_.getVerticalFieldOfView();
+    if (!(across > 0.0 && across < M_PI && down > 0.0 && down < M_PI)) {
+      return std::nullopt;
+    }
+    camera.fx = 0.5 * camera.width / std::tan(0.5 * across);
+    camera.fy = 0.5 * camera.height / std::tan(0.5 * down);
+    camera.cx = 0.5 * (camera.width - 1);
+    camera.cy = 0.5 * (camera.height - 1);
+    return setup;
+  }
+
+  // The next image, waiting for it.
+  Image Read() {
+    openni::VideoStream* streams[] = {&color_, &depth_};
+    int ready = 0;
+    Check(openni::OpenNI::waitForAnyStream(streams, 2, &ready, kPatienceMs),
+          "gives no more images; is it unplugged?");
+    openni::VideoFrameRef frame;
+    Check(streams[ready]->readFrame(&frame), "gives no image");
+    const int type = TypeOf(frame.getVideoMode().getPixelFormat());
+    const cv::Mat shared(frame.getHeight(), frame.getWidth(), type,
+                         const_cast<void*>(frame.getData()),
+                         frame.getStrideInBytes());
+    return Image{ready == 0, 1e-6 * static_cast<double>(frame.getTimestamp()),
+                 shared.clone()};
+  }
+
+  int TypeOf(openni::PixelFormat format) const {
+    switch (format) {
+      case openni::PIXEL_FORMAT_RGB888:
+        return CV_8UC3;
+      case openni::PIXEL_FORMAT_GRAY8:
+        return CV_8UC1;
+      case openni::PIXEL_FORMAT_DEPTH_1_MM:
+      case openni::PIXEL_FORMAT_DEPTH_100_UM:
+        return CV_16UC1;
+      default:
+        throw InputError(name_ + ": has images in a format that is not read");
+    }
+  }
+
+  RgbdFrame MakeFrame(const Image& color, const Image& depth) {
+    const int index = num_frames_++;
+    return {color.stamp, [this, index, color, depth] {
+              cv::Mat gray = color.pixels;
+              cv::Mat bgr;
+              if (color.pixels.channels() == 3) {
+                cv::cvtColor(color.pixels, gray, cv::COLOR_RGB2GRAY);
+              }
+              if (assembly_->keep_color()) {
+                cv::cvtColor(color.pixels, bgr,
+                             color.pixels.channels() == 3 ? cv::COLOR_RGB2BGR
+                                                          : cv::COLOR_GRAY2BGR);
+              }
+              Frame frame = assembly_->Make({gray, name_ + ": colour"}, bgr,
+                                            {depth.pixels, name_ + ": depth"});
+              frame.index = index;
+              frame.timestamp = color.stamp;
+              frame.depth_delay = depth.stamp - color.stamp;
+              return frame;
+            }};
+  }
+
+  std::string name_;
+  double max_time_difference_;
+  openni::Device device_;
+  openni::VideoStream color_;
+  openni::VideoStream depth_;
+  std::unique_ptr<FrameAssembly> assembly_;
+  int num_frames_ = 0;
+  int unmatched_color_ = 0;
+  double last_stamp_ = -1.0;
+};
+
+}  // namespace
+
+std::unique_ptr<FrameSource> OpenOpenNi2(const SourceOptions& options) {
+  return std::make_unique<LatestFrame>(
+      std::make_unique<OpenNi2Source>(options));
+}
+
+#else
+
+std::unique_ptr<FrameSource> OpenOpenNi2(const SourceOptions& options) {
+  throw InputError(options.path +
+                   ": this build knows no OpenNI 2; install libopenni2-dev "
+                   "(scripts/install_dependencies formats) and build anew");
+}
+
+#endif
+
+}  // namespace rgbd_pose
