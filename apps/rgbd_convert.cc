@@ -61,10 +61,7 @@ int Main() {
     writer.progress = [&](int done) { bar.Update(frames = done); };
     WriteTumSequence(&source, FLAGS_output, writer);
   }
-  if (source.unmatched_color() > 0) {
-    LOG(WARNING) << source.unmatched_color()
-                 << " colour images have no depth image and are left out";
-  }
+  for (const std::string& line : LeftOut(source)) LOG(WARNING) << line;
   std::printf("%s: %d frames%s\n", FLAGS_output.c_str(), frames,
               sequence.TruthOfAll() == nullptr ? "" : ", with ground truth");
   return kExitOk;

@@ -124,11 +124,6 @@ int Main() {
   OdometryRun run(settings.odometry, source.camera().camera, inputs);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
-  if (source.unmatched_color() > 0) {
-    LOG(WARNING) << source.unmatched_color()
-                 << " colour images have no depth image within 0.02 s and "
-                    "are left out";
-  }
 
   {
     ProgressBar bar("tracking", static_cast<int>(source.timestamps().size()));
@@ -141,6 +136,7 @@ int Main() {
     });
   }
   const double seconds = SecondsSince(start);
+  for (const std::string& line : LeftOut(source)) LOG(WARNING) << line;
 
   const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
   if (!results.no_evaluation.empty()) {

@@ -140,11 +140,6 @@ int Main() {
   LoadMaps(&run);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
-  if (source.unmatched_color() > 0) {
-    LOG(WARNING) << source.unmatched_color()
-                 << " colour images have no depth image within 0.02 s and "
-                    "are left out";
-  }
 
   {
     ProgressBar bar("tracking", static_cast<int>(source.timestamps().size()));
@@ -157,6 +152,7 @@ int Main() {
     });
   }
   const double seconds = SecondsSince(start);
+  for (const std::string& line : LeftOut(source)) LOG(WARNING) << line;
 
   const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
   const Slam& slam = run.slam();

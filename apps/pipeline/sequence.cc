@@ -95,6 +95,21 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color) {
 
 }  // namespace
 
+std::vector<std::string> LeftOut(const FrameSource& source) {
+  std::vector<std::string> lines;
+  if (source.unmatched_color() > 0) {
+    lines.push_back(std::to_string(source.unmatched_color()) +
+                    " colour images have no depth image of their time and are "
+                    "left out");
+  }
+  if (source.dropped() > 0) {
+    lines.push_back(std::to_string(source.dropped()) +
+                    " frames came faster than they were asked for and are left "
+                    "out");
+  }
+  return lines;
+}
+
 Sequence OpenSequence(const SequenceSettings& settings, bool keep_color) {
   Sequence sequence;
   const FrameRange range = ParseFrameRange(settings.frames);

@@ -45,6 +45,10 @@ struct Sequence {
   const Trajectory* TruthOfAll();
 };
 
+// What of a source made no frame so far, a line each, as users are told: colour
+// images without depth, frames that came too fast.
+std::vector<std::string> LeftOut(const FrameSource& source);
+
 // `keep_color`: in Frame::color. Throws InputError for all that can be wrong
 // with it before its images are read.
 Sequence OpenSequence(const SequenceSettings& settings,

@@ -123,6 +123,7 @@ std::string RunOutput::Write(const RunResults& results,
   nlohmann::json metrics = {{"program", program},
                             {"dataset", dataset},
                             {"unmatched_color", source_.unmatched_color()},
+                            {"dropped_frames", source_.dropped()},
                             {"peak_rss_mb", PeakMemoryMb()},
                             {"run", SummaryToJson(summary)},
                             {"residuals", ResidualsToJson(results.residuals)}};

@@ -4,6 +4,7 @@
 #ifdef RGBD_POSE_HAS_OPENNI2
 #include <OpenNI.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -271,7 +272,7 @@ class OpenNi2Source final : public FrameSource {
   openni::VideoStream depth_;
   std::unique_ptr<FrameAssembly> assembly_;
   int num_frames_ = 0;
-  int unmatched_color_ = 0;
+  std::atomic<int> unmatched_color_ = 0;  // asked for by other threads
   double last_stamp_ = -1.0;
 };
 
