@@ -32,8 +32,8 @@ DEFINE_bool(undistort, false,
 DEFINE_double(voxel, rgbd_pose::ExportOptions().voxel,
               "side of the cubes (m) of meshes and clouds");
 DEFINE_double(max_depth, 0.0,
-              "depths beyond (m) are left out of meshes and clouds; 0: as far "
-              "as the run looked");
+              "depths beyond (m) are left out of meshes and clouds; 0: those "
+              "that the run left out, and for meshes beyond 4 m");
 DEFINE_int32(max_points, rgbd_pose::ExportOptions().max_points,
              "of the cloud that comes along with images");
 DEFINE_int32(threads, 0,

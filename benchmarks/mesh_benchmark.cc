@@ -25,7 +25,8 @@ DEFINE_int32(frames, 90, "number of frames");
 DEFINE_double(rate, 10.0, "frames a second of the path");
 DEFINE_string(by, "rgbd_pose", "whose mesh");
 DEFINE_double(voxel, 0.01, "side of a voxel (m)");
-DEFINE_double(max_depth, 8.0, "depths beyond are left out (m)");
+DEFINE_double(max_depth, rgbd_pose::MeshFusionOptions().max_depth,
+              "depths beyond are left out (m)");
 DEFINE_double(truncation_voxels,
               rgbd_pose::MeshFusionOptions().truncation_voxels,
               "how far around the surface distances are kept, in voxels");
@@ -209,7 +210,7 @@ int Main() {
   MeshFusionOptions fusion;
   fusion.camera = options.camera.camera;
   fusion.voxel_size = FLAGS_voxel;
-  fusion.depth.max_depth = FLAGS_max_depth;
+  fusion.depth.max_depth = fusion.max_depth = FLAGS_max_depth;
   fusion.truncation_voxels = FLAGS_truncation_voxels;
   fusion.truncation_sigmas = FLAGS_truncation_sigmas;
   fusion.max_sigma = FLAGS_max_sigma;

@@ -16,7 +16,7 @@ struct ExportOptions {
 
   bool undistort = false;   // images, as of a pinhole camera
   double voxel = 0.01;      // of meshes and clouds, m
-  double max_depth = 0.0;   // for these, m; 0: as far as the run looked
+  double max_depth = 0.0;   // for these, m; 0: as the run, meshes 4 m
   int max_points = 200000;  // of clouds that come along with images
   int threads = 1;          // that read images ahead
 };

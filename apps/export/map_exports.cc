@@ -27,7 +27,9 @@ MeshFusionOptions MeshOptions(const Camera& camera, const FinishedRun& run,
   fusion.voxel_size = options.voxel;
   fusion.threads = options.threads;
   fusion.depth = run.depth();
-  if (options.max_depth > 0.0) fusion.depth.max_depth = options.max_depth;
+  if (options.max_depth > 0.0) {
+    fusion.depth.max_depth = fusion.max_depth = options.max_depth;
+  }
   const std::string problem = fusion.Check();
   if (!problem.empty()) throw InputError("--voxel or --max_depth: " + problem);
   return fusion;

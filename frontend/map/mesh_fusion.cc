@@ -44,8 +44,9 @@ std::string MeshFusionOptions::Check() const {
   if (threads < 1) return "at least one thread is needed";
   if (depth.noise == nullptr) return "a depth noise model is needed";
   constexpr double kFar = 1000.0;  // m, beyond all sensors
-  if (!(depth.min_depth > 0.0) || !(depth.max_depth > depth.min_depth) ||
-      !(depth.max_depth <= kFar)) {
+  const double farthest = std::min(depth.max_depth, max_depth);
+  if (!(depth.min_depth > 0.0) || !(farthest > depth.min_depth) ||
+      !(farthest <= kFar)) {
     return "depth limits must satisfy 0 < min_depth < max_depth <= 1000 m";
   }
   return camera.Check();
@@ -53,8 +54,10 @@ std::string MeshFusionOptions::Check() const {
 
 MeshFusion::MeshFusion(const MeshFusionOptions& options)
     : options_(options), undistorter_(options.camera) {
+  options_.depth.max_depth =
+      std::min(options.depth.max_depth, options.max_depth);
   const auto steps =
-      static_cast<int>(options.depth.max_depth * kDepthStepsPerMetre) + 2;
+      static_cast<int>(options_.depth.max_depth * kDepthStepsPerMetre) + 2;
   for (int i = 0; i < steps; ++i) {
     const double sigma =
         options.depth.noise->sigma((i + 0.5) / kDepthStepsPerMetre);

@@ -27,6 +27,10 @@ struct MeshFusionOptions {
   // Which depths are used, and how much each counts: by 1 / sigma^2.
   DepthLookupOptions depth;
 
+  // Depths beyond (m) are left out, too: noise spreads each over so many voxels
+  // that they take most of the time and memory and bring little.
+  double max_depth = 4.0;
+
   // How far around the surface distances are kept: so many voxels, and where
   // the sensor is noisier so many of its standard deviations.
   double truncation_voxels = 3.0;

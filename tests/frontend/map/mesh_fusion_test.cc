@@ -143,7 +143,7 @@ TEST(MeshFusionTest, RefusesWhatMakesNoSense) {
   options.truncation_voxels = 0.5;
   EXPECT_NE(options.Check(), "");
   options = {};
-  options.depth.max_depth = 1e9;
+  options.depth.max_depth = options.max_depth = 1e9;
   EXPECT_NE(options.Check(), "");
   options = {};
   options.threads = 0;
