@@ -13,9 +13,9 @@ namespace {
 void RegisterDepth(benchmark::State& state) {
   SyntheticOptions options;
   options.frames = 1;
-  options.depth_camera = DepthCamera{
-      options.camera.camera,
-      Rigid3d(Eigen::Quaterniond::Identity(), {0.025, 0.0, 0.0})};
+  options.depth_camera =
+      DepthCamera{options.camera.camera,
+                  Rigid3d(Eigen::Quaterniond::Identity(), {0.025, 0.0, 0.0})};
   options.depth_camera->camera.fx = options.depth_camera->camera.fy = 585.0;
   const Frame frame = SyntheticDataset(options).Read(0);
   const DepthRegistration registration(*options.depth_camera,
