@@ -45,7 +45,7 @@ DEFINE_bool(resume, false,
 DEFINE_bool(merge, false,
             "run nothing, only write the summary of what all shards have done");
 DEFINE_bool(dry_run, false, "run nothing, only print the plan");
-DEFINE_int32(jobs, 0, "runs at a time; 0: one a core");
+DEFINE_int32(jobs, 0, "runs at a time; 0: one for each core");
 DEFINE_double(timeout, 0.0, "seconds after which a run is killed; 0: never");
 DEFINE_string(shard, "",
               "i/n: only every n-th sequence, beginning with number i (from "

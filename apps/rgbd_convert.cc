@@ -14,9 +14,10 @@
 #include "frontend/sources/tum_writer.h"
 
 DEFINE_string(output, "", "folder to make, in TUM RGB-D layout");
-DEFINE_int32(threads, 0,
-             "threads that read and write images; 0: one a core; the result "
-             "does not depend on it");
+DEFINE_int32(
+    threads, 0,
+    "threads that read and write images; 0: one for each core; the result "
+    "does not depend on it");
 
 namespace rgbd_pose {
 namespace {

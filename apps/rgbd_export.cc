@@ -36,9 +36,10 @@ DEFINE_double(max_depth, 0.0,
               "that the run left out, and for meshes beyond 4 m");
 DEFINE_int32(max_points, rgbd_pose::ExportOptions().max_points,
              "of the cloud that comes along with images");
-DEFINE_int32(threads, 0,
-             "threads that read images ahead; 0: one a core; the result does "
-             "not depend on it");
+DEFINE_int32(
+    threads, 0,
+    "threads that read images ahead; 0: one for each core; the result does "
+    "not depend on it");
 
 namespace rgbd_pose {
 namespace {

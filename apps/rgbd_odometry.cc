@@ -23,9 +23,10 @@
 #include "core/util/quantile.h"
 #include "frontend/image/depth_scale.h"
 
-DEFINE_int32(threads, 0,
-             "threads that read images ahead and track; 0: one a core; the "
-             "result does not depend on it");
+DEFINE_int32(
+    threads, 0,
+    "threads that read images ahead and track; 0: one for each core; the "
+    "result does not depend on it");
 DEFINE_bool(validate_only, false,
             "only read every image and say how fast that goes; needs no "
             "--output");

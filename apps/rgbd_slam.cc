@@ -26,9 +26,10 @@
 #include "frontend/image/depth_scale.h"
 #include "frontend/map/map_folder.h"
 
-DEFINE_int32(threads, 0,
-             "threads that read images ahead and track; 0: one a core; the "
-             "result does not depend on it");
+DEFINE_int32(
+    threads, 0,
+    "threads that read images ahead and track; 0: one for each core; the "
+    "result does not depend on it");
 DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
 
 namespace rgbd_pose {

@@ -27,11 +27,34 @@ constexpr const char* kResults[] = {kLast,
                                     "edges.csv",
                                     "config.flags",
                                     "cloud_preview.json",
-                                    "mesh_preview.json"};
+                                    "mesh_preview.json",
+                                    "slam.csv",
+                                    "keyframes.csv",
+                                    "graph.g2o",
+                                    "trajectory_online.txt",
+                                    "trajectory_odometry.txt"};
+constexpr char kImages[] = "debug";
 
 [[noreturn]] void Fail(const fs::path& folder, const std::error_code& error) {
   throw InputError("--output: " + folder.string() +
                    " cannot be made or written to (" + error.message() + ")");
+}
+
+// Those that runs name, by the number of a frame (000123.png,
+// 000123_residuals.png); whatever else is there is not ours.
+void RemoveDebugImages(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> ours;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    const std::string name = entry.path().filename().string();
+    const size_t digits = name.find_first_not_of("0123456789");
+    if (digits < 6 || digits == std::string::npos) continue;
+    const std::string rest = name.substr(digits);
+    if (rest == ".png" || rest == "_residuals.png")
+      ours.push_back(entry.path());
+  }
+  for (const fs::path& image : ours) fs::remove(image);
+  fs::remove(folder, error);  // if nothing else is in it
 }
 
 // Whether an open file is still the one of that path.
@@ -102,6 +125,7 @@ RunFolder::~RunFolder() {
 void RunFolder::Publish() {
   try {
     for (const char* name : kResults) fs::remove(path_ / name);
+    RemoveDebugImages(path_ / kImages);
     for (const fs::path& file : FilesBelow(aside_)) {
       if (file == kLock || file == kLast) continue;
       fs::create_directories((path_ / file).parent_path());

@@ -24,8 +24,8 @@ class RunFolder {
   const std::filesystem::path& aside() const { return aside_; }
 
   // Moves all files to their places, metrics.json last, and removes what an
-  // earlier run has left of these or other results. Images in debug/ stay
-  // unless there are new ones of the same names. Throws InputError.
+  // earlier run has left of these or other results, images in debug/ included.
+  // Files of others stay. Throws InputError.
   void Publish();
 
  private:

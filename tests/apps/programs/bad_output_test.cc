@@ -133,13 +133,19 @@ TEST_F(BadInputTest, ARunThatFailsLeavesEarlierResultsAlone) {
 TEST_F(BadInputTest, ResultsAreThoseOfOneRun) {
   fs::rename(folder_ / "good", folder_ / "seq");
   const std::string call = Fill(Odometry());
-  ASSERT_EQ(RunCommand(call, folder_).exit_code, 0);
+  ASSERT_EQ(RunCommand(call + "--debug_images=0-1", folder_).exit_code, 0);
   EXPECT_TRUE(fs::exists(folder_ / "out/errors.csv"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/debug/000001.png"));
   folder_.Write("out/mine.txt", "mine");
+  folder_.Write("out/slam.csv", "of rgbd_slam");
+  folder_.Write("out/debug/000001_mine.png", "mine");
   Spoiled().Remove("groundtruth.txt");
   ASSERT_EQ(RunCommand(call, folder_).exit_code, 0);
   EXPECT_FALSE(fs::exists(folder_ / "out/errors.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/slam.csv"));
+  EXPECT_FALSE(fs::exists(folder_ / "out/debug/000001.png"));
   EXPECT_TRUE(fs::exists(folder_ / "out/mine.txt"));
+  EXPECT_TRUE(fs::exists(folder_ / "out/debug/000001_mine.png"));
 }
 
 TEST_F(BadInputTest, OneRunAtATimeWritesToAFolder) {

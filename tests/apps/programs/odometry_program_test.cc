@@ -72,7 +72,8 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
             "relocalised,predicted,carried_by,matches,inliers,iterations,sigma,"
             "decode_ms,"
             "track_ms,"
-            "match_ms,solve_ms,reference_ms,relocalise_ms");
+            "match_ms,solve_ms,reference_ms,relocalise_ms,"
+            "tx,ty,tz,qx,qy,qz,qw");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kFrames);
   const std::string edges = ReadTextFile(folder_ / "run/edges.csv");
   EXPECT_GE(std::count(edges.begin(), edges.end(), '\n'), kFrames);

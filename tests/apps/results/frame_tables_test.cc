@@ -19,6 +19,24 @@ std::vector<std::string> Cells(const std::string& line) {
   return cells;
 }
 
+// A lost frame, too: its pose is what the policy for lost frames says.
+TEST(FrameTablesTest, EveryFrameHasAPose) {
+  TrackedFrame frame;
+  frame.status = TrackingStatus::kLost;
+  frame.world_from_cam = Rigid3d({0.5, 0.5, -0.5, 0.5}, {0.25, -0.125, 3.0});
+  std::istringstream csv(FormatFramesCsv({frame}));
+  std::string header, row;
+  std::getline(csv, header);
+  std::getline(csv, row);
+  const std::vector<std::string> names = Cells(header), cells = Cells(row);
+  ASSERT_EQ(cells.size(), names.size());
+  EXPECT_EQ(cells[1], "lost");
+  EXPECT_EQ(names[names.size() - 7], "tx");
+  EXPECT_THAT(
+      std::vector<std::string>(cells.end() - 7, cells.end()),
+      testing::ElementsAre("0.25", "-0.125", "3", "0.5", "-0.5", "0.5", "0.5"));
+}
+
 TEST(FrameTablesTest, AnEdgeIsARow) {
   TrackedFrame none, two;
   Edge edge;
