@@ -12,7 +12,7 @@ namespace rgbd_pose {
 
 // A topic of a bag.
 struct BagTopic {
-  std::string name;
+  std::string name;  // with its slash
   std::string type;  // as in ROS 1: sensor_msgs/Image
 };
 
@@ -32,7 +32,10 @@ class BagReader {
   // What to call it in messages.
   virtual const std::string& path() const = 0;
 
+  // Of its messages.
   virtual WireFormat format() const = 0;
+
+  // Those it has, each once.
   virtual const std::vector<BagTopic>& topics() const = 0;
 
   // The first messages of a topic, at most so many; does not disturb Next.

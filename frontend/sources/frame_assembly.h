@@ -26,8 +26,8 @@ class FrameAssembly {
 
   // An image and what to call it in messages.
   struct Named {
-    cv::Mat image;
-    std::string name;
+    cv::Mat image;     // decoded
+    std::string name;  // its path, say
   };
 
   // A frame of decoded images: gray CV_8UC1 (with the colours, if they are

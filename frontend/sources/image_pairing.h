@@ -9,14 +9,14 @@ namespace rgbd_pose {
 
 // An image that waits for its other half.
 struct StampedImage {
-  double stamp = 0.0;  // s
-  std::shared_ptr<const std::string> message;
+  double stamp = 0.0;                          // s
+  std::shared_ptr<const std::string> message;  // its bytes
 };
 
 // A colour image and its depth image.
 struct StampedPair {
-  StampedImage color;
-  StampedImage depth;
+  StampedImage color;  // its stamp is that of the frame
+  StampedImage depth;  // near it in time
 };
 
 // Pairs a stream of colour images with one of depth images by nearest time, as

@@ -16,6 +16,7 @@ namespace rgbd_pose {
 // one; the others are dropped and counted. A thread of its own asks the camera.
 class LatestFrame final : public FrameSource {
  public:
+  // Begins to ask at once.
   explicit LatestFrame(std::unique_ptr<FrameSource> camera);
 
   // Waits until the camera has given its next frame.

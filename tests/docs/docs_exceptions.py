@@ -80,6 +80,19 @@ EXCEPTIONS = {
         'sbatch --dependency=afterany:$job --wrap "rgbd_batch '
         '--flagfile=plan.flags --merge"': left_out(SLURM),
     },
+    'docs/sources.md': {
+        'rgbd_odometry --dataset=fr1_xyz.bag --output=runs/bag':
+            left_out('needs a bag; tests/frontend/sources/ros1_bag_test.cc '
+                     'writes some'),
+        'rgbd_convert --dataset=recording_folder '
+        '--topics=/camera/color/image_raw,/camera/depth/image_raw '
+        '--output=tum':
+            left_out('needs a bag; tests/frontend/sources/ros2_bag_test.cc '
+                     'writes some'),
+        'rgbd_odometry --source=openni2 --dataset=any --frames=0s-60s '
+        '--output=runs/live':
+            left_out('needs a camera'),
+    },
     'docs/python.md': {
         'apt-get install pybind11-dev python3-dev python3-numpy':
             left_out('needs root; scripts/install_dependencies does it'),
