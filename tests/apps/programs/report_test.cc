@@ -187,6 +187,30 @@ TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
   EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));  // its legend
 }
 
+TEST_F(ReportTest, TheMeshIsShownBesideThePathUntilTheNextRun) {
+  Simulate();
+  Track(" --voxel=0.03 --save_mesh=" + (folder_ / "run/mesh.glb"));
+  const std::string page = ReadTextFile(Page());
+  EXPECT_LT(page.size(), kMaxPageBytes);
+  EXPECT_THAT(page, HasSubstr("\"corners\":\""));
+  if (HasBrowser()) {
+    const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
+    EXPECT_EQ(Console(browser), "");
+    EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
+    EXPECT_THAT(browser.out, HasSubstr(" triangles of the mesh "));
+    EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));
+  }
+  // Added later it is the same.
+  const RunResult later =
+      Run(RGBD_EXPORT " --to=mesh --voxel=0.03 --run=" + (folder_ / "run") +
+          " --output=" + (folder_ / "run/mesh.glb"));
+  EXPECT_EQ(later.exit_code, 0) << later.err;
+  EXPECT_TRUE(ReadTextFile(Page()) == page);
+  Track();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "run/mesh_preview.json"));
+  EXPECT_THAT(ReadTextFile(Page()), Not(HasSubstr("\"corners\":\"")));
+}
+
 // A map as rgbd_slam tells of it: three keyframes, one more made way.
 TEST_F(ReportTest, TheMapOfARunIsShown) {
   Simulate();

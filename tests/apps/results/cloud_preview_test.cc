@@ -84,5 +84,17 @@ TEST(CloudPreviewTest, PointsAreMovedIntoTheShownWorld) {
   EXPECT_LT((decoded[1].position - Eigen::Vector3f(10, 20, 30)).norm(), 1e-4F);
 }
 
+TEST(CloudPreviewTest, AMeshKeepsItsCorners) {
+  TriangleMesh mesh;
+  mesh.vertices.resize(300);  // more than 8 bits count
+  mesh.vertices[299].position = {1.0F, 2.0F, 3.0F};
+  mesh.triangles = {{0, 1, 299}, {299, 258, 2}};
+  const nlohmann::json preview = MeshPreview(mesh, Rigid3d());
+  EXPECT_EQ(preview.at("points"), 300);
+  EXPECT_EQ(preview.at("triangles"), 2);
+  // 0 0 1 0 43 1 | 43 1 2 1 2 0, low bytes first.
+  EXPECT_EQ(preview.at("corners"), "AAABACsBKwECAQIA");
+}
+
 }  // namespace
 }  // namespace rgbd_pose
