@@ -2,6 +2,7 @@
 
 #include "core/util/input_error.h"
 #ifdef RGBD_POSE_HAS_ROSBAG
+#include <console_bridge/console.h>
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 
@@ -14,9 +15,25 @@ namespace rgbd_pose {
 
 namespace {
 
+// Keeps the library from printing while this lives: what it says is in its
+// exceptions, too.
+class Silence {
+ public:
+  Silence() : former_(console_bridge::getOutputHandler()) {
+    console_bridge::noOutputHandler();
+  }
+  ~Silence() { console_bridge::useOutputHandler(former_); }
+  Silence(const Silence&) = delete;
+  Silence& operator=(const Silence&) = delete;
+
+ private:
+  console_bridge::OutputHandler* former_;
+};
+
 // Calls what may throw exceptions of the library, which are InputErrors here.
 template <typename Call>
 auto Guarded(const std::string& path, Call call) {
+  const Silence silence;
   try {
     return call();
   } catch (const InputError&) {

@@ -41,7 +41,7 @@ room costs/direct 'core/|costs/' 'Eigen/'
 room costs 'core/|costs|robust' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
 room frontend/image 'core/|frontend/' "$opencv"
-room frontend/sources 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h|rosbag/|sqlite3\.h|OpenNI\.h"
+room frontend/sources 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h|rosbag/|console_bridge/|sqlite3\.h|OpenNI\.h"
 room frontend/features 'core/|frontend/' "$opencv"
 room frontend/places 'core/|frontend/' "$opencv"
 room frontend/tracking 'core/|frontend/' "$opencv"

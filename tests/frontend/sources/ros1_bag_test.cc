@@ -15,6 +15,7 @@
 
 #include "core/util/text_file.h"
 #include "frontend/sources/open_source.h"
+#include "frontend/sources/tum_writer.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/tum_sequence.h"
@@ -509,6 +510,22 @@ TEST_F(Ros1BagTest, RefusesDistortionThatItDoesNotKnow) {
   ExpectRefused({"camera_info: distortion 'equidistant'", "calibration file"});
 }
 
+TEST_F(Ros1BagTest, WhatFailsOnTheWayLeavesNoFolder) {
+  Open();
+  WriteInfo();
+  for (int k = 0; k < kFrames; ++k) {
+    WriteColor(k);
+    if (k < 15) WriteDepth(k);
+  }
+  Write(kDepth, StampOf(15),
+        MakeImage(cv::Mat(3, 5, CV_16UC1), "16UC1", StampOf(15)));
+  const auto source = Source();
+  const std::string output = folder_ / "tum";
+  ExpectInputError([&] { WriteTumSequence(source.get(), output); },
+                   {"5 x 3 pixels", kDepth});
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
 TEST_F(Ros1BagTest, RefusesDamagedBags) {
   Open();
   WriteAll();
@@ -518,6 +535,14 @@ TEST_F(Ros1BagTest, RefusesDamagedBags) {
     folder_.Write("a.bag", whole.substr(0, share * whole.size()));
     ExpectRefused({"a.bag: "});
   }
+  // The library does not print by itself.
+  std::string damaged = whole;
+  damaged.replace(whole.size() - 40, 8, std::string(8, '\xff'));
+  folder_.Write("a.bag", damaged);
+  testing::internal::CaptureStderr();
+  ExpectRefused({"a.bag: ", "damaged"});
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+
   folder_.Write("a.bag", "no bag at all, but a text of some length");
   ExpectRefused({"a.bag: ", "ROS 1 bag"});
 
