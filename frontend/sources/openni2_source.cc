@@ -141,17 +141,19 @@ class OpenNi2Source final : public FrameSource {
   int unmatched_color() const override { return unmatched_color_; }
 
  private:
-  void Check(openni::Status status, const char* what) const {
+  void Check(openni::Status status, const char* what,
+             const char* hint = "") const {
     if (status == openni::STATUS_OK) return;
     const std::string reason = Reason();
     throw InputError(name_ + ": " + what +
-                     (reason.empty() ? "" : ": " + reason));
+                     (reason.empty() ? "" : " (" + reason + ")") + hint);
   }
 
   void Open(const SourceOptions& options) {
     Check(device_.open(name_ == kAny ? openni::ANY_DEVICE : name_.c_str()),
-          "cannot be opened; is the camera plugged in, and may you use it "
-          "(OpenNI's udev rules)?");
+          "cannot be opened",
+          "; is the camera plugged in, and may you use it (OpenNI's udev "
+          "rules)?");
     Create(openni::SENSOR_COLOR, "colour",
            {openni::PIXEL_FORMAT_RGB888, openni::PIXEL_FORMAT_GRAY8}, &color_);
     Create(openni::SENSOR_DEPTH, "depth",
@@ -218,7 +220,7 @@ class OpenNi2Source final : public FrameSource {
     openni::VideoStream* streams[] = {&color_, &depth_};
     int ready = 0;
     Check(openni::OpenNI::waitForAnyStream(streams, 2, &ready, kPatienceMs),
-          "gives no more images; is it unplugged?");
+          "gives no more images", "; is it unplugged?");
     openni::VideoFrameRef frame;
     Check(streams[ready]->readFrame(&frame), "gives no image");
     const int type = TypeOf(frame.getVideoMode().getPixelFormat());

@@ -60,7 +60,8 @@ InputError Unreadable(const std::string& name, std::string_view encoding,
                     " and, compressed, jpeg and png");
 }
 
-// The rows as they are; shares them with the message.
+// The rows as they are; those of bytes are shared with the message, as numbers
+// they need not lie where a processor likes them.
 cv::Mat Rows(const RosImage& image, const Encoding& encoding,
              const std::string& name) {
   const size_t row_bytes = size_t{image.width} * CV_ELEM_SIZE(encoding.type);
@@ -78,19 +79,30 @@ cv::Mat Rows(const RosImage& image, const Encoding& encoding,
   if (image.is_bigendian && CV_ELEM_SIZE1(encoding.type) > 1) {
     throw InputError(name + ": is big-endian, which is not read");
   }
-  // They are only read from.
-  return cv::Mat(static_cast<int>(image.height), static_cast<int>(image.width),
-                 encoding.type, const_cast<char*>(image.data.data()),
-                 image.step);
+  const auto width = static_cast<int>(image.width);
+  const auto height = static_cast<int>(image.height);
+  if (CV_ELEM_SIZE1(encoding.type) == 1) {  // they are only read from
+    return cv::Mat(height, width, encoding.type,
+                   const_cast<char*>(image.data.data()), image.step);
+  }
+  cv::Mat rows(height, width, encoding.type);
+  for (int y = 0; y < height; ++y) {
+    std::memcpy(rows.ptr(y), image.data.data() + size_t{image.step} * y,
+                row_bytes);
+  }
+  return rows;
 }
 
-// Rows whose numbers need not lie where a processor likes them.
-cv::Mat CopyOf(const cv::Mat& rows) {
-  cv::Mat copy(rows.size(), rows.type());
-  for (int y = 0; y < rows.rows; ++y) {
-    std::memcpy(copy.ptr(y), rows.ptr(y), rows.cols * rows.elemSize());
+// The file of a compressed image. Others than those that ROS packs with are
+// left to nobody's parser.
+std::string FileIn(std::string_view bytes, const std::string& name) {
+  constexpr std::string_view kJpeg = "\xFF\xD8\xFF";
+  constexpr std::string_view kPng = "\x89PNG";
+  if (bytes.substr(0, kJpeg.size()) != kJpeg &&
+      bytes.substr(0, kPng.size()) != kPng) {
+    throw InputError(name + ": is neither a JPEG nor a PNG file");
   }
-  return copy;
+  return std::string(bytes);
 }
 
 uint16_t RawDepth(double metres, double depth_scale) {
@@ -112,7 +124,7 @@ cv::Mat DecodeCompressedDepth(const RosImage& image, const std::string& name,
   float quantisation[2];
   std::memcpy(quantisation, image.data.data() + 4, sizeof(quantisation));
   cv::Mat depth =
-      DecodeDepthImage(std::string(image.data.substr(kHeader)), name);
+      DecodeDepthImage(FileIn(image.data.substr(kHeader), name), name);
   if (image.encoding.substr(0, 5) != "32FC1") return depth;
   for (int y = 0; y < depth.rows; ++y) {
     uint16_t* row = depth.ptr<uint16_t>(y);
@@ -146,7 +158,7 @@ cv::Mat DecodeRosGray(const RosImage& image, const std::string& name,
     if (IsCompressedDepth(image.encoding)) {
       throw Unreadable(name, image.encoding, "colour");
     }
-    return DecodeGrayImage(std::string(image.data), name, color);
+    return DecodeGrayImage(FileIn(image.data, name), name, color);
   }
   const Encoding* encoding = FindEncoding(image.encoding);
   if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) != CV_8U) {
@@ -156,12 +168,12 @@ cv::Mat DecodeRosGray(const RosImage& image, const std::string& name,
   if (rows.empty()) throw InputError(name + ": is empty");
   if (color != nullptr) {
     if (encoding->to_color < 0) {
-      *color = CopyOf(rows);
+      *color = rows.clone();
     } else {
       cv::cvtColor(rows, *color, encoding->to_color);
     }
   }
-  if (encoding->to_gray < 0) return CopyOf(rows);
+  if (encoding->to_gray < 0) return rows.clone();
   cv::Mat gray;
   cv::cvtColor(rows, gray, encoding->to_gray);
   return gray;
@@ -172,13 +184,13 @@ cv::Mat DecodeRosDepth(const RosImage& image, const std::string& name,
   if (IsCompressed(image)) {
     return IsCompressedDepth(image.encoding)
                ? DecodeCompressedDepth(image, name, depth_scale)
-               : DecodeDepthImage(std::string(image.data), name);
+               : DecodeDepthImage(FileIn(image.data, name), name);
   }
   const Encoding* encoding = FindEncoding(image.encoding);
   if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) == CV_8U) {
     throw Unreadable(name, image.encoding, "depth");
   }
-  const cv::Mat rows = CopyOf(Rows(image, *encoding, name));
+  const cv::Mat rows = Rows(image, *encoding, name);
   if (rows.empty()) throw InputError(name + ": is empty");
   if (encoding->type == CV_16UC1) return rows;
   cv::Mat depth(rows.size(), CV_16UC1);
