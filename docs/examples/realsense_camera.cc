@@ -18,18 +18,19 @@ class RealSense final : public rgbd_pose::FrameSource {
   std::optional<rgbd_pose::RgbdFrame> Next() override {
     const rs2::frameset both = align_.process(pipeline_.wait_for_frames());
     const double time = 1e-3 * both.get_timestamp();  // s
-    return rgbd_pose::RgbdFrame{time, [this, both, time] {
-      const cv::Size size(camera_.camera.width, camera_.camera.height);
-      auto* color = const_cast<void*>(both.get_color_frame().get_data());
-      auto* depth = const_cast<void*>(both.get_depth_frame().get_data());
-      rgbd_pose::Frame frame;
-      frame.timestamp = time;
-      frame.depth_scale = camera_.depth_scale;
-      cv::cvtColor(cv::Mat(size, CV_8UC3, color), frame.gray,
-                   cv::COLOR_RGB2GRAY);
-      frame.depth = cv::Mat(size, CV_16UC1, depth).clone();
-      return frame;
-    }};
+    return rgbd_pose::RgbdFrame{
+        time, [this, both, time] {
+          const cv::Size size(camera_.camera.width, camera_.camera.height);
+          auto* color = const_cast<void*>(both.get_color_frame().get_data());
+          auto* depth = const_cast<void*>(both.get_depth_frame().get_data());
+          rgbd_pose::Frame frame;
+          frame.timestamp = time;
+          frame.depth_scale = camera_.depth_scale;
+          cv::cvtColor(cv::Mat(size, CV_8UC3, color), frame.gray,
+                       cv::COLOR_RGB2GRAY);
+          frame.depth = cv::Mat(size, CV_16UC1, depth).clone();
+          return frame;
+        }};
   }
   const rgbd_pose::RgbdCamera& camera() const override { return camera_; }
 
