@@ -72,9 +72,13 @@ void MeshFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
   SetDepthScale(frame.depth_scale);
   KeepSurfacePixels(frame);
   const Rigid3d cam_from_world = world_from_cam.Inverse();
-  const std::vector<uint64_t> keys = FindBlocks(world_from_cam);
+  std::vector<uint64_t> keys;
   std::vector<DistanceVolume::Block*> blocks;
-  for (const uint64_t key : keys) blocks.push_back(volume_.FindOrInsert(key));
+  for (const SeenBlock& seen : FindBlocks(world_from_cam)) {
+    if (!seen.is_near && volume_.Find(seen.key) < 0) continue;
+    keys.push_back(seen.key);
+    blocks.push_back(volume_.FindOrInsert(seen.key));
+  }
   ParallelFor(static_cast<int>(keys.size()), options_.threads,
               [&](int i) { AddToBlock(keys[i], cam_from_world, blocks[i]); });
 }
@@ -117,8 +121,9 @@ void MeshFusion::KeepSurfacePixels(const Frame& frame) {
 }
 
 // All that rays pass within the truncation of where they end. Blocks are much
-// larger than what is between neighbouring rays.
-std::vector<uint64_t> MeshFusion::FindBlocks(
+// larger than what is between neighbouring rays. Only those within a few voxels
+// are worth making: where noise is larger than that, ends are spread by it.
+std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
     const Rigid3d& world_from_cam) const {
   constexpr int kStride = 4;  // px
   const Camera& camera = undistorter_.camera();
@@ -128,8 +133,11 @@ std::vector<uint64_t> MeshFusion::FindBlocks(
   const Eigen::Matrix3f R =
       world_from_cam.rotation.toRotationMatrix().cast<float>();
   const Eigen::Vector3f t = world_from_cam.translation.cast<float>();
-  std::vector<uint64_t> keys;
-  std::vector<uint64_t> last;  // of the ray before, step by step
+  const float near = std::max(
+      step,
+      static_cast<float>(options_.truncation_voxels * options_.voxel_size));
+  std::vector<SeenBlock> seen;
+  std::vector<SeenBlock> last;  // of the ray before, step by step
   for (int y = 0; y < depth_.rows; y += kStride) {
     last.clear();
     for (int x = 0; x < depth_.cols; x += kStride) {
@@ -138,26 +146,38 @@ std::vector<uint64_t> MeshFusion::FindBlocks(
       const float reach = UseOf(end).truncation;
       const Eigen::Vector3f ray = R * camera.Ray(x, y).cast<float>();
       const int steps = static_cast<int>(std::ceil(2.0F * reach / step));
-      last.resize(std::max<size_t>(last.size(), steps + 1), ~uint64_t{0});
+      last.resize(std::max<size_t>(last.size(), steps + 1),
+                  SeenBlock{~uint64_t{0}, false});
       for (int i = 0; i <= steps; ++i) {
-        const float z =
-            end - reach +
-            2.0F * reach * static_cast<float>(i) / static_cast<float>(steps);
+        const float from_end =
+            reach *
+            (2.0F * static_cast<float>(i) / static_cast<float>(steps) - 1.0F);
+        const float z = end + from_end;
         const Eigen::Vector3f at = (z * ray + t) * blocks_per_metre;
         if (!(at.cwiseAbs().maxCoeff() < DistanceVolume::kHalfRange - 1)) {
           continue;
         }
-        const uint64_t key = DistanceVolume::KeyOf(
-            {FloorToInt(at.x()), FloorToInt(at.y()), FloorToInt(at.z())});
-        if (key == last[i]) continue;
-        last[i] = key;
-        keys.push_back(key);
+        const SeenBlock block = {
+            DistanceVolume::KeyOf(
+                {FloorToInt(at.x()), FloorToInt(at.y()), FloorToInt(at.z())}),
+            std::abs(from_end) <= near};
+        if (block == last[i]) continue;
+        last[i] = block;
+        seen.push_back(block);
       }
     }
   }
-  std::sort(keys.begin(), keys.end());
-  keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
-  return keys;
+  // The near ones of each first.
+  std::sort(seen.begin(), seen.end(),
+            [](const SeenBlock& a, const SeenBlock& b) {
+              return a.key != b.key ? a.key < b.key : a.is_near > b.is_near;
+            });
+  seen.erase(std::unique(seen.begin(), seen.end(),
+                         [](const SeenBlock& a, const SeenBlock& b) {
+                           return a.key == b.key;
+                         }),
+             seen.end());
+  return seen;
 }
 
 // Looks each point of its grid up in the depth image.

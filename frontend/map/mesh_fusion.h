@@ -74,6 +74,16 @@ class MeshFusion {
     float weight;      // 1 / m^2
   };
 
+  // A block that a frame tells of.
+  struct SeenBlock {
+    uint64_t key;
+    bool is_near;  // the surface may be in it
+
+    bool operator==(const SeenBlock& other) const {
+      return key == other.key && is_near == other.is_near;
+    }
+  };
+
   static constexpr int kDepthStepsPerMetre = 512;
 
   void SetDepthScale(double depth_scale);
@@ -81,7 +91,7 @@ class MeshFusion {
     return uses_[static_cast<int>(depth * float{kDepthStepsPerMetre})];
   }
   void KeepSurfacePixels(const Frame& frame);
-  std::vector<uint64_t> FindBlocks(const Rigid3d& world_from_cam) const;
+  std::vector<SeenBlock> FindBlocks(const Rigid3d& world_from_cam) const;
   void AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
                   DistanceVolume::Block* block) const;
 
