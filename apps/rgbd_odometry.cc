@@ -123,6 +123,7 @@ int Main() {
   if (FLAGS_validate_only) return ValidateOnly(&source, threads);
   const RunInputs inputs = sequence.inputs();
   OdometryRun run(settings.odometry, source.camera().camera, inputs);
+  RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 

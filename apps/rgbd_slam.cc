@@ -139,6 +139,7 @@ int Main() {
   if (!settings.maps.save_map.empty()) RequireMapFolder(settings.maps.save_map);
   SlamRun run(settings.odometry, settings.slam, source.camera().camera, inputs);
   LoadMaps(&run);
+  RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 

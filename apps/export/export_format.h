@@ -33,6 +33,11 @@ std::string ExportNerfstudio(const FinishedRun& run,
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);
 
+// Throws InputError if SaveMesh could not read the frames again, as those of a
+// camera: to be told before the run rather than after it.
+void RequireMeshFrames(const RunOutputSettings& settings,
+                       const std::string& dataset);
+
 // The mesh that a run which has just ended was asked for, if it was; returns
 // what the program prints.
 std::string SaveMesh(const RunOutputSettings& settings, int threads);

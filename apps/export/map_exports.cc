@@ -95,6 +95,14 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
                 mesh.triangles.size(), views.size(), options.output.c_str());
 }
 
+void RequireMeshFrames(const RunOutputSettings& settings,
+                       const std::string& dataset) {
+  if (settings.save_mesh.empty() || std::filesystem::exists(dataset)) return;
+  throw InputError(
+      "--save_mesh: meshes read the frames a second time, which '" + dataset +
+      "', no file and no folder, does not allow; record it by rgbd_convert");
+}
+
 std::string SaveMesh(const RunOutputSettings& settings, int threads) {
   if (settings.save_mesh.empty()) return "";
   ExportOptions options;
