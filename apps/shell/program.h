@@ -14,6 +14,7 @@ enum ExitCode {
   kExitBadInput = 2,        // a flag, file or image that cannot be used
   kExitTrackingFailed = 3,  // ran, but the result is not usable
   kExitSomeFailed = 4,      // some items of a batch failed
+  kExitCameraKept = 5,      // no better camera was found than the one there is
 };
 
 // Flags shown together in --help.

@@ -7,6 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/rigid3.h"
+
 namespace rgbd_pose {
 
 // A pinhole camera with OpenCV's plumb-bob distortion (k1 k2 p1 p2 k3).
@@ -81,10 +83,32 @@ inline constexpr std::array<CameraParameter, 9> kCameraParameters = {
      {"p2", &Camera::p2},
      {"k3", &Camera::k3}}};
 
+// What is wrong with the depth images of a camera, to be undone as they are
+// read (frontend/sources/corrected_source.h).
+struct DepthErrors {
+  // 1 / z = 1 / measured z + this, 1/m.
+  double inverse_depth_offset = 0.0;
+
+  // Depth is so much later than its stamp says, s.
+  double depth_time_offset = 0.0;
+
+  // Where the depth image, as it was registered to colour, has a point X of the
+  // axes of colour: this * X.
+  Rigid3d depth_from_color = {};
+
+  // Whether there are none.
+  bool None() const {
+    return inverse_depth_offset == 0.0 && depth_time_offset == 0.0 &&
+           depth_from_color.Angle() == 0.0 &&
+           depth_from_color.translation.isZero(0.0);
+  }
+};
+
 // A camera together with how its depth images count.
 struct RgbdCamera {
   Camera camera;                // of the colour image
   double depth_scale = 5000.0;  // raw units of the depth image per metre
+  DepthErrors depth_errors = {};
 };
 
 // A camera known by name: tum_fr1, tum_fr2, tum_fr3, ros_default. Figures from

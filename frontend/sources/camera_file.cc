@@ -1,7 +1,10 @@
 #include "frontend/sources/camera_file.h"
 
+#include <Eigen/Geometry>
+#include <cmath>
 #include <filesystem>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -135,6 +138,42 @@ std::optional<double> ReadDepthScale(const YamlSection& file) {
   return std::nullopt;
 }
 
+Eigen::Vector3d VectorOr0(const YamlSection& file, const std::string& key) {
+  if (!file.Has(key)) return Eigen::Vector3d::Zero();
+  const std::vector<double> numbers = file.Numbers(key, {3});
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+// Beyond these a file is wrong, in units perhaps.
+void CheckSize(const YamlSection& file, const std::string& key, double size,
+               double most, const std::string& unit) {
+  if (size <= most) return;
+  std::ostringstream limit;
+  limit << most;
+  file.Fail(key, "must be at most " + limit.str() + " " + unit);
+}
+
+// What rgbd_calibrate found wrong with depth.
+DepthErrors ReadDepthErrors(const YamlSection& file) {
+  DepthErrors errors;
+  errors.inverse_depth_offset = file.NumberOr("inverse_depth_offset", 0.0);
+  CheckSize(file, "inverse_depth_offset",
+            std::abs(errors.inverse_depth_offset), 0.5, "1/m");
+  errors.depth_time_offset = file.NumberOr("depth_time_offset", 0.0);
+  CheckSize(file, "depth_time_offset", std::abs(errors.depth_time_offset), 0.5,
+            "s");
+  const Eigen::Vector3d turn = VectorOr0(file, "depth_rotation");
+  const double angle = turn.norm();
+  CheckSize(file, "depth_rotation", angle, 0.5, "rad");
+  const Eigen::Vector3d translation = VectorOr0(file, "depth_translation");
+  CheckSize(file, "depth_translation", translation.norm(), 0.5, "m");
+  const Eigen::Vector3d axis =
+      angle > 0.0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX();
+  errors.depth_from_color = Rigid3d(
+      Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), translation);
+  return errors;
+}
+
 }  // namespace
 
 CameraSetup ReadCameraFile(const std::string& path,
@@ -143,6 +182,7 @@ CameraSetup ReadCameraFile(const std::string& path,
   CameraSetup result;
   result.camera = ReadAnyLayout(path, file);
   result.depth_scale = ReadDepthScale(file);
+  result.depth_errors = ReadDepthErrors(file);
   const std::string problem = result.camera.Check();
   if (!problem.empty()) throw InputError(path + ": " + problem);
   if (!depth_camera.empty()) {

@@ -21,6 +21,9 @@ namespace rgbd_pose {
 // `depth_camera` names the camera of a Kalibr file (cam1, say) that took the
 // depth images; each camera but cam0 has T_cn_cnm1, from the camera before.
 // Empty: depth is registered to colour, and other cameras are left out.
+// What rgbd_calibrate found wrong with depth are further top-level keys:
+// inverse_depth_offset (1/m), depth_time_offset (s), depth_rotation (rotation
+// vector, rad) and depth_translation (m), see DepthErrors.
 // Throws InputError (file:line, key) for an unknown layout or camera model, a
 // missing key, a wrong number of entries, and values that make no camera.
 CameraSetup ReadCameraFile(const std::string& path,

@@ -46,7 +46,8 @@ CameraSetup ChooseCamera(const SourceOptions& options,
 }
 
 RgbdCamera RegisteredCamera(const CameraSetup& setup) {
-  return {setup.camera, setup.depth_scale.value_or(RgbdCamera{}.depth_scale)};
+  return {setup.camera, setup.depth_scale.value_or(RgbdCamera{}.depth_scale),
+          setup.depth_errors};
 }
 
 }  // namespace rgbd_pose

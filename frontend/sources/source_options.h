@@ -16,12 +16,16 @@ struct CameraSetup {
 
   // With its depth scale as it is there.
   CameraSetup(const RgbdCamera& rgbd)  // NOLINT(*-explicit-*): says the same
-      : camera(rgbd.camera), depth_scale(rgbd.depth_scale) {}
+      : camera(rgbd.camera),
+        depth_scale(rgbd.depth_scale),
+        depth_errors(rgbd.depth_errors) {}
 
   Camera camera;  // of the colour image
 
   // Raw units of the depth image per metre; nothing: not said.
   std::optional<double> depth_scale;
+
+  DepthErrors depth_errors;  // of the depth images, once registered
 
   // Nothing: the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;

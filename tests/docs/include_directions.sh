@@ -39,6 +39,8 @@ room costs/matches 'core/|costs/' 'Eigen/'
 room costs/assembly 'core/|costs/' 'Eigen/|ceres/'
 room costs/direct 'core/|costs/' 'Eigen/'
 room costs 'core/|costs|robust' 'Eigen/|ceres/'
+# It needs the list's type.
+room costs/calibration 'core/|costs' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
 room frontend/image 'core/|frontend/' "$opencv"
 room frontend/sources 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h|rosbag/|console_bridge/|sqlite3\.h|OpenNI\.h"

@@ -1,0 +1,116 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/pipeline/calibration_data.h"
+#include "apps/pipeline/setting_table.h"
+#include "core/evaluation/trajectory.h"
+#include "core/geometry/camera.h"
+#include "costs/calibration/landmark_problem.h"
+#include "frontend/tracking/motion_guess.h"
+
+namespace rgbd_pose {
+
+// How a camera is calibrated from its own recording.
+struct CalibrationSettings {
+  // Names of parameters that stay as they are, separated by commas; a name may
+  // stand for several: focal, centre, distortion, registration.
+  std::string fix;
+
+  // A length that is known: two times (s) and how far apart the camera was then
+  // (m), as T0,T1,METRES; empty: none.
+  std::string known_length;
+
+  // Standard deviations of what the first camera says, see
+  // kCalibrationParameters.
+  CalibrationVector prior = CalibrationVector::Zero();  // 0: of the table
+
+  // A parameter is determined by the recording if its standard deviation falls
+  // to this share of what it was before.
+  double determined_share = 0.3;
+
+  // Another camera has to fit held-out pairs so much better (a share of their
+  // cost), in so many standard deviations.
+  double min_gain = 0.01;
+  double min_gain_sigmas = 3.0;
+
+  CalibrationDataOptions data;   // which views
+  LandmarkProblemOptions solve;  // how they are explained
+
+  // One line that says what is wrong with the settings, or empty.
+  std::string Check() const;
+};
+
+// Their rows.
+std::vector<Setting> SettingTable(CalibrationSettings* settings);
+
+// What became of one parameter.
+struct CalibratedParameter {
+  enum class Fate {
+    kFixed,         // was not asked for, or nothing could tell it
+    kUndetermined,  // the recording does not tell it
+    kDetermined,
+  };
+  Fate fate = Fate::kFixed;
+  double before = 0.0;  // of the first camera
+  double prior = 0.0;   // its standard deviation
+  double found = 0.0;   // where the recording would have it
+  double sigma = 0.0;   // the standard deviation of that
+};
+
+// What is left of a held-out view, px: for pictures.
+struct HeldOutResidual {
+  double u = 0.0, v = 0.0;  // where
+  Eigen::Vector2d before, after;
+};
+
+// What came of a calibration.
+struct CalibrationResult {
+  // In the order of kCalibrationParameters, about the recording as the first
+  // camera has it corrected.
+  std::array<CalibratedParameter, kCalibrationSize> parameters;
+
+  // Whether `camera` is to be taken; else it is the first one, and `reason`
+  // says in words why.
+  bool is_accepted = false;
+  std::string reason;
+  RgbdCamera camera;
+
+  // Of what it was made.
+  int keyframes = 0, pairs = 0, held_out_pairs = 0, landmarks = 0, views = 0;
+
+  // Mean robust cost of a held-out view with the first camera and the one that
+  // was found, and their difference in its standard deviations.
+  double cost_before = 0.0, cost_after = 0.0, gain_sigmas = 0.0;
+  // Spread of residuals with either: px, and in sigmas of the depth noise.
+  double pixel_before = 0.0, pixel_after = 0.0;
+  double depth_before = 0.0, depth_after = 0.0;
+  std::vector<HeldOutResidual> residuals;
+
+  // How far the motions of pairs are from the ground truth (RMSE, m), from the
+  // poses that go with either camera; 0: there is none.
+  double truth_before = 0.0, truth_after = 0.0;
+
+  // What gave depth its scale, in words; empty: nothing did.
+  std::string scale_from;
+};
+
+// What else is known of where the camera was; null: nothing.
+struct CalibrationScale {
+  const Trajectory* ground_truth = nullptr;
+  const MotionGuess* motion_guess = nullptr;
+};
+
+// Calibrates a camera from keyframes and pairs of its recording. `first`: the
+// camera that they were tracked with; `path`: a smooth path of all frames, see
+// CollectCalibrationData. Throws InputError for settings that are of no use.
+CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
+                            const RgbdCamera& first,
+                            const OdometrySettings& odometry,
+                            const CalibrationSettings& settings,
+                            const CalibrationScale& scale, int threads);
+
+}  // namespace rgbd_pose

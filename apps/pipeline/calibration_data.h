@@ -1,0 +1,62 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "apps/pipeline/settings.h"
+#include "core/evaluation/trajectory.h"
+#include "costs/calibration/calibration_views.h"
+#include "frontend/map/keyframe_map.h"
+
+namespace rgbd_pose {
+
+// Which views a camera is calibrated from.
+struct CalibrationDataOptions {
+  // Views of landmarks, about: the time that a solution takes grows with it.
+  int max_views = 40000;
+
+  // At most so many keyframes, evenly chosen: the work grows with the third
+  // power of their number.
+  int max_keyframes = 300;
+
+  // Every so-manieth pair is kept to judge the result by.
+  int hold_out = 5;
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+// Of points in the axes of a camera that moves.
+struct CameraVelocity {
+  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     // rad/s
+  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // m/s
+};
+
+// The keyframes that the views are of.
+struct CalibrationData {
+  CalibrationViews views;
+  std::vector<double> timestamps;         // of keyframes, s
+  std::vector<std::array<int, 2>> pairs;  // of keyframes
+  std::vector<int> in_map;                // their places in the map
+  std::vector<CameraVelocity> velocities;
+};
+
+// Undoes what theta says of the displacement of depth (registration, delay) in
+// the images of the keyframes and looks all depths up anew: so large ones come
+// right that are not linear. `camera`: the lens as it is known by now.
+void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
+                      const OdometrySettings& settings,
+                      const CalibrationVector& theta, int threads,
+                      CalibrationData* data);
+
+// Finds the features of each keyframe of the map's largest segment anew in
+// those that it is paired with. `path`: a smooth path of the camera (world from
+// camera, any world), for its velocities.
+CalibrationData CollectCalibrationData(const KeyframeMap& map,
+                                       const Trajectory& path,
+                                       const OdometrySettings& settings,
+                                       const CalibrationDataOptions& options,
+                                       int threads);
+
+}  // namespace rgbd_pose

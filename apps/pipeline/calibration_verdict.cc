@@ -1,0 +1,198 @@
+#include "apps/pipeline/calibration_verdict.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "core/geometry/motion.h"
+#include "core/util/format.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A camera: fx and fy differ by no more, and the centre is this near to that of
+// the image, as shares.
+constexpr double kMaxAspect = 0.01;
+constexpr double kMaxOffCentre = 0.1;
+
+// Nothing may be farther from what was known before.
+constexpr double kMaxPriorSigmas = 4.0;
+
+std::vector<MotionDerivatives> PosesOf(const CalibrationState& state) {
+  std::vector<MotionDerivatives> poses;
+  const MotionVector zero = MotionVector::Zero();
+  for (const Rigid3d& pose : state.world_from_cam) {
+    poses.push_back(MotionOrigin(pose.Inverse()).DerivativesAt(zero.data()));
+  }
+  return poses;
+}
+
+// The robust cost of a view, and its error in pixels.
+double CostOf(const CalibrationViews& views, const Landmark& landmark,
+              const LandmarkView& view, bool with_depth, double inverse_depth,
+              const CalibrationState& state, const CalibrationState& scales,
+              const std::vector<MotionDerivatives>& poses, double loss_width,
+              Eigen::Vector2d* error) {
+  const LandmarkData data = DataOf(views, landmark, view, scales);
+  const MotionPose<double>& anchor = poses[landmark.anchor];
+  const MotionPose<double>& there = poses[view.keyframe];
+  const double square = loss_width * loss_width;
+  LandmarkPixel::Residual<double>(anchor, there, inverse_depth,
+                                  state.theta.data(), data, error->data());
+  double cost = square * std::log1p(error->squaredNorm() / square);
+  *error /= data.inverse_sigma_px;
+  if (with_depth) {
+    double r;
+    LandmarkDepth::Residual<double>(anchor, there, inverse_depth,
+                                    state.theta.data(), data, &r);
+    cost += square * std::log1p(r * r / square);
+  }
+  return 0.5 * cost;
+}
+
+std::string Short(double value) { return Format("%.3g", value); }
+
+std::string Percent(double share) { return Short(100.0 * share) + " %"; }
+
+}  // namespace
+
+void CompareHeldOut(const CalibrationViews& views_before,
+                    const CalibrationState& before,
+                    const CalibrationViews& views_after,
+                    const CalibrationState& after, double loss_width,
+                    CalibrationResult* result) {
+  struct OfPair {
+    double before = 0.0, after = 0.0;
+    int count = 0;
+  };
+  std::map<std::pair<int, int>, OfPair> pairs;
+  const auto poses_before = PosesOf(before), poses_after = PosesOf(after);
+  result->residuals.clear();
+  for (size_t i = 0; i < views_before.landmarks.size(); ++i) {
+    const Landmark& landmark = views_before.landmarks[i];
+    const auto begin = views_before.views.begin() + landmark.first_view;
+    const auto end = begin + landmark.num_views;
+    const bool has_trained = std::any_of(
+        begin, end, [](const LandmarkView& view) { return !view.is_held_out; });
+    // Others stand where their own depth has them.
+    if (!has_trained) continue;
+    for (auto view = begin; view != end; ++view) {
+      if (!view->is_held_out) continue;
+      const LandmarkView& view_after =
+          views_after.views[view - views_before.views.begin()];
+      const bool with_depth = view->depth.inverse_sigma > 0.0 &&
+                              view_after.depth.inverse_sigma > 0.0;
+      OfPair& pair = pairs[std::minmax(landmark.anchor, view->keyframe)];
+      HeldOutResidual residual;
+      residual.u = view->u;
+      residual.v = view->v;
+      pair.before += CostOf(views_before, landmark, *view, with_depth,
+                            before.inverse_depths[i], before, after,
+                            poses_before, loss_width, &residual.before);
+      pair.after += CostOf(views_after, landmark, view_after, with_depth,
+                           after.inverse_depths[i], after, after, poses_after,
+                           loss_width, &residual.after);
+      ++pair.count;
+      result->residuals.push_back(residual);
+    }
+  }
+  double sum = 0.0, squares = 0.0;
+  OfPair all;
+  for (const auto& [keyframes, pair] : pairs) {
+    const double gain = (pair.before - pair.after) / pair.count;
+    sum += gain;
+    squares += gain * gain;
+    all.before += pair.before;
+    all.after += pair.after;
+    all.count += pair.count;
+  }
+  const int n = static_cast<int>(pairs.size());
+  result->held_out_pairs = n;
+  if (n < 2) return;
+  result->cost_before = all.before / all.count;
+  result->cost_after = all.after / all.count;
+  const double mean = sum / n;
+  const double variance = (squares - n * mean * mean) / (n - 1);
+  result->gain_sigmas = variance > 0.0 ? mean / std::sqrt(variance / n) : 0.0;
+}
+
+double TruthError(const CalibrationData& data, const CalibrationState& state,
+                  const Trajectory& truth) {
+  const MotionGuess motion(truth);
+  double sum = 0.0;
+  int count = 0;
+  for (const auto& [a, b] : data.pairs) {
+    const auto b_from_a =
+        motion.CurFromPrev(data.timestamps[a], data.timestamps[b]);
+    if (!b_from_a.has_value()) continue;
+    const Rigid3d found =
+        state.world_from_cam[b].Inverse() * state.world_from_cam[a];
+    sum += (b_from_a->Inverse() * found).translation.squaredNorm();
+    ++count;
+  }
+  return count > 0 ? std::sqrt(sum / count) : 0.0;
+}
+
+std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
+                   const CalibrationSettings& settings,
+                   const CalibrationResult& result) {
+  if (result.held_out_pairs < 2) {
+    return "there are too few pairs to judge it by";
+  }
+  const double gain = 1.0 - result.cost_after / result.cost_before;
+  if (!(gain >= settings.min_gain) ||
+      !(result.gain_sigmas >= settings.min_gain_sigmas)) {
+    return "pairs that were held out fit no better with the camera found: "
+           "their cost falls by " +
+           Percent(gain) + " (" + Short(result.gain_sigmas) +
+           " standard deviations)";
+  }
+  if (result.truth_after > result.truth_before) {
+    return "the ground truth contradicts it: motions of pairs are off by " +
+           Short(1e3 * result.truth_after) + " mm instead of " +
+           Short(1e3 * result.truth_before) + " mm";
+  }
+  const bool has_moved = std::any_of(
+      result.parameters.begin(), result.parameters.end(),
+      [&](const CalibratedParameter& parameter) {
+        return parameter.fate == CalibratedParameter::Fate::kDetermined &&
+               std::abs(parameter.found - parameter.before) >
+                   settings.min_gain_sigmas * parameter.sigma;
+      });
+  if (!has_moved) {
+    return "nothing is wrong with it: what was found is within " +
+           Short(settings.min_gain_sigmas) + " standard deviations of it";
+  }
+  const Camera& camera = found.camera;
+  const double aspect = camera.fx / camera.fy;
+  const double aspect_before = first.camera.fx / first.camera.fy;
+  if (std::abs(aspect - 1.0) > kMaxAspect &&
+      std::abs(aspect / aspect_before - 1.0) > kMaxAspect) {
+    return "the camera found is not plausible: fx and fy differ by " +
+           Percent(std::abs(aspect - 1.0));
+  }
+  if (std::abs(camera.cx - 0.5 * (camera.width - 1)) >
+          kMaxOffCentre * camera.width ||
+      std::abs(camera.cy - 0.5 * (camera.height - 1)) >
+          kMaxOffCentre * camera.height) {
+    return "the camera found is not plausible: its principal point (" +
+           Short(camera.cx) + ", " + Short(camera.cy) +
+           ") is not in the middle of the image";
+  }
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    const CalibratedParameter& parameter = result.parameters[k];
+    if (parameter.fate != CalibratedParameter::Fate::kDetermined) continue;
+    const double moved =
+        std::abs(parameter.found - parameter.before) / parameter.prior;
+    if (moved > kMaxPriorSigmas) {
+      return "the camera found is not plausible: " +
+             std::string(kCalibrationParameters[k].name) + " moves by " +
+             Short(moved) + " standard deviations of its prior";
+    }
+  }
+  return "";
+}
+
+}  // namespace rgbd_pose

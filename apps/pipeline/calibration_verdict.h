@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+
+#include "apps/pipeline/calibration.h"
+
+namespace rgbd_pose {
+
+// Fills in what held-out views make of two solutions: costs, their difference,
+// residuals. The views of either differ in their depths alone.
+void CompareHeldOut(const CalibrationViews& views_before,
+                    const CalibrationState& before,
+                    const CalibrationViews& views_after,
+                    const CalibrationState& after, double loss_width,
+                    CalibrationResult* result);
+
+// The RMSE (m) of the motions of pairs against the ground truth; 0 if none can
+// be compared.
+double TruthError(const CalibrationData& data, const CalibrationState& state,
+                  const Trajectory& truth);
+
+// Why a camera that was found is not to be taken instead of the first one, in
+// words, or empty.
+std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
+                   const CalibrationSettings& settings,
+                   const CalibrationResult& result);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,179 @@
+#include "apps/report/calibration_page.h"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "apps/results/calibration_output.h"
+#include "core/util/format.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Fate = CalibratedParameter::Fate;
+
+// Residuals are averaged over so many columns of the image.
+constexpr int kColumns = 16;
+
+constexpr double kPictureWidth = 440.0;
+
+constexpr char kHead[] =
+    "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">"
+    "<title>Calibration</title><style>"
+    "body{font-family:sans-serif;max-width:60em;margin:2em auto;color:#222}"
+    "table{border-collapse:collapse}td,th{padding:.2em .8em;text-align:right;"
+    "border-bottom:1px solid #ddd}td:first-child,th:first-child{text-align:"
+    "left}figure{display:inline-block;margin:0 1em 1em 0}svg{background:#f7f7"
+    "f7;border:1px solid #ccc}.no{color:#888}</style></head><body>\n";
+
+std::string Escaped(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '<') {
+      result += "&lt;";
+    } else if (c == '&') {
+      result += "&amp;";
+    } else {
+      result += c;
+    }
+  }
+  return result;
+}
+
+// From -1 to 1 prior standard deviation: where it was, and what was found.
+std::string Bar(const CalibratedParameter& parameter) {
+  constexpr double kHalf = 80.0;
+  const auto at = [&](double value) {
+    const double x = (value - parameter.before) / parameter.prior;
+    return kHalf * (1.0 + std::clamp(x, -1.0, 1.0));
+  };
+  const double low = at(parameter.found - parameter.sigma);
+  const double high = at(parameter.found + parameter.sigma);
+  return Format(
+      "<svg width=\"%.0f\" height=\"14\"><line x1=\"%.0f\" x2=\"%.0f\" "
+      "y1=\"0\" y2=\"14\" stroke=\"#aaa\"/><rect x=\"%.1f\" y=\"4\" "
+      "width=\"%.1f\" height=\"6\" fill=\"#1f77b4\"/></svg>",
+      2.0 * kHalf, kHalf, kHalf, low, std::max(1.5, high - low));
+}
+
+std::string ParameterTable(const CalibrationResult& result) {
+  std::string text =
+      "<table><tr><th>parameter</th><th>before</th><th>found</th>"
+      "<th>&plusmn;</th><th></th><th>within 1 prior sigma</th></tr>\n";
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    const CalibrationParameter& row = kCalibrationParameters[k];
+    const CalibratedParameter& parameter = result.parameters[k];
+    if (parameter.fate == Fate::kDetermined) {
+      text += Format(
+          "<tr><td>%s</td><td>%.6g</td><td>%.6g</td><td>%.2g</td>"
+          "<td>%s</td><td>%s</td></tr>\n",
+          row.what, parameter.before, parameter.found, parameter.sigma,
+          row.unit, Bar(parameter).c_str());
+    } else {
+      text += Format(
+          "<tr class=\"no\"><td>%s</td><td>%.6g</td><td "
+          "colspan=\"2\">%s</td><td>%s</td><td></td></tr>\n",
+          row.what, parameter.before, ToString(parameter.fate), row.unit);
+    }
+  }
+  return text + "</table>\n";
+}
+
+// Mean residuals of the image's cells as arrows, so many times as long.
+std::string Picture(const CalibrationResult& result, bool after, double zoom) {
+  const Camera& camera = result.camera.camera;
+  const double cell = static_cast<double>(camera.width) / kColumns;
+  const int rows = static_cast<int>(std::ceil(camera.height / cell));
+  std::vector<Eigen::Vector2d> sums(kColumns * rows, Eigen::Vector2d::Zero());
+  std::vector<int> counts(kColumns * rows, 0);
+  for (const HeldOutResidual& residual : result.residuals) {
+    const int column = static_cast<int>(residual.u / cell);
+    const int row = static_cast<int>(residual.v / cell);
+    if (column < 0 || row < 0 || column >= kColumns || row >= rows) continue;
+    const Eigen::Vector2d& r = after ? residual.after : residual.before;
+    // Wrong matches would be all that is seen.
+    constexpr double kMostPx = 20.0;
+    if (!(r.norm() < kMostPx)) continue;
+    sums[row * kColumns + column] += r;
+    ++counts[row * kColumns + column];
+  }
+  const double scale = kPictureWidth / camera.width;
+  std::string text = Format("<figure><svg width=\"%.0f\" height=\"%.0f\">",
+                            kPictureWidth, camera.height * scale);
+  constexpr int kFew = 3;
+  for (int i = 0; i < kColumns * rows; ++i) {
+    if (counts[i] < kFew) continue;
+    const Eigen::Vector2d mean = sums[i] / counts[i] * zoom;
+    const double u = (i % kColumns + 0.5) * cell * scale;
+    const double v = (i / kColumns + 0.5) * cell * scale;
+    text += Format(
+        "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" "
+        "stroke=\"#d62728\" stroke-width=\"1.5\"/><circle cx=\"%.1f\" "
+        "cy=\"%.1f\" r=\"2\" fill=\"#555\"/>",
+        u, v, u + mean.x() * scale, v + mean.y() * scale, u, v);
+  }
+  return text + Format(
+                    "</svg><figcaption>%s, %.0f times as long</figcaption>"
+                    "</figure>\n",
+                    after ? "with the camera found" : "with the first camera",
+                    zoom);
+}
+
+std::string PathPicture(const Trajectory& path) {
+  if (path.size() < 2) return "";
+  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
+  const auto from_above = [](const StampedPose& pose) {
+    const Eigen::Vector3d& p = pose.world_from_cam.translation;
+    return Eigen::Vector2d(p.x(), -p.z());
+  };
+  for (const StampedPose& pose : path) {
+    low = low.cwiseMin(from_above(pose));
+    high = high.cwiseMax(from_above(pose));
+  }
+  constexpr double kBorder = 10.0;
+  const double size = std::max((high - low).maxCoeff(), 1e-3);
+  const double scale = (kPictureWidth - 2.0 * kBorder) / size;
+  std::string text = Format(
+      "<h2>Path from above</h2><figure><svg width=\"%.0f"
+      "\" height=\"%.0f\"><polyline fill=\"none\" "
+      "stroke=\"#1f77b4\" points=\"",
+      kPictureWidth, (high.y() - low.y()) * scale + 2.0 * kBorder);
+  for (const StampedPose& pose : path) {
+    const Eigen::Vector2d at = (from_above(pose) - low) * scale;
+    text += Format("%.1f,%.1f ", at.x() + kBorder, at.y() + kBorder);
+  }
+  return text + Format(
+                    "\"/></svg><figcaption>%.2f m wide, as tracked with the "
+                    "first camera</figcaption></figure>\n",
+                    high.x() - low.x());
+}
+
+}  // namespace
+
+std::string CalibrationPage(const CalibrationResult& result,
+                            const Trajectory& path) {
+  std::string text = kHead;
+  text += result.is_accepted ? "<h1>The new camera is better</h1>\n"
+                             : "<h1>The first camera is kept</h1>\n<p>" +
+                                   Escaped(result.reason) + "</p>\n";
+  text +=
+      Format("<p>%d keyframes, %d pairs, %d landmarks in %d views.</p>\n",
+             result.keyframes, result.pairs, result.landmarks, result.views);
+  text += ParameterTable(result);
+  text += result.scale_from.empty()
+              ? "<p>Nothing gives depth a scale: images alone cannot.</p>\n"
+              : "<p>Depth has its scale from " + result.scale_from + ".</p>\n";
+  if (result.held_out_pairs > 0) {
+    text += Format(
+        "<h2>Pairs that were held out</h2><p>%d pairs: the cost of a view goes "
+        "from %.4g to %.4g, %.1f standard deviations of the difference.</p>\n",
+        result.held_out_pairs, result.cost_before, result.cost_after,
+        result.gain_sigmas);
+    const double spread = std::max(0.5 * result.pixel_before, 1e-3);
+    const double zoom = std::clamp(std::round(10.0 / spread), 1.0, 200.0);
+    text += Picture(result, false, zoom) + Picture(result, true, zoom);
+  }
+  return text + PathPicture(path) + "</body></html>\n";
+}
+
+}  // namespace rgbd_pose

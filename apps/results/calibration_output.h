@@ -1,0 +1,45 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "apps/pipeline/calibration.h"
+#include "apps/results/run_folder.h"
+
+namespace rgbd_pose {
+
+// What rgbd_calibrate prints of a result.
+std::string FormatCalibrationSummary(const CalibrationResult& result);
+
+// The result for metrics.json and the report.
+nlohmann::json CalibrationToJson(const CalibrationResult& result);
+
+// What a parameter is determined to be, in words.
+const char* ToString(CalibratedParameter::Fate fate);
+
+// The folder of a calibration: camera.yaml, metrics.json, residuals.csv,
+// config.flags.
+class CalibrationOutput {
+ public:
+  // Makes the folder. Throws InputError if it cannot.
+  explicit CalibrationOutput(const std::string& path) : folder_(path) {}
+
+  // Where files are until they are published, see RunFolder.
+  const std::filesystem::path& aside() const { return folder_.aside(); }
+
+  // Writes all files but the page. `camera`: the file or preset of the first
+  // camera, whose layout the new file has.
+  void Write(const CalibrationResult& result, const std::string& camera,
+             const std::string& flags, double seconds);
+
+  // A further file, by its name.
+  void WriteFile(const char* name, const std::string& content) const;
+
+  // Puts all files into their places.
+  void Publish() { folder_.Publish(); }
+
+ private:
+  RunFolder folder_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,99 @@
+// Calibrates an RGB-D camera from its own recording.
+
+#include <gflags/gflags.h>
+#include <glog/logging.h>
+
+#include <chrono>
+#include <cstdio>
+#include <opencv2/core.hpp>
+#include <string>
+
+#include "apps/pipeline/calibration_run.h"
+#include "apps/report/calibration_page.h"
+#include "apps/results/calibration_output.h"
+#include "apps/shell/available_cores.h"
+#include "apps/shell/program.h"
+#include "apps/shell/progress_bar.h"
+#include "apps/shell/setting_flags.h"
+
+DEFINE_int32(threads, 0, "threads; 0: one a core");
+DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
+DEFINE_string(output, "", "folder to make for the results");
+
+namespace rgbd_pose {
+namespace {
+
+struct ProgramSettings {
+  SequenceSettings sequence;
+  OdometrySettings odometry = CalibrationOdometry();
+  SlamSettings slam = CalibrationSlam();
+  CalibrationSettings calibration;
+};
+
+ProgramSettings& Settings() {
+  static ProgramSettings settings;
+  return settings;
+}
+
+// All other flags.
+const SettingFlags& Flags() {
+  static const SettingFlags flags(
+      {SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
+       SettingTable(&Settings().slam), SettingTable(&Settings().calibration)});
+  return flags;
+}
+
+ProgramInfo Info() {
+  ProgramInfo info;
+  info.name = "rgbd_calibrate";
+  info.summary = "calibrates an RGB-D camera from its own recording.";
+  info.example =
+      "rgbd_calibrate --dataset=my_recording --camera=my_camera.yaml "
+      "--output=calibration";
+  Flags().Describe(&info);
+  info.flag_groups.push_back({"Run", {"output", "report", "threads"}});
+  return info;
+}
+
+int Main() {
+  Flags().Apply();
+  const ProgramSettings& settings = Settings();
+  RequireFlag("dataset", settings.sequence.dataset);
+  RequireFlag("output", FLAGS_output);
+  const int threads = NumThreads(FLAGS_threads);
+  cv::setNumThreads(1);
+
+  Sequence sequence = OpenSequence(settings.sequence);
+  CalibrationOutput output(FLAGS_output);
+  const auto start = std::chrono::steady_clock::now();
+  CalibrationRun run(settings.odometry, settings.slam, settings.calibration,
+                     &sequence);
+  {
+    ProgressBar bar("tracking",
+                    static_cast<int>(sequence.source->timestamps().size()));
+    int done = 0;
+    run.Track(sequence.source.get(), threads, [&] { bar.Update(++done); });
+  }
+  const CalibrationResult result = run.Solve(threads);
+  const double seconds =
+      std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
+          .count();
+  output.Write(result, settings.sequence.camera, FormatFlagFile(Info()),
+               seconds);
+  if (FLAGS_report) {
+    output.WriteFile("report.html",
+                     CalibrationPage(result, run.run().slam().Path()));
+  }
+  output.Publish();
+  std::printf("%s%.1f s; results in %s\n",
+              FormatCalibrationSummary(result).c_str(), seconds,
+              FLAGS_output.c_str());
+  return result.is_accepted ? kExitOk : kExitCameraKept;
+}
+
+}  // namespace
+}  // namespace rgbd_pose
+
+int main(int argc, char** argv) {
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+}

@@ -1,0 +1,73 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+
+namespace rgbd_pose {
+
+// What may be wrong with an RGB-D camera, by its place in a CalibrationVector.
+enum CalibrationIndex {
+  kFx,  // focal lengths and principal point, px
+  kFy,
+  kCx,
+  kCy,
+  kK1,  // radial distortion
+  kK2,
+  kInverseDepth,  // 1 / z = 1 / measured z + this, 1/m
+  kDepthTime,     // depth is so much later than its stamp says, s
+  kRotationX,     // where a point X is in the axes of colour, the registered
+  kRotationY,     // depth image has Exp(rotation) X + translation: rad
+  kRotationZ,
+  kTranslationX,  // m
+  kTranslationY,
+  kTranslationZ,
+  kDepthFactor,  // z = this * measured z, the offset of 1 / z aside
+  kCalibrationSize
+};
+
+// The numbers, and what is quadratic in them.
+using CalibrationVector = Eigen::Matrix<double, kCalibrationSize, 1>;
+using CalibrationMatrix =
+    Eigen::Matrix<double, kCalibrationSize, kCalibrationSize>;
+
+// A row of the table of what may be wrong.
+struct CalibrationParameter {
+  const char* name;  // in files and reports
+  const char* what;  // it is, in words
+  const char* unit;
+
+  // Standard deviation of what is known before: of focal lengths as a share of
+  // themselves.
+  double prior;
+
+  // What residuals do not tell of: features are located wrongly alike, by some
+  // hundredths of a pixel, wherever they are seen, and surfaces are no planes.
+  // From simulated recordings of several scenes; no error bar is below.
+  double floor;
+};
+
+// In the order of CalibrationIndex.
+inline constexpr std::array<CalibrationParameter, kCalibrationSize>
+    kCalibrationParameters = {{
+        {"fx", "focal length along x", "px", 0.02, 0.06},
+        {"fy", "focal length along y", "px", 0.02, 0.06},
+        {"cx", "principal point, x", "px", 10.0, 0.05},
+        {"cy", "principal point, y", "px", 10.0, 0.05},
+        {"k1", "radial distortion, r^2", "", 0.1, 1.5e-4},
+        {"k2", "radial distortion, r^4", "", 0.2, 2e-4},
+        {"inverse_depth_offset", "offset of inverse depth", "1/m", 0.02, 6e-5},
+        {"depth_time_offset", "time of depth after its stamp", "s", 0.02,
+         1.5e-5},
+        {"rotation_x", "registration of depth, rotation about x", "rad", 0.02,
+         1.4e-4},
+        {"rotation_y", "registration of depth, rotation about y", "rad", 0.02,
+         1.4e-4},
+        {"rotation_z", "registration of depth, rotation about z", "rad", 0.02,
+         1.4e-4},
+        {"translation_x", "registration of depth, along x", "m", 0.02, 3.7e-4},
+        {"translation_y", "registration of depth, along y", "m", 0.02, 3.7e-4},
+        {"translation_z", "registration of depth, along z", "m", 0.02, 3.7e-4},
+        {"depth_factor", "metres per measured metre", "", 0.05, 0.0},
+    }};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <vector>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+#include "costs/calibration/landmark_residuals.h"
+
+namespace rgbd_pose {
+
+// A landmark as another keyframe than its anchor sees it.
+struct LandmarkView {
+  int keyframe = 0;
+  double u = 0.0, v = 0.0;     // px, as seen (distorted)
+  double sigma_px = 0.5;       // of u and v
+  MeasuredInverseDepth depth;  // there, if any
+  bool is_held_out = false;    // kept to judge by
+};
+
+// A point on the ray of a pixel of a keyframe.
+struct Landmark {
+  int anchor = 0;              // its keyframe
+  double u = 0.0, v = 0.0;     // px, as seen (distorted)
+  MeasuredInverseDepth depth;  // there
+  int first_view = 0;          // of CalibrationViews::views
+  int num_views = 0;
+};
+
+// How far apart two places of the camera are, as something else tells: what
+// gives images a scale. The places are at `in_a` and `in_b` in the axes of two
+// keyframes, as measured (times kDepthFactor).
+struct KnownDistance {
+  int a = 0, b = 0;  // keyframes
+  Eigen::Vector3d in_a = Eigen::Vector3d::Zero();
+  Eigen::Vector3d in_b = Eigen::Vector3d::Zero();
+  double metres = 0.0;
+  double sigma = 0.01;  // m
+};
+
+// All that a camera is calibrated from.
+struct CalibrationViews {
+  Camera camera;                        // to begin with
+  std::vector<Rigid3d> world_from_cam;  // of keyframes, as far as known
+  std::vector<Landmark> landmarks;
+  std::vector<LandmarkView> views;       // of each landmark in a row
+  std::vector<KnownDistance> distances;  // may be empty: then there is no scale
+};
+
+}  // namespace rgbd_pose

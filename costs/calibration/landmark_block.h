@@ -1,0 +1,105 @@
+#pragma once
+
+#include <ceres/autodiff_cost_function.h>
+#include <ceres/sized_cost_function.h>
+
+#include <Eigen/Core>
+
+#include "core/geometry/motion.h"
+#include "costs/calibration/landmark_residuals.h"
+
+namespace rgbd_pose {
+
+// The solver's calibration parameters y: theta = start + width . y, where what
+// is not free has a width of 0. Counted in standard deviations of what is known
+// before, they are of one size.
+struct CalibrationOrigin {
+  CalibrationVector start;
+  CalibrationVector width;
+
+  template <typename T>
+  Eigen::Matrix<T, kCalibrationSize, 1> At(const T* y) const {
+    Eigen::Matrix<T, kCalibrationSize, 1> theta;
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      theta[k] = start[k] + width[k] * y[k];
+    }
+    return theta;
+  }
+};
+
+// One residual of a landmark as a Ceres cost function with its hand-written
+// Jacobian, in [pose of the anchor, pose of the view, inverse depth, y].
+template <typename Residual>
+class LandmarkBlock final
+    : public ceres::SizedCostFunction<Residual::kRows, 6, 6, 1,
+                                      kCalibrationSize> {
+ public:
+  // All must outlive the block.
+  LandmarkBlock(const MotionOrigin& anchor, const MotionOrigin& view,
+                const CalibrationOrigin& origin, const LandmarkData& data)
+      : anchor_(anchor), view_(view), origin_(origin), data_(data) {}
+
+  bool Evaluate(double const* const* x, double* residuals,
+                double** jacobians) const override {
+    const CalibrationVector theta = origin_.At(x[3]);
+    if (jacobians == nullptr) {
+      Residual::Residual(anchor_.PoseAt(x[0]), view_.PoseAt(x[1]), x[2][0],
+                         theta.data(), data_, residuals);
+      return true;
+    }
+    constexpr int kRows = Residual::kRows;
+    LandmarkDerivatives<kRows> J;
+    Residual::Jacobian(anchor_.DerivativesAt(x[0]), view_.DerivativesAt(x[1]),
+                       x[2][0], theta.data(), data_, residuals, &J);
+    const auto give = [&](int block, const auto& derivatives) {
+      double* to = jacobians[block];
+      if (to == nullptr) return;
+      for (int row = 0; row < kRows; ++row) {
+        for (int k = 0; k < derivatives.cols(); ++k)
+          *to++ = derivatives(row, k);
+      }
+    };
+    give(0, J.anchor);
+    give(1, J.view);
+    give(2, J.inverse_depth);
+    give(3, (J.theta * origin_.width.asDiagonal()).eval());
+    return true;
+  }
+
+ private:
+  const MotionOrigin& anchor_;
+  const MotionOrigin& view_;
+  const CalibrationOrigin& origin_;
+  const LandmarkData& data_;
+};
+
+// The same residual for ceres::AutoDiffCostFunction: the oracle.
+template <typename Residual>
+class LandmarkOracle {
+ public:
+  LandmarkOracle(const MotionOrigin& anchor, const MotionOrigin& view,
+                 const CalibrationOrigin& origin, const LandmarkData& data)
+      : anchor_(anchor), view_(view), origin_(origin), data_(data) {}
+
+  template <typename T>
+  bool operator()(const T* anchor, const T* view, const T* d, const T* y,
+                  T* residuals) const {
+    const auto theta = origin_.At(y);
+    Residual::Residual(anchor_.PoseAt(anchor), view_.PoseAt(view), d[0],
+                       theta.data(), data_, residuals);
+    return true;
+  }
+
+ private:
+  const MotionOrigin& anchor_;
+  const MotionOrigin& view_;
+  const CalibrationOrigin& origin_;
+  const LandmarkData& data_;
+};
+
+template <typename Residual>
+using LandmarkOracleBlock =
+    ceres::AutoDiffCostFunction<LandmarkOracle<Residual>, Residual::kRows, 6, 6,
+                                1, kCalibrationSize>;
+
+}  // namespace rgbd_pose

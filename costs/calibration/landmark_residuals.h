@@ -1,0 +1,271 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/LU>
+
+#include "core/geometry/camera.h"
+#include "core/geometry/motion.h"
+#include "costs/calibration/calibration_parameters.h"
+#include "costs/calibration/lens.h"
+
+// Residuals of a landmark: a point on the ray of a pixel of one keyframe, its
+// anchor, whose inverse depth d there is a parameter. It is seen in others. All
+// depend on the poses of both (X_cam = R (X_world - C)), on d and on a
+// CalibrationVector theta. What was measured is a pixel and an inverse depth as
+// the sensor gave it: the model says what it should have measured.
+
+namespace rgbd_pose {
+
+// An inverse depth that was measured at a pixel of a frame.
+struct MeasuredInverseDepth {
+  double value = 0.0;          // 1/m
+  double inverse_sigma = 0.0;  // m; 0: none was measured
+
+  // The surface there: m with m . X / z = 1 for its points X at this depth's z,
+  // where the ray of the pixel is (a, b, 1), and the camera's velocity.
+  Eigen::Vector3d plane = Eigen::Vector3d::Zero();
+  Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
+  Eigen::Vector3d rate_rotation = Eigen::Vector3d::Zero();     // rad/s
+  Eigen::Vector3d rate_translation = Eigen::Vector3d::Zero();  // m/s
+
+  // What of the depth camera's displacement has been undone in the image.
+  Eigen::Vector3d undone_rotation = Eigen::Vector3d::Zero();     // rad
+  Eigen::Vector3d undone_translation = Eigen::Vector3d::Zero();  // m
+};
+
+// What is measured of an inverse depth w that is seen at a pixel, and how that
+// changes. The depth camera is displaced by omega, v (registration and delay);
+// it sees the plane m of the same surface, w m . X = 1, at the same pixel at
+//
+//   w' = w (1 + omega . (m x r) - w (m . v))
+//
+// to first order, and measures factor * (w' - offset).
+template <typename T>
+T MeasuredFrom(const T& w, const T* theta, const MeasuredInverseDepth& at) {
+  const Eigen::Vector3d lever = at.plane.cross(at.ray);
+  T turned(0.0), shifted(0.0);
+  for (int i = 0; i < 3; ++i) {
+    turned += lever[i] *
+              (theta[kRotationX + i] + theta[kDepthTime] * at.rate_rotation[i] -
+               at.undone_rotation[i]);
+    shifted += at.plane[i] * (theta[kTranslationX + i] +
+                              theta[kDepthTime] * at.rate_translation[i] -
+                              at.undone_translation[i]);
+  }
+  return theta[kDepthFactor] *
+         (w * (1.0 + turned - w * shifted) - theta[kInverseDepth]);
+}
+
+// The same with its derivatives: by w, the result; by theta, in J.
+inline double MeasuredFrom(double w, const double* theta,
+                           const MeasuredInverseDepth& at, double* value,
+                           double* J) {
+  const Eigen::Vector3d lever = at.plane.cross(at.ray);
+  const Eigen::Map<const Eigen::Vector3d> rotation(theta + kRotationX);
+  const Eigen::Map<const Eigen::Vector3d> translation(theta + kTranslationX);
+  const double delay = theta[kDepthTime];
+  const double factor = theta[kDepthFactor];
+  const double turned =
+      lever.dot(rotation + delay * at.rate_rotation - at.undone_rotation);
+  const double shifted = at.plane.dot(
+      translation + delay * at.rate_translation - at.undone_translation);
+  const double seen = w * (1.0 + turned - w * shifted) - theta[kInverseDepth];
+  *value = factor * seen;
+  for (int k = 0; k < kCalibrationSize; ++k) J[k] = 0.0;
+  J[kInverseDepth] = -factor;
+  J[kDepthFactor] = seen;
+  J[kDepthTime] =
+      factor * w *
+      (lever.dot(at.rate_rotation) - w * at.plane.dot(at.rate_translation));
+  for (int i = 0; i < 3; ++i) {
+    J[kRotationX + i] = factor * w * lever[i];
+    J[kTranslationX + i] = -factor * w * w * at.plane[i];
+  }
+  return factor * (1.0 + turned - 2.0 * w * shifted);
+}
+
+// The derivatives of a residual of so many rows.
+template <int kRows>
+struct LandmarkDerivatives {
+  // By the six parameters of each pose, see MotionOrigin.
+  Eigen::Matrix<double, kRows, 6, Eigen::RowMajor> anchor, view;
+  Eigen::Matrix<double, kRows, 1> inverse_depth;
+  Eigen::Matrix<double, kRows, kCalibrationSize, Eigen::RowMajor> theta;
+};
+
+// What was measured of a landmark: at its anchor and in one view.
+struct LandmarkData {
+  const Camera* rest = nullptr;           // of the lens, see Lens
+  double anchor_u = 0.0, anchor_v = 0.0;  // px, as seen (distorted)
+  double u = 0.0, v = 0.0;                // likewise, in the view
+  double inverse_sigma_px = 0.0;          // of u and v
+  MeasuredInverseDepth depth;             // of the view, or of the anchor's own
+};
+
+// A landmark in the axes of a view, times d: Y = R_v (R_a^T r + (C_a - C_v) d)
+// with the ray r = (x, y, 1) of the anchor's pixel.
+template <typename T>
+Eigen::Matrix<T, 3, 1> InView(const MotionPose<T>& anchor,
+                              const MotionPose<T>& view, const T& d,
+                              const T* theta, const LandmarkData& data) {
+  const Eigen::Matrix<T, 2, 1> place =
+      Undistorted(Lens<T>{theta, *data.rest}, data.anchor_u, data.anchor_v);
+  const Eigen::Matrix<T, 3, 1> ray(place[0], place[1], T(1.0));
+  const Eigen::Matrix<T, 3, 1> in_world =
+      anchor.R.transpose() * ray + (anchor.C - view.C) * d;
+  return view.R * in_world;
+}
+
+// The same with its derivatives, which leave out all of theta but the lens.
+struct InViewDerivatives {
+  Eigen::Vector3d Y;
+  Eigen::Matrix<double, 3, 6> anchor, view;
+  Eigen::Vector3d inverse_depth;
+  Eigen::Matrix<double, 3, kInverseDepth> lens;  // fx fy cx cy k1 k2
+
+  InViewDerivatives(const MotionDerivatives& a, const MotionDerivatives& b,
+                    double d, const double* theta, const LandmarkData& data) {
+    const Lens<double> at{theta, *data.rest};
+    const Eigen::Vector2d seen = at.FromPixel(data.anchor_u, data.anchor_v);
+    const Eigen::Vector2d place = Undistorted(at, data.anchor_u, data.anchor_v);
+    const Eigen::Vector3d ray(place[0], place[1], 1.0);
+    const Eigen::Vector3d baseline = a.C - b.C;
+    const Eigen::Vector3d in_world = a.R.transpose() * ray + baseline * d;
+    Y = b.R * in_world;
+    inverse_depth = b.R * baseline;
+    for (int k = 0; k < 3; ++k) {
+      anchor.col(k) = b.R * (a.dR[k].transpose() * ray);
+      view.col(k) = b.dR[k] * in_world;
+      anchor.col(3 + k) = b.R.col(k) * d;
+      view.col(3 + k) = -b.R.col(k) * d;
+    }
+    // Of the ray by the lens: Distort(ray; k) = seen(f, c).
+    const double r2 = place.squaredNorm();
+    Eigen::Matrix<double, 2, kInverseDepth> moved;
+    moved << -seen[0] / theta[kFx], 0.0, -1.0 / theta[kFx], 0.0, -place[0] * r2,
+        -place[0] * r2 * r2,  //
+        0.0, -seen[1] / theta[kFy], 0.0, -1.0 / theta[kFy], -place[1] * r2,
+        -place[1] * r2 * r2;
+    lens = (b.R * a.R.transpose()).leftCols<2>() *
+           (DistortDerivative(at, place[0], place[1]).inverse() * moved);
+  }
+};
+
+// Where a view sees the landmark: u and v.
+struct LandmarkPixel {
+  static constexpr char kName[] = "landmark_pixel";
+  static constexpr int kRows = 2;
+  static constexpr bool kHasView = true;
+
+  template <typename T>
+  static void Residual(const MotionPose<T>& anchor, const MotionPose<T>& view,
+                       const T& d, const T* theta, const LandmarkData& data,
+                       T* r) {
+    const Lens<T> lens{theta, *data.rest};
+    const Eigen::Matrix<T, 3, 1> Y = InView(anchor, view, d, theta, data);
+    const Eigen::Matrix<T, 2, 1> pixel =
+        lens.ToPixel(lens.Distort(Y[0] / Y[2], Y[1] / Y[2]));
+    r[0] = (pixel[0] - data.u) * data.inverse_sigma_px;
+    r[1] = (pixel[1] - data.v) * data.inverse_sigma_px;
+  }
+
+  static void Jacobian(const MotionDerivatives& anchor,
+                       const MotionDerivatives& view, double d,
+                       const double* theta, const LandmarkData& data, double* r,
+                       LandmarkDerivatives<2>* J) {
+    const InViewDerivatives moved(anchor, view, d, theta, data);
+    const Lens<double> lens{theta, *data.rest};
+    const double z = 1.0 / moved.Y[2];
+    const double x = moved.Y[0] * z, y = moved.Y[1] * z;
+    const Eigen::Vector2d seen = lens.Distort(x, y);
+    const Eigen::Vector2d pixel = lens.ToPixel(seen);
+    const double w = data.inverse_sigma_px;
+    r[0] = (pixel[0] - data.u) * w;
+    r[1] = (pixel[1] - data.v) * w;
+    Eigen::Matrix<double, 2, 3> project;
+    project << z, 0.0, -x * z, 0.0, z, -y * z;
+    const Eigen::Vector2d scale(w * theta[kFx], w * theta[kFy]);
+    const Eigen::Matrix<double, 2, 3> by_point =
+        scale.asDiagonal() * (DistortDerivative(lens, x, y) * project);
+    J->anchor = by_point * moved.anchor;
+    J->view = by_point * moved.view;
+    J->inverse_depth = by_point * moved.inverse_depth;
+    J->theta.setZero();
+    J->theta.leftCols<kInverseDepth>() = by_point * moved.lens;
+    const double r2 = x * x + y * y;
+    J->theta(0, kFx) += w * seen[0];
+    J->theta(1, kFy) += w * seen[1];
+    J->theta(0, kCx) += w;
+    J->theta(1, kCy) += w;
+    J->theta(0, kK1) += scale[0] * x * r2;
+    J->theta(1, kK1) += scale[1] * y * r2;
+    J->theta(0, kK2) += scale[0] * x * r2 * r2;
+    J->theta(1, kK2) += scale[1] * y * r2 * r2;
+  }
+};
+
+// The inverse depth that a view measures where it sees the landmark.
+struct LandmarkDepth {
+  static constexpr char kName[] = "landmark_depth";
+  static constexpr int kRows = 1;
+  static constexpr bool kHasView = true;
+
+  template <typename T>
+  static void Residual(const MotionPose<T>& anchor, const MotionPose<T>& view,
+                       const T& d, const T* theta, const LandmarkData& data,
+                       T* r) {
+    const Eigen::Matrix<T, 3, 1> Y = InView(anchor, view, d, theta, data);
+    r[0] = (MeasuredFrom<T>(d / Y[2], theta, data.depth) - data.depth.value) *
+           data.depth.inverse_sigma;
+  }
+
+  static void Jacobian(const MotionDerivatives& anchor,
+                       const MotionDerivatives& view, double d,
+                       const double* theta, const LandmarkData& data, double* r,
+                       LandmarkDerivatives<1>* J) {
+    const InViewDerivatives moved(anchor, view, d, theta, data);
+    const double z = 1.0 / moved.Y[2];
+    double value;
+    const double by_w =
+        MeasuredFrom(d * z, theta, data.depth, &value, J->theta.data());
+    const double weight = data.depth.inverse_sigma;
+    r[0] = (value - data.depth.value) * weight;
+    const double by_z = -by_w * d * z * z * weight;
+    J->anchor = by_z * moved.anchor.row(2);
+    J->view = by_z * moved.view.row(2);
+    J->inverse_depth[0] = by_z * moved.inverse_depth[2] + by_w * z * weight;
+    J->theta *= weight;
+    J->theta.leftCols<kInverseDepth>() += by_z * moved.lens.row(2);
+  }
+};
+
+// The inverse depth that the anchor itself measured.
+struct AnchorDepth {
+  static constexpr char kName[] = "anchor_depth";
+  static constexpr int kRows = 1;
+  static constexpr bool kHasView = false;
+
+  template <typename T>
+  static void Residual(const MotionPose<T>& /*anchor*/,
+                       const MotionPose<T>& /*view*/, const T& d,
+                       const T* theta, const LandmarkData& data, T* r) {
+    r[0] = (MeasuredFrom<T>(d, theta, data.depth) - data.depth.value) *
+           data.depth.inverse_sigma;
+  }
+
+  static void Jacobian(const MotionDerivatives& /*anchor*/,
+                       const MotionDerivatives& /*view*/, double d,
+                       const double* theta, const LandmarkData& data, double* r,
+                       LandmarkDerivatives<1>* J) {
+    double value;
+    const double by_w =
+        MeasuredFrom(d, theta, data.depth, &value, J->theta.data());
+    r[0] = (value - data.depth.value) * data.depth.inverse_sigma;
+    J->anchor.setZero();
+    J->view.setZero();
+    J->inverse_depth[0] = by_w * data.depth.inverse_sigma;
+    J->theta *= data.depth.inverse_sigma;
+  }
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,140 @@
+// Images in; what is wrong with their camera out.
+
+#include "apps/pipeline/calibration.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "apps/pipeline/calibration_run.h"
+#include "apps/pipeline/slam.h"
+#include "core/util/input_error.h"
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/sources/corrected_source.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Fate = CalibratedParameter::Fate;
+
+constexpr int kFrames = 45;
+
+std::vector<Frame> Render(const std::string& path, int frames) {
+  SyntheticOptions options;
+  options.path = path;
+  options.frames = frames;
+  const SyntheticDataset dataset(options);
+  std::vector<Frame> result;
+  for (int i = 0; i < frames; ++i) result.push_back(dataset.Read(i));
+  return result;
+}
+
+// What a camera is calibrated from: made once, since it takes seconds.
+struct Mapped {
+  Mapped(const std::vector<Frame>& frames, const RgbdCamera& camera)
+      : first(camera) {
+    Slam slam(CalibrationOdometry(), CalibrationSlam(), first.camera);
+    std::vector<SlamFrame> tracked;
+    for (const Frame& frame : frames) {
+      tracked.push_back(slam.Track(CorrectDepth(first, frame)));
+    }
+    slam.Finish();
+    map = slam.Map();
+    path = SmoothPath(tracked);
+  }
+
+  CalibrationResult Calibrate(CalibrationSettings settings = {}) const {
+    settings.data.max_views = 5000;
+    return rgbd_pose::Calibrate(map, path, first, CalibrationOdometry(),
+                                settings, {}, 2);
+  }
+
+  RgbdCamera first;
+  KeyframeMap map;
+  Trajectory path;
+};
+
+const std::vector<Frame>& Handheld() {
+  static const std::vector<Frame> frames = Render("handheld", kFrames);
+  return frames;
+}
+
+RgbdCamera Wrong() {
+  RgbdCamera wrong;
+  wrong.camera.fx *= 1.02;
+  wrong.camera.fy *= 1.02;
+  wrong.camera.cx += 5.0;
+  wrong.camera.cy -= 5.0;
+  wrong.depth_errors.inverse_depth_offset = 0.01;
+  wrong.depth_errors.depth_time_offset = -0.01;
+  return wrong;
+}
+
+const Mapped& MappedWrongly() {
+  static const Mapped mapped(Handheld(), Wrong());
+  return mapped;
+}
+
+const CalibratedParameter& Of(const CalibrationResult& result,
+                              CalibrationIndex k) {
+  return result.parameters[k];
+}
+
+TEST(CalibrationTest, FindsWhatIsWrong) {
+  const CalibrationResult result = MappedWrongly().Calibrate();
+  EXPECT_TRUE(result.is_accepted) << result.reason;
+  const Camera truth;
+  EXPECT_NEAR(result.camera.camera.fx, truth.fx, 2e-3 * truth.fx);
+  EXPECT_NEAR(result.camera.camera.fy, truth.fy, 2e-3 * truth.fy);
+  EXPECT_NEAR(result.camera.camera.cx, truth.cx, 0.5);
+  EXPECT_NEAR(result.camera.camera.cy, truth.cy, 0.5);
+  EXPECT_NEAR(result.camera.depth_errors.inverse_depth_offset, 0.0, 2e-3);
+  EXPECT_NEAR(result.camera.depth_errors.depth_time_offset, 0.0, 1e-3);
+  EXPECT_LT(result.cost_after, result.cost_before);
+  // Images alone do not tell how large the world is.
+  EXPECT_EQ(Of(result, kDepthFactor).fate, Fate::kFixed);
+  EXPECT_EQ(result.camera.depth_scale, Wrong().depth_scale);
+  EXPECT_TRUE(result.scale_from.empty());
+}
+
+TEST(CalibrationTest, WhatIsFixedStays) {
+  CalibrationSettings settings;
+  settings.fix = "centre,registration,depth_time_offset";
+  const CalibrationResult result = MappedWrongly().Calibrate(settings);
+  EXPECT_EQ(Of(result, kCx).fate, Fate::kFixed);
+  EXPECT_EQ(Of(result, kCx).found, Wrong().camera.cx);
+  EXPECT_EQ(Of(result, kDepthTime).found, 0.0);
+  EXPECT_EQ(Of(result, kRotationY).found, 0.0);
+  EXPECT_EQ(Of(result, kFx).fate, Fate::kDetermined);
+  settings.fix = "centre,size";
+  EXPECT_THROW(MappedWrongly().Calibrate(settings), InputError);
+}
+
+TEST(CalibrationTest, KeepsACameraThatIsRight) {
+  const CalibrationResult result = Mapped(Handheld(), RgbdCamera()).Calibrate();
+  EXPECT_FALSE(result.is_accepted);
+  EXPECT_FALSE(result.reason.empty());
+  EXPECT_EQ(result.camera.camera.fx, Camera().fx);
+}
+
+TEST(CalibrationTest, ACameraAtRestDeterminesNothing) {
+  const CalibrationResult result =
+      Mapped(Render("still", 5), RgbdCamera()).Calibrate();
+  EXPECT_FALSE(result.is_accepted);
+  for (const CalibratedParameter& parameter : result.parameters) {
+    EXPECT_NE(parameter.fate, Fate::kDetermined);
+  }
+}
+
+TEST(CalibrationTest, AKnownLengthHasToMakeSense) {
+  for (const char* text :
+       {"1000,1001", "a,b,c", "1000,1001,-1", "1000,1001,1,1", "1000,5000,1"}) {
+    CalibrationSettings settings;
+    settings.known_length = text;
+    EXPECT_THROW(MappedWrongly().Calibrate(settings), InputError) << text;
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

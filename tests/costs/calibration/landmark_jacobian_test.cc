@@ -1,0 +1,114 @@
+// Every hand-written Jacobian of a calibration against ceres::Jet.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "costs/calibration/calibration_list.h"
+#include "costs/calibration/landmark_block.h"
+#include "frontend/simulation/synthetic_matches.h"
+#include "tests/support/both_jacobians.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Rounding, relative to the largest entry of a block: Newton's method for the
+// lens stops at 1e-13.
+constexpr double kTolerance = 1e-10;
+constexpr int kSamples = 500;
+
+// A landmark before two cameras with a lens, all of it a little off.
+struct LandmarkSample {
+  Camera rest;
+  MotionOrigin anchor, view;
+  CalibrationOrigin origin;
+  LandmarkData data;
+  double d = 0.0;
+  MotionVector x_anchor, x_view;
+  CalibrationVector y;
+
+  explicit LandmarkSample(RandomWorld* world) {
+    rest.p1 = world->Uniform(-0.005, 0.005);
+    rest.p2 = world->Uniform(-0.005, 0.005);
+    rest.k3 = world->Uniform(-0.1, 0.1);
+    anchor = MotionOrigin(world->Motion(0.2, 0.3));
+    view = MotionOrigin(world->Motion(0.2, 0.3));
+    x_anchor << world->Vector(0.05), world->Vector(0.05);
+    x_view << world->Vector(0.05), world->Vector(0.05);
+    origin.start << 525.0, 520.0, 319.5, 239.5, 0.1, -0.1, 0.01, 0.01, 0.01,
+        0.02, -0.01, 0.01, 0.02, 0.01, 1.02;
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      y[k] = world->Uniform(-0.5, 0.5);
+      origin.width[k] =
+          kCalibrationParameters[k].prior * (k <= kFy ? 500.0 : 1.0);
+    }
+    d = world->Uniform(0.2, 1.0);
+    data.rest = &rest;
+    data.anchor_u = world->Uniform(20.0, 620.0);
+    data.anchor_v = world->Uniform(20.0, 460.0);
+    data.u = world->Uniform(20.0, 620.0);
+    data.v = world->Uniform(20.0, 460.0);
+    data.inverse_sigma_px = world->Uniform(1.0, 4.0);
+    data.depth.value = world->Uniform(0.2, 1.0);
+    data.depth.inverse_sigma = world->Uniform(100.0, 1000.0);
+    data.depth.plane = world->Vector(0.5) + Eigen::Vector3d::UnitZ();
+    data.depth.ray = world->Vector(0.5);
+    data.depth.ray.z() = 1.0;
+    data.depth.rate_rotation = world->Vector(1.0);
+    data.depth.rate_translation = world->Vector(1.0);
+    data.depth.undone_rotation = world->Vector(0.02);
+    data.depth.undone_translation = world->Vector(0.02);
+  }
+};
+
+template <typename Residual>
+class LandmarkJacobianTest : public ::testing::Test {};
+
+TYPED_TEST_SUITE(LandmarkJacobianTest, AsGTestTypes<CalibrationResiduals>::type,
+                 CostName);
+
+TYPED_TEST(LandmarkJacobianTest, EqualsTheOracle) {
+  constexpr int kRows = TypeParam::kRows;
+  constexpr int kSizes[] = {6, 6, 1, kCalibrationSize};
+  RandomWorld world(1);
+  double largest[4] = {};
+  for (int i = 0; i < kSamples; ++i) {
+    const LandmarkSample s(&world);
+    const double* x[] = {s.x_anchor.data(), s.x_view.data(), &s.d, s.y.data()};
+    double J_hand[4][kRows * kCalibrationSize];
+    double J_jet[4][kRows * kCalibrationSize];
+    double* hand[] = {J_hand[0], J_hand[1], J_hand[2], J_hand[3]};
+    double* jet[] = {J_jet[0], J_jet[1], J_jet[2], J_jet[3]};
+    double r_hand[kRows], r_jet[kRows], r_plain[kRows];
+    const LandmarkBlock<TypeParam> block(s.anchor, s.view, s.origin, s.data);
+    ASSERT_TRUE(block.Evaluate(x, r_hand, hand));
+    ASSERT_TRUE(block.Evaluate(x, r_plain, nullptr));
+    LandmarkOracleBlock<TypeParam> oracle(
+        new LandmarkOracle<TypeParam>(s.anchor, s.view, s.origin, s.data));
+    ASSERT_TRUE(oracle.Evaluate(x, r_jet, jet));
+    for (int row = 0; row < kRows; ++row) {
+      const double scale = std::max(1.0, std::abs(r_jet[row]));
+      EXPECT_NEAR(r_hand[row], r_jet[row], kTolerance * scale);
+      EXPECT_NEAR(r_plain[row], r_jet[row], kTolerance * scale);
+    }
+    for (int block = 0; block < 4; ++block) {
+      const int size = kRows * kSizes[block];
+      double most = 1e-9;
+      for (int k = 0; k < size; ++k) {
+        most = std::max(most, std::abs(J_jet[block][k]));
+      }
+      for (int k = 0; k < size; ++k) {
+        EXPECT_NEAR(J_hand[block][k], J_jet[block][k], kTolerance * most)
+            << "block " << block << ", entry " << k << ", sample " << i;
+      }
+      largest[block] = std::max(largest[block], most);
+    }
+  }
+  for (int block = TypeParam::kHasView ? 0 : 2; block < 4; ++block) {
+    EXPECT_GT(largest[block], 1e-3) << "vacuous samples, block " << block;
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose
