@@ -149,6 +149,11 @@ std::string CalibrationSettings::Check() const {
   if (!prior.allFinite() || !(prior.array() >= 0.0).all()) {
     return "standard deviations must not be negative";
   }
+  try {
+    FreePartsOf(fix, false);
+  } catch (const InputError& error) {
+    return error.what();
+  }
   return data.Check();
 }
 
