@@ -33,9 +33,8 @@ struct RunResults {
   std::optional<EvaluationReport> evaluation;
   std::string no_evaluation;
 
-  // One line on what frames and errors say of the input, or empty.
+  // One line on what the errors say of the input, or empty.
   std::string Warning() const {
-    if (frames.size() < 2) return "one frame alone: there is no motion in it";
     return evaluation.has_value()
                ? LikenessWarning(evaluation->likeness, evaluation->ate.rmse)
                : "";

@@ -19,9 +19,9 @@ std::string FormatPose(const Rigid3d& pose) {
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
   std::string text =
       "timestamp,status,reason,segment,reference,is_reference,relocalised,"
-      "predicted,carried_by,matches,inliers,iterations,sigma,decode_ms,"
-      "track_ms,match_ms,solve_ms,reference_ms,relocalise_ms,"
-      "tx,ty,tz,qx,qy,qz,qw\n";
+      "predicted,carried_by,matches,inliers,iterations,sigma,"
+      "tx,ty,tz,qx,qy,qz,qw,"
+      "decode_ms,track_ms,match_ms,solve_ms,reference_ms,relocalise_ms\n";
   for (const TrackedFrame& frame : frames) {
     // Reasons are our own words and hold no quotes.
     text += Format("%.6f,%s,\"%s\",%d,%d,%d,%d,%d,%s,%d,%d,%d,%.4f",
@@ -30,12 +30,13 @@ std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
                    frame.is_reference, frame.relocalised, frame.is_predicted,
                    std::string(frame.carried_by).c_str(), frame.matches,
                    frame.inliers, frame.iterations, frame.sigma);
+    text += FormatPose(frame.world_from_cam);
     for (const double ms :
          {frame.decode_ms, frame.track_ms, frame.match_ms, frame.solve_ms,
           frame.reference_ms, frame.relocalise_ms}) {
       text += Format(",%.3f", ms);
     }
-    text += FormatPose(frame.world_from_cam) + "\n";
+    text += "\n";
   }
   return text;
 }

@@ -7,8 +7,10 @@
 namespace rgbd_pose {
 
 std::string FormatSummary(const RunSummary& summary) {
+  const char* const alone =
+      summary.frames == 1 ? "; one alone has no motion" : "";
   return Format(
-      "frames      %d, %.1f %% tracked (%d ok, %d degraded, %d lost)\n"
+      "frames      %d, %.1f %% tracked (%d ok, %d degraded, %d lost)%s\n"
       "references  %d, %d segment(s), %d frame(s) found again\n"
       "time        %.2f ms per frame median, %.2f ms 99th percentile, without "
       "decoding\n"
@@ -17,9 +19,9 @@ std::string FormatSummary(const RunSummary& summary) {
       "throughput  %.1f frames/s with decoding (%.2f ms per frame median), %d "
       "thread(s)\n",
       summary.frames, 100.0 * summary.TrackedShare(), summary.ok,
-      summary.degraded, summary.lost, summary.references, summary.segments,
-      summary.relocalised, summary.median_track_ms, summary.p99_track_ms,
-      summary.median_match_ms, summary.median_solve_ms,
+      summary.degraded, summary.lost, alone, summary.references,
+      summary.segments, summary.relocalised, summary.median_track_ms,
+      summary.p99_track_ms, summary.median_match_ms, summary.median_solve_ms,
       summary.median_reference_ms, summary.FramesPerSecond(),
       summary.median_decode_ms, summary.threads);
 }

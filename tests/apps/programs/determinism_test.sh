@@ -18,7 +18,7 @@ results() {
   sha256sum <"$1/trajectory.txt"
   sha256sum <"$1/errors.csv"
   sha256sum <"$1/cloud.ply"
-  head -1 "$1/frames.csv" | grep -q 'sigma,decode_ms' || echo "other columns"
+  head -1 "$1/frames.csv" | grep -q 'qw,decode_ms' || echo "other columns"
   sed -E 's/(,[^,]*){6}$//' "$1/frames.csv" | sha256sum
 }
 

@@ -70,10 +70,8 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
             "timestamp,status,reason,segment,reference,is_reference,"
             "relocalised,predicted,carried_by,matches,inliers,iterations,sigma,"
-            "decode_ms,"
-            "track_ms,"
-            "match_ms,solve_ms,reference_ms,relocalise_ms,"
-            "tx,ty,tz,qx,qy,qz,qw");
+            "tx,ty,tz,qx,qy,qz,qw,"
+            "decode_ms,track_ms,match_ms,solve_ms,reference_ms,relocalise_ms");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kFrames);
   const std::string edges = ReadTextFile(folder_ / "run/edges.csv");
   EXPECT_GE(std::count(edges.begin(), edges.end(), '\n'), kFrames);
