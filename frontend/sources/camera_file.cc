@@ -157,8 +157,8 @@ void CheckSize(const YamlSection& file, const std::string& key, double size,
 DepthErrors ReadDepthErrors(const YamlSection& file) {
   DepthErrors errors;
   errors.inverse_depth_offset = file.NumberOr("inverse_depth_offset", 0.0);
-  CheckSize(file, "inverse_depth_offset",
-            std::abs(errors.inverse_depth_offset), 0.5, "1/m");
+  CheckSize(file, "inverse_depth_offset", std::abs(errors.inverse_depth_offset),
+            0.5, "1/m");
   errors.depth_time_offset = file.NumberOr("depth_time_offset", 0.0);
   CheckSize(file, "depth_time_offset", std::abs(errors.depth_time_offset), 0.5,
             "s");
@@ -169,8 +169,8 @@ DepthErrors ReadDepthErrors(const YamlSection& file) {
   CheckSize(file, "depth_translation", translation.norm(), 0.5, "m");
   const Eigen::Vector3d axis =
       angle > 0.0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX();
-  errors.depth_from_color = Rigid3d(
-      Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), translation);
+  errors.depth_from_color =
+      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), translation);
   return errors;
 }
 
