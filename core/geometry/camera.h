@@ -106,9 +106,9 @@ struct DepthErrors {
 
 // A camera together with how its depth images count.
 struct RgbdCamera {
-  Camera camera;                // of the colour image
-  double depth_scale = 5000.0;  // raw units of the depth image per metre
-  DepthErrors depth_errors = {};
+  Camera camera;                  // of the colour image
+  double depth_scale = 5000.0;    // raw units of the depth image per metre
+  DepthErrors depth_errors = {};  // what sources undo as they read
 };
 
 // A camera known by name: tum_fr1, tum_fr2, tum_fr3, ros_default. Figures from
