@@ -27,9 +27,9 @@ constexpr float kMaxTangentSquared = 4.0F;
 using Block = Eigen::Array<float, Eigen::Dynamic, 1, 0, kBlock, 1>;
 using Places = Eigen::Array<int, Eigen::Dynamic, 1, 0, kBlock, 1>;
 
-// The least whole numbers that are not below x, between 0 and `end`.
-Places CeilWithin(const Block& x, float end) {
-  return x.max(0.0F).min(end).ceil().cast<int>();
+// The first whole numbers beyond x, between 0 and `end`.
+Places FirstBeyond(const Block& x, float end) {
+  return (x + 1.0F).max(0.0F).min(end).cast<int>();
 }
 
 void RequireCamera(const Camera& camera, const char* what) {
@@ -114,11 +114,11 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
                          there < Frame::kNoDepth;
     // Half-open rectangles: those of neighbours do not overlap. What is not
     // seen has none.
-    const Block right = is_seen.select(u + half_width_ * nearer, 0.0F);
-    const Places u0 = CeilWithin(u - half_width_ * nearer, columns);
-    const Places u1 = CeilWithin(right, columns);
-    const Places v0 = CeilWithin(v - half_height_ * nearer, rows);
-    const Places v1 = CeilWithin(v + half_height_ * nearer, rows);
+    const Block right = is_seen.select(u + half_width_ * nearer, -1.0F);
+    const Places u0 = FirstBeyond(u - half_width_ * nearer, columns);
+    const Places u1 = FirstBeyond(right, columns);
+    const Places v0 = FirstBeyond(v - half_height_ * nearer, rows);
+    const Places v1 = FirstBeyond(v + half_height_ * nearer, rows);
     for (int i = 0; i < n; ++i) {
       if (u0[i] >= u1[i]) continue;
       // One less, so that none (0) is farther than all others.
