@@ -5,7 +5,6 @@
 
 #include "core/util/input_error.h"
 #include "frontend/sources/camera_file.h"
-#include "frontend/sources/corrected_source.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
 
@@ -114,8 +113,8 @@ std::vector<std::string> LeftOut(const FrameSource& source) {
 Sequence OpenSequence(const SequenceSettings& settings, bool keep_color) {
   Sequence sequence;
   const FrameRange range = ParseFrameRange(settings.frames);
-  sequence.source = WithCorrectDepth(PartOf(
-      OpenSource(settings.source, OptionsOf(settings, keep_color)), range));
+  sequence.source = PartOf(
+      OpenSource(settings.source, OptionsOf(settings, keep_color)), range);
   sequence.compares = settings.groundtruth != kNoGroundTruth;
   if (sequence.compares && !settings.groundtruth.empty()) {
     sequence.ground_truth = ReadTrajectory(settings.groundtruth);

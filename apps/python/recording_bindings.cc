@@ -15,6 +15,7 @@
 #include "apps/python/frame_images.h"
 #include "apps/python/trajectory_arrays.h"
 #include "frontend/sources/camera_file.h"
+#include "frontend/sources/corrected_source.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
 #include "frontend/sources/tum_dataset.h"
@@ -43,7 +44,7 @@ Frame ReadFrame(const TumDataset& dataset, int index) {
                           " frames");
   }
   const py::gil_scoped_release no_gil;
-  return dataset.Read(index);
+  return CorrectDepth(dataset.camera(), dataset.Read(index));
 }
 
 // A recording of any kind. Each loop over it reads it anew.

@@ -10,6 +10,7 @@
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "frontend/sources/bag_source.h"
+#include "frontend/sources/corrected_source.h"
 #include "frontend/sources/numbered_dataset.h"
 #include "frontend/sources/openni2_source.h"
 #include "frontend/sources/ros1_bag.h"
@@ -121,7 +122,7 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   std::string known;
   for (const SourceType& type : Types()) {
     if (name == kAuto ? type.recognises(options) : name == type.name) {
-      return type.open(options);
+      return WithCorrectDepth(type.open(options));
     }
     known += (known.empty() ? "" : "; ") + type.what;
   }

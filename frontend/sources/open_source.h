@@ -14,7 +14,8 @@ namespace rgbd_pose {
 // open_source.cc.
 std::vector<std::string> SourceNames();
 
-// Opens a recording. Throws InputError for an unknown name, for what is no
+// Opens a recording; what its camera says is wrong with depth is undone in its
+// frames. Throws InputError for an unknown name, for what is no
 // recording of a known kind, and as the source does.
 std::unique_ptr<FrameSource> OpenSource(const std::string& name,
                                         const SourceOptions& options);

@@ -49,6 +49,22 @@ def test_parts_are_numbered_from_zero(sequence, whole):
     ]
 
 
+def test_undoes_what_a_calibration_found(sequence, whole, tmp_path):
+    text = (sequence / "camera.yaml").read_text()
+    calibrated = tmp_path / "camera.yaml"
+    calibrated.write_text(text + "inverse_depth_offset: 0.05\n")
+    raw = whole[0].depth
+    scale = rgbd_pose.Camera.load(calibrated).depth_scale
+    seen = (raw > 0) & (raw < 65535)
+    expected = 1 / (scale / raw[seen] + 0.05) * scale
+    camera = rgbd_pose.Camera.load(calibrated)
+    for frame in (
+        next(iter(rgbd_pose.Recording(sequence, calibrated))),
+        rgbd_pose.TumDataset(sequence, camera)[0],
+    ):
+        np.testing.assert_allclose(frame.depth[seen], expected, atol=0.51)
+
+
 def test_finds_out_what_kind_it_is(sequence, camera, whole, tmp_path):
     for kind, name in (("rgb", "color"), ("depth", "depth")):
         images = sorted((sequence / kind).iterdir())
