@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # include_directions.sh SOURCE: each room (folder) includes only itself and the
-# rooms that docs/architecture.md lists above it, and no file includes itself by
-# way of others.
+# rooms that docs/where_things_go.md lists above it, and no file includes itself
+# by way of others.
 set -euo pipefail
 cd "$1"
 status=0
