@@ -41,7 +41,7 @@ function(rgbd_pose_install_package)
   configure_file(${source}/rgbd_poseConfig.cmake.in
                  ${binary}/rgbd_poseConfig.cmake @ONLY)
   write_basic_package_version_file(${binary}/rgbd_poseConfigVersion.cmake
-                                   COMPATIBILITY SameMinorVersion)
+                                   COMPATIBILITY SameMajorVersion)
   set(finders)
   foreach(finder FindLibdeflate FindOpenNI2 FindRosbagStorage)
     configure_file(${source}/${finder}.cmake ${binary}/${finder}.cmake COPYONLY)
@@ -57,10 +57,16 @@ function(rgbd_pose_install_package)
                  ${binary}/rgbd_pose_simulation.pc @ONLY)
   install(FILES ${binary}/rgbd_pose.pc ${binary}/rgbd_pose_simulation.pc
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
-  foreach(file LICENSE README.md CHANGELOG.md third_party_notes.md)
+  # Pages with all that their links lead to.
+  foreach(file CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE README.md
+               third_party_notes.md)
     install(FILES ${PROJECT_SOURCE_DIR}/${file}
             DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development)
   endforeach()
+  install(DIRECTORY ${PROJECT_SOURCE_DIR}/docs
+          DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT development
+          PATTERN Doxyfile EXCLUDE
+          PATTERN doxygen_filter.awk EXCLUDE)
 endfunction()
 
 # As the targets' public dependencies; whatever else the libraries use must be

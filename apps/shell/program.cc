@@ -63,7 +63,7 @@ void PrintHelp(const ProgramInfo& info) {
   std::printf(
       "\nAlso: --flagfile=FILE reads flags from a file, --help, --version.\n"
       "Exit codes: 0 ok, 1 usage, 2 bad input, 3 tracking failed, "
-      "4 some batch items failed.\n");
+      "4 some batch items failed, 5 no better camera found.\n");
 }
 
 int Run(int argc, char** argv, const ProgramInfo& info,

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Checks README.md, CONTRIBUTING.md and docs/*.md: docs_pages.py SOURCE
+"""Checks README.md, CONTRIBUTING.md and docs/: docs_pages.py SOURCE
 
 - Links lead to files of the project and to headings that are there.
-- Every page of docs/ can be reached from README.md.
+- Every page of docs/ can be reached from README.md and is in docs/README.md.
 - A ```cpp block is the file that the comment before it names
   (<!-- docs/examples/x.cc -->), which a test compiles and runs; so is any
   other block with such a comment. With --write blocks are brought up to date
@@ -56,6 +56,10 @@ def check_links(source, pages):
                 problems.append(f'{name}: no such heading: {target}')
     problems += [f'{name}: no page links to it'
                  for name in sorted(set(pages) - reached)]
+    index = re.findall(r'\]\(([^)#]+)\)', pages.get('docs/README.md', ''))
+    problems += [f'docs/README.md: does not list {name}' for name in sorted(pages)
+                 if name.startswith('docs/') and name != 'docs/README.md' and
+                 name[len('docs/'):] not in index]
     return problems
 
 
@@ -89,7 +93,7 @@ def main():
     source = pathlib.Path(sys.argv[1]).resolve()
     write = '--write' in sys.argv[2:]
     paths = [source / 'README.md', source / 'CONTRIBUTING.md']
-    paths += sorted((source / 'docs').glob('*.md'))
+    paths += sorted((source / 'docs').rglob('*.md'))
     pages = {path.relative_to(source).as_posix(): path.read_text()
              for path in paths}
     problems = check_links(source, pages)

@@ -12,12 +12,14 @@ PAGE = pathlib.Path(os.environ["RGBD_POSE_SOURCES"], "docs/python.md")
 def test_examples_run(sequence, tmp_path):
     (tmp_path / "sequence").symlink_to(sequence)
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(), re.DOTALL)
-    assert len(blocks) == 4
+    assert len(blocks) == 5
     for block in blocks:
         run = subprocess.run(
             [sys.executable, "-c", block],
             cwd=tmp_path, capture_output=True, text=True,
         )
+        if "is not installed" in run.stderr:
+            continue  # by name: what a block needs beside NumPy
         assert run.returncode == 0, block + run.stderr
         # What a line prints is written behind it, in words of its output.
         for expected in re.findall(r"# prints (.*)", block):

@@ -47,6 +47,18 @@ mv "$work/first" "$prefix"
 [ "$(ls "$prefix/include/rgbd_pose/apps")" = pipeline ] ||
   fail "headers of the programs"
 
+# Every link of a page leads to what is installed.
+docs=$(dirname "$(find "$prefix" -path '*/doc/*/README.md' | grep -v /docs/)")
+while IFS= read -r page; do
+  sed '/^```/,/^```/d' "$page" | grep -oE '\]\([^)# ]+' | cut -c3- |
+    while IFS= read -r link; do
+      [[ $link == http* || -e "$(dirname "$page")/$link" ]] ||
+        echo "$page: nothing at $link"
+    done
+done < <(find "$docs" -name '*.md') >"$work/log"
+[ ! -s "$work/log" ] || fail "dead links"
+[ -s "$docs/docs/README.md" ] || fail "no index of pages"
+
 # The examples, in the middle of nowhere.
 cp -r "$source/docs/examples" "$work/examples"
 configure "$work/examples" || fail "examples: find_package"
