@@ -110,20 +110,10 @@ std::string SizeRows(const BenchmarkResults& results) {
     const BenchmarkResult* per_match = find("per_match");
     const BenchmarkResult* ours = find("compressed");
     if (ours == nullptr) continue;
-    text += Row({number, Time(autodiff), Time(per_match), Time(ours),
+    text += Row({number, Time(autodiff), Time(ours),
                  Time(results.Find("solve/bare_loop/huber/" + number)),
-                 Ratio(ours, autodiff), Ratio(ours, per_match)});
-  }
-  return text;
-}
-
-std::string EstimateRows(const BenchmarkResults& results) {
-  std::string text;
-  for (const int size : kSizes) {
-    const std::string number = std::to_string(size);
-    const std::string time =
-        Time(results.Find("estimate/compressed/tukey/" + number));
-    if (!time.empty()) text += Row({number, time});
+                 Ratio(ours, autodiff), Ratio(ours, per_match),
+                 Time(results.Find("estimate/compressed/tukey/" + number))});
   }
   return text;
 }
@@ -139,22 +129,6 @@ std::string JacobianRows(const BenchmarkResults& results) {
     if (by_hand == nullptr) continue;
     text += Row({"`" + cost + "`", Time(by_hand), Time(by_jet),
                  Ratio(by_hand, by_jet)});
-  }
-  return text;
-}
-
-std::string DirectRows(const BenchmarkResults& results) {
-  std::string text;
-  for (const std::string& cost : DirectCostNames()) {
-    const auto find = [&](const std::string& what) {
-      return results.Find("direct/" + what + "/10000");
-    };
-    const BenchmarkResult* rows = find("linearise/" + cost);
-    if (rows == nullptr) continue;
-    const BenchmarkResult* bare =
-        cost == "photometric" ? find("linearise/bare_loop") : nullptr;
-    text += Row({"`" + cost + "`", Time(rows), Time(bare),
-                 Time(find("look_up/" + cost))});
   }
   return text;
 }
@@ -199,11 +173,9 @@ std::string FrameRows(const BenchmarkResults& results) {
       const BenchmarkResult* result =
           results.Find("frames/" + sequence + "/" + method);
       if (result == nullptr) continue;
-      text +=
-          Row({"`" + sequence + "`", std::string("`") + method + "`",
-               TimeWithQuartiles(*result), Counter(*result, "p99_ms"),
-               Counter(*result, "ate_m", 1e3), Counter(*result, "rpe_m", 1e3),
-               Counter(*result, "rpe_deg")});
+      text += Row({"`" + sequence + "`", std::string("`") + method + "`",
+                   TimeWithQuartiles(*result), Counter(*result, "ate_m", 1e3),
+                   Counter(*result, "rpe_m", 1e3)});
     }
   }
   return text;
@@ -269,9 +241,7 @@ std::map<std::string, std::string> ReportTables(
           {"INSTRUCTION_SET", InstructionSetName()},
           {"SOLVE", SolveRows(results)},
           {"SIZES", SizeRows(results)},
-          {"ESTIMATE", EstimateRows(results)},
           {"JACOBIANS", JacobianRows(results)},
-          {"DIRECT", DirectRows(results)},
           {"GRAPHS", GraphRows(results)},
           {"PEERS", PeerRows(results)},
           {"FRAMES", FrameRows(results)},
