@@ -47,10 +47,6 @@ EXCEPTIONS = {
         'rgbd_simulate --scene=table --path=table --frames=1800 --output=table':
             in_place(simulated('table', '--path=handheld', 30),
                      'renders for two minutes'),
-        'rgbd_simulate --scene=two_rooms --path=two_rooms --frames=1800 '
-        '--output=two_rooms':
-            in_place(simulated('two_rooms', '--path=handheld', 10),
-                     'renders for two minutes'),
     },
     'CONTRIBUTING.md': {
         'scripts/test': left_out('it runs this test'),
