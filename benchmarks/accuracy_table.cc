@@ -56,18 +56,6 @@ struct Method {
   std::function<std::optional<Rigid3d>(const Trial&)> find;
 };
 
-struct Schedule {
-  const char* name;
-  const char* loss;
-  RobustSchedule schedule;
-};
-constexpr Schedule kSchedules[] = {
-    {"none", "none", RobustSchedule::kDirect},
-    {"huber", "huber", RobustSchedule::kDirect},
-    {"tukey", "tukey", RobustSchedule::kDirect},
-    {"gnc tukey", "tukey", RobustSchedule::kGnc},
-};
-
 std::vector<Method> OurMethods() {
   std::vector<std::pair<std::string, double>> costs;
   for (const std::string& name : CostNames()) {
@@ -80,23 +68,13 @@ std::vector<Method> OurMethods() {
   costs.emplace_back("bidirectional_image", kMissingDepthShare);
   std::vector<Method> methods;
   for (const auto& [cost, missing] : costs) {
-    for (const Schedule& row : kSchedules) {
-      // What losses and schedules do is shown with the default cost.
-      if (row.schedule != RobustSchedule::kGnc && cost != costs[0].first) {
-        continue;
-      }
-      EstimatorOptions options;
-      options.schedule = row.schedule;
-      auto estimator =
-          std::make_shared<Estimator>(options, MakeRobustCosts(cost, row.loss));
-      std::string name = cost + ", " + row.name;
-      if (missing > 0.0) name += " *";
-      methods.push_back(
-          {name, missing, [estimator](const Trial& trial) {
-             return std::optional<Rigid3d>(
-                 estimator->Estimate(trial.matches).cur_from_prev);
-           }});
-    }
+    auto estimator =
+        std::make_shared<Estimator>(EstimatorOptions(), MakeRobustCosts(cost));
+    methods.push_back({missing > 0.0 ? cost + " *" : cost, missing,
+                       [estimator](const Trial& trial) {
+                         return std::optional<Rigid3d>(
+                             estimator->Estimate(trial.matches).cur_from_prev);
+                       }});
   }
   return methods;
 }
@@ -204,7 +182,7 @@ void Main() {
       FLAGS_seeds, FLAGS_matches, kMaxAngle * kDegrees, kMaxTranslation * 1e3,
       kMissingDepthShare * 100, bound.deg, bound.mm);
   std::printf(
-      "| cost, loss | 0 %% wrong | 40 %% | 70 %% | 0 %%, over bound |\n"
+      "| cost | 0 %% wrong | 40 %% | 70 %% | 0 %%, over bound |\n"
       "|---|---|---|---|---|\n");
   std::vector<Method> methods = OurMethods();
   methods.push_back({"RANSAC + weighted closed form (ours)", 0.0, Ransac});

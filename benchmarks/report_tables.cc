@@ -127,8 +127,7 @@ std::string JacobianRows(const BenchmarkResults& results) {
     const BenchmarkResult* by_hand = results.Find(alone + "/analytic");
     const BenchmarkResult* by_jet = results.Find(alone + "/autodiff");
     if (by_hand == nullptr) continue;
-    text += Row({"`" + cost + "`", Time(by_hand), Time(by_jet),
-                 Ratio(by_hand, by_jet)});
+    text += Row({"`" + cost + "`", Time(by_hand), Ratio(by_hand, by_jet)});
   }
   return text;
 }
@@ -181,27 +180,6 @@ std::string FrameRows(const BenchmarkResults& results) {
   return text;
 }
 
-// By how much the ratio of medians may differ from that of the fastest.
-constexpr double kQuiet = 0.02;
-
-// How far noise has moved a speed-up: above 0, for us.
-double NoiseOf(const Speedup& speedup) {
-  return speedup.ratio / speedup.by_minima - 1.0;
-}
-
-std::string NoiseCount(const std::vector<SpeedupRow>& speedups) {
-  int for_us = 0, against_us = 0;
-  for (const SpeedupRow& row : speedups) {
-    for_us += NoiseOf(row.speedup) > kQuiet;
-    against_us += NoiseOf(row.speedup) < -kQuiet;
-  }
-  return "Noise raised " + std::to_string(for_us) + " of " +
-         std::to_string(speedups.size()) +
-         " speed-ups by more than 2 % over that of the fastest repetitions, "
-         "and lowered " +
-         std::to_string(against_us) + ".";
-}
-
 // Which of the aims were missed.
 std::string Aims(const std::vector<SpeedupRow>& speedups) {
   int aims = 0, missed = 0;
@@ -237,7 +215,6 @@ std::map<std::string, std::string> ReportTables(
           {"LOAD_AFTER", Fixed(load_after, 2)},
           {"WALL_MEDIAN", Fixed(wait.median, 2)},
           {"WALL_MAX", Fixed(wait.max, 2)},
-          {"NOISE_COUNT", NoiseCount(speedups)},
           {"INSTRUCTION_SET", InstructionSetName()},
           {"SOLVE", SolveRows(results)},
           {"SIZES", SizeRows(results)},
