@@ -173,7 +173,7 @@ std::string FrameRows(const BenchmarkResults& results) {
           results.Find("frames/" + sequence + "/" + method);
       if (result == nullptr) continue;
       text += Row({"`" + sequence + "`", std::string("`") + method + "`",
-                   TimeWithQuartiles(*result), Counter(*result, "ate_m", 1e3),
+                   Time(result), Counter(*result, "ate_m", 1e3),
                    Counter(*result, "rpe_m", 1e3)});
     }
   }
@@ -215,7 +215,6 @@ std::map<std::string, std::string> ReportTables(
           {"LOAD_AFTER", Fixed(load_after, 2)},
           {"WALL_MEDIAN", Fixed(wait.median, 2)},
           {"WALL_MAX", Fixed(wait.max, 2)},
-          {"INSTRUCTION_SET", InstructionSetName()},
           {"SOLVE", SolveRows(results)},
           {"SIZES", SizeRows(results)},
           {"JACOBIANS", JacobianRows(results)},
