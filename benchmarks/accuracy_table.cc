@@ -185,8 +185,8 @@ void Main() {
       "| cost | 0 %% wrong | 40 %% | 70 %% | 0 %%, over bound |\n"
       "|---|---|---|---|---|\n");
   std::vector<Method> methods = OurMethods();
-  methods.push_back({"RANSAC + weighted closed form (ours)", 0.0, Ransac});
-  methods.push_back({"cv::solvePnPRansac + solvePnPRefineLM", 0.0, PnpRansac});
+  methods.push_back({"RANSAC (ours)", 0.0, Ransac});
+  methods.push_back({"cv::solvePnPRansac, refined", 0.0, PnpRansac});
   for (const Method& method : methods) PrintRow(method, bound);
 }
 

@@ -118,18 +118,29 @@ std::string SizeRows(const BenchmarkResults& results) {
   return text;
 }
 
-std::string JacobianRows(const BenchmarkResults& results) {
+// The extremes over all costs, in a sentence.
+std::string Jacobians(const BenchmarkResults& results) {
   std::vector<std::string> costs = CostNames();
   for (const std::string& cost : DirectCostNames()) costs.push_back(cost);
-  std::string text;
+  std::map<double, std::string> times, ratios;  // with their costs
   for (const std::string& cost : costs) {
     const std::string alone = "jacobian/alone/" + cost;
     const BenchmarkResult* by_hand = results.Find(alone + "/analytic");
     const BenchmarkResult* by_jet = results.Find(alone + "/autodiff");
-    if (by_hand == nullptr) continue;
-    text += Row({"`" + cost + "`", Time(by_hand), Ratio(by_hand, by_jet)});
+    if (by_hand == nullptr || by_jet == nullptr) continue;
+    times[SpreadOf(by_hand->cpu_ns).median] = cost;
+    ratios[SpeedupOf(*by_hand, *by_jet).ratio] = cost;
   }
-  return text;
+  if (times.empty()) return "";
+  const auto range = [](const std::map<double, std::string>& values,
+                        const std::string& unit) {
+    const auto& [low, fewest] = *values.begin();
+    const auto& [high, most] = *values.rbegin();
+    return Number(low) + unit + " (`" + fewest + "`) to " + Number(high) +
+           unit + " (`" + most + "`)";
+  };
+  return range(times, " ns") + ", " + range(ratios, "") +
+         " times as fast as automatic differentiation.";
 }
 
 std::string GraphRows(const BenchmarkResults& results) {
@@ -217,7 +228,7 @@ std::map<std::string, std::string> ReportTables(
           {"WALL_MAX", Fixed(wait.max, 2)},
           {"SOLVE", SolveRows(results)},
           {"SIZES", SizeRows(results)},
-          {"JACOBIANS", JacobianRows(results)},
+          {"JACOBIANS", Jacobians(results)},
           {"GRAPHS", GraphRows(results)},
           {"PEERS", PeerRows(results)},
           {"FRAMES", FrameRows(results)},

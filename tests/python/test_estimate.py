@@ -173,7 +173,7 @@ def test_initial_guess(guess):
     estimate = rgbd_pose.estimate_motion(
         prev, cur, CAMERA, robust_schedule="direct", initial_guess=guess
     )
-    # Ten standard deviations; from no motion it gets nowhere (docs/costs.md).
+    # Ten standard deviations; from no motion it gets nowhere (docs/losses.md).
     assert estimate.ok
     deviation = np.sqrt(np.diag(estimate.covariance))
     assert (np.abs(error_of(estimate)) < 10.0 * deviation).all()
