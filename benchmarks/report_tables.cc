@@ -81,12 +81,10 @@ std::string Count(const BenchmarkResult& result, const std::string& name) {
 
 std::string SolveRows(const BenchmarkResults& results) {
   const std::string rows[][2] = {
-      {"plain", "plain/cholesky"},
       {"autodiff", "autodiff/cholesky"},
       {"per_match", "per_match/cholesky"},
       {"compressed", "compressed/cholesky"},
       {"compressed, SSE2 only", "compressed_sse2/cholesky"},
-      {"tiny_solver", "tiny_solver"},
       {"bare_loop", "bare_loop"}};
   std::string text;
   for (const auto& [assembly, name] : rows) {
