@@ -108,9 +108,8 @@ std::string SizeRows(const BenchmarkResults& results) {
     const BenchmarkResult* per_match = find("per_match");
     const BenchmarkResult* ours = find("compressed");
     if (ours == nullptr) continue;
-    text += Row({number, Time(autodiff), Time(ours),
-                 Time(results.Find("solve/bare_loop/huber/" + number)),
-                 Ratio(ours, autodiff), Ratio(ours, per_match),
+    text += Row({number, Time(autodiff), Time(ours), Ratio(ours, autodiff),
+                 Ratio(ours, per_match),
                  Time(results.Find("estimate/compressed/tukey/" + number))});
   }
   return text;
