@@ -143,8 +143,7 @@ std::string Jacobians(const BenchmarkResults& results) {
 std::string GraphRows(const BenchmarkResults& results) {
   std::string text;
   for (const char* keyframes : {"100", "1000"}) {
-    for (const char* way : {"odometry", "edges", "compressed", "map",
-                            "bundle_adjustment", "map_window", "pairs"}) {
+    for (const char* way : {"odometry", "edges", "map", "bundle_adjustment"}) {
       const BenchmarkResult* result =
           results.Find(std::string("graph/") + way + "/" + keyframes);
       if (result == nullptr) continue;

@@ -254,7 +254,7 @@ TEST_F(MapFolderTest, OneAtATimeSaves) {
   SaveMap(map_, NoiseMap(2, 1));
 }
 
-// The reader of docs/maps.md.
+// The reader that docs/maps.md names.
 TEST_F(MapFolderTest, IsReadByAFewLinesOfPython) {
   if (std::system("command -v python3 >/dev/null") != 0) {
     GTEST_SKIP() << "no python3";
