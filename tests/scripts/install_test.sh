@@ -50,7 +50,8 @@ mv "$work/first" "$prefix"
 # Every link of a page leads to what is installed.
 docs=$(dirname "$(find "$prefix" -path '*/doc/*/README.md' | grep -v /docs/)")
 while IFS= read -r page; do
-  sed '/^```/,/^```/d' "$page" | grep -oE '\]\([^)# ]+' | cut -c3- |
+  # shellcheck disable=SC2016
+  sed '/^```/,/^```/d' "$page" | { grep -oE '\]\([^)# ]+' || true; } | cut -c3- |
     while IFS= read -r link; do
       [[ $link == http* || -e "$(dirname "$page")/$link" ]] ||
         echo "$page: nothing at $link"
