@@ -19,7 +19,7 @@ std::unique_ptr<MotionCost> Make(const DirectOptions& options) {
 }
 
 template <typename... Residuals>
-std::vector<Entry> EntriesOf(TypeList<Residuals...>) {
+std::vector<Entry> DirectEntriesOf(TypeList<Residuals...>) {
   return {Entry{Residuals::kName, &Make<Residuals>}...};
 }
 
@@ -77,7 +77,7 @@ Estimator MakeCoarseEstimator(const DirectOptions& options) {
 
 std::vector<std::string> DirectCostNames() {
   std::vector<std::string> names;
-  for (const Entry& entry : EntriesOf(DirectResidualTypes())) {
+  for (const Entry& entry : DirectEntriesOf(DirectResidualTypes())) {
     names.emplace_back(entry.name);
   }
   return names;
@@ -87,7 +87,7 @@ std::unique_ptr<MotionCost> MakeDirectCost(std::string_view name,
                                            const DirectOptions& options) {
   const std::string error = options.Check();
   if (!error.empty()) throw InputError("direct cost: " + error);
-  for (const Entry& entry : EntriesOf(DirectResidualTypes())) {
+  for (const Entry& entry : DirectEntriesOf(DirectResidualTypes())) {
     if (entry.name == name) return entry.make(options);
   }
   return nullptr;

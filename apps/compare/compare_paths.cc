@@ -6,12 +6,11 @@
 #include "apps/figures/svg_chart.h"
 #include "core/evaluation/pose_pairs.h"
 #include "core/util/format.h"
+#include "core/util/units.h"
 
 namespace rgbd_pose {
 namespace {
 
-constexpr double kDegrees = 180.0 / M_PI;
-constexpr double kMillimetres = 1e3;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // The truth at the times of all frames, where it has a pose near enough.
@@ -181,9 +180,9 @@ std::string ComparedPathsCsvRows(const std::string& name,
       AddCell(pose.timestamp, 1.0, &row);
       AddPose(pose.world_from_cam, &row);
       AddCell(pose.distance, 1.0, &row);
-      AddCell(pose.angle, kDegrees, &row);
+      AddCell(pose.angle, kDegreesPerRadian, &row);
       AddCell(pose.rpe_translation, 1.0, &row);
-      AddCell(pose.rpe_rotation, kDegrees, &row);
+      AddCell(pose.rpe_rotation, kDegreesPerRadian, &row);
       text += row + "\n";
     }
   }
@@ -198,10 +197,11 @@ std::string PathFigure(const std::string& title,
   chart.panels = {TopView(paths, 1), TopView(paths, 2)};
   if (HasErrors(paths)) {
     ChartPanel distance =
-        ErrorsOverTime(paths, &ComparedPose::distance, kMillimetres);
+        ErrorsOverTime(paths, &ComparedPose::distance, kMillimetresPerMetre);
     distance.title = "Distance from the truth";
     distance.y_label = "distance (mm)";
-    ChartPanel angle = ErrorsOverTime(paths, &ComparedPose::angle, kDegrees);
+    ChartPanel angle =
+        ErrorsOverTime(paths, &ComparedPose::angle, kDegreesPerRadian);
     angle.title = "Angle from the truth";
     angle.y_label = "angle (deg)";
     chart.panels.push_back(distance);

@@ -7,12 +7,10 @@
 #include "core/geometry/motion.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
+#include "core/util/units.h"
 
 namespace rgbd_pose {
 namespace {
-
-constexpr double kDegrees = 180.0 / M_PI;
-constexpr double kMillimetres = 1e3;
 
 // The last pose of a run seen from its first, in the thesis' parameters.
 struct EndPose {
@@ -26,8 +24,9 @@ std::optional<EndPose> EndPoseOf(const Trajectory& trajectory) {
   const Rigid3d first_from_last = trajectory.front().world_from_cam.Inverse() *
                                   trajectory.back().world_from_cam;
   const MotionVector motion = MotionFromRigid(first_from_last.Inverse());
-  return EndPose{kDegrees * motion.head<3>(), kMillimetres * motion.tail<3>(),
-                 kDegrees * first_from_last.Angle()};
+  return EndPose{kDegreesPerRadian * motion.head<3>(),
+                 kMillimetresPerMetre * motion.tail<3>(),
+                 kDegreesPerRadian * first_from_last.Angle()};
 }
 
 // What tables say of one run; empty where there is nothing to judge.
@@ -42,15 +41,16 @@ struct PathErrors {
 PathErrors ErrorsOf(const LossRun& run) {
   PathErrors errors;
   if (!run.evaluation.has_value()) return errors;
-  errors.ate_mm = run.evaluation->ate.rmse * kMillimetres;
+  errors.ate_mm = run.evaluation->ate.rmse * kMillimetresPerMetre;
   const RelativePoseError& relative = run.evaluation->rpe_seconds;
   if (relative.translation.count > 0) {
-    errors.rpe_mm = relative.translation.rmse * kMillimetres;
-    errors.rpe_deg = relative.rotation.rmse * kDegrees;
+    errors.rpe_mm = relative.translation.rmse * kMillimetresPerMetre;
+    errors.rpe_deg = relative.rotation.rmse * kDegreesPerRadian;
   }
   if (run.evaluation->final_pose.has_value()) {
-    errors.end_mm = run.evaluation->final_pose->translation * kMillimetres;
-    errors.end_deg = run.evaluation->final_pose->angle * kDegrees;
+    errors.end_mm =
+        run.evaluation->final_pose->translation * kMillimetresPerMetre;
+    errors.end_deg = run.evaluation->final_pose->angle * kDegreesPerRadian;
   }
   return errors;
 }

@@ -10,9 +10,6 @@
 namespace rgbd_pose {
 namespace {
 
-// COLMAP's upper left pixel has its centre at (0.5, 0.5), ours at (0, 0).
-constexpr double kPixelCentre = 0.5;
-
 std::string FormatCamera(const Camera& camera) {
   const char* model = !camera.HasDistortion() ? "PINHOLE"
                       : camera.k3 == 0.0      ? "OPENCV"

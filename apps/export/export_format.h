@@ -9,6 +9,10 @@
 
 namespace rgbd_pose {
 
+// The upper left pixel of COLMAP and nerfstudio has its centre at (0.5, 0.5),
+// ours at (0, 0).
+constexpr double kPixelCentre = 0.5;
+
 // A form that a run can be given to other tools in. To add one, write a file
 // with such a function and give it a row of the table in export_format.cc.
 struct ExportFormat {

@@ -12,9 +12,6 @@
 namespace rgbd_pose {
 namespace {
 
-// As COLMAP's: the upper left pixel has its centre at (0.5, 0.5).
-constexpr double kPixelCentre = 0.5;
-
 // world_from_cam with the camera's axes as OpenGL has them: x right, y up, z
 // back.
 nlohmann::json TransformMatrix(const Rigid3d& world_from_cam) {

@@ -9,7 +9,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-[[noreturn]] void Fail(const fs::path& path, const std::error_code& error) {
+[[noreturn]] void FailToWrite(const fs::path& path,
+                              const std::error_code& error) {
   throw InputError("--output: " + path.string() + " cannot be made (" +
                    error.message() + ")");
 }
@@ -38,7 +39,7 @@ OutputFolder::OutputFolder(const std::string& path,
   }
   fs::remove_all(aside_, error);  // of an export that was killed
   fs::create_directories(aside_, error);
-  if (error) Fail(path, error);
+  if (error) FailToWrite(path, error);
 }
 
 OutputFolder::~OutputFolder() {
@@ -49,7 +50,7 @@ OutputFolder::~OutputFolder() {
 fs::path OutputFolder::MakeFolder(const std::string& name) const {
   std::error_code error;
   fs::create_directories(aside_ / name, error);
-  if (error) Fail(aside_ / name, error);
+  if (error) FailToWrite(aside_ / name, error);
   return aside_ / name;
 }
 
@@ -57,7 +58,7 @@ void OutputFolder::Publish() {
   std::error_code error;
   fs::remove_all(path_, error);
   fs::rename(aside_, path_, error);
-  if (error) Fail(path_, error);
+  if (error) FailToWrite(path_, error);
 }
 
 }  // namespace rgbd_pose

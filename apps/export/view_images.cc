@@ -4,13 +4,12 @@
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/units.h"
 #include "frontend/map/cloud_fusion.h"
 #include "frontend/sources/image_file.h"
 
 namespace rgbd_pose {
 namespace {
-
-constexpr double kMillimetres = 1000.0;
 
 // Colour images are large, and time goes where they are made small.
 const std::vector<int> kQuick = {cv::IMWRITE_PNG_COMPRESSION, 1};
@@ -18,7 +17,7 @@ const std::vector<int> kQuick = {cv::IMWRITE_PNG_COMPRESSION, 1};
 cv::Mat InMillimetres(const Frame& frame) {
   cv::Mat depth = frame.depth.clone();
   depth.setTo(0, frame.depth == Frame::kNoDepth);
-  depth.convertTo(depth, CV_16UC1, kMillimetres / frame.depth_scale);
+  depth.convertTo(depth, CV_16UC1, kMillimetresPerMetre / frame.depth_scale);
   return depth;
 }
 

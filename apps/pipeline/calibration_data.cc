@@ -18,7 +18,7 @@ namespace rgbd_pose {
 namespace {
 
 // Of a keyframe; the frontend has at least one a cell of its grid.
-constexpr int kFeatures = 300;
+constexpr int kFeaturesPerKeyframe = 300;
 
 // Longer than this between two frames, a velocity is not known.
 constexpr double kMaxGap = 0.15;  // s
@@ -104,7 +104,7 @@ class Matcher {
       : map_(map), chosen_(chosen), velocities_(velocities) {
     FrontendOptions options = settings.features;
     options.camera = map.camera;
-    options.max_features = kFeatures;
+    options.max_features = kFeaturesPerKeyframe;
     frontend_ = MakeFrontend("patch", options);
     noise_ = options.depth_noise;
   }

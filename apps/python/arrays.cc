@@ -14,7 +14,7 @@ namespace {
 // Rows of a rotation matrix may be off unit length and right angles by so much.
 constexpr double kMaxRotationError = 0.01;
 
-std::string InWords(const std::vector<py::ssize_t>& shape) {
+std::string NumbersInWords(const std::vector<py::ssize_t>& shape) {
   std::string text;
   for (const py::ssize_t side : shape) {
     if (!text.empty()) text += ", ";
@@ -31,7 +31,7 @@ void RequireShape(const py::array& array, const std::string& name,
   }
   if (fits) return;
   throw InputError(name + ": has shape " + ShapeInWords(array) + "; it needs " +
-                   InWords(shape));
+                   NumbersInWords(shape));
 }
 
 }  // namespace
@@ -62,7 +62,7 @@ py::array ToArray(const py::object& object, const std::string& name) {
 }
 
 std::string ShapeInWords(const py::array& array) {
-  return InWords({array.shape(), array.shape() + array.ndim()});
+  return NumbersInWords({array.shape(), array.shape() + array.ndim()});
 }
 
 Rigid3d RigidFromMatrix(const Eigen::Matrix4d& matrix,

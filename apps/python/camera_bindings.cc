@@ -70,7 +70,7 @@ Eigen::Matrix3d Intrinsics(const Camera& camera) {
   return matrix;
 }
 
-std::string InWords(const RgbdCamera& camera) {
+std::string CameraInWords(const RgbdCamera& camera) {
   const Camera& c = camera.camera;
   char text[512];
   std::snprintf(text, sizeof(text),
@@ -130,7 +130,7 @@ of the preset or file.)",
             return ArrayFromMatrix(Intrinsics(self.camera));
           },
           "(3, 3) [fx 0 cx; 0 fy cy; 0 0 1], px")
-      .def("__repr__", &InWords);
+      .def("__repr__", &CameraInWords);
 }
 
 }  // namespace rgbd_pose

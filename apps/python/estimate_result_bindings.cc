@@ -12,7 +12,7 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-std::string InWords(const EstimateResult& result) {
+std::string ResultInWords(const EstimateResult& result) {
   const MotionEstimate& e = result.estimate;
   std::string text = std::string("MotionEstimate(") + ToString(e.status);
   if (!e.reason.empty()) text += ": " + e.reason;
@@ -132,7 +132,7 @@ or False for rows that no cost could use.)");
                              "of the solver, all stages together")
       .def_property_readonly("solve_ms", &Field<&MotionEstimate::solve_ms>,
                              "time that the solve took, ms")
-      .def("__repr__", &InWords);
+      .def("__repr__", &ResultInWords);
 }
 
 }  // namespace rgbd_pose

@@ -36,7 +36,7 @@ Trajectory TrajectoryOf(SharedOdometry* odometry) {
   return odometry->trajectory();
 }
 
-std::string InWords(const TrackedFrame& frame) {
+std::string FrameInWords(const TrackedFrame& frame) {
   std::string text = "TrackedFrame(" + std::to_string(frame.index) + ": " +
                      ToString(frame.status);
   if (!frame.reason.empty()) text += ", " + frame.reason;
@@ -122,7 +122,7 @@ void BindTrackedFrame(py::module_* module) {
                     "of it: features of a new reference")
       .def_readonly("relocalise_ms", &TrackedFrame::relocalise_ms,
                     "of it: search for the place when lost")
-      .def("__repr__", &InWords);
+      .def("__repr__", &FrameInWords);
 }
 
 void BindSharedOdometry(py::module_* module) {

@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 // 0 ok, 1 degraded, 2 lost
 std::vector<double> StatusCodes(const CsvTable& frames) {
@@ -107,8 +107,9 @@ json PathOf(const CsvTable& frames, const Trajectory& trajectory,
   size_t next = 0;
   for (const double code : status) {
     for (int k = 0; k < 3; ++k) {
-      axes[k].push_back(
-          code < 2 ? trajectory[next].world_from_cam.translation[k] : kNaN);
+      axes[k].push_back(code < 2
+                            ? trajectory[next].world_from_cam.translation[k]
+                            : kNoNumber);
     }
     next += code < 2;
   }

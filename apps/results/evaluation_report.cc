@@ -3,13 +3,12 @@
 #include <vector>
 
 #include "core/util/format.h"
+#include "core/util/units.h"
 
 namespace rgbd_pose {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kDegreesPerRadian = 57.29577951308232;
 
 constexpr char kAteDefinition[] = "rigid alignment, no scale";
 constexpr char kFinalPoseDefinition[] = "last pose relative to the first";

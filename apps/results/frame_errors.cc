@@ -5,11 +5,10 @@
 
 #include "core/evaluation/pose_pairs.h"
 #include "core/util/format.h"
+#include "core/util/units.h"
 
 namespace rgbd_pose {
 namespace {
-
-constexpr double kDegreesPerRadian = 57.29577951308232;
 
 void AddNumber(double value, std::string* row) {
   *row += Format(",%.6f", value);

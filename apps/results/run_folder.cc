@@ -35,7 +35,8 @@ constexpr const char* kResults[] = {kLast,
                                     "trajectory_odometry.txt"};
 constexpr char kImages[] = "debug";
 
-[[noreturn]] void Fail(const fs::path& folder, const std::error_code& error) {
+[[noreturn]] void FailOnFolder(const fs::path& folder,
+                               const std::error_code& error) {
   throw InputError("--output: " + folder.string() +
                    " cannot be made or written to (" + error.message() + ")");
 }
@@ -81,7 +82,7 @@ RunFolder::RunFolder(const std::string& path)
     : path_(path), aside_(path_ / kAside) {
   std::error_code error;
   is_new_ = fs::create_directories(path_, error);
-  if (error) Fail(path_, error);
+  if (error) FailOnFolder(path_, error);
   Lock();
   for (const auto& entry : fs::directory_iterator(aside_, error)) {
     // Of a run that was killed.
@@ -97,10 +98,10 @@ void RunFolder::Lock() {
     if (lock_ >= 0) close(lock_);
     std::error_code error;
     fs::create_directories(aside_, error);
-    if (error) Fail(path_, error);
+    if (error) FailOnFolder(path_, error);
     lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (lock_ < 0 && errno == ENOENT) continue;
-    if (lock_ < 0) Fail(path_, {errno, std::generic_category()});
+    if (lock_ < 0) FailOnFolder(path_, {errno, std::generic_category()});
     // File systems without locks have to do without.
     if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       close(lock_);
@@ -133,7 +134,7 @@ void RunFolder::Publish() {
     }
     fs::rename(aside_ / kLast, path_ / kLast);
   } catch (const fs::filesystem_error& error) {
-    Fail(path_, error.code());
+    FailOnFolder(path_, error.code());
   }
 }
 

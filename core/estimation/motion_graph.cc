@@ -21,7 +21,7 @@ constexpr double kNarrowing = 2.0;
 constexpr double kWidest = 1024.0;
 
 // A stage before the last one need not settle.
-constexpr int kIterationsPerEarlyStage = 3;
+constexpr int kGraphIterationsPerEarlyStage = 3;
 
 }  // namespace
 
@@ -142,7 +142,8 @@ GraphSolution MotionGraph::Impl::Solve() {
   solution.initial_cost = solution.final_cost = Problem().Cost();
   if (options_.graduated) {
     for (double width = FirstWidth(); width > 1.0; width /= kNarrowing) {
-      if (std::isnan(Round(width, kIterationsPerEarlyStage, &solution))) break;
+      if (std::isnan(Round(width, kGraphIterationsPerEarlyStage, &solution)))
+        break;
     }
   }
   for (int round = 0; round < options_.max_rounds && solution.ok(); ++round) {

@@ -18,7 +18,7 @@ constexpr size_t kMinResidualsForScale = 10;
 constexpr size_t kMaxResidualsForScale = 2000;
 // By how much what noise feigns may exceed its model: depths come in steps, so
 // that slopes of surfaces seen at an angle are noisier.
-constexpr double kFeignedMargin = 6.0;
+constexpr double kFeignedCostMargin = 6.0;
 
 // What a scale may come to: a spread of zero (over half of the residuals
 // equal) or a huge one (over half of the matches wrong) has no use.
@@ -282,7 +282,7 @@ NormalEquations RobustTerms::LineariseShares(const MotionDerivatives& motion) {
     costs_[i].cost->AddFeigned(motion, &feigned);
     // Residuals that are larger than their noise do not make slopes noisier.
     const double excess = std::max(1.0, scales_[i]);
-    double times = kFeignedMargin * costs_[i].cost->information_factor() /
+    double times = kFeignedCostMargin * costs_[i].cost->information_factor() /
                    (excess * excess);
     // Of an image that shows nothing there is not even noise to take off.
     for (int k = 0; k < 6; ++k) {

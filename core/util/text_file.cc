@@ -53,6 +53,11 @@ std::FILE* OpenToWrite(const std::string& path) {
 
 }  // namespace
 
+bool PathExists(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::exists(path, error);
+}
+
 std::string ReadTextFile(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {

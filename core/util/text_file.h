@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -34,6 +35,10 @@ double ParseNumber(std::string_view word, const std::string& path, int line,
 // A time stamp in seconds: as ParseNumber, and no number of milli- or
 // nanoseconds since 1970.
 double ParseTimestamp(std::string_view word, const std::string& path, int line);
+
+// Whether there is a file or folder of that name; no, too, if that cannot be
+// found out.
+bool PathExists(const std::filesystem::path& path);
 
 // The whole content of a file. Throws InputError if it cannot be read.
 std::string ReadTextFile(const std::string& path);

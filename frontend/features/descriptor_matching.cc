@@ -14,7 +14,7 @@ constexpr double kMaxRatio = 0.8;
 
 // Keypoints this near to each other are one place seen at several scales: no
 // rivals in the ratio test.
-constexpr float kSamePlacePx = 4.0F;
+constexpr float kSameFeaturePx = 4.0F;
 
 // The keypoints of an image by their place, for searches within a radius.
 class KeypointGrid {
@@ -83,7 +83,7 @@ Nearest FindDistinct(const std::vector<cv::KeyPoint>& keypoints,
     if (distances[k] >= limit) continue;
     const cv::Point2f offset =
         keypoints[candidates[k]].pt - keypoints[best.place].pt;
-    if (offset.dot(offset) > kSamePlacePx * kSamePlacePx) return {};
+    if (offset.dot(offset) > kSameFeaturePx * kSameFeaturePx) return {};
   }
   return best;
 }

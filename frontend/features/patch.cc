@@ -12,10 +12,10 @@ namespace {
 constexpr float kMinGrey = 0.5F;
 
 // One more on each side than the patch, for its derivatives.
-constexpr int kSide = kPatchSize + 2;
+constexpr int kSourceSide = kPatchSize + 2;
 
 using Pixels = Eigen::Array<float, kPatchSize, kPatchSize, Eigen::RowMajor>;
-using Seen = Eigen::Array<float, kSide, kSide, Eigen::RowMajor>;
+using Seen = Eigen::Array<float, kSourceSide, kSourceSide, Eigen::RowMajor>;
 
 }  // namespace
 
@@ -26,9 +26,9 @@ void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
   const Eigen::Array2f limit(static_cast<float>(image.cols) - 1.001F,
                              static_cast<float>(image.rows) - 1.001F);
   Seen seen;
-  for (int i = 0; i < kSide; ++i) {
-    for (int j = 0; j < kSide; ++j) {
-      const Eigen::Vector2f offset(j - kSide / 2, i - kSide / 2);
+  for (int i = 0; i < kSourceSide; ++i) {
+    for (int j = 0; j < kSourceSide; ++j) {
+      const Eigen::Vector2f offset(j - kSourceSide / 2, i - kSourceSide / 2);
       const Eigen::Array2f at =
           (centre + image_from_patch * offset).array().max(0.0F).min(limit);
       seen(i, j) = SampleImage(image, at.x(), at.y());

@@ -17,7 +17,7 @@ namespace {
 
 // Localisation noise of a corner per image, as of other frontends: what is
 // systematic (warp, interpolation, calibration) is most of it.
-constexpr double kSigmaPx = 0.5;
+constexpr double kPatchSigmaPx = 0.5;
 
 // What a patch does not explain is no white noise: neighbouring pixels err
 // alike, so it moves the result this much further than white noise would.
@@ -28,7 +28,7 @@ constexpr double kNoiseFactor = 5.0;
 constexpr float kMinCorrelation = 0.7F;
 
 // 640 x 480 to 160 x 120.
-constexpr int kLevels = 3;
+constexpr int kPatchLevels = 3;
 
 // Patches are made anew when their shape has changed by this: an error of up
 // to a quarter of a pixel at their corners.
@@ -41,12 +41,12 @@ constexpr float kMaxScale = 4.0F;
 // The patches of a feature, one a level, as a motion makes them look.
 struct PatchStack {
   Eigen::Matrix2f ref_from_patch = Eigen::Matrix2f::Zero();  // none yet
-  std::array<Patch, kLevels> levels;
+  std::array<Patch, kPatchLevels> levels;
 };
 
 struct PatchFrame final : PreparedFrame {
   explicit PatchFrame(const Frame& frame) : PreparedFrame(frame) {
-    BuildImagePyramid(gray, kLevels, &pyramid);
+    BuildImagePyramid(gray, kPatchLevels, &pyramid);
   }
   std::unique_ptr<PreparedFrame> Copy() const override {
     return std::make_unique<PatchFrame>(*this);
@@ -118,8 +118,9 @@ std::unique_ptr<FeatureSet> PatchFrontend::Detect(const PreparedFrame& frame) {
         return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
       });
   for (const cv::Point2f& corner : features->corners) {
-    features->observations.push_back(Observe(
-        frame, options_.camera, corner.x, corner.y, kSigmaPx, depth_options_));
+    features->observations.push_back(Observe(frame, options_.camera, corner.x,
+                                             corner.y, kPatchSigmaPx,
+                                             depth_options_));
   }
   features->patches.resize(features->corners.size());
   return features;
@@ -148,9 +149,9 @@ void PatchFrontend::Match(const FeatureSet& reference,
     const PatchStack& patches = features.Patches(i, warp.inverse());
     const AlignedPatch found = FindPatch(patches, pyramid, start);
     if (!found.found || found.correlation < kMinCorrelation) continue;
-    const double sigma_px =
-        std::hypot(kSigmaPx, kNoiseFactor * found.residual /
-                                 std::sqrt(patches.levels[0].min_eigenvalue));
+    const double sigma_px = std::hypot(
+        kPatchSigmaPx, kNoiseFactor * found.residual /
+                           std::sqrt(patches.levels[0].min_eigenvalue));
     matches->Add(
         reference, static_cast<int>(i),
         Observe(frame, camera, found.u, found.v, sigma_px, depth_options_));

@@ -10,7 +10,7 @@ namespace rgbd_pose {
 namespace {
 
 // Localisation noise of a point per image: together 0.7 px.
-constexpr double kSigmaPx = 0.5;
+constexpr double kPointSigmaPx = 0.5;
 
 struct PointFeatures : FeatureSet {
   std::unique_ptr<const PreparedFrame> frame;  // a copy
@@ -79,7 +79,7 @@ void PointFrontend::Find(const Frame& frame, Points* points) {
 
 Observation PointFrontend::ObserveAt(const Frame& frame,
                                      const cv::Point2f& point) const {
-  return Observe(frame, options_.camera, point.x, point.y, kSigmaPx,
+  return Observe(frame, options_.camera, point.x, point.y, kPointSigmaPx,
                  depth_options_);
 }
 

@@ -10,7 +10,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kBlock = 8;  // px; the flow is the same all over a block
+constexpr int kFlowBlock = 8;  // px; the flow is the same all over a block
 
 // Within a block, and from one try to the next, this much (px) is the same
 // place.
@@ -46,7 +46,7 @@ struct EightMoves {
 // and of the one of them and the column that are nearer.
 void MoveEight(const uint16_t* top, const uint16_t* bottom,
                const uint16_t* nearest, const EightMoves& by, uint16_t* to) {
-  static_assert(kBlock == cv::v_uint16x8::nlanes);
+  static_assert(kFlowBlock == cv::v_uint16x8::nlanes);
   const cv::v_uint16x8 a = cv::v_load(top);
   const cv::v_uint16x8 b = cv::v_load(top + 1);
   const cv::v_uint16x8 c = cv::v_load(bottom);
@@ -96,14 +96,14 @@ uint16_t Encode(float raw) {
 
 DepthMover::DepthMover(const Camera& camera)
     : camera_(camera),
-      columns_((camera.width + kBlock - 1) / kBlock),
-      rows_((camera.height + kBlock - 1) / kBlock),
+      columns_((camera.width + kFlowBlock - 1) / kFlowBlock),
+      rows_((camera.height + kFlowBlock - 1) / kFlowBlock),
       ranges_(static_cast<size_t>(columns_) * rows_) {
-  constexpr double kMiddle = (kBlock - 1) / 2.0;
+  constexpr double kMiddle = (kFlowBlock - 1) / 2.0;
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       rays_.push_back(camera.Unproject(
-          {column * kBlock + kMiddle, row * kBlock + kMiddle}, 1.0));
+          {column * kFlowBlock + kMiddle, row * kFlowBlock + kMiddle}, 1.0));
     }
   }
 }
@@ -146,7 +146,8 @@ const cv::Mat& DepthMover::Move(const Frame& frame,
 }
 
 cv::Rect DepthMover::BlockAt(int column, int row) const {
-  return cv::Rect(column * kBlock, row * kBlock, kBlock, kBlock) &
+  return cv::Rect(column * kFlowBlock, row * kFlowBlock, kFlowBlock,
+                  kFlowBlock) &
          cv::Rect(0, 0, camera_.width, camera_.height);
 }
 
@@ -156,8 +157,8 @@ void DepthMover::FindRanges() {
     // One less and wrapped around: no depth is the largest number.
     column_min_.assign(measured_.cols, Frame::kNoDepth);
     column_max_.assign(measured_.cols, 0);
-    const int end = std::min((row + 1) * kBlock, measured_.rows);
-    for (int v = row * kBlock; v < end; ++v) {
+    const int end = std::min((row + 1) * kFlowBlock, measured_.rows);
+    for (int v = row * kFlowBlock; v < end; ++v) {
       const auto* raw = measured_.ptr<uint16_t>(v);
       for (int u = 0; u < measured_.cols; ++u) {
         const auto less = static_cast<uint16_t>(raw[u] - 1);
@@ -166,8 +167,8 @@ void DepthMover::FindRanges() {
       }
     }
     for (int column = 0; column < columns_; ++column) {
-      const int u = column * kBlock;
-      const int size = std::min(kBlock, measured_.cols - u);
+      const int u = column * kFlowBlock;
+      const int size = std::min(kFlowBlock, measured_.cols - u);
       const auto low = column_min_.begin() + u;
       const auto high = column_max_.begin() + u;
       const int min = *std::min_element(low, low + size) + 1;
@@ -199,12 +200,12 @@ DepthMover::Range DepthMover::RangeAround(int column, int row,
                                           const Flow& flow) const {
   constexpr float kMaxInverseDepth = 2.0F;  // 1/m
   const auto first = [](float turn, float shift) {
-    return static_cast<int>(
-        std::floor((turn + std::min(0.0F, kMaxInverseDepth * shift)) / kBlock));
+    return static_cast<int>(std::floor(
+        (turn + std::min(0.0F, kMaxInverseDepth * shift)) / kFlowBlock));
   };
   const auto last = [](float turn, float shift) {
-    return static_cast<int>(
-        std::ceil((turn + std::max(0.0F, kMaxInverseDepth * shift)) / kBlock));
+    return static_cast<int>(std::ceil(
+        (turn + std::max(0.0F, kMaxInverseDepth * shift)) / kFlowBlock));
   };
   Range range = {1, 0};
   const int end_v = std::min(row + last(flow.turn_v, flow.shift_v), rows_ - 1);
@@ -232,7 +233,7 @@ void DepthMover::MoveTogether(const cv::Rect& block, const Flow& flow, float u,
   const float scale = 1.0F / flow.stretch;
   const float offset = -advance_ / flow.stretch;
   const cv::Rect source = block + cv::Point(left, above);
-  const bool is_inside = block.width == kBlock && source.x >= 0 &&
+  const bool is_inside = block.width == kFlowBlock && source.x >= 0 &&
                          source.y >= 0 && source.br().x < measured_.cols &&
                          source.br().y < measured_.rows;
   for (int y = 0; y < block.height; ++y) {

@@ -8,7 +8,7 @@ namespace rgbd_pose {
 namespace {
 
 constexpr int kReach = 3;  // pixels of the grid to each side
-constexpr int kSide = 2 * kReach + 1;
+constexpr int kWindowSide = 2 * kReach + 1;
 
 // The spread of a plane's pixels: so many sigmas, or this share of the depth,
 // which lets a bulge pass.
@@ -31,12 +31,12 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
       row >= frame.depth.rows - border) {
     return Eigen::Vector3d::Zero();
   }
-  double inverse[kSide][kSide];
+  double inverse[kWindowSide][kWindowSide];
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   int count = 0;
-  for (int i = 0; i < kSide; ++i) {
-    for (int j = 0; j < kSide; ++j) {
+  for (int i = 0; i < kWindowSide; ++i) {
+    for (int j = 0; j < kWindowSide; ++j) {
       const double depth = frame.DepthAt(column + (j - kReach) * stride,
                                          row + (i - kReach) * stride);
       inverse[i][j] = depth > 0.0 ? 1.0 / depth : 0.0;
@@ -55,8 +55,8 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
   const double limit =
       std::max(kMaxSigmas * noise.sigma(1.0 / middle) * middle * middle,
                kMaxBulge * middle);
-  for (int i = 0; i < kSide; ++i) {
-    for (int j = 0; j < kSide; ++j) {
+  for (int i = 0; i < kWindowSide; ++i) {
+    for (int j = 0; j < kWindowSide; ++j) {
       if (inverse[i][j] == 0.0) continue;
       const double plane = fit.dot(Eigen::Vector3d(j - kReach, i - kReach, 1));
       if (std::abs(inverse[i][j] - plane) > limit) --count;

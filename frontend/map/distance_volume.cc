@@ -3,23 +3,23 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kBits = 21;
-constexpr uint64_t kMask = (uint64_t{1} << kBits) - 1;
+constexpr int kBlockBits = 21;
+constexpr uint64_t kBlockMask = (uint64_t{1} << kBlockBits) - 1;
 
 }  // namespace
 
 uint64_t DistanceVolume::KeyOf(const Eigen::Vector3i& block) {
   uint64_t key = 0;
   for (int i = 0; i < 3; ++i) {
-    key = key << kBits | static_cast<uint64_t>(block[i] + kHalfRange);
+    key = key << kBlockBits | static_cast<uint64_t>(block[i] + kHalfRange);
   }
   return key;
 }
 
 Eigen::Vector3i DistanceVolume::BlockOf(uint64_t key) {
   Eigen::Vector3i block;
-  for (int i = 2; i >= 0; --i, key >>= kBits) {
-    block[i] = static_cast<int>(key & kMask) - kHalfRange;
+  for (int i = 2; i >= 0; --i, key >>= kBlockBits) {
+    block[i] = static_cast<int>(key & kBlockMask) - kHalfRange;
   }
   return block;
 }

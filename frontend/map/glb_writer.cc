@@ -12,8 +12,8 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr uint32_t kMagic = 0x46546C67;  // "glTF"
-constexpr uint32_t kVersion = 2;
+constexpr uint32_t kGlbMagic = 0x46546C67;  // "glTF"
+constexpr uint32_t kGlbVersion = 2;
 constexpr uint32_t kJson = 0x4E4F534A;    // "JSON"
 constexpr uint32_t kBinary = 0x004E4942;  // "BIN"
 constexpr size_t kHeaderBytes = 12;
@@ -122,8 +122,8 @@ std::string FormatGlb(const TriangleMesh& mesh) {
   std::string bytes;
   bytes.reserve(kHeaderBytes + 2 * kChunkHeaderBytes + json.size() +
                 binary.size());
-  AppendLittleEndian(kMagic, &bytes);
-  AppendLittleEndian(kVersion, &bytes);
+  AppendLittleEndian(kGlbMagic, &bytes);
+  AppendLittleEndian(kGlbVersion, &bytes);
   const size_t total = kHeaderBytes + kChunkHeaderBytes + json.size() +
                        (binary.empty() ? 0 : kChunkHeaderBytes + binary.size());
   AppendLittleEndian(static_cast<uint32_t>(total), &bytes);

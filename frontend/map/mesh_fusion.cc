@@ -14,10 +14,10 @@ namespace {
 
 // Below, there are more cubes than any sensor has noise-free points for;
 // above, rooms are no longer recognised.
-constexpr double kMinVoxelSize = 0.001;  // m
-constexpr double kMaxVoxelSize = 1.0;    // m
+constexpr double kMinMeshVoxel = 0.001;  // m
+constexpr double kMaxMeshVoxel = 1.0;    // m
 
-constexpr int kSide = DistanceVolume::kSide;
+constexpr int kBlockSide = DistanceVolume::kSide;
 
 // Of the fixed point that colours are kept in.
 constexpr float kColorSteps = 256.0F;
@@ -34,7 +34,7 @@ void AverageColor(const cv::Vec3b& bgr, float share, DistanceVoxel* voxel) {
 }  // namespace
 
 std::string MeshFusionOptions::Check() const {
-  if (!(voxel_size >= kMinVoxelSize && voxel_size <= kMaxVoxelSize)) {
+  if (!(voxel_size >= kMinMeshVoxel && voxel_size <= kMaxMeshVoxel)) {
     return "the voxel size must be 0.001 to 1 m";
   }
   if (!(truncation_voxels >= 1.0) || !(truncation_sigmas >= 0.0)) {
@@ -128,7 +128,7 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
   constexpr int kStride = 4;  // px
   const Camera& camera = undistorter_.camera();
   const auto blocks_per_metre =
-      static_cast<float>(1.0 / (kSide * options_.voxel_size));
+      static_cast<float>(1.0 / (kBlockSide * options_.voxel_size));
   const float step = 0.5F / blocks_per_metre;
   const Eigen::Matrix3f R =
       world_from_cam.rotation.toRotationMatrix().cast<float>();
@@ -192,25 +192,25 @@ void MeshFusion::AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
   const auto height = static_cast<float>(depth_.rows);
   const Eigen::Matrix3d R = cam_from_world.rotation.toRotationMatrix();
   const Eigen::Matrix3f steps = (R * options_.voxel_size).cast<float>();
-  const Eigen::Vector3d first =
-      kSide * options_.voxel_size * DistanceVolume::BlockOf(key).cast<double>();
+  const Eigen::Vector3d first = kBlockSide * options_.voxel_size *
+                                DistanceVolume::BlockOf(key).cast<double>();
   const Eigen::Vector3f origin = (cam_from_world * first).cast<float>();
   DistanceVoxel* voxel = block->data();
-  for (int i = 0; i < kSide; ++i) {
-    for (int j = 0; j < kSide; ++j, voxel += kSide) {
+  for (int i = 0; i < kBlockSide; ++i) {
+    for (int j = 0; j < kBlockSide; ++j, voxel += kBlockSide) {
       const Eigen::Vector3f start = origin +
                                     static_cast<float>(i) * steps.col(0) +
                                     static_cast<float>(j) * steps.col(1);
       // Apart from what follows, for the sake of vectors.
-      std::array<float, kSide> us, vs, zs;
-      for (int k = 0; k < kSide; ++k) {
+      std::array<float, kBlockSide> us, vs, zs;
+      for (int k = 0; k < kBlockSide; ++k) {
         const auto along = static_cast<float>(k);
         zs[k] = start.z() + along * steps(2, 2);
         const float per_z = 1.0F / zs[k];
         us[k] = fx * (start.x() + along * steps(0, 2)) * per_z + cx;
         vs[k] = fy * (start.y() + along * steps(1, 2)) * per_z + cy;
       }
-      for (int k = 0; k < kSide; ++k) {
+      for (int k = 0; k < kBlockSide; ++k) {
         if (!(zs[k] > 0.0F && us[k] >= 0.0F && us[k] < width && vs[k] >= 0.0F &&
               vs[k] < height)) {
           continue;

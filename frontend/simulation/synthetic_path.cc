@@ -5,6 +5,7 @@
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "core/util/units.h"
 #include "frontend/simulation/synthetic_tours.h"
 
 namespace rgbd_pose {
@@ -14,8 +15,6 @@ using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
-
-constexpr double kDegree = M_PI / 180.0;
 
 Rigid3d Turn(double angle, const Vector3d& axis) {
   return Rigid3d(Quaterniond(AngleAxisd(angle, axis)), Vector3d::Zero());
@@ -28,7 +27,7 @@ Rigid3d Shift(const Vector3d& translation) {
 Rigid3d Xyz(double t, double /*duration*/) {
   constexpr double kReach = 0.2;  // m
   constexpr double kRound = 5.0;  // s for all three axes
-  constexpr double kSway = 1.0 * kDegree;
+  constexpr double kSway = 1.0 * kRadiansPerDegree;
   const double leg = t / (kRound / 3.0);
   const int index = static_cast<int>(leg);
   const double side = index % 6 < 3 ? 1.0 : -1.0;
@@ -71,8 +70,8 @@ Rigid3d PanTilt(double t, double duration) {
   const Rigid3d world_from_mount =
       LookAt({-1.5, -0.45, 1.25}, {0.6, 0.15, 1.0});
   const Rigid3d head_from_cam = Shift({0.02, -0.06, 0.04});
-  return world_from_mount * Turn(pan * kDegree, Vector3d::UnitY()) *
-         Turn(tilt * kDegree, Vector3d::UnitX()) * head_from_cam;
+  return world_from_mount * Turn(pan * kRadiansPerDegree, Vector3d::UnitY()) *
+         Turn(tilt * kRadiansPerDegree, Vector3d::UnitX()) * head_from_cam;
 }
 
 Rigid3d Circle(double t, double /*duration*/) {
@@ -119,9 +118,10 @@ Rigid3d Handheld(double t, double /*duration*/) {
       {4.8, 0.47, 0.7}, {2.0, 1.19, 0.9}, {0.25, 3.3, 2.8}};
   Rigid3d world_from_hand = LookAt({-1.10, -0.40, 1.40}, {0.7, 0.15, 0.95});
   world_from_hand.translation += Vector3d(Sum(kX, t), Sum(kY, t), Sum(kZ, t));
-  return world_from_hand * Turn(Sum(kYaw, t) * kDegree, Vector3d::UnitY()) *
-         Turn(Sum(kPitch, t) * kDegree, Vector3d::UnitX()) *
-         Turn(Sum(kRoll, t) * kDegree, Vector3d::UnitZ());
+  return world_from_hand *
+         Turn(Sum(kYaw, t) * kRadiansPerDegree, Vector3d::UnitY()) *
+         Turn(Sum(kPitch, t) * kRadiansPerDegree, Vector3d::UnitX()) *
+         Turn(Sum(kRoll, t) * kRadiansPerDegree, Vector3d::UnitZ());
 }
 
 Rigid3d Still(double /*t*/, double duration) { return Xyz(0.0, duration); }

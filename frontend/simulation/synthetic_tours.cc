@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "core/util/units.h"
 #include "frontend/simulation/synthetic_buildings.h"
 #include "frontend/simulation/synthetic_path.h"
 
@@ -14,8 +15,6 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-
-constexpr double kDegree = M_PI / 180.0;
 
 // A way on the floor along a polygon, closed or to and fro, whose corners are
 // rounded: a uniform cubic B-spline with control points every kStep along the
@@ -76,12 +75,15 @@ Rigid3d Sway(double t) {
                        0.015 * std::sin(2.0 * M_PI * 0.83 * t + 1.0),
                        0.010 * std::sin(2.0 * M_PI * 0.41 * t + 2.0));
   const Quaterniond turn =
-      AngleAxisd(0.8 * kDegree * std::sin(2.0 * M_PI * 0.67 * t + 3.0),
-                 Vector3d::UnitX()) *
-      AngleAxisd(1.2 * kDegree * std::sin(2.0 * M_PI * 0.47 * t + 4.0),
-                 Vector3d::UnitY()) *
-      AngleAxisd(1.0 * kDegree * std::sin(2.0 * M_PI * 0.59 * t + 5.0),
-                 Vector3d::UnitZ());
+      AngleAxisd(
+          0.8 * kRadiansPerDegree * std::sin(2.0 * M_PI * 0.67 * t + 3.0),
+          Vector3d::UnitX()) *
+      AngleAxisd(
+          1.2 * kRadiansPerDegree * std::sin(2.0 * M_PI * 0.47 * t + 4.0),
+          Vector3d::UnitY()) *
+      AngleAxisd(
+          1.0 * kRadiansPerDegree * std::sin(2.0 * M_PI * 0.59 * t + 5.0),
+          Vector3d::UnitZ());
   return Rigid3d(turn, shift);
 }
 
@@ -103,7 +105,7 @@ Rigid3d TableTour(double t, double /*duration*/) {
   constexpr double kRound = 56.0;  // s
   const Vector2d place = way.At(way.length() * t / kRound);
   // At the desks, from one end to the other, and to both sides of them.
-  const double look = 12.0 * kDegree * std::sin(2.0 * M_PI * t / 7.0);
+  const double look = 12.0 * kRadiansPerDegree * std::sin(2.0 * M_PI * t / 7.0);
   return LookAt(Lift(place, 1.45), Lift(0.25 * place, 0.85)) *
          Rigid3d(Quaterniond(AngleAxisd(look, Vector3d::UnitY())),
                  Vector3d::Zero()) *
@@ -125,7 +127,7 @@ Rigid3d TwoRoomsTour(double t, double /*duration*/) {
                         {-3.9, 1.4}},
                        true);
   constexpr double kRound = 57.0;  // s
-  const double look = 12.0 * kDegree * std::sin(2.0 * M_PI * t / 9.5);
+  const double look = 12.0 * kRadiansPerDegree * std::sin(2.0 * M_PI * t / 9.5);
   return LookAhead(way, way.length() * t / kRound, 2.4, look, 1.45, 0.25) *
          Sway(t);
 }
@@ -156,8 +158,8 @@ Rigid3d DepotTour(double t, double /*duration*/) {
     return Way(corners, true);
   }();
   constexpr double kRound = 500.0;  // s
-  return LookAhead(way, way.length() * t / kRound, 2.6, 75.0 * kDegree, 1.35,
-                   0.15) *
+  return LookAhead(way, way.length() * t / kRound, 2.6,
+                   75.0 * kRadiansPerDegree, 1.35, 0.15) *
          Sway(t);
 }
 

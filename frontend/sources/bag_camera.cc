@@ -5,17 +5,13 @@
 #include <map>
 
 #include "core/util/input_error.h"
+#include "core/util/units.h"
+#include "frontend/sources/bag_topics.h"
 #include "frontend/sources/ros_image.h"
 #include "frontend/sources/transform_tree.h"
 
 namespace rgbd_pose {
 namespace {
-
-constexpr double kMillimetres = 1000.0;
-
-bool Contains(const std::string& text, const char* part) {
-  return text.find(part) != std::string::npos;
-}
 
 // Where the message of an image topic lies in frames, and how it is encoded.
 struct ImageTraits {
@@ -213,7 +209,7 @@ std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
   setup.depth_scale =
       depth.use == RosImageUse::kMetricDepth
           ? kMetricDepthScale
-          : ViewerDepthScale(bag, topics.depth).value_or(kMillimetres);
+          : ViewerDepthScale(bag, topics.depth).value_or(kMillimetresPerMetre);
   const std::optional<Rigid3d> color_from_depth =
       ColorFromDepth(bag, topics, color, depth, has_camera);
   if (!color_from_depth.has_value()) return setup;

@@ -24,10 +24,6 @@ std::string LowerCase(std::string text) {
   return text;
 }
 
-bool Contains(const std::string& text, const char* part) {
-  return text.find(part) != std::string::npos;
-}
-
 std::string Parent(const std::string& topic) {
   return topic.substr(0, topic.rfind('/'));
 }
@@ -153,7 +149,7 @@ int InfoOf(const std::vector<BagTopic>& topics, int image) {
   return -1;
 }
 
-int Named(const BagReader& bag, const std::string& name, bool is_image) {
+int TopicNamed(const BagReader& bag, const std::string& name, bool is_image) {
   const std::vector<BagTopic>& topics = bag.topics();
   const int index = FindTopic(topics, name);
   if (index >= 0 &&
@@ -190,10 +186,10 @@ BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {
           "topics: takes COLOUR,DEPTH or COLOUR,DEPTH,CAMERA_INFO, not " +
           std::to_string(names.size()) + " names");
     }
-    chosen.color = Named(*bag, names[0], true);
-    chosen.depth = Named(*bag, names[1], true);
+    chosen.color = TopicNamed(*bag, names[0], true);
+    chosen.depth = TopicNamed(*bag, names[1], true);
   }
-  chosen.color_info = names.size() == 3 ? Named(*bag, names[2], false)
+  chosen.color_info = names.size() == 3 ? TopicNamed(*bag, names[2], false)
                                         : InfoOf(topics, chosen.color);
   chosen.depth_info = InfoOf(topics, chosen.depth);
   for (size_t i = 0; i < topics.size(); ++i) {

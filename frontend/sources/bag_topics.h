@@ -26,6 +26,11 @@ struct BagTopics {
 // or several will do.
 BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names);
 
+// Whether a topic's name has that part.
+inline bool Contains(const std::string& name, const char* part) {
+  return name.find(part) != std::string::npos;
+}
+
 // A message of an image topic, compressed or not.
 RosImage ReadImageOf(const BagReader& bag, const BagMessage& message);
 

@@ -14,11 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsThere(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
-
 std::optional<CameraSetup> NoCamera(const std::string&, const std::string&,
                                     const std::string&) {
   return std::nullopt;
@@ -39,7 +34,7 @@ std::optional<CameraSetup> Open3dCamera(const std::string& folder,
                                         const std::string&,
                                         const std::string&) {
   const fs::path path = fs::path(folder) / "intrinsic.json";
-  if (!IsThere(path)) return std::nullopt;
+  if (!PathExists(path)) return std::nullopt;
   const YamlSection file = YamlSection::FromFile(path.string());
   Camera camera;
   camera.width = file.Pixels("width");
@@ -60,7 +55,7 @@ std::optional<CameraSetup> ReplicaCamera(const std::string& folder,
                                          const std::string&) {
   for (const char* name : {"cam_params.json", "../cam_params.json"}) {
     const fs::path path = fs::path(folder) / name;
-    if (!IsThere(path)) continue;
+    if (!PathExists(path)) continue;
     const YamlSection file =
         YamlSection::FromFile(path.string()).Child("camera");
     Camera camera;
@@ -111,7 +106,7 @@ std::optional<CameraSetup> ScanNetCamera(const std::string& folder,
   CameraSetup setup(
       ReadIntrinsicText(intrinsic / "intrinsic_color.txt", first_color));
   const fs::path of_depth = intrinsic / "intrinsic_depth.txt";
-  if (IsThere(of_depth)) {
+  if (PathExists(of_depth)) {
     setup.depth_camera =
         DepthCamera{ReadIntrinsicText(of_depth, first_depth), Rigid3d()};
   }

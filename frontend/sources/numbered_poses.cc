@@ -15,11 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool IsThere(const fs::path& path) {
-  std::error_code error;
-  return fs::exists(path, error);
-}
-
 // A matrix word by word; a lost frame's are infinite, which is no bad input.
 class MatrixWords {
  public:
@@ -83,7 +78,7 @@ NumberedPoses ReadFramePoses(const std::string& folder,
     name << "frame-" << std::setw(6) << std::setfill('0') << number
          << ".pose.txt";
     const fs::path path = fs::path(folder) / name.str();
-    if (IsThere(path)) ReadMatrixFile(path.string(), number, &poses);
+    if (PathExists(path)) ReadMatrixFile(path.string(), number, &poses);
   }
   return poses;
 }
@@ -94,7 +89,7 @@ NumberedPoses ReadPoseFolder(const std::string& folder,
   for (const int number : numbers) {
     const fs::path path =
         fs::path(folder) / "pose" / (std::to_string(number) + ".txt");
-    if (IsThere(path)) ReadMatrixFile(path.string(), number, &poses);
+    if (PathExists(path)) ReadMatrixFile(path.string(), number, &poses);
   }
   return poses;
 }
@@ -103,7 +98,7 @@ NumberedPoses ReadPoseLines(const std::string& folder,
                             const std::vector<int>& numbers) {
   const fs::path file = fs::path(folder) / "traj.txt";
   NumberedPoses poses;
-  if (!IsThere(file)) return poses;
+  if (!PathExists(file)) return poses;
   const std::string path = file.string();
   size_t i = 0;
   for (const TextLine& line : ReadTextTable(path)) {
@@ -126,7 +121,7 @@ NumberedPoses ReadPoseLog(const std::string& folder,
                           const std::vector<int>& numbers) {
   const fs::path file = fs::path(folder) / "trajectory.log";
   NumberedPoses poses;
-  if (!IsThere(file)) return poses;
+  if (!PathExists(file)) return poses;
   const std::string path = file.string();
   const std::vector<TextLine> lines = ReadTextTable(path);
   for (size_t i = 0; i < numbers.size() && 5 * i < lines.size(); ++i) {

@@ -15,7 +15,7 @@ namespace rgbd_pose {
 namespace {
 
 // 640 x 480 to 20 x 15.
-constexpr int kLevels = 6;
+constexpr int kDirectLevels = 6;
 
 // Overlaps are told by pixels so far apart.
 constexpr int kSampleStepPx = 20;
@@ -58,7 +58,7 @@ DirectReference::DirectReference(const Frame& frame,
 
 DirectTracker::DirectFrame::DirectFrame(const Frame& frame)
     : PreparedFrame(frame) {
-  BuildSmoothPyramid(gray, kLevels, &pyramid);
+  BuildSmoothPyramid(gray, kDirectLevels, &pyramid);
 }
 
 DirectTracker::DirectTracker(const FrontendOptions& images, Estimator estimator,

@@ -18,7 +18,7 @@ constexpr double kMaxErrorPx = 2.0;
 
 // Features fail together within cells of this size (px): some six features of a
 // well textured view.
-constexpr double kCellPx = 64.0;
+constexpr double kTrustCellPx = 64.0;
 
 // One failed feature in a cell is chance.
 constexpr int kMinFailed = 2;
@@ -37,15 +37,15 @@ bool Agrees(const FeatureMatches& found, size_t i,
 class CellCounts {
  public:
   explicit CellCounts(const Camera& camera)
-      : columns_(static_cast<int>(camera.width / kCellPx) + 1),
-        rows_(static_cast<int>(camera.height / kCellPx) + 1),
+      : columns_(static_cast<int>(camera.width / kTrustCellPx) + 1),
+        rows_(static_cast<int>(camera.height / kTrustCellPx) + 1),
         counts_(columns_ * rows_, 0),
         spare_(0) {}
 
   int& At(const Eigen::Vector2d& pixel) {
     if (!(pixel.x() >= 0.0 && pixel.y() >= 0.0)) return spare_;
-    const int column = static_cast<int>(pixel.x() / kCellPx);
-    const int row = static_cast<int>(pixel.y() / kCellPx);
+    const int column = static_cast<int>(pixel.x() / kTrustCellPx);
+    const int row = static_cast<int>(pixel.y() / kTrustCellPx);
     if (column >= columns_ || row >= rows_) return spare_;
     return counts_[row * columns_ + column];
   }

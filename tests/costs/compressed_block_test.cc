@@ -15,7 +15,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kEqual = 1e-10;
+constexpr double kSameSum = 1e-10;
 
 // y = sum of x[k] cos(k t) + x[0]^2 sin(t): K parameters, two rows.
 template <int K>
@@ -121,7 +121,7 @@ void ExpectTheSameSteps(ceres::LossFunction* loss) {
   ASSERT_EQ(actual.size(), expected.size()) << "K = " << K;
   ASSERT_GT(expected.size(), 2u) << "a vacuous problem";
   for (size_t i = 0; i < expected.size(); ++i) {
-    EXPECT_NEAR(actual[i].cost, expected[i].cost, kEqual * expected[0].cost);
+    EXPECT_NEAR(actual[i].cost, expected[i].cost, kSameSum * expected[0].cost);
   }
   EXPECT_LE((compressed.x - plain.x).norm(), 1e-8) << "K = " << K;
 }
@@ -154,7 +154,7 @@ TEST(CompressedBlockTest, CostOnlyIsTheCost) {
     cost_with += with[i] * with[i];
     cost_without += without[i] * without[i];
   }
-  EXPECT_NEAR(cost_with, cost_without, kEqual * cost_without);
+  EXPECT_NEAR(cost_with, cost_without, kSameSum * cost_without);
 }
 
 // A parameter without any influence makes H singular; it must stay put.

@@ -17,9 +17,9 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kTolerance = 1e-6;  // differences of second order
+constexpr double kValueTolerance = 1e-6;  // differences of second order
 constexpr double kStep = 1e-5;
-constexpr int kMatches = 50;
+constexpr int kValueMatches = 50;
 
 using Measured = Eigen::Vector3d;  // u, v, depth
 
@@ -63,7 +63,7 @@ class CostValuesTest : public ::testing::Test {
     bound_ = world_.Motion(0.1, 0.1);
     motion_ = world_.Motion(0.02, 0.02) * bound_;
     prior_ = world_.Prior(motion_, 0.05);
-    matches_ = world_.Matches(kMatches, 0.0, motion_);
+    matches_ = world_.Matches(kValueMatches, 0.0, motion_);
   }
 
   Eigen::Matrix3d R() const { return motion_.rotation.toRotationMatrix(); }
@@ -120,7 +120,7 @@ class CostValuesTest : public ::testing::Test {
       const Eigen::Map<Eigen::VectorXd> actual(&residuals[k * cost->rows()],
                                                cost->rows());
       const Eigen::VectorXd value = expected(cost->matches()[k]);
-      EXPECT_LE((actual - value).norm(), kTolerance * value.norm())
+      EXPECT_LE((actual - value).norm(), kValueTolerance * value.norm())
           << name << ", match " << k;
     }
   }

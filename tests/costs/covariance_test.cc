@@ -18,7 +18,7 @@ namespace rgbd_pose {
 namespace {
 
 constexpr int kTrials = 500;
-constexpr int kMatches = 250;
+constexpr int kCovarianceMatches = 250;
 constexpr double kPriorSigma = 0.002;  // rad, m: about what matches tell
 
 struct Scene {
@@ -35,7 +35,7 @@ std::ostream& operator<<(std::ostream& out, const Scene& scene) {
 }
 
 // R_true = Exp(omega) R, and C (MotionEstimate::covariance).
-MotionVector ErrorOf(const Rigid3d& estimate, const Rigid3d& truth) {
+MotionVector ErrorVector(const Rigid3d& estimate, const Rigid3d& truth) {
   const Eigen::AngleAxisd omega(truth.rotation * estimate.rotation.inverse());
   MotionVector error;
   error << omega.angle() * omega.axis(),
@@ -56,13 +56,13 @@ TEST_P(CovarianceTest, IsHonest) {
     RandomWorld world(1000 + seed);
     const Rigid3d truth = world.Motion(0.05, 0.05);
     const Correspondences matches =
-        world.Matches(kMatches, scene.outlier_share, truth, /*noise=*/true,
-                      scene.missing_depth_share);
+        world.Matches(kCovarianceMatches, scene.outlier_share, truth,
+                      /*noise=*/true, scene.missing_depth_share);
     const MotionPrior prior = world.Prior(truth, kPriorSigma);
     const MotionEstimate estimate =
         estimator.Estimate(matches, Rigid3d(), &prior);
     ASSERT_TRUE(estimate.ok()) << estimate.reason << ", seed " << seed;
-    const MotionVector error = ErrorOf(estimate.cur_from_prev, truth);
+    const MotionVector error = ErrorVector(estimate.cur_from_prev, truth);
     nees += error.dot(estimate.covariance.ldlt().solve(error));
   }
   RecordProperty("nees", std::to_string(nees / kTrials));
@@ -88,7 +88,7 @@ Correspondences WithNoise(const Correspondences& matches, double noise) {
 TEST(CovarianceOfAPriorTest, DoesNotDependOnTheNoiseOfMatches) {
   RandomWorld world(5);
   const Rigid3d truth = world.Motion(0.05, 0.05);
-  const Correspondences matches = world.Matches(kMatches, 0.0, truth);
+  const Correspondences matches = world.Matches(kCovarianceMatches, 0.0, truth);
   const MotionPrior prior{truth, 1e12 * MotionMatrix::Identity()};
   for (const char* loss : {"none", "tukey"}) {
     Estimator estimator({}, MakeRobustCosts("reprojection_depth+motion_prior",
@@ -118,12 +118,12 @@ TEST(CovarianceOfAPriorTest, IsHonestWhereTheScaleIsEstimated) {
       RandomWorld world(3000 + seed);
       const Rigid3d truth = world.Motion(0.05, 0.05);
       const Correspondences matches =
-          WithNoise(world.Matches(kMatches, 0.0, truth), noise);
+          WithNoise(world.Matches(kCovarianceMatches, 0.0, truth), noise);
       const MotionPrior prior = world.Prior(truth, kPriorSigma);
       const MotionEstimate estimate =
           estimator.Estimate(matches, Rigid3d(), &prior);
       ASSERT_TRUE(estimate.ok()) << estimate.reason << ", seed " << seed;
-      const MotionVector error = ErrorOf(estimate.cur_from_prev, truth);
+      const MotionVector error = ErrorVector(estimate.cur_from_prev, truth);
       nees += error.dot(estimate.covariance.ldlt().solve(error));
     }
     EXPECT_NEAR(nees / kTrials, 6.0, 0.6) << "noise " << noise;
@@ -195,7 +195,7 @@ Correspondences MatchesOf(const UnequalNoise& scene, int seed, Rigid3d* truth) {
     truth->translation = ahead - truth->rotation * ahead;
   }
   Correspondences matches(camera);
-  for (int i = 0; i < kMatches; ++i) {
+  for (int i = 0; i < kCovarianceMatches; ++i) {
     Observation prev, cur;
     world.Match(camera, *truth, &prev, &cur);
     if (!is_wide) prev.sigma_px = 2.0;
@@ -220,7 +220,7 @@ TEST_P(UnequalNoiseTest, IsAsDocumented) {
     const Correspondences matches = MatchesOf(scene, seed, &truth);
     const MotionEstimate estimate = estimator.Estimate(matches, truth);
     ASSERT_TRUE(estimate.ok()) << estimate.reason << ", seed " << seed;
-    const MotionVector error = ErrorOf(estimate.cur_from_prev, truth);
+    const MotionVector error = ErrorVector(estimate.cur_from_prev, truth);
     nees += error.dot(estimate.covariance.ldlt().solve(error)) / kSeeds;
     inliers += 1.0 * estimate.num_inliers / estimate.num_used / kSeeds;
   }

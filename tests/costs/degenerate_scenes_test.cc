@@ -19,7 +19,7 @@ using ::testing::Values;
 constexpr double kMaxAngle = 0.006;        // rad
 constexpr double kMaxTranslation = 0.012;  // m
 
-Estimator MakeEstimator(const std::string& costs) {
+Estimator EstimatorOfCosts(const std::string& costs) {
   return Estimator({}, MakeRobustCosts(costs, "tukey"));
 }
 
@@ -119,7 +119,7 @@ TEST_P(EveryCostTest, FewerThanThreeMatchesAreTooFew) {
     const Correspondences matches =
         world.Matches(count, 0.0, truth, /*noise=*/true, missing_depth_share);
     const MotionEstimate estimate =
-        MakeEstimator(GetParam()).Estimate(matches, truth, &prior);
+        EstimatorOfCosts(GetParam()).Estimate(matches, truth, &prior);
     EXPECT_EQ(estimate.status, EstimateStatus::kTooFewMatches) << count;
     ExpectSane(estimate);
   }
@@ -135,7 +135,7 @@ class OneDepthTest : public ::testing::TestWithParam<std::string> {};
 TEST_P(OneDepthTest, IsEnough) {
   const Rigid3d truth = RandomWorld(22).Motion(0.05, 0.05);
   const MotionEstimate estimate =
-      MakeEstimator(GetParam())
+      EstimatorOfCosts(GetParam())
           .Estimate(MatchesOnAPlane(150, 2.0, truth, /*noise=*/true));
   EXPECT_TRUE(estimate.ok()) << estimate.reason;
   ExpectSane(estimate);
@@ -155,7 +155,7 @@ INSTANTIATE_TEST_SUITE_P(Costs, OneDepthTest,
 TEST(DegenerateScenesTest, PointToPlaneOnOnePlane) {
   for (const bool noise : {false, true}) {
     const MotionEstimate estimate =
-        MakeEstimator("point_to_plane")
+        EstimatorOfCosts("point_to_plane")
             .Estimate(MatchesOnAPlane(150, 2.0, Rigid3d(), noise));
     EXPECT_EQ(estimate.status, EstimateStatus::kDegenerate);
     ExpectSane(estimate);
@@ -171,7 +171,7 @@ TEST(DegenerateScenesTest, PointToPlaneOnOnePlane) {
 TEST(DegenerateScenesTest, TheEndOfACorridorIsEnough) {
   for (const double end_share : {0.12, 0.03}) {
     const MotionEstimate estimate =
-        MakeEstimator("point_to_plane")
+        EstimatorOfCosts("point_to_plane")
             .Estimate(MatchesInACorridor(30000, end_share));
     EXPECT_TRUE(estimate.ok()) << estimate.reason;
     ExpectSane(estimate);
@@ -190,7 +190,7 @@ TEST(DegenerateScenesTest, NoiseIsNoLeverAboutALine) {
                            "reprojection_depth", "bidirectional_image"}) {
     for (const int count : {10, 100, 5000}) {
       for (const double depth : {0.5, 2.0, 4.0, 8.0}) {
-        const MotionEstimate estimate = MakeEstimator(cost).Estimate(
+        const MotionEstimate estimate = EstimatorOfCosts(cost).Estimate(
             MatchesOnAStrip(count, depth, /*height=*/0.0));
         EXPECT_EQ(estimate.status, EstimateStatus::kDegenerate)
             << cost << ", " << count << " matches at " << depth << " m";
@@ -205,7 +205,7 @@ TEST(DegenerateScenesTest, NoiseIsNoLeverAboutALine) {
 TEST(DegenerateScenesTest, AStripOfFourSigmasIsALever) {
   for (const char* cost : {"bidirectional_point", "mahalanobis_point"}) {
     for (const int count : {30, 1000}) {
-      const MotionEstimate estimate = MakeEstimator(cost).Estimate(
+      const MotionEstimate estimate = EstimatorOfCosts(cost).Estimate(
           MatchesOnAStrip(count, 2.0, /*height=*/20.0));
       EXPECT_TRUE(estimate.ok()) << estimate.reason;
     }
@@ -235,7 +235,7 @@ TEST(DegenerateScenesTest, EpipolarAloneHasNoScale) {
       const Eigen::Vector3d C = 0.3 * Eigen::Vector3d::Unit(axis);
       const Rigid3d truth(Eigen::Quaterniond::Identity(), -C);
       const MotionEstimate estimate =
-          MakeEstimator("epipolar")
+          EstimatorOfCosts("epipolar")
               .Estimate(world.Matches(150, 0.0, truth, noise,
                                       /*missing_depth_share=*/1.0),
                         truth);
@@ -251,7 +251,7 @@ TEST(DegenerateScenesTest, EpipolarAloneNeedsAGuess) {
   RandomWorld world(25);
   const Rigid3d truth = world.Motion(0.05, 0.3);
   const MotionEstimate estimate =
-      MakeEstimator("epipolar")
+      EstimatorOfCosts("epipolar")
           .Estimate(world.Matches(150, 0.0, truth, true,
                                   /*missing_depth_share=*/1.0));
   EXPECT_EQ(estimate.status, EstimateStatus::kTooFewMatches);
@@ -265,7 +265,7 @@ TEST(DegenerateScenesTest, EpipolarMatchesMayAllDropOut) {
   const Rigid3d guess(Eigen::Quaterniond::Identity(),
                       Eigen::Vector3d(0.03, 0.0, 0.0));
   const MotionEstimate estimate =
-      MakeEstimator("epipolar")
+      EstimatorOfCosts("epipolar")
           .Estimate(world.Matches(150, 0.5, Rigid3d(), true, 1.0), guess);
   EXPECT_FALSE(estimate.ok());
   ExpectSane(estimate);

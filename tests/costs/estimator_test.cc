@@ -12,19 +12,10 @@
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
 #include "robust/scale.h"
+#include "tests/support/motion_error.h"
 
 namespace rgbd_pose {
 namespace {
-
-struct MotionError {
-  double angle;        // rad
-  double translation;  // m, of the current centre in the previous frame
-};
-
-MotionError ErrorOf(const Rigid3d& estimate, const Rigid3d& truth) {
-  const Rigid3d difference = estimate.Inverse() * truth;
-  return {difference.Angle(), difference.translation.norm()};
-}
 
 Estimator MakeEstimator(const std::string& loss,
                         Assembly assembly = Assembly::kCompressed) {

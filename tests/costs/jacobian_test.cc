@@ -18,8 +18,8 @@ namespace {
 
 // Rounding of some tens of operations, relative to the largest entry of the
 // row: a row mixes terms of very different sizes that may cancel.
-constexpr double kTolerance = 1e-12;
-constexpr int kSamples = 1000;
+constexpr double kJacobianTolerance = 1e-12;
+constexpr int kJacobianSamples = 1000;
 
 template <typename Residual>
 class JacobianTest : public ::testing::Test, protected BothJacobians<Residual> {
@@ -35,18 +35,20 @@ TYPED_TEST_SUITE(JacobianTest, AsGTestTypes<ResidualTypes>::type, CostName);
 TYPED_TEST(JacobianTest, EqualsTheOracleRowByRow) {
   RandomWorld world(1);
   int telling[TypeParam::kRows] = {};  // samples where the row is not zero
-  for (int i = 0; i < kSamples; ++i) {
+  for (int i = 0; i < kJacobianSamples; ++i) {
     this->EvaluateBoth(ResidualSample<TypeParam>(&world));
     for (int row = 0; row < TypeParam::kRows; ++row) {
       const double scale = std::max(1.0, std::abs(this->jet_r_[row]));
-      EXPECT_NEAR(this->hand_r_[row], this->jet_r_[row], kTolerance * scale);
-      EXPECT_LE(this->RowError(row, 0, 6), kTolerance)
+      EXPECT_NEAR(this->hand_r_[row], this->jet_r_[row],
+                  kJacobianTolerance * scale);
+      EXPECT_LE(this->RowError(row, 0, 6), kJacobianTolerance)
           << TypeParam::kName << " row " << row << ", sample " << i;
       if (this->jet_J_.row(row).norm() > 1e-6) ++telling[row];
     }
   }
   for (int row = 0; row < TypeParam::kRows; ++row) {
-    EXPECT_GE(telling[row], kSamples / 2) << "vacuous samples, row " << row;
+    EXPECT_GE(telling[row], kJacobianSamples / 2)
+        << "vacuous samples, row " << row;
   }
 }
 
@@ -77,11 +79,11 @@ TEST_F(BidirectionalPointTest, EqualsTheOracleTableByTable) {
       {"Table 2.9, C columns of previous z", 5, 3, 3},
   };
   RandomWorld world(2);
-  for (int i = 0; i < kSamples; ++i) {
+  for (int i = 0; i < kJacobianSamples; ++i) {
     EvaluateBoth(ResidualSample<BidirectionalPoint>(&world));
     for (const Table& table : tables) {
       EXPECT_LE(RowError(table.row, table.first_column, table.columns),
-                kTolerance)
+                kJacobianTolerance)
           << table.name << ", sample " << i;
     }
   }
@@ -105,10 +107,10 @@ TEST_F(BidirectionalPointTest, RowsAreTheThesisErrors) {
   const Eigen::Vector3d e_c = cur - R * (prev - C);
   const Eigen::Vector3d e_p = prev - (R.transpose() * cur + C);
   for (int i = 0; i < 3; ++i) {
-    EXPECT_NEAR(r[i], e_c[i], kTolerance);
-    EXPECT_NEAR(r[3 + i], e_p[i], kTolerance);
+    EXPECT_NEAR(r[i], e_c[i], kJacobianTolerance);
+    EXPECT_NEAR(r[3 + i], e_p[i], kJacobianTolerance);
     for (int k = 0; k < 3; ++k) {
-      EXPECT_NEAR(J[i][3 + k], R(i, k), kTolerance);
+      EXPECT_NEAR(J[i][3 + k], R(i, k), kJacobianTolerance);
       EXPECT_EQ(J[3 + i][3 + k], i == k ? -1.0 : 0.0);
     }
   }

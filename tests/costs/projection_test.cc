@@ -13,7 +13,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kTolerance = 1e-12;  // rounding of a few operations
+constexpr double kProjectionTolerance = 1e-12;  // rounding of a few operations
 
 Eigen::Vector3d Project(double x, double y, double z) {
   const double q[3] = {x, y, z};
@@ -25,7 +25,8 @@ TEST(ProjectionTest, IsThePinholeInFrontOfTheCamera) {
   for (const double z : {kNearestDepth, 0.4, 1.0, 8.0, 1e3}) {
     const Eigen::Vector3d m = Project(0.3, -0.2, z);
     const Eigen::Vector3d expected(0.3 / z, -0.2 / z, 1.0 / z);
-    EXPECT_LE((m - expected).norm(), kTolerance * expected.norm()) << z;
+    EXPECT_LE((m - expected).norm(), kProjectionTolerance * expected.norm())
+        << z;
   }
 }
 
@@ -43,7 +44,7 @@ TEST(ProjectionTest, DerivativeEqualsTheOracle) {
       projection.Derivative(dq.data(), dm);
       for (int i = 0; i < 3; ++i) {
         const double size = std::max(1.0, jet.m()[i].v.norm());
-        EXPECT_NEAR(dm[i], jet.m()[i].v[k], kTolerance * size) << z;
+        EXPECT_NEAR(dm[i], jet.m()[i].v[k], kProjectionTolerance * size) << z;
       }
     }
   }

@@ -12,24 +12,15 @@
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/m_estimator.h"
 #include "robust/scale.h"
+#include "tests/support/motion_error.h"
 
 namespace rgbd_pose {
 namespace {
 
 constexpr char kCost[] = "bidirectional_point";
 
-struct MotionError {
-  double angle;        // rad
-  double translation;  // m
-};
-
-MotionError ErrorOf(const Rigid3d& estimate, const Rigid3d& truth) {
-  const Rigid3d difference = estimate.Inverse() * truth;
-  return {difference.Angle(), difference.translation.norm()};
-}
-
-Estimator MakeEstimator(const std::string& loss, const std::string& scale,
-                        RobustSchedule schedule = RobustSchedule::kGnc) {
+Estimator EstimatorOfScale(const std::string& loss, const std::string& scale,
+                           RobustSchedule schedule = RobustSchedule::kGnc) {
   EstimatorOptions options;
   options.schedule = schedule;
   options.scale = FindScaleEstimator(scale)->estimate;
@@ -56,7 +47,7 @@ class EveryLossTest : public ::testing::TestWithParam<std::string> {};
 
 // 300 matches tell the motion to about 0.3 mrad and 0.6 mm.
 TEST_P(EveryLossTest, EstimatesACleanMotion) {
-  Estimator estimator = MakeEstimator(GetParam(), "fixed");
+  Estimator estimator = EstimatorOfScale(GetParam(), "fixed");
   for (int seed = 0; seed < 10; ++seed) {
     RandomWorld world(300 + seed);
     const Rigid3d truth = world.Motion(0.2, 0.2);
@@ -76,7 +67,7 @@ TEST_P(EveryLossTest, FindsANoiselessMotionExactly) {
   RandomWorld world(31);
   const Rigid3d truth = world.Motion(0.2, 0.2);
   const MotionEstimate estimate =
-      MakeEstimator(GetParam(), "fixed")
+      EstimatorOfScale(GetParam(), "fixed")
           .Estimate(world.Matches(300, 0.0, truth, /*noise=*/false));
   ASSERT_TRUE(estimate.ok()) << estimate.reason;
   const MotionError error = ErrorOf(estimate.cur_from_prev, truth);
@@ -100,8 +91,8 @@ INSTANTIATE_TEST_SUITE_P(Scales, EveryScaleTest,
 TEST_P(EveryScaleTest, MakesUpForAWrongNoiseModel) {
   constexpr double kFactor = 3.0;
   constexpr int kTrials = 40;
-  Estimator unscaled = MakeEstimator("tukey", "fixed");
-  Estimator scaled = MakeEstimator("tukey", GetParam());
+  Estimator unscaled = EstimatorOfScale("tukey", "fixed");
+  Estimator scaled = EstimatorOfScale("tukey", GetParam());
   double wrong = 0.0, right = 0.0, found = 0.0, sigma = 0.0;
   double wrong_share = 0.0, right_share = 0.0, found_share = 0.0;
   for (int seed = 0; seed < kTrials; ++seed) {
@@ -140,8 +131,8 @@ TEST_P(EveryScaleTest, MakesUpForAWrongNoiseModel) {
 }
 
 TEST_P(EveryScaleTest, LeavesARightNoiseModelAndOutliersAlone) {
-  Estimator unscaled = MakeEstimator("tukey", "fixed");
-  Estimator scaled = MakeEstimator("tukey", GetParam());
+  Estimator unscaled = EstimatorOfScale("tukey", "fixed");
+  Estimator scaled = EstimatorOfScale("tukey", GetParam());
   double expected = 0.0, actual = 0.0;
   for (int seed = 0; seed < 40; ++seed) {
     RandomWorld world(500 + seed);
@@ -163,7 +154,7 @@ TEST_P(EveryScaleTest, NoiselessMatchesHaveADefinedEstimate) {
     RandomWorld world(32);
     const Rigid3d truth = world.Motion(0.1, 0.1);
     const MotionEstimate estimate =
-        MakeEstimator("tukey", GetParam())
+        EstimatorOfScale("tukey", GetParam())
             .Estimate(world.Matches(300, outliers, truth, /*noise=*/false));
     ASSERT_TRUE(estimate.ok()) << estimate.reason;
     const MotionError error = ErrorOf(estimate.cur_from_prev, truth);
@@ -179,7 +170,7 @@ TEST_P(EveryScaleTest, NoiselessMatchesHaveADefinedEstimate) {
 }
 
 TEST_P(EveryScaleTest, AHandfulOfMatchesHasADefinedEstimate) {
-  Estimator estimator = MakeEstimator("tukey", GetParam());
+  Estimator estimator = EstimatorOfScale("tukey", GetParam());
   for (const int count : {0, 1, 2, 3, 4, 5, 9, 10}) {
     RandomWorld world(33);
     const Rigid3d truth = world.Motion(0.05, 0.05);
@@ -202,8 +193,8 @@ TEST(ScheduleTest, GraduationSurvivesSeventyPercentOutliers) {
   constexpr int kTrials = 100;
   constexpr int kMatches = 300;
   const auto success = [](RobustSchedule schedule) {
-    Estimator clean = MakeEstimator("tukey", "fixed");
-    Estimator estimator = MakeEstimator("tukey", "fixed", schedule);
+    Estimator clean = EstimatorOfScale("tukey", "fixed");
+    Estimator estimator = EstimatorOfScale("tukey", "fixed", schedule);
     std::vector<MotionError> errors;
     double angle = 0.0, translation = 0.0;  // without outliers
     for (int seed = 0; seed < kTrials; ++seed) {
@@ -235,7 +226,7 @@ TEST(ScheduleTest, GraduationSurvivesSeventyPercentOutliers) {
 // Where over half of the matches are right, few stages are needed: without
 // outliers the iterations of two stages, with many outliers more.
 TEST(ScheduleTest, StagesAreSavedWhereMatchesAgree) {
-  Estimator estimator = MakeEstimator("tukey", "fixed");
+  Estimator estimator = EstimatorOfScale("tukey", "fixed");
   RandomWorld world(34);
   const Rigid3d truth = world.Motion(0.1, 0.1);
   const int clean =
@@ -252,7 +243,7 @@ TEST(ScaleTest, AScaleThatOnlyFitsWrongMatchesIsNoSuccess) {
   RandomWorld world(71);
   for (const std::string scale : {"mad", "sn", "qn"}) {
     const MotionEstimate estimate =
-        MakeEstimator("none", scale)
+        EstimatorOfScale("none", scale)
             .Estimate(world.Matches(300, 0.2, world.Motion(0.1, 0.1)));
     EXPECT_EQ(estimate.status, EstimateStatus::kInconsistent) << scale;
     EXPECT_NE(estimate.reason, "") << scale;
@@ -264,7 +255,7 @@ TEST(WeightTest, LiesBetweenZeroAndOne) {
   const Correspondences matches = world.Matches(300, 0.2, Rigid3d());
   for (const std::string& loss : MEstimatorNames()) {
     const MotionEstimate estimate =
-        MakeEstimator(loss, "fixed").Estimate(matches);
+        EstimatorOfScale(loss, "fixed").Estimate(matches);
     for (const double weight : estimate.weights) {
       EXPECT_GE(weight, 0.0) << loss;
       EXPECT_LE(weight, 1.0) << loss;

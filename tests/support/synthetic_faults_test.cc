@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr int kFrames = 12;
+constexpr int kFaultFrames = 12;
 constexpr int kFirst = 3;
 constexpr int kEnd = 9;
 
@@ -24,13 +24,13 @@ constexpr int kEnd = 9;
 SyntheticOptions SmallOptions(bool noise) {
   SyntheticOptions options;
   options.path = "circle";
-  options.frames = kFrames;
+  options.frames = kFaultFrames;
   options.noise = noise;
   options.camera.camera = {160, 120, 131.25, 131.25, 79.5, 59.5, 0, 0, 0};
   return options;
 }
 
-double Difference(const cv::Mat& a, const cv::Mat& b) {
+double ImageDifference(const cv::Mat& a, const cv::Mat& b) {
   return cv::norm(a, b, cv::NORM_INF);
 }
 
@@ -47,8 +47,8 @@ TEST_P(AnyFaultTest, LeavesOtherFramesUntouched) {
     ++untouched;
     const Frame frame = faulty.Read(i);
     const Frame expected = sound.Read(source);
-    EXPECT_EQ(Difference(frame.gray, expected.gray), 0.0) << i;
-    EXPECT_EQ(Difference(frame.depth, expected.depth), 0.0) << i;
+    EXPECT_EQ(ImageDifference(frame.gray, expected.gray), 0.0) << i;
+    EXPECT_EQ(ImageDifference(frame.depth, expected.depth), 0.0) << i;
     EXPECT_EQ(frame.timestamp, expected.timestamp);
     EXPECT_EQ(frame.index, i);
     EXPECT_EQ(faulty.WorldFromCam(i).translation,
@@ -56,7 +56,7 @@ TEST_P(AnyFaultTest, LeavesOtherFramesUntouched) {
     EXPECT_EQ(faulty.WorldFromCam(i).rotation.coeffs(),
               sound.WorldFromCam(source).rotation.coeffs());
   }
-  EXPECT_EQ(untouched, kFrames - (kEnd - kFirst));
+  EXPECT_EQ(untouched, kFaultFrames - (kEnd - kFirst));
 }
 
 TEST_P(AnyFaultTest, GivesTheSameBytesTwice) {
@@ -66,8 +66,8 @@ TEST_P(AnyFaultTest, GivesTheSameBytesTwice) {
   second.Read(kFirst + 2);  // the order of reading must not matter
   const Frame a = first.Read(kFirst + 1);
   const Frame b = second.Read(kFirst + 1);
-  EXPECT_EQ(Difference(a.gray, b.gray), 0.0);
-  EXPECT_EQ(Difference(a.depth, b.depth), 0.0);
+  EXPECT_EQ(ImageDifference(a.gray, b.gray), 0.0);
+  EXPECT_EQ(ImageDifference(a.depth, b.depth), 0.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, AnyFaultTest,
@@ -82,11 +82,11 @@ TEST(SyntheticFaultsTest, BlackHasDepthAndCoveredHasColour) {
       options, {{FaultKind::kBlack, 2, 4}, {FaultKind::kCovered, 6, 8}});
   for (const int i : {2, 3}) {
     EXPECT_EQ(cv::countNonZero(faulty.Read(i).gray), 0);
-    EXPECT_EQ(Difference(faulty.Read(i).depth, sound.Read(i).depth), 0.0);
+    EXPECT_EQ(ImageDifference(faulty.Read(i).depth, sound.Read(i).depth), 0.0);
   }
   for (const int i : {6, 7}) {
     EXPECT_EQ(cv::countNonZero(faulty.Read(i).depth), 0);
-    EXPECT_EQ(Difference(faulty.Read(i).gray, sound.Read(i).gray), 0.0);
+    EXPECT_EQ(ImageDifference(faulty.Read(i).gray, sound.Read(i).gray), 0.0);
   }
 }
 
@@ -198,7 +198,7 @@ TEST(SyntheticFaultsTest, TheBoxCarriesItsPrintAlong) {
   options.path = "still";
   const SyntheticDataset sound(options);
   const FaultyDataset faulty(options, {{FaultKind::kBox, 0}});
-  const int later = kFrames - 1;
+  const int later = kFaultFrames - 1;
   const Vector3d shift =
       SeeBox(faulty, sound, later).centre - SeeBox(faulty, sound, 0).centre;
   const double px_per_m = options.camera.camera.fx / 0.8;
@@ -234,7 +234,7 @@ TEST(SyntheticFaultsTest, ThinnedKeepsEveryThirdFrame) {
   const Frame frame = faulty.Read(3);
   EXPECT_EQ(frame.index, 3);
   EXPECT_EQ(frame.timestamp, sound.timestamp(5));
-  EXPECT_EQ(Difference(frame.gray, sound.Read(5).gray), 0.0);
+  EXPECT_EQ(ImageDifference(frame.gray, sound.Read(5).gray), 0.0);
 }
 
 TEST(SyntheticFaultsTest, RefusesFaultsWithoutSense) {
@@ -242,7 +242,7 @@ TEST(SyntheticFaultsTest, RefusesFaultsWithoutSense) {
   for (const Fault& fault :
        {Fault{FaultKind::kBlack, -1, 3}, Fault{FaultKind::kBlack, 3, 3},
         Fault{FaultKind::kGain, 0, 3, -1.0},
-        Fault{FaultKind::kBox, kFrames, kFrames + 5}}) {
+        Fault{FaultKind::kBox, kFaultFrames, kFaultFrames + 5}}) {
     EXPECT_THROW(FaultyDataset(options, {fault}), InputError);
   }
 }

@@ -18,7 +18,7 @@ namespace {
 
 using Fate = CalibratedParameter::Fate;
 
-constexpr int kFrames = 45;
+constexpr int kCalibrationFrames = 45;
 
 std::vector<Frame> Render(const std::string& path, int frames) {
   SyntheticOptions options;
@@ -56,7 +56,8 @@ struct Mapped {
 };
 
 const std::vector<Frame>& Handheld() {
-  static const std::vector<Frame> frames = Render("handheld", kFrames);
+  static const std::vector<Frame> frames =
+      Render("handheld", kCalibrationFrames);
   return frames;
 }
 

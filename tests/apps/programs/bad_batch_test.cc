@@ -12,13 +12,13 @@ auto List(const std::string& text) {
   return [=](const Seq& seq) { seq.Write("list.txt", text); };
 }
 
-const std::string kBatch =
+const std::string kBadBatch =
     RGBD_BATCH " --sequences={seq}/list.txt --output={dir}/out ";
 
 TEST_F(BadInputTest, BatchLists) {
   const std::string kList = "{seq}/list.txt";
   ExpectEach(
-      kBatch,
+      kBadBatch,
       {
           {"no list", nullptr, "--sequences=", 1, "--sequences is needed"},
           {"no output", List(".\n"), "--output=", 1, "--output is needed"},
@@ -47,7 +47,7 @@ TEST_F(BadInputTest, BatchLists) {
 TEST_F(BadInputTest, BatchFlags) {
   const auto list = List("../seq\n");
   ExpectEach(
-      kBatch,
+      kBadBatch,
       {
           {"cost", list, "--costs=magic", 2,
            "--costs: unknown name 'magic'; there are"},
@@ -83,7 +83,7 @@ TEST_F(BadInputTest, BatchRuns) {
   const auto list = List("../seq\n");
   const std::string kRun = "out/seq/bidirectional_point-tukey-patch-r1/";
   const auto call = [&](const std::string& words) {
-    return RunCommand(Fill(kBatch) + words, folder_);
+    return RunCommand(Fill(kBadBatch) + words, folder_);
   };
   fs::copy(folder_ / "good", folder_ / "seq", fs::copy_options::recursive);
   list(Spoiled());
@@ -118,7 +118,7 @@ TEST_F(BadInputTest, BatchOnAFullDisk) {
   fs::copy(folder_ / "good", folder_ / "seq", fs::copy_options::recursive);
   List("../seq\n")(Spoiled());
   const RunResult run =
-      RunCommand("ulimit -f 3; exec " + Fill(kBatch), folder_);
+      RunCommand("ulimit -f 3; exec " + Fill(kBadBatch), folder_);
   EXPECT_EQ(run.exit_code, 4) << run.err;
   const std::string kRun = "out/seq/bidirectional_point-tukey-patch-r1/";
   EXPECT_THAT(ReadTextFile(folder_ / (kRun + "run.log")),

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 using Seq = SpoiledSequence;
 using testing::HasSubstr;
 
-const std::string kEvaluate = RGBD_EVALUATE
+const std::string kBadEvaluation = RGBD_EVALUATE
     " --estimate={seq}/groundtruth.txt --groundtruth={seq}/groundtruth.txt ";
 const std::string kSweep = RGBD_COMPARE
     " --experiment=sweep --seeds=1 --losses=none,huber --output={dir}/out ";
@@ -62,10 +62,10 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            RGBD_BATCH " --sequences={seq}/list --output={seq}/file/out", 2,
            "--output={seq}/file/out: cannot be made (Not a directory)"},
           {"evaluate: below a file", file,
-           kEvaluate + "--aligned={seq}/file/aligned.txt", 2,
+           kBadEvaluation + "--aligned={seq}/file/aligned.txt", 2,
            "{seq}/file/aligned.txt: cannot be written (Not a directory)"},
           {"evaluate: nobody takes the output", nullptr,
-           "(exec >/dev/full; exec " + kEvaluate + ")", 2,
+           "(exec >/dev/full; exec " + kBadEvaluation + ")", 2,
            "the standard output cannot be written (No space left on device)"},
       });
 }
@@ -94,8 +94,8 @@ TEST_F(BadInputTest, FullDisks) {
                  }
                  s.Write("groundtruth.txt", poses);
                },
-               WithFullDisk(2, kEvaluate + "--aligned={dir}/aligned.txt"), 2,
-               "{dir}/aligned.txt: writing failed (File too large)"},
+               WithFullDisk(2, kBadEvaluation + "--aligned={dir}/aligned.txt"),
+               2, "{dir}/aligned.txt: writing failed (File too large)"},
           });
 }
 

@@ -10,13 +10,13 @@ namespace {
 
 using Seq = SpoiledSequence;
 
-auto Text(const std::string& name, const std::string& content) {
+auto TextFile(const std::string& name, const std::string& content) {
   return [=](const Seq& seq) { seq.Write(name, content); };
 }
 
 TEST_F(BadInputTest, Evaluate) {
   const auto estimate = [](const std::string& text) {
-    return Text("estimate.txt", text);
+    return TextFile("estimate.txt", text);
   };
   const auto same = [](const Seq& s) {
     s.Write("estimate.txt", s.Read("groundtruth.txt"));
@@ -180,10 +180,10 @@ TEST_F(BadInputTest, Report) {
            "{seq}/none/frames.csv: cannot be opened"},
           {"no batch", nullptr, "--batch={seq}", 2,
            "{seq}/summary.csv: cannot be opened"},
-          {"an empty table", Text("summary.csv", ""), "--batch={seq}", 2,
+          {"an empty table", TextFile("summary.csv", ""), "--batch={seq}", 2,
            "{seq}/summary.csv:1: no column 'sequence'"},
           {"a table of too few columns",
-           Text("summary.csv", "sequence,cost\na\n"), "--batch={seq}", 2,
+           TextFile("summary.csv", "sequence,cost\na\n"), "--batch={seq}", 2,
            "{seq}/summary.csv:2: 1 cells under 2 column names"},
           {"no metrics", run("metrics.json", "", ""), "--run={seq}", 2,
            "{seq}/metrics.json: cannot be opened"},

@@ -21,15 +21,15 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kSimulate = RGBD_SIMULATE;
-const std::string kOdometry = RGBD_ODOMETRY;
-constexpr int kFrames = 6;
+const std::string kSimulator = RGBD_SIMULATE;
+const std::string kTracker = RGBD_ODOMETRY;
+constexpr int kShortRun = 6;
 
 class OdometryProgramTest : public testing::Test {
  protected:
   OdometryProgramTest() {
     const RunResult run = RunCommand(
-        kSimulate + " --path=xyz --frames=" + std::to_string(kFrames) +
+        kSimulator + " --path=xyz --frames=" + std::to_string(kShortRun) +
             " --output=" + Sequence(),
         folder_);
     EXPECT_EQ(run.exit_code, 0) << run.err;
@@ -38,7 +38,7 @@ class OdometryProgramTest : public testing::Test {
   std::string Sequence() const { return folder_ / "sequence"; }
 
   std::string Call(const std::string& output) const {
-    return kOdometry + " --dataset=" + Sequence() + " --camera=" + Sequence() +
+    return kTracker + " --dataset=" + Sequence() + " --camera=" + Sequence() +
            "/camera.yaml --output=" + (folder_ / output);
   }
 
@@ -72,19 +72,19 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
             "relocalised,predicted,carried_by,matches,inliers,iterations,sigma,"
             "tx,ty,tz,qx,qy,qz,qw,"
             "decode_ms,track_ms,match_ms,solve_ms,reference_ms,relocalise_ms");
-  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kFrames);
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kShortRun);
   const std::string edges = ReadTextFile(folder_ / "run/edges.csv");
-  EXPECT_GE(std::count(edges.begin(), edges.end(), '\n'), kFrames);
+  EXPECT_GE(std::count(edges.begin(), edges.end(), '\n'), kShortRun);
   EXPECT_EQ(ReadTrajectory(folder_ / "run/trajectory.txt").size(),
-            static_cast<size_t>(kFrames));
+            static_cast<size_t>(kShortRun));
   const auto metrics =
       nlohmann::json::parse(ReadTextFile(folder_ / "run/metrics.json"));
-  EXPECT_EQ(metrics.at("run").at("frames"), kFrames);
+  EXPECT_EQ(metrics.at("run").at("frames"), kShortRun);
   EXPECT_GT(metrics.at("run").at("decode_ms_median"), 0.0);
   const double seconds = metrics.at("run").at("wall_seconds");
   EXPECT_GT(seconds, 0.0);
   // Both are written with all their digits.
-  EXPECT_NEAR(metrics.at("run").at("frames_per_second"), kFrames / seconds,
+  EXPECT_NEAR(metrics.at("run").at("frames_per_second"), kShortRun / seconds,
               1e-6);
   // One frame in memory is 1.5 MB with its pyramid; six hundred make a leak.
   EXPECT_GT(metrics.at("peak_rss_mb"), 1.0);
@@ -97,7 +97,7 @@ TEST_F(OdometryProgramTest, RepeatsARunFromItsFlagFile) {
   ASSERT_EQ(Run(Call("first") + " --loss=huber --max_features=300").exit_code,
             0);
   const std::string flags = folder_ / "first/config.flags";
-  ASSERT_EQ(Run(kOdometry + " --flagfile=" + flags +
+  ASSERT_EQ(Run(kTracker + " --flagfile=" + flags +
                 " --output=" + (folder_ / "second"))
                 .exit_code,
             0);
@@ -160,12 +160,13 @@ TEST_F(OdometryProgramTest, SavesACloudOfTheRoom) {
 }
 
 TEST_F(OdometryProgramTest, ValidatesWithoutTracking) {
-  const std::string call = kOdometry +
+  const std::string call = kTracker +
                            " --validate_only --dataset=" + Sequence() +
                            " --camera=" + Sequence() + "/camera.yaml";
   const RunResult good = Run(call);
   EXPECT_EQ(good.exit_code, 0) << good.err;
-  EXPECT_THAT(good.out, HasSubstr(std::to_string(kFrames) + ", all readable"));
+  EXPECT_THAT(good.out,
+              HasSubstr(std::to_string(kShortRun) + ", all readable"));
   EXPECT_THAT(good.out, HasSubstr("frames/s"));
 
   // The first of two broken images is the one that is named.

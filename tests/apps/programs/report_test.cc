@@ -22,7 +22,7 @@ constexpr size_t kMaxPageBytes = 3'000'000;
 // A blank window of this size is a tenth of it as PNG.
 constexpr size_t kMinScreenshotBytes = 40'000;
 
-int Count(const std::string& text, const std::string& word) {
+int Occurrences(const std::string& text, const std::string& word) {
   int count = 0;
   for (size_t at = 0; (at = text.find(word, at)) != std::string::npos; ++at) {
     ++count;
@@ -123,17 +123,16 @@ TEST_F(ReportTest, ABrowserDrawsAllPlots) {
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
   Simulate();
   Track();
-  const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
+  const std::string image = folder_ / "page.png";
+  const RunResult browser =
+      Browse("--window-size=1280,4000 --dump-dom --screenshot=" + image);
   EXPECT_EQ(Console(browser), "");
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
   for (const std::string id : {"path-xy", "path-xz", "path-3d", "errors",
                                "tracking", "times", "residuals", "weights"}) {
-    EXPECT_EQ(Count(browser.out, "<div id=\"" + id + "\""), 1) << id;
+    EXPECT_EQ(Occurrences(browser.out, "<div id=\"" + id + "\""), 1) << id;
   }
-  EXPECT_EQ(Count(browser.out, " js-plotly-plot\""), 8);
-
-  const std::string image = folder_ / "page.png";
-  Browse("--window-size=1280,4000 --screenshot=" + image);
+  EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 8);
   ASSERT_TRUE(std::filesystem::exists(image));
   EXPECT_GT(std::filesystem::file_size(image), kMinScreenshotBytes);
 }
@@ -146,8 +145,8 @@ TEST_F(ReportTest, WithoutGroundTruthThereAreNoErrors) {
   const RunResult browser = Browse("--window-size=390,4000 --dump-dom");
   EXPECT_EQ(Console(browser), "");
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-  EXPECT_EQ(Count(browser.out, "<div id=\"errors\""), 0);
-  EXPECT_EQ(Count(browser.out, " js-plotly-plot\""), 7);
+  EXPECT_EQ(Occurrences(browser.out, "<div id=\"errors\""), 0);
+  EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 7);
 }
 
 TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
@@ -165,8 +164,8 @@ TEST_F(ReportTest, ABatchIsComparedOnOnePage) {
   const RunResult browser = Browse("--window-size=390,4000 --dump-dom");
   EXPECT_EQ(Console(browser), "");
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-  EXPECT_EQ(Count(browser.out, " js-plotly-plot\""), 4);
-  EXPECT_EQ(Count(browser.out, ">failed</td>"), 1);
+  EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 4);
+  EXPECT_EQ(Occurrences(browser.out, ">failed</td>"), 1);
 }
 
 TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
@@ -182,7 +181,7 @@ TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
   const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
   EXPECT_EQ(Console(browser), "");
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-  EXPECT_EQ(Count(browser.out, " js-plotly-plot\""), 8);
+  EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 8);
   EXPECT_THAT(browser.out, HasSubstr("What was seen: "));
   EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));  // its legend
 }
@@ -234,21 +233,22 @@ TEST_F(ReportTest, TheMapOfARunIsShown) {
   const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
   EXPECT_EQ(Console(browser), "");
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-  EXPECT_EQ(Count(browser.out, "<div id=\"map\""), 1);
+  EXPECT_EQ(Occurrences(browser.out, "<div id=\"map\""), 1);
   EXPECT_THAT(browser.out, HasSubstr("3 keyframes (1 more made way"));
   for (const std::string name :
        {"path of the odometry", "path at the end", "tracked pairs (2)",
         "loops (1)", "made way (1)", "keyframes (3)"}) {
-    EXPECT_EQ(Count(browser.out, ">" + name + "</text>"), 1) << name;
+    EXPECT_EQ(Occurrences(browser.out, ">" + name + "</text>"), 1) << name;
   }
-  EXPECT_EQ(Count(browser.out, "further pairs"), 1);  // in the script alone
+  EXPECT_EQ(Occurrences(browser.out, "further pairs"),
+            1);  // in the script alone
   EXPECT_THAT(browser.out, HasSubstr("up to 0 mm from that of the odometry"));
   EXPECT_THAT(browser.out, HasSubstr("rgbd_slam --flagfile=config.flags"));
 
   write("{}");  // nothing to draw
   const RunResult empty = Browse("--window-size=1280,4000 --dump-dom");
   EXPECT_EQ(Console(empty), "");
-  EXPECT_EQ(Count(empty.out, "<div id=\"map\""), 0);
+  EXPECT_EQ(Occurrences(empty.out, "<div id=\"map\""), 0);
 }
 
 // Of a comparison: what rgbd_compare writes, rgbd_report writes again.
@@ -270,19 +270,18 @@ class ComparisonReportTest : public ReportTest {
   }
 
   void ExpectPlots(const std::vector<std::string>& ids) const {
-    for (const std::string width : {"1280", "390"}) {
-      const RunResult browser =
-          Browse("--window-size=" + width + ",4000 --dump-dom");
+    const std::string image = folder_ / "page.png";
+    for (const std::string width : {"390", "1280"}) {
+      const RunResult browser = Browse(
+          "--window-size=" + width + ",4000 --dump-dom --screenshot=" + image);
       EXPECT_EQ(Console(browser), "");
       EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
       for (const std::string& id : ids) {
-        EXPECT_EQ(Count(browser.out, "<div id=\"" + id + "\""), 1) << id;
+        EXPECT_EQ(Occurrences(browser.out, "<div id=\"" + id + "\""), 1) << id;
       }
-      EXPECT_EQ(Count(browser.out, " js-plotly-plot\""),
+      EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""),
                 static_cast<int>(ids.size()));
     }
-    const std::string image = folder_ / "page.png";
-    Browse("--window-size=1280,4000 --screenshot=" + image);
     ASSERT_TRUE(std::filesystem::exists(image));
     EXPECT_GT(std::filesystem::file_size(image), kMinScreenshotBytes);
   }

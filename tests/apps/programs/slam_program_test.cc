@@ -17,9 +17,9 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kSimulate = RGBD_SIMULATE;
+const std::string kRender = RGBD_SIMULATE;
 const std::string kSlam = RGBD_SLAM;
-constexpr size_t kFrames = 40;
+constexpr size_t kSlamFrames = 40;
 
 class SlamProgramTest : public testing::Test {
  protected:
@@ -30,9 +30,10 @@ class SlamProgramTest : public testing::Test {
                         "Camera.cx: 159.5\nCamera.cy: 119.5\n"
                         "Camera.width: 320\nCamera.height: 240\n");
     const RunResult run = RunCommand(
-        kSimulate +
+        kRender +
             " --path=handheld --camera=" + std::string(folder_ / "half.yaml") +
-            " --frames=" + std::to_string(kFrames) + " --output=" + Sequence(),
+            " --frames=" + std::to_string(kSlamFrames) +
+            " --output=" + Sequence(),
         folder_);
     EXPECT_EQ(run.exit_code, 0) << run.err;
   }
@@ -61,7 +62,7 @@ TEST_F(SlamProgramTest, LeavesItsFilesAndKeepsAMapToTrackIn) {
   for (const char* file :
        {"trajectory.txt", "trajectory_online.txt", "trajectory_odometry.txt"}) {
     EXPECT_EQ(ReadTrajectory(folder_ / ("first/" + std::string(file))).size(),
-              kFrames)
+              kSlamFrames)
         << file;
   }
   EXPECT_THAT(Read("first/graph.g2o"), HasSubstr("VERTEX_SE3:QUAT 0 0 0 0"));

@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 // Closed forms hold but for rounding: some 1e-16 of numbers up to about 10,
 // through products of a few rotations.
-constexpr double kTolerance = 1e-12;
+constexpr double kErrorTolerance = 1e-12;
 
 // Poses that do not turn, at places a tenth of a second apart.
 Trajectory Unturned(const std::vector<Vector3d>& positions) {
@@ -52,16 +52,16 @@ TEST(EvaluationTest, FindsNoErrorInTheTruth) {
   const EvaluationReport report = Evaluate(truth, truth);
   EXPECT_EQ(report.estimated_poses, 200);
   EXPECT_EQ(report.paired_poses, 200);
-  EXPECT_NEAR(report.duration, 199 / 30.0, kTolerance);
+  EXPECT_NEAR(report.duration, 199 / 30.0, kErrorTolerance);
   EXPECT_EQ(report.ate.count, 200);
   EXPECT_EQ(report.rpe_frame.translation.count, 199);
   EXPECT_EQ(report.rpe_seconds.translation.count, 170);
   EXPECT_GT(report.rpe_metres.translation.count, 100);
-  EXPECT_LE(report.ate.max, kTolerance);
+  EXPECT_LE(report.ate.max, kErrorTolerance);
   for (const RelativePoseError& rpe :
        {report.rpe_frame, report.rpe_seconds, report.rpe_metres}) {
-    EXPECT_LE(rpe.translation.max, kTolerance);
-    EXPECT_LE(rpe.rotation.max, kTolerance);
+    EXPECT_LE(rpe.translation.max, kErrorTolerance);
+    EXPECT_LE(rpe.rotation.max, kErrorTolerance);
   }
 }
 
@@ -75,10 +75,10 @@ TEST(EvaluationTest, AteOfAWrongScaleOnALine) {
   }
   const ErrorStatistics ate = Evaluate(Unturned(estimate), Unturned(truth)).ate;
   EXPECT_EQ(ate.count, 5);
-  EXPECT_NEAR(ate.rmse, 0.1 * std::sqrt(2.0), kTolerance);
-  EXPECT_NEAR(ate.mean, 0.12, kTolerance);
-  EXPECT_NEAR(ate.median, 0.1, kTolerance);
-  EXPECT_NEAR(ate.max, 0.2, kTolerance);
+  EXPECT_NEAR(ate.rmse, 0.1 * std::sqrt(2.0), kErrorTolerance);
+  EXPECT_NEAR(ate.mean, 0.12, kErrorTolerance);
+  EXPECT_NEAR(ate.median, 0.1, kErrorTolerance);
+  EXPECT_NEAR(ate.max, 0.2, kErrorTolerance);
 }
 
 // A square whose corners are bent up and down in turn: no rotation helps.
@@ -88,9 +88,9 @@ TEST(EvaluationTest, AteOfABentSquare) {
   const Trajectory estimate =
       Unturned({{1, 1, .1}, {-1, 1, -.1}, {-1, -1, .1}, {1, -1, -.1}});
   const ErrorStatistics ate = Evaluate(estimate, truth).ate;
-  EXPECT_NEAR(ate.rmse, 0.1, kTolerance);
-  EXPECT_NEAR(ate.median, 0.1, kTolerance);
-  EXPECT_NEAR(ate.max, 0.1, kTolerance);
+  EXPECT_NEAR(ate.rmse, 0.1, kErrorTolerance);
+  EXPECT_NEAR(ate.median, 0.1, kErrorTolerance);
+  EXPECT_NEAR(ate.max, 0.1, kErrorTolerance);
 }
 
 // An estimate that does not move is off by the spread of the truth.
@@ -99,7 +99,7 @@ TEST(EvaluationTest, AteOfAnEstimateThatStandsStill) {
       Unturned({{0, 0, 0}, {2, 0, 0}, {0, 0, 0}, {2, 0, 0}});
   Trajectory estimate = truth;
   for (StampedPose& pose : estimate) pose.world_from_cam = Screw(0.5, 3.0);
-  EXPECT_NEAR(Evaluate(estimate, truth).ate.rmse, 1.0, kTolerance);
+  EXPECT_NEAR(Evaluate(estimate, truth).ate.rmse, 1.0, kErrorTolerance);
 }
 
 // Steps of 1, 2 and 3 m where there should be none.
@@ -112,17 +112,17 @@ TEST(EvaluationTest, RpeByHand) {
   const EvaluationReport report = Evaluate(estimate, truth, options);
   const ErrorStatistics frame = report.rpe_frame.translation;
   EXPECT_EQ(frame.count, 3);
-  EXPECT_NEAR(frame.rmse, std::sqrt((1.0 + 4.0 + 9.0) / 3.0), kTolerance);
-  EXPECT_NEAR(frame.mean, 2.0, kTolerance);
-  EXPECT_NEAR(frame.median, 2.0, kTolerance);
-  EXPECT_NEAR(frame.max, 3.0, kTolerance);
+  EXPECT_NEAR(frame.rmse, std::sqrt((1.0 + 4.0 + 9.0) / 3.0), kErrorTolerance);
+  EXPECT_NEAR(frame.mean, 2.0, kErrorTolerance);
+  EXPECT_NEAR(frame.median, 2.0, kErrorTolerance);
+  EXPECT_NEAR(frame.max, 3.0, kErrorTolerance);
   EXPECT_EQ(report.rpe_frame.rotation.count, 3);
-  EXPECT_LE(report.rpe_frame.rotation.max, kTolerance);
+  EXPECT_LE(report.rpe_frame.rotation.max, kErrorTolerance);
   const ErrorStatistics seconds = report.rpe_seconds.translation;
   EXPECT_EQ(seconds.count, 2);
-  EXPECT_NEAR(seconds.rmse, std::sqrt((5.0 + 13.0) / 2.0), kTolerance);
+  EXPECT_NEAR(seconds.rmse, std::sqrt((5.0 + 13.0) / 2.0), kErrorTolerance);
   EXPECT_NEAR(seconds.median, (std::sqrt(5.0) + std::sqrt(13.0)) / 2.0,
-              kTolerance);
+              kErrorTolerance);
   // The truth has no path to count along.
   EXPECT_EQ(report.path_length, 0.0);
   EXPECT_EQ(report.rpe_metres.translation.count, 0);
@@ -177,14 +177,16 @@ TEST(EvaluationTest, RpeOfAConstantDrift) {
           +[](const ErrorStatistics& e) { return e.mean; },
           +[](const ErrorStatistics& e) { return e.median; },
           +[](const ErrorStatistics& e) { return e.max; }}) {
-      EXPECT_NEAR(figure(c.rpe.translation), kDrift * c.interval, kTolerance);
-      EXPECT_NEAR(figure(c.rpe.rotation), kYawDrift * c.interval, kTolerance);
+      EXPECT_NEAR(figure(c.rpe.translation), kDrift * c.interval,
+                  kErrorTolerance);
+      EXPECT_NEAR(figure(c.rpe.rotation), kYawDrift * c.interval,
+                  kErrorTolerance);
     }
   }
   ASSERT_TRUE(report.final_pose.has_value());
-  EXPECT_NEAR(report.final_pose->translation, kDrift * 10.0, kTolerance);
-  EXPECT_NEAR(report.final_pose->angle, kYawDrift * 10.0, kTolerance);
-  EXPECT_NEAR(report.path_length, kSpeed * 10.0, kTolerance);
+  EXPECT_NEAR(report.final_pose->translation, kDrift * 10.0, kErrorTolerance);
+  EXPECT_NEAR(report.final_pose->angle, kYawDrift * 10.0, kErrorTolerance);
+  EXPECT_NEAR(report.path_length, kSpeed * 10.0, kErrorTolerance);
 }
 
 // A turn too many where the camera arrives does not move the place.
@@ -195,8 +197,8 @@ TEST(EvaluationTest, RpeKeepsTurnsAndPlacesApart) {
   const RelativePoseError rpe =
       Evaluate({{0, Rigid3d()}, {1, step * turn}}, {{0, Rigid3d()}, {1, step}})
           .rpe_frame;
-  EXPECT_LE(rpe.translation.rmse, kTolerance);
-  EXPECT_NEAR(rpe.rotation.rmse, 0.3, kTolerance);
+  EXPECT_LE(rpe.translation.rmse, kErrorTolerance);
+  EXPECT_NEAR(rpe.rotation.rmse, 0.3, kErrorTolerance);
 }
 
 // From 0 s, the pose at 1.01 s is near enough to 1 s; from 0.5 s and on there
@@ -219,13 +221,13 @@ TEST(EvaluationTest, MetresEndAtTheFirstPoseFarEnough) {
   const ErrorStatistics metre =
       Evaluate(estimate, truth).rpe_metres.translation;
   EXPECT_EQ(metre.count, 1);
-  EXPECT_NEAR(metre.rmse, 0.2, kTolerance);
+  EXPECT_NEAR(metre.rmse, 0.2, kErrorTolerance);
   EvaluationOptions options;
   options.rpe_delta_metres = 0.25;  // three steps
   const ErrorStatistics quarter =
       Evaluate(estimate, truth, options).rpe_metres.translation;
   EXPECT_EQ(quarter.count, 8);
-  EXPECT_NEAR(quarter.max, 0.06, kTolerance);
+  EXPECT_NEAR(quarter.max, 0.06, kErrorTolerance);
 }
 
 void ExpectSame(const ErrorStatistics& a, const ErrorStatistics& b) {
@@ -279,8 +281,8 @@ TEST(EvaluationTest, FinalPoseIsJudgedFromTheFirst) {
       Evaluate({{0, world}, {1, world * Screw(3, 2)}, {2, world * way * error}},
                {{0, start}, {1, start}, {2, start * way}});
   ASSERT_TRUE(report.final_pose.has_value());
-  EXPECT_NEAR(report.final_pose->translation, 0.13, kTolerance);
-  EXPECT_NEAR(report.final_pose->angle, 0.1, kTolerance);
+  EXPECT_NEAR(report.final_pose->translation, 0.13, kErrorTolerance);
+  EXPECT_NEAR(report.final_pose->angle, 0.1, kErrorTolerance);
 }
 
 TEST(EvaluationTest, JudgesASinglePose) {
@@ -290,7 +292,7 @@ TEST(EvaluationTest, JudgesASinglePose) {
   EXPECT_EQ(report.paired_poses, 1);
   EXPECT_EQ(report.duration, 0.0);
   EXPECT_EQ(report.ate.count, 1);
-  EXPECT_LE(report.ate.rmse, kTolerance);
+  EXPECT_LE(report.ate.rmse, kErrorTolerance);
   EXPECT_EQ(report.rpe_frame.translation.count, 0);
   EXPECT_EQ(report.rpe_seconds.translation.count, 0);
   EXPECT_EQ(report.rpe_metres.translation.count, 0);

@@ -14,7 +14,7 @@ using Eigen::AngleAxisd;
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kRounding = 1e-13;
+constexpr double kMotionRounding = 1e-13;
 
 TEST(MotionTest, RotationIsZThenYThenX) {
   const double angles[3] = {0.3, -0.4, 0.5};
@@ -22,7 +22,7 @@ TEST(MotionTest, RotationIsZThenYThenX) {
       (AngleAxisd(0.5, Vector3d::UnitZ()) *
        AngleAxisd(-0.4, Vector3d::UnitY()) * AngleAxisd(0.3, Vector3d::UnitX()))
           .toRotationMatrix();
-  EXPECT_LE((RotationFromAngles(angles) - expected).norm(), kRounding);
+  EXPECT_LE((RotationFromAngles(angles) - expected).norm(), kMotionRounding);
 }
 
 TEST(MotionTest, MapsPointsAsTheThesisDoes) {
@@ -31,7 +31,7 @@ TEST(MotionTest, MapsPointsAsTheThesisDoes) {
   const Vector3d prev(0.3, -0.2, 2.0);
   const Vector3d expected =
       RotationFromAngles(x.data()) * (prev - Vector3d(x.tail<3>()));
-  EXPECT_LE((RigidFromMotion(x) * prev - expected).norm(), kRounding);
+  EXPECT_LE((RigidFromMotion(x) * prev - expected).norm(), kMotionRounding);
 }
 
 // The centre of the current camera, seen from the current camera, is its
@@ -39,7 +39,8 @@ TEST(MotionTest, MapsPointsAsTheThesisDoes) {
 TEST(MotionTest, CIsTheCurrentCentreInThePreviousFrame) {
   MotionVector x;
   x << 0.1, 0.2, -0.3, 0.5, -0.6, 0.7;
-  EXPECT_LE((RigidFromMotion(x) * Vector3d(x.tail<3>())).norm(), kRounding);
+  EXPECT_LE((RigidFromMotion(x) * Vector3d(x.tail<3>())).norm(),
+            kMotionRounding);
 }
 
 TEST(MotionTest, VectorAndRigidAreInverse) {
@@ -76,12 +77,13 @@ TEST(MotionTest, DerivativesEqualJets) {
     const MotionPose<Jet> expected = origin.PoseAt(jets);
     const MotionDerivatives actual = origin.DerivativesAt(x.data());
     for (int row = 0; row < 3; ++row) {
-      EXPECT_NEAR(actual.C[row], expected.C[row].a, kRounding);
+      EXPECT_NEAR(actual.C[row], expected.C[row].a, kMotionRounding);
       for (int col = 0; col < 3; ++col) {
-        EXPECT_NEAR(actual.R(row, col), expected.R(row, col).a, kRounding);
+        EXPECT_NEAR(actual.R(row, col), expected.R(row, col).a,
+                    kMotionRounding);
         for (int k = 0; k < 3; ++k) {
           EXPECT_NEAR(actual.dR[k](row, col), expected.R(row, col).v[k],
-                      kRounding);
+                      kMotionRounding);
         }
       }
     }
@@ -93,8 +95,8 @@ TEST(MotionTest, ParametersCountFromTheOrigin) {
                       Vector3d(0.1, 0.2, 0.3));
   const MotionVector zero = MotionVector::Zero();
   const Rigid3d motion = MotionOrigin(guess).CurFromPrev(zero.data());
-  EXPECT_LE((motion.Inverse() * guess).Angle(), kRounding);
-  EXPECT_LE((motion.translation - guess.translation).norm(), kRounding);
+  EXPECT_LE((motion.Inverse() * guess).Angle(), kMotionRounding);
+  EXPECT_LE((motion.translation - guess.translation).norm(), kMotionRounding);
 }
 
 TEST(Rigid3Test, NamesCancelInProducts) {
@@ -105,9 +107,9 @@ TEST(Rigid3Test, NamesCancelInProducts) {
   EXPECT_LE((((a_from_b * b_from_c) * point_in_c) -
              (a_from_b * (b_from_c * point_in_c)))
                 .norm(),
-            kRounding);
+            kMotionRounding);
   EXPECT_LE((a_from_b.Inverse() * (a_from_b * point_in_c) - point_in_c).norm(),
-            kRounding);
+            kMotionRounding);
 }
 
 TEST(Rigid3Test, AngleIsExactForTinyRotations) {

@@ -15,17 +15,17 @@ namespace rgbd_pose {
 namespace {
 
 // Noise of depth moves a point by up to half a pixel at this baseline.
-constexpr double kMedianPx = 0.5;
+constexpr double kPatchMedianPx = 0.5;
 
 // A match further than this from the truth shows another place.
-constexpr double kWrongPx = 3.0;
+constexpr double kPatchWrongPx = 3.0;
 
 class PatchFrontendTest : public ::testing::Test, protected MatchedViews {
  protected:
   PatchFrontendTest() : MatchedViews("patch") {}
 
   void ExpectMostlyRight(const FeatureMatches& found) const {
-    MatchedViews::ExpectMostlyRight(found, 200, kMedianPx, kWrongPx);
+    MatchedViews::ExpectMostlyRight(found, 200, kPatchMedianPx, kPatchWrongPx);
   }
 
   static void ExpectSame(const FeatureMatches& a, const FeatureMatches& b) {

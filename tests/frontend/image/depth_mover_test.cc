@@ -17,7 +17,7 @@ namespace {
 using Eigen::Vector3d;
 
 // No multiple of the blocks that it works in.
-Camera SmallCamera() { return {164, 122, 131.25, 131.25, 79.5, 59.5, 0, 0, 0}; }
+Camera MovedCamera() { return {164, 122, 131.25, 131.25, 79.5, 59.5, 0, 0, 0}; }
 
 Frame FrameOf(const cv::Mat& depth_m) {
   Frame frame;
@@ -31,7 +31,7 @@ Rigid3d Shift(double x, double y, double z) {
 
 // A wall 2 m away and in front of it, 1 m away, a board over some columns.
 Frame BoardAndWall(int from, int to) {
-  const Camera camera = SmallCamera();
+  const Camera camera = MovedCamera();
   cv::Mat depth(camera.height, camera.width, CV_32FC1, cv::Scalar(2.0));
   depth.colRange(from, to).setTo(1.0);
   return FrameOf(depth);
@@ -40,7 +40,7 @@ Frame BoardAndWall(int from, int to) {
 TEST(DepthMoverTest, StandingStillChangesNothing) {
   Frame frame = BoardAndWall(50, 70);
   frame.depth.at<uint16_t>(20, 30) = 0;
-  DepthMover mover(SmallCamera());
+  DepthMover mover(MovedCamera());
   EXPECT_EQ(cv::norm(mover.Move(frame, Rigid3d()), frame.depth, cv::NORM_INF),
             0.0);
   const uchar* memory = mover.Move(frame, Rigid3d()).data;
@@ -52,7 +52,7 @@ TEST(DepthMoverTest, StandingStillChangesNothing) {
 
 TEST(DepthMoverTest, GoingAheadBringsAllNearer) {
   const Frame frame = BoardAndWall(0, 0);
-  DepthMover mover(SmallCamera());
+  DepthMover mover(MovedCamera());
   const cv::Mat& moved = mover.Move(frame, Shift(0.0, 0.0, -0.02));
   EXPECT_EQ(cv::countNonZero(moved != 9900), 0);  // 1.98 m, 5000 a metre
 }
@@ -60,7 +60,7 @@ TEST(DepthMoverTest, GoingAheadBringsAllNearer) {
 // 0.016 m to the right moves the board by 2.1 px to the left, the wall by 1.05.
 TEST(DepthMoverTest, TheNearSurfaceHidesTheFarOneAndUncoversTheUnknown) {
   const Frame frame = BoardAndWall(50, 70);
-  DepthMover mover(SmallCamera());
+  DepthMover mover(MovedCamera());
   const cv::Mat& moved = mover.Move(frame, Shift(-0.016, 0.0, 0.0));
   for (int v = 0; v < moved.rows; ++v) {
     for (int u = 2; u < moved.cols - 3; ++u) {
@@ -83,10 +83,10 @@ TEST(DepthMoverTest, TheNearSurfaceHidesTheFarOneAndUncoversTheUnknown) {
 
 // A room from a place nearby, as by rendering it from there.
 TEST(DepthMoverTest, AgreesWithWhatIsSeenFromThere) {
-  Camera distorted = SmallCamera();
+  Camera distorted = MovedCamera();
   distorted.k1 = 0.2;
   distorted.k2 = -0.3;
-  for (const Camera& camera : {SmallCamera(), distorted}) {
+  for (const Camera& camera : {MovedCamera(), distorted}) {
     const Renderer renderer(MakeScene("room", 1), camera);
     const Rigid3d there = FindSyntheticPath("handheld")(1.0, 5.0);
     const Rigid3d there_from_here(

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kUnits = 5000.0;
 
-Camera SmallCamera(int width, int height, double focal) {
+Camera CameraOfSize(int width, int height, double focal) {
   Camera camera;
   camera.width = width;
   camera.height = height;
@@ -24,7 +24,7 @@ Camera SmallCamera(int width, int height, double focal) {
 }
 
 TEST(DepthRegistrationTest, OfTheSameCameraChangesNothing) {
-  const Camera camera = SmallCamera(64, 48, 50.0);
+  const Camera camera = CameraOfSize(64, 48, 50.0);
   cv::Mat depth(48, 64, CV_16UC1);
   for (int i = 0; i < 64 * 48; ++i) {
     depth.at<uint16_t>(i / 64, i % 64) = static_cast<uint16_t>(1000 + 7 * i);
@@ -43,12 +43,12 @@ TEST(DepthRegistrationTest, IsWhatTheColourCameraWouldHaveSeen) {
   SyntheticOptions options;
   options.frames = 3;
   options.noise = false;
-  options.camera.camera = SmallCamera(320, 240, 260.0);
+  options.camera.camera = CameraOfSize(320, 240, 260.0);
   options.camera.camera.k1 = 0.1;
   options.camera.camera.k2 = -0.2;
   options.camera.camera.p1 = 0.002;
   const SyntheticDataset color(options);
-  Camera depth_camera = SmallCamera(400, 300, 290.0);
+  Camera depth_camera = CameraOfSize(400, 300, 290.0);
   depth_camera.k1 = -0.05;
   const Rigid3d color_from_depth(
       Eigen::Quaterniond(Eigen::AngleAxisd(
@@ -96,7 +96,7 @@ TEST(DepthRegistrationTest, IsWhatTheColourCameraWouldHaveSeen) {
 }
 
 TEST(DepthRegistrationTest, WhatIsNearHidesWhatIsBehind) {
-  const Camera camera = SmallCamera(64, 48, 50.0);
+  const Camera camera = CameraOfSize(64, 48, 50.0);
   // A near half that moves over the far one when seen from the side.
   cv::Mat depth(48, 64, CV_16UC1, cv::Scalar(4.0 * kUnits));
   depth.colRange(0, 32).setTo(1.0 * kUnits);
@@ -116,8 +116,8 @@ TEST(DepthRegistrationTest, WhatIsNearHidesWhatIsBehind) {
 }
 
 TEST(DepthRegistrationTest, KeepsHolesAndFillsNone) {
-  const Camera depth_camera = SmallCamera(32, 24, 25.0);
-  const Camera color_camera = SmallCamera(128, 96, 100.0);
+  const Camera depth_camera = CameraOfSize(32, 24, 25.0);
+  const Camera color_camera = CameraOfSize(128, 96, 100.0);
   cv::Mat depth(24, 32, CV_16UC1, cv::Scalar(2.0 * kUnits));
   depth(cv::Rect(10, 10, 3, 3)).setTo(0);
   const cv::Mat registered = DepthRegistration({depth_camera, {}}, color_camera)
@@ -128,7 +128,7 @@ TEST(DepthRegistrationTest, KeepsHolesAndFillsNone) {
 }
 
 TEST(DepthRegistrationTest, LeavesOutWhatIsBehindTheCamera) {
-  const Camera camera = SmallCamera(64, 48, 50.0);
+  const Camera camera = CameraOfSize(64, 48, 50.0);
   const cv::Mat depth(48, 64, CV_16UC1, cv::Scalar(1.0 * kUnits));
   const Rigid3d color_from_depth(Eigen::Quaterniond::Identity(),
                                  {0.0, 0.0, -2.0});
@@ -139,7 +139,7 @@ TEST(DepthRegistrationTest, LeavesOutWhatIsBehindTheCamera) {
 }
 
 TEST(DepthRegistrationTest, RefusesBadCameras) {
-  const Camera good = SmallCamera(64, 48, 50.0);
+  const Camera good = CameraOfSize(64, 48, 50.0);
   Camera bad = good;
   bad.fx = 0.0;
   ExpectInputError(

@@ -15,7 +15,7 @@
 namespace rgbd_pose {
 namespace {
 
-SyntheticOptions Room() {
+SyntheticOptions MeshRoom() {
   SyntheticOptions options;
   options.path = "circle";
   options.frames = 6;
@@ -49,7 +49,7 @@ double DistanceTo(const Scene& scene, const Eigen::Vector3d& point) {
 }
 
 TEST(MeshFusionTest, ANoisyRoomIsWhereItIsFromAllSides) {
-  const SyntheticOptions options = Room();
+  const SyntheticOptions options = MeshRoom();
   const SyntheticDataset dataset(options);
   const TriangleMesh mesh = Fuse(dataset);
   ASSERT_GT(mesh.triangles.size(), 100000);
@@ -95,7 +95,7 @@ TEST(MeshFusionTest, ANoisyRoomIsWhereItIsFromAllSides) {
 }
 
 TEST(MeshFusionTest, ThreadsDoNotMatter) {
-  SyntheticOptions options = Room();
+  SyntheticOptions options = MeshRoom();
   options.frames = 2;
   const SyntheticDataset dataset(options);
   EXPECT_TRUE(FormatMeshPly(Fuse(dataset, 1)) ==
@@ -103,7 +103,7 @@ TEST(MeshFusionTest, ThreadsDoNotMatter) {
 }
 
 TEST(MeshFusionTest, ThinIsTheSameSurface) {
-  SyntheticOptions options = Room();
+  SyntheticOptions options = MeshRoom();
   options.frames = 2;
   const TriangleMesh mesh = Fuse(SyntheticDataset(options));
   constexpr size_t kMost = 5000;
@@ -120,7 +120,7 @@ TEST(MeshFusionTest, ThinIsTheSameSurface) {
 
 // A wall seen through a lens that bends it is even.
 TEST(MeshFusionTest, DistortionIsTakenOut) {
-  SyntheticOptions options = Room();
+  SyntheticOptions options = MeshRoom();
   options.frames = 2;
   options.noise = false;
   options.camera = *CameraPreset("tum_fr1");

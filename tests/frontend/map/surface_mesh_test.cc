@@ -10,9 +10,9 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kVoxel = 0.02;                  // m
-constexpr double kRadius = 0.3;                  // m
-const Eigen::Vector3d kCentre(0.01, -0.2, 0.1);  // below and above 0
+constexpr double kVoxel = 0.02;                      // m
+constexpr double kRadius = 0.3;                      // m
+const Eigen::Vector3d kBallCentre(0.01, -0.2, 0.1);  // below and above 0
 
 // A ball, known where `is_known` says so. What is inside it is behind.
 template <typename IsKnown>
@@ -27,7 +27,8 @@ DistanceVolume Ball(const IsKnown& is_known) {
       const Eigen::Vector3d point =
           kVoxel * (kSide * at + in_block).cast<double>();
       DistanceVoxel& voxel = (*block)[i];
-      voxel.distance = static_cast<float>((point - kCentre).norm() - kRadius);
+      voxel.distance =
+          static_cast<float>((point - kBallCentre).norm() - kRadius);
       voxel.weight = is_known(point) ? 1.0F : 0.0F;
       voxel.color = {256 * 10, 256 * 20, 256 * 30};
     }
@@ -43,7 +44,7 @@ TEST(SurfaceMeshTest, ABallIsClosedAndItsFrontOutside) {
   for (const Eigen::Vector3i& t : mesh.triangles) {
     for (int i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}];
     const auto at = [&](int i) -> Eigen::Vector3d {
-      return mesh.vertices[t[i]].position.cast<double>() - kCentre;
+      return mesh.vertices[t[i]].position.cast<double>() - kBallCentre;
     };
     volume += at(0).cross(at(1)).dot(at(2)) / 6.0;
   }
@@ -56,7 +57,7 @@ TEST(SurfaceMeshTest, ABallIsClosedAndItsFrontOutside) {
   EXPECT_NEAR(volume / (4.0 / 3.0 * M_PI * std::pow(kRadius, 3)), 1.0, 0.01);
   for (const ColoredPoint& vertex : mesh.vertices) {
     // The sagitta of a voxel's diagonal.
-    EXPECT_NEAR((vertex.position.cast<double>() - kCentre).norm(), kRadius,
+    EXPECT_NEAR((vertex.position.cast<double>() - kBallCentre).norm(), kRadius,
                 kVoxel * kVoxel / kRadius / 2.0);
     EXPECT_EQ(vertex.red, 10);
     EXPECT_EQ(vertex.green, 20);

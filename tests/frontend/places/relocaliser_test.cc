@@ -10,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/util/units.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/simulation/synthetic_scene.h"
@@ -18,11 +19,9 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kDegree = M_PI / 180.0;
-
 // Good enough to track from: a fraction of the depth's and of a view's width.
 constexpr double kMaxTranslationError = 0.03;
-constexpr double kMaxRotationError = 1.0 * kDegree;
+constexpr double kMaxRotationError = 1.0 * kRadiansPerDegree;
 
 // Frames of the simulated room from wherever the camera stands.
 class Room {
@@ -59,7 +58,7 @@ class Room {
 
 Rigid3d Turned(double degrees) {
   return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(
-                     degrees * kDegree, Eigen::Vector3d::UnitY())),
+                     degrees * kRadiansPerDegree, Eigen::Vector3d::UnitY())),
                  Eigen::Vector3d::Zero());
 }
 

@@ -8,13 +8,13 @@
 #include <limits>
 
 #include "core/util/input_error.h"
+#include "core/util/units.h"
 #include "frontend/simulation/synthetic_scene.h"
 
 namespace rgbd_pose {
 namespace {
 
 constexpr double kRate = 30.0;  // Hz
-constexpr double kDegree = M_PI / 180.0;
 
 struct Extent {
   double max_speed = 0.0;                         // m/s
@@ -53,7 +53,7 @@ TEST(SyntheticPathTest, XyzMovesAlongEachAxisBothWaysByHand) {
     EXPECT_NEAR(extent.max[axis], 0.2, kTolerance);
   }
   EXPECT_LT(extent.max_speed, 0.4);
-  EXPECT_LT(extent.max_angle, 3.0 * kDegree);
+  EXPECT_LT(extent.max_angle, 3.0 * kRadiansPerDegree);
 }
 
 TEST(SyntheticPathTest, XyzShowsAllAxesInTheDefaultLength) {
@@ -74,8 +74,9 @@ TEST(SyntheticPathTest, PanTiltReturnsExactlyForAnyNumberOfFrames) {
 
 TEST(SyntheticPathTest, PanTiltTurnsAsAUnitWithTheCameraOffItsAxes) {
   const Extent extent = Measure("pan_tilt", 150);
-  EXPECT_NEAR(extent.max_angle, 20.0 * kDegree, 0.1 * kDegree);
-  EXPECT_LT(extent.max_turn_rate, 40.0 * kDegree);
+  EXPECT_NEAR(extent.max_angle, 20.0 * kRadiansPerDegree,
+              0.1 * kRadiansPerDegree);
+  EXPECT_LT(extent.max_turn_rate, 40.0 * kRadiansPerDegree);
   const double reach = (extent.max - extent.min).maxCoeff();
   EXPECT_GT(reach, 0.01);
   EXPECT_LT(reach, 0.08);
@@ -144,12 +145,12 @@ Peaks FindPeaks(const std::string& name, double seconds,
 TEST(SyntheticPathTest, HandheldIsFastButKeepsItsLimits) {
   const Peaks always = FindPeaks("handheld", 100.0);  // then it repeats
   EXPECT_LE(always.speed, 1.0);
-  EXPECT_LE(always.turn_rate, 90.0 * kDegree);
+  EXPECT_LE(always.turn_rate, 90.0 * kRadiansPerDegree);
   EXPECT_GE(always.clearance, 0.6);
   EXPECT_LE(always.change_of_speed, 10.0);  // as an arm can; no jerks
   const Peaks default_length = FindPeaks("handheld", 149 / kRate);
   EXPECT_GE(default_length.speed, 0.95);
-  EXPECT_GE(default_length.turn_rate, 85.0 * kDegree);
+  EXPECT_GE(default_length.turn_rate, 85.0 * kRadiansPerDegree);
 }
 
 struct Tour {
@@ -166,7 +167,7 @@ TEST_P(SyntheticTours, AreCarriedByHandAndReturn) {
   const Peaks peaks =
       FindPeaks(tour.name, tour.seconds, tour.name, tour.seconds / 1000.0);
   EXPECT_LE(peaks.speed, tour.speed);
-  EXPECT_LE(peaks.turn_rate, 40.0 * kDegree);
+  EXPECT_LE(peaks.turn_rate, 40.0 * kRadiansPerDegree);
   EXPECT_LE(peaks.change_of_speed, 2.0);
   EXPECT_GE(peaks.clearance, 0.4);
   const SyntheticPath path = FindSyntheticPath(tour.name);
@@ -178,7 +179,7 @@ TEST_P(SyntheticTours, AreCarriedByHandAndReturn) {
   // Back, but for the sway of the hand.
   const Rigid3d back = path(0.0, 1.0).Inverse() * path(tour.seconds, 1.0);
   EXPECT_LT(back.translation.norm(), 0.06);
-  EXPECT_LT(back.Angle(), 5.0 * kDegree);
+  EXPECT_LT(back.Angle(), 5.0 * kRadiansPerDegree);
 }
 
 INSTANTIATE_TEST_SUITE_P(Tours, SyntheticTours,

@@ -19,7 +19,9 @@ using Eigen::Vector3d;
 constexpr double kRelativeTolerance = 5e-6;
 
 // A smaller image of the same view, so that tests are quick.
-Camera SmallCamera() { return {160, 120, 131.25, 131.25, 79.5, 59.5, 0, 0, 0}; }
+Camera RenderCamera() {
+  return {160, 120, 131.25, 131.25, 79.5, 59.5, 0, 0, 0};
+}
 
 // The same distances by the textbook, in double precision: the nearest of all
 // rectangles that the ray meets from their front, each of them `wider` (m) at
@@ -50,7 +52,7 @@ TEST(SyntheticRendererTest, DepthIsThatOfTheNearestFace) {
   // The renderer lets faces overlap by 0.1 mm, so leave out rays that pass an
   // edge nearer than that (m).
   constexpr double kEdge = 3e-4;
-  for (const Camera& camera : {SmallCamera(), distorted}) {
+  for (const Camera& camera : {RenderCamera(), distorted}) {
     const Renderer renderer(scene, camera);
     for (const char* path : {"xyz", "pan_tilt", "circle"}) {
       const Rigid3d pose = FindSyntheticPath(path)(1.1, 5.0);
@@ -88,7 +90,7 @@ TEST(SyntheticRendererTest, LeavesNoCracksBetweenFaces) {
 TEST(SyntheticRendererTest, SeesAWallFromAnyTurnWhereItIs) {
   Scene scene;
   AddBox({{0, 0, -2}, {6, 6, 4}, 20}, true, {}, 1, &scene);
-  const Camera camera = SmallCamera();
+  const Camera camera = RenderCamera();
   const Rigid3d pose(Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2), {0.4, -0.3, 0.2});
   const Rendering image = Renderer(scene, camera).Render(pose);
   for (int v = 0; v < camera.height; v += 5) {
@@ -108,7 +110,7 @@ TEST(SyntheticRendererTest, SeesAWallFromAnyTurnWhereItIs) {
 TEST(SyntheticRendererTest, SeesNothingOfABoxFromWithinOrBehind) {
   Scene scene;
   AddBox({{0, 0, -1}, {2, 2, 2}, 0}, false, {}, 1, &scene);
-  const Renderer renderer(scene, SmallCamera());
+  const Renderer renderer(scene, RenderCamera());
   EXPECT_EQ(cv::countNonZero(renderer.Render(Rigid3d()).depth), 0);
   const Rigid3d above(Eigen::Quaterniond::Identity(), {0, 0, 3});
   EXPECT_EQ(cv::countNonZero(renderer.Render(above).depth), 0);
@@ -117,7 +119,7 @@ TEST(SyntheticRendererTest, SeesNothingOfABoxFromWithinOrBehind) {
 }
 
 TEST(SyntheticRendererTest, DoesNotDependOnTheNumberOfThreads) {
-  const Renderer renderer(MakeScene("room", 1), SmallCamera());
+  const Renderer renderer(MakeScene("room", 1), RenderCamera());
   const Rigid3d pose = FindSyntheticPath("xyz")(2.0, 5.0);
   const int threads = cv::getNumThreads();
   cv::setNumThreads(1);

@@ -18,10 +18,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-Camera SmallCamera() { return {160, 120, 131.25, 131.25, 79.5, 59.5, 0, 0, 0}; }
+Camera SceneCamera() { return {160, 120, 131.25, 131.25, 79.5, 59.5, 0, 0, 0}; }
 
 Rendering Look(const std::string& scene, const Rigid3d& world_from_cam) {
-  return Renderer(MakeScene(scene, 1), SmallCamera()).Render(world_from_cam);
+  return Renderer(MakeScene(scene, 1), SceneCamera()).Render(world_from_cam);
 }
 
 Rigid3d PoseOf(const std::string& path, double t) {
@@ -106,12 +106,12 @@ TEST(SyntheticSceneTest, PosterWallIsOneTexturedPlane) {
     const Rigid3d pose = PoseOf(path, 1.7);
     const Rendering image = Look("poster_wall", pose);
     const double wall_x =
-        (pose * SmallCamera().Unproject({0, 0}, image.depth.at<float>(0, 0)))
+        (pose * SceneCamera().Unproject({0, 0}, image.depth.at<float>(0, 0)))
             .x();
     for (int v = 0; v < image.depth.rows; v += 7) {
       for (int u = 0; u < image.depth.cols; u += 7) {
         const Vector3d point =
-            pose * SmallCamera().Unproject({u, v}, image.depth.at<float>(v, u));
+            pose * SceneCamera().Unproject({u, v}, image.depth.at<float>(v, u));
         EXPECT_NEAR(point.x(), wall_x, 1e-4) << path;  // m
       }
     }
@@ -152,7 +152,7 @@ TEST(SyntheticSceneTest, ToursSeeTextureWithinReach) {
 // Paint sticks to surfaces, highlights do not: what is bright from here is less
 // so from there.
 TEST(SyntheticSceneTest, HighlightsOfTheGlossyRoomFollowTheCamera) {
-  const Camera camera = SmallCamera();
+  const Camera camera = SceneCamera();
   const Rigid3d here = PoseOf("xyz", 0.0);
   const Rigid3d there =
       here * Rigid3d(Eigen::Quaterniond::Identity(), {0.6, 0.0, 0.0});

@@ -10,7 +10,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kFocal = 525.0;
+constexpr double kSensorFocal = 525.0;
 constexpr uint64_t kKey = 17;
 
 struct Moments {
@@ -46,7 +46,7 @@ TEST(SyntheticHashTest, GaussianHasItsMoments) {
 TEST(SyntheticSensorTest, DepthNoiseOfAWallFollowsTheModel) {
   for (const double z : {0.7, 1.5, 3.0, 5.0}) {
     const cv::Mat wall(300, 400, CV_32FC1, cv::Scalar(z));
-    const Moments measured = MomentsOf(MeasureDepth(wall, kFocal, kKey));
+    const Moments measured = MomentsOf(MeasureDepth(wall, kSensorFocal, kKey));
     // Khoshelham & Elberink's noise and the variance of rounding to a step of
     // twice that sigma: 1/12 of its square.
     const double noise = 1.425e-3 * z * z;
@@ -61,7 +61,7 @@ TEST(SyntheticSensorTest, DepthNoiseOfAWallFollowsTheModel) {
 
 TEST(SyntheticSensorTest, DepthComesInEighthsOfADisparityPixel) {
   const cv::Mat wall(50, 50, CV_32FC1, cv::Scalar(2.0));
-  const cv::Mat depth = MeasureDepth(wall, kFocal, kKey);
+  const cv::Mat depth = MeasureDepth(wall, kSensorFocal, kKey);
   for (int v = 0; v < depth.rows; ++v) {
     const double eighths = 1.0 / (kInverseDepthStep * depth.at<float>(v, v));
     EXPECT_NEAR(eighths, std::round(eighths), 1e-3);  // single precision
@@ -71,7 +71,7 @@ TEST(SyntheticSensorTest, DepthComesInEighthsOfADisparityPixel) {
 TEST(SyntheticSensorTest, NoDepthOutOfRange) {
   for (const double z : {0.0, 0.49, 8.01}) {
     const cv::Mat wall(20, 20, CV_32FC1, cv::Scalar(z));
-    EXPECT_EQ(cv::countNonZero(MeasureDepth(wall, kFocal, kKey)), 0) << z;
+    EXPECT_EQ(cv::countNonZero(MeasureDepth(wall, kSensorFocal, kKey)), 0) << z;
   }
 }
 
@@ -80,7 +80,7 @@ TEST(SyntheticSensorTest, NoDepthAtEdgesAndInTheShadowToTheLeft) {
   constexpr double kFar = 2.0;
   cv::Mat depth(20, 400, CV_32FC1, cv::Scalar(kFar));
   depth.colRange(200, 300) = kNear;
-  const cv::Mat measured = MeasureDepth(depth, kFocal, kKey);
+  const cv::Mat measured = MeasureDepth(depth, kSensorFocal, kKey);
   // The difference of disparities, 1 / (8 kInverseDepthStep) = 43.9 px m.
   const int shadow = static_cast<int>(43.9 * (1.0 / kNear - 1.0 / kFar));
   const cv::Mat row = measured.row(10);
@@ -97,7 +97,7 @@ cv::Mat SlantedPlane(double slant_deg) {
   cv::Mat depth(20, 41, CV_32FC1);
   const double slope = std::tan(slant_deg * M_PI / 180.0);
   for (int u = 0; u < depth.cols; ++u) {
-    depth.col(u) = 2.0 / (1.0 - slope * (u - 20) / kFocal);
+    depth.col(u) = 2.0 / (1.0 - slope * (u - 20) / kSensorFocal);
   }
   return depth;
 }
@@ -105,7 +105,7 @@ cv::Mat SlantedPlane(double slant_deg) {
 TEST(SyntheticSensorTest, NoDepthOnSurfacesSeenAtASlant) {
   const int centre = 20;
   const auto valid = [&](double slant_deg) {
-    return MeasureDepth(SlantedPlane(slant_deg), kFocal, kKey)
+    return MeasureDepth(SlantedPlane(slant_deg), kSensorFocal, kKey)
                .at<float>(10, centre) > 0.0f;
   };
   EXPECT_TRUE(valid(70.0));
@@ -116,9 +116,10 @@ TEST(SyntheticSensorTest, NoDepthOnSurfacesSeenAtASlant) {
 
 TEST(SyntheticSensorTest, NoiseDependsOnTheKeyAlone) {
   const cv::Mat wall(40, 40, CV_32FC1, cv::Scalar(2.0));
-  const cv::Mat depth = MeasureDepth(wall, kFocal, kKey);
-  EXPECT_EQ(cv::norm(depth, MeasureDepth(wall, kFocal, kKey), cv::NORM_INF), 0);
-  EXPECT_GT(cv::norm(depth, MeasureDepth(wall, kFocal, kKey + 7000)), 0);
+  const cv::Mat depth = MeasureDepth(wall, kSensorFocal, kKey);
+  EXPECT_EQ(
+      cv::norm(depth, MeasureDepth(wall, kSensorFocal, kKey), cv::NORM_INF), 0);
+  EXPECT_GT(cv::norm(depth, MeasureDepth(wall, kSensorFocal, kKey + 7000)), 0);
 }
 
 TEST(SyntheticSensorTest, ColorNoiseHasItsSigma) {

@@ -13,14 +13,14 @@ namespace {
 
 // The device of OpenNI's own dummy driver: depth and colour at 30 Hz.
 constexpr char kDummy[] = "Dummy";
-constexpr int kWidth = 320;
-constexpr int kHeight = 240;
+constexpr int kDummyWidth = 320;
+constexpr int kDummyHeight = 240;
 
 SourceOptions Options(const std::string& path) {
   SourceOptions options;
   options.path = path;
-  options.camera =
-      CameraSetup(Camera{kWidth, kHeight, 285.0, 285.0, 159.5, 119.5});
+  options.camera = CameraSetup(
+      Camera{kDummyWidth, kDummyHeight, 285.0, 285.0, 159.5, 119.5});
   options.max_time_difference = 0.1;  // its streams start one after the other
   return options;
 }
@@ -34,8 +34,8 @@ void ExpectFrames(FrameSource* source, int count) {
     last = next->timestamp;
     const Frame frame = next->read();
     EXPECT_EQ(frame.index, k);
-    EXPECT_EQ(frame.gray.size(), cv::Size(kWidth, kHeight));
-    EXPECT_EQ(frame.depth.size(), cv::Size(kWidth, kHeight));
+    EXPECT_EQ(frame.gray.size(), cv::Size(kDummyWidth, kDummyHeight));
+    EXPECT_EQ(frame.depth.size(), cv::Size(kDummyWidth, kDummyHeight));
     EXPECT_EQ(frame.depth_scale, 1000.0);
   }
 }

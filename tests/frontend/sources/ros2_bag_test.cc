@@ -14,10 +14,10 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kFrames = 12;
+constexpr int kBagFrames = 12;
 constexpr double kStart = 1000.0;
 constexpr char kColor[] = "/camera/color/image_raw";
-constexpr char kDepth[] = "/camera/aligned_depth_to_color/image_raw";
+constexpr char kDepthTopic[] = "/camera/aligned_depth_to_color/image_raw";
 constexpr char kOptical[] = "color_optical";
 
 double StampOf(int k) { return kStart + k / 30.0; }
@@ -102,7 +102,7 @@ class Database {
     WriteInfo("/camera/color/camera_info");
     for (int k = first; k < last; ++k) {
       WriteImage(kColor, ColorImage(k), "bgr8", StampOf(k));
-      WriteImage(kDepth, DepthImage(k), "16UC1", StampOf(k) + 0.004);
+      WriteImage(kDepthTopic, DepthImage(k), "16UC1", StampOf(k) + 0.004);
     }
   }
 
@@ -131,7 +131,7 @@ class Ros2BagTest : public testing::Test {
   static void ExpectFrames(FrameSource* source) {
     EXPECT_EQ(source->camera().depth_scale, 1000.0);
     EXPECT_EQ(source->camera().camera.cx, SmallCamera().camera.cx);
-    for (int k = 0; k < kFrames; ++k) {
+    for (int k = 0; k < kBagFrames; ++k) {
       const std::optional<RgbdFrame> next = source->Next();
       ASSERT_TRUE(next.has_value()) << k;
       EXPECT_NEAR(next->timestamp, StampOf(k), 1e-6);
@@ -157,7 +157,7 @@ class Ros2BagTest : public testing::Test {
 };
 
 TEST_F(Ros2BagTest, ReadsAFile) {
-  Database(folder_ / "a.db3").WriteFrames(0, kFrames);
+  Database(folder_ / "a.db3").WriteFrames(0, kBagFrames);
   const auto source = OpenSource("auto", Options("a.db3"));
   ExpectFrames(source.get());
   EXPECT_TRUE(source->ground_truth().empty());
@@ -165,7 +165,7 @@ TEST_F(Ros2BagTest, ReadsAFile) {
 
 TEST_F(Ros2BagTest, ReadsAFolderOfFiles) {
   folder_.Write("bag/metadata.yaml", "rosbag2_bagfile_information:\n");
-  for (int k = 0; k < kFrames; ++k) {
+  for (int k = 0; k < kBagFrames; ++k) {
     Database part(folder_ / ("bag/bag_" + std::to_string(k) + ".db3"));
     // Other ids in each of them.
     if (k % 2 == 0) part.Write("/chatter", "std_msgs/msg/String", kStart, "");
@@ -176,7 +176,7 @@ TEST_F(Ros2BagTest, ReadsAFolderOfFiles) {
 
 TEST_F(Ros2BagTest, ReadsWithoutAnIndexOfTimes) {
   Database database(folder_ / "a.db3");
-  database.WriteFrames(0, kFrames);
+  database.WriteFrames(0, kBagFrames);
   database.Execute("DROP INDEX timestamp_idx");
   ExpectFrames(OpenSource("rosbag2", Options("a.db3")).get());
 }
@@ -184,7 +184,7 @@ TEST_F(Ros2BagTest, ReadsWithoutAnIndexOfTimes) {
 TEST_F(Ros2BagTest, ReadsCompressedImages) {
   Database database(folder_ / "a.db3");
   database.WriteInfo("/camera/color/camera_info");
-  for (int k = 0; k < kFrames; ++k) {
+  for (int k = 0; k < kBagFrames; ++k) {
     CdrWriter color;
     color.Header(StampOf(k), kOptical).Text("bgr8; png compressed bgr8");
     color.Bytes(EncodePng(ColorImage(k)));
@@ -203,15 +203,15 @@ TEST_F(Ros2BagTest, ReadsCompressedImages) {
 
 TEST_F(Ros2BagTest, MotionCaptureIsTheGroundTruth) {
   Database database(folder_ / "a.db3");
-  database.WriteFrames(0, kFrames);
-  for (int k = 0; k < kFrames; ++k) {
+  database.WriteFrames(0, kBagFrames);
+  for (int k = 0; k < kBagFrames; ++k) {
     database.WriteTransform(StampOf(k), "world", "rig", {0.5 * k, 0, 0});
     database.WriteTransform(StampOf(k), "rig", kOptical, {0, 0, 1});
   }
   const auto source = OpenSource("auto", Options("a.db3"));
   ExpectFrames(source.get());
   const Trajectory truth = source->ground_truth();
-  ASSERT_EQ(truth.size(), static_cast<size_t>(kFrames));
+  ASSERT_EQ(truth.size(), static_cast<size_t>(kBagFrames));
   EXPECT_EQ(truth[4].world_from_cam.translation, Eigen::Vector3d(2, 0, 1));
 }
 
@@ -237,7 +237,7 @@ TEST_F(Ros2BagTest, RefusesWhatIsNoRecording) {
 }
 
 TEST_F(Ros2BagTest, RefusesDamagedFiles) {
-  Database(folder_ / "a.db3").WriteFrames(0, kFrames);
+  Database(folder_ / "a.db3").WriteFrames(0, kBagFrames);
   const std::string whole = ReadTextFile(folder_ / "a.db3");
   for (const double share : {0.001, 0.3, 0.9}) {
     folder_.Write("cut.db3", whole.substr(0, share * whole.size()));
@@ -247,7 +247,7 @@ TEST_F(Ros2BagTest, RefusesDamagedFiles) {
 
 TEST_F(Ros2BagTest, RefusesMessagesThatEndTooEarly) {
   Database database(folder_ / "a.db3");
-  database.WriteFrames(0, kFrames);
+  database.WriteFrames(0, kBagFrames);
   database.Execute("UPDATE messages SET data = substr(data, 1, 60) WHERE id=8");
   ExpectRefused("a.db3", {"a.db3: /camera", "image_raw: ", "ends too early"});
 }

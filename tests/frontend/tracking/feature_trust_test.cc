@@ -8,7 +8,7 @@
 namespace rgbd_pose {
 namespace {
 
-const Camera kCamera = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
+const Camera kKinect = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
 constexpr double kDepth = 2.0;
 
 Observation At(double u, double v) { return {u, v, kDepth, 0.5, 0.01}; }
@@ -17,7 +17,7 @@ Observation At(double u, double v) { return {u, v, kDepth, 0.5, 0.01}; }
 // in the right half do not or are not found.
 class FeatureTrustTest : public testing::Test {
  protected:
-  FeatureTrustTest() : found_{Correspondences(kCamera), {}}, doubted_(found_) {
+  FeatureTrustTest() : found_{Correspondences(kKinect), {}}, doubted_(found_) {
     for (int v = 40; v < 480; v += 20) {
       for (int u = 40; u < 640; u += 20) {
         const int i = static_cast<int>(last_.observations.size());
@@ -41,7 +41,7 @@ class FeatureTrustTest : public testing::Test {
 
   // Splits matches of all fresh features; those of the doubted ones.
   std::vector<int> Doubted(const FeatureTrust& trust) const {
-    FeatureMatches all{Correspondences(kCamera), {}};
+    FeatureMatches all{Correspondences(kKinect), {}};
     FeatureMatches doubted = all;
     for (int i = 0; i < 4; ++i) all.Add(fresh_, i, fresh_.observations[i]);
     trust.Split(&all, &doubted);
@@ -83,7 +83,7 @@ TEST_F(FeatureTrustTest, WhatWasNotFoundCountsOnlyIfAsked) {
 // Features of the last reference that were doubted, but agree by now, speak for
 // those around them; others that were doubted do not.
 TEST_F(FeatureTrustTest, DoubtedFeaturesThatAgreeSpeakForTheirPlace) {
-  FeatureMatches left{Correspondences(kCamera), {}};
+  FeatureMatches left{Correspondences(kKinect), {}};
   estimate_.is_inlier.clear();
   for (int i = 0; i < static_cast<int>(last_.observations.size()); ++i) {
     const Observation o = last_.observations[i];
@@ -115,7 +115,7 @@ TEST_F(FeatureTrustTest, AllAreTrustedIfTooFewWouldBeLeft) {
 
 TEST_F(FeatureTrustTest, TrustIsEarnedByAgreeingSomeTimesInARow) {
   FeatureTrust trust = Trust(true);
-  FeatureMatches agreeing{Correspondences(kCamera), {}};
+  FeatureMatches agreeing{Correspondences(kKinect), {}};
   agreeing.Add(fresh_, 2, At(501, 100));
   FeatureMatches off = agreeing;
   off.Clear();
@@ -134,7 +134,7 @@ TEST_F(FeatureTrustTest, AgreementIsWithTheMotion) {
   FeatureTrust trust = Trust(true);
   // 2 cm to the left of 2 m: 5.25 px.
   const Rigid3d cur_from_ref(Eigen::Quaterniond::Identity(), {-0.02, 0.0, 0.0});
-  FeatureMatches moved{Correspondences(kCamera), {}};
+  FeatureMatches moved{Correspondences(kKinect), {}};
   moved.Add(fresh_, 3, At(550 - 5.25, 300));
   for (int i = 0; i < 3; ++i) trust.Learn(moved, cur_from_ref);
   EXPECT_EQ(Doubted(trust), (std::vector<int>{2}));

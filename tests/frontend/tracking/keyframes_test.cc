@@ -11,7 +11,7 @@ namespace rgbd_pose {
 namespace {
 
 // A wall at 2 m, of which a camera on the x axis loses half a view a metre.
-struct Wall final : Reference {
+struct WallReference final : Reference {
   Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
     const double moved = std::abs(cur_from_ref.translation.x());
     return {1.0 - 0.5 * moved, 262.5 * moved};
@@ -27,7 +27,8 @@ Rigid3d CameraAt(double x) {
 }
 
 Keyframe MakeKeyframe(int id, int segment, double x) {
-  return {id, segment, CameraAt(x), std::make_unique<Wall>(), nullptr, {}};
+  return {id,      segment, CameraAt(x), std::make_unique<WallReference>(),
+          nullptr, {}};
 }
 
 TEST(KeyframesTest, FindsByIdAndForgetsTheOldest) {

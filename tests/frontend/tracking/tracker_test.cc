@@ -21,7 +21,7 @@ namespace {
 const Camera kCamera = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
 
 // 15 x 11 features on a wall at 2 m.
-FeatureReference Wall() {
+FeatureReference FeatureWall() {
   auto features = std::make_unique<FeatureSet>();
   for (int v = 40; v < 480; v += 40) {
     for (int u = 40; u < 640; u += 40) {
@@ -33,7 +33,7 @@ FeatureReference Wall() {
 }
 
 TEST(FeatureReferenceTest, SaysWhatAnotherCameraSeesOfIt) {
-  const FeatureReference wall = Wall();
+  const FeatureReference wall = FeatureWall();
   // 525 px / 2 m: a metre is 262.5 px, and 9 of the 15 columns are left.
   const Overlap aside =
       wall.SeenFrom(Rigid3d(Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0}));
@@ -54,7 +54,7 @@ class HalfWrongFrontend final : public Frontend {
       : Frontend({kCamera}), error_px_(error_px) {}
 
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame&) override {
-    return std::make_unique<FeatureSet>(Wall().features());
+    return std::make_unique<FeatureSet>(FeatureWall().features());
   }
   void Match(const FeatureSet& reference, const PreparedFrame&, const Rigid3d&,
              FeatureMatches* matches) override {
