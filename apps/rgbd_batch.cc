@@ -157,7 +157,8 @@ void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
   options.program = program;
   // A page a run is much for many runs; --settings may ask for it, and
   // rgbd_report makes it at any time.
-  options.arguments = {"--report=false"};
+  // What a run has when it is stopped is not what the next call waits for.
+  options.arguments = {"--report=false", "--finish_on_signal=false"};
   if (!FLAGS_settings.empty()) {
     options.arguments.push_back("--flagfile=" +
                                 fs::absolute(FLAGS_settings).string());

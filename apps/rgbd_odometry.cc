@@ -13,15 +13,14 @@
 
 #include "apps/export/export_format.h"
 #include "apps/pipeline/sequence.h"
-#include "apps/report/report_page.h"
 #include "apps/results/run_output.h"
+#include "apps/results/run_tracking.h"
 #include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "apps/shell/setting_flags.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
-#include "frontend/image/depth_scale.h"
 
 DEFINE_int32(
     threads, 0,
@@ -62,28 +61,15 @@ ProgramInfo Info() {
       "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
       "--output=runs/fr1_xyz";
   Flags().Describe(&info);
-  info.flag_groups.push_back({"Run", {"report", "validate_only", "threads"}});
+  info.flag_groups.push_back(
+      {"Run", {"report", "validate_only", "finish_on_signal", "threads"}});
   return info;
 }
-
-// A run that tracked less of its frames than this has failed.
-constexpr double kMinTrackedShare = 0.5;
 
 using Clock = std::chrono::steady_clock;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// A help to look at a run; a program built without the library that it needs
-// says so and goes on.
-std::string WriteReport(const std::filesystem::path& folder) {
-  if (!FLAGS_report) return "";
-  if (!HasReportLibrary()) {
-    return std::string("report in   ") + kNoReportLibrary + "\n";
-  }
-  WriteRunReport(folder.string());
-  return "report in   " + Settings().output.output + "/report.html\n";
 }
 
 int ValidateOnly(FrameSource* source, int threads) {
@@ -127,40 +113,21 @@ int Main() {
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
-  {
-    ProgressBar bar("tracking", static_cast<int>(source.timestamps().size()));
-    TrackAll(&source, threads, {&run}, [&](const Frame& frame) {
-      const bool is_first = run.frames().size() == 1;
-      const std::string warning = is_first ? DepthScaleWarning(frame) : "";
-      if (!warning.empty()) LOG(WARNING) << warning;
-      output.Add(frame, run);
-      bar.Update(static_cast<int>(run.frames().size()));
-    });
-  }
+  const std::string stopped = TrackSource(&source, threads, &run, &output);
   const double seconds = SecondsSince(start);
-  for (const std::string& line : LeftOut(source)) LOG(WARNING) << line;
 
   const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
-  if (!results.no_evaluation.empty()) {
-    LOG(WARNING) << "no errors: " << results.no_evaluation;
-  }
-  if (const std::string warning = results.Warning(); !warning.empty()) {
-    LOG(WARNING) << warning;
-  }
-  std::string text = output.Write(
-      results, Summarise(results.frames, threads, seconds),
-      sequence.TruthOfAll(), settings.sequence.dataset, FormatFlagFile(Info()));
-  text += WriteReport(output.aside());
+  WarnOf(results);
+  std::string text =
+      output.Write(results, Summarise(results.frames, threads, seconds),
+                   sequence.TruthOfAll(), settings.sequence.dataset,
+                   FormatFlagFile(Info()), Info().name, {{"stopped", stopped}});
+  if (FLAGS_report) text += WriteReportAside(output, settings.output.output);
   output.Publish();
   text += SaveMesh(settings.output, threads);
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
-  if (results.TrackedShare() >= kMinTrackedShare) return kExitOk;
-  std::fprintf(stderr,
-               "rgbd_odometry: only %.1f %% of the frames were tracked; "
-               "%s/frames.csv says why\n",
-               100.0 * results.TrackedShare(), settings.output.output.c_str());
-  return kExitTrackingFailed;
+  return ExitCodeOf(Info().name, results, settings.output.output, stopped);
 }
 
 }  // namespace

@@ -15,15 +15,13 @@
 #include "apps/export/export_format.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/pipeline/slam_run.h"
-#include "apps/report/report_page.h"
 #include "apps/results/run_output.h"
+#include "apps/results/run_tracking.h"
 #include "apps/results/slam_output.h"
 #include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
-#include "apps/shell/progress_bar.h"
 #include "apps/shell/setting_flags.h"
 #include "core/util/input_error.h"
-#include "frontend/image/depth_scale.h"
 #include "frontend/map/map_folder.h"
 
 DEFINE_int32(
@@ -66,28 +64,15 @@ ProgramInfo Info() {
       "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
       "--output=runs/fr1_room --save_map=maps/room";
   Flags().Describe(&info);
-  info.flag_groups.push_back({"Run", {"report", "threads"}});
+  info.flag_groups.push_back(
+      {"Run", {"report", "finish_on_signal", "threads"}});
   return info;
 }
-
-// A run that tracked less of its frames than this has failed.
-constexpr double kMinTrackedShare = 0.5;
 
 using Clock = std::chrono::steady_clock;
 
 double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-// A help to look at a run; a program built without the library that it needs
-// says so and goes on.
-std::string WriteReport(const std::filesystem::path& folder) {
-  if (!FLAGS_report) return "";
-  if (!HasReportLibrary()) {
-    return std::string("report in   ") + kNoReportLibrary + "\n";
-  }
-  WriteRunReport(folder.string());
-  return "report in   " + Settings().output.output + "/report.html\n";
 }
 
 // The folders of --load_map.
@@ -143,32 +128,17 @@ int Main() {
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
-  {
-    ProgressBar bar("tracking", static_cast<int>(source.timestamps().size()));
-    TrackAll(&source, threads, {&run}, [&](const Frame& frame) {
-      const bool is_first = run.frames().size() == 1;
-      const std::string warning = is_first ? DepthScaleWarning(frame) : "";
-      if (!warning.empty()) LOG(WARNING) << warning;
-      output.Add(frame, run);
-      bar.Update(static_cast<int>(run.frames().size()));
-    });
-  }
+  const std::string stopped = TrackSource(&source, threads, &run, &output);
   const double seconds = SecondsSince(start);
-  for (const std::string& line : LeftOut(source)) LOG(WARNING) << line;
 
   const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
   const Slam& slam = run.slam();
-  if (!results.no_evaluation.empty()) {
-    LOG(WARNING) << "no errors: " << results.no_evaluation;
-  }
-  if (const std::string warning = results.Warning(); !warning.empty()) {
-    LOG(WARNING) << warning;
-  }
+  WarnOf(results);
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
-  std::string text =
-      output.Write(results, Summarise(results.frames, threads, seconds),
-                   sequence.TruthOfAll(), settings.sequence.dataset,
-                   FormatFlagFile(Info()), Info().name, {{"slam", map_json}});
+  std::string text = output.Write(
+      results, Summarise(results.frames, threads, seconds),
+      sequence.TruthOfAll(), settings.sequence.dataset, FormatFlagFile(Info()),
+      Info().name, {{"stopped", stopped}, {"slam", map_json}});
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
   output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
@@ -179,7 +149,7 @@ int Main() {
   output.WriteFile("keyframes.csv",
                    FormatKeyframesCsv(map, slam.Covariances()));
   output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
-  text += WriteReport(output.aside());
+  if (FLAGS_report) text += WriteReportAside(output, settings.output.output);
   output.Publish();
   text += SaveMesh(settings.output, threads);
   // The results stay if the map cannot be saved.
@@ -189,12 +159,7 @@ int Main() {
   }
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
-  if (results.TrackedShare() >= kMinTrackedShare) return kExitOk;
-  std::fprintf(stderr,
-               "rgbd_slam: only %.1f %% of the frames were tracked; "
-               "%s/frames.csv says why\n",
-               100.0 * results.TrackedShare(), settings.output.output.c_str());
-  return kExitTrackingFailed;
+  return ExitCodeOf(Info().name, results, settings.output.output, stopped);
 }
 
 }  // namespace

@@ -35,6 +35,7 @@ void CalibrationRun::Track(FrameSource* source, int threads,
                            const std::function<void()>& on_frame) {
   TrackAll(source, threads, {&run_}, [&](const Frame& /*frame*/) {
     if (on_frame) on_frame();
+    return true;
   });
 }
 

@@ -42,14 +42,14 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) && {
 
 void TrackAll(FrameSource* source, int threads,
               const std::vector<SequenceRun*>& runs,
-              const std::function<void(const Frame& frame)>& on_frame) {
+              const std::function<bool(const Frame& frame)>& on_frame) {
   const Odometry& first = runs.front()->odometry();
   FrameStream stream(
       source, [&first](const Frame& frame) { return first.Prepare(frame); },
       threads);
   while (const std::optional<StreamedFrame> next = stream.Next()) {
     for (SequenceRun* run : runs) run->Add(*next);
-    if (on_frame) on_frame(*next->frame);
+    if (on_frame && !on_frame(*next->frame)) return;
   }
 }
 

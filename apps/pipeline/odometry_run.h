@@ -99,11 +99,11 @@ class OdometryRun final : public SequenceRun {
 
 // Sends all frames of a source through one or several runs of the same
 // frontend, each frame read and prepared once, by `threads` >= 1 threads ahead.
-// `on_frame` hears of each frame that all have tracked; may be empty. Throws
-// InputError for an unreadable frame.
+// `on_frame` hears of each frame that all have tracked, and says whether to go
+// on; may be empty. Throws InputError for an unreadable frame.
 void TrackAll(FrameSource* source, int threads,
               const std::vector<SequenceRun*>& runs,
-              const std::function<void(const Frame& frame)>& on_frame);
+              const std::function<bool(const Frame& frame)>& on_frame);
 
 // Throws InputError if no frame of the source is near in time to the ground
 // truth, as far as that is known before the work, when it is better told.

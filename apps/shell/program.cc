@@ -63,7 +63,8 @@ void PrintHelp(const ProgramInfo& info) {
   std::printf(
       "\nAlso: --flagfile=FILE reads flags from a file, --help, --version.\n"
       "Exit codes: 0 ok, 1 usage, 2 bad input, 3 tracking failed, "
-      "4 some batch items failed, 5 no better camera found.\n");
+      "4 some batch items failed, 5 no better camera found,\n"
+      "6 stopped early: results so far are kept.\n");
 }
 
 int Run(int argc, char** argv, const ProgramInfo& info,

@@ -15,6 +15,7 @@ enum ExitCode {
   kExitTrackingFailed = 3,  // ran, but the result is not usable
   kExitSomeFailed = 4,      // some items of a batch failed
   kExitCameraKept = 5,      // no better camera was found than the one there is
+  kExitStopped = 6,         // by a signal, or a camera that gave no more
 };
 
 // Flags shown together in --help.

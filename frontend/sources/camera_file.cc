@@ -43,7 +43,7 @@ void SetDistortion(const std::vector<double>& coefficients, Camera* camera) {
   if (coefficients.size() > 4) camera->k3 = coefficients[4];
 }
 
-Camera ReadRosCameraInfo(const YamlSection& file) {
+Camera ReadCameraInfoFile(const YamlSection& file) {
   file.CheckWord("distortion_model", {"plumb_bob"});
   Camera camera;
   camera.width = file.Pixels("image_width");
@@ -116,7 +116,7 @@ Camera ReadAnyLayout(const std::string& path, const YamlSection& file) {
       file.HasKeyStartingWith("Camera1.")) {
     return ReadOrbSlam(file);
   }
-  if (file.Has("camera_matrix")) return ReadRosCameraInfo(file);
+  if (file.Has("camera_matrix")) return ReadCameraInfoFile(file);
   if (file.Has("cam0")) return ReadKalibr(file, "cam0");
   throw InputError(path +
                    ": no camera in here; known layouts are ORB-SLAM "

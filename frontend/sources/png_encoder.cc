@@ -21,7 +21,7 @@ std::string Checksum(std::string_view type_and_data) {
       libdeflate_crc32(0, type_and_data.data(), type_and_data.size()));
 }
 
-std::string Chunk(const std::string& type, const std::string& data) {
+std::string EncodedChunk(const std::string& type, const std::string& data) {
   return PngNumber(static_cast<uint32_t>(data.size())) + type + data +
          Checksum(type + data);
 }
@@ -83,7 +83,8 @@ std::string EncodePngByLibdeflate(const cv::Mat& image) {
       PngStart(image.cols, image.rows, static_cast<int>(8 * image.elemSize()));
   constexpr size_t kBeforeType = 12;  // signature and length
   return start + Checksum(std::string_view(start).substr(kBeforeType)) +
-         Chunk("IDAT", Compress(FilteredRows(image))) + Chunk("IEND", "");
+         EncodedChunk("IDAT", Compress(FilteredRows(image))) +
+         EncodedChunk("IEND", "");
 }
 
 }  // namespace rgbd_pose

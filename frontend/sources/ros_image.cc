@@ -62,8 +62,8 @@ InputError Unreadable(const std::string& name, std::string_view encoding,
 
 // The rows as they are; those of bytes are shared with the message, as numbers
 // they need not lie where a processor likes them.
-cv::Mat Rows(const RosImage& image, const Encoding& encoding,
-             const std::string& name) {
+cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
+                  const std::string& name) {
   const size_t row_bytes = size_t{image.width} * CV_ELEM_SIZE(encoding.type);
   if (image.step < row_bytes ||
       image.data.size() < size_t{image.step} * image.height) {
@@ -164,7 +164,7 @@ cv::Mat DecodeRosGray(const RosImage& image, const std::string& name,
   if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) != CV_8U) {
     throw Unreadable(name, image.encoding, "colour");
   }
-  const cv::Mat rows = Rows(image, *encoding, name);
+  const cv::Mat rows = PixelRows(image, *encoding, name);
   if (rows.empty()) throw InputError(name + ": is empty");
   if (color != nullptr) {
     if (encoding->to_color < 0) {
@@ -190,7 +190,7 @@ cv::Mat DecodeRosDepth(const RosImage& image, const std::string& name,
   if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) == CV_8U) {
     throw Unreadable(name, image.encoding, "depth");
   }
-  const cv::Mat rows = Rows(image, *encoding, name);
+  const cv::Mat rows = PixelRows(image, *encoding, name);
   if (rows.empty()) throw InputError(name + ": is empty");
   if (encoding->type == CV_16UC1) return rows;
   cv::Mat depth(rows.size(), CV_16UC1);

@@ -24,8 +24,8 @@ RgbdCamera SmallCamera() {
 }
 
 // A sequence that is rendered once.
-struct Sequence {
-  Sequence() {
+struct WalkSequence {
+  WalkSequence() {
     SyntheticOptions options;
     options.path = "handheld";
     options.frames = kFrames;
@@ -45,8 +45,8 @@ struct Sequence {
   Frame black;
 };
 
-const Sequence& Walk() {
-  static const Sequence sequence;
+const WalkSequence& Walk() {
+  static const WalkSequence sequence;
   return sequence;
 }
 

@@ -24,9 +24,9 @@ constexpr double kMaxTranslationError = 0.03;
 constexpr double kMaxRotationError = 1.0 * kRadiansPerDegree;
 
 // Frames of the simulated room from wherever the camera stands.
-class Room {
+class FurnishedRoom {
  public:
-  explicit Room(uint32_t seed)
+  explicit FurnishedRoom(uint32_t seed)
       : seed_(seed), renderer_(MakeScene("room", seed), camera_.camera) {}
 
   const Camera& camera() const { return camera_.camera; }
@@ -96,7 +96,7 @@ void ExpectFound(const std::optional<Relocalisation>& found,
 }
 
 TEST(RelocaliserTest, FindsThePlaceFromAnotherPose) {
-  Room room(1);
+  FurnishedRoom room(1);
   Search relocaliser(room.camera());
   relocaliser.Add(room.See(Rigid3d()), 42);
   for (const Rigid3d& pose :
@@ -110,7 +110,7 @@ TEST(RelocaliserTest, FindsThePlaceFromAnotherPose) {
 }
 
 TEST(RelocaliserTest, FindsOldKeyframesAfterSomeSearches) {
-  Room room(1);
+  FurnishedRoom room(1);
   Search relocaliser(room.camera());
   relocaliser.Add(room.See(Rigid3d()), 7);
   const Frame elsewhere = room.See(Turned(180.0));
@@ -125,7 +125,7 @@ TEST(RelocaliserTest, FindsOldKeyframesAfterSomeSearches) {
 
 // Views all around, of which the index picks the few to look at.
 TEST(RelocaliserTest, FindsAFrameInTheWholeMap) {
-  Room room(1);
+  FurnishedRoom room(1);
   const Relocaliser relocaliser(room.camera(), {});
   PlaceIndex index;
   std::vector<PlaceFeatures> map;
@@ -144,13 +144,13 @@ TEST(RelocaliserTest, FindsAFrameInTheWholeMap) {
     ASSERT_TRUE(found.has_value()) << i;
     ExpectFound(found, pose.Inverse() * Turned(30.0 * found->place_id));
   }
-  Room other(2);
+  FurnishedRoom other(2);
   EXPECT_FALSE(
       relocaliser.FindInMap(other.See(Turned(10.0)), index, features_of));
 }
 
 TEST(RelocaliserTest, LooksOnlyAmongTheKeyframesThatAreKept) {
-  Room room(1);
+  FurnishedRoom room(1);
   Search relocaliser(room.camera());
   const Frame place = room.See(Rigid3d());
   relocaliser.Add(place, 7);
@@ -162,7 +162,7 @@ TEST(RelocaliserTest, LooksOnlyAmongTheKeyframesThatAreKept) {
 }
 
 TEST(RelocaliserTest, FindsNothingWhereNothingIsSeen) {
-  Room room(1);
+  FurnishedRoom room(1);
   const Frame good = room.See(Rigid3d());
   Frame black = good;
   black.gray = cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0));
@@ -183,13 +183,13 @@ TEST(RelocaliserTest, FindsNothingWhereNothingIsSeen) {
 // Same shapes, other textures: only the pictures tell them apart. And one
 // room's other sides, of which all but neighbours share nothing.
 TEST(RelocaliserTest, DoesNotTakeAnotherSceneForThePlace) {
-  Room room(1);
+  FurnishedRoom room(1);
   Search relocaliser(room.camera());
   for (int i = 0; i < 8; ++i) {
     relocaliser.Add(room.See(Moved(0.05 * i, 0.0, 0.0)), i);
   }
   for (const uint32_t seed : {2u, 3u, 4u, 5u}) {
-    Room other(seed);
+    FurnishedRoom other(seed);
     for (const double degrees : {0.0, 10.0, 120.0}) {
       const Frame frame = other.See(Turned(degrees));
       for (int i = 0; i < 2; ++i) {
@@ -203,7 +203,7 @@ TEST(RelocaliserTest, DoesNotTakeAnotherSceneForThePlace) {
 }
 
 TEST(RelocaliserTest, DoesNotKeepWhatTheCallerOverwrites) {
-  Room room(1);
+  FurnishedRoom room(1);
   Frame frame = room.See(Rigid3d());
   const Frame same = room.See(Rigid3d());
   Search relocaliser(room.camera());
@@ -214,7 +214,7 @@ TEST(RelocaliserTest, DoesNotKeepWhatTheCallerOverwrites) {
 }
 
 TEST(RelocaliserTest, TheSameCallsGiveTheSameMotion) {
-  Room room(1);
+  FurnishedRoom room(1);
   const Frame keyframe = room.See(Rigid3d());
   const Frame frame = room.See(Turned(15.0));
   std::optional<Relocalisation> found[2];

@@ -14,15 +14,15 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kWidth = 31;
-constexpr int kHeight = 23;
+constexpr int kPngWidth = 31;
+constexpr int kPngHeight = 23;
 
 // Random bytes, which are an image under every filter. The filters take turns
 // unless one is given.
 std::string RandomRows(int row_bytes, int filter = -1) {
   cv::RNG rng(7);
   std::string rows;
-  for (int y = 0; y < kHeight; ++y) {
+  for (int y = 0; y < kPngHeight; ++y) {
     rows += static_cast<char>(filter < 0 ? y % 5 : filter);
     for (int i = 0; i < row_bytes; ++i) rows += static_cast<char>(rng.next());
   }
@@ -30,16 +30,27 @@ std::string RandomRows(int row_bytes, int filter = -1) {
 }
 
 PngParts Color(int filter = -1) {
-  return {kWidth, kHeight, {8, 2, 0, 0, 0}, "", RandomRows(3 * kWidth, filter)};
+  return {kPngWidth,
+          kPngHeight,
+          {8, 2, 0, 0, 0},
+          "",
+          RandomRows(3 * kPngWidth, filter)};
 }
 
 PngParts Gray(int filter = -1) {
-  return {kWidth, kHeight, {8, 0, 0, 0, 0}, "", RandomRows(kWidth, filter)};
+  return {kPngWidth,
+          kPngHeight,
+          {8, 0, 0, 0, 0},
+          "",
+          RandomRows(kPngWidth, filter)};
 }
 
 PngParts Depth(int filter = -1) {
-  return {
-      kWidth, kHeight, {16, 0, 0, 0, 0}, "", RandomRows(2 * kWidth, filter)};
+  return {kPngWidth,
+          kPngHeight,
+          {16, 0, 0, 0, 0},
+          "",
+          RandomRows(2 * kPngWidth, filter)};
 }
 
 cv::Mat DecodeByOpenCv(std::string file, int flags) {
@@ -146,7 +157,7 @@ TEST(PngDecoderTest, LeavesOtherKindsToOpenCv) {
   EXPECT_TRUE(AsDepth(Gray().File()).empty());
   PngParts deep = Color();
   deep.kind[0] = 16;
-  deep.rows = RandomRows(6 * kWidth);
+  deep.rows = RandomRows(6 * kPngWidth);
   ExpectLeft(deep.File());
 }
 
@@ -157,7 +168,7 @@ TEST(PngDecoderTest, DoesNotDecompressWhatIsLeftToOpenCv) {
   PngParts gamma = Color();
   gamma.before_image = Chunk("gAMA", BigEndian(45455));
   for (PngParts parts : {palette, gamma}) {
-    parts.rows.resize(kWidth);  // the others are missing
+    parts.rows.resize(kPngWidth);  // the others are missing
     EXPECT_FALSE(IsDamaged(parts.File()));
   }
 }
@@ -215,7 +226,7 @@ TEST(PngDecoderTest, LeavesContradictoryFilesToOpenCv) {
   ExpectLeft(Color(5).File());  // no such filter
 
   parts = Color();
-  for (const uint32_t width : {0u, kWidth - 1u, 1u << 30, 0xFFFFFFFFu}) {
+  for (const uint32_t width : {0u, kPngWidth - 1u, 1u << 30, 0xFFFFFFFFu}) {
     parts.width = width;
     ExpectLeft(parts.File());
   }
@@ -237,7 +248,7 @@ TEST(PngDecoderTest, FindsDamageWithoutWrongChecksums) {
   parts.rows.pop_back();
   EXPECT_TRUE(IsDamaged(parts.File())) << "a byte is missing";
   parts = Depth(4);
-  parts.rows[2 * kWidth + 1] = 5;
+  parts.rows[2 * kPngWidth + 1] = 5;
   EXPECT_TRUE(IsDamaged(parts.File())) << "no such filter";
   parts = Depth();
   parts.kind[1] = 5;

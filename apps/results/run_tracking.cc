@@ -1,0 +1,95 @@
+#include "apps/results/run_tracking.h"
+
+#include <glog/logging.h>
+
+#include <cstdio>
+#include <filesystem>
+#include <system_error>
+
+#include "apps/pipeline/sequence.h"
+#include "apps/report/report_page.h"
+#include "apps/shell/program.h"
+#include "apps/shell/progress_bar.h"
+#include "apps/shell/stop_signal.h"
+#include "core/util/input_error.h"
+#include "frontend/image/depth_scale.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A run that tracked less of its frames than this has failed.
+constexpr double kMinTrackedShare = 0.5;
+
+}  // namespace
+
+std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
+                        RunOutput* output) {
+  const StopSignal signal;
+  const size_t size = source->timestamps().size();
+  std::string stopped;
+  ProgressBar bar("tracking", static_cast<int>(size));
+  try {
+    TrackAll(source, threads, {run}, [&](const Frame& frame) {
+      const bool is_first = run->frames().size() == 1;
+      const std::string warning = is_first ? DepthScaleWarning(frame) : "";
+      if (!warning.empty()) LOG(WARNING) << warning;
+      output->Add(frame, *run);
+      bar.Update(static_cast<int>(run->frames().size()));
+      stopped = signal.name();
+      return stopped.empty();
+    });
+  } catch (const InputError& error) {
+    // A recording can be mended and tracked again; what a camera saw cannot.
+    const bool is_camera = size == 0;
+    if (!is_camera || run->frames().empty()) throw;
+    stopped = error.what();
+  }
+  for (const std::string& line : LeftOut(*source)) LOG(WARNING) << line;
+  return run->frames().size() == size ? "" : stopped;
+}
+
+void WarnOf(const RunResults& results) {
+  if (!results.no_evaluation.empty()) {
+    LOG(WARNING) << "no errors: " << results.no_evaluation;
+  }
+  const std::string warning = results.Warning();
+  if (!warning.empty()) LOG(WARNING) << warning;
+}
+
+std::string WriteReportAside(const RunOutput& output,
+                             const std::string& folder) {
+  std::string why_not = kNoReportLibrary;
+  if (HasReportLibrary()) {
+    try {
+      WriteRunReport(output.aside().string());
+      return "report in   " + folder + "/report.html\n";
+    } catch (const InputError& error) {
+      std::error_code ignored;
+      std::filesystem::remove(output.aside() / "report.html", ignored);
+      why_not = std::string("none: ") + error.what();
+      LOG(WARNING) << "no report: " << error.what();
+    }
+  }
+  return "report in   " + why_not + "\n";
+}
+
+int ExitCodeOf(const std::string& program, const RunResults& results,
+               const std::string& folder, const std::string& stopped) {
+  if (results.TrackedShare() < kMinTrackedShare) {
+    std::fprintf(stderr,
+                 "%s: only %.1f %% of the frames were tracked; %s/frames.csv "
+                 "says why\n",
+                 program.c_str(), 100.0 * results.TrackedShare(),
+                 folder.c_str());
+    return kExitTrackingFailed;
+  }
+  if (!stopped.empty()) {
+    std::fprintf(stderr, "%s: stopped after %zu frames (%s); %s has them\n",
+                 program.c_str(), results.frames.size(), stopped.c_str(),
+                 folder.c_str());
+    return kExitStopped;
+  }
+  return kExitOk;
+}
+
+}  // namespace rgbd_pose

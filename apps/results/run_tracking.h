@@ -1,0 +1,33 @@
+#pragma once
+
+#include <string>
+
+#include "apps/pipeline/odometry_run.h"
+#include "apps/results/run_output.h"
+#include "frontend/sources/frame_source.h"
+
+namespace rgbd_pose {
+
+// Tracks the frames of a source, with a progress bar and the warnings that
+// people should see. Returns why it ended before the last frame, or nothing: a
+// signal (StopSignal), or a camera that gave no further frame. Throws
+// InputError for a recording that cannot be read, and for a camera that gave no
+// frame at all.
+std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
+                        RunOutput* output);
+
+// Says on stderr what the errors of a run tell of its input.
+void WarnOf(const RunResults& results);
+
+// Writes report.html beside the other results. Returns what a program prints of
+// it: where it is, or why there is none. A disk that is too full for it costs
+// no other result.
+std::string WriteReportAside(const RunOutput& output,
+                             const std::string& folder);
+
+// What the program exits with once all is written, with one line on stderr
+// where that is not kExitOk.
+int ExitCodeOf(const std::string& program, const RunResults& results,
+               const std::string& folder, const std::string& stopped);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,107 @@
+#include "apps/results/run_tracking.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <functional>
+#include <opencv2/core.hpp>
+
+#include "core/util/input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr int kSourceFrames = 20;
+constexpr int kEventAt = 5;  // something happens as this frame is asked for
+
+// Frames of a wall that stands still.
+class EventfulSource final : public FrameSource {
+ public:
+  EventfulSource(bool is_recording, std::function<void()> event)
+      : event_(std::move(event)) {
+    camera_.camera = {160, 120, 131.25, 131.25, 79.5, 59.5, 0, 0, 0};
+    cv::RNG random(1);
+    frame_.gray.create(120, 160, CV_8UC1);
+    random.fill(frame_.gray, cv::RNG::UNIFORM, 0, 255);
+    frame_.depth = cv::Mat(120, 160, CV_16UC1, cv::Scalar(10000));
+    for (int i = 0; is_recording && i < kSourceFrames; ++i) {
+      timestamps_.push_back(i / 30.0);
+    }
+  }
+
+  std::optional<RgbdFrame> Next() override {
+    if (asked_ == kEventAt) event_();
+    if (asked_ == kSourceFrames) return std::nullopt;
+    Frame frame = frame_;
+    frame.index = asked_++;
+    frame.timestamp = frame.index / 30.0;
+    return RgbdFrame{frame.timestamp, [frame] { return frame; }};
+  }
+  const RgbdCamera& camera() const override { return camera_; }
+  std::vector<double> timestamps() const override { return timestamps_; }
+
+ private:
+  std::function<void()> event_;
+  RgbdCamera camera_;
+  Frame frame_;
+  std::vector<double> timestamps_;
+  int asked_ = 0;
+};
+
+class RunTrackingTest : public testing::Test {
+ protected:
+  // Why the run ended early.
+  std::string Track(bool is_recording, std::function<void()> event) {
+    EventfulSource source(is_recording, std::move(event));
+    const OdometrySettings settings;
+    OdometryRun run(settings, source.camera().camera);
+    RunOutputSettings files;
+    files.output = folder_ / "run";
+    RunOutput output(files, source, settings.features.DepthLookup());
+    const std::string stopped = TrackSource(&source, 1, &run, &output);
+    frames_ = static_cast<int>(run.frames().size());
+    return stopped;
+  }
+
+  TempFolder folder_;
+  int frames_ = 0;
+};
+
+TEST_F(RunTrackingTest, GoesToTheEnd) {
+  EXPECT_EQ(Track(true, [] {}), "");
+  EXPECT_EQ(frames_, kSourceFrames);
+  EXPECT_EQ(Track(false, [] {}), "");
+  EXPECT_EQ(frames_, kSourceFrames);
+}
+
+TEST_F(RunTrackingTest, ASignalEndsItWithWhatThereIs) {
+  for (const int signal : {SIGINT, SIGTERM}) {
+    EXPECT_EQ(Track(true, [signal] { std::raise(signal); }),
+              signal == SIGINT ? "SIGINT" : "SIGTERM");
+    EXPECT_GE(frames_, kEventAt);
+    EXPECT_LT(frames_, kSourceFrames);
+  }
+}
+
+TEST_F(RunTrackingTest, ASecondSignalEndsTheProgram) {
+  const auto twice = [] {
+    std::raise(SIGTERM);
+    std::raise(SIGTERM);
+  };
+  testing::FLAGS_gtest_death_test_style = "threadsafe";
+  EXPECT_EXIT(Track(true, twice), testing::KilledBySignal(SIGTERM), "");
+}
+
+TEST_F(RunTrackingTest, WhatACameraSawIsKeptIfItIsUnplugged) {
+  const auto unplug = [] { throw InputError("camera: unplugged"); };
+  EXPECT_THAT(Track(false, unplug), HasSubstr("unplugged"));
+  EXPECT_EQ(frames_, kEventAt);
+  EXPECT_THROW(Track(true, unplug), InputError);
+}
+
+}  // namespace
+}  // namespace rgbd_pose
