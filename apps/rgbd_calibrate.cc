@@ -8,12 +8,13 @@
 #include <opencv2/core.hpp>
 #include <string>
 
+#include "apps/pipeline/calibration_passes.h"
 #include "apps/pipeline/calibration_run.h"
 #include "apps/report/calibration_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/shell/available_cores.h"
+#include "apps/shell/calibration_progress.h"
 #include "apps/shell/program.h"
-#include "apps/shell/progress_bar.h"
 #include "apps/shell/setting_flags.h"
 
 DEFINE_int32(threads, 0, "threads; 0: one a core");
@@ -63,26 +64,21 @@ int Main() {
   const int threads = NumThreads(FLAGS_threads);
   cv::setNumThreads(1);
 
-  Sequence sequence = OpenSequence(settings.sequence);
+  // All that can be wrong with the input is looked at before anything is made.
+  OpenSequence(settings.sequence);
   CalibrationOutput output(FLAGS_output);
   const auto start = std::chrono::steady_clock::now();
-  CalibrationRun run(settings.odometry, settings.slam, settings.calibration,
-                     &sequence);
-  {
-    ProgressBar bar("tracking",
-                    static_cast<int>(sequence.source->timestamps().size()));
-    int done = 0;
-    run.Track(sequence.source.get(), threads, [&] { bar.Update(++done); });
-  }
-  const CalibrationResult result = run.Solve(threads);
+  const RecordingCalibration calibration =
+      CalibrateWithProgress(settings.sequence, settings.odometry, settings.slam,
+                            settings.calibration, threads);
+  const CalibrationResult& result = calibration.result;
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count();
   output.Write(result, settings.sequence.camera, FormatFlagFile(Info()),
                seconds);
   if (FLAGS_report) {
-    output.WriteFile("report.html",
-                     CalibrationPage(result, run.run().slam().Path()));
+    output.WriteFile("report.html", CalibrationPage(result, calibration.path));
   }
   output.Publish();
   std::printf("%s%.1f s; results in %s\n",

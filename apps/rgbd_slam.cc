@@ -9,26 +9,37 @@
 #include <cstdio>
 #include <filesystem>
 #include <opencv2/core.hpp>
+#include <optional>
 #include <sstream>
+#include <string>
 #include <utility>
 
 #include "apps/export/export_format.h"
+#include "apps/pipeline/calibration_run.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/pipeline/slam_run.h"
+#include "apps/report/calibration_page.h"
+#include "apps/results/calibration_output.h"
 #include "apps/results/run_output.h"
 #include "apps/results/run_tracking.h"
 #include "apps/results/slam_output.h"
 #include "apps/shell/available_cores.h"
+#include "apps/shell/calibration_progress.h"
 #include "apps/shell/program.h"
 #include "apps/shell/setting_flags.h"
 #include "core/util/input_error.h"
 #include "frontend/map/map_folder.h"
+#include "frontend/sources/camera_file_writer.h"
+#include "frontend/sources/depth_noise_file.h"
 
 DEFINE_int32(
     threads, 0,
     "threads that read images ahead and track; 0: one for each core; the "
     "result does not depend on it");
 DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
+DEFINE_bool(calibrate, false,
+            "calibrate the camera first (as rgbd_calibrate does) and go on "
+            "with the camera found, OUTPUT/camera.yaml, if it is better");
 
 namespace rgbd_pose {
 namespace {
@@ -65,7 +76,7 @@ ProgramInfo Info() {
       "--output=runs/fr1_room --save_map=maps/room";
   Flags().Describe(&info);
   info.flag_groups.push_back(
-      {"Run", {"report", "finish_on_signal", "threads"}});
+      {"Run", {"calibrate", "report", "finish_on_signal", "threads"}});
   return info;
 }
 
@@ -105,6 +116,68 @@ void LoadMaps(SlamRun* run) {
   }
 }
 
+// What --calibrate found, and the camera to go on with.
+class Calibration {
+ public:
+  explicit Calibration(int threads) {
+    if (!FLAGS_calibrate) return;
+    const ProgramSettings& settings = Settings();
+    OdometrySettings odometry = settings.odometry;
+    odometry.odometry.max_flow_px =
+        std::min(odometry.odometry.max_flow_px,
+                 CalibrationOdometry().odometry.max_flow_px);
+    found_ = CalibrateWithProgress(settings.sequence, odometry,
+                                   CalibrationSlam(), {}, threads);
+  }
+
+  // The camera that was found, or null.
+  const RgbdCamera* camera() const {
+    return found_.has_value() && found_->result.is_accepted
+               ? &found_->result.camera
+               : nullptr;
+  }
+
+  // Writes its files; returns what the program prints of it. From here on the
+  // flags are those of a run with the camera found.
+  std::string Write(const RunOutput& output) const {
+    if (!found_.has_value()) return "";
+    const CalibrationResult& result = found_->result;
+    if (result.is_accepted) {
+      output.WriteFile(
+          kFile, FormatCameraFile(result.camera, Settings().sequence.camera));
+      const std::filesystem::path folder(Settings().output.output);
+      SetFlag("camera", (folder / kFile).string());
+      SetFlag("depth_scale", "0");
+      SetFlag("calibrate", "false");
+    }
+    if (result.noise.has_value()) {
+      output.WriteFile("depth_noise.yaml",
+                       FormatDepthNoiseFile(result.noise->model));
+    }
+    if (FLAGS_report) {
+      output.WriteFile("calibration.html",
+                       CalibrationPage(result, found_->path));
+    }
+    return FormatCalibrationSummary(result) +
+           (result.is_accepted ? "tracked with it:\n" : "tracked with that:\n");
+  }
+
+  // For metrics.json; null: there is none.
+  nlohmann::json Json() const {
+    return found_.has_value() ? CalibrationToJson(found_->result)
+                              : nlohmann::json();
+  }
+
+ private:
+  static constexpr char kFile[] = "camera.yaml";
+
+  static void SetFlag(const char* name, const std::string& value) {
+    gflags::SetCommandLineOption(name, value.c_str());
+  }
+
+  std::optional<RecordingCalibration> found_;
+};
+
 int Main() {
   const Clock::time_point start = Clock::now();
   Flags().Apply();
@@ -118,7 +191,10 @@ int Main() {
   // All that can be wrong with the input is looked at before the work starts
   // and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
-  Sequence sequence = OpenSequence(settings.sequence, keep_color);
+  if (FLAGS_calibrate) OpenSequence(settings.sequence);
+  const Calibration calibration(threads);
+  Sequence sequence =
+      OpenSequence(settings.sequence, keep_color, calibration.camera());
   FrameSource& source = *sequence.source;
   const RunInputs inputs = sequence.inputs();
   if (!settings.maps.save_map.empty()) RequireMapFolder(settings.maps.save_map);
@@ -135,10 +211,12 @@ int Main() {
   const Slam& slam = run.slam();
   WarnOf(results);
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
-  std::string text = output.Write(
-      results, Summarise(results.frames, threads, seconds),
-      sequence.TruthOfAll(), settings.sequence.dataset, FormatFlagFile(Info()),
-      Info().name, {{"stopped", stopped}, {"slam", map_json}});
+  std::string text = calibration.Write(output);
+  nlohmann::json more = {{"stopped", stopped}, {"slam", map_json}};
+  if (!calibration.Json().is_null()) more["calibration"] = calibration.Json();
+  text += output.Write(results, Summarise(results.frames, threads, seconds),
+                       sequence.TruthOfAll(), settings.sequence.dataset,
+                       FormatFlagFile(Info()), Info().name, more);
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
   output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));

@@ -6,6 +6,8 @@
 #include <sstream>
 #include <utility>
 
+#include "apps/pipeline/calibration_camera.h"
+#include "apps/pipeline/calibration_halves.h"
 #include "apps/pipeline/calibration_scale.h"
 #include "apps/pipeline/calibration_verdict.h"
 #include "core/util/format.h"
@@ -61,18 +63,6 @@ FreeParts FreePartsOf(const std::string& fix, bool has_scale) {
   return is_free;
 }
 
-CalibrationVector ThetaOf(const Camera& camera) {
-  CalibrationVector theta = CalibrationVector::Zero();
-  theta[kFx] = camera.fx;
-  theta[kFy] = camera.fy;
-  theta[kCx] = camera.cx;
-  theta[kCy] = camera.cy;
-  theta[kK1] = camera.k1;
-  theta[kK2] = camera.k2;
-  theta[kDepthFactor] = 1.0;
-  return theta;
-}
-
 CalibrationVector PriorOf(const CalibrationSettings& settings,
                           const CalibrationVector& start) {
   CalibrationVector prior;
@@ -84,33 +74,6 @@ CalibrationVector PriorOf(const CalibrationSettings& settings,
   return prior;
 }
 
-// The first camera as theta changes it.
-RgbdCamera Changed(const RgbdCamera& first, const CalibrationVector& theta) {
-  RgbdCamera changed = first;
-  Camera& camera = changed.camera;
-  camera.fx = theta[kFx];
-  camera.fy = theta[kFy];
-  camera.cx = theta[kCx];
-  camera.cy = theta[kCy];
-  camera.k1 = theta[kK1];
-  camera.k2 = theta[kK2];
-  changed.depth_scale = first.depth_scale / theta[kDepthFactor];
-  changed.depth_errors.inverse_depth_offset =
-      first.depth_errors.inverse_depth_offset / theta[kDepthFactor] +
-      theta[kInverseDepth];
-  changed.depth_errors.depth_time_offset =
-      first.depth_errors.depth_time_offset + theta[kDepthTime];
-  const Eigen::Vector3d turn = theta.segment<3>(kRotationX);
-  const double angle = turn.norm();
-  const Eigen::Vector3d axis =
-      angle > 0.0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX();
-  changed.depth_errors.depth_from_color =
-      first.depth_errors.depth_from_color *
-      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)),
-              theta.segment<3>(kTranslationX));
-  return changed;
-}
-
 // Whether depth has to be looked up elsewhere.
 bool IsDisplaced(const CalibrationVector& theta) {
   constexpr double kRotation = 5e-4;     // rad
@@ -119,6 +82,26 @@ bool IsDisplaced(const CalibrationVector& theta) {
   return theta.segment<3>(kRotationX).norm() > kRotation ||
          theta.segment<3>(kTranslationX).norm() > kTranslation ||
          std::abs(theta[kDepthTime]) > kDelay;
+}
+
+// How far a change of theta displaces depth in the image: the median of
+// landmarks.
+double DisplacementPx(const CalibrationViews& views,
+                      const CalibrationVector& change) {
+  std::vector<double> all;
+  for (const Landmark& landmark : views.landmarks) {
+    const MeasuredInverseDepth& at = landmark.depth;
+    const Eigen::Vector3d turn =
+        change.segment<3>(kRotationX) + change[kDepthTime] * at.rate_rotation;
+    const Eigen::Vector3d shift = change.segment<3>(kTranslationX) +
+                                  change[kDepthTime] * at.rate_translation;
+    const Eigen::Vector3d moved = turn.cross(at.ray) + at.value * shift;
+    all.push_back(views.camera.fx *
+                  (moved - moved.z() * at.ray).head<2>().norm());
+  }
+  if (all.empty()) return 0.0;
+  std::nth_element(all.begin(), all.begin() + all.size() / 2, all.end());
+  return all[all.size() / 2];
 }
 
 // Solves, and takes the scales of what is left, until they stay.
@@ -146,6 +129,9 @@ std::string CalibrationSettings::Check() const {
   if (!(min_gain >= 0.0) || !(min_gain_sigmas >= 0.0)) {
     return "what held-out pairs have to gain must not be negative";
   }
+  if (!(max_halves_sigmas > 0.0)) return "max_halves_sigmas must be positive";
+  if (!(max_rate >= 0.0)) return "max_rate must not be negative";
+  if (max_passes < 1 || max_passes > 10) return "max_passes must be 1 to 10";
   if (!prior.allFinite() || !(prior.array() >= 0.0).all()) {
     return "standard deviations must not be negative";
   }
@@ -176,6 +162,19 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
        "share of their cost that held-out pairs must gain for another camera "
        "to be taken",
        &settings->min_gain},
+      {"max_halves_sigmas", kGroup,
+       "what both halves of a recording say by themselves may differ by so "
+       "many "
+       "standard deviations",
+       &settings->max_halves_sigmas},
+      {"max_rate", kGroup,
+       "of a recording with more frames a second every second one is left out, "
+       "or more, unless --frames says which; 0: none",
+       &settings->max_rate},
+      {"max_passes", kGroup,
+       "a recording whose depth turns out to be displaced by pixels is mapped "
+       "anew with the camera found, so many times at most",
+       &settings->max_passes},
       {"max_views", kGroup,
        "views of landmarks that are solved for, about: the time it takes grows "
        "with it",
@@ -191,7 +190,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   const std::string error = settings.Check();
   if (!error.empty()) throw InputError("calibration: " + error);
   CalibrationResult result;
-  result.camera = first;
+  result.camera = result.found = first;
   CalibrationData data =
       CollectCalibrationData(map, path, odometry, settings.data, threads);
   result.scale_from =
@@ -203,7 +202,8 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   result.landmarks = static_cast<int>(data.views.landmarks.size());
   result.views = static_cast<int>(data.views.views.size());
 
-  const CalibrationVector start = ThetaOf(map.camera);
+  CalibrationVector start = ThetaOf(map.camera);
+  start[kDepthTime] = settings.known_delay;
   const CalibrationVector prior = PriorOf(settings, start);
   for (int k = 0; k < kCalibrationSize; ++k) {
     CalibratedParameter& parameter = result.parameters[k];
@@ -221,8 +221,16 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   LandmarkProblemOptions solve = settings.solve;
   solve.threads = threads;
 
+  CalibrationVector undone = CalibrationVector::Zero();
+  const auto look_up = [&](const CalibrationVector& theta) {
+    undone = theta;
+    LookUpDepthsAnew(map, Changed(first, theta).camera, odometry, theta,
+                     threads, &data);
+  };
+  if (IsDisplaced(start)) look_up(start);
+
   // What pairs tell that are not held out, with both cameras.
-  constexpr int kRounds = 3;
+  constexpr int kRounds = 2;
   const LandmarkProblem training(data.views, start, prior, true, solve);
   CalibrationState before = training.Begin();
   training.MeasureScales(&before);
@@ -230,9 +238,9 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   CalibrationState after = before;
   SolveWithScales(training, asked, kRounds, &after);
   const CalibrationViews views_before = data.views;
-  if (IsDisplaced(after.theta)) {
-    LookUpDepthsAnew(map, Changed(first, after.theta).camera, odometry,
-                     after.theta, threads, &data);
+  constexpr int kMostLookUps = 4;
+  for (int i = 0; i < kMostLookUps && IsDisplaced(after.theta - undone); ++i) {
+    look_up(after.theta);
     SolveWithScales(training, asked, kRounds, &after);
   }
   CalibrationMatrix by_noise, by_scatter;
@@ -248,7 +256,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
       parameter.sigma =
           can_tell ? std::hypot(
                          std::sqrt(std::max(by_noise(k, k), by_scatter(k, k))),
-                         kCalibrationParameters[k].floor)
+                         CalibrationFloor(k, result.keyframes))
                    : prior[k];
       is_free[k] =
           parameter.sigma < settings.determined_share * parameter.prior;
@@ -256,6 +264,8 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     }
   };
   judge(training, after);
+  result.noise =
+      FitDepthNoise(views_before, before, odometry.features.depth_noise);
   if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
     result.reason = "the recording determines nothing of it";
     return result;
@@ -285,15 +295,20 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
       result.parameters[k].fate = Fate::kUndetermined;
     }
   }
+  result.halves =
+      CompareHalves(data.views, found, is_free, start, prior, solve);
+  result.displacement_px = DisplacementPx(data.views, found.theta - start);
   result.pixel_before = before.pixel_scale;
   result.pixel_after = found.pixel_scale;
   result.depth_before = before.depth_scale;
   result.depth_after = found.depth_scale;
-  const RgbdCamera changed = Changed(first, found.theta);
-  result.reason = WhyNot(first, changed, settings, result);
+  result.found = Changed(first, found.theta);
+  result.reason = WhyNot(first, result.found, settings, result);
   if (!result.reason.empty()) return result;
   result.is_accepted = true;
-  result.camera = changed;
+  result.camera = result.found;
+  result.noise =
+      FitDepthNoise(data.views, found, odometry.features.depth_noise);
   return result;
 }
 

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "apps/pipeline/calibration_data.h"
+#include "apps/pipeline/calibration_halves.h"
+#include "apps/pipeline/calibration_noise.h"
 #include "apps/pipeline/setting_table.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
@@ -37,6 +39,21 @@ struct CalibrationSettings {
   double min_gain = 0.01;
   double min_gain_sigmas = 3.0;
 
+  // What both halves of a recording say by themselves may differ by so many
+  // standard deviations.
+  double max_halves_sigmas = 4.0;
+
+  // How much later than its stamp depth is known to be (s), beyond what the
+  // camera that frames were tracked with says.
+  double known_delay = 0.0;
+
+  // Of a recording with more frames a second every second one is left out, or
+  // more, unless a part of it was asked for: near ones tell the same. 0: none.
+  double max_rate = 20.0;
+
+  // A recording is mapped and calibrated so many times at most.
+  int max_passes = 3;
+
   CalibrationDataOptions data;   // which views
   LandmarkProblemOptions solve;  // how they are explained
 
@@ -49,22 +66,25 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings);
 
 // What became of one parameter.
 struct CalibratedParameter {
+  // What the recording says of it.
   enum class Fate {
     kFixed,         // was not asked for, or nothing could tell it
     kUndetermined,  // the recording does not tell it
     kDetermined,
   };
-  Fate fate = Fate::kFixed;
-  double before = 0.0;  // of the first camera
-  double prior = 0.0;   // its standard deviation
-  double found = 0.0;   // where the recording would have it
-  double sigma = 0.0;   // the standard deviation of that
+  Fate fate = Fate::kFixed;  // what the recording says of it
+  double before = 0.0;       // of the first camera
+  double prior = 0.0;        // its standard deviation
+  double found = 0.0;        // where the recording would have it
+  double sigma = 0.0;        // the standard deviation of that
 };
 
 // What is left of a held-out view, px: for pictures.
 struct HeldOutResidual {
-  double u = 0.0, v = 0.0;  // where
-  Eigen::Vector2d before, after;
+  double u = 0.0;          // where
+  double v = 0.0;          // likewise
+  Eigen::Vector2d before;  // with the first camera
+  Eigen::Vector2d after;   // with the camera found
 };
 
 // What came of a calibration.
@@ -79,20 +99,44 @@ struct CalibrationResult {
   std::string reason;
   RgbdCamera camera;
 
+  // Where the recording would have the camera, better or not.
+  RgbdCamera found;
+
   // Of what it was made.
-  int keyframes = 0, pairs = 0, held_out_pairs = 0, landmarks = 0, views = 0;
+  int keyframes = 0;       // of the largest segment
+  int pairs = 0;           // of them
+  int held_out_pairs = 0;  // of these
+  int landmarks = 0;       // points
+  int views = 0;           // of the points
 
   // Mean robust cost of a held-out view with the first camera and the one that
   // was found, and their difference in its standard deviations.
-  double cost_before = 0.0, cost_after = 0.0, gain_sigmas = 0.0;
+  double cost_before = 0.0;  // with the first camera
+  double cost_after = 0.0;   // with the camera found
+  double gain_sigmas = 0.0;  // their difference
+
   // Spread of residuals with either: px, and in sigmas of the depth noise.
-  double pixel_before = 0.0, pixel_after = 0.0;
-  double depth_before = 0.0, depth_after = 0.0;
+  double pixel_before = 0.0;  // with the first camera
+  double pixel_after = 0.0;   // with the camera found
+  double depth_before = 0.0;  // with the first camera
+  double depth_after = 0.0;   // with the camera found
   std::vector<HeldOutResidual> residuals;
+
+  // How noisy depth is, with the camera to go on with; none: too few depths.
+  std::optional<DepthNoiseFit> noise;
 
   // How far the motions of pairs are from the ground truth (RMSE, m), from the
   // poses that go with either camera; 0: there is none.
-  double truth_before = 0.0, truth_after = 0.0;
+  double truth_before = 0.0;  // with the first camera
+  double truth_after = 0.0;   // with the camera found
+
+  // What the halves of the recording say of what is determined; may be empty.
+  std::vector<HalvesOfParameter> halves;
+
+  // How far depth turned out to be displaced, px (the median of views). If that
+  // is much, it is due to be mapped again with the camera found.
+  double displacement_px = 0.0;
+  int passes = 1;
 
   // What gave depth its scale, in words; empty: nothing did.
   std::string scale_from;
@@ -100,8 +144,8 @@ struct CalibrationResult {
 
 // What else is known of where the camera was; null: nothing.
 struct CalibrationScale {
-  const Trajectory* ground_truth = nullptr;
-  const MotionGuess* motion_guess = nullptr;
+  const Trajectory* ground_truth = nullptr;   // the true path
+  const MotionGuess* motion_guess = nullptr;  // wheels, say
 };
 
 // Calibrates a camera from keyframes and pairs of its recording. `first`: the

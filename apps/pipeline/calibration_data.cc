@@ -17,35 +17,75 @@
 namespace rgbd_pose {
 namespace {
 
-// Of a keyframe; the frontend has at least one a cell of its grid.
-constexpr int kFeaturesPerKeyframe = 300;
+// Of a keyframe: as many as make the views that are wanted, since only some are
+// found again, but no fewer than lie all over the image.
+constexpr int kMostFeatures = 300;
+constexpr int kFewestFeatures = 80;
+constexpr double kFoundAgain = 0.2;
 
 // Longer than this between two frames, a velocity is not known.
 constexpr double kMaxGap = 0.15;  // s
 
 using Velocity = CameraVelocity;
 
-// Of points in the axes of the camera: central differences.
+// Of points in the axes of the camera: central differences of the fourth order,
+// where frames follow each other evenly.
 Velocity VelocityAt(const Trajectory& path, double time) {
   const auto at = std::lower_bound(
       path.begin(), path.end(), time - 1e-4,
       [](const StampedPose& pose, double t) { return pose.timestamp < t; });
   Velocity velocity;
   if (at == path.end()) return velocity;
-  auto before = at == path.begin() ? at : at - 1;
-  auto after = at + 1 == path.end() ? at : at + 1;
-  if (at->timestamp - before->timestamp > kMaxGap) before = at;
-  if (after->timestamp - at->timestamp > kMaxGap) after = at;
-  const double interval = after->timestamp - before->timestamp;
-  if (!(interval > 0.0)) return velocity;
-  const auto moved = [&](const StampedPose& other) {
-    const Rigid3d there = other.world_from_cam.Inverse() * at->world_from_cam;
-    const Eigen::AngleAxisd turn(there.rotation);
-    return Velocity{turn.angle() * turn.axis(), there.translation};
+  // The last frame that comes so many after, without a gap.
+  const auto place = at - path.begin();
+  const auto neighbour = [&](int steps) {
+    const int direction = steps > 0 ? 1 : -1;
+    auto there = place;
+    for (int i = 0; i < std::abs(steps); ++i) {
+      const auto next = there + direction;
+      if (next < 0 || next >= static_cast<std::ptrdiff_t>(path.size()) ||
+          std::abs(path[next].timestamp - path[there].timestamp) > kMaxGap) {
+        break;
+      }
+      there = next;
+    }
+    return there;
   };
-  const Velocity a = moved(*before), b = moved(*after);
-  velocity.rotation = (b.rotation - a.rotation) / interval;
-  velocity.translation = (b.translation - a.translation) / interval;
+  struct Difference {
+    Velocity velocity;
+    double interval = 0.0;  // s
+    double lean = 0.0;      // how far its middle is from the frame, s
+  };
+  const auto moved = [&](std::ptrdiff_t there) {
+    const Rigid3d from_at =
+        path[there].world_from_cam.Inverse() * at->world_from_cam;
+    const Eigen::AngleAxisd turn(from_at.rotation);
+    return Velocity{turn.angle() * turn.axis(), from_at.translation};
+  };
+  const auto difference = [&](int steps) {
+    const auto before = neighbour(-steps), after = neighbour(steps);
+    const double t0 = path[before].timestamp, t1 = path[after].timestamp;
+    Difference result;
+    result.interval = t1 - t0;
+    result.lean = std::abs(0.5 * (t0 + t1) - at->timestamp);
+    if (!(result.interval > 0.0)) return result;
+    const Velocity a = moved(before), b = moved(after);
+    result.velocity.rotation = (b.rotation - a.rotation) / result.interval;
+    result.velocity.translation =
+        (b.translation - a.translation) / result.interval;
+    return result;
+  };
+  const Difference near = difference(1);
+  const Difference far = difference(2);
+  constexpr double kEven = 0.05;
+  const bool is_even = std::abs(far.interval / near.interval - 2.0) < kEven &&
+                       std::max(near.lean, far.lean) < kEven * near.interval;
+  velocity = near.velocity;
+  if (is_even) {
+    velocity.rotation += (near.velocity.rotation - far.velocity.rotation) / 3.0;
+    velocity.translation +=
+        (near.velocity.translation - far.velocity.translation) / 3.0;
+  }
   return velocity;
 }
 
@@ -86,6 +126,14 @@ MeasuredInverseDepth MeasuredAt(const Frame& frame, const Camera& camera,
   depth.inverse_sigma = o.depth * o.depth / o.sigma_depth;
   depth.rate_rotation = velocity.rotation;
   depth.rate_translation = velocity.translation;
+  const Eigen::Vector2d middle(std::round(pixel.x()), std::round(pixel.y()));
+  const double at_middle =
+      frame.DepthAt(static_cast<int>(middle.x()), static_cast<int>(middle.y()));
+  if (at_middle > 0.0) {
+    const Eigen::Vector2d ideal = camera.Undistort(middle);
+    depth.pixel_value = 1.0 / at_middle;
+    depth.pixel_ray = camera.Ray(ideal.x(), ideal.y());
+  }
   return depth;
 }
 
@@ -100,11 +148,11 @@ class Matcher {
  public:
   Matcher(const KeyframeMap& map, const std::vector<int>& chosen,
           const std::vector<Velocity>& velocities,
-          const OdometrySettings& settings)
+          const OdometrySettings& settings, int max_features)
       : map_(map), chosen_(chosen), velocities_(velocities) {
     FrontendOptions options = settings.features;
     options.camera = map.camera;
-    options.max_features = kFeaturesPerKeyframe;
+    options.max_features = max_features;
     frontend_ = MakeFrontend("patch", options);
     noise_ = options.depth_noise;
   }
@@ -123,8 +171,8 @@ class Matcher {
       landmark.anchor = anchor;
       landmark.u = pixel.x();
       landmark.v = pixel.y();
-      landmark.depth = MeasuredAt(frame, map_.camera, o, pixel,
-                                  velocities_[anchor], *noise_);
+      landmark.depth =
+          MeasuredAt(frame, map_.camera, o, pixel, velocities_[anchor], noise_);
       if (landmark.depth.inverse_sigma == 0.0) continue;
       place[i] = static_cast<int>(result.landmarks.size());
       result.landmarks.push_back(landmark);
@@ -146,7 +194,7 @@ class Matcher {
         view.v = pixel.y();
         view.sigma_px = o.sigma_px;
         view.depth =
-            MeasuredAt(there, map_.camera, o, pixel, velocities_[to], *noise_);
+            MeasuredAt(there, map_.camera, o, pixel, velocities_[to], noise_);
         view.is_held_out = held_out[n];
         result.views[landmark].push_back(view);
       }
@@ -189,7 +237,7 @@ class Matcher {
   const std::vector<int>& chosen_;
   const std::vector<Velocity>& velocities_;
   std::unique_ptr<Frontend> frontend_;
-  const DepthNoiseModel* noise_ = nullptr;
+  DepthNoiseModel noise_;
   std::map<int, Both> images_;
   FeatureMatches matches_;
 };
@@ -230,7 +278,7 @@ void LookUpAnew(const Frame& frame, const Camera& camera,
   const Observation o = Observe(frame, camera, u, v, 1.0, options);
   const Velocity velocity{depth->rate_rotation, depth->rate_translation};
   MeasuredInverseDepth anew =
-      MeasuredAt(frame, camera, o, {u, v}, velocity, *options.noise);
+      MeasuredAt(frame, camera, o, {u, v}, velocity, options.noise);
   anew.undone_rotation = undone.rotation;
   anew.undone_translation = undone.translation;
   // A landmark keeps a value to begin with.
@@ -294,11 +342,16 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
 
   data.velocities = velocities;
 
+  const double in_each =
+      options.max_views /
+      (kFoundAgain * 2.0 * std::max<double>(1.0, data.pairs.size()));
+  const int features = static_cast<int>(
+      std::clamp<double>(in_each, kFewestFeatures, kMostFeatures));
   std::vector<OfKeyframe> found(num_keyframes);
   threads = std::max(1, std::min(threads, num_keyframes));
   ParallelFor(threads, threads, [&](int thread) {
     // A run of keyframes each: neighbours are decoded once.
-    Matcher matcher(map, chosen, velocities, settings);
+    Matcher matcher(map, chosen, velocities, settings, features);
     const int begin = thread * num_keyframes / threads;
     const int end = (thread + 1) * num_keyframes / threads;
     for (int i = begin; i < end; ++i) {

@@ -9,12 +9,15 @@ namespace rgbd_pose {
 OdometrySettings CalibrationOdometry() {
   OdometrySettings settings;
   settings.odometry.max_flow_px = 30.0;
+  settings.features.max_features = 300;
   return settings;
 }
 
 SlamSettings CalibrationSlam() {
   SlamSettings settings;
   settings.mapping.redundant_share = 2.0;  // which no view reaches
+  settings.mapping.max_pairs = 4;
+  settings.mapping.max_lookalikes = 0;
   return settings;
 }
 

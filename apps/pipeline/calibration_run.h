@@ -11,7 +11,7 @@ namespace rgbd_pose {
 
 // Settings to map a recording with that is to calibrate its camera: keyframes
 // follow each other more closely than a map needs, so that small motions, too,
-// have some, and none makes way.
+// have some, none makes way, and no more of them are paired than it takes.
 OdometrySettings CalibrationOdometry();
 SlamSettings CalibrationSlam();
 

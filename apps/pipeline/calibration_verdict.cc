@@ -135,36 +135,34 @@ double TruthError(const CalibrationData& data, const CalibrationState& state,
   return count > 0 ? std::sqrt(sum / count) : 0.0;
 }
 
-std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
-                   const CalibrationSettings& settings,
-                   const CalibrationResult& result) {
-  if (result.held_out_pairs < 2) {
-    return "there are too few pairs to judge it by";
-  }
-  const double gain = 1.0 - result.cost_after / result.cost_before;
-  if (!(gain >= settings.min_gain) ||
-      !(result.gain_sigmas >= settings.min_gain_sigmas)) {
-    return "pairs that were held out fit no better with the camera found: "
-           "their cost falls by " +
-           Percent(gain) + " (" + Short(result.gain_sigmas) +
-           " standard deviations)";
-  }
-  if (result.truth_after > result.truth_before) {
-    return "the ground truth contradicts it: motions of pairs are off by " +
-           Short(1e3 * result.truth_after) + " mm instead of " +
-           Short(1e3 * result.truth_before) + " mm";
-  }
-  const bool has_moved = std::any_of(
-      result.parameters.begin(), result.parameters.end(),
-      [&](const CalibratedParameter& parameter) {
-        return parameter.fate == CalibratedParameter::Fate::kDetermined &&
-               std::abs(parameter.found - parameter.before) >
-                   settings.min_gain_sigmas * parameter.sigma;
+bool IsAnotherPassDue(const CalibrationResult& result) {
+  constexpr double kManyPx = 1.5;
+  return result.displacement_px > kManyPx;
+}
+
+std::string WhyHalvesDisagree(const CalibrationSettings& settings,
+                              const CalibrationResult& result) {
+  const auto worst = std::max_element(
+      result.halves.begin(), result.halves.end(),
+      [](const HalvesOfParameter& a, const HalvesOfParameter& b) {
+        return a.Sigmas() < b.Sigmas();
       });
-  if (!has_moved) {
-    return "nothing is wrong with it: what was found is within " +
-           Short(settings.min_gain_sigmas) + " standard deviations of it";
+  if (worst == result.halves.end() ||
+      !(worst->Sigmas() > settings.max_halves_sigmas)) {
+    return "";
   }
+  const CalibrationParameter& row = kCalibrationParameters[worst->part];
+  const std::string unit =
+      row.unit[0] == '\0' ? "" : " " + std::string(row.unit);
+  return "the halves of the recording contradict each other, so something else "
+         "is wrong than the camera: their " +
+         std::string(row.name) + " differs by " +
+         Short(std::abs(worst->second - worst->first)) + unit + " (" +
+         Short(worst->Sigmas()) + " standard deviations)";
+}
+
+std::string WhyNotPlausible(const RgbdCamera& first, const RgbdCamera& found,
+                            const CalibrationResult& result) {
   const Camera& camera = found.camera;
   const double aspect = camera.fx / camera.fy;
   const double aspect_before = first.camera.fx / first.camera.fy;
@@ -193,6 +191,43 @@ std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
     }
   }
   return "";
+}
+
+std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
+                   const CalibrationSettings& settings,
+                   const CalibrationResult& result) {
+  if (result.held_out_pairs < 2) {
+    return "there are too few pairs to judge it by";
+  }
+  const double gain = 1.0 - result.cost_after / result.cost_before;
+  if (!(gain >= settings.min_gain) ||
+      !(result.gain_sigmas >= settings.min_gain_sigmas)) {
+    return "pairs that were held out fit no better with the camera found: "
+           "their cost falls by " +
+           Percent(gain) + " (" + Short(result.gain_sigmas) +
+           " standard deviations)";
+  }
+  if (result.truth_after > result.truth_before) {
+    return "the ground truth contradicts it: motions of pairs are off by " +
+           Short(1e3 * result.truth_after) + " mm instead of " +
+           Short(1e3 * result.truth_before) + " mm";
+  }
+  if (!IsAnotherPassDue(result)) {
+    const std::string disagree = WhyHalvesDisagree(settings, result);
+    if (!disagree.empty()) return disagree;
+  }
+  const bool has_moved = std::any_of(
+      result.parameters.begin(), result.parameters.end(),
+      [&](const CalibratedParameter& parameter) {
+        return parameter.fate == CalibratedParameter::Fate::kDetermined &&
+               std::abs(parameter.found - parameter.before) >
+                   settings.min_gain_sigmas * parameter.sigma;
+      });
+  if (!has_moved) {
+    return "nothing is wrong with it: what was found is within " +
+           Short(settings.min_gain_sigmas) + " standard deviations of it";
+  }
+  return WhyNotPlausible(first, found, result);
 }
 
 }  // namespace rgbd_pose

@@ -19,6 +19,17 @@ void CompareHeldOut(const CalibrationViews& views_before,
 double TruthError(const CalibrationData& data, const CalibrationState& state,
                   const Trajectory& truth);
 
+// Whether depth was displaced so far that what was found is a first step.
+bool IsAnotherPassDue(const CalibrationResult& result);
+
+// Why the halves of a recording contradict each other, in words, or empty.
+std::string WhyHalvesDisagree(const CalibrationSettings& settings,
+                              const CalibrationResult& result);
+
+// Why what was found is no camera that can be believed in, in words, or empty.
+std::string WhyNotPlausible(const RgbdCamera& first, const RgbdCamera& found,
+                            const CalibrationResult& result);
+
 // Why a camera that was found is not to be taken instead of the first one, in
 // words, or empty.
 std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,

@@ -72,7 +72,8 @@ const Trajectory* Sequence::TruthOfAll() {
 
 namespace {
 
-SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color) {
+SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
+                        const RgbdCamera* camera) {
   SourceOptions options;
   options.path = settings.dataset;
   options.keep_color = keep_color;
@@ -89,6 +90,13 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color) {
   } else if (!settings.depth_camera.empty()) {
     throw InputError("depth_camera '" + settings.depth_camera +
                      "': needs the Kalibr file that it is of (camera)");
+  }
+  if (camera != nullptr) {
+    if (!options.camera.has_value()) options.camera.emplace();
+    options.camera->camera = camera->camera;
+    options.camera->depth_scale = camera->depth_scale;
+    options.camera->depth_errors = camera->depth_errors;
+    options.depth_scale = 0.0;
   }
   return options;
 }
@@ -110,11 +118,13 @@ std::vector<std::string> LeftOut(const FrameSource& source) {
   return lines;
 }
 
-Sequence OpenSequence(const SequenceSettings& settings, bool keep_color) {
+Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
+                      const RgbdCamera* camera) {
   Sequence sequence;
   const FrameRange range = ParseFrameRange(settings.frames);
   sequence.source = PartOf(
-      OpenSource(settings.source, OptionsOf(settings, keep_color)), range);
+      OpenSource(settings.source, OptionsOf(settings, keep_color, camera)),
+      range);
   sequence.compares = settings.groundtruth != kNoGroundTruth;
   if (sequence.compares && !settings.groundtruth.empty()) {
     sequence.ground_truth = ReadTrajectory(settings.groundtruth);

@@ -49,9 +49,10 @@ struct Sequence {
 // images without depth, frames that came too fast.
 std::vector<std::string> LeftOut(const FrameSource& source);
 
-// `keep_color`: in Frame::color. Throws InputError for all that can be wrong
-// with it before its images are read.
-Sequence OpenSequence(const SequenceSettings& settings,
-                      bool keep_color = false);
+// `keep_color`: in Frame::color. `camera`: that the frames are seen by,
+// whatever the settings say; null: as they say. Throws InputError for all that
+// can be wrong with it before its images are read.
+Sequence OpenSequence(const SequenceSettings& settings, bool keep_color = false,
+                      const RgbdCamera* camera = nullptr);
 
 }  // namespace rgbd_pose

@@ -5,6 +5,7 @@
 
 #include "core/initial_guess/initial_guess.h"
 #include "core/util/named_values.h"
+#include "frontend/sources/depth_noise_file.h"
 #include "robust/m_estimator.h"
 #include "robust/scale.h"
 
@@ -88,15 +89,9 @@ NamedSetting GuessByName(TrackerOptions* tracking, OdometryOptions* odometry) {
           }};
 }
 
-NamedSetting DepthNoiseByName(const DepthNoiseModel** model) {
-  return {[=] { return std::string((*model)->name); },
-          [=](const std::string& name) {
-            const DepthNoiseModel* row = FindDepthNoiseModel(name);
-            if (row == nullptr) {
-              throw UnknownName("depth noise", name, DepthNoiseModelNames());
-            }
-            *model = row;
-          }};
+NamedSetting DepthNoiseByName(DepthNoiseModel* model) {
+  return {[=] { return model->name; },
+          [=](const std::string& name) { *model = ResolveDepthNoise(name); }};
 }
 
 }  // namespace
@@ -141,7 +136,8 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        "a motion with a direction less certain than this (rad or m) is "
        "degenerate",
        &options->max_standard_deviation},
-      {"depth_noise", kEstimationGroup, "how uncertain a depth is",
+      {"depth_noise", kEstimationGroup,
+       "how uncertain a depth is: a model, or a file that rgbd_calibrate wrote",
        DepthNoiseByName(&features->depth_noise), DepthNoiseModelNames()},
       {"assembly", kEstimationGroup, "how matches become Ceres residual blocks",
        ByName(kAssemblies, "assembly", &options->assembly),

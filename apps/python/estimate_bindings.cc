@@ -133,7 +133,7 @@ void BindFunction(py::module_* module, const char* name,
         const RowMatches matches =
             MakeMatches(seen_by, to_observation, prev, cur,
                         normals.has_value() ? &*normals : nullptr, sigma_px,
-                        *settings.features.depth_noise);
+                        settings.features.depth_noise);
         return MakeResult(
             estimator.Estimate(matches.matches, start.Find(matches.matches),
                                prior.has_value() ? &*prior : nullptr),

@@ -32,5 +32,6 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   BindOdometry(&m);
   BindSlam(&m);
   BindEvaluation(&m);
+  BindCalibration(&m);
   m.attr("__name__") = own_name;
 }

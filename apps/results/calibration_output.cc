@@ -5,6 +5,7 @@
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/sources/camera_file_writer.h"
+#include "frontend/sources/depth_noise_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -38,9 +39,13 @@ const char* ToString(Fate fate) {
 }
 
 std::string FormatCalibrationSummary(const CalibrationResult& result) {
-  std::string text =
-      Format("%d keyframes, %d pairs, %d landmarks in %d views\n",
-             result.keyframes, result.pairs, result.landmarks, result.views);
+  std::string text = Format(
+      "%d keyframes, %d pairs, %d landmarks in %d views%s\n", result.keyframes,
+      result.pairs, result.landmarks, result.views,
+      result.passes > 1 ? Format("; %d passes: depth was displaced by %.1f px",
+                                 result.passes, result.displacement_px)
+                              .c_str()
+                        : "");
   text += Format("%-22s %12s %12s %10s  %s\n", "", "before", "found", "+-", "");
   std::string undetermined;
   for (int k = 0; k < kCalibrationSize; ++k) {
@@ -75,6 +80,14 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
         result.gain_sigmas, 0.5 * result.pixel_before,
         0.5 * result.pixel_after);
   }
+  if (result.noise.has_value()) {
+    const DepthNoiseFit& noise = *result.noise;
+    text += Format(
+        "noise of depth: sigma(z) = %.3g m + %.4g z^2 / m (+- %.2g, %.2g; %d "
+        "depths), %.3g of what --depth_noise said\n",
+        noise.model.constant, noise.model.quadratic, noise.constant_sigma,
+        noise.quadratic_sigma, noise.samples, noise.in_old_sigmas);
+  }
   text += result.is_accepted
               ? "the new camera is better: take camera.yaml\n"
               : "the first camera is kept: " + result.reason + "\n";
@@ -95,6 +108,29 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result) {
                           {"found", parameter.found},
                           {"sigma", parameter.sigma}});
   }
+  nlohmann::json halves = nlohmann::json::array();
+  for (const HalvesOfParameter& half : result.halves) {
+    halves.push_back({{"name", kCalibrationParameters[half.part].name},
+                      {"first", half.first},
+                      {"second", half.second},
+                      {"sigma", half.sigma}});
+  }
+  nlohmann::json noise;
+  if (result.noise.has_value()) {
+    const DepthNoiseFit& fit = *result.noise;
+    nlohmann::json scatter = nlohmann::json::array();
+    for (const DepthScatter& at : fit.scatter) {
+      scatter.push_back({at.depth, at.sigma});
+    }
+    noise = {{"constant", fit.model.constant},
+             {"constant_sigma", fit.constant_sigma},
+             {"quadratic", fit.model.quadratic},
+             {"quadratic_sigma", fit.quadratic_sigma},
+             {"depths", fit.samples},
+             {"in_old_sigmas", fit.in_old_sigmas},
+             {"mean_share", fit.model.mean_share},
+             {"depth_and_sigma", scatter}};
+  }
   return {{"accepted", result.is_accepted},
           {"reason", result.reason},
           {"parameters", parameters},
@@ -112,7 +148,11 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result) {
           {"pixel_spread_before", result.pixel_before},
           {"pixel_spread_after", result.pixel_after},
           {"depth_spread_before", result.depth_before},
-          {"depth_spread_after", result.depth_after}};
+          {"depth_spread_after", result.depth_after},
+          {"depth_noise", noise},
+          {"halves", halves},
+          {"displacement_px", result.displacement_px},
+          {"passes", result.passes}};
 }
 
 void CalibrationOutput::WriteFile(const char* name,
@@ -124,6 +164,9 @@ void CalibrationOutput::Write(const CalibrationResult& result,
                               const std::string& camera,
                               const std::string& flags, double seconds) {
   WriteFile("camera.yaml", FormatCameraFile(result.camera, camera));
+  if (result.noise.has_value()) {
+    WriteFile("depth_noise.yaml", FormatDepthNoiseFile(result.noise->model));
+  }
   WriteFile("residuals.csv", FormatResiduals(result));
   WriteFile("config.flags", flags);
   nlohmann::json metrics = {{"program", "rgbd_calibrate"},

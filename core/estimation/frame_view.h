@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/geometry/depth_noise.h"
 
 namespace rgbd_pose {
 
@@ -38,8 +39,8 @@ struct FrameView {
 
   // Registered to levels[0] and of its size.
   ImageView<uint16_t> depth;
-  double depth_scale = 5000.0;                    // raw units per metre
-  double (*depth_sigma)(double depth) = nullptr;  // see DepthNoiseModel
+  double depth_scale = 5000.0;  // raw units per metre
+  DepthNoiseModel depth_noise;  // has to be filled in
 
   // Metres at a whole pixel of levels[0]; 0 where there is none: sensors mark
   // that by 0 or by the largest value.

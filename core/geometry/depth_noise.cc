@@ -1,25 +1,31 @@
 #include "core/geometry/depth_noise.h"
 
+#include <cmath>
+
 namespace rgbd_pose {
-namespace {
 
-double Khoshelham(double depth) { return 1.425e-3 * depth * depth; }
-
-double Nguyen(double depth) {
-  const double beyond = depth - 0.4;
-  return 0.0012 + 0.0019 * beyond * beyond;
+std::string DepthNoiseModel::Check() const {
+  if (!std::isfinite(constant) || !std::isfinite(quadratic) ||
+      !std::isfinite(centre) || constant < 0.0 || quadratic < 0.0) {
+    return "constant and quadratic must not be negative";
+  }
+  if (!(mean_share > 0.0 && mean_share <= 1.0)) {
+    return "mean_share must be above 0 and at most 1";
+  }
+  // Depths are above 0.
+  const bool is_somewhere_certain =
+      constant == 0.0 && (quadratic == 0.0 || centre > 0.0);
+  return is_somewhere_certain ? "no depth may be certain: sigma(z) = constant "
+                                "+ quadratic (z - centre)^2 must be above 0"
+                              : "";
 }
-
-double Constant(double /*depth*/) { return 0.005; }
-
-}  // namespace
 
 const std::vector<DepthNoiseModel>& DepthNoiseModels() {
   static const std::vector<DepthNoiseModel>& models =
       *new std::vector<DepthNoiseModel>{
-          {"khoshelham", Khoshelham},
-          {"nguyen", Nguyen},
-          {"constant", Constant},
+          {"khoshelham", 0.0, 1.425e-3},
+          {"nguyen", 0.0012, 0.0019, 0.4},
+          {"constant", 0.005},
       };
   return models;
 }
@@ -34,7 +40,7 @@ const DepthNoiseModel* FindDepthNoiseModel(std::string_view name) {
 std::vector<std::string> DepthNoiseModelNames() {
   std::vector<std::string> names;
   for (const DepthNoiseModel& model : DepthNoiseModels()) {
-    names.emplace_back(model.name);
+    names.push_back(model.name);
   }
   return names;
 }

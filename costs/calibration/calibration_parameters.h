@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace rgbd_pose {
 
@@ -34,7 +36,7 @@ using CalibrationMatrix =
 struct CalibrationParameter {
   const char* name;  // in files and reports
   const char* what;  // it is, in words
-  const char* unit;
+  const char* unit;  // of it
 
   // Standard deviation of what is known before: of focal lengths as a share of
   // themselves.
@@ -69,5 +71,13 @@ inline constexpr std::array<CalibrationParameter, kCalibrationSize>
         {"translation_z", "registration of depth, along z", "m", 0.02, 3.7e-4},
         {"depth_factor", "metres per measured metre", "", 0.05, 0.0},
     }};
+
+// The floor of a recording of so many keyframes. Errors that are alike average
+// over views; the table is of recordings with many.
+inline double CalibrationFloor(int parameter, int keyframes) {
+  constexpr double kMany = 150.0;
+  return kCalibrationParameters[parameter].floor *
+         std::sqrt(std::max(1.0, kMany / std::max(1, keyframes)));
+}
 
 }  // namespace rgbd_pose

@@ -28,6 +28,11 @@ struct MeasuredInverseDepth {
   Eigen::Vector3d rate_rotation = Eigen::Vector3d::Zero();     // rad/s
   Eigen::Vector3d rate_translation = Eigen::Vector3d::Zero();  // m/s
 
+  // The same of the nearest pixel alone, on the ray of its middle: to measure
+  // noise by. 0: none.
+  double pixel_value = 0.0;  // 1/m
+  Eigen::Vector3d pixel_ray = Eigen::Vector3d::UnitZ();
+
   // What of the depth camera's displacement has been undone in the image.
   Eigen::Vector3d undone_rotation = Eigen::Vector3d::Zero();     // rad
   Eigen::Vector3d undone_translation = Eigen::Vector3d::Zero();  // m

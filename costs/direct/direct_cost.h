@@ -192,8 +192,9 @@ class DirectCostOf final : public PackedCost<Type> {
       return;
     }
     input_.has_distortion = pair.cur->levels[0].camera.HasDistortion();
-    if (pair.prev->depth_sigma == nullptr) {
-      throw InputError("direct cost: the view of a frame has no depth_sigma");
+    if (const std::string error = pair.prev->depth_noise.Check();
+        !error.empty()) {
+      throw InputError("direct cost: the view's depth_noise: " + error);
     }
     if (pair.prev->id != 0 && pair.prev->id == points_of_) return;
     points_of_ = pair.prev->id;

@@ -100,7 +100,7 @@ bool FitInverseDepthPlane(const FrameView& frame, int column, int row,
   plane->inverse_depth = sum / (kSide * kSide);
   plane->slope = {du / kSlopeStep, dv / kSlopeStep};
   const double depth = 1.0 / plane->inverse_depth;
-  const double limit = kMaxSigmas * frame.depth_sigma(depth) *
+  const double limit = kMaxSigmas * frame.depth_noise.sigma(depth) *
                        plane->inverse_depth * plane->inverse_depth;
   for (int k = 0; k < kSide * kSide; ++k) {
     const double fit =
@@ -159,7 +159,7 @@ void TexturedPoints(const FrameView& frame, int level_index,
       if (depth < selection.min_depth || depth > selection.max_depth) continue;
       const Eigen::Vector3d X =
           level.camera.Unproject(at.cast<double>(), depth);
-      writer.Add({X.x(), X.y(), X.z(), frame.depth_sigma(depth),
+      writer.Add({X.x(), X.y(), X.z(), frame.depth_noise.sigma(depth),
                   static_cast<double>(gray.At(at.x(), at.y()))});
     }
   }
@@ -190,8 +190,8 @@ void SmoothPoints(const FrameView& frame, const PointSelection& selection,
       const Eigen::Vector3d N(slope.x(), slope.y(),
                               fit.inverse_depth - slope.dot(ray.head<2>()));
       if (!(N.dot(ray) > kMinCosine * N.norm() * ray.norm())) continue;
-      writer.Add(
-          {X.x(), X.y(), X.z(), N.x(), N.y(), N.z(), frame.depth_sigma(depth)});
+      writer.Add({X.x(), X.y(), X.z(), N.x(), N.y(), N.z(),
+                  frame.depth_noise.sigma(depth)});
     }
   }
   writer.Finish();

@@ -42,7 +42,8 @@ const FrontendEntry kFrontends[] = {
 std::string FrontendOptions::Check() const {
   std::string camera_error = camera.Check();
   if (!camera_error.empty()) return camera_error;
-  if (depth_noise == nullptr) return "a depth noise model is needed";
+  const std::string noise_error = depth_noise.Check();
+  if (!noise_error.empty()) return "depth noise: " + noise_error;
   if (max_features < 3 || max_features > 1000000) {
     return "max_features must be 3 to 1000000";
   }

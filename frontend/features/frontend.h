@@ -19,7 +19,7 @@ struct FrontendOptions {
   Camera camera;  // of all frames
 
   // How uncertain a measured depth is.
-  const DepthNoiseModel* depth_noise = FindDepthNoiseModel("khoshelham");
+  DepthNoiseModel depth_noise = *FindDepthNoiseModel("khoshelham");
 
   // The number of features wanted in a reference frame.
   int max_features = 600;

@@ -30,7 +30,7 @@ DepthSample LookUpDepth(const Frame& frame, double u, double v,
   const double centre = frame.DepthAt(column, row);
   if (centre < options.min_depth || centre > options.max_depth) return {};
 
-  const double sigma = options.noise->sigma(centre);
+  const double sigma = options.noise.sigma(centre);
   const double limit =
       kMaxSpreadSigmas * std::sqrt(2.0) * sigma + 2.0 * kMaxSlope * centre;
   int valid = 0;
@@ -52,7 +52,7 @@ DepthSample LookUpDepth(const Frame& frame, double u, double v,
   // Least squares on the full 3 x 3 grid: the mean and sum(x y) / sum(x^2).
   const double inverse =
       sum / 9.0 + slope_u / 6.0 * (u - column) + slope_v / 6.0 * (v - row);
-  return {1.0 / inverse, sigma};
+  return {1.0 / inverse, sigma * options.noise.mean_share};
 }
 
 }  // namespace rgbd_pose

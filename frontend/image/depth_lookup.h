@@ -14,7 +14,7 @@ struct DepthSample {
 // Which depths are used, and how uncertain they are.
 struct DepthLookupOptions {
   // Of single pixels.
-  const DepthNoiseModel* noise = FindDepthNoiseModel("khoshelham");
+  DepthNoiseModel noise = *FindDepthNoiseModel("khoshelham");
 
   double min_depth = 0.3;  // m
   double max_depth = 8.0;  // m

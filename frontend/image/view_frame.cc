@@ -22,7 +22,7 @@ FrameView ViewFrame(const Frame& frame, const std::vector<cv::Mat>& pyramid,
   }
   view.depth = ViewImage<uint16_t>(frame.depth);
   view.depth_scale = frame.depth_scale;
-  view.depth_sigma = depth_noise.sigma;
+  view.depth_noise = depth_noise;
   return view;
 }
 

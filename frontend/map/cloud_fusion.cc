@@ -16,7 +16,8 @@ std::string CloudFusionOptions::Check() const {
   if (!(voxel_size >= kMinVoxelSize && voxel_size <= kMaxVoxelSize)) {
     return "the voxel size must be 0.001 to 1 m";
   }
-  if (depth.noise == nullptr) return "a depth noise model is needed";
+  const std::string noise_error = depth.noise.Check();
+  if (!noise_error.empty()) return "depth noise: " + noise_error;
   if (!(depth.min_depth > 0.0) || !(depth.max_depth > depth.min_depth)) {
     return "depth limits must satisfy 0 < min_depth < max_depth";
   }
@@ -63,7 +64,7 @@ void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
       if (raw == Frame::kNoDepth || z < min_depth || z > max_depth ||
           !IsOnSurface(
               frame.depth, x, y,
-              static_cast<int>(MaxSurfaceStep(z, *options_.depth.noise) *
+              static_cast<int>(MaxSurfaceStep(z, options_.depth.noise) *
                                frame.depth_scale))) {
         continue;
       }

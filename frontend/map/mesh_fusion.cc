@@ -42,7 +42,8 @@ std::string MeshFusionOptions::Check() const {
   }
   if (!(max_sigma >= 0.0)) return "max_sigma must not be negative";
   if (threads < 1) return "at least one thread is needed";
-  if (depth.noise == nullptr) return "a depth noise model is needed";
+  const std::string noise_error = depth.noise.Check();
+  if (!noise_error.empty()) return "depth noise: " + noise_error;
   constexpr double kFar = 1000.0;  // m, beyond all sensors
   const double farthest = std::min(depth.max_depth, max_depth);
   if (!(depth.min_depth > 0.0) || !(farthest > depth.min_depth) ||
@@ -60,7 +61,7 @@ MeshFusion::MeshFusion(const MeshFusionOptions& options)
       static_cast<int>(options_.depth.max_depth * kDepthStepsPerMetre) + 2;
   for (int i = 0; i < steps; ++i) {
     const double sigma =
-        options.depth.noise->sigma((i + 0.5) / kDepthStepsPerMetre);
+        options.depth.noise.sigma((i + 0.5) / kDepthStepsPerMetre);
     uses_.push_back({static_cast<float>(std::max(
                          options.truncation_voxels * options.voxel_size,
                          options.truncation_sigmas * sigma)),
@@ -98,7 +99,7 @@ void MeshFusion::SetDepthScale(double depth_scale) {
     const double z = raw / depth_scale;
     if (z < options_.depth.min_depth || z > options_.depth.max_depth) continue;
     max_steps_[raw] = static_cast<int>(
-        std::lround(MaxSurfaceStep(z, *options_.depth.noise) * depth_scale));
+        std::lround(MaxSurfaceStep(z, options_.depth.noise) * depth_scale));
   }
 }
 

@@ -52,7 +52,7 @@ DirectReference::DirectReference(const Frame& frame,
   for (const cv::Mat& level : pyramid) pyramid_.push_back(level.clone());
   Frame kept = frame;
   kept.depth = depth_;
-  view_ = ViewFrame(kept, pyramid_, images.camera, *images.depth_noise);
+  view_ = ViewFrame(kept, pyramid_, images.camera, images.depth_noise);
   view_.id = id;
 }
 
@@ -133,7 +133,7 @@ void DirectTracker::Estimate(const Reference& reference,
                              MotionEstimate* estimate) const {
   const FrameView view =
       ViewFrame(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
-                images_.camera, *images_.depth_noise);
+                images_.camera, images_.depth_noise);
   const MotionPrior prior =
       PriorOf(common_, cur_from_ref_guess, guess_covariance);
   PairData pair;

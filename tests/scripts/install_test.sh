@@ -75,6 +75,7 @@ check "$examples/own_cost" '^error 0\.[0-9]+ mm$'
 check "$examples/own_loss" '^error 0\.[0-9]+ mm$'
 check "$examples/own_frontend" '^error 0\.00[0-9]+ m$'
 check "$examples/map_loop" '^[1-9][0-9]* keyframes, .* within 0\.[0-9]+ mm$'
+check "$examples/calibrate_camera" '^fx 535\.5 -> 52[45]\.[0-9] .* better$'
 check "$examples/camera_loop" '^back at the start within 0\.[0-9]+ mm$'
 check "$examples/find_places" '^28 shows what 0 shows, from 0\.0[0-9] m away$'
 

@@ -11,6 +11,8 @@ from ._rgbd_pose import __version__
 
 __all__ = [
     "AteResult",
+    "CalibratedParameter",
+    "Calibration",
     "Camera",
     "Edge",
     "Errors",
@@ -26,6 +28,7 @@ __all__ = [
     "SlamFrame",
     "TrackedFrame",
     "TumDataset",
+    "calibrate",
     "camera_presets",
     "costs",
     "estimate_motion",

@@ -1,5 +1,14 @@
 import os
-from typing import Iterator, List, Literal, Optional, Sequence, Tuple, Union
+from typing import (
+    Dict,
+    Iterator,
+    List,
+    Literal,
+    Optional,
+    Sequence,
+    Tuple,
+    Union,
+)
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -445,3 +454,45 @@ def evaluate_rpe(
 ) -> RpeResult: ...
 def read_trajectory(path: _Path) -> Tuple[_Floats, _Floats]: ...
 def write_trajectory(path: _Path, trajectory: _Trajectory) -> None: ...
+
+class CalibratedParameter:
+    @property
+    def fate(self) -> Literal["fixed", "not determined", "determined"]: ...
+    @property
+    def before(self) -> float: ...
+    @property
+    def found(self) -> float: ...
+    @property
+    def sigma(self) -> float: ...
+
+class Calibration:
+    @property
+    def accepted(self) -> bool: ...
+    @property
+    def reason(self) -> str: ...
+    @property
+    def camera(self) -> Camera: ...
+    @property
+    def parameters(self) -> Dict[str, CalibratedParameter]: ...
+    @property
+    def depth_noise(self) -> Optional[Tuple[float, float]]: ...  # m, 1/m
+    @property
+    def summary(self) -> str: ...
+    def save_camera(self, path: _Path) -> None: ...
+    def save_depth_noise(self, path: _Path) -> None: ...
+
+def calibrate(
+    path: _Path,
+    camera: Optional[_Path] = None,
+    *,
+    source: str = "auto",
+    frames: str = "",
+    associations: Optional[_Path] = None,
+    depth_camera: str = "",
+    depth_scale: float = 0.0,
+    groundtruth: Optional[_Path] = None,
+    known_length: str = "",
+    fix: str = "",
+    max_passes: int = 3,
+    threads: int = 0,
+) -> Calibration: ...

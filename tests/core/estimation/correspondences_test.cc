@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <limits>
 
 #include "core/geometry/depth_noise.h"
@@ -59,6 +61,25 @@ TEST(DepthNoiseTest, ModelsAreThePublishedOnes) {
   EXPECT_DOUBLE_EQ(FindDepthNoiseModel("nguyen")->sigma(1.4), 3.1e-3);
   EXPECT_DOUBLE_EQ(FindDepthNoiseModel("constant")->sigma(3.0), 5e-3);
   EXPECT_EQ(FindDepthNoiseModel("unknown"), nullptr);
+  for (const DepthNoiseModel& model : DepthNoiseModels()) {
+    EXPECT_EQ(model.Check(), "") << model.name;
+  }
+}
+
+TEST(DepthNoiseTest, NoDepthIsCertain) {
+  const double nan = std::nan("");
+  for (const auto& [constant, quadratic, centre] :
+       {std::array<double, 3>{0.0, 0.0, 0.0},
+        {-1e-3, 2e-3, 0.0},
+        {1e-3, -2e-3, 0.0},
+        {0.0, 2e-3, 1.0},
+        {nan, 2e-3, 0.0},
+        {1e-3, nan, 0.0},
+        {1e-3, 2e-3, nan}}) {
+    EXPECT_NE((DepthNoiseModel{"", constant, quadratic, centre}.Check()), "")
+        << constant << " " << quadratic << " " << centre;
+  }
+  EXPECT_EQ((DepthNoiseModel{"", 0.0, 2e-3, -0.1}.Check()), "");
 }
 
 }  // namespace

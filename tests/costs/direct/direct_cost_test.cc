@@ -154,11 +154,11 @@ TEST_P(DirectCostTest, PointsAreKeptForFramesOfOneId) {
 TEST_P(DirectCostTest, AViewWithoutItsDepthNoiseIsRefused) {
   const DirectPair pair = SmallPair();
   FrameView view = pair.prev.view;
-  view.depth_sigma = nullptr;
+  view.depth_noise = {};
   PairData data = pair.data();
   data.prev = &view;
   const auto cost = Make();
-  ExpectInputError([&] { cost->Bind(data); }, {"depth_sigma"});
+  ExpectInputError([&] { cost->Bind(data); }, {"depth_noise"});
 }
 
 TEST_P(DirectCostTest, ThreadsDoNotChangeABit) {

@@ -112,7 +112,7 @@ TEST(CloudFusionTest, NoiseIsWhatTheDepthNoiseModelSays) {
   for (const bool constant : {false, true}) {
     CloudFusionOptions options = Options(camera);
     options.depth.noise =
-        FindDepthNoiseModel(constant ? "constant" : "khoshelham");
+        *FindDepthNoiseModel(constant ? "constant" : "khoshelham");
     CloudFusion fusion(options);
     fusion.Add(frame, Rigid3d());
     EXPECT_EQ(fusion.cloud().size() > 0, constant);

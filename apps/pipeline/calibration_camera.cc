@@ -1,0 +1,62 @@
+#include "apps/pipeline/calibration_camera.h"
+
+#include <Eigen/Geometry>
+
+namespace rgbd_pose {
+
+CalibrationVector ThetaOf(const Camera& camera) {
+  CalibrationVector theta = CalibrationVector::Zero();
+  theta[kFx] = camera.fx;
+  theta[kFy] = camera.fy;
+  theta[kCx] = camera.cx;
+  theta[kCy] = camera.cy;
+  theta[kK1] = camera.k1;
+  theta[kK2] = camera.k2;
+  theta[kDepthFactor] = 1.0;
+  return theta;
+}
+
+RgbdCamera Changed(const RgbdCamera& first, const CalibrationVector& theta) {
+  RgbdCamera changed = first;
+  Camera& camera = changed.camera;
+  camera.fx = theta[kFx];
+  camera.fy = theta[kFy];
+  camera.cx = theta[kCx];
+  camera.cy = theta[kCy];
+  camera.k1 = theta[kK1];
+  camera.k2 = theta[kK2];
+  changed.depth_scale = first.depth_scale / theta[kDepthFactor];
+  changed.depth_errors.inverse_depth_offset =
+      first.depth_errors.inverse_depth_offset / theta[kDepthFactor] +
+      theta[kInverseDepth];
+  changed.depth_errors.depth_time_offset =
+      first.depth_errors.depth_time_offset + theta[kDepthTime];
+  const Eigen::Vector3d turn = theta.segment<3>(kRotationX);
+  const double angle = turn.norm();
+  const Eigen::Vector3d axis =
+      angle > 0.0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX();
+  changed.depth_errors.depth_from_color =
+      first.depth_errors.depth_from_color *
+      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)),
+              theta.segment<3>(kTranslationX));
+  return changed;
+}
+
+CalibrationVector ThetaBetween(const RgbdCamera& first,
+                               const RgbdCamera& changed) {
+  CalibrationVector theta = ThetaOf(changed.camera);
+  theta[kDepthFactor] = first.depth_scale / changed.depth_scale;
+  const DepthErrors& before = first.depth_errors;
+  const DepthErrors& after = changed.depth_errors;
+  theta[kInverseDepth] = after.inverse_depth_offset -
+                         before.inverse_depth_offset / theta[kDepthFactor];
+  theta[kDepthTime] = after.depth_time_offset - before.depth_time_offset;
+  const Rigid3d moved =
+      before.depth_from_color.Inverse() * after.depth_from_color;
+  const Eigen::AngleAxisd turn(moved.rotation);
+  theta.segment<3>(kRotationX) = turn.angle() * turn.axis();
+  theta.segment<3>(kTranslationX) = moved.translation;
+  return theta;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,101 @@
+#include "apps/pipeline/calibration_halves.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace rgbd_pose {
+namespace {
+
+using FreeParts = std::array<bool, kCalibrationSize>;
+
+// Less tells nothing.
+constexpr int kMinKeyframes = 3;
+constexpr int kMinViews = 200;
+
+// The views of some keyframes in a row, and where their solution begins.
+struct Part {
+  CalibrationViews views;
+  CalibrationState state;
+};
+
+Part PartOf(const CalibrationViews& all, const CalibrationState& found,
+            int begin, int end) {
+  Part part;
+  part.views.camera = all.camera;
+  part.state.theta = found.theta;
+  part.state.pixel_scale = found.pixel_scale;
+  part.state.depth_scale = found.depth_scale;
+  part.views.world_from_cam.assign(found.world_from_cam.begin() + begin,
+                                   found.world_from_cam.begin() + end);
+  part.state.world_from_cam = part.views.world_from_cam;
+  const auto is_in = [&](int keyframe) {
+    return keyframe >= begin && keyframe < end;
+  };
+  for (size_t i = 0; i < all.landmarks.size(); ++i) {
+    Landmark landmark = all.landmarks[i];
+    if (!is_in(landmark.anchor)) continue;
+    const int first = landmark.first_view, count = landmark.num_views;
+    landmark.anchor -= begin;
+    landmark.first_view = static_cast<int>(part.views.views.size());
+    for (int k = first; k < first + count; ++k) {
+      LandmarkView view = all.views[k];
+      if (!is_in(view.keyframe)) continue;
+      view.keyframe -= begin;
+      part.views.views.push_back(view);
+    }
+    landmark.num_views =
+        static_cast<int>(part.views.views.size()) - landmark.first_view;
+    if (landmark.num_views == 0) continue;
+    part.views.landmarks.push_back(landmark);
+    part.state.inverse_depths.push_back(found.inverse_depths[i]);
+  }
+  for (KnownDistance known : all.distances) {
+    if (!is_in(known.a) || !is_in(known.b)) continue;
+    known.a -= begin;
+    known.b -= begin;
+    part.views.distances.push_back(known);
+  }
+  return part;
+}
+
+}  // namespace
+
+double HalvesOfParameter::Sigmas() const {
+  return std::abs(second - first) / sigma;
+}
+
+std::vector<HalvesOfParameter> CompareHalves(
+    const CalibrationViews& views, const CalibrationState& found,
+    const FreeParts& is_free, const CalibrationVector& start,
+    const CalibrationVector& prior, const LandmarkProblemOptions& options) {
+  const int all = static_cast<int>(views.world_from_cam.size());
+  CalibrationVector theta[2], variance[2];
+  for (int half = 0; half < 2; ++half) {
+    const int begin = half * (all / 2), end = half == 0 ? all / 2 : all;
+    Part part = PartOf(views, found, begin, end);
+    if (end - begin < kMinKeyframes ||
+        part.views.views.size() < static_cast<size_t>(kMinViews)) {
+      return {};
+    }
+    const LandmarkProblem problem(part.views, start, prior, false, options);
+    if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
+    problem.MeasureScales(&part.state);
+    CalibrationMatrix by_noise, by_scatter;
+    if (!problem.Covariance(is_free, part.state, &by_noise, &by_scatter)) {
+      return {};
+    }
+    theta[half] = part.state.theta;
+    variance[half] = by_noise.diagonal().cwiseMax(by_scatter.diagonal());
+  }
+  std::vector<HalvesOfParameter> result;
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    if (!is_free[k]) continue;
+    const double floor = CalibrationFloor(k, all / 2);
+    result.push_back(
+        {k, theta[0][k], theta[1][k],
+         std::sqrt(variance[0][k] + variance[1][k] + 2.0 * floor * floor)});
+  }
+  return result;
+}
+
+}  // namespace rgbd_pose

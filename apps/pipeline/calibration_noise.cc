@@ -1,0 +1,200 @@
+#include "apps/pipeline/calibration_noise.h"
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+
+#include "core/geometry/motion.h"
+#include "costs/calibration/landmark_residuals.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A depth beside what it should be.
+struct Sample {
+  double depth = 0.0;  // m
+  double pixel = 0.0;  // what a pixel errs by, m
+  double mean = 0.0;   // what a depth that was looked up errs by, m
+  double share = 0.0;  // of the landmark's place that this very depth tells
+};
+
+constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution
+
+double Median(std::vector<double> values) {
+  const auto middle = values.begin() + values.size() / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+// The depths of a landmark, there and in all views.
+class Collector {
+ public:
+  Collector(const CalibrationViews& views, const CalibrationState& state)
+      : views_(views), state_(state) {
+    const MotionVector zero = MotionVector::Zero();
+    for (const Rigid3d& pose : state.world_from_cam) {
+      poses_.push_back(MotionOrigin(pose.Inverse()).DerivativesAt(zero.data()));
+    }
+  }
+
+  void Collect(size_t i, std::vector<Sample>* samples) const {
+    const Landmark& landmark = views_.landmarks[i];
+    const MotionDerivatives& anchor = poses_[landmark.anchor];
+    const double d = state_.inverse_depths[i];
+    const double* const theta = state_.theta.data();
+    const size_t first = samples->size();
+    double information = 0.0;
+    const auto add = [&](const MeasuredInverseDepth& depth, double w,
+                         const Eigen::Vector3d& ray, double by_depth) {
+      information += by_depth;
+      if (depth.pixel_value == 0.0) return;
+      const double expected = MeasuredFrom<double>(w, theta, depth);
+      // Along the plane to where the landmark is.
+      const double there = depth.plane.dot(ray);
+      const double pixel =
+          depth.pixel_value * there / depth.plane.dot(depth.pixel_ray);
+      const double z2 = 1.0 / (expected * expected);
+      samples->push_back({1.0 / expected, (pixel - expected) * z2,
+                          (depth.value * there - expected) * z2, by_depth});
+    };
+    double r[2];
+    LandmarkDerivatives<1> J1;
+    LandmarkDerivatives<2> J2;
+    const LandmarkData own = DataOf(views_, landmark, state_);
+    AnchorDepth::Jacobian(anchor, anchor, d, theta, own, r, &J1);
+    add(landmark.depth, d, landmark.depth.ray, J1.inverse_depth.squaredNorm());
+    for (int k = 0; k < landmark.num_views; ++k) {
+      const LandmarkView& view = views_.views[landmark.first_view + k];
+      const LandmarkData data = DataOf(views_, landmark, view, state_);
+      const MotionDerivatives& there = poses_[view.keyframe];
+      LandmarkPixel::Jacobian(anchor, there, d, theta, data, r, &J2);
+      information += J2.inverse_depth.squaredNorm();
+      if (view.depth.inverse_sigma == 0.0) continue;
+      // Where the landmark is, beside where the feature was seen.
+      const Eigen::Vector3d beside(r[0] / data.inverse_sigma_px / theta[kFx],
+                                   r[1] / data.inverse_sigma_px / theta[kFy],
+                                   0.0);
+      LandmarkDepth::Jacobian(anchor, there, d, theta, data, r, &J1);
+      const Eigen::Vector3d Y = InView<double>(anchor, there, d, theta, data);
+      add(view.depth, d / Y.z(), view.depth.ray + beside,
+          J1.inverse_depth.squaredNorm());
+    }
+    for (size_t s = first; s < samples->size(); ++s) {
+      (*samples)[s].share /= information;
+    }
+  }
+
+ private:
+  const CalibrationViews& views_;
+  const CalibrationState& state_;
+  std::vector<MotionDerivatives> poses_;
+};
+
+// The variance of a mean of 3 x 3 pixels over that of one. What tells a share h
+// of a landmark's place leaves residuals of the variances (mean m, pixel p)
+//   (1 - h) m   and   p - h m.
+double VarianceShare(const std::vector<Sample>& samples) {
+  double share = 0.0;
+  for (int round = 0; round < 3; ++round) {
+    std::vector<double> ratios[2];
+    for (const Sample& sample : samples) {
+      const double z2 = sample.depth * sample.depth;
+      ratios[0].push_back(std::abs(sample.mean) / z2 /
+                          std::sqrt(std::max(1e-3, 1.0 - sample.share)));
+      ratios[1].push_back(std::abs(sample.pixel) / z2 /
+                          std::sqrt(1.0 - sample.share * share));
+    }
+    const double ratio = Median(ratios[0]) / Median(ratios[1]);
+    share = std::min(0.99, ratio * ratio);
+  }
+  return share;
+}
+
+// Weighted least squares of sigma = a + b z^2, a part that is not told by the
+// scatter (2 standard deviations) being 0.
+void FitSigmas(const std::vector<DepthScatter>& scatter, double relative_error,
+               DepthNoiseFit* fit) {
+  Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
+  Eigen::Vector2d right = Eigen::Vector2d::Zero();
+  for (const DepthScatter& bin : scatter) {
+    const Eigen::Vector2d row(1.0, bin.depth * bin.depth);
+    const double weight =
+        1.0 / (relative_error * relative_error * bin.sigma * bin.sigma);
+    information += weight * row * row.transpose();
+    right += weight * bin.sigma * row;
+  }
+  const Eigen::Matrix2d covariance = information.inverse();
+  const Eigen::Vector2d both = covariance * right;
+  constexpr double kTold = 2.0;
+  const bool is_told[2] = {both[0] > kTold * std::sqrt(covariance(0, 0)),
+                           both[1] > kTold * std::sqrt(covariance(1, 1))};
+  if (is_told[0] && is_told[1]) {
+    fit->model.constant = both[0];
+    fit->model.quadratic = both[1];
+    fit->constant_sigma = std::sqrt(covariance(0, 0));
+    fit->quadratic_sigma = std::sqrt(covariance(1, 1));
+  } else if (is_told[0]) {
+    fit->model.constant = right[0] / information(0, 0);
+    fit->constant_sigma = 1.0 / std::sqrt(information(0, 0));
+  } else {
+    fit->model.quadratic = right[1] / information(1, 1);
+    fit->quadratic_sigma = 1.0 / std::sqrt(information(1, 1));
+  }
+}
+
+}  // namespace
+
+std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
+                                           const CalibrationState& state,
+                                           const DepthNoiseModel& old) {
+  const Collector collector(views, state);
+  std::vector<Sample> samples;
+  for (size_t i = 0; i < views.landmarks.size(); ++i) {
+    if (views.landmarks[i].num_views > 0) collector.Collect(i, &samples);
+  }
+  samples.erase(std::remove_if(samples.begin(), samples.end(),
+                               [](const Sample& sample) {
+                                 return !(sample.depth > 0.0) ||
+                                        !std::isfinite(sample.pixel) ||
+                                        !std::isfinite(sample.mean);
+                               }),
+                samples.end());
+  constexpr size_t kMinSamples = 300;
+  if (samples.size() < kMinSamples) return std::nullopt;
+
+  const double share = VarianceShare(samples);
+  DepthNoiseFit fit;
+  fit.samples = static_cast<int>(samples.size());
+  fit.model.mean_share = std::sqrt(share);
+  std::sort(samples.begin(), samples.end(),
+            [](const Sample& a, const Sample& b) { return a.depth < b.depth; });
+  std::vector<double> in_old_sigmas;
+  constexpr size_t kMostBins = 24, kMinInBin = 100;
+  const size_t bins = std::min(kMostBins, samples.size() / kMinInBin);
+  for (size_t bin = 0; bin < bins; ++bin) {
+    const size_t begin = bin * samples.size() / bins;
+    const size_t end = (bin + 1) * samples.size() / bins;
+    std::vector<double> errors;
+    double squares = 0.0;
+    for (size_t s = begin; s < end; ++s) {
+      const Sample& sample = samples[s];
+      errors.push_back(std::abs(sample.pixel) /
+                       std::sqrt(1.0 - sample.share * share));
+      in_old_sigmas.push_back(errors.back() / old.sigma(sample.depth));
+      squares += sample.depth * sample.depth;
+    }
+    fit.scatter.push_back(
+        {std::sqrt(squares / static_cast<double>(end - begin)),
+         kSigmaOfMedian * Median(std::move(errors))});
+    constexpr double kLeast = 1e-6;  // m
+    fit.scatter.back().sigma = std::max(kLeast, fit.scatter.back().sigma);
+  }
+  fit.in_old_sigmas = kSigmaOfMedian * Median(std::move(in_old_sigmas));
+  // That of a median of absolute values is 1.17 / sqrt(n).
+  const double in_bin =
+      static_cast<double>(samples.size()) / static_cast<double>(bins);
+  FitSigmas(fit.scatter, 1.17 / std::sqrt(in_bin), &fit);
+  return fit;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,127 @@
+#include "apps/pipeline/calibration_passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "apps/pipeline/calibration_camera.h"
+#include "apps/pipeline/calibration_run.h"
+#include "apps/pipeline/calibration_verdict.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Fate = CalibratedParameter::Fate;
+
+// Takes up what a further pass found from where the last one ended: the same,
+// but nearer to where it was linearised. Returns whether it is any good.
+bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
+            const CalibrationResult& further, CalibrationResult* all) {
+  ++all->passes;
+  const std::string disagree = WhyHalvesDisagree(settings, further);
+  if (!disagree.empty()) {
+    all->is_accepted = false;
+    all->reason = disagree;
+    all->halves = further.halves;
+    all->camera = first;
+    return false;
+  }
+  if (further.held_out_pairs < 2 ||
+      further.gain_sigmas < -settings.min_gain_sigmas ||
+      further.truth_after > all->truth_after) {
+    return false;
+  }
+  CalibrationResult merged = *all;
+  const CalibrationVector theta = ThetaBetween(first, further.found);
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    CalibratedParameter& parameter = merged.parameters[k];
+    if (further.parameters[k].fate == Fate::kDetermined) {
+      parameter.fate = Fate::kDetermined;
+      parameter.sigma = further.parameters[k].sigma;
+    }
+    if (parameter.fate == Fate::kDetermined) parameter.found = theta[k];
+  }
+  merged.reason = WhyNotPlausible(first, further.found, merged);
+  if (!merged.reason.empty()) return false;
+  merged.camera = merged.found = further.found;
+  merged.noise = further.noise;
+  merged.halves = further.halves;
+  merged.pixel_after = further.pixel_after;
+  merged.depth_after = further.depth_after;
+  merged.truth_after = further.truth_after;
+  *all = merged;
+  return true;
+}
+
+// The part of a recording that leaves frames out, as many as there are more
+// than asked for a second; empty: none.
+std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
+  if (timestamps.size() < 2 || max_rate == 0.0) return "";
+  std::vector<double> intervals;
+  for (size_t i = 1; i < timestamps.size(); ++i) {
+    intervals.push_back(timestamps[i] - timestamps[i - 1]);
+  }
+  const auto middle = intervals.begin() + intervals.size() / 2;
+  std::nth_element(intervals.begin(), middle, intervals.end());
+  // Stamps are not quite even.
+  constexpr double kSlack = 0.1;
+  const int step =
+      static_cast<int>(std::ceil(1.0 / (*middle * max_rate) - kSlack));
+  if (step < 2) return "";
+  return "0-" + std::to_string(timestamps.size() - 1) + ":" +
+         std::to_string(step);
+}
+
+}  // namespace
+
+RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
+                                        const OdometrySettings& odometry,
+                                        const SlamSettings& slam,
+                                        const CalibrationSettings& settings,
+                                        int threads,
+                                        const CalibrationProgress& on_frame) {
+  RecordingCalibration all;
+  RgbdCamera first;
+  SequenceSettings part = sequence;
+  if (part.frames.empty()) {
+    part.frames =
+        Thinned(OpenSequence(sequence).source->timestamps(), settings.max_rate);
+  }
+  for (int pass = 1;; ++pass) {
+    // Depth's delay is undone by the path of all frames: as they are tracked,
+    // it can only be undone by what is known of it so far.
+    CalibrationSettings asked = settings;
+    RgbdCamera known = all.result.camera;
+    if (pass > 1) {
+      double* const delay = &known.depth_errors.depth_time_offset;
+      asked.known_delay = *delay - first.depth_errors.depth_time_offset;
+      *delay = first.depth_errors.depth_time_offset;
+    }
+    Sequence opened =
+        OpenSequence(part, /*keep_color=*/false, pass > 1 ? &known : nullptr);
+    const auto frames = opened.source->timestamps().size();
+    CalibrationRun run(odometry, slam, asked, &opened);
+    int done = 0;
+    run.Track(opened.source.get(), threads, [&] {
+      if (on_frame) on_frame(pass, ++done, static_cast<int>(frames));
+    });
+    const CalibrationResult result = run.Solve(threads);
+    all.path = run.run().slam().Path();
+    bool goes_on;
+    if (pass == 1) {
+      first = opened.source->camera();
+      all.result = result;
+      goes_on = result.is_accepted;
+    } else {
+      goes_on = TakeUp(first, settings, result, &all.result);
+    }
+    // A camera that is no recording does not come again.
+    if (!goes_on || frames == 0 || pass >= settings.max_passes ||
+        !IsAnotherPassDue(result)) {
+      return all;
+    }
+  }
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <functional>
+
+#include "apps/pipeline/calibration.h"
+#include "apps/pipeline/sequence.h"
+#include "apps/pipeline/slam_settings.h"
+
+namespace rgbd_pose {
+
+// What came of a recording's calibration, and the path from above.
+struct RecordingCalibration {
+  CalibrationResult result;  // of all passes together
+  Trajectory path;           // of the last map
+};
+
+// Hears of each frame that is tracked: in which pass, how many of it so far and
+// of all (0: not known ahead).
+using CalibrationProgress = std::function<void(int pass, int done, int all)>;
+
+// Maps a recording and calibrates its camera from the map (CalibrationRun).
+// Where depth turns out to be displaced by pixels all is done again with the
+// camera found, which was far away from the first one. `on_frame` may be empty.
+// Throws InputError as OpenSequence and CalibrationRun do.
+RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
+                                        const OdometrySettings& odometry,
+                                        const SlamSettings& slam,
+                                        const CalibrationSettings& settings,
+                                        int threads,
+                                        const CalibrationProgress& on_frame);
+
+}  // namespace rgbd_pose

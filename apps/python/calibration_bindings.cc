@@ -1,0 +1,159 @@
+#include <pybind11/pybind11.h>
+#include <pybind11/stl.h>
+
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/pipeline/calibration_passes.h"
+#include "apps/pipeline/calibration_run.h"
+#include "apps/python/arrays.h"
+#include "apps/python/bindings.h"
+#include "apps/results/calibration_output.h"
+#include "apps/shell/available_cores.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/sources/camera_file_writer.h"
+#include "frontend/sources/depth_noise_file.h"
+
+namespace py = pybind11;
+
+namespace rgbd_pose {
+namespace {
+
+// A result, and the file whose layout the new camera's has.
+struct Calibration {
+  CalibrationResult result;
+  std::string like;
+};
+
+struct Parameter : CalibratedParameter {};
+
+Calibration CalibrateFile(const py::object& path, const py::object& camera,
+                          const std::string& source, const std::string& frames,
+                          const py::object& associations,
+                          const std::string& depth_camera, double depth_scale,
+                          const py::object& groundtruth,
+                          const std::string& known_length,
+                          const std::string& fix, int max_passes, int threads) {
+  SequenceSettings sequence;
+  sequence.dataset = PathFrom(path);
+  if (!camera.is_none()) sequence.camera = PathFrom(camera);
+  sequence.source = source;
+  sequence.frames = frames;
+  if (!associations.is_none()) sequence.associations = PathFrom(associations);
+  sequence.depth_camera = depth_camera;
+  sequence.depth_scale = depth_scale;
+  if (!groundtruth.is_none()) sequence.groundtruth = PathFrom(groundtruth);
+  CalibrationSettings settings;
+  settings.known_length = known_length;
+  settings.fix = fix;
+  settings.max_passes = max_passes;
+  const py::gil_scoped_release no_gil;
+  return {CalibrateRecording(sequence, CalibrationOdometry(), CalibrationSlam(),
+                             settings, NumThreads(threads), nullptr)
+              .result,
+          sequence.camera};
+}
+
+std::map<std::string, Parameter> Parameters(const Calibration& self) {
+  std::map<std::string, Parameter> all;
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    all[kCalibrationParameters[k].name] = {self.result.parameters[k]};
+  }
+  return all;
+}
+
+void BindResult(py::module_* module) {
+  py::class_<Parameter>(*module, "CalibratedParameter",
+                        "What became of one parameter of a camera.")
+      .def_property_readonly(
+          "fate", [](const Parameter& self) { return ToString(self.fate); },
+          "fixed, not determined or determined")
+      .def_readonly("before", &Parameter::before, "of the first camera")
+      .def_readonly("found", &Parameter::found,
+                    "where the recording would have it")
+      .def_readonly("sigma", &Parameter::sigma, "standard deviation of that");
+  py::class_<Calibration>(*module, "Calibration", "What came of calibrate().")
+      .def_property_readonly(
+          "accepted",
+          [](const Calibration& self) { return self.result.is_accepted; },
+          "whether the camera found is better than the first one")
+      .def_property_readonly(
+          "reason", [](const Calibration& self) { return self.result.reason; },
+          "why it is not, in words")
+      .def_property_readonly(
+          "camera", [](const Calibration& self) { return self.result.camera; },
+          "to go on with: the camera found, or the first one")
+      .def_property_readonly("parameters", &Parameters,
+                             "CalibratedParameter by name, such as fx")
+      .def_property_readonly(
+          "depth_noise",
+          [](const Calibration& self) -> py::object {
+            if (!self.result.noise.has_value()) return py::none();
+            const DepthNoiseModel& model = self.result.noise->model;
+            return py::make_tuple(model.constant, model.quadratic);
+          },
+          "(a, b) of sigma(z) = a + b z^2, m; None: there are too few depths")
+      .def_property_readonly(
+          "summary",
+          [](const Calibration& self) {
+            return FormatCalibrationSummary(self.result);
+          },
+          "all of it in words, as rgbd_calibrate prints it")
+      .def(
+          "save_camera",
+          [](const Calibration& self, const py::object& path) {
+            WriteFileAtomically(
+                PathFrom(path),
+                FormatCameraFile(self.result.camera, self.like));
+          },
+          "Writes the camera to go on with, in the layout of the first one's "
+          "file.",
+          py::arg("path"))
+      .def(
+          "save_depth_noise",
+          [](const Calibration& self, const py::object& path) {
+            if (!self.result.noise.has_value()) {
+              throw InputError(
+                  "the recording does not tell the noise of depth");
+            }
+            WriteFileAtomically(PathFrom(path),
+                                FormatDepthNoiseFile(self.result.noise->model));
+          },
+          "Writes a file for the argument depth_noise. InputError if there is "
+          "none.",
+          py::arg("path"));
+}
+
+}  // namespace
+
+void BindCalibration(py::module_* module) {
+  BindResult(module);
+  module->def("calibrate", &CalibrateFile, R"(
+Finds what is wrong with a camera from a recording of its own, as rgbd_calibrate
+does: lens, depth, clocks, registration. Takes about as long as the recording;
+the GIL is released.
+
+path, camera, source, frames, associations, depth_camera, depth_scale: as of
+    Recording; the camera is a preset or a file.
+groundtruth: trajectory (TUM text) that gives depth its scale; "none": not even
+    that of the recording.
+known_length: "T0,T1,METRES", how far apart the camera was at two times (s).
+fix: names of parameters that stay as they are, separated by commas.
+max_passes: so often at most the recording is mapped.
+threads: 0: one a core.
+
+InputError for what cannot be read or makes no sense.)",
+              py::arg("path"), py::arg("camera") = py::none(), py::kw_only(),
+              py::arg("source") = "auto", py::arg("frames") = "",
+              py::arg("associations") = py::none(),
+              py::arg("depth_camera") = "", py::arg("depth_scale") = 0.0,
+              py::arg("groundtruth") = py::none(), py::arg("known_length") = "",
+              py::arg("fix") = "",
+              py::arg("max_passes") = CalibrationSettings().max_passes,
+              py::arg("threads") = 0);
+}
+
+}  // namespace rgbd_pose

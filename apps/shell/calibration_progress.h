@@ -1,0 +1,14 @@
+#pragma once
+
+#include "apps/pipeline/calibration_passes.h"
+
+namespace rgbd_pose {
+
+// CalibrateRecording with a progress bar for each pass.
+RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
+                                           const OdometrySettings& odometry,
+                                           const SlamSettings& slam,
+                                           const CalibrationSettings& settings,
+                                           int threads);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,69 @@
+"""calibrate(): what is wrong with a camera, from a recording."""
+
+import pytest
+
+import rgbd_pose
+from conftest import run_program
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("calibration") / "room"
+    run_program(
+        "rgbd_simulate", "--path=handheld", "--frames=40", f"--output={folder}"
+    )
+    return folder
+
+
+@pytest.fixture(scope="module")
+def wrong(recording):
+    """The recording's camera with a focal length of 2 % too much."""
+    text = (recording / "camera.yaml").read_text()
+    path = recording.parent / "wrong.yaml"
+    path.write_text(text.replace("525", "535.5"))
+    return path
+
+
+@pytest.fixture(scope="module")
+def calibration(recording, wrong):
+    return rgbd_pose.calibrate(recording, wrong, groundtruth="none")
+
+
+def test_finds_what_is_wrong(calibration):
+    assert calibration.accepted, calibration.reason
+    assert calibration.camera.fx == pytest.approx(525, abs=1.5)
+    fx = calibration.parameters["fx"]
+    assert fx.fate == "determined"
+    assert fx.before == 535.5 and fx.found == calibration.camera.fx
+    assert 0 < fx.sigma < 2
+    assert calibration.parameters["depth_factor"].fate == "fixed"
+    assert "the new camera is better" in calibration.summary
+
+
+def test_keeps_what_is_fixed(recording, wrong):
+    fixed = rgbd_pose.calibrate(
+        recording, wrong, groundtruth="none", fix="focal"
+    )
+    assert fixed.parameters["fx"].fate == "fixed"
+    assert fixed.camera.fx == 535.5
+
+
+def test_files_are_read_again(calibration, tmp_path):
+    calibration.save_camera(tmp_path / "camera.yaml")
+    camera = rgbd_pose.Camera.load(tmp_path / "camera.yaml")
+    assert camera.fx == pytest.approx(calibration.camera.fx)
+    calibration.save_depth_noise(tmp_path / "noise.yaml")
+    a, b = calibration.depth_noise
+    assert a + b == pytest.approx(1.65e-3, rel=0.2)
+    rgbd_pose.Odometry(camera, depth_noise=str(tmp_path / "noise.yaml"))
+    with pytest.raises(rgbd_pose.InputError, match="no such file"):
+        rgbd_pose.Odometry(camera, depth_noise=str(tmp_path / "none.yaml"))
+
+
+def test_says_what_makes_no_sense(recording):
+    with pytest.raises(rgbd_pose.InputError, match="size"):
+        rgbd_pose.calibrate(recording, fix="size")
+    with pytest.raises(rgbd_pose.InputError):
+        rgbd_pose.calibrate(recording / "nothing")
+    with pytest.raises(rgbd_pose.InputError, match="max_passes"):
+        rgbd_pose.calibrate(recording, max_passes=0)
