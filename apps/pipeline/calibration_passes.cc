@@ -89,14 +89,14 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
         Thinned(OpenSequence(sequence).source->timestamps(), settings.max_rate);
   }
   for (int pass = 1;; ++pass) {
-    // Depth's delay is undone by the path of all frames: as they are tracked,
-    // it can only be undone by what is known of it so far.
+    // A delay of depth is undone as depths are looked up, by the path of all
+    // frames: trackers only know how the camera has moved so far.
     CalibrationSettings asked = settings;
     RgbdCamera known = all.result.camera;
     if (pass > 1) {
       double* const delay = &known.depth_errors.depth_time_offset;
-      asked.known_delay = *delay - first.depth_errors.depth_time_offset;
-      *delay = first.depth_errors.depth_time_offset;
+      asked.known_delay = *delay;
+      *delay = 0.0;
     }
     Sequence opened =
         OpenSequence(part, /*keep_color=*/false, pass > 1 ? &known : nullptr);

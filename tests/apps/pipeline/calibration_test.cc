@@ -7,7 +7,9 @@
 #include <cmath>
 #include <string>
 
+#include "apps/pipeline/calibration_camera.h"
 #include "apps/pipeline/calibration_run.h"
+#include "apps/pipeline/calibration_verdict.h"
 #include "apps/pipeline/slam.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_dataset.h"
@@ -126,6 +128,44 @@ TEST(CalibrationTest, ACameraAtRestDeterminesNothing) {
   for (const CalibratedParameter& parameter : result.parameters) {
     EXPECT_NE(parameter.fate, Fate::kDetermined);
   }
+}
+
+TEST(CalibrationTest, HalvesOfOneCameraAgree) {
+  // What is undone as frames are tracked is only roughly so.
+  RgbdCamera wrong = Wrong();
+  wrong.depth_errors.depth_time_offset = 0.0;
+  const CalibrationResult result = Mapped(Handheld(), wrong).Calibrate();
+  EXPECT_TRUE(result.is_accepted) << result.reason;
+  ASSERT_FALSE(result.halves.empty());
+  EXPECT_EQ(WhyHalvesDisagree({}, result), "");
+  for (const HalvesOfParameter& half : result.halves) {
+    EXPECT_EQ(Of(result, static_cast<CalibrationIndex>(half.part)).fate,
+              Fate::kDetermined);
+    EXPECT_GT(half.sigma, 0.0);
+  }
+}
+
+TEST(CalibrationTest, HalvesThatContradictEachOtherAreNamed) {
+  CalibrationResult result;
+  result.halves = {{kCx, 320.0, 321.0, 1.0}, {kFx, 520.0, 530.0, 2.0}};
+  const std::string why = WhyHalvesDisagree({}, result);
+  EXPECT_NE(why.find("their fx differs by 10 px (5 standard deviations)"),
+            std::string::npos)
+      << why;
+  CalibrationSettings lenient;
+  lenient.max_halves_sigmas = 6.0;
+  EXPECT_EQ(WhyHalvesDisagree(lenient, result), "");
+}
+
+TEST(CalibrationTest, WhatChangesACameraIsFoundBetweenBoth) {
+  RgbdCamera first = Wrong();
+  first.depth_errors.depth_from_color = Rigid3d(
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ())),
+      {0.01, 0.0, -0.02});
+  CalibrationVector theta;
+  theta << 520.0, 521.0, 318.0, 241.0, 0.01, -0.02, 0.003, 0.004, 0.005, -0.006,
+      0.007, 0.008, -0.009, 0.010, 1.02;
+  EXPECT_TRUE(ThetaBetween(first, Changed(first, theta)).isApprox(theta, 1e-9));
 }
 
 TEST(CalibrationTest, AKnownLengthHasToMakeSense) {
