@@ -1,10 +1,16 @@
 #include "frontend/image/view_samples.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace rgbd_pose {
 namespace {
 
 // Of the angle between two lines of sight to one point.
 constexpr double kMinCosine = 0.5;
+
+// Of its depth: more than the noise of any sensor within some metres.
+constexpr double kMaxDepthDifference = 0.05;
 
 }  // namespace
 
@@ -18,6 +24,42 @@ ViewSamples::ViewSamples(const Frame& frame, const Camera& camera, int step_px,
       points_.push_back(camera.Unproject(Eigen::Vector2d(u, v), depth));
     }
   }
+}
+
+ViewLikeness ViewSamples::LikenessTo(const Frame& cur, const cv::Mat& view,
+                                     const cv::Mat& level,
+                                     const Rigid3d& cur_from_view) const {
+  const double scale = static_cast<double>(view.cols) / camera_.width;
+  const auto level_at = [&](const cv::Mat& image, const Eigen::Vector2d& at) {
+    const auto column = static_cast<int>(at.x() * scale);
+    const auto row = static_cast<int>(at.y() * scale);
+    return static_cast<double>(image.at<uint8_t>(
+        std::min(row, image.rows - 1), std::min(column, image.cols - 1)));
+  };
+  int seen = 0;
+  int agree = 0;
+  double a = 0.0, b = 0.0, aa = 0.0, bb = 0.0, ab = 0.0;
+  for (const Eigen::Vector3d& sample : points_) {
+    const Eigen::Vector3d point = cur_from_view * sample;
+    if (!(point.z() > 0.0)) continue;
+    const Eigen::Vector2d at = camera_.Project(point);
+    if (!camera_.Contains(at)) continue;
+    ++seen;
+    const double depth = cur.DepthAt(static_cast<int>(at.x() + 0.5),
+                                     static_cast<int>(at.y() + 0.5));
+    agree += std::abs(depth - point.z()) < kMaxDepthDifference * point.z();
+    const double x = level_at(view, camera_.Project(sample));
+    const double y = level_at(level, at);
+    a += x, b += y, aa += x * x, bb += y * y, ab += x * y;
+  }
+  ViewLikeness likeness;
+  if (seen == 0) return likeness;
+  likeness.depth = static_cast<double>(agree) / seen;
+  // Noise of one gray level is no contrast.
+  const double contrast_a = aa - a * a / seen + seen;
+  const double contrast_b = bb - b * b / seen + seen;
+  likeness.gray = (ab - a * b / seen) / std::sqrt(contrast_a * contrast_b);
+  return likeness;
 }
 
 Overlap ViewSamples::SeenFrom(const Rigid3d& cur_from_view) const {

@@ -16,6 +16,12 @@ struct Overlap {
   double zoom = 1.0;     // mean of how much larger things look there
 };
 
+// How alike two views look where one shows samples of the other.
+struct ViewLikeness {
+  double gray = 0.0;   // correlation, -1 to 1; 0 where one of them is blank
+  double depth = 0.0;  // share of samples whose depths agree, 0 to 1
+};
+
 // Points of a view, far apart: enough to tell what of it others see.
 class ViewSamples {
  public:
@@ -25,6 +31,12 @@ class ViewSamples {
   // Of a frame, at pixels so far apart that have a depth between the two (m).
   ViewSamples(const Frame& frame, const Camera& camera, int step_px,
               double min_depth, double max_depth);
+
+  // How alike the view and what a camera there sees look. `view` and `level`:
+  // the same small level of both pyramids (CV_8UC1).
+  ViewLikeness LikenessTo(const Frame& cur, const cv::Mat& view,
+                          const cv::Mat& level,
+                          const Rigid3d& cur_from_view) const;
 
   // How much of it a camera there should see. What hides what is not known, but
   // what is looked at from another side (by 60 degrees) is another surface.

@@ -19,6 +19,8 @@ constexpr int kDirectLevels = 6;
 
 // Overlaps are told by pixels so far apart.
 constexpr int kSampleStepPx = 20;
+// Looks are compared where noise is small, as are errors of a pixel or two.
+constexpr size_t kLikenessLevel = 3;
 // A reference with fewer of them (of 768) tells little.
 constexpr size_t kMinSamples = 40;
 
@@ -35,6 +37,9 @@ std::string DirectTrackerOptions::Check() const {
   if (!(min_seen_share >= 0.0 && min_seen_share <= min_seen_share_ok &&
         min_seen_share_ok <= 1.0)) {
     return "shares must have 0 <= min_seen_share <= min_seen_share_ok <= 1";
+  }
+  if (!(min_likeness >= -1.0 && min_likeness <= 1.0)) {
+    return "min_likeness must be from -1 to 1";
   }
   if (min_pixels < 6) return "min_pixels must be at least 6";
   if (!(max_sigma_rotation > 0.0) || !(max_sigma_translation > 0.0)) {
@@ -54,6 +59,15 @@ DirectReference::DirectReference(const Frame& frame,
   kept.depth = depth_;
   view_ = ViewFrame(kept, pyramid_, images.camera, images.depth_noise);
   view_.id = id;
+}
+
+ViewLikeness DirectReference::LikenessTo(const Frame& cur,
+                                         const std::vector<cv::Mat>& pyramid,
+                                         const Rigid3d& cur_from_ref) const {
+  const size_t level =
+      std::min({kLikenessLevel, pyramid_.size() - 1, pyramid.size() - 1});
+  return samples_.LikenessTo(cur, pyramid_[level], pyramid[level],
+                             cur_from_ref);
 }
 
 DirectTracker::DirectFrame::DirectFrame(const Frame& frame)
@@ -108,7 +122,9 @@ void DirectTracker::Track(const Reference& reference,
     tracked->overlap.share *=
         static_cast<double>(estimate.num_inliers) / estimate.num_used;
   }
-  Judge(tracked);
+  Judge(ours.LikenessTo(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
+                        estimate.cur_from_prev),
+        tracked);
   tracked->is_scarce = tracked->status != TrackingStatus::kLost &&
                        tracked->overlap.share < options_.min_seen_share_ok;
 }
@@ -144,7 +160,8 @@ void DirectTracker::Estimate(const Reference& reference,
   estimator->Estimate(pair, cur_from_ref_guess, estimate);
 }
 
-void DirectTracker::Judge(Tracked* tracked) const {
+void DirectTracker::Judge(const ViewLikeness& likeness,
+                          Tracked* tracked) const {
   const MotionEstimate& estimate = tracked->estimate;
   const double share = tracked->overlap.share;
   tracked->status = TrackingStatus::kLost;
@@ -160,6 +177,10 @@ void DirectTracker::Judge(Tracked* tracked) const {
   if (share < options_.min_seen_share) {
     tracked->reason =
         Format("only %.0f %% of the reference agrees", 100.0 * share);
+    return;
+  }
+  if (std::max(likeness.gray, likeness.depth) < options_.min_likeness) {
+    tracked->reason = "it does not look like its reference";
     return;
   }
   const double rotation =

@@ -149,6 +149,15 @@ TEST_P(OdometryFaultsTest, CoveredDepthIsLeftBehind) {
   ExpectRecovery(outcomes, 45);
 }
 
+// Neither gray levels nor depths tell anything.
+TEST_P(OdometryFaultsTest, ACoveredLensIsNotFollowed) {
+  const auto outcomes =
+      TrackFaulty(GetParam(), "circle", 50,
+                  {{FaultKind::kBlack, 15, 35}, {FaultKind::kCovered, 15, 35}});
+  ExpectLost(outcomes, 15, 35);
+  ExpectRecovery(outcomes, 35);
+}
+
 TEST_P(OdometryFaultsTest, FindsItselfAfterAKnock) {
   constexpr int kKnock = 20;
   const auto outcomes =
