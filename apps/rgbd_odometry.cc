@@ -13,6 +13,7 @@
 
 #include "apps/export/export_format.h"
 #include "apps/pipeline/sequence.h"
+#include "apps/report/run_page.h"
 #include "apps/results/run_output.h"
 #include "apps/results/run_tracking.h"
 #include "apps/shell/available_cores.h"
@@ -113,21 +114,25 @@ int Main() {
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
-  const std::string stopped = TrackSource(&source, threads, &run, &output);
+  RunFlaws flaws;
+  flaws.stopped = TrackSource(&source, threads, &run, &output);
   const double seconds = SecondsSince(start);
 
   const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
   WarnOf(results);
-  std::string text =
-      output.Write(results, Summarise(results.frames, threads, seconds),
-                   sequence.TruthOfAll(), settings.sequence.dataset,
-                   FormatFlagFile(Info()), Info().name, {{"stopped", stopped}});
-  if (FLAGS_report) text += WriteReportAside(output, settings.output.output);
+  std::string text = output.Write(
+      results, Summarise(results.frames, threads, seconds),
+      sequence.TruthOfAll(), settings.sequence.dataset, FormatFlagFile(Info()),
+      Info().name, {{"stopped", flaws.stopped}});
+  if (FLAGS_report) {
+    text +=
+        WriteRunPage(output.aside(), settings.output.output, &flaws.no_report);
+  }
   output.Publish();
   text += SaveMesh(settings.output, threads);
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
-  return ExitCodeOf(Info().name, results, settings.output.output, stopped);
+  return ExitCodeOf(Info().name, results, settings.output.output, flaws);
 }
 
 }  // namespace

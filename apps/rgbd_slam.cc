@@ -19,6 +19,7 @@
 #include "apps/pipeline/sequence.h"
 #include "apps/pipeline/slam_run.h"
 #include "apps/report/calibration_page.h"
+#include "apps/report/run_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/results/run_output.h"
 #include "apps/results/run_tracking.h"
@@ -204,7 +205,8 @@ int Main() {
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
-  const std::string stopped = TrackSource(&source, threads, &run, &output);
+  RunFlaws flaws;
+  flaws.stopped = TrackSource(&source, threads, &run, &output);
   const double seconds = SecondsSince(start);
 
   const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
@@ -212,7 +214,7 @@ int Main() {
   WarnOf(results);
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
   std::string text = calibration.Write(output);
-  nlohmann::json more = {{"stopped", stopped}, {"slam", map_json}};
+  nlohmann::json more = {{"stopped", flaws.stopped}, {"slam", map_json}};
   if (!calibration.Json().is_null()) more["calibration"] = calibration.Json();
   text += output.Write(results, Summarise(results.frames, threads, seconds),
                        sequence.TruthOfAll(), settings.sequence.dataset,
@@ -227,7 +229,10 @@ int Main() {
   output.WriteFile("keyframes.csv",
                    FormatKeyframesCsv(map, slam.Covariances()));
   output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
-  if (FLAGS_report) text += WriteReportAside(output, settings.output.output);
+  if (FLAGS_report) {
+    text +=
+        WriteRunPage(output.aside(), settings.output.output, &flaws.no_report);
+  }
   output.Publish();
   text += SaveMesh(settings.output, threads);
   // The results stay if the map cannot be saved.
@@ -237,7 +242,7 @@ int Main() {
   }
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
-  return ExitCodeOf(Info().name, results, settings.output.output, stopped);
+  return ExitCodeOf(Info().name, results, settings.output.output, flaws);
 }
 
 }  // namespace

@@ -3,11 +3,8 @@
 #include <glog/logging.h>
 
 #include <cstdio>
-#include <filesystem>
-#include <system_error>
 
 #include "apps/pipeline/sequence.h"
-#include "apps/report/report_page.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "apps/shell/stop_signal.h"
@@ -56,25 +53,13 @@ void WarnOf(const RunResults& results) {
   if (!warning.empty()) LOG(WARNING) << warning;
 }
 
-std::string WriteReportAside(const RunOutput& output,
-                             const std::string& folder) {
-  std::string why_not = kNoReportLibrary;
-  if (HasReportLibrary()) {
-    try {
-      WriteRunReport(output.aside().string());
-      return "report in   " + folder + "/report.html\n";
-    } catch (const InputError& error) {
-      std::error_code ignored;
-      std::filesystem::remove(output.aside() / "report.html", ignored);
-      why_not = std::string("none: ") + error.what();
-      LOG(WARNING) << "no report: " << error.what();
-    }
-  }
-  return "report in   " + why_not + "\n";
-}
-
 int ExitCodeOf(const std::string& program, const RunResults& results,
-               const std::string& folder, const std::string& stopped) {
+               const std::string& folder, const RunFlaws& flaws) {
+  if (!flaws.no_report.empty()) {
+    std::fprintf(stderr, "%s: %s; all other results are in %s\n",
+                 program.c_str(), flaws.no_report.c_str(), folder.c_str());
+    return kExitBadInput;
+  }
   if (results.TrackedShare() < kMinTrackedShare) {
     std::fprintf(stderr,
                  "%s: only %.1f %% of the frames were tracked; %s/frames.csv "
@@ -83,9 +68,9 @@ int ExitCodeOf(const std::string& program, const RunResults& results,
                  folder.c_str());
     return kExitTrackingFailed;
   }
-  if (!stopped.empty()) {
+  if (!flaws.stopped.empty()) {
     std::fprintf(stderr, "%s: stopped after %zu frames (%s); %s has them\n",
-                 program.c_str(), results.frames.size(), stopped.c_str(),
+                 program.c_str(), results.frames.size(), flaws.stopped.c_str(),
                  folder.c_str());
     return kExitStopped;
   }

@@ -8,6 +8,12 @@
 
 namespace rgbd_pose {
 
+// What keeps a run from being whole though it has results.
+struct RunFlaws {
+  std::string stopped;    // why it ended before the last frame
+  std::string no_report;  // why there is no page
+};
+
 // Tracks the frames of a source, with a progress bar and the warnings that
 // people should see. Returns why it ended before the last frame, or nothing: a
 // signal (StopSignal), or a camera that gave no further frame. Throws
@@ -19,15 +25,9 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
 // Says on stderr what the errors of a run tell of its input.
 void WarnOf(const RunResults& results);
 
-// Writes report.html beside the other results. Returns what a program prints of
-// it: where it is, or why there is none. A disk that is too full for it costs
-// no other result.
-std::string WriteReportAside(const RunOutput& output,
-                             const std::string& folder);
-
 // What the program exits with once all is written, with one line on stderr
 // where that is not kExitOk.
 int ExitCodeOf(const std::string& program, const RunResults& results,
-               const std::string& folder, const std::string& stopped);
+               const std::string& folder, const RunFlaws& flaws);
 
 }  // namespace rgbd_pose

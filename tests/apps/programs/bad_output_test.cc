@@ -129,6 +129,23 @@ TEST_F(BadInputTest, ARunThatFailsLeavesEarlierResultsAlone) {
   EXPECT_EQ(Contents(folder_ / "out"), before);
 }
 
+// The page is by far the largest file, and can be written later.
+TEST_F(BadInputTest, ADiskTooFullForThePageCostsNothingElse) {
+  fs::rename(folder_ / "good", folder_ / "seq");
+  const RunResult run =
+      RunCommand(WithFullDisk(500, Fill(Odometry())), folder_);
+  if (run.err.find("report.html") == std::string::npos) {
+    GTEST_SKIP() << "built without plotly.js";
+  }
+  EXPECT_EQ(run.exit_code, 2);
+  EXPECT_THAT(run.err, HasSubstr("report.html: writing failed (File too large);"
+                                 " all other results are in "));
+  EXPECT_FALSE(fs::exists(folder_ / "out/report.html"));
+  for (const char* name : {"trajectory.txt", "frames.csv", "metrics.json"}) {
+    EXPECT_TRUE(fs::exists(folder_ / ("out/" + std::string(name)))) << name;
+  }
+}
+
 // What a run does not write again must not pass for its own.
 TEST_F(BadInputTest, ResultsAreThoseOfOneRun) {
   fs::rename(folder_ / "good", folder_ / "seq");
