@@ -20,11 +20,10 @@ std::vector<LossRun> CompareLosses(FrameSource* source,
   for (OdometryRun& run : runs) all.push_back(&run);
   {
     ProgressBar bar("tracking", static_cast<int>(source->timestamps().size()));
-    TrackAll(source, threads, all,
-             [&bar](const Frame& frame) {
-               bar.Update(frame.index + 1);
-               return true;
-             });
+    TrackAll(source, threads, all, [&bar](const Frame& frame) {
+      bar.Update(frame.index + 1);
+      return true;
+    });
   }
   std::vector<LossRun> results;
   for (size_t i = 0; i < losses.size(); ++i) {

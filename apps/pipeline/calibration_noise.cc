@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/geometry/motion.h"
+#include "core/util/quantile.h"
 #include "costs/calibration/landmark_residuals.h"
 
 namespace rgbd_pose {
@@ -19,12 +20,6 @@ struct Sample {
 };
 
 constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution
-
-double Median(std::vector<double> values) {
-  const auto middle = values.begin() + values.size() / 2;
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 // The depths of a landmark, there and in all views.
 class Collector {
@@ -185,11 +180,11 @@ std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
     }
     fit.scatter.push_back(
         {std::sqrt(squares / static_cast<double>(end - begin)),
-         kSigmaOfMedian * Median(std::move(errors))});
+         kSigmaOfMedian * Median(errors)});
     constexpr double kLeast = 1e-6;  // m
     fit.scatter.back().sigma = std::max(kLeast, fit.scatter.back().sigma);
   }
-  fit.in_old_sigmas = kSigmaOfMedian * Median(std::move(in_old_sigmas));
+  fit.in_old_sigmas = kSigmaOfMedian * Median(in_old_sigmas);
   // That of a median of absolute values is 1.17 / sqrt(n).
   const double in_bin =
       static_cast<double>(samples.size()) / static_cast<double>(bins);
