@@ -65,10 +65,12 @@ std::string ParameterTable(const CalibrationResult& result) {
     const CalibratedParameter& parameter = result.parameters[k];
     if (parameter.fate == Fate::kDetermined) {
       text += Format(
-          "<tr><td>%s</td><td>%.6g</td><td>%.6g</td><td>%.2g</td>"
+          "<tr><td>%s</td><td>%s</td><td>%s</td><td>%s</td>"
           "<td>%s</td><td>%s</td></tr>\n",
-          row.what, parameter.before, parameter.found, parameter.sigma,
-          row.unit, Bar(parameter).c_str());
+          row.what, ShortNumber(parameter.before).c_str(),
+          NumberTo(parameter.found, parameter.sigma).c_str(),
+          NumberTo(parameter.sigma, parameter.sigma).c_str(), row.unit,
+          Bar(parameter).c_str());
     } else {
       text += Format(
           "<tr class=\"no\"><td>%s</td><td>%.6g</td><td "

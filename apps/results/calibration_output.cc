@@ -12,9 +12,6 @@ namespace {
 
 using Fate = CalibratedParameter::Fate;
 
-// As many digits as the error bar has meaning.
-std::string Value(double value) { return Format("%.6g", value); }
-
 std::string FormatResiduals(const CalibrationResult& result) {
   std::string text = "u,v,before_u,before_v,after_u,after_v\n";
   for (const HeldOutResidual& r : result.residuals) {
@@ -58,8 +55,9 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
     }
     text +=
         Format("%-22s %12s %12s %10s  %s\n", row.name,
-               Value(parameter.before).c_str(), Value(parameter.found).c_str(),
-               Format("%.2g", parameter.sigma).c_str(), row.unit);
+               ShortNumber(parameter.before).c_str(),
+               NumberTo(parameter.found, parameter.sigma).c_str(),
+               NumberTo(parameter.sigma, parameter.sigma).c_str(), row.unit);
   }
   if (!undetermined.empty()) {
     text += "the recording does not determine " + undetermined +

@@ -1,6 +1,8 @@
 #include "core/util/format.h"
 
+#include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <cstdarg>
 #include <cstdio>
 
@@ -24,6 +26,13 @@ std::string FixedNumber(double value, int decimals) {
   return {text, std::to_chars(text, text + sizeof(text), value,
                               std::chars_format::fixed, decimals)
                     .ptr};
+}
+
+std::string NumberTo(double value, double sigma) {
+  constexpr int kMostDecimals = 9;
+  if (!(sigma > 0.0)) return Format("%.6g", value);
+  const int decimals = 1 - static_cast<int>(std::floor(std::log10(sigma)));
+  return FixedNumber(value, std::max(0, std::min(kMostDecimals, decimals)));
 }
 
 std::string ShortNumber(double value) {

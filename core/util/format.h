@@ -10,6 +10,9 @@ namespace rgbd_pose {
 // With so many decimals, whatever the locale.
 std::string FixedNumber(double value, int decimals);
 
+// With the decimals that a standard deviation leaves two digits of.
+std::string NumberTo(double value, double sigma);
+
 // As few digits as tell the number from all others: 0.2, not 0.2000...01.
 std::string ShortNumber(double value);
 

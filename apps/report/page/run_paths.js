@@ -144,9 +144,12 @@ function pathViews(element, prefix, sizes, positions, down, tracesOf) {
     gridcolor: '#d8dee4', backgroundcolor: '#fff', zeroline: false,
   });
   const side = down.map(v => -v);
-  // Looks from behind and above, whatever axis is up. A narrow window needs more
-  // distance, a tall one less.
-  const far = window.innerWidth < 600 ? 1.5 : sizes[1] === 'tall' ? 0.75 : 1;
+  // Looks from behind and above, whatever axis is up. A flat path fills its plot
+  // from nearer than a high one; a narrow window needs more distance.
+  const height = ['x', 'y', 'z'].reduce((h, name, k) =>
+      h + Math.abs(side[k]) * ratio[name], 0);
+  const far = window.innerWidth < 600 ? 1.5
+      : (sizes[1] === 'tall' ? 0.4 : 0.45) + 0.5 * Math.min(1, height);
   const back = Math.abs(side[1]) > 0.7 ? [-1, 0, -1.7] : [1.4, -1.6, 0];
   const eye = back.map((v, k) => far * (v + 0.8 * side[k]));
   plot(`${prefix}path-3d`, sizes[1], screen, traces, {
