@@ -42,6 +42,14 @@ struct SlamFrame {
   Rigid3d map_from_cam() const { return map_from_odom * odom_from_cam; }
 };
 
+// Work behind, and the frame that it is due at. Not within Slam: clang 14 fails
+// there.
+template <typename Result>
+struct Due {
+  int frame = 0;
+  std::future<Result> result;
+};
+
 // Tracks a camera (Odometry) and builds a map of its keyframes behind it, in a
 // thread of its own: where the view returns, the path is corrected. The same
 // frames give the same bytes. One object serves one thread.
@@ -97,12 +105,6 @@ class Slam {
   const Odometry& odometry() const { return odometry_; }
 
  private:
-  // Work behind, and the frame that it is due at.
-  template <typename Result>
-  struct Due {
-    int frame = 0;
-    std::future<Result> result;
-  };
   // A frame by the keyframe that it was tracked against.
   struct PathFrame {
     double timestamp = 0.0;
