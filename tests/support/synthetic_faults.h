@@ -56,7 +56,7 @@ class FaultyDataset : public Dataset {
   Rigid3d WorldFromCam(int index) const;
 
   // The exact pose of every frame.
-  Trajectory ground_truth() const;
+  Trajectory ground_truth() const override;
 
  private:
   const SyntheticDataset& Source(int source_index) const;
