@@ -12,6 +12,7 @@
 #include "apps/pipeline/calibration_verdict.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
 namespace {
@@ -99,9 +100,7 @@ double DisplacementPx(const CalibrationViews& views,
     all.push_back(views.camera.fx *
                   (moved - moved.z() * at.ray).head<2>().norm());
   }
-  if (all.empty()) return 0.0;
-  std::nth_element(all.begin(), all.begin() + all.size() / 2, all.end());
-  return all[all.size() / 2];
+  return all.empty() ? 0.0 : Median(all);
 }
 
 // Solves, and takes the scales of what is left, until they stay.

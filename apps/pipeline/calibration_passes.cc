@@ -1,6 +1,5 @@
 #include "apps/pipeline/calibration_passes.h"
 
-#include <algorithm>
 #include <cmath>
 #include <string>
 #include <vector>
@@ -8,6 +7,7 @@
 #include "apps/pipeline/calibration_camera.h"
 #include "apps/pipeline/calibration_run.h"
 #include "apps/pipeline/calibration_verdict.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
 namespace {
@@ -62,12 +62,10 @@ std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
   for (size_t i = 1; i < timestamps.size(); ++i) {
     intervals.push_back(timestamps[i] - timestamps[i - 1]);
   }
-  const auto middle = intervals.begin() + intervals.size() / 2;
-  std::nth_element(intervals.begin(), middle, intervals.end());
   // Stamps are not quite even.
   constexpr double kSlack = 0.1;
-  const int step =
-      static_cast<int>(std::ceil(1.0 / (*middle * max_rate) - kSlack));
+  const int step = static_cast<int>(
+      std::ceil(1.0 / (Median(intervals) * max_rate) - kSlack));
   if (step < 2) return "";
   return "0-" + std::to_string(timestamps.size() - 1) + ":" +
          std::to_string(step);

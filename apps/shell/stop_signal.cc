@@ -23,10 +23,17 @@ void Remember(int signal) { came = signal; }
 StopSignal::StopSignal() {
   came = 0;
   struct sigaction action = {};
-  action.sa_handler = FLAGS_finish_on_signal ? Remember : SIG_DFL;
+  action.sa_handler = Remember;
   action.sa_flags = SA_RESETHAND | SA_RESTART;  // the next one does its work
   sigemptyset(&action.sa_mask);
-  for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &action, &before[i]);
+  for (int i = 0; i < 2; ++i) {
+    sigaction(kSignals[i], nullptr, &before[i]);
+    // Who has started the program in the background may want it left alone.
+    const bool is_ignored = before[i].sa_handler == SIG_IGN;
+    if (FLAGS_finish_on_signal && !is_ignored) {
+      sigaction(kSignals[i], &action, nullptr);
+    }
+  }
 }
 
 StopSignal::~StopSignal() {

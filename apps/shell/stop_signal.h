@@ -6,7 +6,7 @@ namespace rgbd_pose {
 
 // While it lives, SIGINT and SIGTERM ask a program to end its work early and
 // to keep what it has, if --finish_on_signal (else they end it, as always). A
-// second one ends it at once. One at a time.
+// second one ends it at once. Signals that are ignored stay so. One at a time.
 class StopSignal {
  public:
   StopSignal();

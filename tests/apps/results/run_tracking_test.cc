@@ -80,11 +80,19 @@ TEST_F(RunTrackingTest, GoesToTheEnd) {
 
 TEST_F(RunTrackingTest, ASignalEndsItWithWhatThereIs) {
   for (const int signal : {SIGINT, SIGTERM}) {
+    std::signal(signal, SIG_DFL);  // a test in the background ignores SIGINT
     EXPECT_EQ(Track(true, [signal] { std::raise(signal); }),
               signal == SIGINT ? "SIGINT" : "SIGTERM");
     EXPECT_GE(frames_, kEventAt);
     EXPECT_LT(frames_, kSourceFrames);
   }
+}
+
+TEST_F(RunTrackingTest, WhatIsIgnoredStaysIgnored) {
+  std::signal(SIGINT, SIG_IGN);
+  EXPECT_EQ(Track(true, [] { std::raise(SIGINT); }), "");
+  EXPECT_EQ(frames_, kSourceFrames);
+  std::signal(SIGINT, SIG_DFL);
 }
 
 TEST_F(RunTrackingTest, ASecondSignalEndsTheProgram) {
