@@ -264,6 +264,35 @@ TEST(DirectTrackerTest, SaysWhichDirectionACorridorHides) {
       << tracks.reason;
 }
 
+// One that shows the same but for its noise, and no depth.
+TEST(DirectTrackerTest, AFrameHasToLookLikeItsReference) {
+  SyntheticOptions options;
+  options.frames = 2;
+  const SyntheticDataset room(options);
+  Frame next = room.Read(0);
+  next.gray = next.gray.clone();
+  cv::Mat noise(next.gray.size(), CV_8UC1);
+  cv::RNG(1).fill(noise, cv::RNG::UNIFORM, 0, 30);
+  next.gray += noise;
+  next.depth = cv::Mat::zeros(next.depth.size(), CV_16UC1);
+  for (const bool is_strict : {false, true}) {
+    TrackerParts parts = PartsFor(room.camera().camera);
+    if (is_strict) parts.direct_options.min_likeness = 1.0;
+    const auto tracker = MakeTracker("direct", std::move(parts));
+    std::string why_not;
+    const auto reference = tracker->MakeReference(
+        *tracker->Prepare(room.Read(0)), nullptr, nullptr, &why_not);
+    ASSERT_NE(reference, nullptr) << why_not;
+    Tracked tracked(room.camera().camera);
+    tracker->Track(*reference, *tracker->Prepare(next), Rigid3d(), nullptr,
+                   &tracked);
+    EXPECT_EQ(tracked.status == TrackingStatus::kLost, is_strict)
+        << tracked.reason;
+    EXPECT_EQ(tracked.reason == "it does not look like its reference",
+              is_strict);
+  }
+}
+
 TEST(HybridTrackerTest, PixelsMakeMotionsMoreAccurate) {
   const Tracks features = Follow("features", "room", "xyz", 12);
   const Tracks hybrid = Follow("hybrid", "room", "xyz", 12);
@@ -276,6 +305,7 @@ TEST(DirectTrackerOptionsTest, NoFieldMayBeNan) {
   for (double DirectTrackerOptions::*field :
        {&DirectTrackerOptions::min_seen_share,
         &DirectTrackerOptions::min_seen_share_ok,
+        &DirectTrackerOptions::min_likeness,
         &DirectTrackerOptions::max_sigma_rotation,
         &DirectTrackerOptions::max_sigma_translation}) {
     DirectTrackerOptions options;
