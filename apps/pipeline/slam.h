@@ -46,8 +46,8 @@ struct SlamFrame {
 // there.
 template <typename Result>
 struct Due {
-  int frame = 0;
-  std::future<Result> result;
+  int frame = 0;               // the one that takes it over
+  std::future<Result> result;  // waited for there
 };
 
 // Tracks a camera (Odometry) and builds a map of its keyframes behind it, in a
