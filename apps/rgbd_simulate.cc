@@ -9,10 +9,10 @@
 #include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_scene.h"
-#include "frontend/sources/camera_file.h"
 #include "frontend/sources/tum_writer.h"
 
 DEFINE_string(scene, "room", "what to look at");

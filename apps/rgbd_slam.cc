@@ -29,9 +29,9 @@
 #include "apps/shell/program.h"
 #include "apps/shell/setting_flags.h"
 #include "core/util/input_error.h"
+#include "frontend/files/camera_file_writer.h"
+#include "frontend/files/depth_noise_file.h"
 #include "frontend/map/map_folder.h"
-#include "frontend/sources/camera_file_writer.h"
-#include "frontend/sources/depth_noise_file.h"
 
 DEFINE_int32(
     threads, 0,

@@ -24,8 +24,8 @@
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
 #include "core/util/text_file.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/sources/camera_file.h"
 #include "frontend/sources/tum_dataset.h"
 
 DEFINE_int32(frames, 90, "frames of each sequence, from its start");

@@ -11,8 +11,8 @@
 #include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "core/util/format.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/sources/camera_file.h"
 
 namespace rgbd_pose {
 namespace {

@@ -5,8 +5,8 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/units.h"
+#include "frontend/files/image_file.h"
 #include "frontend/map/cloud_fusion.h"
-#include "frontend/sources/image_file.h"
 
 namespace rgbd_pose {
 namespace {

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
-#include "frontend/sources/camera_file.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
 

@@ -5,7 +5,7 @@
 
 #include "core/initial_guess/initial_guess.h"
 #include "core/util/named_values.h"
-#include "frontend/sources/depth_noise_file.h"
+#include "frontend/files/depth_noise_file.h"
 #include "robust/m_estimator.h"
 #include "robust/scale.h"
 

@@ -11,7 +11,7 @@
 #include "apps/python/bindings.h"
 #include "core/geometry/camera.h"
 #include "core/util/input_error.h"
-#include "frontend/sources/camera_file.h"
+#include "frontend/files/camera_file.h"
 
 namespace py = pybind11;
 

@@ -14,7 +14,7 @@
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"
 #include "apps/python/trajectory_arrays.h"
-#include "frontend/sources/camera_file.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/sources/corrected_source.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"

@@ -4,8 +4,8 @@
 
 #include "core/util/format.h"
 #include "core/util/text_file.h"
-#include "frontend/sources/camera_file_writer.h"
-#include "frontend/sources/depth_noise_file.h"
+#include "frontend/files/camera_file_writer.h"
+#include "frontend/files/depth_noise_file.h"
 
 namespace rgbd_pose {
 namespace {

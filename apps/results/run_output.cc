@@ -9,9 +9,9 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/features/match_overlay.h"
+#include "frontend/files/image_file.h"
 #include "frontend/map/mesh_file.h"
 #include "frontend/map/ply_writer.h"
-#include "frontend/sources/image_file.h"
 #include "frontend/tracking/residual_image.h"
 
 namespace rgbd_pose {

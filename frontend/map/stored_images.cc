@@ -3,8 +3,8 @@
 #include <cmath>
 
 #include "core/util/format.h"
-#include "frontend/sources/image_file.h"
-#include "frontend/sources/png_format.h"
+#include "frontend/files/image_file.h"
+#include "frontend/files/png_format.h"
 
 namespace rgbd_pose {
 namespace {

@@ -5,9 +5,9 @@
 #include <utility>
 
 #include "core/util/input_error.h"
-#include "frontend/sources/bag_camera.h"
-#include "frontend/sources/ros_image.h"
-#include "frontend/sources/ros_messages.h"
+#include "frontend/bags/bag_camera.h"
+#include "frontend/bags/ros_image.h"
+#include "frontend/bags/ros_messages.h"
 
 namespace rgbd_pose {
 namespace {

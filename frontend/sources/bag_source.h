@@ -3,13 +3,13 @@
 #include <memory>
 #include <string>
 
-#include "frontend/sources/bag_reader.h"
-#include "frontend/sources/bag_topics.h"
+#include "frontend/bags/bag_reader.h"
+#include "frontend/bags/bag_topics.h"
+#include "frontend/bags/transform_tree.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/frame_source.h"
 #include "frontend/sources/image_pairing.h"
 #include "frontend/sources/source_options.h"
-#include "frontend/sources/transform_tree.h"
 
 namespace rgbd_pose {
 

@@ -1,7 +1,7 @@
 #include "frontend/sources/frame_assembly.h"
 
 #include "core/util/input_error.h"
-#include "frontend/sources/image_file.h"
+#include "frontend/files/image_file.h"
 
 namespace rgbd_pose {
 namespace {

@@ -5,9 +5,9 @@
 #include <string>
 
 #include "core/geometry/camera.h"
+#include "frontend/files/camera_setup.h"
 #include "frontend/image/depth_registration.h"
 #include "frontend/image/frame.h"
-#include "frontend/sources/source_options.h"
 
 namespace rgbd_pose {
 

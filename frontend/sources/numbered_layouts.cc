@@ -6,8 +6,8 @@
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/sources/image_file.h"
-#include "frontend/sources/yaml_section.h"
+#include "frontend/files/image_file.h"
+#include "frontend/files/yaml_section.h"
 
 namespace rgbd_pose {
 namespace {

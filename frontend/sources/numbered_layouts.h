@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "frontend/files/camera_setup.h"
 #include "frontend/sources/numbered_poses.h"
-#include "frontend/sources/source_options.h"
 
 namespace rgbd_pose {
 

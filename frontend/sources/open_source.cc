@@ -9,12 +9,12 @@
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
+#include "frontend/bags/ros1_bag.h"
+#include "frontend/bags/ros2_bag.h"
 #include "frontend/sources/bag_source.h"
 #include "frontend/sources/corrected_source.h"
 #include "frontend/sources/numbered_dataset.h"
 #include "frontend/sources/openni2_source.h"
-#include "frontend/sources/ros1_bag.h"
-#include "frontend/sources/ros2_bag.h"
 #include "frontend/sources/tum_dataset.h"
 
 namespace rgbd_pose {

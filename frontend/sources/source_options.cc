@@ -45,9 +45,4 @@ CameraSetup ChooseCamera(const SourceOptions& options,
   return chosen;
 }
 
-RgbdCamera RegisteredCamera(const CameraSetup& setup) {
-  return {setup.camera, setup.depth_scale.value_or(RgbdCamera{}.depth_scale),
-          setup.depth_errors};
-}
-
 }  // namespace rgbd_pose

@@ -4,32 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
-#include "frontend/image/depth_registration.h"
+#include "frontend/files/camera_setup.h"
 
 namespace rgbd_pose {
-
-// What is known of an RGB-D camera, by a calibration file or by a recording.
-struct CameraSetup {
-  CameraSetup() = default;
-  explicit CameraSetup(const Camera& color) : camera(color) {}
-
-  // With its depth scale as it is there.
-  CameraSetup(const RgbdCamera& rgbd)  // NOLINT(*-explicit-*): says the same
-      : camera(rgbd.camera),
-        depth_scale(rgbd.depth_scale),
-        depth_errors(rgbd.depth_errors) {}
-
-  Camera camera;  // of the colour image
-
-  // Raw units of the depth image per metre; nothing: not said.
-  std::optional<double> depth_scale;
-
-  DepthErrors depth_errors;  // of the depth images, once registered
-
-  // Nothing: the depth images are registered to colour.
-  std::optional<DepthCamera> depth_camera;
-};
 
 // Where a recording is, and how to read it.
 struct SourceOptions {
@@ -63,8 +40,5 @@ struct SourceOptions {
 // Throws InputError if nobody says what camera it was.
 CameraSetup ChooseCamera(const SourceOptions& options,
                          const std::optional<CameraSetup>& of_recording = {});
-
-// As it is once depth is registered.
-RgbdCamera RegisteredCamera(const CameraSetup& setup);
 
 }  // namespace rgbd_pose

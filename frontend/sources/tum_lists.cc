@@ -9,7 +9,7 @@
 #include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/sources/image_file.h"
+#include "frontend/files/image_file.h"
 
 namespace rgbd_pose {
 namespace {

@@ -10,8 +10,8 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/files/image_file.h"
 #include "frontend/sources/frame_stream.h"
-#include "frontend/sources/image_file.h"
 
 namespace rgbd_pose {
 namespace {

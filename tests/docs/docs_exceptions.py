@@ -83,12 +83,12 @@ EXCEPTIONS = {
     },
     'docs/sources.md': {
         'rgbd_odometry --dataset=fr1_xyz.bag --output=runs/bag':
-            left_out('needs a bag; tests/frontend/sources/ros1_bag_test.cc '
+            left_out('needs a bag; tests/frontend/bags/ros1_bag_test.cc '
                      'writes some'),
         'rgbd_convert --dataset=recording_folder '
         '--topics=/camera/color/image_raw,/camera/depth/image_raw '
         '--output=tum':
-            left_out('needs a bag; tests/frontend/sources/ros2_bag_test.cc '
+            left_out('needs a bag; tests/frontend/bags/ros2_bag_test.cc '
                      'writes some'),
         'rgbd_odometry --source=openni2 --dataset=any --frames=0s-60s '
         '--output=runs/live':

@@ -43,7 +43,9 @@ room costs 'core/|costs|robust' 'Eigen/|ceres/'
 room costs/calibration 'core/|costs' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
 room frontend/image 'core/|frontend/' "$opencv"
-room frontend/sources 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h|rosbag/|console_bridge/|sqlite3\.h|OpenNI\.h"
+room frontend/files 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h"
+room frontend/bags 'core/|frontend/' "$opencv|rosbag/|console_bridge/|sqlite3\.h"
+room frontend/sources 'core/|frontend/' "$opencv|OpenNI\.h"
 room frontend/features 'core/|frontend/' "$opencv"
 room frontend/places 'core/|frontend/' "$opencv"
 room frontend/tracking 'core/|frontend/' "$opencv"

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "frontend/sources/camera_file.h"
+#include "frontend/files/camera_file.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

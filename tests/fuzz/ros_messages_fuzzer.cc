@@ -1,8 +1,8 @@
 // A message of a bag: a byte for its kind and encoding, then its bytes.
 
-#include "frontend/sources/bag_camera.h"
-#include "frontend/sources/ros_image.h"
-#include "frontend/sources/ros_messages.h"
+#include "frontend/bags/bag_camera.h"
+#include "frontend/bags/ros_image.h"
+#include "frontend/bags/ros_messages.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace rgbd_pose {

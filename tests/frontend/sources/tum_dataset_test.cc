@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 #include <thread>
 
-#include "frontend/sources/camera_file.h"
+#include "frontend/files/camera_file.h"
 #include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {

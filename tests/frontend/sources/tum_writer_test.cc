@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/util/input_error.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/sources/camera_file.h"
 #include "frontend/sources/tum_dataset.h"
 
 namespace rgbd_pose {

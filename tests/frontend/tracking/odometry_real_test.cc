@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/evaluation/evaluation.h"
-#include "frontend/sources/camera_file.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/sources/tum_dataset.h"
 #include "tests/support/track_sequence.h"
 

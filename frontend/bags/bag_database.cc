@@ -1,0 +1,179 @@
+#include "frontend/bags/bag_database.h"
+
+#include "core/util/input_error.h"
+#ifdef RGBD_POSE_HAS_SQLITE
+#include <sqlite3.h>
+
+#include <filesystem>
+#include <map>
+#endif
+
+namespace rgbd_pose {
+
+#ifdef RGBD_POSE_HAS_SQLITE
+
+namespace {
+
+// A query that gives rows one after the other.
+class Rows {
+ public:
+  Rows(const std::string& path, sqlite3* database, const std::string& query)
+      : path_(path), database_(database) {
+    const int status =
+        sqlite3_prepare_v2(database, query.c_str(), -1, &statement_, nullptr);
+    if (status != SQLITE_OK) Fail();
+  }
+  ~Rows() { sqlite3_finalize(statement_); }
+  Rows(const Rows&) = delete;
+  Rows& operator=(const Rows&) = delete;
+
+  // Whether there is another row.
+  bool Next() {
+    const int status = sqlite3_step(statement_);
+    if (status == SQLITE_ROW) return true;
+    if (status != SQLITE_DONE) Fail();
+    return false;
+  }
+  int64_t Number(int column) {
+    return sqlite3_column_int64(statement_, column);
+  }
+  std::string Bytes(int column) {
+    // In this order, as sqlite3 asks for.
+    const void* bytes = sqlite3_column_blob(statement_, column);
+    const int size = sqlite3_column_bytes(statement_, column);
+    if (bytes == nullptr) {
+      if (sqlite3_errcode(database_) == SQLITE_NOMEM) Fail();
+      return "";
+    }
+    return {static_cast<const char*>(bytes), static_cast<size_t>(size)};
+  }
+
+ private:
+  [[noreturn]] void Fail() {
+    throw InputError(path_ + ": cannot be read as a ROS 2 bag: " +
+                     sqlite3_errmsg(database_) +
+                     "; it is damaged or cut off: copy it again");
+  }
+
+  const std::string& path_;
+  sqlite3* database_;
+  sqlite3_stmt* statement_ = nullptr;
+};
+
+std::string WithoutMsg(std::string type) {
+  const std::string part = "/msg/";
+  const size_t place = type.find(part);
+  if (place != std::string::npos) type.replace(place, part.size(), "/");
+  return type;
+}
+
+class BagDatabase final : public BagReader {
+ public:
+  explicit BagDatabase(const std::string& path) : path_(path) {
+    std::error_code error;
+    if (std::filesystem::file_size(path, error) == 0 && !error) {
+      throw InputError(path + ": is empty; copy it again");
+    }
+    sqlite3* database = nullptr;
+    const int status =
+        sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READONLY, nullptr);
+    database_.reset(database);
+    if (status != SQLITE_OK) {
+      throw InputError(
+          path + ": cannot be opened: " + sqlite3_errmsg(database_.get()));
+    }
+    ReadTopics();
+    // Without it rows would be sorted with all their bytes.
+    Rows index(path_, database_.get(), "PRAGMA index_list(messages)");
+    order_ = index.Next() ? " ORDER BY timestamp, id" : " ORDER BY id";
+  }
+
+  const std::string& path() const override { return path_; }
+  WireFormat format() const override { return WireFormat::kCdr; }
+  const std::vector<BagTopic>& topics() const override { return topics_; }
+
+  std::vector<BagMessage> First(int topic, int count) override {
+    std::vector<BagMessage> first;
+    const auto rows = Query({topic});
+    while (static_cast<int>(first.size()) < count && rows->Next()) {
+      first.push_back(Message(rows.get()));
+    }
+    return first;
+  }
+
+  void Select(const std::vector<int>& topics) override {
+    selected_ = Query(topics);
+  }
+
+  std::optional<BagMessage> Next() override {
+    if (selected_ == nullptr || !selected_->Next()) {
+      selected_.reset();
+      return std::nullopt;
+    }
+    return Message(selected_.get());
+  }
+
+ private:
+  struct Close {
+    void operator()(sqlite3* database) const { sqlite3_close(database); }
+  };
+
+  void ReadTopics() {
+    Rows rows(path_, database_.get(),
+              "SELECT id, name, type, serialization_format FROM topics "
+              "ORDER BY id");
+    while (rows.Next()) {
+      const std::string format = rows.Bytes(3);
+      if (format != "cdr") continue;  // nobody knows what it holds
+      places_[rows.Number(0)] = static_cast<int>(topics_.size());
+      ids_.push_back(rows.Number(0));
+      topics_.push_back({rows.Bytes(1), WithoutMsg(rows.Bytes(2))});
+    }
+  }
+
+  std::unique_ptr<Rows> Query(const std::vector<int>& topics) {
+    std::string ids;
+    for (const int topic : topics) {
+      ids += (ids.empty() ? "" : ",") + std::to_string(ids_[topic]);
+    }
+    // The plus keeps sqlite3 from anything but going along the time.
+    return std::make_unique<Rows>(
+        path_, database_.get(),
+        "SELECT topic_id, timestamp, data FROM messages WHERE +topic_id IN (" +
+            ids + ")" + order_);
+  }
+
+  BagMessage Message(Rows* rows) const {
+    BagMessage message;
+    message.topic = places_.at(rows->Number(0));
+    message.received = static_cast<double>(rows->Number(1)) * 1e-9;
+    message.bytes = std::make_shared<std::string>(rows->Bytes(2));
+    return message;
+  }
+
+  std::string path_;
+  std::unique_ptr<sqlite3, Close> database_;
+  std::vector<BagTopic> topics_;
+  std::vector<int64_t> ids_;       // of the topics, in the database
+  std::map<int64_t, int> places_;  // of topics by their ids
+  std::string order_;
+  std::unique_ptr<Rows> selected_;
+};
+
+}  // namespace
+
+std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path) {
+  return std::make_unique<BagDatabase>(path);
+}
+
+#else
+
+std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path) {
+  throw InputError(path +
+                   ": this build reads no ROS 2 bags; install libsqlite3-dev "
+                   "(scripts/install_dependencies formats) and build anew");
+}
+
+#endif
+
+}  // namespace rgbd_pose

@@ -1,0 +1,204 @@
+#include "frontend/bags/bag_topics.h"
+
+#include <algorithm>
+#include <cctype>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr char kImage[] = "sensor_msgs/Image";
+constexpr char kCompressedImage[] = "sensor_msgs/CompressedImage";
+constexpr char kCameraInfo[] = "sensor_msgs/CameraInfo";
+
+bool IsImage(const BagTopic& topic) {
+  return topic.type == kImage || topic.type == kCompressedImage;
+}
+
+std::string LowerCase(std::string text) {
+  for (char& c : text) {
+    c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  return text;
+}
+
+std::string Parent(const std::string& topic) {
+  return topic.substr(0, topic.rfind('/'));
+}
+
+// The topics as a message says them.
+std::string ListOf(const std::vector<BagTopic>& topics) {
+  constexpr size_t kMaxNames = 12;
+  std::vector<std::string> names;
+  for (const BagTopic& topic : topics) {
+    if (IsImage(topic)) names.push_back(topic.name);
+  }
+  if (names.empty()) {
+    for (const BagTopic& topic : topics) {
+      names.push_back(topic.name + " (" + topic.type + ")");
+    }
+  }
+  if (names.empty()) return "nothing";
+  const bool is_long = names.size() > kMaxNames;
+  if (is_long) names.resize(kMaxNames);
+  return Join(names) + (is_long ? ", ..." : "");
+}
+
+int FindTopic(const std::vector<BagTopic>& topics, const std::string& name) {
+  for (size_t i = 0; i < topics.size(); ++i) {
+    if (topics[i].name == name) return static_cast<int>(i);
+  }
+  return -1;
+}
+
+// How well a topic will do as colour or depth; 0: not at all.
+struct Fitness {
+  int color = 0;
+  int depth = 0;
+};
+
+Fitness FitnessOf(BagReader* bag, int index) {
+  const BagTopic& topic = bag->topics()[index];
+  const std::vector<BagMessage> first = bag->First(index, 1);
+  if (first.empty()) return {};
+  const RosImage image = ReadImageOf(*bag, first.front());
+  const std::string name = LowerCase(topic.name);
+  const bool is_raw = topic.type == kImage;
+  const bool is_called_depth = Contains(name, "depth");
+  RosImageUse use = UseOfEncoding(std::string(image.encoding));
+  if (use == RosImageUse::kGrayOrDepth && is_called_depth) {
+    use = RosImageUse::kDepth;
+  }
+  // A PNG file of depth says nothing of it.
+  if (use == RosImageUse::kColor && !is_raw && is_called_depth) {
+    use = RosImageUse::kDepth;
+  }
+  Fitness fitness;
+  switch (use) {
+    case RosImageUse::kColor:
+      fitness.color = 40;
+      break;
+    case RosImageUse::kGray:
+      fitness.color =
+          Contains(name, "infra") || Contains(name, "/ir") ? 10 : 20;
+      break;
+    case RosImageUse::kDepth:
+    case RosImageUse::kMetricDepth: {
+      const bool is_registered =
+          Contains(name, "regist") || Contains(name, "align") ||
+          Contains(name, "depth_to_color") || Contains(name, "depth_to_rgb");
+      fitness.depth = is_registered ? 40 : 20;
+      break;
+    }
+    case RosImageUse::kGrayOrDepth:
+      fitness.depth = 5;
+      break;
+    case RosImageUse::kOther:
+      break;
+  }
+  if (fitness.color > 0) fitness.color += is_raw ? 1 : 0;
+  if (fitness.depth > 0) fitness.depth += is_raw ? 1 : 0;
+  return fitness;
+}
+
+int Best(const BagReader& bag, const std::vector<Fitness>& fitness,
+         int Fitness::*what, const char* name) {
+  int best = -1;
+  int rival = -1;
+  for (size_t i = 0; i < fitness.size(); ++i) {
+    if (fitness[i].*what == 0) continue;
+    if (best < 0 || fitness[i].*what > fitness[best].*what) {
+      best = static_cast<int>(i);
+      rival = -1;
+    } else if (fitness[i].*what == fitness[best].*what) {
+      rival = static_cast<int>(i);
+    }
+  }
+  const std::vector<BagTopic>& topics = bag.topics();
+  if (best < 0) {
+    throw InputError(bag.path() + ": has no " + name +
+                     " images that can be read; it has " + ListOf(topics));
+  }
+  if (rival >= 0) {
+    throw InputError(bag.path() + ": both " + topics[best].name + " and " +
+                     topics[rival].name + " may be the " + name +
+                     " images; say which with topics=COLOUR,DEPTH; there are " +
+                     ListOf(topics));
+  }
+  return best;
+}
+
+// The CameraInfo that belongs to an image topic: beside it, or as the RealSense
+// viewer has it.
+int InfoOf(const std::vector<BagTopic>& topics, int image) {
+  std::string name = topics[image].name;
+  // A compressed topic is one below that of the raw images.
+  if (topics[image].type == kCompressedImage) {
+    const int info = FindTopic(topics, Parent(name) + "/camera_info");
+    if (info >= 0) return info;
+    name = Parent(name);
+  }
+  for (const std::string& candidate :
+       {Parent(name) + "/camera_info",
+        Parent(Parent(name)) + "/info/camera_info"}) {
+    const int info = FindTopic(topics, candidate);
+    if (info >= 0 && topics[info].type == kCameraInfo) return info;
+  }
+  return -1;
+}
+
+int TopicNamed(const BagReader& bag, const std::string& name, bool is_image) {
+  const std::vector<BagTopic>& topics = bag.topics();
+  const int index = FindTopic(topics, name);
+  if (index >= 0 &&
+      (is_image ? IsImage(topics[index]) : topics[index].type == kCameraInfo)) {
+    return index;
+  }
+  const std::string has =
+      index < 0 ? "no topic '" + name + "'"
+                : name + ", which is of the type " + topics[index].type;
+  throw InputError(bag.path() + ": has " + has + "; it has " + ListOf(topics));
+}
+
+}  // namespace
+
+RosImage ReadImageOf(const BagReader& bag, const BagMessage& message) {
+  const bool is_raw = bag.topics()[message.topic].type == kImage;
+  return ReadMessage(bag, message,
+                     is_raw ? ReadRosImage : ReadRosCompressedImage);
+}
+
+BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {
+  const std::vector<BagTopic>& topics = bag->topics();
+  BagTopics chosen;
+  if (names.empty()) {
+    std::vector<Fitness> fitness(topics.size());
+    for (size_t i = 0; i < topics.size(); ++i) {
+      if (IsImage(topics[i])) fitness[i] = FitnessOf(bag, static_cast<int>(i));
+    }
+    chosen.color = Best(*bag, fitness, &Fitness::color, "colour");
+    chosen.depth = Best(*bag, fitness, &Fitness::depth, "depth");
+  } else {
+    if (names.size() < 2 || names.size() > 3) {
+      throw InputError(
+          "topics: takes COLOUR,DEPTH or COLOUR,DEPTH,CAMERA_INFO, not " +
+          std::to_string(names.size()) + " names");
+    }
+    chosen.color = TopicNamed(*bag, names[0], true);
+    chosen.depth = TopicNamed(*bag, names[1], true);
+  }
+  chosen.color_info = names.size() == 3 ? TopicNamed(*bag, names[2], false)
+                                        : InfoOf(topics, chosen.color);
+  chosen.depth_info = InfoOf(topics, chosen.depth);
+  for (size_t i = 0; i < topics.size(); ++i) {
+    if (topics[i].type == "tf2_msgs/TFMessage" ||
+        topics[i].type == "tf/tfMessage") {
+      chosen.transforms.push_back(static_cast<int>(i));
+    }
+  }
+  return chosen;
+}
+
+}  // namespace rgbd_pose

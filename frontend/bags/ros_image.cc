@@ -1,0 +1,207 @@
+#include "frontend/bags/ros_image.h"
+
+#include <cmath>
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "core/util/input_error.h"
+#include "core/util/named_values.h"
+#include "frontend/files/image_file.h"
+#include "frontend/image/frame.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct Encoding {
+  const char* name;
+  RosImageUse use;
+  int type;     // as OpenCV calls it
+  int to_gray;  // codes of cv::cvtColor; -1: is that
+  int to_color;
+};
+
+constexpr Encoding kEncodings[] = {
+    {"rgb8", RosImageUse::kColor, CV_8UC3, cv::COLOR_RGB2GRAY,
+     cv::COLOR_RGB2BGR},
+    {"bgr8", RosImageUse::kColor, CV_8UC3, cv::COLOR_BGR2GRAY, -1},
+    {"rgba8", RosImageUse::kColor, CV_8UC4, cv::COLOR_RGBA2GRAY,
+     cv::COLOR_RGBA2BGR},
+    {"bgra8", RosImageUse::kColor, CV_8UC4, cv::COLOR_BGRA2GRAY,
+     cv::COLOR_BGRA2BGR},
+    {"8UC3", RosImageUse::kColor, CV_8UC3, cv::COLOR_BGR2GRAY, -1},
+    {"mono8", RosImageUse::kGray, CV_8UC1, -1, cv::COLOR_GRAY2BGR},
+    {"8UC1", RosImageUse::kGray, CV_8UC1, -1, cv::COLOR_GRAY2BGR},
+    {"16UC1", RosImageUse::kDepth, CV_16UC1, -1, -1},
+    {"mono16", RosImageUse::kGrayOrDepth, CV_16UC1, -1, -1},
+    {"32FC1", RosImageUse::kMetricDepth, CV_32FC1, -1, -1},
+};
+
+const Encoding* FindEncoding(std::string_view name) {
+  for (const Encoding& encoding : kEncodings) {
+    if (encoding.name == name) return &encoding;
+  }
+  return nullptr;
+}
+
+bool IsCompressed(const RosImage& image) { return image.width == 0; }
+
+// compressedDepth: "16UC1; compressedDepth png". Others: "jpeg" or "rgb8; jpeg
+// compressed bgr8".
+bool IsCompressedDepth(std::string_view format) {
+  return format.find("compressedDepth") != std::string_view::npos;
+}
+
+InputError Unreadable(const std::string& name, std::string_view encoding,
+                      const char* what) {
+  return InputError(name + ": images of encoding '" + std::string(encoding) +
+                    "' are not read as " + what + "; there are " +
+                    Join(NamesOf(kEncodings)) +
+                    " and, compressed, jpeg and png");
+}
+
+// The rows as they are; those of bytes are shared with the message, as numbers
+// they need not lie where a processor likes them.
+cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
+                  const std::string& name) {
+  const size_t row_bytes = size_t{image.width} * CV_ELEM_SIZE(encoding.type);
+  if (image.step < row_bytes ||
+      image.data.size() < size_t{image.step} * image.height) {
+    throw InputError(name + ": holds " + std::to_string(image.data.size()) +
+                     " bytes, too few for " + std::to_string(image.width) +
+                     " x " + std::to_string(image.height) + " pixels of " +
+                     encoding.name);
+  }
+  constexpr uint32_t kMaxSize = 1 << 16;
+  if (image.width > kMaxSize || image.height > kMaxSize) {
+    throw InputError(name + ": is too large to be an image");
+  }
+  if (image.is_bigendian && CV_ELEM_SIZE1(encoding.type) > 1) {
+    throw InputError(name + ": is big-endian, which is not read");
+  }
+  const auto width = static_cast<int>(image.width);
+  const auto height = static_cast<int>(image.height);
+  if (CV_ELEM_SIZE1(encoding.type) == 1) {  // they are only read from
+    return cv::Mat(height, width, encoding.type,
+                   const_cast<char*>(image.data.data()), image.step);
+  }
+  cv::Mat rows(height, width, encoding.type);
+  for (int y = 0; y < height; ++y) {
+    std::memcpy(rows.ptr(y), image.data.data() + size_t{image.step} * y,
+                row_bytes);
+  }
+  return rows;
+}
+
+// The file of a compressed image. Others than those that ROS packs with are
+// left to nobody's parser.
+std::string FileIn(std::string_view bytes, const std::string& name) {
+  constexpr std::string_view kJpeg = "\xFF\xD8\xFF";
+  constexpr std::string_view kPng = "\x89PNG";
+  if (bytes.substr(0, kJpeg.size()) != kJpeg &&
+      bytes.substr(0, kPng.size()) != kPng) {
+    throw InputError(name + ": is neither a JPEG nor a PNG file");
+  }
+  return std::string(bytes);
+}
+
+uint16_t RawDepth(double metres, double depth_scale) {
+  const double raw = std::round(metres * depth_scale);
+  return raw > 0.0 && raw < Frame::kNoDepth ? static_cast<uint16_t>(raw) : 0;
+}
+
+// A PNG file behind 12 bytes: 4 of no use and two numbers, A and B, for depth
+// in metres, which is packed as A / depth + B.
+cv::Mat DecodeCompressedDepth(const RosImage& image, const std::string& name,
+                              double depth_scale) {
+  constexpr size_t kHeader = 12;
+  if (image.encoding.find("rvl") != std::string_view::npos) {
+    throw Unreadable(name, image.encoding, "depth");
+  }
+  if (image.data.size() < kHeader) {
+    throw InputError(name + ": compressed depth without its header");
+  }
+  float quantisation[2];
+  std::memcpy(quantisation, image.data.data() + 4, sizeof(quantisation));
+  cv::Mat depth =
+      DecodeDepthImage(FileIn(image.data.substr(kHeader), name), name);
+  if (image.encoding.substr(0, 5) != "32FC1") return depth;
+  for (int y = 0; y < depth.rows; ++y) {
+    uint16_t* row = depth.ptr<uint16_t>(y);
+    for (int x = 0; x < depth.cols; ++x) {
+      if (row[x] == 0) continue;
+      row[x] =
+          RawDepth(quantisation[0] / (row[x] - quantisation[1]), depth_scale);
+    }
+  }
+  return depth;
+}
+
+}  // namespace
+
+RosImageUse UseOfEncoding(const std::string& encoding) {
+  if (IsCompressedDepth(encoding)) {
+    return encoding.substr(0, 5) == "32FC1" ? RosImageUse::kMetricDepth
+                                            : RosImageUse::kDepth;
+  }
+  const Encoding* row = FindEncoding(encoding.substr(0, encoding.find(';')));
+  if (row != nullptr) return row->use;
+  const bool is_file = encoding.find("jpeg") != std::string::npos ||
+                       encoding.find("jpg") != std::string::npos ||
+                       encoding.find("png") != std::string::npos;
+  return is_file ? RosImageUse::kColor : RosImageUse::kOther;
+}
+
+cv::Mat DecodeRosGray(const RosImage& image, const std::string& name,
+                      cv::Mat* color) {
+  if (IsCompressed(image)) {
+    if (IsCompressedDepth(image.encoding)) {
+      throw Unreadable(name, image.encoding, "colour");
+    }
+    return DecodeGrayImage(FileIn(image.data, name), name, color);
+  }
+  const Encoding* encoding = FindEncoding(image.encoding);
+  if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) != CV_8U) {
+    throw Unreadable(name, image.encoding, "colour");
+  }
+  const cv::Mat rows = PixelRows(image, *encoding, name);
+  if (rows.empty()) throw InputError(name + ": is empty");
+  if (color != nullptr) {
+    if (encoding->to_color < 0) {
+      *color = rows.clone();
+    } else {
+      cv::cvtColor(rows, *color, encoding->to_color);
+    }
+  }
+  if (encoding->to_gray < 0) return rows.clone();
+  cv::Mat gray;
+  cv::cvtColor(rows, gray, encoding->to_gray);
+  return gray;
+}
+
+cv::Mat DecodeRosDepth(const RosImage& image, const std::string& name,
+                       double depth_scale) {
+  if (IsCompressed(image)) {
+    return IsCompressedDepth(image.encoding)
+               ? DecodeCompressedDepth(image, name, depth_scale)
+               : DecodeDepthImage(FileIn(image.data, name), name);
+  }
+  const Encoding* encoding = FindEncoding(image.encoding);
+  if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) == CV_8U) {
+    throw Unreadable(name, image.encoding, "depth");
+  }
+  const cv::Mat rows = PixelRows(image, *encoding, name);
+  if (rows.empty()) throw InputError(name + ": is empty");
+  if (encoding->type == CV_16UC1) return rows;
+  cv::Mat depth(rows.size(), CV_16UC1);
+  for (int y = 0; y < rows.rows; ++y) {
+    const float* metres = rows.ptr<float>(y);
+    uint16_t* raw = depth.ptr<uint16_t>(y);
+    for (int x = 0; x < rows.cols; ++x) {
+      raw[x] = RawDepth(metres[x], depth_scale);
+    }
+  }
+  return depth;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,98 @@
+#include "frontend/bags/ros_messages.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+
+namespace rgbd_pose {
+namespace {
+
+// ROS 1 had frames with and without a slash, which are the same.
+std::string_view ReadFrameId(WireReader* reader) {
+  std::string_view name = reader->Text();
+  if (!name.empty() && name.front() == '/') name.remove_prefix(1);
+  return name;
+}
+
+RosHeader ReadHeader(WireReader* reader) {
+  RosHeader header;
+  if (reader->format() == WireFormat::kRos1) reader->Number<uint32_t>();
+  const uint32_t seconds = reader->Number<uint32_t>();
+  header.stamp = seconds + 1e-9 * reader->Number<uint32_t>();
+  header.frame_id = ReadFrameId(reader);
+  return header;
+}
+
+template <typename Numbers>
+void ReadNumbers(WireReader* reader, Numbers* numbers) {
+  for (double& number : *numbers) number = reader->Number<double>();
+}
+
+}  // namespace
+
+RosImage ReadRosImage(WireReader reader) {
+  RosImage image;
+  image.header = ReadHeader(&reader);
+  image.height = reader.Number<uint32_t>();
+  image.width = reader.Number<uint32_t>();
+  image.encoding = reader.Text();
+  image.is_bigendian = reader.Number<uint8_t>() != 0;
+  image.step = reader.Number<uint32_t>();
+  image.data = reader.Bytes();
+  return image;
+}
+
+RosImage ReadRosCompressedImage(WireReader reader) {
+  RosImage image;
+  image.header = ReadHeader(&reader);
+  image.encoding = reader.Text();
+  image.data = reader.Bytes();
+  return image;
+}
+
+RosCameraInfo ReadRosCameraInfo(WireReader reader) {
+  RosCameraInfo info;
+  info.header = ReadHeader(&reader);
+  info.height = reader.Number<uint32_t>();
+  info.width = reader.Number<uint32_t>();
+  info.distortion_model = reader.Text();
+  info.d.resize(reader.Count(sizeof(double)));
+  ReadNumbers(&reader, &info.d);
+  ReadNumbers(&reader, &info.k);
+  std::array<double, 9> rectification;  // of a stereo pair
+  ReadNumbers(&reader, &rectification);
+  ReadNumbers(&reader, &info.p);
+  return info;
+}
+
+Rigid3d ReadRosTransform(WireReader* reader) {
+  std::array<double, 3> translation;
+  ReadNumbers(reader, &translation);
+  std::array<double, 4> rotation;  // x y z w
+  ReadNumbers(reader, &rotation);
+  Rigid3d motion;
+  motion.translation = Eigen::Map<Eigen::Vector3d>(translation.data());
+  motion.rotation = Eigen::Map<Eigen::Quaterniond>(rotation.data());
+  return motion;
+}
+
+std::vector<RosTransform> ReadRosTransforms(WireReader reader) {
+  constexpr size_t kLeastBytes = 72;  // no names
+  constexpr double kMaxNormError = 0.01;
+  std::vector<RosTransform> transforms(reader.Count(kLeastBytes));
+  size_t used = 0;
+  for (size_t i = 0; i < transforms.size(); ++i) {
+    RosTransform transform;
+    transform.header = ReadHeader(&reader);
+    transform.child_frame_id = ReadFrameId(&reader);
+    Rigid3d& motion = transform.parent_from_child;
+    motion = ReadRosTransform(&reader);
+    const double error = std::abs(motion.rotation.norm() - 1.0);
+    if (!motion.IsFinite() || !(error < kMaxNormError)) continue;
+    motion.rotation.normalize();
+    transforms[used++] = transform;
+  }
+  transforms.resize(used);
+  return transforms;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,129 @@
+#include "frontend/bags/transform_tree.h"
+
+#include <algorithm>
+
+namespace rgbd_pose {
+namespace {
+
+bool IsEarlier(const StampedPose& pose, double stamp) {
+  return pose.timestamp < stamp;
+}
+
+bool AreSame(const Rigid3d& a, const Rigid3d& b) {
+  return a.translation == b.translation &&
+         a.rotation.coeffs() == b.rotation.coeffs();
+}
+
+// Between two samples; nothing before the first and after the last.
+std::optional<Rigid3d> At(const Trajectory& samples, double stamp) {
+  const auto after =
+      std::lower_bound(samples.begin(), samples.end(), stamp, IsEarlier);
+  if (after == samples.end()) return std::nullopt;
+  if (after->timestamp == stamp) return after->world_from_cam;
+  if (after == samples.begin()) return std::nullopt;
+  const auto before = after - 1;
+  const double share =
+      (stamp - before->timestamp) / (after->timestamp - before->timestamp);
+  const Rigid3d& a = before->world_from_cam;
+  const Rigid3d& b = after->world_from_cam;
+  return Rigid3d(a.rotation.slerp(share, b.rotation),
+                 a.translation + share * (b.translation - a.translation));
+}
+
+}  // namespace
+
+void TransformTree::Add(const std::string& parent, const std::string& child,
+                        double stamp, const Rigid3d& parent_from_child) {
+  Edge& edge = edges_[child];
+  if (edge.parent != parent) edge = Edge{parent, false, {}};  // moved house
+  Trajectory& samples = edge.samples;
+  if (!edge.moves && !samples.empty() &&
+      AreSame(samples.front().world_from_cam, parent_from_child)) {
+    if (samples.size() == 1) samples.push_back(samples.front());
+    samples.front().timestamp = std::min(samples.front().timestamp, stamp);
+    samples.back().timestamp = std::max(samples.back().timestamp, stamp);
+    return;
+  }
+  edge.moves = !samples.empty();
+  const auto place =
+      std::lower_bound(samples.begin(), samples.end(), stamp, IsEarlier);
+  if (place != samples.end() && place->timestamp == stamp) return;
+  samples.insert(place, {stamp, parent_from_child});
+}
+
+std::vector<std::string> TransformTree::Above(const std::string& frame) const {
+  std::vector<std::string> above = {frame};
+  // Not longer than all of them, should they go in a circle.
+  while (above.size() <= edges_.size()) {
+    const auto edge = edges_.find(above.back());
+    if (edge == edges_.end()) break;
+    above.push_back(edge->second.parent);
+  }
+  return above;
+}
+
+std::optional<std::vector<const TransformTree::Edge*>> TransformTree::Up(
+    const std::string& frame, const std::string& top) const {
+  std::vector<const Edge*> edges;
+  for (const std::string& next : Above(frame)) {
+    if (next == top) return edges;
+    const auto edge = edges_.find(next);
+    if (edge != edges_.end()) edges.push_back(&edge->second);
+  }
+  return std::nullopt;
+}
+
+std::optional<Rigid3d> TransformTree::Fixed(const std::string& target,
+                                            const std::string& source) const {
+  for (const std::string& common : Above(target)) {
+    const auto to_target = Up(target, common);
+    const auto to_source = Up(source, common);
+    if (!to_source.has_value()) continue;
+    Rigid3d common_from_target;
+    for (const Edge* edge : *to_target) {
+      if (edge->moves) return std::nullopt;
+      common_from_target =
+          edge->samples.front().world_from_cam * common_from_target;
+    }
+    Rigid3d common_from_source;
+    for (const Edge* edge : *to_source) {
+      if (edge->moves) return std::nullopt;
+      common_from_source =
+          edge->samples.front().world_from_cam * common_from_source;
+    }
+    return common_from_target.Inverse() * common_from_source;
+  }
+  return std::nullopt;
+}
+
+Trajectory TransformTree::PathOf(const std::string& world,
+                                 const std::string& frame) const {
+  const auto edges = Up(frame, world);
+  if (!edges.has_value()) return {};
+  const Edge* most = nullptr;
+  for (const Edge* edge : *edges) {
+    if (!edge->moves) continue;
+    if (most == nullptr || edge->samples.size() > most->samples.size()) {
+      most = edge;
+    }
+  }
+  if (most == nullptr) return {};
+  Trajectory path;
+  for (const StampedPose& sample : most->samples) {
+    std::optional<Rigid3d> pose = Rigid3d();
+    for (const Edge* edge : *edges) {
+      const std::optional<Rigid3d> step =
+          edge->moves ? At(edge->samples, sample.timestamp)
+                      : edge->samples.front().world_from_cam;
+      if (!step.has_value()) {
+        pose.reset();
+        break;
+      }
+      *pose = *step * *pose;
+    }
+    if (pose.has_value()) path.push_back({sample.timestamp, *pose});
+  }
+  return path;
+}
+
+}  // namespace rgbd_pose

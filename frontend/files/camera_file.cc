@@ -1,0 +1,219 @@
+#include "frontend/files/camera_file.h"
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <filesystem>
+#include <optional>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/files/yaml_section.h"
+
+namespace rgbd_pose {
+namespace {
+
+Camera ReadOrbSlam(const YamlSection& file) {
+  const std::string prefix =
+      file.HasKeyStartingWith("Camera1.") ? "Camera1." : "Camera.";
+  file.CheckWord("Camera.type", {"PinHole", "Rectified"});
+  Camera camera;
+  camera.width = file.Pixels("Camera.width");
+  camera.height = file.Pixels("Camera.height");
+  camera.fx = file.Number(prefix + "fx");
+  camera.fy = file.Number(prefix + "fy");
+  camera.cx = file.Number(prefix + "cx");
+  camera.cy = file.Number(prefix + "cy");
+  camera.k1 = file.NumberOr(prefix + "k1", 0.0);
+  camera.k2 = file.NumberOr(prefix + "k2", 0.0);
+  camera.p1 = file.NumberOr(prefix + "p1", 0.0);
+  camera.p2 = file.NumberOr(prefix + "p2", 0.0);
+  camera.k3 = file.NumberOr(prefix + "k3", 0.0);
+  return camera;
+}
+
+// Coefficients in the order k1 k2 p1 p2 and maybe k3.
+void SetDistortion(const std::vector<double>& coefficients, Camera* camera) {
+  camera->k1 = coefficients[0];
+  camera->k2 = coefficients[1];
+  camera->p1 = coefficients[2];
+  camera->p2 = coefficients[3];
+  if (coefficients.size() > 4) camera->k3 = coefficients[4];
+}
+
+Camera ReadCameraInfoFile(const YamlSection& file) {
+  file.CheckWord("distortion_model", {"plumb_bob"});
+  Camera camera;
+  camera.width = file.Pixels("image_width");
+  camera.height = file.Pixels("image_height");
+  const YamlSection matrix = file.Child("camera_matrix");
+  const std::vector<double> k = matrix.Numbers("data", {9});
+  if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
+    matrix.Fail("data", "must read [fx 0 cx 0 fy cy 0 0 1], row by row");
+  }
+  camera.fx = k[0];
+  camera.fy = k[4];
+  camera.cx = k[2];
+  camera.cy = k[5];
+  SetDistortion(file.Child("distortion_coefficients").Numbers("data", {4, 5}),
+                &camera);
+  return camera;
+}
+
+Camera ReadKalibr(const YamlSection& file, const std::string& name) {
+  const YamlSection cam = file.Child(name);
+  cam.CheckWord("camera_model", {"pinhole"});
+  cam.CheckWord("distortion_model", {"radtan"});
+  Camera camera;
+  const std::vector<double> size = cam.Numbers("resolution", {2});
+  camera.width = cam.Pixels("resolution", size[0]);
+  camera.height = cam.Pixels("resolution", size[1]);
+  const std::vector<double> intrinsics = cam.Numbers("intrinsics", {4});
+  camera.fx = intrinsics[0];
+  camera.fy = intrinsics[1];
+  camera.cx = intrinsics[2];
+  camera.cy = intrinsics[3];
+  SetDistortion(cam.Numbers("distortion_coeffs", {4}), &camera);
+  return camera;
+}
+
+// `camera_from_before` of a camera that is not the first, 4 x 4 row by row.
+Rigid3d ReadKalibrMotion(const YamlSection& file, const std::string& name) {
+  const YamlSection cam = file.Child(name);
+  const std::vector<double> m = cam.Matrix("T_cn_cnm1", 4, 4);
+  Eigen::Matrix3d rotation;
+  rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
+  const bool is_rigid =
+      (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() <
+          1e-3 &&
+      rotation.determinant() > 0.0;
+  if (!is_rigid) cam.Fail("T_cn_cnm1", "holds no rotation");
+  return Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
+}
+
+DepthCamera ReadDepthCamera(const std::string& path, const YamlSection& file,
+                            const std::string& name) {
+  constexpr int kMaxCameras = 16;
+  Rigid3d cam_from_color;
+  for (int i = 1; i < kMaxCameras; ++i) {
+    const std::string next = "cam" + std::to_string(i);
+    if (!file.Has(next)) break;
+    cam_from_color = ReadKalibrMotion(file, next) * cam_from_color;
+    if (next != name) continue;
+    DepthCamera depth = {ReadKalibr(file, name), cam_from_color.Inverse()};
+    const std::string problem = depth.camera.Check();
+    if (!problem.empty()) throw InputError(path + ": " + name + ": " + problem);
+    return depth;
+  }
+  throw InputError(path + ": has no camera '" + name +
+                   "' for depth; name cam1 or a later one of a Kalibr file");
+}
+
+Camera ReadAnyLayout(const std::string& path, const YamlSection& file) {
+  if (file.HasKeyStartingWith("Camera.") ||
+      file.HasKeyStartingWith("Camera1.")) {
+    return ReadOrbSlam(file);
+  }
+  if (file.Has("camera_matrix")) return ReadCameraInfoFile(file);
+  if (file.Has("cam0")) return ReadKalibr(file, "cam0");
+  throw InputError(path +
+                   ": no camera in here; known layouts are ORB-SLAM "
+                   "(Camera.fx), ROS camera_info (camera_matrix) and Kalibr "
+                   "(cam0)");
+}
+
+std::optional<double> ReadDepthScale(const YamlSection& file) {
+  for (const char* key : {"DepthMapFactor", "RGBD.DepthMapFactor"}) {
+    if (!file.Has(key)) continue;
+    const double scale = file.Number(key);
+    if (scale < 1.0) {
+      file.Fail(key,
+                "must be raw depth units per metre, so at least 1 (5000 for "
+                "the TUM benchmark, 1000 for millimetres); is it inverted?");
+    }
+    return scale;
+  }
+  return std::nullopt;
+}
+
+Eigen::Vector3d VectorOr0(const YamlSection& file, const std::string& key) {
+  if (!file.Has(key)) return Eigen::Vector3d::Zero();
+  const std::vector<double> numbers = file.Numbers(key, {3});
+  return {numbers[0], numbers[1], numbers[2]};
+}
+
+// Beyond these a file is wrong, in units perhaps.
+void CheckSize(const YamlSection& file, const std::string& key, double size,
+               double most, const std::string& unit) {
+  if (size <= most) return;
+  std::ostringstream limit;
+  limit << most;
+  file.Fail(key, "must be at most " + limit.str() + " " + unit);
+}
+
+// What rgbd_calibrate found wrong with depth.
+DepthErrors ReadDepthErrors(const YamlSection& file) {
+  DepthErrors errors;
+  errors.inverse_depth_offset = file.NumberOr("inverse_depth_offset", 0.0);
+  CheckSize(file, "inverse_depth_offset", std::abs(errors.inverse_depth_offset),
+            0.5, "1/m");
+  errors.depth_time_offset = file.NumberOr("depth_time_offset", 0.0);
+  CheckSize(file, "depth_time_offset", std::abs(errors.depth_time_offset), 0.5,
+            "s");
+  const Eigen::Vector3d turn = VectorOr0(file, "depth_rotation");
+  const double angle = turn.norm();
+  CheckSize(file, "depth_rotation", angle, 0.5, "rad");
+  const Eigen::Vector3d translation = VectorOr0(file, "depth_translation");
+  CheckSize(file, "depth_translation", translation.norm(), 0.5, "m");
+  const Eigen::Vector3d axis =
+      angle > 0.0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX();
+  errors.depth_from_color =
+      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), translation);
+  return errors;
+}
+
+}  // namespace
+
+CameraSetup ReadCameraFile(const std::string& path,
+                           const std::string& depth_camera) {
+  const YamlSection file = YamlSection::FromFile(path);
+  CameraSetup result;
+  result.camera = ReadAnyLayout(path, file);
+  result.depth_scale = ReadDepthScale(file);
+  result.depth_errors = ReadDepthErrors(file);
+  const std::string problem = result.camera.Check();
+  if (!problem.empty()) throw InputError(path + ": " + problem);
+  if (!depth_camera.empty()) {
+    result.depth_camera = ReadDepthCamera(path, file, depth_camera);
+  }
+  return result;
+}
+
+CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
+                               const std::string& depth_camera) {
+  std::error_code error;
+  const auto preset = CameraPreset(file_or_preset);
+  if (!preset && std::filesystem::exists(file_or_preset, error)) {
+    return ReadCameraFile(file_or_preset, depth_camera);
+  }
+  // Presets are of registered depth. Their scale is the benchmark's: what a
+  // recording says of its own comes before it.
+  if (preset && depth_camera.empty()) return CameraSetup(preset->camera);
+  if (preset) {
+    throw InputError("camera '" + file_or_preset +
+                     "' is a preset, which has "
+                     "no depth camera '" +
+                     depth_camera + "'; give a Kalibr file of both cameras");
+  }
+  throw InputError("camera '" + file_or_preset +
+                   "' is neither a file nor one of the presets: " +
+                   Join(CameraPresetNames()));
+}
+
+RgbdCamera ResolveCamera(const std::string& file_or_preset) {
+  return RegisteredCamera(ResolveCameraSetup(file_or_preset));
+}
+
+}  // namespace rgbd_pose

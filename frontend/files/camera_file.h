@@ -1,0 +1,42 @@
+#pragma once
+
+#include <string>
+
+#include "core/geometry/camera.h"
+#include "frontend/files/camera_setup.h"
+
+namespace rgbd_pose {
+
+// Reads the calibration of an RGB-D camera from a YAML file in one of the
+// layouts that people already have:
+//  - settings of ORB-SLAM2 and 3: Camera.fx (or Camera1.fx), fy, cx, cy, maybe
+//    k1 k2 p1 p2 k3; Camera.width, Camera.height;
+//  - ROS camera_info: image_width, image_height, camera_matrix.data (3 x 3),
+//    distortion_coefficients.data (plumb_bob: k1 k2 p1 p2 and maybe k3);
+//  - Kalibr: cam0 with camera_model pinhole, intrinsics [fx fy cx cy],
+//    distortion_model radtan with distortion_coeffs [k1 k2 p1 p2], resolution
+//    [width height].
+// The depth scale is the top-level key DepthMapFactor or RGBD.DepthMapFactor
+// (raw units per metre). Only ORB-SLAM writes it.
+// `depth_camera` names the camera of a Kalibr file (cam1, say) that took the
+// depth images; each camera but cam0 has T_cn_cnm1, from the camera before.
+// Empty: depth is registered to colour, and other cameras are left out.
+// What rgbd_calibrate found wrong with depth are further top-level keys:
+// inverse_depth_offset (1/m), depth_time_offset (s), depth_rotation (rotation
+// vector, rad) and depth_translation (m), see DepthErrors.
+// Throws InputError (file:line, key) for an unknown layout or camera model, a
+// missing key, a wrong number of entries, and values that make no camera.
+CameraSetup ReadCameraFile(const std::string& path,
+                           const std::string& depth_camera = "");
+
+// A camera by the name of its preset (see CameraPreset) or by its file. A file
+// named like a preset is reached as ./name. Throws InputError, listing the
+// presets, if it is neither.
+CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
+                               const std::string& depth_camera = "");
+
+// The same of a camera with registered depth. Without a depth scale it is 5000,
+// as of the TUM RGB-D benchmark; many ROS drivers use 1000 instead.
+RgbdCamera ResolveCamera(const std::string& file_or_preset);
+
+}  // namespace rgbd_pose

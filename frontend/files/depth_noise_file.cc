@@ -1,0 +1,56 @@
+#include "frontend/files/depth_noise_file.h"
+
+#include <filesystem>
+
+#include "core/util/format.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/files/yaml_section.h"
+
+namespace rgbd_pose {
+
+std::string FormatDepthNoiseFile(const DepthNoiseModel& model) {
+  return Format(
+      "# Standard deviation (m) of one measured depth z (m):\n"
+      "# sigma(z) = constant + quadratic * (z - centre)^2\n"
+      "constant: %.9g\n"
+      "quadratic: %.9g\n"
+      "centre: %.9g\n"
+      "# That of the mean of 3 x 3 neighbours, as a share of it.\n"
+      "mean_share: %.9g\n",
+      model.constant, model.quadratic, model.centre, model.mean_share);
+}
+
+DepthNoiseModel ReadDepthNoiseFile(const std::string& path) {
+  const YamlSection file = YamlSection::FromFile(path);
+  DepthNoiseModel model;
+  model.name = path;
+  model.constant = file.Number("constant");
+  model.quadratic = file.Number("quadratic");
+  model.centre = file.NumberOr("centre", model.centre);
+  model.mean_share = file.NumberOr("mean_share", model.mean_share);
+  const std::string problem = model.Check();
+  if (!problem.empty()) throw InputError(path + ": " + problem);
+  // In millimetres, or of something else.
+  constexpr double kMost = 1.0;  // m, at 1 m
+  if (model.sigma(1.0) > kMost) {
+    throw InputError(path + Format(": a depth of 1 m is uncertain by %.3g m; "
+                                   "are these metres?",
+                                   model.sigma(1.0)));
+  }
+  return model;
+}
+
+DepthNoiseModel ResolveDepthNoise(const std::string& name_or_file) {
+  const DepthNoiseModel* row = FindDepthNoiseModel(name_or_file);
+  if (row != nullptr) return *row;
+  std::error_code error;
+  if (std::filesystem::is_regular_file(name_or_file, error)) {
+    return ReadDepthNoiseFile(name_or_file);
+  }
+  throw InputError("unknown depth noise '" + name_or_file +
+                   "': no such file, and the models are " +
+                   Join(DepthNoiseModelNames()));
+}
+
+}  // namespace rgbd_pose

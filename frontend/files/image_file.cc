@@ -1,0 +1,132 @@
+#include "frontend/files/image_file.h"
+
+#include <opencv2/imgcodecs.hpp>
+#include <string_view>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+#include "frontend/files/png_decoder.h"
+#include "frontend/files/png_encoder.h"
+#endif
+
+namespace rgbd_pose {
+namespace {
+
+// OpenCV fills the missing rest of a JPEG with grey and calls it a success, so
+// look for the end marker behind the last scan. Neither marker can occur
+// inside the compressed data.
+bool IsCutOffJpeg(std::string_view bytes) {
+  constexpr std::string_view kJpegStart = "\xFF\xD8\xFF";
+  constexpr std::string_view kScanStart = "\xFF\xDA";
+  constexpr std::string_view kJpegEnd = "\xFF\xD9";
+  if (bytes.substr(0, kJpegStart.size()) != kJpegStart) return false;
+  const size_t last_scan = bytes.rfind(kScanStart);
+  return last_scan == std::string_view::npos ||
+         bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
+}
+
+cv::Mat DecodeByOpenCv(const std::string& bytes, const std::string& path,
+                       int flags) {
+  cv::Mat image;
+  try {
+    // It is only read from.
+    const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1,
+                         const_cast<char*>(bytes.data()));
+    image = cv::imdecode(buffer, flags | cv::IMREAD_IGNORE_ORIENTATION);
+  } catch (const cv::Exception& error) {
+    throw InputError(path + ": cannot be decoded: " + error.err);
+  }
+  if (image.empty()) {
+    throw InputError(path +
+                     ": is damaged, cut off or no image that OpenCV can read");
+  }
+  return image;
+}
+
+// Decodes an image, in colour as well if `color` is not null.
+cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
+               cv::Mat* color) {
+  if (bytes.empty()) throw InputError(path + ": is empty; copy it again");
+  bool is_damaged = IsCutOffJpeg(bytes);
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+  PngUse use = PngUse::kOther;
+  const int depth_or_not = flags & ~cv::IMREAD_ANYDEPTH;  // 8 bits in any case
+  if (depth_or_not == cv::IMREAD_GRAYSCALE) {
+    use = color == nullptr ? PngUse::kGray : PngUse::kGrayAndColor;
+  }
+  if (flags == cv::IMREAD_UNCHANGED) use = PngUse::kDepth;
+  const DecodedPng png = DecodePng(bytes, use);
+  if (!png.image.empty()) {
+    if (color != nullptr) *color = png.color;
+    return png.image;
+  }
+  is_damaged |= png.is_damaged;
+#endif
+  if (is_damaged) {
+    throw InputError(path + ": is damaged or cut off; copy it again");
+  }
+  if (color != nullptr) {
+    *color = DecodeByOpenCv(bytes, path, cv::IMREAD_COLOR);
+  }
+  return DecodeByOpenCv(bytes, path, flags);
+}
+
+}  // namespace
+
+cv::Mat ReadImageFile(const std::string& path, int flags) {
+  return Decode(ReadTextFile(path), path, flags, nullptr);
+}
+
+cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color) {
+  return DecodeGrayImage(ReadTextFile(path), path, color);
+}
+
+cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
+                        cv::Mat* color) {
+  cv::Mat gray =
+      Decode(bytes, path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH, color);
+  if (gray.type() != CV_8UC1) {
+    throw InputError(path +
+                     ": a colour image must have 8 bits a channel, this one "
+                     "has more; is it the depth image?");
+  }
+  return gray;
+}
+
+cv::Mat ReadDepthImageFile(const std::string& path) {
+  return DecodeDepthImage(ReadTextFile(path), path);
+}
+
+cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path) {
+  cv::Mat depth = Decode(bytes, path, cv::IMREAD_UNCHANGED, nullptr);
+  if (depth.type() != CV_16UC1) {
+    throw InputError(path +
+                     ": a depth image must have 16 bits and 1 channel, "
+                     "this one is " +
+                     cv::typeToString(depth.type()) +
+                     "; is it the colour image, or a depth image made for "
+                     "viewing?");
+  }
+  return depth;
+}
+
+std::string EncodePng(const cv::Mat& image, const std::vector<int>& settings) {
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+  const bool is_ours = image.type() == CV_8UC1 || image.type() == CV_16UC1;
+  if (settings.empty() && is_ours && !image.empty()) {
+    return EncodePngByLibdeflate(image);
+  }
+#endif
+  std::vector<uchar> bytes;
+  cv::imencode(".png", image, bytes, settings);
+  return {bytes.begin(), bytes.end()};
+}
+
+// OpenCV does not notice a disk that gets full at the end of a file.
+void WritePngFile(const std::string& path, const cv::Mat& image,
+                  const std::vector<int>& settings) {
+  WriteFileAtomically(path, EncodePng(image, settings));
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,137 @@
+#include "frontend/files/yaml_section.h"
+
+#include <cmath>
+
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+namespace {
+
+// OpenCV's first line, %YAML:1.0, is no YAML. Its line end stays, so that line
+// numbers do not change.
+std::string WithoutDirective(std::string_view content) {
+  std::string text(WithoutByteOrderMark(content));
+  if (text.rfind("%YAML", 0) == 0) text.erase(0, text.find_first_of("\r\n"));
+  return text;
+}
+
+void Append(const std::string& word, const char* separator, std::string* list) {
+  if (!list->empty()) *list += separator;
+  *list += word;
+}
+
+}  // namespace
+
+YamlSection YamlSection::FromFile(const std::string& path) {
+  const std::string text = WithoutDirective(ReadTextFile(path));
+  try {
+    const YAML::Node node = YAML::Load(text);
+    return {path, "", node.IsMap() ? node : YAML::Node(YAML::NodeType::Map)};
+  } catch (const YAML::Exception& error) {
+    throw InputError(path, error.mark.line + 1,
+                     "this is no valid YAML: " + error.msg);
+  }
+}
+
+bool YamlSection::Has(const std::string& key) const {
+  return node_[key].IsDefined();
+}
+
+bool YamlSection::HasKeyStartingWith(const std::string& start) const {
+  for (const auto& entry : node_) {
+    if (entry.first.Scalar().rfind(start, 0) == 0) return true;
+  }
+  return false;
+}
+
+YamlSection YamlSection::Child(const std::string& key) const {
+  const YAML::Node child = Find(key);
+  if (!child.IsMap()) Fail(key, "needs keys below it");
+  return {path_, prefix_ + key + ".", child};
+}
+
+double YamlSection::Number(const std::string& key) const {
+  return ToNumber(key, Find(key));
+}
+
+double YamlSection::NumberOr(const std::string& key, double fallback) const {
+  return Has(key) ? Number(key) : fallback;
+}
+
+std::vector<double> YamlSection::Numbers(
+    const std::string& key, const std::vector<size_t>& lengths) const {
+  const YAML::Node list = Find(key);
+  std::string wanted;
+  for (const size_t length : lengths) {
+    if (list.IsSequence() && list.size() == length) {
+      std::vector<double> numbers;
+      for (const auto& item : list) numbers.push_back(ToNumber(key, item));
+      return numbers;
+    }
+    Append(std::to_string(length), " or ", &wanted);
+  }
+  Fail(key, "needs a list of " + wanted + " numbers");
+}
+
+std::vector<double> YamlSection::Matrix(const std::string& key, size_t rows,
+                                        size_t columns) const {
+  const YAML::Node list = Find(key);
+  if (list.IsSequence() && list.size() == rows * columns) {
+    return Numbers(key, {rows * columns});
+  }
+  std::vector<double> numbers;
+  for (size_t i = 0; list.IsSequence() && i < list.size(); ++i) {
+    const YAML::Node row = list[i];
+    if (!row.IsSequence() || row.size() != columns) break;
+    for (const auto& item : row) numbers.push_back(ToNumber(key, item));
+  }
+  if (numbers.size() == rows * columns && list.size() == rows) return numbers;
+  Fail(key, "needs a list of " + std::to_string(rows) + " lists of " +
+                std::to_string(columns) + " numbers");
+}
+
+int YamlSection::Pixels(const std::string& key) const {
+  return Pixels(key, Number(key));
+}
+
+int YamlSection::Pixels(const std::string& key, double number) const {
+  constexpr double kMaxPixels = 65536.0;
+  if (number < 1.0 || number > kMaxPixels || number != std::floor(number)) {
+    Fail(key, "must be a positive whole number of pixels");
+  }
+  return static_cast<int>(number);
+}
+
+void YamlSection::CheckWord(const std::string& key,
+                            const std::vector<std::string>& known) const {
+  if (!Has(key)) return;
+  const std::string value = node_[key].Scalar();
+  std::string list;
+  for (const std::string& word : known) {
+    if (value == word) return;
+    Append(word, ", ", &list);
+  }
+  Fail(key, "'" + value + "' is not supported, only: " + list);
+}
+
+void YamlSection::Fail(const std::string& key,
+                       const std::string& message) const {
+  throw InputError(path_, node_[key].Mark().line + 1,
+                   prefix_ + key + " " + message);
+}
+
+YAML::Node YamlSection::Find(const std::string& key) const {
+  if (!Has(key)) {
+    throw InputError(path_, node_.Mark().line + 1,
+                     prefix_ + key + " is missing below this line");
+  }
+  return node_[key];
+}
+
+double YamlSection::ToNumber(const std::string& key,
+                             const YAML::Node& node) const {
+  return ParseNumber(node.Scalar(), path_, node.Mark().line + 1, prefix_ + key);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,310 @@
+#include "frontend/files/camera_file.h"
+
+#include <gtest/gtest.h>
+
+#include "core/util/input_error.h"
+#include "tests/support/camera_file_samples.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+std::string Replace(std::string text, const std::string& from,
+                    const std::string& to) {
+  const size_t place = text.find(from);
+  EXPECT_NE(place, std::string::npos) << from;
+  if (place != std::string::npos) text.replace(place, from.size(), to);
+  return text;
+}
+
+void ExpectCamera(const Camera& camera, const Camera& expected) {
+  EXPECT_EQ(camera.width, expected.width);
+  EXPECT_EQ(camera.height, expected.height);
+  EXPECT_EQ(camera.fx, expected.fx);
+  EXPECT_EQ(camera.fy, expected.fy);
+  EXPECT_EQ(camera.cx, expected.cx);
+  EXPECT_EQ(camera.cy, expected.cy);
+  EXPECT_EQ(camera.k1, expected.k1);
+  EXPECT_EQ(camera.k2, expected.k2);
+  EXPECT_EQ(camera.p1, expected.p1);
+  EXPECT_EQ(camera.p2, expected.p2);
+  EXPECT_EQ(camera.k3, expected.k3);
+}
+
+struct GoodFile {
+  const char* name;
+  std::string text;
+  Camera camera;
+  double depth_scale;
+};
+
+class GoodCameraFileTest : public testing::TestWithParam<GoodFile> {};
+
+TEST_P(GoodCameraFileTest, IsRead) {
+  const TempFolder folder;
+  const CameraSetup setup =
+      ReadCameraFile(folder.Write("camera.yaml", GetParam().text));
+  ExpectCamera(setup.camera, GetParam().camera);
+  EXPECT_EQ(RegisteredCamera(setup).depth_scale, GetParam().depth_scale);
+  EXPECT_FALSE(setup.depth_camera.has_value());
+}
+
+const Camera kOrbSlam2Camera = {640,    480,     517.3,   516.5,  318.6, 255.3,
+                                0.2624, -0.9531, -0.0054, 0.0026, 1.1633};
+const Camera kOrbSlam3Camera = {640, 480, 535.4, 539.2, 320.1, 247.6,
+                                0.1, 0.2, 0.3,   0.4,   0.0};
+const Camera kRosCamera = {320,  240,  270.5, 271.5, 160.25, 120.75,
+                           0.01, 0.02, 0.03,  0.04,  0.05};
+const Camera kKalibrCamera = {848,  480,  600.5, 601.5, 424.25, 240.75,
+                              0.01, 0.02, 0.03,  0.04,  0.0};
+
+std::string WithCrLf(const std::string& text) {
+  std::string result;
+  for (const char c : text) {
+    if (c == '\n') result += '\r';
+    result += c;
+  }
+  return result;
+}
+
+Camera WithoutK3(Camera camera) {
+  camera.k3 = 0.0;
+  return camera;
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CameraFile, GoodCameraFileTest,
+    testing::Values(GoodFile{"OrbSlam2", kOrbSlam2, kOrbSlam2Camera, 5208.0},
+                    GoodFile{"OrbSlam2CrLfAndByteOrderMark",
+                             "\xEF\xBB\xBF" + WithCrLf(kOrbSlam2),
+                             kOrbSlam2Camera, 5208.0},
+                    GoodFile{"OrbSlam3", kOrbSlam3, kOrbSlam3Camera, 1000.0},
+                    GoodFile{"Ros", kRos, kRosCamera, 5000.0},
+                    GoodFile{"RosFourCoefficients",
+                             Replace(kRos, ", 0.05]", "]"),
+                             WithoutK3(kRosCamera), 5000.0},
+                    GoodFile{"RosWithDepthScale",
+                             std::string(kRos) + "DepthMapFactor: 1000\n",
+                             kRosCamera, 1000.0},
+                    GoodFile{"Kalibr", kKalibr, kKalibrCamera, 5000.0}),
+    [](const auto& info) { return info.param.name; });
+
+struct BadFile {
+  const char* name;
+  std::string text;
+  std::vector<std::string> message_parts;  // line and key among them
+};
+
+class BadCameraFileTest : public testing::TestWithParam<BadFile> {};
+
+TEST_P(BadCameraFileTest, IsRefusedInOneLineThatSaysWhere) {
+  const TempFolder folder;
+  const std::string path = folder.Write("camera.yaml", GetParam().text);
+  std::vector<std::string> message_parts = GetParam().message_parts;
+  message_parts.push_back(path + ":");
+  ExpectInputError([&path] { ReadCameraFile(path); }, message_parts);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    CameraFile, BadCameraFileTest,
+    testing::Values(
+        BadFile{"Empty", "", {"known layouts"}},
+        BadFile{"OnlyText", "just some words\n", {"known layouts"}},
+        BadFile{"AList", "- 1\n- 2\n", {"known layouts"}},
+        BadFile{"OtherKeys", "a: 1\nb: 2\n", {"known layouts"}},
+        BadFile{"NoYaml", "a: 1\nCamera.fx: [1, 2\n", {"yaml:3:", "YAML"}},
+        BadFile{"OrbSlamWithoutFy",
+                Replace(kOrbSlam2, "Camera.fy: 516.5\n", ""),
+                {"Camera.fy is missing"}},
+        BadFile{"OrbSlamWithoutWidth",
+                Replace(kOrbSlam2, "Camera.width: 640\n", ""),
+                {"Camera.width is missing"}},
+        BadFile{"OrbSlam3WithoutFx",
+                Replace(kOrbSlam3, "Camera1.fx: 535.4\n", ""),
+                {"Camera1.fx is missing"}},
+        BadFile{"NaN",
+                Replace(kOrbSlam2, "516.5", ".nan"),
+                {"yaml:5:", "Camera.fy", ".nan"}},
+        BadFile{"Infinite",
+                Replace(kOrbSlam2, "516.5", "inf"),
+                {"yaml:5:", "Camera.fy"}},
+        BadFile{"Word",
+                Replace(kOrbSlam2, "516.5", "516,5"),
+                {"yaml:5:", "Camera.fy", "516,5"}},
+        BadFile{"ListForNumber",
+                Replace(kOrbSlam2, "516.5", "[516.5]"),
+                {"yaml:5:", "Camera.fy"}},
+        BadFile{
+            "NegativeFocalLength", Replace(kOrbSlam2, "516.5", "-480"), {"fy"}},
+        BadFile{"PrincipalPointOutside",
+                Replace(kOrbSlam2, "318.6", "3186"),
+                {"principal point"}},
+        BadFile{"HalfAPixel",
+                Replace(kOrbSlam2, "width: 640", "width: 640.5"),
+                {"yaml:13:", "Camera.width"}},
+        BadFile{"HugeWidth",
+                Replace(kOrbSlam2, "width: 640", "width: 1e300"),
+                {"yaml:13:", "Camera.width"}},
+        BadFile{"FishEye",
+                Replace(kOrbSlam3, "PinHole", "KannalaBrandt8"),
+                {"yaml:4:", "Camera.type", "KannalaBrandt8", "PinHole"}},
+        BadFile{"InvertedDepthScale",
+                Replace(kOrbSlam2, "5208.0", "0.0002"),
+                {"yaml:16:", "DepthMapFactor", "inverted"}},
+        BadFile{"ZeroDepthScale",
+                Replace(kOrbSlam3, "1000.0", "0"),
+                {"yaml:15:", "RGBD.DepthMapFactor"}},
+        BadFile{"DepthScaleNaN",
+                Replace(kOrbSlam2, "5208.0", "nan"),
+                {"yaml:16:", "DepthMapFactor"}},
+        BadFile{"RosWithoutHeight",
+                Replace(kRos, "image_height: 240\n", ""),
+                {"image_height is missing"}},
+        BadFile{"RosWithoutMatrixData",
+                Replace(kRos, "  data: [270.5", "  dada: [270.5"),
+                {"yaml:5:", "camera_matrix.data is missing"}},
+        BadFile{"RosMatrixTooShort",
+                Replace(kRos, ", 0, 0, 1]", ", 0, 0]"),
+                {"yaml:7:", "camera_matrix.data", "9 numbers"}},
+        BadFile{"RosMatrixWithSkew",
+                Replace(kRos, "[270.5, 0,", "[270.5, 2,"),
+                {"yaml:7:", "camera_matrix.data"}},
+        BadFile{"RosMatrixNoMap",
+                "camera_matrix: 3\nimage_width: 3\nimage_height: 3\n",
+                {"yaml:1:", "camera_matrix"}},
+        BadFile{"RosOtherModel",
+                Replace(kRos, "plumb_bob", "equidistant"),
+                {"yaml:8:", "distortion_model", "equidistant", "plumb_bob"}},
+        BadFile{"RosThreeCoefficients",
+                Replace(kRos, ", 0.04, 0.05]", "]"),
+                {"yaml:12:", "distortion_coefficients.data", "4 or 5"}},
+        BadFile{"RosNoDistortion",
+                Replace(kRos, "distortion_coefficients:", "coefficients:"),
+                {"distortion_coefficients is missing"}},
+        BadFile{"KalibrThreeIntrinsics",
+                Replace(kKalibr, ", 240.75]", "]"),
+                {"yaml:5:", "cam0.intrinsics", "4 numbers"}},
+        BadFile{"KalibrWithoutIntrinsics",
+                Replace(kKalibr, "  intrinsics", "  in"),
+                {"yaml:2:", "cam0.intrinsics is missing"}},
+        BadFile{"KalibrNaN",
+                Replace(kKalibr, "601.5", "nan"),
+                {"yaml:5:", "cam0.intrinsics", "nan"}},
+        BadFile{"KalibrOmni",
+                Replace(kKalibr, "pinhole", "omni"),
+                {"yaml:2:", "cam0.camera_model", "omni", "pinhole"}},
+        BadFile{"KalibrEquidistant",
+                Replace(kKalibr, "radtan", "equidistant"),
+                {"yaml:4:", "cam0.distortion_model", "equidistant", "radtan"}},
+        BadFile{"KalibrResolution",
+                Replace(kKalibr, "[848, 480]", "[848, -480]"),
+                {"yaml:6:", "cam0.resolution"}}),
+    [](const auto& info) { return info.param.name; });
+
+// As Kalibr writes its result: cam1 a quarter turn around z and 0.1 m along the
+// new x away from cam0, cam2 0.2 m along z from cam1.
+constexpr char kRig[] = R"(
+cam0:
+  camera_model: pinhole
+  intrinsics: [600.5, 601.5, 424.25, 240.75]
+  distortion_model: radtan
+  distortion_coeffs: [0.0, 0.0, 0.0, 0.0]
+  resolution: [848, 480]
+cam1:
+  T_cn_cnm1:
+  - [0.0, 1.0, 0.0, 0.1]
+  - [-1.0, 0.0, 0.0, 0.0]
+  - [0.0, 0.0, 1.0, 0.0]
+  - [0.0, 0.0, 0.0, 1.0]
+  camera_model: pinhole
+  intrinsics: [400.0, 401.0, 320.0, 240.0]
+  distortion_model: radtan
+  distortion_coeffs: [0.1, 0.0, 0.0, 0.0]
+  resolution: [640, 480]
+cam2:
+  T_cn_cnm1: [1, 0, 0, 0,  0, 1, 0, 0,  0, 0, 1, 0.2,  0, 0, 0, 1]
+  camera_model: pinhole
+  intrinsics: [402.0, 403.0, 320.0, 240.0]
+  distortion_model: radtan
+  distortion_coeffs: [0.0, 0.0, 0.0, 0.0]
+  resolution: [640, 480]
+)";
+
+TEST(DepthCameraTest, IsReadFromARig) {
+  const TempFolder folder;
+  const std::string path = folder.Write("rig.yaml", kRig);
+  EXPECT_FALSE(ReadCameraFile(path).depth_camera.has_value());
+  const CameraSetup setup = ReadCameraFile(path, "cam1");
+  EXPECT_EQ(setup.camera.fx, 600.5);
+  EXPECT_FALSE(setup.depth_scale.has_value());
+  ASSERT_TRUE(setup.depth_camera.has_value());
+  EXPECT_EQ(setup.depth_camera->camera.fy, 401.0);
+  EXPECT_EQ(setup.depth_camera->camera.k1, 0.1);
+  EXPECT_EQ(setup.depth_camera->camera.width, 640);
+  // cam1_from_cam0 takes cam0's (0, 0, 1) to (0.1, 0, 1), and so on.
+  const Rigid3d& of_cam1 = setup.depth_camera->color_from_depth;
+  EXPECT_LT((of_cam1 * Eigen::Vector3d(0.1, 0.0, 1.0) -
+             Eigen::Vector3d(0.0, 0.0, 1.0))
+                .norm(),
+            1e-12);
+  EXPECT_LT((of_cam1 * Eigen::Vector3d(2.1, -1.0, 1.0) -
+             Eigen::Vector3d(1.0, 2.0, 1.0))
+                .norm(),
+            1e-12);
+  const CameraSetup third = ReadCameraFile(path, "cam2");
+  EXPECT_EQ(third.depth_camera->camera.fx, 402.0);
+  EXPECT_LT(
+      (third.depth_camera->color_from_depth * Eigen::Vector3d(2.1, -1.0, 1.2) -
+       Eigen::Vector3d(1.0, 2.0, 1.0))
+          .norm(),
+      1e-12);
+}
+
+TEST(DepthCameraTest, RefusesWhatIsNoRig) {
+  const TempFolder folder;
+  const std::string path = folder.Write("rig.yaml", kRig);
+  for (const char* name : {"cam0", "cam3", "depth"}) {
+    ExpectInputError([&] { ReadCameraFile(path, name); },
+                     {path, name, "cam1 or a later one"});
+  }
+  std::string text = kRig;
+  text.replace(text.find("- [0.0, 1.0"), 11, "- [0.0, 1.5");
+  const std::string bent = folder.Write("bent.yaml", text);
+  ExpectInputError([&] { ReadCameraFile(bent, "cam1"); },
+                   {bent, "cam1.T_cn_cnm1", "no rotation"});
+  text = kRig;
+  text.replace(text.find("  - [0.0, 0.0, 0.0, 1.0]\n"), 25, "");
+  const std::string cut = folder.Write("cut.yaml", text);
+  ExpectInputError([&] { ReadCameraFile(cut, "cam1"); },
+                   {cut, "T_cn_cnm1", "4 lists of 4"});
+  ExpectInputError([&] { ResolveCameraSetup("tum_fr1", "cam1"); },
+                   {"tum_fr1", "cam1", "Kalibr"});
+}
+
+TEST(ResolveCameraTest, LeavesTheScaleOfPresetsToRecordings) {
+  EXPECT_FALSE(ResolveCameraSetup("tum_fr1").depth_scale.has_value());
+  EXPECT_EQ(ResolveCamera("tum_fr1").depth_scale, 5000.0);
+}
+
+TEST(ResolveCameraTest, KnowsPresetsAndFiles) {
+  ExpectCamera(ResolveCamera("tum_fr1").camera,
+               CameraPreset("tum_fr1")->camera);
+  const TempFolder folder;
+  const std::string path = folder.Write("camera.yaml", kOrbSlam3);
+  ExpectCamera(ResolveCamera(path).camera, kOrbSlam3Camera);
+}
+
+TEST(ResolveCameraTest, ListsThePresetsForAnUnknownName) {
+  std::vector<std::string> message_parts = CameraPresetNames();
+  message_parts.push_back("'tum_fr9'");
+  ExpectInputError([] { ResolveCamera("tum_fr9"); }, message_parts);
+}
+
+TEST(ResolveCameraTest, RefusesAFolder) {
+  const TempFolder folder;
+  EXPECT_THROW(ResolveCamera(folder.path()), InputError);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

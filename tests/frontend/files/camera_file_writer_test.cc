@@ -1,0 +1,109 @@
+#include "frontend/files/camera_file_writer.h"
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "core/util/input_error.h"
+#include "frontend/files/camera_file.h"
+#include "tests/support/camera_file_samples.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Another camera of the same size; what a layout does not hold stays 0.
+RgbdCamera Changed(const RgbdCamera& first) {
+  RgbdCamera camera = first;
+  camera.camera.fx = 510.125;
+  camera.camera.fy = 509.5;
+  camera.camera.cx = 161.25;
+  camera.camera.cy = 121.5;
+  camera.camera.k1 = 0.0123;
+  camera.camera.k2 = -0.0456;
+  camera.depth_scale = 5012.25;
+  camera.depth_errors.inverse_depth_offset = -0.0098;
+  camera.depth_errors.depth_time_offset = 0.0151;
+  camera.depth_errors.depth_from_color = Rigid3d(
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.0052, Eigen::Vector3d::UnitY())),
+      {0.005, -0.001, 0.002});
+  return camera;
+}
+
+void ExpectEqual(const RgbdCamera& a, const RgbdCamera& b) {
+  EXPECT_EQ(a.camera.width, b.camera.width);
+  EXPECT_EQ(a.camera.height, b.camera.height);
+  for (const CameraParameter& parameter : kCameraParameters) {
+    EXPECT_NEAR(a.camera.*parameter.value, b.camera.*parameter.value, 1e-6)
+        << parameter.name;
+  }
+  EXPECT_NEAR(a.depth_scale, b.depth_scale, 1e-6);
+  EXPECT_NEAR(a.depth_errors.inverse_depth_offset,
+              b.depth_errors.inverse_depth_offset, 1e-9);
+  EXPECT_NEAR(a.depth_errors.depth_time_offset,
+              b.depth_errors.depth_time_offset, 1e-9);
+  EXPECT_NEAR((a.depth_errors.depth_from_color.Inverse() *
+               b.depth_errors.depth_from_color)
+                  .Angle(),
+              0.0, 1e-9);
+  EXPECT_TRUE(a.depth_errors.depth_from_color.translation.isApprox(
+      b.depth_errors.depth_from_color.translation, 1e-9));
+}
+
+class EveryLayoutTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(EveryLayoutTest, IsWrittenAsItIsRead) {
+  const TempFolder folder;
+  const std::string first = folder.Write("camera.yaml", GetParam());
+  RgbdCamera camera = Changed(ResolveCamera(first));
+  const std::string second =
+      folder.Write("second.yaml", FormatCameraFile(camera, first));
+  ExpectEqual(ResolveCamera(second), camera);
+  // A file that has the keys of depth already, and back to none.
+  camera.depth_errors.inverse_depth_offset = 0.25;
+  camera.depth_errors.depth_time_offset = 0.0;
+  camera.depth_errors.depth_from_color = Rigid3d();
+  const std::string third =
+      folder.Write("third.yaml", FormatCameraFile(camera, second));
+  ExpectEqual(ResolveCamera(third), camera);
+}
+
+INSTANTIATE_TEST_SUITE_P(CameraFileWriter, EveryLayoutTest,
+                         testing::Values(kOrbSlam2, kOrbSlam3, kRos, kKalibr));
+
+TEST(CameraFileWriterTest, OtherLinesAndKeysStay) {
+  const TempFolder folder;
+  const std::string orb = folder.Write("orb.yaml", kOrbSlam3);
+  const RgbdCamera camera = Changed(ResolveCamera(orb));
+  const std::string text = FormatCameraFile(camera, orb);
+  EXPECT_NE(text.find("File.version: \"1.0\"\n"), std::string::npos);
+  EXPECT_NE(text.find("Camera1.fx: 510.125\n"), std::string::npos);
+  EXPECT_NE(text.find("  data: [1.0, 0.0]\n"), std::string::npos);
+  const std::string ros = folder.Write("ros.yaml", kRos);
+  EXPECT_NE(FormatCameraFile(camera, ros).find("camera_name: rgb"),
+            std::string::npos);
+}
+
+TEST(CameraFileWriterTest, PresetsBecomeFiles) {
+  const TempFolder folder;
+  const RgbdCamera camera = Changed(*CameraPreset("tum_fr1"));
+  ExpectEqual(ResolveCamera(folder.Write("new.yaml",
+                                         FormatCameraFile(camera, "tum_fr1"))),
+              camera);
+}
+
+TEST(CameraFileWriterTest, DepthErrorsAreNoLargerThanTheyCanBe) {
+  const TempFolder folder;
+  for (const char* line :
+       {"inverse_depth_offset: 7", "depth_time_offset: 15",
+        "depth_rotation: [0.3, 0, 30]", "depth_translation: [5, 0, 0]",
+        "depth_translation: [5, 0]"}) {
+    const std::string file =
+        folder.Write("camera.yaml", std::string(kOrbSlam2) + line + "\n");
+    EXPECT_THROW(ReadCameraFile(file), InputError) << line;
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose
