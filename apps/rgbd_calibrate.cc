@@ -8,8 +8,8 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "apps/pipeline/calibration_passes.h"
-#include "apps/pipeline/calibration_run.h"
+#include "apps/calibration/calibration_passes.h"
+#include "apps/calibration/calibration_run.h"
 #include "apps/report/calibration_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/shell/available_cores.h"

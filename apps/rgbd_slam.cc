@@ -14,8 +14,8 @@
 #include <string>
 #include <utility>
 
+#include "apps/calibration/calibration_run.h"
 #include "apps/export/export_format.h"
-#include "apps/pipeline/calibration_run.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/pipeline/slam_run.h"
 #include "apps/report/calibration_page.h"

@@ -6,16 +6,22 @@ include(CMakePackageConfigHelpers)
 set(RGBD_POSE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/rgbd_pose)
 set(RGBD_POSE_HEADER_DIR ${CMAKE_INSTALL_INCLUDEDIR}/rgbd_pose)
 
+# The headers below a folder, which may be a relative path.
+function(rgbd_pose_install_headers folder)
+  get_filename_component(folder ${folder} ABSOLUTE)
+  file(RELATIVE_PATH to ${PROJECT_SOURCE_DIR} ${folder})
+  install(DIRECTORY ${folder}/
+          DESTINATION ${RGBD_POSE_HEADER_DIR}/${to} COMPONENT development
+          FILES_MATCHING PATTERN *.h)
+endfunction()
+
 # A library and the headers of its folder. Each is an export set of its own, so
 # that who asks for one component needs no more than its dependencies.
 function(rgbd_pose_install_library name)
   install(TARGETS rgbd_pose_${name} EXPORT rgbd_pose_${name}
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
           ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
-  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR} ${CMAKE_CURRENT_SOURCE_DIR})
-  install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/
-          DESTINATION ${RGBD_POSE_HEADER_DIR}/${folder} COMPONENT development
-          FILES_MATCHING PATTERN *.h)
+  rgbd_pose_install_headers(${CMAKE_CURRENT_SOURCE_DIR})
   install(EXPORT rgbd_pose_${name} NAMESPACE rgbd_pose::
           FILE rgbd_pose_${name}.cmake
           DESTINATION ${RGBD_POSE_CMAKE_DIR} COMPONENT development)

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "apps/pipeline/calibration_passes.h"
-#include "apps/pipeline/calibration_run.h"
+#include "apps/calibration/calibration_passes.h"
+#include "apps/calibration/calibration_run.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/results/calibration_output.h"

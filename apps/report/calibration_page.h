@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/pipeline/calibration.h"
+#include "apps/calibration/calibration.h"
 #include "core/evaluation/trajectory.h"
 
 namespace rgbd_pose {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/pipeline/calibration.h"
+#include "apps/calibration/calibration.h"
 #include "apps/results/run_folder.h"
 
 namespace rgbd_pose {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/pipeline/calibration_passes.h"
+#include "apps/calibration/calibration_passes.h"
 
 namespace rgbd_pose {
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "apps/pipeline/calibration_run.h"
+#include "apps/calibration/calibration_run.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
 int main() {

@@ -55,6 +55,7 @@ programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"
 # A library: neither flags nor JSON.
 room apps/pipeline 'core/|robust|costs|frontend/' 'Eigen/|ceres/'
+room apps/calibration 'core/|costs|frontend/|apps/pipeline' 'Eigen/'
 room apps/shell 'core/|apps/' "$libraries"
 room apps/figures 'core/|apps/' 'none'
 room apps/results "$programs" "$libraries"

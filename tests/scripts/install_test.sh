@@ -44,7 +44,7 @@ cmake --install "$build" --prefix "$work/first" >"$work/log" 2>&1 ||
 mv "$work/first" "$prefix"
 ! grep -rlF -e "$source/" -e "$build/" "$prefix" >"$work/log" ||
   fail "these files tell where they were built"
-[ "$(ls "$prefix/include/rgbd_pose/apps")" = pipeline ] ||
+[ "$(ls -m "$prefix/include/rgbd_pose/apps")" = "calibration, pipeline" ] ||
   fail "headers of the programs"
 
 # Every link of a page leads to what is installed.

@@ -1,4 +1,4 @@
-#include "apps/pipeline/calibration_camera.h"
+#include "apps/calibration/calibration_camera.h"
 
 #include <Eigen/Geometry>
 

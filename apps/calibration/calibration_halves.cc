@@ -1,4 +1,4 @@
-#include "apps/pipeline/calibration_halves.h"
+#include "apps/calibration/calibration_halves.h"
 
 #include <algorithm>
 #include <cmath>

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/calibration_data.h"
-#include "apps/pipeline/calibration_halves.h"
-#include "apps/pipeline/calibration_noise.h"
+#include "apps/calibration/calibration_data.h"
+#include "apps/calibration/calibration_halves.h"
+#include "apps/calibration/calibration_noise.h"
 #include "apps/pipeline/setting_table.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"

@@ -1,4 +1,4 @@
-#include "apps/pipeline/calibration_scale.h"
+#include "apps/calibration/calibration_scale.h"
 
 #include <algorithm>
 #include <cmath>

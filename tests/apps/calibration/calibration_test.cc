@@ -1,15 +1,15 @@
 // Images in; what is wrong with their camera out.
 
-#include "apps/pipeline/calibration.h"
+#include "apps/calibration/calibration.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "apps/pipeline/calibration_camera.h"
-#include "apps/pipeline/calibration_run.h"
-#include "apps/pipeline/calibration_verdict.h"
+#include "apps/calibration/calibration_camera.h"
+#include "apps/calibration/calibration_run.h"
+#include "apps/calibration/calibration_verdict.h"
 #include "apps/pipeline/slam.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_dataset.h"

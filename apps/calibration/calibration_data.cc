@@ -1,4 +1,4 @@
-#include "apps/pipeline/calibration_data.h"
+#include "apps/calibration/calibration_data.h"
 
 #include <algorithm>
 #include <cmath>

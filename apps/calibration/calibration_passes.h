@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "apps/pipeline/calibration.h"
+#include "apps/calibration/calibration.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/pipeline/slam_settings.h"
 

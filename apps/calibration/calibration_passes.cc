@@ -1,12 +1,12 @@
-#include "apps/pipeline/calibration_passes.h"
+#include "apps/calibration/calibration_passes.h"
 
 #include <cmath>
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/calibration_camera.h"
-#include "apps/pipeline/calibration_run.h"
-#include "apps/pipeline/calibration_verdict.h"
+#include "apps/calibration/calibration_camera.h"
+#include "apps/calibration/calibration_run.h"
+#include "apps/calibration/calibration_verdict.h"
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {

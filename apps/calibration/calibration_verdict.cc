@@ -1,4 +1,4 @@
-#include "apps/pipeline/calibration_verdict.h"
+#include "apps/calibration/calibration_verdict.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "apps/pipeline/calibration.h"
+#include "apps/calibration/calibration.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,10 +6,10 @@
 #include <sstream>
 #include <utility>
 
-#include "apps/pipeline/calibration_camera.h"
-#include "apps/pipeline/calibration_halves.h"
-#include "apps/pipeline/calibration_scale.h"
-#include "apps/pipeline/calibration_verdict.h"
+#include "apps/calibration/calibration_camera.h"
+#include "apps/calibration/calibration_halves.h"
+#include "apps/calibration/calibration_scale.h"
+#include "apps/calibration/calibration_verdict.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "apps/pipeline/calibration.h"
+#include "apps/calibration/calibration.h"
 
 namespace rgbd_pose {
 

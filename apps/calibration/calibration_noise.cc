@@ -1,4 +1,4 @@
-#include "apps/pipeline/calibration_noise.h"
+#include "apps/calibration/calibration_noise.h"
 
 #include <Eigen/LU>
 #include <algorithm>

@@ -1,4 +1,4 @@
-#include "apps/pipeline/calibration_run.h"
+#include "apps/calibration/calibration_run.h"
 
 #include <utility>
 
