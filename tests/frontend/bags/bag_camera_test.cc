@@ -1,0 +1,82 @@
+#include "frontend/bags/bag_camera.h"
+
+#include <std_msgs/Float32.h>
+
+#include "tests/frontend/bags/ros1_bag_fixture.h"
+
+namespace rgbd_pose {
+namespace {
+
+TEST_F(Ros1BagTest, RegistersDepthOfAnotherFrame) {
+  // Depth from 2 pixels (at 1 m) further left.
+  Camera camera = SmallCamera().camera;
+  const Rigid3d color_from_depth({1, 0, 0, 0}, {-2.0 / camera.fx, 0, 0});
+  for (const bool says_where : {true, false}) {
+    Open();
+    WriteInfo();
+    Write("/camera/depth/camera_info", kStart, MakeInfo(camera));
+    if (says_where) {
+      tf2_msgs::TFMessage message;
+      message.transforms = {MakeTransform("camera_link", kOptical, kStart, {}),
+                            MakeTransform("camera_link", "depth_optical",
+                                          kStart, color_from_depth)};
+      Write("/tf_static", kStart, message);
+    }
+    cv::Mat depth(kHeight, kWidth, CV_16UC1, cv::Scalar(1000));
+    depth.at<uint16_t>(10, 20) = 500;
+    Write(kColor, kStart, MakeImage(ColorImage(0), "bgr8", kStart));
+    Write("/camera/depth/image_raw", kStart,
+          MakeImage(depth, "16UC1", kStart, "depth_optical"));
+    if (!says_where) {
+      ExpectRefused({"depth is seen from 'depth_optical'", "Kalibr"});
+      SourceOptions options = Options();
+      options.camera = SmallCamera();
+      const Frame frame = OpenSource("auto", options)->Next()->read();
+      EXPECT_EQ(frame.depth.at<uint16_t>(10, 20), 500) << "is registered then";
+      continue;
+    }
+    const Frame frame = Source()->Next()->read();
+    EXPECT_EQ(frame.depth.at<uint16_t>(10, 20 - 4), 500);
+    EXPECT_EQ(frame.depth.at<uint16_t>(5, 20), 1000);
+    EXPECT_EQ(frame.depth.at<uint16_t>(5, kWidth - 1), 0) << "not seen";
+  }
+}
+
+TEST_F(Ros1BagTest, ReadsWhatTheRealSenseViewerRecords) {
+  const Camera camera = SmallCamera().camera;
+  const Rigid3d color_from_depth({1, 0, 0, 0}, {-2.0 / camera.fx, 0, 0});
+  const std::string depth_stream = "/device_0/sensor_0/Depth_0";
+  const std::string color_stream = "/device_0/sensor_1/Color_0";
+  Open();
+  Write(depth_stream + "/info/camera_info", kStart, MakeInfo(camera));
+  Write(color_stream + "/info/camera_info", kStart, MakeInfo(camera));
+  Write(depth_stream + "/tf/0", kStart, MakeMotion({}));
+  Write(color_stream + "/tf/0", kStart, MakeMotion(color_from_depth));
+  std_msgs::Float32 units;
+  units.data = 0.00025F;
+  Write("/device_0/sensor_0/option/Depth_Units/value", kStart, units);
+  cv::Mat depth(kHeight, kWidth, CV_16UC1, cv::Scalar(4000));
+  Write(depth_stream + "/image/data", kStart,
+        MakeImage(depth, "mono16", kStart, ""));
+  Write(color_stream + "/image/data", kStart,
+        MakeImage(ColorImage(0), "rgb8", kStart, ""));
+  const auto source = Source();
+  EXPECT_EQ(source->camera().depth_scale, 4000.0);
+  const Frame frame = source->Next()->read();
+  EXPECT_EQ(frame.DepthAt(20, 5), 1.0);
+  EXPECT_EQ(frame.DepthAt(kWidth - 1, 5), 0.0) << "not seen";
+}
+
+TEST_F(Ros1BagTest, RefusesDistortionThatItDoesNotKnow) {
+  Open();
+  sensor_msgs::CameraInfo info = MakeInfo(SmallCamera().camera);
+  info.distortion_model = "equidistant";
+  info.D = {0.1, 0.1, 0.1, 0.1};
+  Write("/camera/rgb/camera_info", kStart, info);
+  WriteColor(0);
+  WriteDepth(0);
+  ExpectRefused({"camera_info: distortion 'equidistant'", "calibration file"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose

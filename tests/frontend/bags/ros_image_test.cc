@@ -1,0 +1,129 @@
+#include "frontend/bags/ros_image.h"
+
+#include <cmath>
+#include <cstring>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/frontend/bags/ros1_bag_fixture.h"
+
+namespace rgbd_pose {
+namespace {
+
+TEST_F(Ros1BagTest, ReadsColours) {
+  struct Case {
+    const char* encoding;
+    cv::Scalar value;
+    int type;
+    cv::Vec3b bgr;
+  };
+  for (const Case& c : {Case{"rgb8", {30, 20, 10}, CV_8UC3, {10, 20, 30}},
+                        Case{"bgr8", {10, 20, 30}, CV_8UC3, {10, 20, 30}},
+                        Case{"rgba8", {30, 20, 10, 255}, CV_8UC4, {10, 20, 30}},
+                        Case{"bgra8", {10, 20, 30, 255}, CV_8UC4, {10, 20, 30}},
+                        Case{"mono8", {20}, CV_8UC1, {20, 20, 20}}}) {
+    Open();
+    WriteInfo();
+    const cv::Mat image(kHeight, kWidth, c.type, c.value);
+    Write(kColor, kStart, MakeImage(image, c.encoding, kStart));
+    Write(kDepth, kStart, MakeImage(DepthImage(0), "16UC1", kStart));
+    SourceOptions options = Options();
+    options.keep_color = true;
+    const Frame frame = OpenSource("rosbag", options)->Next()->read();
+    EXPECT_EQ(frame.color.at<cv::Vec3b>(3, 4), c.bgr) << c.encoding;
+    EXPECT_NEAR(frame.gray.at<uint8_t>(3, 4),
+                0.114 * c.bgr[0] + 0.587 * c.bgr[1] + 0.299 * c.bgr[2], 1.0);
+  }
+}
+
+TEST_F(Ros1BagTest, ReadsMetres) {
+  Open();
+  WriteInfo();
+  for (int k = 0; k < kFrames; ++k) {
+    WriteColor(k);
+    cv::Mat metres;
+    DepthImage(k).convertTo(metres, CV_32F, 0.001);
+    metres.at<float>(0, 0) = NAN;
+    metres.at<float>(0, 1) = 13.2F;  // too far
+    Write("/camera/depth/image", StampOf(k) + 0.02,
+          MakeImage(metres, "32FC1", StampOf(k) + 0.004));
+  }
+  ExpectFrames(Source().get(), kFrames, 5000.0);
+  const Frame frame = Source()->Next()->read();
+  EXPECT_EQ(frame.depth.at<uint16_t>(0, 0), 0);
+  EXPECT_EQ(frame.depth.at<uint16_t>(0, 1), 0);
+
+  SourceOptions options = Options();
+  options.depth_scale = 2000.0;
+  ExpectFrames(OpenSource("auto", options).get(), kFrames, 2000.0);
+}
+
+TEST_F(Ros1BagTest, ReadsCompressedImages) {
+  for (const bool is_metric : {false, true}) {
+    Open();
+    WriteInfo();
+    for (int k = 0; k < kFrames; ++k) {
+      std::vector<uchar> bytes;
+      cv::imencode(k % 2 == 0 ? ".jpg" : ".png", ColorImage(k), bytes);
+      Write(std::string(kColor) + "/compressed", StampOf(k),
+            MakeCompressed("bgr8; jpeg compressed bgr8", bytes, StampOf(k)));
+      // What compressed_depth_image_transport writes: depth as A / z + B.
+      const float a = 10100.0F;
+      const float b = -100.0F;
+      cv::Mat depth = DepthImage(k);
+      if (is_metric) {
+        depth.forEach<uint16_t>([&](uint16_t& raw, const int*) {
+          if (raw > 0) raw = std::lround(a / (raw * 0.001F) + b);
+        });
+      }
+      std::vector<uchar> png;
+      cv::imencode(".png", depth, png);
+      std::vector<uchar> message(12);
+      std::memcpy(&message[4], &a, 4);
+      std::memcpy(&message[8], &b, 4);
+      message.insert(message.end(), png.begin(), png.end());
+      Write(std::string(kDepth) + "/compressedDepth", StampOf(k),
+            MakeCompressed(is_metric ? "32FC1; compressedDepth png"
+                                     : "16UC1; compressedDepth png",
+                           message, StampOf(k) + 0.004));
+    }
+    if (!is_metric) {
+      constexpr double kOfJpeg = 3.0;  // gray levels
+      ExpectFrames(Source().get(), kFrames, 1000.0, kOfJpeg);
+      continue;
+    }
+    const Frame frame = Source()->Next()->read();
+    EXPECT_NEAR(frame.DepthAt(5, 5), 1.0, 2e-4);  // as fine as it is packed
+    EXPECT_EQ(frame.DepthAt(0, 0), 0.0);
+  }
+}
+
+TEST_F(Ros1BagTest, RefusesWrongImages) {
+  Open();
+  WriteInfo();
+  Write(kColor, kStart,
+        MakeImage(cv::Mat(kHeight, kWidth, CV_8UC2), "yuv422", kStart));
+  WriteDepth(0);
+  ExpectRefused({"has no colour images that can be read"});
+  SourceOptions options = Options();
+  options.topics = {kColor, kDepth};
+  ExpectInputError([&] { OpenSource("auto", options)->Next()->read(); },
+                   {"encoding 'yuv422'", "rgb8", kColor});
+
+  Open();
+  WriteInfo();
+  WriteColor(0);
+  Write(kDepth, kStart,
+        MakeImage(cv::Mat(kHeight / 2, kWidth / 2, CV_16UC1), "16UC1", kStart));
+  ExpectRefused({kDepth, "16 x 12", "32 x 24"});
+
+  Open();
+  WriteInfo();
+  WriteColor(0);
+  sensor_msgs::Image cut = MakeImage(DepthImage(0), "16UC1", kStart);
+  cut.data.resize(100);
+  Write(kDepth, kStart, cut);
+  ExpectRefused({kDepth, "holds 100 bytes, too few"});
+}
+
+}  // namespace
+}  // namespace rgbd_pose

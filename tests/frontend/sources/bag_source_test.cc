@@ -1,0 +1,104 @@
+#include "frontend/sources/bag_source.h"
+
+#include <filesystem>
+
+#include "frontend/sources/tum_writer.h"
+#include "tests/frontend/bags/ros1_bag_fixture.h"
+
+namespace rgbd_pose {
+namespace {
+
+TEST_F(Ros1BagTest, SortsWhatIsSlightlyOutOfOrder) {
+  Open();
+  WriteInfo();
+  for (int k = 0; k < kFrames; ++k) {
+    const int other = k ^ 1;  // pairs of neighbours change places
+    Write(kColor, StampOf(k),
+          MakeImage(ColorImage(other), "bgr8", StampOf(other)));
+    Write(kDepth, StampOf(k) + 0.2,  // recorded much later
+          MakeImage(DepthImage(k), "16UC1", StampOf(k) + 0.004));
+  }
+  ExpectFrames(Source().get(), kFrames);
+}
+
+TEST_F(Ros1BagTest, RefusesWhatIsFarOutOfOrder) {
+  Open();
+  WriteInfo();
+  for (int k = 0; k < 40; ++k) {
+    const int other = (k + 20) % 40;
+    Write(kColor, StampOf(k), MakeImage(ColorImage(k), "bgr8", StampOf(other)));
+    Write(kDepth, StampOf(k),
+          MakeImage(DepthImage(k), "16UC1", StampOf(other)));
+  }
+  ExpectRefused({"a.bag: ", kColor, "out of order", "header stamps"});
+}
+
+TEST_F(Ros1BagTest, LeavesOutImagesWithoutPairs) {
+  Open();
+  WriteInfo();
+  for (int k = 0; k < kFrames; ++k) {
+    WriteColor(k);
+    if (k != 3 && k < 10) WriteDepth(k);
+  }
+  const auto source = Source();
+  int frames = 0;
+  while (source->Next().has_value()) ++frames;
+  EXPECT_EQ(frames, 9);
+  EXPECT_EQ(source->unmatched_color(), kFrames - 9);
+}
+
+TEST_F(Ros1BagTest, RefusesImagesOfOtherTimes) {
+  Open();
+  WriteInfo();
+  WriteColor(0);
+  Write(kDepth, kStart, MakeImage(DepthImage(0), "16UC1", kStart + 5));
+  ExpectRefused({"none of 1 colour and 1 depth images", "5.000000 s"});
+}
+
+TEST_F(Ros1BagTest, MotionCaptureIsTheGroundTruth) {
+  const Rigid3d kinect_from_camera(Eigen::Quaterniond(Eigen::AngleAxisd(
+                                       -M_PI / 2, Eigen::Vector3d::UnitX())),
+                                   {0.1, 0.0, 0.0});
+  Open();
+  WriteInfo();
+  for (int k = 0; k < kFrames; ++k) {
+    WriteColor(k);
+    WriteDepth(k);
+    tf2_msgs::TFMessage message;
+    message.transforms.push_back(MakeTransform(
+        "/world", "/kinect", StampOf(k), {{1, 0, 0, 0}, {0.01 * k, 0, 1}}));
+    message.transforms.push_back(
+        MakeTransform("/kinect", kOptical, StampOf(k), kinect_from_camera));
+    Write("/tf", StampOf(k), message);
+  }
+  const auto source = Source();
+  EXPECT_TRUE(source->ground_truth().empty()) << "nothing is read yet";
+  ExpectFrames(source.get(), kFrames);
+  const Trajectory truth = source->ground_truth();
+  ASSERT_EQ(truth.size(), static_cast<size_t>(kFrames));
+  for (int k = 0; k < kFrames; ++k) {
+    EXPECT_NEAR(truth[k].timestamp, StampOf(k), 1e-6);
+    const Eigen::Vector3d ahead =
+        truth[k].world_from_cam * Eigen::Vector3d(0, 0, 2);
+    EXPECT_LT((ahead - Eigen::Vector3d(0.1 + 0.01 * k, 2, 1)).norm(), 1e-9);
+  }
+}
+
+TEST_F(Ros1BagTest, WhatFailsOnTheWayLeavesNoFolder) {
+  Open();
+  WriteInfo();
+  for (int k = 0; k < kFrames; ++k) {
+    WriteColor(k);
+    if (k < 15) WriteDepth(k);
+  }
+  Write(kDepth, StampOf(15),
+        MakeImage(cv::Mat(3, 5, CV_16UC1), "16UC1", StampOf(15)));
+  const auto source = Source();
+  const std::string output = folder_ / "tum";
+  ExpectInputError([&] { WriteTumSequence(source.get(), output); },
+                   {"5 x 3 pixels", kDepth});
+  EXPECT_FALSE(std::filesystem::exists(output));
+}
+
+}  // namespace
+}  // namespace rgbd_pose
