@@ -25,12 +25,7 @@ constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution
 class Collector {
  public:
   Collector(const CalibrationViews& views, const CalibrationState& state)
-      : views_(views), state_(state) {
-    const MotionVector zero = MotionVector::Zero();
-    for (const Rigid3d& pose : state.world_from_cam) {
-      poses_.push_back(MotionOrigin(pose.Inverse()).DerivativesAt(zero.data()));
-    }
-  }
+      : views_(views), state_(state), poses_(PosesOf(state)) {}
 
   void Collect(size_t i, std::vector<Sample>* samples) const {
     const Landmark& landmark = views_.landmarks[i];

@@ -20,15 +20,6 @@ constexpr double kMaxOffCentre = 0.1;
 // Nothing may be farther from what was known before.
 constexpr double kMaxPriorSigmas = 4.0;
 
-std::vector<MotionDerivatives> PosesOf(const CalibrationState& state) {
-  std::vector<MotionDerivatives> poses;
-  const MotionVector zero = MotionVector::Zero();
-  for (const Rigid3d& pose : state.world_from_cam) {
-    poses.push_back(MotionOrigin(pose.Inverse()).DerivativesAt(zero.data()));
-  }
-  return poses;
-}
-
 // The robust cost of a view, and its error in pixels.
 double CostOf(const CalibrationViews& views, const Landmark& landmark,
               const LandmarkView& view, bool with_depth, double inverse_depth,

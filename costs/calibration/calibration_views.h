@@ -15,6 +15,11 @@ struct LandmarkView {
   double sigma_px = 0.5;       // of u and v
   MeasuredInverseDepth depth;  // there, if any
   bool is_held_out = false;    // kept to judge by
+
+  // In a solution of what is not held out, or of all.
+  bool TakesPart(bool training_only) const {
+    return !(training_only && is_held_out);
+  }
 };
 
 // A point on the ray of a pixel of a keyframe.

@@ -4,7 +4,6 @@
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -13,6 +12,8 @@
 
 #include "costs/calibration/calibration_list.h"
 #include "costs/calibration/known_distance_block.h"
+#include "costs/calibration/landmark_block.h"
+#include "costs/calibration/landmark_covariance.h"
 
 namespace rgbd_pose {
 namespace {
@@ -45,34 +46,7 @@ std::vector<MotionOrigin> OriginsOf(
   return origins;
 }
 
-// rho' of Cauchy's loss.
-double Weight(double squared, double width) {
-  return 1.0 / (1.0 + squared / (width * width));
-}
-
 }  // namespace
-
-LandmarkData DataOf(const CalibrationViews& views, const Landmark& landmark,
-                    const CalibrationState& state) {
-  LandmarkData data;
-  data.rest = &views.camera;
-  data.anchor_u = landmark.u;
-  data.anchor_v = landmark.v;
-  data.depth = landmark.depth;
-  data.depth.inverse_sigma /= state.depth_scale;
-  return data;
-}
-
-LandmarkData DataOf(const CalibrationViews& views, const Landmark& landmark,
-                    const LandmarkView& view, const CalibrationState& state) {
-  LandmarkData data = DataOf(views, landmark, state);
-  data.u = view.u;
-  data.v = view.v;
-  data.inverse_sigma_px = 1.0 / (view.sigma_px * state.pixel_scale);
-  data.depth = view.depth;
-  data.depth.inverse_sigma /= state.depth_scale;
-  return data;
-}
 
 LandmarkProblem::LandmarkProblem(const CalibrationViews& views,
                                  const CalibrationVector& start,
@@ -104,12 +78,7 @@ CalibrationOrigin LandmarkProblem::OriginOf(const FreeParts& is_free) const {
 }
 
 void LandmarkProblem::MeasureScales(CalibrationState* state) const {
-  const auto origins = OriginsOf(state->world_from_cam);
-  std::vector<MotionDerivatives> poses;
-  const MotionVector zero = MotionVector::Zero();
-  for (const MotionOrigin& origin : origins) {
-    poses.push_back(origin.DerivativesAt(zero.data()));
-  }
+  const std::vector<MotionDerivatives> poses = PosesOf(*state);
   state->pixel_scale = state->depth_scale = 1.0;
   std::vector<double> pixels, depths;
   double r[2];
@@ -122,7 +91,7 @@ void LandmarkProblem::MeasureScales(CalibrationState* state) const {
     depths.push_back(std::abs(r[0]));
     for (int k = 0; k < landmark.num_views; ++k) {
       const LandmarkView& view = views_.views[landmark.first_view + k];
-      if (!TakesPart(view)) continue;
+      if (!view.TakesPart(training_only_)) continue;
       const LandmarkData data = DataOf(views_, landmark, view, *state);
       const MotionPose<double>& there = poses[view.keyframe];
       LandmarkPixel::Residual<double>(anchor, there, d, state->theta.data(),
@@ -175,7 +144,7 @@ double LandmarkProblem::Solve(const FreeParts& is_free,
     int used = 0;
     for (int k = 0; k < landmark.num_views; ++k) {
       const LandmarkView& view = views_.views[landmark.first_view + k];
-      if (!TakesPart(view)) continue;
+      if (!view.TakesPart(training_only_)) continue;
       if (used++ == 0) {
         problem.AddResidualBlock(
             new LandmarkBlock<AnchorDepth>(origins[landmark.anchor],
@@ -239,174 +208,8 @@ bool LandmarkProblem::Covariance(const FreeParts& is_free,
                                  const CalibrationState& state,
                                  CalibrationMatrix* by_noise,
                                  CalibrationMatrix* by_scatter) const {
-  by_noise->setZero();
-  by_scatter->setZero();
-  const CalibrationOrigin origin = OriginOf(is_free);
-  const auto origins = OriginsOf(state.world_from_cam);
-  std::vector<MotionDerivatives> poses;
-  const MotionVector zero = MotionVector::Zero();
-  for (const MotionOrigin& at : origins) {
-    poses.push_back(at.DerivativesAt(zero.data()));
-  }
-  // Unknowns: all poses but the first, then y.
-  const int num_poses = static_cast<int>(poses.size());
-  const int size = 6 * (num_poses - 1) + kCalibrationSize;
-  const int y_at = size - kCalibrationSize;
-  Eigen::MatrixXd H = Eigen::MatrixXd::Zero(size, size);
-  // The gradient of the landmarks of each anchor, after the landmarks' depths
-  // have been eliminated.
-  Eigen::MatrixXd gradients = Eigen::MatrixXd::Zero(size, num_poses);
-  const double width = options_.loss_width;
-
-  Eigen::MatrixXd local;     // [anchor, y, views], the lower triangle
-  Eigen::VectorXd by_depth;  // with the landmark's own depth
-  Eigen::VectorXd gradient;
-  std::vector<int> at;  // where the blocks are in H; -1: the first pose
-  for (size_t i = 0; i < views_.landmarks.size(); ++i) {
-    const Landmark& landmark = views_.landmarks[i];
-    const double d = state.inverse_depths[i];
-    const MotionDerivatives& anchor = poses[landmark.anchor];
-    constexpr int kFixed = 6 + kCalibrationSize;
-    const int rows = kFixed + 6 * landmark.num_views;
-    local.setZero(rows, rows);
-    by_depth.setZero(rows);
-    gradient.setZero(rows);
-    double hessian_d = 0.0, gradient_d = 0.0;
-    int used = 0;
-    at.assign(1, landmark.anchor);
-    const auto add = [&](const auto& J, const auto& r, double weight, int view,
-                         bool has_poses) {
-      constexpr int kRows = std::decay_t<decltype(r)>::RowsAtCompileTime;
-      Eigen::Matrix<double, kRows, kFixed> head;
-      head << J.anchor, J.theta * origin.width.asDiagonal();
-      local.topLeftCorner<kFixed, kFixed>().noalias() +=
-          weight * head.transpose() * head;
-      by_depth.head<kFixed>() += weight * head.transpose() * J.inverse_depth;
-      gradient.head<kFixed>() += weight * head.transpose() * r;
-      hessian_d += weight * J.inverse_depth.squaredNorm();
-      gradient_d += weight * J.inverse_depth.dot(r);
-      if (!has_poses) return;
-      const int place = kFixed + 6 * view;
-      local.block<6, kFixed>(place, 0).noalias() +=
-          weight * J.view.transpose() * head;
-      local.block<6, 6>(place, place).noalias() +=
-          weight * J.view.transpose() * J.view;
-      by_depth.segment<6>(place) +=
-          weight * J.view.transpose() * J.inverse_depth;
-      gradient.segment<6>(place) += weight * J.view.transpose() * r;
-    };
-    Eigen::Matrix<double, 1, 1> r1;
-    Eigen::Vector2d r2;
-    LandmarkDerivatives<1> J1;
-    LandmarkDerivatives<2> J2;
-    for (int k = 0; k < landmark.num_views; ++k) {
-      const LandmarkView& view = views_.views[landmark.first_view + k];
-      if (!TakesPart(view)) continue;
-      const LandmarkData data = DataOf(views_, landmark, view, state);
-      const MotionDerivatives& there = poses[view.keyframe];
-      at.push_back(view.keyframe);
-      LandmarkPixel::Jacobian(anchor, there, d, state.theta.data(), data,
-                              r2.data(), &J2);
-      add(J2, r2, Weight(r2.squaredNorm(), width), used, true);
-      if (data.depth.inverse_sigma > 0.0) {
-        LandmarkDepth::Jacobian(anchor, there, d, state.theta.data(), data,
-                                r1.data(), &J1);
-        add(J1, r1, Weight(r1.squaredNorm(), width), used, true);
-      }
-      ++used;
-    }
-    if (used == 0) continue;
-    AnchorDepth::Jacobian(anchor, anchor, d, state.theta.data(),
-                          DataOf(views_, landmark, state), r1.data(), &J1);
-    add(J1, r1, Weight(r1.squaredNorm(), width), 0, false);
-    if (!(hessian_d > 0.0)) continue;
-
-    // Without d, which is at its best whatever the rest is.
-    const int length = kFixed + 6 * used;
-    local.topLeftCorner(length, length)
-        .selfadjointView<Eigen::Lower>()
-        .rankUpdate(by_depth.head(length), -1.0 / hessian_d);
-    gradient.head(length) -= by_depth.head(length) * (gradient_d / hessian_d);
-    // Blocks of six or of y: local place, size, place in H.
-    const auto place_of = [&](int block, int* from, int* count, int* to) {
-      if (block == 0) {
-        *from = 0, *count = 6, *to = 6 * (at[0] - 1);
-      } else if (block == 1) {
-        *from = 6, *count = kCalibrationSize, *to = y_at;
-      } else {
-        *from = kFixed + 6 * (block - 2), *count = 6;
-        *to = 6 * (at[block - 1] - 1);
-      }
-    };
-    for (int a = 0; a < used + 2; ++a) {
-      int from_a, count_a, to_a;
-      place_of(a, &from_a, &count_a, &to_a);
-      if (to_a < 0) continue;
-      gradients.col(landmark.anchor).segment(to_a, count_a) +=
-          gradient.segment(from_a, count_a);
-      for (int b = 0; b <= a; ++b) {
-        int from_b, count_b, to_b;
-        place_of(b, &from_b, &count_b, &to_b);
-        if (to_b < 0) continue;
-        const auto block = local.block(from_a, from_b, count_a, count_b);
-        if (to_a > to_b) {
-          H.block(to_a, to_b, count_a, count_b) += block;
-        } else if (to_a < to_b) {
-          H.block(to_b, to_a, count_b, count_a) += block.transpose();
-        } else {
-          H.block(to_a, to_a, count_a, count_a)
-              .triangularView<Eigen::Lower>() += block;
-        }
-      }
-    }
-  }
-  for (const KnownDistance& known : views_.distances) {
-    const KnownDistanceError error(poses[known.a], poses[known.b],
-                                   state.theta[kDepthFactor], known);
-    Eigen::VectorXd row = Eigen::VectorXd::Zero(size);
-    if (known.a > 0) row.segment<6>(6 * (known.a - 1)) += error.a.transpose();
-    if (known.b > 0) row.segment<6>(6 * (known.b - 1)) += error.b.transpose();
-    row[y_at + kDepthFactor] += error.by_factor * origin.width[kDepthFactor];
-    H.noalias() += row * row.transpose();
-  }
-  for (int k = 0; k < kCalibrationSize; ++k) H(y_at + k, y_at + k) += 1.0;
-  // Poses that nothing sees.
-  for (int k = 0; k < y_at; ++k) H(k, k) += 1e-9;
-
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> cholesky(H);
-  if (cholesky.info() != Eigen::Success) return false;
-  Eigen::MatrixXd last = Eigen::MatrixXd::Zero(size, kCalibrationSize);
-  last.bottomRows<kCalibrationSize>().setIdentity();
-  cholesky.solveInPlace(last);
-  const auto scale = origin.width.asDiagonal();
-  *by_noise = scale * last.bottomRows<kCalibrationSize>() * scale;
-  // What each keyframe's landmarks move y by.
-  Eigen::MatrixXd moves = last.transpose() * gradients;
-  // Distances and the prior have the noise that they say.
-  CalibrationMatrix exact = last.bottomRows<kCalibrationSize>().transpose() *
-                            last.bottomRows<kCalibrationSize>();
-  for (const KnownDistance& known : views_.distances) {
-    const KnownDistanceError error(poses[known.a], poses[known.b],
-                                   state.theta[kDepthFactor], known);
-    CalibrationVector move = last.row(y_at + kDepthFactor).transpose() *
-                             error.by_factor * origin.width[kDepthFactor];
-    if (known.a > 0) {
-      move += last.middleRows<6>(6 * (known.a - 1)).transpose() *
-              error.a.transpose();
-    }
-    if (known.b > 0) {
-      move += last.middleRows<6>(6 * (known.b - 1)).transpose() *
-              error.b.transpose();
-    }
-    exact += move * move.transpose();
-  }
-  int groups = 0;
-  for (int k = 0; k < num_poses; ++k) groups += moves.col(k).norm() > 0.0;
-  const double correction =
-      groups > 1 ? static_cast<double>(groups) / (groups - 1) : 1.0;
-  *by_scatter =
-      scale * (correction * moves * moves.transpose() + exact) * scale;
-  return by_noise->allFinite() && by_scatter->allFinite();
+  return LandmarkCovariance(views_, training_only_, OriginOf(is_free),
+                            options_.loss_width, state, by_noise, by_scatter);
 }
 
 }  // namespace rgbd_pose

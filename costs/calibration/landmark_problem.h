@@ -1,25 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <string>
-#include <vector>
+#include <array>
 
-#include "core/geometry/rigid3.h"
 #include "costs/calibration/calibration_parameters.h"
+#include "costs/calibration/calibration_state.h"
 #include "costs/calibration/calibration_views.h"
 #include "costs/calibration/landmark_block.h"
 
 namespace rgbd_pose {
-
-// What is solved for, and how much a residual of each kind spreads in the
-// sigmas that it came with.
-struct CalibrationState {
-  std::vector<Rigid3d> world_from_cam;  // of keyframes
-  std::vector<double> inverse_depths;   // of landmarks at their anchors
-  CalibrationVector theta;
-  double pixel_scale = 1.0;
-  double depth_scale = 1.0;
-};
 
 // How a LandmarkProblem is solved.
 struct LandmarkProblemOptions {
@@ -50,20 +38,12 @@ class LandmarkProblem {
   double Solve(const std::array<bool, kCalibrationSize>& is_free,
                CalibrationState* state) const;
 
-  // The covariance of theta at a solution, all else being free too: once as the
-  // residuals' noise has it, and once as their scatter over the keyframes has
-  // it, whatever their noise. Both know the prior. Zero for what is not free;
-  // false if they cannot be told.
+  // The covariance of theta at a solution, see LandmarkCovariance.
   bool Covariance(const std::array<bool, kCalibrationSize>& is_free,
                   const CalibrationState& state, CalibrationMatrix* by_noise,
                   CalibrationMatrix* by_scatter) const;
 
  private:
-  struct Blocks;
-
-  bool TakesPart(const LandmarkView& view) const {
-    return !(training_only_ && view.is_held_out);
-  }
   CalibrationOrigin OriginOf(
       const std::array<bool, kCalibrationSize>& is_free) const;
 
@@ -72,11 +52,5 @@ class LandmarkProblem {
   const bool training_only_;
   const LandmarkProblemOptions options_;
 };
-
-// What is measured of a landmark in one view, its sigmas as a state has them.
-LandmarkData DataOf(const CalibrationViews& views, const Landmark& landmark,
-                    const LandmarkView& view, const CalibrationState& state);
-LandmarkData DataOf(const CalibrationViews& views, const Landmark& landmark,
-                    const CalibrationState& state);
 
 }  // namespace rgbd_pose
