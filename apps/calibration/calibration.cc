@@ -10,6 +10,7 @@
 #include "apps/calibration/calibration_halves.h"
 #include "apps/calibration/calibration_scale.h"
 #include "apps/calibration/calibration_verdict.h"
+#include "apps/calibration/displaced_depths.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"

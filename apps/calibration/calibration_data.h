@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/calibration/camera_velocity.h"
 #include "apps/pipeline/settings.h"
 #include "core/evaluation/trajectory.h"
 #include "costs/calibration/calibration_views.h"
@@ -27,12 +28,6 @@ struct CalibrationDataOptions {
   std::string Check() const;
 };
 
-// Of points in the axes of a camera that moves.
-struct CameraVelocity {
-  Eigen::Vector3d rotation = Eigen::Vector3d::Zero();     // rad/s
-  Eigen::Vector3d translation = Eigen::Vector3d::Zero();  // m/s
-};
-
 // The keyframes that the views are of.
 struct CalibrationData {
   CalibrationViews views;
@@ -41,14 +36,6 @@ struct CalibrationData {
   std::vector<int> in_map;                // their places in the map
   std::vector<CameraVelocity> velocities;
 };
-
-// Undoes what theta says of the displacement of depth (registration, delay) in
-// the images of the keyframes and looks all depths up anew: so large ones come
-// right that are not linear. `camera`: the lens as it is known by now.
-void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
-                      const OdometrySettings& settings,
-                      const CalibrationVector& theta, int threads,
-                      CalibrationData* data);
 
 // Finds the features of each keyframe of the map's largest segment anew in
 // those that it is paired with. `path`: a smooth path of the camera (world from

@@ -1,0 +1,74 @@
+#include "apps/calibration/camera_velocity.h"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+namespace rgbd_pose {
+namespace {
+
+// Longer than this between two frames, a velocity is not known.
+constexpr double kMaxGap = 0.15;  // s
+
+}  // namespace
+
+CameraVelocity VelocityAt(const Trajectory& path, double time) {
+  const auto at = std::lower_bound(
+      path.begin(), path.end(), time - 1e-4,
+      [](const StampedPose& pose, double t) { return pose.timestamp < t; });
+  CameraVelocity velocity;
+  if (at == path.end()) return velocity;
+  // The last frame that comes so many after, without a gap.
+  const auto place = at - path.begin();
+  const auto neighbour = [&](int steps) {
+    const int direction = steps > 0 ? 1 : -1;
+    auto there = place;
+    for (int i = 0; i < std::abs(steps); ++i) {
+      const auto next = there + direction;
+      if (next < 0 || next >= static_cast<std::ptrdiff_t>(path.size()) ||
+          std::abs(path[next].timestamp - path[there].timestamp) > kMaxGap) {
+        break;
+      }
+      there = next;
+    }
+    return there;
+  };
+  struct Difference {
+    CameraVelocity velocity;
+    double interval = 0.0;  // s
+    double lean = 0.0;      // how far its middle is from the frame, s
+  };
+  const auto moved = [&](std::ptrdiff_t there) {
+    const Rigid3d from_at =
+        path[there].world_from_cam.Inverse() * at->world_from_cam;
+    const Eigen::AngleAxisd turn(from_at.rotation);
+    return CameraVelocity{turn.angle() * turn.axis(), from_at.translation};
+  };
+  const auto difference = [&](int steps) {
+    const auto before = neighbour(-steps), after = neighbour(steps);
+    const double t0 = path[before].timestamp, t1 = path[after].timestamp;
+    Difference result;
+    result.interval = t1 - t0;
+    result.lean = std::abs(0.5 * (t0 + t1) - at->timestamp);
+    if (!(result.interval > 0.0)) return result;
+    const CameraVelocity a = moved(before), b = moved(after);
+    result.velocity.rotation = (b.rotation - a.rotation) / result.interval;
+    result.velocity.translation =
+        (b.translation - a.translation) / result.interval;
+    return result;
+  };
+  const Difference near = difference(1);
+  const Difference far = difference(2);
+  constexpr double kEven = 0.05;
+  const bool is_even = std::abs(far.interval / near.interval - 2.0) < kEven &&
+                       std::max(near.lean, far.lean) < kEven * near.interval;
+  velocity = near.velocity;
+  if (is_even) {
+    velocity.rotation += (near.velocity.rotation - far.velocity.rotation) / 3.0;
+    velocity.translation +=
+        (near.velocity.translation - far.velocity.translation) / 3.0;
+  }
+  return velocity;
+}
+
+}  // namespace rgbd_pose

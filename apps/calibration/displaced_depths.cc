@@ -1,0 +1,79 @@
+#include "apps/calibration/displaced_depths.h"
+
+#include <Eigen/Geometry>
+#include <vector>
+
+#include "apps/calibration/measured_depth.h"
+#include "core/util/parallel_for.h"
+#include "frontend/image/depth_mover.h"
+#include "frontend/image/observe.h"
+
+namespace rgbd_pose {
+namespace {
+
+// How far (rad and m, not per second) depth is off in an image that was taken
+// at this velocity.
+CameraVelocity DisplacementOf(const CalibrationVector& theta,
+                              const CameraVelocity& velocity) {
+  const double delay = theta[kDepthTime];
+  return {theta.segment<3>(kRotationX) + delay * velocity.rotation,
+          theta.segment<3>(kTranslationX) + delay * velocity.translation};
+}
+
+// Looks a depth up in an image in which a displacement has been undone.
+void LookUpAnew(const Frame& frame, const Camera& camera,
+                const DepthLookupOptions& options, double u, double v,
+                const CameraVelocity& undone, MeasuredInverseDepth* depth) {
+  const Observation o = Observe(frame, camera, u, v, 1.0, options);
+  const CameraVelocity velocity{depth->rate_rotation, depth->rate_translation};
+  MeasuredInverseDepth anew =
+      MeasuredAt(frame, camera, o, {u, v}, velocity, options.noise);
+  anew.undone_rotation = undone.rotation;
+  anew.undone_translation = undone.translation;
+  // A landmark keeps a value to begin with.
+  if (anew.inverse_sigma == 0.0) anew.value = depth->value;
+  *depth = anew;
+}
+
+}  // namespace
+
+void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
+                      const OdometrySettings& settings,
+                      const CalibrationVector& theta, int threads,
+                      CalibrationData* data) {
+  FrontendOptions features = settings.features;
+  features.camera = camera;
+  const DepthLookupOptions options = features.DepthLookup();
+  const int num_keyframes = static_cast<int>(data->in_map.size());
+  // By keyframe: its own landmarks, and what it sees of others.
+  std::vector<std::vector<Landmark*>> landmarks(num_keyframes);
+  std::vector<std::vector<LandmarkView*>> views(num_keyframes);
+  for (Landmark& landmark : data->views.landmarks) {
+    landmarks[landmark.anchor].push_back(&landmark);
+  }
+  for (LandmarkView& view : data->views.views) {
+    views[view.keyframe].push_back(&view);
+  }
+  ParallelFor(num_keyframes, threads, [&](int k) {
+    if (landmarks[k].empty() && views[k].empty()) return;
+    const CameraVelocity moved = DisplacementOf(theta, data->velocities[k]);
+    const double angle = moved.rotation.norm();
+    const Eigen::Vector3d axis = angle > 0.0
+                                     ? Eigen::Vector3d(moved.rotation / angle)
+                                     : Eigen::Vector3d::UnitX();
+    const Rigid3d measured_from_moved(
+        Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), moved.translation);
+    Frame frame = map.keyframes[data->in_map[k]].images.Restore();
+    frame.depth =
+        DepthMover(camera).Move(frame, measured_from_moved.Inverse()).clone();
+    for (Landmark* landmark : landmarks[k]) {
+      LookUpAnew(frame, camera, options, landmark->u, landmark->v, moved,
+                 &landmark->depth);
+    }
+    for (LandmarkView* view : views[k]) {
+      LookUpAnew(frame, camera, options, view->u, view->v, moved, &view->depth);
+    }
+  });
+}
+
+}  // namespace rgbd_pose
