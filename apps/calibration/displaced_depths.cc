@@ -1,10 +1,12 @@
 #include "apps/calibration/displaced_depths.h"
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <vector>
 
 #include "apps/calibration/measured_depth.h"
 #include "core/util/parallel_for.h"
+#include "core/util/quantile.h"
 #include "frontend/image/depth_mover.h"
 #include "frontend/image/observe.h"
 
@@ -36,6 +38,31 @@ void LookUpAnew(const Frame& frame, const Camera& camera,
 }
 
 }  // namespace
+
+bool IsDisplaced(const CalibrationVector& theta) {
+  constexpr double kRotation = 5e-4;     // rad
+  constexpr double kTranslation = 1e-3;  // m
+  constexpr double kDelay = 5e-4;        // s
+  return theta.segment<3>(kRotationX).norm() > kRotation ||
+         theta.segment<3>(kTranslationX).norm() > kTranslation ||
+         std::abs(theta[kDepthTime]) > kDelay;
+}
+
+double DisplacementPx(const CalibrationViews& views,
+                      const CalibrationVector& change) {
+  std::vector<double> all;
+  for (const Landmark& landmark : views.landmarks) {
+    const MeasuredInverseDepth& at = landmark.depth;
+    const Eigen::Vector3d turn =
+        change.segment<3>(kRotationX) + change[kDepthTime] * at.rate_rotation;
+    const Eigen::Vector3d shift = change.segment<3>(kTranslationX) +
+                                  change[kDepthTime] * at.rate_translation;
+    const Eigen::Vector3d moved = turn.cross(at.ray) + at.value * shift;
+    all.push_back(views.camera.fx *
+                  (moved - moved.z() * at.ray).head<2>().norm());
+  }
+  return all.empty() ? 0.0 : Median(all);
+}
 
 void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
                       const OdometrySettings& settings,

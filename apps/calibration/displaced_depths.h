@@ -4,9 +4,19 @@
 #include "apps/pipeline/settings.h"
 #include "core/geometry/camera.h"
 #include "costs/calibration/calibration_parameters.h"
+#include "costs/calibration/calibration_views.h"
 #include "frontend/map/keyframe_map.h"
 
 namespace rgbd_pose {
+
+// Whether a change of theta is so large that depth has to be looked up
+// elsewhere.
+bool IsDisplaced(const CalibrationVector& theta);
+
+// How far a change of theta displaces depth in the image, px: the median of
+// landmarks.
+double DisplacementPx(const CalibrationViews& views,
+                      const CalibrationVector& change);
 
 // Undoes what theta says of the displacement of depth (registration, delay) in
 // the images of the keyframes and looks all depths up anew: so large ones come

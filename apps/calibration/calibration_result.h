@@ -1,0 +1,94 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/calibration/calibration_halves.h"
+#include "apps/calibration/calibration_noise.h"
+#include "core/geometry/camera.h"
+#include "costs/calibration/calibration_parameters.h"
+
+namespace rgbd_pose {
+
+// What became of one parameter.
+struct CalibratedParameter {
+  // What the recording says of it.
+  enum class Fate {
+    kFixed,         // was not asked for, or nothing could tell it
+    kUndetermined,  // the recording does not tell it
+    kDetermined,
+  };
+  Fate fate = Fate::kFixed;  // what the recording says of it
+  double before = 0.0;       // of the first camera
+  double prior = 0.0;        // its standard deviation
+  double found = 0.0;        // where the recording would have it
+  double sigma = 0.0;        // the standard deviation of that
+};
+
+// What is left of a held-out view, px: for pictures.
+struct HeldOutResidual {
+  double u = 0.0;          // where
+  double v = 0.0;          // likewise
+  Eigen::Vector2d before;  // with the first camera
+  Eigen::Vector2d after;   // with the camera found
+};
+
+// What came of a calibration.
+struct CalibrationResult {
+  // In the order of kCalibrationParameters, about the recording as the first
+  // camera has it corrected.
+  std::array<CalibratedParameter, kCalibrationSize> parameters;
+
+  // Whether `camera` is to be taken; else it is the first one, and `reason`
+  // says in words why.
+  bool is_accepted = false;
+  std::string reason;
+  RgbdCamera camera;
+
+  // Where the recording would have the camera, better or not.
+  RgbdCamera found;
+
+  // Of what it was made.
+  int keyframes = 0;       // of the largest segment
+  int pairs = 0;           // of them
+  int held_out_pairs = 0;  // of these
+  int landmarks = 0;       // points
+  int views = 0;           // of the points
+
+  // Mean robust cost of a held-out view with the first camera and the one that
+  // was found, and their difference in its standard deviations.
+  double cost_before = 0.0;  // with the first camera
+  double cost_after = 0.0;   // with the camera found
+  double gain_sigmas = 0.0;  // their difference
+
+  // Spread of residuals with either: px, and in sigmas of the depth noise.
+  double pixel_before = 0.0;  // with the first camera
+  double pixel_after = 0.0;   // with the camera found
+  double depth_before = 0.0;  // with the first camera
+  double depth_after = 0.0;   // with the camera found
+  std::vector<HeldOutResidual> residuals;
+
+  // How noisy depth is, with the camera to go on with; none: too few depths.
+  std::optional<DepthNoiseFit> noise;
+
+  // How far the motions of pairs are from the ground truth (RMSE, m), from the
+  // poses that go with either camera; 0: there is none.
+  double truth_before = 0.0;  // with the first camera
+  double truth_after = 0.0;   // with the camera found
+
+  // What the halves of the recording say of what is determined; may be empty.
+  std::vector<HalvesOfParameter> halves;
+
+  // How far depth turned out to be displaced, px (the median of views). If that
+  // is much, it is due to be mapped again with the camera found.
+  double displacement_px = 0.0;
+  int passes = 1;
+
+  // What gave depth its scale, in words; empty: nothing did.
+  std::string scale_from;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,118 @@
+#include "apps/calibration/calibration_settings.h"
+
+#include <algorithm>
+#include <sstream>
+#include <string_view>
+
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct NamedParts {
+  const char* name;
+  std::vector<int> parts;
+};
+
+std::vector<NamedParts> PartNames() {
+  std::vector<NamedParts> names = {
+      {"focal", {kFx, kFy}},
+      {"centre", {kCx, kCy}},
+      {"distortion", {kK1, kK2}},
+      {"registration",
+       {kRotationX, kRotationY, kRotationZ, kTranslationX, kTranslationY,
+        kTranslationZ}},
+  };
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    names.push_back({kCalibrationParameters[k].name, {k}});
+  }
+  return names;
+}
+
+}  // namespace
+
+std::string CalibrationSettings::Check() const {
+  if (!(determined_share > 0.0 && determined_share <= 1.0)) {
+    return "determined_share must be above 0 and at most 1";
+  }
+  if (!(min_gain >= 0.0) || !(min_gain_sigmas >= 0.0)) {
+    return "what held-out pairs have to gain must not be negative";
+  }
+  if (!(max_halves_sigmas > 0.0)) return "max_halves_sigmas must be positive";
+  if (!(max_rate >= 0.0)) return "max_rate must not be negative";
+  if (max_passes < 1 || max_passes > 10) return "max_passes must be 1 to 10";
+  if (!prior.allFinite() || !(prior.array() >= 0.0).all()) {
+    return "standard deviations must not be negative";
+  }
+  try {
+    FreeParameters(fix, false);
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return data.Check();
+}
+
+std::vector<Setting> SettingTable(CalibrationSettings* settings) {
+  constexpr std::string_view kGroup = "Calibration";
+  return {
+      {"fix", kGroup,
+       "what is to stay as it is, separated by commas: focal, centre, "
+       "distortion, registration, or a parameter's name",
+       Text(&settings->fix)},
+      {"known_length", kGroup,
+       "gives depth a scale: T0,T1,METRES, two time stamps (s) and how far "
+       "apart the camera was then",
+       Text(&settings->known_length)},
+      {"determined_share", kGroup,
+       "a parameter is determined if the recording reduces its standard "
+       "deviation to this share of the prior's",
+       &settings->determined_share},
+      {"min_gain", kGroup,
+       "share of their cost that held-out pairs must gain for another camera "
+       "to be taken",
+       &settings->min_gain},
+      {"max_halves_sigmas", kGroup,
+       "what both halves of a recording say by themselves may differ by so "
+       "many "
+       "standard deviations",
+       &settings->max_halves_sigmas},
+      {"max_rate", kGroup,
+       "of a recording with more frames a second every second one is left out, "
+       "or more, unless --frames says which; 0: none",
+       &settings->max_rate},
+      {"max_passes", kGroup,
+       "a recording whose depth turns out to be displaced by pixels is mapped "
+       "anew with the camera found, so many times at most",
+       &settings->max_passes},
+      {"max_views", kGroup,
+       "views of landmarks that are solved for, about: the time it takes grows "
+       "with it",
+       &settings->data.max_views},
+  };
+}
+
+std::array<bool, kCalibrationSize> FreeParameters(const std::string& fix,
+                                                  bool has_scale) {
+  std::array<bool, kCalibrationSize> is_free;
+  is_free.fill(true);
+  is_free[kDepthFactor] = has_scale;
+  const std::vector<NamedParts> names = PartNames();
+  std::stringstream list(fix);
+  for (std::string word; std::getline(list, word, ',');) {
+    const auto named =
+        std::find_if(names.begin(), names.end(),
+                     [&](const NamedParts& n) { return n.name == word; });
+    if (named == names.end()) {
+      std::string known;
+      for (const NamedParts& n : names) {
+        known += (known.empty() ? "" : ", ") + std::string(n.name);
+      }
+      throw InputError("fix: there is no parameter '" + word + "'; there are " +
+                       known);
+    }
+    for (const int part : named->parts) is_free[part] = false;
+  }
+  return is_free;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "apps/calibration/calibration_data.h"
+#include "apps/pipeline/setting_table.h"
+#include "costs/calibration/calibration_parameters.h"
+#include "costs/calibration/landmark_problem.h"
+
+namespace rgbd_pose {
+
+// How a camera is calibrated from its own recording.
+struct CalibrationSettings {
+  // Names of parameters that stay as they are, separated by commas; a name may
+  // stand for several: focal, centre, distortion, registration.
+  std::string fix;
+
+  // A length that is known: two times (s) and how far apart the camera was then
+  // (m), as T0,T1,METRES; empty: none.
+  std::string known_length;
+
+  // Standard deviations of what the first camera says, see
+  // kCalibrationParameters.
+  CalibrationVector prior = CalibrationVector::Zero();  // 0: of the table
+
+  // A parameter is determined by the recording if its standard deviation falls
+  // to this share of what it was before.
+  double determined_share = 0.3;
+
+  // Another camera has to fit held-out pairs so much better (a share of their
+  // cost), in so many standard deviations.
+  double min_gain = 0.01;
+  double min_gain_sigmas = 3.0;
+
+  // What both halves of a recording say by themselves may differ by so many
+  // standard deviations.
+  double max_halves_sigmas = 4.0;
+
+  // How much later than its stamp depth is known to be (s), beyond what the
+  // camera that frames were tracked with says.
+  double known_delay = 0.0;
+
+  // Of a recording with more frames a second every second one is left out, or
+  // more, unless a part of it was asked for: near ones tell the same. 0: none.
+  double max_rate = 20.0;
+
+  // A recording is mapped and calibrated so many times at most.
+  int max_passes = 3;
+
+  CalibrationDataOptions data;   // which views
+  LandmarkProblemOptions solve;  // how they are explained
+
+  // One line that says what is wrong with the settings, or empty.
+  std::string Check() const;
+};
+
+// Their rows.
+std::vector<Setting> SettingTable(CalibrationSettings* settings);
+
+// Which parameters are free: all but what `fix` names (see
+// CalibrationSettings), and depth_factor only where something gives a scale.
+// Throws InputError for a name that there is not.
+std::array<bool, kCalibrationSize> FreeParameters(const std::string& fix,
+                                                  bool has_scale);
+
+}  // namespace rgbd_pose
