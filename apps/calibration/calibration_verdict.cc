@@ -47,6 +47,16 @@ std::string Short(double value) { return Format("%.3g", value); }
 
 std::string Percent(double share) { return Short(100.0 * share) + " %"; }
 
+// Of what they differ in most; nothing if they were not compared.
+const HalvesOfParameter* WorstOfHalves(const CalibrationResult& result) {
+  const auto worst = std::max_element(
+      result.halves.begin(), result.halves.end(),
+      [](const HalvesOfParameter& a, const HalvesOfParameter& b) {
+        return a.Sigmas() < b.Sigmas();
+      });
+  return worst == result.halves.end() ? nullptr : &*worst;
+}
+
 }  // namespace
 
 void CompareHeldOut(const CalibrationViews& views_before,
@@ -133,13 +143,8 @@ bool IsAnotherPassDue(const CalibrationResult& result) {
 
 std::string WhyHalvesDisagree(const CalibrationSettings& settings,
                               const CalibrationResult& result) {
-  const auto worst = std::max_element(
-      result.halves.begin(), result.halves.end(),
-      [](const HalvesOfParameter& a, const HalvesOfParameter& b) {
-        return a.Sigmas() < b.Sigmas();
-      });
-  if (worst == result.halves.end() ||
-      !(worst->Sigmas() > settings.max_halves_sigmas)) {
+  const HalvesOfParameter* worst = WorstOfHalves(result);
+  if (worst == nullptr || !(worst->Sigmas() > settings.max_halves_sigmas)) {
     return "";
   }
   const CalibrationParameter& row = kCalibrationParameters[worst->part];
@@ -150,6 +155,14 @@ std::string WhyHalvesDisagree(const CalibrationSettings& settings,
          std::string(row.name) + " differs by " +
          Short(std::abs(worst->second - worst->first)) + unit + " (" +
          Short(worst->Sigmas()) + " standard deviations)";
+}
+
+std::string HalvesInWords(const CalibrationResult& result) {
+  const HalvesOfParameter* worst = WorstOfHalves(result);
+  return worst == nullptr
+             ? "the halves of the recording see too little to be compared"
+             : "the halves of the recording, each by itself, differ by " +
+                   Short(worst->Sigmas()) + " standard deviations at most";
 }
 
 std::string WhyNotPlausible(const RgbdCamera& first, const RgbdCamera& found,

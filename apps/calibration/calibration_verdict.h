@@ -26,6 +26,9 @@ bool IsAnotherPassDue(const CalibrationResult& result);
 std::string WhyHalvesDisagree(const CalibrationSettings& settings,
                               const CalibrationResult& result);
 
+// How far the halves of a recording agree, in words.
+std::string HalvesInWords(const CalibrationResult& result);
+
 // Why what was found is no camera that can be believed in, in words, or empty.
 std::string WhyNotPlausible(const RgbdCamera& first, const RgbdCamera& found,
                             const CalibrationResult& result);

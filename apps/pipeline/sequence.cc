@@ -41,8 +41,8 @@ std::vector<Setting> SettingTable(SequenceSettings* settings) {
        "empty: what the recording says itself",
        Text(&settings->camera), CameraPresetNames()},
       {"depth_camera", kGroup,
-       "which camera of a Kalibr file (cam1, say) took the depth images: they "
-       "are registered to colour; empty: they are already",
+       "which camera of a Kalibr file of several took the depth images: cam1, "
+       "say, and they are registered to colour; cam0: they are already",
        Text(&settings->depth_camera)},
       {"depth_scale", kGroup,
        "raw depth units per metre; 0: as the camera or the recording says",

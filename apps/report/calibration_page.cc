@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "apps/pipeline/calibration_verdict.h"
 #include "apps/results/calibration_output.h"
 #include "core/util/format.h"
 
@@ -171,6 +172,7 @@ std::string CalibrationPage(const CalibrationResult& result,
         "from %.4g to %.4g, %.1f standard deviations of the difference.</p>\n",
         result.held_out_pairs, result.cost_before, result.cost_after,
         result.gain_sigmas);
+    text += "<p>And " + HalvesInWords(result) + ".</p>\n";
     const double spread = std::max(0.5 * result.pixel_before, 1e-3);
     const double zoom = std::clamp(std::round(10.0 / spread), 1.0, 200.0);
     text += Picture(result, false, zoom) + Picture(result, true, zoom);

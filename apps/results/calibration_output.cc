@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "apps/pipeline/calibration_verdict.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file_writer.h"
@@ -77,6 +78,7 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
         result.held_out_pairs, result.cost_before, result.cost_after,
         result.gain_sigmas, 0.5 * result.pixel_before,
         0.5 * result.pixel_after);
+    text += HalvesInWords(result) + "\n";
   }
   if (result.noise.has_value()) {
     const DepthNoiseFit& noise = *result.noise;

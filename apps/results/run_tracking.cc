@@ -24,6 +24,8 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
   const StopSignal signal;
   const size_t size = source->timestamps().size();
   std::string stopped;
+  const std::string doubt = source->camera().camera.Doubt();
+  if (!doubt.empty()) LOG(WARNING) << doubt;
   ProgressBar bar("tracking", static_cast<int>(size));
   try {
     TrackAll(source, threads, {run}, [&](const Frame& frame) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <iterator>
 
+#include "core/util/format.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -89,6 +91,28 @@ std::string Camera::Check() const {
   }
   if (cx < 0.0 || cy < 0.0 || cx >= width || cy >= height) {
     return "the principal point must lie inside the image";
+  }
+  return "";
+}
+
+std::string Camera::Doubt() const {
+  constexpr double kMaxAspect = 0.05;
+  constexpr double kMaxOffCentre = 0.1;
+  const auto line = [](const std::string& what) {
+    return "camera: " + what +
+           ", which is unusual; are its numbers in order, and those of images "
+           "of this size?";
+  };
+  if (std::abs(fx / fy - 1.0) > kMaxAspect) {
+    return line("fx " + ShortNumber(fx) + " and fy " + ShortNumber(fy) +
+                " differ by more than 5 %");
+  }
+  if (std::abs(cx - 0.5 * (width - 1)) > kMaxOffCentre * width ||
+      std::abs(cy - 0.5 * (height - 1)) > kMaxOffCentre * height) {
+    return line("the principal point (" + ShortNumber(cx) + ", " +
+                ShortNumber(cy) + ") is far from the middle of " +
+                std::to_string(width) + " x " + std::to_string(height) +
+                " pixels");
   }
   return "";
 }

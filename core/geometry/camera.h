@@ -35,6 +35,12 @@ struct Camera {
   // One line that says what is wrong with the parameters, or empty.
   std::string Check() const;
 
+  // One line that says what is unusual for an RGB-D camera, or empty: fx and fy
+  // that differ by 5 %, a principal point that is a tenth of the image off its
+  // middle. Both can be meant; more often numbers were exchanged or are those
+  // of another size of image.
+  std::string Doubt() const;
+
   // Whether any distortion coefficient is not 0.
   bool HasDistortion() const;
 

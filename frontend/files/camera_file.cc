@@ -185,7 +185,14 @@ CameraSetup ReadCameraFile(const std::string& path,
   result.depth_errors = ReadDepthErrors(file);
   const std::string problem = result.camera.Check();
   if (!problem.empty()) throw InputError(path + ": " + problem);
-  if (!depth_camera.empty()) {
+  const bool is_rig = file.Has("cam0") && file.Has("cam1");
+  if (depth_camera.empty() && is_rig) {
+    throw InputError(path +
+                     ": has several cameras; say which one depth images are "
+                     "seen from: depth_camera cam1, or cam0 if they are "
+                     "registered to colour");
+  }
+  if (!depth_camera.empty() && !(is_rig && depth_camera == "cam0")) {
     result.depth_camera = ReadDepthCamera(path, file, depth_camera);
   }
   return result;

@@ -18,9 +18,10 @@ namespace rgbd_pose {
 //    [width height].
 // The depth scale is the top-level key DepthMapFactor or RGBD.DepthMapFactor
 // (raw units per metre). Only ORB-SLAM writes it.
-// `depth_camera` names the camera of a Kalibr file (cam1, say) that took the
-// depth images; each camera but cam0 has T_cn_cnm1, from the camera before.
-// Empty: depth is registered to colour, and other cameras are left out.
+// `depth_camera` names the camera of a Kalibr file that depth images are seen
+// from: cam0 if they are registered to colour, else cam1, say; each camera but
+// cam0 has T_cn_cnm1, from the camera before. Empty: they are registered; a
+// file of several cameras wants to be told, though.
 // What rgbd_calibrate found wrong with depth are further top-level keys:
 // inverse_depth_offset (1/m), depth_time_offset (s), depth_rotation (rotation
 // vector, rad) and depth_translation (m), see DepthErrors.

@@ -1,5 +1,6 @@
 #include "frontend/sources/numbered_layouts.h"
 
+#include <cmath>
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
@@ -97,14 +98,35 @@ Camera ReadIntrinsicText(const fs::path& file, const std::string& image_path) {
   return camera;
 }
 
-// Two cameras of different sizes. Their extrinsic_*.txt are the identity in
-// what the exporter writes, so nothing but that is known of where they are.
+// The exporter writes the identity. Anything else was written by somebody who
+// knows where the cameras are, in a convention that nobody wrote down.
+void RequireIdentity(const fs::path& file) {
+  if (!PathExists(file)) return;
+  const std::string path = file.string();
+  const std::vector<TextLine> lines = ReadTextTable(path);
+  for (size_t row = 0; row < lines.size(); ++row) {
+    for (size_t column = 0; column < lines[row].words.size(); ++column) {
+      const double value = ParseNumber(lines[row].words[column], path,
+                                       lines[row].number, "extrinsics");
+      if (std::abs(value - (row == column ? 1.0 : 0.0)) > 1e-6) {
+        throw InputError(path + ":" + std::to_string(lines[row].number) +
+                         ": is not the identity, as in ScanNet's exports; say "
+                         "where the cameras are by a Kalibr file (camera, "
+                         "depth_camera)");
+      }
+    }
+  }
+}
+
+// Two cameras of different sizes, as if they were at the same place.
 std::optional<CameraSetup> ScanNetCamera(const std::string& folder,
                                          const std::string& first_color,
                                          const std::string& first_depth) {
   const fs::path intrinsic = fs::path(folder) / "intrinsic";
   CameraSetup setup(
       ReadIntrinsicText(intrinsic / "intrinsic_color.txt", first_color));
+  RequireIdentity(intrinsic / "extrinsic_color.txt");
+  RequireIdentity(intrinsic / "extrinsic_depth.txt");
   const fs::path of_depth = intrinsic / "intrinsic_depth.txt";
   if (PathExists(of_depth)) {
     setup.depth_camera =

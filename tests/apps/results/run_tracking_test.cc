@@ -1,5 +1,6 @@
 #include "apps/results/run_tracking.h"
 
+#include <glog/logging.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -21,9 +22,9 @@ constexpr int kEventAt = 5;  // something happens as this frame is asked for
 // Frames of a wall that stands still.
 class EventfulSource final : public FrameSource {
  public:
-  EventfulSource(bool is_recording, std::function<void()> event)
+  EventfulSource(bool is_recording, double fy, std::function<void()> event)
       : event_(std::move(event)) {
-    camera_.camera = {160, 120, 131.25, 131.25, 79.5, 59.5, 0, 0, 0};
+    camera_.camera = {160, 120, 131.25, fy, 79.5, 59.5, 0, 0, 0};
     cv::RNG random(1);
     frame_.gray.create(120, 160, CV_8UC1);
     random.fill(frame_.gray, cv::RNG::UNIFORM, 0, 255);
@@ -56,7 +57,7 @@ class RunTrackingTest : public testing::Test {
  protected:
   // Why the run ended early.
   std::string Track(bool is_recording, std::function<void()> event) {
-    EventfulSource source(is_recording, std::move(event));
+    EventfulSource source(is_recording, fy_, std::move(event));
     const OdometrySettings settings;
     OdometryRun run(settings, source.camera().camera);
     RunOutputSettings files;
@@ -68,8 +69,34 @@ class RunTrackingTest : public testing::Test {
   }
 
   TempFolder folder_;
+  double fy_ = 131.25;
   int frames_ = 0;
 };
+
+// Gathers what is logged.
+class LogLines final : public google::LogSink {
+ public:
+  LogLines() { google::AddLogSink(this); }
+  ~LogLines() override { google::RemoveLogSink(this); }
+  void send(google::LogSeverity, const char*, const char*, int,
+            const struct std::tm*, const char* message,
+            size_t length) override {
+    text_.append(message, length).append("\n");
+  }
+  const std::string& text() const { return text_; }
+
+ private:
+  std::string text_;
+};
+
+TEST_F(RunTrackingTest, WarnsOfAnUnusualCamera) {
+  const LogLines log;
+  Track(true, [] {});
+  EXPECT_EQ(log.text(), "");
+  fy_ = 100.0;
+  Track(true, [] {});
+  EXPECT_THAT(log.text(), HasSubstr("fx 131.25 and fy 100 differ"));
+}
 
 TEST_F(RunTrackingTest, GoesToTheEnd) {
   EXPECT_EQ(Track(true, [] {}), "");

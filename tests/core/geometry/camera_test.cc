@@ -1,8 +1,11 @@
 #include "core/geometry/camera.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <string>
+#include <utility>
 
 namespace rgbd_pose {
 namespace {
@@ -79,6 +82,26 @@ TEST(CameraTest, ChecksItsParameters) {
   camera = Camera{};
   camera.height = 0;
   EXPECT_NE(camera.Check(), "");
+}
+
+TEST(CameraTest, DoubtsExchangedNumbers) {
+  for (const std::string& name : CameraPresetNames()) {
+    EXPECT_EQ(CameraPreset(name)->camera.Doubt(), "") << name;
+  }
+  Camera camera;
+  std::swap(camera.cx, camera.cy);
+  EXPECT_THAT(camera.Doubt(), testing::HasSubstr("principal point"));
+  camera = Camera{};
+  camera.fy = 480.0;
+  EXPECT_THAT(camera.Doubt(),
+              testing::HasSubstr("fx 525 and fy 480 differ by more than 5 %"));
+  // Numbers of 640 x 480 for images of half that size.
+  camera = Camera{};
+  camera.width = 320;
+  camera.height = 240;
+  camera.cx = 310.0;
+  camera.cy = 230.0;
+  EXPECT_THAT(camera.Doubt(), testing::HasSubstr("320 x 240"));
 }
 
 TEST(CameraTest, UnknownPresetIsEmpty) {

@@ -234,7 +234,9 @@ cam2:
 TEST(DepthCameraTest, IsReadFromARig) {
   const TempFolder folder;
   const std::string path = folder.Write("rig.yaml", kRig);
-  EXPECT_FALSE(ReadCameraFile(path).depth_camera.has_value());
+  EXPECT_FALSE(ReadCameraFile(path, "cam0").depth_camera.has_value());
+  ExpectInputError([&] { ReadCameraFile(path); },
+                   {"rig.yaml: has several cameras; say which one"});
   const CameraSetup setup = ReadCameraFile(path, "cam1");
   EXPECT_EQ(setup.camera.fx, 600.5);
   EXPECT_FALSE(setup.depth_scale.has_value());

@@ -121,6 +121,9 @@ TEST_F(NumberedDatasetTest, ReadsScanNet) {
   const std::string matrix = "30 0 15.5 0\n0 30 11.5 0\n0 0 1 0\n0 0 0 1\n";
   WriteText("intrinsic/intrinsic_color.txt", matrix);
   WriteText("intrinsic/intrinsic_depth.txt", matrix);
+  const std::string nowhere = "1 0 0 0\n0 1 0 0\n0 0 1 0\n0 0 0 1\n";
+  WriteText("intrinsic/extrinsic_color.txt", nowhere);
+  WriteText("intrinsic/extrinsic_depth.txt", nowhere);
   const auto source = ExpectRead("scannet", Options(), 1000.0);
   EXPECT_EQ(source->camera().camera.fx, 30.0);
   EXPECT_EQ(source->camera().camera.cy, 11.5);
@@ -131,6 +134,18 @@ TEST_F(NumberedDatasetTest, ReadsScanNet) {
             "-inf -inf -inf -inf\n-inf -inf -inf -inf\n"
             "-inf -inf -inf -inf\n-inf -inf -inf -inf\n");
   ExpectPoses(*OpenSource("auto", Options()), 2);
+}
+
+TEST_F(NumberedDatasetTest, KnowsNotWhereScanNetsCamerasAre) {
+  Write("color/0.jpg", ColorImage(0));
+  Write("depth/0.png", DepthImage(0));
+  const std::string matrix = "30 0 15.5 0\n0 30 11.5 0\n0 0 1 0\n0 0 0 1\n";
+  WriteText("intrinsic/intrinsic_color.txt", matrix);
+  WriteText("intrinsic/extrinsic_depth.txt",
+            "1 0 0 0.04\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  ExpectInputError([this] { OpenSource("scannet", Options()); },
+                   {"extrinsic_depth.txt:1: is not the identity"});
+  OpenSource("scannet", WithCamera());
 }
 
 TEST_F(NumberedDatasetTest, RegistersScanNetsSmallerDepth) {
