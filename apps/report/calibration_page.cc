@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "apps/pipeline/calibration_verdict.h"
+#include "apps/calibration/calibration_verdict.h"
 #include "apps/results/calibration_output.h"
 #include "core/util/format.h"
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "apps/pipeline/calibration_verdict.h"
+#include "apps/calibration/calibration_verdict.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file_writer.h"

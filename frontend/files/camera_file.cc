@@ -15,6 +15,13 @@
 namespace rgbd_pose {
 namespace {
 
+// Of what depth is registered to, in all layouts.
+constexpr char kColorCamera[] = "cam0";
+
+bool IsOfColor(const std::string& depth_camera) {
+  return depth_camera.empty() || depth_camera == kColorCamera;
+}
+
 Camera ReadOrbSlam(const YamlSection& file) {
   const std::string prefix =
       file.HasKeyStartingWith("Camera1.") ? "Camera1." : "Camera.";
@@ -185,14 +192,13 @@ CameraSetup ReadCameraFile(const std::string& path,
   result.depth_errors = ReadDepthErrors(file);
   const std::string problem = result.camera.Check();
   if (!problem.empty()) throw InputError(path + ": " + problem);
-  const bool is_rig = file.Has("cam0") && file.Has("cam1");
-  if (depth_camera.empty() && is_rig) {
+  if (depth_camera.empty() && file.Has("cam0") && file.Has("cam1")) {
     throw InputError(path +
                      ": has several cameras; say which one depth images are "
                      "seen from: depth_camera cam1, or cam0 if they are "
                      "registered to colour");
   }
-  if (!depth_camera.empty() && !(is_rig && depth_camera == "cam0")) {
+  if (!IsOfColor(depth_camera)) {
     result.depth_camera = ReadDepthCamera(path, file, depth_camera);
   }
   return result;
@@ -207,7 +213,7 @@ CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
   }
   // Presets are of registered depth. Their scale is the benchmark's: what a
   // recording says of its own comes before it.
-  if (preset && depth_camera.empty()) return CameraSetup(preset->camera);
+  if (preset && IsOfColor(depth_camera)) return CameraSetup(preset->camera);
   if (preset) {
     throw InputError("camera '" + file_or_preset +
                      "' is a preset, which has "
@@ -220,7 +226,7 @@ CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
 }
 
 RgbdCamera ResolveCamera(const std::string& file_or_preset) {
-  return RegisteredCamera(ResolveCameraSetup(file_or_preset));
+  return RegisteredCamera(ResolveCameraSetup(file_or_preset, kColorCamera));
 }
 
 }  // namespace rgbd_pose

@@ -157,7 +157,7 @@ std::string FormatCameraFile(const RgbdCamera& camera,
   std::string prefix = "Camera.";
   std::string scale = "DepthMapFactor";
   if (!is_preset) {
-    ReadCameraFile(like);  // complains of what is wrong with it
+    ResolveCamera(like);  // complains of what is wrong with it
     text = ReadTextFile(like);
     const YamlSection file = YamlSection::FromFile(like);
     if (file.HasKeyStartingWith("Camera1.")) prefix = "Camera1.";

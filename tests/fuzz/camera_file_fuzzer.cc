@@ -10,7 +10,7 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   static const FuzzFolder folder;
   const std::string file = folder.Write("camera.yaml", FuzzText(data, size));
   MayRefuse([&] {
-    const CameraSetup camera = ReadCameraFile(file);
+    const CameraSetup camera = ReadCameraFile(file, "cam0");
     Require(camera.camera.Check().empty(), "a camera that can be used");
     const double scale = camera.depth_scale.value_or(1.0);
     Require(std::isfinite(scale) && scale >= 1.0,
