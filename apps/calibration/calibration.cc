@@ -83,8 +83,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                     std::to_string(result.keyframes) + " keyframes";
     return result;
   }
-  LandmarkProblemOptions solve = settings.solve;
-  solve.threads = threads;
+  const LandmarkProblemOptions& solve = settings.solve;
 
   CalibrationVector undone = CalibrationVector::Zero();
   const auto look_up = [&](const CalibrationVector& theta) {
@@ -161,7 +160,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     }
   }
   result.halves =
-      CompareHalves(data.views, found, is_free, start, prior, solve);
+      CompareHalves(data.views, found, is_free, start, prior, solve, threads);
   result.displacement_px = DisplacementPx(data.views, found.theta - start);
   result.pixel_before = before.pixel_scale;
   result.pixel_after = found.pixel_scale;

@@ -1,7 +1,12 @@
 #include "apps/calibration/calibration_halves.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/util/parallel_for.h"
 
 namespace rgbd_pose {
 namespace {
@@ -58,6 +63,29 @@ Part PartOf(const CalibrationViews& all, const CalibrationState& found,
   return part;
 }
 
+// What a part says of the parameters.
+struct Told {
+  CalibrationVector theta;
+  CalibrationVector variance;
+};
+
+// Nothing if the part has too few views or does not tell.
+std::optional<Told> Calibrated(Part part, const FreeParts& is_free,
+                               const CalibrationVector& start,
+                               const CalibrationVector& prior,
+                               const LandmarkProblemOptions& options) {
+  if (part.views.views.size() < static_cast<size_t>(kMinViews)) return {};
+  const LandmarkProblem problem(part.views, start, prior, false, options);
+  if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
+  problem.MeasureScales(&part.state);
+  CalibrationMatrix by_noise, by_scatter;
+  if (!problem.Covariance(is_free, part.state, &by_noise, &by_scatter)) {
+    return {};
+  }
+  return Told{part.state.theta,
+              by_noise.diagonal().cwiseMax(by_scatter.diagonal())};
+}
+
 }  // namespace
 
 double HalvesOfParameter::Sigmas() const {
@@ -67,33 +95,24 @@ double HalvesOfParameter::Sigmas() const {
 std::vector<HalvesOfParameter> CompareHalves(
     const CalibrationViews& views, const CalibrationState& found,
     const FreeParts& is_free, const CalibrationVector& start,
-    const CalibrationVector& prior, const LandmarkProblemOptions& options) {
+    const CalibrationVector& prior, const LandmarkProblemOptions& options,
+    int threads) {
   const int all = static_cast<int>(views.world_from_cam.size());
-  CalibrationVector theta[2], variance[2];
-  for (int half = 0; half < 2; ++half) {
+  std::array<std::optional<Told>, 2> halves;
+  ParallelFor(2, threads, [&](int half) {
     const int begin = half * (all / 2), end = half == 0 ? all / 2 : all;
-    Part part = PartOf(views, found, begin, end);
-    if (end - begin < kMinKeyframes ||
-        part.views.views.size() < static_cast<size_t>(kMinViews)) {
-      return {};
-    }
-    const LandmarkProblem problem(part.views, start, prior, false, options);
-    if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
-    problem.MeasureScales(&part.state);
-    CalibrationMatrix by_noise, by_scatter;
-    if (!problem.Covariance(is_free, part.state, &by_noise, &by_scatter)) {
-      return {};
-    }
-    theta[half] = part.state.theta;
-    variance[half] = by_noise.diagonal().cwiseMax(by_scatter.diagonal());
-  }
+    if (end - begin < kMinKeyframes) return;
+    halves[half] = Calibrated(PartOf(views, found, begin, end), is_free, start,
+                              prior, options);
+  });
+  if (!halves[0].has_value() || !halves[1].has_value()) return {};
   std::vector<HalvesOfParameter> result;
   for (int k = 0; k < kCalibrationSize; ++k) {
     if (!is_free[k]) continue;
     const double floor = CalibrationFloor(k, all / 2);
-    result.push_back(
-        {k, theta[0][k], theta[1][k],
-         std::sqrt(variance[0][k] + variance[1][k] + 2.0 * floor * floor)});
+    result.push_back({k, halves[0]->theta[k], halves[1]->theta[k],
+                      std::sqrt(halves[0]->variance[k] +
+                                halves[1]->variance[k] + 2.0 * floor * floor)});
   }
   return result;
 }

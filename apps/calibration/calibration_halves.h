@@ -28,6 +28,6 @@ std::vector<HalvesOfParameter> CompareHalves(
     const CalibrationViews& views, const CalibrationState& found,
     const std::array<bool, kCalibrationSize>& is_free,
     const CalibrationVector& start, const CalibrationVector& prior,
-    const LandmarkProblemOptions& options);
+    const LandmarkProblemOptions& options, int threads);
 
 }  // namespace rgbd_pose

@@ -188,7 +188,7 @@ double LandmarkProblem::Solve(const FreeParts& is_free,
 
   options.linear_solver_type = ceres::SPARSE_SCHUR;
   options.max_num_iterations = options_.max_iterations;
-  options.num_threads = options_.threads;
+  options.num_threads = 1;
   options.function_tolerance = 1e-5;
   options.initial_trust_region_radius = 1e6;
   options.logging_type = ceres::SILENT;

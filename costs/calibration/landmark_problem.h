@@ -14,11 +14,11 @@ struct LandmarkProblemOptions {
   // Of Cauchy's loss, in standard deviations.
   double loss_width = 2.5;
   int max_iterations = 20;
-  int threads = 1;
 };
 
 // A bundle adjustment of keyframes, landmarks and the camera itself. What of
-// the camera is free has a normal prior.
+// the camera is free has a normal prior. On one thread: several would add up in
+// an order of their own, with other last digits each time.
 class LandmarkProblem {
  public:
   // `views` must outlive it. Views that are held out take no part if

@@ -46,10 +46,11 @@ struct Mapped {
     path = SmoothPath(tracked);
   }
 
-  CalibrationResult Calibrate(CalibrationSettings settings = {}) const {
+  CalibrationResult Calibrate(CalibrationSettings settings = {},
+                              int threads = 2) const {
     settings.data.max_views = 5000;
     return rgbd_pose::Calibrate(map, path, first, CalibrationOdometry(),
-                                settings, {}, 2);
+                                settings, {}, threads);
   }
 
   RgbdCamera first;
@@ -143,6 +144,16 @@ TEST(CalibrationTest, HalvesOfOneCameraAgree) {
               Fate::kDetermined);
     EXPECT_GT(half.sigma, 0.0);
   }
+}
+
+TEST(CalibrationTest, TheNumberOfThreadsChangesNothing) {
+  const CalibrationResult one = MappedWrongly().Calibrate({}, 1);
+  const CalibrationResult three = MappedWrongly().Calibrate({}, 3);
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    EXPECT_EQ(one.parameters[k].found, three.parameters[k].found);
+    EXPECT_EQ(one.parameters[k].sigma, three.parameters[k].sigma);
+  }
+  EXPECT_EQ(one.cost_after, three.cost_after);
 }
 
 TEST(CalibrationTest, HalvesThatContradictEachOtherAreNamed) {
