@@ -217,7 +217,7 @@ std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
            Short(1e3 * result.truth_before) + " mm";
   }
   if (!IsAnotherPassDue(result)) {
-    const std::string disagree = WhyHalvesDisagree(settings, result);
+    std::string disagree = WhyHalvesDisagree(settings, result);
     if (!disagree.empty()) return disagree;
   }
   const bool has_moved = std::any_of(

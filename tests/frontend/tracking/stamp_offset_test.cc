@@ -69,7 +69,8 @@ TEST(StampOffsetTest, EveryFrontendsPreparedFrameCopiesItself) {
     const auto prepared = frontend->Prepare(frame);
     const auto undone = offset.Undo(*prepared, kTurning);
     ASSERT_NE(undone, nullptr) << name;
-    EXPECT_TRUE(typeid(*undone) == typeid(*prepared)) << name;
+    const PreparedFrame &copy = *undone, &original = *prepared;
+    EXPECT_TRUE(typeid(copy) == typeid(original)) << name;
     EXPECT_GT(frontend->Detect(*undone)->observations.size(), 100u) << name;
   }
 }
