@@ -4,6 +4,8 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
+#include "core/util/eigen_alignment.h"
+
 namespace rgbd_pose {
 
 // A rigid motion, named target_from_source: point_in_target =

@@ -3,6 +3,8 @@
 #include <cmath>
 
 #include "frontend/files/camera_file.h"
+#include "frontend/files/camera_file_writer.h"
+#include "frontend/files/camera_setup.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -16,6 +18,12 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     Require(std::isfinite(scale) && scale >= 1.0,
             "a depth scale that can be used");
     camera.camera.Unproject({0.0, 0.0}, 1.0);
+    const RgbdCamera registered = RegisteredCamera(camera);
+    const std::string again =
+        folder.Write("again.yaml", FormatCameraFile(registered, file));
+    Require(std::abs(ResolveCamera(again).camera.fx - registered.camera.fx) <=
+                1e-6 * registered.camera.fx,
+            "a camera that is written as it is");
   });
   MayRefuse([&] {
     const CameraSetup rig = ReadCameraFile(file, "cam1");

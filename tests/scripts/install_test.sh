@@ -115,4 +115,17 @@ read -ra libraries < <(pkg-config --libs rgbd_pose_simulation)
   "${flags[@]}" "${libraries[@]}" -Wl,-rpath,"${PKG_CONFIG_PATH%/*}" \
   -o "$work/camera_loop" >"$work/log" 2>&1 || fail "pkg-config: build"
 check "$work/camera_loop" '^back at the start within 0\.[0-9]+ mm$'
+
+# Flags that give Eigen another alignment are refused rather than a crash.
+avx() {
+  "${CXX:-c++}" -std=c++17 -O2 -mavx2 "$@" \
+    "$source/docs/examples/estimate_motion.cc" "${flags[@]}" "${libraries[@]}" \
+    -Wl,-rpath,"${PKG_CONFIG_PATH%/*}" -o "$work/avx" >"$work/log" 2>&1
+}
+if [ "$(uname -m)" = x86_64 ]; then
+  ! avx || fail "took another alignment of Eigen's vectors"
+  says "leave out -march=native, .* -DEIGEN_MAX_ALIGN_BYTES=16" alignment
+  avx -DEIGEN_MAX_ALIGN_BYTES=16 || fail "alignment of 16 bytes: build"
+  ! grep -q avx2 /proc/cpuinfo || check "$work/avx" '^ok'
+fi
 echo "ok"

@@ -1,0 +1,20 @@
+# RGBD_POSE_EIGEN_ALIGN: to how many bytes Eigen aligns with the flags of this
+# build; empty if that is none of the usual ones. See core/util/eigen_alignment.h.
+include(CheckCXXSourceCompiles)
+
+function(rgbd_pose_find_eigen_alignment)
+  get_target_property(CMAKE_REQUIRED_INCLUDES Eigen3::Eigen
+                      INTERFACE_INCLUDE_DIRECTORIES)
+  foreach(bytes 16 32 64)
+    check_cxx_source_compiles(
+      "#include <Eigen/Core>
+       static_assert(EIGEN_MAX_ALIGN_BYTES == ${bytes} &&
+                     EIGEN_MAX_STATIC_ALIGN_BYTES == ${bytes}, \"\");
+       int main() {}"
+      RGBD_POSE_EIGEN_ALIGNS_${bytes})
+    if(RGBD_POSE_EIGEN_ALIGNS_${bytes})
+      set(RGBD_POSE_EIGEN_ALIGN ${bytes} PARENT_SCOPE)
+      return()
+    endif()
+  endforeach()
+endfunction()

@@ -1,0 +1,27 @@
+// Poses of recordings in numbered files: the input as each of their forms.
+
+#include "frontend/sources/numbered_poses.h"
+#include "tests/fuzz/fuzz_input.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace rgbd_pose;
+  static const FuzzFolder folder;
+  static const bool has_folder =
+      std::filesystem::create_directory(folder.path() + "/pose");
+  Require(has_folder, "a folder of poses");
+  const std::string_view text = FuzzText(data, size);
+  for (const char* name : {"frame-000001.pose.txt", "pose/1.txt", "traj.txt",
+                           "trajectory.log", "a.gt.freiburg"}) {
+    folder.Write(name, text);
+  }
+  for (const auto read : {ReadFramePoses, ReadPoseFolder, ReadPoseLines,
+                          ReadPoseLog, ReadMirroredPoses}) {
+    MayRefuse([&] {
+      for (const auto& [number, pose] : read(folder.path(), {1, 2, 3})) {
+        Require(number >= 1 && number <= 3, "a number that was asked for");
+        Require(pose.IsFinite(), "a pose that can be used");
+      }
+    });
+  }
+  return 0;
+}
