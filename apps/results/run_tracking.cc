@@ -24,14 +24,15 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
   const StopSignal signal;
   const size_t size = source->timestamps().size();
   std::string stopped;
-  const std::string doubt = source->camera().camera.Doubt();
-  if (!doubt.empty()) LOG(WARNING) << doubt;
   ProgressBar bar("tracking", static_cast<int>(size));
   try {
     TrackAll(source, threads, {run}, [&](const Frame& frame) {
-      const bool is_first = run->frames().size() == 1;
-      const std::string warning = is_first ? DepthScaleWarning(frame) : "";
-      if (!warning.empty()) LOG(WARNING) << warning;
+      if (run->frames().size() == 1) {
+        for (const std::string& doubt :
+             {source->camera().camera.Doubt(), DepthScaleWarning(frame)}) {
+          if (!doubt.empty()) LOG(WARNING) << doubt;
+        }
+      }
       output->Add(frame, *run);
       bar.Update(static_cast<int>(run->frames().size()));
       stopped = signal.name();
