@@ -56,6 +56,7 @@ EXCEPTIONS = {
         'scripts/fuzz': left_out('takes minutes'),
         'scripts/coverage': left_out('takes minutes'),
         'scripts/mutants': left_out('takes minutes'),
+        'scripts/endurance': left_out('takes an hour'),
         'scripts/check_packages': left_out('takes minutes and needs root'),
         'scripts/benchmark':
             left_out('takes minutes; tests/benchmarks/benchmark_programs_test.cc runs '
