@@ -16,9 +16,14 @@ for program in munged slurmctld slurmd sbatch sinfo; do
 done
 
 folder=$(mktemp -d)
+# A daemon writes its state as it ends: the folder goes once all have ended.
+# Slurm, which asks munged until its end, ends before it.
 stop() {
-  for pid in "$folder"/run/*.pid; do
-    [ -f "$pid" ] && kill "$(cat "$pid")" 2>/dev/null || true
+  for name in slurmd slurmctld munged; do
+    local file=$folder/run/$name.pid pid
+    pid=$(cat "$file" 2>/dev/null) || continue
+    kill "$pid" 2>/dev/null || continue
+    timeout 20 tail --pid="$pid" -f /dev/null || kill -KILL "$pid" || true
   done
   rm -rf "$folder"
 }
