@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -20,7 +21,7 @@ class KeyframePairing {
  public:
   // All must outlive it.
   KeyframePairing(const MappingOptions& options,
-                  const std::vector<MappedKeyframe>& keyframes,
+                  const std::deque<MappedKeyframe>& keyframes,
                   const PlaceIndex& index, PairTracker* tracker,
                   KeyframeGraph* graph)
       : options_(options),
@@ -53,7 +54,7 @@ class KeyframePairing {
   bool HaveMetBefore(const Edge& edge);
 
   const MappingOptions& options_;
-  const std::vector<MappedKeyframe>& keyframes_;
+  const std::deque<MappedKeyframe>& keyframes_;
   const PlaceIndex& index_;
   PairTracker& tracker_;
   KeyframeGraph& graph_;

@@ -15,13 +15,18 @@ struct FoundKeyframe {
   Frame frame;
 };
 
+// Where a keyframe is.
+struct KeyframePlace {
+  Rigid3d map_from_cam;
+  int segment = 0;
+};
+
 // What became of the map.
 struct MapUpdate {
-  std::map<int, Rigid3d> map_from_keyframe;  // of all there ever were
-  std::map<int, int> segments;               // likewise
-  int pairs = 0;                             // that were added
-  int loops = 0;                             // of these
-  int joined = 0;                            // segments that became one
+  std::map<int, KeyframePlace> moved;  // by id, since the last update
+  int pairs = 0;                       // that were added
+  int loops = 0;                       // of these
+  int joined = 0;                      // segments that became one
   std::string trouble;  // why poses were not solved for; empty: they were
   double ms = 0.0;      // of work
 

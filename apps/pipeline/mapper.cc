@@ -12,6 +12,12 @@ namespace {
 // Views are compared by pixels so far apart: 192 of 640 x 480.
 constexpr int kSampleStepPx = 40;
 
+bool IsSame(const KeyframePlace& a, const KeyframePlace& b) {
+  return a.segment == b.segment &&
+         a.map_from_cam.rotation.coeffs() == b.map_from_cam.rotation.coeffs() &&
+         a.map_from_cam.translation == b.map_from_cam.translation;
+}
+
 }  // namespace
 
 Mapper::Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker)
@@ -93,7 +99,7 @@ MapUpdate Mapper::Add(NewKeyframe added) {
       update.loops > 0 ? graph_.SolveAll() : graph_.SolveNear(newest);
   FindReturn(newest, &update);
   MakeWay(newest);
-  Fill(&update);
+  TellMoved(&update);
   return update;
 }
 
@@ -147,6 +153,7 @@ void Mapper::MakeWay(int newest) {
     tracker_.Forget(at);
     MappedKeyframe gone;
     gone.id = keyframes_[at].id;
+    gone.told = keyframes_[at].told;
     keyframes_[at] = std::move(gone);
     return;
   }
@@ -156,14 +163,17 @@ MapUpdate Mapper::Finish() {
   MapUpdate update;
   const StageTimer timer(&update.ms);
   if (graph_.size() > 0) update.trouble = graph_.SolveAll();
-  Fill(&update);
+  TellMoved(&update);
   return update;
 }
 
-void Mapper::Fill(MapUpdate* update) const {
+void Mapper::TellMoved(MapUpdate* update) {
   for (int at = 0; at < graph_.size(); ++at) {
-    update->map_from_keyframe[keyframes_[at].id] = graph_.pose(at);
-    update->segments[keyframes_[at].id] = graph_.segment(at);
+    MappedKeyframe& keyframe = keyframes_[at];
+    const KeyframePlace place = {graph_.pose(at), graph_.segment(at)};
+    if (keyframe.told.has_value() && IsSame(*keyframe.told, place)) continue;
+    keyframe.told = place;
+    update->moved[keyframe.id] = place;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
@@ -65,13 +66,13 @@ class Mapper {
                   int segment, bool is_held);
   void FindReturn(int newest, MapUpdate* update) const;
   void MakeWay(int newest);
-  void Fill(MapUpdate* update) const;
+  void TellMoved(MapUpdate* update);
 
   const MappingOptions options_;
   PairTracker tracker_;
   KeyframeGraph graph_;
-  std::vector<MappedKeyframe> keyframes_;  // by their numbers in graph_
-  std::map<int, int> numbers_;             // of keyframes, by id
+  std::deque<MappedKeyframe> keyframes_;  // by their numbers in graph_
+  std::map<int, int> numbers_;            // of keyframes, by id
   PlaceIndex index_;
   KeyframePairing pairing_;
 };

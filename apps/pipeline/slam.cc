@@ -177,10 +177,10 @@ void Slam::TakeUp(int frame, SlamFrame* result) {
 }
 
 void Slam::Apply(MapUpdate update, SlamFrame* result) {
-  for (const auto& [id, pose] : update.map_from_keyframe) {
-    map_from_keyframe_[id] = pose;
+  for (const auto& [id, place] : update.moved) {
+    map_from_keyframe_[id] = place.map_from_cam;
+    segments_[id] = place.segment;
   }
-  for (const auto& [id, segment] : update.segments) segments_[id] = segment;
   MoveNewer();
   if (reference_.has_value()) {
     map_from_odom_ =

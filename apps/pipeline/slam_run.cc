@@ -1,13 +1,18 @@
 #include "apps/pipeline/slam_run.h"
 
+#include <utility>
+
 namespace rgbd_pose {
 
 TrackedFrame SlamRun::Track(const PreparedFrame& frame,
                             const Rigid3d* cur_from_prev_guess) {
-  frames_.push_back(slam_.Track(frame, cur_from_prev_guess));
-  TrackedFrame tracked = frames_.back().tracked;
-  tracked.world_from_cam = frames_.back().map_from_cam();
-  tracked.segment = frames_.back().segment;
+  SlamFrame in_map = slam_.Track(frame, cur_from_prev_guess);
+  TrackedFrame tracked = in_map.tracked;
+  tracked.world_from_cam = in_map.map_from_cam();
+  tracked.segment = in_map.segment;
+  // Once in memory is enough for an hour of frames.
+  in_map.tracked.edges = {};
+  frames_.push_back(std::move(in_map));
   return tracked;
 }
 

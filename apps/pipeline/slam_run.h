@@ -27,7 +27,7 @@ class SlamRun final : public SequenceRun {
   // After Finish: the map.
   const Slam& slam() const { return slam_; }
 
-  // What became of each frame.
+  // What became of each frame; RunResults has the edges.
   const std::vector<SlamFrame>& slam_frames() const { return frames_; }
 
  private:

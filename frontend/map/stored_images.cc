@@ -21,7 +21,7 @@ bool StartsWith(const std::shared_ptr<const PngBytes>& png,
 }  // namespace
 
 PngBytes::PngBytes(std::string file)
-    : bytes(std::move(file)), checksum([this] {
+    : bytes(file.data(), file.size()), checksum([this] {
         TextHash hash;
         hash.Add(bytes);
         return hash.Hex();
