@@ -17,8 +17,8 @@ struct FoundKeyframe {
 
 // Where a keyframe is.
 struct KeyframePlace {
-  Rigid3d map_from_cam;
-  int segment = 0;
+  Rigid3d map_from_cam;  // as now known
+  int segment = 0;       // whose world `map` is
 };
 
 // What became of the map.

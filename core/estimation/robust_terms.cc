@@ -1,7 +1,5 @@
 #include "core/estimation/robust_terms.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,9 +14,6 @@ namespace {
 constexpr size_t kMinResidualsForScale = 10;
 // So many tell it to 2 %: of more (pixels), every second, third, ... is asked.
 constexpr size_t kMaxResidualsForScale = 2000;
-// By how much what noise feigns may exceed its model: depths come in steps, so
-// that slopes of surfaces seen at an angle are noisier.
-constexpr double kFeignedCostMargin = 6.0;
 
 // What a scale may come to: a spread of zero (over half of the residuals
 // equal) or a huge one (over half of the matches wrong) has no use.
@@ -26,30 +21,6 @@ constexpr double kMinScale = 0.05;
 constexpr double kMaxScale = 20.0;
 // Scale and motion are estimated in turn until no scale moves by more.
 constexpr double kScaleTolerance = 0.01;
-
-// Information less what of it is feigned: none, not less, in directions where
-// all is: a covariance is made of it.
-MotionMatrix LessFeigned(const MotionMatrix& hessian,
-                         const MotionMatrix& feigned) {
-  if (feigned.isZero() || !feigned.allFinite()) return hessian;
-  MotionVector unit = hessian.diagonal();
-  for (double& value : unit) value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
-  constexpr double kSingular = 1e-12;
-  MotionMatrix scaled = unit.asDiagonal() * hessian * unit.asDiagonal();
-  scaled.diagonal().array() += kSingular;
-  const Eigen::LLT<MotionMatrix> llt(scaled);
-  if (llt.info() != Eigen::Success) return MotionMatrix::Zero();
-  const MotionMatrix L = llt.matrixL();
-  const MotionMatrix half =
-      llt.matrixL().solve(unit.asDiagonal() * feigned * unit.asDiagonal());
-  const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
-      llt.matrixL().solve(half.transpose()));
-  const MotionVector left =
-      (1.0 - eigen.eigenvalues().array()).cwiseMax(0.0).sqrt();
-  const MotionMatrix root = unit.cwiseInverse().asDiagonal() * L *
-                            eigen.eigenvectors() * left.asDiagonal();
-  return root * root.transpose();
-}
 
 }  // namespace
 
@@ -219,100 +190,6 @@ double RobustTerms::EstimateScale(
   }
   if (values_.size() < kMinResidualsForScale) return 1.0;
   return std::clamp(scale(&values_), kMinScale, kMaxScale);
-}
-
-void RobustTerms::JudgeMatches(MotionEstimate* estimate) {
-  counted_.assign(num_matches_, false);
-  shares_.resize(costs_.size());
-  estimate->num_inliers = 0;
-  for (size_t i = 0; i < costs_.size(); ++i) {
-    const MotionCost& cost = *costs_[i].cost;
-    const double scale2 = scales_[i] * scales_[i];
-    const double information = cost.information_factor();
-    LossSums& sums = shares_[i].sums;
-    sums = LossSums();
-    for (size_t k = 0; k < norms_[i].size(); ++k) {
-      const int p = cost.degrees()[k];
-      const double s = norms_[i][k];
-      double rho[3];
-      losses_[i].Evaluate(s, rho);
-      const double weight = rho[1] / Factor(i);
-      sums.psi2 += information * weight * weight * s / scale2;
-      sums.weight_p += information * weight * p;
-      sums.slope_p += information * (weight * p + 2.0 * s * rho[2] / Factor(i));
-      ++sums.blocks;
-      const double limit =
-          cost.is_whitened() ? ChiSquared99(p) : cost.InlierLimit(k);
-      const bool agrees = s <= limit * scale2;
-      const int match = cost.matches()[k];
-      if (match < 0) {
-        if (agrees && HasScale(cost)) ++estimate->num_inliers;
-        continue;
-      }
-      // Losses that are steeper than least squares near 0 weigh above 1.
-      JudgeMatch(match, std::min(weight, 1.0), agrees, estimate);
-      const double norm = std::sqrt(s);
-      if (norm >= estimate->residual_norms[match]) {
-        estimate->residual_norms[match] = norm;
-        estimate->residual_degrees[match] = p;
-      }
-    }
-  }
-  estimate->num_inliers += static_cast<int>(
-      std::count(estimate->is_inlier.begin(), estimate->is_inlier.end(), true));
-}
-
-// A match that several costs use is an inlier if all of them agree.
-void RobustTerms::JudgeMatch(int match, double weight, bool agrees,
-                             MotionEstimate* estimate) {
-  const bool again = counted_[match];
-  estimate->is_inlier[match] = agrees && (!again || estimate->is_inlier[match]);
-  estimate->weights[match] =
-      again ? std::min(estimate->weights[match], weight) : weight;
-  counted_[match] = true;
-}
-
-NormalEquations RobustTerms::LineariseShares(const MotionDerivatives& motion) {
-  NormalEquations sum;
-  shares_.resize(costs_.size());
-  for (size_t i = 0; i < costs_.size(); ++i) {
-    NormalEquations share;
-    costs_[i].cost->Linearise(motion, Loss(i), &share);
-    MotionMatrix feigned = MotionMatrix::Zero();
-    costs_[i].cost->AddFeigned(motion, &feigned);
-    // Residuals that are larger than their noise do not make slopes noisier.
-    const double excess = std::max(1.0, scales_[i]);
-    double times = kFeignedCostMargin * costs_[i].cost->information_factor() /
-                   (excess * excess);
-    // Of an image that shows nothing there is not even noise to take off.
-    for (int k = 0; k < 6; ++k) {
-      if (times * feigned(k, k) > share.hessian(k, k)) {
-        times = share.hessian(k, k) / feigned(k, k);
-      }
-    }
-    // The sum may well be indefinite: then some direction is not determined.
-    shares_[i].hessian = LessFeigned(share.hessian, times * feigned);
-    share.hessian -= times * feigned;
-    sum.hessian += share.hessian;
-    sum.gradient += share.gradient;
-    sum.cost += share.cost;
-  }
-  return sum;
-}
-
-MotionMatrix RobustTerms::Covariance(const MotionDerivatives& motion,
-                                     const MotionMatrix& inverse) {
-  for (size_t i = 0; i < costs_.size(); ++i) {
-    const MotionCost& cost = *costs_[i].cost;
-    shares_[i].is_whitened = cost.is_whitened();
-    shares_[i].scale_group = cost.scale_group();
-    shares_[i].scatter.setZero();
-    if (cost.is_whitened()) continue;
-    cost.AddScatter(motion, Loss(i), &shares_[i].scatter);
-    // Blocks that tell the same scatter together.
-    shares_[i].scatter /= cost.information_factor();
-  }
-  return RobustCovariance(shares_, inverse);
 }
 
 }  // namespace rgbd_pose

@@ -7,8 +7,6 @@
 #include <vector>
 
 #include "core/estimation/motion_cost.h"
-#include "core/estimation/motion_estimate.h"
-#include "core/estimation/robust_covariance.h"
 #include "core/estimation/scaled_loss.h"
 
 namespace rgbd_pose {
@@ -17,6 +15,22 @@ namespace rgbd_pose {
 struct RobustCost {
   std::unique_ptr<MotionCost> cost;           // must not be null
   std::unique_ptr<ceres::LossFunction> loss;  // null: least squares
+};
+
+// One term of a sum, bound to a pair.
+struct RobustTerm {
+  const MotionCost& cost;  // as it was given
+  const ScaledLoss& loss;  // at its present width
+  bool has_loss;           // otherwise least squares as it is
+  bool has_scale;          // its sigmas are as uncertain as the matches' noise
+  double scale;            // see RobustTerms::UpdateScales
+  double factor;           // its weight in the sum, apart from its loss
+  const std::vector<double>& norms;  // squared, of its blocks
+
+  // As MotionCost takes it.
+  const ceres::LossFunction* loss_or_null() const {
+    return has_loss ? &loss : nullptr;
+  }
 };
 
 // The sum that an estimator minimises: costs under their losses, bound to one
@@ -72,20 +86,17 @@ class RobustTerms {
   // The largest of these.
   double scale() const;
 
-  // Fills weights, inliers and residual norms of the estimate.
-  void JudgeMatches(MotionEstimate* estimate);
-
-  // Linearise, less what noise feigns (MotionCost::AddFeigned), which keeps
-  // each cost's share for Covariance. That is called after both, `inverse`
-  // being that of the whole Hessian.
-  NormalEquations LineariseShares(const MotionDerivatives& motion);
-  MotionMatrix Covariance(const MotionDerivatives& motion,
-                          const MotionMatrix& inverse);
+  // One of them, as it stands now.
+  size_t size() const { return costs_.size(); }
+  RobustTerm operator[](size_t term) const {
+    return {*costs_[term].cost,    losses_[term],
+            Loss(term) != nullptr, HasScale(*costs_[term].cost),
+            scales_[term],         Factor(term),
+            norms_[term]};
+  }
 
  private:
   void CountMatches();
-  void JudgeMatch(int match, double weight, bool agrees,
-                  MotionEstimate* estimate);
 
   // Whether a cost's sigmas are as uncertain as the matches' noise.
   static bool HasScale(const MotionCost& cost) {
@@ -114,7 +125,6 @@ class RobustTerms {
   size_t num_matches_ = 0;
 
   // Memory that is used again.
-  std::vector<CovarianceTerm> shares_;
   std::vector<double> new_scales_;
   std::vector<double> values_;
   std::vector<double> residuals_;

@@ -4,7 +4,6 @@
 #ifdef RGBD_POSE_HAS_OPENNI2
 #include <OpenNI.h>
 
-#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
@@ -15,6 +14,7 @@
 
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/latest_frame.h"
+#include "frontend/sources/stream_pairing.h"
 #endif
 
 namespace rgbd_pose {
@@ -84,18 +84,12 @@ openni::VideoMode ChooseMode(const openni::SensorInfo& sensor,
   return *best;
 }
 
-// An image as it came; the frame that holds it belongs to the driver, which has
-// few.
-struct Image {
-  bool is_color = false;
-  double stamp = 0.0;  // s
-  cv::Mat pixels;
-};
-
 class OpenNi2Source final : public FrameSource {
  public:
   explicit OpenNi2Source(const SourceOptions& options)
-      : name_(options.path), max_time_difference_(options.max_time_difference) {
+      : name_(options.path),
+        pairing_(options.max_time_difference,
+                 std::chrono::milliseconds(kPatienceMs)) {
     RequireLibrary();
     Open(options);
     assembly_ = std::make_unique<FrameAssembly>(
@@ -115,30 +109,11 @@ class OpenNi2Source final : public FrameSource {
   }
 
   std::optional<RgbdFrame> Next() override {
-    std::optional<Image> color;
-    std::optional<Image> depth;
-    // In whatever order they come: the next one is not given before.
-    while (true) {
-      Image image = Read();
-      if (image.is_color && color.has_value()) ++unmatched_color_;
-      (image.is_color ? color : depth) = std::move(image);
-      if (!color.has_value() || !depth.has_value()) continue;
-      const double delay = depth->stamp - color->stamp;
-      if (delay > max_time_difference_) {
-        ++unmatched_color_;
-        color.reset();
-      } else if (delay < -max_time_difference_ ||
-                 color->stamp <= last_stamp_) {  // the camera began anew
-        depth.reset();
-      } else {
-        last_stamp_ = color->stamp;
-        return MakeFrame(*color, *depth);
-      }
-    }
+    return MakeFrame(pairing_.Next(name_, [this] { return Read(); }));
   }
 
   const RgbdCamera& camera() const override { return assembly_->camera(); }
-  int unmatched_color() const override { return unmatched_color_; }
+  int unmatched_color() const override { return pairing_.unmatched_color(); }
 
  private:
   void Check(openni::Status status, const char* what,
@@ -215,8 +190,9 @@ class OpenNi2Source final : public FrameSource {
     return setup;
   }
 
-  // The next image, waiting for it.
-  Image Read() {
+  // The next image, waiting for it; the frame that holds it belongs to the
+  // driver, which has few.
+  StreamImage Read() {
     openni::VideoStream* streams[] = {&color_, &depth_};
     int ready = 0;
     Check(openni::OpenNI::waitForAnyStream(streams, 2, &ready, kPatienceMs),
@@ -227,8 +203,9 @@ class OpenNi2Source final : public FrameSource {
     const cv::Mat shared(frame.getHeight(), frame.getWidth(), type,
                          const_cast<void*>(frame.getData()),
                          frame.getStrideInBytes());
-    return Image{ready == 0, 1e-6 * static_cast<double>(frame.getTimestamp()),
-                 shared.clone()};
+    return StreamImage{ready == 0,
+                       1e-6 * static_cast<double>(frame.getTimestamp()),
+                       shared.clone()};
   }
 
   int TypeOf(openni::PixelFormat format) const {
@@ -245,9 +222,10 @@ class OpenNi2Source final : public FrameSource {
     }
   }
 
-  RgbdFrame MakeFrame(const Image& color, const Image& depth) {
+  RgbdFrame MakeFrame(const StreamPair& pair) {
     const int index = num_frames_++;
-    return {color.stamp, [this, index, color, depth] {
+    return {pair.color.stamp, [this, index, pair] {
+              const auto& [color, depth] = pair;
               cv::Mat gray = color.pixels;
               cv::Mat bgr;
               if (color.pixels.channels() == 3) {
@@ -268,14 +246,12 @@ class OpenNi2Source final : public FrameSource {
   }
 
   std::string name_;
-  double max_time_difference_;
+  StreamPairing pairing_;
   openni::Device device_;
   openni::VideoStream color_;
   openni::VideoStream depth_;
   std::unique_ptr<FrameAssembly> assembly_;
   int num_frames_ = 0;
-  std::atomic<int> unmatched_color_ = 0;  // asked for by other threads
-  double last_stamp_ = -1.0;
 };
 
 }  // namespace

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <string>
+
+namespace rgbd_pose {
+
+// What to do with frames whose motion is not found. Whatever it is, every frame
+// is searched for among earlier references, and tracking goes on if it is
+// found.
+enum class LostPolicy {
+  kStop,        // every further frame is lost
+  kHold,        // the last pose is reported until the place is found again
+  kPredict,     // the pose moves on as it moved last
+  kNewSegment,  // as kHold, and after a while a new segment starts
+};
+
+// When to change the reference, where to look, when to give up.
+struct OdometryOptions {
+  // A new reference is taken when less of the reference agrees, or when that
+  // has moved further than this on average.
+  double min_reference_share = 0.5;
+  double max_flow_px = 60.0;
+
+  // What tracking starts from: the last pose, moved on at constant velocity if
+  // asked for.
+  bool predict_velocity = false;
+
+  // What becomes of frames whose motion is not found.
+  LostPolicy on_lost = LostPolicy::kNewSegment;
+
+  // Depth is taken as measured at the time of colour, whatever its stamp says;
+  // otherwise it is moved to that time by the motion just found.
+  bool ignore_stamp_offset = false;
+
+  // How long (s) the old segment is searched for before a new one starts.
+  double new_segment_after = 1.5;
+
+  // Standard deviations of a motion guess between two frames that comes without
+  // a covariance.
+  double guess_sigma_rotation = 0.01;     // rad
+  double guess_sigma_translation = 0.01;  // m
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+}  // namespace rgbd_pose
