@@ -99,6 +99,24 @@ TEST(SlamTest, GivesTheSameBytesTwice) {
   EXPECT_EQ(FormatTrajectory(paths[0]), FormatTrajectory(paths[1]));
 }
 
+// Poses of keyframes are kept twice: where they are solved for, and here.
+TEST(SlamTest, KnowsWhereTheMapHasItsKeyframes) {
+  Player player;
+  player.Play(Range(0, kFrames));
+  player.Play(Range(kFrames - 1, -1));
+  player.slam.Finish();
+  const Trajectory path = player.slam.Path();
+  int keyframes = 0;
+  for (const MapKeyframe& keyframe : player.slam.Map().keyframes) {
+    const Rigid3d& pose = path.at(keyframe.id).world_from_cam;
+    EXPECT_LT((pose.translation - keyframe.map_from_cam.translation).norm(),
+              1e-12)
+        << keyframe.id;
+    ++keyframes;
+  }
+  EXPECT_GT(keyframes, 2);
+}
+
 TEST(SlamTest, MapsTheWalkAndItsOdometryNeverJumps) {
   Player player;
   player.Play(Range(0, kFrames));

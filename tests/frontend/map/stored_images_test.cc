@@ -23,6 +23,13 @@ TEST(StoredImagesTest, RestoresTheFrame) {
   EXPECT_EQ(restored.depth.type(), CV_16UC1);
 }
 
+// A map has hundreds.
+TEST(StoredImagesTest, HaveNoRoomToSpare) {
+  const StoredImages images(NoiseFrame(1));
+  EXPECT_EQ(images.gray->bytes.capacity(), images.gray->bytes.size());
+  EXPECT_EQ(images.depth->bytes.capacity(), images.depth->bytes.size());
+}
+
 TEST(StoredImagesTest, CopiesShareTheImages) {
   const StoredImages images(NoiseFrame(1));
   const StoredImages copy = images;
