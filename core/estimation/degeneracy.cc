@@ -63,11 +63,12 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
     return result;
   }
   // In units of what each parameter alone would be known to, in which radians
-  // and metres compare.
-  MotionVector unit;
-  for (int i = 0; i < 6; ++i) {
-    unit[i] = hessian(i, i) > 0.0 ? 1.0 / std::sqrt(hessian(i, i)) : 1.0;
-  }
+  // and metres compare. What rounding leaves of a parameter that nothing tells
+  // of must not be blown up to the size of the others.
+  const double largest = hessian.diagonal().maxCoeff();
+  const double least = largest > 0.0 ? kSingular * largest : 1.0;
+  const MotionVector unit =
+      hessian.diagonal().cwiseMax(least).cwiseSqrt().cwiseInverse();
   const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
       unit.asDiagonal() * hessian * unit.asDiagonal());
   if (!(eigen.eigenvalues()[0] > kSingular)) {

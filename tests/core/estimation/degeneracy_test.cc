@@ -1,0 +1,91 @@
+// What a Hessian leaves open, and under which name.
+
+#include "core/estimation/degeneracy.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "core/geometry/motion.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kMaxDeviation = 0.1;  // rad and m
+
+// Of distances to planes: `normals` seen at 3 x 3 points around (0, 0, 2).
+MotionMatrix HessianOfPlanes(const std::vector<Eigen::Vector3d>& normals) {
+  MotionMatrix hessian = MotionMatrix::Zero();
+  for (const Eigen::Vector3d& normal : normals) {
+    for (int i = 0; i < 9; ++i) {
+      const Eigen::Vector3d point(i % 3 - 1.0, i / 3 - 1.0, 2.0);
+      MotionVector row;
+      row << point.cross(normal), normal;
+      hessian += 1e4 * row * row.transpose();
+    }
+  }
+  return hessian;
+}
+
+TEST(DegeneracyTest, AWellKnownMotionHasTheInverseHessian) {
+  const MotionMatrix hessian =
+      HessianOfPlanes({Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
+                       Eigen::Vector3d::UnitZ()});
+  const Degeneracy result = FindDegeneracy(hessian, 0.0, kMaxDeviation);
+  EXPECT_FALSE(result.is_degenerate) << result.reason;
+  EXPECT_TRUE((result.inverse * hessian).isIdentity(1e-9));
+}
+
+// A wall straight ahead tells of its distance and of turns about x and y. That
+// its normal is a little off by rounding does not make these the open ones.
+TEST(DegeneracyTest, RoundingDoesNotHideWhatIsOpen) {
+  for (const double rounding : {0.0, 1e-17, 1e-16, 1e-14, 1e-12}) {
+    const Degeneracy result = FindDegeneracy(
+        HessianOfPlanes({Eigen::Vector3d(rounding, -0.3 * rounding, -1.0)}),
+        0.0, kMaxDeviation);
+    EXPECT_TRUE(result.is_degenerate);
+    EXPECT_EQ(result.reason.find("rotation about x"), std::string::npos)
+        << result.reason;
+    EXPECT_EQ(result.reason.find("rotation about y"), std::string::npos)
+        << result.reason;
+    EXPECT_EQ(result.reason.find("translation along z"), std::string::npos)
+        << result.reason;
+    EXPECT_NE(result.reason.find("standard deviation inf"), std::string::npos)
+        << result.reason;
+  }
+}
+
+TEST(DegeneracyTest, ADirectionThatIsKnownTooLittleIsNamed) {
+  MotionMatrix hessian = 1e6 * MotionMatrix::Identity();
+  hessian(4, 4) = 25.0;  // 0.2 m
+  const Degeneracy result = FindDegeneracy(hessian, 0.0, kMaxDeviation);
+  EXPECT_TRUE(result.is_degenerate);
+  EXPECT_EQ(result.reason,
+            "translation along y is not determined (standard deviation 0.2 m)");
+  EXPECT_FALSE(FindDegeneracy(hessian, 0.0, 0.21).is_degenerate);
+}
+
+// A rotation must be known three times as well as noise feigns.
+TEST(DegeneracyTest, ARotationThatNoiseFeignsIsNotKnown) {
+  MotionMatrix hessian = 1e6 * MotionMatrix::Identity();
+  hessian(1, 1) = 1e4;
+  EXPECT_FALSE(FindDegeneracy(hessian, 0.3e4, kMaxDeviation).is_degenerate);
+  const Degeneracy result = FindDegeneracy(hessian, 0.4e4, kMaxDeviation);
+  EXPECT_TRUE(result.is_degenerate);
+  EXPECT_EQ(result.reason,
+            "rotation about y is not determined (standard deviation 0.01 rad)");
+}
+
+TEST(DegeneracyTest, NothingIsKnownOfNothing) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(
+      FindDegeneracy(MotionMatrix::Zero(), 0.0, kMaxDeviation).is_degenerate);
+  EXPECT_EQ(
+      FindDegeneracy(MotionMatrix::Constant(nan), 0.0, kMaxDeviation).reason,
+      "the Hessian is not finite");
+}
+
+}  // namespace
+}  // namespace rgbd_pose
