@@ -107,8 +107,9 @@ std::string Picture(const CalibrationResult& result, bool after, double zoom) {
   for (int i = 0; i < kColumns * rows; ++i) {
     if (counts[i] < kFew) continue;
     const Eigen::Vector2d mean = sums[i] / counts[i] * zoom;
-    const double u = (i % kColumns + 0.5) * cell * scale;
-    const double v = (i / kColumns + 0.5) * cell * scale;
+    const int column = i % kColumns, row = i / kColumns;
+    const double u = (column + 0.5) * cell * scale;
+    const double v = (row + 0.5) * cell * scale;
     text += Format(
         "<line x1=\"%.1f\" y1=\"%.1f\" x2=\"%.1f\" y2=\"%.1f\" "
         "stroke=\"#d62728\" stroke-width=\"1.5\"/><circle cx=\"%.1f\" "

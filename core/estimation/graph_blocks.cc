@@ -56,7 +56,7 @@ Eigen::Matrix<T, 6, 1> ParametersOf(const MotionPose<T>& motion,
 }  // namespace
 
 MotionMatrix SquareRootOf(const MotionMatrix& information) {
-  const MotionMatrix none =
+  MotionMatrix none =
       MotionMatrix::Constant(std::numeric_limits<double>::quiet_NaN());
   if (!information.allFinite()) return none;
   // Rotation and translation differ by orders of magnitude: to equal size.

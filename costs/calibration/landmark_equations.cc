@@ -55,9 +55,11 @@ class OneLandmark {
   void MoveInto(LandmarkEquations* equations) {
     if (!(hessian_d_ > 0.0)) return;
     const int length = kFixed + 6 * num_views();
-    local_.topLeftCorner(length, length)
-        .selfadjointView<Eigen::Lower>()
-        .rankUpdate(by_depth_.head(length), -1.0 / hessian_d_);
+    for (int k = 0; k < length; ++k) {
+      const int below = length - k;
+      local_.col(k).segment(k, below) -=
+          by_depth_[k] / hessian_d_ * by_depth_.segment(k, below);
+    }
     gradient_.head(length) -=
         by_depth_.head(length) * (gradient_d_ / hessian_d_);
     Eigen::MatrixXd& H = equations->hessian;

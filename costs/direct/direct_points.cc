@@ -103,8 +103,8 @@ bool FitInverseDepthPlane(const FrameView& frame, int column, int row,
   const double limit = kMaxSigmas * frame.depth_noise.sigma(depth) *
                        plane->inverse_depth * plane->inverse_depth;
   for (int k = 0; k < kSide * kSide; ++k) {
-    const double fit =
-        plane->inverse_depth + (k % kSide - 2) * du + (k / kSide - 2) * dv;
+    const int right = k % kSide - 2, down = k / kSide - 2;
+    const double fit = plane->inverse_depth + right * du + down * dv;
     if (!(std::abs(inverse[k] - fit) <= limit)) return false;
   }
   return true;

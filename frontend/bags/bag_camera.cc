@@ -139,7 +139,7 @@ std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
   if (color.frame_id == depth.frame_id || IsCalledRegistered(name)) {
     return std::nullopt;
   }
-  const std::optional<Rigid3d> fixed =
+  std::optional<Rigid3d> fixed =
       FixedTransform(bag, topics, color.frame_id, depth.frame_id);
   if (!fixed.has_value() && !has_camera) {
     throw InputError(bag->path() + ": depth is seen from '" + depth.frame_id +

@@ -262,9 +262,10 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
     if (is_lost) result->reason = why_not;
     return false;
   }
-  reference_ = keyframes_.Add(
-      {result->index, segment_, world_from_cam, std::move(reference),
-       std::make_unique<Place>(frame, result->index), result->edges});
+  auto place = std::make_unique<Place>(frame, result->index);
+  reference_ =
+      keyframes_.Add({result->index, segment_, world_from_cam,
+                      std::move(reference), std::move(place), result->edges});
   color_time_.AddReference(frame);
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
@@ -287,11 +288,12 @@ bool Odometry::Adopt(const Frame& frame, int id,
   std::unique_ptr<Reference> reference =
       tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
   if (reference == nullptr) return false;
+  auto place = std::make_unique<Place>(frame, id);
   keyframes_.Add({id,
                   segment_,
                   world_from_cam,
                   std::move(reference),
-                  std::make_unique<Place>(frame, id),
+                  std::move(place),
                   {}},
                  reference_);
   return true;
