@@ -9,15 +9,27 @@ namespace rgbd_pose {
 // Hashes in place of random generators: the value at a place (lattice cell,
 // pixel, frame) depends on that place only, so threads and order do not matter.
 
-// 32 well-mixed bits of a lattice cell. Finalizer of MurmurHash3 (Appleby).
+// What the numbers of a lattice cell are multiplied by.
+constexpr uint32_t kHashX = 0x9e3779b1u;
+constexpr uint32_t kHashY = 0x7feb352du;
+
+// Mixes 32 bits, or several numbers of 32 bits side by side, well. Finalizer of
+// MurmurHash3 (Appleby).
+template <typename Word>
+[[gnu::always_inline]] inline void MixHash(Word* h) {
+  *h ^= *h >> 16;
+  *h *= 0x85ebca6bu;
+  *h ^= *h >> 13;
+  *h *= 0xc2b2ae35u;
+  *h ^= *h >> 16;
+}
+
+// 32 well-mixed bits of a lattice cell.
 inline uint32_t HashCell(int x, int y, uint32_t seed) {
-  uint32_t h = static_cast<uint32_t>(x) * 0x9e3779b1u +
-               static_cast<uint32_t>(y) * 0x7feb352du + seed;
-  h ^= h >> 16;
-  h *= 0x85ebca6bu;
-  h ^= h >> 13;
-  h *= 0xc2b2ae35u;
-  return h ^ (h >> 16);
+  uint32_t h = static_cast<uint32_t>(x) * kHashX +
+               static_cast<uint32_t>(y) * kHashY + seed;
+  MixHash(&h);
+  return h;
 }
 
 // 64 well-mixed bits of a counter.

@@ -3,21 +3,11 @@
 #include <algorithm>
 
 #include "core/util/floor.h"
+#include "frontend/simulation/synthetic_grain.h"
 #include "frontend/simulation/synthetic_hash.h"
 
 namespace rgbd_pose {
 namespace {
-
-// Octaves of the grain, coarse to fine: cells of 0.24 m down to 2.6 mm.
-constexpr int kOctaves = 8;
-constexpr float kCoarsestCell = 0.24f;
-constexpr float kCellRatio = 0.524f;
-// Natural images lose amplitude in proportion to the wavelength; a little less
-// is lost here, since corners live on the fine octaves.
-constexpr float kAmplitudeRatio = 0.8f;
-// Each octave is turned against the last to hide the lattice (cos, sin).
-constexpr float kTurnCos = 0.8f;
-constexpr float kTurnSin = 0.6f;
 
 // A word is a row of glyphs, a line of words has a gap to the next.
 constexpr float kWordLength = 11.0f;  // in blocks
@@ -35,43 +25,6 @@ float Signed(uint32_t hash, int byte) {
 // once the shortest wavelength, two cells, is under two pixels.
 float Visible(float cell, float footprint) {
   return Clamp01(cell / footprint - 1.0f);
-}
-
-// Value noise in -1..1 with cells of size 1.
-float SmoothNoise(float x, float y, uint32_t seed) {
-  const int i = FloorToInt(x);
-  const int j = FloorToInt(y);
-  const float fx = x - static_cast<float>(i);
-  const float fy = y - static_cast<float>(j);
-  const float wx = fx * fx * (3.0f - 2.0f * fx);
-  const float wy = fy * fy * (3.0f - 2.0f * fy);
-  const float a = Signed(HashCell(i, j, seed), 0);
-  const float b = Signed(HashCell(i + 1, j, seed), 0);
-  const float c = Signed(HashCell(i, j + 1, seed), 0);
-  const float d = Signed(HashCell(i + 1, j + 1, seed), 0);
-  const float top = a + (b - a) * wx;
-  const float bottom = c + (d - c) * wx;
-  return top + (bottom - top) * wy;
-}
-
-float Grain(const SurfacePoint& point, uint32_t seed) {
-  const float footprint = std::max(point.footprint_u, point.footprint_v);
-  float sum = 0.0f;
-  float amplitude = 1.0f;
-  float cell = kCoarsestCell;
-  float x = point.u;
-  float y = point.v;
-  for (int octave = 0; octave < kOctaves; ++octave) {
-    const float visible = Visible(cell, footprint);
-    if (visible == 0.0f) break;
-    sum += visible * amplitude * SmoothNoise(x / cell, y / cell, seed + octave);
-    amplitude *= kAmplitudeRatio;
-    cell *= kCellRatio;
-    const float turned = kTurnCos * x - kTurnSin * y;
-    y = kTurnSin * x + kTurnCos * y;
-    x = turned;
-  }
-  return sum;
 }
 
 // Calls use(hash, weight) for the cells, of size 1, under a pixel of extent
@@ -139,7 +92,10 @@ float Ink(const Material& material, const SurfacePoint& p, uint32_t seed) {
 
 cv::Vec3f Paint(const Material& material, uint32_t seed,
                 const SurfacePoint& point) {
-  const float grain = 1.0f + material.grain * Grain(point, seed);
+  const float grain =
+      1.0f + material.grain *
+                 Grain(point.u, point.v,
+                       std::max(point.footprint_u, point.footprint_v), seed);
   cv::Vec3f color = material.color;
   if (material.tile_contrast > 0.0f || material.tile_tint > 0.0f) {
     color += Tiles(material, point, seed + 0x100u);
