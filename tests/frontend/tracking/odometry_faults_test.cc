@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
+#include <functional>
 #include <opencv2/imgproc.hpp>
 #include <ostream>
 #include <string>
@@ -54,42 +56,71 @@ std::ostream& operator<<(std::ostream& out, const Outcome& outcome) {
              << " matches";
 }
 
-std::vector<Outcome> Track(const std::string& tracker, const Dataset& dataset,
-                           const Trajectory& truth) {
-  Odometry odometry(OdometryOptions(),
-                    MakeTracker(tracker, PartsFor(dataset.camera().camera)));
-  std::vector<Outcome> outcomes;
+// How one tracker fares along a sequence.
+class Run {
+ public:
+  Run(const std::string& tracker, const Dataset& dataset)
+      : tracker_(tracker),
+        odometry_(OdometryOptions(),
+                  MakeTracker(tracker, PartsFor(dataset.camera().camera))) {}
+
+  // `expected` is where the truth says it is.
+  void Track(const Frame& frame, const Rigid3d& expected, double way) {
+    Outcome outcome;
+    outcome.tracked = odometry_.Track(frame);
+    const Rigid3d error = expected.Inverse() * outcome.tracked.world_from_cam;
+    outcome.shift = error.translation.norm();
+    outcome.turn_deg = error.Angle() * 180.0 / M_PI;
+    outcome.max_shift = kMaxShift + kMaxShiftShare * way;
+    outcomes_.push_back(outcome);
+  }
+
+  const std::string& tracker() const { return tracker_; }
+  const std::vector<Outcome>& outcomes() const { return outcomes_; }
+
+ private:
+  std::string tracker_;
+  Odometry odometry_;
+  std::vector<Outcome> outcomes_;
+};
+
+using Check = std::function<void(const std::string& tracker,
+                                 const std::vector<Outcome>& outcomes)>;
+
+// Every tracker along a sequence, whose frames are rendered once for all.
+void ForEveryTracker(const Dataset& dataset, const Trajectory& truth,
+                     const Check& check) {
+  std::deque<Run> runs;
+  for (const std::string& tracker : TrackerNames()) {
+    runs.emplace_back(tracker, dataset);
+  }
   double way = 0.0;
   const Rigid3d first_from_world = truth[0].world_from_cam.Inverse();
   for (int i = 0; i < dataset.size(); ++i) {
-    Outcome outcome;
-    outcome.tracked = odometry.Track(dataset.Read(i));
-    const Rigid3d expected = first_from_world * truth[i].world_from_cam;
-    const Rigid3d error = expected.Inverse() * outcome.tracked.world_from_cam;
     if (i > 0) {
       way += (truth[i].world_from_cam.translation -
               truth[i - 1].world_from_cam.translation)
                  .norm();
     }
-    outcome.shift = error.translation.norm();
-    outcome.turn_deg = error.Angle() * 180.0 / M_PI;
-    outcome.max_shift = kMaxShift + kMaxShiftShare * way;
-    outcomes.push_back(outcome);
+    const Frame frame = dataset.Read(i);
+    for (Run& run : runs) {
+      run.Track(frame, first_from_world * truth[i].world_from_cam, way);
+    }
   }
-  return outcomes;
+  for (const Run& run : runs) {
+    SCOPED_TRACE(run.tracker());
+    EXPECT_EQ(run.outcomes().size(), static_cast<size_t>(dataset.size()));
+    check(run.tracker(), run.outcomes());
+  }
 }
 
-std::vector<Outcome> TrackFaulty(const std::string& tracker,
-                                 const std::string& path, int frames,
-                                 const std::vector<Fault>& faults) {
+void ForEveryTracker(const std::string& path, int frames,
+                     const std::vector<Fault>& faults, const Check& check) {
   SyntheticOptions options;
   options.path = path;
   options.frames = frames;
   const FaultyDataset dataset(options, faults);
-  std::vector<Outcome> outcomes =
-      Track(tracker, dataset, dataset.ground_truth());
-  EXPECT_EQ(outcomes.size(), static_cast<size_t>(dataset.size()));
-  return outcomes;
+  ForEveryTracker(dataset, dataset.ground_truth(), check);
 }
 
 void ExpectNoWrongOk(const std::vector<Outcome>& outcomes) {
@@ -122,82 +153,87 @@ void ExpectRecovery(const std::vector<Outcome>& outcomes, int end) {
       << "at the end: " << outcomes.back();
 }
 
-class OdometryFaultsTest : public ::testing::TestWithParam<std::string> {};
-INSTANTIATE_TEST_SUITE_P(Trackers, OdometryFaultsTest,
-                         ::testing::ValuesIn(TrackerNames()),
-                         [](const auto& info) { return info.param; });
-
-TEST_P(OdometryFaultsTest, BlackFramesAreLeftBehind) {
-  const auto outcomes =
-      TrackFaulty(GetParam(), "circle", 50, {{FaultKind::kBlack, 15, 35}});
-  // Trackers that look at depths need not be lost.
-  if (GetParam() == "features") ExpectLost(outcomes, 15, 35);
-  ExpectNoWrongOk(outcomes);
-  ExpectRecovery(outcomes, 35);
+TEST(OdometryFaultsTest, BlackFramesAreLeftBehind) {
+  ForEveryTracker(
+      "circle", 50, {{FaultKind::kBlack, 15, 35}},
+      [](const std::string& tracker, const std::vector<Outcome>& outcomes) {
+        // Trackers that look at depths need not be lost.
+        if (tracker == "features") ExpectLost(outcomes, 15, 35);
+        ExpectNoWrongOk(outcomes);
+        ExpectRecovery(outcomes, 35);
+      });
 }
 
-TEST_P(OdometryFaultsTest, CoveredDepthIsLeftBehind) {
-  const auto outcomes = TrackFaulty(GetParam(), "circle", 60,
-                                    {{FaultKind::kCovered, 15, 45}});  // 1 s
-  // Pixels have the depths of their reference.
-  if (GetParam() == "features") {
-    ExpectLost(outcomes, 15, 45);
-  } else {
-    ExpectNeverLost(outcomes);
-  }
-  ExpectNoWrongOk(outcomes);
-  ExpectRecovery(outcomes, 45);
+TEST(OdometryFaultsTest, CoveredDepthIsLeftBehind) {
+  ForEveryTracker(
+      "circle", 60, {{FaultKind::kCovered, 15, 45}},  // 1 s
+      [](const std::string& tracker, const std::vector<Outcome>& outcomes) {
+        // Pixels have the depths of their reference.
+        if (tracker == "features") {
+          ExpectLost(outcomes, 15, 45);
+        } else {
+          ExpectNeverLost(outcomes);
+        }
+        ExpectNoWrongOk(outcomes);
+        ExpectRecovery(outcomes, 45);
+      });
 }
 
 // Neither gray levels nor depths tell anything.
-TEST_P(OdometryFaultsTest, ACoveredLensIsNotFollowed) {
-  const auto outcomes =
-      TrackFaulty(GetParam(), "circle", 50,
-                  {{FaultKind::kBlack, 15, 35}, {FaultKind::kCovered, 15, 35}});
-  ExpectLost(outcomes, 15, 35);
-  ExpectRecovery(outcomes, 35);
+TEST(OdometryFaultsTest, ACoveredLensIsNotFollowed) {
+  ForEveryTracker("circle", 50,
+                  {{FaultKind::kBlack, 15, 35}, {FaultKind::kCovered, 15, 35}},
+                  [](const std::string&, const std::vector<Outcome>& outcomes) {
+                    ExpectLost(outcomes, 15, 35);
+                    ExpectRecovery(outcomes, 35);
+                  });
 }
 
-TEST_P(OdometryFaultsTest, FindsItselfAfterAKnock) {
+TEST(OdometryFaultsTest, FindsItselfAfterAKnock) {
   constexpr int kKnock = 20;
-  const auto outcomes =
-      TrackFaulty(GetParam(), "circle", 40, {{FaultKind::kTurned, kKnock}});
-  ExpectNoWrongOk(outcomes);
-  ExpectRecovery(outcomes, kKnock);
+  ForEveryTracker("circle", 40, {{FaultKind::kTurned, kKnock}},
+                  [](const std::string&, const std::vector<Outcome>& outcomes) {
+                    ExpectNoWrongOk(outcomes);
+                    ExpectRecovery(outcomes, kKnock);
+                  });
 }
 
-TEST_P(OdometryFaultsTest, DoesNotFollowABoxThatFillsMuchOfTheImage) {
-  const auto outcomes =
-      TrackFaulty(GetParam(), "circle", 60, {{FaultKind::kBox, 15, 50}});
-  ExpectNeverLost(outcomes);
-  ExpectNoWrongOk(outcomes);
-  ExpectRecovery(outcomes, 50);
+TEST(OdometryFaultsTest, DoesNotFollowABoxThatFillsMuchOfTheImage) {
+  ForEveryTracker("circle", 60, {{FaultKind::kBox, 15, 50}},
+                  [](const std::string&, const std::vector<Outcome>& outcomes) {
+                    ExpectNeverLost(outcomes);
+                    ExpectNoWrongOk(outcomes);
+                    ExpectRecovery(outcomes, 50);
+                  });
 }
 
 // A pan that reaches 48 deg/s, 44 px from frame to frame at 10 Hz.
-TEST_P(OdometryFaultsTest, TracksAThirdOfTheFrames) {
-  const auto outcomes = TrackFaulty(GetParam(), "pan_tilt", 120,
-                                    {{FaultKind::kThinned, 15, 105}});
-  ASSERT_EQ(outcomes.size(), 60u);
-  ExpectNeverLost(outcomes);
-  ExpectNoWrongOk(outcomes);
-  ExpectRecovery(outcomes, 15 + 30);
+TEST(OdometryFaultsTest, TracksAThirdOfTheFrames) {
+  ForEveryTracker("pan_tilt", 120, {{FaultKind::kThinned, 15, 105}},
+                  [](const std::string&, const std::vector<Outcome>& outcomes) {
+                    ASSERT_EQ(outcomes.size(), 60u);
+                    ExpectNeverLost(outcomes);
+                    ExpectNoWrongOk(outcomes);
+                    ExpectRecovery(outcomes, 15 + 30);
+                  });
 }
 
-TEST_P(OdometryFaultsTest, TracksThroughStepsOfTheExposure) {
+TEST(OdometryFaultsTest, TracksThroughStepsOfTheExposure) {
   for (const double gain : {2.0, 0.5}) {
     SCOPED_TRACE("gain " + std::to_string(gain));
-    const auto outcomes = TrackFaulty(GetParam(), "circle", 40,
-                                      {{FaultKind::kGain, 15, 30, gain}});
-    ExpectNeverLost(outcomes);
-    ExpectNoWrongOk(outcomes);
-    ExpectRecovery(outcomes, 15);
-    ExpectRecovery(outcomes, 30);
+    ForEveryTracker(
+        "circle", 40, {{FaultKind::kGain, 15, 30, gain}},
+        [](const std::string&, const std::vector<Outcome>& outcomes) {
+          ExpectNeverLost(outcomes);
+          ExpectNoWrongOk(outcomes);
+          ExpectRecovery(outcomes, 15);
+          ExpectRecovery(outcomes, 30);
+        });
   }
 }
 
 // Half the resolution: blurred frames take several renderings each.
-TEST_P(OdometryFaultsTest, TracksAFastHandWithBlurAndDriftingExposure) {
+TEST(OdometryFaultsTest, TracksAFastHandWithBlurAndDriftingExposure) {
   SyntheticOptions options;
   options.path = "handheld";
   options.frames = 150;
@@ -205,10 +241,12 @@ TEST_P(OdometryFaultsTest, TracksAFastHandWithBlurAndDriftingExposure) {
   options.exposure_drift = 0.3;
   options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
   const SyntheticDataset dataset(options);
-  const auto outcomes = Track(GetParam(), dataset, dataset.ground_truth());
-  ASSERT_EQ(outcomes.size(), 150u);
-  ExpectNeverLost(outcomes);
-  ExpectNoWrongOk(outcomes);
+  ForEveryTracker(dataset, dataset.ground_truth(),
+                  [](const std::string&, const std::vector<Outcome>& outcomes) {
+                    ASSERT_EQ(outcomes.size(), 150u);
+                    ExpectNeverLost(outcomes);
+                    ExpectNoWrongOk(outcomes);
+                  });
 }
 
 // One view with new noise in every frame: what SyntheticDataset makes of the
@@ -244,7 +282,7 @@ class NoisyView : public Dataset {
   Rendering view_;
 };
 
-TEST_P(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
+TEST(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
   constexpr int kFrames = 300;  // 10 s
   const NoisyView dataset(kFrames);
   Trajectory truth;
@@ -253,11 +291,14 @@ TEST_P(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
   }
   // A frame's own noise, from hundreds of corners of 0.5 px, is a quarter of
   // this; more would be drift.
-  for (const Outcome& outcome : Track(GetParam(), dataset, truth)) {
-    EXPECT_TRUE(outcome.ok()) << outcome;
-    EXPECT_LT(outcome.shift, 0.001) << outcome;
-    EXPECT_LT(outcome.turn_deg, 0.05) << outcome;
-  }
+  ForEveryTracker(dataset, truth,
+                  [](const std::string&, const std::vector<Outcome>& outcomes) {
+                    for (const Outcome& outcome : outcomes) {
+                      EXPECT_TRUE(outcome.ok()) << outcome;
+                      EXPECT_LT(outcome.shift, 0.001) << outcome;
+                      EXPECT_LT(outcome.turn_deg, 0.05) << outcome;
+                    }
+                  });
 }
 
 }  // namespace
