@@ -9,7 +9,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <opencv2/core.hpp>
-#include <utility>
 
 #include "apps/export/export_format.h"
 #include "apps/pipeline/sequence.h"
@@ -118,7 +117,7 @@ int Main() {
   flaws.stopped = TrackSource(&source, threads, &run, &output);
   const double seconds = SecondsSince(start);
 
-  const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
+  const RunResults results = run.Finish(sequence.TruthOfAll());
   WarnOf(results);
   std::string text = output.Write(
       results, Summarise(results.frames, threads, seconds),

@@ -12,7 +12,6 @@
 #include <optional>
 #include <sstream>
 #include <string>
-#include <utility>
 
 #include "apps/calibration/calibration_run.h"
 #include "apps/export/export_format.h"
@@ -209,7 +208,7 @@ int Main() {
   flaws.stopped = TrackSource(&source, threads, &run, &output);
   const double seconds = SecondsSince(start);
 
-  const RunResults results = std::move(run).Finish(sequence.TruthOfAll());
+  const RunResults results = run.Finish(sequence.TruthOfAll());
   const Slam& slam = run.slam();
   WarnOf(results);
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());

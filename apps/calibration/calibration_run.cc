@@ -1,7 +1,5 @@
 #include "apps/calibration/calibration_run.h"
 
-#include <utility>
-
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
@@ -44,7 +42,7 @@ void CalibrationRun::Track(FrameSource* source, int threads,
 
 CalibrationResult CalibrationRun::Solve(int threads) {
   const Trajectory* const truth = sequence_->TruthOfAll();
-  std::move(run_).Finish(truth);
+  run_.Finish(truth);
   return Calibrate(run_.slam().Map(), SmoothPath(run_.slam_frames()), first_,
                    odometry_, settings_,
                    {truth, sequence_->inputs().motion_guess}, threads);

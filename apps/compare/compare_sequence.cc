@@ -1,7 +1,5 @@
 #include "apps/compare/compare_sequence.h"
 
-#include <utility>
-
 #include "apps/shell/progress_bar.h"
 
 namespace rgbd_pose {
@@ -28,8 +26,7 @@ std::vector<LossRun> CompareLosses(FrameSource* source,
   std::vector<LossRun> results;
   for (size_t i = 0; i < losses.size(); ++i) {
     results.push_back(
-        {std::move(runs[i]).Finish(truth.has_value() ? &*truth : nullptr),
-         losses[i]});
+        {runs[i].Finish(truth.has_value() ? &*truth : nullptr), losses[i]});
   }
   return results;
 }

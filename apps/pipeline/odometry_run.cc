@@ -28,7 +28,7 @@ void SequenceRun::Add(const StreamedFrame& next) {
   }
 }
 
-RunResults SequenceRun::Finish(const Trajectory* ground_truth) && {
+RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
   results_.trajectory = FinishPath();
   if (ground_truth != nullptr && !results_.trajectory.empty()) {
     try {

@@ -63,9 +63,9 @@ class SequenceRun {
   // The frames so far.
   const std::vector<TrackedFrame>& frames() const { return results_.frames; }
 
-  // After the last frame; compared with a ground truth (world from camera)
-  // unless it is null.
-  RunResults Finish(const Trajectory* ground_truth) &&;
+  // After the last frame, once; compared with a ground truth (world from
+  // camera) unless it is null.
+  RunResults Finish(const Trajectory* ground_truth);
 
  protected:
   virtual TrackedFrame Track(const PreparedFrame& frame,

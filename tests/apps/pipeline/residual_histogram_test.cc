@@ -20,7 +20,7 @@ TEST(ResidualHistogram, CountsMatchesThatSomeCostCouldUse) {
   const auto& norms = histogram.norms;
   EXPECT_EQ(norms.front(), 4);
   EXPECT_EQ(norms.back(), 2);
-  EXPECT_EQ(std::accumulate(norms.begin(), norms.end(), 0), 6);
+  EXPECT_EQ(std::accumulate(norms.begin(), norms.end(), int64_t{0}), 6);
   EXPECT_EQ(histogram.norms_above, 4);
   EXPECT_EQ(histogram.weights.front(), 4);
   EXPECT_EQ(histogram.weights[10], 2);

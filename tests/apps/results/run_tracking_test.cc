@@ -63,7 +63,7 @@ class RunTrackingTest : public testing::Test {
     RunOutputSettings files;
     files.output = folder_ / "run";
     RunOutput output(files, source, settings.features.DepthLookup());
-    const std::string stopped = TrackSource(&source, 1, &run, &output);
+    std::string stopped = TrackSource(&source, 1, &run, &output);
     frames_ = static_cast<int>(run.frames().size());
     return stopped;
   }

@@ -187,7 +187,7 @@ TEST_P(DirectCostTest, InstructionSetsDifferByRounding) {
   const InstructionSet best = chosen;
   const auto run = [&](InstructionSet set) {
     chosen = set;
-    const NormalEquations sum =
+    NormalEquations sum =
         Linearised(Make().get(), pair.data(), pair.cur_from_prev);
     chosen = best;
     return sum;

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kMaxDifference = 0.02;
 
-struct Event {
+struct Arrival {
   bool is_color;
   double stamp;
 };
@@ -23,7 +23,7 @@ struct Stamps {
 };
 
 // All pairs of a stream.
-std::vector<Stamps> PairAll(const std::vector<Event>& events,
+std::vector<Stamps> PairAll(const std::vector<Arrival>& events,
                             ImagePairing* pairing) {
   std::vector<Stamps> pairs;
   const auto take = [&] {
@@ -31,7 +31,7 @@ std::vector<Stamps> PairAll(const std::vector<Event>& events,
       pairs.push_back({pair->color.stamp, pair->depth.stamp});
     }
   };
-  for (const Event& event : events) {
+  for (const Arrival& event : events) {
     if (event.is_color) {
       EXPECT_TRUE(pairing->AddColor({event.stamp, nullptr}));
     } else {
@@ -50,7 +50,7 @@ TEST(ImagePairingTest, PairsAsListsThatAreKnownAsAWhole) {
     // some images are missing.
     std::vector<double> colors;
     std::vector<double> depths;
-    std::vector<Event> events;
+    std::vector<Arrival> events;
     CounterRandom random(trial);
     const auto uniform = [&random] { return 1e-6 * random.Below(1000000); };
     const double offset = uniform() * 0.033;
