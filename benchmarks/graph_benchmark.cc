@@ -202,7 +202,7 @@ const bool kRegistered = [] {
       });
     }
     for (const auto& [what, run] :
-         {std::pair("pairs", EstimatePairs), {"map_window", SolveWindow}}) {
+         {std::pair("pairs", &EstimatePairs), {"map_window", &SolveWindow}}) {
       add(name(what, keyframes),
           [=, run = run](benchmark::State& state) { run(state, keyframes); });
     }

@@ -102,7 +102,8 @@ void Add(benchmark::State& state) {
 
 int Register() {
   for (const int keyframes : {100, 1000, 10000}) {
-    for (const auto& [name, run] : {std::pair("query", Query), {"add", Add}}) {
+    for (const auto& [name, run] :
+         {std::pair("query", &Query), {"add", &Add}}) {
       benchmark::RegisterBenchmark(("places/" + std::string(name)).c_str(), run)
           ->Arg(keyframes)
           ->Iterations(200)
