@@ -21,6 +21,20 @@ constexpr std::array<const char*, 6> kDirections = {
     "rotation about x",    "rotation about y",    "rotation about z",
     "translation along x", "translation along y", "translation along z"};
 
+// Units in which rotations and translations compare: what is known of each,
+// averaged over its axes. Not of each axis for itself: to glide along a wall
+// that is a little tilted changes its distance by little, but by many of its
+// small deviations, and would be named after it.
+MotionVector MeanUnits(const MotionMatrix& hessian) {
+  MotionVector units;
+  for (const int first : {0, 3}) {
+    const double mean = hessian.diagonal().segment<3>(first).mean();
+    units.segment<3>(first).setConstant(mean > 0.0 ? 1.0 / std::sqrt(mean)
+                                                   : 1.0);
+  }
+  return units;
+}
+
 // The directions that stand out, the strongest first.
 std::string Describe(const MotionVector& direction, double deviation) {
   std::array<int, 6> order = {0, 1, 2, 3, 4, 5};
@@ -62,9 +76,10 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
     result.reason = "the Hessian is not finite";
     return result;
   }
-  // In units of what each parameter alone would be known to, in which radians
-  // and metres compare. What rounding leaves of a parameter that nothing tells
-  // of must not be blown up to the size of the others.
+  const MotionVector means = MeanUnits(hessian);
+  // Judged in units of what each parameter alone would be known to. What
+  // rounding leaves of one that nothing tells of must not be blown up to the
+  // size of the others.
   const double largest = hessian.diagonal().maxCoeff();
   const double least = largest > 0.0 ? kSingular * largest : 1.0;
   const MotionVector unit =
@@ -73,8 +88,9 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
       unit.asDiagonal() * hessian * unit.asDiagonal());
   if (!(eigen.eigenvalues()[0] > kSingular)) {
     result.is_degenerate = true;
-    result.reason = Describe(eigen.eigenvectors().col(0),
-                             std::numeric_limits<double>::infinity());
+    result.reason = Describe(
+        unit.cwiseProduct(eigen.eigenvectors().col(0)).cwiseQuotient(means),
+        std::numeric_limits<double>::infinity());
     return result;
   }
   const MotionMatrix covariance =
@@ -90,7 +106,7 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
     const WeakDirection& weak = is_rotation ? rotation : translation;
     result.is_degenerate = true;
     result.reason =
-        Describe(weak.direction.cwiseQuotient(unit), weak.deviation);
+        Describe(weak.direction.cwiseQuotient(means), weak.deviation);
     return result;
   }
   result.inverse = covariance;

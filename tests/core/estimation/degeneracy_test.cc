@@ -39,12 +39,14 @@ TEST(DegeneracyTest, AWellKnownMotionHasTheInverseHessian) {
 }
 
 // A wall straight ahead tells of its distance and of turns about x and y. That
-// its normal is a little off by rounding does not make these the open ones.
-TEST(DegeneracyTest, RoundingDoesNotHideWhatIsOpen) {
-  for (const double rounding : {0.0, 1e-17, 1e-16, 1e-14, 1e-12}) {
+// its normal is a little off, by rounding or by noise, does not make these the
+// open ones.
+TEST(DegeneracyTest, TiltDoesNotHideWhatIsOpen) {
+  for (const double tilt :
+       {0.0, 1e-17, 1e-16, 1e-14, 1e-12, 1e-8, 1e-4, 0.01}) {
     const Degeneracy result = FindDegeneracy(
-        HessianOfPlanes({Eigen::Vector3d(rounding, -0.3 * rounding, -1.0)}),
-        0.0, kMaxDeviation);
+        HessianOfPlanes({Eigen::Vector3d(tilt, -0.3 * tilt, -1.0)}), 0.0,
+        kMaxDeviation);
     EXPECT_TRUE(result.is_degenerate);
     EXPECT_EQ(result.reason.find("rotation about x"), std::string::npos)
         << result.reason;
