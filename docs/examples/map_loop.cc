@@ -8,7 +8,8 @@
 
 int main() {
   const rgbd_pose::SyntheticDataset camera({"room", "pan_tilt", 60});  // yours
-  rgbd_pose::Slam slam({}, {}, camera.camera().camera);
+  const rgbd_pose::OdometrySettings settings;
+  rgbd_pose::Slam slam(settings, {}, camera.camera().camera);
   for (int i = 0; i < camera.size(); ++i) {
     const rgbd_pose::SlamFrame frame = slam.Track(camera.Read(i));
     // frame.odom_from_cam never jumps; frame.map_from_cam() is corrected.
