@@ -77,13 +77,11 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
     return result;
   }
   const MotionVector means = MeanUnits(hessian);
-  // Judged in units of what each parameter alone would be known to. What
-  // rounding leaves of one that nothing tells of must not be blown up to the
-  // size of the others.
-  const double largest = hessian.diagonal().maxCoeff();
-  const double least = largest > 0.0 ? kSingular * largest : 1.0;
-  const MotionVector unit =
-      hessian.diagonal().cwiseMax(least).cwiseSqrt().cwiseInverse();
+  // Judged in units of what each parameter alone would be known to.
+  MotionVector unit;
+  for (int i = 0; i < 6; ++i) {
+    unit[i] = hessian(i, i) > 0.0 ? 1.0 / std::sqrt(hessian(i, i)) : 1.0;
+  }
   const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
       unit.asDiagonal() * hessian * unit.asDiagonal());
   if (!(eigen.eigenvalues()[0] > kSingular)) {

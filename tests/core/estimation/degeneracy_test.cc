@@ -89,5 +89,43 @@ TEST(DegeneracyTest, NothingIsKnownOfNothing) {
       "the Hessian is not finite");
 }
 
+// What stands out beside the strongest is named, too; what is little is not.
+TEST(DegeneracyTest, NamesWhatStandsOut) {
+  // Known in all directions across one, which is made of x, y and z.
+  const Eigen::Vector3d open = Eigen::Vector3d(1.0, -0.6, 0.1).normalized();
+  MotionMatrix hessian = 1e6 * MotionMatrix::Identity();
+  hessian.bottomRightCorner<3, 3>() -= (1e6 - 1.0) * open * open.transpose();
+  EXPECT_EQ(FindDegeneracy(hessian, 0.0, kMaxDeviation).reason,
+            "translation along x with translation along y is not determined "
+            "(standard deviation 1 m)");
+}
+
+// 2 m away: 3 mm along the ray, 0.5 px of 500 across it, which is 2 mm.
+TEST(FeignedInformationTest, IsTheLeverOfNoise) {
+  Camera camera;
+  camera.fx = camera.fy = 500.0;
+  Correspondences matches(camera);
+  Observation seen;
+  seen.u = camera.cx;
+  seen.v = camera.cy;
+  seen.depth = 2.0;
+  seen.sigma_px = 0.5;
+  seen.sigma_depth = 0.003;
+  matches.Add(seen, seen);
+  const double q = 0.003 * 0.003 / (0.002 * 0.002);
+  const double feigned = (q + 1.0 / q) / 2.0;
+  EXPECT_NEAR(FeignedInformation(matches, {}), feigned, 1e-12);
+
+  // Of a depth that is missing the other one serves; of both, there is none.
+  Observation blind = seen;
+  blind.depth = 0.0;
+  matches.Add(blind, seen);
+  EXPECT_NEAR(FeignedInformation(matches, {}), 2.0 * feigned, 1e-12);
+  matches.Add(blind, blind);
+  EXPECT_NEAR(FeignedInformation(matches, {}), 2.0 * feigned + 1.0, 1e-12);
+  EXPECT_NEAR(FeignedInformation(matches, {0.5, 0.25, 0.125}),
+              0.75 * feigned + 0.125, 1e-12);
+}
+
 }  // namespace
 }  // namespace rgbd_pose
