@@ -1,0 +1,120 @@
+// The sandwich A^-1 B A^-1, number by number.
+
+#include "core/estimation/robust_covariance.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+
+#include "core/estimation/motion_cost.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kGroup = 0;
+
+MotionMatrix SomeHessian(double seed) {
+  MotionMatrix root = MotionMatrix::Identity();
+  for (int i = 0; i < 36; ++i) root(i) += 0.3 * std::sin(seed + i);
+  return root.transpose() * root;
+}
+
+// 100 blocks of 3 rows; mean psi^2 0.9, mean weight 0.8, mean slope 0.6.
+CovarianceTerm Whitened(double seed) {
+  CovarianceTerm term;
+  term.hessian = SomeHessian(seed);
+  term.scatter.setConstant(1e9);  // not looked at
+  term.is_whitened = true;
+  term.scale_group = kGroup;
+  term.sums = {270.0, 240.0, 180.0, 100};
+  return term;
+}
+
+MotionMatrix Covariance(const std::vector<CovarianceTerm>& terms) {
+  MotionMatrix sum = MotionMatrix::Zero();
+  for (const CovarianceTerm& term : terms) sum += term.hessian;
+  return RobustCovariance(terms, sum.inverse());
+}
+
+void ExpectNear(const MotionMatrix& a, const MotionMatrix& b) {
+  EXPECT_TRUE(a.isApprox(b, 1e-9)) << a << "\n\n" << b;
+}
+
+TEST(RobustCovarianceTest, OfAWhitenedCost) {
+  const CovarianceTerm term = Whitened(1.0);
+  const double fitted = 240.0 / (240.0 - 6.0);
+  const double psi2 = 270.0 / 240.0, slope = 180.0 / 240.0;
+  ExpectNear(Covariance({term}),
+             fitted * psi2 / (slope * slope) * term.hessian.inverse());
+}
+
+// A slope that vanishes must not make the covariance infinite.
+TEST(RobustCovarianceTest, TheSlopeIsAFifthOfTheWeightAtLeast) {
+  CovarianceTerm term = Whitened(1.0);
+  term.sums.slope_p = -10.0;
+  const double fitted = 240.0 / (240.0 - 6.0);
+  ExpectNear(Covariance({term}),
+             fitted * 270.0 / 240.0 / (0.2 * 0.2) * term.hessian.inverse());
+}
+
+// Few rows for six parameters: not more than twice as large.
+TEST(RobustCovarianceTest, FewRowsAreNotCorrectedWithoutBound) {
+  CovarianceTerm term = Whitened(1.0);
+  for (const double rows : {5.0, 8.0, 12.0}) {
+    term.sums = {rows, rows, rows, 3};
+    ExpectNear(Covariance({term}), 2.0 * term.hessian.inverse());
+  }
+  term.sums = {13.0, 13.0, 13.0, 3};
+  ExpectNear(Covariance({term}), 13.0 / 7.0 * term.hessian.inverse());
+}
+
+TEST(RobustCovarianceTest, OfACostThatIsNotWhitenedByItsScatter) {
+  CovarianceTerm term = Whitened(1.0);
+  term.is_whitened = false;
+  term.scatter = SomeHessian(7.0);
+  const double fitted = 240.0 / (240.0 - 6.0), slope = 180.0 / 240.0;
+  const MotionMatrix inverse = term.hessian.inverse();
+  ExpectNear(Covariance({term}),
+             fitted / (slope * slope) * inverse * term.scatter * inverse);
+  // Fewer than 30 blocks scatter too little to tell.
+  term.sums.blocks = 30;
+  ExpectNear(Covariance({term}),
+             fitted / (slope * slope) * inverse * term.scatter * inverse);
+  term.sums.blocks = 29;
+  ExpectNear(Covariance({term}),
+             fitted * 270.0 / 240.0 / (slope * slope) * inverse);
+}
+
+// Its information is known: no loss and no fit changes it, and what it
+// determines is not fitted to the rest.
+TEST(RobustCovarianceTest, APriorCountsAsItIs) {
+  const CovarianceTerm term = Whitened(1.0);
+  CovarianceTerm prior = Whitened(2.0);
+  prior.hessian = 3.0 * SomeHessian(2.0);
+  prior.scale_group = MotionCost::kExactSigmas;
+  const MotionMatrix inverse = (term.hessian + prior.hessian).inverse();
+  const double parameters = (inverse * term.hessian).trace();
+  EXPECT_LT(parameters, 5.0);
+  const double fitted = 240.0 / (240.0 - parameters);
+  const MotionMatrix A = 180.0 / 240.0 * term.hessian + prior.hessian;
+  const MotionMatrix B = fitted * 270.0 / 240.0 * term.hessian + prior.hessian;
+  ExpectNear(Covariance({term, prior}), A.inverse() * B * A.inverse());
+}
+
+// Two costs of one group are judged by the sums of both; another group by its
+// own.
+TEST(RobustCovarianceTest, GroupsAreJudgedApart) {
+  CovarianceTerm first = Whitened(1.0), second = Whitened(2.0);
+  CovarianceTerm other = Whitened(3.0);
+  second.sums = {30.0, 60.0, 45.0, 20};
+  other.sums = {50.0, 100.0, 90.0, 40};
+  other.scale_group = kGroup + 1;
+  const MotionMatrix both = first.hessian + second.hessian;
+  const double fitted = 400.0 / (400.0 - 6.0);
+  const MotionMatrix A = 225.0 / 300.0 * both + 0.9 * other.hessian;
+  const MotionMatrix B = fitted * (300.0 / 300.0 * both + 0.5 * other.hessian);
+  ExpectNear(Covariance({first, second, other}), A.inverse() * B * A.inverse());
+}
+
+}  // namespace
+}  // namespace rgbd_pose
