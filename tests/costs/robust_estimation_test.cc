@@ -237,6 +237,37 @@ TEST(ScheduleTest, StagesAreSavedWhereMatchesAgree) {
   EXPECT_GE(dirty, 12);
 }
 
+// Nine residuals, less six that the motion takes, say nothing of their spread.
+TEST(ScaleTest, OfThreeMatchesTheNoiseModelIsTaken) {
+  RandomWorld world(73);
+  const Correspondences matches = world.Matches(3, 0.0, world.Motion(0.1, 0.1));
+  EstimatorOptions options;
+  options.max_standard_deviation = 10.0;
+  const auto costs = [] { return MakeRobustCosts("point_to_point", "none"); };
+  const MotionEstimate fixed = Estimator(options, costs()).Estimate(matches);
+  options.scale = FindScaleEstimator("mad")->estimate;
+  const MotionEstimate scaled = Estimator(options, costs()).Estimate(matches);
+  ASSERT_TRUE(fixed.ok()) << fixed.reason;
+  EXPECT_EQ(scaled.covariance, fixed.covariance);
+}
+
+// Three quarters of the matches agree: too few for who wants four fifths.
+TEST(InlierShareTest, IsJudged) {
+  RandomWorld world(72);
+  const Correspondences matches =
+      world.Matches(400, 0.25, world.Motion(0.1, 0.1));
+  for (const double share : {0.6, 0.85}) {
+    EstimatorOptions options;
+    options.min_inlier_share = share;
+    const MotionEstimate estimate =
+        Estimator(options, MakeRobustCosts("bidirectional_point", "tukey"))
+            .Estimate(matches);
+    EXPECT_EQ(estimate.status,
+              share < 0.7 ? EstimateStatus::kOk : EstimateStatus::kInconsistent)
+        << estimate.reason;
+  }
+}
+
 // Least squares among wrong matches leaves huge residuals; a scale that fits
 // them would call all of them right.
 TEST(ScaleTest, AScaleThatOnlyFitsWrongMatchesIsNoSuccess) {
