@@ -73,6 +73,31 @@ TEST(KnownDistanceTest, EqualsTheOracle) {
   }
 }
 
+// Ceres asks for no derivatives by what is held.
+TEST(KnownDistanceTest, GivesTheDerivativesThatAreAskedFor) {
+  RandomWorld world(6);
+  const MotionOrigin a(world.Motion(1.0, 2.0)), b(world.Motion(1.0, 2.0));
+  CalibrationOrigin origin;
+  origin.start.setOnes();
+  origin.width.setOnes();
+  KnownDistance known;
+  known.in_a = world.Vector(1.0);
+  const MotionVector zero = MotionVector::Zero();
+  const CalibrationVector y = CalibrationVector::Zero();
+  const double* x[] = {zero.data(), zero.data(), y.data()};
+  const KnownDistanceBlock block(a, b, origin, known);
+  double residual, all[3][kCalibrationSize], one[kCalibrationSize];
+  double* jacobians[] = {all[0], all[1], all[2]};
+  ASSERT_TRUE(block.Evaluate(x, &residual, jacobians));
+  const int sizes[] = {6, 6, kCalibrationSize};
+  for (int asked = 0; asked < 3; ++asked) {
+    double* only[] = {nullptr, nullptr, nullptr};
+    only[asked] = one;
+    ASSERT_TRUE(block.Evaluate(x, &residual, only));
+    for (int k = 0; k < sizes[asked]; ++k) EXPECT_EQ(one[k], all[asked][k]);
+  }
+}
+
 // Two places that are one: no direction is better than another.
 TEST(KnownDistanceTest, OfNothingHasNoSlope) {
   const MotionOrigin here;

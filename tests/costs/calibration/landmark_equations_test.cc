@@ -1,5 +1,6 @@
 // The normal equations of a bundle adjustment, landmark by landmark, against
-// dense ones by ceres::Jet from which all depths are eliminated at once.
+// dense ones by ceres::Jet from which all depths are eliminated at once; and
+// the covariance of the camera that follows from them.
 
 #include "costs/calibration/landmark_equations.h"
 
@@ -8,6 +9,8 @@
 #include <Eigen/LU>
 #include <vector>
 
+#include "costs/calibration/known_distance_block.h"
+#include "costs/calibration/landmark_covariance.h"
 #include "costs/calibration/landmark_residuals.h"
 #include "frontend/simulation/synthetic_matches.h"
 
@@ -170,6 +173,72 @@ TEST(LandmarkEquationsTest, AreThoseOfAllUnknownsWithoutTheDepths) {
     EXPECT_TRUE(equations.gradients.isApprox(dense.g, 1e-9))
         << (equations.gradients - dense.g).cwiseAbs().maxCoeff();
   }
+}
+
+// The inverse of all information, and its sandwich with what each keyframe's
+// landmarks pull by: by formula, with whole matrices.
+TEST(LandmarkCovarianceTest, IsTheInverseAndTheSandwich) {
+  Problem problem;
+  RandomWorld world(12);
+  for (const int a : {0, 1, 2}) {
+    KnownDistance known;
+    known.a = a;
+    known.b = (a + 2) % kKeyframes;
+    known.in_a = world.Vector(1.0);
+    known.in_b = world.Vector(1.0);
+    known.metres = 0.5;
+    known.sigma = 0.05;
+    problem.views.distances.push_back(known);
+  }
+  const LandmarkEquations equations = MakeLandmarkEquations(
+      problem.views, /*training_only=*/true, problem.origin, kLossWidth,
+      problem.state, PosesOf(problem.state));
+  const int y_at = equations.PlaceOfY();
+
+  Eigen::MatrixXd exact =
+      Eigen::MatrixXd::Zero(equations.hessian.rows(), equations.hessian.cols());
+  exact.bottomRightCorner<kCalibrationSize, kCalibrationSize>().setIdentity();
+  for (const KnownDistance& known : problem.views.distances) {
+    const MotionOrigin a(problem.state.world_from_cam[known.a].Inverse());
+    const MotionOrigin b(problem.state.world_from_cam[known.b].Inverse());
+    const MotionVector zero = MotionVector::Zero();
+    const CalibrationVector y = CalibrationVector::Zero();
+    const double* x[] = {zero.data(), zero.data(), y.data()};
+    Eigen::VectorXd by_a(6), by_b(6), by_y(static_cast<int>(kCalibrationSize));
+    double* jacobians[] = {by_a.data(), by_b.data(), by_y.data()};
+    double residual;
+    KnownDistanceBlock(a, b, problem.origin, known)
+        .Evaluate(x, &residual, jacobians);
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(exact.rows());
+    if (known.a > 0) row.segment<6>(6 * (known.a - 1)) += by_a;
+    if (known.b > 0) row.segment<6>(6 * (known.b - 1)) += by_b;
+    row.tail<kCalibrationSize>() += by_y;
+    exact += row * row.transpose();
+  }
+  const Eigen::MatrixXd H =
+      Eigen::MatrixXd(equations.hessian.selfadjointView<Eigen::Lower>()) +
+      exact;
+  const Eigen::MatrixXd inverse = H.inverse();
+  const double correction = kKeyframes / (kKeyframes - 1.0);
+  const Eigen::MatrixXd pull =
+      correction * equations.gradients * equations.gradients.transpose() +
+      exact;
+  const auto width = problem.origin.width.asDiagonal();
+  const CalibrationMatrix expected_noise =
+      width * inverse.block(y_at, y_at, kCalibrationSize, kCalibrationSize) *
+      width;
+  const CalibrationMatrix expected_scatter =
+      width *
+      (inverse * pull * inverse)
+          .block(y_at, y_at, kCalibrationSize, kCalibrationSize) *
+      width;
+
+  CalibrationMatrix by_noise, by_scatter;
+  ASSERT_TRUE(LandmarkCovariance(problem.views, /*training_only=*/true,
+                                 problem.origin, kLossWidth, problem.state,
+                                 &by_noise, &by_scatter));
+  EXPECT_TRUE(by_noise.isApprox(expected_noise, 1e-6));
+  EXPECT_TRUE(by_scatter.isApprox(expected_scatter, 1e-6));
 }
 
 // Sigmas are as the state has them.
