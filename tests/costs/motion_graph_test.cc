@@ -95,6 +95,10 @@ TEST(MotionGraphTest, LossesHaveTheirOwnWidthsInTheEnd) {
     EXPECT_GT(solution.iterations, 0);
     EXPECT_GT(solution.rounds, 0);
     EXPECT_EQ(graph.Redundancy(), 3.0);
+    // Across the line a far edge counts by its weight.
+    const std::vector<MotionMatrix> covariances = graph.Covariances({1});
+    ASSERT_EQ(covariances.size(), 1U);
+    EXPECT_NEAR(covariances[0](4, 4), 1.0 / (2.0 + width / far), 1e-5);
   }
 }
 

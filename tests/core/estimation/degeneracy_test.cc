@@ -100,7 +100,7 @@ TEST(DegeneracyTest, NamesWhatStandsOut) {
             "(standard deviation 1 m)");
 }
 
-// 2 m away: 3 mm along the ray, 0.5 px of 500 across it, which is 2 mm.
+// 2 m away: 3 mm along the ray, 0.7 px of 500 across it, which is 2.8 mm.
 TEST(FeignedInformationTest, IsTheLeverOfNoise) {
   Camera camera;
   camera.fx = camera.fy = 500.0;
@@ -109,10 +109,10 @@ TEST(FeignedInformationTest, IsTheLeverOfNoise) {
   seen.u = camera.cx;
   seen.v = camera.cy;
   seen.depth = 2.0;
-  seen.sigma_px = 0.5;
+  seen.sigma_px = 0.7;
   seen.sigma_depth = 0.003;
   matches.Add(seen, seen);
-  const double q = 0.003 * 0.003 / (0.002 * 0.002);
+  const double q = 0.003 * 0.003 / (0.0028 * 0.0028);
   const double feigned = (q + 1.0 / q) / 2.0;
   EXPECT_NEAR(FeignedInformation(matches, {}), feigned, 1e-12);
 
