@@ -103,6 +103,12 @@ TEST(LiveBlockTest, IsTheBlockAtTheMotionBetweenThePoses) {
           << hand.jacobians[pose] << "\n\n"
           << jet.jacobians[pose];
     }
+    // Both go the same way to the end: so does a small step.
+    const LiveBlock block(&parameters, &motion, &ref, &cur, /*by_jet=*/false);
+    const MotionVector step = random.Parameters(1e-6);
+    const MotionVector change = At(block, x_ref + step, at_cur).residuals -
+                                At(block, x_ref - step, at_cur).residuals;
+    EXPECT_TRUE(change.isApprox(2.0 * hand.jacobians[0] * step, 1e-6));
   }
 }
 
