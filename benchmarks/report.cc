@@ -66,7 +66,7 @@ int Main() {
   WriteFileAtomically(FLAGS_page,
                       FillIn(ReadTextFile(FLAGS_page_template), values));
   nlohmann::json ratios = nlohmann::json::object();
-  for (const SpeedupRow& row : speedups) ratios[row.key] = row.speedup.ratio;
+  for (const SpeedupRow& row : speedups) ratios[row.key] = row.speedup;
   WriteFileAtomically(FLAGS_speedups, ratios.dump(2) + "\n");
   std::printf("tables in    %s\nspeed-ups in %s\n", FLAGS_page.c_str(),
               FLAGS_speedups.c_str());

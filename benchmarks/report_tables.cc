@@ -61,7 +61,7 @@ std::string TimeWithQuartiles(const BenchmarkResult& result) {
 
 std::string Ratio(const BenchmarkResult* ours, const BenchmarkResult* theirs) {
   if (ours == nullptr || theirs == nullptr) return "";
-  return Number(SpeedupOf(*ours, *theirs).ratio);
+  return Number(SpeedupOf(*ours, *theirs));
 }
 
 // The median of a counter, or nothing.
@@ -126,7 +126,7 @@ std::string Jacobians(const BenchmarkResults& results) {
     const BenchmarkResult* by_jet = results.Find(alone + "/autodiff");
     if (by_hand == nullptr || by_jet == nullptr) continue;
     times[SpreadOf(by_hand->cpu_ns).median] = cost;
-    ratios[SpeedupOf(*by_hand, *by_jet).ratio] = cost;
+    ratios[SpeedupOf(*by_hand, *by_jet)] = cost;
   }
   if (times.empty()) return "";
   const auto range = [](const std::map<double, std::string>& values,
@@ -194,10 +194,10 @@ std::string Aims(const std::vector<SpeedupRow>& speedups) {
   for (const auto& [key, speedup, aim] : speedups) {
     if (!(aim > 0.0)) continue;
     ++aims;
-    if (speedup.ratio >= aim) continue;
+    if (speedup >= aim) continue;
     ++missed;
-    names += (names.empty() ? ": `" : ", `") + key + "` " +
-             Number(speedup.ratio) + " (>= " + Number(aim) + ")";
+    names += (names.empty() ? ": `" : ", `") + key + "` " + Number(speedup) +
+             " (>= " + Number(aim) + ")";
   }
   return "Of " + std::to_string(aims) + " speed-ups that were aimed at " +
          std::to_string(missed) + " were missed" + names + ".";

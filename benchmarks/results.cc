@@ -71,11 +71,8 @@ Spread SpreadOf(const std::vector<double>& values) {
           Quantile(values, 0.75), Quantile(values, 1.0)};
 }
 
-Speedup SpeedupOf(const BenchmarkResult& ours, const BenchmarkResult& theirs) {
-  const Spread a = SpreadOf(ours.cpu_ns);
-  const Spread b = SpreadOf(theirs.cpu_ns);
-  return {b.median / a.median, b.lower_quartile / a.upper_quartile,
-          b.upper_quartile / a.lower_quartile, b.min / a.min};
+double SpeedupOf(const BenchmarkResult& ours, const BenchmarkResult& theirs) {
+  return SpreadOf(theirs.cpu_ns).median / SpreadOf(ours.cpu_ns).median;
 }
 
 }  // namespace rgbd_pose

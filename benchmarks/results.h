@@ -41,12 +41,8 @@ struct Spread {
 };
 Spread SpreadOf(const std::vector<double>& values);
 
-// How many times faster `ours` is than `theirs`, by CPU times of one run.
-struct Speedup {
-  double ratio;      // of the medians
-  double low, high;  // of opposite quartiles
-  double by_minima;  // of the least disturbed repetitions
-};
-Speedup SpeedupOf(const BenchmarkResult& ours, const BenchmarkResult& theirs);
+// How many times faster `ours` is than `theirs`, by the medians of CPU times of
+// one run.
+double SpeedupOf(const BenchmarkResult& ours, const BenchmarkResult& theirs);
 
 }  // namespace rgbd_pose

@@ -10,7 +10,7 @@ namespace rgbd_pose {
 // A speed-up that benchmarks are made to tell.
 struct SpeedupRow {
   std::string key;  // in benchmarks.json: <what>_<ours>_over_<theirs>
-  Speedup speedup;
+  double speedup;
   double aim;  // what was hoped for; 0: nothing in particular
 };
 
