@@ -239,6 +239,28 @@ MotionGraph LiveGraph(Assembly assembly) {
   return graph;
 }
 
+// Their weights are chosen by the motion between the poses, wherever these are.
+TEST(MotionGraphTest, LivePairsDoNotDependOnTheWorld) {
+  RandomWorld world(9);
+  const Rigid3d truth = world.Motion(0.2, 0.3);
+  const Correspondences matches = world.Matches(60, 0.1, truth);
+  PairData pair;
+  pair.matches = &matches;
+  const auto cur_from_ref = [&](const Rigid3d& ref) {
+    MotionGraphOptions options;
+    options.max_rounds = 1;
+    MotionGraph graph(options);
+    graph.AddPose(ref, /*is_fixed=*/true);
+    graph.AddPose(ref * truth.Inverse());
+    graph.AddPair(0, 1, pair, MakeRobustCosts("mahalanobis_point", "huber"));
+    EXPECT_TRUE(graph.Solve().ok());
+    return graph.pose(1).Inverse() * ref;
+  };
+  const MotionError error =
+      ErrorOf(cur_from_ref(world.Motion(1.5, 2.0)), cur_from_ref(Rigid3d()));
+  EXPECT_LT(error.angle + error.translation, 1e-6);
+}
+
 TEST(MotionGraphTest, AllAssembliesOfLivePairsAgree) {
   MotionGraph compressed = LiveGraph(Assembly::kCompressed);
   const GraphSolution expected = compressed.Solve();
