@@ -9,9 +9,12 @@
 #include <thread>
 #include <utility>
 
+#include "core/util/give_way.h"
+
 namespace rgbd_pose {
 
-// One thread that does what it is given, in that order.
+// One thread that does what it is given, in that order, and gives way to those
+// that give it.
 class Worker {
  public:
   Worker() : thread_([this] { Work(); }) {}
@@ -44,6 +47,7 @@ class Worker {
 
  private:
   void Work() {
+    GiveWay();
     while (true) {
       std::function<void()> task;
       {

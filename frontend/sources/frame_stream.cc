@@ -3,6 +3,8 @@
 #include <chrono>
 #include <utility>
 
+#include "core/util/give_way.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -93,6 +95,8 @@ void FrameStream::ReadOne(Lock* lock) {
 }
 
 void FrameStream::Work() {
+  GiveWay();  // to the thread that tracks: it reads, too, where frames are
+              // short
   Lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return stop_ || CanBegin(); });

@@ -43,6 +43,7 @@ asked_by demo >"$work/asked"
   "$work/asked" || fail "the demo needs none of these"
 grep -qx jq "$work/asked" || fail "the demo runs jq"
 asked_by test | grep -qx slurmctld || fail "no Slurm for the tests"
+asked_by check | grep -qx librosbag-storage-dev || fail "bags go unchecked"
 [ "$(asked_by api_docs | grep -cv '^-\|^install$')" -eq 2 ] ||
   fail "api_docs needs two packages"
 

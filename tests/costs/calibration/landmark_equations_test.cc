@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
+#include <optional>
 #include <vector>
 
 #include "costs/calibration/known_distance_block.h"
@@ -39,7 +40,9 @@ struct Problem {
   CalibrationState state;
   CalibrationOrigin origin;
 
-  Problem() {
+  // By default each keyframe is the anchor of some landmarks, or `anchor` of
+  // all.
+  explicit Problem(std::optional<int> anchor = std::nullopt) {
     RandomWorld world(11);
     for (int k = 0; k < kKeyframes; ++k) {
       state.world_from_cam.push_back(world.Motion(0.1, 0.2));
@@ -52,7 +55,7 @@ struct Problem {
     state.depth_scale = 0.8;
     for (int i = 0; i < kLandmarks; ++i) {
       Landmark landmark;
-      landmark.anchor = i % kKeyframes;
+      landmark.anchor = anchor.value_or(i % kKeyframes);
       landmark.u = world.Uniform(100.0, 540.0);
       landmark.v = world.Uniform(100.0, 380.0);
       landmark.depth = SomeDepth(&world);
@@ -176,9 +179,9 @@ TEST(LandmarkEquationsTest, AreThoseOfAllUnknownsWithoutTheDepths) {
 }
 
 // The inverse of all information, and its sandwich with what each keyframe's
-// landmarks pull by: by formula, with whole matrices.
-TEST(LandmarkCovarianceTest, IsTheInverseAndTheSandwich) {
-  Problem problem;
+// landmarks pull by, `correction` times as much as they are few: by formula,
+// with whole matrices.
+void ExpectInverseAndSandwich(Problem problem, double correction) {
   RandomWorld world(12);
   for (const int a : {0, 1, 2}) {
     KnownDistance known;
@@ -219,7 +222,6 @@ TEST(LandmarkCovarianceTest, IsTheInverseAndTheSandwich) {
       Eigen::MatrixXd(equations.hessian.selfadjointView<Eigen::Lower>()) +
       exact;
   const Eigen::MatrixXd inverse = H.inverse();
-  const double correction = kKeyframes / (kKeyframes - 1.0);
   const Eigen::MatrixXd pull =
       correction * equations.gradients * equations.gradients.transpose() +
       exact;
@@ -239,6 +241,15 @@ TEST(LandmarkCovarianceTest, IsTheInverseAndTheSandwich) {
                                  &by_noise, &by_scatter));
   EXPECT_TRUE(by_noise.isApprox(expected_noise, 1e-6));
   EXPECT_TRUE(by_scatter.isApprox(expected_scatter, 1e-6));
+}
+
+TEST(LandmarkCovarianceTest, IsTheInverseAndTheSandwich) {
+  ExpectInverseAndSandwich(Problem(), kKeyframes / (kKeyframes - 1.0));
+}
+
+// What one keyframe's landmarks scatter by, nothing tells.
+TEST(LandmarkCovarianceTest, OneGroupIsNotCorrected) {
+  ExpectInverseAndSandwich(Problem(/*anchor=*/1), 1.0);
 }
 
 // Sigmas are as the state has them.

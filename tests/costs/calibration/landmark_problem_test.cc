@@ -163,14 +163,27 @@ TEST(LandmarkProblemTest, TheFirstPoseStays) {
   }
 }
 
+// A first keyframe that nothing is seen from, or by, is no part of the problem.
+TEST(LandmarkProblemTest, TheFirstKeyframeMaySeeNothing) {
+  World world;
+  for (Landmark& landmark : world.views.landmarks) {
+    // The first view, if it is not the anchor's own, is by the first keyframe.
+    landmark.first_view += 1;
+    landmark.num_views = landmark.anchor == 0 ? 0 : 1;
+  }
+  CalibrationState state = world.Problem().Begin();
+  EXPECT_TRUE(std::isfinite(world.Problem().Solve(World::FreeFocal(), &state)));
+}
+
 // By medians: of what is off by 0.6 px in u and by 0.4 px in v, and in depth by
-// half a sigma.
+// half a sigma - the anchors' own are those in the middle.
 TEST(LandmarkProblemTest, MeasuresTheScalesOfResiduals) {
   World world;
-  for (LandmarkView& view : world.views.views) {
+  for (size_t i = 0; i < world.views.views.size(); ++i) {
+    LandmarkView& view = world.views.views[i];
     view.u += 0.6;
     view.v -= 0.4;
-    view.depth.value += 0.5 / kInverseSigmaDepth;
+    view.depth.value += (i % 2 == 0 ? 0.1 : 0.9) / kInverseSigmaDepth;
   }
   for (Landmark& landmark : world.views.landmarks) {
     landmark.depth.value += 0.5 / kInverseSigmaDepth;
