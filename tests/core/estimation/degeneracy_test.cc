@@ -19,11 +19,13 @@ constexpr double kMaxDeviation = 0.1;  // rad and m
 MotionMatrix HessianOfPlanes(const std::vector<Eigen::Vector3d>& normals) {
   MotionMatrix hessian = MotionMatrix::Zero();
   for (const Eigen::Vector3d& normal : normals) {
-    for (int i = 0; i < 9; ++i) {
-      const Eigen::Vector3d point(i % 3 - 1.0, i / 3 - 1.0, 2.0);
-      MotionVector row;
-      row << point.cross(normal), normal;
-      hessian += 1e4 * row * row.transpose();
+    for (const double x : {-1.0, 0.0, 1.0}) {
+      for (const double y : {-1.0, 0.0, 1.0}) {
+        const Eigen::Vector3d point(x, y, 2.0);
+        MotionVector row;
+        row << point.cross(normal), normal;
+        hessian += 1e4 * row * row.transpose();
+      }
     }
   }
   return hessian;
