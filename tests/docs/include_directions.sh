@@ -28,7 +28,7 @@ room() {
   fi
 }
 
-room core/util core 'Eigen/|ceres/|fcntl.h|unistd.h'
+room core/util core 'Eigen/|ceres/|fcntl.h|sys/resource.h|unistd.h'
 room core/geometry core 'Eigen/'
 room core/estimation core 'Eigen/|ceres/'
 room core/initial_guess core 'Eigen/'
