@@ -22,7 +22,8 @@ std::unique_ptr<const PreparedFrame> StampOffset::Undo(
     return nullptr;
   }
   std::unique_ptr<PreparedFrame> copy = frame.Copy();
-  if (typeid(*copy) != typeid(frame)) {
+  const PreparedFrame& copied = *copy;
+  if (typeid(copied) != typeid(frame)) {
     throw InputError(
         "a frontend's prepared frame needs a Copy of its own type to undo the "
         "offset between the time stamps of colour and depth");
