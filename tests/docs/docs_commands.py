@@ -138,8 +138,10 @@ def main():
     page_name = sys.argv[3]
     page = (source / page_name).read_text().splitlines()
     exceptions = docs_exceptions.EXCEPTIONS.get(page_name, {})
+    # Where cmake looks for it, too (cmake/ReportAssets.cmake).
     if ('rgbd_report' in '\n'.join(page) and
-            not (build / 'npm' / 'node_modules').exists()):
+            not any((folder / 'npm' / 'node_modules').exists()
+                    for folder in (build, source / 'build'))):
         print('skipped: built without plotly.js, which report pages need')
         sys.exit(SKIPPED)
     text, count = script(page_name, page, exceptions)
