@@ -95,8 +95,8 @@ void FrameStream::ReadOne(Lock* lock) {
 }
 
 void FrameStream::Work() {
-  GiveWay();  // to the thread that tracks: it reads, too, where frames are
-              // short
+  // To the thread that tracks, which reads for itself where frames run short.
+  GiveWay();
   Lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return stop_ || CanBegin(); });

@@ -39,7 +39,7 @@ def frames(track_ms=5.0, status="ok"):
 
 
 def problems(rows=None, code=0, last_mb=110.0):
-    # 20 MB more is what a row of each frame may take: 2 kB, of half of them 10.
+    # Rows of the second half of the frames, 2 kB each, may take 10 MB.
     memory = [(1.0, 80.0), (49.0, 100.0), (99.0, last_mb)]
     return endurance.problems_of(rows or frames(), memory, 100.0, code)
 

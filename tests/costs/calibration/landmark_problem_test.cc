@@ -167,7 +167,7 @@ TEST(LandmarkProblemTest, TheFirstPoseStays) {
 TEST(LandmarkProblemTest, TheFirstKeyframeMaySeeNothing) {
   World world;
   for (Landmark& landmark : world.views.landmarks) {
-    // The first view, if it is not the anchor's own, is by the first keyframe.
+    // Of its two views the earlier one is the first keyframe's.
     landmark.first_view += 1;
     landmark.num_views = landmark.anchor == 0 ? 0 : 1;
   }

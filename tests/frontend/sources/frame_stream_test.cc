@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <functional>
@@ -12,6 +13,10 @@
 
 #include "core/util/input_error.h"
 #include "tests/support/expect_input_error.h"
+
+#ifdef __linux__
+#include <sys/resource.h>
+#endif
 
 namespace rgbd_pose {
 namespace {
@@ -206,6 +211,19 @@ TEST(FrameStreamThreadsTest, OneThreadIsTheCallingOne) {
   FrameStream stream(&source, nullptr, 1);
   for (int i = 0; i < 3; ++i) ExpectFrame(&stream, i);
 }
+
+#ifdef __linux__
+TEST(FrameStreamThreadsTest, ReadingAheadGivesWayToTheCallingThread) {
+  constexpr int kUnknown = -100;
+  constexpr int kSteps = 5, kLowest = 19;
+  FakeSource source(1);
+  std::atomic<int> priority = kUnknown;
+  source.on_read = [&](int) { priority = getpriority(PRIO_PROCESS, 0); };
+  FrameStream stream(&source, nullptr, 2);
+  ASSERT_TRUE(WaitFor([&] { return priority != kUnknown; }));
+  EXPECT_EQ(priority, std::min(getpriority(PRIO_PROCESS, 0) + kSteps, kLowest));
+}
+#endif
 
 // A camera's next frame is not there yet: the one before it is, nevertheless.
 TEST(FrameStreamThreadsTest, GivesAFrameWhileTheSourceWaitsForTheNext) {
