@@ -284,6 +284,21 @@ TEST_F(CostValuesTest, APriorThatIsNoneIsNotUsed) {
   }
 }
 
+TEST_F(CostValuesTest, APriorMayBeAsVagueOrExactAsItLikes) {
+  const std::unique_ptr<MotionCost> cost = MakeCost("motion_prior");
+  for (const double factor : {1e-20, 1.0, 1e20}) {
+    MotionPrior scaled = prior_;
+    scaled.information *= factor;
+    cost->Bind({&matches_, &scaled});
+    cost->Associate(bound_);
+    EXPECT_EQ(cost->matches(), std::vector<int>{-1}) << factor;
+    scaled.information(3, 3) *= -1.0;
+    cost->Bind({&matches_, &scaled});
+    cost->Associate(bound_);
+    EXPECT_TRUE(cost->matches().empty()) << factor;
+  }
+}
+
 // An inertial sensor tells of rotation alone.
 TEST_F(CostValuesTest, APriorMayTellOfSomeDirectionsOnly) {
   const MotionMatrix all = prior_.information;

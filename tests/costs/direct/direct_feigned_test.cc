@@ -1,0 +1,94 @@
+// What noise makes of a place without texture or shape is what the costs say it
+// feigns.
+
+#include <gtest/gtest.h>
+
+#include <opencv2/core.hpp>
+#include <random>
+
+#include "costs/direct/direct_cost.h"
+#include "costs/direct_cost_list.h"
+#include "tests/support/direct_pair.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kWall = 1.5;  // m
+
+// A white wall right ahead, in both images and depths nothing but noise.
+DirectFrame NoisyWall(uint32_t seed) {
+  const Camera camera = SmallImages().camera.camera;
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise;
+  const double sigma = DepthNoiseModels()[0].sigma(kWall);
+  Frame frame;
+  frame.gray.create(camera.height, camera.width, CV_8U);
+  frame.depth.create(camera.height, camera.width, CV_16U);
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      frame.gray.at<uint8_t>(v, u) = cv::saturate_cast<uint8_t>(
+          128.0 + 4.0 * Photometric::kSigmaGray * noise(random));
+      frame.depth.at<uint16_t>(v, u) = cv::saturate_cast<uint16_t>(
+          frame.depth_scale * (kWall + sigma * noise(random)));
+    }
+  }
+  return DirectFrame(frame, camera);
+}
+
+// With a change of brightness noise would be told by noise.
+struct Unlit : Photometric {
+  static constexpr bool kSeesBrightness = false;
+};
+
+// For each motion: the root of how much it is determined, by noise alone, over
+// what is said to be feigned.
+template <typename Residual>
+MotionVector DeterminedOverFeigned(bool is_of_measured_residuals) {
+  const DirectFrame prev = NoisyWall(1), cur = NoisyWall(2);
+  PairData pair;
+  pair.prev = &prev.view;
+  pair.cur = &cur.view;
+  DirectOptions options;
+  options.min_gradient = 0.0;
+  DirectCostOf<Residual> cost(options);
+  cost.Bind(pair);
+  // Turned, so that places are anywhere within the pixels.
+  const Rigid3d turn(
+      Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitZ())),
+      Eigen::Vector3d::Zero());
+  cost.Associate(turn);
+  const MotionVector zero = MotionVector::Zero();
+  const MotionDerivatives motion =
+      MotionOrigin(turn).DerivativesAt(zero.data());
+  NormalEquations sum;
+  cost.Linearise(motion, nullptr, &sum);
+  MotionMatrix feigned = MotionMatrix::Zero();
+  cost.AddFeigned(motion, &feigned);
+  EXPECT_GT(cost.matches().size(), 1000u);
+  const double variance =
+      is_of_measured_residuals ? 2.0 * sum.cost / cost.matches().size() : 1.0;
+  return (sum.hessian.diagonal().cwiseQuotient(feigned.diagonal()) / variance)
+      .cwiseSqrt();
+}
+
+TEST(FeignedByDirectCostsTest, GrayLevelsOfAWhiteWall) {
+  const MotionVector ratio = DeterminedOverFeigned<Unlit>(true);
+  for (int k = 0; k < 6; ++k) EXPECT_NEAR(ratio[k], 1.0, 0.2) << k;
+}
+
+// A plane says nothing of motions along it and of turns about its normal.
+template <typename Residual>
+void ExpectFeignedByAPlane() {
+  const MotionVector ratio = DeterminedOverFeigned<Residual>(false);
+  for (const int k : {2, 3, 4}) {
+    EXPECT_NEAR(ratio[k], 1.0, 0.1) << Residual::kName << " " << k;
+  }
+}
+
+TEST(FeignedByDirectCostsTest, DepthsOfAPlane) {
+  ExpectFeignedByAPlane<ProjectivePlane>();
+  ExpectFeignedByAPlane<InverseDepth>();
+}
+
+}  // namespace
+}  // namespace rgbd_pose
