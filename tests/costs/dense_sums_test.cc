@@ -40,7 +40,8 @@ class DenseSumsTest : public ::testing::TestWithParam<std::string> {
                              /*missing_depth_share=*/0.2);
   }
 
-  NormalEquations Sum(const Correspondences& matches, int threads) const {
+  NormalEquations Sum(const Correspondences& matches, int threads,
+                      MotionMatrix* scatter = nullptr) const {
     const std::unique_ptr<MotionCost> cost = MakeCost(GetParam());
     const auto loss =
         FindMEstimator("huber")->MakeLoss(cost->independent_rows());
@@ -49,7 +50,9 @@ class DenseSumsTest : public ::testing::TestWithParam<std::string> {
     NormalEquations sum;
     const MotionOrigin origin(truth_);
     const MotionVector x = MotionVector::Constant(0.001);
-    cost->Linearise(origin.DerivativesAt(x.data()), loss.get(), &sum);
+    const MotionDerivatives motion = origin.DerivativesAt(x.data());
+    cost->Linearise(motion, loss.get(), &sum);
+    if (scatter != nullptr) cost->AddScatter(motion, loss.get(), scatter);
     return sum;
   }
 
@@ -90,6 +93,21 @@ TEST_P(DenseSumsTest, AreThoseOfTheirParts) {
   // The gradient is a small rest of large terms: sqrt(2 c H) bounds them.
   EXPECT_LE((whole.gradient - parts.gradient).norm(),
             kEqual * std::sqrt(2.0 * parts.cost * parts.hessian.norm()));
+}
+
+TEST_P(DenseSumsTest, ScatterIsThatOfTheGradientsOfEachMatch) {
+  MotionMatrix expected = MotionMatrix::Zero(), scatter = MotionMatrix::Zero();
+  Correspondences some(matches_.camera());
+  for (size_t i = 0; i < 100; ++i) {
+    some.Add(matches_[i].prev, matches_[i].cur);
+    Correspondences one(matches_.camera());
+    one.Add(matches_[i].prev, matches_[i].cur);
+    const MotionVector gradient = Sum(one, 1).gradient;
+    expected += gradient * gradient.transpose();
+  }
+  Sum(some, 1, &scatter);
+  ASSERT_GT(expected.norm(), 0.0);
+  EXPECT_LE((scatter - expected).norm(), 1e-10 * expected.norm());
 }
 
 INSTANTIATE_TEST_SUITE_P(AllCosts, DenseSumsTest,

@@ -90,5 +90,20 @@ TEST(FeignedByDirectCostsTest, DepthsOfAPlane) {
   ExpectFeignedByAPlane<InverseDepth>();
 }
 
+// A wrong slope turns the plane about the point that is measured.
+TEST(FeignedByDirectCostsTest, APlaneKeepsItsPoint) {
+  const DirectFrame cur = NoisyWall(1);
+  DirectInput input;
+  input.cur = &cur.view;
+  for (const int axis : {0, 1}) {
+    double columns[ProjectivePlane::kColumns] = {0.3, -0.4, 1.5};
+    ProjectivePlane::Feign(input, axis, columns);
+    const Eigen::Map<const Eigen::Vector3d> X(columns), N(columns + 3);
+    EXPECT_GT(N.norm(), 1.0);
+    EXPECT_NEAR(N.dot(X), 0.0, 1e-9);
+    EXPECT_EQ(columns[6], 0.0);
+  }
+}
+
 }  // namespace
 }  // namespace rgbd_pose
