@@ -3,21 +3,19 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Geometry>
-#include <algorithm>
 #include <cstdio>
-#include <filesystem>
-#include <sstream>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
+#include "frontend/files/yaml_edit.h"
 #include "frontend/files/yaml_section.h"
 
 namespace rgbd_pose {
 namespace {
-
-using Lines = std::vector<std::pair<std::string, std::string>>;  // key, value
 
 // With all digits that make a difference.
 std::string Digits(double value) {
@@ -39,8 +37,8 @@ std::vector<double> ToList(const Eigen::Vector3d& v) {
 }
 
 // The keys that all layouts share.
-Lines DepthLines(const RgbdCamera& camera) {
-  Lines lines;
+YamlLines DepthLines(const RgbdCamera& camera) {
+  YamlLines lines;
   if (camera.depth_errors.inverse_depth_offset != 0.0) {
     lines.emplace_back("inverse_depth_offset",
                        Digits(camera.depth_errors.inverse_depth_offset));
@@ -59,9 +57,9 @@ Lines DepthLines(const RgbdCamera& camera) {
   return lines;
 }
 
-Lines OrbSlamLines(const RgbdCamera& rgbd, const std::string& prefix) {
+YamlLines OrbSlamLines(const RgbdCamera& rgbd, const std::string& prefix) {
   const Camera& camera = rgbd.camera;
-  Lines lines;
+  YamlLines lines;
   for (const CameraParameter& parameter : kCameraParameters) {
     lines.emplace_back(prefix + parameter.name,
                        Digits(camera.*parameter.value));
@@ -72,45 +70,11 @@ Lines OrbSlamLines(const RgbdCamera& rgbd, const std::string& prefix) {
 }
 
 // The keys of what is wrong with depth.
-constexpr const char* kDepthKeys[] = {"inverse_depth_offset",
-                                      "depth_time_offset", "depth_rotation",
-                                      "depth_translation"};
-
-bool IsOfKey(const std::string& line, const std::string& key) {
-  if (line.compare(0, key.size(), key) != 0) return false;
-  const size_t next = line.find_first_not_of(' ', key.size());
-  return next != std::string::npos && line[next] == ':';
-}
-
-// A file of one `key: value` a line with other values; keys that it lacks are
-// added where they are not 0.
-std::string EditLines(const std::string& text, const Lines& values,
-                      const Lines& depth) {
-  std::stringstream in(text);
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) {
-    if (!line.empty() && line.back() == '\r') line.pop_back();
-    if (std::none_of(std::begin(kDepthKeys), std::end(kDepthKeys),
-                     [&](const char* key) { return IsOfKey(line, key); })) {
-      lines.push_back(line);
-    }
-  }
-  for (const auto& [key, value] : values) {
-    const auto line = std::find_if(
-        lines.begin(), lines.end(),
-        [&key = key](const std::string& l) { return IsOfKey(l, key); });
-    if (line != lines.end()) {
-      const size_t comment = line->find(" #");
-      *line = key + ": " + value +
-              (comment == std::string::npos ? "" : line->substr(comment));
-    } else if (value != "0") {
-      lines.push_back(key + ": " + value);
-    }
-  }
-  for (const auto& [key, value] : depth) lines.push_back(key + ": " + value);
-  std::string result;
-  for (const std::string& line : lines) result += line + "\n";
-  return result;
+const std::vector<std::string>& DepthKeys() {
+  static const std::vector<std::string> keys = {
+      "inverse_depth_offset", "depth_time_offset", "depth_rotation",
+      "depth_translation"};
+  return keys;
 }
 
 YAML::Node ToNode(const std::vector<double>& values) {
@@ -120,32 +84,49 @@ YAML::Node ToNode(const std::vector<double>& values) {
   return node;
 }
 
-// A YAML file in ROS' or Kalibr's layout with other values.
-std::string EditNodes(const RgbdCamera& rgbd, YAML::Node file) {
+// The file written anew with other values; its comments are lost. `values` are
+// those of ORB-SLAM's layout, none in the others.
+std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
+                      const YamlLines& values, YAML::Node file) {
   const Camera& c = rgbd.camera;
-  if (file["camera_matrix"].IsDefined()) {
-    file["camera_matrix"]["data"] =
-        ToNode({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0});
-    file["distortion_coefficients"]["data"] =
-        ToNode({c.k1, c.k2, c.p1, c.p2, c.k3});
-    YAML::Node size = file["distortion_coefficients"]["cols"];
-    if (size.IsDefined()) size = 5;
+  if (!values.empty()) {
+    for (const auto& [key, value] : values) {
+      file.reset(With(file, key, YAML::Node(value)));
+    }
+  } else if (file["camera_matrix"].IsDefined()) {
+    file.reset(
+        With(file, "camera_matrix",
+             With(file["camera_matrix"], "data",
+                  ToNode({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0}))));
+    YAML::Node distortion = With(file["distortion_coefficients"], "data",
+                                 ToNode({c.k1, c.k2, c.p1, c.p2, c.k3}));
+    if (distortion["cols"].IsDefined()) {
+      distortion.reset(With(distortion, "cols", YAML::Node(5)));
+    }
+    file.reset(With(file, "distortion_coefficients", distortion));
     // What a rectified image would be seen with is of the old camera.
-    file.remove("projection_matrix");
+    file.reset(Without(file, {"projection_matrix"}));
   } else {
-    file["cam0"]["intrinsics"] = ToNode({c.fx, c.fy, c.cx, c.cy});
-    file["cam0"]["distortion_coeffs"] = ToNode({c.k1, c.k2, c.p1, c.p2});
+    YAML::Node cam0 =
+        With(file["cam0"], "intrinsics", ToNode({c.fx, c.fy, c.cx, c.cy}));
+    cam0.reset(
+        With(cam0, "distortion_coeffs", ToNode({c.k1, c.k2, c.p1, c.p2})));
+    file.reset(With(file, "cam0", cam0));
   }
   const char* const scale = file["RGBD.DepthMapFactor"].IsDefined()
                                 ? "RGBD.DepthMapFactor"
                                 : "DepthMapFactor";
-  file[scale] = Digits(rgbd.depth_scale);
-  for (const char* key : kDepthKeys) file.remove(key);
-  std::string text = YAML::Dump(file) + "\n";
+  file.reset(With(file, scale, YAML::Node(Digits(rgbd.depth_scale))));
+  file.reset(Without(file, DepthKeys()));
+  file.SetStyle(YAML::EmitterStyle::Block);
+  // OpenCV's first line, which is no YAML.
+  const bool is_of_opencv = text.rfind("%YAML", 0) == 0;
+  std::string result = is_of_opencv ? "%YAML:1.0\n---\n" : "";
+  result += YAML::Dump(file) + "\n";
   for (const auto& [key, value] : DepthLines(rgbd)) {
-    text += key + ": " + value + "\n";
+    result += key + ": " + value + "\n";
   }
-  return text;
+  return result;
 }
 
 }  // namespace
@@ -156,19 +137,21 @@ std::string FormatCameraFile(const RgbdCamera& camera,
   std::string text = "%YAML:1.0\n";
   std::string prefix = "Camera.";
   std::string scale = "DepthMapFactor";
+  YAML::Node file(YAML::NodeType::Map);
   if (!is_preset) {
     ResolveCamera(like);  // complains of what is wrong with it
     text = ReadTextFile(like);
-    const YamlSection file = YamlSection::FromFile(like);
-    if (file.HasKeyStartingWith("Camera1.")) prefix = "Camera1.";
-    if (file.Has("RGBD.DepthMapFactor")) scale = "RGBD.DepthMapFactor";
-    if (!file.Has(prefix + "fx")) {
-      return EditNodes(camera, YAML::Load(text));
-    }
+    const YamlSection section = YamlSection::FromFile(like);
+    file.reset(section.node());
+    if (section.HasKeyStartingWith("Camera1.")) prefix = "Camera1.";
+    if (section.Has("RGBD.DepthMapFactor")) scale = "RGBD.DepthMapFactor";
+    if (!section.Has(prefix + "fx")) return EditNodes(camera, text, {}, file);
   }
-  Lines lines = OrbSlamLines(camera, prefix);
-  lines.emplace_back(scale, Digits(camera.depth_scale));
-  return EditLines(text, lines, DepthLines(camera));
+  YamlLines values = OrbSlamLines(camera, prefix);
+  values.emplace_back(scale, Digits(camera.depth_scale));
+  const std::optional<std::string> edited =
+      EditLines(text, file, values, DepthKeys(), DepthLines(camera));
+  return edited.has_value() ? *edited : EditNodes(camera, text, values, file);
 }
 
 }  // namespace rgbd_pose

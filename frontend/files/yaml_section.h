@@ -15,6 +15,9 @@ class YamlSection {
   // The top level of a file; empty if the file holds something else than keys.
   static YamlSection FromFile(const std::string& path);
 
+  // As it was parsed.
+  const YAML::Node& node() const { return node_; }
+
   bool Has(const std::string& key) const;
   bool HasKeyStartingWith(const std::string& start) const;
 

@@ -72,6 +72,77 @@ TEST_P(EveryLayoutTest, IsWrittenAsItIsRead) {
 INSTANTIATE_TEST_SUITE_P(CameraFileWriter, EveryLayoutTest,
                          testing::Values(kOrbSlam2, kOrbSlam3, kRos, kKalibr));
 
+// All that YAML allows, though nobody would write it.
+constexpr char kOnOneLine[] =
+    "{Camera.fx: 517.3, Camera.fy: 516.5, Camera.cx: 318.6, Camera.cy: 255.3,\n"
+    " Camera.width: 640, Camera.height: 480}\n";
+constexpr char kQuoted[] =
+    "%YAML:1.0\n"
+    "of: \"its maker said\n"
+    "Camera.fx: 1\n"
+    "Camera.k1: 2\"\n"
+    "Camera.fx: 517.3\n"
+    "Camera.fy: 516.5 # as measured\n"
+    "Camera.cx: 318.6\n"
+    "Camera.cy: 255.3\n"
+    "Camera.width: 640\n"
+    "Camera.height: 480\n";
+constexpr char kOnTheNextLine[] =
+    "Camera.fx:\n  517.3\n"
+    "Camera.fy: 516.5\n"
+    "Camera.cx: 318.6\n"
+    "Camera.cy: 255.3\n"
+    "Camera.width: 640\n"
+    "Camera.height: 480\n"
+    "depth_translation: [0.1,\n  0.2, 0.3]\n";
+constexpr char kIndented[] =
+    "  Camera.fx: 517.3\n"
+    "  Camera.fy: 516.5\n"
+    "  Camera.cx: 318.6\n"
+    "  Camera.cy: 255.3\n"
+    "  Camera.width: 640\n"
+    "  Camera.height: 480\n";
+constexpr char kOfTwoDocuments[] =
+    "Camera.fx: 517.3\n"
+    "Camera.fy: 516.5\n"
+    "Camera.cx: 318.6\n"
+    "Camera.cy: 255.3\n"
+    "Camera.width: 640\n"
+    "Camera.height: 480\n"
+    "---\n"
+    "Camera.fx: 1\n";
+constexpr char kOfOneNumber[] =
+    "Camera.fx: &f 517.3\n"
+    "Camera.fy: *f\n"
+    "Camera.cx: 318.6\n"
+    "Camera.cy: 255.3\n"
+    "Camera.width: 640\n"
+    "Camera.height: 480\n"
+    "Camera.fps: *f\n";
+constexpr char kOfOneList[] =
+    "cam0:\n"
+    "  camera_model: pinhole\n"
+    "  distortion_model: radtan\n"
+    "  intrinsics: &four [300, 300, 160, 120]\n"
+    "  distortion_coeffs: [0, 0, 0, 0]\n"
+    "  also: *four\n"
+    "  resolution: [320, 240]\n";
+
+INSTANTIATE_TEST_SUITE_P(OddCameraFiles, EveryLayoutTest,
+                         testing::Values(kOnOneLine, kQuoted, kOnTheNextLine,
+                                         kIndented, kOfTwoDocuments,
+                                         kOfOneNumber, kOfOneList));
+
+TEST(CameraFileWriterTest, FilesOfOpenCVStayThose) {
+  const TempFolder folder;
+  const std::string ros =
+      folder.Write("ros.yaml", std::string("%YAML:1.0\n---\n") + kRos);
+  const RgbdCamera camera = Changed(ResolveCamera(ros));
+  const std::string text = FormatCameraFile(camera, ros);
+  EXPECT_EQ(text.rfind("%YAML:1.0\n", 0), 0u);
+  ExpectEqual(ResolveCamera(folder.Write("again.yaml", text)), camera);
+}
+
 TEST(CameraFileWriterTest, OtherLinesAndKeysStay) {
   const TempFolder folder;
   const std::string orb = folder.Write("orb.yaml", kOrbSlam3);
@@ -83,6 +154,14 @@ TEST(CameraFileWriterTest, OtherLinesAndKeysStay) {
   const std::string ros = folder.Write("ros.yaml", kRos);
   EXPECT_NE(FormatCameraFile(camera, ros).find("camera_name: rgb"),
             std::string::npos);
+}
+
+TEST(CameraFileWriterTest, CommentsStay) {
+  const TempFolder folder;
+  const std::string file = folder.Write("quoted.yaml", kQuoted);
+  const std::string text = FormatCameraFile(Changed(ResolveCamera(file)), file);
+  EXPECT_NE(text.find("Camera.fy: 509.5 # as measured\n"), std::string::npos);
+  EXPECT_NE(text.find("said\nCamera.fx: 1\n"), std::string::npos);
 }
 
 TEST(CameraFileWriterTest, PresetsBecomeFiles) {
