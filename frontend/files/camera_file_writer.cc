@@ -141,7 +141,7 @@ std::string FormatCameraFile(const RgbdCamera& camera,
   if (!is_preset) {
     ResolveCamera(like);  // complains of what is wrong with it
     text = ReadTextFile(like);
-    const YamlSection section = YamlSection::FromFile(like);
+    const YamlSection section = YamlSection::FromText(like, text);
     file.reset(section.node());
     if (section.HasKeyStartingWith("Camera1.")) prefix = "Camera1.";
     if (section.Has("RGBD.DepthMapFactor")) scale = "RGBD.DepthMapFactor";

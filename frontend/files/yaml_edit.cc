@@ -3,34 +3,45 @@
 #include <algorithm>
 #include <sstream>
 
+#include "core/util/input_error.h"
+#include "frontend/files/yaml_section.h"
+
 namespace rgbd_pose {
 namespace {
 
-// The line of `key: value` that is one of the file and nothing else; nothing if
-// there is none: many keys may share a line, a value may have several, or a
-// name by which others refer to it.
-std::optional<size_t> OwnLine(const YAML::Node& file,
-                              const std::vector<std::string>& lines,
-                              const std::string& key) {
+// Where a key of the file stands, if that is within the lines.
+std::optional<size_t> LineOf(const YAML::Node& file, const std::string& key,
+                             const std::vector<std::string>& lines) {
   for (const auto& entry : file) {
     if (entry.first.Scalar() != key) continue;
-    const YAML::Mark at = entry.first.Mark();
-    const size_t line = at.line;
-    if (at.column != 0 || line >= lines.size() ||
-        lines[line].find(": &") != std::string::npos) {
-      return std::nullopt;
-    }
-    try {
-      const YAML::Node alone = YAML::Load(lines[line]);
-      const bool is_all =
-          alone.IsMap() && alone.size() == 1 &&
-          YAML::Dump(alone.begin()->second) == YAML::Dump(entry.second);
-      return is_all ? std::optional(line) : std::nullopt;
-    } catch (const YAML::Exception&) {
-      return std::nullopt;  // begins or ends what goes on elsewhere
-    }
+    const size_t line = entry.first.Mark().line;
+    if (line < lines.size()) return line;
   }
   return std::nullopt;
+}
+
+// Many keys may share a line, a value may have several, or a name by which
+// others refer to it: whether a file reads as it was meant to.
+bool Says(const std::string& text, const YamlLines& values,
+          const std::vector<std::string>& left_out, const YamlLines& more) {
+  try {
+    const YamlSection file = YamlSection::FromText("", text);
+    const auto says = [&](const std::string& key, const std::string& value) {
+      return file.Has(key) &&
+             YAML::Dump(file.node()[key]) == YAML::Dump(YAML::Load(value));
+    };
+    for (const auto& [key, value] : values) {
+      if (!says(key, value) && (file.Has(key) || value != "0")) return false;
+    }
+    size_t kept = 0;
+    for (const std::string& key : left_out) kept += file.Has(key);
+    for (const auto& [key, value] : more) {
+      if (!says(key, value)) return false;
+    }
+    return kept <= more.size();
+  } catch (const InputError&) {
+    return false;
+  }
 }
 
 }  // namespace
@@ -48,20 +59,17 @@ std::optional<std::string> EditLines(const std::string& text,
   }
   std::vector<bool> is_left_out(lines.size(), false);
   for (const std::string& key : left_out) {
-    if (!file[key].IsDefined()) continue;
-    const std::optional<size_t> line = OwnLine(file, lines, key);
-    if (!line.has_value()) return std::nullopt;
-    is_left_out[*line] = true;
+    const std::optional<size_t> line = LineOf(file, key, lines);
+    if (line.has_value()) is_left_out[*line] = true;
   }
   size_t last = 0;  // of those that change
   std::string added;
   for (const auto& [key, value] : values) {
-    if (!file[key].IsDefined()) {
+    const std::optional<size_t> line = LineOf(file, key, lines);
+    if (!line.has_value()) {
       if (value != "0") added += key + ": " + value + "\n";
       continue;
     }
-    const std::optional<size_t> line = OwnLine(file, lines, key);
-    if (!line.has_value()) return std::nullopt;
     const size_t comment = lines[*line].find(" #");
     lines[*line] =
         key + ": " + value +
@@ -74,6 +82,7 @@ std::optional<std::string> EditLines(const std::string& text,
     if (!is_left_out[i]) result += lines[i] + "\n";
     if (i == last) result += added;
   }
+  if (!Says(result, values, left_out, more)) return std::nullopt;
   return result;
 }
 

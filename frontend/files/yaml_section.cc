@@ -24,9 +24,13 @@ void Append(const std::string& word, const char* separator, std::string* list) {
 }  // namespace
 
 YamlSection YamlSection::FromFile(const std::string& path) {
-  const std::string text = WithoutDirective(ReadTextFile(path));
+  return FromText(path, ReadTextFile(path));
+}
+
+YamlSection YamlSection::FromText(const std::string& path,
+                                  const std::string& text) {
   try {
-    const YAML::Node node = YAML::Load(text);
+    const YAML::Node node = YAML::Load(WithoutDirective(text));
     return {path, "", node.IsMap() ? node : YAML::Node(YAML::NodeType::Map)};
   } catch (const YAML::Exception& error) {
     throw InputError(path, error.mark.line + 1,
