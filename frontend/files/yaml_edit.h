@@ -16,9 +16,9 @@ using YamlLines =
 
 // The text of a file with other values, its other lines as they are. `file` is
 // what it was parsed to. Keys of `values` that it lacks are added where they
-// are not 0, lines of `left_out` left out, those of `more` added. Nothing if a
-// key has no line of its own: many keys may share a line, a value may have
-// several.
+// are not 0; keys of `left_out` go, but for those of `more`, which are as said
+// there. Nothing if that cannot be done line by line: many keys may share a
+// line, a value may have several.
 std::optional<std::string> EditLines(const std::string& text,
                                      const YAML::Node& file,
                                      const YamlLines& values,
