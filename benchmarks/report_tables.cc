@@ -179,10 +179,10 @@ std::string FrameRows(const BenchmarkResults& results) {
       const BenchmarkResult* result =
           results.Find("frames/" + sequence + "/" + method);
       if (result == nullptr) continue;
-      text += Row({"`" + sequence + "`", Count(*result, "frames"),
-                   std::string("`") + method + "`", Time(result),
-                   Counter(*result, "ate_m", 1e3),
-                   Counter(*result, "rpe_m", 1e3)});
+      text +=
+          Row({"`" + sequence + "`", Count(*result, "frames"),
+               std::string("`") + method + "`", Time(result),
+               Counter(*result, "ate_m", 1e3), Counter(*result, "rpe_m", 1e3)});
     }
   }
   return text;
