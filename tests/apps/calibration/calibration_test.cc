@@ -14,6 +14,7 @@
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/sources/corrected_source.h"
+#include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {
 namespace {
@@ -85,8 +86,8 @@ const CalibratedParameter& Of(const CalibrationResult& result,
   return result.parameters[k];
 }
 
-TEST(CalibrationTest, FindsWhatIsWrong) {
-  const CalibrationResult result = MappedWrongly().Calibrate();
+TEST(CalibrationTest, FindsWhatIsWrongOnAnyNumberOfThreads) {
+  const CalibrationResult result = MappedWrongly().Calibrate({}, 3);
   EXPECT_TRUE(result.is_accepted) << result.reason;
   const Camera truth;
   EXPECT_NEAR(result.camera.camera.fx, truth.fx, 2e-3 * truth.fx);
@@ -100,6 +101,13 @@ TEST(CalibrationTest, FindsWhatIsWrong) {
   EXPECT_EQ(Of(result, kDepthFactor).fate, Fate::kFixed);
   EXPECT_EQ(result.camera.depth_scale, Wrong().depth_scale);
   EXPECT_TRUE(result.scale_from.empty());
+
+  const CalibrationResult one = MappedWrongly().Calibrate({}, 1);
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    EXPECT_EQ(one.parameters[k].found, result.parameters[k].found);
+    EXPECT_EQ(one.parameters[k].sigma, result.parameters[k].sigma);
+  }
+  EXPECT_EQ(one.cost_after, result.cost_after);
 }
 
 TEST(CalibrationTest, WhatIsFixedStays) {
@@ -146,16 +154,6 @@ TEST(CalibrationTest, HalvesOfOneCameraAgree) {
   }
 }
 
-TEST(CalibrationTest, TheNumberOfThreadsChangesNothing) {
-  const CalibrationResult one = MappedWrongly().Calibrate({}, 1);
-  const CalibrationResult three = MappedWrongly().Calibrate({}, 3);
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    EXPECT_EQ(one.parameters[k].found, three.parameters[k].found);
-    EXPECT_EQ(one.parameters[k].sigma, three.parameters[k].sigma);
-  }
-  EXPECT_EQ(one.cost_after, three.cost_after);
-}
-
 TEST(CalibrationTest, HalvesThatContradictEachOtherAreNamed) {
   CalibrationResult result;
   result.halves = {{kCx, 320.0, 321.0, 1.0}, {kFx, 520.0, 530.0, 2.0}};
@@ -180,12 +178,19 @@ TEST(CalibrationTest, WhatChangesACameraIsFoundBetweenBoth) {
 }
 
 TEST(CalibrationTest, AKnownLengthHasToMakeSense) {
-  for (const char* text :
-       {"1000,1001", "a,b,c", "1000,1001,-1", "1000,1001,1,1", "1000,5000,1"}) {
+  const Mapped at_rest(Render("still", 5), RgbdCamera());
+  const auto expect = [&](const char* text, const char* part) {
     CalibrationSettings settings;
     settings.known_length = text;
-    EXPECT_THROW(MappedWrongly().Calibrate(settings), InputError) << text;
+    ExpectInputError([&] { at_rest.Calibrate(settings); },
+                     {"known_length: ", part});
+  };
+  for (const char* text :
+       {"1000,1000.1", "a,b,c", "1000,1000.1,-1", "1000,1000.1,1,1"}) {
+    expect(text, "must be T0,T1,METRES");
   }
+  expect("1000,5000,1", "no frame was tracked at 5000");
+  expect("1000,1000.1,1", "hardly moved");
 }
 
 }  // namespace
