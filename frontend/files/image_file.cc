@@ -1,5 +1,6 @@
 #include "frontend/files/image_file.h"
 
+#include <cctype>
 #include <opencv2/imgcodecs.hpp>
 #include <string_view>
 
@@ -24,6 +25,22 @@ bool IsCutOffJpeg(std::string_view bytes) {
   const size_t last_scan = bytes.rfind(kScanStart);
   return last_scan == std::string_view::npos ||
          bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
+}
+
+// The kinds that recordings come in. OpenCV tries others, too, whose decoders
+// may end the program: DICOM's by an assertion, on bytes that are damaged.
+bool IsOfKnownKind(std::string_view bytes) {
+  using std::string_view_literals::operator""sv;
+  for (const std::string_view start : {"\x89PNG\r\n\x1A\n"sv, "\xFF\xD8\xFF"sv,
+                                       "BM"sv, "II*\0"sv, "MM\0*"sv}) {
+    if (bytes.substr(0, start.size()) == start) return true;
+  }
+  const bool is_webp = bytes.substr(0, 4) == "RIFF" && bytes.size() > 8 &&
+                       bytes.substr(8, 4) == "WEBP";
+  const bool is_pnm = bytes.size() > 2 && bytes[0] == 'P' && bytes[1] >= '1' &&
+                      bytes[1] <= '6' &&
+                      std::isspace(static_cast<unsigned char>(bytes[2])) != 0;
+  return is_webp || is_pnm;
 }
 
 cv::Mat DecodeByOpenCv(const std::string& bytes, const std::string& path,
@@ -65,6 +82,11 @@ cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
 #endif
   if (is_damaged) {
     throw InputError(path + ": is damaged or cut off; copy it again");
+  }
+  if (!IsOfKnownKind(bytes)) {
+    throw InputError(path +
+                     ": is damaged, cut off or no image of a kind that is "
+                     "read: PNG, JPEG, TIFF, BMP, PGM, PPM, WebP");
   }
   if (color != nullptr) {
     *color = DecodeByOpenCv(bytes, path, cv::IMREAD_COLOR);

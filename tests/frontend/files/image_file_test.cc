@@ -90,6 +90,26 @@ TEST_F(ImageFileTest, RefusesWhatIsNoImage) {
   ExpectRefused(folder_.Write("text.png", "text"), {"text.png", "no image"});
 }
 
+TEST_F(ImageFileTest, ReadsTheKindsThatRecordingsComeIn) {
+  const cv::Mat color = Noise(CV_8UC3);
+  for (const char* name :
+       {"a.png", "a.jpg", "a.tiff", "a.bmp", "a.ppm", "a.webp"}) {
+    const cv::Mat image = ReadImageFile(Write(name, color), cv::IMREAD_COLOR);
+    EXPECT_EQ(image.size(), color.size()) << name;
+  }
+  const cv::Mat depth = Noise(CV_16UC1);
+  for (const char* name : {"a.png", "a.tiff", "a.pgm"}) {
+    const cv::Mat image = ReadDepthImageFile(Write(name, depth));
+    EXPECT_EQ(cv::norm(image, depth, cv::NORM_INF), 0) << name;
+  }
+}
+
+// A decoder that OpenCV has for it would end the program.
+TEST_F(ImageFileTest, WhatLooksLikeDicomIsRefused) {
+  const std::string bytes = std::string(128, '\x42') + "DICMB`\x82";
+  ExpectRefused(folder_.Write("a.png", bytes), {"a.png", "no image"});
+}
+
 TEST_F(ImageFileTest, DepthMustHaveSixteenBitsAndOneChannel) {
   for (const auto& [type, name] :
        {std::pair(CV_8UC1, "CV_8UC1"), std::pair(CV_8UC3, "CV_8UC3"),
