@@ -185,7 +185,12 @@ DepthErrors ReadDepthErrors(const YamlSection& file) {
 
 CameraSetup ReadCameraFile(const std::string& path,
                            const std::string& depth_camera) {
-  const YamlSection file = YamlSection::FromFile(path);
+  return ReadCameraText(ReadTextFile(path), path, depth_camera);
+}
+
+CameraSetup ReadCameraText(const std::string& text, const std::string& path,
+                           const std::string& depth_camera) {
+  const YamlSection file = YamlSection::FromText(text, path);
   CameraSetup result;
   result.camera = ReadAnyLayout(path, file);
   result.depth_scale = ReadDepthScale(file);

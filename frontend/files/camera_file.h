@@ -30,6 +30,10 @@ namespace rgbd_pose {
 CameraSetup ReadCameraFile(const std::string& path,
                            const std::string& depth_camera = "");
 
+// The same of the text of a file; `path` is for messages.
+CameraSetup ReadCameraText(const std::string& text, const std::string& path,
+                           const std::string& depth_camera = "");
+
 // A camera by the name of its preset (see CameraPreset) or by its file. A file
 // named like a preset is reached as ./name. Throws InputError, listing the
 // presets, if it is neither.

@@ -3,12 +3,14 @@
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Geometry>
+#include <cmath>
 #include <cstdio>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/files/yaml_edit.h"
@@ -94,6 +96,8 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
       file.reset(With(file, key, YAML::Node(value)));
     }
   } else if (file["camera_matrix"].IsDefined()) {
+    file.reset(With(file, "image_width", YAML::Node(c.width)));
+    file.reset(With(file, "image_height", YAML::Node(c.height)));
     file.reset(
         With(file, "camera_matrix",
              With(file["camera_matrix"], "data",
@@ -111,6 +115,9 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
         With(file["cam0"], "intrinsics", ToNode({c.fx, c.fy, c.cx, c.cy}));
     cam0.reset(
         With(cam0, "distortion_coeffs", ToNode({c.k1, c.k2, c.p1, c.p2})));
+    cam0.reset(With(
+        cam0, "resolution",
+        ToNode({static_cast<double>(c.width), static_cast<double>(c.height)})));
     file.reset(With(file, "cam0", cam0));
   }
   const char* const scale = file["RGBD.DepthMapFactor"].IsDefined()
@@ -129,29 +136,70 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
   return result;
 }
 
+// Whether a text reads as that camera.
+bool Says(const std::string& text, const RgbdCamera& camera) {
+  RgbdCamera read;
+  try {
+    read = RegisteredCamera(ReadCameraText(text, "", "cam0"));
+  } catch (const InputError&) {
+    return false;
+  }
+  const auto is_same = [](double a, double b) {
+    return std::abs(a - b) <= 1e-8 * (1.0 + std::abs(b));
+  };
+  for (const CameraParameter& parameter : kCameraParameters) {
+    if (!is_same(read.camera.*parameter.value,
+                 camera.camera.*parameter.value)) {
+      return false;
+    }
+  }
+  const DepthErrors &a = read.depth_errors, &b = camera.depth_errors;
+  const Rigid3d between = a.depth_from_color.Inverse() * b.depth_from_color;
+  return read.camera.width == camera.camera.width &&
+         read.camera.height == camera.camera.height &&
+         is_same(read.depth_scale, camera.depth_scale) &&
+         is_same(a.inverse_depth_offset, b.inverse_depth_offset) &&
+         is_same(a.depth_time_offset, b.depth_time_offset) &&
+         is_same(between.Angle(), 0.0) &&
+         is_same(between.translation.norm(), 0.0);
+}
+
+// The file `like` with the values of a camera; nothing if that cannot be said
+// in this file.
+std::optional<std::string> Edited(const RgbdCamera& camera,
+                                  const std::string& like) {
+  ResolveCamera(like);  // complains of what is wrong with it
+  const std::string text = ReadTextFile(like);
+  const YamlSection file = YamlSection::FromText(text, like);
+  const std::string prefix =
+      file.HasKeyStartingWith("Camera1.") ? "Camera1." : "Camera.";
+  const char* const scale = file.Has("RGBD.DepthMapFactor")
+                                ? "RGBD.DepthMapFactor"
+                                : "DepthMapFactor";
+  YamlLines values;
+  if (file.Has(prefix + "fx")) {
+    values = OrbSlamLines(camera, prefix);
+    values.emplace_back(scale, Digits(camera.depth_scale));
+    const std::string lines =
+        EditLines(text, file.node(), values, DepthKeys(), DepthLines(camera));
+    if (Says(lines, camera)) return lines;
+  }
+  const std::string anew = EditNodes(camera, text, values, file.node());
+  return Says(anew, camera) ? std::optional(anew) : std::nullopt;
+}
+
 }  // namespace
 
 std::string FormatCameraFile(const RgbdCamera& camera,
                              const std::string& like) {
-  const bool is_preset = like.empty() || CameraPreset(like).has_value();
-  std::string text = "%YAML:1.0\n";
-  std::string prefix = "Camera.";
-  std::string scale = "DepthMapFactor";
-  YAML::Node file(YAML::NodeType::Map);
-  if (!is_preset) {
-    ResolveCamera(like);  // complains of what is wrong with it
-    text = ReadTextFile(like);
-    const YamlSection section = YamlSection::FromText(like, text);
-    file.reset(section.node());
-    if (section.HasKeyStartingWith("Camera1.")) prefix = "Camera1.";
-    if (section.Has("RGBD.DepthMapFactor")) scale = "RGBD.DepthMapFactor";
-    if (!section.Has(prefix + "fx")) return EditNodes(camera, text, {}, file);
+  if (!like.empty() && !CameraPreset(like).has_value()) {
+    const std::optional<std::string> edited = Edited(camera, like);
+    if (edited.has_value()) return *edited;
   }
-  YamlLines values = OrbSlamLines(camera, prefix);
-  values.emplace_back(scale, Digits(camera.depth_scale));
-  const std::optional<std::string> edited =
-      EditLines(text, file, values, DepthKeys(), DepthLines(camera));
-  return edited.has_value() ? *edited : EditNodes(camera, text, values, file);
+  YamlLines values = OrbSlamLines(camera, "Camera.");
+  values.emplace_back("DepthMapFactor", Digits(camera.depth_scale));
+  return EditLines("%YAML:1.0\n", YAML::Node(YAML::NodeType::Map), values, {},
+                   DepthLines(camera));
 }
 
 }  // namespace rgbd_pose

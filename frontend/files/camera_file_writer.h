@@ -8,9 +8,10 @@ namespace rgbd_pose {
 
 // The text of a camera file (ReadCameraFile) for a camera, in the layout of
 // another file, whose other keys stay: of a file in ORB-SLAM's layout its lines
-// and comments too. `like`: that file; a preset's name or nothing gives a
-// file in ORB-SLAM's layout. What is wrong with depth (RgbdCamera) has keys of
-// its own. Throws InputError as ReadCameraFile does.
+// and comments too. `like`: that file; a preset's name, nothing, or a file that
+// cannot hold the camera gives one in ORB-SLAM's layout. What is wrong with
+// depth (RgbdCamera) has keys of its own. It reads as the camera that was
+// given. Throws InputError as ReadCameraFile does.
 std::string FormatCameraFile(const RgbdCamera& camera, const std::string& like);
 
 }  // namespace rgbd_pose

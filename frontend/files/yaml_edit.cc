@@ -1,10 +1,8 @@
 #include "frontend/files/yaml_edit.h"
 
 #include <algorithm>
+#include <optional>
 #include <sstream>
-
-#include "core/util/input_error.h"
-#include "frontend/files/yaml_section.h"
 
 namespace rgbd_pose {
 namespace {
@@ -20,37 +18,12 @@ std::optional<size_t> LineOf(const YAML::Node& file, const std::string& key,
   return std::nullopt;
 }
 
-// Many keys may share a line, a value may have several, or a name by which
-// others refer to it: whether a file reads as it was meant to.
-bool Says(const std::string& text, const YamlLines& values,
-          const std::vector<std::string>& left_out, const YamlLines& more) {
-  try {
-    const YamlSection file = YamlSection::FromText("", text);
-    const auto says = [&](const std::string& key, const std::string& value) {
-      return file.Has(key) &&
-             YAML::Dump(file.node()[key]) == YAML::Dump(YAML::Load(value));
-    };
-    for (const auto& [key, value] : values) {
-      if (!says(key, value) && (file.Has(key) || value != "0")) return false;
-    }
-    size_t kept = 0;
-    for (const std::string& key : left_out) kept += file.Has(key);
-    for (const auto& [key, value] : more) {
-      if (!says(key, value)) return false;
-    }
-    return kept <= more.size();
-  } catch (const InputError&) {
-    return false;
-  }
-}
-
 }  // namespace
 
-std::optional<std::string> EditLines(const std::string& text,
-                                     const YAML::Node& file,
-                                     const YamlLines& values,
-                                     const std::vector<std::string>& left_out,
-                                     const YamlLines& more) {
+std::string EditLines(const std::string& text, const YAML::Node& file,
+                      const YamlLines& values,
+                      const std::vector<std::string>& left_out,
+                      const YamlLines& more) {
   std::stringstream in(text);
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) {
@@ -82,7 +55,6 @@ std::optional<std::string> EditLines(const std::string& text,
     if (!is_left_out[i]) result += lines[i] + "\n";
     if (i == last) result += added;
   }
-  if (!Says(result, values, left_out, more)) return std::nullopt;
   return result;
 }
 

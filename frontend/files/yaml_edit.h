@@ -2,7 +2,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -16,14 +15,13 @@ using YamlLines =
 
 // The text of a file with other values, its other lines as they are. `file` is
 // what it was parsed to. Keys of `values` that it lacks are added where they
-// are not 0; keys of `left_out` go, but for those of `more`, which are as said
-// there. Nothing if that cannot be done line by line: many keys may share a
-// line, a value may have several.
-std::optional<std::string> EditLines(const std::string& text,
-                                     const YAML::Node& file,
-                                     const YamlLines& values,
-                                     const std::vector<std::string>& left_out,
-                                     const YamlLines& more);
+// are not 0, lines of `left_out` go, those of `more` come. Right only where
+// each of these keys has a line of its own: many may share one, a value may
+// have several, or a name by which others refer to it.
+std::string EditLines(const std::string& text, const YAML::Node& file,
+                      const YamlLines& values,
+                      const std::vector<std::string>& left_out,
+                      const YamlLines& more);
 
 // A map with another value of one key, or without some. What it had is left as
 // it is, as other keys may refer to it.

@@ -24,11 +24,11 @@ void Append(const std::string& word, const char* separator, std::string* list) {
 }  // namespace
 
 YamlSection YamlSection::FromFile(const std::string& path) {
-  return FromText(path, ReadTextFile(path));
+  return FromText(ReadTextFile(path), path);
 }
 
-YamlSection YamlSection::FromText(const std::string& path,
-                                  const std::string& text) {
+YamlSection YamlSection::FromText(const std::string& text,
+                                  const std::string& path) {
   try {
     const YAML::Node node = YAML::Load(WithoutDirective(text));
     return {path, "", node.IsMap() ? node : YAML::Node(YAML::NodeType::Map)};

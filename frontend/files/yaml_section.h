@@ -14,7 +14,7 @@ class YamlSection {
  public:
   // The top level of a file; empty if the file holds something else than keys.
   static YamlSection FromFile(const std::string& path);
-  static YamlSection FromText(const std::string& path, const std::string& text);
+  static YamlSection FromText(const std::string& text, const std::string& path);
 
   // As it was parsed.
   const YAML::Node& node() const { return node_; }

@@ -164,6 +164,27 @@ TEST(CameraFileWriterTest, CommentsStay) {
   EXPECT_NE(text.find("said\nCamera.fx: 1\n"), std::string::npos);
 }
 
+TEST(CameraFileWriterTest, WhatALayoutDoesNotHoldGoesIntoAnother) {
+  const TempFolder folder;
+  const std::string kalibr = folder.Write("kalibr.yaml", kKalibr);
+  RgbdCamera camera = Changed(ResolveCamera(kalibr));
+  camera.camera.k3 = 0.03;
+  ExpectEqual(
+      ResolveCamera(folder.Write("new.yaml", FormatCameraFile(camera, kalibr))),
+      camera);
+}
+
+// yaml-cpp cannot read what it writes of a list that is a key.
+TEST(CameraFileWriterTest, WhatCannotBeWrittenAgainIsLeftOut) {
+  const TempFolder folder;
+  const std::string odd =
+      folder.Write("odd.yaml", "? []\n: a].}?\n: 30:\n" + std::string(kKalibr));
+  const RgbdCamera camera = Changed(ResolveCamera(odd));
+  ExpectEqual(
+      ResolveCamera(folder.Write("new.yaml", FormatCameraFile(camera, odd))),
+      camera);
+}
+
 TEST(CameraFileWriterTest, PresetsBecomeFiles) {
   const TempFolder folder;
   const RgbdCamera camera = Changed(*CameraPreset("tum_fr1"));
