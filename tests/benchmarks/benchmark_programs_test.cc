@@ -87,7 +87,8 @@ TEST_F(BenchmarkProgramsTest, MakeThePageAndTheSpeedups) {
   EXPECT_THAT(text, Not(HasSubstr("@"))) << "a mark was left";
   for (const char* method :
        {"rgbd_pose", "rgbd_pose_direct", "rgbd_pose_hybrid"}) {
-    const std::string row = std::string("| `room_xyz` | `") + method + "` |";
+    const std::string row =
+        std::string("| `room_xyz` | 3 | `") + method + "` |";
     ASSERT_THAT(text, HasSubstr(row));
     EXPECT_EQ(text.find(row), text.rfind(row)) << "twice: " << row;
   }
