@@ -86,15 +86,17 @@ YAML::Node ToNode(const std::vector<double>& values) {
   return node;
 }
 
-// The file written anew with other values; its comments are lost. `values` are
-// those of ORB-SLAM's layout, none in the others.
+// The file written anew with the values of some keys, and in ROS' or Kalibr's
+// layout with those of the camera below theirs; its comments are lost.
 std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
-                      const YamlLines& values, YAML::Node file) {
+                      const YamlLines& values, bool is_of_orb_slam,
+                      YAML::Node file) {
   const Camera& c = rgbd.camera;
-  if (!values.empty()) {
-    for (const auto& [key, value] : values) {
-      file.reset(With(file, key, YAML::Node(value)));
-    }
+  for (const auto& [key, value] : values) {
+    file.reset(With(file, key, YAML::Node(value)));
+  }
+  if (is_of_orb_slam) {
+    // These keys have none below.
   } else if (file["camera_matrix"].IsDefined()) {
     file.reset(With(file, "image_width", YAML::Node(c.width)));
     file.reset(With(file, "image_height", YAML::Node(c.height)));
@@ -120,10 +122,6 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
         ToNode({static_cast<double>(c.width), static_cast<double>(c.height)})));
     file.reset(With(file, "cam0", cam0));
   }
-  const char* const scale = file["RGBD.DepthMapFactor"].IsDefined()
-                                ? "RGBD.DepthMapFactor"
-                                : "DepthMapFactor";
-  file.reset(With(file, scale, YAML::Node(Digits(rgbd.depth_scale))));
   file.reset(Without(file, DepthKeys()));
   file.SetStyle(YAML::EmitterStyle::Block);
   // OpenCV's first line, which is no YAML.
@@ -173,18 +171,22 @@ std::optional<std::string> Edited(const RgbdCamera& camera,
   const YamlSection file = YamlSection::FromText(text, like);
   const std::string prefix =
       file.HasKeyStartingWith("Camera1.") ? "Camera1." : "Camera.";
-  const char* const scale = file.Has("RGBD.DepthMapFactor")
-                                ? "RGBD.DepthMapFactor"
-                                : "DepthMapFactor";
+  // The reader's order, where both are there.
+  const char* const scale =
+      file.Has("RGBD.DepthMapFactor") && !file.Has("DepthMapFactor")
+          ? "RGBD.DepthMapFactor"
+          : "DepthMapFactor";
+  const bool is_of_orb_slam = file.Has(prefix + "fx");
   YamlLines values;
-  if (file.Has(prefix + "fx")) {
-    values = OrbSlamLines(camera, prefix);
-    values.emplace_back(scale, Digits(camera.depth_scale));
+  if (is_of_orb_slam) values = OrbSlamLines(camera, prefix);
+  values.emplace_back(scale, Digits(camera.depth_scale));
+  if (is_of_orb_slam) {
     const std::string lines =
         EditLines(text, file.node(), values, DepthKeys(), DepthLines(camera));
     if (Says(lines, camera)) return lines;
   }
-  const std::string anew = EditNodes(camera, text, values, file.node());
+  const std::string anew =
+      EditNodes(camera, text, values, is_of_orb_slam, file.node());
   return Says(anew, camera) ? std::optional(anew) : std::nullopt;
 }
 

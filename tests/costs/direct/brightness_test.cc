@@ -8,8 +8,6 @@
 #include <functional>
 #include <vector>
 
-#include "core/util/vector_lanes.h"
-
 namespace rgbd_pose {
 namespace {
 

@@ -15,7 +15,8 @@ namespace {
 
 constexpr double kWall = 1.5;  // m
 
-// A white wall right ahead, in both images and depths nothing but noise.
+// A white wall right ahead, in both images and depths nothing but noise; so
+// much of it in gray levels that rounding does not matter.
 DirectFrame NoisyWall(uint32_t seed) {
   const Camera camera = SmallImages().camera.camera;
   std::mt19937 random(seed);
@@ -35,7 +36,7 @@ DirectFrame NoisyWall(uint32_t seed) {
   return DirectFrame(frame, camera);
 }
 
-// With a change of brightness noise would be told by noise.
+// Fits no change of brightness: it would fit noise to noise.
 struct Unlit : Photometric {
   static constexpr bool kSeesBrightness = false;
 };

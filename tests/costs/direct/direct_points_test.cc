@@ -5,13 +5,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <optional>
 #include <random>
 #include <vector>
-
-#include "core/util/vector_lanes.h"
 
 namespace rgbd_pose {
 namespace {

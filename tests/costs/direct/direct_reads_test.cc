@@ -27,23 +27,23 @@ bool IsRead(double u, double v) {
 
 // So far from the first and from the last pixels.
 template <typename Residual>
-void ExpectBorders(double first, double last) {
+void ExpectBorders(double border) {
   constexpr double kLittle = 0.01;
   for (const bool is_inside : {true, false}) {
     const double inwards = is_inside ? kLittle : -kLittle;
-    EXPECT_EQ(IsRead<Residual>(first + inwards, 15.0), is_inside);
-    EXPECT_EQ(IsRead<Residual>(20.0, first + inwards), is_inside);
-    EXPECT_EQ(IsRead<Residual>(39.0 - last - inwards, 15.0), is_inside);
-    EXPECT_EQ(IsRead<Residual>(20.0, 29.0 - last - inwards), is_inside);
+    EXPECT_EQ(IsRead<Residual>(border + inwards, 15.0), is_inside);
+    EXPECT_EQ(IsRead<Residual>(20.0, border + inwards), is_inside);
+    EXPECT_EQ(IsRead<Residual>(39.0 - border - inwards, 15.0), is_inside);
+    EXPECT_EQ(IsRead<Residual>(20.0, 29.0 - border - inwards), is_inside);
   }
 }
 
 TEST(DirectReadsTest, EndAtTheBorders) {
   // Between two pixels.
-  ExpectBorders<Photometric>(1.0, 1.0);
+  ExpectBorders<Photometric>(1.0);
   // Of nine depths.
-  ExpectBorders<ProjectivePlane>(kSurfaceStep + 1.0, kSurfaceStep + 1.0);
-  ExpectBorders<InverseDepth>(kSurfaceStep + 1.0, kSurfaceStep + 1.0);
+  ExpectBorders<ProjectivePlane>(kSurfaceStep + 1.0);
+  ExpectBorders<InverseDepth>(kSurfaceStep + 1.0);
 }
 
 }  // namespace

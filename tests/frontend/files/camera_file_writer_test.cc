@@ -156,6 +156,16 @@ TEST(CameraFileWriterTest, OtherLinesAndKeysStay) {
             std::string::npos);
 }
 
+TEST(CameraFileWriterTest, OfTwoDepthScalesTheOneThatIsReadChanges) {
+  const TempFolder folder;
+  const std::string both = folder.Write(
+      "both.yaml", std::string(kOrbSlam3) + "DepthMapFactor: 900.0\n");
+  const RgbdCamera camera = Changed(ResolveCamera(both));
+  const std::string text = FormatCameraFile(camera, both);
+  ExpectEqual(ResolveCamera(folder.Write("new.yaml", text)), camera);
+  EXPECT_NE(text.find("RGBD.DepthMapFactor: 1000.0\n"), std::string::npos);
+}
+
 TEST(CameraFileWriterTest, CommentsStay) {
   const TempFolder folder;
   const std::string file = folder.Write("quoted.yaml", kQuoted);
