@@ -194,14 +194,20 @@ std::optional<std::string> Edited(const RgbdCamera& camera,
 
 std::string FormatCameraFile(const RgbdCamera& camera,
                              const std::string& like) {
+  std::string why;
   if (!like.empty() && !CameraPreset(like).has_value()) {
     const std::optional<std::string> edited = Edited(camera, like);
     if (edited.has_value()) return *edited;
+    why =
+        "# In another layout than the file before, which could not hold this "
+        "camera:\n# what else was in there is not here.\n";
   }
   YamlLines values = OrbSlamLines(camera, "Camera.");
   values.emplace_back("DepthMapFactor", Digits(camera.depth_scale));
-  return EditLines("%YAML:1.0\n", YAML::Node(YAML::NodeType::Map), values, {},
-                   DepthLines(camera));
+  const std::string first = "%YAML:1.0\n";
+  std::string text = EditLines(first, YAML::Node(YAML::NodeType::Map), values,
+                               {}, DepthLines(camera));
+  return text.insert(first.size(), why);
 }
 
 }  // namespace rgbd_pose

@@ -11,7 +11,8 @@ namespace rgbd_pose {
 // and comments too. `like`: that file; a preset's name, nothing, or a file that
 // cannot hold the camera gives one in ORB-SLAM's layout. What is wrong with
 // depth (RgbdCamera) has keys of its own. It reads as the camera that was
-// given. Throws InputError as ReadCameraFile does.
+// given; where other keys of `like` were lost a comment says so. Throws
+// InputError as ReadCameraFile does.
 std::string FormatCameraFile(const RgbdCamera& camera, const std::string& like);
 
 }  // namespace rgbd_pose

@@ -178,10 +178,11 @@ TEST(CameraFileWriterTest, WhatALayoutDoesNotHoldGoesIntoAnother) {
   const TempFolder folder;
   const std::string kalibr = folder.Write("kalibr.yaml", kKalibr);
   RgbdCamera camera = Changed(ResolveCamera(kalibr));
+  EXPECT_EQ(FormatCameraFile(camera, kalibr).find("#"), std::string::npos);
   camera.camera.k3 = 0.03;
-  ExpectEqual(
-      ResolveCamera(folder.Write("new.yaml", FormatCameraFile(camera, kalibr))),
-      camera);
+  const std::string text = FormatCameraFile(camera, kalibr);
+  ExpectEqual(ResolveCamera(folder.Write("new.yaml", text)), camera);
+  EXPECT_NE(text.find("# In another layout"), std::string::npos);
 }
 
 // yaml-cpp cannot read what it writes of a list that is a key.
