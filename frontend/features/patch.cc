@@ -1,5 +1,6 @@
 #include "frontend/features/patch.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "frontend/image/sample_image.h"
@@ -23,15 +24,18 @@ void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
                const Eigen::Matrix2f& image_from_patch, Patch* patch) {
   constexpr float kMinEnergy = kMinGrey * kMinGrey * Patch::kPixels;
   // Just inside, as SampleImage wants it.
-  const Eigen::Array2f limit(static_cast<float>(image.cols) - 1.001F,
-                             static_cast<float>(image.rows) - 1.001F);
+  const float max_u = static_cast<float>(image.cols) - 1.001F;
+  const float max_v = static_cast<float>(image.rows) - 1.001F;
+  const Eigen::Matrix2f& turn = image_from_patch;
   Seen seen;
   for (int i = 0; i < kSourceSide; ++i) {
+    const auto y = static_cast<float>(i - kSourceSide / 2);
     for (int j = 0; j < kSourceSide; ++j) {
-      const Eigen::Vector2f offset(j - kSourceSide / 2, i - kSourceSide / 2);
-      const Eigen::Array2f at =
-          (centre + image_from_patch * offset).array().max(0.0F).min(limit);
-      seen(i, j) = SampleImage(image, at.x(), at.y());
+      const auto x = static_cast<float>(j - kSourceSide / 2);
+      const float u = centre.x() + (turn(0, 0) * x + turn(0, 1) * y);
+      const float v = centre.y() + (turn(1, 0) * x + turn(1, 1) * y);
+      seen(i, j) = SampleImage(image, std::clamp(u, 0.0F, max_u),
+                               std::clamp(v, 0.0F, max_v));
     }
   }
   constexpr int n = kPatchSize;

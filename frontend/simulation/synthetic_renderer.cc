@@ -11,7 +11,6 @@
 namespace rgbd_pose {
 namespace {
 
-using Eigen::Matrix2f;
 using Eigen::Matrix3f;
 using Eigen::Vector2f;
 using Eigen::Vector3f;
@@ -22,6 +21,25 @@ constexpr int kTileSize = 32;
 constexpr float kOverlap = 1e-4f;
 // Blur of a lens and of the mosaic of colour filters (sigma, px).
 constexpr double kLensBlur = 0.6;
+
+// Where the ray (x, y, 1) meets a face, z away, and what of it a pixel covers.
+// No expressions of Eigen: clang's address sanitizer keeps it from inlining
+// them, and most of the time of all tests went there.
+SurfacePoint Meet(const Matrix3f& face_from_ray, float x, float y, float z,
+                  const Vector2f& pixel) {
+  const float* const h = face_from_ray.data();  // column after column
+  SurfacePoint at;
+  at.u = (h[0] * x + (h[3] * y + h[6])) * z;
+  at.v = (h[1] * x + (h[4] * y + h[7])) * z;
+  // The derivative of a quotient, times the size of the pixel.
+  const float u_by_x = (h[0] - at.u * h[2]) * z * pixel.x();
+  const float u_by_y = (h[3] - at.u * h[5]) * z * pixel.y();
+  const float v_by_x = (h[1] - at.v * h[2]) * z * pixel.x();
+  const float v_by_y = (h[4] - at.v * h[5]) * z * pixel.y();
+  at.footprint_u = std::sqrt(u_by_x * u_by_x + u_by_y * u_by_y);
+  at.footprint_v = std::sqrt(v_by_x * v_by_x + v_by_y * v_by_y);
+  return at;
+}
 
 // How much of the lamp's light, and of that of the room, a surface sends back.
 float Brightness(const Vector3f& to_lamp) {
@@ -131,20 +149,14 @@ void Renderer::Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
       if (nearest.inverse_depth[place] <= 0.0f) continue;
       const float z = 1.0f / nearest.inverse_depth[place];
       const VisibleFace& visible = faces[nearest.index[place]];
-      const Matrix3f& h = visible.face_from_ray;
       const cv::Point pixel = tile.pixels.tl() + cv::Point(column, row);
-      const Vector3f ray(rays_x_.at<float>(pixel), rays_y_.at<float>(pixel), 1);
-      const Vector2f on_face = h.topRows<2>() * ray * z;
-      // d on_face / d ray, the derivative of a quotient.
-      const Matrix2f slope =
-          (h.topLeftCorner<2, 2>() - on_face * h.block<1, 2>(2, 0)) * z;
-      const Vector2f footprint = (slope * pixel_.asDiagonal()).rowwise().norm();
-      const Vector3f point(on_face.x(), on_face.y(), 0.0f);
+      const SurfacePoint at =
+          Meet(visible.face_from_ray, rays_x_.at<float>(pixel),
+               rays_y_.at<float>(pixel), z, pixel_);
+      const Vector3f point(at.u, at.v, 0.0f);
       const Material& material = visible.face->material;
-      cv::Vec3f color =
-          Paint(material, visible.face->seed,
-                {on_face.x(), on_face.y(), footprint.x(), footprint.y()}) *
-          (255.0f * Brightness(visible.lamp - point));
+      cv::Vec3f color = Paint(material, visible.face->seed, at) *
+                        (255.0f * Brightness(visible.lamp - point));
       if (material.gloss > 0.0f) {
         const float light =
             Highlight(visible.lamp - point, visible.camera - point);
