@@ -10,7 +10,8 @@ int main() {
   const rgbd_pose::Rigid3d truth({0.999, 0.0, 0.04, 0.0}, {0.1, 0.0, -0.05});
   rgbd_pose::Correspondences matches(camera);
   for (int i = 0; i < 200; ++i) {
-    const Eigen::Vector3d prev(0.1 * (i % 20), 0.1 * (i / 20), 2.0 + i % 7);
+    const int row = i / 20;
+    const Eigen::Vector3d prev(0.1 * (i % 20), 0.1 * row, 2.0 + i % 7);
     const Eigen::Vector3d cur = truth * prev * (i % 5 == 0 ? 1.3 : 1.0);
     const Eigen::Vector2d a = camera.Project(prev), b = camera.Project(cur);
     // Pixel, depth (m) and their standard deviations (px, m) in both frames.
