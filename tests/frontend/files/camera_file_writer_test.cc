@@ -178,7 +178,7 @@ TEST(CameraFileWriterTest, WhatALayoutDoesNotHoldGoesIntoAnother) {
   const TempFolder folder;
   const std::string kalibr = folder.Write("kalibr.yaml", kKalibr);
   RgbdCamera camera = Changed(ResolveCamera(kalibr));
-  EXPECT_EQ(FormatCameraFile(camera, kalibr).find("#"), std::string::npos);
+  EXPECT_EQ(FormatCameraFile(camera, kalibr).find('#'), std::string::npos);
   camera.camera.k3 = 0.03;
   const std::string text = FormatCameraFile(camera, kalibr);
   ExpectEqual(ResolveCamera(folder.Write("new.yaml", text)), camera);
