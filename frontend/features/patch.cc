@@ -26,15 +26,15 @@ void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
   // Just inside, as SampleImage wants it.
   const float max_u = static_cast<float>(image.cols) - 1.001F;
   const float max_v = static_cast<float>(image.rows) - 1.001F;
-  const Eigen::Matrix2f& turn = image_from_patch;
+  const Eigen::Matrix2f& warp = image_from_patch;
   constexpr int kHalf = kSourceSide / 2;
   Seen seen;
   for (int i = 0; i < kSourceSide; ++i) {
     const auto y = static_cast<float>(i - kHalf);
     for (int j = 0; j < kSourceSide; ++j) {
       const auto x = static_cast<float>(j - kHalf);
-      const float u = centre.x() + (turn(0, 0) * x + turn(0, 1) * y);
-      const float v = centre.y() + (turn(1, 0) * x + turn(1, 1) * y);
+      const float u = centre.x() + (warp(0, 0) * x + warp(0, 1) * y);
+      const float v = centre.y() + (warp(1, 0) * x + warp(1, 1) * y);
       seen(i, j) = SampleImage(image, std::clamp(u, 0.0F, max_u),
                                std::clamp(v, 0.0F, max_v));
     }

@@ -22,9 +22,9 @@ constexpr float kOverlap = 1e-4f;
 // Blur of a lens and of the mosaic of colour filters (sigma, px).
 constexpr double kLensBlur = 0.6;
 
-// Where the ray (x, y, 1) meets a face, z away, and what of it a pixel covers.
-// No expressions of Eigen: clang's address sanitizer keeps it from inlining
-// them, and most of the time of all tests went there.
+// Where the ray (x, y, 1) meets a face, at depth z (m), and what of it a pixel
+// covers. No expressions of Eigen: clang does not inline them under its address
+// sanitizer, where they took half of the time of all tests.
 SurfacePoint Meet(const Matrix3f& face_from_ray, float x, float y, float z,
                   const Vector2f& pixel) {
   const float* const h = face_from_ray.data();  // column after column
