@@ -29,8 +29,8 @@ RgbdCamera Changed(const RgbdCamera& first, const CalibrationVector& theta) {
   changed.depth_errors.inverse_depth_offset =
       first.depth_errors.inverse_depth_offset / theta[kDepthFactor] +
       theta[kInverseDepth];
-  changed.depth_errors.depth_time_offset =
-      first.depth_errors.depth_time_offset + theta[kDepthTime];
+  changed.depth_shutter.offset =
+      first.depth_shutter.offset + theta[kDepthTime];
   const Eigen::Vector3d turn = theta.segment<3>(kRotationX);
   const double angle = turn.norm();
   const Eigen::Vector3d axis =
@@ -50,7 +50,7 @@ CalibrationVector ThetaBetween(const RgbdCamera& first,
   const DepthErrors& after = changed.depth_errors;
   theta[kInverseDepth] = after.inverse_depth_offset -
                          before.inverse_depth_offset / theta[kDepthFactor];
-  theta[kDepthTime] = after.depth_time_offset - before.depth_time_offset;
+  theta[kDepthTime] = changed.depth_shutter.offset - first.depth_shutter.offset;
   const Rigid3d moved =
       before.depth_from_color.Inverse() * after.depth_from_color;
   const Eigen::AngleAxisd turn(moved.rotation);

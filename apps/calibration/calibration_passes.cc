@@ -92,7 +92,7 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
     CalibrationSettings asked = settings;
     RgbdCamera known = all.result.camera;
     if (pass > 1) {
-      double* const delay = &known.depth_errors.depth_time_offset;
+      double* const delay = &known.depth_shutter.offset;
       asked.known_delay = *delay;
       *delay = 0.0;
     }

@@ -96,6 +96,8 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
     options.camera->camera = camera->camera;
     options.camera->depth_scale = camera->depth_scale;
     options.camera->depth_errors = camera->depth_errors;
+    options.camera->color_shutter = camera->color_shutter;
+    options.camera->depth_shutter = camera->depth_shutter;
     options.depth_scale = 0.0;
   }
   return options;

@@ -55,17 +55,34 @@ struct Preset {
 // TUM RGB-D benchmark, "intrinsic camera calibration" table. The per-camera
 // depth factors are already applied in the released images.
 constexpr double kTumDepthScale = 5000.0;
+
+// Both sensors of a Kinect and of an Xtion are read row by row, in some 28 ms
+// (Kerl et al., ICCV 2015; docs/time.md says how well recordings agree). How
+// late depth is depends on the recording's driver: measured for freiburg1 and
+// freiburg3, not known for freiburg2.
+constexpr Shutter kTumColor = {-0.0075, 0.028};
+constexpr double kTumDepthReadout = 0.027;
 const std::array<Preset, 4> kPresets = {{
     {"tum_fr1",
      {{640, 480, 517.306408, 516.469215, 318.643040, 255.313989, 0.262383,
        -0.953104, -0.005358, 0.002628, 1.163314},
-      kTumDepthScale}},
+      kTumDepthScale,
+      {},
+      kTumColor,
+      {kTumColor.offset - 0.0175, kTumDepthReadout}}},
     {"tum_fr2",
      {{640, 480, 520.908620, 521.007327, 325.141442, 249.701764, 0.231222,
        -0.784899, -0.003257, -0.000105, 0.917205},
-      kTumDepthScale}},
+      kTumDepthScale,
+      {},
+      kTumColor,
+      {kTumColor.offset, kTumDepthReadout}}},
     {"tum_fr3",
-     {{640, 480, 535.4, 539.2, 320.1, 247.6, 0, 0, 0, 0, 0}, kTumDepthScale}},
+     {{640, 480, 535.4, 539.2, 320.1, 247.6, 0, 0, 0, 0, 0},
+      kTumDepthScale,
+      {},
+      kTumColor,
+      {kTumColor.offset - 0.0025, kTumDepthReadout}}},
     {"ros_default",
      {{640, 480, 525.0, 525.0, 319.5, 239.5, 0, 0, 0, 0, 0}, kTumDepthScale}},
 }};

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/geometry/rigid3.h"
+#include "core/geometry/shutter.h"
 
 namespace rgbd_pose {
 
@@ -95,26 +96,25 @@ struct DepthErrors {
   // 1 / z = 1 / measured z + this, 1/m.
   double inverse_depth_offset = 0.0;
 
-  // Depth is so much later than its stamp says, s.
-  double depth_time_offset = 0.0;
-
   // Where the depth image, as it was registered to colour, has a point X of the
   // axes of colour: this * X.
   Rigid3d depth_from_color = {};
 
   // Whether there are none.
   bool None() const {
-    return inverse_depth_offset == 0.0 && depth_time_offset == 0.0 &&
-           depth_from_color.Angle() == 0.0 &&
+    return inverse_depth_offset == 0.0 && depth_from_color.Angle() == 0.0 &&
            depth_from_color.translation.isZero(0.0);
   }
 };
 
-// A camera together with how its depth images count.
+// A camera together with how its depth images count, and when both images are
+// taken.
 struct RgbdCamera {
   Camera camera;                  // of the colour image
   double depth_scale = 5000.0;    // raw units of the depth image per metre
   DepthErrors depth_errors = {};  // what sources undo as they read
+  Shutter color_shutter = {};     // from the stamp of colour
+  Shutter depth_shutter = {};     // from the stamp of depth
 };
 
 // A camera known by name: tum_fr1, tum_fr2, tum_fr3, ros_default. Figures from

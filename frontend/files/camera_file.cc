@@ -160,15 +160,22 @@ void CheckSize(const YamlSection& file, const std::string& key, double size,
   file.Fail(key, "must be at most " + limit.str() + " " + unit);
 }
 
+// When the rows of colour or of depth are exposed.
+Shutter ReadShutter(const YamlSection& file, const std::string& image) {
+  const auto seconds = [&](const std::string& key, double most) {
+    const double value = file.NumberOr(image + key, 0.0);
+    CheckSize(file, image + key, std::abs(value), most, "s");
+    return value;
+  };
+  return {seconds("_time_offset", 0.5), seconds("_readout", 0.1)};
+}
+
 // What rgbd_calibrate found wrong with depth.
 DepthErrors ReadDepthErrors(const YamlSection& file) {
   DepthErrors errors;
   errors.inverse_depth_offset = file.NumberOr("inverse_depth_offset", 0.0);
   CheckSize(file, "inverse_depth_offset", std::abs(errors.inverse_depth_offset),
             0.5, "1/m");
-  errors.depth_time_offset = file.NumberOr("depth_time_offset", 0.0);
-  CheckSize(file, "depth_time_offset", std::abs(errors.depth_time_offset), 0.5,
-            "s");
   const Eigen::Vector3d turn = VectorOr0(file, "depth_rotation");
   const double angle = turn.norm();
   CheckSize(file, "depth_rotation", angle, 0.5, "rad");
@@ -195,6 +202,8 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   result.camera = ReadAnyLayout(path, file);
   result.depth_scale = ReadDepthScale(file);
   result.depth_errors = ReadDepthErrors(file);
+  result.color_shutter = ReadShutter(file, "color");
+  result.depth_shutter = ReadShutter(file, "depth");
   const std::string problem = result.camera.Check();
   if (!problem.empty()) throw InputError(path + ": " + problem);
   if (depth_camera.empty() && file.Has("cam0") && file.Has("cam1")) {

@@ -39,16 +39,16 @@ std::vector<double> ToList(const Eigen::Vector3d& v) {
 }
 
 // The keys that all layouts share.
-YamlLines DepthLines(const RgbdCamera& camera) {
+YamlLines RgbdLines(const RgbdCamera& camera) {
   YamlLines lines;
-  if (camera.depth_errors.inverse_depth_offset != 0.0) {
-    lines.emplace_back("inverse_depth_offset",
-                       Digits(camera.depth_errors.inverse_depth_offset));
-  }
-  if (camera.depth_errors.depth_time_offset != 0.0) {
-    lines.emplace_back("depth_time_offset",
-                       Digits(camera.depth_errors.depth_time_offset));
-  }
+  const auto add = [&lines](const char* key, double value) {
+    if (value != 0.0) lines.emplace_back(key, Digits(value));
+  };
+  add("color_time_offset", camera.color_shutter.offset);
+  add("color_readout", camera.color_shutter.readout);
+  add("depth_time_offset", camera.depth_shutter.offset);
+  add("depth_readout", camera.depth_shutter.readout);
+  add("inverse_depth_offset", camera.depth_errors.inverse_depth_offset);
   const Rigid3d& moved = camera.depth_errors.depth_from_color;
   if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {
     const Eigen::AngleAxisd turn(moved.rotation);
@@ -71,10 +71,11 @@ YamlLines OrbSlamLines(const RgbdCamera& rgbd, const std::string& prefix) {
   return lines;
 }
 
-// The keys of what is wrong with depth.
-const std::vector<std::string>& DepthKeys() {
+// Their names.
+const std::vector<std::string>& RgbdKeys() {
   static const std::vector<std::string> keys = {
-      "inverse_depth_offset", "depth_time_offset", "depth_rotation",
+      "color_time_offset", "color_readout",        "depth_time_offset",
+      "depth_readout",     "inverse_depth_offset", "depth_rotation",
       "depth_translation"};
   return keys;
 }
@@ -122,13 +123,13 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
         ToNode({static_cast<double>(c.width), static_cast<double>(c.height)})));
     file.reset(With(file, "cam0", cam0));
   }
-  file.reset(Without(file, DepthKeys()));
+  file.reset(Without(file, RgbdKeys()));
   file.SetStyle(YAML::EmitterStyle::Block);
   // OpenCV's first line, which is no YAML.
   const bool is_of_opencv = text.rfind("%YAML", 0) == 0;
   std::string result = is_of_opencv ? "%YAML:1.0\n---\n" : "";
   result += YAML::Dump(file) + "\n";
-  for (const auto& [key, value] : DepthLines(rgbd)) {
+  for (const auto& [key, value] : RgbdLines(rgbd)) {
     result += key + ": " + value + "\n";
   }
   return result;
@@ -145,6 +146,9 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
   const auto is_same = [](double a, double b) {
     return std::abs(a - b) <= 1e-8 * (1.0 + std::abs(b));
   };
+  const auto is_same_shutter = [&](const Shutter& a, const Shutter& b) {
+    return is_same(a.offset, b.offset) && is_same(a.readout, b.readout);
+  };
   for (const CameraParameter& parameter : kCameraParameters) {
     if (!is_same(read.camera.*parameter.value,
                  camera.camera.*parameter.value)) {
@@ -157,7 +161,8 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
          read.camera.height == camera.camera.height &&
          is_same(read.depth_scale, camera.depth_scale) &&
          is_same(a.inverse_depth_offset, b.inverse_depth_offset) &&
-         is_same(a.depth_time_offset, b.depth_time_offset) &&
+         is_same_shutter(read.color_shutter, camera.color_shutter) &&
+         is_same_shutter(read.depth_shutter, camera.depth_shutter) &&
          is_same(between.Angle(), 0.0) &&
          is_same(between.translation.norm(), 0.0);
 }
@@ -182,7 +187,7 @@ std::optional<std::string> Edited(const RgbdCamera& camera,
   values.emplace_back(scale, Digits(camera.depth_scale));
   if (is_of_orb_slam) {
     const std::string lines =
-        EditLines(text, file.node(), values, DepthKeys(), DepthLines(camera));
+        EditLines(text, file.node(), values, RgbdKeys(), RgbdLines(camera));
     if (Says(lines, camera)) return lines;
   }
   const std::string anew =
@@ -206,7 +211,7 @@ std::string FormatCameraFile(const RgbdCamera& camera,
   values.emplace_back("DepthMapFactor", Digits(camera.depth_scale));
   const std::string first = "%YAML:1.0\n";
   std::string text = EditLines(first, YAML::Node(YAML::NodeType::Map), values,
-                               {}, DepthLines(camera));
+                               {}, RgbdLines(camera));
   return text.insert(first.size(), why);
 }
 

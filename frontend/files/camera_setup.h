@@ -16,7 +16,9 @@ struct CameraSetup {
   CameraSetup(const RgbdCamera& rgbd)  // NOLINT(*-explicit-*): says the same
       : camera(rgbd.camera),
         depth_scale(rgbd.depth_scale),
-        depth_errors(rgbd.depth_errors) {}
+        depth_errors(rgbd.depth_errors),
+        color_shutter(rgbd.color_shutter),
+        depth_shutter(rgbd.depth_shutter) {}
 
   Camera camera;  // of the colour image
 
@@ -24,6 +26,9 @@ struct CameraSetup {
   std::optional<double> depth_scale;
 
   DepthErrors depth_errors;  // of the depth images, once registered
+
+  // See RgbdCamera.
+  Shutter color_shutter, depth_shutter;
 
   // Nothing: the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;

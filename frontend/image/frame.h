@@ -1,8 +1,12 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <memory>
 #include <opencv2/core.hpp>
+#include <optional>
+
+#include "core/geometry/frame_timing.h"
 
 namespace rgbd_pose {
 
@@ -10,10 +14,17 @@ namespace rgbd_pose {
 struct Frame {
   int index = 0;                // place in its source, from 0
   double timestamp = 0.0;       // of the colour image, seconds
-  double depth_delay = 0.0;     // of the depth image, seconds after it
+  double depth_delay = 0.0;     // of depth's own stamp, seconds after it
   cv::Mat gray;                 // CV_8UC1
   cv::Mat depth;                // CV_16UC1, registered to gray, the same size
   double depth_scale = 5000.0;  // raw depth units per metre
+
+  // When rows were exposed, from the stamp of each image.
+  Shutter color_shutter = {};
+  Shutter depth_shutter = {};
+
+  // The camera's velocity at the time stamp; nothing: not known.
+  std::optional<Twist> twist = {};
 
   // Of gray's size, CV_8UC3 in the order blue, green, red; empty unless its
   // source was asked to keep it.
@@ -23,6 +34,28 @@ struct Frame {
   double DepthAt(int column, int row) const {
     const uint16_t raw = depth.at<uint16_t>(row, column);
     return raw == kNoDepth ? 0.0 : raw / depth_scale;
+  }
+
+  // Whether both images were taken at the time stamp. Stamps that differ by less
+  // than 0.1 ms do not count: not even a turn of 360 degrees a second moves
+  // anything by half a pixel meanwhile. Beyond 50 ms they are of clocks that
+  // disagree.
+  bool IsOneMoment() const {
+    return color_shutter.IsGlobal() && DepthShutter().IsGlobal();
+  }
+
+  // When depth was taken, from the stamp of colour.
+  Shutter DepthShutter() const {
+    const double delay = std::abs(depth_delay);
+    const bool counts = delay > 1e-4 && delay < 0.05;
+    return {depth_shutter.offset + (counts ? depth_delay : 0.0),
+            depth_shutter.readout};
+  }
+
+  // What has to be undone; nothing where the velocity is not known.
+  FrameTiming Timing() const {
+    if (!twist.has_value()) return {};
+    return {color_shutter, DepthShutter(), *twist};
   }
 
   // Some sensors mark "no measurement" by the largest value instead of 0.

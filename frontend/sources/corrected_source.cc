@@ -41,7 +41,8 @@ Frame CorrectDepth(const RgbdCamera& camera, Frame frame) {
     frame.depth =
         DepthMover(camera.camera).Move(frame, moved.Inverse()).clone();
   }
-  frame.depth_delay += camera.depth_errors.depth_time_offset;
+  frame.color_shutter = camera.color_shutter;
+  frame.depth_shutter = camera.depth_shutter;
   return frame;
 }
 
@@ -56,7 +57,11 @@ std::optional<RgbdFrame> CorrectedSource::Next() {
 
 std::unique_ptr<FrameSource> WithCorrectDepth(
     std::unique_ptr<FrameSource> source) {
-  if (source->camera().depth_errors.None()) return source;
+  const RgbdCamera& camera = source->camera();
+  if (camera.depth_errors.None() && camera.color_shutter.IsGlobal() &&
+      camera.depth_shutter.IsGlobal()) {
+    return source;
+  }
   return std::make_unique<CorrectedSource>(std::move(source));
 }
 

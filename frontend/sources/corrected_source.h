@@ -9,8 +9,8 @@
 namespace rgbd_pose {
 
 // A frame without the errors of depth that a camera is known to have
-// (RgbdCamera): the offset of its inverse depth, of its stamp, of its
-// registration.
+// (RgbdCamera): the offset of its inverse depth, of its registration; and with
+// the camera's shutters.
 Frame CorrectDepth(const RgbdCamera& camera, Frame frame);
 
 // The frames of another source, corrected so.

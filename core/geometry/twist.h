@@ -1,0 +1,55 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// The velocity of a camera, in its own axes.
+struct Twist {
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  // rad/s
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();   // m/s
+
+  // later_from_earlier over so many seconds (negative: earlier), for fractions
+  // of a second: the translation is to first order.
+  Rigid3d MotionDuring(double seconds) const;
+
+  // Where a point that stands still (camera axes, m) is seen from the camera so
+  // many seconds later, to second order. For double and for vectors of doubles.
+  template <typename T>
+  void MovePoint(const T* point, const T& seconds, T* moved) const {
+    const Eigen::Vector3d& w = angular;
+    const T a[3] = {w[1] * point[2] - w[2] * point[1] + linear[0],
+                    w[2] * point[0] - w[0] * point[2] + linear[1],
+                    w[0] * point[1] - w[1] * point[0] + linear[2]};
+    const T half = 0.5 * seconds;
+    moved[0] = point[0] - seconds * (a[0] - half * (w[1] * a[2] - w[2] * a[1]));
+    moved[1] = point[1] - seconds * (a[1] - half * (w[2] * a[0] - w[0] * a[2]));
+    moved[2] = point[2] - seconds * (a[2] - half * (w[0] * a[1] - w[1] * a[0]));
+  }
+
+  // The same for one point.
+  Eigen::Vector3d MovedPoint(const Eigen::Vector3d& point,
+                             double seconds) const {
+    Eigen::Vector3d moved;
+    MovePoint(point.data(), seconds, moved.data());
+    return moved;
+  }
+};
+
+// Weighted sums of twists.
+inline Twist operator+(const Twist& a, const Twist& b) {
+  return {a.angular + b.angular, a.linear + b.linear};
+}
+inline Twist operator-(const Twist& a, const Twist& b) {
+  return {a.angular - b.angular, a.linear - b.linear};
+}
+inline Twist operator*(double factor, const Twist& twist) {
+  return {factor * twist.angular, factor * twist.linear};
+}
+
+// The twist at which a motion takes so many seconds, not 0.
+Twist TwistOf(const Rigid3d& later_from_earlier, double seconds);
+
+}  // namespace rgbd_pose
