@@ -20,7 +20,7 @@ std::optional<Edge> PairTracker::MakePair(int ref, int cur,
                                           double min_inlier_share) {
   const Reference* reference = ReferenceOf(ref, ref_images);
   if (reference == nullptr) return std::nullopt;
-  tracker_->Track(*reference, frame, cur_from_ref_guess, nullptr, &tracked_);
+  tracker_->Track(*reference, frame, cur_from_ref_guess, &tracked_);
   const MotionEstimate& estimate = tracked_.estimate;
   if (tracked_.status != TrackingStatus::kOk || !estimate.ok() ||
       estimate.num_inliers < min_inlier_share * estimate.num_used ||

@@ -33,6 +33,11 @@ constexpr Named<LostPolicy> kLostPolicies[] = {
     {"new_segment", LostPolicy::kNewSegment},
 };
 
+constexpr Named<ShutterUse> kShutterUses[] = {
+    {"camera", ShutterUse::kCamera},
+    {"none", ShutterUse::kNone},
+};
+
 template <typename Value, size_t N>
 NamedSetting ByName(const Named<Value> (&rows)[N], const char* what,
                     Value* value) {
@@ -177,10 +182,12 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        "for among earlier references in any case but stop",
        ByName(kLostPolicies, "policy", &odometry->on_lost),
        NamesOf(kLostPolicies)},
-      {"ignore_stamp_offset", kTracking,
-       "take depth as measured at the time of colour, whatever its time stamp "
-       "says",
-       &odometry->ignore_stamp_offset},
+      {"shutter", kTracking,
+       "what is done about rows that are exposed one after another, and depth "
+       "at another time than colour: undo what camera and time stamps say of "
+       "them, or nothing",
+       ByName(kShutterUses, "shutter", &odometry->shutter),
+       NamesOf(kShutterUses)},
       {"new_segment_after", kTracking,
        "how long (s) the old segment is searched for before a new one starts",
        &odometry->new_segment_after},

@@ -10,10 +10,10 @@ namespace rgbd_pose {
 namespace {
 
 // A copy: the next frame may be written into the same memory.
-Frame CopyOf(const Frame& frame, const cv::Mat& depth) {
+Frame CopyOf(const Frame& frame) {
   Frame copy = frame;
   copy.gray = frame.gray.clone();
-  copy.depth = depth.clone();
+  copy.depth = frame.depth.clone();
   copy.depth_delay = 0.0;
   copy.color.release();
   return copy;
@@ -74,7 +74,8 @@ SlamFrame Slam::Track(const PreparedFrame& frame,
       odometry_.Track(frame, cur_from_prev_guess, guess_covariance);
   const TrackedFrame& tracked = result.tracked;
   Follow(tracked);
-  if (tracked.is_reference) AddKeyframe(frame, tracked);
+  AddLateKeyframe();
+  if (tracked.is_reference) NewReference(frame, tracked);
   if (tracked.status == TrackingStatus::kLost) SearchMap(frame, tracked.index);
   TakeUp(tracked.index, &result);
   result.odom_from_cam = odom_from_cam_;
@@ -131,18 +132,36 @@ void Slam::Follow(const TrackedFrame& tracked) {
   odom_from_reference_ = odom_from_cam_;
 }
 
-void Slam::AddKeyframe(const PreparedFrame& frame,
-                       const TrackedFrame& tracked) {
+// Where the next frame tells how the camera moved in this one, the keyframe
+// waits for it.
+void Slam::NewReference(const PreparedFrame& frame,
+                        const TrackedFrame& tracked) {
   NewKeyframe keyframe;
   keyframe.id = MapId(tracked.index);
-  keyframe.frame = CopyOf(frame, odometry_.last_depth());
   keyframe.segment = segments_.at(keyframe.id);
   keyframe.map_from_cam = map_from_keyframe_.at(keyframe.id);
   if (tracked.reference != -1) keyframe.edges = tracked.edges;
   for (Edge& edge : keyframe.edges) edge.ref = MapId(edge.ref);
+  if (odometry_.HasShutter(frame)) {
+    late_keyframe_ = std::move(keyframe);
+    return;
+  }
+  keyframe.frame = CopyOf(frame);
+  AddKeyframe(std::move(keyframe));
+}
+
+void Slam::AddLateKeyframe() {
+  if (!late_keyframe_.has_value()) return;
+  late_keyframe_->frame =
+      CopyOf(*odometry_.FindReferenceFrame(OdometryId(late_keyframe_->id)));
+  AddKeyframe(std::move(*late_keyframe_));
+  late_keyframe_.reset();
+}
+
+void Slam::AddKeyframe(NewKeyframe keyframe) {
+  const int due = OdometryId(keyframe.id) + settings_.update_delay;
   updates_.push_back(
-      {tracked.index + settings_.update_delay,
-       worker_.Do([this, keyframe = std::move(keyframe)]() mutable {
+      {due, worker_.Do([this, keyframe = std::move(keyframe)]() mutable {
          return mapper_.Add(std::move(keyframe));
        })});
 }
@@ -150,7 +169,7 @@ void Slam::AddKeyframe(const PreparedFrame& frame,
 void Slam::SearchMap(const PreparedFrame& frame, int index) {
   if (search_.has_value()) return;
   search_ = {index + settings_.update_delay,
-             worker_.Do([this, lost = CopyOf(frame, frame.depth)] {
+             worker_.Do([this, lost = CopyOf(frame)] {
                return mapper_.Find(lost);
              })};
 }
@@ -216,6 +235,7 @@ void Slam::Adopt(const FoundKeyframe& keyframe) {
 
 void Slam::Finish() {
   SlamFrame unused;
+  AddLateKeyframe();
   while (!updates_.empty()) {
     Apply(updates_.front().result.get(), &unused);
     updates_.pop_front();

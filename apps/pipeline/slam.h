@@ -118,7 +118,9 @@ class Slam {
   int OdometryId(int keyframe) const { return keyframe - first_id_; }
 
   void Follow(const TrackedFrame& tracked);
-  void AddKeyframe(const PreparedFrame& frame, const TrackedFrame& tracked);
+  void NewReference(const PreparedFrame& frame, const TrackedFrame& tracked);
+  void AddLateKeyframe();
+  void AddKeyframe(NewKeyframe keyframe);
   void SearchMap(const PreparedFrame& frame, int index);
   void TakeUp(int frame, SlamFrame* result);
   void Apply(MapUpdate update, SlamFrame* result);
@@ -128,6 +130,9 @@ class Slam {
   const SlamSettings settings_;
   Odometry odometry_;
   Mapper mapper_;  // of worker_, once it has begun
+
+  // Of the last frame, without its images yet.
+  std::optional<NewKeyframe> late_keyframe_;
 
   // As last taken up.
   std::map<int, Rigid3d> map_from_keyframe_;

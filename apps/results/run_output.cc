@@ -10,6 +10,7 @@
 #include "core/util/text_file.h"
 #include "frontend/features/match_overlay.h"
 #include "frontend/files/image_file.h"
+#include "frontend/image/frame_rectifier.h"
 #include "frontend/map/mesh_file.h"
 #include "frontend/map/ply_writer.h"
 #include "frontend/tracking/residual_image.h"
@@ -102,15 +103,17 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
 
 void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
   const TrackedFrame& tracked = run.frames().back();
-  if (drawn_.Contains(tracked.index)) {
-    WriteDebugImage(aside() / kDebug, frame, tracked, source_.camera().camera,
-                    run.odometry());
+  const bool is_drawn = drawn_.Contains(tracked.index);
+  const bool is_fused = cloud_.has_value() && cloud_->Wants(tracked);
+  if (!is_drawn && !is_fused) return;
+  const Camera& camera = source_.camera().camera;
+  Frame seen = frame;
+  seen.twist = run.odometry().last_twist();
+  seen = FrameRectifier(camera).Rectify(seen);
+  if (is_drawn) {
+    WriteDebugImage(aside() / kDebug, seen, tracked, camera, run.odometry());
   }
-  if (cloud_.has_value() && cloud_->Wants(tracked)) {
-    Frame seen = frame;
-    seen.depth = run.odometry().last_depth();
-    cloud_->Add(seen, tracked.world_from_cam);
-  }
+  if (is_fused) cloud_->Add(seen, tracked.world_from_cam);
 }
 
 std::string RunOutput::Write(const RunResults& results,

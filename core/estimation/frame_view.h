@@ -6,6 +6,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_noise.h"
+#include "core/geometry/frame_timing.h"
 
 namespace rgbd_pose {
 
@@ -41,6 +42,10 @@ struct FrameView {
   ImageView<uint16_t> depth;
   double depth_scale = 5000.0;  // raw units per metre
   DepthNoiseModel depth_noise;  // has to be filled in
+
+  // When rows were exposed. Direct costs move the look-ups in a current frame
+  // by it; a previous one has to be of one moment (FrameRectifier).
+  FrameTiming timing;
 
   // Metres at a whole pixel of levels[0]; 0 where there is none: sensors mark
   // that by 0 or by the largest value.

@@ -20,13 +20,21 @@ struct Twist {
   template <typename T>
   void MovePoint(const T* point, const T& seconds, T* moved) const {
     const Eigen::Vector3d& w = angular;
-    const T a[3] = {w[1] * point[2] - w[2] * point[1] + linear[0],
-                    w[2] * point[0] - w[0] * point[2] + linear[1],
-                    w[0] * point[1] - w[1] * point[0] + linear[2]};
+    T a[3];
+    PointVelocity(point, a);
     const T half = 0.5 * seconds;
-    moved[0] = point[0] - seconds * (a[0] - half * (w[1] * a[2] - w[2] * a[1]));
-    moved[1] = point[1] - seconds * (a[1] - half * (w[2] * a[0] - w[0] * a[2]));
-    moved[2] = point[2] - seconds * (a[2] - half * (w[0] * a[1] - w[1] * a[0]));
+    moved[0] = point[0] + seconds * (a[0] - half * (w[1] * a[2] - w[2] * a[1]));
+    moved[1] = point[1] + seconds * (a[1] - half * (w[2] * a[0] - w[0] * a[2]));
+    moved[2] = point[2] + seconds * (a[2] - half * (w[0] * a[1] - w[1] * a[0]));
+  }
+
+  // The velocity (m/s) of such a point in the camera's axes.
+  template <typename T>
+  void PointVelocity(const T* point, T* velocity) const {
+    const Eigen::Vector3d& w = angular;
+    velocity[0] = w[2] * point[1] - w[1] * point[2] - linear[0];
+    velocity[1] = w[0] * point[2] - w[2] * point[0] - linear[1];
+    velocity[2] = w[1] * point[0] - w[0] * point[1] - linear[2];
   }
 
   // The same for one point.

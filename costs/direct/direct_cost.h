@@ -192,6 +192,8 @@ class DirectCostOf final : public PackedCost<Type> {
       return;
     }
     input_.has_distortion = pair.cur->levels[0].camera.HasDistortion();
+    input_.moves_color = !pair.cur->timing.color.IsGlobal();
+    input_.moves_depth = !pair.cur->timing.depth.IsGlobal();
     if (const std::string error = pair.prev->depth_noise.Check();
         !error.empty()) {
       throw InputError("direct cost: the view's depth_noise: " + error);

@@ -19,6 +19,11 @@ struct DirectInput {
 
   bool has_distortion = false;  // of the current camera
 
+  // Whether rows of the current images were exposed at other times than the
+  // motion is of (FrameView::timing).
+  bool moves_color = false;
+  bool moves_depth = false;
+
   // The change of brightness from the previous frame to the current one: gray
   // levels there are gain * gray + bias.
   double gain = 1.0;

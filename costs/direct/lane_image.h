@@ -2,6 +2,8 @@
 
 #include "core/estimation/frame_view.h"
 #include "core/geometry/camera.h"
+#include "core/geometry/shutter.h"
+#include "core/geometry/twist.h"
 #include "core/util/lane_math.h"
 
 // What direct costs do with images, for double and for vectors of doubles (one
@@ -47,6 +49,32 @@ template <typename D>
   p->v_x = camera.fy * cross;
   p->v_y =
       camera.fy * (radial + 2.0 * y * y * by_r2 + 6.0 * p1 * y + 2.0 * p2 * x);
+}
+
+// Where a point (axes of the stamp, m) is when its row is exposed: the row
+// decides the time, and that the row, which to first order is a division.
+// `level_camera`: of the pixels of the image.
+template <typename D>
+[[gnu::always_inline]] inline void MoveToRow(const Camera& level_camera,
+                                             bool has_distortion,
+                                             const Shutter& shutter,
+                                             const Twist& twist, const D* point,
+                                             D* moved) {
+  const D inverse = 1.0 / point[2];
+  const D x = point[0] * inverse, y = point[1] * inverse;
+  SeenPixel<D> pixel;
+  SeePixel(level_camera, has_distortion, x, y, &pixel);
+  // Rows a second.
+  D velocity[3];
+  twist.PointVelocity(point, velocity);
+  const D flow = (pixel.v_x * (velocity[0] - x * velocity[2]) +
+                  pixel.v_y * (velocity[1] - y * velocity[2])) *
+                 inverse;
+  const double per_row = shutter.readout / level_camera.height;
+  const D at_once = shutter.offset - 0.5 * shutter.readout +
+                    per_row * (pixel.v + 0.5);
+  const D seconds = at_once / (1.0 - per_row * flow);
+  twist.MovePoint(point, seconds, moved);
 }
 
 // An image between its pixels, by bilinear interpolation: the value at a place

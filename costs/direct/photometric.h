@@ -20,6 +20,10 @@ namespace rgbd_pose {
 //
 //   r = k_0 + k_x x + k_y y
 //
+// Where rows are exposed one after another (FrameView::timing), u is where q is
+// seen in its row; how u changes with q is as if it were not moved, which is
+// wrong by what the camera turns meanwhile, 3 % at 1 rad/s.
+//
 // sigma^2 = sigma_gray^2 (1 + gain^2) + (dI / d depth)^2 sigma_depth^2: the
 // noise of both images, and the wrong place that a wrong depth leads to.
 struct Photometric {
@@ -143,8 +147,8 @@ struct Photometric {
   template <typename D>
   struct Seen {
     D turned[3];  // R X, m
-    D x, y, z;    // normalised image coordinates; depth, m
-    SeenPixel<D> pixel;
+    D x, y, z;    // normalised image coordinates; depth, m; at the stamp
+    SeenPixel<D> pixel;  // in its row
   };
 
   template <typename D>
@@ -155,8 +159,19 @@ struct Photometric {
     const D inverse = 1.0 / seen->z;
     seen->x = (seen->turned[0] + input.t[0]) * inverse;
     seen->y = (seen->turned[1] + input.t[1]) * inverse;
-    SeePixel(input.cur->levels[input.level].camera, input.has_distortion,
-             seen->x, seen->y, &seen->pixel);
+    const Camera& camera = input.cur->levels[input.level].camera;
+    if (!input.moves_color) {
+      SeePixel(camera, input.has_distortion, seen->x, seen->y, &seen->pixel);
+      return;
+    }
+    const FrameTiming& timing = input.cur->timing;
+    const D q[3] = {seen->x * seen->z, seen->y * seen->z, seen->z};
+    D moved[3];
+    MoveToRow(camera, input.has_distortion, timing.color, timing.twist, q,
+              moved);
+    const D inverse_moved = 1.0 / moved[2];
+    SeePixel(camera, input.has_distortion, D(moved[0] * inverse_moved),
+             D(moved[1] * inverse_moved), &seen->pixel);
   }
 };
 

@@ -48,14 +48,26 @@ struct Surface {
   [[gnu::always_inline]] static void Locate(const DirectInput& input,
                                             const D* point,
                                             PlaceInImage<D>* place) {
-    D q[3];
-    Multiply(input.R, point, q);
-    for (int i = 0; i < 3; ++i) q[i] += input.t[i];
-    const D inverse = 1.0 / q[2];
+    D q[3], in_row[3];
+    Move(input, point, q, in_row);
+    const D inverse = 1.0 / in_row[2];
     SeenPixel<D> pixel;
     SeePixel(input.cur->levels[0].camera, input.has_distortion,
-             D(q[0] * inverse), D(q[1] * inverse), &pixel);
-    *place = {pixel.u, pixel.v, q[2]};
+             D(in_row[0] * inverse), D(in_row[1] * inverse), &pixel);
+    *place = {pixel.u, pixel.v, in_row[2]};
+  }
+
+  // A point in current axes, m: at the stamp, and when its row of the depth
+  // image is taken.
+  template <typename D>
+  [[gnu::always_inline]] static void Move(const DirectInput& input,
+                                          const D* point, D* q, D* in_row) {
+    Multiply(input.R, point, q);
+    for (int i = 0; i < 3; ++i) in_row[i] = q[i] += input.t[i];
+    if (!input.moves_depth) return;
+    const FrameTiming& timing = input.cur->timing;
+    MoveToRow(input.cur->levels[0].camera, input.has_distortion, timing.depth,
+              timing.twist, q, in_row);
   }
 
   // From the nearest whole pixel to the place (px, to the right and down), and
@@ -94,9 +106,10 @@ struct Surface {
     constexpr double kMaxSquares = 20.1;
     const Camera& camera = input.cur->levels[0].camera;
     const double per_u = 1.0 / camera.fx, per_v = 1.0 / camera.fy;
-    Multiply(input.R, point, s->q);
-    for (int i = 0; i < 3; ++i) s->q[i] += input.t[i];
-    const D inverse_z = 1.0 / s->q[2];
+    D in_row[3];
+    Move(input, point, s->q, in_row);
+    // What is measured differs from the point by as much then as at the stamp.
+    const D inverse_z = 1.0 / s->q[2], inverse_measured_z = 1.0 / in_row[2];
     s->x = s->q[0] * inverse_z;
     s->y = s->q[1] * inverse_z;
     // The moved plane n . p = 1 + n . t; near q only its slope counts.
@@ -107,7 +120,7 @@ struct Surface {
     D sum = {}, squares = {};
     for (int k = 0; k < 9; ++k) {
       const int i = (k % 3 - 1) * kSurfaceStep, j = (k / 3 - 1) * kSurfaceStep;
-      const D off = input.cur->depth_scale / reads[2 + k] - inverse_z -
+      const D off = input.cur->depth_scale / reads[2 + k] - inverse_measured_z -
                     (n[0] * (i * per_u) + n[1] * (j * per_v));
       sum += off;
       squares += off * off;

@@ -77,6 +77,7 @@ void DescriptorFrontend::Match(const FeatureSet& reference,
   const auto& features = static_cast<const DescribedFeatures&>(reference);
   const DescribedKeypoints& current =
       dynamic_cast<const DescribedFrame&>(frame).described;
+  const FrameTiming timing = frame.Timing();
   SearchGuide guide;
   guide.radius_px = static_cast<float>(kSearchAngle * options_.camera.fx);
   for (const Observation& o : features.observations) {
@@ -84,7 +85,7 @@ void DescriptorFrontend::Match(const FeatureSet& reference,
         cur_from_ref_guess * matches->matches.Point(o);
     Eigen::Vector2d pixel =
         Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-    if (point.z() > 0.0) pixel = options_.camera.Project(point);
+    if (point.z() > 0.0) pixel = ImagePoint(options_.camera, timing, point);
     guide.expected.emplace_back(static_cast<float>(pixel.x()),
                                 static_cast<float>(pixel.y()));
   }

@@ -136,12 +136,13 @@ void PatchFrontend::Match(const FeatureSet& reference,
   const std::vector<cv::Mat>& pyramid =
       dynamic_cast<const PatchFrame&>(frame).pyramid;
   const Camera& camera = options_.camera;
+  const FrameTiming timing = frame.Timing();
   for (size_t i = 0; i < features.corners.size(); ++i) {
     const Observation& ref = features.observations[i];
     const Eigen::Vector3d point =
         cur_from_ref_guess * matches->matches.Point(ref);
     if (!(point.z() >= options_.min_depth)) continue;
-    const Eigen::Vector2d start = camera.Project(point);
+    const Eigen::Vector2d start = ImagePoint(camera, timing, point);
     if (!camera.Contains(start)) continue;
     const Eigen::Matrix2f warp = PlaneWarp(camera, ref, cur_from_ref_guess);
     const float scale = warp.determinant();

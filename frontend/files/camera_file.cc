@@ -227,7 +227,11 @@ CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
   }
   // Presets are of registered depth. Their scale is the benchmark's: what a
   // recording says of its own comes before it.
-  if (preset && IsOfColor(depth_camera)) return CameraSetup(preset->camera);
+  if (preset && IsOfColor(depth_camera)) {
+    CameraSetup setup(*preset);
+    setup.depth_scale.reset();
+    return setup;
+  }
   if (preset) {
     throw InputError("camera '" + file_or_preset +
                      "' is a preset, which has "

@@ -11,6 +11,9 @@ namespace {
 
 constexpr int kFlowBlock = kEight;  // px; the flow is the same all over a block
 
+// Of a thing in a room, 1/m.
+constexpr double kUsualInverseDepth = 0.5;
+
 // Within a block, and from one try to the next, this much (px) is the same
 // place.
 constexpr float kSamePlacePx = 0.5F;
@@ -33,19 +36,21 @@ DepthMover::DepthMover(const Camera& camera)
 
 const cv::Mat& DepthMover::Move(const Frame& frame,
                                 const Rigid3d& moved_from_measured) {
+  return Move(frame, [&](double) { return moved_from_measured; });
+}
+
+const cv::Mat& DepthMover::Move(const Frame& frame,
+                                const RowMotion& moved_from_measured) {
   frame.depth.copyTo(measured_);
   measured_.setTo(0, measured_ == Frame::kNoDepth);
   moved_.create(measured_.size(), CV_16UC1);
   depth_scale_ = frame.depth_scale;
   FindRanges();
-  const Rigid3d measured_from_moved = moved_from_measured.Inverse();
-  advance_ =
-      static_cast<float>(measured_from_moved.translation.z() * depth_scale_);
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
       const cv::Rect block = BlockAt(column, row);
-      const Flow flow = FlowAt(static_cast<size_t>(row) * columns_ + column,
-                               measured_from_moved);
+      const Flow flow = FlowOf(static_cast<size_t>(row) * columns_ + column,
+                               moved_from_measured);
       const Range range = RangeAround(column, row, flow);
       if (range.min > range.max) {
         moved_(block).setTo(0);
@@ -104,18 +109,29 @@ void DepthMover::FindRanges() {
 
 DepthMover::Flow DepthMover::FlowAt(size_t block,
                                     const Rigid3d& measured_from_moved) const {
-  constexpr double kInverseDepth = 0.5;  // 1/m, that of a thing in a room
   const Eigen::Vector2d pixel = camera_.Project(rays_[block]);
   const Eigen::Vector3d turned = measured_from_moved.rotation * rays_[block];
   const Eigen::Vector2d turn = camera_.Project(turned) - pixel;
   const Eigen::Vector2d both =
       camera_.Project(turned +
-                      kInverseDepth * measured_from_moved.translation) -
+                      kUsualInverseDepth * measured_from_moved.translation) -
       pixel;
-  const Eigen::Vector2d shift = (both - turn) / kInverseDepth;
+  const Eigen::Vector2d shift = (both - turn) / kUsualInverseDepth;
   return {static_cast<float>(turn.x()), static_cast<float>(turn.y()),
           static_cast<float>(shift.x()), static_cast<float>(shift.y()),
-          static_cast<float>(turned.z())};
+          static_cast<float>(turned.z()),
+          static_cast<float>(measured_from_moved.translation.z() *
+                             depth_scale_)};
+}
+
+// The row in which a block was measured decides the motion, and that the row.
+DepthMover::Flow DepthMover::FlowOf(
+    size_t block, const RowMotion& moved_from_measured) const {
+  const double row = camera_.Project(rays_[block]).y();
+  const Flow flow = FlowAt(block, moved_from_measured(row).Inverse());
+  return FlowAt(block, moved_from_measured(row + flow.turn_v +
+                                           kUsualInverseDepth * flow.shift_v)
+                           .Inverse());
 }
 
 // Of all blocks that pixels of a block may come from, at any depth.
@@ -154,7 +170,7 @@ void DepthMover::MoveTogether(const cv::Rect& block, const Flow& flow, float u,
   const float right = u - static_cast<float>(left);
   const float down = v - static_cast<float>(above);
   const float scale = 1.0F / flow.stretch;
-  const float offset = -advance_ / flow.stretch;
+  const float offset = -flow.advance / flow.stretch;
   const cv::Rect source = block + cv::Point(left, above);
   const bool is_inside = block.width == kFlowBlock && source.x >= 0 &&
                          source.y >= 0 && source.br().x < measured_.cols &&
@@ -195,7 +211,7 @@ void DepthMover::MoveEach(const cv::Rect& block, const Flow& flow, Range range,
           const float raw = Sample(
               static_cast<float>(u) + flow.turn_u + inverse * flow.shift_u,
               static_cast<float>(v) + flow.turn_v + inverse * flow.shift_v);
-          const float moved = (raw - advance_) / flow.stretch;
+          const float moved = (raw - flow.advance) / flow.stretch;
           if (raw <= 0.0F || moved <= 0.0F) break;
           const float last = inverse;
           inverse = units / moved;

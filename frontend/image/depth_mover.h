@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -24,6 +25,11 @@ class DepthMover {
   // into view from behind another one is unknown. Good until the next call.
   const cv::Mat& Move(const Frame& frame, const Rigid3d& moved_from_measured);
 
+  // The same where every row (px, of the measured image) has a motion of its
+  // own.
+  using RowMotion = std::function<Rigid3d(double row)>;
+  const cv::Mat& Move(const Frame& frame, const RowMotion& moved_from_measured);
+
  private:
   // How a block of pixels moves. A moved pixel p at depth z was measured at
   // p + turn + shift / z, to first order in the translation, where its depth
@@ -32,6 +38,7 @@ class DepthMover {
     float turn_u, turn_v;    // px
     float shift_u, shift_v;  // px m
     float stretch;
+    float advance;  // raw units
   };
   struct Range {
     uint16_t min, max;  // of raw depths; min > max: there are none
@@ -40,6 +47,7 @@ class DepthMover {
   cv::Rect BlockAt(int column, int row) const;
   void FindRanges();
   Flow FlowAt(size_t block, const Rigid3d& measured_from_moved) const;
+  Flow FlowOf(size_t block, const RowMotion& moved_from_measured) const;
   Range RangeAround(int column, int row, const Flow& flow) const;
   // All of the block at one depth, as far as its place is concerned.
   void MoveTogether(const cv::Rect& block, const Flow& flow, float u, float v,
@@ -58,7 +66,6 @@ class DepthMover {
   cv::Mat measured_;  // the depth image, 0: none
   cv::Mat moved_;
   double depth_scale_ = 1.0;
-  float advance_ = 0.0F;  // in raw units
 };
 
 }  // namespace rgbd_pose

@@ -54,8 +54,11 @@ struct Frame {
 
   // What has to be undone; nothing where the velocity is not known.
   FrameTiming Timing() const {
-    if (!twist.has_value()) return {};
-    return {color_shutter, DepthShutter(), *twist};
+    return twist.has_value() ? Timing(*twist) : FrameTiming();
+  }
+  // The same with a velocity.
+  FrameTiming Timing(const Twist& velocity) const {
+    return {color_shutter, DepthShutter(), velocity};
   }
 
   // Some sensors mark "no measurement" by the largest value instead of 0.

@@ -23,6 +23,7 @@ FrameView ViewFrame(const Frame& frame, const std::vector<cv::Mat>& pyramid,
   view.depth = ViewImage<uint16_t>(frame.depth);
   view.depth_scale = frame.depth_scale;
   view.depth_noise = depth_noise;
+  view.timing = frame.Timing();
   return view;
 }
 

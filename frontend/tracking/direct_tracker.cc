@@ -9,6 +9,7 @@
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
 #include "frontend/image/image_pyramid.h"
+#include "frontend/image/observe.h"
 #include "frontend/image/view_frame.h"
 
 namespace rgbd_pose {
@@ -105,16 +106,18 @@ std::unique_ptr<Reference> DirectTracker::MakeReference(
 
 void DirectTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
-                          const Rigid3d& cur_from_ref_guess,
-                          const MotionMatrix* guess_covariance, int num_levels,
+                          const TrackingGuess& guess, int num_levels,
                           Tracked* tracked) {
   const auto& ours = dynamic_cast<const DirectReference&>(reference);
   tracked->matches.Clear();
   tracked->doubted.Clear();
   tracked->match_ms = 0.0;
   tracked->carried_by = kName;
-  Estimate(ours, frame, cur_from_ref_guess, guess_covariance, num_levels,
+  tracked->twist.reset();
+  tracked->twist_covariance.setZero();
+  Estimate(ours, frame, frame.Timing(), guess.cur_from_ref, guess, num_levels,
            &estimator_, &tracked->estimate);
+  if (guess.velocity != nullptr) FindTwist(ours, frame, guess, tracked);
   const MotionEstimate& estimate = tracked->estimate;
   tracked->num_found = estimate.num_used;
   tracked->overlap = ours.SeenFrom(estimate.cur_from_prev);
@@ -129,35 +132,63 @@ void DirectTracker::Track(const Reference& reference,
                        tracked->overlap.share < options_.min_seen_share_ok;
 }
 
+void DirectTracker::FindTwist(const Reference& reference,
+                              const PreparedFrame& frame,
+                              const TrackingGuess& guess, Tracked* tracked) {
+  constexpr int kMaxRounds = 2;
+  constexpr double kSmallFlowPx = 0.2;
+  MotionEstimate* const estimate = &tracked->estimate;
+  FrameTiming timing = frame.Timing(frame.twist.value_or(Twist()));
+  for (int round = 0; estimate->ok(); ++round) {
+    const Twist twist =
+        guess.velocity->Mean(estimate->cur_from_prev, timing.twist);
+    const bool is_small =
+        LargestFlow(images_.camera, timing, twist - timing.twist) <
+        kSmallFlowPx;
+    if (is_small || round == kMaxRounds) break;
+    timing.twist = twist;
+    Estimate(reference, frame, timing, Rigid3d(estimate->cur_from_prev), guess,
+             1, &estimator_, estimate);
+  }
+  tracked->twist = timing.twist;
+  // Seen by all rows together, a frame moves as its middle does.
+  const double middle = timing.color.offset;
+  const double angular = middle * guess.velocity->sigma_angular;
+  const double linear = middle * guess.velocity->sigma_linear;
+  tracked->twist_covariance.diagonal() << Eigen::Vector3d::Constant(
+      angular * angular),
+      Eigen::Vector3d::Constant(linear * linear);
+  estimate->covariance += tracked->twist_covariance;
+}
+
 Rigid3d DirectTracker::FindStart(const Reference& reference,
                                  const PreparedFrame& frame,
-                                 const Rigid3d& cur_from_ref_guess,
-                                 const MotionMatrix* guess_covariance) {
-  if (!coarse_.has_value()) return cur_from_ref_guess;
-  Estimate(reference, frame, cur_from_ref_guess, guess_covariance, 0, &*coarse_,
-           &start_);
+                                 const TrackingGuess& guess) {
+  if (!coarse_.has_value()) return guess.cur_from_ref;
+  Estimate(reference, frame, frame.Timing(), guess.cur_from_ref, guess, 0,
+           &*coarse_, &start_);
   const bool is_found =
       start_.ok() || start_.status == EstimateStatus::kNotConverged;
-  return is_found ? start_.cur_from_prev : cur_from_ref_guess;
+  return is_found ? start_.cur_from_prev : guess.cur_from_ref;
 }
 
 void DirectTracker::Estimate(const Reference& reference,
                              const PreparedFrame& frame,
-                             const Rigid3d& cur_from_ref_guess,
-                             const MotionMatrix* guess_covariance,
-                             int num_levels, Estimator* estimator,
+                             const FrameTiming& timing, const Rigid3d& start,
+                             const TrackingGuess& guess, int num_levels,
+                             Estimator* estimator,
                              MotionEstimate* estimate) const {
-  const FrameView view =
+  FrameView view =
       ViewFrame(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
                 images_.camera, images_.depth_noise);
-  const MotionPrior prior =
-      PriorOf(common_, cur_from_ref_guess, guess_covariance);
+  view.timing = timing;
+  const MotionPrior prior = PriorOf(common_, guess);
   PairData pair;
   pair.prior = &prior;
   pair.prev = reference.images();
   pair.cur = &view;
   pair.num_levels = num_levels;
-  estimator->Estimate(pair, cur_from_ref_guess, estimate);
+  estimator->Estimate(pair, start, estimate);
 }
 
 void DirectTracker::Judge(const ViewLikeness& likeness,

@@ -96,27 +96,27 @@ class DirectTracker final : public Tracker {
                                            const Tracked* tracked,
                                            std::string* why_not) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
-             const Rigid3d& cur_from_ref_guess,
-             const MotionMatrix* guess_covariance, Tracked* tracked) override {
-    Track(reference, frame, cur_from_ref_guess, guess_covariance, 0, tracked);
+             const TrackingGuess& guess, Tracked* tracked) override {
+    Track(reference, frame, guess, 0, tracked);
   }
   // From a guess that is so good that this many levels will do; 0: all.
   void Track(const Reference& reference, const PreparedFrame& frame,
-             const Rigid3d& cur_from_ref_guess,
-             const MotionMatrix* guess_covariance, int num_levels,
-             Tracked* tracked);
+             const TrackingGuess& guess, int num_levels, Tracked* tracked);
   // The motion that shows the coarse images of the reference in those of the
   // frame: where to begin. The guess itself if they do not tell one.
   Rigid3d FindStart(const Reference& reference, const PreparedFrame& frame,
-                    const Rigid3d& cur_from_ref_guess,
-                    const MotionMatrix* guess_covariance);
+                    const TrackingGuess& guess);
   const FrontendOptions& images() const override { return images_; }
 
  private:
+  // `timing`: of the frame.
   void Estimate(const Reference& reference, const PreparedFrame& frame,
-                const Rigid3d& cur_from_ref_guess,
-                const MotionMatrix* guess_covariance, int num_levels,
+                const FrameTiming& timing, const Rigid3d& start,
+                const TrackingGuess& guess, int num_levels,
                 Estimator* estimator, MotionEstimate* estimate) const;
+  // Estimates the motion with the velocity that it says itself.
+  void FindTwist(const Reference& reference, const PreparedFrame& frame,
+                 const TrackingGuess& guess, Tracked* tracked);
   // Sets status and reason from estimate, overlap and likeness.
   void Judge(const ViewLikeness& likeness, Tracked* tracked) const;
 

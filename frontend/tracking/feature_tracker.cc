@@ -6,13 +6,34 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
+#include "frontend/image/observe.h"
 #include "frontend/tracking/seen_at.h"
+#include "frontend/tracking/twist_estimation.h"
 
 namespace rgbd_pose {
 namespace {
 
 std::string OnlyInliers(int inliers) {
   return "only " + std::to_string(inliers) + " inliers";
+}
+
+// The same image points of a frame, moved by its velocity instead.
+void ObserveAgain(const FeatureSet& features, const Frame& frame,
+                  const FrameTiming& moved_by, const FrontendOptions& images,
+                  FeatureMatches* found) {
+  constexpr double kUsualDepth = 2.0;  // as Observe
+  const DepthLookupOptions depth = images.DepthLookup();
+  const FeatureMatches before = *found;
+  found->Clear();
+  for (size_t i = 0; i < before.features.size(); ++i) {
+    Observation cur = before.matches[i].cur;
+    if (cur.depth == 0.0) cur.depth = kUsualDepth;
+    const Eigen::Vector2d pixel =
+        ImagePoint(images.camera, moved_by, before.matches.Point(cur));
+    found->Add(features, before.features[i],
+               Observe(frame, images.camera, pixel.x(), pixel.y(),
+                       cur.sigma_px, depth));
+  }
 }
 
 double ShareOf(const FeatureReference& reference, const Tracked& tracked) {
@@ -94,9 +115,7 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
 void FeatureTracker::Track(const Reference& reference,
                            const PreparedFrame& frame,
                            const Rigid3d& cur_from_ref_start,
-                           const Rigid3d& cur_from_ref_guess,
-                           const MotionMatrix* guess_covariance,
-                           Tracked* tracked) {
+                           const TrackingGuess& guess, Tracked* tracked) {
   const auto& ours = dynamic_cast<const FeatureReference&>(reference);
   tracked->match_ms = 0.0;
   {
@@ -107,13 +126,49 @@ void FeatureTracker::Track(const Reference& reference,
   }
   tracked->carried_by = kName;
   tracked->num_found = static_cast<int>(tracked->matches.matches.size());
-  Estimate(cur_from_ref_guess,
-           PriorOf(options_, cur_from_ref_guess, guess_covariance), tracked);
+  tracked->twist.reset();
+  tracked->twist_covariance.setZero();
+  Estimate(guess.cur_from_ref, PriorOf(options_, guess), tracked);
+  if (guess.velocity != nullptr) {
+    FindTwist(ours.features(), frame, guess, tracked);
+  }
   Judge(tracked);
   if (tracked->status == TrackingStatus::kLost) return;
   tracked->overlap = {ShareOf(ours, *tracked),
                       MeanInlierFlowPx(tracked->matches, tracked->estimate)};
   tracked->is_scarce = tracked->estimate.num_inliers < options_.min_inliers_ok;
+}
+
+void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
+                               const TrackingGuess& guess, Tracked* tracked) {
+  constexpr int kMaxRounds = 3;
+  constexpr double kSmallFlowPx = 0.05;
+  const MotionEstimate& estimate = tracked->estimate;
+  const Camera& camera = images().camera;
+  const MotionPrior prior = PriorOf(options_, guess);
+  Frame seen = frame;
+  seen.twist = frame.twist.value_or(Twist());
+  // Where it was not known, nothing has been moved yet.
+  FrameTiming moved_by = frame.Timing();
+  for (int round = 0; round < kMaxRounds; ++round) {
+    if (!estimate.ok()) break;
+    const TwistEstimate found = EstimateTwist(
+        tracked->matches.matches, estimate.is_inlier, estimate.cur_from_prev,
+        seen.Timing(),
+        guess.velocity->Mean(estimate.cur_from_prev, moved_by.twist),
+        *guess.velocity);
+    tracked->twist_covariance = found.motion_covariance;
+    const Twist change = found.twist - moved_by.twist;
+    if (LargestFlow(camera, seen.Timing(), change) < kSmallFlowPx) break;
+    seen.twist = found.twist;
+    for (FeatureMatches* part : {&tracked->matches, &tracked->doubted}) {
+      ObserveAgain(features, seen, moved_by, images(), part);
+    }
+    moved_by = seen.Timing();
+    Estimate(Rigid3d(estimate.cur_from_prev), prior, tracked);
+  }
+  tracked->twist = moved_by.twist;
+  tracked->estimate.covariance += tracked->twist_covariance;
 }
 
 void FeatureTracker::Believe(Reference* reference, Tracked* tracked) {

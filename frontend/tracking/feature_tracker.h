@@ -48,16 +48,13 @@ class FeatureTracker final : public Tracker {
                                            const Tracked* tracked,
                                            std::string* why_not) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
-             const Rigid3d& cur_from_ref_guess,
-             const MotionMatrix* guess_covariance, Tracked* tracked) override {
-    Track(reference, frame, cur_from_ref_guess, cur_from_ref_guess,
-          guess_covariance, tracked);
+             const TrackingGuess& guess, Tracked* tracked) override {
+    Track(reference, frame, guess.cur_from_ref, guess, tracked);
   }
   // From a better start than the guess, which only is what the prior is about.
   void Track(const Reference& reference, const PreparedFrame& frame,
-             const Rigid3d& cur_from_ref_start,
-             const Rigid3d& cur_from_ref_guess,
-             const MotionMatrix* guess_covariance, Tracked* tracked);
+             const Rigid3d& cur_from_ref_start, const TrackingGuess& guess,
+             Tracked* tracked);
   void Believe(Reference* reference, Tracked* tracked) override;
   const FrontendOptions& images() const override {
     return frontend_->options();
@@ -66,6 +63,10 @@ class FeatureTracker final : public Tracker {
  private:
   void Estimate(const Rigid3d& cur_from_ref_start, const MotionPrior& prior,
                 Tracked* tracked);
+  // Finds the velocity and estimates the motion again, of the same features as
+  // they are seen with it.
+  void FindTwist(const FeatureSet& features, const Frame& frame,
+                 const TrackingGuess& guess, Tracked* tracked);
   // Sets status and reason from the estimate.
   void Judge(Tracked* tracked) const;
 

@@ -27,14 +27,13 @@ struct HybridFrame final : PreparedFrame {
   std::shared_ptr<const PreparedFrame> features, direct;
 };
 
-// A part with the depth of the whole, which may have been moved since.
+// A part with the velocity of the whole, which may be known better since.
 std::shared_ptr<const PreparedFrame> PartOf(
     const HybridFrame& whole,
     const std::shared_ptr<const PreparedFrame>& part) {
-  if (part->depth.data == whole.depth.data) return part;
+  if (whole.IsOneMoment()) return part;
   std::shared_ptr<PreparedFrame> moved = part->Copy();
-  moved->depth = whole.depth;
-  moved->depth_delay = whole.depth_delay;
+  moved->twist = whole.twist;
   return moved;
 }
 
@@ -111,32 +110,35 @@ std::unique_ptr<Reference> HybridTracker::MakeReference(
 
 void HybridTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
-                          const Rigid3d& cur_from_ref_guess,
-                          const MotionMatrix* guess_covariance,
-                          Tracked* tracked) {
+                          const TrackingGuess& guess, Tracked* tracked) {
   const auto& ours = dynamic_cast<const HybridReference&>(reference);
-  const auto& both = dynamic_cast<const HybridFrame&>(frame);
+  HybridFrame both = dynamic_cast<const HybridFrame&>(frame);
   const auto with_features = PartOf(both, both.features);
-  const auto with_pixels = PartOf(both, both.direct);
+  auto with_pixels = PartOf(both, both.direct);
   tracked->status = TrackingStatus::kLost;
   tracked->reason = "the reference has no features";
   if (ours.features != nullptr) {
     double start_ms = 0.0;
-    Rigid3d start = cur_from_ref_guess;
+    Rigid3d start = guess.cur_from_ref;
     if (ours.direct != nullptr) {
       const StageTimer timer(&start_ms);
-      start = direct_->FindStart(*ours.direct, *with_pixels, cur_from_ref_guess,
-                                 guess_covariance);
+      start = direct_->FindStart(*ours.direct, *with_pixels, guess);
     }
-    features_->Track(*ours.features, *with_features, start, cur_from_ref_guess,
-                     guess_covariance, tracked);
+    features_->Track(*ours.features, *with_features, start, guess, tracked);
     tracked->match_ms += start_ms;
   }
   if (!refines_ || ours.direct == nullptr) return;
   const bool found = tracked->status != TrackingStatus::kLost;
   if (found) {
-    direct_->Track(*ours.direct, *with_pixels, tracked->estimate.cur_from_prev,
-                   guess_covariance, kLevelsFromFeatures, &pixels_);
+    if (tracked->twist.has_value()) {
+      both.twist = tracked->twist;
+      with_pixels = PartOf(both, both.direct);
+    }
+    TrackingGuess from_features = tracked->estimate.cur_from_prev;
+    from_features.covariance = guess.covariance;
+    direct_->Track(*ours.direct, *with_pixels, from_features,
+                   kLevelsFromFeatures, &pixels_);
+    pixels_.estimate.covariance += tracked->twist_covariance;
     tracked->estimate.iterations += pixels_.estimate.iterations;
     tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
     if (tracked->status == TrackingStatus::kOk &&
@@ -147,8 +149,7 @@ void HybridTracker::Track(const Reference& reference,
   }
   if (!found || pixels_.status != TrackingStatus::kOk) {
     // Few features, or none, may lead astray: pixels find the way alone.
-    direct_->Track(*ours.direct, *with_pixels, cur_from_ref_guess,
-                   guess_covariance, 0, &pixels_);
+    direct_->Track(*ours.direct, *with_pixels, guess, 0, &pixels_);
     pixels_.match_ms += tracked->match_ms;
     if (pixels_.status == TrackingStatus::kOk ||
         (!found && pixels_.status == TrackingStatus::kDegraded)) {

@@ -28,8 +28,7 @@ class HybridTracker final : public Tracker {
                                            const Tracked* tracked,
                                            std::string* why_not) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
-             const Rigid3d& cur_from_ref_guess,
-             const MotionMatrix* guess_covariance, Tracked* tracked) override;
+             const TrackingGuess& guess, Tracked* tracked) override;
   void Believe(Reference* reference, Tracked* tracked) override;
   const FrontendOptions& images() const override { return features_->images(); }
 

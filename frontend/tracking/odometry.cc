@@ -1,5 +1,6 @@
 #include "frontend/tracking/odometry.h"
 
+#include <cmath>
 #include <optional>
 #include <string>
 #include <utility>
@@ -17,6 +18,24 @@ namespace {
 constexpr double kMinReturnShare = 0.7;
 constexpr double kMaxReturnFlow = 0.5;
 
+// What a velocity that is not known adds to the covariance of a motion: the
+// rows of a moving camera are seen at a mean time that is off by some part of
+// the readout.
+MotionMatrix OfUnknownVelocity(const Frame& frame) {
+  constexpr double kSigmaAngular = 0.5;  // rad/s, of a hand
+  constexpr double kSigmaLinear = 0.3;   // m/s
+  constexpr double kShareOfReadout = 0.25;
+  const Shutter& color = frame.color_shutter;
+  const double time =
+      std::abs(color.offset) + kShareOfReadout * std::abs(color.readout) +
+      std::abs(frame.DepthShutter().offset - color.offset);
+  const double turn = kSigmaAngular * time, shift = kSigmaLinear * time;
+  MotionMatrix covariance = MotionMatrix::Zero();
+  covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
+      shift * shift, shift * shift;
+  return covariance;
+}
+
 }  // namespace
 
 Odometry::Odometry(const OdometryOptions& options,
@@ -25,7 +44,7 @@ Odometry::Odometry(const OdometryOptions& options,
       tracker_(std::move(tracker)),
       relocaliser_(tracker_->images().camera, tracker_->images().DepthLookup()),
       attempts_(tracker_.get()),
-      color_time_(tracker_.get(), options.ignore_stamp_offset) {
+      shutter_tracking_(tracker_.get()) {
   const std::string error = options.Check();
   if (!error.empty()) throw InputError("odometry: " + error);
 }
@@ -59,7 +78,10 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   result.timestamp = frame.timestamp;
   interval_ = result.index > 0 ? frame.timestamp - timestamp_ : 0.0;
   timestamp_ = frame.timestamp;
-  depth_ = frame.depth;
+  has_shutter_ = HasShutter(frame);
+  twist_.reset();
+  twist_covariance_.setZero();
+  if (has_shutter_) twist_covariance_ = OfUnknownVelocity(frame);
   {
     const StageTimer timer(&result.track_ms);
     std::optional<Prediction> predicted;
@@ -109,30 +131,51 @@ bool Odometry::Follow(const PreparedFrame& measured,
   const Rigid3d predicted = cur_from_prev_ * last;
   const Rigid3d first = options_.predict_velocity ? predicted : last;
   const Rigid3d second = options_.predict_velocity ? last : predicted;
-  const auto track = [&](const PreparedFrame& frame) -> std::optional<Rigid3d> {
-    if ((prediction != nullptr &&
-         attempts_.Try(
-             frame, *reference_, prediction->cur_from_ref, result,
-             prediction->is_certain ? &prediction->covariance : nullptr)) ||
-        attempts_.TryEither(frame, *reference_, first, second, result)) {
-      return attempts_.kept().estimate.cur_from_prev * last.Inverse();
+  const auto track = [&](const PreparedFrame& frame,
+                         const VelocityPrior* velocity,
+                         const Rigid3d* found) -> const Tracked* {
+    const auto from = [&](const Rigid3d& cur_from_ref) {
+      TrackingGuess guess = cur_from_ref;
+      guess.velocity = velocity;
+      return guess;
+    };
+    if (found != nullptr &&
+        attempts_.Try(frame, *reference_, from(*found), result)) {
+      return &attempts_.kept();
     }
-    return std::nullopt;
+    if (prediction != nullptr) {
+      TrackingGuess guess = from(prediction->cur_from_ref);
+      if (prediction->is_certain) guess.covariance = &prediction->covariance;
+      if (attempts_.Try(frame, *reference_, guess, result)) {
+        return &attempts_.kept();
+      }
+    }
+    return attempts_.TryEither(frame, *reference_, from(first), from(second),
+                               result)
+               ? &attempts_.kept()
+               : nullptr;
   };
-  const PreparedFrame* const frame = color_time_.Follow(
-      measured,
-      prediction == nullptr
-          ? recent_motion_
-          : RecentMotion(prediction->cur_from_prev, interval_),
-      interval_, is_lost_, reference_, track);
+  const PreparedFrame* frame = &measured;
+  if (!has_shutter_) {
+    if (track(measured, nullptr, nullptr) == nullptr) frame = nullptr;
+  } else {
+    std::optional<Twist> twist;
+    if (prediction != nullptr && interval_ > 0.0) {
+      twist = TwistOf(prediction->cur_from_prev, interval_);
+    }
+    frame = shutter_tracking_.Follow(measured, is_lost_ ? 0.0 : interval_, last,
+                                     twist, reference_, track);
+  }
   // A doubtful pose is no way back from being lost.
   if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
     return false;
   }
+  twist_ = frame->twist;
+  if (attempts_.kept().twist.has_value()) {
+    twist_covariance_ = attempts_.kept().twist_covariance;
+  }
   TakeMotion(result);
   cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
-  recent_motion_ =
-      is_lost_ ? RecentMotion() : RecentMotion(cur_from_prev_, interval_);
   Accept(*frame, result);
   return true;
 }
@@ -151,9 +194,9 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   }
   reference_ = keyframe;
   segment_ = keyframe->segment;
+  shutter_tracking_.Reset();
   TakeMotion(result);
   cur_from_prev_ = Rigid3d();
-  recent_motion_ = RecentMotion();
   result->relocalised = true;
   Accept(frame, result);
   return true;
@@ -164,7 +207,7 @@ void Odometry::Lose(const PreparedFrame& frame, const Prediction* prediction,
   // One frame that nobody tells of, and the way since is no longer known.
   is_predicted_ = prediction != nullptr && (is_predicted_ || !is_lost_);
   is_lost_ = true;
-  recent_motion_ = RecentMotion();
+  shutter_tracking_.Reset();
   result->status = TrackingStatus::kLost;
   result->is_predicted = is_predicted_;
   if (prediction != nullptr) {
@@ -202,6 +245,7 @@ void Odometry::TakeMotion(TrackedFrame* result) {
   const MotionEstimate& estimate = last_estimate();
   cur_from_ref_ = estimate.cur_from_prev;
   covariance_ = estimate.covariance;
+  if (!attempts_.kept().twist.has_value()) covariance_ += twist_covariance_;
   result->cur_from_reference = cur_from_ref_;
   if (!estimate.ok()) return;
   result->edges.insert(result->edges.begin(), {reference_->id, result->index,
@@ -211,7 +255,6 @@ void Odometry::TakeMotion(TrackedFrame* result) {
 void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
-  depth_ = frame.depth;
   tracker_->Believe(reference_->reference.get(), attempts_.mutable_kept());
   if (NeedsNewReference()) ChangeReference(frame, result);
 }
@@ -255,18 +298,23 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   const bool is_lost = result->status == TrackingStatus::kLost;
   const bool was_tracked = reference_ != nullptr && !is_lost;
   std::string why_not;
+  std::unique_ptr<const PreparedFrame> at_one_moment;
+  if (has_shutter_) at_one_moment = shutter_tracking_.AtOneMoment(frame);
+  const PreparedFrame& seen = has_shutter_ ? *at_one_moment : frame;
   std::unique_ptr<Reference> reference = tracker_->MakeReference(
-      frame, was_tracked ? reference_->reference.get() : nullptr,
+      seen, was_tracked ? reference_->reference.get() : nullptr,
       was_tracked ? &attempts_.kept() : nullptr, &why_not);
   if (reference == nullptr) {
     if (is_lost) result->reason = why_not;
     return false;
   }
-  auto place = std::make_unique<Place>(frame, result->index);
+  auto place = std::make_unique<Place>(seen, result->index);
   reference_ =
       keyframes_.Add({result->index, segment_, world_from_cam,
                       std::move(reference), std::move(place), result->edges});
-  color_time_.AddReference(frame);
+  if (has_shutter_) {
+    shutter_tracking_.AddReference(frame, seen, result->index);
+  }
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   result->is_reference = true;

@@ -6,10 +6,9 @@
 #include "core/geometry/rigid3.h"
 #include "frontend/features/frontend.h"
 #include "frontend/places/relocaliser.h"
-#include "frontend/tracking/color_time.h"
 #include "frontend/tracking/keyframes.h"
 #include "frontend/tracking/odometry_options.h"
-#include "frontend/tracking/recent_motion.h"
+#include "frontend/tracking/shutter_tracking.h"
 #include "frontend/tracking/tracked_frame.h"
 #include "frontend/tracking/tracker.h"
 #include "frontend/tracking/tracking_attempts.h"
@@ -74,9 +73,22 @@ class Odometry {
   // none any more.
   const Reference* FindReference(int id) const;
 
-  // The depth image of the last frame as it was tracked by: moved to the time
-  // of its colour image, if that is another one. Good until the next frame.
-  const cv::Mat& last_depth() const { return depth_; }
+  // Whether something has to be done about the times of a frame's rows.
+  bool HasShutter(const Frame& frame) const {
+    return options_.shutter == ShutterUse::kCamera && !frame.IsOneMoment();
+  }
+
+  // The velocity of the last frame, where its rows were exposed at different
+  // times and it was found; see Frame::twist.
+  const std::optional<Twist>& last_twist() const { return twist_; }
+
+  // The images of a frame with a shutter that became a reference, as those
+  // after it see them: as exposed at one moment. Final once the next frame was
+  // tracked; good until the one after. Null: it is neither the latest reference
+  // nor the one before.
+  const Frame* FindReferenceFrame(int id) const {
+    return shutter_tracking_.FindReferenceFrame(id);
+  }
 
  private:
   // What a motion guess makes of the last pose.
@@ -115,16 +127,17 @@ class Odometry {
   Keyframes keyframes_;
   Relocaliser relocaliser_;
   TrackingAttempts attempts_;  // at the last frame
-  ColorTime color_time_;
+  ShutterTracking shutter_tracking_;
+  bool has_shutter_ = false;     // of the last frame
+  std::optional<Twist> twist_;   // see last_twist
+  MotionMatrix twist_covariance_ = MotionMatrix::Zero();  // see Tracked
   Keyframe* reference_ = nullptr;  // null: none yet
   int num_frames_ = 0;
   Rigid3d cur_from_ref_;                            // of the last frame
   MotionMatrix covariance_ = MotionMatrix::Zero();  // of cur_from_ref_
-  Rigid3d cur_from_prev_;       // between the last two frames
-  RecentMotion recent_motion_;  // as far as it was found
-  double timestamp_ = 0.0;      // of the last frame, s
-  double interval_ = 0.0;       // since the one before, s
-  cv::Mat depth_;               // see last_depth
+  Rigid3d cur_from_prev_;                           // between the last two
+  double timestamp_ = 0.0;  // of the last frame, s
+  double interval_ = 0.0;   // since the one before, s
   int segment_ = 0;
   double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
   bool is_lost_ = false;

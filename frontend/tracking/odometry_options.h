@@ -14,6 +14,12 @@ enum class LostPolicy {
   kNewSegment,  // as kHold, and after a while a new segment starts
 };
 
+// What is done about the times at which the rows of a frame were exposed.
+enum class ShutterUse {
+  kCamera,  // what the frame says of them is undone, by the velocity found
+  kNone,    // all counts as seen at the frame's stamp
+};
+
 // When to change the reference, where to look, when to give up.
 struct OdometryOptions {
   // A new reference is taken when less of the reference agrees, or when that
@@ -28,9 +34,9 @@ struct OdometryOptions {
   // What becomes of frames whose motion is not found.
   LostPolicy on_lost = LostPolicy::kNewSegment;
 
-  // Depth is taken as measured at the time of colour, whatever its stamp says;
-  // otherwise it is moved to that time by the motion just found.
-  bool ignore_stamp_offset = false;
+  // Whether to undo that rows are exposed one after another and depth at
+  // another time than colour.
+  ShutterUse shutter = ShutterUse::kCamera;
 
   // How long (s) the old segment is searched for before a new one starts.
   double new_segment_after = 1.5;

@@ -19,12 +19,11 @@ std::string TrackerOptions::Check() const {
   return "";
 }
 
-MotionPrior PriorOf(const TrackerOptions& options, const Rigid3d& guess,
-                    const MotionMatrix* covariance) {
+MotionPrior PriorOf(const TrackerOptions& options, const TrackingGuess& guess) {
   MotionPrior prior;
-  prior.mean = guess;
-  if (covariance != nullptr) {
-    prior.information = covariance->inverse();
+  prior.mean = guess.cur_from_ref;
+  if (guess.covariance != nullptr) {
+    prior.information = guess.covariance->inverse();
     return prior;
   }
   const double turn = 1.0 / options.prior_sigma_rotation;

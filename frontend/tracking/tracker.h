@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -11,6 +12,7 @@
 #include "core/initial_guess/initial_guess.h"
 #include "frontend/features/frontend.h"
 #include "frontend/image/view_samples.h"
+#include "frontend/tracking/velocity_prior.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {
@@ -41,10 +43,6 @@ struct TrackerOptions {
   std::string Check() const;
 };
 
-// What is known of a motion by a guess and its covariance; null: by the
-// options' standard deviations.
-MotionPrior PriorOf(const TrackerOptions& options, const Rigid3d& guess,
-                    const MotionMatrix* covariance);
 
 // What a tracker keeps of a frame that others are tracked against, and what it
 // has learnt of it since; of the frame's images, copies.
@@ -58,6 +56,25 @@ class Reference {
   // Its images, if they are kept; else null.
   virtual const FrameView* images() const { return nullptr; }
 };
+
+// Where a frame is looked for.
+struct TrackingGuess {
+  TrackingGuess(const Rigid3d& cur_from_ref)  // NOLINT(*-explicit-*): most say
+      : cur_from_ref(cur_from_ref) {}         // no more
+
+  Rigid3d cur_from_ref;
+
+  // Becomes the prior of costs that have one; null: not known.
+  const MotionMatrix* covariance = nullptr;
+
+  // Of the frame's velocity, where that has to be found, too; null: it stays
+  // what the frame says.
+  const VelocityPrior* velocity = nullptr;
+};
+
+// What is known of a motion by a guess: with its covariance, or with the
+// options' standard deviations.
+MotionPrior PriorOf(const TrackerOptions& options, const TrackingGuess& guess);
 
 // How a frame was tracked against a reference.
 struct Tracked {
@@ -74,6 +91,12 @@ struct Tracked {
 
   // What of the reference was found in the frame and agrees with the motion.
   Overlap overlap;
+
+  // The velocity of the frame that was found with it; nothing: as it was.
+  std::optional<Twist> twist;
+
+  // What its uncertainty has added to the covariance of the motion.
+  MotionMatrix twist_covariance = MotionMatrix::Zero();
 
   // That is so little that the next frames need another reference, whatever
   // share it is.
@@ -113,12 +136,8 @@ class Tracker {
                                                    std::string* why_not) = 0;
 
   // Fills `tracked` (of the camera of images()), whose memory is used again.
-  // `guess_covariance` becomes the prior of costs that have one; null: not
-  // known.
   virtual void Track(const Reference& reference, const PreparedFrame& frame,
-                     const Rigid3d& cur_from_ref_guess,
-                     const MotionMatrix* guess_covariance,
-                     Tracked* tracked) = 0;
+                     const TrackingGuess& guess, Tracked* tracked) = 0;
 
   // The motion is believed and gone on from: the reference may learn from it,
   // and `tracked` say what is shared in this light.

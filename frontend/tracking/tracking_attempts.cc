@@ -5,11 +5,8 @@
 namespace rgbd_pose {
 
 bool TrackingAttempts::Try(const PreparedFrame& frame, const Keyframe& keyframe,
-                           const Rigid3d& cur_from_ref_guess,
-                           TrackedFrame* result,
-                           const MotionMatrix* guess_covariance) {
-  tracker_->Track(*keyframe.reference, frame, cur_from_ref_guess,
-                  guess_covariance, &tracked_);
+                           const TrackingGuess& guess, TrackedFrame* result) {
+  tracker_->Track(*keyframe.reference, frame, guess, &tracked_);
   const MotionEstimate& estimate = tracked_.estimate;
   result->status = tracked_.status;
   result->reason = tracked_.reason;
@@ -25,8 +22,10 @@ bool TrackingAttempts::Try(const PreparedFrame& frame, const Keyframe& keyframe,
 }
 
 bool TrackingAttempts::TryEither(const PreparedFrame& frame,
-                                 const Keyframe& keyframe, const Rigid3d& first,
-                                 const Rigid3d& second, TrackedFrame* result) {
+                                 const Keyframe& keyframe,
+                                 const TrackingGuess& first,
+                                 const TrackingGuess& second,
+                                 TrackedFrame* result) {
   if (!Try(frame, keyframe, first, result)) {
     return Try(frame, keyframe, second, result);
   }
@@ -38,11 +37,11 @@ bool TrackingAttempts::TryEither(const PreparedFrame& frame,
 
 bool TrackingAttempts::TryInstead(const PreparedFrame& frame,
                                   const Keyframe& keyframe,
-                                  const Rigid3d& cur_from_ref_guess,
+                                  const TrackingGuess& guess,
                                   TrackedFrame* result, const Accept& accept) {
   TrackedFrame attempt = *result;
   std::swap(tracked_, other_);
-  if (Try(frame, keyframe, cur_from_ref_guess, &attempt) &&
+  if (Try(frame, keyframe, guess, &attempt) &&
       attempt.status == TrackingStatus::kOk && (!accept || accept())) {
     *result = std::move(attempt);
     return true;

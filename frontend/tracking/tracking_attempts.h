@@ -23,22 +23,20 @@ class TrackingAttempts {
         other_(tracked_) {}
 
   // Against a keyframe from one guess; true if the result is a pose.
-  // `guess_covariance`: null: not known.
   bool Try(const PreparedFrame& frame, const Keyframe& keyframe,
-           const Rigid3d& cur_from_ref_guess, TrackedFrame* result,
-           const MotionMatrix* guess_covariance = nullptr);
+           const TrackingGuess& guess, TrackedFrame* result);
 
   // The same from two guesses: the second counts where the first leads to no
   // pose, or to a doubtful one and itself to a good one.
   bool TryEither(const PreparedFrame& frame, const Keyframe& keyframe,
-                 const Rigid3d& first, const Rigid3d& second,
+                 const TrackingGuess& first, const TrackingGuess& second,
                  TrackedFrame* result);
 
   // Another one after a pose was found: it counts if it is good and accepted
   // (asked when kept() is the new one). False, and nothing has changed but the
   // times, if not.
   bool TryInstead(const PreparedFrame& frame, const Keyframe& keyframe,
-                  const Rigid3d& cur_from_ref_guess, TrackedFrame* result,
+                  const TrackingGuess& guess, TrackedFrame* result,
                   const Accept& accept = nullptr);
 
   // What the tracker said of the attempt that counts.

@@ -1,0 +1,128 @@
+#include "frontend/tracking/shutter_tracking.h"
+
+#include <string>
+#include <utility>
+
+#include "frontend/image/observe.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A reference is made anew if that moves something by this.
+constexpr double kSmallFlowPx = 0.2;
+
+// Of the first two frames, of which each tells the velocity of the other.
+constexpr int kMaxRounds = 3;
+
+std::unique_ptr<const PreparedFrame> WithTwist(
+    const PreparedFrame& frame, const std::optional<Twist>& twist) {
+  std::unique_ptr<PreparedFrame> copy = frame.Copy();
+  copy->twist = twist;
+  return copy;
+}
+
+}  // namespace
+
+void ShutterTracking::Reset() {
+  velocity_.Reset();
+  between_.reset();
+  early_.reset();
+}
+
+const PreparedFrame* ShutterTracking::Follow(
+    const PreparedFrame& frame, double interval, const Rigid3d& prev_from_ref,
+    const std::optional<Twist>& first_guess, Keyframe* reference,
+    const Track& track) {
+  if (!(interval > 0.0 && interval <= VelocityModel::kMaxInterval)) {
+    Reset();
+    frame_ = WithTwist(frame, std::nullopt);
+    return track(*frame_, nullptr, nullptr) != nullptr ? frame_.get() : nullptr;
+  }
+  const double middle = frame.color_shutter.offset;
+  frame_ = WithTwist(frame, first_guess ? first_guess : velocity_.last());
+  VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
+  const Tracked* tracked = track(*frame_, &prior, nullptr);
+  if (tracked == nullptr) return nullptr;
+  Twist between;
+  const auto look = [&] {
+    if (tracked->twist.has_value()) frame_ = WithTwist(frame, tracked->twist);
+    between = prior.Between(tracked->estimate.cur_from_prev,
+                            frame_->twist.value_or(Twist()));
+  };
+  look();
+  const int rounds = between_.has_value() ? 1 : kMaxRounds;
+  for (int round = 0; round < rounds; ++round) {
+    if (!MendReference(between, interval, reference)) break;
+    prior = velocity_.Prior(prev_from_ref, interval, middle);
+    const Rigid3d found = tracked->estimate.cur_from_prev;
+    tracked = track(*frame_, &prior, &found);
+    if (tracked == nullptr) return nullptr;
+    look();
+  }
+  early_.reset();
+  if (frame_->twist.has_value()) velocity_.Add(*frame_->twist, middle);
+  between_ = between;
+  interval_ = interval;
+  return frame_.get();
+}
+
+bool ShutterTracking::MendReference(const Twist& since, double interval,
+                                    Keyframe* reference) {
+  if (!early_.has_value()) return false;
+  Twist twist = since;
+  if (early_->before.has_value()) {
+    // At constant acceleration.
+    const double share = early_->interval / (early_->interval + interval);
+    twist = share * since + (1.0 - share) * *early_->before;
+  }
+  Frame& frame = early_->frame;
+  const FrameTiming timing = frame.Timing(twist);
+  velocity_.Correct(twist);
+  if (LargestFlow(tracker_->images().camera, timing,
+                  twist - frame.twist.value_or(Twist())) < kSmallFlowPx) {
+    return false;
+  }
+  frame.twist = twist;
+  const Frame moved = rectifier_.Rectify(frame, early_->target_from_middle);
+  const auto prepared = tracker_->Prepare(moved);
+  std::string why_not;
+  auto mended =
+      tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
+  if (mended == nullptr) return false;
+  reference->reference = std::move(mended);
+  reference->place = std::make_unique<Place>(*prepared, reference->id);
+  reference_frames_[reference->id] = moved;
+  return true;
+}
+
+const Frame* ShutterTracking::FindReferenceFrame(int id) const {
+  const auto found = reference_frames_.find(id);
+  return found != reference_frames_.end() ? &found->second : nullptr;
+}
+
+std::unique_ptr<const PreparedFrame> ShutterTracking::AtOneMoment(
+    const PreparedFrame& frame) {
+  return tracker_->Prepare(rectifier_.Rectify(frame));
+}
+
+void ShutterTracking::AddReference(const PreparedFrame& frame,
+                                   const Frame& at_one_moment, int id) {
+  Frame& kept = reference_frames_[id] = at_one_moment;
+  kept.gray = at_one_moment.gray.clone();
+  kept.depth = at_one_moment.depth.clone();
+  if (reference_frames_.size() > 2) {
+    reference_frames_.erase(reference_frames_.begin());
+  }
+  early_.emplace();
+  early_->frame = frame;
+  early_->frame.gray = frame.gray.clone();
+  early_->frame.depth = frame.depth.clone();
+  early_->frame.color.release();
+  early_->target_from_middle = frame.twist.value_or(Twist())
+                                   .MotionDuring(frame.color_shutter.offset)
+                                   .Inverse();
+  early_->before = between_;
+  early_->interval = interval_;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,80 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+
+#include "core/geometry/rigid3.h"
+#include "frontend/image/frame.h"
+#include "frontend/image/frame_rectifier.h"
+#include "frontend/tracking/keyframes.h"
+#include "frontend/tracking/tracker.h"
+#include "frontend/tracking/velocity_prior.h"
+
+namespace rgbd_pose {
+
+// Tracks frames whose rows were exposed one after another, or whose depth was
+// not taken when colour was: with the velocity that their rows and the frames
+// before tell. A frame becomes a reference as seen at one moment, with a
+// velocity that is known better once the next frame is.
+class ShutterTracking {
+ public:
+  // Tracks a frame with what is known of its velocity (null: nothing) from
+  // where it was found before (null: it was not yet); null: it is lost.
+  using Track = std::function<const Tracked*(const PreparedFrame& frame,
+                                             const VelocityPrior* prior,
+                                             const Rigid3d* cur_from_ref)>;
+
+  // `tracker` must outlive this.
+  explicit ShutterTracking(Tracker* tracker)
+      : tracker_(tracker), rectifier_(tracker->images().camera) {}
+
+  // Tracks a frame against a reference, `interval` s after the last frame.
+  // `prev_from_ref`: of that; `first_guess`: of the velocity, nothing: that of
+  // the last frame. The frame with the velocity found, good until the next
+  // call; null if it is lost.
+  const PreparedFrame* Follow(const PreparedFrame& frame, double interval,
+                              const Rigid3d& prev_from_ref,
+                              const std::optional<Twist>& first_guess,
+                              Keyframe* reference, const Track& track);
+
+  // Nothing is known of the velocity any more.
+  void Reset();
+
+  // A frame of Follow, or one whose velocity is not known, as it is to become a
+  // reference: seen at one moment.
+  std::unique_ptr<const PreparedFrame> AtOneMoment(const PreparedFrame& frame);
+
+  // The frame, which AtOneMoment has moved, is the reference of that id now.
+  void AddReference(const PreparedFrame& frame, const Frame& at_one_moment,
+                    int id);
+
+  // The images of a reference, as they have become; null: it is neither the
+  // latest nor the one before.
+  const Frame* FindReferenceFrame(int id) const;
+
+ private:
+  // A reference whose velocity the next frame will tell.
+  struct Early {
+    Frame frame;                   // as exposed
+    Rigid3d target_from_middle;    // the camera that it is resampled for
+    std::optional<Twist> before;   // the mean velocity into it
+    double interval = 0.0;         // of that, s
+  };
+
+  // Makes the reference anew with the mean velocity since; false: there is
+  // nothing to gain.
+  bool MendReference(const Twist& since, double interval, Keyframe* reference);
+
+  Tracker* tracker_;
+  FrameRectifier rectifier_;
+  VelocityModel velocity_;
+  std::optional<Twist> between_;  // mean velocity into the last frame
+  double interval_ = 0.0;         // of that, s
+  std::optional<Early> early_;
+  std::unique_ptr<const PreparedFrame> frame_;  // see Follow
+  std::map<int, Frame> reference_frames_;       // by id; the latest two
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,105 @@
+#include "frontend/tracking/twist_estimation.h"
+
+#include <Eigen/Cholesky>
+#include <cmath>
+
+namespace rgbd_pose {
+namespace {
+
+using Matrix12 = Eigen::Matrix<double, 12, 12>;
+using Vector12 = Eigen::Matrix<double, 12, 1>;
+using Row6 = Eigen::Matrix<double, 1, 6>;
+
+// Width of Cauchy's loss, in sigmas.
+constexpr double kLossWidth = 2.0;
+
+// Normal equations of the change of the motion (rotation, then translation, in
+// current axes) and of the velocity (angular, then linear).
+struct Equations {
+  Matrix12 hessian = Matrix12::Zero();
+  Vector12 right = Vector12::Zero();
+
+  // A residual whose derivative by the motion is `row`. A point that is seen
+  // `seconds` after the stamp has moved by the velocity the other way, and so
+  // long.
+  void Add(const Row6& row, double seconds, double residual, double weight) {
+    Eigen::Matrix<double, 1, 12> both;
+    both << row, -seconds * row;
+    hessian.selfadjointView<Eigen::Lower>().rankUpdate(both.transpose(),
+                                                       weight);
+    right -= weight * residual * both.transpose();
+  }
+};
+
+double Weight(double square, double sigma) {
+  return 1.0 / (sigma * sigma *
+                (1.0 + square / (sigma * sigma * kLossWidth * kLossWidth)));
+}
+
+}  // namespace
+
+TwistEstimate EstimateTwist(const Correspondences& matches,
+                            const std::vector<bool>& is_inlier,
+                            const Rigid3d& cur_from_ref,
+                            const FrameTiming& timing, const Twist& prior_mean,
+                            const VelocityPrior& prior) {
+  const Camera& camera = matches.camera();
+  Equations equations;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const auto& [ref, cur] = matches[i];
+    if (!is_inlier[i] || ref.depth <= 0.0) continue;
+    const Eigen::Vector3d point = cur_from_ref * matches.Point(ref);
+    if (!(point.z() > 0.0)) continue;
+    const double inverse = 1.0 / point.z();
+    const double x = point.x() * inverse, y = point.y() * inverse;
+    // Of x, y and z by the motion.
+    Row6 by_x, by_y, by_z;
+    by_x << -x * y, 1.0 + x * x, -y, inverse, 0.0, -x * inverse;
+    by_y << -1.0 - y * y, x * y, x, 0.0, inverse, -y * inverse;
+    by_z << point.y(), -point.x(), 0.0, 0.0, 0.0, 1.0;
+    // The row that it was seen in, but for some pixels.
+    const double row = cur.v;
+    const double u = camera.fx * x + camera.cx - cur.u;
+    const double v = camera.fy * y + camera.cy - cur.v;
+    const double weight =
+        Weight(u * u + v * v, std::hypot(ref.sigma_px, cur.sigma_px));
+    const double seen = timing.color.RowTime(row, camera.height);
+    equations.Add(camera.fx * by_x, seen, u, weight);
+    equations.Add(camera.fy * by_y, seen, v, weight);
+    if (cur.depth <= 0.0) continue;
+    const double z = point.z() - cur.depth;
+    equations.Add(by_z, timing.depth.RowTime(row, camera.height), z,
+                  Weight(z * z, std::hypot(ref.sigma_depth, cur.sigma_depth)));
+  }
+  equations.hessian = equations.hessian.selfadjointView<Eigen::Lower>();
+  // Of the motion nothing is known before: numbers that keep it solvable.
+  equations.hessian.diagonal().head<6>().array() += 1e-3;
+  const Twist off = prior_mean - timing.twist;
+  for (int i = 0; i < 3; ++i) {
+    const double angular = 1.0 / (prior.sigma_angular * prior.sigma_angular);
+    const double linear = 1.0 / (prior.sigma_linear * prior.sigma_linear);
+    equations.hessian(6 + i, 6 + i) += angular;
+    equations.hessian(9 + i, 9 + i) += linear;
+    equations.right[6 + i] += angular * off.angular[i];
+    equations.right[9 + i] += linear * off.linear[i];
+  }
+  const Vector12 change = equations.hessian.ldlt().solve(equations.right);
+  TwistEstimate result;
+  result.twist = timing.twist +
+                 Twist{change.segment<3>(6), change.segment<3>(9)};
+  // The motion follows the velocity by -H_mm^-1 H_mv.
+  const MotionMatrix H_mm = equations.hessian.topLeftCorner<6, 6>();
+  const MotionMatrix H_mv = equations.hessian.topRightCorner<6, 6>();
+  const MotionMatrix follows = H_mm.ldlt().solve(H_mv);
+  const MotionMatrix velocity_information =
+      equations.hessian.bottomRightCorner<6, 6>() - H_mv.transpose() * follows;
+  MotionMatrix to_center = MotionMatrix::Identity();
+  to_center.bottomRightCorner<3, 3>() =
+      -cur_from_ref.rotation.conjugate().toRotationMatrix();
+  const MotionMatrix moves = to_center * follows;
+  result.motion_covariance =
+      moves * velocity_information.ldlt().solve(moves.transpose());
+  return result;
+}
+
+}  // namespace rgbd_pose
