@@ -29,8 +29,7 @@ RgbdCamera Changed(const RgbdCamera& first, const CalibrationVector& theta) {
   changed.depth_errors.inverse_depth_offset =
       first.depth_errors.inverse_depth_offset / theta[kDepthFactor] +
       theta[kInverseDepth];
-  changed.depth_shutter.offset =
-      first.depth_shutter.offset + theta[kDepthTime];
+  changed.depth_shutter.offset = first.depth_shutter.offset + theta[kDepthTime];
   const Eigen::Vector3d turn = theta.segment<3>(kRotationX);
   const double angle = turn.norm();
   const Eigen::Vector3d axis =

@@ -168,10 +168,9 @@ void Slam::AddKeyframe(NewKeyframe keyframe) {
 
 void Slam::SearchMap(const PreparedFrame& frame, int index) {
   if (search_.has_value()) return;
-  search_ = {index + settings_.update_delay,
-             worker_.Do([this, lost = CopyOf(frame)] {
-               return mapper_.Find(lost);
-             })};
+  search_ = {
+      index + settings_.update_delay,
+      worker_.Do([this, lost = CopyOf(frame)] { return mapper_.Find(lost); })};
 }
 
 void Slam::TakeUp(int frame, SlamFrame* result) {

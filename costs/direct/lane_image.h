@@ -71,8 +71,8 @@ template <typename D>
                   pixel.v_y * (velocity[1] - y * velocity[2])) *
                  inverse;
   const double per_row = shutter.readout / level_camera.height;
-  const D at_once = shutter.offset - 0.5 * shutter.readout +
-                    per_row * (pixel.v + 0.5);
+  const D at_once =
+      shutter.offset - 0.5 * shutter.readout + per_row * (pixel.v + 0.5);
   const D seconds = at_once / (1.0 - per_row * flow);
   twist.MovePoint(point, seconds, moved);
 }

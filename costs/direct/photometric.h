@@ -146,8 +146,8 @@ struct Photometric {
   // Where a point is seen.
   template <typename D>
   struct Seen {
-    D turned[3];  // R X, m
-    D x, y, z;    // normalised image coordinates; depth, m; at the stamp
+    D turned[3];         // R X, m
+    D x, y, z;           // normalised image coordinates; depth, m; at the stamp
     SeenPixel<D> pixel;  // in its row
   };
 

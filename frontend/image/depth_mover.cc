@@ -117,11 +117,13 @@ DepthMover::Flow DepthMover::FlowAt(size_t block,
                       kUsualInverseDepth * measured_from_moved.translation) -
       pixel;
   const Eigen::Vector2d shift = (both - turn) / kUsualInverseDepth;
-  return {static_cast<float>(turn.x()), static_cast<float>(turn.y()),
-          static_cast<float>(shift.x()), static_cast<float>(shift.y()),
-          static_cast<float>(turned.z()),
-          static_cast<float>(measured_from_moved.translation.z() *
-                             depth_scale_)};
+  return {
+      static_cast<float>(turn.x()),
+      static_cast<float>(turn.y()),
+      static_cast<float>(shift.x()),
+      static_cast<float>(shift.y()),
+      static_cast<float>(turned.z()),
+      static_cast<float>(measured_from_moved.translation.z() * depth_scale_)};
 }
 
 // The row in which a block was measured decides the motion, and that the row.

@@ -36,10 +36,10 @@ struct Frame {
     return raw == kNoDepth ? 0.0 : raw / depth_scale;
   }
 
-  // Whether both images were taken at the time stamp. Stamps that differ by less
-  // than 0.1 ms do not count: not even a turn of 360 degrees a second moves
-  // anything by half a pixel meanwhile. Beyond 50 ms they are of clocks that
-  // disagree.
+  // Whether both images were taken at the time stamp. Stamps that differ by
+  // less than 0.1 ms do not count: not even a turn of 360 degrees a second
+  // moves anything by half a pixel meanwhile. Beyond 50 ms they are of clocks
+  // that disagree.
   bool IsOneMoment() const {
     return color_shutter.IsGlobal() && DepthShutter().IsGlobal();
   }

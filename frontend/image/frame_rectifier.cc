@@ -78,8 +78,8 @@ void FrameRectifier::MakeFlows(const Frame& frame,
     for (int step = 0; step < 2; ++step) {
       const double row = node.y() + turn.y() + kRoomInverseDepth * shift.y();
       const Rigid3d exposed_from_target =
-          timing.twist.MotionDuring(
-              timing.color.RowTime(row, camera_.height) - timing.color.offset) *
+          timing.twist.MotionDuring(timing.color.RowTime(row, camera_.height) -
+                                    timing.color.offset) *
           middle_from_target;
       const Eigen::Vector3d ray = exposed_from_target.rotation * rays_[i];
       turn = camera_.Project(ray) - node;
@@ -88,8 +88,9 @@ void FrameRectifier::MakeFlows(const Frame& frame,
                node - turn) /
               kRoomInverseDepth;
     }
-    flows_[i] = {{static_cast<float>(turn.x()), static_cast<float>(turn.y())},
-                 {static_cast<float>(shift.x()), static_cast<float>(shift.y())}};
+    flows_[i] = {
+        {static_cast<float>(turn.x()), static_cast<float>(turn.y())},
+        {static_cast<float>(shift.x()), static_cast<float>(shift.y())}};
   }
 }
 
@@ -99,7 +100,8 @@ void FrameRectifier::MakeMaps(const cv::Mat& depth, double depth_scale) {
   map_u_.create(depth.size(), CV_32F);
   map_v_.create(depth.size(), CV_32F);
   for (int v = 0; v < depth.rows; ++v) {
-    const Flow* const above = &flows_[static_cast<size_t>(v / kStep) * columns_];
+    const Flow* const above =
+        &flows_[static_cast<size_t>(v / kStep) * columns_];
     const Flow* const below = above + columns_;
     const float down = static_cast<float>(v % kStep) / kStep;
     const auto* const raw = depth.ptr<uint16_t>(v);
@@ -119,10 +121,10 @@ void FrameRectifier::MakeMaps(const cv::Mat& depth, double depth_scale) {
       }
       std::array<float, 2> flow;
       for (int k = 0; k < 2; ++k) {
-        const float from = above[column].turn[k] +
-                           inverse_depth * above[column].shift[k];
-        const float to = below[column].turn[k] +
-                         inverse_depth * below[column].shift[k];
+        const float from =
+            above[column].turn[k] + inverse_depth * above[column].shift[k];
+        const float to =
+            below[column].turn[k] + inverse_depth * below[column].shift[k];
         flow[k] = from + down * (to - from);
       }
       for (int u = first; u < end; ++u) {

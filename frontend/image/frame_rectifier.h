@@ -22,8 +22,8 @@ class FrameRectifier {
   // The camera of all frames.
   explicit FrameRectifier(const Camera& camera);
 
-  // The frame at its stamp, its images its own. As it is (and its images shared)
-  // where the velocity is not known or there is nothing to undo.
+  // The frame at its stamp, its images its own. As it is (and its images
+  // shared) where the velocity is not known or there is nothing to undo.
   Frame Rectify(const Frame& frame);
 
   // The same as seen from elsewhere nearby: `target_from_middle` of the camera

@@ -22,8 +22,7 @@ Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
   Eigen::Vector2d pixel = camera.Project(point);
   *moved = point;
   for (int step = 0; step < kRowSteps; ++step) {
-    *moved = twist.MovedPoint(point,
-                              shutter.RowTime(pixel.y(), camera.height));
+    *moved = twist.MovedPoint(point, shutter.RowTime(pixel.y(), camera.height));
     if (!(moved->z() > 0.0)) return pixel;
     pixel = camera.Project(*moved);
   }
@@ -62,8 +61,7 @@ Observation ObserveMoving(const Frame& frame, const Camera& camera,
   seen.sigma_depth = sample.sigma;
   seen.normal = LookUpNormal(frame, camera, in_depth.x(), in_depth.y());
   if (!seen.normal.isZero(0.0)) {
-    const double taken_at =
-        timing.depth.RowTime(in_depth.y(), camera.height);
+    const double taken_at = timing.depth.RowTime(in_depth.y(), camera.height);
     seen.normal += taken_at * twist.angular.cross(seen.normal);
     seen.normal.normalize();
   }

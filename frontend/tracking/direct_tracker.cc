@@ -142,9 +142,8 @@ void DirectTracker::FindTwist(const Reference& reference,
   for (int round = 0; estimate->ok(); ++round) {
     const Twist twist =
         guess.velocity->Mean(estimate->cur_from_prev, timing.twist);
-    const bool is_small =
-        LargestFlow(images_.camera, timing, twist - timing.twist) <
-        kSmallFlowPx;
+    const bool is_small = LargestFlow(images_.camera, timing,
+                                      twist - timing.twist) < kSmallFlowPx;
     if (is_small || round == kMaxRounds) break;
     timing.twist = twist;
     Estimate(reference, frame, timing, Rigid3d(estimate->cur_from_prev), guess,
@@ -155,8 +154,8 @@ void DirectTracker::FindTwist(const Reference& reference,
   const double middle = timing.color.offset;
   const double angular = middle * guess.velocity->sigma_angular;
   const double linear = middle * guess.velocity->sigma_linear;
-  tracked->twist_covariance.diagonal() << Eigen::Vector3d::Constant(
-      angular * angular),
+  tracked->twist_covariance.diagonal()
+      << Eigen::Vector3d::Constant(angular * angular),
       Eigen::Vector3d::Constant(linear * linear);
   estimate->covariance += tracked->twist_covariance;
 }

@@ -13,6 +13,9 @@
 namespace rgbd_pose {
 namespace {
 
+// A smaller share of the features is worth a second look.
+constexpr double kFewFound = 0.6;
+
 std::string OnlyInliers(int inliers) {
   return "only " + std::to_string(inliers) + " inliers";
 }
@@ -31,8 +34,8 @@ void ObserveAgain(const FeatureSet& features, const Frame& frame,
     const Eigen::Vector2d pixel =
         ImagePoint(images.camera, moved_by, before.matches.Point(cur));
     found->Add(features, before.features[i],
-               Observe(frame, images.camera, pixel.x(), pixel.y(),
-                       cur.sigma_px, depth));
+               Observe(frame, images.camera, pixel.x(), pixel.y(), cur.sigma_px,
+                       depth));
   }
 }
 
@@ -118,25 +121,40 @@ void FeatureTracker::Track(const Reference& reference,
                            const TrackingGuess& guess, Tracked* tracked) {
   const auto& ours = dynamic_cast<const FeatureReference&>(reference);
   tracked->match_ms = 0.0;
-  {
-    const StageTimer timer(&tracked->match_ms);
-    frontend_->Match(ours.features(), frame, cur_from_ref_start,
-                     &tracked->matches);
-    ours.trust.Split(&tracked->matches, &tracked->doubted);
-  }
   tracked->carried_by = kName;
-  tracked->num_found = static_cast<int>(tracked->matches.matches.size());
   tracked->twist.reset();
   tracked->twist_covariance.setZero();
+  Match(ours, frame, cur_from_ref_start, tracked);
   Estimate(guess.cur_from_ref, PriorOf(options_, guess), tracked);
   if (guess.velocity != nullptr) {
     FindTwist(ours.features(), frame, guess, tracked);
+    // Where the velocity was far off, few features were where they had been
+    // looked for.
+    if (tracked->estimate.ok() && ShareOf(ours, *tracked) < kFewFound) {
+      const std::unique_ptr<PreparedFrame> moved = frame.Copy();
+      moved->twist = tracked->twist;
+      const Rigid3d found = tracked->estimate.cur_from_prev;
+      Match(ours, *moved, found, tracked);
+      Estimate(found, PriorOf(options_, guess), tracked);
+      FindTwist(ours.features(), *moved, guess, tracked);
+    }
   }
   Judge(tracked);
   if (tracked->status == TrackingStatus::kLost) return;
   tracked->overlap = {ShareOf(ours, *tracked),
                       MeanInlierFlowPx(tracked->matches, tracked->estimate)};
   tracked->is_scarce = tracked->estimate.num_inliers < options_.min_inliers_ok;
+}
+
+void FeatureTracker::Match(const FeatureReference& reference,
+                           const PreparedFrame& frame,
+                           const Rigid3d& cur_from_ref_start,
+                           Tracked* tracked) {
+  const StageTimer timer(&tracked->match_ms);
+  frontend_->Match(reference.features(), frame, cur_from_ref_start,
+                   &tracked->matches);
+  reference.trust.Split(&tracked->matches, &tracked->doubted);
+  tracked->num_found = static_cast<int>(tracked->matches.matches.size());
 }
 
 void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,

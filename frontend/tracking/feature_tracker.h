@@ -61,6 +61,8 @@ class FeatureTracker final : public Tracker {
   }
 
  private:
+  void Match(const FeatureReference& reference, const PreparedFrame& frame,
+             const Rigid3d& cur_from_ref_start, Tracked* tracked);
   void Estimate(const Rigid3d& cur_from_ref_start, const MotionPrior& prior,
                 Tracked* tracked);
   // Finds the velocity and estimates the motion again, of the same features as

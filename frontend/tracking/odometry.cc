@@ -26,9 +26,9 @@ MotionMatrix OfUnknownVelocity(const Frame& frame) {
   constexpr double kSigmaLinear = 0.3;   // m/s
   constexpr double kShareOfReadout = 0.25;
   const Shutter& color = frame.color_shutter;
-  const double time =
-      std::abs(color.offset) + kShareOfReadout * std::abs(color.readout) +
-      std::abs(frame.DepthShutter().offset - color.offset);
+  const double time = std::abs(color.offset) +
+                      kShareOfReadout * std::abs(color.readout) +
+                      std::abs(frame.DepthShutter().offset - color.offset);
   const double turn = kSigmaAngular * time, shift = kSigmaLinear * time;
   MotionMatrix covariance = MotionMatrix::Zero();
   covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,

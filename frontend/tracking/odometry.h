@@ -128,16 +128,16 @@ class Odometry {
   Relocaliser relocaliser_;
   TrackingAttempts attempts_;  // at the last frame
   ShutterTracking shutter_tracking_;
-  bool has_shutter_ = false;     // of the last frame
-  std::optional<Twist> twist_;   // see last_twist
+  bool has_shutter_ = false;                              // of the last frame
+  std::optional<Twist> twist_;                            // see last_twist
   MotionMatrix twist_covariance_ = MotionMatrix::Zero();  // see Tracked
-  Keyframe* reference_ = nullptr;  // null: none yet
+  Keyframe* reference_ = nullptr;                         // null: none yet
   int num_frames_ = 0;
   Rigid3d cur_from_ref_;                            // of the last frame
   MotionMatrix covariance_ = MotionMatrix::Zero();  // of cur_from_ref_
   Rigid3d cur_from_prev_;                           // between the last two
-  double timestamp_ = 0.0;  // of the last frame, s
-  double interval_ = 0.0;   // since the one before, s
+  double timestamp_ = 0.0;                          // of the last frame, s
+  double interval_ = 0.0;                           // since the one before, s
   int segment_ = 0;
   double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
   bool is_lost_ = false;

@@ -86,8 +86,7 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
   const Frame moved = rectifier_.Rectify(frame, early_->target_from_middle);
   const auto prepared = tracker_->Prepare(moved);
   std::string why_not;
-  auto mended =
-      tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
+  auto mended = tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
   if (mended == nullptr) return false;
   reference->reference = std::move(mended);
   reference->place = std::make_unique<Place>(*prepared, reference->id);

@@ -57,10 +57,10 @@ class ShutterTracking {
  private:
   // A reference whose velocity the next frame will tell.
   struct Early {
-    Frame frame;                   // as exposed
-    Rigid3d target_from_middle;    // the camera that it is resampled for
-    std::optional<Twist> before;   // the mean velocity into it
-    double interval = 0.0;         // of that, s
+    Frame frame;                  // as exposed
+    Rigid3d target_from_middle;   // the camera that it is resampled for
+    std::optional<Twist> before;  // the mean velocity into it
+    double interval = 0.0;        // of that, s
   };
 
   // Makes the reference anew with the mean velocity since; false: there is

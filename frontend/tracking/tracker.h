@@ -12,8 +12,8 @@
 #include "core/initial_guess/initial_guess.h"
 #include "frontend/features/frontend.h"
 #include "frontend/image/view_samples.h"
-#include "frontend/tracking/velocity_prior.h"
 #include "frontend/tracking/tracked_frame.h"
+#include "frontend/tracking/velocity_prior.h"
 
 namespace rgbd_pose {
 
@@ -42,7 +42,6 @@ struct TrackerOptions {
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
-
 
 // What a tracker keeps of a frame that others are tracked against, and what it
 // has learnt of it since; of the frame's images, copies.

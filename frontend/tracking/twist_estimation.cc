@@ -85,8 +85,8 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
   }
   const Vector12 change = equations.hessian.ldlt().solve(equations.right);
   TwistEstimate result;
-  result.twist = timing.twist +
-                 Twist{change.segment<3>(6), change.segment<3>(9)};
+  result.twist =
+      timing.twist + Twist{change.segment<3>(6), change.segment<3>(9)};
   // The motion follows the velocity by -H_mm^-1 H_mv.
   const MotionMatrix H_mm = equations.hessian.topLeftCorner<6, 6>();
   const MotionMatrix H_mv = equations.hessian.topRightCorner<6, 6>();

@@ -6,9 +6,14 @@
 namespace rgbd_pose {
 namespace {
 
-// Changes of velocity from frame to frame (root mean squares) of a tripod are taken to be as large as that.
+// Changes of velocity from frame to frame (root mean squares) of a tripod are
+// taken to be as large as that.
 constexpr double kMinChangeAngular = 0.01;
 constexpr double kMinChangeLinear = 0.005;
+
+// Of the mean velocity since the last frame in what is expected at this one;
+// the rest is the last frame's. With 1 errors are larger by a fifth.
+constexpr double kShareOfBetween = 0.8;
 
 // How fast the mean squares forget: some ten frames.
 constexpr double kShareOfNew = 0.1;
@@ -23,14 +28,14 @@ Twist VelocityPrior::Between(const Rigid3d& cur_from_ref,
   return TwistOf(cur_from_prev, interval);
 }
 
-// Of an acceleration that is white noise the velocity at the end of an interval
-// has the mean 3/2 of the mean velocity in it less 1/2 of that at its start,
-// and a quarter of the variance that it has if the motion is not known.
+// What is found feeds back into what it is found from: extrapolated by the last
+// velocities (3/2 of the mean velocity less 1/2 of the last one, as a hand's
+// acceleration would have it) it oscillates until frames are lost.
 Twist VelocityPrior::Mean(const Rigid3d& cur_from_ref,
                           const Twist& twist) const {
   const Twist between = Between(cur_from_ref, twist);
   if (!prev_twist.has_value()) return between;
-  return 1.5 * between - 0.5 * *prev_twist;
+  return kShareOfBetween * between + (1.0 - kShareOfBetween) * *prev_twist;
 }
 
 VelocityPrior VelocityModel::Prior(const Rigid3d& prev_from_ref,
@@ -51,8 +56,8 @@ VelocityPrior VelocityModel::Prior(const Rigid3d& prev_from_ref,
 void VelocityModel::Add(const Twist& twist, double middle) {
   if (last_.has_value()) {
     const Twist change = twist - *last_;
-    change_angular_ += kShareOfNew * (change.angular.squaredNorm() / 3.0 -
-                                      change_angular_);
+    change_angular_ +=
+        kShareOfNew * (change.angular.squaredNorm() / 3.0 - change_angular_);
     change_linear_ +=
         kShareOfNew * (change.linear.squaredNorm() / 3.0 - change_linear_);
   }

@@ -8,8 +8,7 @@
 namespace rgbd_pose {
 
 // What is known of the camera's velocity at a frame before its rows tell, as a
-// function of the motion to it: of an acceleration that is white noise, which
-// is what a hand's looks like from frame to frame.
+// function of the motion to it.
 struct VelocityPrior {
   // The motion of the last frame before it, and its velocity; nothing: not
   // known.
