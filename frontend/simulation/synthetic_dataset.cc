@@ -25,7 +25,7 @@ void CheckShutters(const RgbdCamera& camera, double frame_s) {
     if (!(size <= most)) {
       throw InputError(
           std::string(parameter.name) +
-          " of a synthetic sequence must be at most " + ShortNumber(most) +
+          " of a synthetic sequence must be at most " + Format("%.6g", most) +
           " s either way, " +
           (is_short ? "the time from frame to frame" : "as in camera files"));
     }
