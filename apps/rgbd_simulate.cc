@@ -28,8 +28,18 @@ DEFINE_double(shutter, 0.0, "how long the shutter is open (s): blurs motion");
 DEFINE_double(exposure_drift, 0.0,
               "swing of the automatic exposure in 4 s, 0..1: gains from "
               "exp(-this) to exp(this)");
-DEFINE_double(readout, 0.0,
-              "rolling shutter: time from the first row to the last (s)");
+DEFINE_double(color_time_offset, 0.0,
+              "how much later than its stamp says colour is exposed, in its "
+              "middle row (s); negative: earlier");
+DEFINE_double(color_readout, 0.0,
+              "rolling shutter of colour: time from the first row to the last "
+              "(s); negative: the last comes first");
+DEFINE_double(depth_time_offset, 0.0,
+              "how much later than its own stamp says depth is exposed, in its "
+              "middle row (s); negative: earlier");
+DEFINE_double(depth_readout, 0.0,
+              "rolling shutter of depth: time from the first row to the last "
+              "(s); negative: the last comes first");
 DEFINE_double(depth_delay, 0.0,
               "how much later depth is exposed and stamped (s); negative: "
               "earlier");
@@ -61,7 +71,8 @@ int Simulate() {
   options.noise = FLAGS_noise;
   options.exposure_s = FLAGS_shutter;
   options.exposure_drift = FLAGS_exposure_drift;
-  options.readout_s = FLAGS_readout;
+  options.color_shutter = {FLAGS_color_time_offset, FLAGS_color_readout};
+  options.depth_shutter = {FLAGS_depth_time_offset, FLAGS_depth_readout};
   options.depth_delay_s = FLAGS_depth_delay;
   options.registration_error = Rigid3d(
       Eigen::Quaterniond(Eigen::AngleAxisd(
@@ -95,8 +106,9 @@ int main(int argc, char** argv) {
       "rgbd_simulate --path=pan_tilt --frames=150 --output=pan_tilt",
       {{"Sequence",
         {"scene", "path", "frames", "rate", "laps", "seed", "noise", "shutter",
-         "exposure_drift", "readout", "depth_delay", "registration_shift",
-         "registration_turn", "camera", "depth_camera"}},
+         "exposure_drift", "color_time_offset", "color_readout",
+         "depth_time_offset", "depth_readout", "depth_delay",
+         "registration_shift", "registration_turn", "camera", "depth_camera"}},
        {"Output", {"output"}}},
       {{"scene", rgbd_pose::SceneNames()},
        {"path", rgbd_pose::SyntheticPathNames()},

@@ -10,6 +10,8 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "core/geometry/camera.h"
+#include "core/geometry/shutter_parameters.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/files/camera_file.h"
 
@@ -24,14 +26,27 @@ RgbdCamera Checked(const RgbdCamera& camera) {
   if (!std::isfinite(camera.depth_scale) || camera.depth_scale <= 0.0) {
     throw InputError("Camera: the depth scale must be a positive number");
   }
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    // NaN compares false.
+    if (!(std::abs(camera.*parameter.image.*parameter.value) <=
+          parameter.most)) {
+      throw InputError("Camera: " + std::string(parameter.name) +
+                       " must be at most " + ShortNumber(parameter.most) +
+                       " s");
+    }
+  }
   return camera;
 }
 
 RgbdCamera MakeCamera(double fx, double fy, double cx, double cy, int width,
                       int height, const std::vector<double>& distortion,
-                      double depth_scale) {
+                      double depth_scale, double color_time_offset,
+                      double color_readout, double depth_time_offset,
+                      double depth_readout) {
   RgbdCamera result;
   result.depth_scale = depth_scale;
+  result.color_shutter = {color_time_offset, color_readout};
+  result.depth_shutter = {depth_time_offset, depth_readout};
   Camera& camera = result.camera;
   camera.width = width;
   camera.height = height;
@@ -76,10 +91,16 @@ std::string CameraInWords(const RgbdCamera& camera) {
   std::snprintf(text, sizeof(text),
                 "Camera(fx=%.9g, fy=%.9g, cx=%.9g, cy=%.9g, width=%d, "
                 "height=%d, distortion=(%.9g, %.9g, %.9g, %.9g, %.9g), "
-                "depth_scale=%.9g)",
+                "depth_scale=%.9g",
                 c.fx, c.fy, c.cx, c.cy, c.width, c.height, c.k1, c.k2, c.p1,
                 c.p2, c.k3, camera.depth_scale);
-  return text;
+  std::string words = text;
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    const double value = camera.*parameter.image.*parameter.value;
+    if (value == 0.0) continue;
+    words += ", " + std::string(parameter.name) + "=" + ShortNumber(value);
+  }
+  return words + ")";
 }
 
 // A property of the pinhole model.
@@ -88,21 +109,39 @@ auto Of(const RgbdCamera& camera) {
   return camera.camera.*kMember;
 }
 
+void BindShutters(py::class_<RgbdCamera>* camera) {
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    camera->def_property_readonly(
+        parameter.name,
+        [parameter](const RgbdCamera& self) {
+          return self.*parameter.image.*parameter.value;
+        },
+        "s");
+  }
+}
+
 }  // namespace
 
 void BindCamera(py::module_* module) {
-  py::class_<RgbdCamera>(*module, "Camera", R"(
+  py::class_<RgbdCamera> camera(*module, "Camera", R"(
 A pinhole camera and how its depth images count. It does not change.
 
 Axes are optical: x right, y down, z forward. Pixel (0, 0) is the centre of the
 upper left pixel. Focal lengths and centre are in pixels, the distortion is
 OpenCV's plumb bob (k1 k2 p1 p2 and maybe k3), depth_scale is raw units of a
-depth image per metre.)")
+depth image per metre.
+
+A row r of the colour image is exposed color_time_offset + color_readout *
+((r + 1/2) / height - 1/2) seconds after the image's time stamp; depth likewise,
+after its own.)");
+  camera
       .def(py::init(&MakeCamera), "InputError if the values make no camera.",
            py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
            py::arg("width") = 640, py::arg("height") = 480,
            py::arg_v("distortion", std::vector<double>(), "()"),
-           py::arg("depth_scale") = 5000.0)
+           py::arg("depth_scale") = 5000.0, py::arg("color_time_offset") = 0.0,
+           py::arg("color_readout") = 0.0, py::arg("depth_time_offset") = 0.0,
+           py::arg("depth_readout") = 0.0)
       .def_static("load", &LoadCamera, R"(
 A camera by the name of a preset (camera_presets()) or a YAML file in the layout
 of ORB-SLAM2/3, ROS camera_info or Kalibr. depth_scale, if given, replaces that
@@ -131,6 +170,7 @@ of the preset or file.)",
           },
           "(3, 3) [fx 0 cx; 0 fy cy; 0 0 1], px")
       .def("__repr__", &CameraInWords);
+  BindShutters(&camera);
 }
 
 }  // namespace rgbd_pose

@@ -69,6 +69,8 @@ uint16_t RawDepth(double metres) {
 Frame FrameFromArrays(const py::object& image, const py::object& depth,
                       const RgbdCamera& camera) {
   Frame frame;
+  frame.color_shutter = camera.color_shutter;
+  frame.depth_shutter = camera.depth_shutter;
   frame.gray = GrayFrom(image, camera.camera);
   const py::array array = ToArray(depth, "depth");
   const bool is_raw = py::isinstance<py::array_t<uint16_t>>(array);

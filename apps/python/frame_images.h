@@ -15,7 +15,8 @@ namespace rgbd_pose {
 
 // A frame with copies of the images that Python gave (see Odometry.track):
 // frontends keep the image of a reference, and cameras write the next image
-// into the same memory. Throws InputError for images of a wrong shape or type.
+// into the same memory. Its rows were exposed as the camera says. Throws
+// InputError for images of a wrong shape or type.
 Frame FrameFromArrays(const pybind11::object& image,
                       const pybind11::object& depth, const RgbdCamera& camera);
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/shutter_parameters.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/yaml_section.h"
@@ -160,14 +161,16 @@ void CheckSize(const YamlSection& file, const std::string& key, double size,
   file.Fail(key, "must be at most " + limit.str() + " " + unit);
 }
 
-// When the rows of colour or of depth are exposed.
-Shutter ReadShutter(const YamlSection& file, const std::string& image) {
-  const auto seconds = [&](const std::string& key, double most) {
-    const double value = file.NumberOr(image + key, 0.0);
-    CheckSize(file, image + key, std::abs(value), most, "s");
-    return value;
-  };
-  return {seconds("_time_offset", 0.5), seconds("_readout", 0.1)};
+// When the rows of colour and of depth are exposed.
+void ReadShutters(const YamlSection& file, CameraSetup* setup) {
+  RgbdCamera read;
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    double* const value = &(read.*parameter.image.*parameter.value);
+    *value = file.NumberOr(parameter.name, 0.0);
+    CheckSize(file, parameter.name, std::abs(*value), parameter.most, "s");
+  }
+  setup->color_shutter = read.color_shutter;
+  setup->depth_shutter = read.depth_shutter;
 }
 
 // What rgbd_calibrate found wrong with depth.
@@ -202,8 +205,7 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   result.camera = ReadAnyLayout(path, file);
   result.depth_scale = ReadDepthScale(file);
   result.depth_errors = ReadDepthErrors(file);
-  result.color_shutter = ReadShutter(file, "color");
-  result.depth_shutter = ReadShutter(file, "depth");
+  ReadShutters(file, &result);
   const std::string problem = result.camera.Check();
   if (!problem.empty()) throw InputError(path + ": " + problem);
   if (depth_camera.empty() && file.Has("cam0") && file.Has("cam1")) {

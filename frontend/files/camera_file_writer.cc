@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/geometry/shutter_parameters.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
@@ -44,10 +45,9 @@ YamlLines RgbdLines(const RgbdCamera& camera) {
   const auto add = [&lines](const char* key, double value) {
     if (value != 0.0) lines.emplace_back(key, Digits(value));
   };
-  add("color_time_offset", camera.color_shutter.offset);
-  add("color_readout", camera.color_shutter.readout);
-  add("depth_time_offset", camera.depth_shutter.offset);
-  add("depth_readout", camera.depth_shutter.readout);
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    add(parameter.name, camera.*parameter.image.*parameter.value);
+  }
   add("inverse_depth_offset", camera.depth_errors.inverse_depth_offset);
   const Rigid3d& moved = camera.depth_errors.depth_from_color;
   if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {

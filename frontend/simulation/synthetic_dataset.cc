@@ -3,6 +3,8 @@
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 
+#include "core/geometry/shutter_parameters.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_exposure.h"
 #include "frontend/simulation/synthetic_hash.h"
@@ -15,7 +17,25 @@ constexpr double kFirstStamp = 1000.0;  // s
 
 constexpr int kMaxFrames = 1000000;  // 9 hours at 30 Hz
 
-const SyntheticOptions& Checked(const SyntheticOptions& options) {
+void CheckShutters(const RgbdCamera& camera, double frame_s) {
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    const double size = std::abs(camera.*parameter.image.*parameter.value);
+    const bool is_short = frame_s <= parameter.most;
+    const double most = is_short ? frame_s : parameter.most;
+    if (!(size <= most)) {
+      throw InputError(
+          std::string(parameter.name) +
+          " of a synthetic sequence must be at most " + Format("%.6g", most) +
+          " s either way, " +
+          (is_short ? "the time from frame to frame" : "as in camera files"));
+    }
+  }
+}
+
+// With its shutters in the camera.
+SyntheticOptions Checked(SyntheticOptions options) {
+  options.camera.color_shutter = options.color_shutter;
+  options.camera.depth_shutter = options.depth_shutter;
   if (options.frames < 1 || options.frames > kMaxFrames) {
     throw InputError("a synthetic sequence has 1 to " +
                      std::to_string(kMaxFrames) + " frames, not " +
@@ -42,12 +62,7 @@ const SyntheticOptions& Checked(const SyntheticOptions& options) {
                      std::to_string(1.0 / options.rate_hz) +
                      " s, the time from frame to frame");
   }
-  if (!(options.readout_s >= 0.0 &&
-        options.readout_s <= 1.0 / options.rate_hz)) {
-    throw InputError("the readout of a synthetic sequence must be in 0.." +
-                     std::to_string(1.0 / options.rate_hz) +
-                     " s, the time from frame to frame");
-  }
+  CheckShutters(options.camera, 1.0 / options.rate_hz);
   if (!(std::abs(options.depth_delay_s) < 0.5 / options.rate_hz)) {
     throw InputError("the depth delay of a synthetic sequence must be below " +
                      std::to_string(0.5 / options.rate_hz) +
@@ -104,24 +119,28 @@ Rigid3d SyntheticDataset::WorldFromCam(int index) const {
 // What is seen from world_from_cam * E^-1 lies at E * X in those axes.
 Rendering SyntheticDataset::Render(double t) const {
   const double focal_px = options_.camera.camera.fx;
-  Rendering seen =
-      Expose(renderer_, focal_px,
-             [this](double time) { return WorldFromCamAt(time); }, t,
-             {options_.exposure_s, DriftingGain(options_.exposure_drift, t),
-              options_.readout_s});
+  const Shutter& color = options_.color_shutter;
+  const Shutter& depth = options_.depth_shutter;
+  const double color_time = t + color.offset;
+  const double depth_time = t + (options_.depth_delay_s + depth.offset);
+  Rendering seen = Expose(
+      renderer_, focal_px, [this](double time) { return WorldFromCamAt(time); },
+      color_time,
+      {options_.exposure_s, DriftingGain(options_.exposure_drift, color_time),
+       color.readout});
   Rigid3d cam_from_depth = options_.registration_error.Inverse();
   if (depth_renderer_.has_value()) {
     cam_from_depth = cam_from_depth * options_.depth_camera->color_from_depth;
   }
-  if (depth_renderer_.has_value() || options_.depth_delay_s != 0.0 ||
-      cam_from_depth.Angle() != 0.0 ||
+  if (depth_renderer_.has_value() || depth_time != color_time ||
+      depth.readout != color.readout || cam_from_depth.Angle() != 0.0 ||
       !cam_from_depth.translation.isZero(0.0)) {
     seen.depth =
         Expose(
             depth_renderer_.has_value() ? *depth_renderer_ : renderer_,
             focal_px,
             [&](double time) { return WorldFromCamAt(time) * cam_from_depth; },
-            t + options_.depth_delay_s, {0.0, 1.0, options_.readout_s})
+            depth_time, {0.0, 1.0, depth.readout})
             .depth;
   }
   return seen;
@@ -144,6 +163,8 @@ Frame SyntheticDataset::Read(int index) const {
   frame.index = index;
   frame.timestamp = timestamp(index);
   frame.depth_delay = options_.depth_delay_s;
+  frame.color_shutter = options_.color_shutter;
+  frame.depth_shutter = options_.depth_shutter;
   frame.color = rendering.color;
   cv::cvtColor(frame.color, frame.gray, cv::COLOR_BGR2GRAY);
   frame.depth_scale = options_.camera.depth_scale;

@@ -24,14 +24,15 @@ struct SyntheticOptions {
   bool noise = true;           // of a real sensor, see synthetic_sensor.h
   RgbdCamera camera = {};      // may have distortion
 
-  // How long the shutter is open (s), from half of it before the pose of a
-  // frame to half of it after; at most the time from frame to frame.
+  // How long the shutter is open (s), from half of it before the time of a row
+  // to half of it after; at most the time from frame to frame.
   double exposure_s = 0.0;
 
-  // Rolling shutter of both images: the time (s) from the exposure of the first
-  // row to that of the last, the pose of a frame being that of the middle; at
-  // most the time from frame to frame.
-  double readout_s = 0.0;
+  // When rows are exposed, from the stamp of each image; the pose of a frame is
+  // that of the stamp of colour. Each number is at most the time from frame to
+  // frame, and what camera files may hold. Those of `camera` do not count.
+  Shutter color_shutter = {};
+  Shutter depth_shutter = {};
 
   // How much later than colour depth is exposed and stamped (s; negative:
   // earlier); less than half the time from frame to frame.
@@ -66,11 +67,12 @@ class SyntheticDataset : public Dataset {
 
   int size() const override { return options_.frames; }
   double timestamp(int index) const override;
-  // With its colour.
+  // With its colour and both shutters.
   Frame Read(int index) const override;
+  // With the shutters simulated.
   const RgbdCamera& camera() const override { return options_.camera; }
 
-  // The pose in the middle of the exposure.
+  // The pose at the time stamp.
   Rigid3d WorldFromCam(int index) const;
 
   // The exact pose of every frame.
@@ -80,7 +82,8 @@ class SyntheticDataset : public Dataset {
   // Seconds since the first frame.
   double Time(int index) const { return index / options_.rate_hz; }
   Rigid3d WorldFromCamAt(double t) const;
-  // Colour as exposed at time t and depth, exact, as exposed and registered.
+  // What a frame with its stamp at time t has: colour as exposed, and depth,
+  // exact, as exposed and registered.
   Rendering Render(double t) const;
 
   SyntheticOptions options_;

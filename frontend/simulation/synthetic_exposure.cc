@@ -4,6 +4,8 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "core/geometry/shutter.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -28,8 +30,9 @@ Rendering RenderAt(const Renderer& renderer,
   if (readout_s == 0.0) return renderer.Render(world_from_cam(t));
   std::vector<Rigid3d> poses(renderer.num_bands());
   for (size_t i = 0; i < poses.size(); ++i) {
-    const double share = (i + 0.5) / poses.size() - 0.5;
-    poses[i] = world_from_cam(t + share * readout_s);
+    const double row = renderer.BandMiddle(static_cast<int>(i));
+    const Shutter shutter = {0.0, readout_s};
+    poses[i] = world_from_cam(t + shutter.RowTime(row, renderer.height()));
   }
   return renderer.Render(poses);
 }

@@ -11,7 +11,7 @@ namespace rgbd_pose {
 struct Exposure {
   double shutter_s = 0.0;  // 0: the image of an instant
   double gain = 1.0;
-  double readout_s = 0.0;  // from the first row's exposure to the last one's
+  double readout_s = 0.0;  // see Shutter
 };
 
 // The gain at time t (s) of an automatic exposure that swings slowly around 1:
@@ -24,7 +24,8 @@ double DriftingGain(double amplitude, double t);
 // its middle and never much more than kMaxBlurStep apart in the image, times
 // the gain, rounded once and cut off at 255. Depth is that of time t. Gray
 // levels are taken as proportional to light. With a rolling shutter t is the
-// time of the middle row, of both images.
+// time of the middle row, of both images, and each band of rows (see Renderer)
+// is seen at the time of its own middle.
 constexpr double kMaxBlurStep = 2.0;  // px; finer than that the lens blurs
 Rendering Expose(const Renderer& renderer, double focal_px,
                  const std::function<Rigid3d(double t)>& world_from_cam,

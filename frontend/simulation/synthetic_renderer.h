@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -30,7 +31,13 @@ class Renderer {
   // With a pose for each band of kBandRows rows, top down, num_bands() in all:
   // what a rolling shutter sees.
   static constexpr int kBandRows = 8;
-  int num_bands() const { return (rays_x_.rows + kBandRows - 1) / kBandRows; }
+  int height() const { return rays_x_.rows; }  // of the image, px
+  int num_bands() const { return (height() + kBandRows - 1) / kBandRows; }
+  // The row in the middle of a band, px.
+  double BandMiddle(int band) const {
+    const int first = band * kBandRows;
+    return (first + std::min(first + kBandRows, height()) - 1) / 2.0;
+  }
   Rendering Render(const std::vector<Rigid3d>& world_from_cam) const;
 
  private:

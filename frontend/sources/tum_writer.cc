@@ -7,6 +7,7 @@
 #include <optional>
 #include <system_error>
 
+#include "core/geometry/shutter_parameters.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -94,6 +95,10 @@ std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
   add("Camera.width", camera.width);
   add("Camera.height", camera.height);
   add("DepthMapFactor", rgbd_camera.depth_scale);
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    const double value = rgbd_camera.*parameter.image.*parameter.value;
+    if (value != 0.0) add(parameter.name, value);
+  }
   return text;
 }
 

@@ -29,7 +29,7 @@ struct TumWriterOptions {
 void WriteTumSequence(FrameSource* source, const std::string& folder,
                       const TumWriterOptions& options = {});
 
-// The text of camera.yaml.
+// The text of camera.yaml: the camera, how its depth counts, and its shutters.
 std::string FormatCameraYaml(const RgbdCamera& camera);
 
 }  // namespace rgbd_pose

@@ -23,6 +23,23 @@ def test_keeps_what_it_is_given():
     assert repr(copy) == repr(camera)
 
 
+def test_says_when_rows_are_exposed():
+    plain = rgbd_pose.Camera(500, 500, 320, 240)
+    times = {
+        "color_time_offset": -0.0075, "color_readout": 0.028,
+        "depth_time_offset": 0.0125, "depth_readout": -0.027,
+    }
+    camera = rgbd_pose.Camera(500, 500, 320, 240, **times)
+    for name, value in times.items():
+        assert getattr(plain, name) == 0.0
+        assert getattr(camera, name) == value
+        assert f"{name}={value}" in repr(camera)
+        with pytest.raises(AttributeError):
+            setattr(camera, name, 0.0)
+    copy = eval(repr(camera), {"Camera": rgbd_pose.Camera})
+    assert repr(copy) == repr(camera)
+
+
 def test_does_not_change():
     camera = rgbd_pose.Camera.load("tum_fr1")
     with pytest.raises(AttributeError):
@@ -37,12 +54,15 @@ def test_loads_presets_and_files(tmp_path):
     path.write_text(
         "Camera.width: 320\nCamera.height: 240\nCamera.fx: 262\n"
         "Camera.fy: 263\nCamera.cx: 160\nCamera.cy: 120\n"
-        "DepthMapFactor: 1000\n"
+        "DepthMapFactor: 1000\ncolor_readout: 0.02\n"
+        "depth_time_offset: -0.01\n"
     )
     for name in (path, str(path)):
         camera = rgbd_pose.Camera.load(name)
         assert (camera.fy, camera.height) == (263, 240)
         assert camera.depth_scale == 1000.0
+        assert (camera.color_time_offset, camera.color_readout) == (0, 0.02)
+        assert (camera.depth_time_offset, camera.depth_readout) == (-0.01, 0)
 
 
 @pytest.mark.parametrize(
@@ -57,6 +77,16 @@ def test_loads_presets_and_files(tmp_path):
         (
             lambda: rgbd_pose.Camera(500, 500, 320, 240, depth_scale=0),
             "depth scale",
+        ),
+        (
+            lambda: rgbd_pose.Camera(500, 500, 320, 240, color_readout=5),
+            "color_readout must be at most 0.1 s",
+        ),
+        (
+            lambda: rgbd_pose.Camera(
+                500, 500, 320, 240, depth_time_offset=np.nan
+            ),
+            "depth_time_offset must be at most 0.5 s",
         ),
         (lambda: rgbd_pose.Camera.load("tum_fr9"), "tum_fr1, tum_fr2"),
     ],

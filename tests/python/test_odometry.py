@@ -74,9 +74,39 @@ def test_depth_of_another_time_is_moved(tmp_path):
     delays = [frame.depth_delay for frame in frames]
     assert delays == pytest.approx([0.015] * 4, abs=1e-6)
     as_it_comes = last_pose([0.0] * 4)
-    ignored = last_pose(delays, ignore_stamp_offset=True)
+    ignored = last_pose(delays, shutter="none")
     assert np.array_equal(ignored, as_it_comes)
     assert np.abs(last_pose(delays) - as_it_comes).max() > 1e-4
+
+
+def test_arrays_are_exposed_as_the_camera_says(tmp_path):
+    folder = tmp_path / "late"
+    run_program(
+        "rgbd_simulate", "--path=handheld", "--frames=4",
+        "--depth_time_offset=0.015", f"--output={folder}",
+    )
+    camera = rgbd_pose.Camera.load(folder / "camera.yaml")
+    assert camera.depth_time_offset == 0.015
+    unaware = rgbd_pose.Camera(
+        camera.fx, camera.fy, camera.cx, camera.cy,
+        depth_scale=camera.depth_scale,
+    )
+    frames = list(rgbd_pose.TumDataset(folder, camera))
+    assert [frame.depth_delay for frame in frames] == [0.0] * 4
+
+    def last_pose(camera, depth_delay):
+        odometry = rgbd_pose.Odometry(camera)
+        for frame in frames:
+            pose = odometry.track(
+                frame.gray, frame.depth, frame.timestamp,
+                depth_delay=depth_delay,
+            ).world_from_cam
+        return pose
+
+    told = last_pose(camera, 0.0)
+    # It is the same whether depth is late after its stamp or by its stamp.
+    np.testing.assert_array_equal(told, last_pose(unaware, 0.015))
+    assert np.abs(told - last_pose(unaware, 0.0)).max() > 1e-4
 
 
 def test_settings_are_those_of_the_program(

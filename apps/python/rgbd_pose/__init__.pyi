@@ -41,6 +41,10 @@ class Camera:
         height: int = 480,
         distortion: Sequence[float] = (),
         depth_scale: float = 5000.0,
+        color_time_offset: float = 0.0,
+        color_readout: float = 0.0,
+        depth_time_offset: float = 0.0,
+        depth_readout: float = 0.0,
     ) -> None: ...
     @staticmethod
     def load(
@@ -62,6 +66,14 @@ class Camera:
     def distortion(self) -> Tuple[float, float, float, float, float]: ...
     @property
     def depth_scale(self) -> float: ...
+    @property
+    def color_time_offset(self) -> float: ...  # s
+    @property
+    def color_readout(self) -> float: ...  # s
+    @property
+    def depth_time_offset(self) -> float: ...  # s
+    @property
+    def depth_readout(self) -> float: ...  # s
     @property
     def matrix(self) -> _Floats: ...  # (3, 3), px
 
@@ -240,7 +252,7 @@ class Odometry:
         min_seen_share: float = 0.15,
         initial_guess: str = "last",
         on_lost: str = "new_segment",
-        ignore_stamp_offset: bool = False,
+        shutter: str = "camera",
         new_segment_after: float = 1.5,
         guess_sigma_rotation: float = 0.01,
         guess_sigma_translation: float = 0.01,
@@ -330,7 +342,7 @@ class Slam:
         min_seen_share: float = 0.15,
         initial_guess: str = "last",
         on_lost: str = "new_segment",
-        ignore_stamp_offset: bool = False,
+        shutter: str = "camera",
         new_segment_after: float = 1.5,
         guess_sigma_rotation: float = 0.01,
         guess_sigma_translation: float = 0.01,

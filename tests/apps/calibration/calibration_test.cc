@@ -72,7 +72,7 @@ RgbdCamera Wrong() {
   wrong.camera.cx += 5.0;
   wrong.camera.cy -= 5.0;
   wrong.depth_errors.inverse_depth_offset = 0.01;
-  wrong.depth_errors.depth_time_offset = -0.01;
+  wrong.depth_shutter.offset = -0.01;
   return wrong;
 }
 
@@ -95,7 +95,7 @@ TEST(CalibrationTest, FindsWhatIsWrongOnAnyNumberOfThreads) {
   EXPECT_NEAR(result.camera.camera.cx, truth.cx, 0.5);
   EXPECT_NEAR(result.camera.camera.cy, truth.cy, 0.5);
   EXPECT_NEAR(result.camera.depth_errors.inverse_depth_offset, 0.0, 2e-3);
-  EXPECT_NEAR(result.camera.depth_errors.depth_time_offset, 0.0, 1e-3);
+  EXPECT_NEAR(result.camera.depth_shutter.offset, 0.0, 1e-3);
   EXPECT_LT(result.cost_after, result.cost_before);
   // Images alone do not tell how large the world is.
   EXPECT_EQ(Of(result, kDepthFactor).fate, Fate::kFixed);
@@ -142,7 +142,7 @@ TEST(CalibrationTest, ACameraAtRestDeterminesNothing) {
 TEST(CalibrationTest, HalvesOfOneCameraAgree) {
   // What is undone as frames are tracked is only roughly so.
   RgbdCamera wrong = Wrong();
-  wrong.depth_errors.depth_time_offset = 0.0;
+  wrong.depth_shutter.offset = 0.0;
   const CalibrationResult result = Mapped(Handheld(), wrong).Calibrate();
   EXPECT_TRUE(result.is_accepted) << result.reason;
   ASSERT_FALSE(result.halves.empty());

@@ -202,6 +202,54 @@ INSTANTIATE_TEST_SUITE_P(
                 {"yaml:6:", "cam0.resolution"}}),
     [](const auto& info) { return info.param.name; });
 
+class AnyLayoutTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(AnyLayoutTest, SaysWhenRowsAreExposed) {
+  const TempFolder folder;
+  const CameraSetup plain =
+      ReadCameraFile(folder.Write("plain.yaml", GetParam()), "cam0");
+  EXPECT_TRUE(plain.color_shutter.IsGlobal());
+  EXPECT_TRUE(plain.depth_shutter.IsGlobal());
+  const RgbdCamera camera = RegisteredCamera(ReadCameraFile(
+      folder.Write("camera.yaml", std::string(GetParam()) +
+                                      "color_time_offset: -0.0075\n"
+                                      "color_readout: 0.028\n"
+                                      "depth_time_offset: 0.0125\n"
+                                      "depth_readout: -0.027\n"),
+      "cam0"));
+  EXPECT_EQ(camera.color_shutter.offset, -0.0075);
+  EXPECT_EQ(camera.color_shutter.readout, 0.028);
+  EXPECT_EQ(camera.depth_shutter.offset, 0.0125);
+  EXPECT_EQ(camera.depth_shutter.readout, -0.027);
+}
+
+INSTANTIATE_TEST_SUITE_P(CameraFile, AnyLayoutTest,
+                         testing::Values(kOrbSlam2, kOrbSlam3, kRos, kKalibr));
+
+// Keys that all layouts may have.
+TEST(CameraFileTest, TimesAndDepthErrorsAreNoLargerThanTheyCanBe) {
+  const struct {
+    const char* line;
+    const char* problem;
+  } kCases[] = {
+      {"color_time_offset: 15", "color_time_offset must be at most 0.5 s"},
+      {"color_readout: 5", "color_readout must be at most 0.1 s"},
+      {"depth_time_offset: -15", "depth_time_offset must be at most 0.5 s"},
+      {"depth_readout: -5", "depth_readout must be at most 0.1 s"},
+      {"depth_readout: fast", "depth_readout"},
+      {"color_readout: .nan", "color_readout"},
+      {"inverse_depth_offset: 7", "inverse_depth_offset must be at most 0.5"},
+      {"depth_rotation: [0.3, 0, 30]", "depth_rotation must be at most 0.5"},
+      {"depth_translation: [5, 0, 0]", "depth_translation must be at most"},
+      {"depth_translation: [5, 0]", "depth_translation"}};
+  for (const auto& bad : kCases) {
+    const TempFolder folder;
+    const std::string path =
+        folder.Write("camera.yaml", std::string(kOrbSlam2) + bad.line + "\n");
+    ExpectInputError([&] { ReadCameraFile(path); }, {path + ":", bad.problem});
+  }
+}
+
 // As Kalibr writes its result: cam1 a quarter turn around z and 0.1 m along the
 // new x away from cam0, cam2 0.2 m along z from cam1.
 constexpr char kRig[] = R"(

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <opencv2/core.hpp>
 
+#include "core/geometry/shutter.h"
 #include "frontend/simulation/synthetic_path.h"
 
 namespace rgbd_pose {
@@ -71,19 +72,20 @@ TEST(SyntheticExposureTest, BlurIsTheMeanAroundTheMiddle) {
   EXPECT_GT(difference(kMiddle - kShutter), 3.0 * centred);
 }
 
-TEST(SyntheticExposureTest, ReadoutShowsEachBandAtItsTime) {
+class ReadoutTest : public testing::TestWithParam<double> {};
+
+TEST_P(ReadoutTest, ShowsEachBandAtItsTime) {
   const Renderer renderer = RoomRenderer();
-  constexpr double kMiddle = 1.0;    // s; fast there
-  constexpr double kReadout = 0.03;  // s
+  constexpr double kMiddle = 1.0;  // s; fast there
   const Rendering rolled =
-      Expose(renderer, kFocal, Handheld, kMiddle, {0.0, 1.0, kReadout});
+      Expose(renderer, kFocal, Handheld, kMiddle, {0.0, 1.0, GetParam()});
   const Rendering instant = renderer.Render(Handheld(kMiddle));
   const int bands = renderer.num_bands();
   ASSERT_EQ(bands, 15);
   for (int band = 0; band < bands; ++band) {
     const cv::Range rows(band * Renderer::kBandRows,
                          (band + 1) * Renderer::kBandRows);
-    const double time = kMiddle + ((band + 0.5) / bands - 0.5) * kReadout;
+    const double time = kMiddle + ((band + 0.5) / bands - 0.5) * GetParam();
     const cv::Mat then = renderer.Render(Handheld(time)).depth.rowRange(rows);
     // A pixel or two at edges, where faces overlap.
     EXPECT_LE(cv::countNonZero(then != rolled.depth.rowRange(rows)), 2) << band;
@@ -94,6 +96,29 @@ TEST(SyntheticExposureTest, ReadoutShowsEachBandAtItsTime) {
     } else {
       EXPECT_GT(moved, 500) << band;
     }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Readouts, ReadoutTest, testing::Values(0.03, -0.03));
+
+// The last band of an image may be a part of one.
+TEST(SyntheticExposureTest, ReadoutIsThatOfRows) {
+  const Renderer renderer(MakeScene("room", 1),
+                          {160, 100, kFocal, kFocal, 79.5, 49.5, 0, 0, 0});
+  ASSERT_EQ(renderer.num_bands(), 13);
+  EXPECT_EQ(renderer.BandMiddle(0), 3.5);
+  EXPECT_EQ(renderer.BandMiddle(12), 97.5);
+  const Shutter shutter = {0.0, 0.03};
+  const cv::Mat rolled =
+      Expose(renderer, kFocal, Handheld, 1.0, {0.0, 1.0, shutter.readout})
+          .depth;
+  for (const int band : {0, 12}) {
+    const cv::Range rows(band * Renderer::kBandRows,
+                         std::min((band + 1) * Renderer::kBandRows, 100));
+    const double middle = (rows.start + rows.end - 1) / 2.0;
+    const Rigid3d pose = Handheld(1.0 + shutter.RowTime(middle, 100));
+    const cv::Mat then = renderer.Render(pose).depth.rowRange(rows);
+    EXPECT_LE(cv::countNonZero(then != rolled.rowRange(rows)), 2) << band;
   }
 }
 

@@ -3,6 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/geometry/shutter_parameters.h"
 
 namespace rgbd_pose {
 namespace {
@@ -27,12 +32,49 @@ TEST(CorrectedSourceTest, InverseDepthMovesByItsOffset) {
   EXPECT_EQ(frame.DepthAt(20, 10), 0.0);
 }
 
-TEST(CorrectedSourceTest, StampsMoveByTheirOffset) {
+// Stamps stay; when rows were exposed comes along, from the camera alone.
+TEST(CorrectedSourceTest, FramesHaveTheShuttersOfTheCamera) {
   RgbdCamera camera;
-  camera.depth_errors.depth_time_offset = 0.015;
+  camera.color_shutter = {-0.007, 0.028};
+  camera.depth_shutter = {0.015, 0.0};
   Frame wall = Wall(2.0);
   wall.depth_delay = -0.005;
-  EXPECT_NEAR(CorrectDepth(camera, wall).depth_delay, 0.01, 1e-12);
+  wall.color_shutter.offset = 0.5;
+  const Frame frame = CorrectDepth(camera, wall);
+  EXPECT_EQ(frame.depth_delay, -0.005);
+  EXPECT_EQ(frame.color_shutter.offset, -0.007);
+  EXPECT_EQ(frame.color_shutter.readout, 0.028);
+  EXPECT_EQ(frame.depth_shutter.offset, 0.015);
+  EXPECT_EQ(frame.depth_shutter.readout, 0.0);
+  EXPECT_NEAR(frame.DepthShutter().offset, 0.01, 1e-12);
+  EXPECT_EQ(frame.depth.data, wall.depth.data);
+}
+
+class SourceWithoutFrames : public FrameSource {
+ public:
+  explicit SourceWithoutFrames(const RgbdCamera& camera) : camera_(camera) {}
+  const RgbdCamera& camera() const override { return camera_; }
+  std::optional<RgbdFrame> Next() override { return std::nullopt; }
+
+ private:
+  RgbdCamera camera_;
+};
+
+TEST(CorrectedSourceTest, OnlyAPlainCameraNeedsNothing) {
+  const auto is_wrapped = [](const RgbdCamera& camera) {
+    auto source = std::make_unique<SourceWithoutFrames>(camera);
+    const FrameSource* const before = source.get();
+    return WithCorrectDepth(std::move(source)).get() != before;
+  };
+  EXPECT_FALSE(is_wrapped(RgbdCamera()));
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    RgbdCamera camera;
+    camera.*parameter.image.*parameter.value = 0.001;
+    EXPECT_TRUE(is_wrapped(camera)) << parameter.name;
+  }
+  RgbdCamera camera;
+  camera.depth_errors.inverse_depth_offset = 0.01;
+  EXPECT_TRUE(is_wrapped(camera));
 }
 
 // Depth that is too far ahead comes back.

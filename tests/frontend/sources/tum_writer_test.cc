@@ -113,6 +113,19 @@ TEST_F(TumWriterTest, CameraReadsBackExactly) {
   EXPECT_EQ(camera.camera.k3, 0.0);
 }
 
+TEST_F(TumWriterTest, CameraSaysWhenRowsAreExposed) {
+  EXPECT_EQ(FormatCameraYaml(options_.camera).find("color_"),
+            std::string::npos);
+  options_.color_shutter = {-0.0075, 0.028};
+  options_.depth_shutter = {0.0125, -0.027};
+  Write(folder_.string());
+  const CameraSetup camera = ReadCameraFile((folder_ / "camera.yaml").string());
+  EXPECT_EQ(camera.color_shutter.offset, -0.0075);
+  EXPECT_EQ(camera.color_shutter.readout, 0.028);
+  EXPECT_EQ(camera.depth_shutter.offset, 0.0125);
+  EXPECT_EQ(camera.depth_shutter.readout, -0.027);
+}
+
 TEST_F(TumWriterTest, TakesAnEmptyFolderButNoOther) {
   fs::create_directories(folder_);
   Write(folder_.string());
