@@ -1,8 +1,10 @@
 #include "frontend/tracking/shutter_tracking.h"
 
 #include <string>
+#include <typeinfo>
 #include <utility>
 
+#include "core/util/input_error.h"
 #include "frontend/image/observe.h"
 
 namespace rgbd_pose {
@@ -14,9 +16,23 @@ constexpr double kSmallFlowPx = 0.2;
 // Of the first two frames, of which each tells the velocity of the other.
 constexpr int kMaxRounds = 3;
 
+// A hand does not move faster; a wrong estimate does.
+constexpr double kMaxAngular = 6.0;  // rad/s
+constexpr double kMaxLinear = 4.0;   // m/s
+
+bool IsOfAHand(const Twist& twist) {
+  return twist.angular.norm() < kMaxAngular && twist.linear.norm() < kMaxLinear;
+}
+
 std::unique_ptr<const PreparedFrame> WithTwist(
     const PreparedFrame& frame, const std::optional<Twist>& twist) {
   std::unique_ptr<PreparedFrame> copy = frame.Copy();
+  const PreparedFrame& copied = *copy;
+  if (typeid(copied) != typeid(frame)) {
+    throw InputError(
+        "a frontend's prepared frame needs a Copy of its own type where rows "
+        "are exposed one after another");
+  }
   copy->twist = twist;
   return copy;
 }
@@ -58,6 +74,11 @@ const PreparedFrame* ShutterTracking::Follow(
     tracked = track(*frame_, &prior, &found);
     if (tracked == nullptr) return nullptr;
     look();
+  }
+  if (!IsOfAHand(between) || !IsOfAHand(frame_->twist.value_or(Twist()))) {
+    Reset();
+    frame_ = WithTwist(frame, std::nullopt);
+    return track(*frame_, nullptr, nullptr) != nullptr ? frame_.get() : nullptr;
   }
   early_.reset();
   if (frame_->twist.has_value()) velocity_.Add(*frame_->twist, middle);

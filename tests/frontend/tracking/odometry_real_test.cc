@@ -59,7 +59,7 @@ TEST_F(RealSequenceTest, Freiburg1IsWithinAFewMillimetres) {
   // The depth stamps are partly guessed (SOURCE.txt), the third one wrongly: as
   // it stands its frame fits worse than with none, one image later better.
   OdometryOptions options;
-  options.ignore_stamp_offset = true;
+  options.shutter = ShutterUse::kNone;
   const TrackedSequence run = TrackAll(Open("tum_fr1_xyz_3"), "tukey", options);
   EXPECT_EQ(run.Count(TrackingStatus::kOk), 3);
   const EvaluationReport report =

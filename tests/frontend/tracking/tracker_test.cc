@@ -85,7 +85,7 @@ TEST(FeatureTrackerTest, AMotionThatMostMatchesAreFarFromIsDoubtful) {
         tracker.MakeReference(frame, nullptr, nullptr, &why_not);
     ASSERT_NE(reference, nullptr) << why_not;
     Tracked tracked(kCamera);
-    tracker.Track(*reference, frame, Rigid3d(), nullptr, &tracked);
+    tracker.Track(*reference, frame, Rigid3d(), &tracked);
     EXPECT_GT(tracked.estimate.num_inliers, 60);
     EXPECT_LT(tracked.estimate.cur_from_prev.translation.norm(), 0.005);
     EXPECT_EQ(tracked.status,
@@ -116,7 +116,7 @@ TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
   double share = 1.0, flow = 0.0;
   for (const int frame : {5, 15}) {
     tracker->Track(*reference, *tracker->Prepare(room_.Read(frame)), Rigid3d(),
-                   nullptr, &tracked);
+                   &tracked);
     ASSERT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
     const Rigid3d truth =
         room_.WorldFromCam(frame).Inverse() * room_.WorldFromCam(0);
@@ -153,7 +153,9 @@ TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
   Tracked tracked(tracker->images().camera);
   const auto pulled = [&](double sigma) {
     const MotionMatrix covariance = sigma * sigma * MotionMatrix::Identity();
-    tracker->Track(*reference, *frame, off * truth, &covariance, &tracked);
+    TrackingGuess guess = off * truth;
+    guess.covariance = &covariance;
+    tracker->Track(*reference, *frame, guess, &tracked);
     return (tracked.estimate.cur_from_prev * truth.Inverse())
         .translation.norm();
   };
@@ -176,8 +178,7 @@ TEST_P(TrackerTest, SaysWhyAFrameIsNoReferenceOrNotTracked) {
   const auto reference = tracker->MakeReference(*tracker->Prepare(good),
                                                 nullptr, nullptr, &why_not);
   Tracked tracked(tracker->images().camera);
-  tracker->Track(*reference, *tracker->Prepare(black), Rigid3d(), nullptr,
-                 &tracked);
+  tracker->Track(*reference, *tracker->Prepare(black), Rigid3d(), &tracked);
   EXPECT_EQ(tracked.status, TrackingStatus::kLost);
   EXPECT_NE(tracked.reason, "");
 }
@@ -284,8 +285,7 @@ TEST(DirectTrackerTest, AFrameHasToLookLikeItsReference) {
         *tracker->Prepare(room.Read(0)), nullptr, nullptr, &why_not);
     ASSERT_NE(reference, nullptr) << why_not;
     Tracked tracked(room.camera().camera);
-    tracker->Track(*reference, *tracker->Prepare(next), Rigid3d(), nullptr,
-                   &tracked);
+    tracker->Track(*reference, *tracker->Prepare(next), Rigid3d(), &tracked);
     EXPECT_EQ(tracked.status == TrackingStatus::kLost, is_strict)
         << tracked.reason;
     EXPECT_EQ(tracked.reason == "it does not look like its reference",
