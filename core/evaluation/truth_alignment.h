@@ -28,7 +28,8 @@ struct TruthAlignment {
   // into account; infinite where the motion does not determine one.
   FixingVector sigma = FixingVector::Zero();
 
-  // Names of what the motion does not determine to 20 ms, 2 degrees and 5 cm.
+  // Names of what the motion does not determine to 20 ms, 2 degrees and 5 cm,
+  // or on which estimate and truth have too little in common.
   std::vector<std::string> undetermined;
 
   // Errors with the truth interpolated there, over as many poses as `ate`

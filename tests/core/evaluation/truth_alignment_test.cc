@@ -53,8 +53,9 @@ struct Recording {
   TruthFixing fixing;
   double seconds = 20.0;
   double truth_rate = 100.0;   // Hz
-  double place_noise = 0.001;  // m, of the estimate; a tenth in the truth
+  double place_noise = 0.001;  // m, of the estimate
   double turn_noise = 0.001;   // rad, the same
+  double truth_share = 0.1;    // of that noise in the truth
   double frame_rate = 30.0;    // Hz
   double jitter = 0.003;       // s, of the frames' times
   double jump_every = 1e9;     // s; by 5 cm and 3 degrees
@@ -79,7 +80,7 @@ Trajectories Record(const Recording& recording) {
   Trajectories made;
   for (int i = 0; i < recording.seconds * recording.truth_rate; ++i) {
     const double t = i / recording.truth_rate;
-    made.truth.push_back({t, noisy(recording.path(t), 0.1)});
+    made.truth.push_back({t, noisy(recording.path(t), recording.truth_share)});
   }
   Rigid3d world = PoseOf({3.0, -1.0, 2.0}, {0.5, 1.0, -0.4});
   const Rigid3d body_from_camera = recording.fixing.camera_from_body.Inverse();
@@ -243,7 +244,8 @@ TEST(TruthAlignmentTest, OnALineAllButTwoTurnsAreOpen) {
 TEST(TruthAlignmentTest, StandingStillDeterminesNothing) {
   Recording recording;
   recording.path = Still;
-  recording.seconds = 60.0;
+  recording.seconds = 300.0;
+  recording.truth_share = 1.0;
   for (const double share : {1.0, 1e-3, 0.0}) {
     SCOPED_TRACE(share);
     recording.place_noise = 0.001 * share;
@@ -269,9 +271,6 @@ TEST(TruthAlignmentTest, SaysWhyThereIsNone) {
   recording = Recording();
   recording.frame_rate = 2.0;
   EXPECT_THAT(Align(recording).skipped, HasSubstr("0 motions"));
-  recording = Recording();
-  recording.frame_rate = 30.0;
-  EXPECT_EQ(Align(recording).skipped, "");
 }
 
 }  // namespace
