@@ -3,7 +3,12 @@
 #include <gflags/gflags.h>
 #include <glog/logging.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstdio>
+#include <string>
+#include <system_error>
+#include <vector>
 
 #include "apps/results/evaluation_report.h"
 #include "apps/shell/program.h"
@@ -23,6 +28,9 @@ DEFINE_double(rpe_delta_seconds,
 DEFINE_double(rpe_delta_metres, rgbd_pose::EvaluationOptions().rpe_delta_metres,
               "interval of the relative pose error along the path of the "
               "ground truth, in metres");
+DEFINE_string(rpe_frames, "1,6",
+              "numbers of frames over which the median, 90 % and 99 % of the "
+              "relative pose error are given, set apart by commas");
 DEFINE_bool(json, false, "print JSON instead of a table");
 DEFINE_string(aligned, "",
               "write the estimate, moved by the alignment into the world of "
@@ -38,8 +46,28 @@ ProgramInfo Info() {
           "--groundtruth=groundtruth.txt",
           {{"Input", {"estimate", "groundtruth"}},
            {"Definitions",
-            {"max_time_difference", "rpe_delta_seconds", "rpe_delta_metres"}},
+            {"max_time_difference", "rpe_delta_seconds", "rpe_delta_metres",
+             "rpe_frames"}},
            {"Output", {"json", "aligned"}}}};
+}
+
+std::vector<int> ParseFrames(const std::string& text) {
+  std::vector<int> frames;
+  if (text.empty()) return frames;
+  for (size_t begin = 0; begin <= text.size();) {
+    const size_t end = std::min(text.find(',', begin), text.size());
+    int number = 0;
+    const auto [rest, error] =
+        std::from_chars(text.data() + begin, text.data() + end, number);
+    if (error != std::errc() || rest != text.data() + end || number < 1) {
+      throw InputError("--rpe_frames=" + text + ": '" +
+                       text.substr(begin, end - begin) +
+                       "' is no number of frames; give a list such as 1,6");
+    }
+    frames.push_back(number);
+    begin = end + 1;
+  }
+  return frames;
 }
 
 void WriteAligned(const Trajectory& estimate,
@@ -58,7 +86,7 @@ int Main() {
   const EvaluationReport report =
       Evaluate(estimate, ReadTrajectory(FLAGS_groundtruth),
                {FLAGS_max_time_difference, FLAGS_rpe_delta_seconds,
-                FLAGS_rpe_delta_metres});
+                FLAGS_rpe_delta_metres, ParseFrames(FLAGS_rpe_frames)});
   if (!FLAGS_aligned.empty()) {
     WriteAligned(estimate, report.truth_from_estimate, FLAGS_aligned);
   }

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "apps/results/error_tables.h"
+#include "apps/results/truth_alignment_report.h"
 #include "core/util/format.h"
 #include "core/util/units.h"
 
@@ -30,27 +32,6 @@ std::vector<RelativeEntry> RelativeEntries(const EvaluationReport& report) {
        report.rpe_seconds},
       {"rpe_metres", Format("fixed delta %g m of ground-truth path", metres),
        metres, report.rpe_metres}};
-}
-
-ErrorStatistics InDegrees(const ErrorStatistics& radians) {
-  ErrorStatistics degrees = radians;
-  for (double* value :
-       {&degrees.rmse, &degrees.median, &degrees.mean, &degrees.max}) {
-    *value *= kDegreesPerRadian;
-  }
-  return degrees;
-}
-
-std::string FormatStatistics(const char* quantity, const ErrorStatistics& e) {
-  if (e.count == 0) return Format("  %-30s%12s\n", quantity, "n/a");
-  return Format("  %-30s%12.5f%12.5f%12.5f%12.5f\n", quantity, e.rmse, e.median,
-                e.mean, e.max);
-}
-
-json StatisticsToJson(const ErrorStatistics& e) {
-  if (e.count == 0) return nullptr;
-  return {
-      {"rmse", e.rmse}, {"median", e.median}, {"mean", e.mean}, {"max", e.max}};
 }
 
 json PoseToJson(const Rigid3d& pose) {
@@ -82,12 +63,17 @@ std::string FormatEvaluation(const EvaluationReport& report) {
     text += FormatStatistics("rotation (deg)", InDegrees(entry.error.rotation));
   }
   text += Format("Final pose error, %s\n", kFinalPoseDefinition);
-  if (!report.final_pose) return text + Format("  %-30s%12s\n", "", "n/a");
-  text += Format("  %-30s%12.5f\n", "translation (m)",
-                 report.final_pose->translation);
-  text += Format("  %-30s%12.5f\n", "rotation (deg)",
-                 report.final_pose->angle * kDegreesPerRadian);
-  return text;
+  if (report.final_pose.has_value()) {
+    text += Format("  %-30s%12.5f\n", "translation (m)",
+                   report.final_pose->translation);
+    text += Format("  %-30s%12.5f\n", "rotation (deg)",
+                   report.final_pose->angle * kDegreesPerRadian);
+  } else {
+    text += Format("  %-30s%12s\n", "", "n/a");
+  }
+  return text + FormatFrameErrors(report.rpe_frames) +
+         FormatTruthAlignment(report.truth_alignment,
+                              report.options.rpe_delta_seconds);
 }
 
 json EvaluationToJson(const EvaluationReport& report) {
@@ -105,6 +91,10 @@ json EvaluationToJson(const EvaluationReport& report) {
        {{"truth_per_estimate", report.likeness.truth_per_estimate},
         {"position_rmse_m", report.likeness.rest}}},
       {"truth_from_estimate", PoseToJson(report.truth_from_estimate)},
+      {"rpe_frames", FrameErrorsToJson(report.rpe_frames)},
+      {"truth_alignment",
+       TruthAlignmentToJson(report.truth_alignment,
+                            report.options.rpe_delta_seconds)},
       {"final_pose", nullptr}};
   for (const RelativeEntry& entry : RelativeEntries(report)) {
     result[entry.key] = {

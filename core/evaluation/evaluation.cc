@@ -1,6 +1,5 @@
 #include "core/evaluation/evaluation.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 #include <vector>
@@ -11,80 +10,6 @@
 
 namespace rgbd_pose {
 namespace {
-
-// From the place of one paired pose to that of a later one.
-using Interval = std::pair<size_t, size_t>;
-
-ErrorStatistics Summarise(std::vector<double> errors) {
-  ErrorStatistics result;
-  if (errors.empty()) return result;
-  std::sort(errors.begin(), errors.end());
-  double sum = 0.0;
-  double sum_of_squares = 0.0;
-  for (const double error : errors) {
-    sum += error;
-    sum_of_squares += error * error;
-  }
-  const size_t n = errors.size();
-  result.count = static_cast<int>(n);
-  result.rmse = std::sqrt(sum_of_squares / n);
-  result.mean = sum / n;
-  result.median = (errors[(n - 1) / 2] + errors[n / 2]) / 2.0;
-  result.max = errors.back();
-  return result;
-}
-
-// E of RelativePoseError.
-Rigid3d RelativeError(const PosePair& i, const PosePair& j) {
-  const Rigid3d truth_i_from_j = i.truth.Inverse() * j.truth;
-  const Rigid3d estimate_i_from_j = i.estimate.Inverse() * j.estimate;
-  return truth_i_from_j.Inverse() * estimate_i_from_j;
-}
-
-RelativePoseError SummariseIntervals(const std::vector<PosePair>& pairs,
-                                     const std::vector<Interval>& intervals) {
-  std::vector<double> translations;
-  std::vector<double> angles;
-  for (const auto& [i, j] : intervals) {
-    const Rigid3d error = RelativeError(pairs[i], pairs[j]);
-    translations.push_back(error.translation.norm());
-    angles.push_back(error.Angle());
-  }
-  return {Summarise(std::move(translations)), Summarise(std::move(angles))};
-}
-
-std::vector<Interval> FrameIntervals(size_t size) {
-  std::vector<Interval> intervals;
-  for (size_t i = 0; i + 1 < size; ++i) intervals.emplace_back(i, i + 1);
-  return intervals;
-}
-
-std::vector<Interval> TimeIntervals(const std::vector<double>& times,
-                                    double delta, double max_difference) {
-  std::vector<Interval> intervals;
-  for (size_t i = 0; i < times.size(); ++i) {
-    const double end = times[i] + delta;
-    const size_t j = NearestTime(times, end);
-    if (std::abs(times[j] - end) <= max_difference) {
-      intervals.emplace_back(i, j);
-    }
-  }
-  return intervals;
-}
-
-std::vector<Interval> PathIntervals(const std::vector<double>& path,
-                                    double delta) {
-  // Ten steps of 0.1 m make 1 m, whatever rounding says.
-  constexpr double kRounding = 1e-9;
-  std::vector<Interval> intervals;
-  size_t j = 0;
-  for (size_t i = 0; i < path.size(); ++i) {
-    while (j < path.size() && path[j] - path[i] < delta - kRounding) ++j;
-    if (j == path.size()) break;
-    intervals.emplace_back(i, j);
-  }
-  return intervals;
-}
 
 std::vector<double> Times(const std::vector<PosePair>& pairs) {
   std::vector<double> times;
@@ -106,7 +31,7 @@ std::vector<double> PathLengths(const std::vector<PosePair>& pairs) {
 
 std::vector<PoseError> PoseErrors(const std::vector<PosePair>& pairs,
                                   const Rigid3d& truth_from_estimate,
-                                  const std::vector<Interval>& intervals) {
+                                  const std::vector<PoseInterval>& intervals) {
   std::vector<PoseError> errors;
   for (const PosePair& pair : pairs) {
     PoseError error;
@@ -145,6 +70,11 @@ std::string EvaluationOptions::Check() const {
   if (!(rpe_delta_metres > 0.0)) {
     return "the interval of the relative error in metres must be positive";
   }
+  for (const int frames : rpe_frames) {
+    if (frames < 1) {
+      return "numbers of frames of the relative error must be 1 or more";
+    }
+  }
   return "";
 }
 
@@ -166,18 +96,24 @@ EvaluationReport Evaluate(const Trajectory& estimate,
   report.path_length = path.back();
   report.truth_from_estimate = AlignRigidly(pairs);
   report.likeness = Compare(pairs, report.truth_from_estimate);
-  const std::vector<Interval> intervals = TimeIntervals(
+  const std::vector<PoseInterval> intervals = TimeIntervals(
       times, options.rpe_delta_seconds, options.max_time_difference);
   report.poses = PoseErrors(pairs, report.truth_from_estimate, intervals);
   report.ate = AbsoluteError(report.poses);
-  report.rpe_frame = SummariseIntervals(pairs, FrameIntervals(pairs.size()));
+  report.rpe_frame = SummariseIntervals(pairs, FrameIntervals(pairs.size(), 1));
   report.rpe_seconds = SummariseIntervals(pairs, intervals);
   report.rpe_metres =
       SummariseIntervals(pairs, PathIntervals(path, options.rpe_delta_metres));
+  for (const int frames : options.rpe_frames) {
+    report.rpe_frames.push_back(SummariseFrames(pairs, frames));
+  }
   if (pairs.size() > 1) {
     const Rigid3d error = RelativeError(pairs.front(), pairs.back());
     report.final_pose = {error.translation.norm(), error.Angle()};
   }
+  report.truth_alignment =
+      AlignTruth(estimate, ground_truth, options.rpe_delta_seconds,
+                 options.max_time_difference);
   return report;
 }
 

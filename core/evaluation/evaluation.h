@@ -4,8 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluation/error_statistics.h"
 #include "core/evaluation/likeness.h"
+#include "core/evaluation/relative_errors.h"
 #include "core/evaluation/trajectory.h"
+#include "core/evaluation/truth_alignment.h"
 #include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
@@ -21,24 +24,11 @@ struct EvaluationOptions {
   double rpe_delta_seconds = 1.0;
   double rpe_delta_metres = 1.0;
 
+  // And in frames, at least 1 each: of these errors the quantiles are given.
+  std::vector<int> rpe_frames = {1, 6};
+
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
-};
-
-// Statistics of a list of errors; all 0 if it is empty.
-struct ErrorStatistics {
-  int count = 0;
-  double rmse = 0.0;
-  double mean = 0.0;
-  double median = 0.0;  // of an even number, the mean of the two in the middle
-  double max = 0.0;
-};
-
-// Errors of motions between two poses i and j of the camera (Sturm 2012):
-// E = (truth_i^-1 truth_j)^-1 (estimate_i^-1 estimate_j).
-struct RelativePoseError {
-  ErrorStatistics translation;  // |translation of E|, m
-  ErrorStatistics rotation;     // angle of E, rad
 };
 
 // The error of the last pose relative to the first.
@@ -80,8 +70,14 @@ struct EvaluationReport {
   RelativePoseError rpe_seconds;  // j is nearest to rpe_delta_seconds later
   RelativePoseError rpe_metres;   // j is the first rpe_delta_metres or more on
 
+  // Quantiles of those over rpe_frames, in that order.
+  std::vector<FramePoseError> rpe_frames;
+
   // E from the first to the last paired pose; empty if there is but one.
   std::optional<FinalPoseError> final_pose;
+
+  // ATE and RPE where the truth's clock and its fixing to the camera fit best.
+  TruthAlignment truth_alignment;
 
   // What ate and rpe_seconds sum up: one a paired pose, in time order.
   std::vector<PoseError> poses;

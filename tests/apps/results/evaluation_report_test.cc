@@ -22,6 +22,10 @@ EvaluationReport MakeReport() {
                         {370, 0, kHalfTurn / 2, kHalfTurn / 4, kHalfTurn}};
   report.likeness = {1.02, 2.0, 0.12};
   report.final_pose = {0.75, kHalfTurn / 180};
+  report.rpe_frames = {
+      {1, {399, 0.0125, 0.05, 0.25}, {399, kHalfTurn / 360, kHalfTurn, 0}},
+      {500, {}, {}}};
+  report.truth_alignment.skipped = "too short";
   return report;
 }
 
@@ -53,7 +57,18 @@ TEST(EvaluationReportTest, TableSaysWhatIsMeasuredAndHow) {
       "  rotation (deg)                         n/a\n"
       "Final pose error, last pose relative to the first\n"
       "  translation (m)                    0.75000\n"
-      "  rotation (deg)                     1.00000\n");
+      "  rotation (deg)                     1.00000\n"
+      "\n"
+      "                                      median        90 %        99 %\n"
+      "RPE, fixed delta 1 frame (399 pairs)\n"
+      "  translation (mm)                   12.5000     50.0000    250.0000\n"
+      "  rotation (deg)                      0.5000    180.0000      0.0000\n"
+      "RPE, fixed delta 500 frames (0 pairs)\n"
+      "  translation (mm)                       n/a\n"
+      "  rotation (deg)                         n/a\n"
+      "\n"
+      "Truth shifted in time and fixed to the camera anew: not estimated; too "
+      "short\n");
 }
 
 TEST(EvaluationReportTest, JsonHasTheSameFigures) {
@@ -74,6 +89,14 @@ TEST(EvaluationReportTest, JsonHasTheSameFigures) {
   EXPECT_EQ(seconds.at("translation_m").at("rmse"), 1.5);
   EXPECT_DOUBLE_EQ(seconds.at("rotation_deg").at("mean"), 90.0);
   EXPECT_DOUBLE_EQ(json.at("rpe_frame").at("rotation_deg").at("rmse"), 180.0);
+  const nlohmann::json& frame = json.at("rpe_frames").at(0);
+  EXPECT_EQ(frame.at("frames"), 1);
+  EXPECT_EQ(frame.at("count"), 399);
+  EXPECT_DOUBLE_EQ(frame.at("translation_mm").at("median"), 12.5);
+  EXPECT_DOUBLE_EQ(frame.at("translation_mm").at("p99"), 250.0);
+  EXPECT_DOUBLE_EQ(frame.at("rotation_deg").at("p90"), 180.0);
+  EXPECT_TRUE(json.at("rpe_frames").at(1).at("translation_mm").is_null());
+  EXPECT_EQ(json.at("truth_alignment").at("skipped"), "too short");
   EXPECT_EQ(json.at("final_pose").at("translation_m"), 0.75);
   EXPECT_DOUBLE_EQ(json.at("final_pose").at("rotation_deg"), 1.0);
 }

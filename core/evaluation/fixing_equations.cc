@@ -1,0 +1,147 @@
+#include "core/evaluation/fixing_equations.h"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/estimation/pose_pair.h"
+#include "core/util/quantile.h"
+
+namespace rgbd_pose {
+namespace {
+
+using FixingDirections = Eigen::Matrix<double, 7, Eigen::Dynamic>;
+using FixingJacobian = Eigen::Matrix<double, 6, 7>;
+using MotionResidual = Eigen::Matrix<double, 6, 1>;
+
+constexpr double kSigmaPerMedian = 1.4826;  // of absolute Gaussian errors
+constexpr double kMinTurnSigma = 1e-5;      // rad, and m: no camera is better
+constexpr double kMinPlaceSigma = 1e-5;
+
+// Tukey's width for the norm of six whitened differences, which is sqrt(6)
+// where they are Gaussian.
+constexpr double kTukeyWidth = 7.0;
+
+// Correlations in time reach over so many motions, and so much of all.
+constexpr double kMaxReachMotions = 5.0;
+constexpr double kMaxReachShare = 0.1;
+
+// How the motion of a camera changes with the fixing from which it follows.
+// With another rotation of the body, its lever stays in the camera's axes.
+FixingJacobian MotionByFixing(const PoseChange& motion,
+                              const Eigen::Vector3d& lever) {
+  const Eigen::Matrix3d& R = motion.rotation;
+  FixingJacobian jacobian = FixingJacobian::Zero();
+  jacobian.col(0) << motion.rate.angular, motion.rate.linear;
+  jacobian.block<3, 3>(0, 1) = -CrossMatrix(motion.turn);
+  jacobian.block<3, 3>(3, 1) =
+      -CrossMatrix(motion.translation - lever) - R * CrossMatrix(lever);
+  jacobian.block<3, 3>(3, 4) = Eigen::Matrix3d::Identity() - R;
+  return jacobian;
+}
+
+double SpreadOf(std::vector<double>* components) {
+  return kSigmaPerMedian * QuantileInPlace(components, 0.5);
+}
+
+// 1 / sigma of the components of turns and of translations.
+MotionResidual Whitening(const std::vector<MotionResidual>& residuals) {
+  std::vector<double> turns;
+  std::vector<double> places;
+  for (const MotionResidual& r : residuals) {
+    for (int i = 0; i < 3; ++i) turns.push_back(std::abs(r[i]));
+    for (int i = 3; i < 6; ++i) places.push_back(std::abs(r[i]));
+  }
+  MotionResidual whitening;
+  whitening.head<3>().setConstant(1.0 /
+                                  std::max(SpreadOf(&turns), kMinTurnSigma));
+  whitening.tail<3>().setConstant(1.0 /
+                                  std::max(SpreadOf(&places), kMinPlaceSigma));
+  return whitening;
+}
+
+}  // namespace
+
+FixingEquations::FixingEquations(const std::vector<ComparedMotion>& motions,
+                                 const Eigen::Vector3d& lever, double overlap)
+    : overlap_(overlap) {
+  if (motions.empty()) return;
+  std::vector<MotionResidual> residuals;
+  for (const ComparedMotion& motion : motions) {
+    residuals.emplace_back();
+    residuals.back() << motion.estimate.turn - motion.truth.turn,
+        motion.estimate.translation - motion.truth.translation;
+  }
+  const MotionResidual whitening = Whitening(residuals);
+  for (size_t i = 0; i < motions.size(); ++i) {
+    const MotionResidual r = whitening.cwiseProduct(residuals[i]);
+    const double share = r.squaredNorm() / (kTukeyWidth * kTukeyWidth);
+    if (share >= 1.0) continue;
+    const MotionResidual weights = (1.0 - share) * whitening;  // w = (1 - s)^2
+    const auto scaled = [&](const PoseChange& motion) -> FixingJacobian {
+      return weights.asDiagonal() * MotionByFixing(motion, lever) *
+             FixingUnits().asDiagonal();
+    };
+    const FixingJacobian by_truth = scaled(motions[i].truth);
+    const FixingJacobian by_estimate = scaled(motions[i].estimate);
+    hessian_ += by_truth.transpose() * by_truth;
+    by_estimate_ += by_estimate.transpose() * by_estimate;
+    agreed_ += by_truth.transpose() * by_estimate;
+    const FixingVector gradient = by_truth.transpose() * ((1.0 - share) * r);
+    gradient_ += gradient;
+    rows_.push_back({motions[i].start, gradient});
+  }
+}
+
+FixingDirections FixingEquations::Determined(double limit, double min_agreement,
+                                             FixingDirections* rest) const {
+  double overlapping = 0.0;  // motions that start within the time of one
+  size_t end = 0;
+  for (const Row& row : rows_) {
+    while (end < rows_.size() && rows_[end].start < row.start + overlap_) ++end;
+    overlapping += end - (&row - rows_.data());
+  }
+  overlapping = std::max(1.0, overlapping / std::max<size_t>(1, rows_.size()));
+
+  const Eigen::SelfAdjointEigenSolver<FixingMatrix> solver(
+      0.5 * (agreed_ + agreed_.transpose()) / overlapping);
+  FixingDirections directions(7, 7);
+  int determined = 0;
+  int left = 7;
+  for (int i = 6; i >= 0; --i) {
+    const FixingVector direction = solver.eigenvectors().col(i);
+    const double agreed = solver.eigenvalues()[i];
+    const bool is_determined =
+        agreed > 1.0 / (limit * limit) &&
+        agreed * overlapping >
+            min_agreement * std::sqrt(direction.dot(hessian_ * direction) *
+                                      direction.dot(by_estimate_ * direction));
+    directions.col(is_determined ? determined++ : --left) = direction;
+  }
+  *rest = directions.rightCols(7 - determined);
+  return directions.leftCols(determined);
+}
+
+// Correlations fade with time: Newey and West (Econometrica 55, 1987). They
+// have to reach further than a motion takes, since an error of the pose between
+// two motions has opposite signs in them, but not so far that few spans are
+// left.
+FixingMatrix FixingEquations::GradientCovariance() const {
+  const double seconds = rows_.back().start - rows_.front().start;
+  const double reach = std::clamp(kMaxReachShare * seconds, 2.0 * overlap_,
+                                  kMaxReachMotions * overlap_);
+  FixingMatrix covariance = FixingMatrix::Zero();
+  for (size_t i = 0; i < rows_.size(); ++i) {
+    const FixingVector& g = rows_[i].gradient;
+    covariance += g * g.transpose();
+    for (size_t j = i + 1; j < rows_.size(); ++j) {
+      const double weight = 1.0 - (rows_[j].start - rows_[i].start) / reach;
+      if (weight <= 0.0) break;
+      const FixingMatrix product = g * rows_[j].gradient.transpose();
+      covariance += weight * (product + product.transpose());
+    }
+  }
+  return covariance;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
+
+#include "core/geometry/rigid3.h"
+#include "core/geometry/twist.h"
+
+namespace rgbd_pose {
+
+// A pose and the velocity there.
+struct MovingPose {
+  Rigid3d world_from_cam;
+  Twist velocity;  // in the camera's own axes, rad/s and m/s
+};
+
+// The poses at these times (s) with velocities from the pose before to the one
+// after; nothing where one of the three is missing or they are too far apart.
+std::vector<std::optional<MovingPose>> MovingPoses(
+    const std::vector<double>& times,
+    const std::vector<std::optional<Rigid3d>>& poses);
+
+// The motion from one pose to a later one, in the axes of the first, and how
+// it changes when both poses are taken later.
+struct PoseChange {
+  PoseChange(const MovingPose& from, const MovingPose& to);
+
+  Eigen::Matrix3d rotation;     // from_from_to
+  Eigen::Vector3d turn;         // the same as a rotation vector, rad
+  Eigen::Vector3d translation;  // m
+  Twist rate;                   // of turn (to first order) and translation
+};
+
+}  // namespace rgbd_pose

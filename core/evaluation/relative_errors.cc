@@ -1,0 +1,76 @@
+#include "core/evaluation/relative_errors.h"
+
+#include <cmath>
+
+namespace rgbd_pose {
+namespace {
+
+// Sizes of the errors of intervals.
+struct IntervalErrors {
+  IntervalErrors(const std::vector<PosePair>& pairs,
+                 const std::vector<PoseInterval>& intervals) {
+    for (const auto& [i, j] : intervals) {
+      const Rigid3d error = RelativeError(pairs[i], pairs[j]);
+      translations.push_back(error.translation.norm());
+      angles.push_back(error.Angle());
+    }
+  }
+
+  std::vector<double> translations;  // m
+  std::vector<double> angles;        // rad
+};
+
+}  // namespace
+
+Rigid3d RelativeError(const PosePair& i, const PosePair& j) {
+  const Rigid3d truth_i_from_j = i.truth.Inverse() * j.truth;
+  const Rigid3d estimate_i_from_j = i.estimate.Inverse() * j.estimate;
+  return truth_i_from_j.Inverse() * estimate_i_from_j;
+}
+
+std::vector<PoseInterval> FrameIntervals(size_t poses, size_t frames) {
+  std::vector<PoseInterval> intervals;
+  for (size_t j = frames; j < poses; ++j) intervals.emplace_back(j - frames, j);
+  return intervals;
+}
+
+std::vector<PoseInterval> TimeIntervals(const std::vector<double>& times,
+                                        double delta, double max_difference) {
+  std::vector<PoseInterval> intervals;
+  for (size_t i = 0; i < times.size(); ++i) {
+    const double end = times[i] + delta;
+    const size_t j = NearestTime(times, end);
+    if (std::abs(times[j] - end) <= max_difference) {
+      intervals.emplace_back(i, j);
+    }
+  }
+  return intervals;
+}
+
+std::vector<PoseInterval> PathIntervals(const std::vector<double>& path,
+                                        double delta) {
+  // Ten steps of 0.1 m make 1 m, whatever rounding says.
+  constexpr double kRounding = 1e-9;
+  std::vector<PoseInterval> intervals;
+  size_t j = 0;
+  for (size_t i = 0; i < path.size(); ++i) {
+    while (j < path.size() && path[j] - path[i] < delta - kRounding) ++j;
+    if (j == path.size()) break;
+    intervals.emplace_back(i, j);
+  }
+  return intervals;
+}
+
+RelativePoseError SummariseIntervals(
+    const std::vector<PosePair>& pairs,
+    const std::vector<PoseInterval>& intervals) {
+  const IntervalErrors errors(pairs, intervals);
+  return {Summarise(errors.translations), Summarise(errors.angles)};
+}
+
+FramePoseError SummariseFrames(const std::vector<PosePair>& pairs, int frames) {
+  const IntervalErrors errors(pairs, FrameIntervals(pairs.size(), frames));
+  return {frames, QuantilesOf(errors.translations), QuantilesOf(errors.angles)};
+}
+
+}  // namespace rgbd_pose

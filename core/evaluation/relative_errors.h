@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstddef>
+#include <utility>
+#include <vector>
+
+#include "core/evaluation/error_statistics.h"
+#include "core/evaluation/pose_pairs.h"
+#include "core/geometry/rigid3.h"
+
+namespace rgbd_pose {
+
+// Errors of motions between two poses i and j of the camera (Sturm 2012):
+// E = (truth_i^-1 truth_j)^-1 (estimate_i^-1 estimate_j).
+struct RelativePoseError {
+  ErrorStatistics translation;  // |translation of E|, m
+  ErrorStatistics rotation;     // angle of E, rad
+};
+
+// The same over a number of frames, by what most of them stay below: a few
+// jumps say little of the rest, and the rest says nothing of them.
+struct FramePoseError {
+  int frames = 0;              // j is so many paired poses after i
+  ErrorQuantiles translation;  // m
+  ErrorQuantiles rotation;     // rad
+};
+
+// From the place of one pose in a list to that of a later one.
+using PoseInterval = std::pair<size_t, size_t>;
+
+// E of RelativePoseError.
+Rigid3d RelativeError(const PosePair& i, const PosePair& j);
+
+// Those from every pose to the one so many, at least 1, after it.
+std::vector<PoseInterval> FrameIntervals(size_t poses, size_t frames);
+
+// Those from every pose to the one nearest to `delta` (s) after it, if that is
+// off by at most `max_difference` (s). `times` (s) are sorted.
+std::vector<PoseInterval> TimeIntervals(const std::vector<double>& times,
+                                        double delta, double max_difference);
+
+// Those from every pose to the first that is `delta` (m) or more further on.
+// `path`: of every pose, the length (m) of the path that leads to it.
+std::vector<PoseInterval> PathIntervals(const std::vector<double>& path,
+                                        double delta);
+
+// Errors over these intervals, and over a number of frames.
+RelativePoseError SummariseIntervals(
+    const std::vector<PosePair>& pairs,
+    const std::vector<PoseInterval>& intervals);
+FramePoseError SummariseFrames(const std::vector<PosePair>& pairs, int frames);
+
+}  // namespace rgbd_pose

@@ -1,0 +1,138 @@
+#include "core/evaluation/truth_alignment.h"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "core/evaluation/alignment.h"
+#include "core/evaluation/fixing_equations.h"
+#include "core/evaluation/truth_comparison.h"
+#include "core/util/format.h"
+
+namespace rgbd_pose {
+namespace {
+
+using FixingColumns = Eigen::Matrix<double, 7, Eigen::Dynamic>;
+
+constexpr int kMinMotions = 30;
+
+constexpr double kMaxShift = 0.5;       // s
+constexpr double kMaxShiftStep = 0.05;  // s; a hand's motion changes that fast
+
+// While the fixing is far off, so are the motions, and seem to tell little: in
+// the first of these rounds that is enough. After the open ones, what is
+// determined stays so.
+constexpr int kRounds = 40;
+constexpr int kOpenRounds = 20;
+constexpr int kFirstRounds = 10;
+constexpr double kFirstLimit = 10.0;  // of FixingUnits
+
+// Noise alone correlates by about 0.2 in ten seconds.
+constexpr double kMinAgreement = 0.5;
+constexpr double kConverged = 1e-4;  // of FixingUnits
+
+// A parameter of which more than this share is not determined is not itself.
+constexpr double kMaxOpenShare = 0.1;
+
+// The standard deviations that `directions` have, in FixingUnits; infinite for
+// what `rest` has a share of.
+FixingVector SigmaOf(const FixingEquations& equations,
+                     const FixingColumns& directions,
+                     const FixingColumns& rest) {
+  FixingMatrix covariance = FixingMatrix::Zero();
+  if (directions.cols() > 0) {
+    const Eigen::MatrixXd hessian =
+        directions.transpose() * equations.hessian() * directions;
+    const Eigen::MatrixXd to_step =
+        directions * hessian.ldlt().solve(directions.transpose());
+    covariance = to_step * equations.GradientCovariance() * to_step.transpose();
+  }
+  FixingVector sigma;
+  for (int i = 0; i < sigma.size(); ++i) {
+    sigma[i] = rest.row(i).squaredNorm() > kMaxOpenShare
+                   ? std::numeric_limits<double>::infinity()
+                   : std::sqrt(std::max(0.0, covariance(i, i)));
+  }
+  return sigma;
+}
+
+// Gauss-Newton within the directions that are determined: nothing but zero in
+// the others. Counts motions; returns why it has failed, or nothing.
+std::string FindFixing(const TruthComparison& comparison,
+                       TruthAlignment* result) {
+  FixingVector x = FixingVector::Zero();
+  FixingColumns directions;
+  FixingColumns rest;
+  for (int round = 0;; ++round) {
+    const TruthFixing fixing = FixingAt(x);
+    const FixingEquations equations(comparison.Motions(fixing),
+                                    fixing.camera_from_body.translation,
+                                    TruthComparison::kMotionSeconds);
+    result->motions = equations.used();
+    if (equations.used() < kMinMotions) {
+      return Format(
+          "%d motions of %g s of the estimate have a true one, with poses less "
+          "than 50 ms apart; it takes %d",
+          equations.used(), TruthComparison::kMotionSeconds, kMinMotions);
+    }
+    if (round < kOpenRounds) {
+      const bool first = round < kFirstRounds;
+      directions = equations.Determined(first ? kFirstLimit : 1.0,
+                                        first ? 0.0 : kMinAgreement, &rest);
+    }
+    FixingVector next = FixingVector::Zero();
+    if (directions.cols() > 0) {
+      const Eigen::MatrixXd hessian =
+          directions.transpose() * equations.hessian() * directions;
+      next = directions * hessian.ldlt().solve(
+                              directions.transpose() *
+                              (equations.hessian() * x + equations.gradient()));
+    }
+    const double step = kMaxShiftStep / FixingUnits()[0];
+    const double limit = kMaxShift / FixingUnits()[0];
+    next[0] = std::clamp(std::clamp(next[0], x[0] - step, x[0] + step), -limit,
+                         limit);
+    const double change = (next - x).norm();
+    x = next;
+    if ((round >= kOpenRounds && change < kConverged) || round + 1 == kRounds) {
+      if (std::abs(x[0]) >= limit) {
+        return Format("no time shift of less than %g s fits", kMaxShift);
+      }
+      result->fixing = FixingAt(x);
+      result->undetermined = NameFixingDirections(rest);
+      result->sigma =
+          SigmaOf(equations, directions, rest).cwiseProduct(FixingUnits());
+      return "";
+    }
+  }
+}
+
+}  // namespace
+
+TruthAlignment AlignTruth(const Trajectory& estimate,
+                          const Trajectory& ground_truth,
+                          double rpe_delta_seconds,
+                          double max_time_difference) {
+  TruthAlignment result;
+  const TruthComparison comparison(estimate, ground_truth);
+  result.skipped = FindFixing(comparison, &result);
+  if (!result.skipped.empty()) return result;
+  const std::vector<PosePair> pairs = comparison.Pairs(result.fixing);
+  const Rigid3d truth_from_estimate = AlignRigidly(pairs);
+  std::vector<double> times;
+  std::vector<double> distances;
+  for (const PosePair& pair : pairs) {
+    times.push_back(pair.timestamp);
+    distances.push_back((truth_from_estimate * pair.estimate.translation -
+                         pair.truth.translation)
+                            .norm());
+  }
+  result.ate = Summarise(std::move(distances));
+  result.rpe_seconds = SummariseIntervals(
+      pairs, TimeIntervals(times, rpe_delta_seconds, max_time_difference));
+  return result;
+}
+
+}  // namespace rgbd_pose
