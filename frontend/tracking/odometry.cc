@@ -36,6 +36,13 @@ MotionMatrix OfUnknownVelocity(const Frame& frame) {
   return covariance;
 }
 
+// Whether a frame need not be looked for in another way.
+bool IsTrusted(const PreparedFrame* frame, const TrackedFrame& result,
+               const Tracked& tracked) {
+  return frame != nullptr && result.status == TrackingStatus::kOk &&
+         !tracked.is_scarce;
+}
+
 }  // namespace
 
 Odometry::Odometry(const OdometryOptions& options,
@@ -100,7 +107,24 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   }
   result.world_from_cam = WorldFromCam();
   result.segment = segment_;
+  KeepLast(frame, result);
   return result;
+}
+
+void Odometry::KeepLast(const PreparedFrame& frame,
+                        const TrackedFrame& result) {
+  has_last_ = result.status != TrackingStatus::kLost && !result.is_reference;
+  if (!has_last_) return;
+  // Memory is used again.
+  cv::Mat gray = last_.frame.gray, depth = last_.frame.depth;
+  frame.gray.copyTo(gray);
+  frame.depth.copyTo(depth);
+  last_.frame = frame;
+  last_.frame.gray = gray;
+  last_.frame.depth = depth;
+  last_.frame.color.release();
+  last_.frame.twist = twist_;
+  last_.result = result;
 }
 
 Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
@@ -123,10 +147,83 @@ void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
   tracked_at_ = frame.timestamp;
 }
 
-// First from the last pose. A constant velocity is only a second try: as the
-// first it can lock onto its own false motion.
 bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
+  const PreparedFrame* frame = Look(measured, prediction, result);
+  if (!is_lost_ && !IsTrusted(frame, *result, attempts_.kept())) {
+    frame = LookFromLast(measured, prediction, frame, result);
+  }
+  // A doubtful pose is no way back from being lost.
+  if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
+    return false;
+  }
+  const Rigid3d last = cur_from_ref_;
+  twist_ = frame->twist;
+  if (attempts_.kept().twist.has_value()) {
+    twist_covariance_ = attempts_.kept().twist_covariance;
+  }
+  if (has_shutter_) shutter_tracking_.Accept();
+  TakeMotion(result);
+  cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
+  Accept(*frame, result);
+  return true;
+}
+
+const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
+                                            const Prediction* prediction,
+                                            const PreparedFrame* found,
+                                            TrackedFrame* result) {
+  Keyframe* const reference = reference_;
+  const Rigid3d cur_from_ref = cur_from_ref_;
+  const MotionMatrix covariance = covariance_;
+  if (!MakeLastReference()) return found;
+  result->previous_is_reference = true;
+  TrackedFrame from_last = *result;
+  std::optional<Prediction> since;
+  if (prediction != nullptr)
+    since = Predict(prediction->cur_from_prev, nullptr);
+  const PreparedFrame* const frame =
+      Look(measured, since ? &*since : nullptr, &from_last);
+  result->match_ms = from_last.match_ms;
+  result->solve_ms = from_last.solve_ms;
+  const bool is_better =
+      frame != nullptr &&
+      (found == nullptr || from_last.status == TrackingStatus::kOk);
+  if (is_better) {
+    *result = from_last;
+    return frame;
+  }
+  reference_ = reference;
+  cur_from_ref_ = cur_from_ref;
+  covariance_ = covariance;
+  return found != nullptr ? Look(measured, prediction, result) : nullptr;
+}
+
+bool Odometry::MakeLastReference() {
+  if (!has_last_) return false;
+  const Frame& frame = last_.frame;
+  const auto seen = shutter_tracking_.AtOneMoment(frame);
+  std::string why_not;
+  std::unique_ptr<Reference> reference =
+      tracker_->MakeReference(*seen, nullptr, nullptr, &why_not);
+  if (reference == nullptr) return false;
+  const int id = last_.result.index;
+  has_last_ = false;
+  reference_ = keyframes_.Add(
+      {id, segment_, last_.result.world_from_cam, std::move(reference),
+       std::make_unique<Place>(*seen, id), last_.result.edges},
+      reference_);
+  shutter_tracking_.AddReference(frame, *seen, id);
+  cur_from_ref_ = Rigid3d();
+  covariance_.setZero();
+  return true;
+}
+
+// First from the last pose. A constant velocity is only a second try: as the
+// first it can lock onto its own false motion.
+const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
+                                    const Prediction* prediction,
+                                    TrackedFrame* result) {
   const Rigid3d last = cur_from_ref_;
   const Rigid3d predicted = cur_from_prev_ * last;
   const Rigid3d first = options_.predict_velocity ? predicted : last;
@@ -155,29 +252,15 @@ bool Odometry::Follow(const PreparedFrame& measured,
                ? &attempts_.kept()
                : nullptr;
   };
-  const PreparedFrame* frame = &measured;
   if (!has_shutter_) {
-    if (track(measured, nullptr, nullptr) == nullptr) frame = nullptr;
-  } else {
-    std::optional<Twist> twist;
-    if (prediction != nullptr && interval_ > 0.0) {
-      twist = TwistOf(prediction->cur_from_prev, interval_);
-    }
-    frame = shutter_tracking_.Follow(measured, is_lost_ ? 0.0 : interval_, last,
-                                     twist, reference_, track);
+    return track(measured, nullptr, nullptr) != nullptr ? &measured : nullptr;
   }
-  // A doubtful pose is no way back from being lost.
-  if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
-    return false;
+  std::optional<Twist> twist;
+  if (prediction != nullptr && interval_ > 0.0) {
+    twist = TwistOf(prediction->cur_from_prev, interval_);
   }
-  twist_ = frame->twist;
-  if (attempts_.kept().twist.has_value()) {
-    twist_covariance_ = attempts_.kept().twist_covariance;
-  }
-  TakeMotion(result);
-  cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
-  Accept(*frame, result);
-  return true;
+  return shutter_tracking_.Follow(measured, is_lost_ ? 0.0 : interval_, last,
+                                  twist, reference_, track);
 }
 
 bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
@@ -247,7 +330,9 @@ void Odometry::TakeMotion(TrackedFrame* result) {
   covariance_ = estimate.covariance;
   if (!attempts_.kept().twist.has_value()) covariance_ += twist_covariance_;
   result->cur_from_reference = cur_from_ref_;
-  if (!estimate.ok()) return;
+  if (!estimate.ok() && estimate.status != EstimateStatus::kNotConverged) {
+    return;
+  }
   result->edges.insert(result->edges.begin(), {reference_->id, result->index,
                                                cur_from_ref_, covariance_});
 }

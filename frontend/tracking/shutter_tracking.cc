@@ -42,6 +42,7 @@ std::unique_ptr<const PreparedFrame> WithTwist(
 void ShutterTracking::Reset() {
   velocity_.Reset();
   between_.reset();
+  found_between_.reset();
   early_.reset();
 }
 
@@ -80,11 +81,18 @@ const PreparedFrame* ShutterTracking::Follow(
     frame_ = WithTwist(frame, std::nullopt);
     return track(*frame_, nullptr, nullptr) != nullptr ? frame_.get() : nullptr;
   }
-  early_.reset();
-  if (frame_->twist.has_value()) velocity_.Add(*frame_->twist, middle);
-  between_ = between;
-  interval_ = interval;
+  found_between_ = between;
+  found_interval_ = interval;
   return frame_.get();
+}
+
+void ShutterTracking::Accept() {
+  early_.reset();
+  if (frame_ != nullptr && frame_->twist.has_value()) {
+    velocity_.Add(*frame_->twist, frame_->color_shutter.offset);
+  }
+  between_ = found_between_;
+  interval_ = found_interval_;
 }
 
 bool ShutterTracking::MendReference(const Twist& since, double interval,
@@ -121,11 +129,11 @@ const Frame* ShutterTracking::FindReferenceFrame(int id) const {
 }
 
 std::unique_ptr<const PreparedFrame> ShutterTracking::AtOneMoment(
-    const PreparedFrame& frame) {
+    const Frame& frame) {
   return tracker_->Prepare(rectifier_.Rectify(frame));
 }
 
-void ShutterTracking::AddReference(const PreparedFrame& frame,
+void ShutterTracking::AddReference(const Frame& frame,
                                    const Frame& at_one_moment, int id) {
   Frame& kept = reference_frames_[id] = at_one_moment;
   kept.gray = at_one_moment.gray.clone();

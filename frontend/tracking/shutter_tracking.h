@@ -39,16 +39,18 @@ class ShutterTracking {
                               const std::optional<Twist>& first_guess,
                               Keyframe* reference, const Track& track);
 
+  // The frame of the last Follow has that pose: the next one goes on from it.
+  void Accept();
+
   // Nothing is known of the velocity any more.
   void Reset();
 
   // A frame of Follow, or one whose velocity is not known, as it is to become a
   // reference: seen at one moment.
-  std::unique_ptr<const PreparedFrame> AtOneMoment(const PreparedFrame& frame);
+  std::unique_ptr<const PreparedFrame> AtOneMoment(const Frame& frame);
 
   // The frame, which AtOneMoment has moved, is the reference of that id now.
-  void AddReference(const PreparedFrame& frame, const Frame& at_one_moment,
-                    int id);
+  void AddReference(const Frame& frame, const Frame& at_one_moment, int id);
 
   // The images of a reference, as they have become; null: it is neither the
   // latest nor the one before.
@@ -74,7 +76,9 @@ class ShutterTracking {
   double interval_ = 0.0;         // of that, s
   std::optional<Early> early_;
   std::unique_ptr<const PreparedFrame> frame_;  // see Follow
-  std::map<int, Frame> reference_frames_;       // by id; the latest two
+  std::optional<Twist> found_between_;  // as between_, of a frame not accepted
+  double found_interval_ = 0.0;
+  std::map<int, Frame> reference_frames_;  // by id; the latest two
 };
 
 }  // namespace rgbd_pose
