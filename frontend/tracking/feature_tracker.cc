@@ -171,8 +171,8 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
   for (int round = 0; round < kMaxRounds; ++round) {
     if (!estimate.ok()) break;
     const TwistEstimate found = EstimateTwist(
-        tracked->matches.matches, estimate.is_inlier, estimate.cur_from_prev,
-        seen.Timing(),
+        tracked->matches.matches, estimate.is_inlier, estimate.sigma,
+        estimate.cur_from_prev, seen.Timing(),
         guess.velocity->Mean(estimate.cur_from_prev, moved_by.twist),
         *guess.velocity);
     tracked->twist_covariance = found.motion_covariance;

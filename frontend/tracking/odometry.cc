@@ -36,13 +36,6 @@ MotionMatrix OfUnknownVelocity(const Frame& frame) {
   return covariance;
 }
 
-// Whether a frame need not be looked for in another way.
-bool IsTrusted(const PreparedFrame* frame, const TrackedFrame& result,
-               const Tracked& tracked) {
-  return frame != nullptr && result.status == TrackingStatus::kOk &&
-         !tracked.is_scarce;
-}
-
 }  // namespace
 
 Odometry::Odometry(const OdometryOptions& options,
@@ -150,7 +143,7 @@ void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
 bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
   const PreparedFrame* frame = Look(measured, prediction, result);
-  if (!is_lost_ && !IsTrusted(frame, *result, attempts_.kept())) {
+  if (!is_lost_ && !IsTrusted(frame, *result)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
   // A doubtful pose is no way back from being lost.
@@ -167,6 +160,16 @@ bool Odometry::Follow(const PreparedFrame& measured,
   cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
   Accept(*frame, result);
   return true;
+}
+
+// A frame that is about to become a reference should be certain of its own
+// pose.
+bool Odometry::IsTrusted(const PreparedFrame* frame,
+                         const TrackedFrame& result) const {
+  constexpr double kMaxSigma = 1.7;
+  if (frame == nullptr || result.status != TrackingStatus::kOk) return false;
+  return !NeedsNewReference() ||
+         (result.sigma <= kMaxSigma && !attempts_.kept().is_scarce);
 }
 
 const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
@@ -188,7 +191,9 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   result->solve_ms = from_last.solve_ms;
   const bool is_better =
       frame != nullptr &&
-      (found == nullptr || from_last.status == TrackingStatus::kOk);
+      (found == nullptr || (from_last.status == TrackingStatus::kOk &&
+                            (result->status != TrackingStatus::kOk ||
+                             from_last.sigma < result->sigma)));
   if (is_better) {
     *result = from_last;
     return frame;

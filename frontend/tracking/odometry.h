@@ -106,6 +106,7 @@ class Odometry {
   // Tracks a frame against reference_: as it was tracked, null if it was not.
   const PreparedFrame* Look(const PreparedFrame& frame,
                             const Prediction* prediction, TrackedFrame* result);
+  bool IsTrusted(const PreparedFrame* frame, const TrackedFrame& result) const;
   // The same against the last frame, which becomes a reference for it; where
   // that is no better, what Look found.
   const PreparedFrame* LookFromLast(const PreparedFrame& frame,
