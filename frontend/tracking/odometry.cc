@@ -143,7 +143,7 @@ void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
 bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
   const PreparedFrame* frame = Look(measured, prediction, result);
-  if (!is_lost_ && !IsTrusted(frame, *result)) {
+  if (!is_lost_ && (wants_reference_ || !IsTrusted(frame, *result))) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
   // A doubtful pose is no way back from being lost.
@@ -191,9 +191,10 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   result->solve_ms = from_last.solve_ms;
   const bool is_better =
       frame != nullptr &&
-      (found == nullptr || (from_last.status == TrackingStatus::kOk &&
-                            (result->status != TrackingStatus::kOk ||
-                             from_last.sigma < result->sigma)));
+      (found == nullptr ||
+       (from_last.status == TrackingStatus::kOk &&
+        (wants_reference_ || result->status != TrackingStatus::kOk ||
+         from_last.sigma < result->sigma)));
   if (is_better) {
     *result = from_last;
     return frame;
@@ -207,7 +208,7 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
 bool Odometry::MakeLastReference() {
   if (!has_last_) return false;
   const Frame& frame = last_.frame;
-  const auto seen = shutter_tracking_.AtOneMoment(frame);
+  const auto seen = shutter_tracking_.LastAtOneMoment(frame);
   std::string why_not;
   std::unique_ptr<Reference> reference =
       tracker_->MakeReference(*seen, nullptr, nullptr, &why_not);
@@ -295,6 +296,7 @@ void Odometry::Lose(const PreparedFrame& frame, const Prediction* prediction,
   // One frame that nobody tells of, and the way since is no longer known.
   is_predicted_ = prediction != nullptr && (is_predicted_ || !is_lost_);
   is_lost_ = true;
+  wants_reference_ = false;
   shutter_tracking_.Reset();
   result->status = TrackingStatus::kLost;
   result->is_predicted = is_predicted_;
@@ -346,6 +348,7 @@ void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
   tracker_->Believe(reference_->reference.get(), attempts_.mutable_kept());
+  wants_reference_ = false;
   if (NeedsNewReference()) ChangeReference(frame, result);
 }
 
@@ -362,11 +365,14 @@ void Odometry::ChangeReference(const PreparedFrame& frame,
   Keyframe* const earlier =
       keyframes_.FindNearest(world_from_cam, segment_, kMinReturnShare,
                              kMaxReturnFlow * options_.max_flow_px, reference_);
-  if (earlier == nullptr ||
-      !ReturnTo(frame, earlier,
-                world_from_cam.Inverse() * earlier->world_from_cam, result)) {
-    TakeReference(frame, world_from_cam, result);
+  if (earlier != nullptr &&
+      ReturnTo(frame, earlier,
+               world_from_cam.Inverse() * earlier->world_from_cam, result)) {
+    return;
   }
+  // The next frame tells how the camera moved in this one.
+  wants_reference_ = has_shutter_ && twist_.has_value();
+  if (!wants_reference_) TakeReference(frame, world_from_cam, result);
 }
 
 bool Odometry::ReturnTo(const PreparedFrame& frame, Keyframe* earlier,

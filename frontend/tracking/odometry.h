@@ -158,6 +158,7 @@ class Odometry {
   };
   LastFrame last_;
   bool has_last_ = false;
+  bool wants_reference_ = false;  // the last frame is to become one
   int segment_ = 0;
   double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
   bool is_lost_ = false;

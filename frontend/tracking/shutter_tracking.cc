@@ -24,6 +24,22 @@ bool IsOfAHand(const Twist& twist) {
   return twist.angular.norm() < kMaxAngular && twist.linear.norm() < kMaxLinear;
 }
 
+// Between two intervals with such mean velocities, at constant acceleration.
+Twist VelocityBetween(const std::optional<Twist>& before, double before_s,
+                      const Twist& after, double after_s) {
+  if (!before.has_value()) return after;
+  const double share = before_s / (before_s + after_s);
+  return share * after + (1.0 - share) * *before;
+}
+
+// The camera that a frame is resampled for: where its pose is, which has come
+// with its velocity.
+Rigid3d TargetFromMiddle(const Frame& frame) {
+  return frame.twist.value_or(Twist())
+      .MotionDuring(frame.color_shutter.offset)
+      .Inverse();
+}
+
 std::unique_ptr<const PreparedFrame> WithTwist(
     const PreparedFrame& frame, const std::optional<Twist>& twist) {
   std::unique_ptr<PreparedFrame> copy = frame.Copy();
@@ -56,6 +72,7 @@ const PreparedFrame* ShutterTracking::Follow(
     return track(*frame_, nullptr, nullptr) != nullptr ? frame_.get() : nullptr;
   }
   const double middle = frame.color_shutter.offset;
+  found_between_.reset();
   frame_ = WithTwist(frame, first_guess ? first_guess : velocity_.last());
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
   const Tracked* tracked = track(*frame_, &prior, nullptr);
@@ -98,12 +115,8 @@ void ShutterTracking::Accept() {
 bool ShutterTracking::MendReference(const Twist& since, double interval,
                                     Keyframe* reference) {
   if (!early_.has_value()) return false;
-  Twist twist = since;
-  if (early_->before.has_value()) {
-    // At constant acceleration.
-    const double share = early_->interval / (early_->interval + interval);
-    twist = share * since + (1.0 - share) * *early_->before;
-  }
+  const Twist twist =
+      VelocityBetween(early_->before, early_->interval, since, interval);
   Frame& frame = early_->frame;
   const FrameTiming timing = frame.Timing(twist);
   velocity_.Correct(twist);
@@ -133,6 +146,15 @@ std::unique_ptr<const PreparedFrame> ShutterTracking::AtOneMoment(
   return tracker_->Prepare(rectifier_.Rectify(frame));
 }
 
+std::unique_ptr<const PreparedFrame> ShutterTracking::LastAtOneMoment(
+    const Frame& last) {
+  if (!found_between_.has_value()) return AtOneMoment(last);
+  Frame frame = last;
+  frame.twist =
+      VelocityBetween(between_, interval_, *found_between_, found_interval_);
+  return tracker_->Prepare(rectifier_.Rectify(frame, TargetFromMiddle(last)));
+}
+
 void ShutterTracking::AddReference(const Frame& frame,
                                    const Frame& at_one_moment, int id) {
   Frame& kept = reference_frames_[id] = at_one_moment;
@@ -146,9 +168,8 @@ void ShutterTracking::AddReference(const Frame& frame,
   early_->frame.gray = frame.gray.clone();
   early_->frame.depth = frame.depth.clone();
   early_->frame.color.release();
-  early_->target_from_middle = frame.twist.value_or(Twist())
-                                   .MotionDuring(frame.color_shutter.offset)
-                                   .Inverse();
+  early_->target_from_middle = TargetFromMiddle(frame);
+  early_->frame.twist = at_one_moment.twist;
   early_->before = between_;
   early_->interval = interval_;
 }

@@ -49,6 +49,10 @@ class ShutterTracking {
   // reference: seen at one moment.
   std::unique_ptr<const PreparedFrame> AtOneMoment(const Frame& frame);
 
+  // The same of the frame before that of the last Follow, which has told its
+  // velocity, too, if it was found.
+  std::unique_ptr<const PreparedFrame> LastAtOneMoment(const Frame& last);
+
   // The frame, which AtOneMoment has moved, is the reference of that id now.
   void AddReference(const Frame& frame, const Frame& at_one_moment, int id);
 
