@@ -182,6 +182,8 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   if (!MakeLastReference()) return found;
   result->previous_is_reference = true;
   TrackedFrame from_last = *result;
+  attempts_.Stash();
+  ShutterTracking::Found before = shutter_tracking_.TakeFound();
   std::optional<Prediction> since;
   if (prediction != nullptr)
     since = Predict(prediction->cur_from_prev, nullptr);
@@ -202,7 +204,9 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   reference_ = reference;
   cur_from_ref_ = cur_from_ref;
   covariance_ = covariance;
-  return found != nullptr ? Look(measured, prediction, result) : nullptr;
+  attempts_.TakeUpStashed();
+  shutter_tracking_.PutBack(std::move(before));
+  return found;
 }
 
 bool Odometry::MakeLastReference() {
@@ -265,8 +269,10 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
   if (prediction != nullptr && interval_ > 0.0) {
     twist = TwistOf(prediction->cur_from_prev, interval_);
   }
-  return shutter_tracking_.Follow(measured, is_lost_ ? 0.0 : interval_, last,
-                                  twist, reference_, track);
+  std::optional<Rigid3d> prev_from_ref;
+  if (!is_lost_) prev_from_ref = last;
+  return shutter_tracking_.Follow(measured, interval_, prev_from_ref, twist,
+                                  reference_, track);
 }
 
 bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
@@ -277,13 +283,19 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   }
   if (!place.has_value()) return false;
   Keyframe* keyframe = keyframes_.Find(place->place_id);
-  if (!attempts_.Try(frame, *keyframe, place->cur_from_place, result) ||
+  TrackingGuess guess = place->cur_from_place;
+  VelocityPrior velocity;
+  if (has_shutter_) {
+    velocity = shutter_tracking_.LostPrior(frame, interval_);
+    guess.velocity = &velocity;
+  }
+  if (!attempts_.Try(frame, *keyframe, guess, result) ||
       result->status != TrackingStatus::kOk) {
     return false;
   }
+  twist_ = attempts_.kept().twist;
   reference_ = keyframe;
   segment_ = keyframe->segment;
-  shutter_tracking_.Reset();
   TakeMotion(result);
   cur_from_prev_ = Rigid3d();
   result->relocalised = true;
@@ -297,7 +309,7 @@ void Odometry::Lose(const PreparedFrame& frame, const Prediction* prediction,
   is_predicted_ = prediction != nullptr && (is_predicted_ || !is_lost_);
   is_lost_ = true;
   wants_reference_ = false;
-  shutter_tracking_.Reset();
+  shutter_tracking_.Lose();
   result->status = TrackingStatus::kLost;
   result->is_predicted = is_predicted_;
   if (prediction != nullptr) {

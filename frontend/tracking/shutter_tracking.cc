@@ -55,61 +55,66 @@ std::unique_ptr<const PreparedFrame> WithTwist(
 
 }  // namespace
 
-void ShutterTracking::Reset() {
-  velocity_.Reset();
+void ShutterTracking::Lose() {
   between_.reset();
-  found_between_.reset();
+  found_ = Found();
   early_.reset();
 }
 
 const PreparedFrame* ShutterTracking::Follow(
-    const PreparedFrame& frame, double interval, const Rigid3d& prev_from_ref,
+    const PreparedFrame& frame, double interval,
+    const std::optional<Rigid3d>& prev_from_ref,
     const std::optional<Twist>& first_guess, Keyframe* reference,
     const Track& track) {
+  found_ = Found();
+  const auto forget = [&] {
+    velocity_.Reset();
+    Lose();
+    found_.frame = WithTwist(frame, std::nullopt);
+    return track(*found_.frame, nullptr, nullptr) != nullptr
+               ? found_.frame.get()
+               : nullptr;
+  };
   if (!(interval > 0.0 && interval <= VelocityModel::kMaxInterval)) {
-    Reset();
-    frame_ = WithTwist(frame, std::nullopt);
-    return track(*frame_, nullptr, nullptr) != nullptr ? frame_.get() : nullptr;
+    return forget();
   }
   const double middle = frame.color_shutter.offset;
-  found_between_.reset();
-  frame_ = WithTwist(frame, first_guess ? first_guess : velocity_.last());
+  found_.frame = WithTwist(frame, first_guess ? first_guess : velocity_.last());
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
-  const Tracked* tracked = track(*frame_, &prior, nullptr);
+  const Tracked* tracked = track(*found_.frame, &prior, nullptr);
   if (tracked == nullptr) return nullptr;
-  Twist between;
   const auto look = [&] {
-    if (tracked->twist.has_value()) frame_ = WithTwist(frame, tracked->twist);
-    between = prior.Between(tracked->estimate.cur_from_prev,
-                            frame_->twist.value_or(Twist()));
+    if (tracked->twist.has_value()) {
+      found_.frame = WithTwist(frame, tracked->twist);
+    }
+    found_.between = prior.Between(tracked->estimate.cur_from_prev,
+                                   found_.frame->twist.value_or(Twist()));
   };
   look();
   const int rounds = between_.has_value() ? 1 : kMaxRounds;
-  for (int round = 0; round < rounds; ++round) {
-    if (!MendReference(between, interval, reference)) break;
+  for (int round = 0; round < rounds && found_.between.has_value(); ++round) {
+    if (!MendReference(*found_.between, interval, reference)) break;
     prior = velocity_.Prior(prev_from_ref, interval, middle);
     const Rigid3d found = tracked->estimate.cur_from_prev;
-    tracked = track(*frame_, &prior, &found);
+    tracked = track(*found_.frame, &prior, &found);
     if (tracked == nullptr) return nullptr;
     look();
   }
-  if (!IsOfAHand(between) || !IsOfAHand(frame_->twist.value_or(Twist()))) {
-    Reset();
-    frame_ = WithTwist(frame, std::nullopt);
-    return track(*frame_, nullptr, nullptr) != nullptr ? frame_.get() : nullptr;
+  if (!IsOfAHand(found_.between.value_or(Twist())) ||
+      !IsOfAHand(found_.frame->twist.value_or(Twist()))) {
+    return forget();
   }
-  found_between_ = between;
-  found_interval_ = interval;
-  return frame_.get();
+  found_.interval = interval;
+  return found_.frame.get();
 }
 
 void ShutterTracking::Accept() {
   early_.reset();
-  if (frame_ != nullptr && frame_->twist.has_value()) {
-    velocity_.Add(*frame_->twist, frame_->color_shutter.offset);
+  if (found_.frame != nullptr && found_.frame->twist.has_value()) {
+    velocity_.Add(*found_.frame->twist, found_.frame->color_shutter.offset);
   }
-  between_ = found_between_;
-  interval_ = found_interval_;
+  between_ = found_.between;
+  interval_ = found_.interval;
 }
 
 bool ShutterTracking::MendReference(const Twist& since, double interval,
@@ -148,10 +153,10 @@ std::unique_ptr<const PreparedFrame> ShutterTracking::AtOneMoment(
 
 std::unique_ptr<const PreparedFrame> ShutterTracking::LastAtOneMoment(
     const Frame& last) {
-  if (!found_between_.has_value()) return AtOneMoment(last);
+  if (!found_.between.has_value()) return AtOneMoment(last);
   Frame frame = last;
   frame.twist =
-      VelocityBetween(between_, interval_, *found_between_, found_interval_);
+      VelocityBetween(between_, interval_, *found_.between, found_.interval);
   return tracker_->Prepare(rectifier_.Rectify(frame, TargetFromMiddle(last)));
 }
 
