@@ -57,7 +57,7 @@ Frame FrameRectifier::Rectify(const Frame& frame,
   const auto resample = [this](const cv::Mat& image) {
     cv::Mat moved;
     if (image.empty()) return moved;
-    cv::remap(image, moved, map_u_, map_v_, cv::INTER_CUBIC,
+    cv::remap(image, moved, map_u_, map_v_, cv::INTER_LINEAR,
               cv::BORDER_REPLICATE);
     return moved;
   };
