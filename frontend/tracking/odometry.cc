@@ -146,6 +146,9 @@ bool Odometry::Follow(const PreparedFrame& measured,
   };
   const PreparedFrame* frame = &measured;
   if (!has_shutter_) {
+    // Among frames with shutters it tells nothing of velocities, and what they
+    // have told is of a time before it.
+    shutter_tracking_.Reset();
     if (track(measured, nullptr, nullptr) == nullptr) frame = nullptr;
   } else {
     std::optional<Twist> twist;
