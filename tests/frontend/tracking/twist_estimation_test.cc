@@ -23,7 +23,7 @@ FrameTiming Rolling(const Twist& twist) {
 }
 
 // Matches with a frame whose rows were exposed one after another, which can be
-// moved by any velocity.
+// moved by any velocity. Each is on a surface of its own, steep or not.
 class RollingMatches {
  public:
   // `timing`: as it was.
@@ -32,23 +32,28 @@ class RollingMatches {
       : timing_(timing) {
     RandomWorld world(seed);
     for (int i = 0; i < 300; ++i) {
-      Match match;
-      world.Match(camera_, cur_from_ref, &match.prev, &match.cur);
-      const Eigen::Vector3d point =
-          camera_.Ray(match.cur.u, match.cur.v) * match.cur.depth;
+      Measured m;
+      world.Match(camera_, cur_from_ref, &m.match.prev, &m.match.cur);
+      Observation& cur = m.match.cur;
+      const Eigen::Vector3d point = camera_.Ray(cur.u, cur.v) * cur.depth;
+      Eigen::Vector3d normal = world.Vector(0.8);
+      normal.z() = -1.0;
+      normal.normalize();
       const Eigen::Vector2d seen = ImagePoint(camera_, timing, point);
-      match.cur.u = seen.x();
-      match.cur.v = seen.y();
-      match.cur.depth =
-          timing.twist
-              .MovedPoint(point, timing.depth.RowTime(seen.y(), camera_.height))
-              .z();
-      for (Observation* o : {&match.prev, &match.cur}) {
-        o->u += world.Normal(noise * o->sigma_px);
-        o->v += world.Normal(noise * o->sigma_px);
-        o->depth += world.Normal(noise * o->sigma_depth);
-      }
-      measured_.push_back(match);
+      m.taken = timing.depth.RowTime(seen.y(), camera_.height);
+      // The surface when depth was taken.
+      const Rigid3d moved = timing.twist.MotionDuring(m.taken);
+      m.normal = moved.rotation * normal;
+      const Eigen::Vector3d then = timing.twist.MovedPoint(point, m.taken);
+      m.distance = m.normal.dot(
+          then * (1.0 + world.Normal(noise) * cur.sigma_depth / then.z()));
+      cur.u = seen.x() + world.Normal(noise * cur.sigma_px);
+      cur.v = seen.y() + world.Normal(noise * cur.sigma_px);
+      Observation& prev = m.match.prev;
+      prev.u += world.Normal(noise * prev.sigma_px);
+      prev.v += world.Normal(noise * prev.sigma_px);
+      prev.depth += world.Normal(noise * prev.sigma_depth);
+      measured_.push_back(m);
     }
   }
 
@@ -56,38 +61,46 @@ class RollingMatches {
   void AddOutliers() {
     RandomWorld world(7);
     for (size_t i = 0; i < measured_.size(); i += 10) {
-      measured_[i].cur.u += world.Uniform(20.0, 60.0);
-      measured_[i].cur.v -= world.Uniform(20.0, 60.0);
+      measured_[i].match.cur.u += world.Uniform(20.0, 60.0);
+      measured_[i].match.cur.v -= world.Uniform(20.0, 60.0);
     }
   }
 
+  // As Observe sees them.
   Correspondences MovedBy(const Twist& twist) const {
     Correspondences moved(camera_);
-    for (Match match : measured_) {
-      Observation& cur = match.cur;
+    for (const Measured& m : measured_) {
+      Observation cur = m.match.cur;
       const Eigen::Vector3d ray = camera_.Ray(cur.u, cur.v);
       const double seen = timing_.color.RowTime(cur.v, camera_.height);
-      const double taken = timing_.depth.RowTime(cur.v, camera_.height);
-      // From when depth was measured to when colour was.
-      Eigen::Vector3d point = ray * cur.depth;
-      for (int step = 0; step < 3; ++step) {
-        const Eigen::Vector3d then =
-            twist.MovedPoint(twist.MovedPoint(point, -seen), taken);
-        point = ray * (point.z() + cur.depth - then.z());
-      }
-      point = twist.MovedPoint(point, -seen);
+      // How far the surface is along the ray, whose points move in proportion.
+      const auto behind = [&](double z) {
+        const Eigen::Vector3d at_stamp = twist.MovedPoint(ray * z, -seen);
+        return m.normal.dot(twist.MovedPoint(at_stamp, m.taken)) - m.distance;
+      };
+      const double z = behind(0.0) / (behind(0.0) - behind(1.0));
+      const Eigen::Vector3d point = twist.MovedPoint(ray * z, -seen);
       cur.u = camera_.fx * point.x() / point.z() + camera_.cx;
       cur.v = camera_.fy * point.y() / point.z() + camera_.cy;
       cur.depth = point.z();
-      moved.Add(match.prev, cur);
+      cur.normal = twist.MotionDuring(-m.taken).rotation * m.normal;
+      moved.Add(m.match.prev, cur);
     }
     return moved;
   }
 
  private:
+  struct Measured {
+    Match match;  // cur: as seen by its row
+    // The surface normal . X = distance, when its depth was taken.
+    Eigen::Vector3d normal;
+    double distance = 0.0;
+    double taken = 0.0;  // s after the stamp
+  };
+
   Camera camera_;
   FrameTiming timing_;
-  std::vector<Match> measured_;
+  std::vector<Measured> measured_;
 };
 
 VelocityPrior Prior(double sigma_angular, double sigma_linear) {
@@ -127,6 +140,24 @@ TEST(TwistEstimationTest, RowsTellTheVelocity) {
   RollingMatches with_outliers = exact;
   with_outliers.AddOutliers();
   EXPECT_LT(Off(Found(with_outliers, anything, Twist()), kTwist), 0.1);
+}
+
+// With nothing but depth at another time, on surfaces that are not seen
+// straight on: their slopes are half of what depths say.
+TEST(TwistEstimationTest, DepthOfAnotherTimeTellsTheVelocity) {
+  for (const double delay : {0.015, -0.015}) {
+    const FrameTiming timing = {{}, {delay, 0.0}, kTwist};
+    const RollingMatches exact(timing, kMotion, 0.0, 6);
+    FrameTiming moved_by = timing;
+    moved_by.twist = Twist();
+    // One step: what is linear in the velocity is right.
+    const Correspondences matches = exact.MovedBy(moved_by.twist);
+    const Twist found =
+        EstimateTwist(matches, std::vector<bool>(matches.size(), true), kMotion,
+                      moved_by, Twist(), Prior(100.0, 100.0))
+            .twist;
+    EXPECT_LT(Off(found, kTwist), 0.1) << delay;
+  }
 }
 
 TEST(TwistEstimationTest, OutliersAndMatchesWithoutDepthCountNothing) {
