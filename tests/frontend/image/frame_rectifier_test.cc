@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kIndex = 30;
 
-SyntheticOptions Handheld() {
+SyntheticOptions HandheldOptions() {
   SyntheticOptions options;
   options.path = "handheld";
   options.frames = 60;
@@ -26,29 +26,30 @@ SyntheticOptions Handheld() {
 }
 
 // As the path has it at the stamp.
-Twist TrueTwist() {
+Twist TwistOfPath() {
   constexpr double kStep = 1e-3;  // s
   const SyntheticPath path = FindSyntheticPath("handheld");
-  const double t = kIndex / Handheld().rate_hz;
-  const double duration = (Handheld().frames - 1) / Handheld().rate_hz;
+  const double t = kIndex / HandheldOptions().rate_hz;
+  const double duration =
+      (HandheldOptions().frames - 1) / HandheldOptions().rate_hz;
   return TwistOf(
       path(t + kStep, duration).Inverse() * path(t - kStep, duration),
       2.0 * kStep);
 }
 
 Frame Seen(const Shutter& color, const Shutter& depth) {
-  SyntheticOptions options = Handheld();
+  SyntheticOptions options = HandheldOptions();
   options.color_shutter = color;
   options.depth_shutter = depth;
   Frame frame = SyntheticDataset(options).Read(kIndex);
-  frame.twist = TrueTwist();
+  frame.twist = TwistOfPath();
   return frame;
 }
 
 // Of pixels that are in view in both: not near to the border.
 constexpr int kBorder = 20;
 
-std::vector<double> GrayErrors(const cv::Mat& a, const cv::Mat& b) {
+std::vector<double> GrayDifferences(const cv::Mat& a, const cv::Mat& b) {
   std::vector<double> errors;
   for (int v = kBorder; v < a.rows - kBorder; ++v) {
     for (int k = kBorder * a.channels(); k < (a.cols - kBorder) * a.channels();
@@ -60,7 +61,7 @@ std::vector<double> GrayErrors(const cv::Mat& a, const cv::Mat& b) {
 }
 
 // Relative ones; 1 where one of them is unknown.
-std::vector<double> DepthErrors(const Frame& a, const Frame& b) {
+std::vector<double> DepthDifferences(const Frame& a, const Frame& b) {
   std::vector<double> errors;
   for (int v = kBorder; v < a.depth.rows - kBorder; ++v) {
     for (int u = kBorder; u < a.depth.cols - kBorder; ++u) {
@@ -78,23 +79,23 @@ void ExpectLike(const Frame& rectified, const Frame& expected,
   EXPECT_EQ(rectified.timestamp, rolling.timestamp);
   for (const cv::Mat Frame::*image : {&Frame::gray, &Frame::color}) {
     const std::vector<double> errors =
-        GrayErrors(rectified.*image, expected.*image);
+        GrayDifferences(rectified.*image, expected.*image);
     const std::vector<double> before =
-        GrayErrors(rolling.*image, expected.*image);
+        GrayDifferences(rolling.*image, expected.*image);
     // Interpolation, and what the velocity has changed by within the readout.
     EXPECT_LE(Median(errors), 2.0);
     EXPECT_LT(Quantile(errors, 0.9), 14.0);
     EXPECT_GT(Quantile(before, 0.9), 4.0 * Quantile(errors, 0.9));
   }
-  const std::vector<double> errors = DepthErrors(rectified, expected);
+  const std::vector<double> errors = DepthDifferences(rectified, expected);
   EXPECT_LT(Median(errors), 0.001);
   EXPECT_LT(Quantile(errors, 0.9), 0.003);  // edges are beyond
-  EXPECT_GT(Quantile(DepthErrors(rolling, expected), 0.9), 0.015);
+  EXPECT_GT(Quantile(DepthDifferences(rolling, expected), 0.9), 0.015);
 }
 
 TEST(FrameRectifierTest, MakesWhatAGlobalShutterSees) {
   const Frame expected = Seen({}, {});
-  FrameRectifier rectifier(Handheld().camera.camera);
+  FrameRectifier rectifier(HandheldOptions().camera.camera);
   for (const double sign : {1.0, -1.0}) {
     const Frame rolling = Seen({-0.0075, sign * 0.028}, {-0.018, sign * 0.028});
     const Frame rectified = rectifier.Rectify(rolling);
@@ -112,14 +113,14 @@ TEST(FrameRectifierTest, MakesWhatIsSeenFromAPlaceNearby) {
   constexpr double kMiddle = -0.0075;
   Frame expected = Seen({kLater, 0.0}, {kLater, 0.0});
   const Frame rolling = Seen({kMiddle, 0.028}, {-0.018, 0.028});
-  FrameRectifier rectifier(Handheld().camera.camera);
+  FrameRectifier rectifier(HandheldOptions().camera.camera);
   const Frame rectified =
       rectifier.Rectify(rolling, rolling.twist->MotionDuring(kLater - kMiddle));
   ExpectLike(rectified, expected, rolling);
 }
 
 TEST(FrameRectifierTest, SharesWhatNeedsNothing) {
-  FrameRectifier rectifier(Handheld().camera.camera);
+  FrameRectifier rectifier(HandheldOptions().camera.camera);
   Frame unknown = Seen({-0.0075, 0.028}, {-0.018, 0.028});
   unknown.twist.reset();
   for (const Frame& frame : {Seen({}, {}), unknown}) {
@@ -132,7 +133,7 @@ TEST(FrameRectifierTest, SharesWhatNeedsNothing) {
 }
 
 TEST(FrameRectifierTest, NeedsNoColour) {
-  FrameRectifier rectifier(Handheld().camera.camera);
+  FrameRectifier rectifier(HandheldOptions().camera.camera);
   Frame frame = Seen({-0.0075, 0.028}, {-0.018, 0.028});
   const Frame with = rectifier.Rectify(frame);
   frame.color.release();

@@ -25,7 +25,7 @@ struct Shutters {
 };
 
 // Of a handheld sensor; `sign`: -1 where the last row comes first.
-Shutters Rolling(double sign) {
+Shutters RollingShutters(double sign) {
   return {{-0.0075, sign * 0.028}, {-0.018, sign * 0.028}};
 }
 
@@ -39,12 +39,12 @@ SyntheticOptions OptionsOf(const std::string& path, const Shutters& shutters) {
   return options;
 }
 
-constexpr int kFrames = 40;
+constexpr int kShutterFrames = 40;
 
 // The first frames of a path, rendered once.
-struct Sequence {
-  Sequence(const std::string& path, const Shutters& shutters,
-           int count = kFrames)
+struct ShutterSequence {
+  ShutterSequence(const std::string& path, const Shutters& shutters,
+                  int count = kShutterFrames)
       : dataset(OptionsOf(path, shutters)) {
     for (int i = 0; i < count; ++i) frames.push_back(dataset.Read(i));
   }
@@ -57,8 +57,8 @@ struct Sequence {
   std::vector<Frame> frames;
 };
 
-Odometry OdometryFor(const Sequence& sequence, const std::string& tracker,
-                     ShutterUse use) {
+Odometry OdometryFor(const ShutterSequence& sequence,
+                     const std::string& tracker, ShutterUse use) {
   OdometryOptions options;
   options.shutter = use;
   return Odometry(
@@ -67,7 +67,8 @@ Odometry OdometryFor(const Sequence& sequence, const std::string& tracker,
 }
 
 // RMSE of positions at the stamps, m.
-double PositionError(const Sequence& sequence, const std::string& tracker,
+double PositionError(const ShutterSequence& sequence,
+                     const std::string& tracker,
                      ShutterUse use = ShutterUse::kCamera) {
   Odometry odometry = OdometryFor(sequence, tracker, use);
   Trajectory path;
@@ -81,17 +82,18 @@ double PositionError(const Sequence& sequence, const std::string& tracker,
 // How much worse than without shutters it may be, and how much worse it has to
 // be if they are ignored. Pixels alone know velocities from motions only, half
 // a frame late.
-struct Trust {
+struct ShutterTrust {
   const char* tracker;
   double at_most, ignored_at_least;
 };
 
-class ShutterTrackersTest : public testing::TestWithParam<Trust> {
+class ShutterTrackersTest : public testing::TestWithParam<ShutterTrust> {
  protected:
   void ExpectUndone(const Shutters& shutters) {
     const auto& [tracker, at_most, ignored_at_least] = GetParam();
-    const double global = PositionError(Sequence("handheld", {}), tracker);
-    const Sequence sequence("handheld", shutters);
+    const double global =
+        PositionError(ShutterSequence("handheld", {}), tracker);
+    const ShutterSequence sequence("handheld", shutters);
     const double undone = PositionError(sequence, tracker);
     EXPECT_LT(undone, at_most * global);
     EXPECT_GT(PositionError(sequence, tracker, ShutterUse::kNone),
@@ -99,17 +101,19 @@ class ShutterTrackersTest : public testing::TestWithParam<Trust> {
   }
 };
 
-TEST_P(ShutterTrackersTest, FromTheTop) { ExpectUndone(Rolling(1.0)); }
-TEST_P(ShutterTrackersTest, FromTheBottom) { ExpectUndone(Rolling(-1.0)); }
+TEST_P(ShutterTrackersTest, FromTheTop) { ExpectUndone(RollingShutters(1.0)); }
+TEST_P(ShutterTrackersTest, FromTheBottom) {
+  ExpectUndone(RollingShutters(-1.0));
+}
 
 // Depth of 15 ms earlier or later is at the wrong place by up to 10 px here.
 TEST_P(ShutterTrackersTest, LaterDepth) { ExpectUndone({{}, {}, 0.015}); }
 TEST_P(ShutterTrackersTest, EarlierDepth) { ExpectUndone({{}, {}, -0.015}); }
 
 INSTANTIATE_TEST_SUITE_P(All, ShutterTrackersTest,
-                         testing::Values(Trust{"features", 2.5, 5.0},
-                                         Trust{"direct", 12.0, 2.0},
-                                         Trust{"hybrid", 4.0, 5.0}),
+                         testing::Values(ShutterTrust{"features", 2.5, 5.0},
+                                         ShutterTrust{"direct", 12.0, 2.0},
+                                         ShutterTrust{"hybrid", 4.0, 5.0}),
                          [](const auto& info) {
                            return std::string(info.param.tracker);
                          });
@@ -117,9 +121,10 @@ INSTANTIATE_TEST_SUITE_P(All, ShutterTrackersTest,
 // Turning (up to 38 degrees/s, almost in place) and going along the axes.
 TEST(ShutterTrackingTest, OfPureMotions) {
   for (const std::string path : {"pan_tilt", "xyz"}) {
-    const double global = PositionError(Sequence(path, {}, 30), "features");
+    const double global =
+        PositionError(ShutterSequence(path, {}, 30), "features");
     for (const double sign : {1.0, -1.0}) {
-      const Sequence rolling(path, Rolling(sign), 30);
+      const ShutterSequence rolling(path, RollingShutters(sign), 30);
       const double undone = PositionError(rolling, "features");
       EXPECT_LT(undone, 4.0 * global) << path << sign;
       EXPECT_GT(PositionError(rolling, "features", ShutterUse::kNone),
@@ -154,7 +159,7 @@ TEST(ShutterTrackingTest, OffsetsThatAlternate) {
             0.1 * first_error(ShutterUse::kNone));
 }
 
-std::string Text(const std::vector<TrackedFrame>& frames) {
+std::string TextOf(const std::vector<TrackedFrame>& frames) {
   Trajectory path;
   for (const TrackedFrame& frame : frames) {
     path.push_back({frame.timestamp, frame.world_from_cam});
@@ -166,7 +171,7 @@ std::string Text(const std::vector<TrackedFrame>& frames) {
 }
 
 TEST(ShutterTrackingTest, GlobalShuttersGiveTheSameBytesEitherWay) {
-  const Sequence sequence("handheld", {}, 15);
+  const ShutterSequence sequence("handheld", {}, 15);
   for (const std::string& tracker : TrackerNames()) {
     std::string texts[2];
     for (const ShutterUse use : {ShutterUse::kCamera, ShutterUse::kNone}) {
@@ -176,14 +181,14 @@ TEST(ShutterTrackingTest, GlobalShuttersGiveTheSameBytesEitherWay) {
         frames.push_back(odometry.Track(frame));
         EXPECT_FALSE(odometry.last_twist().has_value());
       }
-      texts[use == ShutterUse::kNone] = Text(frames);
+      texts[use == ShutterUse::kNone] = TextOf(frames);
     }
     EXPECT_EQ(texts[0], texts[1]) << tracker;
   }
 }
 
 TEST(ShutterTrackingTest, RollingShuttersGiveTheSameBytesTwice) {
-  const Sequence sequence("handheld", Rolling(1.0), 15);
+  const ShutterSequence sequence("handheld", RollingShutters(1.0), 15);
   std::string texts[2];
   for (std::string& text : texts) {
     Odometry odometry = OdometryFor(sequence, "hybrid", ShutterUse::kCamera);
@@ -191,14 +196,14 @@ TEST(ShutterTrackingTest, RollingShuttersGiveTheSameBytesTwice) {
     for (const Frame& frame : sequence.frames) {
       frames.push_back(odometry.Track(frame));
     }
-    text = Text(frames);
+    text = TextOf(frames);
   }
   EXPECT_EQ(texts[0], texts[1]);
 }
 
 // After both, the first frame is told nothing, the second by the first.
 TEST(ShutterTrackingTest, GapsAndLossesForgetTheVelocity) {
-  const Sequence sequence("xyz", Rolling(1.0), 12);
+  const ShutterSequence sequence("xyz", RollingShutters(1.0), 12);
   for (const bool is_loss : {false, true}) {
     Odometry odometry = OdometryFor(sequence, "features", ShutterUse::kCamera);
     for (int i = 0; i < 12; ++i) {
@@ -221,7 +226,7 @@ TEST(ShutterTrackingTest, GapsAndLossesForgetTheVelocity) {
 // is: nothing of the last one that had is left.
 TEST(ShutterTrackingTest, ReferencesOfOneMomentAreNotMended) {
   const SyntheticDataset global(OptionsOf("handheld", {}));
-  const SyntheticDataset rolling(OptionsOf("handheld", Rolling(1.0)));
+  const SyntheticDataset rolling(OptionsOf("handheld", RollingShutters(1.0)));
   OdometryOptions options;
   options.max_flow_px = 1.0;  // every frame is a reference
   Odometry odometry(options,
@@ -241,7 +246,7 @@ TEST(ShutterTrackingTest, ReferencesOfOneMomentAreNotMended) {
 // of a time that is known only as well as their velocity.
 TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {
   const auto nees_with = [](const Shutters& shutters) {
-    const Sequence sequence("handheld", shutters, 45);
+    const ShutterSequence sequence("handheld", shutters, 45);
     Odometry odometry = OdometryFor(sequence, "features", ShutterUse::kCamera);
     double sum = 0.0;
     int count = 0;
@@ -328,8 +333,8 @@ TEST(ShutterTrackingTest, RefusesAFrontendWhosePreparedFrameDoesNot) {
   FrontendOptions options;
   options.camera = OptionsOf("handheld", {}).camera.camera;
   for (const bool is_rolling : {false, true}) {
-    const Sequence sequence("handheld", is_rolling ? Rolling(1.0) : Shutters(),
-                            2);
+    const ShutterSequence sequence(
+        "handheld", is_rolling ? RollingShutters(1.0) : Shutters(), 2);
     Odometry odometry({}, std::make_unique<ForgetfulFrontend>(options),
                       Estimator({}, MakeRobustCosts()));
     odometry.Track(sequence.frames[0]);

@@ -18,7 +18,7 @@ namespace {
 const Twist kTwist = {{0.8, -0.5, 0.6}, {-0.3, 0.5, 0.4}};
 
 // Colour and depth of a handheld sensor.
-FrameTiming Rolling(const Twist& twist) {
+FrameTiming TimingOf(const Twist& twist) {
   return {{-0.0075, 0.028}, {-0.018, 0.028}, twist};
 }
 
@@ -103,7 +103,7 @@ class RollingMatches {
   std::vector<Measured> measured_;
 };
 
-VelocityPrior Prior(double sigma_angular, double sigma_linear) {
+VelocityPrior PriorWith(double sigma_angular, double sigma_linear) {
   VelocityPrior prior;
   prior.sigma_angular = sigma_angular;
   prior.sigma_linear = sigma_linear;
@@ -115,31 +115,32 @@ const Rigid3d kMotion(Eigen::Quaterniond(Eigen::AngleAxisd(
                       {0.03, -0.02, 0.04});
 
 // Each velocity moves the matches, which tell a better one.
-Twist Found(const RollingMatches& matches, const VelocityPrior& prior,
-            const Twist& prior_mean) {
+Twist FoundTwist(const RollingMatches& matches, const VelocityPrior& prior,
+                 const Twist& prior_mean) {
   Twist twist = prior_mean;
   for (int round = 0; round < 4; ++round) {
     const Correspondences moved = matches.MovedBy(twist);
     twist = EstimateTwist(moved, std::vector<bool>(moved.size(), true), kMotion,
-                          Rolling(twist), prior_mean, prior)
+                          TimingOf(twist), prior_mean, prior)
                 .twist;
   }
   return twist;
 }
 
-double Off(const Twist& found, const Twist& truth) {
+double TwistError(const Twist& found, const Twist& truth) {
   return (found.angular - truth.angular).norm() +
          (found.linear - truth.linear).norm();
 }
 
 TEST(TwistEstimationTest, RowsTellTheVelocity) {
-  const RollingMatches exact(Rolling(kTwist), kMotion, 0.0, 1);
-  const VelocityPrior anything = Prior(100.0, 100.0);
+  const RollingMatches exact(TimingOf(kTwist), kMotion, 0.0, 1);
+  const VelocityPrior anything = PriorWith(100.0, 100.0);
   // Rows are those of where points are moved to, ten pixels off.
-  EXPECT_LT(Off(Found(exact, anything, Twist()), kTwist), 0.02);
+  EXPECT_LT(TwistError(FoundTwist(exact, anything, Twist()), kTwist), 0.02);
   RollingMatches with_outliers = exact;
   with_outliers.AddOutliers();
-  EXPECT_LT(Off(Found(with_outliers, anything, Twist()), kTwist), 0.1);
+  EXPECT_LT(TwistError(FoundTwist(with_outliers, anything, Twist()), kTwist),
+            0.1);
 }
 
 // With nothing but depth at another time, on surfaces that are not seen
@@ -154,14 +155,14 @@ TEST(TwistEstimationTest, DepthOfAnotherTimeTellsTheVelocity) {
     const Correspondences matches = exact.MovedBy(moved_by.twist);
     const Twist found =
         EstimateTwist(matches, std::vector<bool>(matches.size(), true), kMotion,
-                      moved_by, Twist(), Prior(100.0, 100.0))
+                      moved_by, Twist(), PriorWith(100.0, 100.0))
             .twist;
-    EXPECT_LT(Off(found, kTwist), 0.1) << delay;
+    EXPECT_LT(TwistError(found, kTwist), 0.1) << delay;
   }
 }
 
 TEST(TwistEstimationTest, OutliersAndMatchesWithoutDepthCountNothing) {
-  RollingMatches matches(Rolling(kTwist), kMotion, 1.0, 2);
+  RollingMatches matches(TimingOf(kTwist), kMotion, 1.0, 2);
   const Correspondences all = matches.MovedBy(Twist());
   matches.AddOutliers();
   const Correspondences some = matches.MovedBy(Twist());
@@ -180,15 +181,16 @@ TEST(TwistEstimationTest, OutliersAndMatchesWithoutDepthCountNothing) {
   }
   const auto estimate = [&](const Correspondences& of,
                             const std::vector<bool>& use) {
-    return EstimateTwist(of, use, kMotion, Rolling(Twist()), Twist(),
-                         Prior(1.0, 1.0));
+    return EstimateTwist(of, use, kMotion, TimingOf(Twist()), Twist(),
+                         PriorWith(1.0, 1.0));
   };
   const TwistEstimate expected =
       estimate(few, std::vector<bool>(few.size(), true));
-  EXPECT_EQ(Off(estimate(some, is_inlier).twist, expected.twist), 0.0);
-  EXPECT_EQ(Off(estimate(no_depth, std::vector<bool>(all.size(), true)).twist,
-                expected.twist),
-            0.0);
+  EXPECT_EQ(TwistError(estimate(some, is_inlier).twist, expected.twist), 0.0);
+  EXPECT_EQ(
+      TwistError(estimate(no_depth, std::vector<bool>(all.size(), true)).twist,
+                 expected.twist),
+      0.0);
 }
 
 // A global shutter tells nothing of the velocity, nor is it told wrongly.
@@ -198,28 +200,29 @@ TEST(TwistEstimationTest, WithoutRowsTheMeanComesBack) {
   const Correspondences matches = seen.MovedBy(global.twist);
   const TwistEstimate estimate =
       EstimateTwist(matches, std::vector<bool>(matches.size(), true), kMotion,
-                    global, kTwist, Prior(0.1, 0.2));
-  EXPECT_LT(Off(estimate.twist, kTwist), 1e-12);  // rounding
+                    global, kTwist, PriorWith(0.1, 0.2));
+  EXPECT_LT(TwistError(estimate.twist, kTwist), 1e-12);  // rounding
   EXPECT_LT(estimate.motion_covariance.norm(), 1e-20);
 }
 
 // Between what the rows say and the mean, by how certain that is.
 TEST(TwistEstimationTest, ACertainMeanIsKept) {
-  const RollingMatches matches(Rolling(kTwist), kMotion, 1.0, 4);
+  const RollingMatches matches(TimingOf(kTwist), kMotion, 1.0, 4);
   const Twist mean = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
-  EXPECT_LT(Off(Found(matches, Prior(1e-4, 1e-4), mean), mean), 1e-3);
-  EXPECT_LT(Off(Found(matches, Prior(1.0, 1.0), mean), kTwist),
-            0.5 * Off(mean, kTwist));
+  EXPECT_LT(TwistError(FoundTwist(matches, PriorWith(1e-4, 1e-4), mean), mean),
+            1e-3);
+  EXPECT_LT(TwistError(FoundTwist(matches, PriorWith(1.0, 1.0), mean), kTwist),
+            0.5 * TwistError(mean, kTwist));
 }
 
 TEST(TwistEstimationTest, TheLessIsKnownTheWiderTheMotion) {
-  const RollingMatches seen(Rolling(kTwist), kMotion, 1.0, 5);
+  const RollingMatches seen(TimingOf(kTwist), kMotion, 1.0, 5);
   const Correspondences matches = seen.MovedBy(kTwist);
   double last = 0.0;
   for (const double sigma : {0.01, 0.03, 0.1, 0.3, 1.0}) {
     const MotionMatrix covariance =
         EstimateTwist(matches, std::vector<bool>(matches.size(), true), kMotion,
-                      Rolling(kTwist), kTwist, Prior(sigma, sigma))
+                      TimingOf(kTwist), kTwist, PriorWith(sigma, sigma))
             .motion_covariance;
     EXPECT_GT(covariance.trace(), last) << sigma;
     EXPECT_LT((covariance - covariance.transpose()).norm(),
@@ -243,7 +246,7 @@ TEST(TwistEstimationTest, TheCovarianceIsHonest) {
     Twist truth = kTwist;
     for (int i = 0; i < 3; ++i) truth.angular[i] += world.Normal(kAngular);
     for (int i = 0; i < 3; ++i) truth.linear[i] += world.Normal(kLinear);
-    const RollingMatches matches(Rolling(truth), kMotion, 1.0, 500 + trial);
+    const RollingMatches matches(TimingOf(truth), kMotion, 1.0, 500 + trial);
     Twist twist = kTwist;
     MotionEstimate estimate =
         estimator.Estimate(matches.MovedBy(twist), kMotion);
@@ -251,7 +254,7 @@ TEST(TwistEstimationTest, TheCovarianceIsHonest) {
     for (int round = 0; round < 3; ++round) {
       const TwistEstimate found = EstimateTwist(
           matches.MovedBy(twist), estimate.is_inlier, estimate.cur_from_prev,
-          Rolling(twist), kTwist, Prior(kAngular, kLinear));
+          TimingOf(twist), kTwist, PriorWith(kAngular, kLinear));
       twist = found.twist;
       more = found.motion_covariance;
       estimate = estimator.Estimate(matches.MovedBy(twist), kMotion);

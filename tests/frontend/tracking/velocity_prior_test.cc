@@ -8,14 +8,15 @@ namespace rgbd_pose {
 namespace {
 
 constexpr double kInterval = 1.0 / 30.0;
-constexpr double kTolerance = 1e-12;  // rounding
+constexpr double kTwistRounding = 1e-12;  // rounding
 
-const Twist kTwist = {{0.3, -0.5, 0.2}, {-0.4, 0.1, 0.6}};
+const Twist kPriorTwist = {{0.3, -0.5, 0.2}, {-0.4, 0.1, 0.6}};
 const Rigid3d kPrevFromRef(Eigen::Quaterniond(Eigen::AngleAxisd(
                                0.2, Eigen::Vector3d(1, 2, -1).normalized())),
                            {0.1, -0.3, 0.2});
 
-void ExpectNear(const Twist& a, const Twist& b, double tolerance = kTolerance) {
+void ExpectNear(const Twist& a, const Twist& b,
+                double tolerance = kTwistRounding) {
   EXPECT_LT((a.angular - b.angular).norm(), tolerance);
   EXPECT_LT((a.linear - b.linear).norm(), tolerance);
 }
@@ -23,9 +24,9 @@ void ExpectNear(const Twist& a, const Twist& b, double tolerance = kTolerance) {
 TEST(VelocityPriorTest, BetweenIsTheVelocityFromFrameToFrame) {
   const VelocityPrior prior =
       VelocityModel().Prior(kPrevFromRef, kInterval, 0.0);
-  ExpectNear(
-      prior.Between(kTwist.MotionDuring(kInterval) * kPrevFromRef, Twist()),
-      kTwist);
+  ExpectNear(prior.Between(kPriorTwist.MotionDuring(kInterval) * kPrevFromRef,
+                           Twist()),
+             kPriorTwist);
 }
 
 // Whatever a frame was moved by, it was seen where it was seen.
@@ -35,34 +36,34 @@ TEST(VelocityPriorTest, MotionsAreToldByTheMiddleRow) {
   const Twist wrong_before = {{0.2, -0.7, 0.1}, {0.3, -0.1, 0.4}};
   VelocityModel model;
   model.Add(wrong_before, kMiddle);
-  const Rigid3d middle_from_ref = kTwist.MotionDuring(kInterval) *
+  const Rigid3d middle_from_ref = kPriorTwist.MotionDuring(kInterval) *
                                   wrong_before.MotionDuring(kMiddle) *
                                   kPrevFromRef;
   const Rigid3d cur_from_ref =
       wrong.MotionDuring(kMiddle).Inverse() * middle_from_ref;
   const VelocityPrior prior = model.Prior(kPrevFromRef, kInterval, kMiddle);
-  ExpectNear(prior.Between(cur_from_ref, wrong), kTwist);
+  ExpectNear(prior.Between(cur_from_ref, wrong), kPriorTwist);
 }
 
 TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
-  const Rigid3d motion = kTwist.MotionDuring(kInterval) * kPrevFromRef;
+  const Rigid3d motion = kPriorTwist.MotionDuring(kInterval) * kPrevFromRef;
   VelocityModel model;
   EXPECT_FALSE(model.last().has_value());
   ExpectNear(model.Prior(kPrevFromRef, kInterval, 0.0).Mean(motion, Twist()),
-             kTwist);
+             kPriorTwist);
   const Twist last = {{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}};
   model.Add(last, 0.0);
   const auto mean = [&] {
     return model.Prior(kPrevFromRef, kInterval, 0.0).Mean(motion, Twist());
   };
-  ExpectNear(mean(), 0.8 * kTwist + 0.2 * last);
+  ExpectNear(mean(), 0.8 * kPriorTwist + 0.2 * last);
   const Twist better = {{0.5, 0.0, 0.1}, {0.0, 0.3, 0.0}};
   model.Correct(better);
   ExpectNear(*model.last(), better);
-  ExpectNear(mean(), 0.8 * kTwist + 0.2 * better);
+  ExpectNear(mean(), 0.8 * kPriorTwist + 0.2 * better);
   model.Reset();
   EXPECT_FALSE(model.last().has_value());
-  ExpectNear(mean(), kTwist);
+  ExpectNear(mean(), kPriorTwist);
 }
 
 // Half of how much velocities change from frame to frame, of late.
@@ -70,7 +71,7 @@ TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   VelocityModel model;
   const auto prior = [&] { return model.Prior(kPrevFromRef, kInterval, 0.0); };
   const VelocityPrior at_first = prior();
-  for (int i = 0; i < 100; ++i) model.Add(kTwist, 0.0);
+  for (int i = 0; i < 100; ++i) model.Add(kPriorTwist, 0.0);
   const VelocityPrior steady = prior();
   EXPECT_LT(steady.sigma_angular, 0.1 * at_first.sigma_angular);
   EXPECT_LT(steady.sigma_linear, 0.1 * at_first.sigma_linear);
@@ -78,7 +79,7 @@ TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   EXPECT_GT(steady.sigma_linear, 0.0);
   const Twist change = {{0.4, -0.4, 0.4}, {0.3, 0.3, -0.3}};
   for (int i = 0; i < 100; ++i) {
-    model.Add(kTwist + (i % 2) * change, 0.0);
+    model.Add(kPriorTwist + (i % 2) * change, 0.0);
   }
   // What began a hundred frames ago is forgotten, all but e^-10 of it.
   constexpr double kForgotten = 1e-4;
