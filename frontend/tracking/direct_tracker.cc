@@ -158,13 +158,8 @@ void DirectTracker::FindTwist(const Reference& reference,
              1, &estimator_, estimate);
   }
   tracked->twist = timing.twist;
-  // Seen by all rows together, a frame moves as its middle does.
-  const double middle = timing.color.offset;
-  const double angular = middle * guess.velocity->sigma_angular;
-  const double linear = middle * guess.velocity->sigma_linear;
-  tracked->twist_covariance.diagonal()
-      << Eigen::Vector3d::Constant(angular * angular),
-      Eigen::Vector3d::Constant(linear * linear);
+  tracked->twist_covariance = MotionCovarianceOfTwist(
+      timing, guess.velocity->sigma_angular, guess.velocity->sigma_linear);
   estimate->covariance += tracked->twist_covariance;
 }
 

@@ -18,23 +18,9 @@ namespace {
 constexpr double kMinReturnShare = 0.7;
 constexpr double kMaxReturnFlow = 0.5;
 
-// What a velocity that is not known adds to the covariance of a motion: the
-// rows of a moving camera are seen at a mean time that is off by some part of
-// the readout.
-MotionMatrix OfUnknownVelocity(const Frame& frame) {
-  constexpr double kSigmaAngular = 0.5;  // rad/s, of a hand
-  constexpr double kSigmaLinear = 0.3;   // m/s
-  constexpr double kShareOfReadout = 0.25;
-  const Shutter& color = frame.color_shutter;
-  const double time = std::abs(color.offset) +
-                      kShareOfReadout * std::abs(color.readout) +
-                      std::abs(frame.DepthShutter().offset - color.offset);
-  const double turn = kSigmaAngular * time, shift = kSigmaLinear * time;
-  MotionMatrix covariance = MotionMatrix::Zero();
-  covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
-      shift * shift, shift * shift;
-  return covariance;
-}
+// Of a hand's velocity, where nothing is known of it.
+constexpr double kSigmaAngular = 0.5;  // rad/s
+constexpr double kSigmaLinear = 0.3;   // m/s
 
 }  // namespace
 
@@ -81,7 +67,10 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   has_shutter_ = HasShutter(frame);
   twist_.reset();
   twist_covariance_.setZero();
-  if (has_shutter_) twist_covariance_ = OfUnknownVelocity(frame);
+  if (has_shutter_) {
+    twist_covariance_ = MotionCovarianceOfTwist(frame.Timing(Twist()),
+                                                kSigmaAngular, kSigmaLinear);
+  }
   {
     const StageTimer timer(&result.track_ms);
     std::optional<Prediction> predicted;
@@ -263,6 +252,9 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
                : nullptr;
   };
   if (!has_shutter_) {
+    // Among frames with shutters it tells nothing of velocities, and what they
+    // have told is of a time before it.
+    shutter_tracking_.Forget();
     return track(measured, nullptr, nullptr) != nullptr ? &measured : nullptr;
   }
   std::optional<Twist> twist;

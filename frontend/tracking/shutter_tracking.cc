@@ -68,8 +68,7 @@ const PreparedFrame* ShutterTracking::Follow(
     const Track& track) {
   found_ = Found();
   const auto forget = [&] {
-    velocity_.Reset();
-    Lose();
+    Forget();
     found_.frame = WithTwist(frame, std::nullopt);
     return track(*found_.frame, nullptr, nullptr) != nullptr
                ? found_.frame.get()

@@ -45,6 +45,12 @@ class ShutterTracking {
   // The last frame was not found.
   void Lose();
 
+  // Nothing is known of the velocity any more.
+  void Forget() {
+    velocity_.Reset();
+    Lose();
+  }
+
   // What the last Follow has found, to be put back after another one.
   struct Found {
     std::unique_ptr<const PreparedFrame> frame;

@@ -14,18 +14,21 @@ using Row6 = Eigen::Matrix<double, 1, 6>;
 // Width of Cauchy's loss, in sigmas.
 constexpr double kLossWidth = 2.0;
 
+// A surface that is seen under less than that (a cosine, about; normals are
+// towards the camera) tells no depth.
+constexpr double kFlattest = -0.2;
+
 // Normal equations of the change of the motion (rotation, then translation, in
 // current axes) and of the velocity (angular, then linear).
 struct Equations {
   Matrix12 hessian = Matrix12::Zero();
   Vector12 right = Vector12::Zero();
 
-  // A residual whose derivative by the motion is `row`. A point that is seen
-  // `seconds` after the stamp has moved by the velocity the other way, and so
-  // long.
-  void Add(const Row6& row, double seconds, double residual, double weight) {
+  // A residual with its derivatives by the two.
+  void Add(const Row6& by_motion, const Row6& by_velocity, double residual,
+           double weight) {
     Eigen::Matrix<double, 1, 12> both;
-    both << row, -seconds * row;
+    both << by_motion, by_velocity;
     hessian.selfadjointView<Eigen::Lower>().rankUpdate(both.transpose(),
                                                        weight);
     right -= weight * residual * both.transpose();
@@ -66,13 +69,25 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
     const double v = camera.fy * y + camera.cy - cur.v;
     const double weight =
         Weight(u * u + v * v, spread * std::hypot(ref.sigma_px, cur.sigma_px));
+    // A point that is seen so long after the stamp has moved by the velocity
+    // the other way, and so long.
     const double seen = timing.color.RowTime(row, camera.height);
-    equations.Add(camera.fx * by_x, seen, u, weight);
-    equations.Add(camera.fy * by_y, seen, v, weight);
+    equations.Add(camera.fx * by_x, -seen * camera.fx * by_x, u, weight);
+    equations.Add(camera.fy * by_y, -seen * camera.fy * by_y, v, weight);
     if (cur.depth <= 0.0) continue;
+    // Between then and when depth was taken, the surface has moved along the
+    // ray: how far its slope decides.
+    const double since = timing.depth.RowTime(row, camera.height) - seen;
+    Row6 along_ray = Row6::Zero();
+    if (since != 0.0) {
+      const double slope = cur.normal.dot(Eigen::Vector3d(x, y, 1.0));
+      if (!(slope < kFlattest)) continue;
+      along_ray << point.cross(cur.normal).transpose() / slope,
+          cur.normal.transpose() / slope;
+    }
     const double z = point.z() - cur.depth;
     equations.Add(
-        by_z, timing.depth.RowTime(row, camera.height), z,
+        by_z, -seen * by_z - since * along_ray, z,
         Weight(z * z, spread * std::hypot(ref.sigma_depth, cur.sigma_depth)));
   }
   equations.hessian = equations.hessian.selfadjointView<Eigen::Lower>();

@@ -44,6 +44,21 @@ Twist VelocityPrior::Mean(const Rigid3d& cur_from_ref,
   return kShareOfBetween * *between + (1.0 - kShareOfBetween) * *prev_twist;
 }
 
+MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
+                                     double sigma_angular,
+                                     double sigma_linear) {
+  constexpr double kShareOfReadout = 0.25;
+  const Shutter& color = timing.color;
+  const double time = std::abs(color.offset) +
+                      kShareOfReadout * std::abs(color.readout) +
+                      std::abs(timing.depth.offset - color.offset);
+  const double turn = sigma_angular * time, shift = sigma_linear * time;
+  MotionMatrix covariance = MotionMatrix::Zero();
+  covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
+      shift * shift, shift * shift;
+  return covariance;
+}
+
 VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
                                    double interval, double middle) const {
   VelocityPrior prior;

@@ -2,6 +2,8 @@
 
 #include <optional>
 
+#include "core/geometry/frame_timing.h"
+#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "core/geometry/twist.h"
 
@@ -32,6 +34,13 @@ struct VelocityPrior {
                                const Twist& twist) const;
   Twist Mean(const Rigid3d& cur_from_ref, const Twist& twist) const;
 };
+
+// What a velocity with such standard deviations (rad/s, m/s) adds to the
+// covariance of the motion to a frame that is moved by it, as
+// MotionEstimate::covariance has it: rows are seen at a mean time that is off
+// by some part of the readout, and by what depth is off.
+MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
+                                     double sigma_angular, double sigma_linear);
 
 // The camera's velocity from frame to frame.
 class VelocityModel {

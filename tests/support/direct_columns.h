@@ -26,6 +26,8 @@ inline DirectInput InputOf(const DirectPair& pair, int level,
   input.R = cur_from_prev.rotation.toRotationMatrix();
   input.t = cur_from_prev.translation;
   input.has_distortion = pair.cur.camera.HasDistortion();
+  input.moves_color = !pair.cur.view.timing.color.IsGlobal();
+  input.moves_depth = !pair.cur.view.timing.depth.IsGlobal();
   return input;
 }
 

@@ -5,6 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <future>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
 #include <vector>
 
 #include "core/util/input_error.h"
@@ -255,6 +260,87 @@ TEST(SlamTest, RefusesOptionsThatMakeNoSense) {
   settings = {};
   settings.update_delay = -1;
   EXPECT_THROW(Player player(settings), InputError);
+}
+
+// A camera with rolling shutters.
+struct RollingWalk {
+  RollingWalk() {
+    SyntheticOptions options;
+    options.path = "handheld";
+    options.frames = 30;
+    options.camera = SmallCamera();
+    options.color_shutter = {-0.0075, 0.028};
+    options.depth_shutter = {-0.018, 0.028};
+    const SyntheticDataset dataset(options);
+    for (int i = 0; i < dataset.size(); ++i) frames.push_back(dataset.Read(i));
+    settings.odometry.max_flow_px = 15.0;  // several keyframes
+  }
+
+  std::vector<Frame> frames;
+  OdometrySettings settings;
+};
+
+// Keyframes are what the odometry tracks against: of one moment, by the
+// velocity that the frame after them has told.
+TEST(SlamTest, KeyframesOfRollingShuttersAreOfOneMoment) {
+  const RollingWalk walk;
+  Slam slam(walk.settings, {}, SmallCamera().camera);
+  std::map<int, Frame> rectified;
+  std::optional<int> reference;
+  for (const Frame& frame : walk.frames) {
+    const TrackedFrame tracked = slam.Track(frame).tracked;
+    ASSERT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
+    if (reference.has_value()) {
+      const Frame* const seen = slam.odometry().FindReferenceFrame(*reference);
+      ASSERT_NE(seen, nullptr) << *reference;
+      Frame& kept = rectified[*reference] = *seen;
+      kept.gray = seen->gray.clone();
+      kept.depth = seen->depth.clone();
+    }
+    reference.reset();
+    if (tracked.is_reference) reference = tracked.index;
+  }
+  slam.Finish();
+  int compared = 0;
+  for (const MapKeyframe& keyframe : slam.Map().keyframes) {
+    if (rectified.count(keyframe.id) == 0) continue;  // the very last frame
+    const Frame& expected = rectified.at(keyframe.id);
+    const Frame stored = keyframe.images.Restore();
+    const Frame& measured = walk.frames[keyframe.id];
+    EXPECT_TRUE(stored.IsOneMoment());
+    EXPECT_EQ(cv::norm(stored.gray, expected.gray, cv::NORM_INF), 0.0);
+    EXPECT_EQ(cv::norm(stored.depth, expected.depth, cv::NORM_INF), 0.0);
+    EXPECT_GT(cv::norm(stored.gray, measured.gray, cv::NORM_INF), 50.0);
+    EXPECT_GT(cv::norm(stored.depth, measured.depth, cv::NORM_INF), 50.0);
+    ++compared;
+  }
+  EXPECT_GE(compared, 3);
+}
+
+// However many threads prepare frames ahead and whenever the map is ready.
+TEST(SlamTest, RollingShuttersGiveTheSameBytesForAnyThreads) {
+  const RollingWalk walk;
+  std::string first;
+  for (const int threads : {1, 1, 3}) {
+    Slam slam(walk.settings, {}, SmallCamera().camera);
+    std::vector<std::future<std::unique_ptr<const PreparedFrame>>> ahead;
+    for (const Frame& frame : walk.frames) {
+      if (threads == 1) {
+        slam.Track(frame);
+      } else {
+        ahead.push_back(std::async(std::launch::async,
+                                   [&] { return slam.Prepare(frame); }));
+      }
+    }
+    for (auto& prepared : ahead) slam.Track(*prepared.get());
+    slam.Finish();
+    std::string text = FormatTrajectory(slam.Path());
+    for (const MapKeyframe& keyframe : slam.Map().keyframes) {
+      text += std::to_string(cv::sum(keyframe.images.Restore().gray)[0]) + "\n";
+    }
+    if (first.empty()) first = text;
+    EXPECT_EQ(text, first) << threads;
+  }
 }
 
 }  // namespace

@@ -54,6 +54,30 @@ Eigen::Matrix<Jet, 2, 1> Project(const Camera& camera,
   return {camera.fx * xd + camera.cx, camera.fy * yd + camera.cy};
 }
 
+// Where a point is when the row that shows it is exposed.
+Eigen::Vector3d InRow(const Camera& camera, const Shutter& shutter,
+                      const Twist& twist, const Eigen::Vector3d& q) {
+  Eigen::Vector3d moved = q;
+  if (!shutter.IsGlobal()) {
+    MoveToRow(camera, camera.HasDistortion(), shutter, twist, q.data(),
+              moved.data());
+  }
+  return moved;
+}
+
+// Where a point is seen in its row, px, as the motion changes it at the stamp.
+Eigen::Matrix<Jet, 2, 1> ProjectInRow(const Camera& camera,
+                                      const FrameTiming& timing,
+                                      const Eigen::Matrix<Jet, 3, 1>& q) {
+  const Eigen::Vector3d at_stamp(q[0].a, q[1].a, q[2].a);
+  const Eigen::Vector3d moved =
+      InRow(camera, timing.color, timing.twist, at_stamp);
+  const double shift_x = moved.x() / moved.z() - at_stamp.x() / at_stamp.z();
+  const double shift_y = moved.y() / moved.z() - at_stamp.y() / at_stamp.z();
+  return Project(camera,
+                 {q[0] / q[2] + shift_x, q[1] / q[2] + shift_y, Jet(1.0)});
+}
+
 Eigen::VectorXd Column(const PackedColumns& points, int size, int i) {
   Eigen::VectorXd point(size);
   for (int k = 0; k < size; ++k) {
@@ -67,7 +91,8 @@ void AddOf(Photometric, const DirectInput& input, const Rigid3d& motion,
   const FrameView::Level& level = input.cur->levels[input.level];
   const Eigen::Matrix<Jet, 3, 1> q = Move(motion, point.head<3>());
   if (!(q[2].a > DirectInput::kMinDepth)) return;
-  const Eigen::Matrix<Jet, 2, 1> at = Project(level.camera, q);
+  const Eigen::Matrix<Jet, 2, 1> at =
+      ProjectInRow(level.camera, input.cur->timing, q);
   if (!(at[0].a >= 1.0 && at[1].a >= 1.0 && at[0].a < level.gray.width - 2 &&
         at[1].a < level.gray.height - 2)) {
     return;
@@ -98,7 +123,9 @@ struct PlaneOracle {
     const Eigen::Vector3d q = motion * Eigen::Vector3d(point.head<3>());
     if (!(q.z() > DirectInput::kMinDepth)) return false;
     const Camera& camera = cur.levels[0].camera;
-    const Eigen::Vector2d at = camera.Project(q);
+    const Eigen::Vector3d taken =
+        InRow(camera, cur.timing.depth, cur.timing.twist, q);
+    const Eigen::Vector2d at = camera.Project(taken);
     const double border = kSurfaceStep + 1.0;
     if (!(at.minCoeff() >= border && at.x() < camera.width - 1.0 - border &&
           at.y() < camera.height - 1.0 - border)) {
@@ -115,7 +142,8 @@ struct PlaneOracle {
                                  kSurfaceStep * (k / 3 - 1));
       const double z = cur.DepthAt(u + step.x(), v + step.y());
       if (z == 0.0) return false;
-      off[k] = 1.0 / z - per_px.dot(step.cast<double>());
+      off[k] = 1.0 / z - per_px.dot(step.cast<double>()) + 1.0 / q.z() -
+               1.0 / taken.z();
     }
     const double sigma = point[6] / (point[2] * point[2]);
     chi2 = (off.array() - off.mean()).square().sum() / (sigma * sigma) / 20.1;
@@ -167,8 +195,12 @@ class DirectOracleTest : public ::testing::Test {
   // `away`: from where the current frame was taken; a little, so that there is
   // a gradient.
   void Compare(bool is_distorted, int level,
-               const Eigen::Vector3d& away = {0.003, -0.002, 0.004}) {
+               const Eigen::Vector3d& away = {0.003, -0.002, 0.004},
+               const FrameTiming& timing = {}) {
     DirectPair pair(SyntheticDataset(SmallImages(is_distorted)), 10, 12);
+    pair.cur.frame.color_shutter = timing.color;
+    pair.cur.frame.depth_shutter = timing.depth;
+    pair.cur.frame.twist = timing.twist;
     Brighten(&pair.cur);
     const Rigid3d motion = Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(
                                        0.002, Eigen::Vector3d::UnitY())),
@@ -218,6 +250,22 @@ TYPED_TEST(DirectOracleTest, SumsAreThoseThroughTheImage) {
 TYPED_TEST(DirectOracleTest, WithLensDistortion) {
   this->Compare(/*is_distorted=*/true, 0);
   this->Compare(/*is_distorted=*/true, 1);
+}
+
+// The images are those of one moment: whether they show the same is not asked
+// here, only where they are looked at.
+TYPED_TEST(DirectOracleTest, OfRowsExposedOneAfterAnother) {
+  const Twist twist = {{0.5, -0.8, 0.4}, {0.4, 0.3, -0.5}};
+  for (const FrameTiming& timing :
+       {FrameTiming{{-0.0075, 0.028}, {-0.018, 0.028}, twist},
+        FrameTiming{{0.01, -0.02}, {0.0, 0.0}, twist},
+        FrameTiming{{0.0, 0.0}, {0.015, 0.0}, twist}}) {
+    for (const bool is_distorted : {false, true}) {
+      for (const int level : {0, 1}) {
+        this->Compare(is_distorted, level, {0.003, -0.002, 0.004}, timing);
+      }
+    }
+  }
 }
 
 // As far as another surface may be: some points are beyond.

@@ -33,11 +33,12 @@ class CoarseStartTest : public ::testing::Test {
 
   Rigid3d StartOf(const Frame& ref, const Frame& cur, const Rigid3d& guess,
                   const MotionMatrix* guess_covariance = nullptr) {
+    TrackingGuess about = guess;
+    about.covariance = guess_covariance;
     std::string why_not;
     const auto reference = tracker_.MakeReference(*tracker_.Prepare(ref),
                                                   nullptr, nullptr, &why_not);
-    return tracker_.FindStart(*reference, *tracker_.Prepare(cur), guess,
-                              guess_covariance);
+    return tracker_.FindStart(*reference, *tracker_.Prepare(cur), about);
   }
 
   // How far (px, RMS over a grid) points are from where the truth has them.

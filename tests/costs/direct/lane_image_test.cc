@@ -1,0 +1,159 @@
+// When the row that shows a point is exposed, and where the point is then.
+
+#include "costs/direct/lane_image.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "core/util/vector_lanes.h"
+#include "costs/direct_cost_list.h"
+#include "frontend/image/observe.h"
+#include "tests/support/exact_twist.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+Camera TestCamera(bool is_distorted) {
+  Camera camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
+  if (is_distorted) {
+    camera.k1 = 0.1;
+    camera.k2 = -0.2;
+    camera.p1 = 0.002;
+    camera.p2 = -0.003;
+    camera.k3 = 0.1;
+  }
+  return camera;
+}
+
+const std::vector<Shutter> kShutters = {
+    {-0.0075, 0.028}, {0.01, -0.03}, {0.015, 0.0}, {0.0, 0.02}};
+const std::vector<Twist> kTwists = {{{0.8, -0.5, 0.6}, {0.0, 0.0, 0.0}},
+                                    {{0.0, 0.0, 0.0}, {-0.3, 0.5, 0.4}},
+                                    {{-0.5, 0.7, 0.4}, {0.6, -0.4, -0.5}}};
+
+std::vector<Vector3d> Points(const Camera& camera) {
+  std::vector<Vector3d> points;
+  for (int v = 20; v < 230; v += 40) {
+    for (int u = 20; u < 310; u += 50) {
+      points.push_back(camera.Unproject({u, v}, 0.8 + 0.01 * u));
+    }
+  }
+  return points;
+}
+
+// The time to first order in how fast the point moves down the image: that
+// changes over the image by a part of itself, by which 10 px are off again.
+constexpr double kPixelTolerance = 0.05;
+
+TEST(MoveToRowTest, IsWhereIterationEnds) {
+  for (const bool is_distorted : {false, true}) {
+    const Camera camera = TestCamera(is_distorted);
+    for (const Shutter& shutter : kShutters) {
+      for (const Twist& twist : kTwists) {
+        double farthest = 0.0;
+        for (const Vector3d& point : Points(camera)) {
+          Vector3d moved;
+          MoveToRow(camera, is_distorted, shutter, twist, point.data(),
+                    moved.data());
+          Vector2d pixel = camera.Project(point);
+          const Vector2d at_stamp = pixel;
+          for (int i = 0; i < 20; ++i) {
+            pixel = camera.Project(twist.MovedPoint(
+                point, shutter.RowTime(pixel.y(), camera.height)));
+          }
+          EXPECT_LT((camera.Project(moved) - pixel).norm(), kPixelTolerance);
+          EXPECT_LT((ExactlySeen(camera, shutter, twist, point) - pixel).norm(),
+                    kPixelTolerance);
+          farthest = std::max(farthest, (pixel - at_stamp).norm());
+        }
+        EXPECT_GT(farthest, 1.0) << "nothing moves";
+      }
+    }
+  }
+}
+
+// Rows of a level that is half as high are exposed for twice as long.
+TEST(MoveToRowTest, TimesAreTheSameAtEveryLevel) {
+  const Camera camera = TestCamera(false);
+  Camera half = camera;
+  half.width /= 2;
+  half.height /= 2;
+  half.fx /= 2.0;
+  half.fy /= 2.0;
+  half.cx = (camera.cx - 0.5) / 2.0;
+  half.cy = (camera.cy - 0.5) / 2.0;
+  for (const Vector3d& point : Points(camera)) {
+    Vector3d moved, moved_there;
+    MoveToRow(camera, false, kShutters[0], kTwists[2], point.data(),
+              moved.data());
+    MoveToRow(half, false, kShutters[0], kTwists[2], point.data(),
+              moved_there.data());
+    EXPECT_LT((moved - moved_there).norm(), 1e-12);  // rounding
+  }
+}
+
+TEST(MoveToRowTest, LanesAreScalars) {
+  using Two = Lanes<2>::Type;
+  const Camera camera = TestCamera(true);
+  const std::vector<Vector3d> points = Points(camera);
+  for (size_t i = 1; i < points.size(); ++i) {
+    Two both[3], moved[3];
+    Vector3d first, second;
+    for (int k = 0; k < 3; ++k) both[k] = Two{points[i - 1][k], points[i][k]};
+    MoveToRow(camera, true, kShutters[0], kTwists[2], both, moved);
+    MoveToRow(camera, true, kShutters[0], kTwists[2], points[i - 1].data(),
+              first.data());
+    MoveToRow(camera, true, kShutters[0], kTwists[2], points[i].data(),
+              second.data());
+    for (int k = 0; k < 3; ++k) {
+      EXPECT_NEAR(moved[k][0], first[k], 1e-13);  // rounding
+      EXPECT_NEAR(moved[k][1], second[k], 1e-13);
+    }
+  }
+}
+
+// Costs look for points where features are seen.
+TEST(MoveToRowTest, CostsLookWhereImagePointSays) {
+  const Rigid3d motion(Eigen::Quaterniond(Eigen::AngleAxisd(
+                           0.02, Vector3d(1, 2, -1).normalized())),
+                       {0.02, -0.01, 0.03});
+  for (const bool is_distorted : {false, true}) {
+    FrameView view;
+    view.levels = {{{nullptr, 320, 240, 320}, TestCamera(is_distorted)}};
+    const Camera& camera = view.levels[0].camera;
+    DirectInput input;
+    input.cur = &view;
+    input.R = motion.rotation.toRotationMatrix();
+    input.t = motion.translation;
+    input.has_distortion = is_distorted;
+    input.moves_color = input.moves_depth = true;
+    for (const Twist& twist : kTwists) {
+      const Shutter& color = kShutters[0];
+      const Shutter& depth = kShutters[1];
+      view.timing = {color, depth, twist};
+      for (const Vector3d& prev : Points(camera)) {
+        double point[7] = {prev.x(), prev.y(), prev.z(), 0.0, 0.0, 0.5, 0.01};
+        const Vector3d q = motion * prev;
+        PlaceInImage<double> place;
+        Photometric::Locate(input, point, &place);
+        EXPECT_LT(
+            (Vector2d(place.u, place.v) - ImagePoint(camera, view.timing, q))
+                .norm(),
+            kPixelTolerance);
+        EXPECT_NEAR(place.z, q.z(), 1e-12);  // at the stamp
+        ProjectivePlane::Locate(input, point, &place);
+        EXPECT_LT((Vector2d(place.u, place.v) -
+                   ImagePoint(camera, {depth, {}, twist}, q))
+                      .norm(),
+                  kPixelTolerance);
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

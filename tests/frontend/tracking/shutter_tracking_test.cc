@@ -1,0 +1,351 @@
+// Cameras whose rows are exposed one after another, tracked.
+
+#include "frontend/tracking/shutter_tracking.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <string>
+#include <typeinfo>
+#include <utility>
+#include <vector>
+
+#include "core/evaluation/evaluation.h"
+#include "frontend/features/frontend.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/motion_error.h"
+#include "tests/support/track_sequence.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct Shutters {
+  Shutter color, depth;
+  double depth_delay = 0.0;
+};
+
+// Of a handheld sensor; `sign`: -1 where the last row comes first.
+Shutters RollingShutters(double sign) {
+  return {{-0.0075, sign * 0.028}, {-0.018, sign * 0.028}};
+}
+
+SyntheticOptions OptionsOf(const std::string& path, const Shutters& shutters) {
+  SyntheticOptions options;
+  options.path = path;
+  options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
+  options.color_shutter = shutters.color;
+  options.depth_shutter = shutters.depth;
+  options.depth_delay_s = shutters.depth_delay;
+  return options;
+}
+
+constexpr int kShutterFrames = 40;
+
+// The first frames of a path, rendered once.
+struct ShutterSequence {
+  ShutterSequence(const std::string& path, const Shutters& shutters,
+                  int count = kShutterFrames)
+      : dataset(OptionsOf(path, shutters)) {
+    for (int i = 0; i < count; ++i) frames.push_back(dataset.Read(i));
+  }
+
+  Rigid3d Motion(int ref, int cur) const {
+    return dataset.WorldFromCam(cur).Inverse() * dataset.WorldFromCam(ref);
+  }
+
+  SyntheticDataset dataset;
+  std::vector<Frame> frames;
+};
+
+Odometry OdometryFor(const ShutterSequence& sequence,
+                     const std::string& tracker, ShutterUse use) {
+  OdometryOptions options;
+  options.shutter = use;
+  return Odometry(
+      options,
+      MakeTracker(tracker, PartsFor(sequence.dataset.camera().camera)));
+}
+
+// RMSE of positions at the stamps, m.
+double PositionError(const ShutterSequence& sequence,
+                     const std::string& tracker,
+                     ShutterUse use = ShutterUse::kCamera) {
+  Odometry odometry = OdometryFor(sequence, tracker, use);
+  Trajectory path;
+  for (const Frame& frame : sequence.frames) {
+    const TrackedFrame tracked = odometry.Track(frame);
+    path.push_back({tracked.timestamp, tracked.world_from_cam});
+  }
+  return Evaluate(path, sequence.dataset.ground_truth(), {}).ate.rmse;
+}
+
+// How much worse than without shutters it may be, and how much worse it has to
+// be if they are ignored. Pixels alone know velocities from motions only, half
+// a frame late.
+struct ShutterTrust {
+  const char* tracker;
+  double at_most, ignored_at_least;
+};
+
+class ShutterTrackersTest : public testing::TestWithParam<ShutterTrust> {
+ protected:
+  void ExpectUndone(const Shutters& shutters) {
+    const auto& [tracker, at_most, ignored_at_least] = GetParam();
+    const double global =
+        PositionError(ShutterSequence("handheld", {}), tracker);
+    const ShutterSequence sequence("handheld", shutters);
+    const double undone = PositionError(sequence, tracker);
+    EXPECT_LT(undone, at_most * global);
+    EXPECT_GT(PositionError(sequence, tracker, ShutterUse::kNone),
+              ignored_at_least * undone);
+  }
+};
+
+TEST_P(ShutterTrackersTest, FromTheTop) { ExpectUndone(RollingShutters(1.0)); }
+TEST_P(ShutterTrackersTest, FromTheBottom) {
+  ExpectUndone(RollingShutters(-1.0));
+}
+
+// Depth of 15 ms earlier or later is at the wrong place by up to 10 px here.
+TEST_P(ShutterTrackersTest, LaterDepth) { ExpectUndone({{}, {}, 0.015}); }
+TEST_P(ShutterTrackersTest, EarlierDepth) { ExpectUndone({{}, {}, -0.015}); }
+
+INSTANTIATE_TEST_SUITE_P(All, ShutterTrackersTest,
+                         testing::Values(ShutterTrust{"features", 2.5, 5.0},
+                                         ShutterTrust{"direct", 12.0, 2.0},
+                                         ShutterTrust{"hybrid", 4.0, 5.0}),
+                         [](const auto& info) {
+                           return std::string(info.param.tracker);
+                         });
+
+// Turning (up to 38 degrees/s, almost in place) and going along the axes.
+TEST(ShutterTrackingTest, OfPureMotions) {
+  for (const std::string path : {"pan_tilt", "xyz"}) {
+    const double global =
+        PositionError(ShutterSequence(path, {}, 30), "features");
+    for (const double sign : {1.0, -1.0}) {
+      const ShutterSequence rolling(path, RollingShutters(sign), 30);
+      const double undone = PositionError(rolling, "features");
+      EXPECT_LT(undone, 4.0 * global) << path << sign;
+      EXPECT_GT(PositionError(rolling, "features", ShutterUse::kNone),
+                1.3 * undone)
+          << path << sign;
+    }
+  }
+}
+
+// The first two depths are 63 ms apart, their colours 33 ms: taken as it is,
+// the first motion swings around the true one.
+TEST(ShutterTrackingTest, OffsetsThatAlternate) {
+  const auto first_error = [](ShutterUse use) {
+    SyntheticOptions options;
+    options.path = "xyz";
+    options.noise = false;
+    options.depth_delay_s = -0.015;
+    const SyntheticDataset early(options);
+    options.depth_delay_s = 0.015;
+    const SyntheticDataset late(options);
+    OdometryOptions odometry_options;
+    odometry_options.shutter = use;
+    Odometry odometry =
+        MakeOdometry(late.camera().camera, "tukey", odometry_options);
+    odometry.Track(early.Read(112));
+    const Rigid3d truth =
+        early.WorldFromCam(112).Inverse() * early.WorldFromCam(113);
+    const Rigid3d found = odometry.Track(late.Read(113)).world_from_cam;
+    return (found.translation - truth.translation).norm();
+  };
+  EXPECT_LT(first_error(ShutterUse::kCamera),
+            0.1 * first_error(ShutterUse::kNone));
+}
+
+std::string TextOf(const std::vector<TrackedFrame>& frames) {
+  Trajectory path;
+  for (const TrackedFrame& frame : frames) {
+    path.push_back({frame.timestamp, frame.world_from_cam});
+    for (const Edge& edge : frame.edges) {
+      path.push_back({edge.covariance.sum(), edge.cur_from_ref});
+    }
+  }
+  return FormatTrajectory(path);
+}
+
+TEST(ShutterTrackingTest, GlobalShuttersGiveTheSameBytesEitherWay) {
+  const ShutterSequence sequence("handheld", {}, 15);
+  for (const std::string& tracker : TrackerNames()) {
+    std::string texts[2];
+    for (const ShutterUse use : {ShutterUse::kCamera, ShutterUse::kNone}) {
+      Odometry odometry = OdometryFor(sequence, tracker, use);
+      std::vector<TrackedFrame> frames;
+      for (const Frame& frame : sequence.frames) {
+        frames.push_back(odometry.Track(frame));
+        EXPECT_FALSE(odometry.last_twist().has_value());
+      }
+      texts[use == ShutterUse::kNone] = TextOf(frames);
+    }
+    EXPECT_EQ(texts[0], texts[1]) << tracker;
+  }
+}
+
+TEST(ShutterTrackingTest, RollingShuttersGiveTheSameBytesTwice) {
+  const ShutterSequence sequence("handheld", RollingShutters(1.0), 15);
+  std::string texts[2];
+  for (std::string& text : texts) {
+    Odometry odometry = OdometryFor(sequence, "hybrid", ShutterUse::kCamera);
+    std::vector<TrackedFrame> frames;
+    for (const Frame& frame : sequence.frames) {
+      frames.push_back(odometry.Track(frame));
+    }
+    text = TextOf(frames);
+  }
+  EXPECT_EQ(texts[0], texts[1]);
+}
+
+// After both, the first frame is told nothing, the second by the first.
+TEST(ShutterTrackingTest, GapsAndLossesForgetTheVelocity) {
+  const ShutterSequence sequence("xyz", RollingShutters(1.0), 12);
+  for (const bool is_loss : {false, true}) {
+    Odometry odometry = OdometryFor(sequence, "features", ShutterUse::kCamera);
+    for (int i = 0; i < 12; ++i) {
+      Frame frame = sequence.frames[i];
+      if (is_loss && i == 6) {
+        frame = Black(frame);
+        frame.depth = cv::Mat(frame.depth.size(), CV_16UC1, cv::Scalar(0));
+      }
+      if (!is_loss && i > 6) frame.timestamp += 0.1;
+      const TrackedFrame tracked = odometry.Track(frame);
+      const bool is_lost = is_loss && i == 6;
+      EXPECT_EQ(tracked.status == TrackingStatus::kLost, is_lost) << i;
+      EXPECT_EQ(odometry.last_twist().has_value(), i != 0 && i != 7 && !is_lost)
+          << i;
+    }
+  }
+}
+
+// A reference between frames with shutters that has none itself stays what it
+// is: nothing of the last one that had is left.
+TEST(ShutterTrackingTest, ReferencesOfOneMomentAreNotMended) {
+  const SyntheticDataset global(OptionsOf("handheld", {}));
+  const SyntheticDataset rolling(OptionsOf("handheld", RollingShutters(1.0)));
+  OdometryOptions options;
+  options.max_flow_px = 1.0;  // every frame is a reference
+  Odometry odometry(options,
+                    MakeTracker("features", PartsFor(global.camera().camera)));
+  odometry.Track(rolling.Read(30));
+  ASSERT_TRUE(odometry.Track(global.Read(32)).is_reference);
+  const TrackedFrame tracked = odometry.Track(rolling.Read(34));
+  ASSERT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
+  ASSERT_EQ(tracked.reference, 1);
+  const Rigid3d truth =
+      global.WorldFromCam(34).Inverse() * global.WorldFromCam(32);
+  ASSERT_GT(truth.translation.norm(), 0.02) << "nothing moves";
+  EXPECT_LT(ErrorOf(tracked.cur_from_reference, truth).translation, 0.005);
+}
+
+// Of frames whose middle row is exposed at the stamp: else references are those
+// of a time that is known only as well as their velocity.
+TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {
+  const auto nees_with = [](const Shutters& shutters) {
+    const ShutterSequence sequence("handheld", shutters, 45);
+    Odometry odometry = OdometryFor(sequence, "features", ShutterUse::kCamera);
+    double sum = 0.0;
+    int count = 0;
+    for (const Frame& frame : sequence.frames) {
+      const TrackedFrame tracked = odometry.Track(frame);
+      if (tracked.status != TrackingStatus::kOk) continue;
+      for (const Edge& edge : tracked.edges) {
+        const Rigid3d truth = sequence.Motion(edge.ref, edge.cur);
+        const Eigen::AngleAxisd omega(truth.rotation *
+                                      edge.cur_from_ref.rotation.inverse());
+        MotionVector error;
+        error << omega.angle() * omega.axis(),
+            truth.Inverse().translation -
+                edge.cur_from_ref.Inverse().translation;
+        sum += error.dot(edge.covariance.ldlt().solve(error));
+        ++count;
+      }
+    }
+    EXPECT_GE(count, 40);
+    return sum / count;
+  };
+  const double without = nees_with({});
+  for (const double sign : {1.0, -1.0}) {
+    const double with =
+        nees_with({{0.0, sign * 0.028}, {-0.0105, sign * 0.028}});
+    EXPECT_LT(with, 2.0 * without);
+    EXPECT_GT(with, 1.0);
+  }
+}
+
+TEST(ShutterTrackingTest, EveryPreparedFrameCopiesItself) {
+  const Frame frame = SyntheticDataset(OptionsOf("handheld", {})).Read(0);
+  const auto expect_copy = [](const PreparedFrame& prepared,
+                              const std::string& name) {
+    const std::unique_ptr<PreparedFrame> copied = prepared.Copy();
+    const PreparedFrame& copy = *copied;
+    EXPECT_TRUE(typeid(copy) == typeid(prepared)) << name;
+    EXPECT_EQ(copy.gray.data, prepared.gray.data) << name;
+  };
+  FrontendOptions options;
+  options.camera = OptionsOf("handheld", {}).camera.camera;
+  for (const std::string& name : FrontendNames()) {
+    const auto frontend = MakeFrontend(name, options);
+    const auto prepared = frontend->Prepare(frame);
+    expect_copy(*prepared, name);
+    EXPECT_GT(frontend->Detect(*prepared->Copy())->observations.size(), 50u);
+  }
+  for (const std::string& name : TrackerNames()) {
+    const auto tracker = MakeTracker(name, PartsFor(options.camera));
+    expect_copy(*tracker->Prepare(frame), name);
+  }
+}
+
+// A frontend of somebody else who has forgotten that.
+class ForgetfulFrontend : public Frontend {
+ public:
+  explicit ForgetfulFrontend(const FrontendOptions& options)
+      : Frontend(options), patch_(MakeFrontend("patch", options)) {}
+
+  struct Prepared : PreparedFrame {
+    using PreparedFrame::PreparedFrame;
+    std::unique_ptr<const PreparedFrame> patch;
+  };
+  std::unique_ptr<const PreparedFrame> Prepare(
+      const Frame& frame) const override {
+    auto prepared = std::make_unique<Prepared>(frame);
+    prepared->patch = patch_->Prepare(frame);
+    return prepared;
+  }
+  std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override {
+    return patch_->Detect(*dynamic_cast<const Prepared&>(frame).patch);
+  }
+  void Match(const FeatureSet& reference, const PreparedFrame& frame,
+             const Rigid3d& guess, FeatureMatches* matches) override {
+    patch_->Match(reference, *dynamic_cast<const Prepared&>(frame).patch, guess,
+                  matches);
+  }
+
+ private:
+  std::unique_ptr<Frontend> patch_;
+};
+
+TEST(ShutterTrackingTest, RefusesAFrontendWhosePreparedFrameDoesNot) {
+  FrontendOptions options;
+  options.camera = OptionsOf("handheld", {}).camera.camera;
+  for (const bool is_rolling : {false, true}) {
+    const ShutterSequence sequence(
+        "handheld", is_rolling ? RollingShutters(1.0) : Shutters(), 2);
+    Odometry odometry({}, std::make_unique<ForgetfulFrontend>(options),
+                      Estimator({}, MakeRobustCosts()));
+    odometry.Track(sequence.frames[0]);
+    const auto next = [&] { odometry.Track(sequence.frames[1]); };
+    if (is_rolling) {
+      ExpectInputError(next, {"prepared frame", "Copy"});
+    } else {
+      EXPECT_NO_THROW(next());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose

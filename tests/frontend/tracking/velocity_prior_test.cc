@@ -1,0 +1,94 @@
+#include "frontend/tracking/velocity_prior.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kInterval = 1.0 / 30.0;
+constexpr double kTwistRounding = 1e-12;  // rounding
+
+const Twist kPriorTwist = {{0.3, -0.5, 0.2}, {-0.4, 0.1, 0.6}};
+const Rigid3d kPrevFromRef(Eigen::Quaterniond(Eigen::AngleAxisd(
+                               0.2, Eigen::Vector3d(1, 2, -1).normalized())),
+                           {0.1, -0.3, 0.2});
+
+void ExpectNear(const Twist& a, const Twist& b,
+                double tolerance = kTwistRounding) {
+  EXPECT_LT((a.angular - b.angular).norm(), tolerance);
+  EXPECT_LT((a.linear - b.linear).norm(), tolerance);
+}
+
+TEST(VelocityPriorTest, BetweenIsTheVelocityFromFrameToFrame) {
+  const VelocityPrior prior =
+      VelocityModel().Prior(kPrevFromRef, kInterval, 0.0);
+  ExpectNear(prior.Between(kPriorTwist.MotionDuring(kInterval) * kPrevFromRef,
+                           Twist()),
+             kPriorTwist);
+}
+
+// Whatever a frame was moved by, it was seen where it was seen.
+TEST(VelocityPriorTest, MotionsAreToldByTheMiddleRow) {
+  constexpr double kMiddle = -0.008;
+  const Twist wrong = {{-1.0, 0.3, 0.6}, {0.5, 0.5, -0.5}};
+  const Twist wrong_before = {{0.2, -0.7, 0.1}, {0.3, -0.1, 0.4}};
+  VelocityModel model;
+  model.Add(wrong_before, kMiddle);
+  const Rigid3d middle_from_ref = kPriorTwist.MotionDuring(kInterval) *
+                                  wrong_before.MotionDuring(kMiddle) *
+                                  kPrevFromRef;
+  const Rigid3d cur_from_ref =
+      wrong.MotionDuring(kMiddle).Inverse() * middle_from_ref;
+  const VelocityPrior prior = model.Prior(kPrevFromRef, kInterval, kMiddle);
+  ExpectNear(prior.Between(cur_from_ref, wrong), kPriorTwist);
+}
+
+TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
+  const Rigid3d motion = kPriorTwist.MotionDuring(kInterval) * kPrevFromRef;
+  VelocityModel model;
+  EXPECT_FALSE(model.last().has_value());
+  ExpectNear(model.Prior(kPrevFromRef, kInterval, 0.0).Mean(motion, Twist()),
+             kPriorTwist);
+  const Twist last = {{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}};
+  model.Add(last, 0.0);
+  const auto mean = [&] {
+    return model.Prior(kPrevFromRef, kInterval, 0.0).Mean(motion, Twist());
+  };
+  ExpectNear(mean(), 0.8 * kPriorTwist + 0.2 * last);
+  const Twist better = {{0.5, 0.0, 0.1}, {0.0, 0.3, 0.0}};
+  model.Correct(better);
+  ExpectNear(*model.last(), better);
+  ExpectNear(mean(), 0.8 * kPriorTwist + 0.2 * better);
+  model.Reset();
+  EXPECT_FALSE(model.last().has_value());
+  ExpectNear(mean(), kPriorTwist);
+}
+
+// Half of how much velocities change from frame to frame, of late.
+TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
+  VelocityModel model;
+  const auto prior = [&] { return model.Prior(kPrevFromRef, kInterval, 0.0); };
+  const VelocityPrior at_first = prior();
+  for (int i = 0; i < 100; ++i) model.Add(kPriorTwist, 0.0);
+  const VelocityPrior steady = prior();
+  EXPECT_LT(steady.sigma_angular, 0.1 * at_first.sigma_angular);
+  EXPECT_LT(steady.sigma_linear, 0.1 * at_first.sigma_linear);
+  EXPECT_GT(steady.sigma_angular, 0.0);  // of a tripod, too
+  EXPECT_GT(steady.sigma_linear, 0.0);
+  const Twist change = {{0.4, -0.4, 0.4}, {0.3, 0.3, -0.3}};
+  for (int i = 0; i < 100; ++i) {
+    model.Add(kPriorTwist + (i % 2) * change, 0.0);
+  }
+  // What began a hundred frames ago is forgotten, all but e^-10 of it.
+  constexpr double kForgotten = 1e-4;
+  EXPECT_NEAR(prior().sigma_angular, 0.5 * 0.4, kForgotten);
+  EXPECT_NEAR(prior().sigma_linear, 0.5 * 0.3, kForgotten);
+  model.Reset();
+  EXPECT_EQ(prior().sigma_angular, at_first.sigma_angular);
+  EXPECT_EQ(prior().sigma_linear, at_first.sigma_linear);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+#include "core/geometry/shutter.h"
+#include "core/geometry/twist.h"
+
+namespace rgbd_pose {
+
+// later_from_earlier of a camera that keeps its velocity: in steps so small
+// that what they leave out is some 1e-6 m in a readout.
+inline Rigid3d ExactMotion(const Twist& twist, double seconds) {
+  constexpr int kSteps = 200;
+  const Rigid3d step = twist.MotionDuring(seconds / kSteps);
+  Rigid3d motion;
+  for (int i = 0; i < kSteps; ++i) motion = step * motion;
+  return motion;
+}
+
+// Where a point (camera axes at the stamp, m) is seen by rows that are exposed
+// one after another, px: by bisection of the row. The camera's velocity is
+// constant.
+inline Eigen::Vector2d ExactlySeen(const Camera& camera, const Shutter& shutter,
+                                   const Twist& twist,
+                                   const Eigen::Vector3d& point) {
+  const auto seen_from = [&](double row) {
+    const double seconds = shutter.RowTime(row, camera.height);
+    return camera.Project(ExactMotion(twist, seconds) * point);
+  };
+  constexpr int kBisections = 30;
+  double above = -camera.height;
+  double below = 2.0 * camera.height;
+  for (int i = 0; i < kBisections; ++i) {
+    const double row = 0.5 * (above + below);
+    (seen_from(row).y() > row ? above : below) = row;
+  }
+  return seen_from(above);
+}
+
+}  // namespace rgbd_pose
