@@ -24,7 +24,7 @@ DEFINE_int32(laps, 1,
              "turn");
 DEFINE_uint32(seed, 1, "seed of textures and noise");
 DEFINE_bool(noise, true, "add the noise of a real sensor");
-DEFINE_double(shutter, 0.0, "how long the shutter is open (s): blurs motion");
+DEFINE_double(exposure, 0.0, "how long the shutter is open (s): blurs motion");
 DEFINE_double(exposure_drift, 0.0,
               "swing of the automatic exposure in 4 s, 0..1: gains from "
               "exp(-this) to exp(this)");
@@ -69,7 +69,7 @@ int Simulate() {
   options.laps = FLAGS_laps;
   options.seed = FLAGS_seed;
   options.noise = FLAGS_noise;
-  options.exposure_s = FLAGS_shutter;
+  options.exposure_s = FLAGS_exposure;
   options.exposure_drift = FLAGS_exposure_drift;
   options.color_shutter = {FLAGS_color_time_offset, FLAGS_color_readout};
   options.depth_shutter = {FLAGS_depth_time_offset, FLAGS_depth_readout};
@@ -105,7 +105,7 @@ int main(int argc, char** argv) {
       "renders a synthetic RGB-D sequence with exact poses to files",
       "rgbd_simulate --path=pan_tilt --frames=150 --output=pan_tilt",
       {{"Sequence",
-        {"scene", "path", "frames", "rate", "laps", "seed", "noise", "shutter",
+        {"scene", "path", "frames", "rate", "laps", "seed", "noise", "exposure",
          "exposure_drift", "color_time_offset", "color_readout",
          "depth_time_offset", "depth_readout", "depth_delay",
          "registration_shift", "registration_turn", "camera", "depth_camera"}},
