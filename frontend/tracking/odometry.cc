@@ -286,6 +286,9 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
     return false;
   }
   twist_ = attempts_.kept().twist;
+  if (twist_.has_value()) {
+    shutter_tracking_.Accept(*twist_, frame.color_shutter.offset);
+  }
   reference_ = keyframe;
   segment_ = keyframe->segment;
   TakeMotion(result);

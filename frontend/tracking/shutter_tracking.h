@@ -42,6 +42,11 @@ class ShutterTracking {
   // The frame of the last Follow has that pose: the next one goes on from it.
   void Accept();
 
+  // A frame that was found elsewhere had that velocity.
+  void Accept(const Twist& twist, double middle) {
+    velocity_.Add(twist, middle);
+  }
+
   // The last frame was not found.
   void Lose();
 
