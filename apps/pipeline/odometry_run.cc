@@ -23,6 +23,9 @@ void SequenceRun::Add(const StreamedFrame& next) {
   frames.push_back(Track(*next.frame, guess.has_value() ? &*guess : nullptr));
   TrackedFrame& tracked = frames.back();
   tracked.decode_ms = next.decode_ms;
+  if (tracked.previous_is_reference) {
+    frames[frames.size() - 2].is_reference = true;
+  }
   if (tracked.status != TrackingStatus::kLost && tracked.matches > 0) {
     results_.residuals.Add(odometry().last_estimate());
   }

@@ -73,9 +73,20 @@ SlamFrame Slam::Track(const PreparedFrame& frame,
   result.tracked =
       odometry_.Track(frame, cur_from_prev_guess, guess_covariance);
   const TrackedFrame& tracked = result.tracked;
-  Follow(tracked);
   AddLateKeyframe();
-  if (tracked.is_reference) NewReference(frame, tracked);
+  if (tracked.previous_is_reference) {
+    BecomeReference(previous_);
+    late_keyframe_ = KeyframeOf(previous_);
+    AddLateKeyframe();
+  }
+  Follow(tracked);
+  if (tracked.is_reference) {
+    late_keyframe_ = KeyframeOf(tracked);
+    // Where the next frame tells how the camera moved in this one, the keyframe
+    // waits for it.
+    if (!odometry_.HasShutter(frame)) AddLateKeyframe(&frame);
+  }
+  previous_ = tracked;
   if (tracked.status == TrackingStatus::kLost) SearchMap(frame, tracked.index);
   TakeUp(tracked.index, &result);
   result.odom_from_cam = odom_from_cam_;
@@ -117,7 +128,12 @@ void Slam::Follow(const TrackedFrame& tracked) {
     map_from_odom_ =
         map_from_keyframe_.at(reference) * odom_from_reference_.Inverse();
   }
-  if (!tracked.is_reference) return;
+  if (tracked.is_reference) BecomeReference(tracked);
+}
+
+// The last frame of path_ is a keyframe.
+void Slam::BecomeReference(const TrackedFrame& tracked) {
+  const int id = MapId(tracked.index);
   path_.back() = {tracked.timestamp, id, Rigid3d()};
   pending_.push_back({id, std::nullopt, Rigid3d()});
   if (tracked.reference != -1) {
@@ -132,38 +148,27 @@ void Slam::Follow(const TrackedFrame& tracked) {
   odom_from_reference_ = odom_from_cam_;
 }
 
-// Where the next frame tells how the camera moved in this one, the keyframe
-// waits for it.
-void Slam::NewReference(const PreparedFrame& frame,
-                        const TrackedFrame& tracked) {
+NewKeyframe Slam::KeyframeOf(const TrackedFrame& tracked) const {
   NewKeyframe keyframe;
   keyframe.id = MapId(tracked.index);
   keyframe.segment = segments_.at(keyframe.id);
   keyframe.map_from_cam = map_from_keyframe_.at(keyframe.id);
   if (tracked.reference != -1) keyframe.edges = tracked.edges;
   for (Edge& edge : keyframe.edges) edge.ref = MapId(edge.ref);
-  if (odometry_.HasShutter(frame)) {
-    late_keyframe_ = std::move(keyframe);
-    return;
-  }
-  keyframe.frame = CopyOf(frame);
-  AddKeyframe(std::move(keyframe));
+  return keyframe;
 }
 
-void Slam::AddLateKeyframe() {
+void Slam::AddLateKeyframe(const Frame* frame) {
   if (!late_keyframe_.has_value()) return;
+  const int id = OdometryId(late_keyframe_->id);
   late_keyframe_->frame =
-      CopyOf(*odometry_.FindReferenceFrame(OdometryId(late_keyframe_->id)));
-  AddKeyframe(std::move(*late_keyframe_));
-  late_keyframe_.reset();
-}
-
-void Slam::AddKeyframe(NewKeyframe keyframe) {
-  const int due = OdometryId(keyframe.id) + settings_.update_delay;
+      CopyOf(frame != nullptr ? *frame : *odometry_.FindReferenceFrame(id));
   updates_.push_back(
-      {due, worker_.Do([this, keyframe = std::move(keyframe)]() mutable {
+      {id + settings_.update_delay,
+       worker_.Do([this, keyframe = *std::move(late_keyframe_)]() mutable {
          return mapper_.Add(std::move(keyframe));
        })});
+  late_keyframe_.reset();
 }
 
 void Slam::SearchMap(const PreparedFrame& frame, int index) {

@@ -118,9 +118,11 @@ class Slam {
   int OdometryId(int keyframe) const { return keyframe - first_id_; }
 
   void Follow(const TrackedFrame& tracked);
-  void NewReference(const PreparedFrame& frame, const TrackedFrame& tracked);
-  void AddLateKeyframe();
-  void AddKeyframe(NewKeyframe keyframe);
+  void BecomeReference(const TrackedFrame& tracked);
+  NewKeyframe KeyframeOf(const TrackedFrame& tracked) const;
+  // Hands late_keyframe_, if there is one, to the mapper; null: the images that
+  // the odometry has made of it.
+  void AddLateKeyframe(const Frame* frame = nullptr);
   void SearchMap(const PreparedFrame& frame, int index);
   void TakeUp(int frame, SlamFrame* result);
   void Apply(MapUpdate update, SlamFrame* result);
@@ -133,6 +135,7 @@ class Slam {
 
   // Of the last frame, without its images yet.
   std::optional<NewKeyframe> late_keyframe_;
+  TrackedFrame previous_;  // the last frame
 
   // As last taken up.
   std::map<int, Rigid3d> map_from_keyframe_;

@@ -7,6 +7,9 @@ namespace rgbd_pose {
 TrackedFrame SlamRun::Track(const PreparedFrame& frame,
                             const Rigid3d* cur_from_prev_guess) {
   SlamFrame in_map = slam_.Track(frame, cur_from_prev_guess);
+  if (in_map.tracked.previous_is_reference) {
+    frames_.back().tracked.is_reference = true;
+  }
   TrackedFrame tracked = in_map.tracked;
   tracked.world_from_cam = in_map.map_from_cam();
   tracked.segment = in_map.segment;

@@ -46,11 +46,22 @@ const cv::Mat& DepthMover::Move(const Frame& frame,
   moved_.create(measured_.size(), CV_16UC1);
   depth_scale_ = frame.depth_scale;
   FindRanges();
+  measured_from_moved_.clear();
+  for (int row = 0; row < measured_.rows; ++row) {
+    measured_from_moved_.push_back(moved_from_measured(row).Inverse());
+  }
   for (int row = 0; row < rows_; ++row) {
+    // Where a block was measured decides its motion: about as far off as the
+    // one to the left.
+    double down = 0.0;
     for (int column = 0; column < columns_; ++column) {
       const cv::Rect block = BlockAt(column, row);
-      const Flow flow = FlowOf(static_cast<size_t>(row) * columns_ + column,
-                               moved_from_measured);
+      const int measured_row = std::clamp(
+          static_cast<int>(std::lround(block.y + kFlowBlock / 2 + down)), 0,
+          measured_.rows - 1);
+      const Flow flow = FlowAt(static_cast<size_t>(row) * columns_ + column,
+                               measured_from_moved_[measured_row]);
+      down = flow.turn_v + kUsualInverseDepth * flow.shift_v;
       const Range range = RangeAround(column, row, flow);
       if (range.min > range.max) {
         moved_(block).setTo(0);
@@ -124,16 +135,6 @@ DepthMover::Flow DepthMover::FlowAt(size_t block,
       static_cast<float>(shift.y()),
       static_cast<float>(turned.z()),
       static_cast<float>(measured_from_moved.translation.z() * depth_scale_)};
-}
-
-// The row in which a block was measured decides the motion, and that the row.
-DepthMover::Flow DepthMover::FlowOf(
-    size_t block, const RowMotion& moved_from_measured) const {
-  const double row = camera_.Project(rays_[block]).y();
-  const Flow flow = FlowAt(block, moved_from_measured(row).Inverse());
-  return FlowAt(block, moved_from_measured(row + flow.turn_v +
-                                           kUsualInverseDepth * flow.shift_v)
-                           .Inverse());
 }
 
 // Of all blocks that pixels of a block may come from, at any depth.

@@ -47,7 +47,6 @@ class DepthMover {
   cv::Rect BlockAt(int column, int row) const;
   void FindRanges();
   Flow FlowAt(size_t block, const Rigid3d& measured_from_moved) const;
-  Flow FlowOf(size_t block, const RowMotion& moved_from_measured) const;
   Range RangeAround(int column, int row, const Flow& flow) const;
   // All of the block at one depth, as far as its place is concerned.
   void MoveTogether(const cv::Rect& block, const Flow& flow, float u, float v,
@@ -65,6 +64,7 @@ class DepthMover {
   std::vector<uint16_t> column_min_, column_max_;
   cv::Mat measured_;  // the depth image, 0: none
   cv::Mat moved_;
+  std::vector<Rigid3d> measured_from_moved_;  // by row of the measured image
   double depth_scale_ = 1.0;
 };
 

@@ -57,7 +57,7 @@ Frame FrameRectifier::Rectify(const Frame& frame,
   const auto resample = [this](const cv::Mat& image) {
     cv::Mat moved;
     if (image.empty()) return moved;
-    cv::remap(image, moved, map_u_, map_v_, cv::INTER_CUBIC,
+    cv::remap(image, moved, map_u_, map_v_, cv::INTER_LINEAR,
               cv::BORDER_REPLICATE);
     return moved;
   };
@@ -70,24 +70,30 @@ void FrameRectifier::MakeFlows(const Frame& frame,
                                const Rigid3d& target_from_middle) {
   const FrameTiming timing = frame.Timing();
   const Rigid3d middle_from_target = target_from_middle.Inverse();
+  const Eigen::Matrix3d turned = middle_from_target.rotation.toRotationMatrix();
+  // Where a ray of the target, at an inverse depth, is seen that long after the
+  // middle row.
+  const auto see = [&](const Eigen::Vector3d& ray, double inverse_depth,
+                       double seconds) {
+    const Twist twist = {timing.twist.angular,
+                         inverse_depth * timing.twist.linear};
+    return camera_.Project(twist.MovedPoint(
+        turned * ray + inverse_depth * middle_from_target.translation,
+        seconds));
+  };
   flows_.resize(rays_.size());
   for (size_t i = 0; i < rays_.size(); ++i) {
     const Eigen::Vector2d node = camera_.Project(rays_[i]);
-    Eigen::Vector2d turn(0.0, 0.0), shift(0.0, 0.0);
+    Eigen::Vector2d far = node, near = node;
     // The row decides the time, and that the row.
     for (int step = 0; step < 2; ++step) {
-      const double row = node.y() + turn.y() + kRoomInverseDepth * shift.y();
-      const Rigid3d exposed_from_target =
-          timing.twist.MotionDuring(timing.color.RowTime(row, camera_.height) -
-                                    timing.color.offset) *
-          middle_from_target;
-      const Eigen::Vector3d ray = exposed_from_target.rotation * rays_[i];
-      turn = camera_.Project(ray) - node;
-      shift = (camera_.Project(ray + kRoomInverseDepth *
-                                         exposed_from_target.translation) -
-               node - turn) /
-              kRoomInverseDepth;
+      const double time =
+          timing.color.RowTime(near.y(), camera_.height) - timing.color.offset;
+      far = see(rays_[i], 0.0, time);
+      near = see(rays_[i], kRoomInverseDepth, time);
     }
+    const Eigen::Vector2d turn = far - node;
+    const Eigen::Vector2d shift = (near - far) / kRoomInverseDepth;
     flows_[i] = {
         {static_cast<float>(turn.x()), static_cast<float>(turn.y())},
         {static_cast<float>(shift.x()), static_cast<float>(shift.y())}};

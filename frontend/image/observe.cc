@@ -29,28 +29,28 @@ Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
   return pixel;
 }
 
-// Depth is looked up where and when it was taken: where that is depends on the
-// depth itself.
+// What is seen along a ray (a, b, 1) so long after the stamp. Depth is looked
+// up where and when it was taken: where that is depends on the depth itself, of
+// which `depth` is a first guess.
 Observation ObserveMoving(const Frame& frame, const Camera& camera,
-                          const FrameTiming& timing, double u, double v,
-                          double sigma_px,
+                          const FrameTiming& timing, const Eigen::Vector3d& ray,
+                          double seconds, double depth, double sigma_px,
                           const DepthLookupOptions& depth_options) {
+  constexpr double kSmallChange = 0.01;  // of the depth: a tenth of a pixel
   constexpr int kDepthSteps = 3;
-  const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
-  const Eigen::Vector3d ray = camera.Ray(ideal.x(), ideal.y());
-  const double seen_at = timing.color.RowTime(v, camera.height);
   const Twist& twist = timing.twist;
-  double depth = kUsualDepth;  // when colour was seen
   DepthSample sample;
-  Eigen::Vector2d in_depth(u, v);
-  Eigen::Vector3d point = twist.MovedPoint(ray * depth, -seen_at);
+  Eigen::Vector2d in_depth;
+  Eigen::Vector3d point = twist.MovedPoint(ray * depth, -seconds);
   for (int step = 0; step < kDepthSteps; ++step) {
     Eigen::Vector3d measured;
     in_depth = SeenByRows(camera, timing.depth, twist, point, &measured);
     sample = LookUpDepth(frame, in_depth.x(), in_depth.y(), depth_options);
     if (sample.depth == 0.0) break;
-    depth += sample.depth - measured.z();
-    point = twist.MovedPoint(ray * depth, -seen_at);
+    const double change = sample.depth - measured.z();
+    depth += change;
+    point = twist.MovedPoint(ray * depth, -seconds);
+    if (std::abs(change) < kSmallChange * depth) break;
   }
   Observation seen;
   seen.u = camera.fx * point.x() / point.z() + camera.cx;
@@ -75,12 +75,30 @@ Observation Observe(const Frame& frame, const Camera& camera, double u,
                     const DepthLookupOptions& depth_options) {
   const FrameTiming timing = frame.Timing();
   if (!timing.IsOneMoment()) {
-    return ObserveMoving(frame, camera, timing, u, v, sigma_px, depth_options);
+    const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
+    return ObserveMoving(frame, camera, timing,
+                         camera.Ray(ideal.x(), ideal.y()),
+                         timing.color.RowTime(v, camera.height), kUsualDepth,
+                         sigma_px, depth_options);
   }
   const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
   const DepthSample sample = LookUpDepth(frame, u, v, depth_options);
   return {ideal.x(), ideal.y(),    sample.depth,
           sigma_px,  sample.sigma, LookUpNormal(frame, camera, u, v)};
+}
+
+Observation ObserveAgain(const Frame& frame, const Camera& camera,
+                         const FrameTiming& moved_by, const Observation& before,
+                         const DepthLookupOptions& depth_options) {
+  const double depth = before.depth > 0.0 ? before.depth : kUsualDepth;
+  Eigen::Vector3d seen;
+  const Eigen::Vector2d pixel =
+      SeenByRows(camera, moved_by.color, moved_by.twist,
+                 camera.Ray(before.u, before.v) * depth, &seen);
+  const FrameTiming timing = frame.Timing();
+  return ObserveMoving(frame, camera, timing, seen / seen.z(),
+                       timing.color.RowTime(pixel.y(), camera.height), seen.z(),
+                       before.sigma_px, depth_options);
 }
 
 Eigen::Vector2d ImagePoint(const Camera& camera, const FrameTiming& timing,

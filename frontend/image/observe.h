@@ -18,6 +18,12 @@ Observation Observe(const Frame& frame, const Camera& camera, double u,
                     double v, double sigma_px,
                     const DepthLookupOptions& depth_options);
 
+// The same image point as `before`, which had been moved by another velocity
+// (`moved_by`), of a frame whose rows were exposed at different times.
+Observation ObserveAgain(const Frame& frame, const Camera& camera,
+                         const FrameTiming& moved_by, const Observation& before,
+                         const DepthLookupOptions& depth_options);
+
 // The other way round: where a point (m, camera axes at the stamp, z > 0) is
 // seen in the image of a frame with such a timing, px, distorted.
 Eigen::Vector2d ImagePoint(const Camera& camera, const FrameTiming& timing,

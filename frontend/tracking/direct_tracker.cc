@@ -128,6 +128,14 @@ void DirectTracker::Track(const Reference& reference,
   Judge(ours.LikenessTo(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
                         estimate.cur_from_prev),
         tracked);
+  // Where features have led there is something to compare with; pixels alone
+  // have to fit.
+  if (num_levels == 0 && tracked->status == TrackingStatus::kOk &&
+      estimate.sigma > options_.max_sigma_ok) {
+    tracked->status = TrackingStatus::kDegraded;
+    tracked->reason =
+        "residuals spread by " + ShortNumber(estimate.sigma) + " sigmas";
+  }
   tracked->is_scarce = tracked->status != TrackingStatus::kLost &&
                        tracked->overlap.share < options_.min_seen_share_ok;
 }

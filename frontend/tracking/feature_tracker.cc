@@ -21,21 +21,16 @@ std::string OnlyInliers(int inliers) {
 }
 
 // The same image points of a frame, moved by its velocity instead.
-void ObserveAgain(const FeatureSet& features, const Frame& frame,
-                  const FrameTiming& moved_by, const FrontendOptions& images,
-                  FeatureMatches* found) {
-  constexpr double kUsualDepth = 2.0;  // as Observe
+void MoveAgain(const FeatureSet& features, const Frame& frame,
+               const FrameTiming& moved_by, const FrontendOptions& images,
+               FeatureMatches* found) {
   const DepthLookupOptions depth = images.DepthLookup();
   const FeatureMatches before = *found;
   found->Clear();
   for (size_t i = 0; i < before.features.size(); ++i) {
-    Observation cur = before.matches[i].cur;
-    if (cur.depth == 0.0) cur.depth = kUsualDepth;
-    const Eigen::Vector2d pixel =
-        ImagePoint(images.camera, moved_by, before.matches.Point(cur));
     found->Add(features, before.features[i],
-               Observe(frame, images.camera, pixel.x(), pixel.y(), cur.sigma_px,
-                       depth));
+               ObserveAgain(frame, images.camera, moved_by,
+                            before.matches[i].cur, depth));
   }
 }
 
@@ -171,8 +166,8 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
   for (int round = 0; round < kMaxRounds; ++round) {
     if (!estimate.ok()) break;
     const TwistEstimate found = EstimateTwist(
-        tracked->matches.matches, estimate.is_inlier, estimate.cur_from_prev,
-        seen.Timing(),
+        tracked->matches.matches, estimate.is_inlier, estimate.sigma,
+        estimate.cur_from_prev, seen.Timing(),
         guess.velocity->Mean(estimate.cur_from_prev, moved_by.twist),
         *guess.velocity);
     tracked->twist_covariance = found.motion_covariance;
@@ -180,7 +175,7 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
     if (LargestFlow(camera, seen.Timing(), change) < kSmallFlowPx) break;
     seen.twist = found.twist;
     for (FeatureMatches* part : {&tracked->matches, &tracked->doubted}) {
-      ObserveAgain(features, seen, moved_by, images(), part);
+      MoveAgain(features, seen, moved_by, images(), part);
     }
     moved_by = seen.Timing();
     Estimate(Rigid3d(estimate.cur_from_prev), prior, tracked);

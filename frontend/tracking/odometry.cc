@@ -70,6 +70,10 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   if (has_shutter_) {
     twist_covariance_ = MotionCovarianceOfTwist(frame.Timing(Twist()),
                                                 kSigmaAngular, kSigmaLinear);
+  } else {
+    // Among frames with shutters it tells nothing of velocities, and what they
+    // have told is of a time before it.
+    shutter_tracking_.Forget();
   }
   {
     const StageTimer timer(&result.track_ms);
@@ -89,7 +93,25 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   }
   result.world_from_cam = WorldFromCam();
   result.segment = segment_;
+  KeepLast(frame, result);
+  if (!has_shutter_) shutter_tracking_.Forget();  // references made meanwhile
   return result;
+}
+
+void Odometry::KeepLast(const PreparedFrame& frame,
+                        const TrackedFrame& result) {
+  has_last_ = result.status != TrackingStatus::kLost && !result.is_reference;
+  if (!has_last_) return;
+  // Memory is used again.
+  cv::Mat gray = last_.frame.gray, depth = last_.frame.depth;
+  frame.gray.copyTo(gray);
+  frame.depth.copyTo(depth);
+  last_.frame = frame;
+  last_.frame.gray = gray;
+  last_.frame.depth = depth;
+  last_.frame.color.release();
+  last_.frame.twist = twist_;
+  last_.result = result;
 }
 
 Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
@@ -112,10 +134,100 @@ void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
   tracked_at_ = frame.timestamp;
 }
 
-// First from the last pose. A constant velocity is only a second try: as the
-// first it can lock onto its own false motion.
 bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
+  const PreparedFrame* frame = Look(measured, prediction, result);
+  if (!is_lost_ && (wants_reference_ || !IsTrusted(frame, *result))) {
+    frame = LookFromLast(measured, prediction, frame, result);
+  }
+  // A doubtful pose is no way back from being lost.
+  if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
+    return false;
+  }
+  const Rigid3d last = cur_from_ref_;
+  twist_ = frame->twist;
+  if (attempts_.kept().twist.has_value()) {
+    twist_covariance_ = attempts_.kept().twist_covariance;
+  }
+  if (has_shutter_) shutter_tracking_.Accept();
+  TakeMotion(result);
+  cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
+  Accept(*frame, result);
+  return true;
+}
+
+// A frame that is about to become a reference should be certain of its own
+// pose.
+bool Odometry::IsTrusted(const PreparedFrame* frame,
+                         const TrackedFrame& result) const {
+  constexpr double kMaxSigma = 1.7;
+  if (frame == nullptr || result.status != TrackingStatus::kOk) return false;
+  return !NeedsNewReference() ||
+         (result.sigma <= kMaxSigma && !attempts_.kept().is_scarce);
+}
+
+const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
+                                            const Prediction* prediction,
+                                            const PreparedFrame* found,
+                                            TrackedFrame* result) {
+  Keyframe* const reference = reference_;
+  const Rigid3d cur_from_ref = cur_from_ref_;
+  const MotionMatrix covariance = covariance_;
+  if (!MakeLastReference()) return found;
+  result->previous_is_reference = true;
+  TrackedFrame from_last = *result;
+  attempts_.Stash();
+  ShutterTracking::Found before = shutter_tracking_.TakeFound();
+  std::optional<Prediction> since;
+  if (prediction != nullptr)
+    since = Predict(prediction->cur_from_prev, nullptr);
+  const PreparedFrame* const frame =
+      Look(measured, since ? &*since : nullptr, &from_last);
+  result->match_ms = from_last.match_ms;
+  result->solve_ms = from_last.solve_ms;
+  const bool is_better =
+      frame != nullptr &&
+      (found == nullptr ||
+       (from_last.status == TrackingStatus::kOk &&
+        (wants_reference_ || result->status != TrackingStatus::kOk ||
+         from_last.sigma < result->sigma)));
+  if (is_better) {
+    *result = from_last;
+    return frame;
+  }
+  reference_ = reference;
+  cur_from_ref_ = cur_from_ref;
+  covariance_ = covariance;
+  attempts_.TakeUpStashed();
+  shutter_tracking_.PutBack(std::move(before));
+  return found;
+}
+
+bool Odometry::MakeLastReference() {
+  if (!has_last_) return false;
+  const Frame& frame = last_.frame;
+  const auto seen = shutter_tracking_.LastAtOneMoment(frame);
+  std::string why_not;
+  std::unique_ptr<Reference> reference =
+      tracker_->MakeReference(*seen, nullptr, nullptr, &why_not);
+  if (reference == nullptr) return false;
+  const int id = last_.result.index;
+  has_last_ = false;
+  reference_ = keyframes_.Add(
+      {id, segment_, last_.result.world_from_cam, std::move(reference),
+       std::make_unique<Place>(*seen, id), last_.result.edges},
+      reference_);
+  shutter_tracking_.AddReference(frame, *seen, id);
+  cur_from_ref_ = Rigid3d();
+  covariance_.setZero();
+  return true;
+}
+
+// First from the last pose. A constant velocity is only a second try: as the
+// first it can lock onto its own false motion.
+const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
+                                    const Prediction* prediction,
+                                    TrackedFrame* result) {
   const Rigid3d last = cur_from_ref_;
   const Rigid3d predicted = cur_from_prev_ * last;
   const Rigid3d first = options_.predict_velocity ? predicted : last;
@@ -144,32 +256,17 @@ bool Odometry::Follow(const PreparedFrame& measured,
                ? &attempts_.kept()
                : nullptr;
   };
-  const PreparedFrame* frame = &measured;
   if (!has_shutter_) {
-    // Among frames with shutters it tells nothing of velocities, and what they
-    // have told is of a time before it.
-    shutter_tracking_.Reset();
-    if (track(measured, nullptr, nullptr) == nullptr) frame = nullptr;
-  } else {
-    std::optional<Twist> twist;
-    if (prediction != nullptr && interval_ > 0.0) {
-      twist = TwistOf(prediction->cur_from_prev, interval_);
-    }
-    frame = shutter_tracking_.Follow(measured, is_lost_ ? 0.0 : interval_, last,
-                                     twist, reference_, track);
+    return track(measured, nullptr, nullptr) != nullptr ? &measured : nullptr;
   }
-  // A doubtful pose is no way back from being lost.
-  if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
-    return false;
+  std::optional<Twist> twist;
+  if (prediction != nullptr && interval_ > 0.0) {
+    twist = TwistOf(prediction->cur_from_prev, interval_);
   }
-  twist_ = frame->twist;
-  if (attempts_.kept().twist.has_value()) {
-    twist_covariance_ = attempts_.kept().twist_covariance;
-  }
-  TakeMotion(result);
-  cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
-  Accept(*frame, result);
-  return true;
+  std::optional<Rigid3d> prev_from_ref;
+  if (!is_lost_) prev_from_ref = last;
+  return shutter_tracking_.Follow(measured, interval_, prev_from_ref, twist,
+                                  reference_, track);
 }
 
 bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
@@ -180,13 +277,19 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   }
   if (!place.has_value()) return false;
   Keyframe* keyframe = keyframes_.Find(place->place_id);
-  if (!attempts_.Try(frame, *keyframe, place->cur_from_place, result) ||
+  TrackingGuess guess = place->cur_from_place;
+  VelocityPrior velocity;
+  if (has_shutter_) {
+    velocity = shutter_tracking_.LostPrior(frame, interval_);
+    guess.velocity = &velocity;
+  }
+  if (!attempts_.Try(frame, *keyframe, guess, result) ||
       result->status != TrackingStatus::kOk) {
     return false;
   }
+  twist_ = attempts_.kept().twist;
   reference_ = keyframe;
   segment_ = keyframe->segment;
-  shutter_tracking_.Reset();
   TakeMotion(result);
   cur_from_prev_ = Rigid3d();
   result->relocalised = true;
@@ -199,7 +302,8 @@ void Odometry::Lose(const PreparedFrame& frame, const Prediction* prediction,
   // One frame that nobody tells of, and the way since is no longer known.
   is_predicted_ = prediction != nullptr && (is_predicted_ || !is_lost_);
   is_lost_ = true;
-  shutter_tracking_.Reset();
+  wants_reference_ = false;
+  shutter_tracking_.Lose();
   result->status = TrackingStatus::kLost;
   result->is_predicted = is_predicted_;
   if (prediction != nullptr) {
@@ -239,7 +343,9 @@ void Odometry::TakeMotion(TrackedFrame* result) {
   covariance_ = estimate.covariance;
   if (!attempts_.kept().twist.has_value()) covariance_ += twist_covariance_;
   result->cur_from_reference = cur_from_ref_;
-  if (!estimate.ok()) return;
+  if (!estimate.ok() && estimate.status != EstimateStatus::kNotConverged) {
+    return;
+  }
   result->edges.insert(result->edges.begin(), {reference_->id, result->index,
                                                cur_from_ref_, covariance_});
 }
@@ -248,6 +354,7 @@ void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
   tracked_at_ = frame.timestamp;
   tracker_->Believe(reference_->reference.get(), attempts_.mutable_kept());
+  wants_reference_ = false;
   if (NeedsNewReference()) ChangeReference(frame, result);
 }
 
@@ -264,11 +371,14 @@ void Odometry::ChangeReference(const PreparedFrame& frame,
   Keyframe* const earlier =
       keyframes_.FindNearest(world_from_cam, segment_, kMinReturnShare,
                              kMaxReturnFlow * options_.max_flow_px, reference_);
-  if (earlier == nullptr ||
-      !ReturnTo(frame, earlier,
-                world_from_cam.Inverse() * earlier->world_from_cam, result)) {
-    TakeReference(frame, world_from_cam, result);
+  if (earlier != nullptr &&
+      ReturnTo(frame, earlier,
+               world_from_cam.Inverse() * earlier->world_from_cam, result)) {
+    return;
   }
+  // The next frame tells how the camera moved in this one.
+  wants_reference_ = has_shutter_ && twist_.has_value();
+  if (!wants_reference_) TakeReference(frame, world_from_cam, result);
 }
 
 bool Odometry::ReturnTo(const PreparedFrame& frame, Keyframe* earlier,

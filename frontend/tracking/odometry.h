@@ -103,6 +103,19 @@ class Odometry {
   void Start(const PreparedFrame& frame, TrackedFrame* result);
   bool Follow(const PreparedFrame& frame, const Prediction* prediction,
               TrackedFrame* result);
+  // Tracks a frame against reference_: as it was tracked, null if it was not.
+  const PreparedFrame* Look(const PreparedFrame& frame,
+                            const Prediction* prediction, TrackedFrame* result);
+  bool IsTrusted(const PreparedFrame* frame, const TrackedFrame& result) const;
+  // The same against the last frame, which becomes a reference for it; where
+  // that is no better, what Look found.
+  const PreparedFrame* LookFromLast(const PreparedFrame& frame,
+                                    const Prediction* prediction,
+                                    const PreparedFrame* found,
+                                    TrackedFrame* result);
+  // False, and nothing has changed, if there is none or it shows too little.
+  bool MakeLastReference();
+  void KeepLast(const PreparedFrame& frame, const TrackedFrame& result);
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
   void Lose(const PreparedFrame& frame, const Prediction* prediction,
             TrackedFrame* result);
@@ -138,6 +151,14 @@ class Odometry {
   Rigid3d cur_from_prev_;                           // between the last two
   double timestamp_ = 0.0;                          // of the last frame, s
   double interval_ = 0.0;                           // since the one before, s
+  // The last frame, where it was tracked and is no reference.
+  struct LastFrame {
+    Frame frame;  // its images are copies
+    TrackedFrame result;
+  };
+  LastFrame last_;
+  bool has_last_ = false;
+  bool wants_reference_ = false;  // the last frame is to become one
   int segment_ = 0;
   double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
   bool is_lost_ = false;

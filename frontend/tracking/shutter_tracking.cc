@@ -24,6 +24,22 @@ bool IsOfAHand(const Twist& twist) {
   return twist.angular.norm() < kMaxAngular && twist.linear.norm() < kMaxLinear;
 }
 
+// Between two intervals with such mean velocities, at constant acceleration.
+Twist VelocityBetween(const std::optional<Twist>& before, double before_s,
+                      const Twist& after, double after_s) {
+  if (!before.has_value()) return after;
+  const double share = before_s / (before_s + after_s);
+  return share * after + (1.0 - share) * *before;
+}
+
+// The camera that a frame is resampled for: where its pose is, which has come
+// with its velocity.
+Rigid3d TargetFromMiddle(const Frame& frame) {
+  return frame.twist.value_or(Twist())
+      .MotionDuring(frame.color_shutter.offset)
+      .Inverse();
+}
+
 std::unique_ptr<const PreparedFrame> WithTwist(
     const PreparedFrame& frame, const std::optional<Twist>& twist) {
   std::unique_ptr<PreparedFrame> copy = frame.Copy();
@@ -39,63 +55,77 @@ std::unique_ptr<const PreparedFrame> WithTwist(
 
 }  // namespace
 
-void ShutterTracking::Reset() {
-  velocity_.Reset();
+void ShutterTracking::Lose() {
   between_.reset();
+  found_ = Found();
   early_.reset();
 }
 
+void ShutterTracking::Forget() {
+  velocity_.Reset();
+  Lose();
+}
+
 const PreparedFrame* ShutterTracking::Follow(
-    const PreparedFrame& frame, double interval, const Rigid3d& prev_from_ref,
+    const PreparedFrame& frame, double interval,
+    const std::optional<Rigid3d>& prev_from_ref,
     const std::optional<Twist>& first_guess, Keyframe* reference,
     const Track& track) {
+  found_ = Found();
+  const auto forget = [&] {
+    Forget();
+    found_.frame = WithTwist(frame, std::nullopt);
+    return track(*found_.frame, nullptr, nullptr) != nullptr
+               ? found_.frame.get()
+               : nullptr;
+  };
   if (!(interval > 0.0 && interval <= VelocityModel::kMaxInterval)) {
-    Reset();
-    frame_ = WithTwist(frame, std::nullopt);
-    return track(*frame_, nullptr, nullptr) != nullptr ? frame_.get() : nullptr;
+    return forget();
   }
   const double middle = frame.color_shutter.offset;
-  frame_ = WithTwist(frame, first_guess ? first_guess : velocity_.last());
+  found_.frame = WithTwist(frame, first_guess ? first_guess : velocity_.last());
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
-  const Tracked* tracked = track(*frame_, &prior, nullptr);
+  const Tracked* tracked = track(*found_.frame, &prior, nullptr);
   if (tracked == nullptr) return nullptr;
-  Twist between;
   const auto look = [&] {
-    if (tracked->twist.has_value()) frame_ = WithTwist(frame, tracked->twist);
-    between = prior.Between(tracked->estimate.cur_from_prev,
-                            frame_->twist.value_or(Twist()));
+    if (tracked->twist.has_value()) {
+      found_.frame = WithTwist(frame, tracked->twist);
+    }
+    found_.between = prior.Between(tracked->estimate.cur_from_prev,
+                                   found_.frame->twist.value_or(Twist()));
   };
   look();
   const int rounds = between_.has_value() ? 1 : kMaxRounds;
-  for (int round = 0; round < rounds; ++round) {
-    if (!MendReference(between, interval, reference)) break;
+  for (int round = 0; round < rounds && found_.between.has_value(); ++round) {
+    if (!MendReference(*found_.between, interval, reference)) break;
     prior = velocity_.Prior(prev_from_ref, interval, middle);
     const Rigid3d found = tracked->estimate.cur_from_prev;
-    tracked = track(*frame_, &prior, &found);
+    tracked = track(*found_.frame, &prior, &found);
     if (tracked == nullptr) return nullptr;
     look();
   }
-  if (!IsOfAHand(between) || !IsOfAHand(frame_->twist.value_or(Twist()))) {
-    Reset();
-    frame_ = WithTwist(frame, std::nullopt);
-    return track(*frame_, nullptr, nullptr) != nullptr ? frame_.get() : nullptr;
+  if (!IsOfAHand(found_.between.value_or(Twist())) ||
+      !IsOfAHand(found_.frame->twist.value_or(Twist()))) {
+    return forget();
   }
+  found_.interval = interval;
+  return found_.frame.get();
+}
+
+void ShutterTracking::Accept() {
   early_.reset();
-  if (frame_->twist.has_value()) velocity_.Add(*frame_->twist, middle);
-  between_ = between;
-  interval_ = interval;
-  return frame_.get();
+  if (found_.frame != nullptr && found_.frame->twist.has_value()) {
+    velocity_.Add(*found_.frame->twist, found_.frame->color_shutter.offset);
+  }
+  between_ = found_.between;
+  interval_ = found_.interval;
 }
 
 bool ShutterTracking::MendReference(const Twist& since, double interval,
                                     Keyframe* reference) {
   if (!early_.has_value()) return false;
-  Twist twist = since;
-  if (early_->before.has_value()) {
-    // At constant acceleration.
-    const double share = early_->interval / (early_->interval + interval);
-    twist = share * since + (1.0 - share) * *early_->before;
-  }
+  const Twist twist =
+      VelocityBetween(early_->before, early_->interval, since, interval);
   Frame& frame = early_->frame;
   const FrameTiming timing = frame.Timing(twist);
   velocity_.Correct(twist);
@@ -121,11 +151,20 @@ const Frame* ShutterTracking::FindReferenceFrame(int id) const {
 }
 
 std::unique_ptr<const PreparedFrame> ShutterTracking::AtOneMoment(
-    const PreparedFrame& frame) {
+    const Frame& frame) {
   return tracker_->Prepare(rectifier_.Rectify(frame));
 }
 
-void ShutterTracking::AddReference(const PreparedFrame& frame,
+std::unique_ptr<const PreparedFrame> ShutterTracking::LastAtOneMoment(
+    const Frame& last) {
+  if (!found_.between.has_value()) return AtOneMoment(last);
+  Frame frame = last;
+  frame.twist =
+      VelocityBetween(between_, interval_, *found_.between, found_.interval);
+  return tracker_->Prepare(rectifier_.Rectify(frame, TargetFromMiddle(last)));
+}
+
+void ShutterTracking::AddReference(const Frame& frame,
                                    const Frame& at_one_moment, int id) {
   Frame& kept = reference_frames_[id] = at_one_moment;
   kept.gray = at_one_moment.gray.clone();
@@ -138,9 +177,8 @@ void ShutterTracking::AddReference(const PreparedFrame& frame,
   early_->frame.gray = frame.gray.clone();
   early_->frame.depth = frame.depth.clone();
   early_->frame.color.release();
-  early_->target_from_middle = frame.twist.value_or(Twist())
-                                   .MotionDuring(frame.color_shutter.offset)
-                                   .Inverse();
+  early_->target_from_middle = TargetFromMiddle(frame);
+  early_->frame.twist = at_one_moment.twist;
   early_->before = between_;
   early_->interval = interval_;
 }

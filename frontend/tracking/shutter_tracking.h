@@ -31,24 +31,47 @@ class ShutterTracking {
       : tracker_(tracker), rectifier_(tracker->images().camera) {}
 
   // Tracks a frame against a reference, `interval` s after the last frame.
-  // `prev_from_ref`: of that; `first_guess`: of the velocity, nothing: that of
-  // the last frame. The frame with the velocity found, good until the next
-  // call; null if it is lost.
+  // `prev_from_ref`: of that, nothing: it was not found; `first_guess`: of the
+  // velocity, nothing: that of the last frame. The frame with the velocity
+  // found, good until the next call; null if it is lost.
   const PreparedFrame* Follow(const PreparedFrame& frame, double interval,
-                              const Rigid3d& prev_from_ref,
+                              const std::optional<Rigid3d>& prev_from_ref,
                               const std::optional<Twist>& first_guess,
                               Keyframe* reference, const Track& track);
 
+  // The frame of the last Follow has that pose: the next one goes on from it.
+  void Accept();
+
+  // The last frame was not found.
+  void Lose();
+
   // Nothing is known of the velocity any more.
-  void Reset();
+  void Forget();
+
+  // What the last Follow has found, to be put back after another one.
+  struct Found {
+    std::unique_ptr<const PreparedFrame> frame;
+    std::optional<Twist> between;  // the mean velocity into it
+    double interval = 0.0;         // of that, s
+  };
+  Found TakeFound() { return std::move(found_); }
+  void PutBack(Found found) { found_ = std::move(found); }
+
+  // What is known of the velocity of a frame whose last ones were not found.
+  VelocityPrior LostPrior(const Frame& frame, double interval) const {
+    return velocity_.Prior(std::nullopt, interval, frame.color_shutter.offset);
+  }
 
   // A frame of Follow, or one whose velocity is not known, as it is to become a
   // reference: seen at one moment.
-  std::unique_ptr<const PreparedFrame> AtOneMoment(const PreparedFrame& frame);
+  std::unique_ptr<const PreparedFrame> AtOneMoment(const Frame& frame);
+
+  // The same of the frame before that of the last Follow, which has told its
+  // velocity, too, if it was found.
+  std::unique_ptr<const PreparedFrame> LastAtOneMoment(const Frame& last);
 
   // The frame, which AtOneMoment has moved, is the reference of that id now.
-  void AddReference(const PreparedFrame& frame, const Frame& at_one_moment,
-                    int id);
+  void AddReference(const Frame& frame, const Frame& at_one_moment, int id);
 
   // The images of a reference, as they have become; null: it is neither the
   // latest nor the one before.
@@ -73,8 +96,8 @@ class ShutterTracking {
   std::optional<Twist> between_;  // mean velocity into the last frame
   double interval_ = 0.0;         // of that, s
   std::optional<Early> early_;
-  std::unique_ptr<const PreparedFrame> frame_;  // see Follow
-  std::map<int, Frame> reference_frames_;       // by id; the latest two
+  Found found_;
+  std::map<int, Frame> reference_frames_;  // by id; the latest two
 };
 
 }  // namespace rgbd_pose

@@ -37,6 +37,11 @@ struct TrackedFrame {
   bool is_reference = false;   // became the reference of the frames that follow
   bool relocalised = false;    // found again among earlier references
 
+  // The frame before became a reference after all: this one was found against
+  // it, not against what it was tracked by itself. Its images: see
+  // Odometry::FindReferenceFrame.
+  bool previous_is_reference = false;
+
   // Lost, but the pose follows what others say of the motion since it was not
   // (the motion guess of Odometry::Track).
   bool is_predicted = false;

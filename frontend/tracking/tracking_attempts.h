@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <utility>
 
 #include "core/estimation/motion_estimate.h"
 #include "core/geometry/rigid3.h"
@@ -20,7 +21,8 @@ class TrackingAttempts {
   explicit TrackingAttempts(Tracker* tracker)
       : tracker_(tracker),
         tracked_(tracker->images().camera),
-        other_(tracked_) {}
+        other_(tracked_),
+        stashed_(tracked_) {}
 
   // Against a keyframe from one guess; true if the result is a pose.
   bool Try(const PreparedFrame& frame, const Keyframe& keyframe,
@@ -39,6 +41,10 @@ class TrackingAttempts {
                   const TrackingGuess& guess, TrackedFrame* result,
                   const Accept& accept = nullptr);
 
+  // Puts what counts aside for another attempt, and takes it up again.
+  void Stash() { std::swap(tracked_, stashed_); }
+  void TakeUpStashed() { std::swap(tracked_, stashed_); }
+
   // What the tracker said of the attempt that counts.
   const Tracked& kept() const { return tracked_; }
   Tracked* mutable_kept() { return &tracked_; }
@@ -46,7 +52,8 @@ class TrackingAttempts {
  private:
   Tracker* tracker_;
   Tracked tracked_;
-  Tracked other_;  // made aside
+  Tracked other_;    // made aside
+  Tracked stashed_;  // see Stash
 };
 
 }  // namespace rgbd_pose

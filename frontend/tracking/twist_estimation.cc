@@ -1,6 +1,7 @@
 #include "frontend/tracking/twist_estimation.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <cmath>
 
 namespace rgbd_pose {
@@ -42,10 +43,12 @@ double Weight(double square, double sigma) {
 }  // namespace
 
 TwistEstimate EstimateTwist(const Correspondences& matches,
-                            const std::vector<bool>& is_inlier,
+                            const std::vector<bool>& is_inlier, double sigma,
                             const Rigid3d& cur_from_ref,
                             const FrameTiming& timing, const Twist& prior_mean,
                             const VelocityPrior& prior) {
+  // What the noise model does not explain is no smaller here.
+  const double spread = std::max(1.0, sigma);
   const Camera& camera = matches.camera();
   Equations equations;
   for (size_t i = 0; i < matches.size(); ++i) {
@@ -65,7 +68,7 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
     const double u = camera.fx * x + camera.cx - cur.u;
     const double v = camera.fy * y + camera.cy - cur.v;
     const double weight =
-        Weight(u * u + v * v, std::hypot(ref.sigma_px, cur.sigma_px));
+        Weight(u * u + v * v, spread * std::hypot(ref.sigma_px, cur.sigma_px));
     // A point that is seen so long after the stamp has moved by the velocity
     // the other way, and so long.
     const double seen = timing.color.RowTime(row, camera.height);
@@ -83,8 +86,9 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
           cur.normal.transpose() / slope;
     }
     const double z = point.z() - cur.depth;
-    equations.Add(by_z, -seen * by_z - since * along_ray, z,
-                  Weight(z * z, std::hypot(ref.sigma_depth, cur.sigma_depth)));
+    equations.Add(
+        by_z, -seen * by_z - since * along_ray, z,
+        Weight(z * z, spread * std::hypot(ref.sigma_depth, cur.sigma_depth)));
   }
   equations.hessian = equations.hessian.selfadjointView<Eigen::Lower>();
   // Of the motion nothing is known before: numbers that keep it solvable.

@@ -19,13 +19,14 @@ struct TwistEstimate {
 };
 
 // Linear least squares over the inliers of `matches` (their observations of the
-// current frame as moved by timing.twist), for a change of the motion and one
+// current frame as moved by timing.twist; `sigma`: how wide their residuals
+// spread, see MotionEstimate), for a change of the motion and one
 // of the velocity at once: where rows are exposed one after another, velocity
 // shears and stretches the image, which no motion does. Only that change of
 // the velocity is used; the motion is to be estimated again from matches that
 // are moved by it.
 TwistEstimate EstimateTwist(const Correspondences& matches,
-                            const std::vector<bool>& is_inlier,
+                            const std::vector<bool>& is_inlier, double sigma,
                             const Rigid3d& cur_from_ref,
                             const FrameTiming& timing, const Twist& prior_mean,
                             const VelocityPrior& prior);

@@ -15,15 +15,20 @@ constexpr double kMinChangeLinear = 0.005;
 // the rest is the last frame's. With 1 errors are larger by a fifth.
 constexpr double kShareOfBetween = 0.8;
 
+// Of a camera whose last frames were not found: rad/s and m/s.
+constexpr double kLostSigmaAngular = 1.0;
+constexpr double kLostSigmaLinear = 0.5;
+
 // How fast the mean squares forget: some ten frames.
 constexpr double kShareOfNew = 0.1;
 
 }  // namespace
 
-Twist VelocityPrior::Between(const Rigid3d& cur_from_ref,
-                             const Twist& twist) const {
+std::optional<Twist> VelocityPrior::Between(const Rigid3d& cur_from_ref,
+                                            const Twist& twist) const {
+  if (!prev_from_ref.has_value()) return std::nullopt;
   const Rigid3d cur_from_prev = twist.MotionDuring(middle) * cur_from_ref *
-                                prev_from_ref.Inverse() *
+                                prev_from_ref->Inverse() *
                                 prev_middle_from_prev.Inverse();
   return TwistOf(cur_from_prev, interval);
 }
@@ -33,9 +38,10 @@ Twist VelocityPrior::Between(const Rigid3d& cur_from_ref,
 // acceleration would have it) it oscillates until frames are lost.
 Twist VelocityPrior::Mean(const Rigid3d& cur_from_ref,
                           const Twist& twist) const {
-  const Twist between = Between(cur_from_ref, twist);
-  if (!prev_twist.has_value()) return between;
-  return kShareOfBetween * between + (1.0 - kShareOfBetween) * *prev_twist;
+  const std::optional<Twist> between = Between(cur_from_ref, twist);
+  if (!between.has_value()) return prev_twist.value_or(Twist());
+  if (!prev_twist.has_value()) return *between;
+  return kShareOfBetween * *between + (1.0 - kShareOfBetween) * *prev_twist;
 }
 
 MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
@@ -53,7 +59,7 @@ MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
   return covariance;
 }
 
-VelocityPrior VelocityModel::Prior(const Rigid3d& prev_from_ref,
+VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
                                    double interval, double middle) const {
   VelocityPrior prior;
   prior.prev_from_ref = prev_from_ref;
@@ -65,6 +71,10 @@ VelocityPrior VelocityModel::Prior(const Rigid3d& prev_from_ref,
       0.5 * std::max(kMinChangeAngular, std::sqrt(change_angular_));
   prior.sigma_linear =
       0.5 * std::max(kMinChangeLinear, std::sqrt(change_linear_));
+  if (!prev_from_ref.has_value()) {
+    prior.sigma_angular = kLostSigmaAngular;
+    prior.sigma_linear = kLostSigmaLinear;
+  }
   return prior;
 }
 

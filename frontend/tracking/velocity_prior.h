@@ -14,7 +14,7 @@ namespace rgbd_pose {
 struct VelocityPrior {
   // The motion of the last frame before it, and its velocity; nothing: not
   // known.
-  Rigid3d prev_from_ref;
+  std::optional<Rigid3d> prev_from_ref;
   std::optional<Twist> prev_twist;
 
   double interval = 0.0;  // since then, s
@@ -30,7 +30,8 @@ struct VelocityPrior {
 
   // The mean velocity since the last frame, and what is to be expected at this
   // one. `twist`: that the motion was found with.
-  Twist Between(const Rigid3d& cur_from_ref, const Twist& twist) const;
+  std::optional<Twist> Between(const Rigid3d& cur_from_ref,
+                               const Twist& twist) const;
   Twist Mean(const Rigid3d& cur_from_ref, const Twist& twist) const;
 };
 
@@ -53,9 +54,10 @@ class VelocityModel {
   // That of the last frame; nothing if it is not known.
   const std::optional<Twist>& last() const { return last_; }
 
-  // Of the next frame, `interval` s later; `prev_from_ref`: of the last one.
-  VelocityPrior Prior(const Rigid3d& prev_from_ref, double interval,
-                      double middle) const;
+  // Of the next frame, `interval` s later; `prev_from_ref`: of the last one;
+  // nothing: that was not found.
+  VelocityPrior Prior(const std::optional<Rigid3d>& prev_from_ref,
+                      double interval, double middle) const;
 
   // That of the next frame, which was moved by it.
   void Add(const Twist& twist, double middle);
