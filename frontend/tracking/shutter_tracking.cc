@@ -61,6 +61,11 @@ void ShutterTracking::Lose() {
   early_.reset();
 }
 
+void ShutterTracking::Forget() {
+  velocity_.Reset();
+  Lose();
+}
+
 const PreparedFrame* ShutterTracking::Follow(
     const PreparedFrame& frame, double interval,
     const std::optional<Rigid3d>& prev_from_ref,

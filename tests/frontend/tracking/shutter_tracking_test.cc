@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 #include <string>
 #include <typeinfo>
 #include <utility>
@@ -118,19 +119,22 @@ INSTANTIATE_TEST_SUITE_P(All, ShutterTrackersTest,
                            return std::string(info.param.tracker);
                          });
 
-// Turning (up to 38 degrees/s, almost in place) and going along the axes.
+// Turning (up to 38 degrees/s, almost in place) and going along the axes. In
+// one of the two directions, going along them hides most of what rows do.
 TEST(ShutterTrackingTest, OfPureMotions) {
+  constexpr int kCount = 24;
   for (const std::string path : {"pan_tilt", "xyz"}) {
     const double global =
-        PositionError(ShutterSequence(path, {}, 30), "features");
+        PositionError(ShutterSequence(path, {}, kCount), "features");
+    double undone = 0.0, ignored = 0.0;
     for (const double sign : {1.0, -1.0}) {
-      const ShutterSequence rolling(path, RollingShutters(sign), 30);
-      const double undone = PositionError(rolling, "features");
-      EXPECT_LT(undone, 4.0 * global) << path << sign;
-      EXPECT_GT(PositionError(rolling, "features", ShutterUse::kNone),
-                1.3 * undone)
-          << path << sign;
+      const ShutterSequence rolling(path, RollingShutters(sign), kCount);
+      undone = std::max(undone, PositionError(rolling, "features"));
+      ignored = std::max(ignored,
+                         PositionError(rolling, "features", ShutterUse::kNone));
     }
+    EXPECT_LT(undone, 4.0 * global) << path;
+    EXPECT_GT(ignored, 3.0 * undone) << path;
   }
 }
 
@@ -201,8 +205,9 @@ TEST(ShutterTrackingTest, RollingShuttersGiveTheSameBytesTwice) {
   EXPECT_EQ(texts[0], texts[1]);
 }
 
-// After both, the first frame is told nothing, the second by the first.
-TEST(ShutterTrackingTest, GapsAndLossesForgetTheVelocity) {
+// After a gap, the first frame is told nothing, the second by the first. After
+// a loss its rows and the last velocity tell the first one.
+TEST(ShutterTrackingTest, AGapForgetsTheVelocityALossDoesNot) {
   const ShutterSequence sequence("xyz", RollingShutters(1.0), 12);
   for (const bool is_loss : {false, true}) {
     Odometry odometry = OdometryFor(sequence, "features", ShutterUse::kCamera);
@@ -216,7 +221,8 @@ TEST(ShutterTrackingTest, GapsAndLossesForgetTheVelocity) {
       const TrackedFrame tracked = odometry.Track(frame);
       const bool is_lost = is_loss && i == 6;
       EXPECT_EQ(tracked.status == TrackingStatus::kLost, is_lost) << i;
-      EXPECT_EQ(odometry.last_twist().has_value(), i != 0 && i != 7 && !is_lost)
+      EXPECT_EQ(odometry.last_twist().has_value(),
+                i != 0 && !is_lost && (is_loss || i != 7))
           << i;
     }
   }

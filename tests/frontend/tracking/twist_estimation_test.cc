@@ -120,8 +120,8 @@ Twist FoundTwist(const RollingMatches& matches, const VelocityPrior& prior,
   Twist twist = prior_mean;
   for (int round = 0; round < 4; ++round) {
     const Correspondences moved = matches.MovedBy(twist);
-    twist = EstimateTwist(moved, std::vector<bool>(moved.size(), true), kMotion,
-                          TimingOf(twist), prior_mean, prior)
+    twist = EstimateTwist(moved, std::vector<bool>(moved.size(), true), 1.0,
+                          kMotion, TimingOf(twist), prior_mean, prior)
                 .twist;
   }
   return twist;
@@ -154,8 +154,8 @@ TEST(TwistEstimationTest, DepthOfAnotherTimeTellsTheVelocity) {
     // One step: what is linear in the velocity is right.
     const Correspondences matches = exact.MovedBy(moved_by.twist);
     const Twist found =
-        EstimateTwist(matches, std::vector<bool>(matches.size(), true), kMotion,
-                      moved_by, Twist(), PriorWith(100.0, 100.0))
+        EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
+                      kMotion, moved_by, Twist(), PriorWith(100.0, 100.0))
             .twist;
     EXPECT_LT(TwistError(found, kTwist), 0.1) << delay;
   }
@@ -181,7 +181,7 @@ TEST(TwistEstimationTest, OutliersAndMatchesWithoutDepthCountNothing) {
   }
   const auto estimate = [&](const Correspondences& of,
                             const std::vector<bool>& use) {
-    return EstimateTwist(of, use, kMotion, TimingOf(Twist()), Twist(),
+    return EstimateTwist(of, use, 1.0, kMotion, TimingOf(Twist()), Twist(),
                          PriorWith(1.0, 1.0));
   };
   const TwistEstimate expected =
@@ -199,8 +199,8 @@ TEST(TwistEstimationTest, WithoutRowsTheMeanComesBack) {
   const RollingMatches seen(global, kMotion, 1.0, 3);
   const Correspondences matches = seen.MovedBy(global.twist);
   const TwistEstimate estimate =
-      EstimateTwist(matches, std::vector<bool>(matches.size(), true), kMotion,
-                    global, kTwist, PriorWith(0.1, 0.2));
+      EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
+                    kMotion, global, kTwist, PriorWith(0.1, 0.2));
   EXPECT_LT(TwistError(estimate.twist, kTwist), 1e-12);  // rounding
   EXPECT_LT(estimate.motion_covariance.norm(), 1e-20);
 }
@@ -221,8 +221,9 @@ TEST(TwistEstimationTest, TheLessIsKnownTheWiderTheMotion) {
   double last = 0.0;
   for (const double sigma : {0.01, 0.03, 0.1, 0.3, 1.0}) {
     const MotionMatrix covariance =
-        EstimateTwist(matches, std::vector<bool>(matches.size(), true), kMotion,
-                      TimingOf(kTwist), kTwist, PriorWith(sigma, sigma))
+        EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
+                      kMotion, TimingOf(kTwist), kTwist,
+                      PriorWith(sigma, sigma))
             .motion_covariance;
     EXPECT_GT(covariance.trace(), last) << sigma;
     EXPECT_LT((covariance - covariance.transpose()).norm(),
@@ -252,9 +253,10 @@ TEST(TwistEstimationTest, TheCovarianceIsHonest) {
         estimator.Estimate(matches.MovedBy(twist), kMotion);
     MotionMatrix more;
     for (int round = 0; round < 3; ++round) {
-      const TwistEstimate found = EstimateTwist(
-          matches.MovedBy(twist), estimate.is_inlier, estimate.cur_from_prev,
-          TimingOf(twist), kTwist, PriorWith(kAngular, kLinear));
+      const TwistEstimate found =
+          EstimateTwist(matches.MovedBy(twist), estimate.is_inlier,
+                        estimate.sigma, estimate.cur_from_prev, TimingOf(twist),
+                        kTwist, PriorWith(kAngular, kLinear));
       twist = found.twist;
       more = found.motion_covariance;
       estimate = estimator.Estimate(matches.MovedBy(twist), kMotion);

@@ -24,8 +24,8 @@ void ExpectNear(const Twist& a, const Twist& b,
 TEST(VelocityPriorTest, BetweenIsTheVelocityFromFrameToFrame) {
   const VelocityPrior prior =
       VelocityModel().Prior(kPrevFromRef, kInterval, 0.0);
-  ExpectNear(prior.Between(kPriorTwist.MotionDuring(kInterval) * kPrevFromRef,
-                           Twist()),
+  ExpectNear(*prior.Between(kPriorTwist.MotionDuring(kInterval) * kPrevFromRef,
+                            Twist()),
              kPriorTwist);
 }
 
@@ -42,7 +42,7 @@ TEST(VelocityPriorTest, MotionsAreToldByTheMiddleRow) {
   const Rigid3d cur_from_ref =
       wrong.MotionDuring(kMiddle).Inverse() * middle_from_ref;
   const VelocityPrior prior = model.Prior(kPrevFromRef, kInterval, kMiddle);
-  ExpectNear(prior.Between(cur_from_ref, wrong), kPriorTwist);
+  ExpectNear(*prior.Between(cur_from_ref, wrong), kPriorTwist);
 }
 
 TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
