@@ -170,7 +170,9 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
         estimate.cur_from_prev, seen.Timing(),
         guess.velocity->Mean(estimate.cur_from_prev, moved_by.twist),
         *guess.velocity);
-    tracked->twist_covariance = found.motion_covariance;
+    tracked->twist_covariance =
+        found.motion_covariance +
+        MotionCovarianceOfAcceleration(seen.Timing(), *guess.velocity);
     const Twist change = found.twist - moved_by.twist;
     if (LargestFlow(camera, seen.Timing(), change) < kSmallFlowPx) break;
     seen.twist = found.twist;

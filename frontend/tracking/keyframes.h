@@ -18,6 +18,8 @@ struct Keyframe {
   std::unique_ptr<Reference> reference;  // for the tracker that made it
   std::unique_ptr<Place> place;          // for the relocaliser
   std::vector<Edge> edges;  // to keyframes that it was tracked against itself
+  // What the uncertainty of its velocity adds to that of motions from it.
+  MotionMatrix velocity_covariance = MotionMatrix::Zero();
 };
 
 // The latest keyframes, for when the view returns to one of them. Bounded: the

@@ -107,6 +107,7 @@ void Odometry::KeepLast(const PreparedFrame& frame,
   last_.frame.color.release();
   last_.frame.twist = twist_;
   last_.result = result;
+  last_.twist_covariance = twist_covariance_;
 }
 
 Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
@@ -213,6 +214,7 @@ bool Odometry::MakeLastReference() {
        std::make_unique<Place>(*seen, id), last_.result.edges},
       reference_);
   shutter_tracking_.AddReference(frame, *seen, id);
+  reference_->velocity_covariance = last_.twist_covariance;
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   return true;
@@ -343,6 +345,7 @@ void Odometry::TakeMotion(TrackedFrame* result) {
   cur_from_ref_ = estimate.cur_from_prev;
   covariance_ = estimate.covariance;
   if (!attempts_.kept().twist.has_value()) covariance_ += twist_covariance_;
+  covariance_ += reference_->velocity_covariance;
   result->cur_from_reference = cur_from_ref_;
   if (!estimate.ok() && estimate.status != EstimateStatus::kNotConverged) {
     return;

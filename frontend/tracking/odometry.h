@@ -153,7 +153,8 @@ class Odometry {
   double interval_ = 0.0;                           // since the one before, s
   // The last frame, where it was tracked and is no reference.
   struct LastFrame {
-    Frame frame;  // its images are copies
+    Frame frame;                    // its images are copies
+    MotionMatrix twist_covariance;  // see Tracked
     TrackedFrame result;
   };
   LastFrame last_;

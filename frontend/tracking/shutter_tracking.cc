@@ -61,11 +61,6 @@ void ShutterTracking::Lose() {
   early_.reset();
 }
 
-void ShutterTracking::Forget() {
-  velocity_.Reset();
-  Lose();
-}
-
 const PreparedFrame* ShutterTracking::Follow(
     const PreparedFrame& frame, double interval,
     const std::optional<Rigid3d>& prev_from_ref,
@@ -103,6 +98,9 @@ const PreparedFrame* ShutterTracking::Follow(
     tracked = track(*found_.frame, &prior, &found);
     if (tracked == nullptr) return nullptr;
     look();
+    if (early_->is_free) {
+      reference->velocity_covariance = tracked->twist_covariance;
+    }
   }
   if (!IsOfAHand(found_.between.value_or(Twist())) ||
       !IsOfAHand(found_.frame->twist.value_or(Twist()))) {
@@ -134,6 +132,10 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
     return false;
   }
   frame.twist = twist;
+  if (early_->is_free) {
+    early_->target_from_middle = TargetFromMiddle(frame);
+    velocity_.SetMiddle(early_->target_from_middle.Inverse());
+  }
   const Frame moved = rectifier_.Rectify(frame, early_->target_from_middle);
   const auto prepared = tracker_->Prepare(moved);
   std::string why_not;
@@ -178,6 +180,7 @@ void ShutterTracking::AddReference(const Frame& frame,
   early_->frame.depth = frame.depth.clone();
   early_->frame.color.release();
   early_->target_from_middle = TargetFromMiddle(frame);
+  early_->is_free = !frame.twist.has_value();
   early_->frame.twist = at_one_moment.twist;
   early_->before = between_;
   early_->interval = interval_;

@@ -88,8 +88,10 @@ class ShutterTracking {
  private:
   // A reference whose velocity the next frame will tell.
   struct Early {
-    Frame frame;                  // as exposed
-    Rigid3d target_from_middle;   // the camera that it is resampled for
+    Frame frame;                 // as exposed
+    Rigid3d target_from_middle;  // the camera that it is resampled for
+    bool is_free =
+        false;  // its pose came without a velocity: it is the stamp's
     std::optional<Twist> before;  // the mean velocity into it
     double interval = 0.0;        // of that, s
   };

@@ -19,6 +19,9 @@ constexpr double kShareOfBetween = 0.8;
 constexpr double kLostSigmaAngular = 1.0;
 constexpr double kLostSigmaLinear = 0.5;
 
+// Of the change of velocity from frame to frame, once the motion is known.
+constexpr double kSigmaOfChange = 0.5;
+
 // How fast the mean squares forget: some ten frames.
 constexpr double kShareOfNew = 0.1;
 
@@ -59,6 +62,25 @@ MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
   return covariance;
 }
 
+MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
+                                            const VelocityPrior& prior) {
+  // Depth has little say in a motion but along the optical axis.
+  constexpr double kShareOfDepth = 0.2;
+  const Shutter& color = timing.color;
+  const double late = timing.depth.offset - color.offset;
+  // Half of the mean squared time from the stamp, s^2.
+  const double half_square = 0.5 * (color.offset * color.offset +
+                                    color.readout * color.readout / 12.0 +
+                                    kShareOfDepth * late * late);
+  const double per_second = 1.0 / (kSigmaOfChange * prior.interval);
+  const double turn = half_square * per_second * prior.sigma_angular;
+  const double shift = half_square * per_second * prior.sigma_linear;
+  MotionMatrix covariance = MotionMatrix::Zero();
+  covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
+      shift * shift, shift * shift;
+  return covariance;
+}
+
 VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
                                    double interval, double middle) const {
   VelocityPrior prior;
@@ -68,9 +90,9 @@ VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
   prior.middle = middle;
   prior.prev_middle_from_prev = middle_from_last_;
   prior.sigma_angular =
-      0.5 * std::max(kMinChangeAngular, std::sqrt(change_angular_));
+      kSigmaOfChange * std::max(kMinChangeAngular, std::sqrt(change_angular_));
   prior.sigma_linear =
-      0.5 * std::max(kMinChangeLinear, std::sqrt(change_linear_));
+      kSigmaOfChange * std::max(kMinChangeLinear, std::sqrt(change_linear_));
   if (!prev_from_ref.has_value()) {
     prior.sigma_angular = kLostSigmaAngular;
     prior.sigma_linear = kLostSigmaLinear;

@@ -42,6 +42,11 @@ struct VelocityPrior {
 MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
                                      double sigma_angular, double sigma_linear);
 
+// What accelerations within a frame add to it: the velocity changes from row to
+// row by as much as the prior says from frame to frame.
+MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
+                                            const VelocityPrior& prior);
+
 // The camera's velocity from frame to frame.
 class VelocityModel {
  public:
@@ -64,6 +69,10 @@ class VelocityModel {
 
   // The last frame's is known better.
   void Correct(const Twist& twist) { last_ = twist; }
+  // The last frame was moved by another one.
+  void SetMiddle(const Rigid3d& middle_from_last) {
+    middle_from_last_ = middle_from_last;
+  }
 
  private:
   std::optional<Twist> last_;
