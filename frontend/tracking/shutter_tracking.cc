@@ -10,8 +10,10 @@
 namespace rgbd_pose {
 namespace {
 
-// A reference is made anew if that moves something by this.
+// A reference is made anew if that moves something by this; one that was made
+// when the next frame had been tracked already, by more.
 constexpr double kSmallFlowPx = 0.2;
+constexpr double kSmallFlowPxOfLate = 1.0;
 
 // Of the first two frames, of which each tells the velocity of the other.
 constexpr int kMaxRounds = 3;
@@ -128,7 +130,8 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
   const FrameTiming timing = frame.Timing(twist);
   velocity_.Correct(twist);
   if (LargestFlow(tracker_->images().camera, timing,
-                  twist - frame.twist.value_or(Twist())) < kSmallFlowPx) {
+                  twist - frame.twist.value_or(Twist())) <
+      (early_->is_late ? kSmallFlowPxOfLate : kSmallFlowPx)) {
     return false;
   }
   frame.twist = twist;
@@ -181,6 +184,7 @@ void ShutterTracking::AddReference(const Frame& frame,
   early_->frame.color.release();
   early_->target_from_middle = TargetFromMiddle(frame);
   early_->is_free = !frame.twist.has_value();
+  early_->is_late = found_.between.has_value();
   early_->frame.twist = at_one_moment.twist;
   early_->before = between_;
   early_->interval = interval_;

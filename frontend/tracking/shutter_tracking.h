@@ -92,6 +92,7 @@ class ShutterTracking {
     Rigid3d target_from_middle;  // the camera that it is resampled for
     bool is_free =
         false;  // its pose came without a velocity: it is the stamp's
+    bool is_late = false;  // the next frame has told its velocity already
     std::optional<Twist> before;  // the mean velocity into it
     double interval = 0.0;        // of that, s
   };
