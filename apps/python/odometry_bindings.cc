@@ -96,6 +96,9 @@ void BindTrackedFrame(py::module_* module) {
                     "index of the frame it was tracked against; -1: none")
       .def_readonly("is_reference", &TrackedFrame::is_reference,
                     "whether it became the reference of those that follow")
+      .def_readonly("previous_is_reference",
+                    &TrackedFrame::previous_is_reference,
+                    "whether the frame before became one for this one")
       .def_readonly("relocalised", &TrackedFrame::relocalised,
                     "whether it was found again among earlier references")
       .def_readonly("is_predicted", &TrackedFrame::is_predicted,
