@@ -16,9 +16,9 @@ struct ErrorStatistics {
 // What so large a share of a list of errors stays below; all 0 if it is empty.
 struct ErrorQuantiles {
   int count = 0;
-  double median = 0.0;
-  double p90 = 0.0;  // 90 %
-  double p99 = 0.0;  // 99 %
+  double median = 0.0;  // as in ErrorStatistics
+  double p90 = 0.0;     // 90 %
+  double p99 = 0.0;     // 99 %
 };
 
 // In the unit of the errors.

@@ -27,6 +27,7 @@ using FixingMatrix = Eigen::Matrix<double, 7, 7>;
 // The units, in s, rad and m.
 FixingVector FixingUnits();
 
+// What the parameters say, in s, rad and m.
 TruthFixing FixingAt(const FixingVector& x);
 
 // Names directions of the parameters, the columns of a matrix of orthonormal

@@ -28,7 +28,8 @@ struct CameraSetup {
   DepthErrors depth_errors;  // of the depth images, once registered
 
   // See RgbdCamera.
-  Shutter color_shutter, depth_shutter;
+  Shutter color_shutter;
+  Shutter depth_shutter;  // likewise
 
   // Nothing: the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;

@@ -169,7 +169,10 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   Keyframe* const reference = reference_;
   const Rigid3d cur_from_ref = cur_from_ref_;
   const MotionMatrix covariance = covariance_;
-  if (!MakeLastReference()) return found;
+  {
+    const StageTimer timer(&result->reference_ms);
+    if (!MakeLastReference()) return found;
+  }
   result->previous_is_reference = true;
   TrackedFrame from_last = *result;
   attempts_.Stash();

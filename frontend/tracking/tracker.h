@@ -58,9 +58,11 @@ class Reference {
 
 // Where a frame is looked for.
 struct TrackingGuess {
-  TrackingGuess(const Rigid3d& cur_from_ref)  // NOLINT(*-explicit-*): most say
-      : cur_from_ref(cur_from_ref) {}         // no more
+  // A motion of which no more is known, which is what most say.
+  TrackingGuess(const Rigid3d& motion)  // NOLINT(*-explicit-*)
+      : cur_from_ref(motion) {}
 
+  // Where the search begins, and what priors are about.
   Rigid3d cur_from_ref;
 
   // Becomes the prior of costs that have one; null: not known.
