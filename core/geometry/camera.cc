@@ -57,9 +57,9 @@ struct Preset {
 constexpr double kTumDepthScale = 5000.0;
 
 // Both sensors of a Kinect and of an Xtion are read row by row, in some 28 ms
-// (Kerl et al., ICCV 2015; docs/time.md says how well recordings agree). How
-// late depth is depends on the recording's driver: measured for freiburg1 and
-// freiburg3, not known for freiburg2.
+// (Kerl et al., ICCV 2015). How early depth is depends on the recording's
+// driver: 15 to 20 ms on freiburg1, 0 to 5 on freiburg3, not known of
+// freiburg2.
 constexpr Shutter kTumColor = {-0.0075, 0.028};
 constexpr double kTumDepthReadout = 0.027;
 const std::array<Preset, 4> kPresets = {{

@@ -11,9 +11,6 @@ namespace {
 
 constexpr int kFlowBlock = kEight;  // px; the flow is the same all over a block
 
-// Of a thing in a room, 1/m.
-constexpr double kUsualInverseDepth = 0.5;
-
 // Within a block, and from one try to the next, this much (px) is the same
 // place.
 constexpr float kSamePlacePx = 0.5F;
@@ -61,7 +58,7 @@ const cv::Mat& DepthMover::Move(const Frame& frame,
           measured_.rows - 1);
       const Flow flow = FlowAt(static_cast<size_t>(row) * columns_ + column,
                                measured_from_moved_[measured_row]);
-      down = flow.turn_v + kUsualInverseDepth * flow.shift_v;
+      down = flow.turn_v + kRoomInverseDepth * flow.shift_v;
       const Range range = RangeAround(column, row, flow);
       if (range.min > range.max) {
         moved_(block).setTo(0);
@@ -125,9 +122,9 @@ DepthMover::Flow DepthMover::FlowAt(size_t block,
   const Eigen::Vector2d turn = camera_.Project(turned) - pixel;
   const Eigen::Vector2d both =
       camera_.Project(turned +
-                      kUsualInverseDepth * measured_from_moved.translation) -
+                      kRoomInverseDepth * measured_from_moved.translation) -
       pixel;
-  const Eigen::Vector2d shift = (both - turn) / kUsualInverseDepth;
+  const Eigen::Vector2d shift = (both - turn) / kRoomInverseDepth;
   return {
       static_cast<float>(turn.x()),
       static_cast<float>(turn.y()),

@@ -11,6 +11,9 @@
 
 namespace rgbd_pose {
 
+// Of a thing in a room (1/m): where a pixel's own depth is not at hand.
+inline constexpr double kRoomInverseDepth = 0.5;
+
 // Makes depth images as a camera sees them after a small motion (some
 // centimetres and degrees): what has to be done to depth that was measured at
 // another time than colour. One object serves one thread; its memory is used

@@ -11,9 +11,6 @@ namespace {
 constexpr int kStep = 8;
 constexpr double kFirstColumn = (kStep - 1) / 2.0;
 
-// 1/m, of a thing in a room.
-constexpr double kRoomInverseDepth = 0.5;
-
 }  // namespace
 
 FrameRectifier::FrameRectifier(const Camera& camera)

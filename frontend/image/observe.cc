@@ -3,13 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frontend/image/depth_mover.h"
 #include "frontend/image/surface_normal.h"
 
 namespace rgbd_pose {
 namespace {
 
 // Where depth is not known, what is seen is taken to be so far away (m).
-constexpr double kUsualDepth = 2.0;
+constexpr double kUsualDepth = 1.0 / kRoomInverseDepth;
 
 // The row decides when a point was seen, and that decides the row: one step
 // more leaves a hundredth of what the first leaves.

@@ -163,6 +163,10 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
   seen.twist = frame.twist.value_or(Twist());
   // Where it was not known, nothing has been moved yet.
   FrameTiming moved_by = frame.Timing();
+  // Of a motion that is too doubtful for more.
+  tracked->twist_covariance =
+      MotionCovarianceOfTwist(seen.Timing(), guess.velocity->sigma_angular,
+                              guess.velocity->sigma_linear);
   for (int round = 0; round < kMaxRounds; ++round) {
     if (!estimate.ok()) break;
     const TwistEstimate found = EstimateTwist(
@@ -182,6 +186,7 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
     moved_by = seen.Timing();
     Estimate(Rigid3d(estimate.cur_from_prev), prior, tracked);
   }
+  tracked->num_found = static_cast<int>(tracked->matches.matches.size());
   tracked->twist = moved_by.twist;
   tracked->estimate.covariance += tracked->twist_covariance;
 }
