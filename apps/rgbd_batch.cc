@@ -32,7 +32,9 @@ DEFINE_string(sequences, "",
               "camera (preset or YAML file; without: camera.yaml in it)");
 DEFINE_string(costs, rgbd_pose::kDefaultCost,
               "costs, set apart by commas; a+b is one that adds up");
-DEFINE_string(losses, "tukey", "M-estimators, set apart by commas");
+DEFINE_string(
+    losses, "tukey",
+    "M-estimators, also with widths as huber(1.5), set apart by commas");
 DEFINE_string(frontends, "patch", "frontends, set apart by commas");
 DEFINE_int32(repeats, 1, "how often each combination is run");
 DEFINE_string(settings, "",
@@ -51,7 +53,7 @@ DEFINE_string(shard, "",
               "i/n: only every n-th sequence, beginning with number i (from "
               "0); empty: as the Slurm job array says, or all");
 DEFINE_string(program, "",
-              "program to run for each item: name of one beside this one "
+              "program to run for each item: name of one next to this one "
               "(rgbd_slam) or a path; empty: rgbd_odometry");
 
 namespace rgbd_pose {
@@ -97,7 +99,7 @@ std::string ProgramPath() {
   return path.string();
 }
 
-// All that changes the result of a run beside its place in the plan.
+// All that changes the result of a run but its place in the plan.
 std::string SettingsText(const std::string& program) {
   return "program " + HashProgram(program) + "\n" +
          (FLAGS_settings.empty() ? "" : ReadTextFile(FLAGS_settings));
@@ -200,7 +202,7 @@ void WarnOfOtherHashes(const std::vector<BatchRun>& plan,
   if (others == 0) return;
   std::fprintf(stderr,
                "rgbd_batch: %d run(s) were made with other settings or inputs "
-               "and count as missing; --resume makes them anew\n",
+               "and count as missing; --resume makes them again\n",
                others);
 }
 

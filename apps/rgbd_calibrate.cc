@@ -75,7 +75,7 @@ int Main() {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count();
-  output.Write(result, settings.sequence.camera, FormatFlagFile(Info()),
+  output.Write(calibration, settings.sequence.camera, FormatFlagFile(Info()),
                seconds);
   if (FLAGS_report) {
     output.WriteFile("report.html", CalibrationPage(result, calibration.path));
@@ -84,6 +84,12 @@ int Main() {
   std::printf("%s%.1f s; results in %s\n",
               FormatCalibrationSummary(result).c_str(), seconds,
               FLAGS_output.c_str());
+  if (!calibration.stopped.empty()) {
+    std::fprintf(stderr, "%s: stopped early (%s); %s has what came of it\n",
+                 Info().name.c_str(), calibration.stopped.c_str(),
+                 FLAGS_output.c_str());
+    return kExitStopped;
+  }
   return result.is_accepted ? kExitOk : kExitCameraKept;
 }
 

@@ -50,21 +50,29 @@ int Main() {
   cv::setNumThreads(1);  // the threads are ours
   Sequence sequence = OpenSequence(Settings(), /*keep_color=*/true);
   FrameSource& source = *sequence.source;
+  Warn(sequence.remarks);
   TumWriterOptions writer;
   writer.threads = NumThreads(FLAGS_threads);
   writer.ground_truth = [&sequence] {
-    const Trajectory* truth = sequence.TruthOfAll();
+    const Trajectory* truth = sequence.GroundTruth();
     return truth == nullptr ? Trajectory() : *truth;
   };
-  int frames = 0;
+  writer.max_damaged = sequence.max_damaged;
+  WrittenSequence written;
   {
     ProgressBar bar("converting", static_cast<int>(source.timestamps().size()));
-    writer.progress = [&](int done) { bar.Update(frames = done); };
-    WriteTumSequence(&source, FLAGS_output, writer);
+    writer.progress = [&](int done) { bar.Update(done); };
+    written = WriteTumSequence(&source, FLAGS_output, writer);
   }
-  for (const std::string& line : LeftOut(source)) LOG(WARNING) << line;
-  std::printf("%s: %d frames%s\n", FLAGS_output.c_str(), frames,
-              sequence.TruthOfAll() == nullptr ? "" : ", with ground truth");
+  Warn(DroppedFrames(source, written.damaged));
+  std::printf("%s: %d frames%s\n", FLAGS_output.c_str(), written.frames,
+              sequence.GroundTruth() == nullptr ? "" : ", with ground truth");
+  if (!written.stopped.empty()) {
+    std::fprintf(stderr, "%s: stopped after %d frames (%s); %s has them\n",
+                 Info().name.c_str(), written.frames, written.stopped.c_str(),
+                 FLAGS_output.c_str());
+    return kExitStopped;
+  }
   return kExitOk;
 }
 

@@ -6,18 +6,26 @@
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
+#include <filesystem>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "apps/pipeline/odometry_run.h"
 #include "apps/results/evaluation_report.h"
+#include "apps/results/frame_tables.h"
 #include "apps/shell/program.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "core/util/units.h"
 
 DEFINE_string(estimate, "", "the estimated trajectory, as TUM text");
+DEFINE_string(run, "",
+              "folder of a run of rgbd_odometry or rgbd_slam, in place of "
+              "--estimate: its motions are compared with their covariances, "
+              "too");
 DEFINE_string(groundtruth, "", "the true trajectory, as TUM text");
 DEFINE_double(max_time_difference,
               rgbd_pose::EvaluationOptions().max_time_difference,
@@ -31,6 +39,10 @@ DEFINE_double(rpe_delta_metres, rgbd_pose::EvaluationOptions().rpe_delta_metres,
 DEFINE_string(rpe_frames, "1,6",
               "numbers of frames over which the median, 90 % and 99 % of the "
               "relative pose error are given, set apart by commas");
+DEFINE_double(truth_sigma_metres, 0.0,
+              "by how much (1 sigma, m) a motion of the ground truth may be "
+              "off itself, when covariances are judged");
+DEFINE_double(truth_sigma_degrees, 0.0, "the same of its rotation, in degrees");
 DEFINE_bool(json, false, "print JSON instead of a table");
 DEFINE_string(aligned, "",
               "write the estimate, moved by the alignment into the world of "
@@ -44,10 +56,10 @@ ProgramInfo Info() {
           "judges an estimated trajectory against the ground truth.",
           "rgbd_evaluate --estimate=trajectory.txt "
           "--groundtruth=groundtruth.txt",
-          {{"Input", {"estimate", "groundtruth"}},
+          {{"Input", {"estimate", "run", "groundtruth"}},
            {"Definitions",
             {"max_time_difference", "rpe_delta_seconds", "rpe_delta_metres",
-             "rpe_frames"}},
+             "rpe_frames", "truth_sigma_metres", "truth_sigma_degrees"}},
            {"Output", {"json", "aligned"}}}};
 }
 
@@ -80,17 +92,35 @@ void WriteAligned(const Trajectory& estimate,
 }
 
 int Main() {
-  RequireFlag("estimate", FLAGS_estimate);
+  const std::filesystem::path run = FLAGS_run;
+  if (!FLAGS_run.empty() && !FLAGS_estimate.empty()) {
+    throw InputError("--run has its own trajectory: leave out --estimate");
+  }
+  if (!(FLAGS_truth_sigma_metres >= 0.0 && FLAGS_truth_sigma_degrees >= 0.0)) {
+    throw InputError("sigmas of the truth must not be negative");
+  }
+  if (FLAGS_run.empty()) RequireFlag("estimate", FLAGS_estimate);
   RequireFlag("groundtruth", FLAGS_groundtruth);
-  const Trajectory estimate = ReadTrajectory(FLAGS_estimate);
-  const EvaluationReport report =
-      Evaluate(estimate, ReadTrajectory(FLAGS_groundtruth),
+  std::vector<std::string> remarks;
+  const Trajectory estimate = ReadTrajectory(
+      FLAGS_run.empty() ? FLAGS_estimate : (run / "trajectory.txt").string(),
+      &remarks);
+  const Trajectory truth = ReadTrajectory(FLAGS_groundtruth, &remarks);
+  Warn(remarks);
+  EvaluationReport report =
+      Evaluate(estimate, truth,
                {FLAGS_max_time_difference, FLAGS_rpe_delta_seconds,
                 FLAGS_rpe_delta_metres, ParseFrames(FLAGS_rpe_frames)});
+  if (!FLAGS_run.empty()) {
+    report.consistency =
+        JudgeFrames(ReadFrames(run), truth,
+                    {FLAGS_truth_sigma_metres,
+                     FLAGS_truth_sigma_degrees * kRadiansPerDegree});
+  }
   if (!FLAGS_aligned.empty()) {
     WriteAligned(estimate, report.truth_from_estimate, FLAGS_aligned);
   }
-  const std::string warning = LikenessWarning(report.likeness, report.ate.rmse);
+  const std::string warning = Sim3Warning(report.sim3, report.ate.rmse);
   if (!warning.empty()) LOG(WARNING) << warning;
   const std::string text = FLAGS_json ? EvaluationToJson(report).dump(2) + "\n"
                                       : FormatEvaluation(report);

@@ -21,10 +21,10 @@ DEFINE_bool(overwrite, false, "replace a folder that an export has written");
 DEFINE_string(dataset, "",
               "where the recording of the run is, if not where it was");
 DEFINE_string(camera, "", "its camera, if the file is not where it was");
-DEFINE_double(min_distance, rgbd_pose::ViewStep().min_distance,
+DEFINE_double(min_distance, rgbd_pose::MotionFilter().min_distance,
               "of formats with images: a frame takes part if the camera has "
               "moved so far (m) since the last one that did,");
-DEFINE_double(min_angle, rgbd_pose::ViewStep().min_angle_deg,
+DEFINE_double(min_angle, rgbd_pose::MotionFilter().min_angle_deg,
               "or turned so far (degrees); 0: every frame");
 DEFINE_bool(undistort, false,
             "images of an ideal camera, without distortion, for tools that "

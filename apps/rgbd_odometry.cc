@@ -19,6 +19,7 @@
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "apps/shell/setting_flags.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
 
@@ -72,19 +73,27 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-int ValidateOnly(FrameSource* source, int threads) {
+int ValidateOnly(const Sequence& sequence, int threads) {
+  FrameSource* const source = sequence.source.get();
   const Clock::time_point start = Clock::now();
   std::vector<double> decode_ms;
+  std::vector<std::string> damaged;
   {
     ProgressBar bar("reading", static_cast<int>(source->timestamps().size()));
-    FrameStream stream(source, nullptr, threads);
+    FrameStream stream(source, nullptr, threads, sequence.max_damaged);
     while (const auto next = stream.Next()) {
       decode_ms.push_back(next->decode_ms);
       bar.Update(static_cast<int>(decode_ms.size()));
     }
+    if (!stream.stopped().empty()) throw InputError(stream.stopped());
+    damaged = stream.damaged();
   }
+  Warn(DroppedFrames(*source, damaged));
   const auto frames = static_cast<int>(decode_ms.size());
-  std::printf("frames      %d, all readable\n", frames);
+  std::printf("frames      %d, %s\n", frames,
+              damaged.empty()
+                  ? "all readable"
+                  : Format("%zu more are damaged", damaged.size()).c_str());
   std::printf(
       "decoding    %.1f frames/s with %d thread(s), %.2f ms per frame median\n",
       frames / SecondsSince(start), threads, Median(decode_ms));
@@ -106,26 +115,27 @@ int Main() {
   const bool keep_color = !settings.output.save_cloud.empty();
   Sequence sequence = OpenSequence(settings.sequence, keep_color);
   FrameSource& source = *sequence.source;
-  if (FLAGS_validate_only) return ValidateOnly(&source, threads);
+  Warn(sequence.remarks);
+  if (FLAGS_validate_only) return ValidateOnly(sequence, threads);
   const RunInputs inputs = sequence.inputs();
   OdometryRun run(settings.odometry, source.camera().camera, inputs);
   RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
-  RunFlaws flaws;
+  RunIssues flaws;
   flaws.stopped = TrackSource(&source, threads, &run, &output);
   const double seconds = SecondsSince(start);
 
-  const RunResults results = run.Finish(sequence.TruthOfAll());
-  WarnOf(results);
+  const RunResults results = run.Finish(sequence.GroundTruth());
+  LogWarnings(results);
   std::string text = output.Write(
       results, Summarise(results.frames, threads, seconds),
-      sequence.TruthOfAll(), settings.sequence.dataset, FormatFlagFile(Info()),
+      sequence.GroundTruth(), settings.sequence.dataset, FormatFlagFile(Info()),
       Info().name, {{"stopped", flaws.stopped}});
   if (FLAGS_report) {
-    text +=
-        WriteRunPage(output.aside(), settings.output.output, &flaws.no_report);
+    text += WriteRunPage(output.staging_dir(), settings.output.output,
+                         &flaws.no_report);
   }
   output.Publish();
   text += SaveMesh(settings.output, threads);

@@ -28,6 +28,14 @@ DEFINE_double(exposure, 0.0, "how long the shutter is open (s): blurs motion");
 DEFINE_double(exposure_drift, 0.0,
               "swing of the automatic exposure in 4 s, 0..1: gains from "
               "exp(-this) to exp(this)");
+DEFINE_double(
+    moving_patch, 0.0,
+    "share of the view, 0..0.45, under a printed sheet 1 m before the "
+    "camera that moves through the image at 5 to 8 px a frame");
+DEFINE_int32(walking_boxes, 0,
+             "how many boxes, 0..3, walk to and fro through the scene 'room'");
+DEFINE_double(black, 0.0,
+              "colour is black for so long (s), in the middle of the sequence");
 DEFINE_double(color_time_offset, 0.0,
               "how much later than its stamp says colour is exposed, in its "
               "middle row (s); negative: earlier");
@@ -71,6 +79,9 @@ int Simulate() {
   options.noise = FLAGS_noise;
   options.exposure_s = FLAGS_exposure;
   options.exposure_drift = FLAGS_exposure_drift;
+  options.moving_patch = FLAGS_moving_patch;
+  options.walking_boxes = FLAGS_walking_boxes;
+  options.black_s = FLAGS_black;
   options.color_shutter = {FLAGS_color_time_offset, FLAGS_color_readout};
   options.depth_shutter = {FLAGS_depth_time_offset, FLAGS_depth_readout};
   options.depth_delay_s = FLAGS_depth_delay;
@@ -105,10 +116,27 @@ int main(int argc, char** argv) {
       "renders a synthetic RGB-D sequence with exact poses to files",
       "rgbd_simulate --path=pan_tilt --frames=150 --output=pan_tilt",
       {{"Sequence",
-        {"scene", "path", "frames", "rate", "laps", "seed", "noise", "exposure",
-         "exposure_drift", "color_time_offset", "color_readout",
-         "depth_time_offset", "depth_readout", "depth_delay",
-         "registration_shift", "registration_turn", "camera", "depth_camera"}},
+        {"scene",
+         "path",
+         "frames",
+         "rate",
+         "laps",
+         "seed",
+         "noise",
+         "exposure",
+         "exposure_drift",
+         "moving_patch",
+         "walking_boxes",
+         "black",
+         "color_time_offset",
+         "color_readout",
+         "depth_time_offset",
+         "depth_readout",
+         "depth_delay",
+         "registration_shift",
+         "registration_turn",
+         "camera",
+         "depth_camera"}},
        {"Output", {"output"}}},
       {{"scene", rgbd_pose::SceneNames()},
        {"path", rgbd_pose::SyntheticPathNames()},

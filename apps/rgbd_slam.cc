@@ -196,6 +196,7 @@ int Main() {
   Sequence sequence =
       OpenSequence(settings.sequence, keep_color, calibration.camera());
   FrameSource& source = *sequence.source;
+  Warn(sequence.remarks);
   const RunInputs inputs = sequence.inputs();
   if (!settings.maps.save_map.empty()) RequireMapFolder(settings.maps.save_map);
   SlamRun run(settings.odometry, settings.slam, source.camera().camera, inputs);
@@ -204,19 +205,21 @@ int Main() {
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
-  RunFlaws flaws;
+  RunIssues flaws;
   flaws.stopped = TrackSource(&source, threads, &run, &output);
   const double seconds = SecondsSince(start);
 
-  const RunResults results = run.Finish(sequence.TruthOfAll());
+  const RunResults results = run.Finish(sequence.GroundTruth());
   const Slam& slam = run.slam();
-  WarnOf(results);
+  LogWarnings(results);
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
+  const std::string warning = SlamWarning(map_json);
+  if (!warning.empty()) LOG(WARNING) << warning;
   std::string text = calibration.Write(output);
   nlohmann::json more = {{"stopped", flaws.stopped}, {"slam", map_json}};
   if (!calibration.Json().is_null()) more["calibration"] = calibration.Json();
   text += output.Write(results, Summarise(results.frames, threads, seconds),
-                       sequence.TruthOfAll(), settings.sequence.dataset,
+                       sequence.GroundTruth(), settings.sequence.dataset,
                        FormatFlagFile(Info()), Info().name, more);
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
@@ -229,8 +232,8 @@ int Main() {
                    FormatKeyframesCsv(map, slam.Covariances()));
   output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
   if (FLAGS_report) {
-    text +=
-        WriteRunPage(output.aside(), settings.output.output, &flaws.no_report);
+    text += WriteRunPage(output.staging_dir(), settings.output.output,
+                         &flaws.no_report);
   }
   output.Publish();
   text += SaveMesh(settings.output, threads);

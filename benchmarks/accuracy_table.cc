@@ -1,6 +1,6 @@
 // What each cost and loss leaves of the same noise and the same wrong matches:
 // medians of rotation and translation errors over many seeds, as Markdown,
-// beside RANSAC with closed form and OpenCV's PnP on the same matches.
+// compared with RANSAC with closed form and OpenCV's PnP on the same matches.
 
 #include <gflags/gflags.h>
 
@@ -143,8 +143,8 @@ Bound FindBound() {
     cost->Associate(truth);
     const MotionVector zero = MotionVector::Zero();
     NormalEquations sum;
-    cost->Linearise(MotionOrigin(truth).DerivativesAt(zero.data()), nullptr,
-                    &sum);
+    cost->Linearise(LinearizationPoint(truth).DerivativesAt(zero.data()),
+                    nullptr, &sum);
     const MotionMatrix bound = sum.hessian.inverse();
     deg2 += bound.topLeftCorner<3, 3>().trace() * kDegrees * kDegrees;
     mm2 += bound.bottomRightCorner<3, 3>().trace() * 1e6;

@@ -16,12 +16,12 @@ namespace {
 class SightingBlock final : public ceres::SizedCostFunction<3, 6, 3> {
  public:
   SightingBlock(const Camera& camera, const Observation& seen,
-                const MotionOrigin* origin)
+                const LinearizationPoint* origin)
       : camera_(camera), seen_(seen), origin_(origin) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override {
-    const MotionDerivatives& pose = origin_->SharedDerivativesAt(parameters[0]);
+    const MotionDerivatives& pose = origin_->CachedDerivativesAt(parameters[0]);
     const Eigen::Vector3d d =
         Eigen::Map<const Eigen::Vector3d>(parameters[1]) - pose.C;
     const Eigen::Vector3d p = pose.R * d;
@@ -52,7 +52,7 @@ class SightingBlock final : public ceres::SizedCostFunction<3, 6, 3> {
  private:
   const Camera& camera_;
   const Observation& seen_;
-  const MotionOrigin* const origin_;
+  const LinearizationPoint* const origin_;
 };
 
 }  // namespace
@@ -64,7 +64,7 @@ BundleSolution AdjustBundle(const SimulatedGraph& graph,
   for (const auto& seen : graph.sightings) {
     for (const auto& sighting : seen) ++views[sighting.landmark];
   }
-  std::vector<MotionOrigin> origins;
+  std::vector<LinearizationPoint> origins;
   std::vector<MotionVector> x(start.size(), MotionVector::Zero());
   std::vector<Eigen::Vector3d> points(graph.landmarks);
   std::vector<bool> is_placed(graph.landmarks, false);

@@ -1,5 +1,5 @@
-// Direct costs on rendered images: rows linearised, beside the same by hand;
-// points looked up; one row in Ceres, by hand against automatic
+// Direct costs on rendered images: rows linearised, compared with the same by
+// hand; points looked up; one row in Ceres, by hand against automatic
 // differentiation.
 //
 // Names: direct/linearise/<cost or bare_loop>/<rows>, direct/look_up/<cost>/
@@ -58,7 +58,7 @@ PackedColumns ManyRows() {
 
 MotionDerivatives Motion() {
   const MotionVector zero = MotionVector::Zero();
-  return MotionOrigin(Pair().cur_from_prev).DerivativesAt(zero.data());
+  return LinearizationPoint(Pair().cur_from_prev).DerivativesAt(zero.data());
 }
 
 std::unique_ptr<ceres::LossFunction> Huber() {
@@ -180,7 +180,7 @@ void LookUp(benchmark::State& state) {
 template <typename Residual>
 void Alone(benchmark::State& state, bool by_hand) {
   const PackedColumns rows = ManyRows<Residual>();
-  const MotionOrigin origin(Pair().cur_from_prev);
+  const LinearizationPoint origin(Pair().cur_from_prev);
   std::vector<double> columns(kBlocks * Residual::kColumns);
   std::vector<std::unique_ptr<ceres::CostFunction>> functions;
   for (int i = 0; i < kBlocks; ++i) {

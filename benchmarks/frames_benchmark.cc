@@ -26,11 +26,13 @@
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/simulation/synthetic_path.h"
 #include "frontend/sources/tum_dataset.h"
 
 DEFINE_int32(frames, 90, "frames of each sequence, from its start");
 DEFINE_int32(rounds, 5, "how often each method tracks each sequence");
-DEFINE_string(path, "xyz", "path through the simulated room");
+DEFINE_string(path, "xyz", "path through the simulated room; empty: no room");
+DEFINE_string(methods, "", "how names of methods begin; empty: all");
 DEFINE_string(dataset, "",
               "folder of a sequence in TUM RGB-D layout to track as well");
 DEFINE_string(camera, "",
@@ -123,6 +125,11 @@ nlohmann::json RunRound(const Sequence& sequence, const FrameTrackerType& type,
       {"frames", sequence.frames.size()},
       {"failed", sequence.frames.size() - trajectory.size()},
       {"ate_m", report.ate.rmse}};
+  for (size_t i = 0; i < report.rpe_frames.size(); ++i) {
+    const std::string frames = std::to_string(report.options.rpe_frames[i]);
+    entry["rpe_" + frames + "_median_m"] =
+        report.rpe_frames[i].translation.median;
+  }
   if (report.rpe_seconds.translation.count > 0) {
     entry["rpe_m"] = report.rpe_seconds.translation.rmse;
     entry["rpe_deg"] = report.rpe_seconds.rotation.rmse * 180.0 / M_PI;
@@ -138,13 +145,14 @@ int Main() {
   double load[3] = {};
   getloadavg(load, 3);
   std::vector<Sequence> sequences;
-  sequences.push_back(LoadRoom());
+  if (!FLAGS_path.empty()) sequences.push_back(LoadRoom());
   if (!FLAGS_dataset.empty()) sequences.push_back(LoadFolder());
   const std::vector<FrameTrackerType> types = FrameTrackerTypes();
   nlohmann::json benchmarks = nlohmann::json::array();
   for (int round = 0; round < FLAGS_rounds; ++round) {
     for (const Sequence& sequence : sequences) {
       for (const FrameTrackerType& type : types) {
+        if (type.name.rfind(FLAGS_methods, 0) != 0) continue;
         benchmarks.push_back(RunRound(sequence, type, round));
         std::fprintf(stderr, "%s, round %d of %d\n",
                      benchmarks.back()["name"].get<std::string>().c_str(),
@@ -166,7 +174,7 @@ int main(int argc, char** argv) {
       "frames_benchmark",
       "tracks sequences by this project, OpenCV and Open3D: times and errors",
       "frames_benchmark --frames=90 --rounds=5 --output=frames.json",
-      {{"Input", {"frames", "rounds", "path", "dataset", "camera"}},
+      {{"Input", {"frames", "rounds", "path", "methods", "dataset", "camera"}},
        {"Output", {"output"}}},
       {{"path", rgbd_pose::SyntheticPathNames()}}};
   return rgbd_pose::RunProgram(argc, argv, info, rgbd_pose::Main);

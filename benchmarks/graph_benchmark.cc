@@ -1,5 +1,5 @@
-// A graph of keyframes solved by frozen edges, by live pairs, and by a bundle
-// adjustment of landmarks: time and what each leaves of the error.
+// A graph of keyframes solved by edges and by a bundle adjustment of landmarks:
+// time and what each leaves of the error.
 //
 // Names: graph/<way>/<keyframes>.
 
@@ -16,8 +16,7 @@
 #include "apps/pipeline/keyframe_graph.h"
 #include "benchmarks/bundle_adjustment.h"
 #include "benchmarks/simulated_graph.h"
-#include "core/estimation/motion_graph.h"
-#include "costs/cost_factory.h"
+#include "core/estimation/pose_graph.h"
 #include "robust/m_estimator.h"
 
 namespace rgbd_pose {
@@ -34,7 +33,7 @@ struct World {
         start(OdometryOf(graph, edges)) {}
 
   const SimulatedGraph graph;
-  const std::vector<Edge> edges;
+  const std::vector<RelativePose> edges;
   const std::vector<Rigid3d> start;
 };
 
@@ -51,7 +50,7 @@ struct Solved {
 
 using Way = std::function<Solved(const World&)>;
 
-Solved Solve(MotionGraph* graph) {
+Solved Solve(PoseGraph* graph) {
   const GraphSolution solution = graph->Solve();
   Solved solved;
   if (!solution.ok()) return solved;
@@ -63,27 +62,11 @@ Solved Solve(MotionGraph* graph) {
 }
 
 Solved ByEdges(const World& world) {
-  MotionGraph graph;
+  PoseGraph graph;
   for (size_t i = 0; i < world.start.size(); ++i) {
     graph.AddPose(world.start[i], i == 0);
   }
-  for (const Edge& edge : world.edges) graph.AddEdge(edge);
-  return Solve(&graph);
-}
-
-Solved ByLivePairs(const World& world, Assembly assembly) {
-  MotionGraphOptions options;
-  options.assembly = assembly;
-  MotionGraph graph(options);
-  for (size_t i = 0; i < world.start.size(); ++i) {
-    graph.AddPose(world.start[i], i == 0);
-  }
-  for (const SimulatedGraph::Pair& pair : world.graph.pairs) {
-    PairData data;
-    data.matches = &pair.matches;
-    graph.AddPair(pair.ref, pair.cur, data,
-                  MakeRobustCosts("mahalanobis_point", "huber"));
-  }
+  for (const RelativePose& edge : world.edges) graph.AddEdge(edge);
   return Solve(&graph);
 }
 
@@ -93,11 +76,11 @@ Solved ByBundle(const World& world) {
   return {std::move(solution.poses), solution.iterations};
 }
 
-// As a map solves it: losses, slack and stages of its own.
+// As a map solves it: losses, noise and stages of its own.
 std::unique_ptr<KeyframeGraph> KeyframeGraphOf(const World& world) {
-  auto graph = std::make_unique<KeyframeGraph>(KeyframeGraphOptions());
+  auto graph = std::make_unique<KeyframeGraph>(10, 0.01);
   for (const Rigid3d& pose : world.start) graph->Add(pose, 0);
-  for (const Edge& edge : world.edges) {
+  for (const RelativePose& edge : world.edges) {
     graph->AddPair(edge, edge.cur == edge.ref + 1);
   }
   return graph;
@@ -172,17 +155,10 @@ void SolveWindow(benchmark::State& state, int keyframes) {
 }
 
 const bool kRegistered = [] {
-  const auto live = [](Assembly assembly) {
-    return [assembly](const World& w) { return ByLivePairs(w, assembly); };
-  };
-  const std::pair<const char*, Way> ways[] = {
-      {"odometry", ByOdometry},
-      {"edges", ByEdges},
-      {"compressed", live(Assembly::kCompressed)},
-      {"per_match", live(Assembly::kPerMatch)},
-      {"autodiff", live(Assembly::kAutodiff)},
-      {"bundle_adjustment", ByBundle},
-      {"map", ByMap}};
+  const std::pair<const char*, Way> ways[] = {{"odometry", ByOdometry},
+                                              {"edges", ByEdges},
+                                              {"bundle_adjustment", ByBundle},
+                                              {"map", ByMap}};
   const auto name = [](const char* what, int keyframes) {
     return std::string("graph/") + what + "/" + std::to_string(keyframes);
   };
@@ -192,11 +168,7 @@ const bool kRegistered = [] {
   };
   for (const int keyframes : {100, 1000}) {
     for (const auto& [what, way] : ways) {
-      // By per_match and autodiff the greater one takes gigabytes.
       const std::string full = name(what, keyframes);
-      const bool is_heavy = full.find("per_match") != std::string::npos ||
-                            full.find("autodiff") != std::string::npos;
-      if (keyframes > 100 && is_heavy) continue;
       add(full, [=, way = way](benchmark::State& state) {
         Run(state, full, way, keyframes);
       });

@@ -1,7 +1,7 @@
 // Residual and Jacobian of one match: by hand against automatic
 // differentiation, for every cost of the list; alone (the cost functions one
 // after the other) and through ceres::Problem::Evaluate. The motion and its
-// derivatives are computed anew for each match, as in any problem of one block
+// derivatives are computed for each match, as in any problem of one block
 // a match.
 //
 // Names: jacobian/<alone or in_ceres>/<cost>/<analytic or autodiff>.
@@ -26,7 +26,7 @@ constexpr int kBlocks = 256;  // fits the cache: arithmetic is what is measured
 
 template <typename Residual>
 struct Blocks {
-  MotionOrigin origin;
+  LinearizationPoint origin;
   std::vector<ResidualSample<Residual>> samples;
   std::vector<std::unique_ptr<ceres::CostFunction>> by_hand;
   std::vector<std::unique_ptr<ceres::CostFunction>> by_jet;

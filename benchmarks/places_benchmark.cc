@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
+#include "frontend/places/place_database.h"
 #include "frontend/places/place_features.h"
-#include "frontend/places/place_index.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
 namespace rgbd_pose {
@@ -42,8 +42,8 @@ const cv::Mat& Seen() {
 }
 
 // A keyframe of a place of its own: words of descriptors that were seen, put
-// together anew, so that buckets fill as unevenly as with real ones; two bits
-// of each word drawn anew.
+// together again, so that buckets fill as unevenly as with real ones; two bits
+// of each word drawn again.
 cv::Mat Keyframe(int seed) {
   std::mt19937 rng(seed);
   cv::Mat rows(kRows, 32, CV_8U);
@@ -59,8 +59,8 @@ cv::Mat Keyframe(int seed) {
 }
 
 // Grows only: benchmarks run in order.
-PlaceIndex& IndexOf(int keyframes) {
-  static PlaceIndex index;
+PlaceDatabase& IndexOf(int keyframes) {
+  static PlaceDatabase index;
   while (index.size() < keyframes) {
     index.Add(index.size(), Keyframe(index.size()));
   }
@@ -69,7 +69,7 @@ PlaceIndex& IndexOf(int keyframes) {
 
 void Query(benchmark::State& state) {
   const int keyframes = static_cast<int>(state.range(0));
-  const PlaceIndex& index = IndexOf(keyframes);
+  const PlaceDatabase& index = IndexOf(keyframes);
   constexpr int kFrames = 20;
   std::vector<cv::Mat> frames;
   for (int i = 0; i < kFrames; ++i) {
@@ -88,7 +88,7 @@ void Query(benchmark::State& state) {
 
 void Add(benchmark::State& state) {
   const int keyframes = static_cast<int>(state.range(0));
-  PlaceIndex& index = IndexOf(keyframes);
+  PlaceDatabase& index = IndexOf(keyframes);
   constexpr int kNew = 20;
   std::vector<cv::Mat> added;
   for (int i = 1; i <= kNew; ++i) added.push_back(Keyframe(-i));

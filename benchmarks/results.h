@@ -11,7 +11,7 @@ struct BenchmarkResult {
   // Nanoseconds a call, one a repetition: of the processor, and on the wall.
   std::vector<double> cpu_ns;
   std::vector<double> real_ns;
-  // Whatever else a repetition told in numbers, by name.
+  // Whatever else a repetition gave in numbers, by name.
   std::map<std::string, std::vector<double>> counters;
 };
 

@@ -96,9 +96,9 @@ SimulatedGraph::SimulatedGraph(int keyframes, unsigned seed,
   }
 }
 
-std::vector<Edge> SimulatedGraph::Edges() const {
+std::vector<RelativePose> SimulatedGraph::Edges() const {
   Estimator estimator({}, MakeRobustCosts("mahalanobis_point", "huber"));
-  std::vector<Edge> edges;
+  std::vector<RelativePose> edges;
   for (const Pair& pair : pairs) {
     const MotionEstimate estimate = estimator.Estimate(
         pair.matches, truth[pair.cur].Inverse() * truth[pair.ref]);
@@ -109,7 +109,7 @@ std::vector<Edge> SimulatedGraph::Edges() const {
 }
 
 std::vector<Rigid3d> OdometryOf(const SimulatedGraph& graph,
-                                const std::vector<Edge>& edges) {
+                                const std::vector<RelativePose>& edges) {
   std::vector<Rigid3d> poses = {graph.truth[0]};
   for (size_t i = 1; i < graph.truth.size(); ++i) {
     poses.push_back(poses.back() * edges[i - 1].cur_from_ref.Inverse());

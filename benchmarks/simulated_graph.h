@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "core/estimation/correspondences.h"
-#include "core/estimation/edge.h"
+#include "core/estimation/relative_pose.h"
 #include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
@@ -29,7 +29,7 @@ struct SimulatedGraph {
 
   // The motions of all pairs by the estimator; the first ones lead from each
   // keyframe to the next.
-  std::vector<Edge> Edges() const;
+  std::vector<RelativePose> Edges() const;
 
   Camera camera;  // as believed
   std::vector<Rigid3d> truth;
@@ -44,7 +44,7 @@ struct SimulatedGraph {
 
 // Poses by the pairs of neighbours alone: they drift.
 std::vector<Rigid3d> OdometryOf(const SimulatedGraph& graph,
-                                const std::vector<Edge>& edges);
+                                const std::vector<RelativePose>& edges);
 
 // Root mean square distance (m) of positions from the truth after the best
 // rigid alignment.

@@ -1,5 +1,5 @@
 // One pose solve from matches, building the problem and solving it: by every
-// assembly and linear solver, beside the same steps without Ceres.
+// assembly and linear solver, compared with the same steps without Ceres.
 //
 // Names: solve/<assembly or plain>/<linear solver>/<loss>/<matches>,
 // solve/<bare_loop or tiny_solver>/<loss>/<matches>,
@@ -57,7 +57,7 @@ struct World {
   World(int count, const std::string& loss_name)
       : matches(Matches(count, 0.005)),
         cost(MakeCost(kCost)),
-        loss(FindMEstimator(loss_name)->MakeLoss(cost->independent_rows())) {}
+        loss(FindMEstimator(loss_name)->MakeLoss(cost->degrees_of_freedom())) {}
 };
 
 ceres::Problem::Options ProblemOptions(Assembly assembly) {
@@ -135,7 +135,7 @@ void AddPlainBlocks(const World& world, double* x, ceres::Problem* problem) {
 void SolveWithCeres(benchmark::State& state, std::optional<Assembly> assembly,
                     ceres::LinearSolverType linear, const std::string& loss) {
   World world(static_cast<int>(state.range(0)), loss);
-  const MotionOrigin origin;
+  const LinearizationPoint origin;
   ceres::Solver::Options options;
   options.linear_solver_type = linear;
   options.logging_type = ceres::SILENT;
@@ -177,7 +177,7 @@ void SolveBySse2(benchmark::State& state, const std::string& loss) {
 // The limit: Gauss-Newton on the same sums without Ceres.
 void BareLoop(benchmark::State& state, const std::string& loss) {
   World world(static_cast<int>(state.range(0)), loss);
-  const MotionOrigin origin;
+  const LinearizationPoint origin;
   int evaluations = 0;
   for (auto _ : state) {
     MotionVector x = MotionVector::Zero();
@@ -222,7 +222,7 @@ struct TinyFunction {
 
 void SolveWithTinySolver(benchmark::State& state, const std::string& loss) {
   World world(static_cast<int>(state.range(0)), loss);
-  const MotionOrigin origin;
+  const LinearizationPoint origin;
   for (auto _ : state) {
     MotionVector x = MotionVector::Zero();
     world.cost->Bind({&world.matches});

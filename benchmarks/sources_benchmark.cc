@@ -1,4 +1,4 @@
-// What a source does to a frame beside decoding it.
+// What a source does to a frame besides decoding it.
 
 #include <benchmark/benchmark.h>
 

@@ -115,12 +115,6 @@ std::vector<SpeedupRow> FindSpeedups(const BenchmarkResults& results) {
   collector.Add("direct_photometric_over_bare_loop",
                 {"direct/linearise/photometric/10000"},
                 {"direct/linearise/bare_loop/10000"}, 1.0 / 1.5);
-  const std::string graph = "graph/compressed/100";
-  collector.Add("graph_edges_over_compressed", {"graph/edges/100"}, {graph});
-  collector.Add("graph_compressed_over_per_match", {graph},
-                {"graph/per_match/100"});
-  collector.Add("graph_compressed_over_autodiff", {graph},
-                {"graph/autodiff/100"});
   for (const std::string size : {"100", "1000"}) {
     collector.Add("graph_" + size + "_edges_over_bundle_adjustment",
                   {"graph/edges/" + size}, {"graph/bundle_adjustment/" + size});

@@ -58,5 +58,5 @@ file(WRITE ${report_assets}.new
      "  return {View(kLibrary), View(kLicense), View(kPage), View(kStyle),\n"
      "          View(kScript)};\n}\n\n"
      "}  // namespace rgbd_pose\n")
-# Only a change makes it compile anew.
+# Only a change makes it compile again.
 configure_file(${report_assets}.new ${report_assets} COPYONLY)

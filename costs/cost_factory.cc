@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "costs/assembly/cost_of.h"
 #include "costs/cost_list.h"
@@ -39,11 +40,7 @@ std::vector<std::string> Split(const std::string& text, char separator) {
 }  // namespace
 
 std::vector<std::string> CostNames() {
-  std::vector<std::string> names;
-  for (const CostEntry& entry : EntriesOf(ResidualTypes())) {
-    names.emplace_back(entry.name);
-  }
-  return names;
+  return NamesOf(EntriesOf(ResidualTypes()));
 }
 
 std::unique_ptr<MotionCost> MakeCost(std::string_view name) {
@@ -81,13 +78,8 @@ std::vector<RobustCost> MakeRobustCosts(
                        Join(names));
     }
     const std::string& loss_name = losses[losses.size() == 1 ? 0 : i];
-    const MEstimator* row = FindMEstimator(loss_name);
-    if (row == nullptr) {
-      throw InputError("unknown loss '" + loss_name + "'; there are " +
-                       Join(MEstimatorNames()));
-    }
     std::unique_ptr<ceres::LossFunction> loss =
-        row->MakeLoss(cost->independent_rows());
+        ParseLoss(loss_name).Make(cost->degrees_of_freedom());
     terms.push_back({std::move(cost), std::move(loss)});
   }
   return terms;

@@ -22,8 +22,8 @@ inline constexpr char kDefaultCost[] = "bidirectional_point";
 inline constexpr char kDefaultLoss[] = "tukey";
 
 // Costs by name ("bidirectional_point+motion_prior"), each with its loss: one
-// name for all or one each ("tukey", "tukey,none"). Throws InputError listing
-// the names there are.
+// for all or one each ("tukey", "tukey,none"), see ParseLoss. Throws InputError
+// listing the names there are.
 std::vector<RobustCost> MakeRobustCosts(
     const std::string& cost_names = kDefaultCost,
     const std::string& loss_names = kDefaultLoss);

@@ -8,7 +8,6 @@
 #include "costs/matches/point_to_plane.h"
 #include "costs/matches/point_to_point.h"
 #include "costs/matches/reprojection.h"
-#include "costs/matches/reprojection_depth.h"
 
 namespace rgbd_pose {
 

@@ -1,5 +1,8 @@
 #include "costs/direct_cost_factory.h"
 
+#include <algorithm>
+#include <utility>
+
 #include "core/util/input_error.h"
 #include "costs/cost_factory.h"
 #include "costs/direct_cost_list.h"
@@ -51,7 +54,7 @@ EstimatorOptions DirectEstimatorOptions() {
   options.max_scale_rounds = 1;
   options.max_iterations = 8;
   // 0.02 px of a half-size image with a focal length of 260 px.
-  options.settled_within = 8e-5;
+  options.step_tolerance = 8e-5;
   options.max_scale = 5.0;
   options.max_standard_deviation = 0.05;
   return options;
@@ -65,7 +68,7 @@ Estimator MakeCoarseEstimator(const DirectOptions& options) {
   EstimatorOptions estimator = DirectEstimatorOptions();
   estimator.scale = nullptr;
   // 0.025 px of the finest of these images with its focal length of 66 px.
-  estimator.settled_within = 4e-4;
+  estimator.step_tolerance = 4e-4;
   // Where fewer agree it has led astray (docs/direct.md): of simulated pairs
   // all right ones had 0.90 and more, all wrong ones 0.63 and less; of real
   // ones 99 % of the right ones 0.69 and more.
@@ -73,6 +76,18 @@ Estimator MakeCoarseEstimator(const DirectOptions& options) {
   return Estimator(estimator,
                    MakeDirectCosts("photometric+inverse_depth+motion_prior",
                                    "huber,huber,none", points));
+}
+
+std::vector<RobustCost> JoinCosts(std::vector<RobustCost> matches,
+                                  std::vector<RobustCost> pixels) {
+  for (RobustCost& term : pixels) {
+    const bool has_it = std::any_of(
+        matches.begin(), matches.end(), [&](const RobustCost& other) {
+          return other.cost->name() == term.cost->name();
+        });
+    if (!has_it) matches.push_back(std::move(term));
+  }
+  return matches;
 }
 
 std::vector<std::string> DirectCostNames() {

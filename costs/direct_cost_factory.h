@@ -20,13 +20,20 @@ std::unique_ptr<MotionCost> MakeDirectCost(std::string_view name,
 
 // What is taken where nobody says otherwise.
 inline constexpr char kDefaultDirectCost[] = "photometric+projective_plane";
-inline constexpr char kDefaultDirectLoss[] = "huber";
+inline constexpr char kDefaultDirectLoss[] = "tukey";
+// Of what leads from a guess to where that may judge: with a basin.
+inline constexpr char kLeadingLoss[] = "huber";
 
 // As MakeRobustCosts, of direct costs and motion_prior.
 std::vector<RobustCost> MakeDirectCosts(
     const std::string& cost_names = kDefaultDirectCost,
-    const std::string& loss_names = kDefaultDirectLoss,
+    const std::string& loss_names = kLeadingLoss,
     const DirectOptions& options = {});
+
+// Costs of matches and of pixels in one sum; a prior that both have counts
+// once.
+std::vector<RobustCost> JoinCosts(std::vector<RobustCost> matches,
+                                  std::vector<RobustCost> pixels);
 
 // How estimators minimise direct costs.
 EstimatorOptions DirectEstimatorOptions();

@@ -18,7 +18,7 @@ class HuberFormula {
   void Weigh(const T& s, T* rho, T* weight) const {
     // sqrt of at least c^2: where it does not count it must not divide by 0.
     T limited;
-    AtLeast(s, c2_, &limited);
+    Max(s, c2_, &limited);
     const T root = sqrt(limited);
     const T one = T{} + 1.0;
     *rho = s > c2_ ? 2.0 * c_ * root - c2_ : s;

@@ -1,8 +1,13 @@
 #include "robust/m_estimator.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
+#include <system_error>
 
+#include "core/util/input_error.h"
+#include "core/util/named_values.h"
+#include "core/util/text_file.h"
 #include "robust/barron_loss.h"
 #include "robust/fair_loss.h"
 #include "robust/geman_mcclure_loss.h"
@@ -49,10 +54,6 @@ constexpr std::array<double, MEstimator::kMaxDimension> kUntuned = {1, 1, 1,
 
 double MEstimator::Width95(int dimension) const {
   return width95[std::clamp(dimension, 1, kMaxDimension) - 1];
-}
-
-std::unique_ptr<ceres::LossFunction> MEstimator::MakeLoss(int dimension) const {
-  return make != nullptr ? make(Width95(dimension)) : nullptr;
 }
 
 // Widths: found by quadrature over the chi distribution; a test finds them
@@ -110,16 +111,31 @@ const std::vector<MEstimator>& MEstimators() {
 }
 
 const MEstimator* FindMEstimator(std::string_view name) {
-  for (const MEstimator& row : MEstimators()) {
-    if (row.name == name) return &row;
-  }
-  return nullptr;
+  return FindNamed(MEstimators(), name);
 }
 
-std::vector<std::string> MEstimatorNames() {
-  std::vector<std::string> names;
-  for (const MEstimator& row : MEstimators()) names.emplace_back(row.name);
-  return names;
+std::vector<std::string> MEstimatorNames() { return NamesOf(MEstimators()); }
+
+NamedLoss ParseLoss(const std::string& text) {
+  const size_t open = text.find('(');
+  const MEstimator* const row = FindMEstimator(text.substr(0, open));
+  if (row == nullptr) {
+    throw InputError("unknown loss '" + text + "'; there are " +
+                     Join(MEstimatorNames()));
+  }
+  if (open == std::string::npos) return {row, 0.0};
+  double width = 0.0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data() + open + 1, end, width);
+  const bool is_number = read.ec == std::errc() && read.ptr + 1 == end &&
+                         *read.ptr == ')' && width >= 1e-3 && width <= 1e3;
+  if (!is_number || row->make == nullptr) {
+    throw InputError("loss '" + text + "' has no width that " +
+                     std::string(row->name) +
+                     " can have: a number from 0.001 to 1000, as in "
+                     "huber(1.5); none has none");
+  }
+  return {row, width};
 }
 
 }  // namespace rgbd_pose

@@ -34,7 +34,9 @@ struct MEstimator {
   double Width95(int dimension) const;
 
   // The loss at that width; null: no loss.
-  std::unique_ptr<ceres::LossFunction> MakeLoss(int dimension) const;
+  std::unique_ptr<ceres::LossFunction> MakeLoss(int dimension) const {
+    return make != nullptr ? make(Width95(dimension)) : nullptr;
+  }
 };
 
 // All M-estimators.
@@ -45,5 +47,24 @@ const MEstimator* FindMEstimator(std::string_view name);
 
 // The names of all rows.
 std::vector<std::string> MEstimatorNames();
+
+// A loss as programs take it: a name, or a name and a width in sigmas from
+// 0.001 to 1000 for residuals of any number of components, "huber(1.5)".
+struct NamedLoss {
+  const MEstimator* row = nullptr;  // never null from ParseLoss
+  double width = 0.0;               // 0: see Width95
+
+  // For a residual of so many components.
+  double Width(int dimension) const {
+    return width > 0.0 ? width : row->Width95(dimension);
+  }
+  // At that width; null: no loss.
+  std::unique_ptr<ceres::LossFunction> Make(int dimension) const {
+    return row->make != nullptr ? row->make(Width(dimension)) : nullptr;
+  }
+};
+
+// Throws InputError with what there is.
+NamedLoss ParseLoss(const std::string& text);
 
 }  // namespace rgbd_pose

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "core/util/named_values.h"
 #include "core/util/quantile.h"
 #include "robust/small_sample.h"
 
@@ -31,18 +32,11 @@ const std::vector<ScaleEstimator>& ScaleEstimators() {
 }
 
 const ScaleEstimator* FindScaleEstimator(std::string_view name) {
-  for (const ScaleEstimator& row : ScaleEstimators()) {
-    if (row.name == name) return &row;
-  }
-  return nullptr;
+  return FindNamed(ScaleEstimators(), name);
 }
 
 std::vector<std::string> ScaleEstimatorNames() {
-  std::vector<std::string> names;
-  for (const ScaleEstimator& row : ScaleEstimators()) {
-    names.emplace_back(row.name);
-  }
-  return names;
+  return NamesOf(ScaleEstimators());
 }
 
 }  // namespace rgbd_pose

@@ -17,7 +17,7 @@ class TukeyFormula {
   template <typename T>
   void Weigh(const T& s, T* rho, T* weight) const {
     T rest;  // 1 - s/c^2, not below 0
-    AtLeast(T(1.0 - s / c2_), 0.0, &rest);
+    Max(T(1.0 - s / c2_), 0.0, &rest);
     *weight = rest * rest;
     *rho = c2_ / 3.0 * (1.0 - *weight * rest);
   }

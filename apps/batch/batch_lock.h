@@ -6,11 +6,11 @@
 
 namespace rgbd_pose {
 
-// Keeps an output folder for this process: a whole batch alone, shards beside
+// Keeps an output folder for this process: a whole batch alone, shards next to
 // each other but each shard once. Held until the process and all processes
 // that it has started have ended, however they end, since those inherit the
 // open files: a run that outlives a killed batch for a moment never writes
-// beside its successor.
+// next to its successor.
 class BatchLock {
  public:
   // Throws InputError if another process works on the folder.

@@ -1,6 +1,7 @@
 #include "apps/batch/batch_plan.h"
 
 #include <algorithm>
+#include <functional>
 
 #include "apps/batch/batch_hash.h"
 #include "core/util/input_error.h"
@@ -28,28 +29,24 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-void CheckKnown(const std::string& flag, const std::string& name,
+void CheckKnown(const std::string& name,
                 const std::vector<std::string>& known) {
   if (Contains(known, name)) return;
-  throw InputError("--" + flag + ": unknown name '" + name + "'; there are " +
-                   Join(known));
+  throw InputError("unknown name '" + name + "'; there are " + Join(known));
 }
 
-std::vector<std::string> ParseNames(const std::string& flag,
-                                    const std::string& text,
-                                    const std::vector<std::string>& known,
-                                    bool may_add_up) {
+std::vector<std::string> ParseNames(
+    const std::string& flag, const std::string& text,
+    const std::function<void(const std::string& name)>& check) {
   std::vector<std::string> names;
   for (const std::string& name : Split(text, ',')) {
-    if (Contains(names, name)) {
-      throw InputError("--" + flag + ": '" + name + "' comes twice");
-    }
-    if (may_add_up) {
-      for (const std::string& part : Split(name, '+')) {
-        CheckKnown(flag, part, known);
+    try {
+      if (Contains(names, name)) {
+        throw InputError("'" + name + "' comes twice");
       }
-    } else {
-      CheckKnown(flag, name, known);
+      check(name);
+    } catch (const InputError& error) {
+      throw InputError("--" + flag + ": " + error.what());
     }
     names.push_back(name);
   }
@@ -78,9 +75,17 @@ BatchGrid ParseGrid(const std::string& costs, const std::string& losses,
   if (repeats < 1 || repeats > 10000) {
     throw InputError("--repeats must be 1 to 10000");
   }
-  return {ParseNames("costs", costs, CostNames(), true),
-          ParseNames("losses", losses, MEstimatorNames(), false),
-          ParseNames("frontends", frontends, FrontendNames(), false), repeats};
+  const auto check_cost = [](const std::string& name) {
+    for (const std::string& part : Split(name, '+')) {
+      CheckKnown(part, CostNames());
+    }
+  };
+  const auto check_frontend = [](const std::string& name) {
+    CheckKnown(name, FrontendNames());
+  };
+  return {ParseNames("costs", costs, check_cost),
+          ParseNames("losses", losses, ParseLoss),
+          ParseNames("frontends", frontends, check_frontend), repeats};
 }
 
 std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,

@@ -14,7 +14,7 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// Short beside any run, long beside what looking costs.
+// Short compared with any run, long compared with what looking costs.
 constexpr auto kLookEvery = std::chrono::milliseconds(10);
 
 struct Process {

@@ -33,7 +33,7 @@ BatchShard ShardOfSlurmTask() {
   if (*id < first || *id - first >= *count) {
     throw InputError("task " + std::to_string(*id) + " of a Slurm array of " +
                      std::to_string(*count) + " from " + std::to_string(first) +
-                     " tells no shard; use an array without gaps, such as "
+                     " names no shard; use an array without gaps, such as "
                      "0-9, or give --shard");
   }
   return {*id - first, *count};

@@ -10,13 +10,13 @@
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/calibration/displaced_depths.h"
 #include "core/util/input_error.h"
-#include "costs/calibration/landmark_problem.h"
+#include "costs/calibration/bundle_adjustment.h"
 
 namespace rgbd_pose {
 namespace {
 
 using FreeParts = std::array<bool, kCalibrationSize>;
-using Fate = CalibratedParameter::Fate;
+using Status = CalibratedParameter::Status;
 
 CalibrationVector PriorOf(const CalibrationSettings& settings,
                           const CalibrationVector& start) {
@@ -30,7 +30,7 @@ CalibrationVector PriorOf(const CalibrationSettings& settings,
 }
 
 // Solves, and takes the scales of what is left, until they stay.
-void SolveWithScales(const LandmarkProblem& problem, const FreeParts& is_free,
+void SolveWithScales(const BundleAdjustment& problem, const FreeParts& is_free,
                      int rounds, CalibrationState* state) {
   constexpr double kSame = 0.02;
   for (int round = 0; round < rounds; ++round) {
@@ -74,7 +74,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     CalibratedParameter& parameter = result.parameters[k];
     parameter.before = parameter.found = start[k];
     parameter.prior = parameter.sigma = prior[k];
-    if (asked[k]) parameter.fate = Fate::kUndetermined;
+    if (asked[k]) parameter.status = Status::kUndetermined;
   }
   constexpr int kMinViews = 100;
   if (result.views < kMinViews) {
@@ -83,19 +83,18 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                     std::to_string(result.keyframes) + " keyframes";
     return result;
   }
-  const LandmarkProblemOptions& solve = settings.solve;
 
   CalibrationVector undone = CalibrationVector::Zero();
   const auto look_up = [&](const CalibrationVector& theta) {
     undone = theta;
-    LookUpDepthsAnew(map, Changed(first, theta).camera, odometry, theta,
-                     threads, &data);
+    LookUpDepthsAnew(map, ApplyCalibration(first, theta).camera, odometry,
+                     theta, threads, &data);
   };
   if (IsDisplaced(start)) look_up(start);
 
   // What pairs tell that are not held out, with both cameras.
   constexpr int kRounds = 2;
-  const LandmarkProblem training(data.views, start, prior, true, solve);
+  const BundleAdjustment training(data.views, start, prior, true);
   CalibrationState before = training.Begin();
   training.MeasureScales(&before);
   SolveWithScales(training, FreeParts{}, kRounds, &before);
@@ -107,24 +106,25 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     look_up(after.theta);
     SolveWithScales(training, asked, kRounds, &after);
   }
-  CalibrationMatrix by_noise, by_scatter;
+  CalibrationMatrix model_covariance, sandwich_covariance;
   FreeParts is_free = asked;
-  const auto judge = [&](const LandmarkProblem& problem,
+  const auto judge = [&](const BundleAdjustment& problem,
                          const CalibrationState& state) {
-    const bool can_tell =
-        problem.Covariance(asked, state, &by_noise, &by_scatter);
+    const bool can_tell = problem.Covariance(asked, state, &model_covariance,
+                                             &sandwich_covariance);
     for (int k = 0; k < kCalibrationSize; ++k) {
       if (!asked[k]) continue;
       CalibratedParameter& parameter = result.parameters[k];
       parameter.found = state.theta[k];
       parameter.sigma =
-          can_tell ? std::hypot(
-                         std::sqrt(std::max(by_noise(k, k), by_scatter(k, k))),
-                         CalibrationFloor(k, result.keyframes))
+          can_tell ? std::hypot(std::sqrt(std::max(model_covariance(k, k),
+                                                   sandwich_covariance(k, k))),
+                                CalibrationFloor(k, result.keyframes))
                    : prior[k];
       is_free[k] =
           parameter.sigma < settings.determined_share * parameter.prior;
-      parameter.fate = is_free[k] ? Fate::kDetermined : Fate::kUndetermined;
+      parameter.status =
+          is_free[k] ? Status::kDetermined : Status::kUndetermined;
     }
   };
   judge(training, after);
@@ -145,29 +145,28 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     result.truth_before = TruthError(data, before, *scale.ground_truth);
     result.truth_after = TruthError(data, after, *scale.ground_truth);
   }
-  CompareHeldOut(views_before, before, data.views, after,
-                 settings.solve.loss_width, &result);
+  CompareHeldOut(views_before, before, data.views, after, &result);
 
   // And in the end all.
-  const LandmarkProblem all(data.views, start, prior, false, solve);
+  const BundleAdjustment all(data.views, start, prior, false);
   CalibrationState found = after;
   SolveWithScales(all, is_free, kRounds, &found);
   const FreeParts determined = is_free;
   judge(all, found);
   for (int k = 0; k < kCalibrationSize; ++k) {
     if (asked[k] && !determined[k]) {
-      result.parameters[k].fate = Fate::kUndetermined;
+      result.parameters[k].status = Status::kUndetermined;
     }
   }
   result.halves =
-      CompareHalves(data.views, found, is_free, start, prior, solve, threads);
+      SplitHalfConsistency(data.views, found, is_free, start, prior, threads);
   result.displacement_px = DisplacementPx(data.views, found.theta - start);
   result.pixel_before = before.pixel_scale;
   result.pixel_after = found.pixel_scale;
   result.depth_before = before.depth_scale;
   result.depth_after = found.depth_scale;
-  result.found = Changed(first, found.theta);
-  result.reason = WhyNot(first, result.found, settings, result);
+  result.found = ApplyCalibration(first, found.theta);
+  result.reason = RejectionReason(first, result.found, settings, result);
   if (!result.reason.empty()) return result;
   result.is_accepted = true;
   result.camera = result.found;

@@ -18,7 +18,7 @@ struct CalibrationScale {
 
 // Calibrates a camera from keyframes and pairs of its recording. `first`: the
 // camera that they were tracked with; `path`: a smooth path of all frames, see
-// CollectCalibrationData. Throws InputError for settings that are of no use.
+// CollectCalibrationData. Throws InputError for invalid settings.
 CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const RgbdCamera& first,
                             const OdometrySettings& odometry,

@@ -16,7 +16,8 @@ CalibrationVector ThetaOf(const Camera& camera) {
   return theta;
 }
 
-RgbdCamera Changed(const RgbdCamera& first, const CalibrationVector& theta) {
+RgbdCamera ApplyCalibration(const RgbdCamera& first,
+                            const CalibrationVector& theta) {
   RgbdCamera changed = first;
   Camera& camera = changed.camera;
   camera.fx = theta[kFx];
@@ -26,16 +27,16 @@ RgbdCamera Changed(const RgbdCamera& first, const CalibrationVector& theta) {
   camera.k1 = theta[kK1];
   camera.k2 = theta[kK2];
   changed.depth_scale = first.depth_scale / theta[kDepthFactor];
-  changed.depth_errors.inverse_depth_offset =
-      first.depth_errors.inverse_depth_offset / theta[kDepthFactor] +
+  changed.depth_correction.inverse_depth_offset =
+      first.depth_correction.inverse_depth_offset / theta[kDepthFactor] +
       theta[kInverseDepth];
   changed.depth_shutter.offset = first.depth_shutter.offset + theta[kDepthTime];
   const Eigen::Vector3d turn = theta.segment<3>(kRotationX);
   const double angle = turn.norm();
   const Eigen::Vector3d axis =
       angle > 0.0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX();
-  changed.depth_errors.depth_from_color =
-      first.depth_errors.depth_from_color *
+  changed.depth_correction.depth_from_color =
+      first.depth_correction.depth_from_color *
       Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)),
               theta.segment<3>(kTranslationX));
   return changed;
@@ -45,8 +46,8 @@ CalibrationVector ThetaBetween(const RgbdCamera& first,
                                const RgbdCamera& changed) {
   CalibrationVector theta = ThetaOf(changed.camera);
   theta[kDepthFactor] = first.depth_scale / changed.depth_scale;
-  const DepthErrors& before = first.depth_errors;
-  const DepthErrors& after = changed.depth_errors;
+  const DepthCorrection& before = first.depth_correction;
+  const DepthCorrection& after = changed.depth_correction;
   theta[kInverseDepth] = after.inverse_depth_offset -
                          before.inverse_depth_offset / theta[kDepthFactor];
   theta[kDepthTime] = changed.depth_shutter.offset - first.depth_shutter.offset;

@@ -10,7 +10,8 @@ namespace rgbd_pose {
 CalibrationVector ThetaOf(const Camera& camera);
 
 // The camera that was the first as theta changes it.
-RgbdCamera Changed(const RgbdCamera& first, const CalibrationVector& theta);
+RgbdCamera ApplyCalibration(const RgbdCamera& first,
+                            const CalibrationVector& theta);
 
 // The theta that changes the first camera to another.
 CalibrationVector ThetaBetween(const RgbdCamera& first,

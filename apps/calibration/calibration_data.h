@@ -21,7 +21,7 @@ struct CalibrationDataOptions {
   // power of their number.
   int max_keyframes = 300;
 
-  // Every so-manieth pair is kept to judge the result by.
+  // Every n-th pair is kept to judge the result by.
   int hold_out = 5;
 
   // One line that says what is wrong with the options, or empty.
@@ -37,7 +37,7 @@ struct CalibrationData {
   std::vector<CameraVelocity> velocities;
 };
 
-// Finds the features of each keyframe of the map's largest segment anew in
+// Finds the features of each keyframe of the map's largest segment again in
 // those that it is paired with. `path`: a smooth path of the camera (world from
 // camera, any world), for its velocities.
 CalibrationData CollectCalibrationData(const KeyframeMap& map,

@@ -13,7 +13,7 @@ namespace {
 
 using FreeParts = std::array<bool, kCalibrationSize>;
 
-// Less tells nothing.
+// Less says nothing.
 constexpr int kMinKeyframes = 3;
 constexpr int kMinViews = 200;
 
@@ -72,18 +72,18 @@ struct Told {
 // Nothing if the part has too few views or does not tell.
 std::optional<Told> Calibrated(Part part, const FreeParts& is_free,
                                const CalibrationVector& start,
-                               const CalibrationVector& prior,
-                               const LandmarkProblemOptions& options) {
+                               const CalibrationVector& prior) {
   if (part.views.views.size() < static_cast<size_t>(kMinViews)) return {};
-  const LandmarkProblem problem(part.views, start, prior, false, options);
+  const BundleAdjustment problem(part.views, start, prior, false);
   if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
   problem.MeasureScales(&part.state);
-  CalibrationMatrix by_noise, by_scatter;
-  if (!problem.Covariance(is_free, part.state, &by_noise, &by_scatter)) {
+  CalibrationMatrix model_covariance, sandwich_covariance;
+  if (!problem.Covariance(is_free, part.state, &model_covariance,
+                          &sandwich_covariance)) {
     return {};
   }
-  return Told{part.state.theta,
-              by_noise.diagonal().cwiseMax(by_scatter.diagonal())};
+  return Told{part.state.theta, model_covariance.diagonal().cwiseMax(
+                                    sandwich_covariance.diagonal())};
 }
 
 }  // namespace
@@ -92,18 +92,17 @@ double HalvesOfParameter::Sigmas() const {
   return std::abs(second - first) / sigma;
 }
 
-std::vector<HalvesOfParameter> CompareHalves(
+std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
     const FreeParts& is_free, const CalibrationVector& start,
-    const CalibrationVector& prior, const LandmarkProblemOptions& options,
-    int threads) {
+    const CalibrationVector& prior, int threads) {
   const int all = static_cast<int>(views.world_from_cam.size());
   std::array<std::optional<Told>, 2> halves;
   ParallelFor(2, threads, [&](int half) {
     const int begin = half * (all / 2), end = half == 0 ? all / 2 : all;
     if (end - begin < kMinKeyframes) return;
-    halves[half] = Calibrated(PartOf(views, found, begin, end), is_free, start,
-                              prior, options);
+    halves[half] =
+        Calibrated(PartOf(views, found, begin, end), is_free, start, prior);
   });
   if (!halves[0].has_value() || !halves[1].has_value()) return {};
   std::vector<HalvesOfParameter> result;

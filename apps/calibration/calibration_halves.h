@@ -4,7 +4,8 @@
 #include <optional>
 #include <vector>
 
-#include "costs/calibration/landmark_problem.h"
+#include "costs/calibration/calibration_state.h"
+#include "costs/calibration/calibration_views.h"
 
 namespace rgbd_pose {
 
@@ -24,10 +25,10 @@ struct HalvesOfParameter {
 // of it ended. What is wrong with a camera is wrong in both; what is absorbed
 // of something else depends on what is seen. Empty if a half has too few views
 // or does not tell.
-std::vector<HalvesOfParameter> CompareHalves(
+std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
     const std::array<bool, kCalibrationSize>& is_free,
     const CalibrationVector& start, const CalibrationVector& prior,
-    const LandmarkProblemOptions& options, int threads);
+    int threads);
 
 }  // namespace rgbd_pose

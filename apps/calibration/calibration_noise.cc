@@ -11,12 +11,12 @@
 namespace rgbd_pose {
 namespace {
 
-// A depth beside what it should be.
+// A depth and what it should be.
 struct Sample {
   double depth = 0.0;  // m
   double pixel = 0.0;  // what a pixel errs by, m
   double mean = 0.0;   // what a depth that was looked up errs by, m
-  double share = 0.0;  // of the landmark's place that this very depth tells
+  double share = 0.0;  // of the landmark's place that this depth gives
 };
 
 constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution
@@ -60,7 +60,7 @@ class Collector {
       LandmarkPixel::Jacobian(anchor, there, d, theta, data, r, &J2);
       information += J2.inverse_depth.squaredNorm();
       if (view.depth.inverse_sigma == 0.0) continue;
-      // Where the landmark is, beside where the feature was seen.
+      // From where the feature was seen to where the landmark is.
       const Eigen::Vector3d beside(r[0] / data.inverse_sigma_px / theta[kFx],
                                    r[1] / data.inverse_sigma_px / theta[kFy],
                                    0.0);
@@ -80,8 +80,9 @@ class Collector {
   std::vector<MotionDerivatives> poses_;
 };
 
-// The variance of a mean of 3 x 3 pixels over that of one. What tells a share h
-// of a landmark's place leaves residuals of the variances (mean m, pixel p)
+// The variance of a mean of 3 x 3 pixels over that of one. What determines a
+// share h of a landmark's place leaves residuals of the variances (mean m,
+// pixel p)
 //   (1 - h) m   and   p - h m.
 double VarianceShare(const std::vector<Sample>& samples) {
   double share = 0.0;
@@ -100,7 +101,7 @@ double VarianceShare(const std::vector<Sample>& samples) {
   return share;
 }
 
-// Weighted least squares of sigma = a + b z^2, a part that is not told by the
+// Weighted least squares of sigma = a + b z^2, a part that is not given by the
 // scatter (2 standard deviations) being 0.
 void FitSigmas(const std::vector<DepthScatter>& scatter, double relative_error,
                DepthNoiseFit* fit) {

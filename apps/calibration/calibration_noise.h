@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "core/geometry/depth_noise.h"
-#include "costs/calibration/landmark_problem.h"
+#include "costs/calibration/bundle_adjustment.h"
 
 namespace rgbd_pose {
 
@@ -18,7 +18,7 @@ struct DepthScatter {
 struct DepthNoiseFit {
   DepthNoiseModel model;         // sigma(z) = constant + quadratic z^2
   double constant_sigma = 0.0;   // their standard deviations; 0: taken as 0
-  double quadratic_sigma = 0.0;  // since it cannot be told from that
+  double quadratic_sigma = 0.0;  // since it is not separable from that
   std::vector<DepthScatter> scatter;  // what it was fitted to
   int samples = 0;                    // depths
 

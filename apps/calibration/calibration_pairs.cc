@@ -29,7 +29,7 @@ std::vector<int> ChosenKeyframes(const KeyframeMap& map, int most) {
   return chosen;
 }
 
-// Every so-manieth pair, but none that two keyframes hang together by.
+// Every n-th pair, but none that two keyframes hang together by.
 std::vector<bool> HeldOut(int num_keyframes,
                           const std::vector<std::array<int, 2>>& pairs,
                           int every) {
@@ -69,7 +69,7 @@ CalibrationPairs ChoosePairs(const KeyframeMap& map, int max_keyframes,
   for (int i = 0; i < num_keyframes; ++i) {
     number_of[map.keyframes[result.in_map[i]].id] = i;
   }
-  for (const Edge& edge : map.edges) {
+  for (const RelativePose& edge : map.edges) {
     const auto a = number_of.find(edge.ref), b = number_of.find(edge.cur);
     if (a == number_of.end() || b == number_of.end()) continue;
     result.pairs.push_back(

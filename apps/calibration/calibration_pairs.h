@@ -16,7 +16,7 @@ struct CalibrationPairs {
 };
 
 // At most so many keyframes of the largest segment, evenly chosen, in the order
-// of their times. Every so-manieth pair is held out, but none that two
+// of their times. Every n-th pair is held out, but none that two
 // keyframes hang together by.
 CalibrationPairs ChoosePairs(const KeyframeMap& map, int max_keyframes,
                              int hold_out);

@@ -12,7 +12,7 @@
 namespace rgbd_pose {
 namespace {
 
-using Fate = CalibratedParameter::Fate;
+using Status = CalibratedParameter::Status;
 
 // Takes up what a further pass found from where the last one ended: the same,
 // but nearer to where it was linearised. Returns whether it is any good.
@@ -36,13 +36,13 @@ bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
   const CalibrationVector theta = ThetaBetween(first, further.found);
   for (int k = 0; k < kCalibrationSize; ++k) {
     CalibratedParameter& parameter = merged.parameters[k];
-    if (further.parameters[k].fate == Fate::kDetermined) {
-      parameter.fate = Fate::kDetermined;
+    if (further.parameters[k].status == Status::kDetermined) {
+      parameter.status = Status::kDetermined;
       parameter.sigma = further.parameters[k].sigma;
     }
-    if (parameter.fate == Fate::kDetermined) parameter.found = theta[k];
+    if (parameter.status == Status::kDetermined) parameter.found = theta[k];
   }
-  merged.reason = WhyNotPlausible(first, further.found, merged);
+  merged.reason = ImplausibilityReason(first, further.found, merged);
   if (!merged.reason.empty()) return false;
   merged.camera = merged.found = further.found;
   merged.noise = further.noise;
@@ -101,9 +101,13 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
     const auto frames = opened.source->timestamps().size();
     CalibrationRun run(odometry, slam, asked, &opened);
     int done = 0;
-    run.Track(opened.source.get(), threads, [&] {
+    all.stopped = run.Track(opened.source.get(), threads, [&] {
       if (on_frame) on_frame(pass, ++done, static_cast<int>(frames));
     });
+    all.damaged = static_cast<int>(run.run().damaged().size());
+    all.left_out = DroppedFrames(*opened.source, run.run().damaged());
+    all.left_out.insert(all.left_out.begin(), opened.remarks.begin(),
+                        opened.remarks.end());
     const CalibrationResult result = run.Solve(threads);
     all.path = run.run().slam().Path();
     bool goes_on;

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <functional>
+#include <string>
+#include <vector>
 
 #include "apps/calibration/calibration.h"
 #include "apps/pipeline/sequence.h"
@@ -12,6 +14,12 @@ namespace rgbd_pose {
 struct RecordingCalibration {
   CalibrationResult result;  // of all passes together
   Trajectory path;           // of the last map
+
+  // Why the recording ended early, or empty; what of it is left out
+  // (DroppedFrames).
+  std::string stopped;
+  int damaged = 0;  // frames
+  std::vector<std::string> left_out;
 };
 
 // Hears of each frame that is tracked: in which pass, how many of it so far and

@@ -16,16 +16,16 @@ namespace rgbd_pose {
 // What became of one parameter.
 struct CalibratedParameter {
   // What the recording says of it.
-  enum class Fate {
+  enum class Status {
     kFixed,         // was not asked for, or nothing could tell it
     kUndetermined,  // the recording does not tell it
     kDetermined,
   };
-  Fate fate = Fate::kFixed;  // what the recording says of it
-  double before = 0.0;       // of the first camera
-  double prior = 0.0;        // its standard deviation
-  double found = 0.0;        // where the recording would have it
-  double sigma = 0.0;        // the standard deviation of that
+  Status status = Status::kFixed;  // what the recording says of it
+  double before = 0.0;             // of the first camera
+  double prior = 0.0;              // its standard deviation
+  double found = 0.0;              // where the recording would have it
+  double sigma = 0.0;              // the standard deviation of that
 };
 
 // What is left of a held-out view, px: for pictures.

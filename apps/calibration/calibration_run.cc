@@ -15,7 +15,7 @@ SlamSettings CalibrationSlam() {
   SlamSettings settings;
   settings.mapping.redundant_share = 2.0;  // which no view reaches
   settings.mapping.max_pairs = 4;
-  settings.mapping.max_lookalikes = 0;
+  settings.mapping.max_loop_candidates = 0;
   return settings;
 }
 
@@ -32,16 +32,16 @@ CalibrationRun::CalibrationRun(const OdometrySettings& odometry,
   if (!error.empty()) throw InputError("calibration: " + error);
 }
 
-void CalibrationRun::Track(FrameSource* source, int threads,
-                           const std::function<void()>& on_frame) {
-  TrackAll(source, threads, {&run_}, [&](const Frame& /*frame*/) {
+std::string CalibrationRun::Track(FrameSource* source, int threads,
+                                  const std::function<void()>& on_frame) {
+  return TrackAll(source, threads, {&run_}, [&](const Frame& /*frame*/) {
     if (on_frame) on_frame();
     return true;
   });
 }
 
 CalibrationResult CalibrationRun::Solve(int threads) {
-  const Trajectory* const truth = sequence_->TruthOfAll();
+  const Trajectory* const truth = sequence_->GroundTruth();
   run_.Finish(truth);
   return Calibrate(run_.slam().Map(), SmoothPath(run_.slam_frames()), first_,
                    odometry_, settings_,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 #include "apps/calibration/calibration.h"
 #include "apps/pipeline/sequence.h"
@@ -11,7 +12,7 @@ namespace rgbd_pose {
 
 // Settings to map a recording with that is to calibrate its camera: keyframes
 // follow each other more closely than a map needs, so that small motions, too,
-// have some, none makes way, and no more of them are paired than it takes.
+// have some, none is removed, and no more of them are paired than it takes.
 OdometrySettings CalibrationOdometry();
 SlamSettings CalibrationSlam();
 
@@ -24,9 +25,10 @@ class CalibrationRun {
   CalibrationRun(const OdometrySettings& odometry, const SlamSettings& slam,
                  const CalibrationSettings& settings, Sequence* sequence);
 
-  // Tracks all frames; `on_frame` hears of each, may be empty.
-  void Track(FrameSource* source, int threads,
-             const std::function<void()>& on_frame);
+  // Tracks all frames; `on_frame` hears of each, may be empty. Returns why the
+  // source ended before its last frame, see TrackAll.
+  std::string Track(FrameSource* source, int threads,
+                    const std::function<void()>& on_frame);
 
   // After that, once: what came of it.
   CalibrationResult Solve(int threads);

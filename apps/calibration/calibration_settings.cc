@@ -82,7 +82,7 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
        &settings->max_rate},
       {"max_passes", kGroup,
        "a recording whose depth turns out to be displaced by pixels is mapped "
-       "anew with the camera found, so many times at most",
+       "again with the camera found, so many times at most",
        &settings->max_passes},
       {"max_views", kGroup,
        "views of landmarks that are solved for, about: the time it takes grows "

@@ -7,7 +7,6 @@
 #include "apps/calibration/calibration_data.h"
 #include "apps/pipeline/setting_table.h"
 #include "costs/calibration/calibration_parameters.h"
-#include "costs/calibration/landmark_problem.h"
 
 namespace rgbd_pose {
 
@@ -49,8 +48,7 @@ struct CalibrationSettings {
   // A recording is mapped and calibrated so many times at most.
   int max_passes = 3;
 
-  CalibrationDataOptions data;   // which views
-  LandmarkProblemOptions solve;  // how they are explained
+  CalibrationDataOptions data;  // which views
 
   // One line that says what is wrong with the settings, or empty.
   std::string Check() const;

@@ -24,12 +24,12 @@ constexpr double kMaxPriorSigmas = 4.0;
 double CostOf(const CalibrationViews& views, const Landmark& landmark,
               const LandmarkView& view, bool with_depth, double inverse_depth,
               const CalibrationState& state, const CalibrationState& scales,
-              const std::vector<MotionDerivatives>& poses, double loss_width,
+              const std::vector<MotionDerivatives>& poses,
               Eigen::Vector2d* error) {
   const LandmarkData data = DataOf(views, landmark, view, scales);
-  const MotionPose<double>& anchor = poses[landmark.anchor];
-  const MotionPose<double>& there = poses[view.keyframe];
-  const double square = loss_width * loss_width;
+  const RotationAndCenter<double>& anchor = poses[landmark.anchor];
+  const RotationAndCenter<double>& there = poses[view.keyframe];
+  const double square = kLandmarkLossWidth * kLandmarkLossWidth;
   LandmarkPixel::Residual<double>(anchor, there, inverse_depth,
                                   state.theta.data(), data, error->data());
   double cost = square * std::log1p(error->squaredNorm() / square);
@@ -62,8 +62,7 @@ const HalvesOfParameter* WorstOfHalves(const CalibrationResult& result) {
 void CompareHeldOut(const CalibrationViews& views_before,
                     const CalibrationState& before,
                     const CalibrationViews& views_after,
-                    const CalibrationState& after, double loss_width,
-                    CalibrationResult* result) {
+                    const CalibrationState& after, CalibrationResult* result) {
   struct OfPair {
     double before = 0.0, after = 0.0;
     int count = 0;
@@ -91,10 +90,10 @@ void CompareHeldOut(const CalibrationViews& views_before,
       residual.v = view->v;
       pair.before += CostOf(views_before, landmark, *view, with_depth,
                             before.inverse_depths[i], before, after,
-                            poses_before, loss_width, &residual.before);
+                            poses_before, &residual.before);
       pair.after += CostOf(views_after, landmark, view_after, with_depth,
                            after.inverse_depths[i], after, after, poses_after,
-                           loss_width, &residual.after);
+                           &residual.after);
       ++pair.count;
       result->residuals.push_back(residual);
     }
@@ -165,8 +164,9 @@ std::string HalvesInWords(const CalibrationResult& result) {
                    Short(worst->Sigmas()) + " standard deviations at most";
 }
 
-std::string WhyNotPlausible(const RgbdCamera& first, const RgbdCamera& found,
-                            const CalibrationResult& result) {
+std::string ImplausibilityReason(const RgbdCamera& first,
+                                 const RgbdCamera& found,
+                                 const CalibrationResult& result) {
   const Camera& camera = found.camera;
   const double aspect = camera.fx / camera.fy;
   const double aspect_before = first.camera.fx / first.camera.fy;
@@ -185,7 +185,7 @@ std::string WhyNotPlausible(const RgbdCamera& first, const RgbdCamera& found,
   }
   for (int k = 0; k < kCalibrationSize; ++k) {
     const CalibratedParameter& parameter = result.parameters[k];
-    if (parameter.fate != CalibratedParameter::Fate::kDetermined) continue;
+    if (parameter.status != CalibratedParameter::Status::kDetermined) continue;
     const double moved =
         std::abs(parameter.found - parameter.before) / parameter.prior;
     if (moved > kMaxPriorSigmas) {
@@ -197,9 +197,9 @@ std::string WhyNotPlausible(const RgbdCamera& first, const RgbdCamera& found,
   return "";
 }
 
-std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
-                   const CalibrationSettings& settings,
-                   const CalibrationResult& result) {
+std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
+                            const CalibrationSettings& settings,
+                            const CalibrationResult& result) {
   if (result.held_out_pairs < 2) {
     return "there are too few pairs to judge it by";
   }
@@ -223,7 +223,7 @@ std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
   const bool has_moved = std::any_of(
       result.parameters.begin(), result.parameters.end(),
       [&](const CalibratedParameter& parameter) {
-        return parameter.fate == CalibratedParameter::Fate::kDetermined &&
+        return parameter.status == CalibratedParameter::Status::kDetermined &&
                std::abs(parameter.found - parameter.before) >
                    settings.min_gain_sigmas * parameter.sigma;
       });
@@ -231,7 +231,7 @@ std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
     return "nothing is wrong with it: what was found is within " +
            Short(settings.min_gain_sigmas) + " standard deviations of it";
   }
-  return WhyNotPlausible(first, found, result);
+  return ImplausibilityReason(first, found, result);
 }
 
 }  // namespace rgbd_pose

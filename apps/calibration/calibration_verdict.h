@@ -11,8 +11,7 @@ namespace rgbd_pose {
 void CompareHeldOut(const CalibrationViews& views_before,
                     const CalibrationState& before,
                     const CalibrationViews& views_after,
-                    const CalibrationState& after, double loss_width,
-                    CalibrationResult* result);
+                    const CalibrationState& after, CalibrationResult* result);
 
 // The RMSE (m) of the motions of pairs against the ground truth; 0 if none can
 // be compared.
@@ -30,13 +29,14 @@ std::string WhyHalvesDisagree(const CalibrationSettings& settings,
 std::string HalvesInWords(const CalibrationResult& result);
 
 // Why what was found is no camera that can be believed in, in words, or empty.
-std::string WhyNotPlausible(const RgbdCamera& first, const RgbdCamera& found,
-                            const CalibrationResult& result);
+std::string ImplausibilityReason(const RgbdCamera& first,
+                                 const RgbdCamera& found,
+                                 const CalibrationResult& result);
 
 // Why a camera that was found is not to be taken instead of the first one, in
 // words, or empty.
-std::string WhyNot(const RgbdCamera& first, const RgbdCamera& found,
-                   const CalibrationSettings& settings,
-                   const CalibrationResult& result);
+std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
+                            const CalibrationSettings& settings,
+                            const CalibrationResult& result);
 
 }  // namespace rgbd_pose

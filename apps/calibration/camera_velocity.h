@@ -14,7 +14,7 @@ struct CameraVelocity {
 
 // From a smooth path of the camera (world from camera, any world), at the time
 // of one of its frames (s): central differences of the fourth order, where
-// frames follow each other evenly. Zero where nothing tells.
+// frames follow each other evenly. Zero where nothing is known.
 CameraVelocity VelocityAt(const Trajectory& path, double time);
 
 }  // namespace rgbd_pose

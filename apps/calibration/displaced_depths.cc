@@ -7,7 +7,7 @@
 #include "apps/calibration/measured_depth.h"
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"
-#include "frontend/image/depth_mover.h"
+#include "frontend/image/depth_warper.h"
 #include "frontend/image/observe.h"
 
 namespace rgbd_pose {
@@ -28,13 +28,13 @@ void LookUpAnew(const Frame& frame, const Camera& camera,
                 const CameraVelocity& undone, MeasuredInverseDepth* depth) {
   const Observation o = Observe(frame, camera, u, v, 1.0, options);
   const CameraVelocity velocity{depth->rate_rotation, depth->rate_translation};
-  MeasuredInverseDepth anew =
+  MeasuredInverseDepth updated =
       MeasuredAt(frame, camera, o, {u, v}, velocity, options.noise);
-  anew.undone_rotation = undone.rotation;
-  anew.undone_translation = undone.translation;
+  updated.undone_rotation = undone.rotation;
+  updated.undone_translation = undone.translation;
   // A landmark keeps a value to begin with.
-  if (anew.inverse_sigma == 0.0) anew.value = depth->value;
-  *depth = anew;
+  if (updated.inverse_sigma == 0.0) updated.value = depth->value;
+  *depth = updated;
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
         Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), moved.translation);
     Frame frame = map.keyframes[data->in_map[k]].images.Restore();
     frame.depth =
-        DepthMover(camera).Move(frame, measured_from_moved.Inverse()).clone();
+        DepthWarper(camera).Move(frame, measured_from_moved.Inverse()).clone();
     for (Landmark* landmark : landmarks[k]) {
       LookUpAnew(frame, camera, options, landmark->u, landmark->v, moved,
                  &landmark->depth);

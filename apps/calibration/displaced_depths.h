@@ -19,7 +19,7 @@ double DisplacementPx(const CalibrationViews& views,
                       const CalibrationVector& change);
 
 // Undoes what theta says of the displacement of depth (registration, delay) in
-// the images of the keyframes and looks all depths up anew: so large ones come
+// the images of the keyframes and looks all depths up again: so large ones come
 // right that are not linear. `camera`: the lens as it is known by now.
 void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
                       const OdometrySettings& settings,

@@ -1,5 +1,9 @@
 #include "apps/compare/compare_sequence.h"
 
+#include <glog/logging.h>
+
+#include "apps/pipeline/sequence.h"
+#include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 
 namespace rgbd_pose {
@@ -18,10 +22,13 @@ std::vector<LossRun> CompareLosses(FrameSource* source,
   for (OdometryRun& run : runs) all.push_back(&run);
   {
     ProgressBar bar("tracking", static_cast<int>(source->timestamps().size()));
-    TrackAll(source, threads, all, [&bar](const Frame& frame) {
-      bar.Update(frame.index + 1);
-      return true;
-    });
+    const std::string stopped =
+        TrackAll(source, threads, all, [&bar](const Frame& frame) {
+          bar.Update(frame.index + 1);
+          return true;
+        });
+    Warn(DroppedFrames(*source, all[0]->damaged()));
+    if (!stopped.empty()) LOG(WARNING) << "ended early: " << stopped;
   }
   std::vector<LossRun> results;
   for (size_t i = 0; i < losses.size(); ++i) {

@@ -10,7 +10,7 @@ namespace rgbd_pose {
 
 struct SweepOptions {
   std::vector<std::string> losses;
-  EstimatorSettings estimator;  // loss and schedule aside
+  EstimatorSettings estimator;  // without loss and schedule
   int seeds = 200;              // random motions with their matches, per share
   int matches = 300;            // right and wrong ones
   int threads = 1;              // the result does not depend on it

@@ -22,4 +22,8 @@ std::string SweepTable(const std::vector<SweepCell>& cells);
 // from no motion; in rotation or in translation. SVG.
 std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation);
 
+// What a sweep says, in words and its own figures: which M-estimator, by how
+// much, with what spread, and what a start from RANSAC changes.
+std::string SweepVerdict(const std::vector<SweepCell>& cells);
+
 }  // namespace rgbd_pose

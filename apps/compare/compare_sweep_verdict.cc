@@ -1,9 +1,8 @@
-#include "apps/compare/compare_sweep_verdict.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "apps/compare/compare_sweep_report.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <sstream>
+#include <system_error>
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -10,6 +11,8 @@
 
 namespace rgbd_pose {
 namespace {
+
+constexpr char kReport[] = "report.md";
 
 // Of a folder.
 constexpr Experiment kRecorded = {"", SequenceLosses, RunRecorded};
@@ -33,9 +36,10 @@ std::vector<std::string> ParseLosses(const std::string& text) {
   std::vector<std::string> losses;
   std::istringstream words(text);
   for (std::string loss; std::getline(words, loss, ',');) {
-    if (FindMEstimator(loss) == nullptr) {
-      throw InputError("--losses: unknown loss '" + loss + "'; there are " +
-                       Join(MEstimatorNames()));
+    try {
+      ParseLoss(loss);
+    } catch (const InputError& error) {
+      throw InputError(std::string("--losses: ") + error.what());
     }
     if (std::find(losses.begin(), losses.end(), loss) != losses.end()) {
       throw InputError("--losses: '" + loss + "' is there twice");
@@ -47,6 +51,27 @@ std::vector<std::string> ParseLosses(const std::string& text) {
 }
 
 }  // namespace
+
+void CompareOutput::Prepare() const {
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error) {
+    throw InputError("--output=" + folder_.string() + ": cannot be made (" +
+                     error.message() + ")");
+  }
+  RequireWritable((folder_ / kReport).string());
+}
+
+void CompareOutput::Write(const std::string& file,
+                          const std::string& content) const {
+  std::error_code ignored;
+  std::filesystem::remove(folder_ / kReport, ignored);
+  WriteFileAtomically((folder_ / file).string(), content);
+}
+
+void CompareOutput::WriteReport(const std::string& content) const {
+  Write(kReport, content);
+}
 
 const std::vector<Experiment>& Experiments() {
   static const std::vector<Experiment> rows = {

@@ -1,10 +1,10 @@
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "apps/compare/compare_output.h"
 #include "apps/pipeline/settings.h"
 
 namespace rgbd_pose {
@@ -15,6 +15,24 @@ inline OdometrySettings ByFeatures() {
   settings.tracker = "features";
   return settings;
 }
+
+// The folder that a comparison leaves its files in.
+class CompareOutput {
+ public:
+  explicit CompareOutput(const std::string& folder) : folder_(folder) {}
+
+  // Makes the folder: whether results can be written is better known before
+  // the work. Throws InputError.
+  void Prepare() const;
+
+  // The report is the last to be written and the first of an earlier one to
+  // go: where it is, all is of one comparison.
+  void Write(const std::string& file, const std::string& content) const;
+  void WriteReport(const std::string& content) const;
+
+ private:
+  std::filesystem::path folder_;
+};
 
 // What an experiment is run with.
 struct ExperimentSettings {

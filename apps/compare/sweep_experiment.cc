@@ -2,7 +2,6 @@
 
 #include "apps/compare/compare_sweep.h"
 #include "apps/compare/compare_sweep_report.h"
-#include "apps/compare/compare_sweep_verdict.h"
 #include "apps/compare/experiment.h"
 #include "apps/shell/available_cores.h"
 #include "core/util/input_error.h"

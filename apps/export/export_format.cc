@@ -20,10 +20,7 @@ constexpr ExportFormat kFormats[] = {
 std::vector<std::string> ExportFormatNames() { return NamesOf(kFormats); }
 
 const ExportFormat& FindExportFormat(const std::string& name) {
-  for (const ExportFormat& format : kFormats) {
-    if (format.name == name) return format;
-  }
-  throw UnknownName("format", name, ExportFormatNames());
+  return RowOf(kFormats, "format", name);
 }
 
 }  // namespace rgbd_pose

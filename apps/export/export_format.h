@@ -38,7 +38,7 @@ std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);
 
 // Throws InputError if SaveMesh could not read the frames again, as those of a
-// camera: to be told before the run rather than after it.
+// camera: to be said before the run rather than after it.
 void RequireMeshFrames(const RunOutputSettings& settings,
                        const std::string& dataset);
 

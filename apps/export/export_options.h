@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "frontend/map/view_step.h"
+#include "frontend/map/motion_filter.h"
 
 namespace rgbd_pose {
 
@@ -12,7 +12,7 @@ struct ExportOptions {
   bool overwrite = false;  // a folder that is there
 
   // Which frames take part where images do.
-  ViewStep step;
+  MotionFilter step;
 
   bool undistort = false;   // images, as of a pinhole camera
   double voxel = 0.01;      // of meshes and clouds, m

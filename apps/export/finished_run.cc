@@ -133,7 +133,7 @@ FinishedRun::FinishedRun(const std::string& folder, const std::string& dataset,
   }
 }
 
-std::vector<int> FinishedRun::PickViews(const ViewStep& step) const {
+std::vector<int> FinishedRun::PickViews(const MotionFilter& step) const {
   std::vector<int> views;
   for (size_t i = 0; i < trajectory_.size(); ++i) {
     if (segments_[i] != segments_[0]) continue;

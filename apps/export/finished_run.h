@@ -8,7 +8,7 @@
 #include "core/evaluation/trajectory.h"
 #include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
-#include "frontend/map/view_step.h"
+#include "frontend/map/motion_filter.h"
 
 namespace rgbd_pose {
 
@@ -40,7 +40,7 @@ class FinishedRun {
 
   // Poses of the first segment, each so far from the one before: numbers in
   // trajectory().
-  std::vector<int> PickViews(const ViewStep& step) const;
+  std::vector<int> PickViews(const MotionFilter& step) const;
 
   // Which depths were used.
   const DepthLookupOptions& depth() const { return depth_; }

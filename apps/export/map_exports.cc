@@ -14,8 +14,8 @@
 #include "core/util/text_file.h"
 #include "frontend/map/mesh_file.h"
 #include "frontend/map/mesh_fusion.h"
-#include "frontend/map/mesh_thinning.h"
 #include "frontend/map/ply_writer.h"
+#include "frontend/map/surface_mesh.h"
 
 namespace rgbd_pose {
 namespace {
@@ -44,7 +44,7 @@ void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
        thin.triangles.size() > kMaxPreviewTriangles ||
        thin.vertices.size() > kMaxPreviewVertices;
        most = most * 3 / 4) {
-    thin = ThinMesh(mesh, static_cast<float>(options.voxel), most);
+    thin = SimplifyMesh(mesh, static_cast<float>(options.voxel), most);
   }
   nlohmann::json preview = MeshPreview(thin, Rigid3d());
   preview["file"] = options.output;

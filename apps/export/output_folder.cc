@@ -21,7 +21,7 @@ OutputFolder::OutputFolder(const std::string& path,
                            const std::set<std::string>& entries, bool overwrite)
     : path_(fs::absolute(path).lexically_normal()) {
   if (!path_.has_filename()) path_ = path_.parent_path();
-  aside_ = path_.string() + ".partial";
+  staging_dir_ = path_.string() + ".partial";
   std::error_code error;
   if (fs::exists(path_) && !fs::is_directory(path_)) {
     throw InputError("--output: " + path + " is a file; a folder is needed");
@@ -37,27 +37,27 @@ OutputFolder::OutputFolder(const std::string& path,
                        "; choose another folder");
     }
   }
-  fs::remove_all(aside_, error);  // of an export that was killed
-  fs::create_directories(aside_, error);
+  fs::remove_all(staging_dir_, error);  // of an export that was killed
+  fs::create_directories(staging_dir_, error);
   if (error) FailToWrite(path, error);
 }
 
 OutputFolder::~OutputFolder() {
   std::error_code ignored;
-  fs::remove_all(aside_, ignored);
+  fs::remove_all(staging_dir_, ignored);
 }
 
 fs::path OutputFolder::MakeFolder(const std::string& name) const {
   std::error_code error;
-  fs::create_directories(aside_ / name, error);
-  if (error) FailToWrite(aside_ / name, error);
-  return aside_ / name;
+  fs::create_directories(staging_dir_ / name, error);
+  if (error) FailToWrite(staging_dir_ / name, error);
+  return staging_dir_ / name;
 }
 
 void OutputFolder::Publish() {
   std::error_code error;
   fs::remove_all(path_, error);
-  fs::rename(aside_, path_, error);
+  fs::rename(staging_dir_, path_, error);
   if (error) FailToWrite(path_, error);
 }
 

@@ -6,7 +6,7 @@
 
 namespace rgbd_pose {
 
-// A folder that is written aside, next to its place, and takes it when it is
+// A folder that is written next to its place, and takes it when it is
 // whole.
 class OutputFolder {
  public:
@@ -25,14 +25,14 @@ class OutputFolder {
   std::filesystem::path MakeFolder(const std::string& name) const;
 
   // Where it is for now.
-  const std::filesystem::path& aside() const { return aside_; }
+  const std::filesystem::path& staging_dir() const { return staging_dir_; }
 
   // Puts it in its place.
   void Publish();
 
  private:
   std::filesystem::path path_;
-  std::filesystem::path aside_;
+  std::filesystem::path staging_dir_;
 };
 
 }  // namespace rgbd_pose

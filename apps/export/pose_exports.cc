@@ -5,8 +5,8 @@
 
 #include "apps/export/export_format.h"
 #include "apps/export/output_folder.h"
+#include "apps/results/frame_tables.h"
 #include "apps/results/slam_output.h"
-#include "apps/shell/csv_table.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -36,40 +36,10 @@ KeyframeMap GraphOfFrames(const FinishedRun& run) {
     graph.keyframes.push_back(keyframe);
     has_pose[keyframe.id] = true;
   }
-  const CsvTable table = CsvTable::Read(
-      (std::filesystem::path(run.folder()) / "edges.csv").string());
-  const auto column = [&](const std::string& name) {
-    return table.Numbers(name);
-  };
-  const std::vector<double> ref = column("ref"), cur = column("cur");
-  std::vector<std::vector<double>> pose, covariance;
-  for (const char* name : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
-    pose.push_back(column(name));
-  }
-  constexpr const char* kParts[] = {"wx", "wy", "wz", "cx", "cy", "cz"};
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) {
-      covariance.push_back(
-          column(std::string("cov_") + kParts[i] + "_" + kParts[j]));
+  for (const RelativePose& edge : ReadEdges(run.folder())) {
+    if (has_pose.count(edge.ref) != 0 && has_pose.count(edge.cur) != 0) {
+      graph.edges.push_back(edge);
     }
-  }
-  for (size_t row = 0; row < table.size(); ++row) {
-    Edge edge;
-    edge.ref = static_cast<int>(ref[row]);
-    edge.cur = static_cast<int>(cur[row]);
-    if (has_pose.count(edge.ref) == 0 || has_pose.count(edge.cur) == 0) {
-      continue;
-    }
-    edge.cur_from_ref = Rigid3d(Eigen::Quaterniond(pose[6][row], pose[3][row],
-                                                   pose[4][row], pose[5][row]),
-                                {pose[0][row], pose[1][row], pose[2][row]});
-    size_t at = 0;
-    for (int i = 0; i < 6; ++i) {
-      for (int j = i; j < 6; ++j, ++at) {
-        edge.covariance(i, j) = edge.covariance(j, i) = covariance[at][row];
-      }
-    }
-    graph.edges.push_back(edge);
   }
   return graph;
 }
@@ -96,8 +66,8 @@ std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
     poses += "\n";
     times += Format("%.6f\n", pose.timestamp - run.trajectory()[0].timestamp);
   }
-  WriteFileAtomically((folder.aside() / "poses.txt").string(), poses);
-  WriteFileAtomically((folder.aside() / "times.txt").string(), times);
+  WriteFileAtomically((folder.staging_dir() / "poses.txt").string(), poses);
+  WriteFileAtomically((folder.staging_dir() / "times.txt").string(), times);
   folder.Publish();
   std::string text = Said("poses", run.trajectory().size(), options.output);
   if (run.lost() > 0) {

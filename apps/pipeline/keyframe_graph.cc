@@ -10,20 +10,9 @@ namespace rgbd_pose {
 namespace {
 
 // Slack is measured in turns with the poses.
-constexpr int kMaxSlackRounds = 4;
+constexpr int kMaxFitRounds = 4;
 
 }  // namespace
-
-std::string KeyframeGraphOptions::Check() const {
-  if (window < 1) return "window must be at least 1";
-  return trust.Check();
-}
-
-KeyframeGraph::KeyframeGraph(const KeyframeGraphOptions& options)
-    : options_(options), trust_(options.trust) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("graph: " + error);
-}
 
 int KeyframeGraph::Add(const Rigid3d& map_from_cam, int segment, bool is_held) {
   Node node;
@@ -36,38 +25,50 @@ int KeyframeGraph::Add(const Rigid3d& map_from_cam, int segment, bool is_held) {
   return size() - 1;
 }
 
-void KeyframeGraph::AddPair(const Edge& edge, bool is_tracked, bool is_loop) {
+void KeyframeGraph::AddPair(const RelativePose& edge, bool is_tracked,
+                            bool is_loop) {
   pairs_.push_back({edge, is_tracked, is_loop});
   links_.Join(edge.ref, edge.cur);
 }
 
-Rigid3d KeyframeGraph::MotionOf(const Edge& edge) const {
+Rigid3d KeyframeGraph::MotionOf(const RelativePose& edge) const {
   return pose(edge.cur).Inverse() * pose(edge.ref);
 }
 
-bool KeyframeGraph::IsPlausible(const Edge& edge) const {
+bool KeyframeGraph::PassesMahalanobisGate(const RelativePose& edge) const {
   std::vector<Rigid3d> way;
-  for (const int at : links_.Way(edge.ref, edge.cur)) way.push_back(pose(at));
-  return !way.empty() && trust_.IsPlausible(edge, way);
+  for (const int at : links_.ShortestPath(edge.ref, edge.cur))
+    way.push_back(pose(at));
+  return !way.empty() && noise_.PassesMahalanobisGate(edge, way);
 }
 
-void KeyframeGraph::Join(const Edge& edge) {
-  const int from = segment(edge.cur), to = segment(edge.ref);
-  const Rigid3d to_from_from =
+bool KeyframeGraph::IsHeld(int segment) const {
+  return nodes_[first_of_.at(segment)].is_held;
+}
+
+bool KeyframeGraph::Join(const RelativePose& edge) {
+  int from = segment(edge.cur), to = segment(edge.ref);
+  Rigid3d to_from_from =
       pose(edge.ref) * edge.cur_from_ref.Inverse() * pose(edge.cur).Inverse();
+  if (IsHeld(from)) {
+    if (IsHeld(to)) return false;
+    std::swap(from, to);
+    to_from_from = to_from_from.Inverse();
+  }
   for (Node& node : nodes_) {
     if (node.segment != from) continue;
     node.segment = to;
     node.map_from_cam = to_from_from * node.map_from_cam;
   }
   first_of_.erase(from);
+  return true;
 }
 
-bool KeyframeGraph::CanDoWithout(int at) const {
-  return !IsFixed(at) && links_.HoldWithout(at);
+bool KeyframeGraph::IsRedundant(int at) const {
+  return !IsFixed(at) && links_.StaysConnectedWithout(at);
 }
 
-void KeyframeGraph::Drop(int at, int anchor) {
+void KeyframeGraph::Remove(int at, int anchor) {
   Node& node = nodes_[at];
   node.anchor = anchor;
   node.from_anchor.ref = anchor;
@@ -76,7 +77,7 @@ void KeyframeGraph::Drop(int at, int anchor) {
   for (const KeyframePair& pair : pairs_) {
     const bool is_it = (pair.edge.ref == at && pair.edge.cur == anchor) ||
                        (pair.edge.ref == anchor && pair.edge.cur == at);
-    if (is_it) node.from_anchor.covariance = trust_.CovarianceOf(pair.edge);
+    if (is_it) node.from_anchor.covariance = noise_.CovarianceOf(pair.edge);
   }
   links_.Separate(at);
   pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
@@ -87,9 +88,9 @@ void KeyframeGraph::Drop(int at, int anchor) {
                pairs_.end());
 }
 
-Edge KeyframeGraph::Anchored(Edge edge) const {
-  while (IsDropped(edge.ref)) {
-    const Edge& step = nodes_[edge.ref].from_anchor;
+RelativePose KeyframeGraph::Reanchor(RelativePose edge) const {
+  while (IsRemoved(edge.ref)) {
+    const RelativePose& step = nodes_[edge.ref].from_anchor;
     edge.covariance = ComposedCovariance(edge.cur_from_ref, edge.covariance,
                                          step.cur_from_ref, step.covariance);
     edge.cur_from_ref = edge.cur_from_ref * step.cur_from_ref;
@@ -103,49 +104,58 @@ bool KeyframeGraph::IsFixed(int at) const {
 }
 
 MotionMatrix KeyframeGraph::CovarianceAsSolved(const KeyframePair& pair) const {
-  return trust_.CovarianceAsSolved(pair, MotionOf(pair.edge));
+  return noise_.CovarianceAsSolved(pair, MotionOf(pair.edge));
 }
 
-void KeyframeGraph::FitSlack() {
+void KeyframeGraph::FitProportionalError() {
   std::vector<Rigid3d> motions;
   for (const KeyframePair& pair : pairs_) {
     motions.push_back(MotionOf(pair.edge));
   }
-  trust_.FitSlack(pairs_, motions);
+  noise_.FitProportionalError(pairs_, motions);
 }
 
 // A graph, and which of its poses are keyframes.
 struct KeyframeGraph::Problem {
-  MotionGraph graph;
+  PoseGraph graph;
   std::vector<int> pose_of;  // of each keyframe; -1: none
 };
 
 KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
                                             bool graduated) const {
-  MotionGraphOptions options;
+  PoseGraphOptions options;
   options.graduated = graduated;
   options.max_rounds = 3;
-  options.settled_within = 1e-5;
-  Problem problem{MotionGraph(options), std::vector<int>(nodes_.size(), -1)};
+  options.step_tolerance = 1e-5;
+  // What hangs on a doubtful motion alone must not keep all others from being
+  // solved for.
+  options.max_standard_deviation = 1e3;
+  Problem problem{PoseGraph(options), std::vector<int>(nodes_.size(), -1)};
   const auto add = [&](int at, bool is_fixed) {
     if (problem.pose_of[at] < 0) {
       problem.pose_of[at] = problem.graph.AddPose(pose(at), is_fixed);
     }
   };
+  // Nor must a part that hangs on nothing: its first keyframe stays, too.
+  const std::vector<int> first = links_.FirstOfParts();
+  std::vector<bool> is_held(nodes_.size(), false);
+  for (int at = 0; at < size(); ++at) {
+    if (IsFixed(at)) is_held[first[at]] = true;
+  }
   std::vector<bool> is_free(nodes_.size(), false);
   for (const int at : free) {
-    is_free[at] = !IsFixed(at);
-    add(at, IsFixed(at));
+    is_free[at] = !IsFixed(at) && (first[at] != at || is_held[at]);
+    add(at, !is_free[at]);
   }
   for (const KeyframePair& pair : pairs_) {
-    Edge edge = pair.edge;
+    RelativePose edge = pair.edge;
     if (!is_free[edge.ref] && !is_free[edge.cur]) continue;
     add(edge.ref, true);
     add(edge.cur, true);
-    edge.covariance = trust_.CovarianceOf(edge);
+    edge.covariance = noise_.CovarianceOf(edge);
     edge.ref = problem.pose_of[edge.ref];
     edge.cur = problem.pose_of[edge.cur];
-    problem.graph.AddEdge(edge, trust_.LossOf(pair));
+    problem.graph.AddEdge(edge, noise_.LossOf(pair));
   }
   return problem;
 }
@@ -174,13 +184,14 @@ void KeyframeGraph::FollowAnchors() {
 std::string KeyframeGraph::SolveNear(int newest) {
   std::vector<int> free;
   int latest = 0;
-  for (int at = newest; at >= 0 && latest < options_.window; --at) {
-    if (IsDropped(at)) continue;
+  for (int at = newest; at >= 0 && latest < window_; --at) {
+    if (IsRemoved(at)) continue;
     free.push_back(at);
     ++latest;
   }
-  for (const int at : links_.Beside(newest)) {
-    if (at < free.back()) free.push_back(at);
+  const int oldest = free.back();
+  for (const int at : links_.Neighbors(newest)) {
+    if (at < oldest) free.push_back(at);
   }
   return Solve(free, /*graduated=*/false);
 }
@@ -188,21 +199,21 @@ std::string KeyframeGraph::SolveNear(int newest) {
 std::vector<int> KeyframeGraph::All() const {
   std::vector<int> all;
   for (int at = 0; at < size(); ++at) {
-    if (!IsDropped(at)) all.push_back(at);
+    if (!IsRemoved(at)) all.push_back(at);
   }
   return all;
 }
 
 std::string KeyframeGraph::SolveAll() {
-  std::string trouble = Solve(All(), /*graduated=*/true);
-  for (int round = 1; round < kMaxSlackRounds && trouble.empty(); ++round) {
-    const double before = slack();
-    FitSlack();
-    if (slack() == before) break;
-    trouble = Solve(All(), /*graduated=*/true);
-    if (std::abs(slack() - before) <= 0.1 * before) break;
+  std::string error = Solve(All(), /*graduated=*/true);
+  for (int round = 1; round < kMaxFitRounds && error.empty(); ++round) {
+    const double before = proportional_error();
+    FitProportionalError();
+    if (proportional_error() == before) break;
+    error = Solve(All(), /*graduated=*/true);
+    if (std::abs(proportional_error() - before) <= 0.1 * before) break;
   }
-  return trouble;
+  return error;
 }
 
 std::vector<MotionMatrix> KeyframeGraph::Covariances() const {
@@ -210,11 +221,12 @@ std::vector<MotionMatrix> KeyframeGraph::Covariances() const {
   std::vector<int> poses;
   for (const int at : All()) poses.push_back(problem.pose_of[at]);
   std::vector<MotionMatrix> all(nodes_.size(), MotionMatrix::Zero());
-  const std::vector<MotionMatrix> found = problem.graph.Covariances(poses);
+  const std::vector<MotionMatrix> found =
+      problem.graph.MarginalCovariances(poses);
   if (found.empty()) return {};
   size_t next = 0;
   for (const int at : All()) {
-    all[at] = problem.graph.Redundancy() * found[next++];
+    all[at] = problem.graph.OvercountingFactor() * found[next++];
   }
   return all;
 }

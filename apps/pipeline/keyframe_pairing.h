@@ -11,7 +11,7 @@
 #include "apps/pipeline/mapped_keyframe.h"
 #include "apps/pipeline/mapping_options.h"
 #include "apps/pipeline/pair_tracker.h"
-#include "frontend/places/place_index.h"
+#include "frontend/places/place_database.h"
 
 namespace rgbd_pose {
 
@@ -22,7 +22,7 @@ class KeyframePairing {
   // All must outlive it.
   KeyframePairing(const MappingOptions& options,
                   const std::deque<MappedKeyframe>& keyframes,
-                  const PlaceIndex& index, PairTracker* tracker,
+                  const PlaceDatabase& index, PairTracker* tracker,
                   KeyframeGraph* graph)
       : options_(options),
         keyframes_(keyframes),
@@ -34,7 +34,8 @@ class KeyframePairing {
   void PairByPose(int newest, const PreparedFrame& frame, MapUpdate* update);
 
   // With those that look alike, of any segment; segments that meet are joined.
-  void PairByLooks(int newest, const PreparedFrame& frame, MapUpdate* update);
+  void CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
+                              MapUpdate* update);
 
  private:
   // A motion between two segments that one pair alone speaks for.
@@ -47,15 +48,16 @@ class KeyframePairing {
   // sees it too much larger.
   double SharedView(int ref, int cur, const Rigid3d& cur_from_ref) const;
   std::vector<int> SeeingTheSame(int newest) const;
-  std::optional<Edge> MakePair(int ref, int cur, const PreparedFrame& frame,
-                               const Rigid3d& cur_from_ref_guess,
-                               double min_inlier_share);
-  bool AgreesWithOthers(const Edge& edge, const PreparedFrame& frame);
-  bool HaveMetBefore(const Edge& edge);
+  std::optional<RelativePose> MakePair(int ref, int cur,
+                                       const PreparedFrame& frame,
+                                       const Rigid3d& cur_from_ref_guess,
+                                       double min_inlier_share);
+  bool AgreesWithOthers(const RelativePose& edge, const PreparedFrame& frame);
+  bool AreConnected(const RelativePose& edge);
 
   const MappingOptions& options_;
   const std::deque<MappedKeyframe>& keyframes_;
-  const PlaceIndex& index_;
+  const PlaceDatabase& index_;
   PairTracker& tracker_;
   KeyframeGraph& graph_;
   std::vector<Meeting> meetings_;

@@ -27,8 +27,8 @@ struct MapUpdate {
   int pairs = 0;                       // that were added
   int loops = 0;                       // of these
   int joined = 0;                      // segments that became one
-  std::string trouble;  // why poses were not solved for; empty: they were
-  double ms = 0.0;      // of work
+  std::string error;  // why poses were not solved for; empty: they were
+  double ms = 0.0;    // of work
 
   // An old keyframe that the view has come back to.
   std::optional<FoundKeyframe> returned_to;

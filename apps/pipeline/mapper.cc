@@ -12,6 +12,9 @@ namespace {
 // Views are compared by pixels so far apart: 192 of 640 x 480.
 constexpr int kSampleStepPx = 40;
 
+// How near a view must be to one that it makes redundant.
+constexpr double kRedundantFlowPx = 30.0;
+
 bool IsSame(const KeyframePlace& a, const KeyframePlace& b) {
   return a.segment == b.segment &&
          a.map_from_cam.rotation.coeffs() == b.map_from_cam.rotation.coeffs() &&
@@ -22,8 +25,8 @@ bool IsSame(const KeyframePlace& a, const KeyframePlace& b) {
 
 Mapper::Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker)
     : options_(options),
-      tracker_(options_, std::move(tracker)),
-      graph_(options.graph),
+      tracker_(std::move(tracker)),
+      graph_(options.window, options.drift),
       pairing_(options_, keyframes_, index_, &tracker_, &graph_) {
   const std::string error = options.Check();
   if (!error.empty()) throw InputError("mapping: " + error);
@@ -38,9 +41,9 @@ int Mapper::AddKeyframe(int id, const Frame& frame, const Rigid3d& map_from_cam,
   MappedKeyframe keyframe;
   keyframe.id = id;
   keyframe.images = StoredImages(frame);
-  keyframe.samples = ViewSamples(frame, images.camera, kSampleStepPx,
+  keyframe.samples = ViewOverlap(frame, images.camera, kSampleStepPx,
                                  images.min_depth, images.max_depth);
-  if (options_.max_lookalikes > 0) {
+  if (options_.max_loop_candidates > 0) {
     keyframe.features =
         DescribeKeyframe(frame, images.camera, images.DepthLookup());
   }
@@ -60,8 +63,8 @@ void Mapper::Load(const KeyframeMap& map, bool is_held) {
                     keyframe.map_from_cam, keyframe.segment, is_held);
     index_.Add(at, keyframes_[at].features.described.descriptors);
   }
-  for (const Edge& edge : map.edges) {
-    Edge numbered = edge;
+  for (const RelativePose& edge : map.edges) {
+    RelativePose numbered = edge;
     numbered.ref = numbers_.at(edge.ref);
     numbered.cur = numbers_.at(edge.cur);
     graph_.AddPair(numbered, /*is_tracked=*/false);
@@ -71,12 +74,12 @@ void Mapper::Load(const KeyframeMap& map, bool is_held) {
 MapUpdate Mapper::Add(NewKeyframe added) {
   MapUpdate update;
   const StageTimer timer(&update.ms);
-  std::vector<Edge> edges;
-  for (Edge edge : added.edges) {
+  std::vector<RelativePose> edges;
+  for (RelativePose edge : added.edges) {
     const auto ref = numbers_.find(edge.ref);
     if (ref == numbers_.end()) continue;
     edge.ref = ref->second;
-    edges.push_back(graph_.Anchored(edge));
+    edges.push_back(graph_.Reanchor(edge));
   }
   if (!edges.empty()) {
     added.segment = graph_.segment(edges[0].ref);
@@ -85,21 +88,25 @@ MapUpdate Mapper::Add(NewKeyframe added) {
   }
   const int newest = AddKeyframe(added.id, added.frame, added.map_from_cam,
                                  added.segment, /*is_held=*/false);
-  for (Edge& edge : edges) {
+  for (RelativePose& edge : edges) {
     edge.cur = newest;
+    if (graph_.segment(edge.ref) != graph_.segment(newest)) {
+      if (!graph_.Join(edge)) continue;
+      ++update.joined;
+    }
     graph_.AddPair(edge, /*is_tracked=*/true);
   }
   const auto prepared = tracker_.Prepare(added.frame);
   pairing_.PairByPose(newest, *prepared, &update);
-  pairing_.PairByLooks(newest, *prepared, &update);
+  pairing_.CloseLoopsByAppearance(newest, *prepared, &update);
   if (update.joined > 0) pairing_.PairByPose(newest, *prepared, &update);
   index_.Add(newest, keyframes_[newest].features.described.descriptors);
 
-  update.trouble =
+  update.error =
       update.loops > 0 ? graph_.SolveAll() : graph_.SolveNear(newest);
   FindReturn(newest, &update);
-  MakeWay(newest);
-  TellMoved(&update);
+  CullKeyframes(newest);
+  PublishMovedPoses(&update);
   return update;
 }
 
@@ -117,10 +124,10 @@ std::optional<FoundKeyframe> Mapper::Find(const Frame& lost) {
 
 // The one whose view is nearest, but for those that the odometry has itself.
 void Mapper::FindReturn(int newest, MapUpdate* update) const {
-  double least = 2.0 * options_.redundant_flow_px;
+  double least = 2.0 * kRedundantFlowPx;
   int nearest = -1;
-  for (int at = 0; at + options_.graph.window < newest; ++at) {
-    if (graph_.IsDropped(at) || graph_.segment(at) != graph_.segment(newest)) {
+  for (int at = 0; at + options_.window < newest; ++at) {
+    if (graph_.IsRemoved(at) || graph_.segment(at) != graph_.segment(newest)) {
       continue;
     }
     const Overlap overlap = keyframes_[at].samples.SeenFrom(
@@ -137,23 +144,23 @@ void Mapper::FindReturn(int newest, MapUpdate* update) const {
 }
 
 // Looks at the keyframe that leaves the window.
-void Mapper::MakeWay(int newest) {
-  const int at = newest - options_.graph.window;
-  if (at < 0 || graph_.IsDropped(at) || !graph_.CanDoWithout(at)) return;
-  for (const int beside : graph_.links().Beside(at)) {
-    if (beside > at) continue;
+void Mapper::CullKeyframes(int newest) {
+  const int at = newest - options_.window;
+  if (at < 0 || graph_.IsRemoved(at) || !graph_.IsRedundant(at)) return;
+  for (const int neighbor : graph_.links().Neighbors(at)) {
+    if (neighbor > at) continue;
     const Overlap overlap = keyframes_[at].samples.SeenFrom(
-        graph_.pose(beside).Inverse() * graph_.pose(at));
+        graph_.pose(neighbor).Inverse() * graph_.pose(at));
     if (overlap.share < options_.redundant_share ||
-        overlap.flow_px > options_.redundant_flow_px) {
+        overlap.flow_px > kRedundantFlowPx) {
       continue;
     }
-    graph_.Drop(at, beside);
+    graph_.Remove(at, neighbor);
     index_.Remove(at);
     tracker_.Forget(at);
     MappedKeyframe gone;
     gone.id = keyframes_[at].id;
-    gone.told = keyframes_[at].told;
+    gone.published = keyframes_[at].published;
     keyframes_[at] = std::move(gone);
     return;
   }
@@ -162,17 +169,18 @@ void Mapper::MakeWay(int newest) {
 MapUpdate Mapper::Finish() {
   MapUpdate update;
   const StageTimer timer(&update.ms);
-  if (graph_.size() > 0) update.trouble = graph_.SolveAll();
-  TellMoved(&update);
+  if (graph_.size() > 0) update.error = graph_.SolveAll();
+  PublishMovedPoses(&update);
   return update;
 }
 
-void Mapper::TellMoved(MapUpdate* update) {
+void Mapper::PublishMovedPoses(MapUpdate* update) {
   for (int at = 0; at < graph_.size(); ++at) {
     MappedKeyframe& keyframe = keyframes_[at];
     const KeyframePlace place = {graph_.pose(at), graph_.segment(at)};
-    if (keyframe.told.has_value() && IsSame(*keyframe.told, place)) continue;
-    keyframe.told = place;
+    if (keyframe.published.has_value() && IsSame(*keyframe.published, place))
+      continue;
+    keyframe.published = place;
     update->moved[keyframe.id] = place;
   }
 }
@@ -181,12 +189,12 @@ KeyframeMap Mapper::Map(bool as_solved) const {
   KeyframeMap map;
   map.camera = tracker_.images().camera;
   for (int at = 0; at < graph_.size(); ++at) {
-    if (graph_.IsDropped(at)) continue;
+    if (graph_.IsRemoved(at)) continue;
     map.keyframes.push_back({keyframes_[at].id, graph_.segment(at),
                              graph_.pose(at), keyframes_[at].images});
   }
   for (const KeyframePair& pair : graph_.pairs()) {
-    Edge edge = pair.edge;
+    RelativePose edge = pair.edge;
     edge.ref = keyframes_[pair.edge.ref].id;
     edge.cur = keyframes_[pair.edge.cur].id;
     if (as_solved) edge.covariance = graph_.CovarianceAsSolved(pair);
@@ -199,7 +207,7 @@ std::vector<MotionMatrix> Mapper::Covariances() const {
   const std::vector<MotionMatrix> all = graph_.Covariances();
   std::vector<MotionMatrix> kept;
   for (int at = 0; at < static_cast<int>(all.size()); ++at) {
-    if (!graph_.IsDropped(at)) kept.push_back(all[at]);
+    if (!graph_.IsRemoved(at)) kept.push_back(all[at]);
   }
   return kept;
 }

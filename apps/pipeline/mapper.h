@@ -12,34 +12,34 @@
 #include "apps/pipeline/mapped_keyframe.h"
 #include "apps/pipeline/mapping_options.h"
 #include "apps/pipeline/pair_tracker.h"
-#include "core/estimation/edge.h"
+#include "core/estimation/relative_pose.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/image/frame.h"
 #include "frontend/map/keyframe_map.h"
-#include "frontend/places/place_index.h"
+#include "frontend/places/place_database.h"
 #include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
 
 // A frame that is to be a keyframe of the map.
 struct NewKeyframe {
-  int id = 0;               // another one for each
-  Frame frame;              // its own images
-  int segment = 0;          // of the odometry
-  Rigid3d map_from_cam;     // where it is, if it has no edges
-  std::vector<Edge> edges;  // to earlier keyframes, by id; it is `cur`
+  int id = 0;                       // another one for each
+  Frame frame;                      // its own images
+  int segment = 0;                  // of the odometry
+  Rigid3d map_from_cam;             // where it is, if it has no edges
+  std::vector<RelativePose> edges;  // to earlier keyframes, by id; it is `cur`
 };
 
 // Joins keyframes to a map: pairs them with those that see the same (Tracker),
-// found by their poses or by their looks (PlaceIndex), and keeps all poses in
-// agreement (KeyframeGraph). For one thread.
+// found by their poses or by their looks (PlaceDatabase), and keeps all poses
+// in agreement (KeyframeGraph). For one thread.
 class Mapper {
  public:
   // `tracker` makes pairs. Throws InputError for options that are not sound.
   Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker);
   ~Mapper();
 
-  // Begins with a map. `is_held`: its poses never move, and none makes way. To
+  // Begins with a map. `is_held`: its poses never move, and none is removed. To
   // be called first; several maps are segments that are joined where they meet.
   // Throws InputError for a map of another camera or one that is not sound.
   void Load(const KeyframeMap& map, bool is_held);
@@ -53,7 +53,7 @@ class Mapper {
   // Solves for all poses.
   MapUpdate Finish();
 
-  // All keyframes that have not made way, and their pairs: as they were
+  // All keyframes that were not removed, and their pairs: as they were
   // measured, or `as_solved`, see KeyframeGraph::CovarianceAsSolved.
   KeyframeMap Map(bool as_solved = false) const;
 
@@ -65,15 +65,15 @@ class Mapper {
   int AddKeyframe(int id, const Frame& frame, const Rigid3d& map_from_cam,
                   int segment, bool is_held);
   void FindReturn(int newest, MapUpdate* update) const;
-  void MakeWay(int newest);
-  void TellMoved(MapUpdate* update);
+  void CullKeyframes(int newest);
+  void PublishMovedPoses(MapUpdate* update);
 
   const MappingOptions options_;
   PairTracker tracker_;
   KeyframeGraph graph_;
   std::deque<MappedKeyframe> keyframes_;  // by their numbers in graph_
   std::map<int, int> numbers_;            // of keyframes, by id
-  PlaceIndex index_;
+  PlaceDatabase index_;
   KeyframePairing pairing_;
 };
 

@@ -36,6 +36,8 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
   if (ground_truth != nullptr && !results_.trajectory.empty()) {
     try {
       results_.evaluation = Evaluate(results_.trajectory, *ground_truth);
+      results_.evaluation->consistency =
+          JudgeFrames(results_.frames, *ground_truth);
     } catch (const InputError& error) {
       results_.no_evaluation = error.what();
     }
@@ -43,17 +45,19 @@ RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
   return std::move(results_);
 }
 
-void TrackAll(FrameSource* source, int threads,
-              const std::vector<SequenceRun*>& runs,
-              const std::function<bool(const Frame& frame)>& on_frame) {
+std::string TrackAll(FrameSource* source, int threads,
+                     const std::vector<SequenceRun*>& runs,
+                     const std::function<bool(const Frame& frame)>& on_frame) {
   const Odometry& first = runs.front()->odometry();
   FrameStream stream(
       source, [&first](const Frame& frame) { return first.Prepare(frame); },
-      threads);
+      threads, runs.front()->inputs().max_damaged);
   while (const std::optional<StreamedFrame> next = stream.Next()) {
     for (SequenceRun* run : runs) run->Add(*next);
-    if (on_frame && !on_frame(*next->frame)) return;
+    if (on_frame && !on_frame(*next->frame)) break;
   }
+  for (SequenceRun* run : runs) run->set_damaged(stream.damaged());
+  return stream.stopped();
 }
 
 void RequireOverlap(const FrameSource& source, const Trajectory& truth) {
@@ -61,6 +65,24 @@ void RequireOverlap(const FrameSource& source, const Trajectory& truth) {
   for (const double time : source.timestamps()) frames.push_back({time, {}});
   if (frames.empty()) return;
   PairPoses(frames, truth, EvaluationOptions().max_time_difference);
+}
+
+RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
+                           const Trajectory& truth, const TruthNoise& noise) {
+  RunConsistency result;
+  result.truth_noise = noise;
+  std::vector<double> times;
+  std::vector<RelativePose> ok_edges, edges;
+  for (const TrackedFrame& frame : frames) {
+    times.push_back(frame.timestamp);
+    edges.insert(edges.end(), frame.edges.begin(), frame.edges.end());
+    if (frame.status != TrackingStatus::kOk) continue;
+    ++result.ok;
+    if (!frame.edges.empty()) ok_edges.push_back(frame.edges.front());
+  }
+  result.ok_frames = Judge(ok_edges, times, truth, noise);
+  result.edges = Judge(edges, times, truth, noise);
+  return result;
 }
 
 Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames) {

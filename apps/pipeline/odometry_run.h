@@ -16,15 +16,18 @@
 
 namespace rgbd_pose {
 
-// What is known of a sequence beside its frames; null: nothing. Must outlive
+// What is known of a sequence besides its frames; null: nothing. Must outlive
 // the run.
 struct RunInputs {
   const MotionGuess* motion_guess = nullptr;
+  // The share of frames that may be damaged, see FrameStream.
+  double max_damaged = 0.05;
 };
 
 // What becomes of a sequence.
 struct RunResults {
   std::vector<TrackedFrame> frames;  // one an input frame, in order
+  std::vector<std::string> damaged;  // input frames left out, and why
   Trajectory trajectory;             // of the frames that were not lost
   ResidualHistogram residuals;       // of their matches
 
@@ -36,7 +39,7 @@ struct RunResults {
   // One line on what the errors say of the input, or empty.
   std::string Warning() const {
     return evaluation.has_value()
-               ? LikenessWarning(evaluation->likeness, evaluation->ate.rmse)
+               ? Sim3Warning(evaluation->sim3, evaluation->ate.rmse)
                : "";
   }
 
@@ -60,8 +63,14 @@ class SequenceRun {
   // What the last frame was tracked by, and what may be done ahead.
   virtual const Odometry& odometry() const = 0;
 
-  // The frames so far.
+  // The frames so far, and those that could not be read.
   const std::vector<TrackedFrame>& frames() const { return results_.frames; }
+  const std::vector<std::string>& damaged() const { return results_.damaged; }
+  void set_damaged(const std::vector<std::string>& damaged) {
+    results_.damaged = damaged;
+  }
+
+  const RunInputs& inputs() const { return inputs_; }
 
   // After the last frame, once; compared with a ground truth (world from
   // camera) unless it is null.
@@ -81,7 +90,7 @@ class SequenceRun {
 // By an Odometry.
 class OdometryRun final : public SequenceRun {
  public:
-  // Throws InputError for settings that are of no use.
+  // Throws InputError for invalid settings.
   OdometryRun(const OdometrySettings& settings, const Camera& camera,
               const RunInputs& inputs = {});
 
@@ -100,14 +109,21 @@ class OdometryRun final : public SequenceRun {
 // Sends all frames of a source through one or several runs of the same
 // frontend, each frame read and prepared once, by `threads` >= 1 threads ahead.
 // `on_frame` hears of each frame that all have tracked, and says whether to go
-// on; may be empty. Throws InputError for an unreadable frame.
-void TrackAll(FrameSource* source, int threads,
-              const std::vector<SequenceRun*>& runs,
-              const std::function<bool(const Frame& frame)>& on_frame);
+// on; may be empty. Returns why the source ended before its last frame, or
+// nothing. Damaged frames are left out, as the first run's inputs say. Throws
+// InputError where no frame can be read.
+std::string TrackAll(FrameSource* source, int threads,
+                     const std::vector<SequenceRun*>& runs,
+                     const std::function<bool(const Frame& frame)>& on_frame);
 
 // Throws InputError if no frame of the source is near in time to the ground
-// truth, as far as that is known before the work, when it is better told.
+// truth, as far as that is known before the work, when it is better said.
 void RequireOverlap(const FrameSource& source, const Trajectory& truth);
+
+// What the motions that frames were tracked by are worth.
+RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
+                           const Trajectory& truth,
+                           const TruthNoise& noise = {});
 
 // The poses of all frames that were not lost.
 Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);

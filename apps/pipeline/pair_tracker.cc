@@ -11,26 +11,35 @@ namespace {
 // References kept made, some 3 MB each.
 constexpr size_t kMaxReferences = 24;
 
+// Of a good pair the tracker sees at least such a share, and its residuals
+// spread by no more sigmas.
+constexpr double kMinSeenShare = 0.1;
+constexpr double kMaxPairSigma = 3.0;
+
+// A pair is wrong if it differs from what the poses or the descriptors say by
+// more than this.
+constexpr double kMaxPairRotation = 0.2;     // rad
+constexpr double kMaxPairTranslation = 0.3;  // m
+
 }  // namespace
 
-std::optional<Edge> PairTracker::MakePair(int ref, int cur,
-                                          const StoredImages& ref_images,
-                                          const PreparedFrame& frame,
-                                          const Rigid3d& cur_from_ref_guess,
-                                          double min_inlier_share) {
+std::optional<RelativePose> PairTracker::MakePair(
+    int ref, int cur, const StoredImages& ref_images,
+    const PreparedFrame& frame, const Rigid3d& cur_from_ref_guess,
+    double min_inlier_share) {
   const Reference* reference = ReferenceOf(ref, ref_images);
   if (reference == nullptr) return std::nullopt;
   tracker_->Track(*reference, frame, cur_from_ref_guess, &tracked_);
   const MotionEstimate& estimate = tracked_.estimate;
   if (tracked_.status != TrackingStatus::kOk || !estimate.ok() ||
       estimate.num_inliers < min_inlier_share * estimate.num_used ||
-      estimate.sigma > options_.max_pair_sigma ||
-      tracked_.overlap.share < options_.min_seen_share ||
-      !IsWithin(estimate.cur_from_prev, cur_from_ref_guess,
-                options_.max_pair_rotation, options_.max_pair_translation)) {
+      estimate.sigma > kMaxPairSigma ||
+      tracked_.overlap.share < kMinSeenShare ||
+      !IsWithin(estimate.cur_from_prev, cur_from_ref_guess, kMaxPairRotation,
+                kMaxPairTranslation)) {
     return std::nullopt;
   }
-  return Edge{ref, cur, estimate.cur_from_prev, estimate.covariance};
+  return RelativePose{ref, cur, estimate.cur_from_prev, estimate.covariance};
 }
 
 void PairTracker::Forget(int keyframe) {

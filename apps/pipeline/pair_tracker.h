@@ -5,8 +5,7 @@
 #include <optional>
 #include <utility>
 
-#include "apps/pipeline/mapping_options.h"
-#include "core/estimation/edge.h"
+#include "core/estimation/relative_pose.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/image/frame.h"
 #include "frontend/map/stored_images.h"
@@ -18,11 +17,8 @@ namespace rgbd_pose {
 // latest keyframes are kept.
 class PairTracker {
  public:
-  // `options` must outlive it.
-  PairTracker(const MappingOptions& options, std::unique_ptr<Tracker> tracker)
-      : options_(options),
-        tracker_(std::move(tracker)),
-        tracked_(tracker_->images().camera) {}
+  explicit PairTracker(std::unique_ptr<Tracker> tracker)
+      : tracker_(std::move(tracker)), tracked_(tracker_->images().camera) {}
 
   // What images are used for, see Tracker.
   const FrontendOptions& images() const { return tracker_->images(); }
@@ -34,10 +30,11 @@ class PairTracker {
 
   // The motion from keyframe `ref`, whose images are given, to a frame near a
   // guess, if it is a good pair.
-  std::optional<Edge> MakePair(int ref, int cur, const StoredImages& ref_images,
-                               const PreparedFrame& frame,
-                               const Rigid3d& cur_from_ref_guess,
-                               double min_inlier_share);
+  std::optional<RelativePose> MakePair(int ref, int cur,
+                                       const StoredImages& ref_images,
+                                       const PreparedFrame& frame,
+                                       const Rigid3d& cur_from_ref_guess,
+                                       double min_inlier_share);
 
   // The keyframe is not needed any more.
   void Forget(int keyframe);
@@ -45,11 +42,10 @@ class PairTracker {
  private:
   const Reference* ReferenceOf(int at, const StoredImages& images);
 
-  const MappingOptions& options_;
   const std::unique_ptr<Tracker> tracker_;
   // References in use, the latest first.
   std::list<std::pair<int, std::unique_ptr<Reference>>> references_;
-  Tracked tracked_;
+  TrackingResult tracked_;
 };
 
 }  // namespace rgbd_pose

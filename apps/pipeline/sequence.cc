@@ -22,7 +22,7 @@ std::vector<Setting> SettingTable(SequenceSettings* settings) {
        "recording of an RGB-D camera: a folder or file of a known kind (see "
        "source)",
        Text(&settings->dataset)},
-      {"source", kGroup, "kind of recording; auto: found by looking at it",
+      {"source", kGroup, "kind of recording; auto: detected",
        Text(&settings->source), SourceNames()},
       {"frames", kGroup,
        "part of the recording: first-last[:step] by number from 0, such as "
@@ -48,21 +48,25 @@ std::vector<Setting> SettingTable(SequenceSettings* settings) {
        "raw depth units per metre; 0: as the camera or the recording says",
        &settings->depth_scale},
       {"motion_guess", kGroup,
-       "trajectory (TUM text) that tells roughly how the camera moved between "
+       "trajectory (TUM text) that says roughly how the camera moved between "
        "frames: wheels, an inertial sensor; empty: none",
        Text(&settings->motion_guess)},
       {"groundtruth", kGroup,
        "trajectory to compare with (TUM text); empty: that of the recording, "
        "if it has one; none: compare with nothing",
        Text(&settings->groundtruth)},
+      {"max_damaged", kGroup,
+       "share of frames that may be damaged or missing: they are left out; "
+       "from so many on (three at least) the run ends with what it has",
+       &settings->max_damaged},
   };
 }
 
 RunInputs Sequence::inputs() const {
-  return {motion_guess.has_value() ? &*motion_guess : nullptr};
+  return {motion_guess.has_value() ? &*motion_guess : nullptr, max_damaged};
 }
 
-const Trajectory* Sequence::TruthOfAll() {
+const Trajectory* Sequence::GroundTruth() {
   if (!ground_truth.has_value() && compares) {
     ground_truth = source->ground_truth();
   }
@@ -95,7 +99,7 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
     if (!options.camera.has_value()) options.camera.emplace();
     options.camera->camera = camera->camera;
     options.camera->depth_scale = camera->depth_scale;
-    options.camera->depth_errors = camera->depth_errors;
+    options.camera->depth_correction = camera->depth_correction;
     options.camera->color_shutter = camera->color_shutter;
     options.camera->depth_shutter = camera->depth_shutter;
     options.depth_scale = 0.0;
@@ -105,8 +109,17 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
 
 }  // namespace
 
-std::vector<std::string> LeftOut(const FrameSource& source) {
+std::vector<std::string> DroppedFrames(
+    const FrameSource& source, const std::vector<std::string>& damaged) {
+  constexpr size_t kMaxNamed = 10;
   std::vector<std::string> lines;
+  for (size_t i = 0; i < damaged.size() && i < kMaxNamed; ++i) {
+    lines.push_back(damaged[i] + "; this frame is left out");
+  }
+  if (damaged.size() > kMaxNamed) {
+    lines.push_back(std::to_string(damaged.size() - kMaxNamed) +
+                    " further frames are damaged and left out");
+  }
   if (source.unmatched_color() > 0) {
     lines.push_back(std::to_string(source.unmatched_color()) +
                     " colour images have no depth image of their time and are "
@@ -117,29 +130,49 @@ std::vector<std::string> LeftOut(const FrameSource& source) {
                     " frames came faster than they were asked for and are left "
                     "out");
   }
+  for (std::string& line : source.remarks()) lines.push_back(std::move(line));
   return lines;
 }
+
+namespace {
+
+// The path to compare with, as far as it is known before the frames.
+void FindTruth(const SequenceSettings& settings, Sequence* sequence) {
+  try {
+    if (!settings.groundtruth.empty()) {
+      sequence->ground_truth =
+          ReadTrajectory(settings.groundtruth, &sequence->remarks);
+    } else if (!sequence->source->timestamps().empty()) {
+      Trajectory truth = sequence->source->ground_truth();
+      if (!truth.empty()) sequence->ground_truth = std::move(truth);
+    }
+    if (sequence->ground_truth.has_value()) {
+      RequireOverlap(*sequence->source, *sequence->ground_truth);
+    }
+  } catch (const InputError& error) {
+    throw InputError(std::string(error.what()) +
+                     "; --groundtruth=none goes without it");
+  }
+}
+
+}  // namespace
 
 Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
                       const RgbdCamera* camera) {
   Sequence sequence;
+  sequence.max_damaged = settings.max_damaged;
+  if (!(settings.max_damaged >= 0.0)) {
+    throw InputError("max_damaged: must not be negative");
+  }
   const FrameRange range = ParseFrameRange(settings.frames);
   sequence.source = PartOf(
       OpenSource(settings.source, OptionsOf(settings, keep_color, camera)),
       range);
   sequence.compares = settings.groundtruth != kNoGroundTruth;
-  if (sequence.compares && !settings.groundtruth.empty()) {
-    sequence.ground_truth = ReadTrajectory(settings.groundtruth);
-  } else if (sequence.compares && !sequence.source->timestamps().empty()) {
-    // What comes with the frames is there after them, if not before.
-    Trajectory truth = sequence.source->ground_truth();
-    if (!truth.empty()) sequence.ground_truth = std::move(truth);
-  }
-  if (sequence.ground_truth.has_value()) {
-    RequireOverlap(*sequence.source, *sequence.ground_truth);
-  }
+  if (sequence.compares) FindTruth(settings, &sequence);
   if (!settings.motion_guess.empty()) {
-    sequence.motion_guess.emplace(ReadTrajectory(settings.motion_guess));
+    sequence.motion_guess.emplace(
+        ReadTrajectory(settings.motion_guess, &sequence.remarks));
   }
   return sequence;
 }

@@ -25,6 +25,7 @@ struct SequenceSettings {
   double depth_scale = 0.0;     // raw units per metre; 0: as they say
   std::string motion_guess;     // file
   std::string groundtruth;      // file, or none; empty: the recording's own
+  double max_damaged = 0.05;    // share of frames, see FrameStream
 };
 
 // Their rows.
@@ -36,18 +37,21 @@ struct Sequence {
   std::optional<Trajectory> ground_truth;  // if it is known before the frames
   bool compares = true;                    // with the recording's own
   std::optional<MotionGuess> motion_guess;
+  double max_damaged = 0.05;         // share of frames
+  std::vector<std::string> remarks;  // on its files, a line each, for users
 
   // For a run, as long as this lives.
   RunInputs inputs() const;
 
   // The ground truth once all frames have been read, when that of any recording
   // is known; null: there is none. As long as this lives.
-  const Trajectory* TruthOfAll();
+  const Trajectory* GroundTruth();
 };
 
-// What of a source made no frame so far, a line each, as users are told: colour
-// images without depth, frames that came too fast.
-std::vector<std::string> LeftOut(const FrameSource& source);
+// What of a source made no frame so far, a line each, as users see it: the
+// first damaged ones, colour images without depth, frames that came too fast.
+std::vector<std::string> DroppedFrames(const FrameSource& source,
+                                       const std::vector<std::string>& damaged);
 
 // `keep_color`: in Frame::color. `camera`: that the frames are seen by,
 // whatever the settings say; null: as they say. Throws InputError for all that

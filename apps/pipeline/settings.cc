@@ -7,10 +7,15 @@ Estimator MakeEstimator(const EstimatorSettings& settings) {
                    MakeRobustCosts(settings.cost, settings.loss));
 }
 
-Estimator MakeDirectEstimator(const DirectSettings& settings) {
-  return Estimator(
-      settings.options,
-      MakeDirectCosts(settings.cost, settings.loss, settings.points));
+DirectEstimators MakeDirectEstimators(const EstimatorSettings& matches,
+                                      const DirectSettings& pixels) {
+  return {Estimator(pixels.options,
+                    MakeDirectCosts(pixels.cost, kLeadingLoss, pixels.points)),
+          Estimator(pixels.options,
+                    JoinCosts(MakeRobustCosts(matches.cost, matches.loss),
+                              MakeDirectCosts(pixels.cost, pixels.loss,
+                                              pixels.points))),
+          MakeCoarseEstimator(pixels.points)};
 }
 
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
@@ -20,11 +25,11 @@ std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
   DirectSettings direct = settings.direct;
   direct.points.min_depth = features.min_depth;
   direct.points.max_depth = features.max_depth;
-  return MakeTracker(
-      settings.tracker,
-      {settings.tracking, features, settings.frontend,
-       MakeEstimator(settings.estimator), MakeDirectEstimator(direct),
-       MakeCoarseEstimator(direct.points), settings.direct_tracking});
+  return MakeTracker(settings.tracker,
+                     {settings.tracking, features, settings.frontend,
+                      MakeEstimator(settings.estimator),
+                      MakeDirectEstimators(settings.estimator, direct),
+                      settings.direct_tracking});
 }
 
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {

@@ -33,7 +33,7 @@ struct DirectSettings {
 struct OdometrySettings {
   EstimatorSettings estimator;           // what explains the matches
   std::string frontend = "patch";        // where matches come from
-  FrontendOptions features;              // the camera aside
+  FrontendOptions features;              // without the camera
   std::string tracker = "hybrid";        // how a frame is followed
   TrackerOptions tracking;               // what of that is believed
   DirectSettings direct;                 // what explains the pixels
@@ -44,7 +44,8 @@ struct OdometrySettings {
 // An estimator, tracker or odometry with these settings. Throws InputError for
 // unknown names and values that make no sense.
 Estimator MakeEstimator(const EstimatorSettings& settings);
-Estimator MakeDirectEstimator(const DirectSettings& settings);
+DirectEstimators MakeDirectEstimators(const EstimatorSettings& matches,
+                                      const DirectSettings& pixels);
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
                                      const Camera& camera);
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);

@@ -39,7 +39,7 @@ void Slam::Load(KeyframeMap map, bool is_held) {
     keyframe.id += first_id_;
     keyframe.segment += first_segment_;
   }
-  for (Edge& edge : map.edges) {
+  for (RelativePose& edge : map.edges) {
     edge.ref += first_id_;
     edge.cur += first_id_;
   }
@@ -82,13 +82,13 @@ SlamFrame Slam::Track(const PreparedFrame& frame,
   Follow(tracked);
   if (tracked.is_reference) {
     late_keyframe_ = KeyframeOf(tracked);
-    // Where the next frame tells how the camera moved in this one, the keyframe
+    // Where the next frame shows how the camera moved in this one, the keyframe
     // waits for it.
     if (!odometry_.HasShutter(frame)) AddLateKeyframe(&frame);
   }
   previous_ = tracked;
   if (tracked.status == TrackingStatus::kLost) SearchMap(frame, tracked.index);
-  TakeUp(tracked.index, &result);
+  ApplyPendingUpdates(tracked.index, &result);
   result.odom_from_cam = odom_from_cam_;
   result.map_from_odom = map_from_odom_;
   result.segment = reference_.has_value() ? segments_.at(*reference_) : 0;
@@ -111,10 +111,11 @@ void Slam::Follow(const TrackedFrame& tracked) {
     const Rigid3d& cur_from_ref = tracked.cur_from_reference;
     if (reference != reference_) {
       // To an earlier one: the motion since the one that was left, if known.
-      const auto left = std::find_if(
-          tracked.edges.begin(), tracked.edges.end(), [&](const Edge& edge) {
-            return MapId(edge.ref) == reference_ && edge.cur == tracked.index;
-          });
+      const auto left = std::find_if(tracked.edges.begin(), tracked.edges.end(),
+                                     [&](const RelativePose& edge) {
+                                       return MapId(edge.ref) == reference_ &&
+                                              edge.cur == tracked.index;
+                                     });
       if (left != tracked.edges.end()) {
         odom_from_cam_ = odom_from_reference_ * left->cur_from_ref.Inverse();
       } else if (!tracked.relocalised) {
@@ -154,7 +155,7 @@ NewKeyframe Slam::KeyframeOf(const TrackedFrame& tracked) const {
   keyframe.segment = segments_.at(keyframe.id);
   keyframe.map_from_cam = map_from_keyframe_.at(keyframe.id);
   if (tracked.reference != -1) keyframe.edges = tracked.edges;
-  for (Edge& edge : keyframe.edges) edge.ref = MapId(edge.ref);
+  for (RelativePose& edge : keyframe.edges) edge.ref = MapId(edge.ref);
   return keyframe;
 }
 
@@ -165,7 +166,7 @@ void Slam::AddLateKeyframe(const Frame* frame) {
       CopyOf(frame != nullptr ? *frame : *odometry_.FindReferenceFrame(id));
   updates_.push_back(
       {id + settings_.update_delay,
-       worker_.Do([this, keyframe = *std::move(late_keyframe_)]() mutable {
+       worker_.Submit([this, keyframe = *std::move(late_keyframe_)]() mutable {
          return mapper_.Add(std::move(keyframe));
        })});
   late_keyframe_.reset();
@@ -173,12 +174,12 @@ void Slam::AddLateKeyframe(const Frame* frame) {
 
 void Slam::SearchMap(const PreparedFrame& frame, int index) {
   if (search_.has_value()) return;
-  search_ = {
-      index + settings_.update_delay,
-      worker_.Do([this, lost = CopyOf(frame)] { return mapper_.Find(lost); })};
+  search_ = {index + settings_.update_delay,
+             worker_.Submit(
+                 [this, lost = CopyOf(frame)] { return mapper_.Find(lost); })};
 }
 
-void Slam::TakeUp(int frame, SlamFrame* result) {
+void Slam::ApplyPendingUpdates(int frame, SlamFrame* result) {
   while (!updates_.empty() && updates_.front().frame <= frame) {
     MapUpdate update;
     {
@@ -213,7 +214,8 @@ void Slam::Apply(MapUpdate update, SlamFrame* result) {
   result->loops += update.loops;
   result->joined += update.joined;
   result->map_ms += update.ms;
-  if (!update.trouble.empty()) result->trouble = update.trouble;
+  if (!update.error.empty()) result->error = update.error;
+  error_ = std::move(update.error);
   if (update.returned_to.has_value()) Adopt(*update.returned_to);
 }
 
@@ -232,9 +234,9 @@ void Slam::MoveNewer() {
 // The odometry has it where the map has it, seen from where the camera is.
 void Slam::Adopt(const FoundKeyframe& keyframe) {
   const Rigid3d map_from_cam = map_from_odom_ * odom_from_cam_;
-  odometry_.Adopt(keyframe.frame, OdometryId(keyframe.id),
-                  world_from_cam_ * map_from_cam.Inverse() *
-                      map_from_keyframe_.at(keyframe.id));
+  odometry_.InsertKeyframe(keyframe.frame, OdometryId(keyframe.id),
+                           world_from_cam_ * map_from_cam.Inverse() *
+                               map_from_keyframe_.at(keyframe.id));
 }
 
 void Slam::Finish() {
@@ -246,7 +248,7 @@ void Slam::Finish() {
   }
   if (search_.has_value()) search_->result.wait();
   search_.reset();
-  Apply(worker_.Do([this] { return mapper_.Finish(); }).get(), &unused);
+  Apply(worker_.Submit([this] { return mapper_.Finish(); }).get(), &unused);
 }
 
 Trajectory Slam::Path() const {

@@ -34,7 +34,7 @@ struct SlamFrame {
   int pairs = 0;
   int loops = 0;
   int joined = 0;
-  std::string trouble;
+  std::string error;
   double map_ms = 0.0;
   double wait_ms = 0.0;  // that it was late
 
@@ -45,7 +45,7 @@ struct SlamFrame {
 // Work behind, and the frame that it is due at. Not within Slam: clang 14 fails
 // there.
 template <typename Result>
-struct Due {
+struct PendingResult {
   int frame = 0;               // the one that takes it over
   std::future<Result> result;  // waited for there
 };
@@ -55,7 +55,7 @@ struct Due {
 // frames give the same bytes. One object serves one thread.
 class Slam {
  public:
-  // Throws InputError for settings that are of no use.
+  // Throws InputError for invalid settings.
   Slam(const OdometrySettings& odometry, const SlamSettings& settings,
        const Camera& camera);
 
@@ -90,13 +90,16 @@ class Slam {
   }
 
   // After Finish: covariances of its keyframes' poses in their order, [omega
-  // (rad), C (m)] as MotionGraph has them; empty if they cannot be told.
+  // (rad), C (m)] as PoseGraph has them; empty if they cannot be computed.
   std::vector<MotionMatrix> Covariances() const {
     return mapper_.Covariances();
   }
 
   // After Finish: the pairs it is held together by.
   const KeyframeGraph& graph() const { return mapper_.graph(); }
+
+  // After Finish: why poses of the map were not solved for at last, or empty.
+  const std::string& error() const { return error_; }
 
   // The poses of all frames that were not lost, map_from_cam, as known now.
   Trajectory Path() const;
@@ -124,7 +127,7 @@ class Slam {
   // the odometry has made of it.
   void AddLateKeyframe(const Frame* frame = nullptr);
   void SearchMap(const PreparedFrame& frame, int index);
-  void TakeUp(int frame, SlamFrame* result);
+  void ApplyPendingUpdates(int frame, SlamFrame* result);
   void Apply(MapUpdate update, SlamFrame* result);
   void MoveNewer();
   void Adopt(const FoundKeyframe& keyframe);
@@ -151,6 +154,7 @@ class Slam {
   int first_id_ = 0;       // of new keyframes
   int first_segment_ = 0;  // of new ones
 
+  std::string error_;  // at last
   std::vector<PathFrame> path_;
   // Keyframes that no update has taken in yet, the oldest first, by the one
   // that they were tracked against.
@@ -160,8 +164,8 @@ class Slam {
     Rigid3d ref_from_cam;
   };
   std::deque<Pending> pending_;
-  std::deque<Due<MapUpdate>> updates_;
-  std::optional<Due<std::optional<FoundKeyframe>>> search_;
+  std::deque<PendingResult<MapUpdate>> updates_;
+  std::optional<PendingResult<std::optional<FoundKeyframe>>> search_;
   Worker worker_;  // the last: it works with what is above
 };
 

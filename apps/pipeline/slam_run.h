@@ -12,7 +12,7 @@ namespace rgbd_pose {
 // that were known at the time, the trajectory those of the end.
 class SlamRun final : public SequenceRun {
  public:
-  // Throws InputError for settings that are of no use.
+  // Throws InputError for invalid settings.
   SlamRun(const OdometrySettings& odometry, const SlamSettings& settings,
           const Camera& camera, const RunInputs& inputs = {})
       : SequenceRun(inputs), slam_(odometry, settings, camera) {}

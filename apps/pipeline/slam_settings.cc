@@ -12,20 +12,19 @@ std::vector<Setting> SettingTable(SlamSettings* settings) {
       {"min_pair_share", kGroup,
        "share of the view (0 to 1) that two keyframes must have in common",
        &mapping->min_pair_share},
-      {"max_lookalikes", kGroup,
+      {"max_loop_candidates", kGroup,
        "keyframes that look alike and are asked whether they show the same "
        "place; 0: loops are found by pose alone",
-       &mapping->max_lookalikes},
+       &mapping->max_loop_candidates},
       {"drift", kGroup,
        "what a loop may correct: standard deviation as a share of the way and "
        "of the turns",
-       &mapping->graph.trust.drift},
+       &mapping->drift},
       {"window", kGroup,
        "keyframes whose poses are solved for at each new one; after a loop all "
        "are",
-       &mapping->graph.window},
-      {"update_delay", kGroup,
-       "frames after which what was found out behind a keyframe is taken up",
+       &mapping->window},
+      {"update_delay", kGroup, "latency of map updates, in frames",
        &settings->update_delay},
   };
 }

@@ -8,7 +8,7 @@
 
 namespace rgbd_pose {
 
-// What a Slam is made of beside its odometry.
+// What a Slam is made of besides its odometry.
 struct SlamSettings {
   MappingOptions mapping;  // which keyframes are joined to which
 

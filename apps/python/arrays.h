@@ -50,14 +50,15 @@ class NumberArray {
   bool is_float32_ = false;
 };
 
-// An object as an array; throws InputError, naming the argument, if it is none.
+// An object as an array; throws InputError, naming the argument, if it is
+// invalid.
 pybind11::array ToArray(const pybind11::object& object,
                         const std::string& name);
 
 // The shape of an array in words, as Python prints it: "(3, 4)".
 std::string ShapeInWords(const pybind11::array& array);
 
-// The rigid motion of a 4 x 4 matrix; throws InputError if it is none.
+// The rigid motion of a 4 x 4 matrix; throws InputError if it is invalid.
 Rigid3d RigidFromMatrix(const Eigen::Matrix4d& matrix,
                         const std::string& where);
 

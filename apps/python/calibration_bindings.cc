@@ -69,7 +69,7 @@ void BindResult(py::module_* module) {
   py::class_<Parameter>(*module, "CalibratedParameter",
                         "What became of one parameter of a camera.")
       .def_property_readonly(
-          "fate", [](const Parameter& self) { return ToString(self.fate); },
+          "status", [](const Parameter& self) { return ToString(self.status); },
           "fixed, not determined or determined")
       .def_readonly("before", &Parameter::before, "of the first camera")
       .def_readonly("found", &Parameter::found,

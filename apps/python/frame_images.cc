@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
+#include "frontend/image/gray_level.h"
 
 namespace py = pybind11;
 
@@ -47,12 +48,8 @@ cv::Mat GrayFrom(const py::object& object, const Camera& camera) {
     const uint8_t* from = data + y * array.strides(0);
     uint8_t* to = gray.ptr<uint8_t>(y);
     for (int x = 0; x < gray.cols; ++x, from += array.strides(1)) {
-      // 0.299 R + 0.587 G + 0.114 B, rounded as where PNG files are read.
-      to[x] = channels == 1
-                  ? *from
-                  : static_cast<uint8_t>((9797 * from[0] + 19234 * from[next] +
-                                          3737 * from[2 * next]) >>
-                                         15);
+      to[x] = channels == 1 ? *from
+                            : GrayLevel(from[0], from[next], from[2 * next]);
     }
   }
   return gray;

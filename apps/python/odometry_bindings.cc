@@ -45,19 +45,22 @@ std::string FrameInWords(const TrackedFrame& frame) {
 }
 
 void BindTrackedFrame(py::module_* module) {
-  py::class_<Edge>(*module, "Edge",
-                   "A measured motion between two frames, by their index.")
-      .def_readonly("ref", &Edge::ref, "index of the reference")
-      .def_readonly("cur", &Edge::cur, "index of the frame")
+  py::class_<RelativePose>(
+      *module, "RelativePose",
+      "A measured motion between two frames, by their index.")
+      .def_readonly("ref", &RelativePose::ref, "index of the reference")
+      .def_readonly("cur", &RelativePose::cur, "index of the frame")
       .def_property_readonly(
           "cur_from_ref",
-          [](const Edge& self) {
+          [](const RelativePose& self) {
             return ArrayFromMatrix(MatrixFromRigid(self.cur_from_ref));
           },
           "(4, 4): point_in_cur = cur_from_ref @ point_in_ref (m)")
       .def_property_readonly(
           "covariance",
-          [](const Edge& self) { return ArrayFromMatrix(self.covariance); },
+          [](const RelativePose& self) {
+            return ArrayFromMatrix(self.covariance);
+          },
           "(6, 6), as that of MotionEstimate");
   py::class_<TrackedFrame>(*module, "TrackedFrame",
                            "What became of one input frame.")
@@ -85,11 +88,12 @@ void BindTrackedFrame(py::module_* module) {
           },
           "(6, 6), of the motion since the reference frame: that of the first\n"
           "edge; None if there is none")
-      .def_readonly("edges", &TrackedFrame::edges,
-                    "list of Edge: the motions that it was tracked by; the "
-                    "first gives the\npose, a second, where the reference "
-                    "changes to an earlier one, leads to\nthe one that was "
-                    "left")
+      .def_readonly(
+          "edges", &TrackedFrame::edges,
+          "list of RelativePose: the motions that it was tracked by; the "
+          "first gives the\npose, a second, where the reference "
+          "changes to an earlier one, leads to\nthe one that was "
+          "left")
       .def_readonly("segment", &TrackedFrame::segment,
                     "frames of one segment hang together")
       .def_readonly("reference", &TrackedFrame::reference,
@@ -156,7 +160,7 @@ depth: (height, width), registered to the image: uint16 in raw units
     0.2 mm up to 13.1 m.
 timestamp: s, later than that of the frame before; None: 1/30 s after it.
 motion_guess: (4, 4) cur_from_prev since the frame before, if something else
-    tells; tried first, believed only as far as the images agree.
+knows; tried first, believed only as far as the images agree.
 depth_delay: how much later than the image depth was measured, s.
 
 Both images are copied: what becomes of the arrays afterwards does not matter.

@@ -47,7 +47,7 @@ Frame ReadFrame(const TumDataset& dataset, int index) {
   return CorrectDepth(dataset.camera(), dataset.Read(index));
 }
 
-// A recording of any kind. Each loop over it reads it anew.
+// A recording of any kind. Each loop over it reads it again.
 class Recording {
  public:
   Recording(SourceOptions options, std::string source, const FrameRange& range)
@@ -165,12 +165,12 @@ void BindAnyRecording(py::module_* module) {
   py::class_<Recording>(*module, "Recording", R"(
 A recording of any kind that the programs read: `for frame in recording` gives
 one Frame after the other, decoded as it is asked for with the GIL released.
-Each loop reads it anew.
+Each loop reads it again.
 
 path: a folder or a file.
 camera: a Camera, a preset or a calibration file; None: what the recording says
     itself.
-source: its kind; "auto": found by looking at it.
+source: its kind; "auto": detected.
 frames: part of it, such as "0-99", "100-400:2" or "2.5s-10s"; "": all.
 associations: file that pairs colour and depth images (TUM).
 depth_camera: the camera of a Kalibr file that took the depth images, which are

@@ -61,7 +61,7 @@ std::vector<KeyframePose> SharedSlam::Keyframes() {
   return poses;
 }
 
-std::vector<Edge> SharedSlam::Edges() {
+std::vector<RelativePose> SharedSlam::Edges() {
   const std::lock_guard<std::mutex> lock(mutex_);
   RequireFinished("edges");
   return slam_.Map().edges;

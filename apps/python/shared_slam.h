@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/pipeline/slam.h"
-#include "core/estimation/edge.h"
+#include "core/estimation/relative_pose.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
@@ -30,7 +30,7 @@ struct KeyframePose {
   int segment = 0;
   double timestamp = 0.0;
   Rigid3d map_from_cam;
-  std::optional<MotionMatrix> covariance;  // if it can be told
+  std::optional<MotionMatrix> covariance;  // if it can be computed
 };
 
 // A Slam for many threads, as SharedOdometry is an odometry.
@@ -58,7 +58,7 @@ class SharedSlam {
 
   // They throw InputError before Finish.
   std::vector<KeyframePose> Keyframes();
-  std::vector<Edge> Edges();
+  std::vector<RelativePose> Edges();
   void SaveMap(const std::string& folder);
 
  private:

@@ -87,7 +87,7 @@ void BindFrames(py::module_* module) {
                              "of these pairs: that join what was far apart")
       .def_property_readonly("joined", Taken(&SlamFrame::joined),
                              "segments that became one with another")
-      .def_property_readonly("trouble", Taken(&SlamFrame::trouble),
+      .def_property_readonly("error", Taken(&SlamFrame::error),
                              "why poses were not corrected; empty: they were")
       .def_property_readonly("map_ms", Taken(&SlamFrame::map_ms),
                              "time of that work, behind the tracking, ms")
@@ -112,7 +112,7 @@ void BindFrames(py::module_* module) {
           },
           "(6, 6), of a small rotation about the axes of the camera (rad) and "
           "of its\ncentre in the map (m); zero for the first of a segment, "
-          "None if it cannot\nbe told");
+          "None if it cannot\nbe computed");
 }
 
 void BindSlamClass(py::module_* module) {
@@ -159,9 +159,10 @@ threads wait for each other; objects do not share anything.
           "Writes the trajectory as TUM text.", py::arg("path"))
       .def("keyframes", &SharedSlam::Keyframes, no_gil,
            "After finish(): list of Keyframe, in the order of the map.")
-      .def("edges", &SharedSlam::Edges, no_gil,
-           "After finish(): list of Edge, the motions that hold the map "
-           "together; ref and\ncur are ids of keyframes.")
+      .def(
+          "edges", &SharedSlam::Edges, no_gil,
+          "After finish(): list of RelativePose, the motions that hold the map "
+          "together; ref and\ncur are ids of keyframes.")
       .def(
           "save_map",
           [](SharedSlam* self, const py::object& folder) {

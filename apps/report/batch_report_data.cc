@@ -1,9 +1,8 @@
-#include "apps/report/batch_report_data.h"
-
 #include <cmath>
 #include <filesystem>
 #include <vector>
 
+#include "apps/report/run_report_data.h"
 #include "apps/shell/csv_table.h"
 
 namespace rgbd_pose {

@@ -11,7 +11,7 @@
 namespace rgbd_pose {
 namespace {
 
-using Fate = CalibratedParameter::Fate;
+using Status = CalibratedParameter::Status;
 
 // Residuals are averaged over so many columns of the image.
 constexpr int kColumns = 16;
@@ -64,7 +64,7 @@ std::string ParameterTable(const CalibrationResult& result) {
   for (int k = 0; k < kCalibrationSize; ++k) {
     const CalibrationParameter& row = kCalibrationParameters[k];
     const CalibratedParameter& parameter = result.parameters[k];
-    if (parameter.fate == Fate::kDetermined) {
+    if (parameter.status == Status::kDetermined) {
       text += Format(
           "<tr><td>%s</td><td>%s</td><td>%s</td><td>%s</td>"
           "<td>%s</td><td>%s</td></tr>\n",
@@ -76,7 +76,7 @@ std::string ParameterTable(const CalibrationResult& result) {
       text += Format(
           "<tr class=\"no\"><td>%s</td><td>%.6g</td><td "
           "colspan=\"2\">%s</td><td>%s</td><td></td></tr>\n",
-          row.what, parameter.before, ToString(parameter.fate), row.unit);
+          row.what, parameter.before, ToString(parameter.status), row.unit);
     }
   }
   return text + "</table>\n";

@@ -1,5 +1,3 @@
-#include "apps/report/compare_report_data.h"
-
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
@@ -9,9 +7,9 @@
 
 #include "apps/compare/compare_paths.h"
 #include "apps/compare/compare_sweep_report.h"
-#include "apps/compare/compare_sweep_verdict.h"
 #include "apps/report/report_settings.h"
 #include "apps/report/report_thinning.h"
+#include "apps/report/run_report_data.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/input_error.h"
 

@@ -3,8 +3,6 @@
 #include <filesystem>
 #include <string>
 
-#include "apps/report/batch_report_data.h"
-#include "apps/report/compare_report_data.h"
 #include "apps/report/report_assets.h"
 #include "apps/report/run_report_data.h"
 #include "core/util/text_file.h"

@@ -7,18 +7,18 @@
 
 namespace rgbd_pose {
 
-std::string WriteRunPage(const std::filesystem::path& aside,
+std::string WriteRunPage(const std::filesystem::path& staging_dir,
                          const std::string& out, std::string* why_not) {
   if (!HasReportLibrary()) {
     return std::string("report in   ") + kNoReportLibrary + "\n";
   }
   try {
-    WriteRunReport(aside.string());
+    WriteRunReport(staging_dir.string());
     return "report in   " + out + "/report.html\n";
   } catch (const InputError& error) {
     *why_not = error.what();
     std::error_code ignored;
-    std::filesystem::remove(aside / "report.html", ignored);
+    std::filesystem::remove(staging_dir / "report.html", ignored);
     return "";
   }
 }

@@ -9,7 +9,7 @@ namespace rgbd_pose {
 // being the one it will have. Returns what a program prints of it: where it is,
 // or that this build writes none. A disk that is too full for the page costs no
 // other result: the part of it is removed, and `why_not` says so.
-std::string WriteRunPage(const std::filesystem::path& aside,
+std::string WriteRunPage(const std::filesystem::path& staging_dir,
                          const std::string& out, std::string* why_not);
 
 }  // namespace rgbd_pose

@@ -172,16 +172,17 @@ json LossCurve(const json& data, const std::string& metrics_file) {
   constexpr double kStep = 0.05;
   constexpr int kSteps = 160;
   const json& metrics = data.at("metrics");
-  const MEstimator* row =
-      FindMEstimator(SettingOf(data.at("settings"), "loss"));
+  const std::string name = SettingOf(data.at("settings"), "loss");
   const bool several =
       SettingOf(data.at("settings"), "cost").find('+') != std::string::npos;
-  if (row == nullptr || several || !metrics.contains("residuals")) {
+  if (FindMEstimator(name.substr(0, name.find('('))) == nullptr || several ||
+      !metrics.contains("residuals")) {
     return nullptr;
   }
   const int dimension = CommonDegrees(metrics, metrics_file);
   if (dimension == 0) return nullptr;
-  const std::unique_ptr<ceres::LossFunction> loss = row->MakeLoss(dimension);
+  const NamedLoss named = ParseLoss(name);
+  const std::unique_ptr<ceres::LossFunction> loss = named.Make(dimension);
   json weights = json::array();
   for (int i = 0; i <= kSteps; ++i) {
     const double x = i * kStep;
@@ -189,8 +190,8 @@ json LossCurve(const json& data, const std::string& metrics_file) {
     if (loss != nullptr) loss->Evaluate(x * x, rho);
     weights.push_back(std::round(std::min(rho[1], 1.0) * 1e4) / 1e4);
   }
-  return {{"name", row->name},
-          {"width", loss ? json(row->Width95(dimension)) : json(nullptr)},
+  return {{"name", named.row->name},
+          {"width", loss ? json(named.Width(dimension)) : json(nullptr)},
           {"limit", std::sqrt(ChiSquared99(dimension))},
           {"step", kStep},
           {"weights", weights}};

@@ -11,7 +11,7 @@
 namespace rgbd_pose {
 namespace {
 
-using Fate = CalibratedParameter::Fate;
+using Status = CalibratedParameter::Status;
 
 std::string FormatResiduals(const CalibrationResult& result) {
   std::string text = "u,v,before_u,before_v,after_u,after_v\n";
@@ -24,13 +24,13 @@ std::string FormatResiduals(const CalibrationResult& result) {
 
 }  // namespace
 
-const char* ToString(Fate fate) {
-  switch (fate) {
-    case Fate::kFixed:
+const char* ToString(Status status) {
+  switch (status) {
+    case Status::kFixed:
       return "fixed";
-    case Fate::kUndetermined:
+    case Status::kUndetermined:
       return "not determined";
-    case Fate::kDetermined:
+    case Status::kDetermined:
       return "determined";
   }
   return "";
@@ -49,8 +49,8 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
   for (int k = 0; k < kCalibrationSize; ++k) {
     const CalibrationParameter& row = kCalibrationParameters[k];
     const CalibratedParameter& parameter = result.parameters[k];
-    if (parameter.fate == Fate::kFixed) continue;
-    if (parameter.fate == Fate::kUndetermined) {
+    if (parameter.status == Status::kFixed) continue;
+    if (parameter.status == Status::kUndetermined) {
       undetermined += std::string(undetermined.empty() ? "" : ", ") + row.name;
       continue;
     }
@@ -102,7 +102,7 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result) {
     parameters.push_back({{"name", row.name},
                           {"what", row.what},
                           {"unit", row.unit},
-                          {"fate", ToString(parameter.fate)},
+                          {"status", ToString(parameter.status)},
                           {"before", parameter.before},
                           {"prior_sigma", parameter.prior},
                           {"found", parameter.found},
@@ -157,12 +157,13 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result) {
 
 void CalibrationOutput::WriteFile(const char* name,
                                   const std::string& content) const {
-  WriteFileAtomically((folder_.aside() / name).string(), content);
+  WriteFileAtomically((folder_.staging_dir() / name).string(), content);
 }
 
-void CalibrationOutput::Write(const CalibrationResult& result,
+void CalibrationOutput::Write(const RecordingCalibration& calibration,
                               const std::string& camera,
                               const std::string& flags, double seconds) {
+  const CalibrationResult& result = calibration.result;
   WriteFile("camera.yaml", FormatCameraFile(result.camera, camera));
   if (result.noise.has_value()) {
     WriteFile("depth_noise.yaml", FormatDepthNoiseFile(result.noise->model));
@@ -171,6 +172,8 @@ void CalibrationOutput::Write(const CalibrationResult& result,
   WriteFile("config.flags", flags);
   nlohmann::json metrics = {{"program", "rgbd_calibrate"},
                             {"seconds", seconds},
+                            {"stopped", calibration.stopped},
+                            {"damaged_frames", calibration.damaged},
                             {"calibration", CalibrationToJson(result)}};
   WriteFile("metrics.json", metrics.dump(2) + "\n");
 }

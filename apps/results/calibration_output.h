@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/calibration/calibration.h"
+#include "apps/calibration/calibration_passes.h"
 #include "apps/results/run_folder.h"
 
 namespace rgbd_pose {
@@ -15,7 +15,7 @@ std::string FormatCalibrationSummary(const CalibrationResult& result);
 nlohmann::json CalibrationToJson(const CalibrationResult& result);
 
 // What a parameter is determined to be, in words.
-const char* ToString(CalibratedParameter::Fate fate);
+const char* ToString(CalibratedParameter::Status status);
 
 // The folder of a calibration: camera.yaml, metrics.json, residuals.csv,
 // config.flags.
@@ -25,11 +25,13 @@ class CalibrationOutput {
   explicit CalibrationOutput(const std::string& path) : folder_(path) {}
 
   // Where files are until they are published, see RunFolder.
-  const std::filesystem::path& aside() const { return folder_.aside(); }
+  const std::filesystem::path& staging_dir() const {
+    return folder_.staging_dir();
+  }
 
   // Writes all files but the page. `camera`: the file or preset of the first
   // camera, whose layout the new file has.
-  void Write(const CalibrationResult& result, const std::string& camera,
+  void Write(const RecordingCalibration& calibration, const std::string& camera,
              const std::string& flags, double seconds);
 
   // A further file, by its name.

@@ -3,7 +3,6 @@
 #include <vector>
 
 #include "apps/results/error_tables.h"
-#include "apps/results/truth_alignment_report.h"
 #include "core/util/format.h"
 #include "core/util/units.h"
 
@@ -55,7 +54,7 @@ std::string FormatEvaluation(const EvaluationReport& report) {
   text += Format("ATE, %s (%d poses)\n", kAteDefinition, report.ate.count);
   text += FormatStatistics("position (m)", report.ate);
   text += Format("  %-30s%12.5f  at %.5f times the size\n", "  with scale",
-                 report.likeness.rest, report.likeness.truth_per_estimate);
+                 report.sim3.residual_rmse, report.sim3.truth_per_estimate);
   for (const RelativeEntry& entry : RelativeEntries(report)) {
     text += Format("RPE, %s (%d pairs)\n", entry.definition.c_str(),
                    entry.error.translation.count);
@@ -71,9 +70,23 @@ std::string FormatEvaluation(const EvaluationReport& report) {
   } else {
     text += Format("  %-30s%12s\n", "", "n/a");
   }
-  return text + FormatFrameErrors(report.rpe_frames) +
-         FormatTruthAlignment(report.truth_alignment,
-                              report.options.rpe_delta_seconds);
+  text += Format("\n%-32s%12s%12s%12s\n", "", "median", "90 %", "99 %");
+  for (size_t i = 0; i < report.rpe_frames.size(); ++i) {
+    const int frames = report.options.rpe_frames[i];
+    text +=
+        Format("RPE, fixed delta %d frame%s (%d pairs)\n", frames,
+               frames == 1 ? "" : "s", report.rpe_frames[i].translation.count);
+    text += FormatQuantiles(report.rpe_frames[i]);
+  }
+  text += Format("RPE, fixed delta %g s (%d pairs)\n",
+                 report.options.rpe_delta_seconds,
+                 report.rpe_seconds.translation.count);
+  text += FormatQuantiles(report.rpe_seconds);
+  if (report.consistency.has_value()) {
+    text += FormatConsistency(*report.consistency);
+  }
+  return text + FormatTruthAlignment(report.truth_alignment,
+                                     report.options.rpe_delta_seconds);
 }
 
 json EvaluationToJson(const EvaluationReport& report) {
@@ -88,10 +101,10 @@ json EvaluationToJson(const EvaluationReport& report) {
         {"count", report.ate.count},
         {"position_m", StatisticsToJson(report.ate)}}},
       {"with_scale",
-       {{"truth_per_estimate", report.likeness.truth_per_estimate},
-        {"position_rmse_m", report.likeness.rest}}},
+       {{"truth_per_estimate", report.sim3.truth_per_estimate},
+        {"position_rmse_m", report.sim3.residual_rmse}}},
       {"truth_from_estimate", PoseToJson(report.truth_from_estimate)},
-      {"rpe_frames", FrameErrorsToJson(report.rpe_frames)},
+      {"rpe_frames", json::array()},
       {"truth_alignment",
        TruthAlignmentToJson(report.truth_alignment,
                             report.options.rpe_delta_seconds)},
@@ -103,6 +116,18 @@ json EvaluationToJson(const EvaluationReport& report) {
         {"count", entry.error.translation.count},
         {"translation_m", StatisticsToJson(entry.error.translation)},
         {"rotation_deg", StatisticsToJson(InDegrees(entry.error.rotation))}};
+  }
+  for (size_t i = 0; i < report.rpe_frames.size(); ++i) {
+    const RelativePoseError& error = report.rpe_frames[i];
+    result["rpe_frames"].push_back(
+        {{"frames", report.options.rpe_frames[i]},
+         {"count", error.translation.count},
+         {"translation_mm",
+          StatisticsToJson(Scaled(error.translation, kMillimetresPerMetre))},
+         {"rotation_deg", StatisticsToJson(InDegrees(error.rotation))}});
+  }
+  if (report.consistency.has_value()) {
+    result["consistency"] = ConsistencyToJson(*report.consistency);
   }
   if (report.final_pose) {
     result["final_pose"] = {

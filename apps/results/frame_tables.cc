@@ -1,9 +1,15 @@
 #include "apps/results/frame_tables.h"
 
+#include <algorithm>
+
+#include "apps/shell/csv_table.h"
 #include "core/util/format.h"
+#include "core/util/input_error.h"
 
 namespace rgbd_pose {
 namespace {
+
+constexpr const char* kParts[] = {"wx", "wy", "wz", "cx", "cy", "cz"};
 
 std::string FormatPose(const Rigid3d& pose) {
   std::string text;
@@ -42,7 +48,6 @@ std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
 }
 
 std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames) {
-  constexpr const char* kParts[] = {"wx", "wy", "wz", "cx", "cy", "cz"};
   std::string text = "ref,cur,tx,ty,tz,qx,qy,qz,qw";
   for (int i = 0; i < 6; ++i) {
     for (int j = i; j < 6; ++j) {
@@ -51,7 +56,7 @@ std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames) {
   }
   text += "\n";
   for (const TrackedFrame& frame : frames) {
-    for (const Edge& edge : frame.edges) {
+    for (const RelativePose& edge : frame.edges) {
       text += Format("%d,%d", edge.ref, edge.cur);
       text += FormatPose(edge.cur_from_ref);
       for (int i = 0; i < 6; ++i) {
@@ -63,6 +68,67 @@ std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames) {
     }
   }
   return text;
+}
+
+std::vector<RelativePose> ReadEdges(const std::filesystem::path& folder) {
+  const CsvTable table = CsvTable::Read((folder / "edges.csv").string());
+  const auto column = [&](const std::string& name) {
+    return table.Numbers(name);
+  };
+  const std::vector<double> ref = column("ref"), cur = column("cur");
+  std::vector<std::vector<double>> pose, covariance;
+  for (const char* name : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
+    pose.push_back(column(name));
+  }
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) {
+      covariance.push_back(
+          column(std::string("cov_") + kParts[i] + "_" + kParts[j]));
+    }
+  }
+  std::vector<RelativePose> edges(table.size());
+  for (size_t row = 0; row < table.size(); ++row) {
+    RelativePose& edge = edges[row];
+    edge.ref = static_cast<int>(ref[row]);
+    edge.cur = static_cast<int>(cur[row]);
+    edge.cur_from_ref = Rigid3d(Eigen::Quaterniond(pose[6][row], pose[3][row],
+                                                   pose[4][row], pose[5][row]),
+                                {pose[0][row], pose[1][row], pose[2][row]});
+    size_t at = 0;
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j, ++at) {
+        edge.covariance(i, j) = edge.covariance(j, i) = covariance[at][row];
+      }
+    }
+  }
+  return edges;
+}
+
+std::vector<TrackedFrame> ReadFrames(const std::filesystem::path& folder) {
+  const CsvTable table = CsvTable::Read((folder / "frames.csv").string());
+  const std::vector<double> times = table.Numbers("timestamp");
+  const std::vector<std::string> status = table.Words("status");
+  std::vector<TrackedFrame> frames(table.size());
+  for (size_t i = 0; i < frames.size(); ++i) {
+    frames[i].index = static_cast<int>(i);
+    frames[i].timestamp = times[i];
+    for (const TrackingStatus known :
+         {TrackingStatus::kOk, TrackingStatus::kDegraded}) {
+      if (status[i] == ToString(known)) frames[i].status = known;
+    }
+  }
+  const int size = static_cast<int>(frames.size());
+  for (const RelativePose& edge : ReadEdges(folder)) {
+    if (std::min(edge.ref, edge.cur) < 0 ||
+        std::max(edge.ref, edge.cur) >= size) {
+      throw InputError((folder / "edges.csv").string() + ": the motion from " +
+                       std::to_string(edge.ref) + " to " +
+                       std::to_string(edge.cur) +
+                       " is none of the frames of frames.csv; repeat the run");
+    }
+    frames[edge.cur].edges.push_back(edge);
+  }
+  return frames;
 }
 
 }  // namespace rgbd_pose

@@ -79,12 +79,12 @@ std::vector<fs::path> FilesBelow(const fs::path& folder) {
 }  // namespace
 
 RunFolder::RunFolder(const std::string& path)
-    : path_(path), aside_(path_ / kAside) {
+    : path_(path), staging_dir_(path_ / kAside) {
   std::error_code error;
   is_new_ = fs::create_directories(path_, error);
   if (error) FailOnFolder(path_, error);
   Lock();
-  for (const auto& entry : fs::directory_iterator(aside_, error)) {
+  for (const auto& entry : fs::directory_iterator(staging_dir_, error)) {
     // Of a run that was killed.
     if (entry.path().filename() != kLock) fs::remove_all(entry, error);
   }
@@ -93,11 +93,11 @@ RunFolder::RunFolder(const std::string& path)
 // The last run to have the folder removes the lock; who opened it just before
 // that has to make a new one.
 void RunFolder::Lock() {
-  const fs::path file = aside_ / kLock;
+  const fs::path file = staging_dir_ / kLock;
   do {
     if (lock_ >= 0) close(lock_);
     std::error_code error;
-    fs::create_directories(aside_, error);
+    fs::create_directories(staging_dir_, error);
     if (error) FailOnFolder(path_, error);
     lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (lock_ < 0 && errno == ENOENT) continue;
@@ -114,11 +114,11 @@ void RunFolder::Lock() {
 
 RunFolder::~RunFolder() {
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(aside_, ignored)) {
+  for (const auto& entry : fs::directory_iterator(staging_dir_, ignored)) {
     if (entry.path().filename() != kLock) fs::remove_all(entry, ignored);
   }
-  fs::remove(aside_ / kLock, ignored);
-  fs::remove(aside_, ignored);
+  fs::remove(staging_dir_ / kLock, ignored);
+  fs::remove(staging_dir_, ignored);
   if (is_new_) fs::remove(path_, ignored);  // if it is empty
   close(lock_);
 }
@@ -127,12 +127,12 @@ void RunFolder::Publish() {
   try {
     for (const char* name : kResults) fs::remove(path_ / name);
     RemoveDebugImages(path_ / kImages);
-    for (const fs::path& file : FilesBelow(aside_)) {
+    for (const fs::path& file : FilesBelow(staging_dir_)) {
       if (file == kLock || file == kLast) continue;
       fs::create_directories((path_ / file).parent_path());
-      fs::rename(aside_ / file, path_ / file);
+      fs::rename(staging_dir_ / file, path_ / file);
     }
-    fs::rename(aside_ / kLast, path_ / kLast);
+    fs::rename(staging_dir_ / kLast, path_ / kLast);
   } catch (const fs::filesystem_error& error) {
     FailOnFolder(path_, error.code());
   }

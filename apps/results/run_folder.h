@@ -5,7 +5,7 @@
 
 namespace rgbd_pose {
 
-// The folder that a run leaves its results in. They are written aside, into a
+// The folder that a run leaves its results in. They are written first into a
 // folder in it, and take their places together when all are written: a run that
 // fails, whenever it does, leaves those of an earlier one as they were. Two
 // runs at once are refused.
@@ -21,7 +21,7 @@ class RunFolder {
   RunFolder& operator=(const RunFolder&) = delete;
 
   // Where to write the results meanwhile.
-  const std::filesystem::path& aside() const { return aside_; }
+  const std::filesystem::path& staging_dir() const { return staging_dir_; }
 
   // Moves all files to their places, metrics.json last, and removes what an
   // earlier run has left of these or other results, images in debug/ included.
@@ -32,7 +32,7 @@ class RunFolder {
   void Lock();
 
   const std::filesystem::path path_;
-  const std::filesystem::path aside_;
+  const std::filesystem::path staging_dir_;
   bool is_new_ = false;
   int lock_ = -1;
 };

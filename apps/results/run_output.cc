@@ -92,7 +92,7 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
           CloudOptions(source.camera().camera, settings.voxel, depth)),
       folder_(settings.output) {
   if (!settings.debug_images.empty()) {
-    std::filesystem::create_directory(aside() / kDebug);
+    std::filesystem::create_directory(staging_dir() / kDebug);
   }
   if (!settings.save_mesh.empty()) RequireMeshFile(settings.save_mesh);
   if (!settings.save_cloud.empty()) {
@@ -104,14 +104,15 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
 void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
   const TrackedFrame& tracked = run.frames().back();
   const bool is_drawn = drawn_.Contains(tracked.index);
-  const bool is_fused = cloud_.has_value() && cloud_->Wants(tracked);
+  const bool is_fused = cloud_.has_value() && cloud_->ShouldIntegrate(tracked);
   if (!is_drawn && !is_fused) return;
   const Camera& camera = source_.camera().camera;
   Frame seen = frame;
   seen.twist = run.odometry().last_twist();
   seen = FrameRectifier(camera).Rectify(seen);
   if (is_drawn) {
-    WriteDebugImage(aside() / kDebug, seen, tracked, camera, run.odometry());
+    WriteDebugImage(staging_dir() / kDebug, seen, tracked, camera,
+                    run.odometry());
   }
   if (is_fused) cloud_->Add(seen, tracked.world_from_cam);
 }
@@ -127,6 +128,8 @@ std::string RunOutput::Write(const RunResults& results,
                             {"dataset", dataset},
                             {"unmatched_color", source_.unmatched_color()},
                             {"dropped_frames", source_.dropped()},
+                            {"damaged_frames", results.damaged.size()},
+                            {"remarks", source_.remarks()},
                             {"peak_rss_mb", PeakMemoryMb()},
                             {"run", SummaryToJson(summary)},
                             {"residuals", ResidualsToJson(results.residuals)}};
@@ -155,7 +158,7 @@ std::string RunOutput::Write(const RunResults& results,
 }
 
 void RunOutput::WriteFile(const char* name, const std::string& content) const {
-  WriteFileAtomically((aside() / name).string(), content);
+  WriteFileAtomically((staging_dir() / name).string(), content);
 }
 
 // And a few of its points in the world that the page of the run shows. Returns

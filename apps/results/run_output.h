@@ -41,7 +41,9 @@ class RunOutput {
   void Add(const Frame& frame, const SequenceRun& run);
 
   // Where files are until they are published, see RunFolder.
-  const std::filesystem::path& aside() const { return folder_.aside(); }
+  const std::filesystem::path& staging_dir() const {
+    return folder_.staging_dir();
+  }
 
   // Writes all files but the page: `flags` into config.flags, `dataset`, the
   // program's name and `more` (an object) into metrics.json. `truth` may be

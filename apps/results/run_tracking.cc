@@ -8,7 +8,6 @@
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "apps/shell/stop_signal.h"
-#include "core/util/input_error.h"
 #include "frontend/image/depth_scale.h"
 
 namespace rgbd_pose {
@@ -23,32 +22,28 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
                         RunOutput* output) {
   const StopSignal signal;
   const size_t size = source->timestamps().size();
-  std::string stopped;
+  std::string by_signal;
   ProgressBar bar("tracking", static_cast<int>(size));
-  try {
-    TrackAll(source, threads, {run}, [&](const Frame& frame) {
-      if (run->frames().size() == 1) {
-        for (const std::string& doubt :
-             {source->camera().camera.Doubt(), DepthScaleWarning(frame)}) {
-          if (!doubt.empty()) LOG(WARNING) << doubt;
+  const std::string stopped =
+      TrackAll(source, threads, {run}, [&](const Frame& frame) {
+        if (run->frames().size() == 1) {
+          for (const std::string& doubt :
+               {source->camera().camera.SanityWarning(),
+                DepthScaleWarning(frame)}) {
+            if (!doubt.empty()) LOG(WARNING) << doubt;
+          }
         }
-      }
-      output->Add(frame, *run);
-      bar.Update(static_cast<int>(run->frames().size()));
-      stopped = signal.name();
-      return stopped.empty();
-    });
-  } catch (const InputError& error) {
-    // A recording can be mended and tracked again; what a camera saw cannot.
-    const bool is_camera = size == 0;
-    if (!is_camera || run->frames().empty()) throw;
-    stopped = error.what();
-  }
-  for (const std::string& line : LeftOut(*source)) LOG(WARNING) << line;
-  return run->frames().size() == size ? "" : stopped;
+        output->Add(frame, *run);
+        bar.Update(static_cast<int>(run->frames().size()));
+        by_signal = signal.name();
+        return by_signal.empty();
+      });
+  Warn(DroppedFrames(*source, run->damaged()));
+  if (!stopped.empty()) return stopped;
+  return run->frames().size() + run->damaged().size() == size ? "" : by_signal;
 }
 
-void WarnOf(const RunResults& results) {
+void LogWarnings(const RunResults& results) {
   if (!results.no_evaluation.empty()) {
     LOG(WARNING) << "no errors: " << results.no_evaluation;
   }
@@ -57,7 +52,7 @@ void WarnOf(const RunResults& results) {
 }
 
 int ExitCodeOf(const std::string& program, const RunResults& results,
-               const std::string& folder, const RunFlaws& flaws) {
+               const std::string& folder, const RunIssues& flaws) {
   if (!flaws.no_report.empty()) {
     std::fprintf(stderr, "%s: %s; all other results are in %s\n",
                  program.c_str(), flaws.no_report.c_str(), folder.c_str());

@@ -9,25 +9,24 @@
 namespace rgbd_pose {
 
 // What keeps a run from being whole though it has results.
-struct RunFlaws {
+struct RunIssues {
   std::string stopped;    // why it ended before the last frame
   std::string no_report;  // why there is no page
 };
 
 // Tracks the frames of a source, with a progress bar and the warnings that
 // people should see. Returns why it ended before the last frame, or nothing: a
-// signal (StopSignal), or a camera that gave no further frame. Throws
-// InputError for a recording that cannot be read, and for a camera that gave no
-// frame at all.
+// signal (StopSignal), a source that gave no further frame, too many damaged
+// ones. Throws InputError where there was no frame at all.
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
                         RunOutput* output);
 
 // Says on stderr what the errors of a run tell of its input.
-void WarnOf(const RunResults& results);
+void LogWarnings(const RunResults& results);
 
 // What the program exits with once all is written, with one line on stderr
 // where that is not kExitOk.
 int ExitCodeOf(const std::string& program, const RunResults& results,
-               const std::string& folder, const RunFlaws& flaws);
+               const std::string& folder, const RunIssues& flaws);
 
 }  // namespace rgbd_pose

@@ -35,7 +35,7 @@ std::string FormatPath(const std::vector<SlamFrame>& frames, PoseOf pose_of) {
 
 // g2o's error of an edge is [t, vec q] of measured^-1 * true, ref_from_cur; of
 // ours it is [R c, -omega / 2] with R of cur_from_ref.
-MotionMatrix G2oInformation(const Edge& edge) {
+MotionMatrix G2oInformation(const RelativePose& edge) {
   MotionMatrix J = MotionMatrix::Zero();
   J.topRightCorner<3, 3>() = edge.cur_from_ref.rotation.toRotationMatrix();
   J.bottomLeftCorner<3, 3>() = -0.5 * Eigen::Matrix3d::Identity();
@@ -108,7 +108,7 @@ std::string FormatG2o(const KeyframeMap& map) {
       text += Format("FIX %d\n", keyframe.id);
     }
   }
-  for (const Edge& edge : map.edges) {
+  for (const RelativePose& edge : map.edges) {
     text += Format("EDGE_SE3:QUAT %d %d", edge.ref, edge.cur) +
             FormatPose(edge.cur_from_ref.Inverse(), " ");
     const MotionMatrix information = G2oInformation(edge);
@@ -123,21 +123,26 @@ std::string FormatG2o(const KeyframeMap& map) {
 nlohmann::json SlamToJson(const Slam& slam,
                           const std::vector<SlamFrame>& frames) {
   const KeyframeGraph& graph = slam.graph();
-  int tracked = 0, pairs = 0, loops = 0, joined = 0, dropped = 0;
+  int tracked = 0, pairs = 0, loops = 0, joined = 0, dropped = 0, unsolved = 0;
+  std::string error;
   double map_ms = 0.0;
   std::vector<double> waits, works;
   for (const SlamFrame& frame : frames) {
     joined += frame.joined;
+    unsolved += !frame.error.empty();
+    if (!frame.error.empty()) error = frame.error;
     map_ms += frame.map_ms;
     waits.push_back(frame.wait_ms);
     if (frame.map_ms > 0.0) works.push_back(frame.map_ms);
   }
+  unsolved += !slam.error().empty();
+  if (!slam.error().empty()) error = slam.error();
   nlohmann::json keyframes = nlohmann::json::array();
   for (int at = 0; at < graph.size(); ++at) {
-    dropped += graph.IsDropped(at);
+    dropped += graph.IsRemoved(at);
     const Eigen::Vector3d& t = graph.pose(at).translation;
     keyframes.push_back(
-        {t.x(), t.y(), t.z(), graph.segment(at), graph.IsDropped(at)});
+        {t.x(), t.y(), t.z(), graph.segment(at), graph.IsRemoved(at)});
   }
   nlohmann::json edges = nlohmann::json::array();
   for (const KeyframePair& pair : graph.pairs()) {
@@ -155,7 +160,9 @@ nlohmann::json SlamToJson(const Slam& slam,
           {"pairs", pairs},
           {"loops", loops},
           {"segments_joined", joined},
-          {"slack", graph.slack()},
+          {"proportional_error", graph.proportional_error()},
+          {"unsolved", unsolved},
+          {"error", error},
           {"map_ms_per_frame", frames.empty() ? 0.0 : map_ms / frames.size()},
           {"map_ms_per_keyframe", works.empty() ? 0.0 : Median(works)},
           {"wait_ms_p99", waits.empty() ? 0.0 : Quantile(waits, 0.99)},
@@ -165,9 +172,16 @@ nlohmann::json SlamToJson(const Slam& slam,
           {"graph_pairs", edges}};
 }
 
+std::string SlamWarning(const nlohmann::json& slam) {
+  const int unsolved = slam.at("unsolved").get<int>();
+  if (unsolved == 0) return "";
+  return Format("poses of the map were not solved for %d times, at last as: %s",
+                unsolved, slam.at("error").get<std::string>().c_str());
+}
+
 std::string FormatSlamSummary(const nlohmann::json& slam) {
   return Format(
-             "map         %d keyframes (%d more made way), %d pairs, %d "
+             "map         %d keyframes (%d more removed), %d pairs, %d "
              "loops, %d segments joined\n",
              slam.at("keyframes").get<int>(),
              slam.at("keyframes_dropped").get<int>(),

@@ -28,6 +28,9 @@ std::string FormatG2o(const KeyframeMap& map);
 nlohmann::json SlamToJson(const Slam& slam,
                           const std::vector<SlamFrame>& frames);
 
+// One line on what the map could not be made of, or empty.
+std::string SlamWarning(const nlohmann::json& slam);
+
 // What the program prints of it.
 std::string FormatSlamSummary(const nlohmann::json& slam);
 

@@ -1,8 +1,7 @@
-#include "apps/results/truth_alignment_report.h"
-
 #include <cmath>
 
 #include "apps/results/error_tables.h"
+#include "apps/results/evaluation_report.h"
 #include "core/geometry/twist.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
@@ -53,7 +52,7 @@ Eigen::Vector3d RotationVectorOf(const TruthFixing& fixing) {
 std::string FormatTruthAlignment(const TruthAlignment& alignment,
                                  double rpe_delta_seconds) {
   const std::string head =
-      "\nTruth shifted in time and fixed to the camera anew";
+      "\nTruth shifted in time and fixed to the camera again";
   if (!alignment.skipped.empty()) {
     return head + ": not estimated; " + alignment.skipped + "\n";
   }

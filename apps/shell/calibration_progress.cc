@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 
 namespace rgbd_pose {
@@ -13,7 +14,7 @@ RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
                                            int threads) {
   std::unique_ptr<ProgressBar> bar;
   int shown = 0;
-  return CalibrateRecording(
+  RecordingCalibration calibration = CalibrateRecording(
       sequence, odometry, slam, settings, threads,
       [&](int pass, int done, int all) {
         if (pass != shown) {
@@ -24,6 +25,8 @@ RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
         }
         bar->Update(done);
       });
+  Warn(calibration.left_out);
+  return calibration;
 }
 
 }  // namespace rgbd_pose

@@ -40,7 +40,7 @@ CsvTable CsvTable::Read(const std::string& path) {
     throw InputError(path + ":" + std::to_string(number) + ": " +
                      std::to_string(table.rows_.back().size()) +
                      " cells under " + std::to_string(table.columns_.size()) +
-                     " column names; write the file anew");
+                     " column names; write the file again");
   }
   return table;
 }
@@ -52,7 +52,7 @@ bool CsvTable::Has(const std::string& column) const {
 std::vector<std::string> CsvTable::Words(const std::string& column) const {
   if (!Has(column)) {
     throw InputError(path_ + ":1: no column '" + column +
-                     "'; write the file anew with this version");
+                     "'; write the file again with this version");
   }
   const size_t place =
       std::find(columns_.begin(), columns_.end(), column) - columns_.begin();

@@ -26,7 +26,7 @@ class FrameSelection {
     int step = 1;
   };
 
-  // One item of the list; nothing if it is none.
+  // One item of the list; nothing if it is invalid.
   static std::optional<Range> ParseRange(std::string_view text);
 
   std::vector<Range> ranges_;

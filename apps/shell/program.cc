@@ -73,7 +73,7 @@ int Run(int argc, char** argv, const ProgramInfo& info,
     ReadFlags({argv + 1, argv + argc});
     FLAGS_logtostderr = true;
     google::InitGoogleLogging(argv[0]);
-    // A file that grows beyond a limit is told as a full disk is.
+    // A file that grows beyond a limit is reported as a full disk is.
     std::signal(SIGXFSZ, SIG_IGN);
     const int exit_code = body();
     if (std::fflush(stdout) != 0) {
@@ -121,6 +121,10 @@ std::string FormatFlagFile(const ProgramInfo& info) {
     }
   }
   return text;
+}
+
+void Warn(const std::vector<std::string>& lines) {
+  for (const std::string& line : lines) LOG(WARNING) << line;
 }
 
 void RequireFlag(const std::string& name, const std::string& value) {

@@ -15,7 +15,7 @@ enum ExitCode {
   kExitTrackingFailed = 3,  // ran, but the result is not usable
   kExitSomeFailed = 4,      // some items of a batch failed
   kExitCameraKept = 5,      // no better camera was found than the one there is
-  kExitStopped = 6,         // by a signal, or a camera that gave no more
+  kExitStopped = 6,         // by a signal, or no frame could be read
 };
 
 // Flags shown together in --help.
@@ -43,6 +43,9 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
 
 // All flags of the program's groups as a file for --flagfile.
 std::string FormatFlagFile(const ProgramInfo& info);
+
+// Warns on stderr, a line each.
+void Warn(const std::vector<std::string>& lines);
 
 // Stops with kExitUsage and one line where a flag that must be given is empty.
 // Throws UsageError, which RunProgram turns into that exit.

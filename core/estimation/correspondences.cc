@@ -5,12 +5,19 @@
 namespace rgbd_pose {
 namespace {
 
+// No camera measures numbers (px, m) beyond these, and squares of residuals
+// stay finite within them. NaN is not within.
+constexpr double kHuge = 1e6;
+constexpr double kTiny = 1e-9;
+
+bool IsPlace(double value) { return std::abs(value) < kHuge; }
+bool IsPositive(double value) { return value > kTiny && value < kHuge; }
+
 bool IsUsable(const Observation& o) {
-  const bool finite = std::isfinite(o.u) && std::isfinite(o.v) &&
-                      std::isfinite(o.depth) && std::isfinite(o.sigma_px) &&
-                      std::isfinite(o.sigma_depth) && o.normal.allFinite();
-  return finite && o.depth >= 0.0 && o.sigma_px > 0.0 &&
-         (o.depth == 0.0 || o.sigma_depth > 0.0);
+  const bool has_depth = IsPositive(o.depth) && IsPositive(o.sigma_depth);
+  return IsPlace(o.u) && IsPlace(o.v) && IsPositive(o.sigma_px) &&
+         (o.normal.array().abs() < kHuge).all() &&
+         (has_depth || (o.depth == 0.0 && IsPlace(o.sigma_depth)));
 }
 
 }  // namespace

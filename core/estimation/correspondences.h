@@ -31,9 +31,10 @@ class Correspondences {
   // Only fx, fy, cx, cy of the camera count: pixels are undistorted.
   explicit Correspondences(const Camera& camera) : camera_(camera) {}
 
-  // Adds a match if all of its numbers are finite, its sigmas are positive
-  // (that of a depth only where there is a depth) and its depths not negative;
-  // counts it as rejected otherwise. Returns whether it was added.
+  // Adds a match if all of its numbers are finite and below a million, its
+  // sigmas are positive (that of a depth only where there is a depth) and its
+  // depths not negative, none of these below 1e-9; counts it as rejected
+  // otherwise. Returns whether it was added.
   bool Add(const Observation& prev, const Observation& cur);
 
   // Takes all matches out; keeps the memory and the camera.

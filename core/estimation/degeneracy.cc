@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/util/format.h"
 
@@ -12,7 +13,7 @@ namespace rgbd_pose {
 namespace {
 
 // How many times over a rotation must be known better than noise feigns it.
-constexpr double kFeignedMargin = 3.0;
+constexpr double kSpuriousMargin = 3.0;
 
 // Of a Hessian scaled to a diagonal of ones: below this it is singular.
 constexpr double kSingular = 1e-12;
@@ -99,7 +100,7 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   const WeakDirection translation = WeakestOf(covariance, 3);
   const double known = 1.0 / (rotation.deviation * rotation.deviation);
   const bool is_rotation = rotation.deviation > max_standard_deviation ||
-                           known < kFeignedMargin * feigned_information;
+                           known < kSpuriousMargin * feigned_information;
   if (is_rotation || translation.deviation > max_standard_deviation) {
     const WeakDirection& weak = is_rotation ? rotation : translation;
     result.is_degenerate = true;
@@ -108,11 +109,60 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
     return result;
   }
   result.inverse = covariance;
+  result.weakest_rotation = known * rotation.direction;
+  result.known_rotation = known;
   return result;
 }
 
-double FeignedInformation(const Correspondences& matches,
-                          const std::vector<double>& weights) {
+void JudgeWeakestRotation(double share, double feigned_information,
+                          double max_standard_deviation, Degeneracy* result) {
+  const double known = share * result->known_rotation;
+  const double least = 1.0 / (max_standard_deviation * max_standard_deviation);
+  if (known >= std::max(least, kSpuriousMargin * feigned_information)) return;
+  result->is_degenerate = true;
+  MotionVector rotation = result->weakest_rotation;
+  rotation.tail<3>().setZero();  // in another unit
+  result->reason = Describe(rotation, 1.0 / std::sqrt(known));
+}
+
+double SupportedShare(const Correspondences& matches,
+                      const MotionEstimate& estimate,
+                      const MotionVector& change) {
+  const Camera& camera = matches.camera();
+  const Rigid3d& motion = estimate.cur_from_prev;
+  const Eigen::Vector3d turn = change.head<3>();
+  const Eigen::Vector3d shift = motion.rotation * change.tail<3>();
+  double total = 0.0, agreeing = 0.0;
+  std::array<double, 3> most = {};  // the largest first
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const auto& [prev, cur] = matches[i];
+    if (estimate.weights[i] == 0.0 || !(prev.depth + cur.depth > 0.0)) continue;
+    const Eigen::Vector3d point =
+        cur.depth > 0.0 ? matches.Point(cur) : motion * matches.Point(prev);
+    const Eigen::Vector3d moved = turn.cross(point) - shift;
+    const double z = point.z();
+    const Eigen::Vector2d across =
+        moved.head<2>() - moved.z() / z * point.head<2>();
+    const double px = std::hypot(prev.sigma_px, cur.sigma_px) * z / camera.fx;
+    double known = across.squaredNorm() / (px * px);
+    if (prev.depth > 0.0 && cur.depth > 0.0) {
+      known += std::pow(moved.z(), 2) /
+               (std::pow(prev.sigma_depth, 2) + std::pow(cur.sigma_depth, 2));
+    }
+    known *= estimate.weights[i];
+    total += known;
+    if (!estimate.is_inlier[i]) continue;
+    agreeing += known;
+    for (double& value : most) {
+      if (known > value) std::swap(known, value);
+    }
+  }
+  const double supported = agreeing - most[0] - most[1] - most[2];
+  return total > 0.0 ? std::max(supported, 0.0) / total : 1.0;
+}
+
+double SpuriousInformation(const Correspondences& matches,
+                           const std::vector<double>& weights) {
   const double focal = matches.camera().fx;
   double sum = 0.0;
   for (size_t i = 0; i < matches.size(); ++i) {

@@ -4,13 +4,16 @@
 #include <string>
 #include <utility>
 
+#include "core/estimation/covariance_accumulator.h"
 #include "core/estimation/degeneracy.h"
 #include "core/estimation/minimiser.h"
-#include "core/estimation/term_shares.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
 namespace {
+
+// Where more matches agree, those that do not are few or but large noise.
+constexpr double kHardlyWrong = 0.95;
 
 std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
                                 std::unique_ptr<ceres::LossFunction> loss) {
@@ -23,9 +26,9 @@ std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
 }  // namespace
 
 // The work of Estimate and its memory.
-class Estimator::Solve {
+class Estimator::Impl {
  public:
-  Solve(const EstimatorOptions& options, std::vector<RobustCost> costs)
+  Impl(const EstimatorOptions& options, std::vector<RobustCost> costs)
       : options_(options),
         terms_(std::move(costs)),
         minimiser_(options_, &terms_) {
@@ -33,7 +36,7 @@ class Estimator::Solve {
     if (!problem.empty()) throw InputError("estimator: " + problem);
   }
 
-  void Run(const PairData& pair, const Rigid3d& guess,
+  void Run(const FramePair& pair, const Rigid3d& guess,
            MotionEstimate* estimate) {
     Reset(pair, guess, estimate);
     if (terms_.num_used() < kMinMatches) {
@@ -42,7 +45,7 @@ class Estimator::Solve {
           std::to_string(out_->num_used) + " usable matches, 3 are needed";
       if (matches_->rejected() > 0) {
         out_->reason += "; " + std::to_string(matches_->rejected()) +
-                        " rejected as not finite";
+                        " rejected as not finite or out of range";
       }
       return;
     }
@@ -58,7 +61,7 @@ class Estimator::Solve {
   }
 
  private:
-  void Reset(const PairData& pair, const Rigid3d& guess,
+  void Reset(const FramePair& pair, const Rigid3d& guess,
              MotionEstimate* estimate) {
     static const Correspondences kNone;
     matches_ = pair.matches != nullptr ? pair.matches : &kNone;
@@ -75,7 +78,7 @@ class Estimator::Solve {
     out_->initial_cost = 0.0;
     out_->final_cost = 0.0;
     out_->iterations = 0;
-    PairData data = pair;
+    FramePair data = pair;
     data.threads = options_.threads;
     terms_.Bind(data, guess);
     out_->num_used = terms_.num_used();
@@ -89,7 +92,7 @@ class Estimator::Solve {
     const NormalEquations sum =
         terms_.LineariseWithoutLosses(DerivativesAt(guess));
     const Degeneracy degeneracy =
-        FindDegeneracy(sum.hessian, FeignedInformation(*matches_, {}),
+        FindDegeneracy(sum.hessian, SpuriousInformation(*matches_, {}),
                        options_.max_standard_deviation);
     out_->status = degeneracy.is_degenerate ? EstimateStatus::kDegenerate
                                             : EstimateStatus::kNotConverged;
@@ -104,9 +107,15 @@ class Estimator::Solve {
     const NormalEquations sum = shares_.Linearise(terms_, motion);
     out_->initial_cost = terms_.Linearise(DerivativesAt(guess)).cost;
     out_->final_cost = sum.cost;
-    const Degeneracy degeneracy = FindDegeneracy(
-        sum.hessian, FeignedInformation(*matches_, out_->weights),
-        options_.max_standard_deviation);
+    const double feigned = SpuriousInformation(*matches_, out_->weights);
+    Degeneracy degeneracy =
+        FindDegeneracy(sum.hessian, feigned, options_.max_standard_deviation);
+    if (!degeneracy.is_degenerate &&
+        out_->num_inliers < kHardlyWrong * terms_.num_used()) {
+      JudgeWeakestRotation(
+          SupportedShare(*matches_, *out_, degeneracy.weakest_rotation),
+          feigned, options_.max_standard_deviation, &degeneracy);
+    }
     if (degeneracy.is_degenerate) {
       out_->status = EstimateStatus::kDegenerate;
       out_->reason = degeneracy.reason;
@@ -137,9 +146,9 @@ class Estimator::Solve {
   }
 
   const EstimatorOptions options_;
-  RobustTerms terms_;
+  RobustProblem terms_;
   Minimiser minimiser_;
-  TermShares shares_;
+  CovarianceAccumulator shares_;
 
   // Of the call at hand.
   const Correspondences* matches_ = nullptr;
@@ -148,7 +157,7 @@ class Estimator::Solve {
 
 Estimator::Estimator(const EstimatorOptions& options,
                      std::vector<RobustCost> costs)
-    : solve_(std::make_unique<Solve>(options, std::move(costs))) {}
+    : impl_(std::make_unique<Impl>(options, std::move(costs))) {}
 
 Estimator::Estimator(const EstimatorOptions& options,
                      std::unique_ptr<MotionCost> cost,
@@ -167,11 +176,11 @@ MotionEstimate Estimator::Estimate(const Correspondences& matches,
   return estimate;
 }
 
-void Estimator::Estimate(const PairData& pair, const Rigid3d& guess,
+void Estimator::Estimate(const FramePair& pair, const Rigid3d& guess,
                          MotionEstimate* estimate) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
-  solve_->Run(pair, guess, estimate);
+  impl_->Run(pair, guess, estimate);
   estimate->solve_ms =
       std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }

@@ -9,7 +9,7 @@
 #include "core/estimation/estimator_options.h"
 #include "core/estimation/motion_cost.h"
 #include "core/estimation/motion_estimate.h"
-#include "core/estimation/robust_terms.h"
+#include "core/estimation/robust_problem.h"
 
 namespace rgbd_pose {
 
@@ -28,20 +28,20 @@ class Estimator {
   Estimator(Estimator&&) noexcept;
   Estimator& operator=(Estimator&&) noexcept;
 
-  // `guess` is where the solver starts; `prior` is what costs that use one
-  // pull towards. Bad data is a status, never an abort.
+  // `guess` is where the solver starts; `prior` is that of costs
+  // that use one. Bad data is a status, never an abort.
   MotionEstimate Estimate(const Correspondences& matches,
                           const Rigid3d& guess = Rigid3d(),
                           const MotionPrior* prior = nullptr);
 
   // The same of whatever the two frames share, into an estimate whose memory is
   // used again. The options say how many threads, not the pair.
-  void Estimate(const PairData& pair, const Rigid3d& guess,
+  void Estimate(const FramePair& pair, const Rigid3d& guess,
                 MotionEstimate* estimate);
 
  private:
-  class Solve;
-  std::unique_ptr<Solve> solve_;
+  class Impl;
+  std::unique_ptr<Impl> impl_;
 };
 
 }  // namespace rgbd_pose

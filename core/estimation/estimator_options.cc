@@ -15,7 +15,7 @@ std::string EstimatorOptions::Check() const {
     return "max_association_rounds must be at least 1";
   }
   if (threads < 1) return "threads must be at least 1";
-  if (!(settled_within > 0.0)) return "settled_within must be positive";
+  if (!(step_tolerance > 0.0)) return "step_tolerance must be positive";
   if (!(max_standard_deviation > 0.0)) {
     return "max_standard_deviation must be positive";
   }

@@ -35,12 +35,12 @@ struct EstimatorOptions {
   int max_scale_rounds = 10;
 
   // How often costs whose residuals or weights depend on the motion choose them
-  // anew in the last stage, where the motion goes on changing.
+  // again in the last stage, where the motion goes on changing.
   int max_association_rounds = 3;
 
   // Where residuals are chosen at every step, one that moves by less (rad and
   // m) is the last.
-  double settled_within = 1e-6;
+  double step_tolerance = 1e-6;
 
   // Of the solver, in the last stage; the stages before take at most two.
   int max_iterations = 50;

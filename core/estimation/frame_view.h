@@ -22,6 +22,22 @@ struct ImageView {
   Pixel At(int column, int row) const { return data[row * stride + column]; }
 };
 
+// Parts of an image, in square cells.
+struct CellMask {
+  static constexpr int kCellPx = 16;  // side of a cell, px
+
+  int columns = 0;  // of cells
+  // Whether each is in the mask, row by row; empty: none is.
+  std::vector<bool> cells;
+
+  // Of a pixel within the image.
+  bool Contains(double u, double v) const {
+    const size_t at =
+        static_cast<int>(v / kCellPx) * columns + static_cast<int>(u / kCellPx);
+    return at < cells.size() && cells[at];
+  }
+};
+
 // What a cost may see of an RGB-D frame, without OpenCV. The images must stay
 // as they are for as long as a cost is bound to them.
 struct FrameView {
@@ -46,6 +62,10 @@ struct FrameView {
   // When rows were exposed. Direct costs move the look-ups in a current frame
   // by it; a previous one has to be of one moment (FrameRectifier).
   FrameTiming timing;
+
+  // What moves by itself in levels[0]: direct costs do not look there. Null:
+  // nothing is known to.
+  const CellMask* moving = nullptr;
 
   // Metres at a whole pixel of levels[0]; 0 where there is none: sensors mark
   // that by 0 or by the largest value.

@@ -1,15 +1,7 @@
 #pragma once
 
-#include <ceres/cost_function.h>
-#include <ceres/problem.h>
 #include <ceres/sized_cost_function.h>
 
-#include <memory>
-#include <vector>
-
-#include "core/estimation/edge.h"
-#include "core/estimation/motion_cost.h"
-#include "core/estimation/motion_prior.h"
 #include "core/estimation/pose_pair.h"
 
 // What a graph of poses hands to Ceres: residual blocks in the parameters of
@@ -18,8 +10,8 @@
 namespace rgbd_pose {
 
 // S with S^T S = information, a positive semi-definite matrix; nothing (all
-// NaN) if it is none.
-MotionMatrix SquareRootOf(const MotionMatrix& information);
+// NaN) if it is invalid.
+MotionMatrix SqrtInformation(const MotionMatrix& information);
 
 // A measured motion between two poses as six rows,
 //
@@ -27,15 +19,16 @@ MotionMatrix SquareRootOf(const MotionMatrix& information);
 //
 // S^T S = covariance^-1. 2 vec q is the rotation Exp(omega) = R R_m^T to first
 // order, and grows up to a half turn, where omega does.
-struct EdgeTerm {
-  MotionPose<double> measured;
+struct RelativePoseErrorTerm {
+  RotationAndCenter<double> measured;
   MotionMatrix root;  // S
 
-  static EdgeTerm Of(const Rigid3d& cur_from_ref, const MotionMatrix& root);
+  static RelativePoseErrorTerm Of(const Rigid3d& cur_from_ref,
+                                  const MotionMatrix& root);
 
-  // For any scalar, below a half turn: the oracle.
+  // For any scalar, below a half turn: to check the other one by.
   template <typename T>
-  void Residual(const MotionPose<T>& motion, T* r) const {
+  void Residual(const RotationAndCenter<T>& motion, T* r) const {
     using std::sqrt;
     const Eigen::Matrix<T, 3, 3> E = motion.R * measured.R.transpose();
     // 4 w = 2 sqrt(1 + trace), vee(E - E^T) = 4 w vec q.
@@ -59,43 +52,17 @@ struct EdgeTerm {
 // An edge with its hand-written Jacobian. The origins must outlive it.
 class EdgeBlock final : public ceres::SizedCostFunction<6, 6, 6> {
  public:
-  EdgeBlock(const EdgeTerm& term, const MotionOrigin* ref,
-            const MotionOrigin* cur)
+  EdgeBlock(const RelativePoseErrorTerm& term, const LinearizationPoint* ref,
+            const LinearizationPoint* cur)
       : term_(term), ref_(ref), cur_(cur) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
                 double** jacobians) const override;
 
  private:
-  const EdgeTerm term_;
-  const MotionOrigin* const ref_;
-  const MotionOrigin* const cur_;
-};
-
-// The same by automatic differentiation.
-ceres::CostFunction* MakeEdgeOracle(const EdgeTerm& term,
-                                    const MotionOrigin* ref,
-                                    const MotionOrigin* cur);
-
-// A block of a MotionCost, which knows the motion between two frames, as one of
-// two poses that move. All must outlive it.
-class LiveBlock final : public ceres::CostFunction {
- public:
-  // `block`: in the six parameters about `motion`, the motion between the
-  // origins. `by_jet`: the motion is differentiated automatically.
-  LiveBlock(const ceres::CostFunction* block, const MotionOrigin* motion,
-            const MotionOrigin* ref, const MotionOrigin* cur, bool by_jet);
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override;
-
- private:
-  const ceres::CostFunction* const block_;
-  const Eigen::Matrix3d motion_R_;
-  const Eigen::Vector3d motion_C_;
-  const MotionOrigin* const ref_;
-  const MotionOrigin* const cur_;
-  const bool by_jet_;
+  const RelativePoseErrorTerm term_;
+  const LinearizationPoint* const ref_;
+  const LinearizationPoint* const cur_;
 };
 
 }  // namespace rgbd_pose

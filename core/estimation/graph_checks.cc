@@ -9,41 +9,33 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kWorld = GraphTerms::kWorld;
-
-std::string NameOf(int pose) { return "pose " + std::to_string(pose - 1); }
+std::string NameOf(int pose) { return "pose " + std::to_string(pose); }
 
 }  // namespace
 
 std::string FindBadInput(const GraphTerms& graph) {
-  for (size_t i = 1; i < graph.poses.size(); ++i) {
+  for (size_t i = 0; i < graph.poses.size(); ++i) {
     if (graph.poses[i].world_from_cam.IsFinite()) continue;
     return NameOf(static_cast<int>(i)) + " is not finite";
   }
   for (const GraphTerms::Edge& edge : graph.edges) {
     const std::string name =
-        edge.ref == kWorld
-            ? "the prior of " + NameOf(edge.cur)
-            : "the edge from " + NameOf(edge.ref) + " to " + NameOf(edge.cur);
+        "the edge from " + NameOf(edge.ref) + " to " + NameOf(edge.cur);
     if (!graph.Has(edge.ref) || !graph.Has(edge.cur) || edge.ref == edge.cur) {
       return name + " is not between two poses of the graph";
     }
     if (!edge.cur_from_ref.IsFinite()) {
       return name + " has a motion that is not finite";
     }
-    if (!edge.root.allFinite()) return name + " has a covariance that is none";
-  }
-  for (const GraphTerms::Live& pair : graph.live) {
-    if (graph.Has(pair.ref) && graph.Has(pair.cur) && pair.ref != pair.cur) {
-      continue;
-    }
-    return "a live pair is not between two poses of the graph";
+    if (!edge.root.allFinite())
+      return name + " has a covariance that is not positive definite";
   }
   return "";
 }
 
-// Poses that hang together, by the smallest number among them (union-find).
-std::string FindLoosePose(const GraphTerms& graph) {
+// Poses that hang together, by the smallest number among them (union-find); all
+// that are fixed hang together.
+std::string FindUnanchoredPose(const GraphTerms& graph) {
   std::vector<int> root(graph.poses.size());
   std::iota(root.begin(), root.end(), 0);
   const auto find = [&](int pose) {
@@ -56,13 +48,15 @@ std::string FindLoosePose(const GraphTerms& graph) {
     root[std::max(a, b)] = std::min(a, b);
   };
   for (const GraphTerms::Edge& edge : graph.edges) join(edge.ref, edge.cur);
-  for (const GraphTerms::Live& pair : graph.live) join(pair.ref, pair.cur);
   const int poses = static_cast<int>(graph.poses.size());
+  int fixed = -1;
   for (int i = 0; i < poses; ++i) {
-    if (graph.poses[i].is_fixed) join(kWorld, i);
+    if (!graph.poses[i].is_fixed) continue;
+    if (fixed >= 0) join(fixed, i);
+    fixed = i;
   }
   for (int i = 0; i < poses; ++i) {
-    if (find(i) == kWorld) continue;
+    if (fixed >= 0 && find(i) == find(fixed)) continue;
     return NameOf(i) + " and those joined to it hang on nothing that is fixed";
   }
   return "";

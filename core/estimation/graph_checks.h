@@ -5,7 +5,7 @@
 #include "core/estimation/graph_problem.h"
 #include "core/estimation/graph_terms.h"
 
-// What keeps the poses of a graph from being told, as one line; empty: nothing.
+// Why the graph cannot be solved, as one line; empty: it can.
 // Poses are named by the numbers that users know them by.
 
 namespace rgbd_pose {
@@ -14,7 +14,7 @@ namespace rgbd_pose {
 std::string FindBadInput(const GraphTerms& graph);
 
 // A pose that nothing joins to a fixed one or to the world.
-std::string FindLoosePose(const GraphTerms& graph);
+std::string FindUnanchoredPose(const GraphTerms& graph);
 
 // A pose of which some direction has a larger standard deviation (rad or m),
 // all others held where they are or known no better.

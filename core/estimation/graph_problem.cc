@@ -8,8 +8,7 @@
 
 namespace rgbd_pose {
 
-GraphProblem::GraphProblem(const GraphTerms& graph, Assembly assembly,
-                           double width)
+GraphProblem::GraphProblem(const GraphTerms& graph, double width)
     : x_(graph.poses.size(), MotionVector::Zero()) {
   origins_.reserve(graph.poses.size());
   for (const GraphTerms::Pose& pose : graph.poses) {
@@ -25,11 +24,7 @@ GraphProblem::GraphProblem(const GraphTerms& graph, Assembly assembly,
     }
   }
   for (const GraphTerms::Edge& edge : graph.edges) {
-    if (!graph.IsIdle(edge.ref, edge.cur)) AddEdge(edge, assembly, width);
-  }
-  for (const GraphTerms::Live& pair : graph.live) {
-    if (graph.IsIdle(pair.ref, pair.cur)) continue;
-    AddLive(pair, assembly, graph.Between(pair.ref, pair.cur));
+    if (!graph.IsIdle(edge.ref, edge.cur)) AddEdge(edge, width);
   }
   for (size_t i = 0; i < x_.size(); ++i) {
     double* const x = x_[i].data();
@@ -39,42 +34,13 @@ GraphProblem::GraphProblem(const GraphTerms& graph, Assembly assembly,
   }
 }
 
-void GraphProblem::AddEdge(const GraphTerms::Edge& edge, Assembly assembly,
-                           double width) {
+void GraphProblem::AddEdge(const GraphTerms::Edge& edge, double width) {
   ceres::LossFunction* loss = nullptr;
   if (edge.loss != nullptr) loss = &losses_.emplace_back(edge.loss, width);
-  const EdgeTerm term = EdgeTerm::Of(edge.cur_from_ref, edge.root);
-  const MotionOrigin* ref = &origins_[edge.ref];
-  const MotionOrigin* cur = &origins_[edge.cur];
-  problem_->AddResidualBlock(assembly == Assembly::kAutodiff
-                                 ? MakeEdgeOracle(term, ref, cur)
-                                 : new EdgeBlock(term, ref, cur),
-                             loss, x_[edge.ref].data(), x_[edge.cur].data());
-}
-
-// The costs make their blocks for a problem of one motion; each becomes one of
-// two poses.
-void GraphProblem::AddLive(const GraphTerms::Live& pair, Assembly assembly,
-                           const Rigid3d& cur_from_ref) {
-  const MotionOrigin& motion = motions_.emplace_back(cur_from_ref);
-  ceres::Problem::Options options;
-  options.cost_function_ownership = BlockOwnership(assembly);
-  options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  ceres::Problem* const alone =
-      live_.emplace_back(std::make_unique<ceres::Problem>(options)).get();
-  MotionVector x = MotionVector::Zero();
-  pair.terms->AddTo(assembly, motion, x.data(), alone);
-  std::vector<ceres::ResidualBlockId> blocks;
-  alone->GetResidualBlocks(&blocks);
-  for (const ceres::ResidualBlockId block : blocks) {
-    problem_->AddResidualBlock(
-        new LiveBlock(alone->GetCostFunctionForResidualBlock(block), &motion,
-                      &origins_[pair.ref], &origins_[pair.cur],
-                      assembly == Assembly::kAutodiff),
-        const_cast<ceres::LossFunction*>(
-            alone->GetLossFunctionForResidualBlock(block)),
-        x_[pair.ref].data(), x_[pair.cur].data());
-  }
+  problem_->AddResidualBlock(
+      new EdgeBlock(RelativePoseErrorTerm::Of(edge.cur_from_ref, edge.root),
+                    &origins_[edge.ref], &origins_[edge.cur]),
+      loss, x_[edge.ref].data(), x_[edge.cur].data());
 }
 
 double GraphProblem::Cost() {
@@ -109,7 +75,7 @@ bool GraphProblem::IsConstant(int pose) const {
          problem_->IsParameterBlockConstant(x);
 }
 
-std::vector<MotionMatrix> GraphProblem::Covariances(
+std::vector<MotionMatrix> GraphProblem::MarginalCovariances(
     const std::vector<int>& poses, int threads) {
   ceres::Covariance::Options options;
   options.num_threads = threads;

@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "core/estimation/graph_terms.h"
-#include "core/estimation/motion_cost.h"
 #include "core/estimation/scaled_loss.h"
+#include "core/geometry/motion.h"
 
 namespace rgbd_pose {
 
@@ -18,9 +18,8 @@ namespace rgbd_pose {
 // of which those of fixed poses are constant.
 class GraphProblem {
  public:
-  // Losses on edges are `width` times as wide as they are. Of the graph the
-  // live pairs alone have to stay.
-  GraphProblem(const GraphTerms& graph, Assembly assembly, double width);
+  // Losses on edges are `width` times as wide as they are.
+  GraphProblem(const GraphTerms& graph, double width);
 
   // Whether nothing is known that could move a pose.
   bool is_empty() const { return problem_->NumResidualBlocks() == 0; }
@@ -40,21 +39,17 @@ class GraphProblem {
   // poses, six columns each, none of them fixed.
   ceres::CRSMatrix Jacobian(const std::vector<int>& poses);
 
-  // See MotionGraph::Covariances.
-  std::vector<MotionMatrix> Covariances(const std::vector<int>& poses,
-                                        int threads);
+  // See PoseGraph::MarginalCovariances.
+  std::vector<MotionMatrix> MarginalCovariances(const std::vector<int>& poses,
+                                                int threads);
 
  private:
-  void AddEdge(const GraphTerms::Edge& edge, Assembly assembly, double width);
-  void AddLive(const GraphTerms::Live& pair, Assembly assembly,
-               const Rigid3d& cur_from_ref);
+  void AddEdge(const GraphTerms::Edge& edge, double width);
   bool IsConstant(int pose) const;
 
-  std::vector<MotionOrigin> origins_;
+  std::vector<LinearizationPoint> origins_;
   std::vector<MotionVector> x_;
   std::deque<ScaledLoss> losses_;
-  std::deque<MotionOrigin> motions_;                   // of live pairs
-  std::vector<std::unique_ptr<ceres::Problem>> live_;  // own their blocks
   std::unique_ptr<ceres::Problem> problem_;
 };
 

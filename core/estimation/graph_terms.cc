@@ -4,12 +4,12 @@
 
 namespace rgbd_pose {
 
-double GraphTerms::SquaredNorm(const Edge& edge) const {
+double GraphTerms::SquaredMahalanobisDistance(const Edge& edge) const {
   const Rigid3d motion = Between(edge.ref, edge.cur);
   RelativeMotion pair;
   pair.motion = {motion.rotation.toRotationMatrix(),
                  motion.Inverse().translation};
-  return EdgeTerm::Of(edge.cur_from_ref, edge.root)
+  return RelativePoseErrorTerm::Of(edge.cur_from_ref, edge.root)
       .ResidualAt(pair, nullptr)
       .squaredNorm();
 }

@@ -2,42 +2,30 @@
 
 #include <ceres/loss_function.h>
 
-#include <memory>
 #include <vector>
 
-#include "core/estimation/motion_cost.h"
-#include "core/estimation/robust_terms.h"
+#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 
-// What a MotionGraph holds, as its parts see it.
+// What a PoseGraph holds, as its parts see it.
 
 namespace rgbd_pose {
 
 // Poses, by their numbers, and what is known of them.
 struct GraphTerms {
-  // The world as a pose, that priors are edges from.
-  static constexpr int kWorld = 0;
-
   struct Pose {
     Rigid3d world_from_cam;
     bool is_fixed = false;
   };
-  // A motion that was measured, or a prior.
+  // A motion that was measured.
   struct Edge {
     int ref = 0, cur = 0;
     Rigid3d cur_from_ref;
-    MotionMatrix root;  // see SquareRootOf
+    MotionMatrix root;  // see SqrtInformation
     const ceres::LossFunction* loss = nullptr;
   };
-  // A motion that is measured anew wherever the poses are.
-  struct Live {
-    int ref = 0, cur = 0;
-    std::unique_ptr<RobustTerms> terms;
-  };
-
-  std::vector<Pose> poses = {{Rigid3d(), true}};
+  std::vector<Pose> poses;
   std::vector<Edge> edges;
-  std::vector<Live> live;
 
   // cur_from_ref as the poses have it.
   Rigid3d Between(int ref, int cur) const {
@@ -55,7 +43,7 @@ struct GraphTerms {
   }
 
   // By how many sigmas, squared, an edge disagrees with the poses.
-  double SquaredNorm(const Edge& edge) const;
+  double SquaredMahalanobisDistance(const Edge& edge) const;
 };
 
 }  // namespace rgbd_pose

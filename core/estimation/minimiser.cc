@@ -24,7 +24,7 @@ bool IsWithin(const Rigid3d& a, const Rigid3d& b, double limit) {
 
 MotionDerivatives DerivativesAt(const Rigid3d& cur_from_prev) {
   const MotionVector zero = MotionVector::Zero();
-  return MotionOrigin(cur_from_prev).DerivativesAt(zero.data());
+  return LinearizationPoint(cur_from_prev).DerivativesAt(zero.data());
 }
 
 void Minimiser::Begin(const Rigid3d& guess, int max_levels) {
@@ -66,7 +66,7 @@ bool Minimiser::MinimiseWithScale(int level) {
 
 // Where residuals are chosen at every step, coarse levels only lead on.
 int Minimiser::MaxScaleRounds(int level) const {
-  return level > 0 && terms_.AsksFor(Association::kEveryStep)
+  return level > 0 && terms_.AsksFor(AssociationPolicy::kEveryStep)
              ? 0
              : options_.max_scale_rounds;
 }
@@ -80,7 +80,7 @@ bool Minimiser::Minimise() {
   while (width > 1.0) {
     terms_.SetLosses(width);
     if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
-    Associate(Association::kWhenMoved);
+    Associate(AssociationPolicy::kWhenMoved);
     if (terms_.num_used() < kMinMatches) return false;
     // Where over half of the matches are right they soon agree, and most
     // stages are saved.
@@ -93,8 +93,8 @@ bool Minimiser::Minimise() {
 
 // At the motion so far. False if no cost asks for it so often, or if what is
 // frozen was so near enough.
-bool Minimiser::Associate(Association least) {
-  if (least != Association::kEveryStep) {
+bool Minimiser::Associate(AssociationPolicy least) {
+  if (least != AssociationPolicy::kEveryStep) {
     if (IsWithin(associated_at_, motion_, kFrozenWithin)) return false;
     associated_at_ = motion_;
   }
@@ -106,7 +106,7 @@ bool Minimiser::MinimiseLastStage() {
   for (int round = 1;; ++round) {
     if (!MinimiseStage(options_.max_iterations)) return false;
     if (round == options_.max_association_rounds ||
-        !Associate(Association::kWhenMoved)) {
+        !Associate(AssociationPolicy::kWhenMoved)) {
       return true;
     }
     if (terms_.num_used() < kMinMatches) return false;
@@ -114,17 +114,17 @@ bool Minimiser::MinimiseLastStage() {
 }
 
 bool Minimiser::MinimiseStage(int max_iterations) {
-  if (!terms_.AsksFor(Association::kEveryStep)) {
+  if (!terms_.AsksFor(AssociationPolicy::kEveryStep)) {
     return SolveOnce(max_iterations);
   }
-  // Step by step, each of the residuals as they are: were they chosen anew
+  // Step by step, each of the residuals as they are: were they chosen again
   // within a step's trial, the solver would compare costs of other residuals.
   converged_ = false;
   for (int i = 0; i < max_iterations && !converged_; ++i) {
     const Rigid3d before = motion_;
     if (!SolveOnce(1)) return false;
     converged_ = converged_ || IsWithin(before, motion_, SettledWithin());
-    terms_.Follow(motion_);
+    terms_.Reassociate(motion_);
     if (terms_.num_used() < kMinMatches) return false;
   }
   return true;
@@ -133,12 +133,12 @@ bool Minimiser::MinimiseStage(int max_iterations) {
 // Pixels of each level are twice as large as those of the next finer one, and
 // need be hit half as well: that goes on from there.
 double Minimiser::SettledWithin() const {
-  return options_.settled_within * (1 << 2 * level_);
+  return options_.step_tolerance * (1 << 2 * level_);
 }
 
 // Of the residuals as they are associated.
 bool Minimiser::SolveOnce(int max_iterations) {
-  const MotionOrigin origin(motion_);
+  const LinearizationPoint origin(motion_);
   MotionVector x = MotionVector::Zero();
   ceres::Problem::Options problem_options;
   problem_options.cost_function_ownership = BlockOwnership(options_.assembly);

@@ -2,12 +2,12 @@
 
 #include "core/estimation/estimator_options.h"
 #include "core/estimation/motion_cost.h"
-#include "core/estimation/robust_terms.h"
+#include "core/estimation/robust_problem.h"
 #include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
 
-// Fewer matches do not tell a motion.
+// Minimum number of matches for six degrees of freedom.
 constexpr int kMinMatches = 3;
 
 // Of a motion by its own small changes.
@@ -18,10 +18,10 @@ MotionDerivatives DerivativesAt(const Rigid3d& cur_from_prev);
 class Minimiser {
  public:
   // Both must outlive it.
-  Minimiser(const EstimatorOptions& options, RobustTerms* terms)
+  Minimiser(const EstimatorOptions& options, RobustProblem* terms)
       : options_(options), terms_(*terms) {}
 
-  // The terms are bound to a pair at a guess. `max_levels` as in PairData.
+  // The terms are bound to a pair at a guess. `max_levels` as in FramePair.
   void Begin(const Rigid3d& guess, int max_levels);
 
   // False if the solver finds no finite step, or leaves too few matches.
@@ -38,14 +38,14 @@ class Minimiser {
   bool MinimiseWithScale(int level);
   int MaxScaleRounds(int level) const;
   bool Minimise();
-  bool Associate(Association least);
+  bool Associate(AssociationPolicy least);
   bool MinimiseLastStage();
   bool MinimiseStage(int max_iterations);
   double SettledWithin() const;
   bool SolveOnce(int max_iterations);
 
   const EstimatorOptions& options_;
-  RobustTerms& terms_;
+  RobustProblem& terms_;
 
   // Of the run at hand.
   Rigid3d motion_;

@@ -42,7 +42,7 @@ struct NormalEquations {
 
 // What a cost may look at: the two frames of a pair and what is known of the
 // motion between them.
-struct PairData {
+struct FramePair {
   const Correspondences* matches = nullptr;  // null: none
   const MotionPrior* prior = nullptr;        // null: nothing is known
   const FrameView* prev = nullptr;           // null: no images
@@ -54,10 +54,10 @@ struct PairData {
   int threads = 1;  // for sums over many residuals; results do not depend on it
 };
 
-// When the solver has a cost decide anew which residuals take part, and with
+// When the solver has a cost decide again which residuals take part, and with
 // which weights, since both may depend on the motion. In order: what asks for
 // more comes later.
-enum class Association {
+enum class AssociationPolicy {
   kOnce,       // at the guess
   kWhenMoved,  // when the motion has changed a good deal since
   kEveryStep,  // after every step
@@ -72,7 +72,7 @@ class MotionCost {
  public:
   // The scale group of a cost whose sigmas are exact (a prior): see
   // scale_group().
-  static constexpr int kExactSigmas = -1;
+  static constexpr int kFixedScale = -1;
 
   virtual ~MotionCost() = default;
 
@@ -80,14 +80,14 @@ class MotionCost {
   virtual std::string_view name() const = 0;
 
   // The number of residuals of a block: of a match, say, or a pixel.
-  virtual int rows() const = 0;
+  virtual int num_residuals() const = 0;
 
   // The number of independent measurements a block brings. Whitened residuals
   // of right matches have a squared norm of about chi^2 of so many degrees.
-  virtual int independent_rows() const = 0;
+  virtual int degrees_of_freedom() const = 0;
 
   // Whether the whitened residuals of right matches are independent, of unit
-  // variance, so that the Hessian tells the covariance; if not (a formulation
+  // variance, so that the Hessian gives the covariance; if not (a formulation
   // that knows no directions, say) their scatter has to be measured.
   virtual bool is_whitened() const = 0;
 
@@ -98,7 +98,7 @@ class MotionCost {
 
   // Costs of one group share the scale by which their sigmas are off, which is
   // estimated (EstimatorOptions::scale) or measured by the scatter of their
-  // residuals: gray levels and metres have scales of their own. kExactSigmas:
+  // residuals: gray levels and metres have scales of their own. kFixedScale:
   // the sigmas hold, and the cost takes no part in either.
   virtual int scale_group() const { return 0; }
 
@@ -108,7 +108,7 @@ class MotionCost {
   virtual double information_factor() const { return 1.0; }
 
   // When Associate is to be called.
-  virtual Association association() const = 0;
+  virtual AssociationPolicy association() const = 0;
 
   // Coarse to fine: how many levels there are, and the one that is in force
   // from the next Associate on; 0, the finest, after Bind.
@@ -117,14 +117,14 @@ class MotionCost {
 
   // Takes a pair in; keeps nothing of an earlier one but memory. Matches and
   // prior need to stay for this call alone, images for as long as it is bound.
-  virtual void Bind(const PairData& pair) = 0;
+  virtual void Bind(const FramePair& pair) = 0;
 
   // Decides which residuals take part, and freezes their weights, at a motion.
   virtual void Associate(const Rigid3d& cur_from_prev) = 0;
 
   // The same within a solve, for costs that are associated at every step: what
   // has to be one number for a whole solve (a change of brightness, say) stays.
-  virtual void Follow(const Rigid3d& cur_from_prev) {
+  virtual void Reassociate(const Rigid3d& cur_from_prev) {
     Associate(cur_from_prev);
   }
 
@@ -133,10 +133,10 @@ class MotionCost {
   virtual const std::vector<int>& matches() const = 0;
 
   // The number of independent measurements that each block brought:
-  // independent_rows(), or fewer where it lacks some; rows of those are zero.
+  // degrees_of_freedom(), or fewer where it lacks some; rows of those are zero.
   virtual const std::vector<int>& degrees() const = 0;
 
-  // Whitened residuals, rows() for each block.
+  // Whitened residuals, num_residuals() for each block.
   virtual void Residuals(const MotionDerivatives& motion,
                          std::vector<double>* residuals) const = 0;
 
@@ -152,20 +152,20 @@ class MotionCost {
 
   // Adds sum rho'^2 J^T r r^T J over blocks: with the Hessian, the covariance
   // of an M-estimate whatever the residuals' true distribution (sandwich).
-  virtual void AddScatter(const MotionDerivatives& motion,
-                          const ceres::LossFunction* loss,
-                          MotionMatrix* scatter) const = 0;
+  virtual void AddScoreOuterProduct(const MotionDerivatives& motion,
+                                    const ceres::LossFunction* loss,
+                                    MotionMatrix* scatter) const = 0;
 
   // Adds what noise of the derivatives themselves (of an image, of a surface's
   // slope) feigns to tell: the Hessian of rows that are nothing but this noise,
   // in units of the estimated scale. Exact derivatives have none.
-  virtual void AddFeigned(const MotionDerivatives& /*motion*/,
-                          MotionMatrix* /*hessian*/) const {}
+  virtual void AddSpuriousInformation(const MotionDerivatives& /*motion*/,
+                                      MotionMatrix* /*hessian*/) const {}
 
   // Adds the blocks to a problem in the parameters x[6] that count from
   // `origin`. The problem must own its cost functions as BlockOwnership says
   // and no losses; origin, loss and this cost must outlive it, unchanged.
-  virtual void AddTo(Assembly assembly, const MotionOrigin& origin,
+  virtual void AddTo(Assembly assembly, const LinearizationPoint& origin,
                      ceres::LossFunction* loss, double* x,
                      ceres::Problem* problem) = 0;
 };

@@ -13,7 +13,7 @@ struct MotionPrior {
   Rigid3d mean;  // cur_from_prev
 
   // Inverse of the covariance of [omega (rad), C (m)], as MotionEstimate's. May
-  // be singular: an inertial sensor tells of rotation alone. Zero, or anything
+  // be singular: an inertial sensor knows rotation alone. Zero, or anything
   // that is no information matrix, means that nothing is known.
   MotionMatrix information = MotionMatrix::Zero();
 };

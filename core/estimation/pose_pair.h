@@ -34,9 +34,9 @@ inline Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
 
 // For any scalar: the oracle of RelativeMotionAt.
 template <typename T>
-MotionPose<T> MotionBetween(const MotionPose<T>& ref,
-                            const MotionPose<T>& cur) {
-  MotionPose<T> motion;
+RotationAndCenter<T> MotionBetween(const RotationAndCenter<T>& ref,
+                                   const RotationAndCenter<T>& cur) {
+  RotationAndCenter<T> motion;
   motion.R = cur.R * ref.R.transpose();
   const Eigen::Matrix<T, 3, 1> shift = cur.C - ref.C;
   motion.C = ref.R * shift;
@@ -45,7 +45,7 @@ MotionPose<T> MotionBetween(const MotionPose<T>& ref,
 
 // The rotation about the axes of the camera (rad) that small changes of the
 // angles (rad) at x make: the columns of d omega / d[alpha beta gamma].
-inline Eigen::Matrix3d AxesOfAngles(const double* x) {
+inline Eigen::Matrix3d EulerRateJacobian(const double* x) {
   const double sb = std::sin(x[1]), cb = std::cos(x[1]);
   const double sg = std::sin(x[2]), cg = std::cos(x[2]);
   Eigen::Matrix3d axes;
@@ -55,23 +55,23 @@ inline Eigen::Matrix3d AxesOfAngles(const double* x) {
 
 // The motion between two poses and its derivatives.
 struct RelativeMotion {
-  MotionPose<double> motion;
+  RotationAndCenter<double> motion;
   // d[omega C] / d[x_ref x_cur], omega (rad) a small rotation about the axes of
   // `cur`, as MotionEstimate's covariance has it.
   PosePairJacobian jacobian;
 };
 
-inline RelativeMotion RelativeMotionAt(const MotionOrigin& ref_origin,
+inline RelativeMotion RelativeMotionAt(const LinearizationPoint& ref_origin,
                                        const double* x_ref,
-                                       const MotionOrigin& cur_origin,
+                                       const LinearizationPoint& cur_origin,
                                        const double* x_cur) {
-  const MotionPose<double> ref = ref_origin.PoseAt(x_ref);
+  const RotationAndCenter<double> ref = ref_origin.PoseAt(x_ref);
   RelativeMotion pair;
   pair.motion = MotionBetween(ref, cur_origin.PoseAt(x_cur));
-  const Eigen::Matrix3d axes = AxesOfAngles(x_ref);
+  const Eigen::Matrix3d axes = EulerRateJacobian(x_ref);
   pair.jacobian.setZero();
   pair.jacobian.block<3, 3>(0, 0) = -pair.motion.R * axes;
-  pair.jacobian.block<3, 3>(0, 6) = AxesOfAngles(x_cur);
+  pair.jacobian.block<3, 3>(0, 6) = EulerRateJacobian(x_cur);
   pair.jacobian.block<3, 3>(3, 0) = -CrossMatrix(pair.motion.C) * axes;
   pair.jacobian.block<3, 3>(3, 3) = -ref.R;
   pair.jacobian.block<3, 3>(3, 9) = ref.R;

@@ -21,7 +21,7 @@ MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
   MotionMatrix measured = MotionMatrix::Zero(), exact = MotionMatrix::Zero();
   double weight_p = 0.0;
   for (const CovarianceTerm& term : terms) {
-    if (term.scale_group == MotionCost::kExactSigmas) {
+    if (term.scale_group == MotionCost::kFixedScale) {
       exact += term.hessian;
       continue;
     }
@@ -30,9 +30,11 @@ MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
       if (other.scale_group == term.scale_group) sums += other.sums;
     }
     if (!(sums.weight_p > 0.0)) continue;
-    const bool by_hessian =
-        term.is_whitened || sums.blocks < kMinBlocksForScatter;
-    B += by_hessian ? MotionMatrix(sums.psi2 / sums.weight_p * term.hessian)
+    const bool by_hessian = term.is_whitened ||
+                            sums.blocks < kMinBlocksForScatter ||
+                            sums.psi2 < sums.least_psi2;
+    const double psi2 = std::max(sums.psi2, sums.least_psi2);
+    B += by_hessian ? MotionMatrix(psi2 / sums.weight_p * term.hessian)
                     : term.scatter;
     A += std::max(sums.slope_p / sums.weight_p, kMinSlope) * term.hessian;
     measured += term.hessian;

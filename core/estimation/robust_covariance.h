@@ -15,12 +15,14 @@ struct LossSums {
   double weight_p = 0.0;  // rho' p
   double slope_p = 0.0;   // rho' p + 2 s rho''
   int blocks = 0;
+  double least_psi2 = 0.0;  // psi2 of residuals that are as small as rounding
 
   LossSums& operator+=(const LossSums& other) {
     psi2 += other.psi2;
     weight_p += other.weight_p;
     slope_p += other.slope_p;
     blocks += other.blocks;
+    least_psi2 += other.least_psi2;
     return *this;
   }
 };
@@ -39,8 +41,10 @@ struct CovarianceTerm {
 // against its mean weight; B sums up the same times the mean of psi^2 against
 // the mean weight or, for costs that do not whiten fully, the scatter of their
 // blocks, with the usual correction for fitted parameters. Means are those of a
-// scale group. The Hessian of exact sigmas (a prior) is in both as it is.
-// `inverse` is that of the sum of all Hessians.
+// scale group. Residuals that are all but zero (a frame against itself) are no
+// proof of a measurement better than what it is rounded to. The Hessian of
+// exact sigmas (a prior) is in both as it is. `inverse` is that of the sum of
+// all Hessians.
 MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
                               const MotionMatrix& inverse);
 

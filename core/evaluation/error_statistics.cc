@@ -23,14 +23,6 @@ ErrorStatistics Summarise(std::vector<double> errors) {
   result.mean = sum / n;
   result.median = (errors[(n - 1) / 2] + errors[n / 2]) / 2.0;
   result.max = errors.back();
-  return result;
-}
-
-ErrorQuantiles QuantilesOf(std::vector<double> errors) {
-  ErrorQuantiles result;
-  if (errors.empty()) return result;
-  result.count = static_cast<int>(errors.size());
-  result.median = QuantileInPlace(&errors, 0.5);
   result.p90 = QuantileInPlace(&errors, 0.9);
   result.p99 = QuantileInPlace(&errors, 0.99);
   return result;

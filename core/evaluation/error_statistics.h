@@ -11,18 +11,11 @@ struct ErrorStatistics {
   double mean = 0.0;
   double median = 0.0;  // of an even number, the mean of the two in the middle
   double max = 0.0;
-};
-
-// What so large a share of a list of errors stays below; all 0 if it is empty.
-struct ErrorQuantiles {
-  int count = 0;
-  double median = 0.0;  // as in ErrorStatistics
-  double p90 = 0.0;     // 90 %
-  double p99 = 0.0;     // 99 %
+  double p90 = 0.0;  // what 90 % of them stay below
+  double p99 = 0.0;  // and 99 %
 };
 
 // In the unit of the errors.
 ErrorStatistics Summarise(std::vector<double> errors);
-ErrorQuantiles QuantilesOf(std::vector<double> errors);
 
 }  // namespace rgbd_pose

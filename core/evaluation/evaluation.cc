@@ -95,7 +95,7 @@ EvaluationReport Evaluate(const Trajectory& estimate,
   report.duration = times.back() - times.front();
   report.path_length = path.back();
   report.truth_from_estimate = AlignRigidly(pairs);
-  report.likeness = Compare(pairs, report.truth_from_estimate);
+  report.sim3 = Compare(pairs, report.truth_from_estimate);
   const std::vector<PoseInterval> intervals = TimeIntervals(
       times, options.rpe_delta_seconds, options.max_time_difference);
   report.poses = PoseErrors(pairs, report.truth_from_estimate, intervals);
@@ -105,7 +105,8 @@ EvaluationReport Evaluate(const Trajectory& estimate,
   report.rpe_metres =
       SummariseIntervals(pairs, PathIntervals(path, options.rpe_delta_metres));
   for (const int frames : options.rpe_frames) {
-    report.rpe_frames.push_back(SummariseFrames(pairs, frames));
+    report.rpe_frames.push_back(
+        SummariseIntervals(pairs, FrameIntervals(pairs.size(), frames)));
   }
   if (pairs.size() > 1) {
     const Rigid3d error = RelativeError(pairs.front(), pairs.back());

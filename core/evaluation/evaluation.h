@@ -4,9 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluation/consistency.h"
 #include "core/evaluation/error_statistics.h"
-#include "core/evaluation/likeness.h"
 #include "core/evaluation/relative_errors.h"
+#include "core/evaluation/sim3_alignment.h"
 #include "core/evaluation/trajectory.h"
 #include "core/evaluation/truth_alignment.h"
 #include "core/geometry/rigid3.h"
@@ -24,7 +25,7 @@ struct EvaluationOptions {
   double rpe_delta_seconds = 1.0;
   double rpe_delta_metres = 1.0;
 
-  // And in frames, at least 1 each: of these errors the quantiles are given.
+  // And in frames, at least 1 each.
   std::vector<int> rpe_frames = {1, 6};
 
   // One line that says what is wrong with the options, or empty.
@@ -62,7 +63,7 @@ struct EvaluationReport {
   Rigid3d truth_from_estimate;
 
   // The same with scale, and what it says of the input.
-  Likeness likeness;
+  Sim3Alignment sim3;
 
   // Relative pose errors at fixed intervals. Every paired pose that has its
   // counterpart is a start:
@@ -70,8 +71,8 @@ struct EvaluationReport {
   RelativePoseError rpe_seconds;  // j is nearest to rpe_delta_seconds later
   RelativePoseError rpe_metres;   // j is the first rpe_delta_metres or more on
 
-  // Quantiles of those over rpe_frames, in that order.
-  std::vector<FramePoseError> rpe_frames;
+  // Those over options.rpe_frames, in that order.
+  std::vector<RelativePoseError> rpe_frames;
 
   // E from the first to the last paired pose; empty if there is but one.
   std::optional<FinalPoseError> final_pose;
@@ -79,11 +80,14 @@ struct EvaluationReport {
   // ATE and RPE where the truth's clock and its fixing to the camera fit best.
   TruthAlignment truth_alignment;
 
+  // How far the motions of a run keep to their covariances, if it has any.
+  std::optional<RunConsistency> consistency;
+
   // What ate and rpe_seconds sum up: one a paired pose, in time order.
   std::vector<PoseError> poses;
 };
 
-// Judges an estimate. Throws InputError if the options are of no use or no
+// Judges an estimate. Throws InputError if the options are invalid or no
 // poses belong together.
 EvaluationReport Evaluate(const Trajectory& estimate,
                           const Trajectory& ground_truth,

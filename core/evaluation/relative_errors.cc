@@ -3,24 +3,6 @@
 #include <cmath>
 
 namespace rgbd_pose {
-namespace {
-
-// Sizes of the errors of intervals.
-struct IntervalErrors {
-  IntervalErrors(const std::vector<PosePair>& pairs,
-                 const std::vector<PoseInterval>& intervals) {
-    for (const auto& [i, j] : intervals) {
-      const Rigid3d error = RelativeError(pairs[i], pairs[j]);
-      translations.push_back(error.translation.norm());
-      angles.push_back(error.Angle());
-    }
-  }
-
-  std::vector<double> translations;  // m
-  std::vector<double> angles;        // rad
-};
-
-}  // namespace
 
 Rigid3d RelativeError(const PosePair& i, const PosePair& j) {
   const Rigid3d truth_i_from_j = i.truth.Inverse() * j.truth;
@@ -64,13 +46,13 @@ std::vector<PoseInterval> PathIntervals(const std::vector<double>& path,
 RelativePoseError SummariseIntervals(
     const std::vector<PosePair>& pairs,
     const std::vector<PoseInterval>& intervals) {
-  const IntervalErrors errors(pairs, intervals);
-  return {Summarise(errors.translations), Summarise(errors.angles)};
-}
-
-FramePoseError SummariseFrames(const std::vector<PosePair>& pairs, int frames) {
-  const IntervalErrors errors(pairs, FrameIntervals(pairs.size(), frames));
-  return {frames, QuantilesOf(errors.translations), QuantilesOf(errors.angles)};
+  std::vector<double> translations, angles;
+  for (const auto& [i, j] : intervals) {
+    const Rigid3d error = RelativeError(pairs[i], pairs[j]);
+    translations.push_back(error.translation.norm());
+    angles.push_back(error.Angle());
+  }
+  return {Summarise(std::move(translations)), Summarise(std::move(angles))};
 }
 
 }  // namespace rgbd_pose

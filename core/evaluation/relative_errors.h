@@ -17,14 +17,6 @@ struct RelativePoseError {
   ErrorStatistics rotation;     // angle of E, rad
 };
 
-// The same over a number of frames, by what most of them stay below: a few
-// jumps say little of the rest, and the rest says nothing of them.
-struct FramePoseError {
-  int frames = 0;              // j is so many paired poses after i
-  ErrorQuantiles translation;  // m
-  ErrorQuantiles rotation;     // rad
-};
-
 // From the place of one pose in a list to that of a later one.
 using PoseInterval = std::pair<size_t, size_t>;
 
@@ -44,10 +36,9 @@ std::vector<PoseInterval> TimeIntervals(const std::vector<double>& times,
 std::vector<PoseInterval> PathIntervals(const std::vector<double>& path,
                                         double delta);
 
-// Errors over these intervals, and over a number of frames.
+// Errors over these intervals.
 RelativePoseError SummariseIntervals(
     const std::vector<PosePair>& pairs,
     const std::vector<PoseInterval>& intervals);
-FramePoseError SummariseFrames(const std::vector<PosePair>& pairs, int frames);
 
 }  // namespace rgbd_pose

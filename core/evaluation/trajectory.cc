@@ -47,15 +47,22 @@ StampedPose ParsePose(const TextLine& line, const std::string& path) {
 
 }  // namespace
 
-Trajectory ReadTrajectory(const std::string& path) {
+Trajectory ReadTrajectory(const std::string& path,
+                          std::vector<std::string>* remarks) {
   Trajectory trajectory;
+  int doubled = 0;
+  int first_line = 0;  // of them
   for (const TextLine& line : ReadTextTable(path)) {
     const StampedPose pose = ParsePose(line, path);
-    if (!trajectory.empty() && pose.timestamp <= trajectory.back().timestamp) {
+    if (!trajectory.empty() && pose.timestamp == trajectory.back().timestamp) {
+      if (doubled++ == 0) first_line = line.number;
+      continue;
+    }
+    if (!trajectory.empty() && pose.timestamp < trajectory.back().timestamp) {
       throw InputError(path, line.number,
                        "time stamp " + line.words[0] +
                            " is not after the one before it; sort the poses "
-                           "by time and keep one a time stamp");
+                           "by time");
     }
     trajectory.push_back(pose);
   }
@@ -63,6 +70,12 @@ Trajectory ReadTrajectory(const std::string& path) {
     throw InputError(path +
                      ": holds no poses; a line is timestamp tx ty tz qx qy qz "
                      "qw");
+  }
+  if (doubled > 0 && remarks != nullptr) {
+    remarks->push_back(Format(
+        "%s:%d: has the time stamp of the pose before it; %d such pose%s left "
+        "out",
+        path.c_str(), first_line, doubled, doubled == 1 ? " is" : "s are"));
   }
   return trajectory;
 }

@@ -4,15 +4,101 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "core/evaluation/alignment.h"
 #include "core/evaluation/fixing_equations.h"
-#include "core/evaluation/truth_comparison.h"
+#include "core/evaluation/fixing_parameters.h"
+#include "core/evaluation/interpolated_path.h"
+#include "core/evaluation/moving_poses.h"
+#include "core/evaluation/pose_pairs.h"
+#include "core/evaluation/relative_errors.h"
+#include "core/evaluation/trajectory.h"
 #include "core/util/format.h"
 
 namespace rgbd_pose {
 namespace {
+
+// An estimate and the truth, interpolated, with any clock and fixing. Both
+// trajectories have to outlive it.
+class TruthComparison {
+ public:
+  // What the compared motions take: long enough for motion to outweigh noise,
+  // short enough for drift not to count.
+  static constexpr double kMotionSeconds = 0.2;
+
+  TruthComparison(const Trajectory& estimate, const Trajectory& ground_truth);
+
+  // Motions of the estimate that the truth has, too, in time order; of very
+  // many, some.
+  std::vector<ComparedMotion> Motions(const TruthFixing& fixing) const;
+
+  // Poses of the estimate and those that the camera had by the truth.
+  std::vector<PosePair> Pairs(const TruthFixing& fixing) const;
+
+ private:
+  // Of the camera, at the times of the estimate.
+  std::vector<std::optional<Rigid3d>> Truth(const TruthFixing& fixing) const;
+
+  const Trajectory& estimate_;
+  InterpolatedPath path_;
+  std::vector<double> times_;  // of the estimate, s
+  std::vector<std::optional<MovingPose>> moving_estimate_;
+  std::vector<PoseInterval> intervals_;
+};
+
+constexpr double kMotionTolerance = 0.05;  // s
+constexpr size_t kMaxMotions = 20000;
+
+TruthComparison::TruthComparison(const Trajectory& estimate,
+                                 const Trajectory& ground_truth)
+    : estimate_(estimate), path_(ground_truth) {
+  std::vector<std::optional<Rigid3d>> poses;
+  for (const StampedPose& pose : estimate) {
+    times_.push_back(pose.timestamp);
+    poses.emplace_back(pose.world_from_cam);
+  }
+  moving_estimate_ = MovingPoses(times_, poses);
+  const std::vector<PoseInterval> all =
+      TimeIntervals(times_, kMotionSeconds, kMotionTolerance);
+  const size_t step = all.size() / kMaxMotions + 1;
+  for (size_t i = 0; i < all.size(); i += step) intervals_.push_back(all[i]);
+}
+
+std::vector<ComparedMotion> TruthComparison::Motions(
+    const TruthFixing& fixing) const {
+  const auto truth = MovingPoses(times_, Truth(fixing));
+  const auto& estimate = moving_estimate_;
+  std::vector<ComparedMotion> motions;
+  for (const auto& [i, j] : intervals_) {
+    if (!estimate[i] || !estimate[j] || !truth[i] || !truth[j]) continue;
+    motions.push_back({times_[i], PoseChange(*estimate[i], *estimate[j]),
+                       PoseChange(*truth[i], *truth[j])});
+  }
+  return motions;
+}
+
+std::vector<PosePair> TruthComparison::Pairs(const TruthFixing& fixing) const {
+  const std::vector<std::optional<Rigid3d>> truth = Truth(fixing);
+  std::vector<PosePair> pairs;
+  for (size_t i = 0; i < truth.size(); ++i) {
+    if (!truth[i].has_value()) continue;
+    pairs.push_back({times_[i], *truth[i], estimate_[i].world_from_cam});
+  }
+  return pairs;
+}
+
+std::vector<std::optional<Rigid3d>> TruthComparison::Truth(
+    const TruthFixing& fixing) const {
+  const Rigid3d body_from_camera = fixing.camera_from_body.Inverse();
+  std::vector<std::optional<Rigid3d>> poses = path_.At(times_, fixing.shift);
+  for (std::optional<Rigid3d>& pose : poses) {
+    if (pose.has_value()) pose = *pose * body_from_camera;
+  }
+  return poses;
+}
 
 using FixingColumns = Eigen::Matrix<double, 7, Eigen::Dynamic>;
 

@@ -15,7 +15,7 @@ namespace rgbd_pose {
 // is the clock and the fixing at which an estimate and the truth agree best,
 // found from motions of 0.2 s, and the errors that are left there. Part of an
 // error of the estimate that looks like one of these is taken away, too: the
-// plain errors stay the ones to be told first.
+// plain errors stay the ones to be shown first.
 struct TruthAlignment {
   // Why there is none, one line; empty: there is one.
   std::string skipped;

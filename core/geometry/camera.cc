@@ -6,6 +6,7 @@
 #include <iterator>
 
 #include "core/util/format.h"
+#include "core/util/named_values.h"
 
 namespace rgbd_pose {
 namespace {
@@ -112,7 +113,7 @@ std::string Camera::Check() const {
   return "";
 }
 
-std::string Camera::Doubt() const {
+std::string Camera::SanityWarning() const {
   constexpr double kMaxAspect = 0.05;
   constexpr double kMaxOffCentre = 0.1;
   const auto line = [](const std::string& what) {
@@ -162,17 +163,11 @@ Eigen::Vector3d Camera::Unproject(const Vector2d& pixel, double depth) const {
 }
 
 std::optional<RgbdCamera> CameraPreset(std::string_view name) {
-  for (const Preset& preset : kPresets) {
-    if (preset.name == name) return preset.camera;
-  }
-  return std::nullopt;
+  const Preset* const preset = FindNamed(kPresets, name);
+  if (preset == nullptr) return std::nullopt;
+  return preset->camera;
 }
 
-std::vector<std::string> CameraPresetNames() {
-  std::vector<std::string> names;
-  names.reserve(std::size(kPresets));
-  for (const Preset& preset : kPresets) names.emplace_back(preset.name);
-  return names;
-}
+std::vector<std::string> CameraPresetNames() { return NamesOf(kPresets); }
 
 }  // namespace rgbd_pose

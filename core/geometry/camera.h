@@ -40,7 +40,7 @@ struct Camera {
   // that differ by 5 %, a principal point that is a tenth of the image off its
   // middle. Both can be meant; more often numbers were exchanged or are those
   // of another size of image.
-  std::string Doubt() const;
+  std::string SanityWarning() const;
 
   // Whether any distortion coefficient is not 0.
   bool HasDistortion() const;
@@ -92,7 +92,7 @@ inline constexpr std::array<CameraParameter, 9> kCameraParameters = {
 
 // What is wrong with the depth images of a camera, to be undone as they are
 // read (frontend/sources/corrected_source.h).
-struct DepthErrors {
+struct DepthCorrection {
   // 1 / z = 1 / measured z + this, 1/m.
   double inverse_depth_offset = 0.0;
 
@@ -101,7 +101,7 @@ struct DepthErrors {
   Rigid3d depth_from_color = {};
 
   // Whether there are none.
-  bool None() const {
+  bool IsIdentity() const {
     return inverse_depth_offset == 0.0 && depth_from_color.Angle() == 0.0 &&
            depth_from_color.translation.isZero(0.0);
   }
@@ -110,11 +110,11 @@ struct DepthErrors {
 // A camera together with how its depth images count, and when both images are
 // taken.
 struct RgbdCamera {
-  Camera camera;                  // of the colour image
-  double depth_scale = 5000.0;    // raw units of the depth image per metre
-  DepthErrors depth_errors = {};  // what sources undo as they read
-  Shutter color_shutter = {};     // from the stamp of colour
-  Shutter depth_shutter = {};     // from the stamp of depth
+  Camera camera;                // of the colour image
+  double depth_scale = 5000.0;  // raw units of the depth image per metre
+  DepthCorrection depth_correction = {};  // what sources undo as they read
+  Shutter color_shutter = {};             // from the stamp of colour
+  Shutter depth_shutter = {};             // from the stamp of depth
 };
 
 // A camera known by name: tum_fr1, tum_fr2, tum_fr3, ros_default. Figures from

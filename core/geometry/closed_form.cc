@@ -42,7 +42,7 @@ NearestRotation::NearestRotation(const Matrix3d& m)
   stiffness = svd.singularValues()[1] + sign * svd.singularValues()[2];
 }
 
-std::optional<Rigid3d> FitRigidly(const PairMoments& moments) {
+std::optional<Rigid3d> UmeyamaAlignment(const PairMoments& moments) {
   if (moments.count < 3) return std::nullopt;
   const NearestRotation nearest(moments.covariance);
   // Written so that what is not a number, as of sums that overflow, fails too.

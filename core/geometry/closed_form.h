@@ -44,6 +44,6 @@ struct NearestRotation {
 // Nothing if the motion is not determined: fewer than three pairs, points on
 // one spot or line, or so near to one that noise alone could be what turns
 // them.
-std::optional<Rigid3d> FitRigidly(const PairMoments& moments);
+std::optional<Rigid3d> UmeyamaAlignment(const PairMoments& moments);
 
 }  // namespace rgbd_pose

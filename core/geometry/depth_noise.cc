@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/util/named_values.h"
+
 namespace rgbd_pose {
 
 std::string DepthNoiseModel::Check() const {
@@ -31,18 +33,11 @@ const std::vector<DepthNoiseModel>& DepthNoiseModels() {
 }
 
 const DepthNoiseModel* FindDepthNoiseModel(std::string_view name) {
-  for (const DepthNoiseModel& model : DepthNoiseModels()) {
-    if (model.name == name) return &model;
-  }
-  return nullptr;
+  return FindNamed(DepthNoiseModels(), name);
 }
 
 std::vector<std::string> DepthNoiseModelNames() {
-  std::vector<std::string> names;
-  for (const DepthNoiseModel& model : DepthNoiseModels()) {
-    names.push_back(model.name);
-  }
-  return names;
+  return NamesOf(DepthNoiseModels());
 }
 
 }  // namespace rgbd_pose

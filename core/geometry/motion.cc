@@ -27,27 +27,27 @@ std::array<Eigen::Matrix3d, 3> RotationDerivatives(const double* angles) {
 
 }  // namespace
 
-MotionOrigin::MotionOrigin(const Rigid3d& cur_from_prev)
+LinearizationPoint::LinearizationPoint(const Rigid3d& cur_from_prev)
     : R_(cur_from_prev.rotation.toRotationMatrix()),
       C_(-(R_.transpose() * cur_from_prev.translation)) {
   shared_x_.setConstant(std::numeric_limits<double>::quiet_NaN());
 }
 
-void MotionOrigin::Share(const double* x) const {
+void LinearizationPoint::Share(const double* x) const {
   shared_ = DerivativesAt(x);
   shared_x_ = Eigen::Map<const MotionVector>(x);
 }
 
-MotionDerivatives MotionOrigin::DerivativesAt(const double* x) const {
+MotionDerivatives LinearizationPoint::DerivativesAt(const double* x) const {
   MotionDerivatives motion;
-  static_cast<MotionPose<double>&>(motion) = PoseAt(x);
+  static_cast<RotationAndCenter<double>&>(motion) = PoseAt(x);
   motion.dR = RotationDerivatives(x);
   for (Eigen::Matrix3d& dR : motion.dR) dR = (dR * R_).eval();
   return motion;
 }
 
-Rigid3d MotionOrigin::CurFromPrev(const double* x) const {
-  const MotionPose<double> pose = PoseAt(x);
+Rigid3d LinearizationPoint::CurFromPrev(const double* x) const {
+  const RotationAndCenter<double> pose = PoseAt(x);
   return Rigid3d(Eigen::Quaterniond(pose.R), -(pose.R * pose.C));
 }
 
@@ -88,7 +88,7 @@ MotionVector MotionFromRigid(const Rigid3d& cur_from_prev) {
 }
 
 Rigid3d RigidFromMotion(const MotionVector& x) {
-  return MotionOrigin().CurFromPrev(x.data());
+  return LinearizationPoint().CurFromPrev(x.data());
 }
 
 }  // namespace rgbd_pose

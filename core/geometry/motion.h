@@ -24,7 +24,7 @@ using MotionMatrix = Eigen::Matrix<double, 6, 6>;
 
 // R and C of a motion, for any scalar (double or ceres::Jet).
 template <typename T>
-struct MotionPose {
+struct RotationAndCenter {
   Eigen::Matrix<T, 3, 3> R;  // previous axes to current axes
   Eigen::Matrix<T, 3, 1> C;  // current centre in the previous frame, m
 };
@@ -32,7 +32,7 @@ struct MotionPose {
 // R, C and the three matrices dR/d(alpha, beta, gamma) (Table 2.1). What a
 // hand-written Jacobian needs, computed once per motion. dR/dC = 0 and
 // dC/dC = I are not stored.
-struct MotionDerivatives : MotionPose<double> {
+struct MotionDerivatives : RotationAndCenter<double> {
   std::array<Eigen::Matrix3d, 3> dR;  // by alpha, beta, gamma
 };
 
@@ -58,16 +58,16 @@ Eigen::Matrix<T, 3, 3> RotationFromAngles(const T* angles) {
 //
 // So dR/d(angle) is that of Table 2.1 times R_origin, and dC/dC stays I: the
 // tables hold as they are. The identity as the origin gives the thesis' x.
-class MotionOrigin {
+class LinearizationPoint {
  public:
   // The motion at x = 0; by default none.
-  MotionOrigin() : MotionOrigin(Rigid3d()) {}
-  explicit MotionOrigin(const Rigid3d& cur_from_prev);
+  LinearizationPoint() : LinearizationPoint(Rigid3d()) {}
+  explicit LinearizationPoint(const Rigid3d& cur_from_prev);
 
   // R and C at x[6].
   template <typename T>
-  MotionPose<T> PoseAt(const T* x) const {
-    MotionPose<T> pose;
+  RotationAndCenter<T> PoseAt(const T* x) const {
+    RotationAndCenter<T> pose;
     // R_ stays a matrix of doubles: a Jet times a Jet costs over twice as much.
     const Eigen::Matrix<T, 3, 3> turn = RotationFromAngles(x);
     for (int i = 0; i < 3; ++i) {
@@ -82,7 +82,7 @@ class MotionOrigin {
 
   // The same, kept until another x is asked for: what many residual blocks of
   // one problem share (Table 2.1). For one thread at a time.
-  const MotionDerivatives& SharedDerivativesAt(const double* x) const {
+  const MotionDerivatives& CachedDerivativesAt(const double* x) const {
     const Eigen::Map<const MotionVector> at(x);
     if (at != shared_x_) Share(x);
     return shared_;

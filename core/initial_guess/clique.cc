@@ -5,22 +5,24 @@
 #include <numeric>
 #include <vector>
 
-#include "core/util/input_error.h"
-
 namespace rgbd_pose {
 namespace {
+
+// Of more matches, this many are used, evenly spread over the list: time and
+// memory grow with the square.
+constexpr int kMaxMatches = 500;
 
 // Which matches are consistent with which, a row of bits each.
 class ConsistencyGraph {
  public:
-  ConsistencyGraph(const std::vector<PointMatch>& matches, double max_sigmas)
+  explicit ConsistencyGraph(const std::vector<PointMatch>& matches)
       : size_(matches.size()),
         words_((size_ + 63) / 64),
         bits_(size_ * words_),
         degrees_(size_) {
     for (size_t i = 0; i < size_; ++i) {
       for (size_t j = 0; j < i; ++j) {
-        if (PreserveDistance(matches[i], matches[j], max_sigmas)) {
+        if (AreDistanceConsistent(matches[i], matches[j])) {
           Connect(i, j);
           Connect(j, i);
         }
@@ -62,24 +64,13 @@ class ConsistencyGraph {
 
 }  // namespace
 
-std::string CliqueOptions::Check() const {
-  if (!(max_distance_sigmas > 0.0)) {
-    return "max_distance_sigmas must be positive";
-  }
-  if (max_matches < 3) return "max_matches must be at least 3";
-  return consensus.Check();
-}
-
-std::optional<Consensus> FindByClique(const Correspondences& matches,
-                                      const CliqueOptions& options) {
-  const std::string problem = options.Check();
-  if (!problem.empty()) throw InputError(problem);
-  const std::vector<PointMatch> points =
-      PointMatches(matches, options.max_matches);
-  const ConsistencyGraph graph(points, options.max_distance_sigmas);
-  const std::optional<Rigid3d> fit = FitTo(points, graph.GreedyClique());
+std::optional<Consensus> FindByClique(const Correspondences& matches) {
+  const std::vector<PointMatch> points = PointMatches(matches, kMaxMatches);
+  const ConsistencyGraph graph(points);
+  const std::optional<Rigid3d> fit =
+      FitRigidTransform(points, graph.GreedyClique());
   if (!fit) return std::nullopt;
-  return FindConsensus(points, *fit, options.consensus);
+  return FindConsensus(points, *fit, {});
 }
 
 }  // namespace rgbd_pose

@@ -6,26 +6,23 @@
 #include "core/util/chi_squared.h"
 
 namespace rgbd_pose {
+namespace {
 
-std::string ConsensusOptions::Check() const {
-  if (min_inliers < 3) return "min_inliers must be at least 3";
-  if (!(min_inlier_share >= 0.0 && min_inlier_share <= 1.0)) {
-    return "min_inlier_share must lie between 0 and 1";
-  }
-  if (refits < 0) return "refits must not be negative";
-  return "";
-}
+// How often a motion is fitted again to the matches that agree with it.
+constexpr int kRefits = 2;
+
+}  // namespace
 
 double MaxSquaredDistance() { return ChiSquared99(3); }
 
-std::optional<Rigid3d> FitTo(const std::vector<PointMatch>& matches,
-                             const std::vector<int>& chosen) {
+std::optional<Rigid3d> FitRigidTransform(const std::vector<PointMatch>& matches,
+                                         const std::vector<int>& chosen) {
   PairMoments moments;
   for (const int i : chosen) {
     moments.Add(matches[i].cur.position, matches[i].prev.position,
                 matches[i].weight);
   }
-  return FitRigidly(moments);
+  return UmeyamaAlignment(moments);
 }
 
 void FindInliers(const std::vector<PointMatch>& matches,
@@ -46,8 +43,9 @@ std::optional<Consensus> FindConsensus(const std::vector<PointMatch>& matches,
                                        const ConsensusOptions& options) {
   Consensus consensus{cur_from_prev, {}};
   FindInliers(matches, cur_from_prev, &consensus.inliers);
-  for (int i = 0; i < options.refits; ++i) {
-    const std::optional<Rigid3d> fit = FitTo(matches, consensus.inliers);
+  for (int i = 0; i < kRefits; ++i) {
+    const std::optional<Rigid3d> fit =
+        FitRigidTransform(matches, consensus.inliers);
     if (!fit) return std::nullopt;
     consensus.cur_from_prev = *fit;
     FindInliers(matches, *fit, &consensus.inliers);

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "core/geometry/rigid3.h"
@@ -20,12 +19,6 @@ struct ConsensusOptions {
   // at least this share of those with a depth on both sides.
   int min_inliers = 6;
   double min_inlier_share = 0.1;
-
-  // How often the motion is fitted again to the matches that agree with it.
-  int refits = 2;
-
-  // One line that says what is wrong with the options, or empty.
-  std::string Check() const;
 };
 
 // The greatest squared whitened distance of a match that agrees with a motion:
@@ -33,8 +26,8 @@ struct ConsensusOptions {
 double MaxSquaredDistance();
 
 // The closed-form motion of the matches at these indices.
-std::optional<Rigid3d> FitTo(const std::vector<PointMatch>& matches,
-                             const std::vector<int>& chosen);
+std::optional<Rigid3d> FitRigidTransform(const std::vector<PointMatch>& matches,
+                                         const std::vector<int>& chosen);
 
 // The indices of the matches that agree with a motion.
 void FindInliers(const std::vector<PointMatch>& matches,

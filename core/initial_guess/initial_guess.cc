@@ -2,6 +2,7 @@
 
 #include "core/initial_guess/clique.h"
 #include "core/initial_guess/ransac.h"
+#include "core/util/named_values.h"
 
 namespace rgbd_pose {
 namespace {
@@ -36,10 +37,7 @@ const std::vector<InitialGuess>& InitialGuesses() {
 }
 
 const InitialGuess* FindInitialGuess(std::string_view name) {
-  for (const InitialGuess& guess : InitialGuesses()) {
-    if (guess.name == name) return &guess;
-  }
-  return nullptr;
+  return FindNamed(InitialGuesses(), name);
 }
 
 }  // namespace rgbd_pose

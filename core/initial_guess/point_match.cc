@@ -65,8 +65,8 @@ std::vector<PointMatch> PointMatches(const Correspondences& matches,
   return points;
 }
 
-bool PreserveDistance(const PointMatch& a, const PointMatch& b,
-                      double max_sigmas) {
+bool AreDistanceConsistent(const PointMatch& a, const PointMatch& b,
+                           double max_sigmas) {
   const Eigen::Vector3d prev = a.prev.position - b.prev.position;
   const Eigen::Vector3d cur = a.cur.position - b.cur.position;
   const double change = cur.norm() - prev.norm();

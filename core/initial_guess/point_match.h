@@ -69,7 +69,7 @@ std::vector<PointMatch> PointMatches(const Correspondences& matches,
 // Whether a motion can be right about both matches: it preserves the distance
 // between their points, here up to `max_sigmas` standard deviations of the
 // difference (Hirschmueller, Innocent & Garibaldi 2002; Howard 2008).
-bool PreserveDistance(const PointMatch& a, const PointMatch& b,
-                      double max_sigmas);
+bool AreDistanceConsistent(const PointMatch& a, const PointMatch& b,
+                           double max_sigmas = 3.0);
 
 }  // namespace rgbd_pose

@@ -8,30 +8,39 @@
 #include <vector>
 
 #include "core/util/counter_random.h"
-#include "core/util/input_error.h"
 
 namespace rgbd_pose {
 namespace {
+
+constexpr int kMaxSamples = 500;  // of three matches
+
+// Sampling ends early when, at the share of inliers seen so far, a sample of
+// right matches only has been drawn with this probability.
+constexpr double kConfidence = 0.999;
+
+// Of more matches, this many are used, evenly spread over the list.
+constexpr int kMaxMatches = 1000;
+
+constexpr uint64_t kSeed = 1;
 
 using Sample = std::array<uint32_t, 3>;
 
 // The work of FindByRansac and its memory.
 class Search {
  public:
-  Search(const std::vector<PointMatch>& matches, const RansacOptions& options)
-      : matches_(matches), options_(options) {
+  explicit Search(const std::vector<PointMatch>& matches) : matches_(matches) {
     inliers_.reserve(matches.size());
   }
 
   std::optional<Rigid3d> Run() {
-    CounterRandom random(options_.seed);
+    CounterRandom random(kSeed);
     const auto count = static_cast<uint32_t>(matches_.size());
-    int num_samples = options_.max_samples;
+    int num_samples = kMaxSamples;
     for (int i = 0; i < num_samples; ++i) {
       const Sample sample = random.ThreeBelow(count);
       if (!CanBeRight(sample) || !Improve(FitToSample(sample))) continue;
       FindInliers(matches_, *best_, &inliers_);
-      if (Improve(FitTo(matches_, inliers_))) {
+      if (Improve(FitRigidTransform(matches_, inliers_))) {
         FindInliers(matches_, *best_, &inliers_);
       }
       num_samples = std::min(num_samples, SamplesNeeded(inliers_.size()));
@@ -41,10 +50,9 @@ class Search {
 
  private:
   bool CanBeRight(const Sample& s) const {
-    const double k = options_.max_distance_sigmas;
-    return PreserveDistance(matches_[s[0]], matches_[s[1]], k) &&
-           PreserveDistance(matches_[s[0]], matches_[s[2]], k) &&
-           PreserveDistance(matches_[s[1]], matches_[s[2]], k);
+    return AreDistanceConsistent(matches_[s[0]], matches_[s[1]]) &&
+           AreDistanceConsistent(matches_[s[0]], matches_[s[2]]) &&
+           AreDistanceConsistent(matches_[s[1]], matches_[s[2]]);
   }
 
   std::optional<Rigid3d> FitToSample(const Sample& sample) const {
@@ -53,7 +61,7 @@ class Search {
       moments.Add(matches_[i].cur.position, matches_[i].prev.position,
                   matches_[i].weight);
     }
-    return FitRigidly(moments);
+    return UmeyamaAlignment(moments);
   }
 
   // Takes a motion if it is better than the best one so far, by the sum of
@@ -75,13 +83,12 @@ class Search {
 
   int SamplesNeeded(size_t inliers) const {
     const double share = static_cast<double>(inliers) / matches_.size();
-    const double needed = std::log(1.0 - options_.confidence) /
-                          std::log1p(-share * share * share);
-    return static_cast<int>(std::min<double>(needed, options_.max_samples)) + 1;
+    const double needed =
+        std::log(1.0 - kConfidence) / std::log1p(-share * share * share);
+    return static_cast<int>(std::min<double>(needed, kMaxSamples)) + 1;
   }
 
   const std::vector<PointMatch>& matches_;
-  const RansacOptions& options_;
   std::vector<int> inliers_;
   std::optional<Rigid3d> best_;
   double best_cost_ = std::numeric_limits<double>::infinity();
@@ -89,28 +96,13 @@ class Search {
 
 }  // namespace
 
-std::string RansacOptions::Check() const {
-  if (max_samples < 1) return "max_samples must be at least 1";
-  if (!(confidence > 0.0 && confidence < 1.0)) {
-    return "confidence must lie between 0 and 1";
-  }
-  if (!(max_distance_sigmas > 0.0)) {
-    return "max_distance_sigmas must be positive";
-  }
-  if (max_matches < 3) return "max_matches must be at least 3";
-  return consensus.Check();
-}
-
 std::optional<Consensus> FindByRansac(const Correspondences& matches,
-                                      const RansacOptions& options) {
-  const std::string problem = options.Check();
-  if (!problem.empty()) throw InputError(problem);
-  const std::vector<PointMatch> points =
-      PointMatches(matches, options.max_matches);
+                                      const ConsensusOptions& options) {
+  const std::vector<PointMatch> points = PointMatches(matches, kMaxMatches);
   if (points.size() < 3) return std::nullopt;
-  const std::optional<Rigid3d> best = Search(points, options).Run();
+  const std::optional<Rigid3d> best = Search(points).Run();
   if (!best) return std::nullopt;
-  return FindConsensus(points, *best, options.consensus);
+  return FindConsensus(points, *best, options);
 }
 
 }  // namespace rgbd_pose

@@ -76,8 +76,7 @@ RGBD_POSE_LANE_FUNCTION(hypot, kIsNoNumber)
 
 // x where it exceeds `lowest`, else `lowest`, lane by lane.
 template <typename T>
-[[gnu::always_inline]] inline void AtLeast(const T& x, double lowest,
-                                           T* result) {
+[[gnu::always_inline]] inline void Max(const T& x, double lowest, T* result) {
   const T limit = T{} + lowest;
   *result = x > limit ? x : limit;
 }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <iterator>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/util/input_error.h"
@@ -15,10 +18,10 @@ struct Named {
   Value value;
 };
 
-template <typename Row, size_t N>
-std::vector<std::string> NamesOf(const Row (&rows)[N]) {
+template <typename Rows>
+std::vector<std::string> NamesOf(const Rows& rows) {
   std::vector<std::string> names;
-  for (const Row& row : rows) names.emplace_back(row.name);
+  for (const auto& row : rows) names.emplace_back(row.name);
   return names;
 }
 
@@ -28,14 +31,26 @@ inline InputError UnknownName(const std::string& what, const std::string& name,
                     Join(names));
 }
 
-// The value of that name. Throws InputError listing the names there are.
-template <typename Value, size_t N>
-Value ValueOf(const Named<Value> (&rows)[N], const std::string& what,
-              const std::string& name) {
-  for (const Named<Value>& row : rows) {
-    if (row.name == name) return row.value;
-  }
-  throw UnknownName(what, name, NamesOf(rows));
+// The row of that name; null: there is none.
+template <typename Rows>
+auto FindNamed(const Rows& rows, std::string_view name) {
+  const auto row = std::find_if(std::begin(rows), std::end(rows),
+                                [=](const auto& r) { return r.name == name; });
+  return row == std::end(rows) ? nullptr : &*row;
+}
+
+// The row of that name. Throws InputError listing the names there are.
+template <typename Rows>
+const auto& RowOf(const Rows& rows, const std::string& what,
+                  std::string_view name) {
+  if (const auto* row = FindNamed(rows, name)) return *row;
+  throw UnknownName(what, std::string(name), NamesOf(rows));
+}
+
+// The same, of one of Named.
+template <typename Rows>
+auto ValueOf(const Rows& rows, const std::string& what, std::string_view name) {
+  return RowOf(rows, what, name).value;
 }
 
 }  // namespace rgbd_pose

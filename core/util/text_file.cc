@@ -43,7 +43,7 @@ std::string Reason() {
 }
 
 std::FILE* OpenToWrite(const std::string& path) {
-  std::FILE* file = std::fopen(AsideOf(path).c_str(), "wb");
+  std::FILE* file = std::fopen(TemporaryPath(path).c_str(), "wb");
   if (file == nullptr) {
     throw InputError(path + ": cannot be written " + Reason() +
                      "; check that its folder exists and may be written to");
@@ -142,21 +142,22 @@ double ParseTimestamp(std::string_view word, const std::string& path,
   return seconds;
 }
 
-std::string AsideOf(const std::string& path) { return path + ".partial"; }
+std::string TemporaryPath(const std::string& path) { return path + ".partial"; }
 
 void WriteFileAtomically(const std::string& path, std::string_view content,
-                         Survives survives) {
-  const std::string aside = AsideOf(path);
+                         Durability durability) {
+  const std::string temporary = TemporaryPath(path);
   std::FILE* file = OpenToWrite(path);
   const bool written =
       std::fwrite(content.data(), 1, content.size(), file) == content.size() &&
       std::fflush(file) == 0 &&
-      (survives == Survives::kCrash || fsync(fileno(file)) == 0);
+      (durability == Durability::kCrash || fsync(fileno(file)) == 0);
   std::string reason = written ? "" : Reason();
   if (std::fclose(file) != 0 && written) reason = Reason();
-  if (reason.empty() && std::rename(aside.c_str(), path.c_str()) == 0) return;
+  if (reason.empty() && std::rename(temporary.c_str(), path.c_str()) == 0)
+    return;
   if (reason.empty()) reason = Reason();
-  std::remove(aside.c_str());
+  std::remove(temporary.c_str());
   throw InputError(path + ": writing failed " + reason);
 }
 
@@ -175,7 +176,7 @@ void RequireWritable(const std::string& path) {
     throw InputError(path + ": is a folder, a file is needed here");
   }
   std::fclose(OpenToWrite(path));
-  std::filesystem::remove(AsideOf(path), ignored);
+  std::filesystem::remove(TemporaryPath(path), ignored);
 }
 
 }  // namespace rgbd_pose

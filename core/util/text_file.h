@@ -44,24 +44,24 @@ bool PathExists(const std::filesystem::path& path);
 std::string ReadTextFile(const std::string& path);
 
 // What a file that is being written survives: the old one or the new is there.
-enum class Survives {
+enum class Durability {
   kCrash,      // of the program
   kPowerLoss,  // too: its bytes are on the disk before it takes its name
 };
 
-// Writes a file as a whole or not at all: aside first (AsideOf), then renamed.
+// Writes a file as a whole or not at all: first to TemporaryPath, then renamed.
 // Throws InputError if it cannot (folder missing, disk full).
 void WriteFileAtomically(const std::string& path, std::string_view content,
-                         Survives survives = Survives::kCrash);
+                         Durability durability = Durability::kCrash);
 
 // Where WriteFileAtomically writes a file until it is whole.
-std::string AsideOf(const std::string& path);
+std::string TemporaryPath(const std::string& path);
 
 // Has the names in a folder on the disk, new, changed and removed ones. Throws
 // InputError if it cannot.
 void SyncFolder(const std::string& path);
 
-// Throws InputError if WriteFileAtomically could not write the file: to be told
+// Throws InputError if WriteFileAtomically could not write the file: to be said
 // before the work rather than after it. Leaves everything as it was.
 void RequireWritable(const std::string& path);
 

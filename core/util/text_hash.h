@@ -7,7 +7,7 @@
 namespace rgbd_pose {
 
 // A 64-bit hash of texts or bytes, the same on every platform: FNV-1a (Fowler,
-// Noll & Vo). It tells apart what differs by accident, not by malice; one
+// Noll & Vo). It distinguishes what differs by accident, not by malice; one
 // changed byte always changes it.
 class TextHash {
  public:

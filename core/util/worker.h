@@ -9,7 +9,7 @@
 #include <thread>
 #include <utility>
 
-#include "core/util/give_way.h"
+#include "core/util/thread_priority.h"
 
 namespace rgbd_pose {
 
@@ -33,7 +33,7 @@ class Worker {
 
   // What the task returns, or throws, by the future.
   template <typename Task>
-  auto Do(Task task) -> std::future<decltype(task())> {
+  auto Submit(Task task) -> std::future<decltype(task())> {
     auto packaged = std::make_shared<std::packaged_task<decltype(task())()>>(
         std::move(task));
     auto result = packaged->get_future();
@@ -47,7 +47,7 @@ class Worker {
 
  private:
   void Work() {
-    GiveWay();
+    LowerThreadPriority();
     while (true) {
       std::function<void()> task;
       {

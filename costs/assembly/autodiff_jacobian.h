@@ -63,8 +63,8 @@ struct WithAutodiffJacobian : Type {
   }
 
   // R and C with their derivatives by the six parameters.
-  static MotionPose<Jet> JetsOf(const MotionDerivatives& motion) {
-    MotionPose<Jet> pose;
+  static RotationAndCenter<Jet> JetsOf(const MotionDerivatives& motion) {
+    RotationAndCenter<Jet> pose;
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {
         Jet& entry = pose.R(row, column);

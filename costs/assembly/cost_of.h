@@ -12,7 +12,7 @@ namespace rgbd_pose {
 // The MotionCost of a residual type over matches: binding, sums and the three
 // assemblies. A residual type is stateless and says
 //
-//   kName, kRows, kIndependentRows, kColumns
+//   kName, kRows, kDegreesOfFreedom, kColumns
 //   kIsWhitened                                   see MotionCost::is_whitened
 //   Pack(input, i, columns) -> usable             of match i
 //   Residual(motion pose, columns, r)             for any scalars
@@ -27,7 +27,7 @@ namespace rgbd_pose {
 //
 //   kAssociation                                  see MotionCost::association
 //
-// A type whose matches may lack measurements tells how many there are by
+// A type whose matches may lack measurements says how many there are by
 //
 //   Degrees(columns)                              see MotionCost::degrees
 //
@@ -57,18 +57,18 @@ class CostOf final : public PackedCost<Type> {
 
  public:
   int scale_group() const override {
-    return IsPrior<Residual>() ? MotionCost::kExactSigmas : 0;
+    return IsPrior<Residual>() ? MotionCost::kFixedScale : 0;
   }
 
-  Association association() const override {
+  AssociationPolicy association() const override {
     if constexpr (HasAssociation<Residual>()) return Residual::kAssociation;
-    return Association::kOnce;
+    return AssociationPolicy::kOnce;
   }
 
   // Keeps matches only where they have to be packed again.
-  void Bind(const PairData& pair) override {
+  void Bind(const FramePair& pair) override {
     this->SetThreads(pair.threads);
-    if (association() != Association::kOnce) {
+    if (association() != AssociationPolicy::kOnce) {
       if (pair.matches != nullptr) {
         kept_ = *pair.matches;
       } else {
@@ -82,7 +82,8 @@ class CostOf final : public PackedCost<Type> {
   }
 
   void Associate(const Rigid3d& cur_from_prev) override {
-    if (association() != Association::kOnce) PackAll({kept_, cur_from_prev});
+    if (association() != AssociationPolicy::kOnce)
+      PackAll({kept_, cur_from_prev});
   }
 
  private:

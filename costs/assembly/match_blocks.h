@@ -17,7 +17,7 @@ class AnalyticBlock final
     : public ceres::SizedCostFunction<Residual::kRows, 6> {
  public:
   // columns[kColumns] and the origin must outlive the block.
-  AnalyticBlock(const MotionOrigin& origin, const double* columns)
+  AnalyticBlock(const LinearizationPoint& origin, const double* columns)
       : origin_(origin), columns_(columns) {}
 
   bool Evaluate(double const* const* parameters, double* residuals,
@@ -26,13 +26,13 @@ class AnalyticBlock final
       Residual::Residual(origin_.PoseAt(parameters[0]), columns_, residuals);
       return true;
     }
-    Residual::Jacobian(origin_.SharedDerivativesAt(parameters[0]), columns_,
+    Residual::Jacobian(origin_.CachedDerivativesAt(parameters[0]), columns_,
                        residuals, reinterpret_cast<double(*)[6]>(jacobians[0]));
     return true;
   }
 
  private:
-  const MotionOrigin& origin_;
+  const LinearizationPoint& origin_;
   const double* columns_;
 };
 
@@ -40,7 +40,7 @@ class AnalyticBlock final
 template <typename Residual>
 class OracleFunctor {
  public:
-  OracleFunctor(const MotionOrigin& origin, const double* columns)
+  OracleFunctor(const LinearizationPoint& origin, const double* columns)
       : origin_(origin), columns_(columns) {}
 
   // flatten: a translation unit of many costs exhausts the compiler's budget
@@ -52,7 +52,7 @@ class OracleFunctor {
   }
 
  private:
-  const MotionOrigin& origin_;
+  const LinearizationPoint& origin_;
   const double* columns_;
 };
 

@@ -16,7 +16,7 @@ namespace rgbd_pose {
 class MotionSums {
  public:
   // All must outlive this; a null loss is least squares.
-  MotionSums(const MotionCost* cost, const MotionOrigin* origin,
+  MotionSums(const MotionCost* cost, const LinearizationPoint* origin,
              const ceres::LossFunction* loss)
       : cost_(cost), origin_(origin), loss_(loss) {}
 
@@ -37,7 +37,7 @@ class MotionSums {
 
  private:
   const MotionCost* cost_;
-  const MotionOrigin* origin_;
+  const LinearizationPoint* origin_;
   const ceres::LossFunction* loss_;
   mutable MotionVector kept_x_ =
       MotionVector::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -40,11 +40,13 @@ class PackedCost : public MotionCost {
 
  public:
   std::string_view name() const override { return Residual::kName; }
-  int independent_rows() const override { return Residual::kIndependentRows; }
+  int degrees_of_freedom() const override {
+    return Residual::kDegreesOfFreedom;
+  }
   const std::vector<int>& matches() const override { return matches_; }
   const std::vector<int>& degrees() const override { return degrees_; }
 
-  int rows() const override { return Residual::kRows; }
+  int num_residuals() const override { return Residual::kRows; }
   bool is_whitened() const override { return Residual::kIsWhitened; }
 
   double InlierLimit(int k) const override {
@@ -95,14 +97,14 @@ class PackedCost : public MotionCost {
     }
   }
 
-  void AddScatter(const MotionDerivatives& motion,
-                  const ceres::LossFunction* loss,
-                  MotionMatrix* scatter) const override {
+  void AddScoreOuterProduct(const MotionDerivatives& motion,
+                            const ceres::LossFunction* loss,
+                            MotionMatrix* scatter) const override {
     RunVectorised<packed::ScatterKernel<Residual>>(motion, packed_, loss,
                                                    scatter);
   }
 
-  void AddTo(Assembly assembly, const MotionOrigin& origin,
+  void AddTo(Assembly assembly, const LinearizationPoint& origin,
              ceres::LossFunction* loss, double* x,
              ceres::Problem* problem) override {
     if (matches_.empty()) return;
@@ -128,11 +130,11 @@ class PackedCost : public MotionCost {
  protected:
   static constexpr int kColumns = Residual::kColumns;  // of a block
 
-  // See PairData::threads.
+  // See FramePair::threads.
   void SetThreads(int threads) { threads_ = threads; }
 
   // Takes all blocks out and makes room for so many. Blocks without a match may
-  // be written to the columns, and their number told, by the caller.
+  // be written to the columns, and their number said, by the caller.
   PackedColumns* BeginBlocks(size_t max_blocks) {
     // And one more lane, to be written in vain.
     packed_.stride = static_cast<ptrdiff_t>((max_blocks + kMaxLanes) /
@@ -186,7 +188,7 @@ class PackedCost : public MotionCost {
   // After the last block.
   void EndBlocks() {
     matches_.resize(packed_.size, -1);
-    degrees_.resize(packed_.size, Residual::kIndependentRows);
+    degrees_.resize(packed_.size, Residual::kDegreesOfFreedom);
     PadColumns(&packed_);
     chunks_.resize((packed_.size + packed::kChunk - 1) / packed::kChunk);
   }
@@ -194,7 +196,7 @@ class PackedCost : public MotionCost {
  private:
   static int Degrees(const double* columns) {
     if constexpr (HasDegrees<Residual>()) return Residual::Degrees(columns);
-    return Residual::kIndependentRows;
+    return Residual::kDegreesOfFreedom;
   }
 
   void Store(size_t i, const double* columns) {

@@ -202,7 +202,7 @@ struct TermSums {
 
   // d(R (X - C)) = omega x q - R dC;  d(R^T X + C) = -(R^T omega) x q + dC.
   void AddTo(const MotionDerivatives& motion, NormalEquations* sum) const {
-    const Eigen::Matrix3d turn = TurnOfAngles(motion);
+    const Eigen::Matrix3d turn = EulerRateJacobian(motion);
     sums[0].AddTo(turn, -motion.R, sum);
     if constexpr (kTerms == 2) {
       sums[1].AddTo(-(motion.R.transpose() * turn), Eigen::Matrix3d::Identity(),

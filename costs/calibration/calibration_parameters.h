@@ -23,7 +23,7 @@ enum CalibrationIndex {
   kTranslationX,  // m
   kTranslationY,
   kTranslationZ,
-  kDepthFactor,  // z = this * measured z, the offset of 1 / z aside
+  kDepthFactor,  // z = this * measured z, without the offset of 1 / z
   kCalibrationSize
 };
 

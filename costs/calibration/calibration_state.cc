@@ -6,7 +6,8 @@ std::vector<MotionDerivatives> PosesOf(const CalibrationState& state) {
   std::vector<MotionDerivatives> poses;
   const MotionVector zero = MotionVector::Zero();
   for (const Rigid3d& pose : state.world_from_cam) {
-    poses.push_back(MotionOrigin(pose.Inverse()).DerivativesAt(zero.data()));
+    poses.push_back(
+        LinearizationPoint(pose.Inverse()).DerivativesAt(zero.data()));
   }
   return poses;
 }

@@ -31,7 +31,7 @@ struct Landmark {
   int num_views = 0;
 };
 
-// How far apart two places of the camera are, as something else tells: what
+// How far apart two places of the camera are, as something else gives it: what
 // gives images a scale. The places are at `in_a` and `in_b` in the axes of two
 // keyframes, as measured (times kDepthFactor).
 struct KnownDistance {

@@ -48,7 +48,7 @@ class KnownDistanceBlock final
     : public ceres::SizedCostFunction<1, 6, 6, kCalibrationSize> {
  public:
   // All must outlive the block.
-  KnownDistanceBlock(const MotionOrigin& a, const MotionOrigin& b,
+  KnownDistanceBlock(const LinearizationPoint& a, const LinearizationPoint& b,
                      const CalibrationOrigin& origin,
                      const KnownDistance& known)
       : a_(a), b_(b), origin_(origin), known_(known) {}
@@ -71,8 +71,8 @@ class KnownDistanceBlock final
   }
 
  private:
-  const MotionOrigin& a_;
-  const MotionOrigin& b_;
+  const LinearizationPoint& a_;
+  const LinearizationPoint& b_;
   const CalibrationOrigin& origin_;
   const KnownDistance& known_;
 };

@@ -10,6 +10,9 @@
 
 namespace rgbd_pose {
 
+// Width of Cauchy's loss on landmarks, in standard deviations.
+inline constexpr double kLandmarkLossWidth = 2.5;
+
 // The solver's calibration parameters y: theta = start + width . y, where what
 // is not free has a width of 0. Counted in standard deviations of what is known
 // before, they are of one size.
@@ -35,8 +38,9 @@ class LandmarkBlock final
                                       kCalibrationSize> {
  public:
   // All must outlive the block.
-  LandmarkBlock(const MotionOrigin& anchor, const MotionOrigin& view,
-                const CalibrationOrigin& origin, const LandmarkData& data)
+  LandmarkBlock(const LinearizationPoint& anchor,
+                const LinearizationPoint& view, const CalibrationOrigin& origin,
+                const LandmarkData& data)
       : anchor_(anchor), view_(view), origin_(origin), data_(data) {}
 
   bool Evaluate(double const* const* x, double* residuals,
@@ -67,8 +71,8 @@ class LandmarkBlock final
   }
 
  private:
-  const MotionOrigin& anchor_;
-  const MotionOrigin& view_;
+  const LinearizationPoint& anchor_;
+  const LinearizationPoint& view_;
   const CalibrationOrigin& origin_;
   const LandmarkData& data_;
 };
@@ -77,7 +81,8 @@ class LandmarkBlock final
 template <typename Residual>
 class LandmarkOracle {
  public:
-  LandmarkOracle(const MotionOrigin& anchor, const MotionOrigin& view,
+  LandmarkOracle(const LinearizationPoint& anchor,
+                 const LinearizationPoint& view,
                  const CalibrationOrigin& origin, const LandmarkData& data)
       : anchor_(anchor), view_(view), origin_(origin), data_(data) {}
 
@@ -91,8 +96,8 @@ class LandmarkOracle {
   }
 
  private:
-  const MotionOrigin& anchor_;
-  const MotionOrigin& view_;
+  const LinearizationPoint& anchor_;
+  const LinearizationPoint& view_;
   const CalibrationOrigin& origin_;
   const LandmarkData& data_;
 };

@@ -1,28 +1,35 @@
 #include "costs/calibration/landmark_covariance.h"
 
 #include <Eigen/Cholesky>
+#include <algorithm>
 
 #include "costs/calibration/known_distance_block.h"
-#include "costs/calibration/landmark_equations.h"
+#include "costs/calibration/reduced_camera_system.h"
 
 namespace rgbd_pose {
+namespace {
+
+// As RobustCovariance has it.
+constexpr double kMinSlope = 0.2;
+
+}  // namespace
 
 bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
-                        const CalibrationOrigin& origin, double loss_width,
+                        const CalibrationOrigin& origin,
                         const CalibrationState& state,
-                        CalibrationMatrix* by_noise,
-                        CalibrationMatrix* by_scatter) {
-  by_noise->setZero();
-  by_scatter->setZero();
+                        CalibrationMatrix* model_covariance,
+                        CalibrationMatrix* sandwich_covariance) {
+  model_covariance->setZero();
+  sandwich_covariance->setZero();
   const std::vector<MotionDerivatives> poses = PosesOf(state);
   const int num_poses = static_cast<int>(poses.size());
-  LandmarkEquations equations = MakeLandmarkEquations(
-      views, training_only, origin, loss_width, state, poses);
-  Eigen::MatrixXd& H = equations.hessian;
-  const int size = static_cast<int>(H.rows());
+  const ReducedCameraSystem equations =
+      MakeReducedCameraSystem(views, training_only, origin, state, poses);
+  const int size = static_cast<int>(equations.hessian.rows());
+  Eigen::MatrixXd known_before = Eigen::MatrixXd::Zero(size, size);
   const int y_at = equations.PlaceOfY();
   const auto place_of = [](int keyframe) {
-    return LandmarkEquations::PlaceOfPose(keyframe);
+    return ReducedCameraSystem::PlaceOfPose(keyframe);
   };
   for (const KnownDistance& known : views.distances) {
     const KnownDistanceError error(poses[known.a], poses[known.b],
@@ -31,19 +38,28 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
     if (known.a > 0) row.segment<6>(place_of(known.a)) += error.a.transpose();
     if (known.b > 0) row.segment<6>(place_of(known.b)) += error.b.transpose();
     row[y_at + kDepthFactor] += error.by_factor * origin.width[kDepthFactor];
-    H.noalias() += row * row.transpose();
+    known_before.noalias() += row * row.transpose();
   }
-  for (int k = 0; k < kCalibrationSize; ++k) H(y_at + k, y_at + k) += 1.0;
+  known_before.diagonal().tail<kCalibrationSize>().array() += 1.0;
   // Poses that nothing sees.
-  for (int k = 0; k < y_at; ++k) H(k, k) += 1e-9;
+  known_before.diagonal().head(y_at).array() += 1e-9;
 
-  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> cholesky(H);
-  if (cholesky.info() != Eigen::Success) return false;
-  Eigen::MatrixXd last = Eigen::MatrixXd::Zero(size, kCalibrationSize);
-  last.bottomRows<kCalibrationSize>().setIdentity();
-  cholesky.solveInPlace(last);
+  // The last columns of the inverse.
+  Eigen::MatrixXd last;
+  const auto invert = [&](double slope) {
+    Eigen::MatrixXd H = slope * equations.hessian + known_before;
+    const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>, Eigen::Lower> cholesky(H);
+    last = Eigen::MatrixXd::Zero(size, kCalibrationSize);
+    last.bottomRows<kCalibrationSize>().setIdentity();
+    cholesky.solveInPlace(last);
+    return cholesky.info() == Eigen::Success;
+  };
   const auto scale = origin.width.asDiagonal();
-  *by_noise = scale * last.bottomRows<kCalibrationSize>() * scale;
+  if (!invert(1.0)) return false;
+  *model_covariance = scale * last.bottomRows<kCalibrationSize>() * scale;
+  const double slope =
+      equations.weight_p > 0.0 ? equations.slope_p / equations.weight_p : 1.0;
+  if (!invert(std::max(slope, kMinSlope))) return false;
   // What each keyframe's landmarks move y by.
   Eigen::MatrixXd moves = last.transpose() * equations.gradients;
   // Distances and the prior have the noise that they say.
@@ -68,9 +84,9 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
   for (int k = 0; k < num_poses; ++k) groups += moves.col(k).norm() > 0.0;
   const double correction =
       groups > 1 ? static_cast<double>(groups) / (groups - 1) : 1.0;
-  *by_scatter =
+  *sandwich_covariance =
       scale * (correction * moves * moves.transpose() + exact) * scale;
-  return by_noise->allFinite() && by_scatter->allFinite();
+  return model_covariance->allFinite() && sandwich_covariance->allFinite();
 }
 
 }  // namespace rgbd_pose

@@ -92,7 +92,7 @@ inline double MeasuredFrom(double w, const double* theta,
 // The derivatives of a residual of so many rows.
 template <int kRows>
 struct LandmarkDerivatives {
-  // By the six parameters of each pose, see MotionOrigin.
+  // By the six parameters of each pose, see LinearizationPoint.
   Eigen::Matrix<double, kRows, 6, Eigen::RowMajor> anchor, view;
   Eigen::Matrix<double, kRows, 1> inverse_depth;
   Eigen::Matrix<double, kRows, kCalibrationSize, Eigen::RowMajor> theta;
@@ -110,8 +110,8 @@ struct LandmarkData {
 // A landmark in the axes of a view, times d: Y = R_v (R_a^T r + (C_a - C_v) d)
 // with the ray r = (x, y, 1) of the anchor's pixel.
 template <typename T>
-Eigen::Matrix<T, 3, 1> InView(const MotionPose<T>& anchor,
-                              const MotionPose<T>& view, const T& d,
+Eigen::Matrix<T, 3, 1> InView(const RotationAndCenter<T>& anchor,
+                              const RotationAndCenter<T>& view, const T& d,
                               const T* theta, const LandmarkData& data) {
   const Eigen::Matrix<T, 2, 1> place =
       Undistorted(Lens<T>{theta, *data.rest}, data.anchor_u, data.anchor_v);
@@ -163,9 +163,9 @@ struct LandmarkPixel {
   static constexpr bool kHasView = true;
 
   template <typename T>
-  static void Residual(const MotionPose<T>& anchor, const MotionPose<T>& view,
-                       const T& d, const T* theta, const LandmarkData& data,
-                       T* r) {
+  static void Residual(const RotationAndCenter<T>& anchor,
+                       const RotationAndCenter<T>& view, const T& d,
+                       const T* theta, const LandmarkData& data, T* r) {
     const Lens<T> lens{theta, *data.rest};
     const Eigen::Matrix<T, 3, 1> Y = InView(anchor, view, d, theta, data);
     const Eigen::Matrix<T, 2, 1> pixel =
@@ -216,9 +216,9 @@ struct LandmarkDepth {
   static constexpr bool kHasView = true;
 
   template <typename T>
-  static void Residual(const MotionPose<T>& anchor, const MotionPose<T>& view,
-                       const T& d, const T* theta, const LandmarkData& data,
-                       T* r) {
+  static void Residual(const RotationAndCenter<T>& anchor,
+                       const RotationAndCenter<T>& view, const T& d,
+                       const T* theta, const LandmarkData& data, T* r) {
     const Eigen::Matrix<T, 3, 1> Y = InView(anchor, view, d, theta, data);
     r[0] = (MeasuredFrom<T>(d / Y[2], theta, data.depth) - data.depth.value) *
            data.depth.inverse_sigma;
@@ -251,8 +251,8 @@ struct AnchorDepth {
   static constexpr bool kHasView = false;
 
   template <typename T>
-  static void Residual(const MotionPose<T>& /*anchor*/,
-                       const MotionPose<T>& /*view*/, const T& d,
+  static void Residual(const RotationAndCenter<T>& /*anchor*/,
+                       const RotationAndCenter<T>& /*view*/, const T& d,
                        const T* theta, const LandmarkData& data, T* r) {
     r[0] = (MeasuredFrom<T>(d, theta, data.depth) - data.depth.value) *
            data.depth.inverse_sigma;

@@ -41,10 +41,10 @@ struct SampleKernel {
           std::memcpy(&point[k], &points.values[k * points.stride + i],
                       sizeof(D));
         }
-        PlaceInImage<D> place;
+        ProjectedPoint<D> place;
         Photometric::Locate(input, point, &place);
         for (int lane = 0; lane < W && i + lane < points.size; ++lane) {
-          float reads[Photometric::kReads];
+          float reads[Photometric::kSamples];
           if (!(place.z[lane] > DirectInput::kMinDepth) ||
               !Photometric::Read(input, place.u[lane], place.v[lane], 1,
                                  reads)) {

@@ -52,7 +52,7 @@ struct LookUpKernel {
                                          const PackedColumns& points,
                                          PackedColumns* seen) {
     Tile tile;
-    std::memset(tile.reads, 0, sizeof(tile.reads));
+    std::memset(tile.samples, 0, sizeof(tile.samples));
     seen->size = 0;
     for (int begin = 0; begin < points.size; begin += kTile) {
       const int size = std::min(kTile, points.size - begin);
@@ -71,9 +71,9 @@ struct LookUpKernel {
   // A tile of points on its way.
   struct Tile {
     alignas(64) double u[kTile], v[kTile], z[kTile];
-    alignas(64) float reads[Residual::kReads][kTile];
+    alignas(64) float samples[Residual::kSamples][kTile];
     alignas(64) double columns[Residual::kColumns][kTile];
-    alignas(64) double doubt[kTile];
+    alignas(64) double rejection[kTile];
     bool is_read[kTile];
   };
 
@@ -92,7 +92,7 @@ struct LookUpKernel {
     using D = typename Lanes<W>::Type;
     D point[Residual::kPointColumns];
     Load(points, begin + i, point);
-    PlaceInImage<D> place;
+    ProjectedPoint<D> place;
     Residual::Locate(input, point, &place);
     std::memcpy(&tile->u[i], &place.u, sizeof(D));
     std::memcpy(&tile->v[i], &place.v, sizeof(D));
@@ -103,9 +103,13 @@ struct LookUpKernel {
   [[gnu::always_inline]] static void Read(const DirectInput& input, int size,
                                           Tile* tile) {
     for (int i = 0; i < size; ++i) {
-      tile->is_read[i] = tile->z[i] > DirectInput::kMinDepth &&
-                         Residual::Read(input, tile->u[i], tile->v[i], kTile,
-                                        &tile->reads[0][i]);
+      tile->is_read[i] =
+          tile->z[i] > DirectInput::kMinDepth &&
+          !(input.moving != nullptr &&
+            input.moving->Contains(input.px_to_full * tile->u[i],
+                                   input.px_to_full * tile->v[i])) &&
+          Residual::Read(input, tile->u[i], tile->v[i], kTile,
+                         &tile->samples[0][i]);
     }
   }
 
@@ -115,19 +119,19 @@ struct LookUpKernel {
                                             int begin, int i, Tile* tile) {
     using D = typename Lanes<W>::Type;
     typedef float Floats __attribute__((vector_size(sizeof(D) / 2)));
-    D point[Residual::kPointColumns], reads[Residual::kReads];
-    D columns[Residual::kColumns], doubt;
+    D point[Residual::kPointColumns], samples[Residual::kSamples];
+    D columns[Residual::kColumns], rejection;
     Load(points, begin + i, point);
-    for (int k = 0; k < Residual::kReads; ++k) {
+    for (int k = 0; k < Residual::kSamples; ++k) {
       Floats floats;
-      std::memcpy(&floats, &tile->reads[k][i], sizeof(Floats));
-      reads[k] = __builtin_convertvector(floats, D);
+      std::memcpy(&floats, &tile->samples[k][i], sizeof(Floats));
+      samples[k] = __builtin_convertvector(floats, D);
     }
-    Residual::LookUp(input, point, reads, columns, &doubt);
+    Residual::LookUp(input, point, samples, columns, &rejection);
     for (int k = 0; k < Residual::kColumns; ++k) {
       std::memcpy(&tile->columns[k][i], &columns[k], sizeof(D));
     }
-    std::memcpy(&tile->doubt[i], &doubt, sizeof(D));
+    std::memcpy(&tile->rejection[i], &rejection, sizeof(D));
   }
 
   [[gnu::always_inline]] static void Append(const Tile& tile, int size,
@@ -136,7 +140,7 @@ struct LookUpKernel {
     int count = 0;
     for (int i = 0; i < size; ++i) {
       kept[count] = i;
-      count += tile.is_read[i] && tile.doubt[i] < 1.0;
+      count += tile.is_read[i] && tile.rejection[i] < 1.0;
     }
     for (int k = 0; k < Residual::kColumns; ++k) {
       double* const to = &seen->values[k * seen->stride + seen->size];
@@ -150,16 +154,17 @@ struct LookUpKernel {
 // once of each previous frame, and looked up in the current one after
 // every step. A residual type says
 //
-//   kName, kRows, kIndependentRows, kColumns, kIsWhitened, kScaleGroup
+//   kName, kRows, kDegreesOfFreedom, kColumns, kIsWhitened, kScaleGroup
 //   kPointColumns, kMaxPoints, kInformation
 //   Points(frame, level, selection, points)  of the previous frame
 //   Locate(input, point, place)              of vectors of doubles: where it is
-//   Read(input, u, v, stride, reads)         what is read there, kReads numbers
-//   LookUp(input, point, reads, columns, doubt)  of vectors of doubles; points
-//                                            are kept with a doubt below 1
+//   Read(input, u, v, stride, samples)       kSamples numbers read there
+//   LookUp(input, point, samples, columns, rejection)
+//                                            of vectors of doubles; points are
+//                                            kept with a rejection below 1
 //   Residual(motion pose, columns, r)        for any scalars
 //   Jacobian(motion derivatives, columns, r, J)
-//   Feign(input, axis, columns)              makes a row one of noise alone
+//   NoiseRow(input, axis, columns)           makes a row one of noise alone
 template <typename Type>
 class DirectCostOf final : public PackedCost<Type> {
   using Residual = typename PackedCost<Type>::Residual;
@@ -169,7 +174,9 @@ class DirectCostOf final : public PackedCost<Type> {
   explicit DirectCostOf(const DirectOptions& options)
       : options_(options), points_(options.num_levels) {}
 
-  Association association() const override { return Association::kEveryStep; }
+  AssociationPolicy association() const override {
+    return AssociationPolicy::kEveryStep;
+  }
   int scale_group() const override { return Residual::kScaleGroup; }
   double information_factor() const override {
     return options_.information_factor > 0.0 ? options_.information_factor
@@ -181,7 +188,7 @@ class DirectCostOf final : public PackedCost<Type> {
 
   // Points of a previous frame with an id are kept as long as the frames bound
   // have the same.
-  void Bind(const PairData& pair) override {
+  void Bind(const FramePair& pair) override {
     this->SetThreads(pair.threads);
     level_ = 0;
     input_ = DirectInput();
@@ -191,6 +198,7 @@ class DirectCostOf final : public PackedCost<Type> {
       points_of_ = 0;
       return;
     }
+    input_.moving = pair.cur->moving;
     input_.has_distortion = pair.cur->levels[0].camera.HasDistortion();
     input_.moves_color = !pair.cur->timing.color.IsGlobal();
     input_.moves_depth = !pair.cur->timing.depth.IsGlobal();
@@ -219,24 +227,24 @@ class DirectCostOf final : public PackedCost<Type> {
     LookUp();
   }
 
-  void Follow(const Rigid3d& cur_from_prev) override {
+  void Reassociate(const Rigid3d& cur_from_prev) override {
     if (input_.cur != nullptr && MoveTo(cur_from_prev)) LookUp();
   }
 
-  void AddFeigned(const MotionDerivatives& motion,
-                  MotionMatrix* hessian) const override {
+  void AddSpuriousInformation(const MotionDerivatives& motion,
+                              MotionMatrix* hessian) const override {
     if (input_.cur == nullptr) return;
     this->AddSample(
-        motion, kFeignedStep, 2,
+        motion, kSpuriousStep, 2,
         [this](int axis, double* columns) {
-          Residual::Feign(input_, axis, columns);
+          Residual::NoiseRow(input_, axis, columns);
         },
         hessian);
   }
 
  private:
-  // Of so many points, one tells for all what noise feigns.
-  static constexpr int kFeignedStep = 8;
+  // Of so many points, one stands for all in what noise feigns.
+  static constexpr int kSpuriousStep = 8;
 
   PointSelection Selection(int level) const {
     const int finest =
@@ -261,6 +269,7 @@ class DirectCostOf final : public PackedCost<Type> {
                           (R - input_.R).cwiseAbs().maxCoeff() <= kRounding &&
                           (t - input_.t).cwiseAbs().maxCoeff() <= kRounding;
     input_.level = level;
+    if constexpr (Residual::kSeesBrightness) input_.px_to_full = 1 << level;
     input_.R = R;
     input_.t = t;
     return !is_there;

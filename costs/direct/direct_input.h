@@ -10,7 +10,7 @@ namespace rgbd_pose {
 // of it, as seen after one motion. Around the place where a point is seen the
 // image counts as a plane (its value and derivatives there), so that what the
 // residuals are made of are columns of numbers, no longer an image; the columns
-// are made anew wherever the solver tries a motion.
+// are made again wherever the solver tries a motion.
 struct DirectInput {
   const FrameView* cur = nullptr;
   int level = 0;
@@ -24,6 +24,11 @@ struct DirectInput {
   bool moves_color = false;
   bool moves_depth = false;
 
+  // What is not looked at (FrameView::moving), and its pixels for one of the
+  // image that is read.
+  const CellMask* moving = nullptr;
+  double px_to_full = 1.0;
+
   // The change of brightness from the previous frame to the current one: gray
   // levels there are gain * gray + bias.
   double gain = 1.0;
@@ -35,7 +40,7 @@ struct DirectInput {
 // Where a point is seen, in px of the image that is read there, and its depth
 // (m).
 template <typename D>
-struct PlaceInImage {
+struct ProjectedPoint {
   D u, v, z;
 };
 

@@ -18,7 +18,7 @@ int CellSize(double pixels, int max_points) {
   return std::max(1, static_cast<int>(std::sqrt(pixels / max_points)));
 }
 
-// Depths that a slope is told from are so far apart, px.
+// Depths that a slope is computed from are so far apart, px.
 constexpr int kSlopeStep = 3;
 
 // Appends to columns that have no padding yet.

@@ -21,7 +21,7 @@ namespace rgbd_pose {
 struct InverseDepth : Surface {
   static constexpr char kName[] = "inverse_depth";
   static constexpr int kRows = 1;
-  static constexpr int kIndependentRows = 1;
+  static constexpr int kDegreesOfFreedom = 1;
   static constexpr bool kIsWhitened = true;
   static constexpr int kScaleGroup = 2;  // depths
   static constexpr bool kSeesBrightness = false;
@@ -34,12 +34,12 @@ struct InverseDepth : Surface {
 
   template <typename D>
   [[gnu::always_inline]] static void LookUp(const DirectInput& input,
-                                            const D* point, const D* reads,
-                                            D* columns, D* doubt) {
+                                            const D* point, const D* samples,
+                                            D* columns, D* rejection) {
     // Beyond, another surface hides the point, or is hidden by it.
     constexpr double kMaxRelativeStep = 0.1;
     MeasuredSurface<D> surface;
-    Measure(input, point, reads, &surface);
+    Measure(input, point, samples, &surface);
     const D w = point[2] * point[2] / (kSurfaceSigma * point[6]);
     for (int i = 0; i < 3; ++i) {
       columns[i] = point[i];
@@ -47,11 +47,11 @@ struct InverseDepth : Surface {
     }
     columns[6] = w;
     const D step = surface.excess * (1.0 / kMaxRelativeStep);
-    *doubt = surface.doubt + step * step;
+    *rejection = surface.rejection + step * step;
   }
 
   // A row that is the noise of the plane's slope along an axis of the image.
-  static void Feign(const DirectInput& input, int axis, double* columns) {
+  static void NoiseRow(const DirectInput& input, int axis, double* columns) {
     const Camera& camera = input.cur->levels[0].camera;
     columns[3] = axis == 0 ? kSlopeNoise * camera.fx : 0.0;
     columns[4] = axis == 1 ? kSlopeNoise * camera.fy : 0.0;
@@ -59,9 +59,10 @@ struct InverseDepth : Surface {
   }
 
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     T q[3];
-    Forward::Move(motion, columns, q);
+    Forward::TransformPoint(motion, columns, q);
     r[0] = (columns[3] * q[0] + columns[4] * q[1] + columns[5] * q[2] -
             columns[6]) /
            q[2];
@@ -71,7 +72,7 @@ struct InverseDepth : Surface {
   static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
                        D (*J)[6]) {
     D q[3];
-    Forward::Move(motion, columns, q);
+    Forward::TransformPoint(motion, columns, q);
     const D inverse = 1.0 / q[2];
     const D a = columns[3] * inverse;
     const D b = columns[4] * inverse;

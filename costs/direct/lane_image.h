@@ -14,16 +14,17 @@ namespace rgbd_pose {
 // Where a point (current axes) is seen, px, and how that place changes with
 // x / z and y / z, its normalised image coordinates; both with distortion.
 template <typename D>
-struct SeenPixel {
+struct ProjectedPixel {
   D u, v;
   D u_x, u_y, v_x, v_y;  // du / d(x / z), ...
 };
 
 // Of x / z and y / z.
 template <typename D>
-[[gnu::always_inline]] inline void SeePixel(const Camera& camera,
-                                            bool has_distortion, const D& x,
-                                            const D& y, SeenPixel<D>* p) {
+[[gnu::always_inline]] inline void ProjectWithJacobian(const Camera& camera,
+                                                       bool has_distortion,
+                                                       const D& x, const D& y,
+                                                       ProjectedPixel<D>* p) {
   const D zero = x - x;
   if (!has_distortion) {
     p->u = camera.fx * x + camera.cx;
@@ -62,8 +63,8 @@ template <typename D>
                                              D* moved) {
   const D inverse = 1.0 / point[2];
   const D x = point[0] * inverse, y = point[1] * inverse;
-  SeenPixel<D> pixel;
-  SeePixel(level_camera, has_distortion, x, y, &pixel);
+  ProjectedPixel<D> pixel;
+  ProjectWithJacobian(level_camera, has_distortion, x, y, &pixel);
   // Rows a second.
   D velocity[3];
   twist.PointVelocity(point, velocity);

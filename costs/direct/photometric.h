@@ -29,7 +29,7 @@ namespace rgbd_pose {
 struct Photometric {
   static constexpr char kName[] = "photometric";
   static constexpr int kRows = 1;
-  static constexpr int kIndependentRows = 1;
+  static constexpr int kDegreesOfFreedom = 1;
   static constexpr bool kIsWhitened = true;
   static constexpr int kScaleGroup = 1;  // gray levels
   static constexpr bool kSeesBrightness = true;
@@ -56,7 +56,7 @@ struct Photometric {
   template <typename D>
   [[gnu::always_inline]] static void Locate(const DirectInput& input,
                                             const D* point,
-                                            PlaceInImage<D>* place) {
+                                            ProjectedPoint<D>* place) {
     Seen<D> seen;
     See(input, point, &seen);
     *place = {seen.pixel.u, seen.pixel.v, seen.z};
@@ -64,10 +64,10 @@ struct Photometric {
 
   // Where in the pixel the place is (0 to 1, to the right and down) and the
   // four gray levels around.
-  static constexpr int kReads = 6;
+  static constexpr int kSamples = 6;
   [[gnu::always_inline]] static bool Read(const DirectInput& input, double u,
                                           double v, ptrdiff_t stride,
-                                          float* reads) {
+                                          float* samples) {
     const ImageView<uint8_t>& gray = input.cur->levels[input.level].gray;
     if (!(u >= 1.0 && v >= 1.0 && u < gray.width - 2.0 &&
           v < gray.height - 2.0)) {
@@ -75,23 +75,23 @@ struct Photometric {
     }
     const int column = static_cast<int>(u), row = static_cast<int>(v);
     const uint8_t* const at = gray.data + row * gray.stride + column;
-    reads[0 * stride] = static_cast<float>(u - column);
-    reads[1 * stride] = static_cast<float>(v - row);
-    reads[2 * stride] = at[0];
-    reads[3 * stride] = at[1];
-    reads[4 * stride] = at[gray.stride];
-    reads[5 * stride] = at[gray.stride + 1];
+    samples[0 * stride] = static_cast<float>(u - column);
+    samples[1 * stride] = static_cast<float>(v - row);
+    samples[2 * stride] = at[0];
+    samples[3 * stride] = at[1];
+    samples[4 * stride] = at[gray.stride];
+    samples[5 * stride] = at[gray.stride + 1];
     return true;
   }
 
   template <typename D>
   [[gnu::always_inline]] static void LookUp(const DirectInput& input,
-                                            const D* point, const D* reads,
-                                            D* columns, D* doubt) {
+                                            const D* point, const D* samples,
+                                            D* columns, D* rejection) {
     Seen<D> seen;
     See(input, point, &seen);
     ImageSample<D> gray;
-    Interpolate(reads[0], reads[1], reads + 2, &gray);
+    Interpolate(samples[0], samples[1], samples + 2, &gray);
     const D slope_x = seen.pixel.u_x * gray.du + seen.pixel.v_x * gray.dv;
     const D slope_y = seen.pixel.u_y * gray.du + seen.pixel.v_y * gray.dv;
     // Along the ray of the previous frame: dq / d depth = R X / z.
@@ -108,12 +108,12 @@ struct Photometric {
     columns[3] = w * (r - slope_x * seen.x - slope_y * seen.y);
     columns[4] = w * slope_x;
     columns[5] = w * slope_y;
-    *doubt = D{};
+    *rejection = D{};
   }
 
   // A row that is the noise of a slope along an axis of the image (0: u, 1: v),
   // at the sigma of a residual per pixel.
-  static void Feign(const DirectInput& input, int axis, double* columns) {
+  static void NoiseRow(const DirectInput& input, int axis, double* columns) {
     // Of a smooth pyramid's differences between neighbours, against those
     // between two images.
     constexpr double kSlopeNoise = 0.55;
@@ -124,9 +124,10 @@ struct Photometric {
   }
 
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     T q[3];
-    Forward::Move(motion, columns, q);
+    Forward::TransformPoint(motion, columns, q);
     r[0] = columns[3] + (columns[4] * q[0] + columns[5] * q[1]) / q[2];
   }
 
@@ -134,7 +135,7 @@ struct Photometric {
   static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
                        D (*J)[6]) {
     D q[3];
-    Forward::Move(motion, columns, q);
+    Forward::TransformPoint(motion, columns, q);
     const D inverse = 1.0 / q[2];
     const D a = columns[4] * inverse;
     const D b = columns[5] * inverse;
@@ -146,9 +147,9 @@ struct Photometric {
   // Where a point is seen.
   template <typename D>
   struct Seen {
-    D turned[3];         // R X, m
-    D x, y, z;           // normalised image coordinates; depth, m; at the stamp
-    SeenPixel<D> pixel;  // in its row
+    D turned[3];  // R X, m
+    D x, y, z;    // normalised image coordinates; depth, m; at the stamp
+    ProjectedPixel<D> pixel;  // in its row
   };
 
   template <typename D>
@@ -161,7 +162,8 @@ struct Photometric {
     seen->y = (seen->turned[1] + input.t[1]) * inverse;
     const Camera& camera = input.cur->levels[input.level].camera;
     if (!input.moves_color) {
-      SeePixel(camera, input.has_distortion, seen->x, seen->y, &seen->pixel);
+      ProjectWithJacobian(camera, input.has_distortion, seen->x, seen->y,
+                          &seen->pixel);
       return;
     }
     const FrameTiming& timing = input.cur->timing;
@@ -170,8 +172,9 @@ struct Photometric {
     MoveToRow(camera, input.has_distortion, timing.color, timing.twist, q,
               moved);
     const D inverse_moved = 1.0 / moved[2];
-    SeePixel(camera, input.has_distortion, D(moved[0] * inverse_moved),
-             D(moved[1] * inverse_moved), &seen->pixel);
+    ProjectWithJacobian(camera, input.has_distortion,
+                        D(moved[0] * inverse_moved),
+                        D(moved[1] * inverse_moved), &seen->pixel);
   }
 };
 

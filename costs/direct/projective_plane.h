@@ -24,7 +24,7 @@ namespace rgbd_pose {
 struct ProjectivePlane : Surface {
   static constexpr char kName[] = "projective_plane";
   static constexpr int kRows = 1;
-  static constexpr int kIndependentRows = 1;
+  static constexpr int kDegreesOfFreedom = 1;
   static constexpr bool kIsWhitened = true;
   static constexpr int kScaleGroup = 2;  // depths
   static constexpr bool kSeesBrightness = false;
@@ -37,11 +37,11 @@ struct ProjectivePlane : Surface {
 
   template <typename D>
   [[gnu::always_inline]] static void LookUp(const DirectInput& input,
-                                            const D* point, const D* reads,
-                                            D* columns, D* doubt) {
+                                            const D* point, const D* samples,
+                                            D* columns, D* rejection) {
     constexpr double kMaxDistance = 0.2;  // m; beyond is another surface
     MeasuredSurface<D> surface;
-    Measure(input, point, reads, &surface);
+    Measure(input, point, samples, &surface);
     const D* const N = surface.plane;
     const D length2 = N[0] * N[0] + N[1] * N[1] + N[2] * N[2];
     const D w = surface.q[2] / (kSurfaceSigma * point[6]);
@@ -51,13 +51,13 @@ struct ProjectivePlane : Surface {
     }
     columns[6] = w;
     constexpr double kMaxDistance2 = kMaxDistance * kMaxDistance;
-    *doubt = surface.doubt +
-             surface.excess * surface.excess / (kMaxDistance2 * length2);
+    *rejection = surface.rejection +
+                 surface.excess * surface.excess / (kMaxDistance2 * length2);
   }
 
   // A row that is the noise of the plane's slope along an axis of the image:
   // N + noise (1, 0, -x), where |N| is about 1 / z.
-  static void Feign(const DirectInput& input, int axis, double* columns) {
+  static void NoiseRow(const DirectInput& input, int axis, double* columns) {
     const Camera& camera = input.cur->levels[0].camera;
     const double focal = axis == 0 ? camera.fx : camera.fy;
     const double noise = kSlopeNoise * focal / columns[2];
@@ -68,9 +68,10 @@ struct ProjectivePlane : Surface {
   }
 
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     T q[3];
-    Forward::Move(motion, columns, q);
+    Forward::TransformPoint(motion, columns, q);
     r[0] =
         columns[3] * q[0] + columns[4] * q[1] + columns[5] * q[2] - columns[6];
   }

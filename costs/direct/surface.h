@@ -19,11 +19,11 @@ constexpr int kSurfaceStep = 4;
 // 1).
 template <typename D>
 struct MeasuredSurface {
-  D q[3];      // m
-  D x, y;      // normalised image coordinates
-  D plane[3];  // N, 1 / m
-  D excess;    // N . q - 1: 0 on the surface, about (q_z - z) / z
-  D doubt;     // 1 or more: it is none, but an edge
+  D q[3];       // m
+  D x, y;       // normalised image coordinates
+  D plane[3];   // N, 1 / m
+  D excess;     // N . q - 1: 0 on the surface, about (q_z - z) / z
+  D rejection;  // 1 or more: an edge, no surface
 };
 
 // The noise of a surface's slope a pixel, in sigmas of a residual: of a plane
@@ -47,13 +47,13 @@ struct Surface {
   template <typename D>
   [[gnu::always_inline]] static void Locate(const DirectInput& input,
                                             const D* point,
-                                            PlaceInImage<D>* place) {
+                                            ProjectedPoint<D>* place) {
     D q[3], in_row[3];
     Move(input, point, q, in_row);
     const D inverse = 1.0 / in_row[2];
-    SeenPixel<D> pixel;
-    SeePixel(input.cur->levels[0].camera, input.has_distortion,
-             D(in_row[0] * inverse), D(in_row[1] * inverse), &pixel);
+    ProjectedPixel<D> pixel;
+    ProjectWithJacobian(input.cur->levels[0].camera, input.has_distortion,
+                        D(in_row[0] * inverse), D(in_row[1] * inverse), &pixel);
     *place = {pixel.u, pixel.v, in_row[2]};
   }
 
@@ -72,10 +72,10 @@ struct Surface {
 
   // From the nearest whole pixel to the place (px, to the right and down), and
   // 3 x 3 raw depths around that pixel.
-  static constexpr int kReads = 11;
+  static constexpr int kSamples = 11;
   [[gnu::always_inline]] static bool Read(const DirectInput& input, double u,
                                           double v, ptrdiff_t stride,
-                                          float* reads) {
+                                          float* samples) {
     constexpr double kBorder = kSurfaceStep + 1.0;
     const ImageView<uint16_t>& depth = input.cur->depth;
     if (!(u >= kBorder && v >= kBorder && u < depth.width - 1.0 - kBorder &&
@@ -85,22 +85,22 @@ struct Surface {
     const int column = static_cast<int>(u + 0.5);
     const int row = static_cast<int>(v + 0.5);
     const uint16_t* at = depth.data + row * depth.stride + column;
-    reads[0] = static_cast<float>(u - column);
-    reads[stride] = static_cast<float>(v - row);
+    samples[0] = static_cast<float>(u - column);
+    samples[stride] = static_cast<float>(v - row);
     // Two values mean no depth; both become 0 by adding 1.
     bool is_measured = true;
     for (int k = 0; k < 9; ++k) {
       const uint16_t raw = at[(k / 3 - 1) * kSurfaceStep * depth.stride +
                               (k % 3 - 1) * kSurfaceStep];
       is_measured &= static_cast<uint16_t>(raw + 1) > 1;
-      reads[(2 + k) * stride] = raw;
+      samples[(2 + k) * stride] = raw;
     }
     return is_measured;
   }
 
   template <typename D>
   [[gnu::always_inline]] static void Measure(const DirectInput& input,
-                                             const D* point, const D* reads,
+                                             const D* point, const D* samples,
                                              MeasuredSurface<D>* s) {
     // 99 % of chi^2 of eight degrees.
     constexpr double kMaxSquares = 20.1;
@@ -120,7 +120,8 @@ struct Surface {
     D sum = {}, squares = {};
     for (int k = 0; k < 9; ++k) {
       const int i = (k % 3 - 1) * kSurfaceStep, j = (k / 3 - 1) * kSurfaceStep;
-      const D off = input.cur->depth_scale / reads[2 + k] - inverse_measured_z -
+      const D off = input.cur->depth_scale / samples[2 + k] -
+                    inverse_measured_z -
                     (n[0] * (i * per_u) + n[1] * (j * per_v));
       sum += off;
       squares += off * off;
@@ -128,14 +129,15 @@ struct Surface {
     const D mean = sum * (1.0 / 9.0);
     // From the nearest pixel to the place. Over half a pixel distortion does
     // not matter.
-    const D measured = inverse_z + mean + n[0] * (reads[0] * per_u) +
-                       n[1] * (reads[1] * per_v);
+    const D measured = inverse_z + mean + n[0] * (samples[0] * per_u) +
+                       n[1] * (samples[1] * per_v);
     s->plane[0] = n[0];
     s->plane[1] = n[1];
     s->plane[2] = measured - n[0] * s->x - n[1] * s->y;
     s->excess = measured * s->q[2] - 1.0;
     const D sigma = point[6] / (point[2] * point[2]);
-    s->doubt = (squares - 9.0 * mean * mean) / (kMaxSquares * sigma * sigma);
+    s->rejection =
+        (squares - 9.0 * mean * mean) / (kMaxSquares * sigma * sigma);
   }
 };
 

@@ -21,13 +21,14 @@ namespace rgbd_pose {
 // covariance counts twice (the rows are divided by sqrt 2).
 //
 // If only one frame has depth, only its points can be projected and only their
-// u and v compared: two rows, told once; the other four are zero. Points behind
-// a camera: projection.h.
+// u and v compared: two rows, given once; the other four are zero. Points
+// behind a camera: projection.h.
 struct BidirectionalImage {
   static constexpr char kName[] = "bidirectional_image";
   static constexpr int kRows = 6;
-  static constexpr int kIndependentRows = 3;
-  static constexpr Association kAssociation = Association::kWhenMoved;
+  static constexpr int kDegreesOfFreedom = 3;
+  static constexpr AssociationPolicy kAssociation =
+      AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kForwardColumns =
       ImageError<3, Forward, double>::kColumns;
@@ -59,7 +60,8 @@ struct BidirectionalImage {
   }
 
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     ImageError<3, Forward, D>(columns).Residual(motion, r);
     ImageError<3, Backward, D>(columns + kForwardColumns)
         .Residual(motion, r + 3);

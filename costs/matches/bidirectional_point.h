@@ -17,14 +17,14 @@ namespace rgbd_pose {
 // Rows 0-2 are e_c whitened by the noise of the current frame, rows 3-5 are e_p
 // whitened by that of the previous frame, each along the measurement's own axes
 // (u, v, depth; ray_whitening.h). e_p = -R^T e_c: the six rows hold three
-// independent measurements, each told twice, and each error carries the noise
+// independent measurements, each given twice, and each error carries the noise
 // of both frames. So one sigma of a row is twice that of one frame's
 // measurement: (1/4) e^T (S_cur^-1 + S_prev^-1) e equals the Mahalanobis
 // distance e^T (S_cur + S_prev)^-1 e where both frames are equally noisy.
 struct BidirectionalPoint {
   static constexpr char kName[] = "bidirectional_point";
   static constexpr int kRows = 6;
-  static constexpr int kIndependentRows = 3;
+  static constexpr int kDegreesOfFreedom = 3;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = 2 * RayWhitening<double>::kColumns;
 
@@ -44,12 +44,13 @@ struct BidirectionalPoint {
   // The six residuals, for any mix of scalars: this is what the oracle
   // differentiates.
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     const RayWhitening<D> prev(columns);
     const RayWhitening<D> cur(columns + RayWhitening<D>::kColumns);
     T e_c[3], e_p[3];
-    Forward::Move(motion, prev.point, e_c);
-    Backward::Move(motion, cur.point, e_p);
+    Forward::TransformPoint(motion, prev.point, e_c);
+    Backward::TransformPoint(motion, cur.point, e_p);
     for (int i = 0; i < 3; ++i) {
       e_c[i] = cur.point[i] - e_c[i];
       e_p[i] = prev.point[i] - e_p[i];
@@ -100,7 +101,7 @@ struct BidirectionalPoint {
     PointTerm<D>* const backward = &terms[1];
     const RayWhitening<D> prev(columns);
     const RayWhitening<D> cur(columns + RayWhitening<D>::kColumns);
-    Forward::Move(motion, prev.point, forward->q);
+    Forward::TransformPoint(motion, prev.point, forward->q);
     // The backward point less C: turning it about C is turning R^T X_cur.
     MultiplyTransposed(motion.R, cur.point, backward->q);
     D e_c[3], e_p[3];

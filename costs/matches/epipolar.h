@@ -35,8 +35,9 @@ namespace rgbd_pose {
 struct Epipolar {
   static constexpr char kName[] = "epipolar";
   static constexpr int kRows = 1;
-  static constexpr int kIndependentRows = 1;
-  static constexpr Association kAssociation = Association::kWhenMoved;
+  static constexpr int kDegreesOfFreedom = 1;
+  static constexpr AssociationPolicy kAssociation =
+      AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   // a_prev, b_prev, a_cur, b_cur, su_cur^2, sv_cur^2, su_prev^2, sv_prev^2,
   // eps^2
@@ -66,7 +67,8 @@ struct Epipolar {
   }
 
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     r[0] = Terms<D, T>(motion, columns).r;
   }
 
@@ -124,7 +126,7 @@ struct Epipolar {
   template <typename D, typename T>
   struct Terms {
     template <typename M>
-    Terms(const MotionPose<M>& motion, const D* columns)
+    Terms(const RotationAndCenter<M>& motion, const D* columns)
         : x_prev{columns[0], columns[1], D{} + 1.0},
           x_cur{columns[2], columns[3], D{} + 1.0} {
       Cross(motion.C.data(), x_prev, normal);

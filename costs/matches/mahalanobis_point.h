@@ -20,8 +20,9 @@ namespace rgbd_pose {
 struct MahalanobisPoint {
   static constexpr char kName[] = "mahalanobis_point";
   static constexpr int kRows = 3;
-  static constexpr int kIndependentRows = 3;
-  static constexpr Association kAssociation = Association::kWhenMoved;
+  static constexpr int kDegreesOfFreedom = 3;
+  static constexpr AssociationPolicy kAssociation =
+      AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns =
       ForwardError::kColumns + Whitening<3, double>::kColumns;
@@ -33,7 +34,8 @@ struct MahalanobisPoint {
   }
 
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     T e[3];
     ForwardError::Error(motion, columns, e);
     Whitening<3, D>(columns + ForwardError::kColumns).Whiten(e, r);
@@ -59,19 +61,19 @@ struct MahalanobisPoint {
   static void PointTerms(const MotionDerivatives& motion, const D* columns,
                          PointTerm<D>* term) {
     const D* w = columns + ForwardError::kColumns;
-    Forward::Move(motion, columns, term->q);
+    Forward::TransformPoint(motion, columns, term->q);
     D e[3], r[3];
     for (int i = 0; i < 3; ++i) e[i] = columns[3 + i] - term->q[i];
     Whitening<3, D>(w).Whiten(e, r);
-    term->normal[0] = w[0] * w[0] + w[1] * w[1] + w[3] * w[3];
-    term->normal[1] = w[1] * w[2] + w[3] * w[4];
-    term->normal[2] = w[3] * w[5];
-    term->normal[3] = w[2] * w[2] + w[4] * w[4];
-    term->normal[4] = w[4] * w[5];
-    term->normal[5] = w[5] * w[5];
-    term->force[0] = -(w[0] * r[0] + w[1] * r[1] + w[3] * r[2]);
-    term->force[1] = -(w[2] * r[1] + w[4] * r[2]);
-    term->force[2] = -(w[5] * r[2]);
+    term->JtJ[0] = w[0] * w[0] + w[1] * w[1] + w[3] * w[3];
+    term->JtJ[1] = w[1] * w[2] + w[3] * w[4];
+    term->JtJ[2] = w[3] * w[5];
+    term->JtJ[3] = w[2] * w[2] + w[4] * w[4];
+    term->JtJ[4] = w[4] * w[5];
+    term->JtJ[5] = w[5] * w[5];
+    term->Jtr[0] = -(w[0] * r[0] + w[1] * r[1] + w[3] * r[2]);
+    term->Jtr[1] = -(w[2] * r[1] + w[4] * r[2]);
+    term->Jtr[2] = -(w[5] * r[2]);
   }
 };
 

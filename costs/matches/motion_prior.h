@@ -9,8 +9,8 @@
 
 namespace rgbd_pose {
 
-// A pull towards a motion that was predicted (Kerl, Sturm & Cremers 2013, there
-// a motion model for dense odometry): one block of six rows,
+// A prior factor: a motion that was predicted (Kerl, Sturm & Cremers 2013,
+// there a motion model for dense odometry): one block of six rows,
 //
 //   r = L^T [ 1/2 vee(R R_p^T - R_p R^T) ; C - C_p ]
 //
@@ -21,7 +21,7 @@ namespace rgbd_pose {
 struct MotionPriorCost {
   static constexpr char kName[] = "motion_prior";
   static constexpr int kRows = 6;
-  static constexpr int kIndependentRows = 6;
+  static constexpr int kDegreesOfFreedom = 6;
   static constexpr bool kIsWhitened = true;
   static constexpr bool kIsPrior = true;
   static constexpr int kPose = 9 + 3;  // R_p, column by column, and C_p
@@ -38,7 +38,8 @@ struct MotionPriorCost {
   }
 
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     T e[6];
     HalfTwist(columns, motion.R, e);
     for (int i = 0; i < 3; ++i) e[3 + i] = motion.C[i] - columns[9 + i];

@@ -21,8 +21,9 @@ namespace rgbd_pose {
 struct PointToPlane {
   static constexpr char kName[] = "point_to_plane";
   static constexpr int kRows = 1;
-  static constexpr int kIndependentRows = 1;
-  static constexpr Association kAssociation = Association::kWhenMoved;
+  static constexpr int kDegreesOfFreedom = 1;
+  static constexpr AssociationPolicy kAssociation =
+      AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = ForwardError::kColumns + 3;  // n / sigma
 
@@ -36,7 +37,8 @@ struct PointToPlane {
   }
 
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     T e[3];
     ForwardError::Error(motion, columns, e);
     const D* n = columns + ForwardError::kColumns;

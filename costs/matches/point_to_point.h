@@ -21,8 +21,9 @@ namespace rgbd_pose {
 struct PointToPoint {
   static constexpr char kName[] = "point_to_point";
   static constexpr int kRows = 3;
-  static constexpr int kIndependentRows = 3;
-  static constexpr Association kAssociation = Association::kWhenMoved;
+  static constexpr int kDegreesOfFreedom = 3;
+  static constexpr AssociationPolicy kAssociation =
+      AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = false;
   static constexpr int kColumns = ForwardError::kColumns + 2;
 
@@ -45,7 +46,8 @@ struct PointToPoint {
   }
 
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     ForwardError::Error(motion, columns, r);
     for (int row = 0; row < 3; ++row) r[row] *= columns[6];
   }

@@ -6,6 +6,37 @@
 
 namespace rgbd_pose {
 
+// What re-projections of N rows share: u and v, and inverse depth.
+template <int N>
+struct ReprojectionOf {
+  static constexpr int kRows = N;
+  static constexpr int kDegreesOfFreedom = N;
+  static constexpr AssociationPolicy kAssociation =
+      AssociationPolicy::kWhenMoved;
+  static constexpr bool kIsWhitened = true;
+  static constexpr int kColumns = ImageError<N, Forward, double>::kColumns;
+
+  static bool Pack(const CostInput& input, size_t i, double* columns) {
+    const Observation& prev = input.matches[i].prev;
+    const Observation& cur = input.matches[i].cur;
+    if (prev.depth <= 0.0 || (N == 3 && cur.depth <= 0.0)) return false;
+    return PackImageError<N>(input.matches, input.cur_from_prev, prev, cur, 1.0,
+                             columns);
+  }
+
+  template <typename M, typename D, typename T>
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
+    ImageError<N, Forward, D>(columns).Residual(motion, r);
+  }
+
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
+    ImageError<N, Forward, D>(columns).Jacobian(motion, r, J);
+  }
+};
+
 // The previous point in the current image, as a perspective-n-point pose is
 // refined (Lepetit, Moreno-Noguer & Fua 2009):
 //
@@ -14,32 +45,21 @@ namespace rgbd_pose {
 // L L^T is the inverse of the noise of m_cur plus that of the projected point,
 // frozen at the motion that was bound. Needs the depth of the previous frame
 // only and uses no other. Points behind the camera: projection.h.
-struct Reprojection {
+struct Reprojection : ReprojectionOf<2> {
   static constexpr char kName[] = "reprojection";
-  static constexpr int kRows = 2;
-  static constexpr int kIndependentRows = 2;
-  static constexpr Association kAssociation = Association::kWhenMoved;
-  static constexpr bool kIsWhitened = true;
-  static constexpr int kColumns = ImageError<2, Forward, double>::kColumns;
+};
 
-  static bool Pack(const CostInput& input, size_t i, double* columns) {
-    const Observation& prev = input.matches[i].prev;
-    const Observation& cur = input.matches[i].cur;
-    if (prev.depth <= 0.0) return false;
-    return PackImageError<2>(input.matches, input.cur_from_prev, prev, cur, 1.0,
-                             columns);
-  }
-
-  template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
-    ImageError<2, Forward, D>(columns).Residual(motion, r);
-  }
-
-  template <typename D>
-  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
-                       D (*J)[6]) {
-    ImageError<2, Forward, D>(columns).Jacobian(motion, r, J);
-  }
+// The previous point in the current image and its inverse depth there, in the
+// manner of ORB-SLAM2 (Mur-Artal & Tardos 2017), which takes the depth for the
+// column of a virtual right camera, f b / z:
+//
+//   r = L^T (m_cur - project(R (X_prev - C))),  m = (u, v, 1 / z)
+//
+// L L^T is the inverse of the noise of m_cur plus that of the projected point,
+// frozen at the motion that was bound. Needs both depths. Points behind the
+// camera: projection.h.
+struct ReprojectionDepth : ReprojectionOf<3> {
+  static constexpr char kName[] = "reprojection_depth";
 };
 
 }  // namespace rgbd_pose

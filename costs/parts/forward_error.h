@@ -36,9 +36,10 @@ struct ForwardError {
 
   // e (m), from the columns of a match.
   template <typename M, typename D, typename T>
-  static void Error(const MotionPose<M>& motion, const D* columns, T* e) {
+  static void Error(const RotationAndCenter<M>& motion, const D* columns,
+                    T* e) {
     T q[3];
-    Forward::Move(motion, columns, q);
+    Forward::TransformPoint(motion, columns, q);
     for (int i = 0; i < 3; ++i) e[i] = columns[3 + i] - q[i];
   }
 

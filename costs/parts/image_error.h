@@ -30,15 +30,15 @@ struct ImageError {
         whitening(columns + kPoint + N) {}
 
   template <typename M, typename T>
-  void Residual(const MotionPose<M>& motion, T* r) const {
+  void Residual(const RotationAndCenter<M>& motion, T* r) const {
     T q[3];
-    Direction::Move(motion, point, q);
+    Direction::TransformPoint(motion, point, q);
     WhitenError(Projection<T>(q), r);
   }
 
   void Jacobian(const MotionDerivatives& motion, D* r, D (*J)[6]) const {
     D q[3];
-    Direction::Move(motion, point, q);
+    Direction::TransformPoint(motion, point, q);
     const Projection<D> projection(q);
     WhitenError(projection, r);
     for (int parameter = 0; parameter < 6; ++parameter) {

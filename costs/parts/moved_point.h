@@ -11,7 +11,8 @@ namespace rgbd_pose {
 // q = R (X_prev - C): a point of the previous frame in current axes.
 struct Forward {
   template <typename M, typename D, typename T>
-  static void Move(const MotionPose<M>& motion, const D* point, T* q) {
+  static void TransformPoint(const RotationAndCenter<M>& motion, const D* point,
+                             T* q) {
     const T d[3] = {point[0] - motion.C[0], point[1] - motion.C[1],
                     point[2] - motion.C[2]};
     Multiply(motion.R, d, q);
@@ -48,7 +49,8 @@ template <typename D>
 // p = R^T X_cur + C: a point of the current frame in previous axes.
 struct Backward {
   template <typename M, typename D, typename T>
-  static void Move(const MotionPose<M>& motion, const D* point, T* p) {
+  static void TransformPoint(const RotationAndCenter<M>& motion, const D* point,
+                             T* p) {
     MultiplyTransposed(motion.R, point, p);
     for (int i = 0; i < 3; ++i) p[i] += motion.C[i];
   }

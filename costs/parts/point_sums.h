@@ -21,9 +21,9 @@ namespace rgbd_pose {
 // One match's share.
 template <typename D>
 struct PointTerm {
-  D q[3];       // the moved point
-  D normal[6];  // N: 00 01 02 11 12 22
-  D force[3];   // n
+  D q[3];    // the moved point
+  D JtJ[6];  // N: 00 01 02 11 12 22
+  D Jtr[3];  // n
 };
 
 // The sums over all matches, lane by lane.
@@ -33,8 +33,8 @@ class PointSums {
   void Add(const PointTerm<D>& term, const D& weight) {
     const D* q = term.q;
     D N[6], n[3];
-    for (int i = 0; i < 6; ++i) N[i] = weight * term.normal[i];
-    for (int i = 0; i < 3; ++i) n[i] = weight * term.force[i];
+    for (int i = 0; i < 6; ++i) N[i] = weight * term.JtJ[i];
+    for (int i = 0; i < 3; ++i) n[i] = weight * term.Jtr[i];
     // P = N [q]x: row i is (row i of N) x q.
     const D P[3][3] = {{N[1] * q[2] - N[2] * q[1], N[2] * q[0] - N[0] * q[2],
                         N[0] * q[1] - N[1] * q[0]},
@@ -111,7 +111,7 @@ class PointSums {
 
 // The turns omega of the current axes per change of each angle: column k is
 // the axis of (dR/d angle_k) R^T.
-inline Eigen::Matrix3d TurnOfAngles(const MotionDerivatives& motion) {
+inline Eigen::Matrix3d EulerRateJacobian(const MotionDerivatives& motion) {
   Eigen::Matrix3d turn;
   for (int k = 0; k < 3; ++k) {
     const Eigen::Matrix3d skew = motion.dR[k] * motion.R.transpose();

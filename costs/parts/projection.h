@@ -22,7 +22,7 @@ class Projection {
   // q[3] must outlive the projection.
   explicit Projection(const T* q) : q_(q) {
     T z;
-    AtLeast(q[2], kNearestDepth, &z);
+    Max(q[2], kNearestDepth, &z);
     const T inverse = 1.0 / z;
     m_[2] = inverse * (2.0 - q[2] * inverse);
     m_[0] = q[0] * m_[2];

@@ -66,16 +66,16 @@ struct RayWhitening {
     const D vv = w_v * w_v;
     const D au = a * uu;
     const D bv = b * vv;
-    D* N = term->normal;
+    D* N = term->JtJ;
     N[0] = uu;
     N[1] = uu - uu;
     N[2] = -au;
     N[3] = vv;
     N[4] = -bv;
     N[5] = w_z * w_z + a * au + b * bv;
-    term->force[0] = au * e[2] - uu * e[0];
-    term->force[1] = bv * e[2] - vv * e[1];
-    term->force[2] = au * e[0] + bv * e[1] - N[5] * e[2];
+    term->Jtr[0] = au * e[2] - uu * e[0];
+    term->Jtr[1] = bv * e[2] - vv * e[1];
+    term->Jtr[2] = au * e[0] + bv * e[1] - N[5] * e[2];
   }
 
   D a, b;           // the ray: x / z, y / z

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "frontend/image/depth_lookup.h"
+#include "frontend/places/place_database.h"
 #include "frontend/places/place_features.h"
-#include "frontend/places/place_index.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
 int main() {
@@ -14,14 +14,14 @@ int main() {
   tour.rate_hz = 0.5;  // a keyframe every 2 s
   const rgbd_pose::SyntheticDataset sequence(tour);
   const rgbd_pose::Camera camera = sequence.camera().camera;
-  rgbd_pose::PlaceIndex index;
+  rgbd_pose::PlaceDatabase index;
   std::vector<rgbd_pose::PlaceFeatures> places;
   for (int i = 0; i < sequence.size(); ++i) {
     places.push_back(rgbd_pose::DescribeKeyframe(sequence.Read(i), camera, {}));
     const cv::Mat& descriptors = places[i].described.descriptors;
     const auto is_old = [i](int keyframe) { return keyframe < i - 5; };
     for (const auto& [old, score] : index.Query(descriptors, 3, is_old)) {
-      const auto rough = rgbd_pose::FindRoughMotion(
+      const auto rough = rgbd_pose::VerifyGeometrically(
           rgbd_pose::MatchPlaces(places[old], places[i], camera));
       if (!rough.has_value()) continue;  // another place
       std::printf("%d shows what %d shows, from %.2f m away\n", i, old,

@@ -8,11 +8,11 @@
 
 struct RelativeError : rgbd_pose::ForwardError {  // kColumns and Pack of that
   static constexpr char kName[] = "relative_error";
-  static constexpr int kRows = 3, kIndependentRows = 3;
+  static constexpr int kRows = 3, kDegreesOfFreedom = 3;
   static constexpr bool kIsWhitened = false;
   template <typename M, typename D, typename T>
-  static void Residual(const rgbd_pose::MotionPose<M>& motion, const D* columns,
-                       T* r) {
+  static void Residual(const rgbd_pose::RotationAndCenter<M>& motion,
+                       const D* columns, T* r) {
     Error(motion, columns, r);
     for (int i = 0; i < 3; ++i) r[i] = 100.0 * r[i] / columns[5];
   }

@@ -187,7 +187,9 @@ Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
     camera.p2 = info.d[3];
     if (info.d.size() > 4) camera.k3 = info.d[4];
   }
-  const std::string problem = camera.Check();
+  const std::string problem = camera.fx == 0.0
+                                  ? "its camera is not calibrated (K is 0)"
+                                  : camera.Check();
   if (!problem.empty()) {
     throw InputError(name + ": " + problem +
                      "; give a calibration file or a preset (camera)");
@@ -203,7 +205,19 @@ std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
   if (!has_camera) {
     const std::optional<Camera> camera =
         ReadCamera(bag, topics.color_info, topics.color);
-    if (!camera.has_value()) return std::nullopt;  // nobody says it
+    if (!camera.has_value()) {
+      std::string others;
+      for (const BagTopic& topic : bag->topics()) {
+        if (topic.type == "sensor_msgs/CameraInfo") {
+          others += (others.empty() ? "" : ", ") + topic.name;
+        }
+      }
+      if (others.empty()) return std::nullopt;  // nobody says it
+      throw InputError(bag->path() + ": has no CameraInfo next to " +
+                       bag->topics()[topics.color].name + ", but " + others +
+                       "; name it (topics=COLOUR,DEPTH,CAMERA_INFO), or give a "
+                       "calibration file or a preset (camera)");
+    }
     setup.camera = *camera;
   }
   setup.depth_scale =

@@ -11,7 +11,7 @@
 namespace rgbd_pose {
 
 // The camera of a CameraInfo: of the raw image or the rectified one. Throws
-// InputError, which begins with `name`, for one that is none of Camera's.
+// InputError, which begins with `name`, for one that Camera does not have.
 Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
                     const std::string& name);
 

@@ -50,6 +50,14 @@ class Rows {
 
  private:
   [[noreturn]] void Fail() {
+    const int code = sqlite3_errcode(database_);
+    if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
+      throw InputError(path_ +
+                       ": cannot be read with what its recorder left "
+                       "in " +
+                       path_ + "-wal (" + sqlite3_errmsg(database_) +
+                       "); copy both to a folder that can be written to");
+    }
     throw InputError(path_ + ": cannot be read as a ROS 2 bag: " +
                      sqlite3_errmsg(database_) +
                      "; it is damaged or cut off: copy it again");
@@ -67,6 +75,24 @@ std::string WithoutMsg(std::string type) {
   return type;
 }
 
+// Opened so that nothing is written next to it, which sqlite3 otherwise does,
+// and cannot where that is forbidden. Not where a recorder left messages in the
+// log next to it: only sqlite3 can put them into their places.
+std::string UriOf(const std::string& path) {
+  std::string uri = path.front() == '/' ? "file://" : "file:";
+  for (const char c : path) {
+    uri += c == '%'   ? "%25"
+           : c == '?' ? "%3f"
+           : c == '#' ? "%23"
+                      : std::string(1, c);
+  }
+  for (const char* log : {"-wal", "-journal"}) {
+    std::error_code error;
+    if (std::filesystem::file_size(path + log, error) > 0 && !error) return uri;
+  }
+  return uri + "?immutable=1";
+}
+
 class BagDatabase final : public BagReader {
  public:
   explicit BagDatabase(const std::string& path) : path_(path) {
@@ -76,7 +102,8 @@ class BagDatabase final : public BagReader {
     }
     sqlite3* database = nullptr;
     const int status =
-        sqlite3_open_v2(path.c_str(), &database, SQLITE_OPEN_READONLY, nullptr);
+        sqlite3_open_v2(UriOf(path).c_str(), &database,
+                        SQLITE_OPEN_READONLY | SQLITE_OPEN_URI, nullptr);
     database_.reset(database);
     if (status != SQLITE_OK) {
       throw InputError(
@@ -171,7 +198,7 @@ std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path) {
 std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path) {
   throw InputError(path +
                    ": this build reads no ROS 2 bags; install libsqlite3-dev "
-                   "(scripts/install_dependencies formats) and build anew");
+                   "(scripts/install_dependencies formats) and build again");
 }
 
 #endif

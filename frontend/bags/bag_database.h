@@ -7,7 +7,7 @@
 
 namespace rgbd_pose {
 
-// Opens one file of a ROS 2 bag in sqlite3. Throws InputError if it is none,
+// Opens one file of a ROS 2 bag in sqlite3. Throws InputError if it is not one,
 // and in a build without sqlite3.
 std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path);
 

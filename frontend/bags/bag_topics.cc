@@ -57,6 +57,7 @@ int FindTopic(const std::vector<BagTopic>& topics, const std::string& name) {
 struct Fitness {
   int color = 0;
   int depth = 0;
+  std::string encoding;  // of its images
 };
 
 Fitness FitnessOf(BagReader* bag, int index) {
@@ -76,6 +77,7 @@ Fitness FitnessOf(BagReader* bag, int index) {
     use = RosImageUse::kDepth;
   }
   Fitness fitness;
+  fitness.encoding = image.encoding;
   switch (use) {
     case RosImageUse::kColor:
       fitness.color = 40;
@@ -118,8 +120,16 @@ int Best(const BagReader& bag, const std::vector<Fitness>& fitness,
   }
   const std::vector<BagTopic>& topics = bag.topics();
   if (best < 0) {
+    std::string encodings;
+    for (size_t i = 0; i < fitness.size(); ++i) {
+      if (!IsImage(topics[i])) continue;
+      encodings += (encodings.empty() ? " (encodings: " : ", ") +
+                   topics[i].name + " '" + fitness[i].encoding + "'";
+    }
+    if (!encodings.empty()) encodings += ")";
     throw InputError(bag.path() + ": has no " + name +
-                     " images that can be read; it has " + ListOf(topics));
+                     " images that can be read; it has " + ListOf(topics) +
+                     encodings);
   }
   if (rival >= 0) {
     throw InputError(bag.path() + ": both " + topics[best].name + " and " +
@@ -130,8 +140,8 @@ int Best(const BagReader& bag, const std::vector<Fitness>& fitness,
   return best;
 }
 
-// The CameraInfo that belongs to an image topic: beside it, or as the RealSense
-// viewer has it.
+// The CameraInfo that belongs to an image topic: next to it, or as the
+// RealSense viewer has it.
 int InfoOf(const std::vector<BagTopic>& topics, int image) {
   std::string name = topics[image].name;
   // A compressed topic is one below that of the raw images.

@@ -133,7 +133,7 @@ std::unique_ptr<BagReader> OpenRos1Bag(const std::string& path) {
   throw InputError(path +
                    ": this build reads no ROS 1 bags; install "
                    "librosbag-storage-dev (scripts/install_dependencies "
-                   "formats) and build anew");
+                   "formats) and build again");
 }
 
 #endif

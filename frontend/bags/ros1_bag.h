@@ -8,7 +8,7 @@
 namespace rgbd_pose {
 
 // Opens a bag of ROS 1 (also what the RealSense viewer records), packed or not.
-// Throws InputError for what is none, for one that was not closed, and in a
+// Throws InputError for what is no bag, for one that was not closed, and in a
 // build without librosbag-storage.
 std::unique_ptr<BagReader> OpenRos1Bag(const std::string& path);
 

@@ -143,7 +143,8 @@ std::unique_ptr<BagReader> OpenRos2Bag(const std::string& path) {
           ": is in mcap, and only sqlite3 is read; `ros2 bag convert -i " +
           path +
           " -o to.yaml` makes one, with the line `output_bags: [{uri: NAME, "
-          "storage_id: sqlite3, all_topics: true}]` in to.yaml");
+          "storage_id: sqlite3, all: true}]` in to.yaml (from Jazzy on "
+          "all_topics: true)");
     }
   }
   return std::make_unique<Ros2Bag>(path, files);

@@ -12,7 +12,7 @@ namespace rgbd_pose {
 bool IsRos2Bag(const std::string& path);
 
 // Opens a bag of ROS 2 in sqlite3: a .db3 file, or a folder of such. Throws
-// InputError for what is none, for other kinds (mcap, packed ones) with what
+// InputError for what is no bag, for other kinds (mcap, packed ones) with what
 // makes one of it, and in a build without sqlite3.
 std::unique_ptr<BagReader> OpenRos2Bag(const std::string& path);
 

@@ -38,10 +38,7 @@ constexpr Encoding kEncodings[] = {
 };
 
 const Encoding* FindEncoding(std::string_view name) {
-  for (const Encoding& encoding : kEncodings) {
-    if (encoding.name == name) return &encoding;
-  }
-  return nullptr;
+  return FindNamed(kEncodings, name);
 }
 
 bool IsCompressed(const RosImage& image) { return image.width == 0; }

@@ -24,7 +24,7 @@ class TransformTree {
                                const std::string& source) const;
 
   // How a frame moved in one above it (world_from_frame): a pose each time that
-  // what moves most often was told; empty if nothing between them moves.
+  // what moves most often was received; empty if nothing between them moves.
   Trajectory PathOf(const std::string& world, const std::string& frame) const;
 
  private:

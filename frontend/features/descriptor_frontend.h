@@ -19,7 +19,7 @@ class DescriptorFrontend final : public Frontend {
                      const DescriptorMethod& method)
       : Frontend(options), method_(method) {}
 
-  bool finds_all_in_view() const override { return false; }
+  bool is_exhaustive() const override { return false; }
   std::unique_ptr<const PreparedFrame> Prepare(
       const Frame& frame) const override;
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override;

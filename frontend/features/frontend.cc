@@ -1,6 +1,7 @@
 #include "frontend/features/frontend.h"
 
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "frontend/features/descriptor_frontend.h"
 #include "frontend/features/descriptor_method.h"
@@ -53,21 +54,13 @@ std::string FrontendOptions::Check() const {
   return "";
 }
 
-std::vector<std::string> FrontendNames() {
-  std::vector<std::string> names;
-  for (const FrontendEntry& entry : kFrontends) names.emplace_back(entry.name);
-  return names;
-}
+std::vector<std::string> FrontendNames() { return NamesOf(kFrontends); }
 
 std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
                                        const FrontendOptions& options) {
   const std::string error = options.Check();
   if (!error.empty()) throw InputError("frontend: " + error);
-  for (const FrontendEntry& entry : kFrontends) {
-    if (entry.name == name) return entry.make(options);
-  }
-  throw InputError("unknown frontend '" + std::string(name) + "'; there are " +
-                   Join(FrontendNames()));
+  return RowOf(kFrontends, "frontend", name).make(options);
 }
 
 }  // namespace rgbd_pose

@@ -57,6 +57,11 @@ struct FeatureMatches {
   void Add(const FeatureSet& reference, int i, const Observation& cur) {
     if (matches.Add(reference.observations[i], cur)) features.push_back(i);
   }
+  // Adds match `i` of another object of the same feature set.
+  void AddFrom(const FeatureMatches& other, size_t i) {
+    matches.Add(other.matches[i].prev, other.matches[i].cur);
+    features.push_back(other.features[i]);
+  }
   // Takes all out; keeps the memory.
   void Clear() {
     matches.Clear();
@@ -79,7 +84,7 @@ class Frontend {
 
   // Whether it should find every feature that is in view and not hidden.
   // Detectors need not fire in the same place twice.
-  virtual bool finds_all_in_view() const { return true; }
+  virtual bool is_exhaustive() const { return true; }
 
   // Works out what does not depend on other frames (a pyramid, say). May be
   // called from several threads.

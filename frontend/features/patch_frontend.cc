@@ -30,7 +30,7 @@ constexpr float kMinCorrelation = 0.7F;
 // 640 x 480 to 160 x 120.
 constexpr int kPatchLevels = 3;
 
-// Patches are made anew when their shape has changed by this: an error of up
+// Patches are made again when their shape has changed by this: an error of up
 // to a quarter of a pixel at their corners.
 constexpr float kWarpStep = 0.125F;
 

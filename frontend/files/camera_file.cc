@@ -174,8 +174,8 @@ void ReadShutters(const YamlSection& file, CameraSetup* setup) {
 }
 
 // What rgbd_calibrate found wrong with depth.
-DepthErrors ReadDepthErrors(const YamlSection& file) {
-  DepthErrors errors;
+DepthCorrection ReadDepthCorrection(const YamlSection& file) {
+  DepthCorrection errors;
   errors.inverse_depth_offset = file.NumberOr("inverse_depth_offset", 0.0);
   CheckSize(file, "inverse_depth_offset", std::abs(errors.inverse_depth_offset),
             0.5, "1/m");
@@ -204,7 +204,7 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   CameraSetup result;
   result.camera = ReadAnyLayout(path, file);
   result.depth_scale = ReadDepthScale(file);
-  result.depth_errors = ReadDepthErrors(file);
+  result.depth_correction = ReadDepthCorrection(file);
   ReadShutters(file, &result);
   const std::string problem = result.camera.Check();
   if (!problem.empty()) throw InputError(path + ": " + problem);

@@ -21,13 +21,14 @@ namespace rgbd_pose {
 // `depth_camera` names the camera of a Kalibr file that depth images are seen
 // from: cam0 if they are registered to colour, else cam1, say; each camera but
 // cam0 has T_cn_cnm1, from the camera before. Empty: they are registered; a
-// file of several cameras wants to be told, though.
+// file of several cameras needs its name, though.
 // Further top-level keys, absent: 0. When rows are exposed (s, see Shutter):
 // color_time_offset, color_readout, depth_time_offset, depth_readout. What
-// rgbd_calibrate found wrong with depth (see DepthErrors): inverse_depth_offset
-// (1/m), depth_rotation (rotation vector, rad), depth_translation (m).
-// Throws InputError (file:line, key) for an unknown layout or camera model, a
-// missing key, a wrong number of entries, and values that make no camera.
+// rgbd_calibrate found wrong with depth (see DepthCorrection):
+// inverse_depth_offset (1/m), depth_rotation (rotation vector, rad),
+// depth_translation (m). Throws InputError (file:line, key) for an unknown
+// layout or camera model, a missing key, a wrong number of entries, and values
+// that make no camera.
 CameraSetup ReadCameraFile(const std::string& path,
                            const std::string& depth_camera = "");
 

@@ -48,8 +48,8 @@ YamlLines RgbdLines(const RgbdCamera& camera) {
   for (const ShutterParameter& parameter : kShutterParameters) {
     add(parameter.name, camera.*parameter.image.*parameter.value);
   }
-  add("inverse_depth_offset", camera.depth_errors.inverse_depth_offset);
-  const Rigid3d& moved = camera.depth_errors.depth_from_color;
+  add("inverse_depth_offset", camera.depth_correction.inverse_depth_offset);
+  const Rigid3d& moved = camera.depth_correction.depth_from_color;
   if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {
     const Eigen::AngleAxisd turn(moved.rotation);
     lines.emplace_back("depth_rotation",
@@ -87,7 +87,7 @@ YAML::Node ToNode(const std::vector<double>& values) {
   return node;
 }
 
-// The file written anew with the values of some keys, and in ROS' or Kalibr's
+// The file written again with the values of some keys, and in ROS' or Kalibr's
 // layout with those of the camera below theirs; its comments are lost.
 std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
                       const YamlLines& values, bool is_of_orb_slam,
@@ -155,7 +155,8 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
       return false;
     }
   }
-  const DepthErrors &a = read.depth_errors, &b = camera.depth_errors;
+  const DepthCorrection &a = read.depth_correction,
+                        &b = camera.depth_correction;
   const Rigid3d between = a.depth_from_color.Inverse() * b.depth_from_color;
   return read.camera.width == camera.camera.width &&
          read.camera.height == camera.camera.height &&
@@ -190,9 +191,9 @@ std::optional<std::string> Edited(const RgbdCamera& camera,
         EditLines(text, file.node(), values, RgbdKeys(), RgbdLines(camera));
     if (Says(lines, camera)) return lines;
   }
-  const std::string anew =
+  const std::string rewritten =
       EditNodes(camera, text, values, is_of_orb_slam, file.node());
-  return Says(anew, camera) ? std::optional(anew) : std::nullopt;
+  return Says(rewritten, camera) ? std::optional(rewritten) : std::nullopt;
 }
 
 }  // namespace

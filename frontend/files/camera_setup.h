@@ -16,7 +16,7 @@ struct CameraSetup {
   CameraSetup(const RgbdCamera& rgbd)  // NOLINT(*-explicit-*): says the same
       : camera(rgbd.camera),
         depth_scale(rgbd.depth_scale),
-        depth_errors(rgbd.depth_errors),
+        depth_correction(rgbd.depth_correction),
         color_shutter(rgbd.color_shutter),
         depth_shutter(rgbd.depth_shutter) {}
 
@@ -25,7 +25,7 @@ struct CameraSetup {
   // Raw units of the depth image per metre; nothing: not said.
   std::optional<double> depth_scale;
 
-  DepthErrors depth_errors;  // of the depth images, once registered
+  DepthCorrection depth_correction;  // of the depth images, once registered
 
   // See RgbdCamera.
   Shutter color_shutter;

@@ -2,6 +2,7 @@
 
 #include <cctype>
 #include <opencv2/imgcodecs.hpp>
+#include <opencv2/imgproc.hpp>
 #include <string_view>
 
 #include "core/util/input_error.h"
@@ -14,14 +15,18 @@
 namespace rgbd_pose {
 namespace {
 
+bool IsJpeg(std::string_view bytes) {
+  constexpr std::string_view kJpegStart = "\xFF\xD8\xFF";
+  return bytes.substr(0, kJpegStart.size()) == kJpegStart;
+}
+
 // OpenCV fills the missing rest of a JPEG with grey and calls it a success, so
 // look for the end marker behind the last scan. Neither marker can occur
 // inside the compressed data.
 bool IsCutOffJpeg(std::string_view bytes) {
-  constexpr std::string_view kJpegStart = "\xFF\xD8\xFF";
   constexpr std::string_view kScanStart = "\xFF\xDA";
   constexpr std::string_view kJpegEnd = "\xFF\xD9";
-  if (bytes.substr(0, kJpegStart.size()) != kJpegStart) return false;
+  if (!IsJpeg(bytes)) return false;
   const size_t last_scan = bytes.rfind(kScanStart);
   return last_scan == std::string_view::npos ||
          bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
@@ -88,10 +93,22 @@ cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
                      ": is damaged, cut off or no image of a kind that is "
                      "read: PNG, JPEG, TIFF, BMP, PGM, PPM, WebP");
   }
-  if (color != nullptr) {
-    *color = DecodeByOpenCv(bytes, path, cv::IMREAD_COLOR);
+  const bool is_gray = (flags & ~cv::IMREAD_ANYDEPTH) == cv::IMREAD_GRAYSCALE;
+  // JPEG has grey levels of its own, by the same formula, and packed with fewer
+  // losses than colours are.
+  if (!is_gray || IsJpeg(bytes)) {
+    if (color != nullptr) {
+      *color = DecodeByOpenCv(bytes, path, cv::IMREAD_COLOR);
+    }
+    return DecodeByOpenCv(bytes, path, flags);
   }
-  return DecodeByOpenCv(bytes, path, flags);
+  // What decoders make grey differs from one kind to another.
+  cv::Mat image = DecodeByOpenCv(bytes, path, flags | cv::IMREAD_COLOR);
+  if (color != nullptr) *color = image.clone();
+  if (image.depth() == CV_8U) {
+    cv::cvtColor(image, image, cv::COLOR_BGR2GRAY);
+  }
+  return image;
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include "frontend/files/png_chunks.h"
 #include "frontend/files/png_filters.h"
+#include "frontend/image/gray_level.h"
 
 namespace rgbd_pose {
 namespace {
@@ -64,10 +65,7 @@ bool ReadGray(const PngImage& png, uint8_t* rows, cv::Mat* gray,
       const uint8_t red = row[0];
       const uint8_t green = row[kChannels / 2];
       const uint8_t blue = row[kChannels - 1];
-      // 0.299 R + 0.587 G + 0.114 B in 15 bits, rounded down as libpng does,
-      // which OpenCV leaves it to. They add up to 1.
-      to[x] = static_cast<uint8_t>((9797 * red + 19234 * green + 3737 * blue) >>
-                                   15);
+      to[x] = GrayLevel(red, green, blue);
       if (bgr == nullptr) continue;
       *bgr++ = blue;
       *bgr++ = green;

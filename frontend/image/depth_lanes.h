@@ -39,8 +39,8 @@ struct EightMoves {
   float right, down, scale, offset;
 };
 
-// DepthMover::Sample and EncodeDepth for eight pixels at once, of the upper and
-// the lower row and of the one of them and the column that are nearer.
+// DepthWarper::Sample and EncodeDepth for eight pixels at once, of the upper
+// and the lower row and of the one of them and the column that are nearer.
 inline void MoveEight(const uint16_t* top, const uint16_t* bottom,
                       const uint16_t* nearest, const EightMoves& by,
                       uint16_t* to) {

@@ -7,7 +7,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/image/depth_mover.h"
+#include "frontend/image/depth_warper.h"
 #include "frontend/image/frame.h"
 
 namespace rgbd_pose {
@@ -41,7 +41,7 @@ class FrameRectifier {
   void MakeMaps(const cv::Mat& depth, double depth_scale);
 
   Camera camera_;
-  DepthMover mover_;
+  DepthWarper mover_;
   int columns_, rows_;                 // of nodes
   std::vector<Eigen::Vector3d> rays_;  // of nodes
   std::vector<Flow> flows_;            // at nodes

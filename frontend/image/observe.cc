@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frontend/image/depth_mover.h"
+#include "frontend/image/depth_warper.h"
 #include "frontend/image/surface_normal.h"
 
 namespace rgbd_pose {

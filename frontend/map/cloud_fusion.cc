@@ -38,7 +38,7 @@ CloudFusion::CloudFusion(const CloudFusionOptions& options)
   }
 }
 
-bool CloudFusion::Wants(const TrackedFrame& tracked) const {
+bool CloudFusion::ShouldIntegrate(const TrackedFrame& tracked) const {
   if (tracked.status != TrackingStatus::kOk || tracked.segment != 0) {
     return false;
   }

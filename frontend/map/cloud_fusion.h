@@ -9,7 +9,7 @@
 #include "core/geometry/rigid3.h"
 #include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
-#include "frontend/map/view_step.h"
+#include "frontend/map/motion_filter.h"
 #include "frontend/map/voxel_cloud.h"
 #include "frontend/tracking/tracked_frame.h"
 
@@ -28,7 +28,7 @@ struct CloudFusionOptions {
 
   // A frame adds to the cloud if it is so far from the last one that did:
   // nearer ones would cost time and bring the same again.
-  ViewStep step;
+  MotionFilter step;
 
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
@@ -43,7 +43,7 @@ class CloudFusion {
 
   // Whether Add would bring anything new: the status is ok, the camera has
   // moved, and how the frame lies to the first one is known (its segment).
-  bool Wants(const TrackedFrame& tracked) const;
+  bool ShouldIntegrate(const TrackedFrame& tracked) const;
 
   // The frame must have its colour.
   void Add(const Frame& frame, const Rigid3d& world_from_cam);

@@ -1,5 +1,3 @@
-#include "frontend/map/glb_writer.h"
-
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -8,6 +6,7 @@
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/map/little_endian.h"
+#include "frontend/map/mesh_file.h"
 
 namespace rgbd_pose {
 namespace {

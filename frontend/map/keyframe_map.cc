@@ -26,7 +26,7 @@ bool IsCovariance(const MotionMatrix& matrix) {
          cholesky.matrixLLT().allFinite();
 }
 
-std::string CheckEdge(const Edge& edge, const std::set<int>& ids) {
+std::string CheckEdge(const RelativePose& edge, const std::set<int>& ids) {
   for (const int id : {edge.ref, edge.cur}) {
     if (ids.count(id) == 0) {
       return "there is no keyframe " + std::to_string(id);
@@ -59,7 +59,7 @@ std::string KeyframeMap::Check() const {
         keyframe.images.Check(camera.width, camera.height);
     if (!wrong_images.empty()) return name + wrong_images;
   }
-  for (const Edge& edge : edges) {
+  for (const RelativePose& edge : edges) {
     const std::string wrong = CheckEdge(edge, ids);
     if (!wrong.empty()) {
       return Format("edge from keyframe %d to %d: ", edge.ref, edge.cur) +

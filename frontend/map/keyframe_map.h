@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/estimation/edge.h"
+#include "core/estimation/relative_pose.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/map/stored_images.h"
@@ -23,7 +23,7 @@ struct MapKeyframe {
 struct KeyframeMap {
   Camera camera;                       // that took all keyframes
   std::vector<MapKeyframe> keyframes;  // in any order
-  std::vector<Edge> edges;             // ref and cur: ids of keyframes
+  std::vector<RelativePose> edges;     // ref and cur: ids of keyframes
 
   // One line that says what is wrong, or empty: two keyframes with one id,
   // images of another size than the camera's, edges to keyframes that are not

@@ -42,12 +42,13 @@ class FolderLock {
   const int file_;
 };
 
-// Whether a file is an image of a map, whole or still aside.
+// Whether a file is an image of a map, whole or still being written.
 bool IsImage(const fs::path& file) {
   const std::string name = file.filename().string();
   const std::string checksum = name.substr(0, name.find('.'));
   const std::string whole = checksum + kImageType;
-  return IsImageName(checksum) && (name == whole || name == AsideOf(whole));
+  return IsImageName(checksum) &&
+         (name == whole || name == TemporaryPath(whole));
 }
 
 // Makes a folder and those above it, all of them on the disk.
@@ -61,12 +62,13 @@ void MakeFolder(const fs::path& folder) {
   for (const fs::path& path : above) SyncFolder(path.string());
 }
 
-// Nobody's pictures are to get a map among them by a mistyped path.
+// Refuses to write into a non-empty folder that is no map.
 void RequireNoOtherThings(const fs::path& folder) {
   if (fs::exists(folder / kIndex)) return;
   for (const auto& entry : fs::directory_iterator(folder)) {
     // Of a program that was killed before its first map was whole.
-    if (IsImage(entry.path()) || entry.path().filename() == AsideOf(kIndex)) {
+    if (IsImage(entry.path()) ||
+        entry.path().filename() == TemporaryPath(kIndex)) {
       continue;
     }
     throw InputError(folder.string() +
@@ -82,7 +84,7 @@ std::string SaveImage(const fs::path& folder, const PngBytes& image) {
   // A size of -1, if there is none.
   if (fs::file_size(folder / name, error) != image.bytes.size()) {
     WriteFileAtomically((folder / name).string(), image.bytes,
-                        Survives::kPowerLoss);
+                        Durability::kPowerLoss);
   }
   return name;
 }
@@ -100,7 +102,7 @@ void Save(const fs::path& folder, const KeyframeMap& map) {
   // until the new one has taken its place.
   SyncFolder(folder.string());
   WriteFileAtomically((folder / kIndex).string(), FormatMapIndex(index),
-                      Survives::kPowerLoss);
+                      Durability::kPowerLoss);
   SyncFolder(folder.string());
   std::vector<fs::path> unused;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -119,13 +121,13 @@ std::shared_ptr<const PngBytes> LoadImage(const fs::path& folder,
   if (!fs::exists(file, error)) {
     throw InputError(file.string() +
                      ": is missing, a keyframe of the map needs it; take a "
-                     "copy of the map or map anew");
+                     "copy of the map or map again");
   }
   auto image = std::make_shared<const PngBytes>(ReadTextFile(file.string()));
   if (image->checksum != checksum) {
     throw InputError(file.string() +
                      ": is damaged, its checksum is not its name; take a copy "
-                     "of the map or map anew");
+                     "of the map or map again");
   }
   return image;
 }

@@ -18,7 +18,7 @@ namespace rgbd_pose {
 void SaveMap(const std::string& folder, const KeyframeMap& map);
 
 // Makes the folder. Throws InputError if SaveMap could not save to it: to be
-// told before the work rather than after it.
+// said before the work rather than after it.
 void RequireMapFolder(const std::string& folder);
 
 // Loads a map: the very numbers and images that were saved. Throws InputError

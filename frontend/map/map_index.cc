@@ -111,9 +111,9 @@ void ReadKeyframe(LineReader* line, MapIndex* index) {
   index->map.keyframes.push_back(std::move(keyframe));
 }
 
-void ReadEdge(LineReader* line, std::vector<Edge>* edges) {
+void ReadEdge(LineReader* line, std::vector<RelativePose>* edges) {
   line->Require(46);
-  Edge edge;
+  RelativePose edge;
   edge.ref = line->Integer();
   edge.cur = line->Integer();
   edge.cur_from_ref = line->Motion();
@@ -140,7 +140,7 @@ std::string_view Unseal(std::string_view text, const std::string& path) {
   if (text.substr(last) != ChecksumLine(text.substr(0, last))) {
     throw InputError(path +
                      ": is damaged or edited, its checksum does not fit; take "
-                     "a copy of the map or map anew");
+                     "a copy of the map or map again");
   }
   return text.substr(0, last);
 }
@@ -183,7 +183,7 @@ std::string FormatMapIndex(const MapIndex& index) {
     line.Word(index.images[i].gray);
     line.Word(index.images[i].depth);
   }
-  for (const Edge& edge : index.map.edges) {
+  for (const RelativePose& edge : index.map.edges) {
     LineWriter line("edge", &text);
     line.Integer(edge.ref);
     line.Integer(edge.cur);

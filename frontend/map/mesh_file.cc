@@ -5,7 +5,6 @@
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
-#include "frontend/map/glb_writer.h"
 #include "frontend/map/ply_writer.h"
 
 namespace rgbd_pose {

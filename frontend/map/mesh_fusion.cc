@@ -17,7 +17,7 @@ namespace {
 constexpr double kMinMeshVoxel = 0.001;  // m
 constexpr double kMaxMeshVoxel = 1.0;    // m
 
-constexpr int kBlockSide = DistanceVolume::kSide;
+constexpr int kBlockSide = TsdfVolume::kSide;
 
 // Of the fixed point that colours are kept in.
 constexpr float kColorSteps = 256.0F;
@@ -74,7 +74,7 @@ void MeshFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
   KeepSurfacePixels(frame);
   const Rigid3d cam_from_world = world_from_cam.Inverse();
   std::vector<uint64_t> keys;
-  std::vector<DistanceVolume::Block*> blocks;
+  std::vector<TsdfVolume::Block*> blocks;
   for (const SeenBlock& seen : FindBlocks(world_from_cam)) {
     if (!seen.is_near && volume_.Find(seen.key) < 0) continue;
     keys.push_back(seen.key);
@@ -155,11 +155,11 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
             (2.0F * static_cast<float>(i) / static_cast<float>(steps) - 1.0F);
         const float z = end + from_end;
         const Eigen::Vector3f at = (z * ray + t) * blocks_per_metre;
-        if (!(at.cwiseAbs().maxCoeff() < DistanceVolume::kHalfRange - 1)) {
+        if (!(at.cwiseAbs().maxCoeff() < TsdfVolume::kHalfRange - 1)) {
           continue;
         }
         const SeenBlock block = {
-            DistanceVolume::KeyOf(
+            TsdfVolume::KeyOf(
                 {FloorToInt(at.x()), FloorToInt(at.y()), FloorToInt(at.z())}),
             std::abs(from_end) <= near};
         if (block == last[i]) continue;
@@ -183,7 +183,7 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
 
 // Looks each point of its grid up in the depth image.
 void MeshFusion::AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
-                            DistanceVolume::Block* block) const {
+                            TsdfVolume::Block* block) const {
   const Camera& camera = undistorter_.camera();
   const auto fx = static_cast<float>(camera.fx);
   const auto fy = static_cast<float>(camera.fy);
@@ -194,7 +194,7 @@ void MeshFusion::AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
   const Eigen::Matrix3d R = cam_from_world.rotation.toRotationMatrix();
   const Eigen::Matrix3f steps = (R * options_.voxel_size).cast<float>();
   const Eigen::Vector3d first = kBlockSide * options_.voxel_size *
-                                DistanceVolume::BlockOf(key).cast<double>();
+                                TsdfVolume::BlockOf(key).cast<double>();
   const Eigen::Vector3f origin = (cam_from_world * first).cast<float>();
   DistanceVoxel* voxel = block->data();
   for (int i = 0; i < kBlockSide; ++i) {

@@ -11,8 +11,8 @@
 #include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
 #include "frontend/image/undistorter.h"
-#include "frontend/map/distance_volume.h"
 #include "frontend/map/triangle_mesh.h"
+#include "frontend/map/tsdf_volume.h"
 
 namespace rgbd_pose {
 
@@ -74,7 +74,7 @@ class MeshFusion {
     float weight;      // 1 / m^2
   };
 
-  // A block that a frame tells of.
+  // A block that a frame sees.
   struct SeenBlock {
     uint64_t key;
     bool is_near;  // the surface may be in it
@@ -93,7 +93,7 @@ class MeshFusion {
   void KeepSurfacePixels(const Frame& frame);
   std::vector<SeenBlock> FindBlocks(const Rigid3d& world_from_cam) const;
   void AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
-                  DistanceVolume::Block* block) const;
+                  TsdfVolume::Block* block) const;
 
   MeshFusionOptions options_;
   Undistorter undistorter_;
@@ -103,7 +103,7 @@ class MeshFusion {
   std::vector<int> max_steps_;  // to neighbours, by raw depth; -1: no depth
   cv::Mat depth_;  // of the frame at hand: CV_32FC1, m, 0 off surfaces
   cv::Mat color_;
-  DistanceVolume volume_;
+  TsdfVolume volume_;
 };
 
 }  // namespace rgbd_pose

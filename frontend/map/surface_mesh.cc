@@ -10,7 +10,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kSide = DistanceVolume::kSide;
+constexpr int kSide = TsdfVolume::kSide;
 constexpr int kNone = -1;
 
 // The eight corners of a voxel, x in the highest bit.
@@ -20,7 +20,7 @@ int Bit(int corner, int axis) { return corner >> (2 - axis) & 1; }
 
 class Mesher {
  public:
-  Mesher(const DistanceVolume& volume, double voxel_size, float min_weight)
+  Mesher(const TsdfVolume& volume, double voxel_size, float min_weight)
       : volume_(volume),
         voxel_size_(voxel_size),
         min_weight_(min_weight),
@@ -33,15 +33,15 @@ class Mesher {
   }
 
  private:
-  using VertexOfVoxel = std::array<int, DistanceVolume::kBlockSize>;
+  using VertexOfVoxel = std::array<int, TsdfVolume::kBlockSize>;
 
   // The blocks around one, itself first: towards higher (sign 1) or lower (-1)
   // coordinates. kNone where there is none.
   std::array<int, 8> Neighbours(int index, int sign) const {
-    const Eigen::Vector3i here = DistanceVolume::BlockOf(volume_.key(index));
+    const Eigen::Vector3i here = TsdfVolume::BlockOf(volume_.key(index));
     std::array<int, 8> neighbours;
     for (int n = 0; n < 8; ++n) {
-      neighbours[n] = volume_.Find(DistanceVolume::KeyOf(
+      neighbours[n] = volume_.Find(TsdfVolume::KeyOf(
           here + sign * Eigen::Vector3i(Bit(n, 0), Bit(n, 1), Bit(n, 2))));
     }
     return neighbours;
@@ -53,10 +53,10 @@ class Mesher {
       const int n = around[x / kSide << 2 | y / kSide << 1 | z / kSide];
       if (n == kNone) return {};
       return volume_.block(
-          n)[DistanceVolume::PlaceOf(x % kSide, y % kSide, z % kSide)];
+          n)[TsdfVolume::PlaceOf(x % kSide, y % kSide, z % kSide)];
     };
     const Eigen::Vector3i first =
-        kSide * DistanceVolume::BlockOf(volume_.key(index));
+        kSide * TsdfVolume::BlockOf(volume_.key(index));
     Corners corners;
     for (int x = 0; x < kSide; ++x) {
       for (int y = 0; y < kSide; ++y) {
@@ -73,7 +73,7 @@ class Mesher {
             vertices_[index] = std::make_unique<VertexOfVoxel>();
             vertices_[index]->fill(kNone);
           }
-          (*vertices_[index])[DistanceVolume::PlaceOf(x, y, z)] =
+          (*vertices_[index])[TsdfVolume::PlaceOf(x, y, z)] =
               static_cast<int>(mesh_.vertices.size());
           mesh_.vertices.push_back(
               Vertex(first + Eigen::Vector3i(x, y, z), corners));
@@ -142,11 +142,11 @@ class Mesher {
       }
       const int n = below[neighbour];
       if (n == kNone || vertices_[n] == nullptr) return kNone;
-      return (*vertices_[n])[DistanceVolume::PlaceOf(in_block[0], in_block[1],
-                                                     in_block[2])];
+      return (*vertices_[n])[TsdfVolume::PlaceOf(in_block[0], in_block[1],
+                                                 in_block[2])];
     };
     const std::array<int, 8> beyond = Neighbours(index, 1);
-    for (int place = 0; place < DistanceVolume::kBlockSize; ++place) {
+    for (int place = 0; place < TsdfVolume::kBlockSize; ++place) {
       if ((*vertices_[index])[place] == kNone) continue;
       const Eigen::Vector3i voxel(place / (kSide * kSide),
                                   place / kSide % kSide, place % kSide);
@@ -159,8 +159,7 @@ class Mesher {
         // It is there: the voxel has a vertex, so all its corners are known.
         const float there =
             volume_
-                .block(
-                    beyond[is_beyond ? 4 >> axis : 0])[DistanceVolume::PlaceOf(
+                .block(beyond[is_beyond ? 4 >> axis : 0])[TsdfVolume::PlaceOf(
                     end[0], end[1], end[2])]
                 .distance;
         if ((here < 0.0F) == (there < 0.0F)) continue;
@@ -188,7 +187,7 @@ class Mesher {
     }
   }
 
-  const DistanceVolume& volume_;
+  const TsdfVolume& volume_;
   const double voxel_size_;
   const float min_weight_;
   std::vector<std::unique_ptr<VertexOfVoxel>> vertices_;  // of each block
@@ -197,7 +196,7 @@ class Mesher {
 
 }  // namespace
 
-TriangleMesh SurfaceMesh(const DistanceVolume& volume, double voxel_size,
+TriangleMesh SurfaceMesh(const TsdfVolume& volume, double voxel_size,
                          float min_weight) {
   return Mesher(volume, voxel_size, min_weight).Mesh();
 }

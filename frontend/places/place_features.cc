@@ -54,11 +54,8 @@ Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,
   return matches;
 }
 
-std::optional<Consensus> FindRoughMotion(const Correspondences& matches) {
-  RansacOptions ransac;
-  ransac.consensus.min_inliers = kMinInliers;
-  ransac.consensus.min_inlier_share = kMinInlierShare;
-  return FindByRansac(matches, ransac);
+std::optional<Consensus> VerifyGeometrically(const Correspondences& matches) {
+  return FindByRansac(matches, {kMinInliers, kMinInlierShare});
 }
 
 }  // namespace rgbd_pose

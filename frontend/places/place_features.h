@@ -30,6 +30,6 @@ Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,
 // (core/initial_guess/ransac.h) of such matches: nothing unless more agree than
 // chance brings about. Good enough to track from, not more. The same input
 // gives the same bytes.
-std::optional<Consensus> FindRoughMotion(const Correspondences& matches);
+std::optional<Consensus> VerifyGeometrically(const Correspondences& matches);
 
 }  // namespace rgbd_pose

@@ -35,8 +35,8 @@ std::optional<Relocalisation> Relocaliser::Find(
       place.frame_ = Frame();
     }
     if (look > 0 && ++next_ >= places.size()) next_ = 1;
-    if (const auto found =
-            FindRoughMotion(MatchPlaces(*place.features_, current, camera_))) {
+    if (const auto found = VerifyGeometrically(
+            MatchPlaces(*place.features_, current, camera_))) {
       return Relocalisation{place.id_, found->cur_from_prev,
                             static_cast<int>(found->inliers.size())};
     }
@@ -45,14 +45,14 @@ std::optional<Relocalisation> Relocaliser::Find(
 }
 
 std::optional<Relocalisation> Relocaliser::FindInMap(
-    const Frame& frame, const PlaceIndex& index,
+    const Frame& frame, const PlaceDatabase& index,
     const std::function<const PlaceFeatures&(int)>& features_of) const {
   const PlaceFeatures current =
       DescribeKeyframe(frame, camera_, depth_options_);
   std::optional<Relocalisation> best;
   for (const PlaceCandidate& candidate :
        index.Query(current.described.descriptors, kMaxLooks)) {
-    const auto found = FindRoughMotion(
+    const auto found = VerifyGeometrically(
         MatchPlaces(features_of(candidate.keyframe), current, camera_));
     const int inliers =
         found.has_value() ? static_cast<int>(found->inliers.size()) : 0;

@@ -9,8 +9,8 @@
 #include "core/geometry/rigid3.h"
 #include "frontend/image/depth_lookup.h"
 #include "frontend/image/frame.h"
+#include "frontend/places/place_database.h"
 #include "frontend/places/place_features.h"
-#include "frontend/places/place_index.h"
 
 namespace rgbd_pose {
 
@@ -36,7 +36,8 @@ struct Relocalisation {
   int inliers = 0;  // matches that agree with the motion
 };
 
-// Finds a frame again among keyframes, without a guess: see FindRoughMotion.
+// Finds a frame again among keyframes, without a guess: see
+// VerifyGeometrically.
 //
 // Places are described as they are first looked at, a few in each search, so
 // that a search takes some tens of milliseconds at most. The same calls give
@@ -55,7 +56,7 @@ class Relocaliser {
   // Looks for the frame in a whole map: of the keyframes of the index that are
   // most like it, whose features the caller has, the one most matches agree to.
   std::optional<Relocalisation> FindInMap(
-      const Frame& frame, const PlaceIndex& index,
+      const Frame& frame, const PlaceDatabase& index,
       const std::function<const PlaceFeatures&(int keyframe)>& features_of)
       const;
 

@@ -9,14 +9,14 @@ namespace rgbd_pose {
 // evaluate it at: what tests, benchmarks and rgbd_jacobians look at.
 template <typename Residual>
 struct ResidualSample {
-  MotionOrigin origin;
+  LinearizationPoint origin;
   MotionVector x;
   double columns[Residual::kColumns];
 
   explicit ResidualSample(RandomWorld* world) {
     // Enough lack a depth on one side for costs that use those matches.
     constexpr double kMissingDepthShare = 0.25;
-    origin = MotionOrigin(world->Motion(1.0, 1.0));
+    origin = LinearizationPoint(world->Motion(1.0, 1.0));
     x << world->Vector(0.7), world->Vector(0.7);
     const Rigid3d motion = origin.CurFromPrev(x.data());
     const MotionPrior prior = world->Prior(motion, 0.3);

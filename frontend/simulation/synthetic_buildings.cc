@@ -200,7 +200,7 @@ Scene MakeTwoRooms(uint32_t seed) {
   PutWall({0, -half}, {0, -kDoor / 2}, 0.0, seed, &scene);
   PutWall({0, kDoor / 2}, {0, half}, 0.0, seed, &scene);
   PutWall({0, -kDoor / 2}, {0, kDoor / 2}, kDoorHeight, seed, &scene);
-  // Along the long walls and those at both ends; pictures beside the door.
+  // Along the long walls and those at both ends; pictures next to the door.
   const double inner = half - kWall / 2.0;
   Furnish({-kSide + 0.6, -inner}, {-0.3, -inner}, 1, seed, &scene);
   Furnish({0.3, -inner}, {kSide - 0.6, -inner}, 2, seed, &scene);

@@ -20,7 +20,7 @@ Scene MakeTwoRooms(uint32_t seed);
 constexpr double kTwinShift = 14.0;  // m
 Scene MakeTwinCorridors(uint32_t seed);
 
-// A depot of 42 x 22 m, rows of shelves along y and aisles beside them.
+// A depot of 42 x 22 m, rows of shelves along y and aisles between them.
 constexpr int kDepotAisles = 14;
 constexpr double kDepotPitch = 3.0;  // m, from aisle to aisle
 Scene MakeDepot(uint32_t seed);

@@ -2,12 +2,16 @@
 
 #include <cmath>
 #include <opencv2/imgproc.hpp>
+#include <utility>
+#include <vector>
 
 #include "core/geometry/shutter_parameters.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_exposure.h"
 #include "frontend/simulation/synthetic_hash.h"
+#include "frontend/simulation/synthetic_movers.h"
+#include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_sensor.h"
 
 namespace rgbd_pose {
@@ -83,18 +87,58 @@ SyntheticOptions Checked(SyntheticOptions options) {
   if (!(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0)) {
     throw InputError("exposure_drift of a synthetic sequence must be in 0..1");
   }
+  if (!(options.moving_patch >= 0.0 &&
+        options.moving_patch <= kMaxPatchShare)) {
+    throw InputError("moving_patch of a synthetic sequence must be in 0.." +
+                     Format("%g", kMaxPatchShare));
+  }
+  if (options.walking_boxes < 0 || options.walking_boxes > kMaxWalkingBoxes) {
+    throw InputError("a synthetic sequence has 0 to " +
+                     std::to_string(kMaxWalkingBoxes) + " walking boxes");
+  }
+  if (!(options.black_s >= 0.0)) {
+    throw InputError(
+        "the black time of a synthetic sequence must be 0 s or "
+        "more");
+  }
   return options;
+}
+
+// world_from_cam, t seconds after the first frame.
+std::function<Rigid3d(double t)> CameraPath(const SyntheticOptions& options) {
+  const SyntheticPath path = FindSyntheticPath(options.path);
+  const double lap = (options.frames - 1) / options.rate_hz / options.laps;
+  return [path, lap, laps = options.laps,
+          path_from_cam = options.path_from_cam](double t) {
+    const double on_path =
+        laps == 1 ? t : lap * 0.5 * (1.0 - std::cos(M_PI * t / lap));
+    const Rigid3d world_from_path = path(on_path, lap);
+    return path_from_cam.has_value() ? world_from_path * *path_from_cam
+                                     : world_from_path;
+  };
+}
+
+Renderer MakeRenderer(const SyntheticOptions& options, const Camera& camera,
+                      const std::function<Rigid3d(double t)>& path) {
+  std::vector<SyntheticMover> movers =
+      WalkingBoxes(options.walking_boxes, options.seed);
+  if (options.moving_patch > 0.0) {
+    movers.push_back(MovingPatch(options.moving_patch, options.camera.camera,
+                                 path, options.seed));
+  }
+  return Renderer(MakeScene(options.scene, options.seed), camera, movers);
 }
 
 }  // namespace
 
 SyntheticDataset::SyntheticDataset(const SyntheticOptions& options)
     : options_(Checked(options)),
-      path_(FindSyntheticPath(options.path)),
-      renderer_(MakeScene(options.scene, options.seed), options.camera.camera) {
-  if (options.depth_camera.has_value()) {
-    depth_renderer_.emplace(MakeScene(options.scene, options.seed),
-                            options.depth_camera->camera);
+      world_from_cam_(CameraPath(options_)),
+      renderer_(
+          MakeRenderer(options_, options_.camera.camera, world_from_cam_)) {
+  if (options_.depth_camera.has_value()) {
+    depth_renderer_ =
+        MakeRenderer(options_, options_.depth_camera->camera, world_from_cam_);
   }
 }
 
@@ -102,18 +146,8 @@ double SyntheticDataset::timestamp(int index) const {
   return std::round((kFirstStamp + Time(index)) * 1e6) / 1e6;
 }
 
-Rigid3d SyntheticDataset::WorldFromCamAt(double t) const {
-  const double lap = Time(options_.frames - 1) / options_.laps;
-  const double on_path =
-      options_.laps == 1 ? t : lap * 0.5 * (1.0 - std::cos(M_PI * t / lap));
-  const Rigid3d world_from_path = path_(on_path, lap);
-  return options_.path_from_cam.has_value()
-             ? world_from_path * *options_.path_from_cam
-             : world_from_path;
-}
-
 Rigid3d SyntheticDataset::WorldFromCam(int index) const {
-  return WorldFromCamAt(Time(index));
+  return world_from_cam_(Time(index));
 }
 
 // What is seen from world_from_cam * E^-1 lies at E * X in those axes.
@@ -124,8 +158,7 @@ Rendering SyntheticDataset::Render(double t) const {
   const double color_time = t + color.offset;
   const double depth_time = t + (options_.depth_delay_s + depth.offset);
   Rendering seen = Expose(
-      renderer_, focal_px, [this](double time) { return WorldFromCamAt(time); },
-      color_time,
+      renderer_, focal_px, world_from_cam_, color_time,
       {options_.exposure_s, DriftingGain(options_.exposure_drift, color_time),
        color.readout});
   Rigid3d cam_from_depth = options_.registration_error.Inverse();
@@ -139,7 +172,7 @@ Rendering SyntheticDataset::Render(double t) const {
         Expose(
             depth_renderer_.has_value() ? *depth_renderer_ : renderer_,
             focal_px,
-            [&](double time) { return WorldFromCamAt(time) * cam_from_depth; },
+            [&](double time) { return world_from_cam_(time) * cam_from_depth; },
             depth_time, {0.0, 1.0, depth.readout})
             .depth;
   }
@@ -147,7 +180,12 @@ Rendering SyntheticDataset::Render(double t) const {
 }
 
 Frame SyntheticDataset::Read(int index) const {
-  Rendering rendering = Render(Time(index));
+  const double t = Time(index);
+  Rendering rendering = Render(t);
+  const double from_middle = t - Time(options_.frames - 1) / 2.0;
+  if (std::abs(from_middle) < options_.black_s / 2.0) {
+    rendering.color.setTo(0);
+  }
   if (options_.noise) {
     // One key an image; images take less than 2^40 numbers after theirs.
     const uint64_t sequence = HashCounter(options_.seed);

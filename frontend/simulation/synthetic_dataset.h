@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 
@@ -49,6 +50,14 @@ struct SyntheticOptions {
   // Swing of the automatic exposure, 0..1: see DriftingGain.
   double exposure_drift = 0.0;
 
+  // What moves by itself (see synthetic_movers.h): a patch on this share of the
+  // view, 0 to kMaxPatchShare, and boxes, 0 to kMaxWalkingBoxes.
+  double moving_patch = 0.0;
+  int walking_boxes = 0;
+
+  // Colour sees nothing for so long (s), in the middle of the sequence.
+  double black_s = 0.0;
+
   // How the camera is mounted on what moves along the path, if not straight.
   std::optional<Rigid3d> path_from_cam = {};
 };
@@ -81,13 +90,12 @@ class SyntheticDataset : public Dataset {
  private:
   // Seconds since the first frame.
   double Time(int index) const { return index / options_.rate_hz; }
-  Rigid3d WorldFromCamAt(double t) const;
   // What a frame with its stamp at time t has: colour as exposed, and depth,
   // exact, as exposed and registered.
   Rendering Render(double t) const;
 
   SyntheticOptions options_;
-  SyntheticPath path_;
+  std::function<Rigid3d(double t)> world_from_cam_;
   Renderer renderer_;
   std::optional<Renderer> depth_renderer_;  // if another camera takes depth
 };

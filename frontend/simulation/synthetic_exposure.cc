@@ -27,12 +27,13 @@ double BlurLength(const Rigid3d& motion, const cv::Mat& depth,
 Rendering RenderAt(const Renderer& renderer,
                    const std::function<Rigid3d(double t)>& world_from_cam,
                    double t, double readout_s) {
-  if (readout_s == 0.0) return renderer.Render(world_from_cam(t));
-  std::vector<Rigid3d> poses(renderer.num_bands());
+  if (readout_s == 0.0) return renderer.Render(world_from_cam(t), t);
+  std::vector<StampedPose> poses(renderer.num_bands());
   for (size_t i = 0; i < poses.size(); ++i) {
     const double row = renderer.BandMiddle(static_cast<int>(i));
     const Shutter shutter = {0.0, readout_s};
-    poses[i] = world_from_cam(t + shutter.RowTime(row, renderer.height()));
+    const double time = t + shutter.RowTime(row, renderer.height());
+    poses[i] = {time, world_from_cam(time)};
   }
   return renderer.Render(poses);
 }

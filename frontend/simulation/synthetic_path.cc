@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "core/util/units.h"
 #include "frontend/simulation/synthetic_tours.h"
@@ -139,6 +140,27 @@ Rigid3d Walk(double t, double /*duration*/) {
                  Vector3d(0, 0, x));
 }
 
+// Along Xyz, turning to and fro about the vertical.
+Rigid3d WhipPan(double t, double duration) {
+  constexpr double kRate = 300.0 * kRadiansPerDegree;  // rad/s
+  constexpr double kSpinUp = 0.1;                      // s, and as long down
+  constexpr double kPan = 0.5 + 2.0 * kSpinUp;         // s
+  constexpr double kPeriod = 3.0;                      // s, from pan to pan
+  const double pan = std::floor(t / kPeriod);
+  const bool is_back = std::fmod(pan, 2.0) != 0.0;
+  const double s =
+      std::clamp(t - pan * kPeriod - (kPeriod - kPan) / 2.0, 0.0, kPan);
+  const double up = std::min(s, kSpinUp);
+  const double down = std::max(s - (kPan - kSpinUp), 0.0);
+  const double turned =
+      kRate * (s - up + (up * up - down * down) / kSpinUp / 2);
+  Rigid3d pose = Xyz(t, duration);
+  pose.rotation =
+      Turn(is_back ? M_PI - turned : turned, Vector3d::UnitZ()).rotation *
+      pose.rotation;
+  return pose;
+}
+
 struct NamedPath {
   const char* name;
   SyntheticPath path;
@@ -149,6 +171,7 @@ constexpr NamedPath kPaths[] = {{"xyz", Xyz},
                                 {"still", Still},
                                 {"walk", Walk},
                                 {"handheld", Handheld},
+                                {"whip_pan", WhipPan},
                                 {"table", TableTour},
                                 {"two_rooms", TwoRoomsTour},
                                 {"twin_corridors", TwinCorridorsTour},
@@ -166,17 +189,9 @@ Rigid3d LookAt(const Vector3d& place, const Vector3d& target) {
 }
 
 SyntheticPath FindSyntheticPath(const std::string& name) {
-  for (const NamedPath& path : kPaths) {
-    if (name == path.name) return path.path;
-  }
-  throw InputError("unknown path '" + name + "'; there are " +
-                   Join(SyntheticPathNames()));
+  return RowOf(kPaths, "path", name).path;
 }
 
-std::vector<std::string> SyntheticPathNames() {
-  std::vector<std::string> names;
-  for (const NamedPath& path : kPaths) names.emplace_back(path.name);
-  return names;
-}
+std::vector<std::string> SyntheticPathNames() { return NamesOf(kPaths); }
 
 }  // namespace rgbd_pose

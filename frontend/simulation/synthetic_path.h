@@ -31,6 +31,8 @@ using SyntheticPath = Rigid3d (*)(double t, double duration);
 //             step's sway: for the scene "corridor"
 //   handheld  swings of arm and hand on all six axes, up to 1.0 m/s and 90
 //             deg/s (0.96 and 87 reached within the first 5 s)
+//   whip_pan  along xyz, and half a turn to the left or back every 3 s: 0.5 s
+//             at 300 deg/s and 0.1 s to get there and to stop, first at 1.15 s
 // and through the scenes of the same name, by hand, up to 0.6 m/s (depot 0.8)
 // and 40 deg/s:
 //   table           19 m around the desks in 56 s, then again

@@ -77,8 +77,10 @@ struct Renderer::NearestFaces {
   std::array<int, kTileSize* kTileSize> index = {};
 };
 
-Renderer::Renderer(Scene scene, const Camera& camera)
+Renderer::Renderer(Scene scene, const Camera& camera,
+                   std::vector<SyntheticMover> movers)
     : scene_(std::move(scene)),
+      movers_(std::move(movers)),
       rays_x_(camera.height, camera.width, CV_32FC1),
       rays_y_(camera.height, camera.width, CV_32FC1),
       pixel_(1.0 / camera.fx, 1.0 / camera.fy) {
@@ -168,14 +170,29 @@ void Renderer::Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
   }
 }
 
-Rendering Renderer::Render(const Rigid3d& world_from_cam) const {
-  return Render(std::vector<Rigid3d>{world_from_cam});
+std::vector<VisibleFace> Renderer::FindVisible(const StampedPose& pose) const {
+  std::vector<VisibleFace> faces =
+      FindVisibleFaces(scene_, pose.world_from_cam);
+  for (const SyntheticMover& mover : movers_) {
+    const Rigid3d mover_from_world =
+        mover.world_from_mover(pose.timestamp).Inverse();
+    for (const VisibleFace& face : FindVisibleFaces(
+             mover.scene, mover_from_world * pose.world_from_cam)) {
+      faces.push_back(face);
+    }
+  }
+  return faces;
 }
 
-Rendering Renderer::Render(const std::vector<Rigid3d>& world_from_cam) const {
+Rendering Renderer::Render(const Rigid3d& world_from_cam, double t) const {
+  return Render(std::vector<StampedPose>{{t, world_from_cam}});
+}
+
+Rendering Renderer::Render(
+    const std::vector<StampedPose>& world_from_cam) const {
   std::vector<std::vector<VisibleFace>> faces;
-  for (const Rigid3d& pose : world_from_cam) {
-    faces.push_back(FindVisibleFaces(scene_, pose));
+  for (const StampedPose& pose : world_from_cam) {
+    faces.push_back(FindVisible(pose));
   }
   const bool has_bands = faces.size() > 1;
   const std::vector<Tile>& tiles = has_bands ? band_tiles_ : tiles_;

@@ -5,8 +5,10 @@
 #include <opencv2/core.hpp>
 #include <vector>
 
+#include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
+#include "frontend/simulation/synthetic_movers.h"
 #include "frontend/simulation/synthetic_scene.h"
 #include "frontend/simulation/synthetic_view.h"
 
@@ -24,12 +26,14 @@ struct Rendering {
 // does not depend on the number of threads.
 class Renderer {
  public:
-  Renderer(Scene scene, const Camera& camera);
+  Renderer(Scene scene, const Camera& camera,
+           std::vector<SyntheticMover> movers = {});
 
-  Rendering Render(const Rigid3d& world_from_cam) const;
+  // At a time (s) that matters only to what moves.
+  Rendering Render(const Rigid3d& world_from_cam, double t = 0.0) const;
 
-  // With a pose for each band of kBandRows rows, top down, num_bands() in all:
-  // what a rolling shutter sees.
+  // With a pose and its time for each band of kBandRows rows, top down,
+  // num_bands() in all: what a rolling shutter sees.
   static constexpr int kBandRows = 8;
   int height() const { return rays_x_.rows; }  // of the image, px
   int num_bands() const { return (height() + kBandRows - 1) / kBandRows; }
@@ -38,7 +42,7 @@ class Renderer {
     const int first = band * kBandRows;
     return (first + std::min(first + kBandRows, height()) - 1) / 2.0;
   }
-  Rendering Render(const std::vector<Rigid3d>& world_from_cam) const;
+  Rendering Render(const std::vector<StampedPose>& world_from_cam) const;
 
  private:
   // A block of the image and the range of its rays on the plane z = 1.
@@ -55,7 +59,10 @@ class Renderer {
   void Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
              const NearestFaces& nearest, Rendering* out) const;
 
+  std::vector<VisibleFace> FindVisible(const StampedPose& pose) const;
+
   Scene scene_;
+  std::vector<SyntheticMover> movers_;
   cv::Mat rays_x_;  // CV_32FC1, where each pixel's ray meets the plane z = 1
   cv::Mat rays_y_;
   Eigen::Vector2f pixel_;  // size of a pixel on that plane

@@ -2,16 +2,95 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <cstdint>
 
-#include "core/util/input_error.h"
-#include "core/util/text_file.h"
-#include "frontend/simulation/synthetic_bare_scenes.h"
+#include "core/util/named_values.h"
 #include "frontend/simulation/synthetic_buildings.h"
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_room.h"
 
 namespace rgbd_pose {
 namespace {
+
+// Scenes that lack what one or the other method lives on. All suit the paths
+// of the room.
+
+Material Painted(const cv::Vec3f& color) {
+  Material material;
+  material.color = color;
+  material.grain = 0.0f;
+  return material;
+}
+
+std::array<Material, 6> Everywhere(const Material& m) {
+  return {m, m, m, m, m, m};
+}
+
+struct PaintedBox {
+  SceneBox box;
+  float brightness;
+};
+
+// Low things near the camera, high ones along the walls.
+const PaintedBox kBoxes[] = {
+    {{{0.60, 0.25, 0.0}, {0.75, 1.50, 0.74}, -18}, 0.62f},
+    {{{0.74, 0.42, 0.74}, {0.20, 0.54, 0.40}, -10}, 0.70f},
+    {{{0.40, -0.12, 0.74}, {0.30, 0.22, 0.16}, 25}, 0.56f},
+    {{{-0.15, 0.85, 0.0}, {0.44, 0.44, 0.47}, 32}, 0.66f},
+    {{{2.30, 0.60, 0.0}, {0.40, 1.40, 1.86}, 0}, 0.58f},
+    {{{2.10, -1.00, 0.0}, {0.50, 0.90, 0.80}, 15}, 0.68f},
+    {{{2.05, -0.90, 0.80}, {0.34, 0.36, 0.30}, 40}, 0.60f},
+    {{{0.55, -1.55, 0.0}, {1.60, 0.75, 0.40}, 0}, 0.64f},
+    {{{0.55, -1.86, 0.40}, {1.60, 0.20, 0.42}, 0}, 0.60f},
+    {{{2.30, 1.80, 0.0}, {0.36, 0.36, 2.60}, 20}, 0.67f},
+    {{{1.35, 1.60, 0.0}, {0.50, 0.45, 0.70}, 28}, 0.57f},
+    {{{-0.90, 1.70, 0.0}, {0.90, 0.42, 0.75}, 0}, 0.61f},
+};
+
+// A room of 5 x 4 x 2.6 m with a dozen boxes, all painted in one colour each:
+// shapes, but no texture.
+Scene MakePlainRoom(uint32_t seed) {
+  Scene scene;
+  scene.lamp = {-0.4, 0.2, 2.2};
+  AddBox({{0.0, 0.0, 0.0}, {5.0, 4.0, 2.6}, 0}, true,
+         Everywhere(Painted({0.62f, 0.64f, 0.65f})), seed, &scene);
+  for (const PaintedBox& piece : kBoxes) {
+    const float b = piece.brightness;
+    AddBox(piece.box, false, Everywhere(Painted({b, b, b})), seed, &scene);
+  }
+  return scene;
+}
+
+// A corridor, 2 x 2.5 m and 40 m long, along the world's x axis, painted in one
+// colour a wall: nothing shows how far along it a camera is.
+Scene MakeCorridor(uint32_t seed) {
+  Scene scene;
+  // So high that its light is the same all along.
+  scene.lamp = {-0.4, -0.35, 1000.0};
+  AddBox({{0.0, -0.35, 0.0}, {40.0, 2.0, 2.5}, 0}, true,
+         {Painted({0.80f, 0.82f, 0.83f}), Painted({0.80f, 0.82f, 0.83f}),
+          Painted({0.90f, 0.90f, 0.88f}), Painted({0.84f, 0.88f, 0.92f}),
+          Painted({0.55f, 0.58f, 0.63f}), Painted({1.00f, 1.00f, 1.00f})},
+         seed, &scene);
+  return scene;
+}
+
+// One wall full of posters and nothing else: texture, but no shape.
+Scene MakePosterWall(uint32_t seed) {
+  Scene scene;
+  scene.lamp = {-0.4, 0.2, 2.2};
+  Material posters;
+  posters.color = {0.62f, 0.58f, 0.56f};
+  posters.grain = 0.20f;
+  posters.tile = {0.13f, 0.10f};
+  posters.tile_contrast = 0.22f;
+  posters.tile_tint = 0.18f;
+  posters.glyph = 0.011f;
+  posters.glyph_density = 0.35f;
+  AddBox({{1.0, 0.0, -5.0}, {0.2, 16.0, 14.0}, 0}, false, Everywhere(posters),
+         seed, &scene);
+  return scene;
+}
 
 using Eigen::Vector3d;
 
@@ -59,17 +138,9 @@ void AddBox(const SceneBox& box, bool from_within,
 }
 
 Scene MakeScene(const std::string& name, uint32_t seed) {
-  for (const NamedScene& scene : kScenes) {
-    if (name == scene.name) return scene.make(seed);
-  }
-  throw InputError("unknown scene '" + name + "'; there are " +
-                   Join(SceneNames()));
+  return RowOf(kScenes, "scene", name).make(seed);
 }
 
-std::vector<std::string> SceneNames() {
-  std::vector<std::string> names;
-  for (const NamedScene& scene : kScenes) names.emplace_back(scene.name);
-  return names;
-}
+std::vector<std::string> SceneNames() { return NamesOf(kScenes); }
 
 }  // namespace rgbd_pose

@@ -48,9 +48,9 @@ void AddBox(const SceneBox& box, bool from_within,
 //   room         furnished and textured everywhere
 //   plain_room   furnished, of one colour each: edges and shading alone
 //   glossy_room  room with highlights that move with the camera
-//   corridor     40 m along the world's x axis, without texture: nothing tells
+//   corridor     40 m along the world's x axis, without texture: nothing shows
 //                how far along it one is
-//   poster_wall  one textured plane: depth tells nothing that it does not
+//   poster_wall  one textured plane: depth shows nothing that it does not
 // and to walk through, with paths of the same name (synthetic_buildings.h):
 //   table           a room with two desks in its middle
 //   two_rooms       with a door between them

@@ -73,34 +73,47 @@ void BagSource::Add(const BagMessage& message) {
     throw InputError(NameOf(message.topic, stamp) +
                      ": comes after later images, further than " +
                      std::to_string(ImagePairing::kWindow) +
-                     " images out of order; write the bag anew in the order "
-                     "of its header stamps");
+                     " images out of order; write the bag once more in the "
+                     "order of its header stamps");
   }
+}
+
+bool BagSource::ReadOn() {
+  if (is_read_) return false;
+  std::optional<BagMessage> message;
+  try {
+    message = bag_->Next();
+  } catch (const InputError&) {
+    error_ = std::current_exception();  // after the frames before it
+  }
+  if (!message.has_value()) {
+    is_read_ = true;
+    pairing_.Finish();
+    return true;
+  }
+  try {
+    Add(*message);
+  } catch (const InputError&) {
+    damage_ = std::current_exception();
+  }
+  return true;
 }
 
 std::optional<RgbdFrame> BagSource::Next() {
   if (is_over_) return std::nullopt;
-  try {
-    while (true) {
-      if (std::optional<StampedPair> pair = pairing_.Take()) {
-        return MakeFrame(*pair);
-      }
-      const std::optional<BagMessage> message = bag_->Next();
-      if (message.has_value()) {
-        Add(*message);
-        continue;
-      }
-      pairing_.Finish();
-      if (std::optional<StampedPair> pair = pairing_.Take()) {
-        return MakeFrame(*pair);
-      }
-      break;
+  do {
+    if (damage_ != nullptr) {
+      return RgbdFrame{last_stamp_,
+                       [error = std::exchange(damage_, nullptr)]() -> Frame {
+                         std::rethrow_exception(error);
+                       }};
     }
-  } catch (...) {
-    is_over_ = true;  // what follows cannot be told
-    throw;
-  }
+    if (std::optional<StampedPair> pair = pairing_.Take()) {
+      return MakeFrame(*pair);
+    }
+  } while (ReadOn());
   is_over_ = true;
+  if (error_ != nullptr) std::rethrow_exception(error_);
   if (num_frames_ > 0) return std::nullopt;
   throw InputError(bag_->path() + ": none of " + std::to_string(num_color_) +
                    " colour and " + std::to_string(num_depth_) +
@@ -113,9 +126,9 @@ std::optional<RgbdFrame> BagSource::Next() {
 
 RgbdFrame BagSource::MakeFrame(const StampedPair& pair) {
   const int index = num_frames_++;
-  const double timestamp = pair.color.stamp;
+  last_stamp_ = pair.color.stamp;
   return {
-      timestamp, [this, index, pair] {
+      last_stamp_, [this, index, pair] {
         const std::string color_name = NameOf(topics_.color, pair.color.stamp);
         const std::string depth_name = NameOf(topics_.depth, pair.depth.stamp);
         cv::Mat color;
@@ -132,6 +145,23 @@ RgbdFrame BagSource::MakeFrame(const StampedPair& pair) {
         frame.depth_delay = pair.depth.stamp - pair.color.stamp;
         return frame;
       }};
+}
+
+std::vector<std::string> BagSource::remarks() const {
+  std::vector<std::string> lines;
+  if (pairing_.same_stamp() > 0) {
+    lines.push_back(SameStampRemark(bag_->path(), pairing_.same_stamp()));
+  }
+  if (pairing_.late() > 0) {
+    lines.push_back(
+        bag_->path() + ": " + std::to_string(pairing_.late()) +
+        " depth images come too late in it, more than " +
+        std::to_string(static_cast<int>(ImagePairing::kMaxSeconds)) + " s or " +
+        std::to_string(ImagePairing::kMaxBytes >> 20) +
+        " MiB after colour images of their time; write it once more in the "
+        "order of its header stamps");
+  }
+  return lines;
 }
 
 Trajectory BagSource::ground_truth() const {

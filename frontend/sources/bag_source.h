@@ -1,7 +1,9 @@
 #pragma once
 
+#include <exception>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "frontend/bags/bag_reader.h"
 #include "frontend/bags/bag_topics.h"
@@ -22,7 +24,9 @@ class BagSource final : public FrameSource {
   // what camera it was and the options do not, either.
   BagSource(std::unique_ptr<BagReader> bag, const SourceOptions& options);
 
-  // Throws InputError, too, if no two images belong together at all.
+  // Throws InputError, too, if no two images belong together at all; where the
+  // bag is damaged, after the frames before that. A damaged message is a frame
+  // that cannot be read.
   std::optional<RgbdFrame> Next() override;
   const RgbdCamera& camera() const override { return assembly_.camera(); }
 
@@ -30,8 +34,11 @@ class BagSource final : public FrameSource {
   // `world`, as a motion capture system publishes it.
   Trajectory ground_truth() const override;
   int unmatched_color() const override { return pairing_.unmatched_color(); }
+  std::vector<std::string> remarks() const override;
 
  private:
+  // Reads on: whether there was anything more.
+  bool ReadOn();
   void Add(const BagMessage& message);
   RgbdFrame MakeFrame(const StampedPair& pair);
   std::string NameOf(int topic, double stamp) const;
@@ -48,6 +55,10 @@ class BagSource final : public FrameSource {
   int num_frames_ = 0;
   double first_color_ = 0.0;  // stamps, s
   double first_depth_ = 0.0;
+  double last_stamp_ = 0.0;    // of a frame
+  std::exception_ptr damage_;  // of the last message
+  std::exception_ptr error_;   // of the bag
+  bool is_read_ = false;       // to its end
   bool is_over_ = false;
 };
 

@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "frontend/image/depth_mover.h"
+#include "frontend/image/depth_warper.h"
 
 namespace rgbd_pose {
 namespace {
@@ -32,14 +32,14 @@ cv::Mat Offset(const cv::Mat& depth, double scale, double offset) {
 }  // namespace
 
 Frame CorrectDepth(const RgbdCamera& camera, Frame frame) {
-  if (camera.depth_errors.inverse_depth_offset != 0.0) {
+  if (camera.depth_correction.inverse_depth_offset != 0.0) {
     frame.depth = Offset(frame.depth, frame.depth_scale,
-                         camera.depth_errors.inverse_depth_offset);
+                         camera.depth_correction.inverse_depth_offset);
   }
-  const Rigid3d& moved = camera.depth_errors.depth_from_color;
+  const Rigid3d& moved = camera.depth_correction.depth_from_color;
   if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {
     frame.depth =
-        DepthMover(camera.camera).Move(frame, moved.Inverse()).clone();
+        DepthWarper(camera.camera).Move(frame, moved.Inverse()).clone();
   }
   frame.color_shutter = camera.color_shutter;
   frame.depth_shutter = camera.depth_shutter;
@@ -55,10 +55,10 @@ std::optional<RgbdFrame> CorrectedSource::Next() {
   return next;
 }
 
-std::unique_ptr<FrameSource> WithCorrectDepth(
+std::unique_ptr<FrameSource> ApplyDepthCorrection(
     std::unique_ptr<FrameSource> source) {
   const RgbdCamera& camera = source->camera();
-  if (camera.depth_errors.None() && camera.color_shutter.IsGlobal() &&
+  if (camera.depth_correction.IsIdentity() && camera.color_shutter.IsGlobal() &&
       camera.depth_shutter.IsGlobal()) {
     return source;
   }

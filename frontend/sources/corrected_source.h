@@ -27,13 +27,16 @@ class CorrectedSource final : public FrameSource {
   Trajectory ground_truth() const override { return source_->ground_truth(); }
   int unmatched_color() const override { return source_->unmatched_color(); }
   int dropped() const override { return source_->dropped(); }
+  std::vector<std::string> remarks() const override {
+    return source_->remarks();
+  }
 
  private:
   std::unique_ptr<FrameSource> source_;
 };
 
 // The source itself where there is nothing to correct.
-std::unique_ptr<FrameSource> WithCorrectDepth(
+std::unique_ptr<FrameSource> ApplyDepthCorrection(
     std::unique_ptr<FrameSource> source);
 
 }  // namespace rgbd_pose

@@ -105,6 +105,9 @@ class PartialSource final : public FrameSource {
   // Of the whole recording.
   int unmatched_color() const override { return whole_->unmatched_color(); }
   int dropped() const override { return whole_->dropped(); }
+  std::vector<std::string> remarks() const override {
+    return whole_->remarks();
+  }
 
  private:
   // Goes through the frames in order.

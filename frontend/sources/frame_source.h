@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
@@ -14,9 +15,9 @@ namespace rgbd_pose {
 struct RgbdFrame {
   double timestamp = 0.0;  // of the colour image, seconds
 
-  // Decodes it; in any thread, beside other frames, as long as the source is
-  // there. Throws InputError if an image is unreadable or does not fit the
-  // camera.
+  // Decodes it; in any thread, at the same time as other frames, as long as the
+  // source is there. Throws InputError if an image is unreadable or does not
+  // fit the camera.
   std::function<Frame()> read;
 };
 
@@ -48,6 +49,10 @@ class FrameSource {
   // How many frames of a camera came faster than they were asked for, and were
   // left out.
   virtual int dropped() const { return 0; }
+
+  // What else was left out or chosen so far that users should know, a line
+  // each.
+  virtual std::vector<std::string> remarks() const { return {}; }
 };
 
 }  // namespace rgbd_pose

@@ -1,9 +1,11 @@
 #include "frontend/sources/frame_stream.h"
 
+#include <algorithm>
 #include <chrono>
 #include <utility>
 
-#include "core/util/give_way.h"
+#include "core/util/format.h"
+#include "core/util/thread_priority.h"
 
 namespace rgbd_pose {
 namespace {
@@ -13,12 +15,19 @@ namespace {
 // 1.5 MB.
 constexpr int kMaxReady = 8;
 
+// A share of damaged frames says little of fewer frames than this.
+constexpr size_t kLeastFrames = 60;
+constexpr size_t kLeastDamaged = 3;
+
 }  // namespace
 
-FrameStream::FrameStream(FrameSource* source, Prepare prepare, int threads)
+FrameStream::FrameStream(FrameSource* source, Prepare prepare, int threads,
+                         std::optional<double> max_damaged)
     : source_(source),
       prepare_(std::move(prepare)),
-      max_ahead_(threads + kMaxReady) {
+      max_ahead_(threads + kMaxReady),
+      max_damaged_(max_damaged),
+      num_expected_(max_damaged ? source->timestamps().size() : 0) {
   for (int i = 1; i < threads; ++i) {
     workers_.emplace_back(&FrameStream::Work, this);
   }
@@ -34,6 +43,43 @@ FrameStream::~FrameStream() {
 }
 
 std::optional<StreamedFrame> FrameStream::Next() {
+  while (stopped_.empty()) {
+    std::optional<Result> result = Take();
+    if (!result.has_value()) break;
+    if (result->error == nullptr) {
+      ++num_good_;
+      return std::move(result->frame);
+    }
+    try {
+      std::rethrow_exception(result->error);
+    } catch (const InputError& error) {
+      if (!max_damaged_.has_value() || result->failed == Result::kPrepare)
+        throw;
+      LeaveOut(*result, error);
+    }
+  }
+  if (num_good_ > 0 || damaged_.empty()) return std::nullopt;
+  throw InputError(damaged_.front());
+}
+
+void FrameStream::LeaveOut(const Result& result, const InputError& error) {
+  if (result.failed == Result::kSource) {
+    if (num_good_ == 0 && damaged_.empty()) throw error;
+    stopped_ = error.what();
+    return;
+  }
+  damaged_.emplace_back(error.what());
+  const size_t seen =
+      std::max({num_good_ + damaged_.size(), num_expected_, kLeastFrames});
+  const size_t least = *max_damaged_ > 0.0 ? kLeastDamaged : 1;
+  if (damaged_.size() < std::max<double>(least, *max_damaged_ * seen)) return;
+  stopped_ =
+      Format("%zu of %zu frames cannot be read, the last: ", damaged_.size(),
+             num_good_ + damaged_.size()) +
+      error.what();
+}
+
+std::optional<FrameStream::Result> FrameStream::Take() {
   Lock lock(mutex_);
   // Frames are begun in order: if this one is not ready, it is being read by
   // another thread, or it is the next to begin.
@@ -49,8 +95,7 @@ std::optional<StreamedFrame> FrameStream::Next() {
   ++num_taken_;
   lock.unlock();
   changed_.notify_all();
-  if (result.error != nullptr) std::rethrow_exception(result.error);
-  return std::move(result.frame);
+  return result;
 }
 
 bool FrameStream::CanBegin() const {
@@ -63,24 +108,28 @@ void FrameStream::ReadOne(Lock* lock) {
   is_asking_ = true;
   lock->unlock();
   std::optional<RgbdFrame> next;
+  Result result;
   try {
     next = source_->Next();
   } catch (...) {  // is the error of this frame
-    next = RgbdFrame{0.0, [error = std::current_exception()]() -> Frame {
-                       std::rethrow_exception(error);
-                     }};
+    result.error = std::current_exception();
   }
   lock->lock();
   is_asking_ = false;
-  if (!next.has_value()) size_ = index;
+  if (result.error != nullptr) {
+    ready_.emplace(index, std::move(result));
+  } else if (!next.has_value()) {
+    size_ = index;
+  }
   changed_.notify_all();
   if (!next.has_value()) return;
 
   lock->unlock();
   const auto start = std::chrono::steady_clock::now();
-  Result result;
+  result.failed = Result::kRead;
   try {
     const Frame frame = next->read();
+    result.failed = Result::kPrepare;
     result.frame.frame =
         prepare_ ? prepare_(frame) : std::make_unique<PreparedFrame>(frame);
   } catch (...) {
@@ -96,7 +145,7 @@ void FrameStream::ReadOne(Lock* lock) {
 
 void FrameStream::Work() {
   // To the thread that tracks, which reads for itself where frames run short.
-  GiveWay();
+  LowerThreadPriority();
   Lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return stop_ || CanBegin(); });

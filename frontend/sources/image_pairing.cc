@@ -9,14 +9,6 @@
 namespace rgbd_pose {
 namespace {
 
-void Insert(StampedImage image, std::deque<StampedImage>* images) {
-  const auto place = std::lower_bound(
-      images->begin(), images->end(), image.stamp,
-      [](const StampedImage& a, double stamp) { return a.stamp < stamp; });
-  if (place != images->end() && place->stamp == image.stamp) return;
-  images->insert(place, std::move(image));
-}
-
 std::vector<double> StampsOf(const std::deque<StampedImage>& images) {
   std::vector<double> stamps;
   for (const StampedImage& image : images) stamps.push_back(image.stamp);
@@ -25,50 +17,80 @@ std::vector<double> StampsOf(const std::deque<StampedImage>& images) {
 
 }  // namespace
 
+std::string SameStampRemark(const std::string& recording, int images) {
+  return recording + ": " + std::to_string(images) +
+         (images == 1 ? " image has" : " images have") +
+         " the time stamp of another one and " + (images == 1 ? "is" : "are") +
+         " left out; does the recorder say when images were taken?";
+}
+
+bool ImagePairing::Waiting::Insert(StampedImage image) {
+  const auto place = std::lower_bound(
+      images.begin(), images.end(), image.stamp,
+      [](const StampedImage& a, double stamp) { return a.stamp < stamp; });
+  if (place != images.end() && place->stamp == image.stamp) return false;
+  if (image.message != nullptr) bytes += image.message->size();
+  images.insert(place, std::move(image));
+  return true;
+}
+
+StampedImage ImagePairing::Waiting::Remove(size_t index) {
+  const auto place = images.begin() + static_cast<std::ptrdiff_t>(index);
+  StampedImage image = std::move(*place);
+  if (image.message != nullptr) bytes -= image.message->size();
+  images.erase(place);
+  return image;
+}
+
+bool ImagePairing::Waiting::IsFull() const {
+  return !images.empty() &&
+         (bytes > kMaxBytes ||
+          images.back().stamp - images.front().stamp > kMaxSeconds);
+}
+
 bool ImagePairing::AddColor(StampedImage image) {
   if (last_color_.has_value() && image.stamp <= *last_color_) {
-    return image.stamp == *last_color_;
+    if (image.stamp < *last_color_) return false;
+    ++same_stamp_;
+    return true;
   }
-  Insert(std::move(image), &colors_);
+  if (!colors_.Insert(std::move(image))) ++same_stamp_;
   return true;
 }
 
 void ImagePairing::AddDepth(StampedImage image) {
   if (last_color_.has_value() && image.stamp < *last_color_ - max_difference_) {
+    ++late_;
     return;
   }
-  Insert(std::move(image), &depths_);
+  if (!depths_.Insert(std::move(image))) ++same_stamp_;
   // Nothing of colour for long: the oldest ones are left out.
-  if (depths_.size() > kMaxWaiting && colors_.empty()) depths_.pop_front();
+  while (colors_.empty() && depths_.IsFull()) depths_.Remove(0);
 }
 
 bool ImagePairing::CanDecide() const {
   if (colors_.empty()) return false;
-  return is_finished_ || colors_.size() > kMaxWaiting ||
-         depths_.size() > kMaxWaiting ||
+  return is_finished_ || colors_.IsFull() || depths_.IsFull() ||
          (colors_.size() > kWindow && depths_.size() > kWindow);
 }
 
 std::optional<StampedPair> ImagePairing::Take() {
   while (CanDecide()) {
-    const std::vector<IndexPair> pairs =
-        Associate(StampsOf(colors_), StampsOf(depths_), max_difference_);
+    const std::vector<IndexPair> pairs = Associate(
+        StampsOf(colors_.images), StampsOf(depths_.images), max_difference_);
     StampedPair pair;
-    pair.color = std::move(colors_.front());
-    colors_.pop_front();
+    pair.color = colors_.Remove(0);
     last_color_ = pair.color.stamp;
     const bool is_paired = !pairs.empty() && pairs.front().first == 0;
     if (is_paired) {
-      const auto depth = depths_.begin() + pairs.front().second;
-      pair.depth = std::move(*depth);
-      depths_.erase(depth);
+      pair.depth = depths_.Remove(pairs.front().second);
     } else {
       ++unmatched_color_;
     }
     // Too old for any colour image that is to come.
     while (!depths_.empty() &&
-           depths_.front().stamp < *last_color_ - max_difference_) {
-      depths_.pop_front();
+           depths_.images.front().stamp < *last_color_ - max_difference_) {
+      depths_.Remove(0);
     }
     if (is_paired) return pair;
   }

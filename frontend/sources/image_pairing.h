@@ -19,9 +19,13 @@ struct StampedPair {
   StampedImage depth;  // near it in time
 };
 
+// A line for users on images that have another one's time stamp.
+std::string SameStampRemark(const std::string& recording, int images);
+
 // Pairs a stream of colour images with one of depth images by nearest time, as
 // Associate does for lists that are known as a whole. Keeps a few images of
-// each: as many may be out of order, and so much does it look ahead.
+// each: as many may be out of order, and so much does it look ahead. Where one
+// stream lags behind the other, it waits for kMaxSeconds or kMaxBytes of that.
 class ImagePairing {
  public:
   // `max_difference`: s between the two images of a pair, at most.
@@ -44,21 +48,44 @@ class ImagePairing {
   // Colour images that have gone by without a depth image.
   int unmatched_color() const { return unmatched_color_; }
 
+  // Images left out since another of their stream has the same stamp.
+  int same_stamp() const { return same_stamp_; }
+
+  // Images that came after those of their time had gone by.
+  int late() const { return late_; }
+
   // How many images of a stream are looked at together.
   static constexpr int kWindow = 8;
-  // Images of one stream that wait for those of the other, at most.
-  static constexpr int kMaxWaiting = 3 * kWindow;
+  // Of one stream that wait for the other, at most: by their stamps (s), and
+  // by the memory they take.
+  static constexpr double kMaxSeconds = 30.0;
+  static constexpr size_t kMaxBytes = size_t{256} << 20;
 
  private:
   // Whether it is known which depth image belongs to the first colour image.
   bool CanDecide() const;
 
+  // Images of a stream, in order of time.
+  struct Waiting {
+    std::deque<StampedImage> images;
+    size_t bytes = 0;
+
+    // False if there is one of that stamp.
+    bool Insert(StampedImage image);
+    StampedImage Remove(size_t index);
+    bool IsFull() const;
+    bool empty() const { return images.empty(); }
+    size_t size() const { return images.size(); }
+  };
+
   const double max_difference_;
-  std::deque<StampedImage> colors_;  // in order of time
-  std::deque<StampedImage> depths_;
+  Waiting colors_;
+  Waiting depths_;
   std::optional<double> last_color_;  // stamp of the last one that went by
   bool is_finished_ = false;
   int unmatched_color_ = 0;
+  int same_stamp_ = 0;
+  int late_ = 0;
 };
 
 }  // namespace rgbd_pose

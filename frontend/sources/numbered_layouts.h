@@ -26,7 +26,7 @@ struct NumberedLayout {
   std::vector<NumberedFiles> color;
   std::vector<NumberedFiles> depth;
 
-  const char* mark;    // a file that tells it from others; "": none needed
+  const char* mark;    // a file that only it has; "": none needed
   double depth_scale;  // raw units per metre
   double rate_hz;      // frames a second
 

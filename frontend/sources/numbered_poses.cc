@@ -26,7 +26,7 @@ class MatrixWords {
   }
   bool IsWhole() const { return count_ == 16; }
 
-  // Adds the pose unless the frame is lost, and begins anew.
+  // Adds the pose unless the frame is lost, and begins again.
   void Finish(int number, const std::string& path, int line,
               NumberedPoses* poses) {
     const auto& m = values_;

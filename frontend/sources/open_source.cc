@@ -61,7 +61,9 @@ const std::vector<SourceType>& Types() {
            return std::make_unique<TumDataset>(options);
          }},
         {"rosbag", "ROS 1 bag (.bag, also the RealSense viewer's)",
-         [](const SourceOptions& options) { return IsFile(options, ".bag"); },
+         [](const SourceOptions& options) {
+           return IsFile(options, ".bag") || IsFile(options, ".BAG");
+         },
          [](const SourceOptions& options) {
            return std::make_unique<BagSource>(OpenRos1Bag(options.path),
                                               options);
@@ -122,7 +124,7 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   std::string known;
   for (const SourceType& type : Types()) {
     if (name == kAuto ? type.recognises(options) : name == type.name) {
-      return WithCorrectDepth(type.open(options));
+      return ApplyDepthCorrection(type.open(options));
     }
     known += (known.empty() ? "" : "; ") + type.what;
   }
@@ -130,12 +132,18 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   if (!fs::exists(options.path, error)) {
     throw InputError(options.path + ": no such file or folder");
   }
+  if (EndsWith(options.path, ".bag.active")) {
+    throw InputError(options.path +
+                     ": its recorder was not ended properly; `rosbag reindex` "
+                     "it and give it a name that ends in .bag");
+  }
   if (!fs::is_directory(options.path, error)) {
     throw InputError(options.path +
                      ": is no known kind of recording; known are: " + known);
   }
   throw InputError(options.path + ": is no known kind of recording: it holds " +
-                   Content(options.path) + "; known are: " + known);
+                   Content(options.path) + "; known are: " + known +
+                   " (of the bags of a folder one is read at a time)");
 }
 
 }  // namespace rgbd_pose

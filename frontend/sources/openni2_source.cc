@@ -12,9 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include "frontend/sources/approximate_time_sync.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/latest_frame.h"
-#include "frontend/sources/stream_pairing.h"
 #endif
 
 namespace rgbd_pose {
@@ -246,7 +246,7 @@ class OpenNi2Source final : public FrameSource {
   }
 
   std::string name_;
-  StreamPairing pairing_;
+  ApproximateTimeSync pairing_;
   openni::Device device_;
   openni::VideoStream color_;
   openni::VideoStream depth_;
@@ -266,7 +266,7 @@ std::unique_ptr<FrameSource> OpenOpenNi2(const SourceOptions& options) {
 std::unique_ptr<FrameSource> OpenOpenNi2(const SourceOptions& options) {
   throw InputError(options.path +
                    ": this build knows no OpenNI 2; install libopenni2-dev "
-                   "(scripts/install_dependencies formats) and build anew");
+                   "(scripts/install_dependencies formats) and build again");
 }
 
 #endif

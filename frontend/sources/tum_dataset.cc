@@ -8,6 +8,7 @@
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/files/image_file.h"
+#include "frontend/sources/image_pairing.h"
 
 namespace rgbd_pose {
 namespace {
@@ -89,7 +90,16 @@ Trajectory TumDataset::ground_truth() const {
   const fs::path path = fs::path(folder_) / "groundtruth.txt";
   std::error_code error;
   if (!fs::exists(path, error)) return {};
-  return ReadTrajectory(path.string());
+  truth_remarks_.clear();
+  return ReadTrajectory(path.string(), &truth_remarks_);
+}
+
+std::vector<std::string> TumDataset::remarks() const {
+  std::vector<std::string> lines = truth_remarks_;
+  if (lists_.same_stamp > 0) {
+    lines.push_back(SameStampRemark(folder_, lists_.same_stamp));
+  }
+  return lines;
 }
 
 }  // namespace rgbd_pose

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "frontend/sources/dataset.h"
 #include "frontend/sources/frame_assembly.h"
@@ -15,9 +16,8 @@ namespace rgbd_pose {
 // (fx fy cx cy), as ETH3D does.
 class TumDataset : public Dataset {
  public:
-  // Checks all that can be known without decoding the images: the lists, their
-  // time stamps (strictly increasing) and that the images of all frames are
-  // there. Throws InputError (file:line).
+  // Checks the lists and their time stamps. Throws
+  // InputError (file:line).
   explicit TumDataset(const SourceOptions& options);
 
   int size() const override { return static_cast<int>(lists_.pairs.size()); }
@@ -33,9 +33,13 @@ class TumDataset : public Dataset {
   // Of rgb.txt; 0 with an associations file.
   int unmatched_color() const override { return lists_.unmatched_color; }
 
+  // Of images and, once it was asked for, of the true path.
+  std::vector<std::string> remarks() const override;
+
  private:
   std::string folder_;
   TumLists lists_;
+  mutable std::vector<std::string> truth_remarks_;
   FrameAssembly assembly_;
 };
 

@@ -57,24 +57,16 @@ std::vector<TextLine> ReadLines(const std::string& list, size_t columns,
 void CheckTimeOrder(const std::string& list,
                     const std::vector<ListedImage>& images) {
   for (size_t i = 1; i < images.size(); ++i) {
-    if (images[i].timestamp > images[i - 1].timestamp) continue;
-    throw InputError(
-        list, images[i].line,
-        images[i].timestamp == images[i - 1].timestamp
-            ? "the same time stamp as the line before; take one of them out"
-            : "an earlier time stamp than the line before; sort the list");
-  }
-}
-
-void CheckExists(const std::string& list, const ListedImage& image) {
-  std::error_code error;
-  if (!fs::is_regular_file(image.path, error)) {
-    throw InputError(list, image.line, "no such image: " + image.path);
+    if (images[i].timestamp >= images[i - 1].timestamp) continue;
+    throw InputError(list, images[i].line,
+                     "an earlier time stamp than the line before; sort the "
+                     "list");
   }
 }
 
 std::vector<ListedImage> ReadImageList(const std::string& folder,
-                                       const std::string& name) {
+                                       const std::string& name,
+                                       int* same_stamp) {
   const std::string list = (fs::path(folder) / name).string();
   std::error_code error;
   if (!fs::exists(list, error)) {
@@ -89,6 +81,12 @@ std::vector<ListedImage> ReadImageList(const std::string& folder,
                       line.number});
   }
   CheckTimeOrder(list, images);
+  const auto end = std::unique(images.begin(), images.end(),
+                               [](const ListedImage& a, const ListedImage& b) {
+                                 return a.timestamp == b.timestamp;
+                               });
+  *same_stamp += static_cast<int>(images.end() - end);
+  images.erase(end, images.end());
   return images;
 }
 
@@ -128,13 +126,13 @@ bool IsDepthLeft(const std::string& list, const TextLine& line,
 }  // namespace
 
 TumLists ReadTumLists(const std::string& folder, double max_time_difference) {
-  const std::vector<ListedImage> color = ReadImageList(folder, "rgb.txt");
-  const std::vector<ListedImage> depth = ReadImageList(folder, "depth.txt");
   TumLists lists;
+  const std::vector<ListedImage> color =
+      ReadImageList(folder, "rgb.txt", &lists.same_stamp);
+  const std::vector<ListedImage> depth =
+      ReadImageList(folder, "depth.txt", &lists.same_stamp);
   for (const auto [i, j] :
        Associate(Timestamps(color), Timestamps(depth), max_time_difference)) {
-    CheckExists((fs::path(folder) / "rgb.txt").string(), color[i]);
-    CheckExists((fs::path(folder) / "depth.txt").string(), depth[j]);
     lists.pairs.push_back(PairOf(color[i], depth[j]));
   }
   if (lists.pairs.empty()) {
@@ -159,7 +157,6 @@ TumLists ReadTumAssociations(const std::string& folder,
       ListedImage image = {
           ParseTimestamp(line.words[column], associations_file, line.number),
           (fs::path(folder) / line.words[column + 1]).string(), line.number};
-      CheckExists(associations_file, image);
       (column == 0 ? left : right).push_back(std::move(image));
     }
   }
@@ -170,7 +167,11 @@ TumLists ReadTumAssociations(const std::string& folder,
   CheckTimeOrder(associations_file, color);
   TumLists lists;
   for (size_t i = 0; i < color.size(); ++i) {
-    lists.pairs.push_back(PairOf(color[i], depth[i]));
+    if (i > 0 && color[i].timestamp == color[i - 1].timestamp) {
+      ++lists.same_stamp;
+    } else {
+      lists.pairs.push_back(PairOf(color[i], depth[i]));
+    }
   }
   return lists;
 }

@@ -18,18 +18,19 @@ struct ImagePair {
 struct TumLists {
   std::vector<ImagePair> pairs;
   int unmatched_color = 0;  // colour images without a depth image
+  int same_stamp = 0;       // images left out that have another one's stamp
 };
 
-// Both readers check columns, time stamps (strictly increasing) and that the
-// images of all pairs exist, and throw InputError (file:line) otherwise. Paths
-// in the lists count from `folder`.
+// Both readers check columns and time stamps (in order; of one the first image
+// is taken), and throw
+// InputError (file:line) otherwise. Paths in the lists count from `folder`.
 
 // Pairs rgb.txt and depth.txt of a folder by nearest time, at most
 // `max_time_difference` (s) apart; see Associate.
 TumLists ReadTumLists(const std::string& folder, double max_time_difference);
 
 // Reads the pairs from lines `time colour_image time depth_image`, or depth
-// first: in which order, the first line tells by a path with the word depth in
+// first: in which order, the first line says by a path with the word depth in
 // it or else by its images. How far the times are apart is not checked.
 TumLists ReadTumAssociations(const std::string& folder,
                              const std::string& associations_file);

@@ -12,6 +12,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
+#include "frontend/image/gray_level.h"
 #include "frontend/sources/frame_stream.h"
 
 namespace rgbd_pose {
@@ -36,41 +37,67 @@ void WritePng(const fs::path& path, const cv::Mat& image) {
                 cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY});
 }
 
+// Colours whose grey levels, as they are read back, are those of the frame: a
+// JPEG's own are up to a few levels from those of its colours.
+cv::Mat WithGrayOf(const Frame& frame) {
+  cv::Mat color = frame.color.clone();
+  for (int y = 0; y < color.rows; ++y) {
+    uint8_t* bgr = color.ptr<uint8_t>(y);
+    const uint8_t* wanted = frame.gray.ptr<uint8_t>(y);
+    for (int x = 0; x < color.cols; ++x, bgr += 3) {
+      // All channels together first; where they are at an end, the others.
+      for (int turn = 0;; ++turn) {
+        const int lack = wanted[x] - GrayLevel(bgr[2], bgr[1], bgr[0]);
+        if (lack == 0) break;
+        for (int k = 0; k < 3; ++k) {
+          bgr[k] = cv::saturate_cast<uint8_t>(bgr[k] + (turn == 0  ? lack
+                                                        : lack > 0 ? 1
+                                                                   : -1));
+        }
+      }
+    }
+  }
+  return color;
+}
+
 // Images are written by the threads that read them, the lists afterwards.
-void WriteFrames(FrameSource* source, const fs::path& folder,
-                 const TumWriterOptions& options) {
+WrittenSequence WriteFrames(FrameSource* source, const fs::path& folder,
+                            const TumWriterOptions& options) {
   FrameStream stream(
       source,
       [&folder](const Frame& frame) {
         WritePng(folder / ImagePath("rgb", frame.timestamp),
-                 frame.color.empty() ? frame.gray : frame.color);
+                 frame.color.empty() ? frame.gray : WithGrayOf(frame));
         WritePng(folder / ImagePath("depth", DepthStamp(frame)), frame.depth);
         return std::make_unique<const PreparedFrame>(frame);
       },
-      std::max(1, options.threads));
+      std::max(1, options.threads), options.max_damaged);
   const char* const kinds[] = {"rgb", "depth"};
   std::string lists[] = {"# timestamp filename\n", "# timestamp filename\n"};
-  int done = 0;
+  WrittenSequence written;
   while (const std::optional<StreamedFrame> next = stream.Next()) {
     const double stamps[] = {next->frame->timestamp, DepthStamp(*next->frame)};
     for (int i = 0; i < 2; ++i) {
       lists[i] +=
           FormatStamp(stamps[i]) + " " + ImagePath(kinds[i], stamps[i]) + "\n";
     }
-    ++done;
-    if (options.progress) options.progress(done);
+    ++written.frames;
+    if (options.progress) options.progress(written.frames);
   }
   for (int i = 0; i < 2; ++i) {
     WriteFileAtomically((folder / (std::string(kinds[i]) + ".txt")).string(),
                         lists[i]);
   }
+  written.damaged = stream.damaged();
+  written.stopped = stream.stopped();
+  return written;
 }
 
-void WriteAll(FrameSource* source, const fs::path& folder,
-              const TumWriterOptions& options) {
+WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
+                         const TumWriterOptions& options) {
   fs::create_directories(folder / "rgb");
   fs::create_directories(folder / "depth");
-  WriteFrames(source, folder, options);
+  WrittenSequence written = WriteFrames(source, folder, options);
   const Trajectory ground_truth =
       options.ground_truth ? options.ground_truth() : source->ground_truth();
   if (!ground_truth.empty()) {
@@ -79,6 +106,7 @@ void WriteAll(FrameSource* source, const fs::path& folder,
   }
   WriteFileAtomically((folder / "camera.yaml").string(),
                       FormatCameraYaml(source->camera()));
+  return written;
 }
 
 }  // namespace
@@ -102,12 +130,12 @@ std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
   return text;
 }
 
-void WriteTumSequence(FrameSource* source, const std::string& folder,
-                      const TumWriterOptions& options) {
+WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
+                                 const TumWriterOptions& options) {
   fs::path target = fs::path(folder).lexically_normal();
   if (!target.has_filename()) target = target.parent_path();  // "folder/"
-  fs::path aside = target;
-  aside += ".partial";
+  fs::path partial = target;
+  partial += ".partial";
   try {
     if (fs::exists(target) &&
         (!fs::is_directory(target) || !fs::is_empty(target))) {
@@ -115,13 +143,14 @@ void WriteTumSequence(FrameSource* source, const std::string& folder,
                        ": is there already and no empty folder; remove it or "
                        "name another one");
     }
-    fs::remove_all(aside);
+    fs::remove_all(partial);
     try {
-      WriteAll(source, aside, options);
-      fs::rename(aside, target);
+      WrittenSequence written = WriteAll(source, partial, options);
+      fs::rename(partial, target);
+      return written;
     } catch (...) {
       std::error_code ignored;
-      fs::remove_all(aside, ignored);
+      fs::remove_all(partial, ignored);
       throw;
     }
   } catch (const fs::filesystem_error& error) {

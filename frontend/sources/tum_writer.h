@@ -1,7 +1,9 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
@@ -16,6 +18,16 @@ struct TumWriterOptions {
   std::function<Trajectory()> ground_truth;
   // Told how many frames are written, one call at a time; may be empty.
   std::function<void(int done)> progress;
+  // The share of frames that are left out if they cannot be read, see
+  // FrameStream; nothing: each is an error.
+  std::optional<double> max_damaged;
+};
+
+// What became of it.
+struct WrittenSequence {
+  int frames = 0;                    // written
+  std::vector<std::string> damaged;  // FrameStream::damaged
+  std::string stopped;               // FrameStream::stopped
 };
 
 // Writes all frames of a source in the layout of the TUM RGB-D benchmark:
@@ -26,8 +38,8 @@ struct TumWriterOptions {
 // there is deleted) and renamed, so it is there as a whole or not at all.
 // Throws InputError if `folder` holds anything already or cannot be written,
 // and for a frame that cannot be read.
-void WriteTumSequence(FrameSource* source, const std::string& folder,
-                      const TumWriterOptions& options = {});
+WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
+                                 const TumWriterOptions& options = {});
 
 // The text of camera.yaml: the camera, how its depth counts, and its shutters.
 std::string FormatCameraYaml(const RgbdCamera& camera);

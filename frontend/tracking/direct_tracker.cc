@@ -76,13 +76,12 @@ DirectTracker::DirectFrame::DirectFrame(const Frame& frame)
   BuildSmoothPyramid(gray, kDirectLevels, &pyramid);
 }
 
-DirectTracker::DirectTracker(const FrontendOptions& images, Estimator estimator,
-                             std::optional<Estimator> coarse,
+DirectTracker::DirectTracker(const FrontendOptions& images,
+                             DirectEstimators estimators,
                              const TrackerOptions& common,
                              const DirectTrackerOptions& options)
     : images_(images),
-      estimator_(std::move(estimator)),
-      coarse_(std::move(coarse)),
+      estimators_(std::move(estimators)),
       common_(common),
       options_(options) {
   for (const std::string& error :
@@ -93,7 +92,7 @@ DirectTracker::DirectTracker(const FrontendOptions& images, Estimator estimator,
 
 std::unique_ptr<Reference> DirectTracker::MakeReference(
     const PreparedFrame& frame, const Reference* /*last*/,
-    const Tracked* /*tracked*/, std::string* why_not) {
+    const TrackingResult* /*tracked*/, std::string* why_not) {
   auto reference = std::make_unique<DirectReference>(
       frame, dynamic_cast<const DirectFrame&>(frame).pyramid, images_,
       ++last_id_);
@@ -106,43 +105,49 @@ std::unique_ptr<Reference> DirectTracker::MakeReference(
 
 void DirectTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
-                          const TrackingGuess& guess, int num_levels,
-                          Tracked* tracked) {
-  const auto& ours = dynamic_cast<const DirectReference&>(reference);
-  tracked->matches.Clear();
-  tracked->doubted.Clear();
-  tracked->match_ms = 0.0;
-  tracked->carried_by = kName;
-  tracked->twist.reset();
-  tracked->twist_covariance.setZero();
-  Estimate(ours, frame, frame.Timing(), guess.cur_from_ref, guess, num_levels,
-           &estimator_, &tracked->estimate);
-  if (guess.velocity != nullptr) FindTwist(ours, frame, guess, tracked);
-  const MotionEstimate& estimate = tracked->estimate;
-  tracked->num_found = estimate.num_used;
-  tracked->overlap = ours.SeenFrom(estimate.cur_from_prev);
-  if (estimate.num_used > 0) {
-    tracked->overlap.share *=
-        static_cast<double>(estimate.num_inliers) / estimate.num_used;
+                          const TrackingGuess& guess, TrackingResult* tracked) {
+  Begin(tracked);
+  Estimate(reference, frame, frame.Timing(), guess.cur_from_ref, guess, 0,
+           &estimators_.leading, &tracked->estimate);
+  if (tracked->estimate.num_used > 0) {
+    const Rigid3d found = tracked->estimate.cur_from_prev;
+    Estimate(reference, frame, frame.Timing(), found, guess, 1,
+             &estimators_.refining, &tracked->estimate);
   }
-  Judge(ours.LikenessTo(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
-                        estimate.cur_from_prev),
-        tracked);
+  if (guess.velocity != nullptr) FindTwist(reference, frame, guess, tracked);
+  Judge(reference, frame, tracked);
   // Where features have led there is something to compare with; pixels alone
   // have to fit.
-  if (num_levels == 0 && tracked->status == TrackingStatus::kOk &&
-      estimate.sigma > options_.max_sigma_ok) {
+  const double sigma = tracked->estimate.sigma;
+  if (tracked->status == TrackingStatus::kOk && sigma > options_.max_sigma_ok) {
     tracked->status = TrackingStatus::kDegraded;
-    tracked->reason =
-        "residuals spread by " + ShortNumber(estimate.sigma) + " sigmas";
+    tracked->reason = "residuals spread by " + ShortNumber(sigma) + " sigmas";
   }
-  tracked->is_scarce = tracked->status != TrackingStatus::kLost &&
-                       tracked->overlap.share < options_.min_seen_share_ok;
+}
+
+void DirectTracker::Refine(const Reference& reference,
+                           const PreparedFrame& frame,
+                           const TrackingGuess& guess,
+                           const TrackingResult& by_features,
+                           TrackingResult* tracked) {
+  Begin(tracked);
+  const MotionPrior prior = PriorOf(common_, guess);
+  const FrameView view = ViewOf(frame, frame.Timing(), &by_features.moving);
+  FramePair pair;
+  pair.matches = &by_features.matches.matches;
+  pair.prior = &prior;
+  pair.prev = reference.images();
+  pair.cur = &view;
+  pair.num_levels = 1;
+  estimators_.refining.Estimate(pair, by_features.estimate.cur_from_prev,
+                                &tracked->estimate);
+  Judge(reference, frame, tracked);
 }
 
 void DirectTracker::FindTwist(const Reference& reference,
                               const PreparedFrame& frame,
-                              const TrackingGuess& guess, Tracked* tracked) {
+                              const TrackingGuess& guess,
+                              TrackingResult* tracked) {
   constexpr int kMaxRounds = 2;
   constexpr double kSmallFlowPx = 0.2;
   MotionEstimate* const estimate = &tracked->estimate;
@@ -155,7 +160,7 @@ void DirectTracker::FindTwist(const Reference& reference,
     if (is_small || round == kMaxRounds) break;
     timing.twist = twist;
     Estimate(reference, frame, timing, Rigid3d(estimate->cur_from_prev), guess,
-             1, &estimator_, estimate);
+             1, &estimators_.refining, estimate);
   }
   tracked->twist = timing.twist;
   tracked->twist_covariance = MotionCovarianceOfTwist(
@@ -166,12 +171,23 @@ void DirectTracker::FindTwist(const Reference& reference,
 Rigid3d DirectTracker::FindStart(const Reference& reference,
                                  const PreparedFrame& frame,
                                  const TrackingGuess& guess) {
-  if (!coarse_.has_value()) return guess.cur_from_ref;
+  if (!estimators_.coarse.has_value()) return guess.cur_from_ref;
   Estimate(reference, frame, frame.Timing(), guess.cur_from_ref, guess, 0,
-           &*coarse_, &start_);
+           &*estimators_.coarse, &start_);
   const bool is_found =
       start_.ok() || start_.status == EstimateStatus::kNotConverged;
   return is_found ? start_.cur_from_prev : guess.cur_from_ref;
+}
+
+FrameView DirectTracker::ViewOf(const PreparedFrame& frame,
+                                const FrameTiming& timing,
+                                const CellMask* moving) const {
+  FrameView view =
+      ViewFrame(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
+                images_.camera, images_.depth_noise);
+  view.timing = timing;
+  view.moving = moving;
+  return view;
 }
 
 void DirectTracker::Estimate(const Reference& reference,
@@ -180,12 +196,9 @@ void DirectTracker::Estimate(const Reference& reference,
                              const TrackingGuess& guess, int num_levels,
                              Estimator* estimator,
                              MotionEstimate* estimate) const {
-  FrameView view =
-      ViewFrame(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
-                images_.camera, images_.depth_noise);
-  view.timing = timing;
+  const FrameView view = ViewOf(frame, timing, nullptr);
   const MotionPrior prior = PriorOf(common_, guess);
-  PairData pair;
+  FramePair pair;
   pair.prior = &prior;
   pair.prev = reference.images();
   pair.cur = &view;
@@ -193,8 +206,38 @@ void DirectTracker::Estimate(const Reference& reference,
   estimator->Estimate(pair, start, estimate);
 }
 
-void DirectTracker::Judge(const ViewLikeness& likeness,
-                          Tracked* tracked) const {
+void DirectTracker::Begin(TrackingResult* tracked) {
+  tracked->matches.Clear();
+  tracked->on_probation.Clear();
+  tracked->is_ambiguous = false;
+  tracked->match_ms = 0.0;
+  tracked->carried_by = kName;
+  tracked->twist.reset();
+  tracked->twist_covariance.setZero();
+}
+
+void DirectTracker::Judge(const Reference& reference,
+                          const PreparedFrame& frame,
+                          TrackingResult* tracked) const {
+  const auto& ours = dynamic_cast<const DirectReference&>(reference);
+  const MotionEstimate& estimate = tracked->estimate;
+  tracked->num_found = estimate.num_used;
+  tracked->overlap = ours.SeenFrom(estimate.cur_from_prev);
+  if (estimate.num_used > 0) {
+    tracked->overlap.share *=
+        static_cast<double>(estimate.num_inliers) / estimate.num_used;
+  }
+  JudgeMotion(
+      ours.LikenessTo(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
+                      estimate.cur_from_prev),
+      tracked);
+  tracked->needs_new_keyframe =
+      tracked->status != TrackingStatus::kLost &&
+      tracked->overlap.share < options_.min_seen_share_ok;
+}
+
+void DirectTracker::JudgeMotion(const ViewLikeness& likeness,
+                                TrackingResult* tracked) const {
   const MotionEstimate& estimate = tracked->estimate;
   const double share = tracked->overlap.share;
   tracked->status = TrackingStatus::kLost;

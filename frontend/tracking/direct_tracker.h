@@ -65,7 +65,18 @@ class DirectReference final : public Reference {
   cv::Mat depth_;
   std::vector<cv::Mat> pyramid_;
   FrameView view_;
-  ViewSamples samples_;
+  ViewOverlap samples_;
+};
+
+// What makes motions of pixels.
+struct DirectEstimators {
+  // From a guess: of direct costs whose losses have a wide basin.
+  Estimator leading;
+  // From where these or matches have led: of direct costs whose losses reject
+  // what moves by itself, and of matches where there are some.
+  Estimator refining;
+  // Finds a start in coarse images; nothing: the guess is the start.
+  std::optional<Estimator> coarse = std::nullopt;
 };
 
 // Finds the motion by direct costs alone: no features, so nothing to be lost in
@@ -84,10 +95,8 @@ class DirectTracker final : public Tracker {
     std::vector<cv::Mat> pyramid;  // see image_pyramid.h
   };
 
-  // `estimator`: of direct costs; `coarse`: of those that find a start, null:
-  // none. Throws InputError for options that are not sound (see Check).
-  DirectTracker(const FrontendOptions& images, Estimator estimator,
-                std::optional<Estimator> coarse = std::nullopt,
+  // Throws InputError for options that are not sound (see Check).
+  DirectTracker(const FrontendOptions& images, DirectEstimators estimators,
                 const TrackerOptions& common = {},
                 const DirectTrackerOptions& options = {});
 
@@ -97,15 +106,15 @@ class DirectTracker final : public Tracker {
   }
   std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
                                            const Reference* last,
-                                           const Tracked* tracked,
+                                           const TrackingResult* tracked,
                                            std::string* why_not) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
-             const TrackingGuess& guess, Tracked* tracked) override {
-    Track(reference, frame, guess, 0, tracked);
-  }
-  // From a guess that is so good that this many levels will do; 0: all.
-  void Track(const Reference& reference, const PreparedFrame& frame,
-             const TrackingGuess& guess, int num_levels, Tracked* tracked);
+             const TrackingGuess& guess, TrackingResult* tracked) override;
+  // Matches and pixels together, but for those where features contradict them,
+  // from the motion of the matches, which is good enough for the finest level.
+  void Refine(const Reference& reference, const PreparedFrame& frame,
+              const TrackingGuess& guess, const TrackingResult& by_features,
+              TrackingResult* tracked);
   // The motion that shows the coarse images of the reference in those of the
   // frame: where to begin. The guess itself if they do not tell one.
   Rigid3d FindStart(const Reference& reference, const PreparedFrame& frame,
@@ -113,20 +122,24 @@ class DirectTracker final : public Tracker {
   const FrontendOptions& images() const override { return images_; }
 
  private:
-  // `timing`: of the frame.
+  // `timing`: of the frame; `num_levels`: 0: all.
   void Estimate(const Reference& reference, const PreparedFrame& frame,
                 const FrameTiming& timing, const Rigid3d& start,
                 const TrackingGuess& guess, int num_levels,
                 Estimator* estimator, MotionEstimate* estimate) const;
   // Estimates the motion with the velocity that it says itself.
   void FindTwist(const Reference& reference, const PreparedFrame& frame,
-                 const TrackingGuess& guess, Tracked* tracked);
-  // Sets status and reason from estimate, overlap and likeness.
-  void Judge(const ViewLikeness& likeness, Tracked* tracked) const;
+                 const TrackingGuess& guess, TrackingResult* tracked);
+  static void Begin(TrackingResult* tracked);
+  FrameView ViewOf(const PreparedFrame& frame, const FrameTiming& timing,
+                   const CellMask* moving) const;
+  // Sets all that follows from the estimate.
+  void Judge(const Reference& reference, const PreparedFrame& frame,
+             TrackingResult* tracked) const;
+  void JudgeMotion(const ViewLikeness& likeness, TrackingResult* tracked) const;
 
   FrontendOptions images_;
-  Estimator estimator_;
-  std::optional<Estimator> coarse_;
+  DirectEstimators estimators_;
   MotionEstimate start_;
   TrackerOptions common_;
   DirectTrackerOptions options_;

@@ -10,9 +10,6 @@ namespace {
 
 constexpr char kBoth[] = "features+direct";
 
-// From features direct costs start within a pixel or two: the finest levels do.
-constexpr int kLevelsFromFeatures = 1;
-
 // Features and pixels contradict each other if their motions differ by more
 // than so many sigmas of the features' (in which what both share counts twice,
 // and calibration not at all: a wide limit).
@@ -74,7 +71,8 @@ HybridTracker::HybridTracker(std::unique_ptr<FeatureTracker> features,
     : features_(std::move(features)),
       direct_(std::move(direct)),
       refines_(refines),
-      pixels_(features_->images().camera) {}
+      pixels_(features_->images().camera),
+      alone_(pixels_) {}
 
 std::unique_ptr<const PreparedFrame> HybridTracker::Prepare(
     const Frame& frame) const {
@@ -85,8 +83,8 @@ std::unique_ptr<const PreparedFrame> HybridTracker::Prepare(
 }
 
 std::unique_ptr<Reference> HybridTracker::MakeReference(
-    const PreparedFrame& frame, const Reference* last, const Tracked* tracked,
-    std::string* why_not) {
+    const PreparedFrame& frame, const Reference* last,
+    const TrackingResult* tracked, std::string* why_not) {
   const auto& ours = dynamic_cast<const HybridFrame&>(frame);
   const auto with_features = PartOf(ours, ours.features);
   const auto with_pixels = PartOf(ours, ours.direct);
@@ -110,7 +108,7 @@ std::unique_ptr<Reference> HybridTracker::MakeReference(
 
 void HybridTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
-                          const TrackingGuess& guess, Tracked* tracked) {
+                          const TrackingGuess& guess, TrackingResult* tracked) {
   const auto& ours = dynamic_cast<const HybridReference&>(reference);
   HybridFrame both = dynamic_cast<const HybridFrame&>(frame);
   const auto with_features = PartOf(both, both.features);
@@ -128,56 +126,67 @@ void HybridTracker::Track(const Reference& reference,
     tracked->match_ms += start_ms;
   }
   if (!refines_ || ours.direct == nullptr) return;
-  const bool found = tracked->status != TrackingStatus::kLost;
-  if (found) {
-    if (tracked->twist.has_value()) {
-      both.twist = tracked->twist;
-      with_pixels = PartOf(both, both.direct);
-    }
-    TrackingGuess from_features = tracked->estimate.cur_from_prev;
-    from_features.covariance = guess.covariance;
-    direct_->Track(*ours.direct, *with_pixels, from_features,
-                   kLevelsFromFeatures, &pixels_);
-    pixels_.estimate.covariance += tracked->twist_covariance;
-    tracked->estimate.iterations += pixels_.estimate.iterations;
-    tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
-    if (tracked->status == TrackingStatus::kOk &&
-        (pixels_.status != TrackingStatus::kOk ||
-         !Agree(tracked->estimate, pixels_.estimate))) {
-      return;
-    }
-  }
-  if (!found || pixels_.status != TrackingStatus::kOk) {
-    // Few features, or none, may lead astray: pixels find the way alone.
-    direct_->Track(*ours.direct, *with_pixels, guess, 0, &pixels_);
+  if (tracked->status == TrackingStatus::kLost) {
+    // Few features may lead astray: pixels find the way alone.
+    direct_->Track(*ours.direct, *with_pixels, guess, &pixels_);
     pixels_.match_ms += tracked->match_ms;
-    if (pixels_.status == TrackingStatus::kOk ||
-        (!found && pixels_.status == TrackingStatus::kDegraded)) {
-      std::swap(*tracked, pixels_);
-    } else if (!found) {
+    if (pixels_.status == TrackingStatus::kLost) {
       tracked->reason += "; by pixels: " + pixels_.reason;
+    } else {
+      std::swap(*tracked, pixels_);
     }
     return;
   }
+  if (tracked->twist.has_value()) {
+    both.twist = tracked->twist;
+    with_pixels = PartOf(both, both.direct);
+  }
+  direct_->Refine(*ours.direct, *with_pixels, guess, *tracked, &pixels_);
+  pixels_.estimate.covariance += tracked->twist_covariance;
+  tracked->estimate.iterations += pixels_.estimate.iterations;
+  tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
+  const bool agree = pixels_.status == TrackingStatus::kOk &&
+                     Agree(tracked->estimate, pixels_.estimate);
+  if (tracked->status != TrackingStatus::kOk && !tracked->is_ambiguous) {
+    // Few features may lead astray: pixels alone have to find the same.
+    direct_->Track(*ours.direct, *with_pixels, guess, &alone_);
+    if (alone_.status == TrackingStatus::kOk) {
+      if (Agree(agree ? pixels_.estimate : tracked->estimate,
+                alone_.estimate)) {
+        tracked->status = TrackingStatus::kOk;
+        tracked->reason.clear();
+      } else {
+        tracked->reason += "; pixels alone find another motion";
+      }
+      if (!agree || tracked->status != TrackingStatus::kOk) {
+        alone_.status = tracked->status;
+        alone_.reason = tracked->reason;
+        alone_.match_ms += tracked->match_ms;
+        alone_.estimate.iterations += tracked->estimate.iterations;
+        alone_.estimate.solve_ms += tracked->estimate.solve_ms;
+        std::swap(*tracked, alone_);
+        return;
+      }
+    }
+  }
+  if (!agree) return;
   tracked->carried_by = kBoth;
-  tracked->status = TrackingStatus::kOk;
-  tracked->reason.clear();
   tracked->estimate.cur_from_prev = pixels_.estimate.cur_from_prev;
   tracked->estimate.covariance = pixels_.estimate.covariance;
   // A reference is as good as what is seen of it, if its features are few.
-  if (tracked->is_scarce) {
-    tracked->is_scarce = false;
+  if (tracked->needs_new_keyframe) {
+    tracked->needs_new_keyframe = false;
     tracked->overlap = pixels_.overlap;
   }
 }
 
-void HybridTracker::Believe(Reference* reference, Tracked* tracked) {
+void HybridTracker::OnAccepted(Reference* reference, TrackingResult* tracked) {
   auto& ours = dynamic_cast<HybridReference&>(*reference);
   if (ours.features == nullptr || tracked->carried_by == DirectTracker::kName) {
     return;
   }
   const Overlap overlap = tracked->overlap;
-  features_->Believe(ours.features.get(), tracked);
+  features_->OnAccepted(ours.features.get(), tracked);
   // What pixels have said of it (see Track) stays.
   if (overlap.share > tracked->overlap.share) tracked->overlap = overlap;
 }

@@ -25,18 +25,19 @@ class HybridTracker final : public Tracker {
       const Frame& frame) const override;
   std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
                                            const Reference* last,
-                                           const Tracked* tracked,
+                                           const TrackingResult* tracked,
                                            std::string* why_not) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
-             const TrackingGuess& guess, Tracked* tracked) override;
-  void Believe(Reference* reference, Tracked* tracked) override;
+             const TrackingGuess& guess, TrackingResult* tracked) override;
+  void OnAccepted(Reference* reference, TrackingResult* tracked) override;
   const FrontendOptions& images() const override { return features_->images(); }
 
  private:
   std::unique_ptr<FeatureTracker> features_;
   std::unique_ptr<DirectTracker> direct_;
   bool refines_;
-  Tracked pixels_;  // what direct costs make of a frame
+  TrackingResult pixels_;  // by direct costs, from features' motion
+  TrackingResult alone_;   // by direct costs, from the guess
 };
 
 }  // namespace rgbd_pose

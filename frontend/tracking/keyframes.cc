@@ -28,9 +28,10 @@ Keyframe* Keyframes::Find(int id) const {
   return nullptr;
 }
 
-std::vector<Place*> Keyframes::Places() const {
+std::vector<Place*> Keyframes::PlacesBefore(int segment) const {
   std::vector<Place*> places;
   for (const auto& keyframe : keyframes_) {
+    if (keyframe->segment >= segment) continue;
     places.insert(places.begin(), keyframe->place.get());
   }
   return places;

@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "core/estimation/edge.h"
+#include "core/estimation/relative_pose.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/places/relocaliser.h"
 #include "frontend/tracking/tracker.h"
@@ -17,7 +17,7 @@ struct Keyframe {
   Rigid3d world_from_cam;
   std::unique_ptr<Reference> reference;  // for the tracker that made it
   std::unique_ptr<Place> place;          // for the relocaliser
-  std::vector<Edge> edges;  // to keyframes that it was tracked against itself
+  std::vector<RelativePose> edges;       // to keyframes it was tracked against
   // What the uncertainty of its velocity adds to that of motions from it.
   MotionMatrix velocity_covariance = MotionMatrix::Zero();
 };
@@ -39,8 +39,8 @@ class Keyframes {
   // The keyframe of that id, or null if it is not kept.
   Keyframe* Find(int id) const;
 
-  // All as places, the latest first.
-  std::vector<Place*> Places() const;
+  // Those of segments before that one as places, the latest first.
+  std::vector<Place*> PlacesBefore(int segment) const;
 
   // The keyframe of that segment whose view a camera at `world_from_cam` should
   // see nearest to where it was; null if none has `min_share` of it in view

@@ -18,6 +18,11 @@ namespace {
 constexpr double kMinReturnShare = 0.7;
 constexpr double kMaxReturnFlow = 0.5;
 
+// So much longer an interval (s) than the one before has frames missing; over
+// the second a hand's velocity tells nothing.
+constexpr double kMissingFrames = 1.5;
+constexpr double kMaxMovedOn = 0.2;
+
 // Of a hand's velocity, where nothing is known of it.
 constexpr double kSigmaAngular = 0.5;  // rad/s
 constexpr double kSigmaLinear = 0.3;   // m/s
@@ -62,7 +67,14 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   TrackedFrame result;
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;
+  const double last_interval = interval_;
   interval_ = result.index > 0 ? frame.timestamp - timestamp_ : 0.0;
+  // Where frames are missing a constant velocity goes further.
+  if (last_interval > 0.0 && interval_ > kMissingFrames * last_interval &&
+      interval_ < kMaxMovedOn) {
+    cur_from_prev_ =
+        TwistOf(cur_from_prev_, last_interval).MotionDuring(interval_);
+  }
   timestamp_ = frame.timestamp;
   has_shutter_ = HasShutter(frame);
   twist_.reset();
@@ -84,11 +96,15 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
       result.reason = "stopped after an earlier frame was lost";
     } else if (!Follow(frame, prediction, &result) &&
                !Relocalise(frame, &result)) {
-      Lose(frame, prediction, &result);
+      HandleLost(frame, prediction, &result);
     }
   }
   result.world_from_cam = WorldFromCam();
   result.segment = segment_;
+  if (earlier_segment_.has_value() && result.status == TrackingStatus::kOk) {
+    result.status = TrackingStatus::kDegraded;
+    result.reason = "the segment before has not been found again yet";
+  }
   KeepLast(frame, result);
   return result;
 }
@@ -110,7 +126,6 @@ Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
 void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
   if (!TakeReference(frame, WorldFromCam(), result)) return;
   result->status = TrackingStatus::kOk;
-  tracked_at_ = frame.timestamp;
 }
 
 bool Odometry::Follow(const PreparedFrame& measured,
@@ -131,6 +146,7 @@ bool Odometry::Follow(const PreparedFrame& measured,
   if (has_shutter_) shutter_tracking_.Accept();
   TakeMotion(result);
   cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
+  if (earlier_segment_.has_value()) ReturnToEarlierSegment(*frame, result);
   Accept(*frame, result);
   return true;
 }
@@ -146,7 +162,7 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
   const Rigid3d second = options_.predict_velocity ? last : predicted;
   const auto track = [&](const PreparedFrame& frame,
                          const VelocityPrior* velocity,
-                         const Rigid3d* found) -> const Tracked* {
+                         const Rigid3d* found) -> const TrackingResult* {
     const auto from = [&](const Rigid3d& cur_from_ref) {
       TrackingGuess guess = cur_from_ref;
       guess.velocity = velocity;
@@ -200,15 +216,15 @@ void Odometry::TakeMotion(TrackedFrame* result) {
 
 void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_lost_ = false;
-  tracked_at_ = frame.timestamp;
-  tracker_->Believe(reference_->reference.get(), attempts_.mutable_kept());
+  is_unconnected_ = false;
+  tracker_->OnAccepted(reference_->reference.get(), attempts_.mutable_kept());
   wants_reference_ = false;
   if (NeedsNewReference()) ChangeReference(frame, result);
 }
 
 bool Odometry::NeedsNewReference() const {
-  const Tracked& tracked = attempts_.kept();
-  return tracked.is_scarce ||
+  const TrackingResult& tracked = attempts_.kept();
+  return tracked.needs_new_keyframe ||
          tracked.overlap.share < options_.min_reference_share ||
          tracked.overlap.flow_px > options_.max_flow_px;
 }
@@ -232,8 +248,8 @@ void Odometry::ChangeReference(const PreparedFrame& frame,
 bool Odometry::ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
                         const Rigid3d& cur_from_earlier_guess,
                         TrackedFrame* result) {
-  if (!attempts_.TryInstead(frame, *earlier, cur_from_earlier_guess, result,
-                            [&] { return !NeedsNewReference(); })) {
+  if (!attempts_.TryFallback(frame, *earlier, cur_from_earlier_guess, result,
+                             [&] { return !NeedsNewReference(); })) {
     return false;
   }
   reference_ = earlier;
@@ -271,8 +287,8 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   return true;
 }
 
-bool Odometry::Adopt(const Frame& frame, int id,
-                     const Rigid3d& world_from_cam) {
+bool Odometry::InsertKeyframe(const Frame& frame, int id,
+                              const Rigid3d& world_from_cam) {
   Keyframe* keyframe = keyframes_.Find(id);
   if (keyframe != nullptr && keyframe == reference_) return true;
   if (keyframe != nullptr) {

@@ -55,7 +55,8 @@ class Odometry {
   // frame if it was one of these, else one below -1; `world_from_cam`: in the
   // world of these poses. False, and nothing has changed, if the frame shows
   // too little.
-  bool Adopt(const Frame& frame, int id, const Rigid3d& world_from_cam);
+  bool InsertKeyframe(const Frame& frame, int id,
+                      const Rigid3d& world_from_cam);
 
   // The pose after the last frame, found or not (see LostPolicy).
   Rigid3d WorldFromCam() const;
@@ -117,8 +118,13 @@ class Odometry {
   bool MakeLastReference();
   void KeepLast(const PreparedFrame& frame, const TrackedFrame& result);
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
-  void Lose(const PreparedFrame& frame, const Prediction* prediction,
-            TrackedFrame* result);
+  void HandleLost(const PreparedFrame& frame, const Prediction* prediction,
+                  TrackedFrame* result);
+  // False, and nothing has changed, if the frame shows too little.
+  bool StartSegment(const PreparedFrame& frame, const Rigid3d& world_from_cam,
+                    TrackedFrame* result);
+  // Looks for a frame of a new segment in the one before, and goes on there.
+  void ReturnToEarlierSegment(const PreparedFrame& frame, TrackedFrame* result);
 
   // Takes the motion since reference_ that was found for that of the pose, and
   // puts it before other edges.
@@ -143,7 +149,7 @@ class Odometry {
   ShutterTracking shutter_tracking_;
   bool has_shutter_ = false;                              // of the last frame
   std::optional<Twist> twist_;                            // see last_twist
-  MotionMatrix twist_covariance_ = MotionMatrix::Zero();  // see Tracked
+  MotionMatrix twist_covariance_ = MotionMatrix::Zero();  // see TrackingResult
   Keyframe* reference_ = nullptr;                         // null: none yet
   int num_frames_ = 0;
   Rigid3d cur_from_ref_;                            // of the last frame
@@ -154,16 +160,24 @@ class Odometry {
   // The last frame, where it was tracked and is no reference.
   struct LastFrame {
     Frame frame;                    // its images are copies
-    MotionMatrix twist_covariance;  // see Tracked
+    MotionMatrix twist_covariance;  // see TrackingResult
     TrackedFrame result;
   };
   LastFrame last_;
   bool has_last_ = false;
   bool wants_reference_ = false;  // the last frame is to become one
   int segment_ = 0;
-  double tracked_at_ = 0.0;  // time stamp of the last frame with a pose, s
+  int latest_segment_ = 0;
+  // Where the segment before ended, as long as it is searched for.
+  struct EarlierSegment {
+    int reference = -1;    // its last
+    Rigid3d cur_from_ref;  // of its last pose
+    double left_at = 0.0;  // time stamp of the first frame of the new one, s
+  };
+  std::optional<EarlierSegment> earlier_segment_;
   bool is_lost_ = false;
-  bool is_predicted_ = false;  // see TrackedFrame
+  bool is_unconnected_ = false;  // the last frame started a segment
+  bool is_predicted_ = false;    // see TrackedFrame
 };
 
 }  // namespace rgbd_pose

@@ -32,9 +32,12 @@ void Odometry::KeepLast(const PreparedFrame& frame,
 bool Odometry::IsTrusted(const PreparedFrame* frame,
                          const TrackedFrame& result) const {
   constexpr double kMaxSigma = 1.7;
-  if (frame == nullptr || result.status != TrackingStatus::kOk) return false;
+  if (frame == nullptr) return false;
+  // Of a new reference nothing would be known of what moves.
+  if (attempts_.kept().is_ambiguous) return true;
+  if (result.status != TrackingStatus::kOk) return false;
   return !NeedsNewReference() ||
-         (result.sigma <= kMaxSigma && !attempts_.kept().is_scarce);
+         (result.sigma <= kMaxSigma && !attempts_.kept().needs_new_keyframe);
 }
 
 const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
@@ -102,7 +105,8 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   std::optional<Relocalisation> place;
   {
     const StageTimer timer(&result->relocalise_ms);
-    place = relocaliser_.Find(frame, keyframes_.Places());
+    place =
+        relocaliser_.Find(frame, keyframes_.PlacesBefore(latest_segment_ + 1));
   }
   if (!place.has_value()) return false;
   Keyframe* keyframe = keyframes_.Find(place->place_id);
@@ -121,6 +125,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
     shutter_tracking_.Accept(*twist_, frame.color_shutter.offset);
   }
   reference_ = keyframe;
+  if (segment_ != keyframe->segment) earlier_segment_.reset();
   segment_ = keyframe->segment;
   TakeMotion(result);
   cur_from_prev_ = Rigid3d();
@@ -129,13 +134,16 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   return true;
 }
 
-void Odometry::Lose(const PreparedFrame& frame, const Prediction* prediction,
-                    TrackedFrame* result) {
+void Odometry::HandleLost(const PreparedFrame& frame,
+                          const Prediction* prediction, TrackedFrame* result) {
   // One frame that nobody tells of, and the way since is no longer known.
   is_predicted_ = prediction != nullptr && (is_predicted_ || !is_lost_);
+  // A new segment is best put where the camera was on its way to.
+  const Rigid3d moved_on =
+      (is_lost_ ? Rigid3d() : cur_from_prev_) * cur_from_ref_;
   is_lost_ = true;
   wants_reference_ = false;
-  shutter_tracking_.Lose();
+  shutter_tracking_.HandleLost();
   result->status = TrackingStatus::kLost;
   result->is_predicted = is_predicted_;
   if (prediction != nullptr) {
@@ -151,22 +159,65 @@ void Odometry::Lose(const PreparedFrame& frame, const Prediction* prediction,
     result->edges = {
         {reference_->id, result->index, cur_from_ref_, covariance_}};
   }
-  if (options_.on_lost != LostPolicy::kNewSegment ||
-      frame.timestamp - tracked_at_ < options_.new_segment_after) {
-    return;
+  if (options_.on_lost != LostPolicy::kNewSegment) return;
+  const EarlierSegment earlier = {reference_->id, cur_from_ref_,
+                                  frame.timestamp};
+  const Rigid3d start = prediction != nullptr ? cur_from_ref_ : moved_on;
+  if (StartSegment(frame, reference_->world_from_cam * start.Inverse(),
+                   result) &&
+      !earlier_segment_.has_value()) {
+    earlier_segment_ = earlier;
   }
-  ++segment_;
-  if (!TakeReference(frame, WorldFromCam(), result)) {
-    --segment_;
-    return;
+}
+
+bool Odometry::StartSegment(const PreparedFrame& frame,
+                            const Rigid3d& world_from_cam,
+                            TrackedFrame* result) {
+  const int before = segment_;
+  segment_ = latest_segment_ + 1;
+  if (!TakeReference(frame, world_from_cam, result)) {
+    segment_ = before;
+    return false;
   }
+  latest_segment_ = segment_;
   is_lost_ = false;
-  tracked_at_ = frame.timestamp;
   result->reference = -1;
-  result->status = TrackingStatus::kDegraded;
-  result->reason =
-      std::string("a new segment: the motion since it was lost is ") +
-      (is_predicted_ ? "only predicted" : "unknown");
+  // Of two in a row nobody knows how they belong together.
+  if (!is_unconnected_) {
+    result->status = TrackingStatus::kDegraded;
+    result->reason =
+        std::string("a new segment: the motion since the frame before is ") +
+        (is_predicted_ ? "only predicted" : "unknown");
+  }
+  is_unconnected_ = true;
+  return true;
+}
+
+void Odometry::ReturnToEarlierSegment(const PreparedFrame& frame,
+                                      TrackedFrame* result) {
+  if (frame.timestamp - earlier_segment_->left_at >
+      options_.new_segment_after) {
+    earlier_segment_.reset();
+    return;
+  }
+  Keyframe* found = keyframes_.Find(earlier_segment_->reference);
+  if (found == nullptr ||
+      !attempts_.TryFallback(frame, *found, earlier_segment_->cur_from_ref,
+                             result)) {
+    const StageTimer timer(&result->relocalise_ms);
+    const auto place =
+        relocaliser_.Find(frame, keyframes_.PlacesBefore(segment_));
+    if (!place.has_value()) return;
+    found = keyframes_.Find(place->place_id);
+    if (!attempts_.TryFallback(frame, *found, place->cur_from_place, result)) {
+      return;
+    }
+  }
+  reference_ = found;
+  segment_ = found->segment;
+  result->relocalised = true;
+  earlier_segment_.reset();
+  TakeMotion(result);
 }
 
 }  // namespace rgbd_pose

@@ -11,7 +11,8 @@ enum class LostPolicy {
   kStop,        // every further frame is lost
   kHold,        // the last pose is reported until the place is found again
   kPredict,     // the pose moves on as it moved last
-  kNewSegment,  // as kHold, and after a while a new segment starts
+  kNewSegment,  // a new segment starts there, and the one before is searched
+                // for from each of its frames for a while
 };
 
 // What is done about the times at which the rows of a frame were exposed.
@@ -38,7 +39,7 @@ struct OdometryOptions {
   // another time than colour.
   ShutterUse shutter = ShutterUse::kCamera;
 
-  // How long (s) the old segment is searched for before a new one starts.
+  // How long (s) the segment before is searched for after a new one started.
   double new_segment_after = 1.5;
 
   // Standard deviations of a motion guess between two frames that comes without

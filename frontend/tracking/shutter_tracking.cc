@@ -57,7 +57,7 @@ std::unique_ptr<const PreparedFrame> WithTwist(
 
 }  // namespace
 
-void ShutterTracking::Lose() {
+void ShutterTracking::HandleLost() {
   between_.reset();
   found_ = Found();
   early_.reset();
@@ -82,7 +82,7 @@ const PreparedFrame* ShutterTracking::Follow(
   const double middle = frame.color_shutter.offset;
   found_.frame = WithTwist(frame, first_guess ? first_guess : velocity_.last());
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
-  const Tracked* tracked = track(*found_.frame, &prior, nullptr);
+  const TrackingResult* tracked = track(*found_.frame, &prior, nullptr);
   if (tracked == nullptr) return nullptr;
   const auto look = [&] {
     if (tracked->twist.has_value()) {

@@ -22,9 +22,9 @@ class ShutterTracking {
  public:
   // Tracks a frame with what is known of its velocity (null: nothing) from
   // where it was found before (null: it was not yet); null: it is lost.
-  using Track = std::function<const Tracked*(const PreparedFrame& frame,
-                                             const VelocityPrior* prior,
-                                             const Rigid3d* cur_from_ref)>;
+  using Track = std::function<const TrackingResult*(
+      const PreparedFrame& frame, const VelocityPrior* prior,
+      const Rigid3d* cur_from_ref)>;
 
   // `tracker` must outlive this.
   explicit ShutterTracking(Tracker* tracker)
@@ -48,12 +48,12 @@ class ShutterTracking {
   }
 
   // The last frame was not found.
-  void Lose();
+  void HandleLost();
 
   // Nothing is known of the velocity any more.
   void Forget() {
     velocity_.Reset();
-    Lose();
+    HandleLost();
   }
 
   // What the last Follow has found, to be put back after another one.

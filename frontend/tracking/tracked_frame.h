@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/estimation/edge.h"
+#include "core/estimation/relative_pose.h"
 #include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
@@ -28,8 +28,10 @@ struct TrackedFrame {
 
   Rigid3d world_from_cam;  // the world is the camera of the first frame
 
-  // Frames of one segment hang together. A new one starts, at the last known
-  // pose, where tracking was lost for good: what happened between is unknown.
+  // Frames of one segment hang together. A new one starts where tracking was
+  // lost, at constant velocity from the last pose: what happened between is
+  // unknown. As long as the one before is searched for, poses are `degraded`;
+  // where a frame is found in it, its edges join both.
   int segment = 0;
 
   int reference = -1;  // index of the frame it was tracked against; -1: none
@@ -51,9 +53,9 @@ struct TrackedFrame {
   // one, leads to the one that was left. Of a predicted frame, the prediction,
   // less certain with every frame. None where no motion is known or not how
   // certain it is.
-  std::vector<Edge> edges;
+  std::vector<RelativePose> edges;
 
-  // What it was tracked by, see Tracked::carried_by; empty: not at all.
+  // What it was tracked by, see TrackingResult::carried_by; empty: not at all.
   std::string_view carried_by;
 
   int matches = 0;     // with the reference: of features, or pixels

@@ -11,7 +11,7 @@
 #include "core/geometry/rigid3.h"
 #include "core/initial_guess/initial_guess.h"
 #include "frontend/features/frontend.h"
-#include "frontend/image/view_samples.h"
+#include "frontend/image/view_overlap.h"
 #include "frontend/tracking/tracked_frame.h"
 #include "frontend/tracking/velocity_prior.h"
 
@@ -78,10 +78,10 @@ struct TrackingGuess {
 MotionPrior PriorOf(const TrackerOptions& options, const TrackingGuess& guess);
 
 // How a frame was tracked against a reference.
-struct Tracked {
+struct TrackingResult {
   // Of that camera.
-  explicit Tracked(const Camera& camera)
-      : matches{Correspondences(camera), {}}, doubted(matches) {}
+  explicit TrackingResult(const Camera& camera)
+      : matches{Correspondences(camera), {}}, on_probation(matches) {}
 
   // Whether the motion can be gone on from.
   TrackingStatus status = TrackingStatus::kLost;
@@ -101,7 +101,13 @@ struct Tracked {
 
   // That is so little that the next frames need another reference, whatever
   // share it is.
-  bool is_scarce = false;
+  bool needs_new_keyframe = false;
+
+  // Matches agree with another motion nearly as well.
+  bool is_ambiguous = false;
+
+  // By features: where they contradict the motion.
+  CellMask moving;
 
   // What the motion comes from: "features", "direct" (pixels) or
   // "features+direct" (pixels, from where features led).
@@ -111,9 +117,9 @@ struct Tracked {
   double match_ms = 0.0;  // time of all but the estimation
 
   // Of trackers that match features: what the estimate was made of, and what
-  // had no say in it (FeatureTrust).
+  // had no say in it (FeatureValidation).
   FeatureMatches matches;
-  FeatureMatches doubted;
+  FeatureMatches on_probation;
 };
 
 // Finds the motion between a reference and a frame. References and prepared
@@ -131,18 +137,18 @@ class Tracker {
   // The frame as a reference for others; null, and why, if it shows too little.
   // Where the frame itself was tracked, `last` and `tracked` say against what
   // and how; both are null otherwise.
-  virtual std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
-                                                   const Reference* last,
-                                                   const Tracked* tracked,
-                                                   std::string* why_not) = 0;
+  virtual std::unique_ptr<Reference> MakeReference(
+      const PreparedFrame& frame, const Reference* last,
+      const TrackingResult* tracked, std::string* why_not) = 0;
 
   // Fills `tracked` (of the camera of images()), whose memory is used again.
   virtual void Track(const Reference& reference, const PreparedFrame& frame,
-                     const TrackingGuess& guess, Tracked* tracked) = 0;
+                     const TrackingGuess& guess, TrackingResult* tracked) = 0;
 
   // The motion is believed and gone on from: the reference may learn from it,
   // and `tracked` say what is shared in this light.
-  virtual void Believe(Reference* /*reference*/, Tracked* /*tracked*/) {}
+  virtual void OnAccepted(Reference* /*reference*/,
+                          TrackingResult* /*tracked*/) {}
 
   // The camera and how its depths are to be taken.
   virtual const FrontendOptions& images() const = 0;

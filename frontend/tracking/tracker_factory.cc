@@ -20,17 +20,16 @@ std::unique_ptr<FeatureTracker> ByFeatures(TrackerParts* parts) {
 }
 
 std::unique_ptr<DirectTracker> ByPixels(TrackerParts* parts) {
-  if (!parts->direct_estimator.has_value()) {
-    throw InputError("a direct tracker needs an estimator of direct costs");
+  if (!parts->direct_estimators.has_value()) {
+    throw InputError("a direct tracker needs estimators of direct costs");
   }
   return std::make_unique<DirectTracker>(parts->images,
-                                         *std::move(parts->direct_estimator),
-                                         std::move(parts->coarse_estimator),
+                                         *std::move(parts->direct_estimators),
                                          parts->options, parts->direct_options);
 }
 
 std::unique_ptr<Tracker> MakeFeatureTracker(TrackerParts parts) {
-  if (!parts.direct_estimator.has_value()) return ByFeatures(&parts);
+  if (!parts.direct_estimators.has_value()) return ByFeatures(&parts);
   return std::make_unique<HybridTracker>(ByFeatures(&parts), ByPixels(&parts),
                                          /*refines=*/false);
 }

@@ -20,11 +20,9 @@ struct TrackerParts {
   std::string frontend = "patch";  // where features come from
   Estimator estimator;             // makes motions of what is matched
 
-  // Of trackers that look at the images: make motions of pixels (of direct
-  // costs), the second of coarse images to start from. A tracker by features
-  // goes without either, and then starts from the guess.
-  std::optional<Estimator> direct_estimator = std::nullopt;
-  std::optional<Estimator> coarse_estimator = std::nullopt;
+  // Of trackers that look at the images. A tracker by features goes without,
+  // and then starts from the guess.
+  std::optional<DirectEstimators> direct_estimators = std::nullopt;
   // When to be content with them.
   DirectTrackerOptions direct_options = {};
 };

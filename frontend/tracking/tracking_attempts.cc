@@ -30,15 +30,15 @@ bool TrackingAttempts::TryEither(const PreparedFrame& frame,
     return Try(frame, keyframe, second, result);
   }
   if (result->status != TrackingStatus::kOk) {
-    TryInstead(frame, keyframe, second, result);
+    TryFallback(frame, keyframe, second, result);
   }
   return true;
 }
 
-bool TrackingAttempts::TryInstead(const PreparedFrame& frame,
-                                  const Keyframe& keyframe,
-                                  const TrackingGuess& guess,
-                                  TrackedFrame* result, const Accept& accept) {
+bool TrackingAttempts::TryFallback(const PreparedFrame& frame,
+                                   const Keyframe& keyframe,
+                                   const TrackingGuess& guess,
+                                   TrackedFrame* result, const Accept& accept) {
   TrackedFrame attempt = *result;
   std::swap(tracked_, other_);
   if (Try(frame, keyframe, guess, &attempt) &&

@@ -37,23 +37,23 @@ class TrackingAttempts {
   // Another one after a pose was found: it counts if it is good and accepted
   // (asked when kept() is the new one). False, and nothing has changed but the
   // times, if not.
-  bool TryInstead(const PreparedFrame& frame, const Keyframe& keyframe,
-                  const TrackingGuess& guess, TrackedFrame* result,
-                  const Accept& accept = nullptr);
+  bool TryFallback(const PreparedFrame& frame, const Keyframe& keyframe,
+                   const TrackingGuess& guess, TrackedFrame* result,
+                   const Accept& accept = nullptr);
 
   // Puts what counts aside for another attempt, and takes it up again.
   void Stash() { std::swap(tracked_, stashed_); }
   void TakeUpStashed() { std::swap(tracked_, stashed_); }
 
   // What the tracker said of the attempt that counts.
-  const Tracked& kept() const { return tracked_; }
-  Tracked* mutable_kept() { return &tracked_; }
+  const TrackingResult& kept() const { return tracked_; }
+  TrackingResult* mutable_kept() { return &tracked_; }
 
  private:
   Tracker* tracker_;
-  Tracked tracked_;
-  Tracked other_;    // made aside
-  Tracked stashed_;  // see Stash
+  TrackingResult tracked_;
+  TrackingResult other_;    // scratch result
+  TrackingResult stashed_;  // see Stash
 };
 
 }  // namespace rgbd_pose

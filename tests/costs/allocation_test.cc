@@ -76,13 +76,13 @@ TEST(AllocationTest, CostsKeepTheirMemory) {
   const Correspondences matches = world.Matches(500, 0.2, truth, /*noise=*/true,
                                                 /*missing_depth_share=*/0.2);
   const MotionPrior prior = world.Prior(truth, 0.05);
-  const MotionOrigin origin(truth);
+  const LinearizationPoint origin(truth);
   const MotionVector x = MotionVector::Zero();
   const MotionDerivatives motion = origin.DerivativesAt(x.data());
   for (const std::string& name : CostNames()) {
     const std::unique_ptr<MotionCost> cost = MakeCost(name);
     const auto loss =
-        FindMEstimator("tukey")->MakeLoss(cost->independent_rows());
+        FindMEstimator("tukey")->MakeLoss(cost->degrees_of_freedom());
     std::vector<double> residuals, norms;
     NormalEquations sum;
     MotionMatrix scatter = MotionMatrix::Zero();
@@ -92,7 +92,7 @@ TEST(AllocationTest, CostsKeepTheirMemory) {
       cost->Residuals(motion, &residuals);
       cost->SquaredNorms(motion, &norms);
       cost->Linearise(motion, loss.get(), &sum);
-      cost->AddScatter(motion, loss.get(), &scatter);
+      cost->AddScoreOuterProduct(motion, loss.get(), &scatter);
     };
     use();
     ASSERT_GT(cost->matches().size(), 0u) << name;
@@ -106,7 +106,7 @@ TEST(AllocationTest, TheCompressedBlockAllocatesNothing) {
   const std::unique_ptr<MotionCost> cost = MakeCost("bidirectional_point");
   cost->Bind({&matches});
   cost->Associate(Rigid3d());
-  const MotionOrigin origin;
+  const LinearizationPoint origin;
   MotionVector x = MotionVector::Zero();
   ceres::Problem::Options options;
   options.cost_function_ownership = BlockOwnership(Assembly::kCompressed);

@@ -34,7 +34,7 @@ class AssemblyTest
     cost_ = MakeCost(std::get<0>(GetParam()));
     // Wide enough for all weights to differ from 0 at the guess.
     if (row->make != nullptr) {
-      loss_ = row->make(20.0 * row->Width95(cost_->independent_rows()));
+      loss_ = row->make(20.0 * row->Width95(cost_->degrees_of_freedom()));
     }
   }
 
@@ -47,7 +47,7 @@ class AssemblyTest
     const Rigid3d truth = world.Motion(0.05, 0.3);
     const Rigid3d guess = world.Motion(0.01, 0.01) * truth;
     const MotionPrior prior = world.Prior(truth, 0.05);
-    origin_ = MotionOrigin(guess);
+    origin_ = LinearizationPoint(guess);
     matches_.Clear();
     for (int usable = 0; usable < count;) {
       const double outlier_share = matches_.size() % 5 == 0 ? 1.0 : 0.0;
@@ -89,7 +89,7 @@ class AssemblyTest
     return summary;
   }
 
-  MotionOrigin origin_;
+  LinearizationPoint origin_;
   Correspondences matches_;
   std::unique_ptr<MotionCost> cost_;
   std::unique_ptr<MotionCost> anchor_ = MakeCost("motion_prior");

@@ -22,12 +22,12 @@ namespace {
 // the match's numbers and on the motion's: of e = 0 all are 0.
 struct WithFunctions : rgbd_pose::ForwardError {
   static constexpr char kName[] = "with_functions";
-  static constexpr int kRows = 3, kIndependentRows = 3;
+  static constexpr int kRows = 3, kDegreesOfFreedom = 3;
   static constexpr bool kIsWhitened = false;
 
   template <typename M, typename D, typename T>
-  static void Residual(const rgbd_pose::MotionPose<M>& motion, const D* columns,
-                       T* r) {
+  static void Residual(const rgbd_pose::RotationAndCenter<M>& motion,
+                       const D* columns, T* r) {
     using rgbd_pose::abs, rgbd_pose::sqrt, rgbd_pose::cbrt, rgbd_pose::exp,
         rgbd_pose::log, rgbd_pose::sin, rgbd_pose::cos, rgbd_pose::tan,
         rgbd_pose::asin, rgbd_pose::acos, rgbd_pose::atan, rgbd_pose::tanh,
@@ -53,8 +53,8 @@ namespace {
 struct WithoutJacobian : ForwardError {
   static constexpr char kName[] = "without_jacobian";
   static constexpr int kRows = 3;
-  static constexpr int kIndependentRows = 3;
-  static constexpr Association kAssociation = PointToPoint::kAssociation;
+  static constexpr int kDegreesOfFreedom = 3;
+  static constexpr AssociationPolicy kAssociation = PointToPoint::kAssociation;
   static constexpr bool kIsWhitened = false;
   static constexpr int kColumns = PointToPoint::kColumns;
 
@@ -62,7 +62,8 @@ struct WithoutJacobian : ForwardError {
     return PointToPoint::Pack(input, i, columns);
   }
   template <typename M, typename D, typename T>
-  static void Residual(const MotionPose<M>& motion, const D* columns, T* r) {
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     PointToPoint::Residual(motion, columns, r);
   }
 };
@@ -84,7 +85,8 @@ TEST(AutodiffJacobianTest, SumsAreThoseOfTheJacobianByHand) {
   const Correspondences matches = world.Matches(kMatches, 0.2, truth);
   MotionVector x;
   x << world.Vector(0.05), world.Vector(0.05);
-  const MotionDerivatives motion = MotionOrigin(truth).DerivativesAt(x.data());
+  const MotionDerivatives motion =
+      LinearizationPoint(truth).DerivativesAt(x.data());
   const ceres::HuberLoss loss(1.5);
   NormalEquations sums[2];
   MotionMatrix scatters[2] = {MotionMatrix::Zero(), MotionMatrix::Zero()};
@@ -94,7 +96,7 @@ TEST(AutodiffJacobianTest, SumsAreThoseOfTheJacobianByHand) {
     costs[i]->Bind({&matches});
     costs[i]->Associate(truth);
     costs[i]->Linearise(motion, &loss, &sums[i]);
-    costs[i]->AddScatter(motion, &loss, &scatters[i]);
+    costs[i]->AddScoreOuterProduct(motion, &loss, &scatters[i]);
   }
   ASSERT_GT(sums[0].hessian.norm(), 1.0);
   EXPECT_EQ(sums[1].cost, sums[0].cost);
@@ -124,7 +126,7 @@ TEST(AutodiffJacobianTest, FunctionsAreThereForAllScalars) {
   RandomWorld world(5);
   const Rigid3d truth = world.Motion(0.1, 0.1);
   const Correspondences matches = world.Matches(kMatches, 0.1, truth);
-  const MotionOrigin origin(world.Motion(0.01, 0.01) * truth);
+  const LinearizationPoint origin(world.Motion(0.01, 0.01) * truth);
   const std::unique_ptr<MotionCost> cost = MakeCost<WithFunctions>();
   cost->Bind({&matches});
   cost->Associate(truth);

@@ -63,7 +63,8 @@ TEST(CostMatchesTest, DegreesTellWhatIsMissing) {
     const std::unique_ptr<MotionCost> cost = MakeCost(name);
     cost->Bind({&matches, &prior});
     cost->Associate(Motion());
-    std::vector<int> expected(cost->matches().size(), cost->independent_rows());
+    std::vector<int> expected(cost->matches().size(),
+                              cost->degrees_of_freedom());
     if (name == "bidirectional_image") expected = {3, 2, 2, 3};
     EXPECT_EQ(cost->degrees(), expected) << name;
   }
@@ -113,7 +114,8 @@ TEST(CostMatchesTest, BindingToNothingLeavesNothing) {
     EXPECT_TRUE(cost->matches().empty()) << name;
     NormalEquations sum;
     const MotionVector zero = MotionVector::Zero();
-    cost->Linearise(MotionOrigin().DerivativesAt(zero.data()), nullptr, &sum);
+    cost->Linearise(LinearizationPoint().DerivativesAt(zero.data()), nullptr,
+                    &sum);
     EXPECT_EQ(sum.cost, 0.0) << name;
     EXPECT_TRUE(sum.hessian.isZero(0.0)) << name;
   }

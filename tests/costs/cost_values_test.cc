@@ -112,13 +112,13 @@ class CostValuesTest : public ::testing::Test {
     cost->Associate(bound_);
     const MotionVector zero = MotionVector::Zero();
     std::vector<double> residuals;
-    cost->Residuals(MotionOrigin(motion_).DerivativesAt(zero.data()),
+    cost->Residuals(LinearizationPoint(motion_).DerivativesAt(zero.data()),
                     &residuals);
-    ASSERT_EQ(residuals.size(), cost->matches().size() * cost->rows());
+    ASSERT_EQ(residuals.size(), cost->matches().size() * cost->num_residuals());
     ASSERT_FALSE(residuals.empty());
     for (size_t k = 0; k < cost->matches().size(); ++k) {
-      const Eigen::Map<Eigen::VectorXd> actual(&residuals[k * cost->rows()],
-                                               cost->rows());
+      const Eigen::Map<Eigen::VectorXd> actual(
+          &residuals[k * cost->num_residuals()], cost->num_residuals());
       const Eigen::VectorXd value = expected(cost->matches()[k]);
       EXPECT_LE((actual - value).norm(), kValueTolerance * value.norm())
           << name << ", match " << k;
@@ -299,7 +299,7 @@ TEST_F(CostValuesTest, APriorMayBeAsVagueOrExactAsItLikes) {
   }
 }
 
-// An inertial sensor tells of rotation alone.
+// An inertial sensor knows rotation alone.
 TEST_F(CostValuesTest, APriorMayTellOfSomeDirectionsOnly) {
   const MotionMatrix all = prior_.information;
   prior_.information.setZero();
@@ -312,7 +312,8 @@ TEST_F(CostValuesTest, APriorMayTellOfSomeDirectionsOnly) {
   ASSERT_EQ(cost->matches(), std::vector<int>{-1});
   const MotionVector zero = MotionVector::Zero();
   std::vector<double> norms;
-  cost->SquaredNorms(MotionOrigin(motion_).DerivativesAt(zero.data()), &norms);
+  cost->SquaredNorms(LinearizationPoint(motion_).DerivativesAt(zero.data()),
+                     &norms);
   const double expected = e.dot(all.topLeftCorner<3, 3>() * e);
   EXPECT_NEAR(norms[0], expected, 1e-9 * expected);
 }

@@ -212,6 +212,23 @@ TEST(DegenerateScenesTest, AStripOfFourSigmasIsALever) {
   }
 }
 
+// Wrong matches must not be levers about a line of right ones.
+TEST(DegenerateScenesTest, WrongMatchesDoNotDetermineARotation) {
+  for (const char* loss : {"huber", "tukey", "cauchy"}) {
+    Estimator estimator({}, MakeRobustCosts("bidirectional_point", loss));
+    int ok = 0;
+    for (int seed = 0; seed < 60; ++seed) {
+      RandomWorld world(900 + seed);
+      Correspondences matches = MatchesOnAStrip(60, 2.0, /*height=*/2.0);
+      for (const Match& wrong : world.Matches(15, 1.0, Rigid3d())) {
+        matches.Add(wrong.prev, wrong.cur);
+      }
+      ok += estimator.Estimate(matches).ok();
+    }
+    EXPECT_LE(ok, 1) << loss;
+  }
+}
+
 // What one cost leaves open another one may know.
 TEST(DegenerateScenesTest, APriorHelpsOnOnePlane) {
   RandomWorld world(23);

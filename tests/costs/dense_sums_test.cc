@@ -44,15 +44,16 @@ class DenseSumsTest : public ::testing::TestWithParam<std::string> {
                       MotionMatrix* scatter = nullptr) const {
     const std::unique_ptr<MotionCost> cost = MakeCost(GetParam());
     const auto loss =
-        FindMEstimator("huber")->MakeLoss(cost->independent_rows());
+        FindMEstimator("huber")->MakeLoss(cost->degrees_of_freedom());
     cost->Bind({&matches, nullptr, nullptr, nullptr, threads});
     cost->Associate(truth_);
     NormalEquations sum;
-    const MotionOrigin origin(truth_);
+    const LinearizationPoint origin(truth_);
     const MotionVector x = MotionVector::Constant(0.001);
     const MotionDerivatives motion = origin.DerivativesAt(x.data());
     cost->Linearise(motion, loss.get(), &sum);
-    if (scatter != nullptr) cost->AddScatter(motion, loss.get(), scatter);
+    if (scatter != nullptr)
+      cost->AddScoreOuterProduct(motion, loss.get(), scatter);
     return sum;
   }
 

@@ -22,7 +22,7 @@ namespace {
 
 struct Entry {
   std::string rows;
-  std::string independent_rows;
+  std::string degrees_of_freedom;
 };
 
 // The cells of a table's line "| a | b | c |"; of any other line none.
@@ -82,9 +82,9 @@ TEST_F(CostsDocumentTest, HasEveryCostWithItsRows) {
     EXPECT_EQ(sections_[name], 1) << "no section on " << name;
     ASSERT_TRUE(table_.count(name)) << name << " is missing in the table";
     const std::unique_ptr<MotionCost> cost = MakeAnyCost(name);
-    EXPECT_EQ(table_[name].rows, std::to_string(cost->rows())) << name;
-    EXPECT_EQ(table_[name].independent_rows,
-              std::to_string(cost->independent_rows()))
+    EXPECT_EQ(table_[name].rows, std::to_string(cost->num_residuals())) << name;
+    EXPECT_EQ(table_[name].degrees_of_freedom,
+              std::to_string(cost->degrees_of_freedom()))
         << name;
   }
 }

@@ -160,6 +160,47 @@ TEST(EstimatorTest, CountsWhatWasRejectedAsNotFinite) {
   EXPECT_NE(estimate.reason.find("5 rejected"), std::string::npos);
 }
 
+// However they become residual blocks.
+TEST(EstimatorTest, FiniteNumbersThatNoCameraMeasuresAreRejected) {
+  RandomWorld world(15);
+  const Rigid3d truth = world.Motion(0.05, 0.05);
+  Correspondences matches = world.Matches(50, 0.0, truth);
+  Observation prev = matches[0].prev, far = matches[0].cur;
+  far.u = far.depth = 1e160;
+  EXPECT_FALSE(matches.Add(prev, far));
+  prev.sigma_px = 1e-160;
+  const Observation cur = matches[0].cur;
+  EXPECT_FALSE(matches.Add(prev, cur));
+  for (const Assembly assembly : {Assembly::kPerMatch, Assembly::kCompressed}) {
+    const MotionEstimate estimate =
+        MakeEstimator("huber", assembly).Estimate(matches);
+    EXPECT_TRUE(estimate.ok()) << estimate.reason;
+  }
+}
+
+// A frame against itself: what is measured is still rounded.
+TEST(EstimatorTest, EqualFramesAreNotCertain) {
+  RandomWorld world(16);
+  const Correspondences noisy = world.Matches(200, 0.0, Rigid3d());
+  Correspondences equal(noisy.camera());
+  for (const Match& match : noisy) equal.Add(match.prev, match.prev);
+  for (const char* cost : {"bidirectional_point", "point_to_point"}) {
+    for (const char* scale : {"fixed", "mad"}) {
+      EstimatorOptions options;
+      options.scale = FindScaleEstimator(scale)->estimate;
+      Estimator estimator(options, MakeRobustCosts(cost, "tukey"));
+      const MotionEstimate estimate = estimator.Estimate(equal);
+      ASSERT_TRUE(estimate.ok()) << estimate.reason;
+      const MotionMatrix usual = estimator.Estimate(noisy).covariance;
+      for (int i = 0; i < 6; ++i) {
+        const double share = estimate.covariance(i, i) / usual(i, i);
+        EXPECT_GT(share, std::pow(0.03, 2)) << cost << " " << scale;
+        EXPECT_LT(share, std::pow(0.2, 2)) << cost << " " << scale;
+      }
+    }
+  }
+}
+
 // Points on a line leave the rotation about it open, noise or not.
 TEST(EstimatorTest, ALineIsDegenerate) {
   for (const bool noise : {false, true}) {

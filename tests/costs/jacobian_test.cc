@@ -97,7 +97,7 @@ TEST_F(BidirectionalPointTest, RowsAreTheThesisErrors) {
   MotionVector x;
   x << 0.2, -0.1, 0.3, 0.05, -0.02, 0.07;
   double r[6], J[6][6];
-  const MotionDerivatives motion = MotionOrigin().DerivativesAt(x.data());
+  const MotionDerivatives motion = LinearizationPoint().DerivativesAt(x.data());
   BidirectionalPoint::Jacobian(motion, columns, r, J);
   const Eigen::Matrix3d R = (Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()) *
                              Eigen::AngleAxisd(-0.1, Eigen::Vector3d::UnitY()) *

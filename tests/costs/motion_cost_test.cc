@@ -1,4 +1,4 @@
-// A cost that is not over matches: gray levels of a textured wall, chosen anew
+// A cost that is not over matches: gray levels of a textured wall, chosen again
 // at every step, coarse to fine, with a scale of their own.
 
 #include "core/estimation/motion_cost.h"
@@ -118,17 +118,19 @@ class GrayCost final : public MotionCost {
       : sigma_(sigma), group_(group), information_(information) {}
 
   std::string_view name() const override { return "gray"; }
-  int rows() const override { return 1; }
-  int independent_rows() const override { return 1; }
+  int num_residuals() const override { return 1; }
+  int degrees_of_freedom() const override { return 1; }
   bool is_whitened() const override { return true; }
   int scale_group() const override { return group_; }
   double information_factor() const override { return information_; }
-  Association association() const override { return Association::kEveryStep; }
+  AssociationPolicy association() const override {
+    return AssociationPolicy::kEveryStep;
+  }
   int num_levels() const override {
     return static_cast<int>(pair_.prev->levels.size());
   }
   void SetLevel(int level) override { level_ = level; }
-  void Bind(const PairData& pair) override {
+  void Bind(const FramePair& pair) override {
     pair_ = pair;
     level_ = 0;
   }
@@ -193,11 +195,13 @@ class GrayCost final : public MotionCost {
     }
   }
 
-  void AddScatter(const MotionDerivatives&, const ceres::LossFunction*,
-                  MotionMatrix*) const override {}
+  void AddScoreOuterProduct(const MotionDerivatives&,
+                            const ceres::LossFunction*,
+                            MotionMatrix*) const override {}
 
-  void AddTo(Assembly, const MotionOrigin& origin, ceres::LossFunction* loss,
-             double* x, ceres::Problem* problem) override {
+  void AddTo(Assembly, const LinearizationPoint& origin,
+             ceres::LossFunction* loss, double* x,
+             ceres::Problem* problem) override {
     block_.emplace(MotionSums(this, &origin, loss));
     problem->AddResidualBlock(&*block_, nullptr, x);
   }
@@ -242,7 +246,7 @@ class GrayCost final : public MotionCost {
   const double sigma_;
   const int group_;
   const double information_;
-  PairData pair_;
+  FramePair pair_;
   int level_ = 0;
   std::vector<Pixel> pixels_;
   std::vector<int> matches_, degrees_;
@@ -295,7 +299,7 @@ TEST_F(MotionCostTest, IsAssociatedAfterEveryStep) {
   EXPECT_GE(*count, estimate.iterations + kLevels);
 }
 
-// Gray levels four times as noisy as said, beside matches as noisy as said.
+// Gray levels four times as noisy as said, with matches as noisy as said.
 TEST_F(MotionCostTest, EachGroupHasItsOwnScale) {
   const Correspondences matches = RandomWorld(3).Matches(60, 0.0, Truth());
   EstimatorOptions options;

@@ -42,12 +42,12 @@ TEST(PointSumsTest, AreTheNormalEquationsOfMovedPoints) {
       for (int row = 0, entry = 0; row < 3; ++row) {
         for (int column = row; column < 3; ++column, ++entry) {
           N(row, column) = N(column, row) = number(6 + entry);
-          term.normal[entry][lane] = number(6 + entry);
+          term.JtJ[entry][lane] = number(6 + entry);
         }
       }
       for (int axis = 0; axis < 3; ++axis) {
         term.q[axis][lane] = q[axis];
-        term.force[axis][lane] = n[axis];
+        term.Jtr[axis][lane] = n[axis];
       }
       weight[lane] = 0.5 + 0.1 * i;
       Eigen::Matrix<double, 3, 6> J;

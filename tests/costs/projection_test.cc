@@ -81,14 +81,14 @@ TEST(ProjectionTest, PointsBehindTheCameraCostMore) {
     cost->Bind({&matches});
     cost->Associate(truth);
     std::vector<double> in_front, behind;
-    cost->SquaredNorms(MotionOrigin(truth).DerivativesAt(zero.data()),
+    cost->SquaredNorms(LinearizationPoint(truth).DerivativesAt(zero.data()),
                        &in_front);
     for (const Eigen::Vector3d& axis :
          {Eigen::Vector3d(1, 0, 0), Eigen::Vector3d(0, 1, 0)}) {
       const Rigid3d turned(Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, axis)),
                            Eigen::Vector3d::Zero());
       const Rigid3d motion = turned * truth;
-      cost->SquaredNorms(MotionOrigin(motion).DerivativesAt(zero.data()),
+      cost->SquaredNorms(LinearizationPoint(motion).DerivativesAt(zero.data()),
                          &behind);
       for (size_t i = 0; i < behind.size(); ++i) {
         EXPECT_TRUE(std::isfinite(behind[i])) << name;

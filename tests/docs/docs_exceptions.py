@@ -62,6 +62,7 @@ EXCEPTIONS = {
             left_out('takes minutes; tests/benchmarks/benchmark_programs_test.cc runs '
                      'the programs'),
         'scripts/accuracy': left_out('takes minutes'),
+        'scripts/cost_accuracy': left_out('takes minutes'),
         'scripts/frontends': left_out('takes minutes'),
     },
     'README.md': {

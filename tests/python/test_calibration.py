@@ -33,10 +33,10 @@ def test_finds_what_is_wrong(calibration):
     assert calibration.accepted, calibration.reason
     assert calibration.camera.fx == pytest.approx(525, abs=1.5)
     fx = calibration.parameters["fx"]
-    assert fx.fate == "determined"
+    assert fx.status == "determined"
     assert fx.before == 535.5 and fx.found == calibration.camera.fx
     assert 0 < fx.sigma < 2
-    assert calibration.parameters["depth_factor"].fate == "fixed"
+    assert calibration.parameters["depth_factor"].status == "fixed"
     assert "the new camera is better" in calibration.summary
 
 
@@ -44,7 +44,7 @@ def test_keeps_what_is_fixed(recording, wrong):
     fixed = rgbd_pose.calibrate(
         recording, wrong, groundtruth="none", fix="focal"
     )
-    assert fixed.parameters["fx"].fate == "fixed"
+    assert fixed.parameters["fx"].status == "fixed"
     assert fixed.camera.fx == 535.5
 
 

@@ -19,7 +19,7 @@ def test_examples_run(sequence, tmp_path):
             cwd=tmp_path, capture_output=True, text=True,
         )
         if "is not installed" in run.stderr:
-            continue  # by name: what a block needs beside NumPy
+            continue  # by name: what a block needs besides NumPy
         assert run.returncode == 0, block + run.stderr
         # What a line prints is written behind it, in words of its output.
         for expected in re.findall(r"# prints (.*)", block):

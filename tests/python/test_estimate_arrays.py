@@ -134,6 +134,7 @@ def test_input_is_left_alone():
         ((None, CUR), {}, "points_prev: holds object"),
         (([[1, 2, 3], [4]], CUR), {}, "points_prev: is no array of numbers"),
         ((PREV, CUR), {"cost": "x"}, "unknown cost 'x'; there are bidirec"),
+        ((PREV, CUR), {"loss": "huber(x)"}, r"loss 'huber\(x\)' has no width"),
         ((PREV, CUR), {"loss": "x"}, "unknown loss 'x'; there are none, "),
         ((PREV, CUR), {"loss": "tukey,none"}, "2 losses for 1 costs"),
         ((PREV, CUR), {"scale": "x"}, "unknown scale 'x'; there are fixed"),

@@ -213,8 +213,8 @@ def test_colour_is_red_green_blue(dataset, camera):
         return odometry.trajectory[1]
 
     def gray(rgb):
-        weighted = rgb.astype(np.int64) @ [9797, 19234, 3737]
-        return (weighted >> 15).astype(np.uint8)
+        weighted = rgb.astype(np.int64) @ [9798, 19235, 3735]
+        return ((weighted + (1 << 14)) >> 15).astype(np.uint8)
 
     expected = trajectory(gray)
     np.testing.assert_array_equal(trajectory(lambda rgb: rgb), expected)

@@ -89,7 +89,7 @@ def test_poses_hang_together(mapped, frames):
             frame.map_from_cam, frame.map_from_odom @ frame.odom_from_cam,
             atol=1e-12,
         )
-        assert frame.segment == 0 and frame.trouble == ""
+        assert frame.segment == 0 and frame.error == ""
     stamps, poses = slam.trajectory
     np.testing.assert_array_equal(stamps, [f.timestamp for f in frames])
     keyframes = {k.id: k for k in slam.keyframes()}

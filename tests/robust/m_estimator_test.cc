@@ -11,6 +11,7 @@
 #include "core/estimation/scaled_loss.h"
 #include "robust/barron_loss.h"
 #include "robust/power_loss.h"
+#include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {
 namespace {
@@ -178,7 +179,7 @@ TEST(MEstimatorTest, AreConcaveInTheSquareEverywhere) {
   }
 }
 
-// The estimator widens losses by ScaledLoss instead of making them anew.
+// The estimator widens losses by ScaledLoss instead of making them again.
 TEST(MEstimatorTest, AScaledLossIsTheLossOfScaledWidth) {
   for (const MEstimator& row : Rows()) {
     for (const double scale : {0.05, 0.7, 3.0, 200.0}) {
@@ -238,6 +239,33 @@ TEST(MEstimatorTest, FindsByName) {
     EXPECT_EQ(FindMEstimator(name)->name, name);
   }
   EXPECT_EQ(FindMEstimator("tuckey"), nullptr);
+}
+
+TEST(ParseLossTest, TakesANameOrANameAndAWidth) {
+  for (const MEstimator& row : Rows()) {
+    const std::string name(row.name);
+    EXPECT_EQ(ParseLoss(name).row->name, row.name);
+    EXPECT_EQ(ParseLoss(name).Width(3), row.Width95(3));
+    const NamedLoss wide = ParseLoss(name + "(2.5)");
+    for (const int dimension : {1, 3}) {
+      EXPECT_EQ(wide.Width(dimension), 2.5);
+      EXPECT_EQ(Evaluate(*wide.Make(dimension), 9.0).value,
+                Evaluate(*row.make(2.5), 9.0).value);
+    }
+  }
+  EXPECT_EQ(ParseLoss("none").Make(3), nullptr);
+}
+
+TEST(ParseLossTest, RefusesWhatIsNone) {
+  ExpectInputError([] { ParseLoss("hubert(1)"); },
+                   {"unknown loss 'hubert(1)'; there are none, l1"});
+  for (const std::string text :
+       {"none(1)", "huber(", "huber()", "huber(1", "huber(x)", "huber(0)",
+        "huber(-1)", "huber(nan)", "huber(inf)", "huber(1e9)", "huber(1))",
+        "huber(1)x", "huber( 1)", "huber(1,2)"}) {
+    ExpectInputError([&] { ParseLoss(text); },
+                     {"loss '" + text + "' has no width", "huber(1.5)"});
+  }
 }
 
 }  // namespace

@@ -34,7 +34,7 @@ asked_by() {
   grep '^install' "$LOG" | tr ' ' '\n'
 }
 
-for script in demo frontends accuracy benchmark test check coverage fuzz; do
+for script in demo frontends cost_accuracy benchmark test check coverage fuzz; do
   asked_by $script >"$work/asked"
   grep -qx libceres-dev "$work/asked" || fail "$script does without Ceres"
 done

@@ -14,7 +14,7 @@ namespace rgbd_pose {
 // Residual and Jacobian of one block, by hand and by ceres::Jet.
 template <typename Residual>
 struct BothJacobians {
-  void EvaluateBoth(const MotionOrigin& origin, const MotionVector& x,
+  void EvaluateBoth(const LinearizationPoint& origin, const MotionVector& x,
                     const double* columns) {
     const double* parameters[] = {x.data()};
     double* by_hand[] = {hand_J_.data()};

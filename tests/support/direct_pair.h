@@ -14,7 +14,7 @@
 namespace rgbd_pose {
 
 // A rendered frame as direct costs see it. Its images may be changed, the
-// pyramid then be built anew.
+// pyramid then be built again.
 struct DirectFrame {
   static constexpr int kLevels = 6;
 
@@ -46,8 +46,8 @@ struct DirectPair {
         cur_from_prev(dataset.WorldFromCam(cur_index).Inverse() *
                       dataset.WorldFromCam(prev_index)) {}
 
-  PairData data() const {
-    PairData pair;
+  FramePair data() const {
+    FramePair pair;
     pair.prev = &prev.view;
     pair.cur = &cur.view;
     return pair;

@@ -11,11 +11,9 @@
 namespace rgbd_pose {
 
 // The residual blocks of a cost as Ceres gets them.
-inline std::unique_ptr<ceres::Problem> BuildProblem(MotionCost* cost,
-                                                    Assembly assembly,
-                                                    const MotionOrigin& origin,
-                                                    ceres::LossFunction* loss,
-                                                    double* x) {
+inline std::unique_ptr<ceres::Problem> BuildProblem(
+    MotionCost* cost, Assembly assembly, const LinearizationPoint& origin,
+    ceres::LossFunction* loss, double* x) {
   ceres::Problem::Options options;
   options.cost_function_ownership = BlockOwnership(assembly);
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
@@ -26,7 +24,7 @@ inline std::unique_ptr<ceres::Problem> BuildProblem(MotionCost* cost,
 
 // What Ceres makes of them at x.
 inline NormalEquations EvaluateProblem(MotionCost* cost, Assembly assembly,
-                                       const MotionOrigin& origin,
+                                       const LinearizationPoint& origin,
                                        ceres::LossFunction* loss,
                                        MotionVector x) {
   const auto problem = BuildProblem(cost, assembly, origin, loss, x.data());

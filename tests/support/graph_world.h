@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "core/estimation/edge.h"
-#include "core/estimation/motion_graph.h"
+#include "core/estimation/pose_graph.h"
+#include "core/estimation/relative_pose.h"
 #include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {
@@ -25,10 +25,10 @@ inline std::vector<Rigid3d> CircleOfPoses(int poses, double radius) {
 
 // The motion between two of them, off by what its covariance says: standard
 // deviations in rad and m.
-inline Edge MeasuredEdge(const std::vector<Rigid3d>& world_from_cam, int ref,
-                         int cur, double sigma_rotation,
-                         double sigma_translation, RandomWorld* world) {
-  Edge edge;
+inline RelativePose MeasuredEdge(const std::vector<Rigid3d>& world_from_cam,
+                                 int ref, int cur, double sigma_rotation,
+                                 double sigma_translation, RandomWorld* world) {
+  RelativePose edge;
   edge.ref = ref;
   edge.cur = cur;
   const Rigid3d truth = world_from_cam[cur].Inverse() * world_from_cam[ref];
@@ -48,7 +48,7 @@ inline Edge MeasuredEdge(const std::vector<Rigid3d>& world_from_cam, int ref,
 }
 
 // Root mean square of the distances between poses and the truth, m.
-inline double RmsDistance(const MotionGraph& graph,
+inline double RmsDistance(const PoseGraph& graph,
                           const std::vector<Rigid3d>& truth) {
   double sum = 0.0;
   for (int i = 0; i < graph.num_poses(); ++i) {

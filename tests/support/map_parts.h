@@ -73,8 +73,8 @@ inline bool IsSameMap(const KeyframeMap& a, const KeyframeMap& b) {
     }
   }
   for (size_t i = 0; i < a.edges.size(); ++i) {
-    const Edge& x = a.edges[i];
-    const Edge& y = b.edges[i];
+    const RelativePose& x = a.edges[i];
+    const RelativePose& y = b.edges[i];
     if (x.ref != y.ref || x.cur != y.cur ||
         !IsSameMotion(x.cur_from_ref, y.cur_from_ref) ||
         x.covariance != y.covariance) {

@@ -14,9 +14,13 @@ inline TrackerParts PartsFor(const Camera& camera,
                              const TrackerOptions& options = {}) {
   TrackerParts parts{options, {}, "patch", Estimator({}, MakeRobustCosts())};
   parts.images.camera = camera;
-  parts.direct_estimator =
-      Estimator(DirectEstimatorOptions(), MakeDirectCosts());
-  parts.coarse_estimator = MakeCoarseEstimator();
+  parts.direct_estimators = DirectEstimators{
+      Estimator(DirectEstimatorOptions(), MakeDirectCosts()),
+      Estimator(
+          DirectEstimatorOptions(),
+          JoinCosts(MakeRobustCosts(),
+                    MakeDirectCosts(kDefaultDirectCost, kDefaultDirectLoss))),
+      MakeCoarseEstimator()};
   return parts;
 }
 

@@ -14,7 +14,7 @@ __all__ = [
     "CalibratedParameter",
     "Calibration",
     "Camera",
-    "Edge",
+    "RelativePose",
     "Errors",
     "EstimateError",
     "Frame",

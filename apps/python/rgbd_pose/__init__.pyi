@@ -167,7 +167,7 @@ def estimate_motion_pixels(
     assembly: str = "compressed",
 ) -> MotionEstimate: ...
 
-class Edge:
+class RelativePose:
     @property
     def ref(self) -> int: ...
     @property
@@ -191,7 +191,7 @@ class TrackedFrame:
     @property
     def covariance(self) -> Optional[_Floats]: ...  # (6, 6), rad and m
     @property
-    def edges(self) -> List[Edge]: ...
+    def edges(self) -> List[RelativePose]: ...
     @property
     def segment(self) -> int: ...
     @property
@@ -247,7 +247,7 @@ class Odometry:
         max_depth: float = 8.0,
         tracker: str = "hybrid",
         direct_cost: str = "photometric+projective_plane",
-        direct_loss: str = "huber",
+        direct_loss: str = "tukey",
         direct_points: int = 0,
         direct_levels: int = 4,
         direct_information: float = 0.0,
@@ -297,7 +297,7 @@ class SlamFrame(TrackedFrame):
     @property
     def joined(self) -> int: ...
     @property
-    def trouble(self) -> str: ...
+    def error(self) -> str: ...
     @property
     def map_ms(self) -> float: ...
     @property
@@ -337,7 +337,7 @@ class Slam:
         max_depth: float = 8.0,
         tracker: str = "hybrid",
         direct_cost: str = "photometric+projective_plane",
-        direct_loss: str = "huber",
+        direct_loss: str = "tukey",
         direct_points: int = 0,
         direct_levels: int = 4,
         direct_information: float = 0.0,
@@ -358,7 +358,7 @@ class Slam:
         prior_sigma_translation: float = 0.05,
         max_pairs: int = 8,
         min_pair_share: float = 0.4,
-        max_lookalikes: int = 4,
+        max_loop_candidates: int = 4,
         drift: float = 0.01,
         window: int = 10,
         update_delay: int = 10,
@@ -378,7 +378,7 @@ class Slam:
     def trajectory(self) -> Tuple[_Floats, _Floats]: ...  # (N,), (N, 4, 4)
     def save_trajectory(self, path: _Path) -> None: ...
     def keyframes(self) -> List[Keyframe]: ...
-    def edges(self) -> List[Edge]: ...
+    def edges(self) -> List[RelativePose]: ...
     def save_map(self, folder: _Path) -> None: ...
     def load_map(self, folder: _Path, localise_only: bool = False) -> None: ...
 
@@ -471,7 +471,7 @@ def write_trajectory(path: _Path, trajectory: _Trajectory) -> None: ...
 
 class CalibratedParameter:
     @property
-    def fate(self) -> Literal["fixed", "not determined", "determined"]: ...
+    def status(self) -> Literal["fixed", "not determined", "determined"]: ...
     @property
     def before(self) -> float: ...
     @property

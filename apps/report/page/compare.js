@@ -124,7 +124,7 @@ function comparedErrors(sequence, prefix, parent) {
       'Logarithmic. Distance and angle from the truth, the first poses laid on each ' +
       'other' + (shown.some(error => error.key.startsWith('rpe'))
           ? '; motion and turn: errors of the motion over the second that starts at ' +
-            'that time, which drift from before does not enter.' : '.') +
+            'that time, unaffected by earlier drift.' : '.') +
       (sequence.every > 1 ? ` Every point is the largest of ${sequence.every} frames.`
                           : '') + LEGEND_HINT);
   const end = largest(sequence.t) || 1;

@@ -2,7 +2,7 @@
 
 // What the pages share: elements, numbers in words and a plain look of plots.
 
-// Okabe and Ito: told apart by the colour-blind as well.
+// Okabe and Ito: distinguishable for the colour-blind as well.
 const COLOR = {
   black: '#000000', orange: '#E69F00', sky: '#56B4E9', green: '#009E73',
   yellow: '#F0E442', blue: '#0072B2', vermillion: '#D55E00', purple: '#CC79A7',

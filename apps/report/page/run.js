@@ -40,7 +40,20 @@ function header(data) {
   add(digits(run.track_ms_median, 3) + ' ms', 'tracking a frame, median');
   add(digits(run.frames_per_second, 3),
       `frames/s with decoding, ${run.threads} thread${run.threads === 1 ? '' : 's'}`);
+  for (const [key, text] of [
+    ['damaged_frames', 'damaged frames, left out'],
+    ['unmatched_color', 'colour images without depth, left out'],
+    ['dropped_frames', 'frames came too fast and were left out'],
+  ]) {
+    if (data.metrics[key]) add(String(data.metrics[key]), text);
+  }
   page.append(figures);
+  for (const remark of data.metrics.remarks || []) {
+    page.append(make('p', {}, remark));
+  }
+  if (data.metrics.stopped) {
+    page.append(make('p', {}, 'Stopped early: ' + data.metrics.stopped));
+  }
 }
 
 function metrics(data) {
@@ -54,8 +67,9 @@ function metrics(data) {
         `${digits(e.duration_s, 4)} s and ${digits(e.path_length_m, 4)} m of path.`));
     const row = (name, statistics, factor, definition) => [
       {class: 'name', text: name},
-      ...['rmse', 'median', 'mean', 'max'].map(key => (statistics
-          ? number(statistics[key] * factor) : {number: 'n/a'})),
+      ...['rmse', 'median', 'p90', 'p99', 'max'].map(key => (
+        statistics && key in statistics ? number(statistics[key] * factor)
+          : {number: 'n/a'})),
       definition,
     ];
     const relative = (key, span, words) => (e[key] ? [
@@ -75,13 +89,21 @@ function metrics(data) {
       ...relative('rpe_metres', `${e.rpe_metres.delta} m`,
           `along ${e.rpe_metres.delta} m of the true path`),
     ];
-    element.append(table(['', {number: 'RMSE'}, {number: 'median'}, {number: 'mean'},
-                          {number: 'max'}, 'what it is'], rows, 'stack'));
+    element.append(table(['', {number: 'RMSE'}, {number: 'median'}, {number: '90 %'},
+                          {number: '99 %'}, {number: 'max'}, 'what it is'], rows, 'stack'));
     if (e.final_pose) {
       element.append(make('p', {},
           `Last pose against the truth, both relative to the first: ` +
           `${digits(e.final_pose.translation_m * 1000, 3)} mm and ` +
           `${digits(e.final_pose.rotation_deg, 3)}°.`));
+    }
+    if (e.consistency) {
+      const frames = e.consistency.ok_frames;
+      element.append(make('p', {},
+          `Of ${frames.count} frames that are ok and could be judged ${frames.wrong} ` +
+          'are wrong: off by more than five sigmas of their own covariance. Squared ' +
+          `errors are ${frames.count ? digits(frames.nees, 3) : 'n/a'} times what ` +
+          'covariances say, in the mean (NEES).'));
     }
     element.append(make('h3', {}, 'Of the run'));
   }
@@ -98,8 +120,8 @@ function metrics(data) {
     ['tracking', digits(run.track_ms_median, 3) + ' ms',
      `Median per frame without decoding; 99 of 100 frames take less than ` +
      `${digits(run.track_ms_p99, 3)} ms.`],
-    ['matching', digits(run.match_ms_median, 3) + ' ms', 'Of it, median.'],
-    ['pose solve', digits(run.solve_ms_median, 3) + ' ms', 'Of it, median.'],
+    ['matching', digits(run.match_ms_median, 3) + ' ms', 'Part of tracking, median.'],
+    ['pose solve', digits(run.solve_ms_median, 3) + ' ms', 'Part of tracking, median.'],
     ['new reference', digits(run.reference_ms_median, 3) + ' ms',
      'Median of the frames that became one.'],
     ['decoding', digits(run.decode_ms_median, 3) + ' ms',

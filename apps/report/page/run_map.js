@@ -77,7 +77,7 @@ function mapTraces(slam, before, after, move, [a, b]) {
   const numbers = keyframes.map((keyframe, i) => i);
   const kept = numbers.filter(i => !keyframes[i][4]);
   const segments = [...new Set(kept.map(i => keyframes[i][3]))];
-  add(numbers.filter(i => keyframes[i][4]), 'made way',
+  add(numbers.filter(i => keyframes[i][4]), 'removed',
       {color: '#fff', size: 5, line: {color: COLOR.grey, width: 1}});
   segments.forEach((segment, k) => add(
       kept.filter(i => keyframes[i][3] === segment),
@@ -95,12 +95,14 @@ function map(data) {
   const joined = slam.segments_joined
       ? `, ${number(slam.segments_joined, 'segment')} joined to others` : '';
   const gone = slam.keyframes_dropped
-      ? ` (${slam.keyframes_dropped} more made way for those that see the same)` : '';
+      ? ` (${slam.keyframes_dropped} more removed in favour of those that see the same)` : '';
   const element = section('Map',
       'Keyframes and the motions measured between them, seen from above: ' +
       `${number(slam.keyframes, 'keyframe')}${gone}, ` +
       `${number(slam.tracked_pairs + slam.pairs, 'pair')}, of these ` +
       `${slam.loops} closing loops${joined}. ` +
+      (slam.unsolved ? `Its poses were not solved for ${number(slam.unsolved, 'time')}, ` +
+          `at last as: ${slam.error || 'unknown'}. ` : '') +
       (mapSegments(slam) > 1 ? 'How segments lie to each other is unknown. ' : '') +
       'Equal units on both axes; a click on a name hides it.');
   const move = truthFromMap(data), axes = levelAxes(data);

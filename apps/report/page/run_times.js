@@ -47,7 +47,7 @@ function errors(data) {
   const element = section('Error over time',
       'Above: how far each position is from the truth after the alignment. ' +
       'Below: the error of the motion over the second that starts at that time, ' +
-      'which drift from before does not enter. Dashed: root mean square (RMSE).' + PER_POINT(data) +
+      'unaffected by earlier drift. Dashed: root mean square (RMSE).' + PER_POINT(data) +
       (lost ? ' Grey: lost, no pose.' : ''));
   const rmse = (statistics, factor, unit) => (statistics
       ? `, RMSE ${digits(statistics.rmse * factor, 3)} ${unit}` : ': n/a');

@@ -32,6 +32,14 @@ TEST(BatchPlanTest, HasAllCombinationsInOrder) {
   EXPECT_EQ(names.size(), plan.size());
 }
 
+TEST(BatchPlanTest, LossesMayHaveWidths) {
+  const BatchGrid grid = ParseGrid("epipolar", "huber(1),huber(2)", "klt", 1);
+  const auto plan = MakePlan({kSequences[0]}, grid, {}, "");
+  ASSERT_EQ(plan.size(), 2u);
+  EXPECT_EQ(plan[0].Name(), "one/epipolar-huber(1)-klt-r1");
+  EXPECT_NE(plan[0].hash, plan[1].hash);
+}
+
 TEST(BatchPlanTest, AShardHasWholeSequences) {
   const BatchGrid grid = ParseGrid("epipolar", "huber,tukey", "klt", 1);
   const std::vector<BatchRun> plan = MakePlan(kSequences, grid, {0, 2}, "");

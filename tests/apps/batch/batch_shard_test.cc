@@ -10,7 +10,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Sets what Slurm tells the tasks of a job array; null: nothing.
+// Sets what Slurm gives the tasks of a job array; null: nothing.
 void SetArray(const char* id, const char* count, const char* first) {
   const struct {
     const char* name;

@@ -67,7 +67,7 @@ struct NoisyScene {
         view.keyframe = k;
         view.u = landmark.u - camera.fx * 0.02 * k / z;
         view.v = landmark.v;
-        view.sigma_px = 1e3;  // depth alone tells where it is
+        view.sigma_px = 1e3;  // depth alone shows where it is
         view.depth = measure(view.u, view.v);
         views.views.push_back(view);
       }

@@ -19,7 +19,7 @@
 namespace rgbd_pose {
 namespace {
 
-using Fate = CalibratedParameter::Fate;
+using Status = CalibratedParameter::Status;
 
 constexpr int kCalibrationFrames = 45;
 
@@ -71,7 +71,7 @@ RgbdCamera Wrong() {
   wrong.camera.fy *= 1.02;
   wrong.camera.cx += 5.0;
   wrong.camera.cy -= 5.0;
-  wrong.depth_errors.inverse_depth_offset = 0.01;
+  wrong.depth_correction.inverse_depth_offset = 0.01;
   wrong.depth_shutter.offset = -0.01;
   return wrong;
 }
@@ -94,11 +94,11 @@ TEST(CalibrationTest, FindsWhatIsWrongOnAnyNumberOfThreads) {
   EXPECT_NEAR(result.camera.camera.fy, truth.fy, 2e-3 * truth.fy);
   EXPECT_NEAR(result.camera.camera.cx, truth.cx, 0.5);
   EXPECT_NEAR(result.camera.camera.cy, truth.cy, 0.5);
-  EXPECT_NEAR(result.camera.depth_errors.inverse_depth_offset, 0.0, 2e-3);
+  EXPECT_NEAR(result.camera.depth_correction.inverse_depth_offset, 0.0, 2e-3);
   EXPECT_NEAR(result.camera.depth_shutter.offset, 0.0, 1e-3);
   EXPECT_LT(result.cost_after, result.cost_before);
   // Images alone do not tell how large the world is.
-  EXPECT_EQ(Of(result, kDepthFactor).fate, Fate::kFixed);
+  EXPECT_EQ(Of(result, kDepthFactor).status, Status::kFixed);
   EXPECT_EQ(result.camera.depth_scale, Wrong().depth_scale);
   EXPECT_TRUE(result.scale_from.empty());
 
@@ -114,11 +114,11 @@ TEST(CalibrationTest, WhatIsFixedStays) {
   CalibrationSettings settings;
   settings.fix = "centre,registration,depth_time_offset";
   const CalibrationResult result = MappedWrongly().Calibrate(settings);
-  EXPECT_EQ(Of(result, kCx).fate, Fate::kFixed);
+  EXPECT_EQ(Of(result, kCx).status, Status::kFixed);
   EXPECT_EQ(Of(result, kCx).found, Wrong().camera.cx);
   EXPECT_EQ(Of(result, kDepthTime).found, 0.0);
   EXPECT_EQ(Of(result, kRotationY).found, 0.0);
-  EXPECT_EQ(Of(result, kFx).fate, Fate::kDetermined);
+  EXPECT_EQ(Of(result, kFx).status, Status::kDetermined);
   settings.fix = "centre,size";
   EXPECT_THROW(MappedWrongly().Calibrate(settings), InputError);
 }
@@ -135,7 +135,7 @@ TEST(CalibrationTest, ACameraAtRestDeterminesNothing) {
       Mapped(Render("still", 5), RgbdCamera()).Calibrate();
   EXPECT_FALSE(result.is_accepted);
   for (const CalibratedParameter& parameter : result.parameters) {
-    EXPECT_NE(parameter.fate, Fate::kDetermined);
+    EXPECT_NE(parameter.status, Status::kDetermined);
   }
 }
 
@@ -148,8 +148,8 @@ TEST(CalibrationTest, HalvesOfOneCameraAgree) {
   ASSERT_FALSE(result.halves.empty());
   EXPECT_EQ(WhyHalvesDisagree({}, result), "");
   for (const HalvesOfParameter& half : result.halves) {
-    EXPECT_EQ(Of(result, static_cast<CalibrationIndex>(half.part)).fate,
-              Fate::kDetermined);
+    EXPECT_EQ(Of(result, static_cast<CalibrationIndex>(half.part)).status,
+              Status::kDetermined);
     EXPECT_GT(half.sigma, 0.0);
   }
 }
@@ -168,13 +168,14 @@ TEST(CalibrationTest, HalvesThatContradictEachOtherAreNamed) {
 
 TEST(CalibrationTest, WhatChangesACameraIsFoundBetweenBoth) {
   RgbdCamera first = Wrong();
-  first.depth_errors.depth_from_color = Rigid3d(
+  first.depth_correction.depth_from_color = Rigid3d(
       Eigen::Quaterniond(Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ())),
       {0.01, 0.0, -0.02});
   CalibrationVector theta;
   theta << 520.0, 521.0, 318.0, 241.0, 0.01, -0.02, 0.003, 0.004, 0.005, -0.006,
       0.007, 0.008, -0.009, 0.010, 1.02;
-  EXPECT_TRUE(ThetaBetween(first, Changed(first, theta)).isApprox(theta, 1e-9));
+  EXPECT_TRUE(ThetaBetween(first, ApplyCalibration(first, theta))
+                  .isApprox(theta, 1e-9));
 }
 
 TEST(CalibrationTest, AKnownLengthHasToMakeSense) {

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "apps/compare/compare_sweep_report.h"
-#include "apps/compare/compare_sweep_verdict.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

@@ -31,5 +31,30 @@ TEST(MapperTest, TellsOfEachKeyframeOnce) {
   EXPECT_TRUE(mapper.Finish().moved.empty());
 }
 
+// Tracked against two segments: a map that was loaded and what came before.
+TEST(MapperTest, TrackedEdgesJoinSegments) {
+  const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
+  Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), camera));
+  mapper.Add(Noise(3));
+  mapper.Add(Noise(7));
+  NewKeyframe both = Noise(9);
+  RelativePose edge;
+  edge.cur = 9;
+  edge.covariance = 1e-6 * MotionMatrix::Identity();
+  for (const int ref : {3, 7}) {
+    edge.ref = ref;
+    edge.cur_from_ref.translation.z() = ref;
+    both.edges.push_back(edge);
+  }
+  EXPECT_EQ(mapper.Add(std::move(both)).joined, 1);
+  const KeyframeMap map = mapper.Map();
+  for (const MapKeyframe& keyframe : map.keyframes) {
+    EXPECT_EQ(keyframe.segment, 7);
+    EXPECT_NEAR(keyframe.map_from_cam.translation.x(), 7.0, 1e-9);
+  }
+  EXPECT_NEAR(map.keyframes[2].map_from_cam.translation.z(), -7.0, 1e-9);
+  EXPECT_NEAR(map.keyframes[0].map_from_cam.translation.z(), -4.0, 1e-9);
+}
+
 }  // namespace
 }  // namespace rgbd_pose

@@ -254,7 +254,7 @@ TEST(SlamTest, RefusesOptionsThatMakeNoSense) {
   settings.mapping.max_pairs = 0;
   EXPECT_THROW(Player player(settings), InputError);
   settings = {};
-  settings.mapping.max_pair_sigma = std::nan("");
+  settings.mapping.min_pair_share = std::nan("");
   EXPECT_THROW(Player player(settings), InputError);
   settings = {};
   settings.update_delay = -1;

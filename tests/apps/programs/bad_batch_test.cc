@@ -51,7 +51,9 @@ TEST_F(BadInputTest, BatchFlags) {
       {
           {"cost", list, "--costs=magic", 2,
            "--costs: unknown name 'magic'; there are"},
-          {"loss", list, "--losses=tukey,", 2, "--losses: unknown name ''"},
+          {"loss", list, "--losses=tukey,", 2, "--losses: unknown loss ''"},
+          {"no width", list, "'--losses=huber(1),huber()'", 2,
+           "--losses: loss 'huber()' has no width"},
           {"a loss twice", list, "--losses=tukey,tukey", 2,
            "--losses: 'tukey' comes twice"},
           {"frontend", list, "--frontends=magic", 2, "--frontends: unknown"},

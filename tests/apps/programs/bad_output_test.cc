@@ -124,7 +124,7 @@ TEST_F(BadInputTest, ARunThatFailsLeavesEarlierResultsAlone) {
     EXPECT_EQ(RunCommand(command, folder_).exit_code, 2);
     EXPECT_EQ(Contents(folder_ / "out"), before) << command;
   }
-  Spoiled().Cut("depth/1000.100000.png", 100);
+  Spoiled().Remove("depth");
   EXPECT_EQ(RunCommand(call, folder_).exit_code, 2);
   EXPECT_EQ(Contents(folder_ / "out"), before);
 }
@@ -168,17 +168,18 @@ TEST_F(BadInputTest, ResultsAreThoseOfOneRun) {
 TEST_F(BadInputTest, OneRunAtATimeWritesToAFolder) {
   fs::rename(folder_ / "good", folder_ / "seq");
   const std::string call = Fill(Odometry());
-  const std::string aside = "out/.rgbd_odometry.partial/";
-  folder_.Write(aside + "metrics.json", "of a run that was killed");
-  const int lock = open(folder_.Write(aside + "lock", "").c_str(), O_RDWR);
+  const std::string staging_dir = "out/.rgbd_odometry.partial/";
+  folder_.Write(staging_dir + "metrics.json", "of a run that was killed");
+  const int lock =
+      open(folder_.Write(staging_dir + "lock", "").c_str(), O_RDWR);
   ASSERT_EQ(flock(lock, LOCK_EX), 0);
   const RunResult refused = RunCommand(call, folder_);
   EXPECT_EQ(refused.exit_code, 2);
   EXPECT_THAT(refused.err, HasSubstr("another rgbd_odometry writes its"));
-  EXPECT_TRUE(fs::exists(folder_ / (aside + "metrics.json")));
+  EXPECT_TRUE(fs::exists(folder_ / (staging_dir + "metrics.json")));
   close(lock);
   EXPECT_EQ(RunCommand(call, folder_).exit_code, 0);
-  EXPECT_FALSE(fs::exists(folder_ / aside));
+  EXPECT_FALSE(fs::exists(folder_ / staging_dir));
   EXPECT_THAT(ReadTextFile(folder_ / "out/metrics.json"), HasSubstr("ate"));
 
   // Many at once: some may come too late, but the results are whole.
@@ -186,7 +187,7 @@ TEST_F(BadInputTest, OneRunAtATimeWritesToAFolder) {
                                         " >/dev/null; echo $?) & done; wait; }",
                                     folder_);
   EXPECT_THAT(many.out, testing::MatchesRegex("([02]\n)*0\n([02]\n)*"));
-  EXPECT_FALSE(fs::exists(folder_ / aside));
+  EXPECT_FALSE(fs::exists(folder_ / staging_dir));
   EXPECT_THAT(ReadTextFile(folder_ / "out/metrics.json"), HasSubstr("ate"));
 }
 

@@ -123,6 +123,8 @@ TEST_F(BadInputTest, Flags) {
           {"a cost that is not there", nullptr, "--cost=reprojection+", 2,
            "unknown cost ''"},
           {"loss", nullptr, "--loss=tuckey", 2, "unknown loss 'tuckey'; there"},
+          {"a width", nullptr, "'--loss=tukey(-1)'", 2,
+           "loss 'tukey(-1)' has no width that tukey can have: a number from"},
           {"two losses for one cost", nullptr, "--loss=tukey,huber", 2,
            "'tukey,huber' names 2 losses for 1 costs"},
           {"frontend", nullptr, "--frontend=magic", 2,

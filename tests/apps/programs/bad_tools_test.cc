@@ -1,4 +1,4 @@
-// Bad input of the programs beside rgbd_odometry.
+// Bad input of the programs besides rgbd_odometry.
 
 #include <filesystem>
 #include <functional>
@@ -37,6 +37,12 @@ TEST_F(BadInputTest, Evaluate) {
            "--rpe_frames=1,: '' is no number of frames"},
           {"no frames", same, "--rpe_frames=0", 2,
            "'0' is no number of frames"},
+          {"a trajectory and a run", same, "--run={seq}", 2,
+           "--run has its own trajectory"},
+          {"no run", same, "--estimate= --run={seq}/none", 2,
+           "{seq}/none/trajectory.txt: cannot be opened"},
+          {"a truth better than exact", same, "--truth_sigma_degrees=-1", 2,
+           "sigmas of the truth must not be negative"},
           {"missing", nullptr, "", 2, "{seq}/estimate.txt: cannot be opened"},
           {"the truth is missing", same, "--groundtruth={seq}/none.txt", 2,
            "{seq}/none.txt: cannot be opened"},
@@ -115,9 +121,8 @@ TEST_F(BadInputTest, Convert) {
            "{dir}: is no known kind of recording: it holds"},
           {"an output that is there", nullptr, "--output={seq}", 2,
            "{seq}: is there already and no empty folder"},
-          {"a broken image, late",
-           [](const Seq& s) { s.Cut("depth/1000.066667.png", 100); }, "", 2,
-           "depth/1000.066667.png: is damaged"},
+          {"broken images", [](const Seq& s) { s.Remove("depth"); }, "", 2,
+           "depth/1000.000000.png: cannot be opened"},
           {"a broken ground truth",
            [](const Seq& s) { s.Write("groundtruth.txt", "1 2 3\n"); }, "", 2,
            "{seq}/groundtruth.txt:1"},
@@ -154,10 +159,9 @@ TEST_F(BadInputTest, Compare) {
            [](const Seq& s) { s.Write("groundtruth.txt", "1 2 3\n"); },
            "--experiment={seq} --camera={seq}/camera.yaml", 2,
            "{seq}/groundtruth.txt:1"},
-          {"a broken image",
-           [](const Seq& s) { s.Cut("depth/1000.033333.png", 100); },
+          {"broken images", [](const Seq& s) { s.Remove("depth"); },
            "--experiment={seq} --camera={seq}/camera.yaml", 2,
-           "depth/1000.033333.png: is damaged"},
+           "depth/1000.000000.png: cannot be opened"},
       });
 }
 

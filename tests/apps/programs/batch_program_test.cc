@@ -226,7 +226,10 @@ TEST_F(BatchProgramTest, OneThatFailsDoesNotStopTheOthers) {
   Link("crash");
   fs::copy(folder_ / "data/xyz", folder_ / "data/broken",
            fs::copy_options::recursive);
-  fs::resize_file(folder_ / "data/broken/depth/1000.066667.png", 100);
+  for (const auto& depth :
+       fs::directory_iterator(folder_ / "data/broken/depth")) {
+    fs::resize_file(depth.path(), 100);
+  }
   folder_.Write("bad.txt",
                 "data/slow\ndata/crash\ndata/broken\ndata/pan_tilt\n");
   const std::string call =
@@ -241,7 +244,7 @@ TEST_F(BatchProgramTest, OneThatFailsDoesNotStopTheOthers) {
   EXPECT_THAT(run.err, HasSubstr("timeout (exit code 137)  slow/"));
   EXPECT_THAT(run.out, HasSubstr("4 runs, 3 not ok"));
   EXPECT_THAT(Read("runs/broken/bidirectional_point-tukey-patch-r1/run.log"),
-              HasSubstr("1000.066667.png"));
+              HasSubstr(".png"));
 
   // Those that failed are tried again.
   EXPECT_EQ(Run(call + " --resume").exit_code, 4);

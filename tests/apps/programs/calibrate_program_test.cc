@@ -52,6 +52,8 @@ class CalibrateProgramTest : public testing::Test {
 };
 
 TEST_F(CalibrateProgramTest, FindsAWrongCameraAndKeepsARightOne) {
+  // A damaged image costs its frame alone.
+  fs::resize_file(Sequence() + "/depth/1000.666667.png", 1000);
   const RunResult wrong = Run(kCalibrateProgram, "wrong", Wrong());
   EXPECT_EQ(wrong.exit_code, 0) << wrong.out << wrong.err;
   EXPECT_THAT(wrong.out, HasSubstr("the new camera is better"));
@@ -62,6 +64,8 @@ TEST_F(CalibrateProgramTest, FindsAWrongCameraAndKeepsARightOne) {
   const auto metrics =
       nlohmann::json::parse(ReadTextFile(folder_ / "wrong/metrics.json"));
   EXPECT_TRUE(metrics["calibration"]["accepted"]);
+  EXPECT_EQ(metrics["damaged_frames"], 1);
+  EXPECT_THAT(wrong.err, HasSubstr("1000.666667.png"));
 
   // With what was found there is nothing left to find.
   const RunResult right =

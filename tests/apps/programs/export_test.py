@@ -327,7 +327,11 @@ def main(bin_folder, work, colmap):
         check(same([numbers(line)[4 * i:4 * i + 4] for i in range(3)], pose), line)
     check(len(read_lines(kitti, 'times.txt')) == FRAMES, 'times')
     tum = export('tum', 'tum.txt')
-    check(read_lines(tum) == read_lines(result, 'trajectory.txt'), 'TUM')
+    # A quaternion is scaled to 1 where it is read: its last digit may change.
+    for line, of_run in zip(data_lines(tum), data_lines(result, 'trajectory.txt')):
+        check(max(abs(a - b) for a, b in zip(numbers(line), numbers(of_run))) < 2e-9,
+              f'TUM: {line}')
+    check(len(data_lines(tum)) == FRAMES, 'TUM')
     check_g2o(export('g2o', 'graph.g2o'), poses)
 
 

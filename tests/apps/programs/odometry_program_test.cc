@@ -175,7 +175,7 @@ TEST_F(OdometryProgramTest, ValidatesWithoutTracking) {
     ASSERT_TRUE(std::filesystem::exists(Sequence() + "/" + image)) << image;
     std::filesystem::resize_file(Sequence() + "/" + image, 1000);
   }
-  const RunResult bad = Run(call + " --threads=3");
+  const RunResult bad = Run(call + " --threads=3 --max_damaged=0");
   EXPECT_EQ(bad.exit_code, 2);
   EXPECT_EQ(bad.out, "");
   EXPECT_THAT(bad.err, HasSubstr(images[0]));

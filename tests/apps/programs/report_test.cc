@@ -210,7 +210,7 @@ TEST_F(ReportTest, TheMeshIsShownBesideThePathUntilTheNextRun) {
   EXPECT_THAT(ReadTextFile(Page()), Not(HasSubstr("\"corners\":\"")));
 }
 
-// A map as rgbd_slam tells of it: three keyframes, one more made way.
+// A map as rgbd_slam writes it: three keyframes, one more removed.
 TEST_F(ReportTest, TheMapOfARunIsShown) {
   Simulate();
   Track();
@@ -226,6 +226,7 @@ TEST_F(ReportTest, TheMapOfARunIsShown) {
                 ReadTextFile(folder_ / "run/trajectory.txt"));
   write(R"({"keyframes": 3, "keyframes_dropped": 1, "tracked_pairs": 2,
             "pairs": 1, "loops": 1, "segments_joined": 0,
+            "unsolved": 2, "error": "pose 3 is not finite",
             "graph_keyframes": [[0, 0, 0, 0, false], [0, 0, 1, 0, true],
                                 [1, 0, 1, 0, false], [1, 0, 0, 0, false]],
             "graph_pairs": [[0, 2, 0], [2, 3, 0], [0, 3, 2]]})");
@@ -234,10 +235,11 @@ TEST_F(ReportTest, TheMapOfARunIsShown) {
   EXPECT_EQ(Console(browser), "");
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
   EXPECT_EQ(Occurrences(browser.out, "<div id=\"map\""), 1);
-  EXPECT_THAT(browser.out, HasSubstr("3 keyframes (1 more made way"));
+  EXPECT_THAT(browser.out, HasSubstr("3 keyframes (1 more removed"));
+  EXPECT_THAT(browser.out, HasSubstr("2 times, at last as: pose 3 is not"));
   for (const std::string name :
        {"path of the odometry", "path at the end", "tracked pairs (2)",
-        "loops (1)", "made way (1)", "keyframes (3)"}) {
+        "loops (1)", "removed (1)", "keyframes (3)"}) {
     EXPECT_EQ(Occurrences(browser.out, ">" + name + "</text>"), 1) << name;
   }
   EXPECT_EQ(Occurrences(browser.out, "further pairs"),

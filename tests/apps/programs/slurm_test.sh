@@ -31,7 +31,7 @@ trap stop EXIT
 cd "$folder"
 mkdir run state spool
 
-# Daemons with files and ports of their own, beside any other Slurm.
+# Daemons with files and ports of their own, besides any other Slurm.
 host=$(hostname -s)
 port=$((20000 + $$ % 20000))
 head -c 1024 /dev/urandom >munge.key

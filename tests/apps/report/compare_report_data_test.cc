@@ -1,10 +1,9 @@
-#include "apps/report/compare_report_data.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "apps/report/run_report_data.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

@@ -18,13 +18,18 @@ EvaluationReport MakeReport() {
   report.path_length = 3.0155;
   report.ate = {400, 0.25, 0.2, 0.125, 1.5};
   report.rpe_frame = {{399, 0.5, 0.4, 0.3, 0.6}, {399, kHalfTurn, 0, 0, 0}};
-  report.rpe_seconds = {{370, 1.5, 1.4, 1.3, 1.6},
+  report.rpe_seconds = {{370, 1.5, 1.4, 1.3, 1.6, 1.45, 1.55},
                         {370, 0, kHalfTurn / 2, kHalfTurn / 4, kHalfTurn}};
-  report.likeness = {1.02, 2.0, 0.12};
+  report.sim3 = {1.02, 2.0, 0.12};
   report.final_pose = {0.75, kHalfTurn / 180};
-  report.rpe_frames = {
-      {1, {399, 0.0125, 0.05, 0.25}, {399, kHalfTurn / 360, kHalfTurn, 0}},
-      {500, {}, {}}};
+  report.options.rpe_frames = {1, 500};
+  report.rpe_frames = {{{399, 0, 0, 0.0125, 0, 0.05, 0.25},
+                        {399, 0, 0, kHalfTurn / 360, 0, kHalfTurn, 0}},
+                       {}};
+  report.consistency = {{0.002, kHalfTurn / 900},
+                        380,
+                        {370, 2, 1.25, 0.875},
+                        {375, 3, 1.5, 0.75}};
   report.truth_alignment.skipped = "too short";
   return report;
 }
@@ -66,8 +71,19 @@ TEST(EvaluationReportTest, TableSaysWhatIsMeasuredAndHow) {
       "RPE, fixed delta 500 frames (0 pairs)\n"
       "  translation (mm)                       n/a\n"
       "  rotation (deg)                         n/a\n"
+      "RPE, fixed delta 1 s (370 pairs)\n"
+      "  translation (mm)                 1300.0000   1450.0000   1550.0000\n"
+      "  rotation (deg)                     45.0000      0.0000      0.0000\n"
       "\n"
-      "Truth shifted in time and fixed to the camera anew: not estimated; too "
+      "Against covariances (sigma of the truth 2 mm, 0.2 deg)\n"
+      "                                      judged       wrong        NEES"
+      "      median\n"
+      "  frames, of 380 ok                      370           2        1.25"
+      "        0.88\n"
+      "  all motions                            375           3        1.50"
+      "        0.75\n"
+      "\n"
+      "Truth shifted in time and fixed to the camera again: not estimated; too "
       "short\n");
 }
 
@@ -96,6 +112,13 @@ TEST(EvaluationReportTest, JsonHasTheSameFigures) {
   EXPECT_DOUBLE_EQ(frame.at("translation_mm").at("p99"), 250.0);
   EXPECT_DOUBLE_EQ(frame.at("rotation_deg").at("p90"), 180.0);
   EXPECT_TRUE(json.at("rpe_frames").at(1).at("translation_mm").is_null());
+  EXPECT_EQ(seconds.at("translation_m").at("p99"), 1.55);
+  const nlohmann::json& consistency = json.at("consistency");
+  EXPECT_EQ(consistency.at("wrong_above_chi_square"), 40.9);
+  EXPECT_DOUBLE_EQ(consistency.at("truth_sigma_deg"), 0.2);
+  EXPECT_EQ(consistency.at("ok"), 380);
+  EXPECT_EQ(consistency.at("ok_frames").at("wrong"), 2);
+  EXPECT_EQ(consistency.at("edges").at("nees"), 1.5);
   EXPECT_EQ(json.at("truth_alignment").at("skipped"), "too short");
   EXPECT_EQ(json.at("final_pose").at("translation_m"), 0.75);
   EXPECT_DOUBLE_EQ(json.at("final_pose").at("rotation_deg"), 1.0);
@@ -104,11 +127,13 @@ TEST(EvaluationReportTest, JsonHasTheSameFigures) {
 TEST(EvaluationReportTest, NothingToMeasureIsNull) {
   EvaluationReport report = MakeReport();
   report.final_pose.reset();
+  report.consistency->ok_frames = {};
   const nlohmann::json json = EvaluationToJson(report);
   EXPECT_EQ(json.at("rpe_metres").at("count"), 0);
   EXPECT_TRUE(json.at("rpe_metres").at("translation_m").is_null());
   EXPECT_TRUE(json.at("rpe_metres").at("rotation_deg").is_null());
   EXPECT_TRUE(json.at("final_pose").is_null());
+  EXPECT_TRUE(json.at("consistency").at("ok_frames").at("nees").is_null());
   EXPECT_THAT(FormatEvaluation(report), HasSubstr("first\n"
                                                   "                "
                                                   "                "

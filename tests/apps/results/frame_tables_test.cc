@@ -4,9 +4,14 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <string>
 #include <vector>
+
+#include "core/util/text_file.h"
+#include "tests/support/expect_input_error.h"
+#include "tests/support/temp_folder.h"
 
 namespace rgbd_pose {
 namespace {
@@ -41,7 +46,7 @@ TEST(FrameTablesTest, EveryFrameHasAPose) {
 
 TEST(FrameTablesTest, AnEdgeIsARow) {
   TrackedFrame none, two;
-  Edge edge;
+  RelativePose edge;
   edge.ref = 3;
   edge.cur = 7;
   edge.cur_from_ref = Rigid3d({0.5, 0.5, -0.5, 0.5}, {0.25, -0.125, 1e-5});
@@ -67,6 +72,35 @@ TEST(FrameTablesTest, AnEdgeIsARow) {
                                    "-0.5", "0.5", "0.5", "1e-07", "2e-07"));
   EXPECT_EQ(cells.back(), "3.6e-06");
   EXPECT_EQ(second.substr(0, 4), "5,7,");
+}
+
+TEST(FrameTablesTest, EdgesAreReadBackToTheirFrames) {
+  std::vector<TrackedFrame> frames(3);
+  frames[1].status = TrackingStatus::kOk;
+  frames[2].status = TrackingStatus::kDegraded;
+  frames[2].timestamp = 0.25;
+  RelativePose edge;
+  edge.cur = 2;
+  edge.cur_from_ref = Rigid3d({0.5, 0.5, -0.5, 0.5}, {0.25, -0.125, 3.0});
+  edge.covariance(1, 4) = edge.covariance(4, 1) = 2e-7;
+  frames[2].edges = {edge, edge};
+  frames[2].edges[1].ref = 1;
+  const TempFolder folder;
+  const std::filesystem::path path = folder.path();
+  WriteFileAtomically((path / "frames.csv").string(), FormatFramesCsv(frames));
+  WriteFileAtomically((path / "edges.csv").string(), FormatEdgesCsv(frames));
+  const std::vector<TrackedFrame> read = ReadFrames(path);
+  ASSERT_EQ(read.size(), 3u);
+  for (size_t i = 0; i < 3; ++i) EXPECT_EQ(read[i].status, frames[i].status);
+  EXPECT_EQ(read[2].timestamp, 0.25);
+  ASSERT_EQ(read[2].edges.size(), 2u);
+  EXPECT_EQ(read[2].edges[1].ref, 1);
+  EXPECT_EQ(read[2].edges[0].cur_from_ref.translation,
+            edge.cur_from_ref.translation);
+  EXPECT_EQ(read[2].edges[0].covariance, edge.covariance);
+  frames.pop_back();
+  WriteFileAtomically((path / "frames.csv").string(), FormatFramesCsv(frames));
+  ExpectInputError([&] { ReadFrames(path); }, {"the motion from 0 to 2"});
 }
 
 }  // namespace

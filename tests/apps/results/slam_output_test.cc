@@ -159,7 +159,7 @@ KeyframeMap SolvedMap() {
   RandomWorld world(4);
   const std::vector<Rigid3d> truth = CircleOfPoses(kPoses, 3.0);
   KeyframeMap map;
-  MotionGraph graph;
+  PoseGraph graph;
   for (int i = 0; i < kPoses; ++i) {
     const bool is_first = i == 0 || i == kSecond;
     graph.AddPose(is_first ? truth[i] : truth[i] * world.Motion(0.02, 0.02),
@@ -170,7 +170,7 @@ KeyframeMap SolvedMap() {
     for (const int step : {1, 2, 7, 17}) {
       const int ref = cur - step;
       if (ref < 0 || (ref < kSecond) != (cur < kSecond)) continue;
-      Edge edge = MeasuredEdge(truth, ref, cur, 0.003, 0.005, &world);
+      RelativePose edge = MeasuredEdge(truth, ref, cur, 0.003, 0.005, &world);
       edge.covariance = AnyCovariance(&world);
       graph.AddEdge(edge);
       edge.ref = map.keyframes[ref].id;
@@ -217,7 +217,7 @@ TEST(G2oTest, CostOfAnEdgeIsOurs) {
     }
     const Rigid3d motion =
         map.keyframes[1].map_from_cam.Inverse() * map.keyframes[0].map_from_cam;
-    Edge edge;
+    RelativePose edge;
     edge.cur = 1;
     edge.cur_from_ref = world.Motion(1.0, 0.5) * motion;
     edge.covariance = AnyCovariance(&world);
@@ -228,13 +228,25 @@ TEST(G2oTest, CostOfAnEdgeIsOurs) {
     const MotionVector e = graph.edges[0].error.Of(i.t, i.q, j.t, j.q);
 
     MotionVector r;
-    EdgeTerm::Of(edge.cur_from_ref, SquareRootOf(edge.covariance.inverse()))
-        .Residual(MotionPose<double>{motion.rotation.toRotationMatrix(),
-                                     motion.Inverse().translation},
+    RelativePoseErrorTerm::Of(edge.cur_from_ref,
+                              SqrtInformation(edge.covariance.inverse()))
+        .Residual(RotationAndCenter<double>{motion.rotation.toRotationMatrix(),
+                                            motion.Inverse().translation},
                   r.data());
     const double cost = (graph.edges[0].error.root * e).squaredNorm();
     EXPECT_NEAR(cost, r.squaredNorm(), 1e-6 * r.squaredNorm());
   }
+}
+
+TEST(SlamWarningTest, SaysHowOftenPosesWereNotSolvedForAndWhy) {
+  const Slam slam({}, {}, {});
+  std::vector<SlamFrame> frames(3);
+  EXPECT_EQ(SlamWarning(SlamToJson(slam, frames)), "");
+  frames[0].error = "a";
+  frames[1].error = "pose 3 is not finite";
+  EXPECT_EQ(SlamWarning(SlamToJson(slam, frames)),
+            "poses of the map were not solved for 2 times, at last as: pose 3 "
+            "is not finite");
 }
 
 // docs/runs.md: errors of other conventions from ours, by a matrix each. The

@@ -1,9 +1,8 @@
-#include "apps/results/truth_alignment_report.h"
-
 #include <gtest/gtest.h>
 
 #include <limits>
 
+#include "apps/results/evaluation_report.h"
 #include "core/geometry/twist.h"
 #include "core/util/units.h"
 
@@ -31,7 +30,7 @@ TEST(TruthAlignmentReportTest, TableHasEstimatesWithTheirErrors) {
   EXPECT_EQ(
       FormatTruthAlignment(SomeAlignment(), 1.0),
       "\n"
-      "Truth shifted in time and fixed to the camera anew, as fits best (753 "
+      "Truth shifted in time and fixed to the camera again, as fits best (753 "
       "motions)\n"
       "  time shift (ms)                      -7.5 +- 0.4\n"
       "  rotation x, y, z (deg)              1.50 +- 0.12      0.00 +- 0.12    "
@@ -73,7 +72,7 @@ TEST(TruthAlignmentReportTest, OneLineWhereThereIsNone) {
   TruthAlignment alignment;
   alignment.skipped = "too short";
   EXPECT_EQ(FormatTruthAlignment(alignment, 1.0),
-            "\nTruth shifted in time and fixed to the camera anew: not "
+            "\nTruth shifted in time and fixed to the camera again: not "
             "estimated; too short\n");
   const nlohmann::json json = TruthAlignmentToJson(alignment, 1.0);
   EXPECT_EQ(json.at("skipped"), "too short");

@@ -29,10 +29,11 @@ TEST(CorrespondencesTest, RejectsWhatNoResidualMaySee) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
   constexpr double kInf = std::numeric_limits<double>::infinity();
   const Observation bad[] = {
-      {kNan, 200.0, 2.0, 0.5, 0.01},   {100.0, kInf, 2.0, 0.5, 0.01},
-      {100.0, 200.0, kNan, 0.5, 0.01}, {100.0, 200.0, -1.0, 0.5, 0.01},
-      {100.0, 200.0, 2.0, 0.0, 0.01},  {100.0, 200.0, 2.0, 0.5, 0.0},
-      {100.0, 200.0, 2.0, 0.5, kNan},
+      {kNan, 200.0, 2.0, 0.5, 0.01},    {100.0, kInf, 2.0, 0.5, 0.01},
+      {100.0, 200.0, kNan, 0.5, 0.01},  {100.0, 200.0, -1.0, 0.5, 0.01},
+      {100.0, 200.0, 2.0, 0.0, 0.01},   {100.0, 200.0, 2.0, 0.5, 0.0},
+      {100.0, 200.0, 2.0, 0.5, kNan},   {1e100, 200.0, 2.0, 0.5, 0.01},
+      {100.0, 200.0, 1e100, 0.5, 0.01}, {100.0, 200.0, 2.0, 1e-100, 0.01},
   };
   Correspondences matches;
   for (const Observation& o : bad) {

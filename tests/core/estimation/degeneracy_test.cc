@@ -103,7 +103,7 @@ TEST(DegeneracyTest, NamesWhatStandsOut) {
 }
 
 // 2 m away: 3 mm along the ray, 0.7 px of 500 across it, which is 2.8 mm.
-TEST(FeignedInformationTest, IsTheLeverOfNoise) {
+TEST(SpuriousInformationTest, IsTheLeverOfNoise) {
   Camera camera;
   camera.fx = camera.fy = 500.0;
   Correspondences matches(camera);
@@ -116,16 +116,16 @@ TEST(FeignedInformationTest, IsTheLeverOfNoise) {
   matches.Add(seen, seen);
   const double q = 0.003 * 0.003 / (0.0028 * 0.0028);
   const double feigned = (q + 1.0 / q) / 2.0;
-  EXPECT_NEAR(FeignedInformation(matches, {}), feigned, 1e-12);
+  EXPECT_NEAR(SpuriousInformation(matches, {}), feigned, 1e-12);
 
   // Of a depth that is missing the other one serves; of both, there is none.
   Observation blind = seen;
   blind.depth = 0.0;
   matches.Add(blind, seen);
-  EXPECT_NEAR(FeignedInformation(matches, {}), 2.0 * feigned, 1e-12);
+  EXPECT_NEAR(SpuriousInformation(matches, {}), 2.0 * feigned, 1e-12);
   matches.Add(blind, blind);
-  EXPECT_NEAR(FeignedInformation(matches, {}), 2.0 * feigned + 1.0, 1e-12);
-  EXPECT_NEAR(FeignedInformation(matches, {0.5, 0.25, 0.125}),
+  EXPECT_NEAR(SpuriousInformation(matches, {}), 2.0 * feigned + 1.0, 1e-12);
+  EXPECT_NEAR(SpuriousInformation(matches, {0.5, 0.25, 0.125}),
               0.75 * feigned + 0.125, 1e-12);
 }
 

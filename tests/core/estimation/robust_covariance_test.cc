@@ -91,7 +91,7 @@ TEST(RobustCovarianceTest, APriorCountsAsItIs) {
   const CovarianceTerm term = Whitened(1.0);
   CovarianceTerm prior = Whitened(2.0);
   prior.hessian = 3.0 * SomeHessian(2.0);
-  prior.scale_group = MotionCost::kExactSigmas;
+  prior.scale_group = MotionCost::kFixedScale;
   const MotionMatrix inverse = (term.hessian + prior.hessian).inverse();
   const double parameters = (inverse * term.hessian).trace();
   EXPECT_LT(parameters, 5.0);

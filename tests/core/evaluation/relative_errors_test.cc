@@ -18,9 +18,13 @@ std::vector<PosePair> GrowingSteps() {
   return pairs;
 }
 
+RelativePoseError SummariseFrames(const std::vector<PosePair>& pairs,
+                                  size_t frames) {
+  return SummariseIntervals(pairs, FrameIntervals(pairs.size(), frames));
+}
+
 TEST(RelativeErrorsTest, QuantilesOverOneFrame) {
-  const FramePoseError error = SummariseFrames(GrowingSteps(), 1);
-  EXPECT_EQ(error.frames, 1);
+  const RelativePoseError error = SummariseFrames(GrowingSteps(), 1);
   EXPECT_EQ(error.translation.count, 101);
   EXPECT_EQ(error.rotation.count, 101);
   EXPECT_NEAR(error.translation.median, 0.5, kQuantileTolerance);
@@ -31,7 +35,7 @@ TEST(RelativeErrorsTest, QuantilesOverOneFrame) {
 
 // From the i-th pose, two steps of 1 cm times i and i + 1.
 TEST(RelativeErrorsTest, QuantilesOverMoreFrames) {
-  const FramePoseError error = SummariseFrames(GrowingSteps(), 2);
+  const RelativePoseError error = SummariseFrames(GrowingSteps(), 2);
   EXPECT_EQ(error.translation.count, 100);
   EXPECT_NEAR(error.translation.median, 0.01 * (2 * 49.5 + 1),
               kQuantileTolerance);

@@ -86,14 +86,14 @@ TEST(CameraTest, ChecksItsParameters) {
 
 TEST(CameraTest, DoubtsExchangedNumbers) {
   for (const std::string& name : CameraPresetNames()) {
-    EXPECT_EQ(CameraPreset(name)->camera.Doubt(), "") << name;
+    EXPECT_EQ(CameraPreset(name)->camera.SanityWarning(), "") << name;
   }
   Camera camera;
   std::swap(camera.cx, camera.cy);
-  EXPECT_THAT(camera.Doubt(), testing::HasSubstr("principal point"));
+  EXPECT_THAT(camera.SanityWarning(), testing::HasSubstr("principal point"));
   camera = Camera{};
   camera.fy = 480.0;
-  EXPECT_THAT(camera.Doubt(),
+  EXPECT_THAT(camera.SanityWarning(),
               testing::HasSubstr("fx 525 and fy 480 differ by more than 5 %"));
   // Numbers of 640 x 480 for images of half that size.
   camera = Camera{};
@@ -101,7 +101,7 @@ TEST(CameraTest, DoubtsExchangedNumbers) {
   camera.height = 240;
   camera.cx = 310.0;
   camera.cy = 230.0;
-  EXPECT_THAT(camera.Doubt(), testing::HasSubstr("320 x 240"));
+  EXPECT_THAT(camera.SanityWarning(), testing::HasSubstr("320 x 240"));
 }
 
 TEST(CameraTest, UnknownPresetIsEmpty) {

@@ -41,7 +41,7 @@ TEST(ClosedFormTest, IsExactWithoutNoise) {
     for (int trial = 0; trial < 30; ++trial) {
       const Rigid3d truth = world.Motion(M_PI, 3.0);
       const auto fit =
-          FitRigidly(MomentsOf(RandomPoints(count, &world), truth));
+          UmeyamaAlignment(MomentsOf(RandomPoints(count, &world), truth));
       ASSERT_TRUE(fit.has_value());
       // Three points can be near a line: ten times the rounding.
       EXPECT_LE(ErrorOf(*fit, truth).angle, 10 * kRounding);
@@ -55,7 +55,7 @@ TEST(ClosedFormTest, KeepsItsDigitsFarFromTheOrigin) {
   const Rigid3d truth = world.Motion(1.0, 1.0);
   std::vector<Vector3d> points = RandomPoints(100, &world);
   for (Vector3d& point : points) point += Vector3d(1e6, -1e6, 1e6);
-  const auto fit = FitRigidly(MomentsOf(points, truth));
+  const auto fit = UmeyamaAlignment(MomentsOf(points, truth));
   ASSERT_TRUE(fit.has_value());
   // The points themselves are rounded to 1e-10 m; their sums of squares about
   // the origin would be to 1e-4 m^2.
@@ -72,8 +72,8 @@ TEST(ClosedFormTest, WeightsCountPairs) {
     weighted.Add(target, source, kWeight * weight);
     for (int i = 0; i < weight; ++i) repeated.Add(target, source, kWeight);
   }
-  const auto a = FitRigidly(weighted);
-  const auto b = FitRigidly(repeated);
+  const auto a = UmeyamaAlignment(weighted);
+  const auto b = UmeyamaAlignment(repeated);
   ASSERT_TRUE(a && b);
   EXPECT_LE(ErrorOf(*a, *b).angle, kRounding);
   EXPECT_LE(ErrorOf(*a, *b).translation, kRounding);
@@ -92,7 +92,7 @@ TEST(ClosedFormTest, MinimisesWeightedSquares) {
     weights.push_back(world.Uniform(0.1, 1.0) * kWeight);
     moments.Add(targets.back(), source, weights.back());
   }
-  const auto fit = FitRigidly(moments);
+  const auto fit = UmeyamaAlignment(moments);
   ASSERT_TRUE(fit.has_value());
   const auto squares = [&](const Rigid3d& motion) {
     double sum = 0.0;
@@ -110,15 +110,16 @@ TEST(ClosedFormTest, MinimisesWeightedSquares) {
 TEST(ClosedFormTest, TooFewOrALineLeaveTheMotionOpen) {
   RandomWorld world(5);
   const Rigid3d truth = world.Motion(1.0, 1.0);
-  EXPECT_FALSE(FitRigidly(PairMoments()).has_value());
-  EXPECT_FALSE(FitRigidly(MomentsOf(RandomPoints(2, &world), truth)));
+  EXPECT_FALSE(UmeyamaAlignment(PairMoments()).has_value());
+  EXPECT_FALSE(UmeyamaAlignment(MomentsOf(RandomPoints(2, &world), truth)));
   const Vector3d point = world.Vector(1.0), along = world.Vector(1.0);
   std::vector<Vector3d> line;
   for (int i = 0; i < 50; ++i) line.push_back(point + i * along);
-  EXPECT_FALSE(FitRigidly(MomentsOf(line, truth)).has_value());
-  EXPECT_FALSE(FitRigidly(MomentsOf(std::vector(50, point), truth)));
+  EXPECT_FALSE(UmeyamaAlignment(MomentsOf(line, truth)).has_value());
+  EXPECT_FALSE(UmeyamaAlignment(MomentsOf(std::vector(50, point), truth)));
   const Vector3d nan(std::nan(""), 0.0, 0.0);
-  EXPECT_FALSE(FitRigidly(MomentsOf({point, along, nan}, truth)).has_value());
+  EXPECT_FALSE(
+      UmeyamaAlignment(MomentsOf({point, along, nan}, truth)).has_value());
 }
 
 TEST(ClosedFormTest, WhatIsNotFiniteDeterminesNoRotation) {
@@ -143,7 +144,7 @@ TEST(ClosedFormTest, NoiseIsNoShape) {
                            world.Normal(sigma));
       moments.Add(source + noise, source, kWeight);
     }
-    EXPECT_EQ(FitRigidly(moments).has_value(), is_shape);
+    EXPECT_EQ(UmeyamaAlignment(moments).has_value(), is_shape);
   }
 }
 

@@ -69,12 +69,12 @@ TEST(MotionTest, DerivativesEqualJets) {
   using Jet = ceres::Jet<double, 6>;
   RandomWorld world(4);
   for (int i = 0; i < 100; ++i) {
-    const MotionOrigin origin(world.Motion(2.0, 1.0));
+    const LinearizationPoint origin(world.Motion(2.0, 1.0));
     MotionVector x;
     x << world.Vector(1.0), world.Vector(1.0);
     Jet jets[6];
     for (int k = 0; k < 6; ++k) jets[k] = Jet(x[k], k);
-    const MotionPose<Jet> expected = origin.PoseAt(jets);
+    const RotationAndCenter<Jet> expected = origin.PoseAt(jets);
     const MotionDerivatives actual = origin.DerivativesAt(x.data());
     for (int row = 0; row < 3; ++row) {
       EXPECT_NEAR(actual.C[row], expected.C[row].a, kMotionRounding);
@@ -94,7 +94,7 @@ TEST(MotionTest, ParametersCountFromTheOrigin) {
   const Rigid3d guess(Eigen::Quaterniond(AngleAxisd(0.7, Vector3d::UnitY())),
                       Vector3d(0.1, 0.2, 0.3));
   const MotionVector zero = MotionVector::Zero();
-  const Rigid3d motion = MotionOrigin(guess).CurFromPrev(zero.data());
+  const Rigid3d motion = LinearizationPoint(guess).CurFromPrev(zero.data());
   EXPECT_LE((motion.Inverse() * guess).Angle(), kMotionRounding);
   EXPECT_LE((motion.translation - guess.translation).norm(), kMotionRounding);
 }

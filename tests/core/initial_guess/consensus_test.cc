@@ -196,18 +196,5 @@ INSTANTIATE_TEST_SUITE_P(All, ConsensusTest,
                                                   }}),
                          [](const auto& info) { return info.param.name; });
 
-TEST(ConsensusOptionsTest, SayWhatIsWrong) {
-  ConsensusOptions options;
-  EXPECT_EQ(options.Check(), "");
-  options.min_inliers = 2;
-  EXPECT_NE(options.Check(), "");
-  options = {};
-  options.min_inlier_share = std::nan("");
-  EXPECT_NE(options.Check(), "");
-  options = {};
-  options.refits = -1;
-  EXPECT_NE(options.Check(), "");
-}
-
 }  // namespace
 }  // namespace rgbd_pose

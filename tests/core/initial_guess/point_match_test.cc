@@ -114,7 +114,7 @@ TEST(PointMatchTest, RightPairsPreserveTheirDistance) {
   int preserved = 0, pairs = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
-      preserved += PreserveDistance(points[i], points[j], 2.0);
+      preserved += AreDistanceConsistent(points[i], points[j], 2.0);
       ++pairs;
     }
   }
@@ -129,7 +129,7 @@ TEST(PointMatchTest, WrongPairsSeldomPreserveTheirDistance) {
   int preserved = 0, pairs = 0;
   for (size_t i = 0; i < points.size(); ++i) {
     for (size_t j = 0; j < i; ++j) {
-      preserved += PreserveDistance(points[i], points[j], 3.0);
+      preserved += AreDistanceConsistent(points[i], points[j], 3.0);
       ++pairs;
     }
   }
@@ -141,7 +141,7 @@ TEST(PointMatchTest, AMatchIsConsistentWithItself) {
   RandomWorld world(36);
   const PointMatch point =
       PointMatches(world.Matches(1, 0.0, Rigid3d()), 1).at(0);
-  EXPECT_TRUE(PreserveDistance(point, point, 3.0));
+  EXPECT_TRUE(AreDistanceConsistent(point, point, 3.0));
 }
 
 }  // namespace

@@ -102,7 +102,7 @@ TEST(TextFileTest, ReplacesAFileAsAWhole) {
 // That it is on the disk cannot be seen from here; that it is written can.
 TEST(TextFileTest, WritesToTheDisk) {
   const TempFolder folder;
-  WriteFileAtomically(folder / "a.txt", "new", Survives::kPowerLoss);
+  WriteFileAtomically(folder / "a.txt", "new", Durability::kPowerLoss);
   SyncFolder(folder.path());
   EXPECT_EQ(ReadTextFile(folder / "a.txt"), "new");
   ExpectInputError([&] { SyncFolder(folder / "none"); },

@@ -21,7 +21,7 @@ TEST(WorkerTest, DoesItsTasksInTheirOrder) {
   std::vector<int> done;
   std::future<void> last;
   for (int i = 0; i < 100; ++i) {
-    last = worker.Do([&done, i] { done.push_back(i); });
+    last = worker.Submit([&done, i] { done.push_back(i); });
   }
   last.get();
   ASSERT_EQ(done.size(), 100u);
@@ -30,8 +30,8 @@ TEST(WorkerTest, DoesItsTasksInTheirOrder) {
 
 TEST(WorkerTest, ReturnsAndThrowsByTheFutureAndGoesOn) {
   Worker worker;
-  auto bad = worker.Do([]() -> int { throw std::runtime_error("no"); });
-  auto good = worker.Do([] { return 7; });
+  auto bad = worker.Submit([]() -> int { throw std::runtime_error("no"); });
+  auto good = worker.Submit([] { return 7; });
   EXPECT_THROW(bad.get(), std::runtime_error);
   EXPECT_EQ(good.get(), 7);
 }
@@ -43,7 +43,7 @@ TEST(WorkerTest, LeavesWhatItHasNotBegunWhenItEnds) {
   {
     Worker worker;
     for (int i = 0; i < kTasks; ++i) {
-      last = worker.Do([&] {
+      last = worker.Submit([&] {
         ++begun;
         std::this_thread::sleep_for(std::chrono::milliseconds(5));
         ++done;
@@ -60,7 +60,7 @@ TEST(WorkerTest, GivesWayToTheThreadThatGivesItWork) {
   const int here = getpriority(PRIO_PROCESS, 0);
   Worker worker;
   const int there =
-      worker.Do([] { return getpriority(PRIO_PROCESS, 0); }).get();
+      worker.Submit([] { return getpriority(PRIO_PROCESS, 0); }).get();
   EXPECT_EQ(there, std::min(here + 5, 19));
   EXPECT_EQ(getpriority(PRIO_PROCESS, 0), here);
 }

@@ -13,7 +13,7 @@ namespace {
 struct Oracle {
   template <typename T>
   bool operator()(const T* x_a, const T* x_b, const T* y, T* residual) const {
-    const MotionPose<T> pose_a = a.PoseAt(x_a), pose_b = b.PoseAt(x_b);
+    const RotationAndCenter<T> pose_a = a.PoseAt(x_a), pose_b = b.PoseAt(x_b);
     const T factor = origin.At(y)[kDepthFactor];
     const Eigen::Matrix<T, 3, 1> in_a = known.in_a.cast<T>() * factor;
     const Eigen::Matrix<T, 3, 1> in_b = known.in_b.cast<T>() * factor;
@@ -26,8 +26,8 @@ struct Oracle {
     return true;
   }
 
-  const MotionOrigin& a;
-  const MotionOrigin& b;
+  const LinearizationPoint& a;
+  const LinearizationPoint& b;
   const CalibrationOrigin& origin;
   const KnownDistance& known;
 };
@@ -36,7 +36,8 @@ TEST(KnownDistanceTest, EqualsTheOracle) {
   constexpr int kSizes[] = {6, 6, kCalibrationSize};
   RandomWorld world(5);
   for (int i = 0; i < 100; ++i) {
-    const MotionOrigin a(world.Motion(1.0, 2.0)), b(world.Motion(1.0, 2.0));
+    const LinearizationPoint a(world.Motion(1.0, 2.0)),
+        b(world.Motion(1.0, 2.0));
     CalibrationOrigin origin;
     for (int k = 0; k < kCalibrationSize; ++k) {
       origin.start[k] = world.Uniform(0.5, 1.5);
@@ -76,7 +77,7 @@ TEST(KnownDistanceTest, EqualsTheOracle) {
 // Ceres asks for no derivatives by what is held.
 TEST(KnownDistanceTest, GivesTheDerivativesThatAreAskedFor) {
   RandomWorld world(6);
-  const MotionOrigin a(world.Motion(1.0, 2.0)), b(world.Motion(1.0, 2.0));
+  const LinearizationPoint a(world.Motion(1.0, 2.0)), b(world.Motion(1.0, 2.0));
   CalibrationOrigin origin;
   origin.start.setOnes();
   origin.width.setOnes();
@@ -100,7 +101,7 @@ TEST(KnownDistanceTest, GivesTheDerivativesThatAreAskedFor) {
 
 // Two places that are one: no direction is better than another.
 TEST(KnownDistanceTest, OfNothingHasNoSlope) {
-  const MotionOrigin here;
+  const LinearizationPoint here;
   const MotionDerivatives pose =
       here.DerivativesAt(MotionVector::Zero().eval().data());
   KnownDistance known;

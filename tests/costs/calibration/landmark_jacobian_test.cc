@@ -21,7 +21,7 @@ constexpr int kSamples = 500;
 // A landmark before two cameras with a lens, all of it a little off.
 struct LandmarkSample {
   Camera rest;
-  MotionOrigin anchor, view;
+  LinearizationPoint anchor, view;
   CalibrationOrigin origin;
   LandmarkData data;
   double d = 0.0;
@@ -32,8 +32,8 @@ struct LandmarkSample {
     rest.p1 = world->Uniform(-0.005, 0.005);
     rest.p2 = world->Uniform(-0.005, 0.005);
     rest.k3 = world->Uniform(-0.1, 0.1);
-    anchor = MotionOrigin(world->Motion(0.2, 0.3));
-    view = MotionOrigin(world->Motion(0.2, 0.3));
+    anchor = LinearizationPoint(world->Motion(0.2, 0.3));
+    view = LinearizationPoint(world->Motion(0.2, 0.3));
     x_anchor << world->Vector(0.05), world->Vector(0.05);
     x_view << world->Vector(0.05), world->Vector(0.05);
     origin.start << 525.0, 520.0, 319.5, 239.5, 0.1, -0.1, 0.01, 0.01, 0.01,

@@ -35,7 +35,7 @@ TEST_P(DirectAssemblyTest, CostGradientAndHessianAreEqual) {
   const auto& [cost_name, loss_name] = GetParam();
   const auto cost = MakeDirectCost(cost_name, FewPoints());
   const auto loss =
-      FindMEstimator(loss_name)->MakeLoss(cost->independent_rows());
+      FindMEstimator(loss_name)->MakeLoss(cost->degrees_of_freedom());
   const Rigid3d motion =
       Rigid3d(Eigen::Quaterniond::Identity(), {0.004, 0.002, -0.003}) *
       Pair().cur_from_prev;
@@ -43,7 +43,7 @@ TEST_P(DirectAssemblyTest, CostGradientAndHessianAreEqual) {
   cost->Associate(motion);
   EXPECT_GE(cost->matches().size(), 200u);
   // Where it is associated: elsewhere the compressed block looks again.
-  const MotionOrigin origin(motion);
+  const LinearizationPoint origin(motion);
   const MotionVector x = MotionVector::Zero();
   const NormalEquations expected =
       EvaluateProblem(cost.get(), Assembly::kPerMatch, origin, loss.get(), x);
@@ -75,7 +75,7 @@ TEST(DirectEstimateTest, IsTheSameByAllAssemblies) {
       EstimatorOptions options = DirectEstimatorOptions();
       options.assembly = assembly;
       options.max_iterations = 50;
-      options.settled_within = 1e-7;
+      options.step_tolerance = 1e-7;
       MotionEstimate result;
       Estimator(options, MakeDirectCosts(cost, "huber"))
           .Estimate(Pair().data(), Rigid3d(), &result);

@@ -39,14 +39,14 @@ MotionEstimate Estimate(const DirectPair& pair, const std::string& cost,
   return estimate;
 }
 
-NormalEquations Linearised(MotionCost* cost, const PairData& pair,
+NormalEquations Linearised(MotionCost* cost, const FramePair& pair,
                            const Rigid3d& motion) {
   cost->Bind(pair);
   cost->Associate(motion);
   NormalEquations sum;
   const MotionVector zero = MotionVector::Zero();
-  cost->Linearise(MotionOrigin(motion).DerivativesAt(zero.data()), nullptr,
-                  &sum);
+  cost->Linearise(LinearizationPoint(motion).DerivativesAt(zero.data()),
+                  nullptr, &sum);
   return sum;
 }
 
@@ -92,12 +92,12 @@ TEST_P(DirectCostTest, DepthHolesOfThePreviousFrameGiveNoPoints) {
 TEST_P(DirectCostTest, NoImagesAreTooFewMatches) {
   const DirectPair pair = SmallPair();
   Estimator estimator(DirectEstimatorOptions(), MakeDirectCosts(GetParam()));
-  const PairData whole = pair.data();
-  PairData no_prev = whole, no_cur = whole;
+  const FramePair whole = pair.data();
+  FramePair no_prev = whole, no_cur = whole;
   no_prev.prev = nullptr;
   no_cur.cur = nullptr;
   MotionEstimate estimate;
-  for (const PairData& none : {PairData(), no_prev, no_cur}) {
+  for (const FramePair& none : {FramePair(), no_prev, no_cur}) {
     // After a pair that has them, too.
     estimator.Estimate(whole, pair.cur_from_prev, &estimate);
     EXPECT_GT(estimate.num_used, 500);
@@ -132,7 +132,7 @@ TEST_P(DirectCostTest, PointsAreKeptForFramesOfOneId) {
   const auto linearised = [&](const FrameView& prev, uint64_t id) {
     FrameView view = prev;
     view.id = id;
-    PairData data = pair.data();
+    FramePair data = pair.data();
     data.prev = &view;
     return Linearised(cost.get(), data, pair.cur_from_prev).hessian;
   };
@@ -146,7 +146,7 @@ TEST_P(DirectCostTest, PointsAreKeptForFramesOfOneId) {
   EXPECT_EQ(linearised(other.prev.view, 0), of_other);
   EXPECT_EQ(linearised(pair.prev.view, 0), first);
   // A pair without images forgets them.
-  cost->Bind(PairData());
+  cost->Bind(FramePair());
   EXPECT_EQ(linearised(other.prev.view, 3), of_other);
 }
 
@@ -155,7 +155,7 @@ TEST_P(DirectCostTest, AViewWithoutItsDepthNoiseIsRefused) {
   const DirectPair pair = SmallPair();
   FrameView view = pair.prev.view;
   view.depth_noise = {};
-  PairData data = pair.data();
+  FramePair data = pair.data();
   data.prev = &view;
   const auto cost = Make();
   ExpectInputError([&] { cost->Bind(data); }, {"depth_noise"});

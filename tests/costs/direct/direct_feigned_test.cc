@@ -46,7 +46,7 @@ struct Unlit : Photometric {
 template <typename Residual>
 MotionVector DeterminedOverFeigned(bool is_of_measured_residuals) {
   const DirectFrame prev = NoisyWall(1), cur = NoisyWall(2);
-  PairData pair;
+  FramePair pair;
   pair.prev = &prev.view;
   pair.cur = &cur.view;
   DirectOptions options;
@@ -60,11 +60,11 @@ MotionVector DeterminedOverFeigned(bool is_of_measured_residuals) {
   cost.Associate(turn);
   const MotionVector zero = MotionVector::Zero();
   const MotionDerivatives motion =
-      MotionOrigin(turn).DerivativesAt(zero.data());
+      LinearizationPoint(turn).DerivativesAt(zero.data());
   NormalEquations sum;
   cost.Linearise(motion, nullptr, &sum);
   MotionMatrix feigned = MotionMatrix::Zero();
-  cost.AddFeigned(motion, &feigned);
+  cost.AddSpuriousInformation(motion, &feigned);
   EXPECT_GT(cost.matches().size(), 1000u);
   const double variance =
       is_of_measured_residuals ? 2.0 * sum.cost / cost.matches().size() : 1.0;
@@ -98,7 +98,7 @@ TEST(FeignedByDirectCostsTest, APlaneKeepsItsPoint) {
   input.cur = &cur.view;
   for (const int axis : {0, 1}) {
     double columns[ProjectivePlane::kColumns] = {0.3, -0.4, 1.5};
-    ProjectivePlane::Feign(input, axis, columns);
+    ProjectivePlane::NoiseRow(input, axis, columns);
     const Eigen::Map<const Eigen::Vector3d> X(columns), N(columns + 3);
     EXPECT_GT(N.norm(), 1.0);
     EXPECT_NEAR(N.dot(X), 0.0, 1e-9);

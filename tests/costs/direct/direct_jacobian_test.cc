@@ -29,7 +29,7 @@ TYPED_TEST(DirectJacobianTest, EqualsTheOracle) {
         SeenColumns<TypeParam>(InputOf(pair, 1, pair.cur_from_prev),
                                PointsOf<TypeParam>(pair, 1, 1000));
     ASSERT_GE(seen.size, kMinSamples);
-    const MotionOrigin origin(pair.cur_from_prev);
+    const LinearizationPoint origin(pair.cur_from_prev);
     MotionVector x;
     x << 0.01, -0.02, 0.015, 0.02, 0.01, -0.03;
     for (int i = 0; i < seen.size; ++i) {
@@ -41,8 +41,7 @@ TYPED_TEST(DirectJacobianTest, EqualsTheOracle) {
       const double size = std::max(1.0, std::abs(this->jet_r_[0]));
       EXPECT_NEAR(this->hand_r_[0], this->jet_r_[0], kTolerance * size) << i;
       EXPECT_LE(this->RowError(0, 0, 6), kTolerance) << i;
-      EXPECT_GT(this->jet_J_.norm(), 0.1)
-          << "a point that tells nothing: " << i;
+      EXPECT_GT(this->jet_J_.norm(), 0.1) << "a point that says nothing: " << i;
     }
   }
 }

@@ -35,7 +35,8 @@ Eigen::Matrix<Jet, 3, 1> Move(const Rigid3d& cur_from_prev,
                               const Eigen::Vector3d& X) {
   Jet x[6];
   for (int i = 0; i < 6; ++i) x[i] = Jet(0.0, i);
-  const MotionPose<Jet> pose = MotionOrigin(cur_from_prev).PoseAt(x);
+  const RotationAndCenter<Jet> pose =
+      LinearizationPoint(cur_from_prev).PoseAt(x);
   const Jet farther = Jet(1.0) + Jet(0.0, 6) / X.z();
   const Eigen::Matrix<Jet, 3, 1> from_centre = X.cast<Jet>() * farther - pose.C;
   return pose.R * from_centre;
@@ -214,8 +215,8 @@ class DirectOracleTest : public ::testing::Test {
     cost.Associate(motion);
     NormalEquations actual;
     const MotionVector zero = MotionVector::Zero();
-    cost.Linearise(MotionOrigin(motion).DerivativesAt(zero.data()), nullptr,
-                   &actual);
+    cost.Linearise(LinearizationPoint(motion).DerivativesAt(zero.data()),
+                   nullptr, &actual);
     const PackedColumns points = PointsOf<Residual>(pair, level, kMaxPoints);
     DirectInput input = InputOf(pair, level, motion);
     if (Residual::kSeesBrightness) EstimateBrightness(points, &input);

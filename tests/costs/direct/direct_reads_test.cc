@@ -21,8 +21,8 @@ bool IsRead(double u, double v) {
   view.depth = {depth.data(), kWidth, kHeight, kWidth};
   DirectInput input;
   input.cur = &view;
-  float reads[Residual::kReads];
-  return Residual::Read(input, u, v, 1, reads);
+  float samples[Residual::kSamples];
+  return Residual::Read(input, u, v, 1, samples);
 }
 
 // So far from the first and from the last pixels.

@@ -60,8 +60,9 @@ class DirectRowsTest : public ::testing::Test {
     cost.Associate(pair.cur_from_prev);
     NormalEquations normal;
     const MotionVector zero = MotionVector::Zero();
-    cost.Linearise(MotionOrigin(pair.cur_from_prev).DerivativesAt(zero.data()),
-                   nullptr, &normal);
+    cost.Linearise(
+        LinearizationPoint(pair.cur_from_prev).DerivativesAt(zero.data()),
+        nullptr, &normal);
     const int count = static_cast<int>(cost.matches().size());
     return {2.0 * normal.cost / count, normal.gradient.norm() / count, count};
   }
@@ -101,18 +102,18 @@ TYPED_TEST(DirectRowsTest, LanesAreScalars) {
       for (int k = 0; k < TypeParam::kPointColumns; ++k) {
         point[k] = points.values[k * points.stride + i];
       }
-      PlaceInImage<double> place;
+      ProjectedPoint<double> place;
       TypeParam::Locate(input, point, &place);
-      float floats[TypeParam::kReads];
+      float floats[TypeParam::kSamples];
       if (!(place.z > DirectInput::kMinDepth) ||
           !TypeParam::Read(input, place.u, place.v, 1, floats)) {
         continue;
       }
-      double reads[TypeParam::kReads];
-      std::copy(std::begin(floats), std::end(floats), reads);
-      double columns[TypeParam::kColumns], doubt;
-      TypeParam::LookUp(input, point, reads, columns, &doubt);
-      if (doubt >= 1.0) continue;
+      double samples[TypeParam::kSamples];
+      std::copy(std::begin(floats), std::end(floats), samples);
+      double columns[TypeParam::kColumns], rejection;
+      TypeParam::LookUp(input, point, samples, columns, &rejection);
+      if (rejection >= 1.0) continue;
       ASSERT_LT(count, seen.size);
       for (int k = 0; k < TypeParam::kColumns; ++k) {
         // Places within a pixel are floats.

@@ -138,7 +138,7 @@ TEST(MoveToRowTest, CostsLookWhereImagePointSays) {
       for (const Vector3d& prev : Points(camera)) {
         double point[7] = {prev.x(), prev.y(), prev.z(), 0.0, 0.0, 0.5, 0.01};
         const Vector3d q = motion * prev;
-        PlaceInImage<double> place;
+        ProjectedPoint<double> place;
         Photometric::Locate(input, point, &place);
         EXPECT_LT(
             (Vector2d(place.u, place.v) - ImagePoint(camera, view.timing, q))

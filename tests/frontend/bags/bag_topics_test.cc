@@ -57,6 +57,30 @@ TEST_F(Ros1BagTest, RefusesWhatIsNoRecording) {
 
   Open();
   ExpectRefused({"has no colour images", "it has nothing"});
+
+  Open();
+  Write(kColor, kStart,
+        MakeImage(cv::Mat(kHeight, kWidth, CV_8UC1), "bayer_rggb8", kStart));
+  WriteDepth(0);
+  ExpectRefused({"has no colour images", "image_color 'bayer_rggb8'"});
+
+  Open();
+  WriteColor(0);
+  WriteDepth(0);
+  Write("/other/camera_info", kStart, MakeInfo(SmallCamera().camera));
+  ExpectRefused({"has no CameraInfo next to", "/other/camera_info", "topics="});
+
+  Open();
+  Camera none = SmallCamera().camera;
+  none.fx = none.fy = 0.0;
+  Write("/camera/rgb/camera_info", kStart, MakeInfo(none));
+  WriteColor(0);
+  WriteDepth(0);
+  ExpectRefused({"camera_info: its camera is not calibrated (K is 0)"});
+
+  folder_.Write("a.bag.active", "x");
+  path_ = folder_ / "a.bag.active";
+  ExpectRefused({"a.bag.active: its recorder was not ended", "reindex"});
 }
 
 }  // namespace

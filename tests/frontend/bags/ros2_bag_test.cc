@@ -1,5 +1,7 @@
 #include "frontend/bags/ros2_bag.h"
 
+#include <filesystem>
+
 #include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
 #include "tests/frontend/bags/ros2_database.h"
@@ -47,6 +49,32 @@ TEST_F(Ros2BagTest, ReadsWithoutAnIndexOfTimes) {
   ExpectFrames(OpenSource("rosbag2", Options("a.db3")).get(), kFrames);
 }
 
+// A database with a log next to it is opened without leaving anything there.
+TEST_F(Ros2BagTest, ReadsOneWithALogAndLeavesNoFiles) {
+  std::filesystem::create_directories(folder_ / "log");
+  std::filesystem::create_directories(folder_ / "left");
+  {
+    Ros2Database database(folder_ / "log/a#1.db3");
+    database.Execute("PRAGMA journal_mode=WAL; PRAGMA wal_autocheckpoint=0");
+    database.WriteFrames(0, kFrames);
+    // As they are when a recorder is killed.
+    for (const std::string end : {"", "-wal"}) {
+      std::filesystem::copy_file(folder_ / ("log/a#1.db3" + end),
+                                 folder_ / ("left/a.db3" + end));
+    }
+  }
+  const auto source = OpenSource("auto", Options("log/a#1.db3"));
+  ExpectFrames(source.get(), kFrames);
+  int files = 0;
+  for (const auto& file :
+       std::filesystem::directory_iterator(folder_ / "log")) {
+    EXPECT_EQ(file.path().filename(), "a#1.db3");
+    ++files;
+  }
+  EXPECT_EQ(files, 1);
+  ExpectFrames(OpenSource("auto", Options("left/a.db3")).get(), kFrames);
+}
+
 TEST_F(Ros2BagTest, ReadsCompressedImages) {
   Ros2Database database(folder_ / "a.db3");
   database.WriteInfo("/camera/color/camera_info");
@@ -87,7 +115,8 @@ TEST_F(Ros2BagTest, MotionCaptureIsTheGroundTruth) {
 TEST_F(Ros2BagTest, SaysWhatMakesOneOfOtherKinds) {
   folder_.Write("mcap/metadata.yaml", "");
   folder_.Write("mcap/mcap_0.mcap", "x");
-  ExpectRefused("mcap", {"mcap_0.mcap: is in mcap", "ros2 bag convert"});
+  ExpectRefused("mcap",
+                {"mcap_0.mcap: is in mcap", "ros2 bag convert", " all: true"});
   folder_.Write("packed/packed_0.db3.zstd", "x");
   ExpectRefused("packed", {"packed_0.db3.zstd: is packed", "unzstd"});
 }

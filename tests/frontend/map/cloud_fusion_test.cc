@@ -84,22 +84,22 @@ TEST(CloudFusionTest, WantsGoodFramesThatMoved) {
   CloudFusion fusion(Options(Camera()));
   TrackedFrame tracked;
   tracked.status = TrackingStatus::kDegraded;
-  EXPECT_FALSE(fusion.Wants(tracked));
+  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
   tracked.status = TrackingStatus::kOk;
-  EXPECT_TRUE(fusion.Wants(tracked));
+  EXPECT_TRUE(fusion.ShouldIntegrate(tracked));
   fusion.Add(WallAndPlate(Camera(), 0), tracked.world_from_cam);
-  EXPECT_FALSE(fusion.Wants(tracked));
+  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
   tracked.world_from_cam.translation.x() = 0.049;
-  EXPECT_FALSE(fusion.Wants(tracked));
+  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
   tracked.world_from_cam.translation.x() = 0.051;
-  EXPECT_TRUE(fusion.Wants(tracked));
+  EXPECT_TRUE(fusion.ShouldIntegrate(tracked));
   tracked.world_from_cam =
       Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(3.1 * M_PI / 180.0,
                                                    Eigen::Vector3d::UnitY())),
               Eigen::Vector3d::Zero());
-  EXPECT_TRUE(fusion.Wants(tracked));
+  EXPECT_TRUE(fusion.ShouldIntegrate(tracked));
   tracked.segment = 1;
-  EXPECT_FALSE(fusion.Wants(tracked));
+  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
 }
 
 // Rows of pixels in turns 1 m and 1.03 m away: noise of one model, not of the

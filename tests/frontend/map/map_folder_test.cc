@@ -48,7 +48,7 @@ std::vector<std::string> NamesOf(const KeyframeMap& map) {
   return names;
 }
 
-// When a file was made: another one if it was written anew.
+// When a file was made: another one if it was written again.
 std::pair<ino_t, fs::file_time_type> Identity(const std::string& file) {
   struct stat status = {};
   stat(file.c_str(), &status);

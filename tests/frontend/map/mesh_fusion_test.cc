@@ -7,8 +7,8 @@
 #include <cmath>
 #include <limits>
 
-#include "frontend/map/mesh_thinning.h"
 #include "frontend/map/ply_writer.h"
+#include "frontend/map/surface_mesh.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_scene.h"
 
@@ -107,7 +107,7 @@ TEST(MeshFusionTest, ThinIsTheSameSurface) {
   options.frames = 2;
   const TriangleMesh mesh = Fuse(SyntheticDataset(options));
   constexpr size_t kMost = 5000;
-  const TriangleMesh thin = ThinMesh(mesh, 0.01F, kMost);
+  const TriangleMesh thin = SimplifyMesh(mesh, 0.01F, kMost);
   EXPECT_LE(thin.triangles.size(), kMost);
   EXPECT_GT(thin.triangles.size(), kMost / 2);
   const Scene scene = MakeScene(options.scene, options.seed);

@@ -16,13 +16,13 @@ const Eigen::Vector3d kBallCentre(0.01, -0.2, 0.1);  // below and above 0
 
 // A ball, known where `is_known` says so. What is inside it is behind.
 template <typename IsKnown>
-DistanceVolume Ball(const IsKnown& is_known) {
-  constexpr int kSide = DistanceVolume::kSide;
-  DistanceVolume volume;
+TsdfVolume Ball(const IsKnown& is_known) {
+  constexpr int kSide = TsdfVolume::kSide;
+  TsdfVolume volume;
   for (int b = 0; b < 512; ++b) {
     const Eigen::Vector3i at(b / 64 - 4, b / 8 % 8 - 4, b % 8 - 4);
-    auto* block = volume.FindOrInsert(DistanceVolume::KeyOf(at));
-    for (int i = 0; i < DistanceVolume::kBlockSize; ++i) {
+    auto* block = volume.FindOrInsert(TsdfVolume::KeyOf(at));
+    for (int i = 0; i < TsdfVolume::kBlockSize; ++i) {
       const Eigen::Vector3i in_block(i / 64, i / 8 % 8, i % 8);
       const Eigen::Vector3d point =
           kVoxel * (kSide * at + in_block).cast<double>();
@@ -73,7 +73,7 @@ TEST(SurfaceMeshTest, EndsWhereNothingIsKnown) {
   for (const ColoredPoint& vertex : mesh.vertices) {
     EXPECT_GT(vertex.position.x(), 0.05F);
   }
-  EXPECT_TRUE(SurfaceMesh(DistanceVolume(), kVoxel, 1.0F).vertices.empty());
+  EXPECT_TRUE(SurfaceMesh(TsdfVolume(), kVoxel, 1.0F).vertices.empty());
 }
 
 }  // namespace

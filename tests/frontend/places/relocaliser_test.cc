@@ -127,7 +127,7 @@ TEST(RelocaliserTest, FindsOldKeyframesAfterSomeSearches) {
 TEST(RelocaliserTest, FindsAFrameInTheWholeMap) {
   FurnishedRoom room(1);
   const Relocaliser relocaliser(room.camera(), {});
-  PlaceIndex index;
+  PlaceDatabase index;
   std::vector<PlaceFeatures> map;
   const auto features_of = [&](int id) -> const PlaceFeatures& {
     return map[id];

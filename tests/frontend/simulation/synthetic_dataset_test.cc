@@ -13,6 +13,7 @@
 #include "core/geometry/shutter_parameters.h"
 #include "core/geometry/twist.h"
 #include "core/util/input_error.h"
+#include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_sensor.h"
 #include "tests/support/expect_input_error.h"
 
@@ -484,6 +485,19 @@ TEST(SyntheticDatasetTest, RefusesOptionsWithoutSense) {
     options.depth_delay_s = bad;
     EXPECT_THROW(SyntheticDataset{options}, InputError) << bad;
   }
+  for (const double bad : {-0.1, 0.46, std::nan("")}) {
+    options = {};
+    options.moving_patch = bad;
+    EXPECT_THROW(SyntheticDataset{options}, InputError) << bad;
+  }
+  for (const int bad : {-1, 4}) {
+    options = {};
+    options.walking_boxes = bad;
+    EXPECT_THROW(SyntheticDataset{options}, InputError) << bad;
+  }
+  options = {};
+  options.black_s = std::nan("");
+  EXPECT_THROW(SyntheticDataset{options}, InputError);
   options = {};
   options.registration_error.translation.x() = std::nan("");
   EXPECT_THROW(SyntheticDataset{options}, InputError);

@@ -153,6 +153,28 @@ TEST(SyntheticPathTest, HandheldIsFastButKeepsItsLimits) {
   EXPECT_GE(default_length.turn_rate, 85.0 * kRadiansPerDegree);
 }
 
+TEST(SyntheticPathTest, WhipPansTurnHalfRoundAndBack) {
+  const SyntheticPath path = FindSyntheticPath("whip_pan");
+  const SyntheticPath xyz = FindSyntheticPath("xyz");
+  const auto turned = [&](double t) {
+    return (path(t, 10.0).rotation * xyz(t, 10.0).rotation.conjugate())
+        .angularDistance(Eigen::Quaterniond::Identity());
+  };
+  constexpr double kTolerance = 1e-9;
+  for (const double t : {0.0, 1.15, 4.85, 7.0}) {
+    EXPECT_NEAR(turned(t), 0.0, kTolerance) << t;
+  }
+  for (const double t : {1.85, 3.0, 4.15}) {
+    EXPECT_NEAR(turned(t), M_PI, kTolerance) << t;
+  }
+  // Half a second at full speed.
+  EXPECT_NEAR(turned(1.75) - turned(1.25), 150.0 * kRadiansPerDegree,
+              kTolerance);
+  const Peaks peaks = FindPeaks("whip_pan", 10.0);
+  EXPECT_NEAR(peaks.turn_rate, 300.0 * kRadiansPerDegree, 0.1);
+  EXPECT_LT(peaks.speed, 0.4);  // its centre goes as along xyz
+}
+
 struct Tour {
   const char* name;
   double seconds;  // until the camera is where it was
@@ -195,10 +217,10 @@ TEST(SyntheticPathTest, UnknownNameListsTheNames) {
     FAIL() << "no error";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("spiral"));
-    EXPECT_THAT(
-        error.what(),
-        testing::HasSubstr("xyz, pan_tilt, circle, still, walk, handheld, "
-                           "table, two_rooms, twin_corridors, depot"));
+    EXPECT_THAT(error.what(),
+                testing::HasSubstr(
+                    "xyz, pan_tilt, circle, still, walk, handheld, "
+                    "whip_pan, table, two_rooms, twin_corridors, depot"));
   }
 }
 

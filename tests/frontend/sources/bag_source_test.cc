@@ -2,6 +2,7 @@
 
 #include <filesystem>
 
+#include "core/util/text_file.h"
 #include "frontend/sources/tum_writer.h"
 #include "tests/frontend/bags/ros1_bag_fixture.h"
 
@@ -82,6 +83,51 @@ TEST_F(Ros1BagTest, MotionCaptureIsTheGroundTruth) {
         truth[k].world_from_cam * Eigen::Vector3d(0, 0, 2);
     EXPECT_LT((ahead - Eigen::Vector3d(0.1 + 0.01 * k, 2, 1)).norm(), 1e-9);
   }
+}
+
+TEST_F(Ros1BagTest, ADamagedMessageCostsItsFrame) {
+  Open();
+  WriteInfo();
+  for (int k = 0; k < kFrames; ++k) {
+    if (k == 7) {  // is no image of so many bytes
+      sensor_msgs::Image cut = MakeImage(ColorImage(k), "bgr8", StampOf(k));
+      cut.data.resize(10);
+      Write(kColor, StampOf(k) + 0.01, cut);
+    } else {
+      WriteColor(k);
+    }
+    WriteDepth(k);
+  }
+  const auto source = Source();
+  TumWriterOptions options;
+  options.max_damaged = 0.05;
+  const WrittenSequence written =
+      WriteTumSequence(source.get(), folder_ / "tum", options);
+  EXPECT_EQ(written.frames, kFrames - 1);
+  ASSERT_EQ(written.damaged.size(), 1u);
+  EXPECT_NE(written.damaged[0].find(kColor), std::string::npos);
+}
+
+// Images wait for their other halves: those are frames nevertheless.
+TEST_F(Ros1BagTest, FramesBeforeDamageAreKept) {
+  Open(rosbag::compression::LZ4);
+  bag_.setChunkThreshold(10 * 1024);
+  WriteAll();
+  Options();
+  std::string bytes = ReadTextFile(path_);
+  const size_t place = bytes.rfind("op=\x05", 3 * bytes.size() / 4);
+  ASSERT_NE(place, std::string::npos);
+  bytes.replace(place + 200, 400, std::string(400, '\x55'));
+  folder_.Write("a.bag", bytes);
+  const auto source = Source();
+  int frames = 0;
+  ExpectInputError(
+      [&] {
+        while (source->Next().has_value()) ++frames;
+      },
+      {"a.bag: ", "damaged"});
+  EXPECT_GE(frames, 12);
+  EXPECT_FALSE(source->Next().has_value());
 }
 
 TEST_F(Ros1BagTest, WhatFailsOnTheWayLeavesNoFolder) {

@@ -25,7 +25,7 @@ Frame Wall(double depth) {
 
 TEST(CorrectedSourceTest, InverseDepthMovesByItsOffset) {
   RgbdCamera camera;
-  camera.depth_errors.inverse_depth_offset = 0.01;
+  camera.depth_correction.inverse_depth_offset = 0.01;
   const Frame frame = CorrectDepth(camera, Wall(2.0));
   EXPECT_NEAR(1.0 / frame.DepthAt(320, 240), 0.51, 1e-4);
   EXPECT_EQ(frame.DepthAt(10, 10), 0.0);
@@ -64,7 +64,7 @@ TEST(CorrectedSourceTest, OnlyAPlainCameraNeedsNothing) {
   const auto is_wrapped = [](const RgbdCamera& camera) {
     auto source = std::make_unique<SourceWithoutFrames>(camera);
     const FrameSource* const before = source.get();
-    return WithCorrectDepth(std::move(source)).get() != before;
+    return ApplyDepthCorrection(std::move(source)).get() != before;
   };
   EXPECT_FALSE(is_wrapped(RgbdCamera()));
   for (const ShutterParameter& parameter : kShutterParameters) {
@@ -73,14 +73,14 @@ TEST(CorrectedSourceTest, OnlyAPlainCameraNeedsNothing) {
     EXPECT_TRUE(is_wrapped(camera)) << parameter.name;
   }
   RgbdCamera camera;
-  camera.depth_errors.inverse_depth_offset = 0.01;
+  camera.depth_correction.inverse_depth_offset = 0.01;
   EXPECT_TRUE(is_wrapped(camera));
 }
 
 // Depth that is too far ahead comes back.
 TEST(CorrectedSourceTest, RegistrationIsUndone) {
   RgbdCamera camera;
-  camera.depth_errors.depth_from_color.translation.z() = 0.02;
+  camera.depth_correction.depth_from_color.translation.z() = 0.02;
   const Frame frame = CorrectDepth(camera, Wall(2.0));
   EXPECT_NEAR(frame.DepthAt(320, 240), 1.98, 1e-3);
 }
@@ -88,7 +88,7 @@ TEST(CorrectedSourceTest, RegistrationIsUndone) {
 TEST(CorrectedSourceTest, PlainDepthIsLeftAlone) {
   const Frame wall = Wall(2.0);
   EXPECT_EQ(CorrectDepth(RgbdCamera(), wall).depth.data, wall.depth.data);
-  EXPECT_TRUE(DepthErrors().None());
+  EXPECT_TRUE(DepthCorrection().IsIdentity());
 }
 
 }  // namespace

@@ -151,6 +151,64 @@ TEST_P(FrameStreamTest, WhatASourceFailsToGiveIsTheErrorOfThatFrame) {
   EXPECT_FALSE(stream.Next().has_value());
 }
 
+TEST_P(FrameStreamTest, LeavesOutDamagedFrames) {
+  FakeSource source(100);
+  source.unreadable = {0, 3, 99};
+  FrameStream stream(&source, nullptr, GetParam(), 0.05);
+  for (int i = 0; i < 100; ++i) {
+    if (source.unreadable.count(i) == 0) ExpectFrame(&stream, i);
+  }
+  EXPECT_FALSE(stream.Next().has_value());
+  EXPECT_EQ(stream.stopped(), "");
+  ASSERT_EQ(stream.damaged().size(), 3u);
+  EXPECT_EQ(stream.damaged()[1], "image 3 is broken");
+}
+
+TEST_P(FrameStreamTest, EndsWhereTooManyAreDamaged) {
+  FakeSource source(100);
+  source.unreadable = {3, 30, 59, 60, 70};
+  FrameStream stream(&source, nullptr, GetParam(), 0.05);
+  int frames = 0;
+  while (stream.Next().has_value()) ++frames;
+  EXPECT_EQ(frames, 57) << "3 of 60 are too many";
+  EXPECT_EQ(stream.stopped(),
+            "3 of 60 frames cannot be read, the last: image 59 is broken");
+}
+
+TEST_P(FrameStreamTest, EndsWhereTheSourceFails) {
+  FakeSource source(6);
+  source.missing = {3};
+  FrameStream stream(&source, nullptr, GetParam(), 0.05);
+  for (int i = 0; i < 3; ++i) ExpectFrame(&stream, i);
+  EXPECT_FALSE(stream.Next().has_value());
+  EXPECT_EQ(stream.stopped(), "the cable is loose");
+}
+
+TEST_P(FrameStreamTest, WithoutAnyFrameTheFirstErrorIsThrown) {
+  FakeSource damaged(2);
+  damaged.unreadable = {0, 1};
+  FrameStream stream(&damaged, nullptr, GetParam(), 0.05);
+  ExpectInputError([&stream] { stream.Next(); }, {"image 0 is broken"});
+  FakeSource missing(2);
+  missing.missing = {0};
+  FrameStream none(&missing, nullptr, GetParam(), 0.05);
+  ExpectInputError([&none] { none.Next(); }, {"the cable is loose"});
+}
+
+// As a full disk does: it is not the frame's fault.
+TEST_P(FrameStreamTest, WhatPreparingThrowsIsNoDamage) {
+  FakeSource source(4);
+  FrameStream stream(
+      &source,
+      [](const Frame& frame) -> std::unique_ptr<const PreparedFrame> {
+        if (frame.index == 1) throw InputError("the disk is full");
+        return std::make_unique<PreparedFrame>(frame);
+      },
+      GetParam(), 0.5);
+  ExpectFrame(&stream, 0);
+  ExpectInputError([&stream] { stream.Next(); }, {"the disk is full"});
+}
+
 TEST_P(FrameStreamTest, SaysHowLongAFrameTook) {
   FakeSource source(4);
   source.on_read = [](int index) {

@@ -78,27 +78,56 @@ TEST(ImagePairingTest, PairsAsListsThatAreKnownAsAWhole) {
   }
 }
 
-TEST(ImagePairingTest, WaitsForAFewImagesOnly) {
+// What waits is bounded by time, and by memory.
+TEST(ImagePairingTest, WaitsForSomeImagesOnly) {
+  constexpr double kInterval = 1.0 / 32;  // s
+  constexpr size_t kLarge = size_t{4} << 20;
+  constexpr int kMaxLarge = ImagePairing::kMaxBytes / kLarge;
+  constexpr int kMaxWaiting = ImagePairing::kMaxSeconds / kInterval + 1;
   ImagePairing pairing(kMaxDifference);
-  for (int k = 0; k < 1000; ++k) {
-    const auto message = std::make_shared<std::string>();
-    const std::weak_ptr<std::string> is_kept = message;
-    EXPECT_TRUE(pairing.AddColor({k * 0.033, message}));
+  for (int k = 0; k < 1500; ++k) {
+    EXPECT_TRUE(pairing.AddColor({k * kInterval, nullptr}));
     EXPECT_FALSE(pairing.Take().has_value());
-    EXPECT_EQ(pairing.unmatched_color(),
-              std::max(0, k + 1 - ImagePairing::kMaxWaiting));
+    EXPECT_EQ(pairing.unmatched_color(), std::max(0, k + 1 - kMaxWaiting));
+  }
+  ImagePairing large(kMaxDifference);
+  const auto message = std::make_shared<std::string>(kLarge, ' ');
+  for (int k = 0; k < 100; ++k) {
+    EXPECT_TRUE(large.AddColor({k * kInterval, message}));
+    EXPECT_FALSE(large.Take().has_value());
+    EXPECT_EQ(large.unmatched_color(), std::max(0, k + 1 - kMaxLarge));
   }
   // Of depth alone nothing can be said; the oldest are let go.
   ImagePairing depth_alone(kMaxDifference);
   std::vector<std::weak_ptr<std::string>> kept;
-  for (int k = 0; k < 1000; ++k) {
-    const auto message = std::make_shared<std::string>();
-    kept.push_back(message);
-    depth_alone.AddDepth({k * 0.033, message});
+  for (int k = 0; k < 1500; ++k) {
+    const auto bytes = std::make_shared<std::string>();
+    kept.push_back(bytes);
+    depth_alone.AddDepth({k * kInterval, bytes});
   }
   int count = 0;
-  for (const auto& message : kept) count += message.expired() ? 0 : 1;
-  EXPECT_EQ(count, ImagePairing::kMaxWaiting);
+  for (const auto& bytes : kept) count += bytes.expired() ? 0 : 1;
+  EXPECT_EQ(count, kMaxWaiting);
+}
+
+TEST(ImagePairingTest, WaitsForDepthThatIsLate) {
+  std::vector<Arrival> events;
+  for (int k = 0; k < 300; ++k) events.push_back({true, k * 0.033});
+  for (int k = 0; k < 300; ++k) events.push_back({false, k * 0.033});
+  ImagePairing pairing(kMaxDifference);
+  EXPECT_EQ(PairAll(events, &pairing).size(), 300u);
+  EXPECT_EQ(pairing.late(), 0);
+}
+
+TEST(ImagePairingTest, CountsWhatHasTheSameStamp) {
+  std::vector<Arrival> events;
+  for (int k = 0; k < 20; ++k) {
+    events.push_back({true, 1.0});
+    events.push_back({false, 1.0});
+  }
+  ImagePairing pairing(kMaxDifference);
+  EXPECT_EQ(PairAll(events, &pairing).size(), 1u);
+  EXPECT_EQ(pairing.same_stamp(), 38);
 }
 
 TEST(ImagePairingTest, SortsAndSaysWhatComesTooLate) {

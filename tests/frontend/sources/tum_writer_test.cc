@@ -82,6 +82,36 @@ TEST_F(TumWriterTest, ReadsBackAsWritten) {
   }
 }
 
+// As where they come from a JPEG: trajectories must not change.
+TEST_F(TumWriterTest, KeepsGrayLevelsThatAreNotThoseOfTheColours) {
+  class Unrelated final : public Dataset {
+   public:
+    explicit Unrelated(const RgbdCamera& camera) : camera_(camera) {
+      cv::RNG random(1);
+      for (cv::Mat* image : {&frame_.gray, &frame_.color}) {
+        image->create(120, 160, image == &frame_.gray ? CV_8UC1 : CV_8UC3);
+        random.fill(*image, cv::RNG::UNIFORM, -20, 276, /*saturate=*/true);
+      }
+      frame_.depth = cv::Mat(120, 160, CV_16UC1, cv::Scalar(1000));
+    }
+    int size() const override { return 1; }
+    double timestamp(int) const override { return 1.0; }
+    Frame Read(int) const override { return frame_; }
+    const RgbdCamera& camera() const override { return camera_; }
+
+   private:
+    RgbdCamera camera_;
+    Frame frame_;
+  };
+  Unrelated source(options_.camera);
+  WriteTumSequence(&source, folder_.string());
+  SourceOptions options;
+  options.path = folder_.string();
+  EXPECT_EQ(cv::norm(TumDataset(options).Read(0).gray, source.Read(0).gray,
+                     cv::NORM_INF),
+            0.0);
+}
+
 TEST_F(TumWriterTest, DepthHasItsOwnTime) {
   options_.depth_delay_s = -0.0125;
   Write(folder_.string());

@@ -27,9 +27,7 @@ class CoarseStartTest : public ::testing::Test {
         cur_(dataset_.Read(15)),
         cur_from_ref_(dataset_.WorldFromCam(15).Inverse() *
                       dataset_.WorldFromCam(0)),
-        tracker_({camera_},
-                 Estimator(DirectEstimatorOptions(), MakeDirectCosts()),
-                 MakeCoarseEstimator()) {}
+        tracker_({camera_}, *PartsFor(camera_).direct_estimators) {}
 
   Rigid3d StartOf(const Frame& ref, const Frame& cur, const Rigid3d& guess,
                   const MotionMatrix* guess_covariance = nullptr) {

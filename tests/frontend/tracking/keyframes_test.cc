@@ -49,13 +49,15 @@ TEST(KeyframesTest, ThePlacesAreThoseOfTheKeyframesTheLatestFirst) {
   Keyframes keyframes;
   std::vector<Place*> expected;
   for (int i = 0; i < static_cast<int>(Keyframes::kMaxKeyframes) + 3; ++i) {
-    Keyframe keyframe = MakeKeyframe(i, 0, 0.0);
+    Keyframe keyframe = MakeKeyframe(i, i / 10, 0.0);
     keyframe.place = std::make_unique<Place>(Frame(), i);
     expected.insert(expected.begin(), keyframe.place.get());
     keyframes.Add(std::move(keyframe));
   }
   expected.resize(Keyframes::kMaxKeyframes);
-  EXPECT_EQ(keyframes.Places(), expected);
+  EXPECT_EQ(keyframes.PlacesBefore(3), expected);
+  expected.erase(expected.begin(), expected.begin() + 3);  // of segment 2
+  EXPECT_EQ(keyframes.PlacesBefore(2), expected);
 }
 
 TEST(KeyframesTest, TheNearestIsTheOneWithTheSmallestFlow) {

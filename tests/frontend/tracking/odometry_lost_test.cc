@@ -95,9 +95,68 @@ TEST_F(LostPolicyTest, ANewSegmentStartsWhereTheOldOneEnded) {
   EXPECT_EQ(frames[10].reference, -1);
   EXPECT_EQ(frames[10].world_from_cam.translation,
             frames[7].world_from_cam.translation);
-  EXPECT_EQ(frames[11].status, TrackingStatus::kOk) << frames[11].reason;
+  EXPECT_EQ(frames[11].status, TrackingStatus::kDegraded) << frames[11].reason;
+  EXPECT_NE(frames[11].reason.find("segment before"), std::string::npos);
   EXPECT_EQ(frames[11].segment, 1);
   EXPECT_EQ(frames[11].reference, 10);
+  // The segment before is searched for during a second.
+  EXPECT_EQ(frames[13].status, TrackingStatus::kOk) << frames[13].reason;
+  EXPECT_EQ(frames[13].segment, 1);
+}
+
+// What the camera sees that has turned on the spot.
+Frame Turned(double deg) {
+  SyntheticOptions options;
+  options.path = "still";
+  options.frames = 1;
+  options.path_from_cam =
+      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(deg * M_PI / 180.0,
+                                                   Eigen::Vector3d::UnitY())),
+              Eigen::Vector3d::Zero());
+  return SyntheticDataset(options).Read(0);
+}
+
+TEST(OdometryTest, AFrameIsLostIfNoMotionTiesItToTheOneBefore) {
+  Odometry odometry = MakeOdometry(Room("still", 1).camera().camera, "tukey");
+  const TrackingStatus expected[] = {
+      TrackingStatus::kOk, TrackingStatus::kDegraded, TrackingStatus::kLost,
+      TrackingStatus::kLost};
+  for (int i = 0; i < 4; ++i) {
+    Frame frame = Turned(90.0 * i);
+    frame.index = i;
+    frame.timestamp += 0.1 * i;
+    EXPECT_EQ(odometry.Track(frame).status, expected[i]) << i;
+  }
+}
+
+// The camera jumps to where it has not been and turns back from there, frame by
+// frame.
+TEST(OdometryTest, TheWayBackToASegmentIsTrackedAndJoinsBoth) {
+  const Camera camera = Room("still", 1).camera().camera;
+  Odometry odometry = MakeOdometry(camera, "tukey");
+  ASSERT_EQ(odometry.Track(Turned(0.0)).status, TrackingStatus::kOk);
+  const int first_turn = 60, step = 4;
+  TrackedFrame result;
+  int index = 1;
+  for (int deg = first_turn; deg >= 20; deg -= step, ++index) {
+    Frame frame = Turned(deg);
+    frame.index = index;
+    frame.timestamp += 0.05 * index;
+    result = odometry.Track(frame);
+    ASSERT_NE(result.status, TrackingStatus::kLost) << result.reason;
+    EXPECT_EQ(result.status == TrackingStatus::kOk, result.segment == 0);
+    EXPECT_TRUE(deg != first_turn || result.segment == 1);
+    if (result.segment == 1) continue;
+    // The motions since a frame of either segment.
+    EXPECT_TRUE(result.relocalised);
+    ASSERT_EQ(result.edges.size(), 2u);
+    EXPECT_EQ(result.edges[0].ref, 0);
+    EXPECT_GT(result.edges[1].ref, 0);
+    EXPECT_NEAR(result.world_from_cam.Angle(), deg * M_PI / 180.0, 2e-3);
+    EXPECT_LE(result.world_from_cam.translation.norm(), 0.005);
+    return;
+  }
+  FAIL() << "still in segment " << result.segment << ": " << result.reason;
 }
 
 TEST_F(LostPolicyTest, TheOldSegmentIsTakenUpAgainIfTheViewReturns) {
@@ -169,7 +228,7 @@ TEST_P(DarknessTest, AMotionGuessIsFollowedAndSaidToBe) {
     if (!dark) continue;
     // The way of the darkness is as uncertain as its steps together.
     ASSERT_EQ(frame.edges.size(), 1u);
-    const Edge& edge = frame.edges[0];
+    const RelativePose& edge = frame.edges[0];
     const int steps = frame.index - kDark + 1;
     EXPECT_NEAR(edge.covariance(0, 0), steps * 1e-4, 1e-5);
     EXPECT_GE(edge.covariance(3, 3), steps * 1e-4);

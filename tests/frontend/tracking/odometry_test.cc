@@ -138,7 +138,7 @@ TEST(OdometryTest, EveryTrackedFrameCarriesItsEdges) {
     references += tracked.is_reference;
     returns += tracked.edges.size() > 1;
     for (size_t k = 0; k < tracked.edges.size(); ++k) {
-      const Edge& edge = tracked.edges[k];
+      const RelativePose& edge = tracked.edges[k];
       EXPECT_EQ(edge.cur, i);
       ASSERT_LT(edge.ref, i);
       EXPECT_TRUE(frames[edge.ref].is_reference);

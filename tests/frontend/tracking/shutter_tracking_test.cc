@@ -113,7 +113,7 @@ TEST_P(ShutterTrackersTest, EarlierDepth) { ExpectUndone({{}, {}, -0.015}); }
 
 INSTANTIATE_TEST_SUITE_P(All, ShutterTrackersTest,
                          testing::Values(ShutterTrust{"features", 2.5, 5.0},
-                                         ShutterTrust{"direct", 12.0, 2.0},
+                                         ShutterTrust{"direct", 12.0, 1.4},
                                          ShutterTrust{"hybrid", 4.0, 5.0}),
                          [](const auto& info) {
                            return std::string(info.param.tracker);
@@ -167,7 +167,7 @@ std::string TextOf(const std::vector<TrackedFrame>& frames) {
   Trajectory path;
   for (const TrackedFrame& frame : frames) {
     path.push_back({frame.timestamp, frame.world_from_cam});
-    for (const Edge& edge : frame.edges) {
+    for (const RelativePose& edge : frame.edges) {
       path.push_back({edge.covariance.sum(), edge.cur_from_ref});
     }
   }
@@ -259,7 +259,7 @@ TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {
     for (const Frame& frame : sequence.frames) {
       const TrackedFrame tracked = odometry.Track(frame);
       if (tracked.status != TrackingStatus::kOk) continue;
-      for (const Edge& edge : tracked.edges) {
+      for (const RelativePose& edge : tracked.edges) {
         const Rigid3d truth = sequence.Motion(edge.ref, edge.cur);
         const Eigen::AngleAxisd omega(truth.rotation *
                                       edge.cur_from_ref.rotation.inverse());

@@ -28,8 +28,8 @@ FeatureReference FeatureWall() {
       features->observations.push_back({1.0 * u, 1.0 * v, 2.0, 0.5, 0.01});
     }
   }
-  const FeatureTrust trust(features->observations.size());
-  return FeatureReference(kCamera, std::move(features), trust);
+  const FeatureValidation validation(features->observations.size());
+  return FeatureReference(kCamera, std::move(features), validation);
 }
 
 TEST(FeatureReferenceTest, SaysWhatAnotherCameraSeesOfIt) {
@@ -84,7 +84,7 @@ TEST(FeatureTrackerTest, AMotionThatMostMatchesAreFarFromIsDoubtful) {
     const auto reference =
         tracker.MakeReference(frame, nullptr, nullptr, &why_not);
     ASSERT_NE(reference, nullptr) << why_not;
-    Tracked tracked(kCamera);
+    TrackingResult tracked(kCamera);
     tracker.Track(*reference, frame, Rigid3d(), &tracked);
     EXPECT_GT(tracked.estimate.num_inliers, 60);
     EXPECT_LT(tracked.estimate.cur_from_prev.translation.norm(), 0.005);
@@ -112,7 +112,7 @@ TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
   const auto reference = tracker->MakeReference(
       *tracker->Prepare(room_.Read(0)), nullptr, nullptr, &why_not);
   ASSERT_NE(reference, nullptr) << why_not;
-  Tracked tracked(tracker->images().camera);
+  TrackingResult tracked(tracker->images().camera);
   double share = 1.0, flow = 0.0;
   for (const int frame : {5, 15}) {
     tracker->Track(*reference, *tracker->Prepare(room_.Read(frame)), Rigid3d(),
@@ -132,7 +132,7 @@ TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
     EXPECT_NEAR(reference->SeenFrom(truth).flow_px, flow, 0.1 * flow + 1.0);
   }
   EXPECT_GT(share, 0.5);
-  EXPECT_FALSE(tracked.is_scarce);
+  EXPECT_FALSE(tracked.needs_new_keyframe);
 }
 
 // The covariance of a guess is the prior of the costs that have one.
@@ -140,9 +140,14 @@ TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
   TrackerParts parts = PartsFor(room_.camera().camera);
   parts.estimator = Estimator(
       {}, MakeRobustCosts("bidirectional_point+motion_prior", "tukey,none"));
-  parts.direct_estimator =
-      Estimator(DirectEstimatorOptions(),
-                MakeDirectCosts("photometric+motion_prior", "huber,none"));
+  const std::string cost = "photometric+motion_prior";
+  parts.direct_estimators->leading =
+      Estimator(DirectEstimatorOptions(), MakeDirectCosts(cost, "huber,none"));
+  parts.direct_estimators->refining = Estimator(
+      DirectEstimatorOptions(),
+      JoinCosts(
+          MakeRobustCosts("bidirectional_point+motion_prior", "tukey,none"),
+          MakeDirectCosts(cost, "tukey,none")));
   const auto tracker = MakeTracker(GetParam(), std::move(parts));
   std::string why_not;
   const auto reference = tracker->MakeReference(
@@ -150,7 +155,7 @@ TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
   const auto frame = tracker->Prepare(room_.Read(3));
   const Rigid3d truth = room_.WorldFromCam(3).Inverse() * room_.WorldFromCam(0);
   const Rigid3d off(Eigen::Quaterniond::Identity(), {0.01, 0.0, 0.0});
-  Tracked tracked(tracker->images().camera);
+  TrackingResult tracked(tracker->images().camera);
   const auto pulled = [&](double sigma) {
     const MotionMatrix covariance = sigma * sigma * MotionMatrix::Identity();
     TrackingGuess guess = off * truth;
@@ -177,7 +182,7 @@ TEST_P(TrackerTest, SaysWhyAFrameIsNoReferenceOrNotTracked) {
   EXPECT_NE(why_not, "");
   const auto reference = tracker->MakeReference(*tracker->Prepare(good),
                                                 nullptr, nullptr, &why_not);
-  Tracked tracked(tracker->images().camera);
+  TrackingResult tracked(tracker->images().camera);
   tracker->Track(*reference, *tracker->Prepare(black), Rigid3d(), &tracked);
   EXPECT_EQ(tracked.status, TrackingStatus::kLost);
   EXPECT_NE(tracked.reason, "");
@@ -244,7 +249,9 @@ Tracks Follow(const char* tracker, const char* scene, const char* path,
 }
 
 TEST(DirectTrackerTest, IsNotLostWithoutTexture) {
-  EXPECT_GT(Follow("features", "plain_room", "pan_tilt", 40).lost, 5);
+  OdometryOptions hold;
+  hold.on_lost = LostPolicy::kHold;
+  EXPECT_GT(Follow("features", "plain_room", "pan_tilt", 40, hold).lost, 5);
   const Tracks direct = Follow("direct", "plain_room", "pan_tilt", 40);
   EXPECT_EQ(direct.lost, 0);
   EXPECT_EQ(direct.by_pixels_alone, 39);
@@ -284,7 +291,7 @@ TEST(DirectTrackerTest, AFrameHasToLookLikeItsReference) {
     const auto reference = tracker->MakeReference(
         *tracker->Prepare(room.Read(0)), nullptr, nullptr, &why_not);
     ASSERT_NE(reference, nullptr) << why_not;
-    Tracked tracked(room.camera().camera);
+    TrackingResult tracked(room.camera().camera);
     tracker->Track(*reference, *tracker->Prepare(next), Rigid3d(), &tracked);
     EXPECT_EQ(tracked.status == TrackingStatus::kLost, is_strict)
         << tracked.reason;

@@ -1,0 +1,152 @@
+#include "core/estimation/covariance_accumulator.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+
+#include "core/util/chi_squared.h"
+
+namespace rgbd_pose {
+namespace {
+
+// By how much what noise feigns may exceed its model: depths come in steps, so
+// that slopes of surfaces seen at an angle are noisier.
+constexpr double kSpuriousCostMargin = 6.0;
+
+// What is measured is rounded: depth of 1 to 4 m to 0.2 or 1 mm and corners to
+// a fiftieth of a pixel, some twentieth of a sigma.
+constexpr double kRounding = 0.05;
+
+// Information less what of it is feigned: none, not less, in directions where
+// all is: a covariance is made of it.
+MotionMatrix LessSpurious(const MotionMatrix& hessian,
+                          const MotionMatrix& feigned) {
+  if (feigned.isZero() || !feigned.allFinite()) return hessian;
+  MotionVector unit = hessian.diagonal();
+  for (double& value : unit) value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
+  constexpr double kSingular = 1e-12;
+  MotionMatrix scaled = unit.asDiagonal() * hessian * unit.asDiagonal();
+  scaled.diagonal().array() += kSingular;
+  const Eigen::LLT<MotionMatrix> llt(scaled);
+  if (llt.info() != Eigen::Success) return MotionMatrix::Zero();
+  const MotionMatrix L = llt.matrixL();
+  const MotionMatrix half =
+      llt.matrixL().solve(unit.asDiagonal() * feigned * unit.asDiagonal());
+  const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
+      llt.matrixL().solve(half.transpose()));
+  const MotionVector left =
+      (1.0 - eigen.eigenvalues().array()).cwiseMax(0.0).sqrt();
+  const MotionMatrix root = unit.cwiseInverse().asDiagonal() * L *
+                            eigen.eigenvectors() * left.asDiagonal();
+  return root * root.transpose();
+}
+
+// Fits a match's weight and agreement into an estimate. One that several costs
+// use (`again`) is an inlier if all of them agree.
+void JudgeMatch(int match, bool again, double weight, bool agrees,
+                MotionEstimate* estimate) {
+  estimate->is_inlier[match] = agrees && (!again || estimate->is_inlier[match]);
+  estimate->weights[match] =
+      again ? std::min(estimate->weights[match], weight) : weight;
+}
+
+}  // namespace
+
+void CovarianceAccumulator::JudgeMatches(const RobustProblem& terms,
+                                         MotionEstimate* estimate) {
+  counted_.assign(estimate->is_inlier.size(), false);
+  shares_.resize(terms.size());
+  estimate->num_inliers = 0;
+  for (size_t i = 0; i < terms.size(); ++i) {
+    const RobustTerm term = terms[i];
+    const double scale2 = term.scale * term.scale;
+    const double information = term.cost.information_factor();
+    LossSums& sums = shares_[i].sums;
+    sums = LossSums();
+    for (size_t k = 0; k < term.norms.size(); ++k) {
+      const int p = term.cost.degrees()[k];
+      const double s = term.norms[k];
+      double rho[3];
+      term.loss.Evaluate(s, rho);
+      const double weight = rho[1] / term.factor;
+      sums.psi2 += information * weight * weight * s / scale2;
+      sums.weight_p += information * weight * p;
+      sums.slope_p +=
+          information * (weight * p + 2.0 * s * rho[2] / term.factor);
+      ++sums.blocks;
+      const double limit =
+          term.cost.is_whitened() ? ChiSquared99(p) : term.cost.InlierLimit(k);
+      // A sigma, squared, in the unit of the residuals, is limit /
+      // ChiSquared99.
+      sums.least_psi2 += information * weight * p * limit / ChiSquared99(p) *
+                         kRounding * kRounding / scale2;
+      const bool agrees = s <= limit * scale2;
+      const int match = term.cost.matches()[k];
+      if (match < 0) {
+        if (agrees && term.has_scale) ++estimate->num_inliers;
+        continue;
+      }
+      // Losses that are steeper than least squares near 0 weigh above 1.
+      JudgeMatch(match, counted_[match], std::min(weight, 1.0), agrees,
+                 estimate);
+      counted_[match] = true;
+      const double norm = std::sqrt(s);
+      if (norm >= estimate->residual_norms[match]) {
+        estimate->residual_norms[match] = norm;
+        estimate->residual_degrees[match] = p;
+      }
+    }
+  }
+  estimate->num_inliers += static_cast<int>(
+      std::count(estimate->is_inlier.begin(), estimate->is_inlier.end(), true));
+}
+
+NormalEquations CovarianceAccumulator::Linearise(
+    const RobustProblem& terms, const MotionDerivatives& motion) {
+  NormalEquations sum;
+  shares_.resize(terms.size());
+  for (size_t i = 0; i < terms.size(); ++i) {
+    const RobustTerm term = terms[i];
+    NormalEquations share;
+    term.cost.Linearise(motion, term.loss_or_null(), &share);
+    MotionMatrix feigned = MotionMatrix::Zero();
+    term.cost.AddSpuriousInformation(motion, &feigned);
+    // Residuals that are larger than their noise do not make slopes noisier.
+    const double excess = std::max(1.0, term.scale);
+    double times = kSpuriousCostMargin * term.cost.information_factor() /
+                   (excess * excess);
+    // Of an image that shows nothing there is not even noise to take off.
+    for (int k = 0; k < 6; ++k) {
+      if (times * feigned(k, k) > share.hessian(k, k)) {
+        times = share.hessian(k, k) / feigned(k, k);
+      }
+    }
+    // The sum may well be indefinite: then some direction is not determined.
+    shares_[i].hessian = LessSpurious(share.hessian, times * feigned);
+    share.hessian -= times * feigned;
+    sum.hessian += share.hessian;
+    sum.gradient += share.gradient;
+    sum.cost += share.cost;
+  }
+  return sum;
+}
+
+MotionMatrix CovarianceAccumulator::Covariance(const RobustProblem& terms,
+                                               const MotionDerivatives& motion,
+                                               const MotionMatrix& inverse) {
+  for (size_t i = 0; i < terms.size(); ++i) {
+    const RobustTerm term = terms[i];
+    shares_[i].is_whitened = term.cost.is_whitened();
+    shares_[i].scale_group = term.cost.scale_group();
+    shares_[i].scatter.setZero();
+    if (term.cost.is_whitened()) continue;
+    term.cost.AddScoreOuterProduct(motion, term.loss_or_null(),
+                                   &shares_[i].scatter);
+    // Blocks that tell the same scatter together.
+    shares_[i].scatter /= term.cost.information_factor();
+  }
+  return RobustCovariance(shares_, inverse);
+}
+
+}  // namespace rgbd_pose

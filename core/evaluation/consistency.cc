@@ -1,0 +1,58 @@
+#include "core/evaluation/consistency.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <cstddef>
+#include <optional>
+#include <utility>
+
+#include "core/evaluation/interpolated_path.h"
+#include "core/util/quantile.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kDegreesOfFreedom = 6.0;
+
+}  // namespace
+
+double ChiSquare(const RelativePose& edge, const Rigid3d& true_cur_from_ref,
+                 const TruthNoise& noise) {
+  const Eigen::AngleAxisd turn(true_cur_from_ref.rotation *
+                               edge.cur_from_ref.rotation.conjugate());
+  MotionVector error;
+  error << turn.angle() * turn.axis(),
+      true_cur_from_ref.Inverse().translation -
+          edge.cur_from_ref.Inverse().translation;
+  MotionMatrix covariance = edge.covariance;
+  covariance.diagonal().head<3>().array() += noise.rotation * noise.rotation;
+  covariance.diagonal().tail<3>().array() +=
+      noise.translation * noise.translation;
+  return error.dot(covariance.ldlt().solve(error));
+}
+
+Consistency Judge(const std::vector<RelativePose>& edges,
+                  const std::vector<double>& times, const Trajectory& truth,
+                  const TruthNoise& noise) {
+  const InterpolatedPath path(truth);
+  Consistency result;
+  std::vector<double> shares;
+  for (const RelativePose& edge : edges) {
+    if (edge.covariance.isZero(0.0)) continue;  // nobody judged it
+    const std::optional<Rigid3d> ref = path.At(times[edge.ref]);
+    const std::optional<Rigid3d> cur = path.At(times[edge.cur]);
+    if (!ref.has_value() || !cur.has_value()) continue;
+    const double chi_square = ChiSquare(edge, cur->Inverse() * *ref, noise);
+    // Not below either where the covariance is invalid.
+    result.wrong += !(chi_square >= 0.0 && chi_square <= kWrongChiSquare);
+    shares.push_back(chi_square / kDegreesOfFreedom);
+    result.nees += shares.back();
+  }
+  if (shares.empty()) return result;
+  result.count = static_cast<int>(shares.size());
+  result.nees /= result.count;
+  result.median = QuantileInPlace(&shares, 0.5);
+  return result;
+}
+
+}  // namespace rgbd_pose

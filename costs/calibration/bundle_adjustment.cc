@@ -1,0 +1,215 @@
+#include "costs/calibration/bundle_adjustment.h"
+
+#include <ceres/loss_function.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <memory>
+
+#include "costs/calibration/calibration_list.h"
+#include "costs/calibration/known_distance_block.h"
+#include "costs/calibration/landmark_block.h"
+#include "costs/calibration/landmark_covariance.h"
+
+namespace rgbd_pose {
+namespace {
+
+using FreeParts = std::array<bool, kCalibrationSize>;
+
+// The prior of y: as it is counted in its standard deviations.
+class PriorBlock final
+    : public ceres::SizedCostFunction<kCalibrationSize, kCalibrationSize> {
+ public:
+  bool Evaluate(double const* const* y, double* residuals,
+                double** jacobians) const override {
+    for (int i = 0; i < kCalibrationSize; ++i) {
+      residuals[i] = y[0][i];
+      if (jacobians == nullptr || jacobians[0] == nullptr) continue;
+      for (int k = 0; k < kCalibrationSize; ++k) {
+        jacobians[0][i * kCalibrationSize + k] = i == k ? 1.0 : 0.0;
+      }
+    }
+    return true;
+  }
+};
+
+std::vector<LinearizationPoint> OriginsOf(
+    const std::vector<Rigid3d>& world_from_cam) {
+  std::vector<LinearizationPoint> origins;
+  for (const Rigid3d& pose : world_from_cam) {
+    origins.emplace_back(pose.Inverse());
+  }
+  return origins;
+}
+
+}  // namespace
+
+BundleAdjustment::BundleAdjustment(const CalibrationViews& views,
+                                   const CalibrationVector& start,
+                                   const CalibrationVector& prior,
+                                   bool training_only, int max_iterations)
+    : views_(views),
+      start_(start),
+      prior_(prior),
+      training_only_(training_only),
+      max_iterations_(max_iterations) {}
+
+CalibrationState BundleAdjustment::Begin() const {
+  CalibrationState state;
+  state.world_from_cam = views_.world_from_cam;
+  state.theta = start_;
+  for (const Landmark& landmark : views_.landmarks) {
+    state.inverse_depths.push_back(landmark.depth.value);
+  }
+  return state;
+}
+
+CalibrationOrigin BundleAdjustment::OriginOf(const FreeParts& is_free) const {
+  CalibrationOrigin origin{start_, prior_};
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    if (!is_free[k]) origin.width[k] = 0.0;
+  }
+  return origin;
+}
+
+void BundleAdjustment::MeasureScales(CalibrationState* state) const {
+  const std::vector<MotionDerivatives> poses = PosesOf(*state);
+  state->pixel_scale = state->depth_scale = 1.0;
+  std::vector<double> pixels, depths;
+  double r[2];
+  for (size_t i = 0; i < views_.landmarks.size(); ++i) {
+    const Landmark& landmark = views_.landmarks[i];
+    const double d = state->inverse_depths[i];
+    const RotationAndCenter<double>& anchor = poses[landmark.anchor];
+    AnchorDepth::Residual<double>(anchor, anchor, d, state->theta.data(),
+                                  DataOf(views_, landmark, *state), r);
+    depths.push_back(std::abs(r[0]));
+    for (int k = 0; k < landmark.num_views; ++k) {
+      const LandmarkView& view = views_.views[landmark.first_view + k];
+      if (!view.TakesPart(training_only_)) continue;
+      const LandmarkData data = DataOf(views_, landmark, view, *state);
+      const RotationAndCenter<double>& there = poses[view.keyframe];
+      LandmarkPixel::Residual<double>(anchor, there, d, state->theta.data(),
+                                      data, r);
+      pixels.push_back(std::abs(r[0]));
+      pixels.push_back(std::abs(r[1]));
+      if (data.depth.inverse_sigma == 0.0) continue;
+      LandmarkDepth::Residual<double>(anchor, there, d, state->theta.data(),
+                                      data, r);
+      depths.push_back(std::abs(r[0]));
+    }
+  }
+  constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution
+  constexpr double kLeast = 1e-3;
+  const auto scale_of = [&](std::vector<double>* values) {
+    if (values->empty()) return 1.0;
+    const auto middle = values->begin() + values->size() / 2;
+    std::nth_element(values->begin(), middle, values->end());
+    return std::max(kLeast, kSigmaOfMedian * *middle);
+  };
+  state->pixel_scale = scale_of(&pixels);
+  state->depth_scale = scale_of(&depths);
+}
+
+double BundleAdjustment::Solve(const FreeParts& is_free,
+                               CalibrationState* state) const {
+  const CalibrationOrigin origin = OriginOf(is_free);
+  const std::vector<LinearizationPoint> origins =
+      OriginsOf(state->world_from_cam);
+  std::vector<MotionVector> x(origins.size(), MotionVector::Zero());
+  CalibrationVector y;
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    y[k] = is_free[k] ? (state->theta[k] - start_[k]) / prior_[k] : 0.0;
+  }
+  const size_t num_landmarks = views_.landmarks.size();
+  std::vector<LandmarkData> data;  // stays where it is
+  data.reserve(num_landmarks + views_.views.size());
+
+  ceres::Problem::Options ownership;
+  ownership.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
+  ceres::CauchyLoss loss(kLandmarkLossWidth);
+  ceres::Problem problem(ownership);
+  ceres::Solver::Options options;
+  options.linear_solver_ordering.reset(new ceres::ParameterBlockOrdering);
+  for (size_t i = 0; i < num_landmarks; ++i) {
+    const Landmark& landmark = views_.landmarks[i];
+    double* const anchor = x[landmark.anchor].data();
+    double* const d = &state->inverse_depths[i];
+    // Any pose will do: its own depth does not depend on it.
+    data.push_back(DataOf(views_, landmark, *state));
+    int used = 0;
+    for (int k = 0; k < landmark.num_views; ++k) {
+      const LandmarkView& view = views_.views[landmark.first_view + k];
+      if (!view.TakesPart(training_only_)) continue;
+      if (used++ == 0) {
+        problem.AddResidualBlock(
+            new LandmarkBlock<AnchorDepth>(origins[landmark.anchor],
+                                           origins[view.keyframe], origin,
+                                           data.back()),
+            &loss, anchor, x[view.keyframe].data(), d, y.data());
+      }
+      data.push_back(DataOf(views_, landmark, view, *state));
+      problem.AddResidualBlock(new LandmarkBlock<LandmarkPixel>(
+                                   origins[landmark.anchor],
+                                   origins[view.keyframe], origin, data.back()),
+                               &loss, anchor, x[view.keyframe].data(), d,
+                               y.data());
+      if (view.depth.inverse_sigma == 0.0) continue;
+      problem.AddResidualBlock(new LandmarkBlock<LandmarkDepth>(
+                                   origins[landmark.anchor],
+                                   origins[view.keyframe], origin, data.back()),
+                               &loss, anchor, x[view.keyframe].data(), d,
+                               y.data());
+    }
+    if (used > 0) options.linear_solver_ordering->AddElementToGroup(d, 0);
+  }
+  for (const KnownDistance& known : views_.distances) {
+    problem.AddResidualBlock(
+        new KnownDistanceBlock(origins[known.a], origins[known.b], origin,
+                               known),
+        nullptr, x[known.a].data(), x[known.b].data(), y.data());
+  }
+  problem.AddResidualBlock(new PriorBlock, nullptr, y.data());
+  options.linear_solver_ordering->AddElementToGroup(y.data(), 1);
+  for (MotionVector& pose : x) {
+    if (!problem.HasParameterBlock(pose.data())) continue;
+    options.linear_solver_ordering->AddElementToGroup(pose.data(), 1);
+  }
+  if (problem.HasParameterBlock(x[0].data())) {
+    problem.SetParameterBlockConstant(x[0].data());
+  }
+  if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
+    problem.SetParameterBlockConstant(y.data());
+  }
+
+  options.linear_solver_type = ceres::SPARSE_SCHUR;
+  options.max_num_iterations = max_iterations_;
+  options.num_threads = 1;
+  options.function_tolerance = 1e-5;
+  options.initial_trust_region_radius = 1e6;
+  options.logging_type = ceres::SILENT;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  if (!summary.IsSolutionUsable()) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  for (size_t i = 0; i < x.size(); ++i) {
+    state->world_from_cam[i] = origins[i].CurFromPrev(x[i].data()).Inverse();
+  }
+  state->theta = origin.At(y.data());
+  return summary.final_cost;
+}
+
+bool BundleAdjustment::Covariance(
+    const FreeParts& is_free, const CalibrationState& state,
+    CalibrationMatrix* model_covariance,
+    CalibrationMatrix* sandwich_covariance) const {
+  return LandmarkCovariance(views_, training_only_, OriginOf(is_free), state,
+                            model_covariance, sandwich_covariance);
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,217 @@
+// What noise feigns is taken off a cost's information: with numbers that a cost
+// makes up.
+
+#include "core/estimation/covariance_accumulator.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "core/estimation/motion_estimate.h"
+#include "core/estimation/robust_problem.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kBlocks = 60;
+constexpr double kSquaredNorm = 0.8;  // of each
+// By how much what is feigned may exceed its model.
+constexpr double kMargin = 6.0;
+
+struct MadeUp {
+  MotionMatrix hessian = MotionMatrix::Identity();
+  MotionMatrix feigned = MotionMatrix::Zero();
+  double information = 1.0;
+  int group = 0;
+  int blocks = kBlocks;
+  int rows = 1;
+};
+
+// A cost whose sums are given. Of three rows, the last has residuals five times
+// as large.
+class MadeUpCost final : public MotionCost {
+ public:
+  explicit MadeUpCost(const MadeUp& given)
+      : given_(given),
+        matches_(given.blocks, -1),
+        degrees_(given.blocks, given.rows) {}
+
+  std::string_view name() const override { return "made_up"; }
+  int num_residuals() const override { return given_.rows; }
+  int degrees_of_freedom() const override { return given_.rows; }
+  bool is_whitened() const override { return true; }
+  int scale_group() const override { return given_.group; }
+  double information_factor() const override { return given_.information; }
+  AssociationPolicy association() const override {
+    return AssociationPolicy::kOnce;
+  }
+  void Bind(const FramePair&) override {}
+  void Associate(const Rigid3d&) override {}
+  const std::vector<int>& matches() const override { return matches_; }
+  const std::vector<int>& degrees() const override { return degrees_; }
+
+  void Residuals(const MotionDerivatives&,
+                 std::vector<double>* residuals) const override {
+    residuals->assign(given_.blocks * given_.rows, std::sqrt(kSquaredNorm));
+    for (size_t i = 2; i < residuals->size() && given_.rows == 3; i += 3) {
+      (*residuals)[i] *= 5.0;
+    }
+  }
+  void SquaredNorms(const MotionDerivatives&,
+                    std::vector<double>* norms) const override {
+    norms->assign(given_.blocks, kSquaredNorm);
+  }
+  void Linearise(const MotionDerivatives&, const ceres::LossFunction* loss,
+                 NormalEquations* sum) const override {
+    double rho[3] = {kSquaredNorm, 1.0, 0.0};
+    if (loss != nullptr) loss->Evaluate(kSquaredNorm, rho);
+    sum->hessian += rho[1] * given_.hessian;
+    sum->gradient += MotionVector::LinSpaced(1.0, 6.0);
+    sum->cost += 7.0;
+  }
+  void AddScoreOuterProduct(const MotionDerivatives&,
+                            const ceres::LossFunction*,
+                            MotionMatrix*) const override {}
+  void AddSpuriousInformation(const MotionDerivatives&,
+                              MotionMatrix* hessian) const override {
+    *hessian += given_.feigned;
+  }
+  void AddTo(Assembly, const LinearizationPoint&, ceres::LossFunction*, double*,
+             ceres::Problem*) override {}
+
+ private:
+  const MadeUp given_;
+  const std::vector<int> matches_, degrees_;
+};
+
+struct Judged {
+  NormalEquations sum;
+  MotionMatrix covariance;
+};
+
+// `is_doubled`: the residuals' spread is found to be 2.
+Judged JudgedOf(const std::vector<MadeUp>& costs, bool is_doubled = false) {
+  std::vector<RobustCost> robust;
+  for (const MadeUp& cost : costs) {
+    robust.push_back({std::make_unique<MadeUpCost>(cost), nullptr});
+  }
+  RobustProblem terms(std::move(robust));
+  const MotionDerivatives motion =
+      LinearizationPoint().DerivativesAt(MotionVector::Zero().eval().data());
+  terms.Bind(FramePair(), Rigid3d());
+  if (is_doubled) {
+    terms.UpdateScales(motion, [](std::vector<double>*) { return 2.0; });
+    terms.SetLosses(1.0);
+  }
+  terms.UpdateNorms(motion);
+  MotionEstimate estimate;
+  CovarianceAccumulator shares;
+  shares.JudgeMatches(terms, &estimate);
+  Judged out;
+  out.sum = shares.Linearise(terms, motion);
+  out.covariance = shares.Covariance(terms, motion, out.sum.hessian.inverse());
+  return out;
+}
+
+MotionMatrix SomeMatrix(double seed, double size) {
+  MotionMatrix root = MotionMatrix::Identity();
+  for (int i = 0; i < 36; ++i) root(i) += 0.3 * std::sin(seed + i);
+  return size * root.transpose() * root;
+}
+
+// Mean psi^2 over mean weight, corrected for six parameters of `blocks`.
+double Spread(int blocks) { return kSquaredNorm * blocks / (blocks - 6.0); }
+
+// However many there are: all rows of a block are asked, or none.
+TEST(RobustProblemTest, ScalesDoNotDependOnTheNumberOfResiduals) {
+  const auto scale_of = [](int blocks) {
+    MadeUp cost;
+    cost.rows = 3;
+    cost.blocks = blocks;
+    std::vector<RobustCost> robust;
+    robust.push_back({std::make_unique<MadeUpCost>(cost), nullptr});
+    RobustProblem terms(std::move(robust));
+    terms.Bind(FramePair(), Rigid3d());
+    terms.UpdateScales(
+        LinearizationPoint().DerivativesAt(MotionVector::Zero().eval().data()),
+        [](std::vector<double>* values) {
+          double sum = 0.0;
+          for (const double value : *values) sum += value;
+          return sum / static_cast<double>(values->size());
+        });
+    return terms.scale();
+  };
+  const double expected = std::sqrt(kSquaredNorm) * (1.0 + 1.0 + 5.0) / 3.0;
+  for (const int blocks : {100, 600, 700, 1400, 2100, 30000}) {
+    EXPECT_NEAR(scale_of(blocks), expected, 1e-9) << blocks;
+  }
+}
+
+TEST(CovarianceAccumulatorTest, TakesOffWhatIsFeigned) {
+  MadeUp cost;
+  cost.hessian = SomeMatrix(1.0, 1000.0);
+  cost.hessian.topRows<3>() *= 30.0;  // radians and metres
+  cost.hessian.leftCols<3>() *= 30.0;
+  cost.feigned = SomeMatrix(2.0, 5.0);
+  const Judged judged = JudgedOf({cost});
+  const MotionMatrix left = cost.hessian - kMargin * cost.feigned;
+  EXPECT_TRUE(judged.sum.hessian.isApprox(left, 1e-9));
+  EXPECT_TRUE(judged.sum.gradient.isApprox(MotionVector::LinSpaced(1.0, 6.0)));
+  EXPECT_EQ(judged.sum.cost, 7.0);
+  EXPECT_TRUE(
+      judged.covariance.isApprox(Spread(kBlocks) * left.inverse(), 1e-6));
+}
+
+// Blocks that tell the same count less; and residuals that are larger than
+// their noise do not make slopes noisier.
+TEST(CovarianceAccumulatorTest, FeignsByTheFactorAndTheScale) {
+  MadeUp cost;
+  cost.hessian = SomeMatrix(1.0, 1000.0);
+  cost.feigned = SomeMatrix(2.0, 5.0);
+  cost.information = 0.5;
+  MotionMatrix left = 0.5 * (cost.hessian - kMargin * cost.feigned);
+  EXPECT_TRUE(JudgedOf({cost}).sum.hessian.isApprox(left, 1e-9));
+  left = 0.5 / 4.0 * (cost.hessian - kMargin * cost.feigned);
+  EXPECT_TRUE(
+      JudgedOf({cost}, /*is_doubled=*/true).sum.hessian.isApprox(left, 1e-9));
+}
+
+// Of an image that shows nothing there is not even noise to take off: none of
+// the six keeps less than nothing, the rest is in proportion.
+TEST(CovarianceAccumulatorTest, TakesOffNoMoreThanThereIs) {
+  MadeUp cost;
+  cost.feigned = 0.01 * MotionMatrix::Identity();
+  cost.feigned(4, 4) = 2.0;
+  const MotionMatrix left = cost.hessian - 0.5 * cost.feigned;
+  EXPECT_TRUE(JudgedOf({cost}).sum.hessian.isApprox(left, 1e-12));
+}
+
+// Where all is feigned across the axes, another cost has to know.
+TEST(CovarianceAccumulatorTest, WhatIsAllFeignedIsNoneAndNotLess) {
+  MadeUp feigned, right;
+  feigned.hessian(1, 1) = feigned.hessian(2, 2) = 4.0;
+  feigned.feigned.block<2, 2>(1, 1) << 3.6, 3.24, 3.24, 3.6;  // 0.36 to 6.84
+  feigned.feigned /= kMargin;
+  right.hessian = 100.0 * MotionMatrix::Identity();
+  const Judged judged = JudgedOf({feigned, right});
+  EXPECT_TRUE(judged.sum.hessian.isApprox(
+      feigned.hessian + right.hessian - kMargin * feigned.feigned, 1e-9));
+  const Eigen::Vector2d all(std::sqrt(0.5), std::sqrt(0.5));
+  const Eigen::Vector2d little(std::sqrt(0.5), -std::sqrt(0.5));
+  MotionMatrix left = feigned.hessian + right.hessian;
+  left.block<2, 2>(1, 1) -= 4.0 * all * all.transpose();  // and not 6.84
+  left.block<2, 2>(1, 1) -= 0.36 * little * little.transpose();
+  // Both count alike, and know all six: the trace of what is left of both in
+  // the whole is six.
+  const MotionMatrix inverse = judged.sum.hessian.inverse();
+  const double parameters = (inverse * left).trace();
+  const double n = 2.0 * kBlocks;
+  EXPECT_TRUE(judged.covariance.isApprox(
+      kSquaredNorm * n / (n - parameters) * left.inverse(), 1e-9));
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,204 @@
+// A bundle adjustment with the camera: what it begins with, what it holds and
+// where it ends, on views that are exact but for what is planted.
+
+#include "costs/calibration/bundle_adjustment.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "costs/calibration/landmark_residuals.h"
+#include "frontend/simulation/synthetic_matches.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kSigmaPx = 0.5;
+constexpr double kInverseSigmaDepth = 200.0;  // m
+constexpr double kFocalOff = 4.0;             // px
+// Median of |x| to standard deviation, of a normal distribution.
+constexpr double kSigmaOfMedian = 1.4826;
+
+using Free = std::array<bool, kCalibrationSize>;
+
+// Three keyframes and what they see through a camera whose fx is not `start`'s.
+struct World {
+  CalibrationViews views;
+  CalibrationVector start, prior;
+  CalibrationState truth;
+
+  World() {
+    RandomWorld world(21);
+    start.setZero();
+    start.head<4>() << 525.0, 525.0, 319.5, 239.5;
+    start[kDepthFactor] = 1.0;
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      prior[k] = kCalibrationParameters[k].prior * (k <= kFy ? 525.0 : 1.0);
+    }
+    truth.theta = start;
+    truth.theta[kFx] += kFocalOff;
+    truth.world_from_cam = {Rigid3d(), world.Motion(0.1, 0.4),
+                            world.Motion(0.1, 0.4)};
+    views.world_from_cam = truth.world_from_cam;
+    for (int i = 0; i < 40; ++i) {
+      Landmark landmark;
+      landmark.anchor = i % 3;
+      landmark.u = world.Uniform(120.0, 520.0);
+      landmark.v = world.Uniform(90.0, 390.0);
+      landmark.first_view = static_cast<int>(views.views.size());
+      landmark.num_views = 2;
+      landmark.depth.inverse_sigma = kInverseSigmaDepth;
+      const double d = world.Uniform(0.3, 0.6);
+      landmark.depth.value = d;
+      truth.inverse_depths.push_back(d);
+      for (int k = 0; k < 3; ++k) {
+        if (k == landmark.anchor) continue;
+        LandmarkView view;
+        view.keyframe = k;
+        view.sigma_px = kSigmaPx;
+        view.depth.inverse_sigma = kInverseSigmaDepth;
+        views.views.push_back(view);
+      }
+      views.landmarks.push_back(landmark);
+    }
+    SeeExactly();
+  }
+
+  // What a residual of a measurement of zero says was to be measured.
+  void SeeExactly() {
+    const auto poses = PosesOf(truth);
+    double r[2];
+    for (size_t i = 0; i < views.landmarks.size(); ++i) {
+      const Landmark& landmark = views.landmarks[i];
+      for (int k = 0; k < landmark.num_views; ++k) {
+        LandmarkView& view = views.views[landmark.first_view + k];
+        const LandmarkData data = DataOf(views, landmark, view, truth);
+        const RotationAndCenter<double>&anchor = poses[landmark.anchor],
+              &there = poses[view.keyframe];
+        const double d = truth.inverse_depths[i];
+        LandmarkPixel::Residual<double>(anchor, there, d, truth.theta.data(),
+                                        data, r);
+        view.u = std::abs(r[0]) * kSigmaPx;
+        view.v = std::abs(r[1]) * kSigmaPx;
+        LandmarkDepth::Residual<double>(anchor, there, d, truth.theta.data(),
+                                        data, r);
+        view.depth.value = std::abs(r[0]) / kInverseSigmaDepth;
+      }
+    }
+  }
+
+  BundleAdjustment Problem(int max_iterations = 50) const {
+    return {views, start, prior, /*training_only=*/false, max_iterations};
+  }
+
+  // The cost of a state, which stays as it is.
+  double CostOf(CalibrationState state) const {
+    return Problem(/*max_iterations=*/0).Solve(FreeFocal(), &state);
+  }
+
+  static Free FreeFocal() {
+    Free free = {};
+    free[kFx] = true;
+    return free;
+  }
+};
+
+TEST(BundleAdjustmentTest, TheTruthCostsWhatThePriorSays) {
+  const World world;
+  const double off = kFocalOff / world.prior[kFx];
+  EXPECT_NEAR(world.CostOf(world.truth), 0.5 * off * off, 1e-9);
+}
+
+// With a prior that pulls about as hard as the views do.
+TEST(BundleAdjustmentTest, EndsWhereItCostsLeast) {
+  World world;
+  world.prior[kFx] = 5.0;
+  CalibrationState state = world.Problem().Begin();
+  const double cost = world.Problem().Solve(World::FreeFocal(), &state);
+  EXPECT_NEAR(world.CostOf(state), cost, 1e-9 * cost);
+  const double found = state.theta[kFx] - world.start[kFx];
+  EXPECT_GT(found, 0.2 * kFocalOff);
+  EXPECT_LT(found, 0.98 * kFocalOff);
+  for (const double side : {-1.0, 1.0}) {
+    CalibrationState beside = state;
+    beside.theta[kFx] += side * 0.01 * kFocalOff;
+    // The rest settles as it likes.
+    Free none = {};
+    BundleAdjustment held(world.views, beside.theta, world.prior, false, {});
+    held.Solve(none, &beside);
+    EXPECT_GT(world.CostOf(beside), cost) << side;
+  }
+}
+
+TEST(BundleAdjustmentTest, TheFirstPoseStays) {
+  World world;
+  RandomWorld random(22);
+  for (Rigid3d& pose : world.views.world_from_cam) {
+    pose = pose * random.Motion(0.01, 0.01);
+  }
+  const BundleAdjustment problem = world.Problem();
+  CalibrationState state = problem.Begin();
+  const CalibrationState before = state;
+  ASSERT_TRUE(std::isfinite(problem.Solve(World::FreeFocal(), &state)));
+  constexpr double kRounding = 1e-14;  // m, of two inversions
+  EXPECT_LT((state.world_from_cam[0].translation -
+             before.world_from_cam[0].translation)
+                .norm(),
+            kRounding);
+  for (int k = 1; k < 3; ++k) {
+    EXPECT_GT((state.world_from_cam[k].translation -
+               before.world_from_cam[k].translation)
+                  .norm(),
+              1e-3);
+    // The motion between the two is the true one.
+    const Rigid3d error =
+        (state.world_from_cam[0].Inverse() * state.world_from_cam[k])
+            .Inverse() *
+        (world.truth.world_from_cam[0].Inverse() *
+         world.truth.world_from_cam[k]);
+    EXPECT_LT(error.translation.norm(), 1e-3);
+    EXPECT_LT(error.Angle(), 1e-3);
+  }
+}
+
+// A first keyframe that nothing is seen from, or by, is no part of the problem.
+TEST(BundleAdjustmentTest, TheFirstKeyframeMaySeeNothing) {
+  World world;
+  for (Landmark& landmark : world.views.landmarks) {
+    // Of its two views the earlier one is the first keyframe's.
+    landmark.first_view += 1;
+    landmark.num_views = landmark.anchor == 0 ? 0 : 1;
+  }
+  CalibrationState state = world.Problem().Begin();
+  EXPECT_TRUE(std::isfinite(world.Problem().Solve(World::FreeFocal(), &state)));
+}
+
+// By medians: of what is off by 0.6 px in u and by 0.4 px in v, and in depth by
+// half a sigma - the anchors' own are those in the middle.
+TEST(BundleAdjustmentTest, MeasuresTheScalesOfResiduals) {
+  World world;
+  for (size_t i = 0; i < world.views.views.size(); ++i) {
+    LandmarkView& view = world.views.views[i];
+    view.u += 0.6;
+    view.v -= 0.4;
+    view.depth.value += (i % 2 == 0 ? 0.1 : 0.9) / kInverseSigmaDepth;
+  }
+  for (Landmark& landmark : world.views.landmarks) {
+    landmark.depth.value += 0.5 / kInverseSigmaDepth;
+  }
+  CalibrationState state = world.truth;
+  state.pixel_scale = 3.0;
+  state.depth_scale = 0.1;
+  world.Problem().MeasureScales(&state);
+  EXPECT_NEAR(state.pixel_scale, kSigmaOfMedian * 0.6 / kSigmaPx, 1e-6);
+  EXPECT_NEAR(state.depth_scale, kSigmaOfMedian * 0.5, 1e-6);
+
+  // Of no views there is no scale.
+  world.views.views.clear();
+  for (Landmark& landmark : world.views.landmarks) landmark.num_views = 0;
+  world.Problem().MeasureScales(&state);
+  EXPECT_EQ(state.pixel_scale, 1.0);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

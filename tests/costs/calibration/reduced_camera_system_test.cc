@@ -1,0 +1,287 @@
+// The normal equations of a bundle adjustment, landmark by landmark, against
+// dense ones by ceres::Jet from which all depths are eliminated at once; and
+// the covariance of the camera that follows from them.
+
+#include "costs/calibration/reduced_camera_system.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/LU>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+#include "costs/calibration/known_distance_block.h"
+#include "costs/calibration/landmark_covariance.h"
+#include "costs/calibration/landmark_residuals.h"
+#include "frontend/simulation/synthetic_matches.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kKeyframes = 4;
+constexpr int kLandmarks = 12;
+constexpr double kLossWidth = kLandmarkLossWidth;
+
+MeasuredInverseDepth SomeDepth(RandomWorld* world) {
+  MeasuredInverseDepth depth;
+  depth.value = world->Uniform(0.3, 0.6);
+  depth.inverse_sigma = world->Uniform(100.0, 300.0);
+  depth.plane = world->Vector(0.3) + Eigen::Vector3d::UnitZ();
+  depth.ray = world->Vector(0.4);
+  depth.ray.z() = 1.0;
+  depth.rate_rotation = world->Vector(0.5);
+  depth.rate_translation = world->Vector(0.5);
+  return depth;
+}
+
+// Keyframes around a wall and what they see of it, not quite in agreement.
+struct Problem {
+  CalibrationViews views;
+  CalibrationState state;
+  CalibrationOrigin origin;
+
+  // By default each keyframe is the anchor of some landmarks, or `anchor` of
+  // all.
+  explicit Problem(std::optional<int> anchor = std::nullopt) {
+    RandomWorld world(11);
+    for (int k = 0; k < kKeyframes; ++k) {
+      state.world_from_cam.push_back(world.Motion(0.1, 0.2));
+    }
+    origin.start << 525.0, 520.0, 319.5, 239.5, 0.05, -0.02, 0.01, 0.01, 0.01,
+        0.02, -0.01, 0.01, 0.02, 0.01, 1.02;
+    for (double& width : origin.width) width = world.Uniform(0.5, 2.0);
+    state.theta = origin.start;
+    state.pixel_scale = 1.3;
+    state.depth_scale = 0.8;
+    for (int i = 0; i < kLandmarks; ++i) {
+      Landmark landmark;
+      landmark.anchor = anchor.value_or(i % kKeyframes);
+      landmark.u = world.Uniform(100.0, 540.0);
+      landmark.v = world.Uniform(100.0, 380.0);
+      landmark.depth = SomeDepth(&world);
+      landmark.first_view = static_cast<int>(views.views.size());
+      for (int k = 0; k < kKeyframes; ++k) {
+        if (k == landmark.anchor || (i + k) % 3 == 0) continue;
+        LandmarkView view;
+        view.keyframe = k;
+        view.u = landmark.u + world.Uniform(-9.0, 9.0);
+        view.v = landmark.v + world.Uniform(-9.0, 9.0);
+        view.sigma_px = world.Uniform(0.5, 2.0);
+        view.is_held_out = (i + k) % 4 == 0;
+        if (k % 2 == 0) view.depth = SomeDepth(&world);
+        views.views.push_back(view);
+        ++landmark.num_views;
+      }
+      views.landmarks.push_back(landmark);
+      state.inverse_depths.push_back(world.Uniform(0.3, 0.6));
+    }
+  }
+};
+
+// All unknowns: poses but the first, y, and the depths.
+class DenseEquations {
+ public:
+  explicit DenseEquations(const Problem& problem) : problem_(problem) {
+    for (const Rigid3d& pose : problem.state.world_from_cam) {
+      origins_.emplace_back(pose.Inverse());
+    }
+    kept_ = 6 * (kKeyframes - 1) + kCalibrationSize;
+    H = Eigen::MatrixXd::Zero(kept_ + kLandmarks, kept_ + kLandmarks);
+    g = Eigen::MatrixXd::Zero(kept_ + kLandmarks, kKeyframes);
+  }
+
+  template <typename Residual>
+  void Add(int landmark, int anchor, int keyframe, const LandmarkData& data) {
+    constexpr int kRows = Residual::kRows;
+    const MotionVector zero = MotionVector::Zero();
+    const CalibrationVector y = CalibrationVector::Zero();
+    const double* x[] = {zero.data(), zero.data(),
+                         &problem_.state.inverse_depths[landmark], y.data()};
+    Eigen::Matrix<double, kRows, 1> r;
+    Eigen::Matrix<double, kRows, 6, Eigen::RowMajor> by_anchor, by_view;
+    Eigen::Matrix<double, kRows, 1> by_depth;
+    Eigen::Matrix<double, kRows, kCalibrationSize, Eigen::RowMajor> by_y;
+    double* jacobians[] = {by_anchor.data(), by_view.data(), by_depth.data(),
+                           by_y.data()};
+    const LandmarkOracleBlock<Residual> oracle(new LandmarkOracle<Residual>(
+        origins_[anchor], origins_[keyframe], problem_.origin, data));
+    ASSERT_TRUE(oracle.Evaluate(x, r.data(), jacobians));
+    Eigen::MatrixXd J = Eigen::MatrixXd::Zero(kRows, H.cols());
+    if (anchor > 0) J.middleCols<6>(6 * (anchor - 1)) += by_anchor;
+    if (keyframe > 0) J.middleCols<6>(6 * (keyframe - 1)) += by_view;
+    J.middleCols<kCalibrationSize>(kept_ - kCalibrationSize) = by_y;
+    J.col(kept_ + landmark) = by_depth;
+    const double weight =
+        1.0 / (1.0 + r.squaredNorm() / (kLossWidth * kLossWidth));
+    // By steps along the residual: how much less its pull grows.
+    const auto pull = [](double s) {
+      return std::sqrt(s) / (1.0 + s / (kLossWidth * kLossWidth));
+    };
+    const double norm = r.norm(), step = 1e-5;
+    slope_p += (kRows - 1) * weight + (pull(std::pow(norm + step, 2)) -
+                                       pull(std::pow(norm - step, 2))) /
+                                          (2.0 * step);
+    weight_p += kRows * weight;
+    H += weight * J.transpose() * J;
+    g.col(anchor) += weight * J.transpose() * r;
+  }
+
+  // Depths that nothing was added of stay out.
+  void EliminateDepths() {
+    for (int i = kLandmarks - 1; i >= 0; --i) {
+      const int last = kept_ + i;
+      const double pivot = H(last, last);
+      if (pivot > 0.0) {
+        const Eigen::VectorXd column = H.col(last);
+        const Eigen::RowVectorXd rest = g.row(last);
+        H -= column * column.transpose() / pivot;
+        g -= column * rest / pivot;
+      }
+    }
+    H.conservativeResize(kept_, kept_);
+    g.conservativeResize(kept_, kKeyframes);
+  }
+
+  Eigen::MatrixXd H, g;
+  double slope_p = 0.0, weight_p = 0.0;
+
+ private:
+  const Problem& problem_;
+  std::vector<LinearizationPoint> origins_;
+  int kept_ = 0;
+};
+
+TEST(ReducedCameraSystemTest, AreThoseOfAllUnknownsWithoutTheDepths) {
+  const Problem problem;
+  for (const bool training_only : {false, true}) {
+    DenseEquations dense(problem);
+    for (int i = 0; i < kLandmarks; ++i) {
+      const Landmark& landmark = problem.views.landmarks[i];
+      bool is_seen = false;
+      for (int k = 0; k < landmark.num_views; ++k) {
+        const LandmarkView& view = problem.views.views[landmark.first_view + k];
+        if (!view.TakesPart(training_only)) continue;
+        is_seen = true;
+        const LandmarkData data =
+            DataOf(problem.views, landmark, view, problem.state);
+        dense.Add<LandmarkPixel>(i, landmark.anchor, view.keyframe, data);
+        if (view.depth.inverse_sigma > 0.0) {
+          dense.Add<LandmarkDepth>(i, landmark.anchor, view.keyframe, data);
+        }
+      }
+      if (!is_seen) continue;
+      dense.Add<AnchorDepth>(i, landmark.anchor, landmark.anchor,
+                             DataOf(problem.views, landmark, problem.state));
+    }
+    dense.EliminateDepths();
+    const ReducedCameraSystem equations =
+        MakeReducedCameraSystem(problem.views, training_only, problem.origin,
+                                problem.state, PosesOf(problem.state));
+    const Eigen::MatrixXd lower =
+        equations.hessian.triangularView<Eigen::Lower>();
+    const Eigen::MatrixXd expected = dense.H.triangularView<Eigen::Lower>();
+    EXPECT_TRUE(lower.isApprox(expected, 1e-9))
+        << (lower - expected).cwiseAbs().maxCoeff() << " of "
+        << expected.cwiseAbs().maxCoeff();
+    EXPECT_NEAR(equations.slope_p, dense.slope_p, 1e-6 * dense.weight_p);
+    EXPECT_NEAR(equations.weight_p, dense.weight_p, 1e-9 * dense.weight_p);
+    EXPECT_TRUE(equations.gradients.isApprox(dense.g, 1e-9))
+        << (equations.gradients - dense.g).cwiseAbs().maxCoeff();
+  }
+}
+
+// The inverse of all information, and the sandwich, of the slopes, with what
+// each keyframe's landmarks pull by, `correction` times as much as they are
+// few: by formula, with whole matrices.
+void ExpectInverseAndSandwich(Problem problem, double correction) {
+  RandomWorld world(12);
+  for (const int a : {0, 1, 2}) {
+    KnownDistance known;
+    known.a = a;
+    known.b = (a + 2) % kKeyframes;
+    known.in_a = world.Vector(1.0);
+    known.in_b = world.Vector(1.0);
+    known.metres = 0.5;
+    known.sigma = 0.05;
+    problem.views.distances.push_back(known);
+  }
+  const ReducedCameraSystem equations = MakeReducedCameraSystem(
+      problem.views, /*training_only=*/true, problem.origin, problem.state,
+      PosesOf(problem.state));
+  const int y_at = equations.PlaceOfY();
+
+  Eigen::MatrixXd exact =
+      Eigen::MatrixXd::Zero(equations.hessian.rows(), equations.hessian.cols());
+  exact.bottomRightCorner<kCalibrationSize, kCalibrationSize>().setIdentity();
+  for (const KnownDistance& known : problem.views.distances) {
+    const LinearizationPoint a(problem.state.world_from_cam[known.a].Inverse());
+    const LinearizationPoint b(problem.state.world_from_cam[known.b].Inverse());
+    const MotionVector zero = MotionVector::Zero();
+    const CalibrationVector y = CalibrationVector::Zero();
+    const double* x[] = {zero.data(), zero.data(), y.data()};
+    Eigen::VectorXd by_a(6), by_b(6), by_y(static_cast<int>(kCalibrationSize));
+    double* jacobians[] = {by_a.data(), by_b.data(), by_y.data()};
+    double residual;
+    KnownDistanceBlock(a, b, problem.origin, known)
+        .Evaluate(x, &residual, jacobians);
+    Eigen::VectorXd row = Eigen::VectorXd::Zero(exact.rows());
+    if (known.a > 0) row.segment<6>(6 * (known.a - 1)) += by_a;
+    if (known.b > 0) row.segment<6>(6 * (known.b - 1)) += by_b;
+    row.tail<kCalibrationSize>() += by_y;
+    exact += row * row.transpose();
+  }
+  const Eigen::MatrixXd H =
+      Eigen::MatrixXd(equations.hessian.selfadjointView<Eigen::Lower>()) +
+      exact;
+  const Eigen::MatrixXd inverse = H.inverse();
+  const double slope = std::max(0.2, equations.slope_p / equations.weight_p);
+  const Eigen::MatrixXd with_slope =
+      (slope * H + (1.0 - slope) * exact).inverse();
+  const Eigen::MatrixXd pull =
+      correction * equations.gradients * equations.gradients.transpose() +
+      exact;
+  const auto width = problem.origin.width.asDiagonal();
+  const CalibrationMatrix expected_noise =
+      width * inverse.block(y_at, y_at, kCalibrationSize, kCalibrationSize) *
+      width;
+  const CalibrationMatrix expected_scatter =
+      width *
+      (with_slope * pull * with_slope)
+          .block(y_at, y_at, kCalibrationSize, kCalibrationSize) *
+      width;
+
+  CalibrationMatrix model_covariance, sandwich_covariance;
+  ASSERT_TRUE(LandmarkCovariance(problem.views, /*training_only=*/true,
+                                 problem.origin, problem.state,
+                                 &model_covariance, &sandwich_covariance));
+  EXPECT_TRUE(model_covariance.isApprox(expected_noise, 1e-6));
+  EXPECT_TRUE(sandwich_covariance.isApprox(expected_scatter, 1e-6));
+}
+
+TEST(LandmarkCovarianceTest, IsTheInverseAndTheSandwich) {
+  ExpectInverseAndSandwich(Problem(), kKeyframes / (kKeyframes - 1.0));
+}
+
+// What one keyframe's landmarks scatter by, nothing tells.
+TEST(LandmarkCovarianceTest, OneGroupIsNotCorrected) {
+  ExpectInverseAndSandwich(Problem(/*anchor=*/1), 1.0);
+}
+
+// Sigmas are as the state has them.
+TEST(CalibrationStateTest, ScalesSigmas) {
+  const Problem problem;
+  const Landmark& landmark = problem.views.landmarks[0];
+  const LandmarkView& view = problem.views.views[landmark.first_view];
+  const LandmarkData data =
+      DataOf(problem.views, landmark, view, problem.state);
+  EXPECT_DOUBLE_EQ(data.inverse_sigma_px, 1.0 / (1.3 * view.sigma_px));
+  EXPECT_DOUBLE_EQ(data.depth.inverse_sigma, view.depth.inverse_sigma / 0.8);
+  EXPECT_DOUBLE_EQ(
+      DataOf(problem.views, landmark, problem.state).depth.inverse_sigma,
+      landmark.depth.inverse_sigma / 0.8);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

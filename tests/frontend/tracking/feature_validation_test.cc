@@ -1,0 +1,147 @@
+#include "frontend/tracking/feature_validation.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+#include <vector>
+
+namespace rgbd_pose {
+namespace {
+
+const Camera kKinect = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
+constexpr double kDepth = 2.0;
+
+Observation At(double u, double v) { return {u, v, kDepth, 0.5, 0.01}; }
+
+// Features of a camera that does not move: those in the left half agree, those
+// in the right half do not or are not found.
+class FeatureValidationTest : public testing::Test {
+ protected:
+  FeatureValidationTest()
+      : found_{Correspondences(kKinect), {}}, on_probation_(found_) {
+    for (int v = 40; v < 480; v += 20) {
+      for (int u = 40; u < 640; u += 20) {
+        const int i = static_cast<int>(last_.observations.size());
+        last_.observations.push_back(At(u, v));
+        const bool left = u < 320;
+        const bool is_found = left || i % 2 == 0;
+        if (is_found) {
+          found_.Add(last_, i, At(left ? u : u + 15, v));
+          estimate_.is_inlier.push_back(left);
+        }
+      }
+    }
+    fresh_.observations = {At(100, 100), At(200, 300), At(500, 100),
+                           At(550, 300)};
+  }
+
+  FeatureValidation Validation(bool missing_failed,
+                               size_t min_trusted = 1) const {
+    return FeatureValidation(last_, found_, on_probation_, estimate_,
+                             missing_failed, fresh_, min_trusted);
+  }
+
+  // Splits matches of all fresh features; those on probation.
+  std::vector<int> OnProbation(const FeatureValidation& validation) const {
+    FeatureMatches all{Correspondences(kKinect), {}};
+    FeatureMatches on_probation = all;
+    for (int i = 0; i < 4; ++i) all.Add(fresh_, i, fresh_.observations[i]);
+    validation.Split(&all, &on_probation);
+    EXPECT_EQ(all.features.size() + on_probation.features.size(), 4u);
+    EXPECT_EQ(all.matches.size(), all.features.size());
+    EXPECT_EQ(on_probation.matches.size(), on_probation.features.size());
+    return on_probation.features;
+  }
+
+  FeatureSet last_, fresh_;
+  FeatureMatches found_, on_probation_;
+  MotionEstimate estimate_;
+};
+
+TEST_F(FeatureValidationTest, FeaturesWhereOthersFailedAreOnProbation) {
+  for (const bool missing_failed : {true, false}) {
+    const FeatureValidation validation = Validation(missing_failed);
+    EXPECT_EQ(validation.num_trusted(), 2u);
+    EXPECT_EQ(OnProbation(validation), (std::vector<int>{2, 3}));
+  }
+}
+
+TEST_F(FeatureValidationTest, WhatWasNotFoundCountsOnlyIfAsked) {
+  found_.Clear();
+  estimate_.is_inlier.clear();
+  EXPECT_EQ(Validation(/*missing_failed=*/true).num_trusted(), 0u + 4u)
+      << "all would be on probation, so none are";
+  EXPECT_EQ(Validation(/*missing_failed=*/false).num_trusted(), 4u);
+  for (int i = 0; i < static_cast<int>(last_.observations.size()); ++i) {
+    if (last_.observations[i].u < 320) {
+      found_.Add(last_, i, last_.observations[i]);
+      estimate_.is_inlier.push_back(true);
+    }
+  }
+  EXPECT_EQ(Validation(/*missing_failed=*/true).num_trusted(), 2u);
+  EXPECT_EQ(Validation(/*missing_failed=*/false).num_trusted(), 4u);
+}
+
+// Features of the last reference that were on probation, but agree by now,
+// speak for those around them; others on probation do not.
+TEST_F(FeatureValidationTest, FeaturesOnProbationThatAgreeSpeakForTheirPlace) {
+  FeatureMatches left{Correspondences(kKinect), {}};
+  estimate_.is_inlier.clear();
+  for (int i = 0; i < static_cast<int>(last_.observations.size()); ++i) {
+    const Observation o = last_.observations[i];
+    if (o.u < 320) {
+      left.Add(last_, i, o);
+      estimate_.is_inlier.push_back(true);
+    } else {
+      on_probation_.Add(last_, i, At(o.v < 240 ? o.u : o.u + 15, o.v));
+    }
+  }
+  found_ = left;
+  EXPECT_EQ(OnProbation(Validation(/*missing_failed=*/true)),
+            (std::vector<int>{3}));
+}
+
+// Matches of another reference are a mistake of the caller's: it must not write
+// beyond the features there are.
+TEST_F(FeatureValidationTest, MatchesOfAnotherReferenceAreRefused) {
+  FeatureSet larger = last_;
+  larger.observations.push_back(At(100, 100));
+  on_probation_.Add(larger, static_cast<int>(last_.observations.size()),
+                    At(100, 100));
+  EXPECT_THROW(Validation(/*missing_failed=*/true), std::out_of_range);
+}
+
+TEST_F(FeatureValidationTest, AllAreTrustedIfTooFewWouldBeLeft) {
+  EXPECT_EQ(Validation(true, 2).num_trusted(), 2u);
+  EXPECT_EQ(Validation(true, 3).num_trusted(), 4u);
+}
+
+TEST_F(FeatureValidationTest, TrustIsEarnedByAgreeingSomeTimesInARow) {
+  FeatureValidation validation = Validation(true);
+  FeatureMatches agreeing{Correspondences(kKinect), {}};
+  agreeing.Add(fresh_, 2, At(501, 100));
+  FeatureMatches off = agreeing;
+  off.Clear();
+  off.Add(fresh_, 2, At(505, 100));
+  validation.Learn(agreeing, Rigid3d());
+  validation.Learn(agreeing, Rigid3d());
+  validation.Learn(off, Rigid3d());  // begins again
+  validation.Learn(agreeing, Rigid3d());
+  validation.Learn(agreeing, Rigid3d());
+  EXPECT_EQ(OnProbation(validation), (std::vector<int>{2, 3}));
+  validation.Learn(agreeing, Rigid3d());
+  EXPECT_EQ(OnProbation(validation), (std::vector<int>{3}));
+}
+
+TEST_F(FeatureValidationTest, AgreementIsWithTheMotion) {
+  FeatureValidation validation = Validation(true);
+  // 2 cm to the left of 2 m: 5.25 px.
+  const Rigid3d cur_from_ref(Eigen::Quaterniond::Identity(), {-0.02, 0.0, 0.0});
+  FeatureMatches moved{Correspondences(kKinect), {}};
+  moved.Add(fresh_, 3, At(550 - 5.25, 300));
+  for (int i = 0; i < 3; ++i) validation.Learn(moved, cur_from_ref);
+  EXPECT_EQ(OnProbation(validation), (std::vector<int>{2}));
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,90 @@
+#include "frontend/tracking/moving_regions.h"
+
+#include <gtest/gtest.h>
+
+namespace rgbd_pose {
+namespace {
+
+const Camera kPinhole = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
+
+// Features of a camera that does not move: those in the left half agree, those
+// in the right half do not or are not found.
+class MovingRegionsTest : public testing::Test {
+ protected:
+  MovingRegionsTest()
+      : found_{Correspondences(kPinhole), {}}, on_probation_(found_) {
+    for (int v = 40; v < 480; v += 20) {
+      for (int u = 40; u < 640; u += 20) {
+        const int i = static_cast<int>(last_.observations.size());
+        last_.observations.push_back({1.0 * u, 1.0 * v, 2.0, 0.5, 0.01});
+        const bool left = u < 320;
+        if (!left && i % 2 != 0) continue;
+        found_.Add(last_, i, {left ? u : u + 15.0, 1.0 * v, 2.0, 0.5, 0.01});
+        estimate_.is_inlier.push_back(left);
+      }
+    }
+  }
+
+  FeatureSet last_;
+  FeatureMatches found_, on_probation_;
+  MotionEstimate estimate_;
+};
+
+TEST_F(MovingRegionsTest, WhereFeaturesContradictTheMotionSomethingMoves) {
+  CellMask moving;
+  for (const bool missing_contradict : {true, false}) {
+    const double share = MarkMoving(last_, found_, on_probation_, estimate_,
+                                    missing_contradict, &moving);
+    EXPECT_NEAR(share, 0.55, 0.07);
+    EXPECT_FALSE(moving.Contains(100, 200));
+    EXPECT_TRUE(moving.Contains(500, 200));
+  }
+  EXPECT_FALSE(moving.Contains(639, 2000)) << "outside";
+}
+
+TEST_F(MovingRegionsTest, MissingFeaturesAloneAreHiddenBySomething) {
+  // Nothing is found in the right half.
+  FeatureMatches found{Correspondences(kPinhole), {}};
+  estimate_.is_inlier.clear();
+  for (size_t i = 0; i < last_.observations.size(); ++i) {
+    const Observation& o = last_.observations[i];
+    if (o.u >= 320) continue;
+    found.Add(last_, i, o);
+    estimate_.is_inlier.push_back(true);
+  }
+  CellMask moving;
+  EXPECT_NEAR(MarkMoving(last_, found, on_probation_, estimate_, true, &moving),
+              0.55, 0.07);
+  EXPECT_FALSE(moving.Contains(100, 200));
+  EXPECT_TRUE(moving.Contains(500, 200));
+  EXPECT_EQ(MarkMoving(last_, found, on_probation_, estimate_, false, &moving),
+            1.0);
+  EXPECT_FALSE(moving.Contains(500, 200)) << "a frontend that finds some only";
+}
+
+TEST_F(MovingRegionsTest, InliersCoverTheirPartOfTheImage) {
+  const int left = CellsOfInliers(found_, estimate_);
+  EXPECT_NEAR(left, 5 * 8, 8);
+  estimate_.is_inlier.assign(estimate_.is_inlier.size(), true);
+  EXPECT_NEAR(CellsOfInliers(found_, estimate_), 2 * left, 8);
+}
+
+// A barrel lens draws the image's sides inwards: what is marked has to be where
+// the pixels are, not where a pinhole would see them.
+TEST_F(MovingRegionsTest, AreWhereTheLensSeesThem) {
+  Camera barrel = kPinhole;
+  barrel.k1 = -0.5;
+  FeatureMatches found{Correspondences(barrel), {}};
+  for (size_t i = 0; i < found_.features.size(); ++i) {
+    found.AddFrom(found_, i);
+  }
+  CellMask moving;
+  MarkMoving(last_, found, found, estimate_, false, &moving);
+  EXPECT_TRUE(moving.Contains(500, 240));
+  EXPECT_FALSE(moving.Contains(630, 240)) << "beyond what was seen";
+  MarkMoving(last_, found_, found_, estimate_, false, &moving);
+  EXPECT_TRUE(moving.Contains(630, 240)) << "of a pinhole";
+}
+
+}  // namespace
+}  // namespace rgbd_pose

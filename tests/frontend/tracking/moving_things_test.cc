@@ -1,0 +1,62 @@
+// What moves by itself in a view: it does not take the motion along, or the
+// frame does not pass for ok.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "frontend/simulation/synthetic_dataset.h"
+#include "frontend/tracking/odometry.h"
+#include "tests/support/tracker_parts.h"
+
+namespace rgbd_pose {
+namespace {
+
+struct PatchRun {
+  int ok = 0;
+  int wrong = 0;        // of these
+  double median = 0.0;  // error of the motion since the reference, m
+};
+
+// A wall of a poster moves through a share of the view by 5 to 8 px a frame.
+PatchRun TrackWithPatch(const std::string& tracker, double share, int frames,
+                        double max_error) {
+  SyntheticOptions options;
+  options.path = "xyz";
+  options.frames = 240;
+  options.moving_patch = share;
+  const SyntheticDataset room(options);
+  Odometry odometry({}, MakeTracker(tracker, PartsFor(room.camera().camera)));
+  std::vector<double> errors;
+  PatchRun outcome;
+  for (int i = 0; i < frames; ++i) {
+    const TrackedFrame tracked = odometry.Track(room.Read(i));
+    if (i == 0 || tracked.status != TrackingStatus::kOk) continue;
+    ++outcome.ok;
+    const RelativePose& edge = tracked.edges.at(0);
+    const Rigid3d truth =
+        room.WorldFromCam(edge.cur).Inverse() * room.WorldFromCam(edge.ref);
+    errors.push_back((edge.cur_from_ref * truth.Inverse()).translation.norm());
+    outcome.wrong += errors.back() > max_error;
+  }
+  std::sort(errors.begin(), errors.end());
+  outcome.median = errors.empty() ? 0.0 : errors[errors.size() / 2];
+  return outcome;
+}
+
+TEST(MovingThingsTest, PixelsDoNotOverruleFeatures) {
+  constexpr int kFrames = 25;
+  for (const double share : {0.1, 0.2}) {
+    const PatchRun features = TrackWithPatch("features", share, kFrames, 1e-3);
+    const PatchRun both = TrackWithPatch("hybrid", share, kFrames, 1e-3);
+    EXPECT_EQ(features.ok, kFrames - 1);
+    EXPECT_EQ(both.ok, kFrames - 1);
+    EXPECT_EQ(both.wrong, 0) << share;
+    EXPECT_LE(both.median, 1.1 * features.median) << share;
+  }
+}
+
+}  // namespace
+}  // namespace rgbd_pose
