@@ -8,7 +8,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

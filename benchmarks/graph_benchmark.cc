@@ -13,10 +13,10 @@
 #include <utility>
 #include <vector>
 
-#include "apps/pipeline/keyframe_graph.h"
 #include "benchmarks/bundle_adjustment.h"
 #include "benchmarks/simulated_graph.h"
-#include "core/estimation/pose_graph.h"
+#include "core/pose_graph/pose_graph.h"
+#include "frontend/mapping/keyframe_graph.h"
 #include "robust/m_estimator.h"
 
 namespace rgbd_pose {

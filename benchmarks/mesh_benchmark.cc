@@ -16,7 +16,7 @@
 #include "benchmarks/mesh_makers.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
-#include "frontend/map/voxel_cloud.h"
+#include "frontend/fusion/voxel_cloud.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
 DEFINE_string(scene, "room", "what to look at");

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/map/mesh_fusion.h"
+#include "frontend/fusion/mesh_fusion.h"
 
 namespace rgbd_pose {
 

@@ -2,7 +2,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "frontend/image/depth_registration.h"
+#include "frontend/frame/depth_registration.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
 namespace rgbd_pose {

@@ -7,8 +7,8 @@
 #include "apps/calibration/measured_depth.h"
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"
-#include "frontend/image/depth_warper.h"
-#include "frontend/image/observe.h"
+#include "frontend/frame/depth_warper.h"
+#include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
 namespace {

@@ -7,7 +7,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_noise.h"
 #include "costs/calibration/landmark_residuals.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "frontend/map/motion_filter.h"
+#include "frontend/fusion/motion_filter.h"
 
 namespace rgbd_pose {
 

@@ -6,9 +6,9 @@
 
 #include "apps/pipeline/sequence.h"
 #include "core/evaluation/trajectory.h"
-#include "frontend/image/depth_lookup.h"
-#include "frontend/image/frame.h"
-#include "frontend/map/motion_filter.h"
+#include "frontend/frame/depth_lookup.h"
+#include "frontend/frame/frame.h"
+#include "frontend/fusion/motion_filter.h"
 
 namespace rgbd_pose {
 

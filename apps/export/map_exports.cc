@@ -12,10 +12,10 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/map/mesh_file.h"
-#include "frontend/map/mesh_fusion.h"
-#include "frontend/map/ply_writer.h"
-#include "frontend/map/surface_mesh.h"
+#include "frontend/fusion/mesh_file.h"
+#include "frontend/fusion/mesh_fusion.h"
+#include "frontend/fusion/ply_writer.h"
+#include "frontend/fusion/surface_mesh.h"
 
 namespace rgbd_pose {
 namespace {

@@ -7,7 +7,7 @@
 #include "apps/export/output_folder.h"
 #include "apps/export/view_images.h"
 #include "core/util/text_file.h"
-#include "frontend/map/ply_writer.h"
+#include "frontend/fusion/ply_writer.h"
 
 namespace rgbd_pose {
 namespace {

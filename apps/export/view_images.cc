@@ -6,7 +6,7 @@
 #include "core/util/input_error.h"
 #include "core/util/units.h"
 #include "frontend/files/image_file.h"
-#include "frontend/map/cloud_fusion.h"
+#include "frontend/fusion/cloud_fusion.h"
 
 namespace rgbd_pose {
 namespace {

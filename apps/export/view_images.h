@@ -6,8 +6,8 @@
 
 #include "apps/export/export_options.h"
 #include "apps/export/finished_run.h"
-#include "frontend/image/undistorter.h"
-#include "frontend/map/cloud_fusion.h"
+#include "frontend/frame/undistorter.h"
+#include "frontend/fusion/cloud_fusion.h"
 
 namespace rgbd_pose {
 

@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/mapper.h"
 #include "apps/pipeline/settings.h"
 #include "apps/pipeline/slam_settings.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/worker.h"
+#include "frontend/mapping/mapper.h"
 #include "frontend/tracking/odometry.h"
 
 namespace rgbd_pose {

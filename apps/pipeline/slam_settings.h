@@ -3,8 +3,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/mapper.h"
 #include "apps/pipeline/setting_table.h"
+#include "frontend/mapping/mapper.h"
 
 namespace rgbd_pose {
 

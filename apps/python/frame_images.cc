@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
-#include "frontend/image/gray_level.h"
+#include "frontend/frame/gray_level.h"
 
 namespace py = pybind11;
 

@@ -9,7 +9,7 @@
 
 #include "apps/python/arrays.h"
 #include "core/geometry/camera.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

@@ -8,7 +8,7 @@
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 #include "frontend/tracking/odometry.h"
 #include "frontend/tracking/tracked_frame.h"
 

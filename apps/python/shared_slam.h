@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "apps/pipeline/slam.h"
-#include "core/estimation/relative_pose.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/image/frame.h"
+#include "core/pose_graph/relative_pose.h"
+#include "frontend/frame/frame.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {

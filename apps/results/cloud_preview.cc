@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "frontend/map/little_endian.h"
+#include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
 namespace {

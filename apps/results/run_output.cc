@@ -10,9 +10,9 @@
 #include "core/util/text_file.h"
 #include "frontend/features/match_overlay.h"
 #include "frontend/files/image_file.h"
-#include "frontend/image/frame_rectifier.h"
-#include "frontend/map/mesh_file.h"
-#include "frontend/map/ply_writer.h"
+#include "frontend/frame/frame_rectifier.h"
+#include "frontend/fusion/mesh_file.h"
+#include "frontend/fusion/ply_writer.h"
 #include "frontend/tracking/residual_image.h"
 
 namespace rgbd_pose {

@@ -11,7 +11,7 @@
 #include "apps/pipeline/setting_table.h"
 #include "apps/results/run_folder.h"
 #include "apps/shell/frame_selection.h"
-#include "frontend/map/cloud_fusion.h"
+#include "frontend/fusion/cloud_fusion.h"
 #include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {

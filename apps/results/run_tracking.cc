@@ -8,7 +8,7 @@
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "apps/shell/stop_signal.h"
-#include "frontend/image/depth_scale.h"
+#include "frontend/frame/depth_scale.h"
 
 namespace rgbd_pose {
 namespace {

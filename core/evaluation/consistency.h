@@ -2,8 +2,8 @@
 
 #include <vector>
 
-#include "core/estimation/relative_pose.h"
 #include "core/evaluation/trajectory.h"
+#include "core/pose_graph/relative_pose.h"
 
 namespace rgbd_pose {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/estimation/pose_pair.h"
+#include "core/pose_graph/pose_pair.h"
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "frontend/image/depth_lookup.h"
+#include "frontend/frame/depth_lookup.h"
 #include "frontend/places/place_database.h"
 #include "frontend/places/place_features.h"
 #include "frontend/simulation/synthetic_dataset.h"

@@ -8,7 +8,7 @@
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "frontend/files/image_file.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "frontend/features/descriptor_matching.h"
 #include "frontend/features/grid_selection.h"
-#include "frontend/image/observe.h"
+#include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
 namespace {

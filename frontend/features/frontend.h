@@ -9,8 +9,8 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_noise.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/image/depth_lookup.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/depth_lookup.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

@@ -6,7 +6,7 @@
 #include "core/estimation/motion_estimate.h"
 #include "core/geometry/camera.h"
 #include "frontend/features/frontend.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

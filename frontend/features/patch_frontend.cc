@@ -9,8 +9,8 @@
 #include "frontend/features/patch.h"
 #include "frontend/features/patch_alignment.h"
 #include "frontend/features/plane_warp.h"
-#include "frontend/image/image_pyramid.h"
-#include "frontend/image/observe.h"
+#include "frontend/frame/image_pyramid.h"
+#include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
 namespace {

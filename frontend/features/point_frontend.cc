@@ -4,7 +4,7 @@
 
 #include "core/util/input_error.h"
 #include "frontend/features/grid_corners.h"
-#include "frontend/image/observe.h"
+#include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
 namespace {

@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "core/geometry/camera.h"
-#include "frontend/image/depth_registration.h"
+#include "frontend/frame/depth_registration.h"
 
 namespace rgbd_pose {
 

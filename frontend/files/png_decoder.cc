@@ -8,7 +8,7 @@
 
 #include "frontend/files/png_chunks.h"
 #include "frontend/files/png_filters.h"
-#include "frontend/image/gray_level.h"
+#include "frontend/frame/gray_level.h"
 
 namespace rgbd_pose {
 namespace {

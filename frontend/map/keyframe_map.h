@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "core/estimation/relative_pose.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
+#include "core/pose_graph/relative_pose.h"
 #include "frontend/map/stored_images.h"
 
 namespace rgbd_pose {

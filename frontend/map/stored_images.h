@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/util/text_hash.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

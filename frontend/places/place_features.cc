@@ -3,7 +3,7 @@
 #include "core/initial_guess/ransac.h"
 #include "frontend/features/descriptor_method.h"
 #include "frontend/features/grid_selection.h"
-#include "frontend/image/observe.h"
+#include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
 namespace {

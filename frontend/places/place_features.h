@@ -7,8 +7,8 @@
 #include "core/geometry/camera.h"
 #include "core/initial_guess/consensus.h"
 #include "frontend/features/descriptor_matching.h"
-#include "frontend/image/depth_lookup.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/depth_lookup.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

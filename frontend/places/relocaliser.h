@@ -7,8 +7,8 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/image/depth_lookup.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/depth_lookup.h"
+#include "frontend/frame/frame.h"
 #include "frontend/places/place_database.h"
 #include "frontend/places/place_features.h"
 

@@ -7,7 +7,7 @@
 
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
-#include "frontend/image/depth_registration.h"
+#include "frontend/frame/depth_registration.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/sources/dataset.h"

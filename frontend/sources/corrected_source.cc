@@ -4,7 +4,7 @@
 #include <limits>
 #include <utility>
 
-#include "frontend/image/depth_warper.h"
+#include "frontend/frame/depth_warper.h"
 
 namespace rgbd_pose {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "core/geometry/camera.h"
 #include "frontend/files/camera_setup.h"
-#include "frontend/image/depth_registration.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/depth_registration.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

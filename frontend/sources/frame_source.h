@@ -7,7 +7,7 @@
 
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/util/input_error.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 #include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {

@@ -12,7 +12,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
-#include "frontend/image/gray_level.h"
+#include "frontend/frame/gray_level.h"
 #include "frontend/sources/frame_stream.h"
 
 namespace rgbd_pose {

@@ -8,9 +8,9 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
-#include "frontend/image/image_pyramid.h"
-#include "frontend/image/observe.h"
-#include "frontend/image/view_frame.h"
+#include "frontend/frame/image_pyramid.h"
+#include "frontend/frame/observe.h"
+#include "frontend/frame/view_frame.h"
 
 namespace rgbd_pose {
 namespace {

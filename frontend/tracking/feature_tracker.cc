@@ -6,7 +6,7 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
-#include "frontend/image/observe.h"
+#include "frontend/frame/observe.h"
 #include "frontend/tracking/moving_regions.h"
 #include "frontend/tracking/seen_at.h"
 #include "frontend/tracking/twist_estimation.h"

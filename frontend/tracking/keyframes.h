@@ -3,8 +3,8 @@
 #include <memory>
 #include <vector>
 
-#include "core/estimation/relative_pose.h"
 #include "core/geometry/rigid3.h"
+#include "core/pose_graph/relative_pose.h"
 #include "frontend/places/relocaliser.h"
 #include "frontend/tracking/tracker.h"
 

@@ -5,7 +5,7 @@
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
-#include "frontend/image/image_pyramid.h"
+#include "frontend/frame/image_pyramid.h"
 
 namespace rgbd_pose {
 namespace {

@@ -4,7 +4,7 @@
 
 #include "core/estimation/frame_view.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/image/frame.h"
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
-#include "frontend/image/observe.h"
+#include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
 namespace {

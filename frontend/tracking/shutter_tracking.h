@@ -6,8 +6,8 @@
 #include <optional>
 
 #include "core/geometry/rigid3.h"
-#include "frontend/image/frame.h"
-#include "frontend/image/frame_rectifier.h"
+#include "frontend/frame/frame.h"
+#include "frontend/frame/frame_rectifier.h"
 #include "frontend/tracking/keyframes.h"
 #include "frontend/tracking/tracker.h"
 #include "frontend/tracking/velocity_prior.h"

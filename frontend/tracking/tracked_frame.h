@@ -4,8 +4,8 @@
 #include <string_view>
 #include <vector>
 
-#include "core/estimation/relative_pose.h"
 #include "core/geometry/rigid3.h"
+#include "core/pose_graph/relative_pose.h"
 
 namespace rgbd_pose {
 

@@ -11,7 +11,7 @@
 #include "core/geometry/rigid3.h"
 #include "core/initial_guess/initial_guess.h"
 #include "frontend/features/frontend.h"
-#include "frontend/image/view_overlap.h"
+#include "frontend/frame/view_overlap.h"
 #include "frontend/tracking/tracked_frame.h"
 #include "frontend/tracking/velocity_prior.h"
 

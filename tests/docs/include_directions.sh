@@ -31,6 +31,7 @@ room() {
 room core/util core 'Eigen/|ceres/|fcntl.h|sys/resource.h|unistd.h'
 room core/geometry core 'Eigen/'
 room core/estimation core 'Eigen/|ceres/'
+room core/pose_graph core 'Eigen/|ceres/'
 room core/initial_guess core 'Eigen/'
 room core/evaluation core 'Eigen/'
 room robust 'core/|robust' 'ceres/'
@@ -42,7 +43,7 @@ room costs 'core/|costs|robust' 'Eigen/|ceres/'
 # It needs the list's type.
 room costs/calibration 'core/|costs' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
-room frontend/image 'core/|frontend/' "$opencv"
+room frontend/frame 'core/|frontend/' "$opencv"
 room frontend/files 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h"
 room frontend/bags 'core/|frontend/' "$opencv|rosbag/|console_bridge/|sqlite3\.h"
 room frontend/sources 'core/|frontend/' "$opencv|OpenNI\.h"
@@ -50,6 +51,9 @@ room frontend/features 'core/|frontend/' "$opencv"
 room frontend/places 'core/|frontend/' "$opencv"
 room frontend/tracking 'core/|frontend/' "$opencv"
 room frontend/map 'core/|frontend/' "$opencv|fcntl.h|unistd.h|sys/file.h"
+room frontend/fusion 'core/|frontend/' "$opencv"
+# In the library of apps/pipeline, as it needs losses and costs.
+room frontend/mapping 'core/|robust|costs|frontend/' 'Eigen/|ceres/'
 room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"

@@ -7,8 +7,8 @@
 #include "core/estimation/motion_cost.h"
 #include "core/geometry/depth_noise.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/image/image_pyramid.h"
-#include "frontend/image/view_frame.h"
+#include "frontend/frame/image_pyramid.h"
+#include "frontend/frame/view_frame.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
 namespace rgbd_pose {

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "core/estimation/graph_blocks.h"
+#include "core/pose_graph/graph_blocks.h"
 
 namespace rgbd_pose {
 

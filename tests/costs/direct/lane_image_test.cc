@@ -8,7 +8,7 @@
 
 #include "core/util/vector_lanes.h"
 #include "costs/direct_cost_list.h"
-#include "frontend/image/observe.h"
+#include "frontend/frame/observe.h"
 #include "tests/support/exact_twist.h"
 
 namespace rgbd_pose {

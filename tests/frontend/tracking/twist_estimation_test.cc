@@ -9,7 +9,7 @@
 
 #include "core/estimation/estimator.h"
 #include "costs/cost_factory.h"
-#include "frontend/image/observe.h"
+#include "frontend/frame/observe.h"
 #include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {

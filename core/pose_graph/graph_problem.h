@@ -1,0 +1,56 @@
+#pragma once
+
+#include <ceres/crs_matrix.h>
+#include <ceres/problem.h>
+#include <ceres/solver.h>
+
+#include <deque>
+#include <memory>
+#include <vector>
+
+#include "core/estimation/scaled_loss.h"
+#include "core/geometry/motion.h"
+#include "core/pose_graph/graph_terms.h"
+
+namespace rgbd_pose {
+
+// A graph as one Ceres problem: six parameters a pose, about where it is now,
+// of which those of fixed poses are constant.
+class GraphProblem {
+ public:
+  // Losses on edges are `width` times as wide as they are.
+  GraphProblem(const GraphTerms& graph, double width);
+
+  // Whether nothing is known that could move a pose.
+  bool is_empty() const { return problem_->NumResidualBlocks() == 0; }
+
+  // Half the sum of squares under the losses, at the parameters' values.
+  double Cost();
+
+  // Moves the parameters to where it is least.
+  void Solve(const ceres::Solver::Options& options,
+             ceres::Solver::Summary* summary);
+
+  // The value of a pose's parameters, and where that puts it.
+  const MotionVector& parameters(int pose) const { return x_[pose]; }
+  Rigid3d WorldFromCam(int pose) const;
+
+  // The rows of all residuals under their losses in the parameters of these
+  // poses, six columns each, none of them fixed.
+  ceres::CRSMatrix Jacobian(const std::vector<int>& poses);
+
+  // See PoseGraph::MarginalCovariances.
+  std::vector<MotionMatrix> MarginalCovariances(const std::vector<int>& poses,
+                                                int threads);
+
+ private:
+  void AddEdge(const GraphTerms::Edge& edge, double width);
+  bool IsConstant(int pose) const;
+
+  std::vector<LinearizationPoint> origins_;
+  std::vector<MotionVector> x_;
+  std::deque<ScaledLoss> losses_;
+  std::unique_ptr<ceres::Problem> problem_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,122 @@
+#pragma once
+
+#include <ceres/loss_function.h>
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/geometry/motion.h"
+#include "core/geometry/rigid3.h"
+#include "core/pose_graph/relative_pose.h"
+
+namespace rgbd_pose {
+
+// How a graph is solved.
+struct PoseGraphOptions {
+  // Losses on edges are so wide at first that all edges count, then narrower
+  // step by step: for poses that may be far off. Else at once.
+  bool graduated = false;
+
+  // At most so often poses become the origins of another solve.
+  int max_rounds = 10;
+
+  // Where no pose moves by more (rad and m), nothing further is gained.
+  double step_tolerance = 1e-6;
+
+  // Of the solver in each round.
+  int max_iterations = 30;
+
+  // A pose is not determined if, all others held where they are or known no
+  // better, some direction of it has a larger standard deviation (rad or m).
+  double max_standard_deviation = 0.5;
+
+  // Of the solver. The result is the same for one number, not for all.
+  int threads = 1;
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
+
+// How far a solved graph can be believed.
+enum class GraphStatus {
+  kOk,
+  kBadInput,      // a pose or edge is invalid
+  kNotAnchored,   // some poses hang on nothing that is fixed
+  kSingular,      // some pose is not determined
+  kNotConverged,  // the solver gave up; the poses are those before
+};
+
+// "ok", "bad_input", ...
+const char* ToString(GraphStatus status);
+
+// What came of a solve.
+struct GraphSolution {
+  // Whether the poses may be used.
+  GraphStatus status = GraphStatus::kOk;
+  std::string reason;  // in words; empty if ok
+
+  double initial_cost = 0.0;  // with the losses at their own widths
+  double final_cost = 0.0;    // likewise, at the new poses
+  int iterations = 0;         // of the solver, all rounds together
+  int rounds = 0;             // see PoseGraphOptions::max_rounds
+
+  // Whether the poses are those that agree best.
+  bool ok() const { return status == GraphStatus::kOk; }
+};
+
+// Poses that are moved together until they agree best with the motions measured
+// between them, edges with their covariances: a Ceres problem without
+// landmarks. Each edge under a loss or, null, none. Bad data is a status of
+// Solve, never an abort.
+class PoseGraph {
+ public:
+  // Throws InputError for options that are not sound (see Check).
+  explicit PoseGraph(const PoseGraphOptions& options = {});
+  ~PoseGraph();
+  PoseGraph(PoseGraph&&) noexcept;
+  PoseGraph& operator=(PoseGraph&&) noexcept;
+
+  // Returns its number: 0, 1, 2, ... A fixed pose stays where it is.
+  int AddPose(const Rigid3d& world_from_cam, bool is_fixed = false);
+
+  // `edge.ref` and `edge.cur` are numbers of poses. The loss must outlive the
+  // graph and sees the whole edge: 6 whitened rows.
+  int AddEdge(const RelativePose& edge,
+              const ceres::LossFunction* loss = nullptr);
+
+  // Where the next Solve begins, or stays if it is fixed.
+  void SetPose(int pose, const Rigid3d& world_from_cam);
+  // Whether it is, from now on.
+  void SetFixed(int pose, bool is_fixed);
+
+  // Moves the poses that are not fixed. What lies between fixed poses alone is
+  // left out.
+  GraphSolution Solve();
+
+  // How many there are.
+  int num_poses() const;
+  // world_from_cam.
+  const Rigid3d& pose(int pose) const;
+
+  // Covariances of poses, [omega (rad), C (m)] with omega about the axes of the
+  // camera and C its centre in the world, after a Solve that was ok; zero for
+  // fixed poses. They count each edge as independent of others: see
+  // OvercountingFactor. Empty where they cannot be computed.
+  std::vector<MotionMatrix> MarginalCovariances(
+      const std::vector<int>& poses) const;
+
+  // Overcounting of the information: the number of edges by the number of
+  // motions that poses have (a tree: 1). Edges between frames that see the same
+  // features share those features' noise, so that k frames matched each with
+  // each know no more than k - 1 edges do, though they have k (k - 1) / 2:
+  // their covariances are too small by this factor. An upper bound: for edges
+  // that are independent (wheels, other features) it is 1.
+  double OvercountingFactor() const;
+
+ private:
+  class Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace rgbd_pose

@@ -1,0 +1,251 @@
+#include "frontend/frame/depth_warper.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/util/floor.h"
+#include "frontend/frame/depth_lanes.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kFlowBlock = kEight;  // px; the flow is the same all over a block
+
+// Within a block, and from one try to the next, this much (px) is the same
+// place.
+constexpr float kSamePlacePx = 0.5F;
+
+}  // namespace
+
+DepthWarper::DepthWarper(const Camera& camera)
+    : camera_(camera),
+      columns_((camera.width + kFlowBlock - 1) / kFlowBlock),
+      rows_((camera.height + kFlowBlock - 1) / kFlowBlock),
+      ranges_(static_cast<size_t>(columns_) * rows_) {
+  constexpr double kMiddle = (kFlowBlock - 1) / 2.0;
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      rays_.push_back(camera.Unproject(
+          {column * kFlowBlock + kMiddle, row * kFlowBlock + kMiddle}, 1.0));
+    }
+  }
+}
+
+const cv::Mat& DepthWarper::Move(const Frame& frame,
+                                 const Rigid3d& moved_from_measured) {
+  return Move(frame, [&](double) { return moved_from_measured; });
+}
+
+const cv::Mat& DepthWarper::Move(const Frame& frame,
+                                 const RowMotion& moved_from_measured) {
+  frame.depth.copyTo(measured_);
+  measured_.setTo(0, measured_ == Frame::kNoDepth);
+  moved_.create(measured_.size(), CV_16UC1);
+  depth_scale_ = frame.depth_scale;
+  FindRanges();
+  measured_from_moved_.clear();
+  for (int row = 0; row < measured_.rows; ++row) {
+    measured_from_moved_.push_back(moved_from_measured(row).Inverse());
+  }
+  for (int row = 0; row < rows_; ++row) {
+    // Where a block was measured decides its motion: about as far off as the
+    // one to the left.
+    double down = 0.0;
+    for (int column = 0; column < columns_; ++column) {
+      const cv::Rect block = BlockAt(column, row);
+      const int measured_row = std::clamp(
+          static_cast<int>(std::lround(block.y + kFlowBlock / 2 + down)), 0,
+          measured_.rows - 1);
+      const Flow flow = FlowAt(static_cast<size_t>(row) * columns_ + column,
+                               measured_from_moved_[measured_row]);
+      down = flow.turn_v + kRoomInverseDepth * flow.shift_v;
+      const Range range = RangeAround(column, row, flow);
+      if (range.min > range.max) {
+        moved_(block).setTo(0);
+        continue;
+      }
+      const auto units = static_cast<float>(depth_scale_);
+      const float nearest = units / range.min;
+      const float farthest = units / range.max;
+      const float shift =
+          std::max(std::abs(flow.shift_u), std::abs(flow.shift_v));
+      if (shift * (nearest - farthest) > kSamePlacePx) {
+        MoveEach(block, flow, range, &moved_);
+        continue;
+      }
+      const float middle = 0.5F * (nearest + farthest);
+      MoveTogether(block, flow, flow.turn_u + middle * flow.shift_u,
+                   flow.turn_v + middle * flow.shift_v, &moved_);
+    }
+  }
+  return moved_;
+}
+
+cv::Rect DepthWarper::BlockAt(int column, int row) const {
+  return cv::Rect(column * kFlowBlock, row * kFlowBlock, kFlowBlock,
+                  kFlowBlock) &
+         cv::Rect(0, 0, camera_.width, camera_.height);
+}
+
+// Of columns first: the compiler makes vectors of that.
+void DepthWarper::FindRanges() {
+  for (int row = 0; row < rows_; ++row) {
+    // One less and wrapped around: no depth is the largest number.
+    column_min_.assign(measured_.cols, Frame::kNoDepth);
+    column_max_.assign(measured_.cols, 0);
+    const int end = std::min((row + 1) * kFlowBlock, measured_.rows);
+    for (int v = row * kFlowBlock; v < end; ++v) {
+      const auto* raw = measured_.ptr<uint16_t>(v);
+      for (int u = 0; u < measured_.cols; ++u) {
+        const auto less = static_cast<uint16_t>(raw[u] - 1);
+        column_min_[u] = std::min(column_min_[u], less);
+        column_max_[u] = std::max(column_max_[u], raw[u]);
+      }
+    }
+    for (int column = 0; column < columns_; ++column) {
+      const int u = column * kFlowBlock;
+      const int size = std::min(kFlowBlock, measured_.cols - u);
+      const auto low = column_min_.begin() + u;
+      const auto high = column_max_.begin() + u;
+      const int min = *std::min_element(low, low + size) + 1;
+      const uint16_t max = *std::max_element(high, high + size);
+      ranges_[static_cast<size_t>(row) * columns_ + column] = {
+          static_cast<uint16_t>(max == 0 ? 1 : min), max};
+    }
+  }
+}
+
+DepthWarper::Flow DepthWarper::FlowAt(
+    size_t block, const Rigid3d& measured_from_moved) const {
+  const Eigen::Vector2d pixel = camera_.Project(rays_[block]);
+  const Eigen::Vector3d turned = measured_from_moved.rotation * rays_[block];
+  const Eigen::Vector2d turn = camera_.Project(turned) - pixel;
+  const Eigen::Vector2d both =
+      camera_.Project(turned +
+                      kRoomInverseDepth * measured_from_moved.translation) -
+      pixel;
+  const Eigen::Vector2d shift = (both - turn) / kRoomInverseDepth;
+  return {
+      static_cast<float>(turn.x()),
+      static_cast<float>(turn.y()),
+      static_cast<float>(shift.x()),
+      static_cast<float>(shift.y()),
+      static_cast<float>(turned.z()),
+      static_cast<float>(measured_from_moved.translation.z() * depth_scale_)};
+}
+
+// Of all blocks that pixels of a block may come from, at any depth.
+DepthWarper::Range DepthWarper::RangeAround(int column, int row,
+                                            const Flow& flow) const {
+  constexpr float kMaxInverseDepth = 2.0F;  // 1/m
+  const auto first = [](float turn, float shift) {
+    return static_cast<int>(std::floor(
+        (turn + std::min(0.0F, kMaxInverseDepth * shift)) / kFlowBlock));
+  };
+  const auto last = [](float turn, float shift) {
+    return static_cast<int>(std::ceil(
+        (turn + std::max(0.0F, kMaxInverseDepth * shift)) / kFlowBlock));
+  };
+  Range range = {1, 0};
+  const int end_v = std::min(row + last(flow.turn_v, flow.shift_v), rows_ - 1);
+  const int end_u =
+      std::min(column + last(flow.turn_u, flow.shift_u), columns_ - 1);
+  for (int v = std::max(row + first(flow.turn_v, flow.shift_v), 0); v <= end_v;
+       ++v) {
+    for (int u = std::max(column + first(flow.turn_u, flow.shift_u), 0);
+         u <= end_u; ++u) {
+      const Range& here = ranges_[static_cast<size_t>(v) * columns_ + u];
+      if (here.max == 0) continue;
+      range.min = range.max == 0 ? here.min : std::min(range.min, here.min);
+      range.max = std::max(range.max, here.max);
+    }
+  }
+  return range;
+}
+
+void DepthWarper::MoveTogether(const cv::Rect& block, const Flow& flow, float u,
+                               float v, cv::Mat* out) const {
+  const int left = FloorToInt(u);
+  const int above = FloorToInt(v);
+  const float right = u - static_cast<float>(left);
+  const float down = v - static_cast<float>(above);
+  const float scale = 1.0F / flow.stretch;
+  const float offset = -flow.advance / flow.stretch;
+  const cv::Rect source = block + cv::Point(left, above);
+  const bool is_inside = block.width == kFlowBlock && source.x >= 0 &&
+                         source.y >= 0 && source.br().x < measured_.cols &&
+                         source.br().y < measured_.rows;
+  for (int y = 0; y < block.height; ++y) {
+    auto* to = out->ptr<uint16_t>(block.y + y) + block.x;
+    if (!is_inside) {
+      for (int x = 0; x < block.width; ++x) {
+        const float raw = Sample(u + static_cast<float>(block.x + x),
+                                 v + static_cast<float>(block.y + y));
+        to[x] = raw > 0.0F ? EncodeDepth(raw * scale + offset) : 0;
+      }
+      continue;
+    }
+    const uint16_t* top = measured_.ptr<uint16_t>(source.y + y) + source.x;
+    const uint16_t* bottom =
+        measured_.ptr<uint16_t>(source.y + y + 1) + source.x;
+    const uint16_t* nearest = (down < 0.5F ? top : bottom) + (right >= 0.5F);
+    MoveEight(top, bottom, nearest, {right, down, scale, offset}, to);
+  }
+}
+
+// Which surface a pixel sees decides where it was, and where it was which
+// surface that is: looked for from the nearest depth around, so that what is
+// hidden is found only if nothing hides it.
+void DepthWarper::MoveEach(const cv::Rect& block, const Flow& flow, Range range,
+                           cv::Mat* out) const {
+  constexpr int kMaxSteps = 3;
+  const auto units = static_cast<float>(depth_scale_);
+  const float shift = std::max(std::abs(flow.shift_u), std::abs(flow.shift_v));
+  for (int v = block.y; v < block.br().y; ++v) {
+    auto* to = out->ptr<uint16_t>(v);
+    for (int u = block.x; u < block.br().x; ++u) {
+      to[u] = 0;
+      for (const uint16_t start : {range.min, range.max}) {
+        float inverse = units / start;
+        for (int step = 0; step < kMaxSteps && to[u] == 0; ++step) {
+          const float raw = Sample(
+              static_cast<float>(u) + flow.turn_u + inverse * flow.shift_u,
+              static_cast<float>(v) + flow.turn_v + inverse * flow.shift_v);
+          const float moved = (raw - flow.advance) / flow.stretch;
+          if (raw <= 0.0F || moved <= 0.0F) break;
+          const float last = inverse;
+          inverse = units / moved;
+          if (shift * std::abs(inverse - last) < kSamePlacePx) {
+            to[u] = EncodeDepth(moved);
+          }
+        }
+        if (to[u] != 0) break;
+      }
+    }
+  }
+}
+
+float DepthWarper::Sample(float u, float v) const {
+  const int left = FloorToInt(u);
+  const int above = FloorToInt(v);
+  const float right = u - static_cast<float>(left);
+  const float down = v - static_cast<float>(above);
+  const int column = left + (right >= 0.5F);
+  const int row = above + (down >= 0.5F);
+  if (column < 0 || row < 0 || column >= measured_.cols ||
+      row >= measured_.rows) {
+    return 0.0F;
+  }
+  const uint16_t nearest = measured_.at<uint16_t>(row, column);
+  if (nearest == 0 || left < 0 || above < 0 || left + 1 >= measured_.cols ||
+      above + 1 >= measured_.rows) {
+    return nearest;
+  }
+  const auto* top = measured_.ptr<uint16_t>(above) + left;
+  const auto* bottom = measured_.ptr<uint16_t>(above + 1) + left;
+  return IsOneSurface(top[0], top[1], bottom[0], bottom[1])
+             ? Between(top[0], top[1], bottom[0], bottom[1], right, down)
+             : nearest;
+}
+
+}  // namespace rgbd_pose

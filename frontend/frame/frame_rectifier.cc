@@ -1,0 +1,141 @@
+#include "frontend/frame/frame_rectifier.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+namespace rgbd_pose {
+namespace {
+
+// Pixels from a node to the next, in both directions. From left to right eight
+// pixels move alike.
+constexpr int kStep = 8;
+constexpr double kFirstColumn = (kStep - 1) / 2.0;
+
+}  // namespace
+
+FrameRectifier::FrameRectifier(const Camera& camera)
+    : camera_(camera),
+      mover_(camera),
+      columns_((camera.width + kStep - 1) / kStep),
+      rows_((camera.height + kStep - 1) / kStep + 1) {
+  for (int row = 0; row < rows_; ++row) {
+    for (int column = 0; column < columns_; ++column) {
+      rays_.push_back(camera.Unproject(
+          Eigen::Vector2d(column * kStep + kFirstColumn, row * kStep), 1.0));
+    }
+  }
+}
+
+Frame FrameRectifier::Rectify(const Frame& frame) {
+  const FrameTiming timing = frame.Timing();
+  return Rectify(frame,
+                 timing.twist.MotionDuring(timing.color.offset).Inverse());
+}
+
+Frame FrameRectifier::Rectify(const Frame& frame,
+                              const Rigid3d& target_from_middle) {
+  const FrameTiming timing = frame.Timing();
+  if (timing.IsOneMoment()) return frame;
+  Frame rectified = frame;
+  rectified.depth_delay = 0.0;
+  rectified.color_shutter = rectified.depth_shutter = Shutter();
+  const double middle = timing.color.offset;
+  rectified.depth =
+      mover_
+          .Move(frame,
+                [&](double row) {
+                  const double time =
+                      timing.depth.RowTime(row, camera_.height) - middle;
+                  return target_from_middle * timing.twist.MotionDuring(-time);
+                })
+          .clone();
+  MakeFlows(frame, target_from_middle);
+  MakeMaps(rectified.depth, frame.depth_scale);
+  const auto resample = [this](const cv::Mat& image) {
+    cv::Mat moved;
+    if (image.empty()) return moved;
+    cv::remap(image, moved, map_u_, map_v_, cv::INTER_LINEAR,
+              cv::BORDER_REPLICATE);
+    return moved;
+  };
+  rectified.gray = resample(frame.gray);
+  rectified.color = resample(frame.color);
+  return rectified;
+}
+
+void FrameRectifier::MakeFlows(const Frame& frame,
+                               const Rigid3d& target_from_middle) {
+  const FrameTiming timing = frame.Timing();
+  const Rigid3d middle_from_target = target_from_middle.Inverse();
+  const Eigen::Matrix3d turned = middle_from_target.rotation.toRotationMatrix();
+  // Where a ray of the target, at an inverse depth, is seen that long after the
+  // middle row.
+  const auto see = [&](const Eigen::Vector3d& ray, double inverse_depth,
+                       double seconds) {
+    const Twist twist = {timing.twist.angular,
+                         inverse_depth * timing.twist.linear};
+    return camera_.Project(twist.MovedPoint(
+        turned * ray + inverse_depth * middle_from_target.translation,
+        seconds));
+  };
+  flows_.resize(rays_.size());
+  for (size_t i = 0; i < rays_.size(); ++i) {
+    const Eigen::Vector2d node = camera_.Project(rays_[i]);
+    Eigen::Vector2d far = node, near = node;
+    // The row decides the time, and that the row.
+    for (int step = 0; step < 2; ++step) {
+      const double time =
+          timing.color.RowTime(near.y(), camera_.height) - timing.color.offset;
+      far = see(rays_[i], 0.0, time);
+      near = see(rays_[i], kRoomInverseDepth, time);
+    }
+    const Eigen::Vector2d turn = far - node;
+    const Eigen::Vector2d shift = (near - far) / kRoomInverseDepth;
+    flows_[i] = {
+        {static_cast<float>(turn.x()), static_cast<float>(turn.y())},
+        {static_cast<float>(shift.x()), static_cast<float>(shift.y())}};
+  }
+}
+
+// What moves alike has the mean depth there: at an edge, part of what is behind
+// goes along with what is in front, as in a patch around a corner.
+void FrameRectifier::MakeMaps(const cv::Mat& depth, double depth_scale) {
+  map_u_.create(depth.size(), CV_32F);
+  map_v_.create(depth.size(), CV_32F);
+  for (int v = 0; v < depth.rows; ++v) {
+    const Flow* const above =
+        &flows_[static_cast<size_t>(v / kStep) * columns_];
+    const Flow* const below = above + columns_;
+    const float down = static_cast<float>(v % kStep) / kStep;
+    const auto* const raw = depth.ptr<uint16_t>(v);
+    float* const to_u = map_u_.ptr<float>(v);
+    float* const to_v = map_v_.ptr<float>(v);
+    float inverse_depth = kRoomInverseDepth;  // of the last depth to the left
+    for (int column = 0; column < columns_; ++column) {
+      const int first = column * kStep;
+      const int end = std::min(first + kStep, depth.cols);
+      int sum = 0, count = 0;
+      for (int u = first; u < end; ++u) {
+        sum += raw[u];
+        count += raw[u] != 0;
+      }
+      if (count > 0) {
+        inverse_depth = static_cast<float>(count * depth_scale / sum);
+      }
+      std::array<float, 2> flow;
+      for (int k = 0; k < 2; ++k) {
+        const float from =
+            above[column].turn[k] + inverse_depth * above[column].shift[k];
+        const float to =
+            below[column].turn[k] + inverse_depth * below[column].shift[k];
+        flow[k] = from + down * (to - from);
+      }
+      for (int u = first; u < end; ++u) {
+        to_u[u] = static_cast<float>(u) + flow[0];
+        to_v[u] = static_cast<float>(v) + flow[1];
+      }
+    }
+  }
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,54 @@
+#include "frontend/frame/image_pyramid.h"
+
+#include <algorithm>
+#include <opencv2/imgproc.hpp>
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kMinSidePx = 8;
+
+}  // namespace
+
+void BuildImagePyramid(const cv::Mat& gray, int levels,
+                       std::vector<cv::Mat>* pyramid) {
+  pyramid->resize(levels);
+  (*pyramid)[0] = gray;
+  for (int level = 1; level < levels; ++level) {
+    const cv::Mat& finer = (*pyramid)[level - 1];
+    const cv::Size half(finer.cols / 2, finer.rows / 2);
+    if (std::min(half.width, half.height) < kMinSidePx) {
+      pyramid->resize(level);
+      return;
+    }
+    // Of an odd side the last pixel is left out, so that the scale is 2.
+    const cv::Mat even = finer(cv::Rect(0, 0, 2 * half.width, 2 * half.height));
+    cv::resize(even, (*pyramid)[level], half, 0.0, 0.0, cv::INTER_AREA);
+  }
+}
+
+void BuildSmoothPyramid(const cv::Mat& gray, int levels,
+                        std::vector<cv::Mat>* pyramid) {
+  constexpr double kSigmaPx = 1.0;
+  std::vector<cv::Mat> sharp;
+  BuildImagePyramid(gray, levels, &sharp);
+  pyramid->resize(sharp.size());
+  (*pyramid)[0] = gray;
+  for (size_t level = 1; level < sharp.size(); ++level) {
+    cv::GaussianBlur(sharp[level], (*pyramid)[level], {3, 3}, kSigmaPx);
+  }
+}
+
+Camera CameraOfLevel(const Camera& camera, int level) {
+  Camera result = camera;
+  const double scale = 1.0 / (1 << level);
+  result.fx *= scale;
+  result.fy *= scale;
+  result.cx = (camera.cx + 0.5) * scale - 0.5;
+  result.cy = (camera.cy + 0.5) * scale - 0.5;
+  result.width >>= level;
+  result.height >>= level;
+  return result;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,121 @@
+#include "frontend/frame/observe.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "frontend/frame/depth_warper.h"
+#include "frontend/frame/surface_normal.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Where depth is not known, what is seen is taken to be so far away (m).
+constexpr double kUsualDepth = 1.0 / kRoomInverseDepth;
+
+// The row decides when a point was seen, and that decides the row: one step
+// more leaves a hundredth of what the first leaves.
+constexpr int kRowSteps = 2;
+
+// Where a point (at the stamp) is seen by rows exposed at such times.
+Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
+                           const Twist& twist, const Eigen::Vector3d& point,
+                           Eigen::Vector3d* moved) {
+  Eigen::Vector2d pixel = camera.Project(point);
+  *moved = point;
+  for (int step = 0; step < kRowSteps; ++step) {
+    *moved = twist.MovedPoint(point, shutter.RowTime(pixel.y(), camera.height));
+    if (!(moved->z() > 0.0)) return pixel;
+    pixel = camera.Project(*moved);
+  }
+  return pixel;
+}
+
+// What is seen along a ray (a, b, 1) so long after the stamp. Depth is looked
+// up where and when it was taken: where that is depends on the depth itself, of
+// which `depth` is a first guess.
+Observation ObserveMoving(const Frame& frame, const Camera& camera,
+                          const FrameTiming& timing, const Eigen::Vector3d& ray,
+                          double seconds, double depth, double sigma_px,
+                          const DepthLookupOptions& depth_options) {
+  constexpr double kSmallChange = 0.01;  // of the depth: a tenth of a pixel
+  constexpr int kDepthSteps = 3;
+  const Twist& twist = timing.twist;
+  DepthSample sample;
+  Eigen::Vector2d in_depth;
+  Eigen::Vector3d point = twist.MovedPoint(ray * depth, -seconds);
+  for (int step = 0; step < kDepthSteps; ++step) {
+    Eigen::Vector3d measured;
+    in_depth = SeenByRows(camera, timing.depth, twist, point, &measured);
+    sample = LookUpDepth(frame, in_depth.x(), in_depth.y(), depth_options);
+    if (sample.depth == 0.0) break;
+    const double change = sample.depth - measured.z();
+    depth += change;
+    point = twist.MovedPoint(ray * depth, -seconds);
+    if (std::abs(change) < kSmallChange * depth) break;
+  }
+  Observation seen;
+  seen.u = camera.fx * point.x() / point.z() + camera.cx;
+  seen.v = camera.fy * point.y() / point.z() + camera.cy;
+  seen.sigma_px = sigma_px;
+  if (sample.depth == 0.0) return seen;
+  seen.depth = point.z();
+  seen.sigma_depth = sample.sigma;
+  seen.normal = LookUpNormal(frame, camera, in_depth.x(), in_depth.y());
+  if (!seen.normal.isZero(0.0)) {
+    const double taken_at = timing.depth.RowTime(in_depth.y(), camera.height);
+    seen.normal += taken_at * twist.angular.cross(seen.normal);
+    seen.normal.normalize();
+  }
+  return seen;
+}
+
+}  // namespace
+
+Observation Observe(const Frame& frame, const Camera& camera, double u,
+                    double v, double sigma_px,
+                    const DepthLookupOptions& depth_options) {
+  const FrameTiming timing = frame.Timing();
+  if (!timing.IsOneMoment()) {
+    const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
+    return ObserveMoving(frame, camera, timing,
+                         camera.Ray(ideal.x(), ideal.y()),
+                         timing.color.RowTime(v, camera.height), kUsualDepth,
+                         sigma_px, depth_options);
+  }
+  const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
+  const DepthSample sample = LookUpDepth(frame, u, v, depth_options);
+  return {ideal.x(), ideal.y(),    sample.depth,
+          sigma_px,  sample.sigma, LookUpNormal(frame, camera, u, v)};
+}
+
+Observation ObserveAgain(const Frame& frame, const Camera& camera,
+                         const FrameTiming& moved_by, const Observation& before,
+                         const DepthLookupOptions& depth_options) {
+  const double depth = before.depth > 0.0 ? before.depth : kUsualDepth;
+  Eigen::Vector3d seen;
+  const Eigen::Vector2d pixel =
+      SeenByRows(camera, moved_by.color, moved_by.twist,
+                 camera.Ray(before.u, before.v) * depth, &seen);
+  const FrameTiming timing = frame.Timing();
+  return ObserveMoving(frame, camera, timing, seen / seen.z(),
+                       timing.color.RowTime(pixel.y(), camera.height), seen.z(),
+                       before.sigma_px, depth_options);
+}
+
+Eigen::Vector2d ImagePoint(const Camera& camera, const FrameTiming& timing,
+                           const Eigen::Vector3d& point) {
+  if (timing.color.IsGlobal()) return camera.Project(point);
+  Eigen::Vector3d moved;
+  return SeenByRows(camera, timing.color, timing.twist, point, &moved);
+}
+
+double LargestFlow(const Camera& camera, const FrameTiming& timing,
+                   const Twist& twist) {
+  const auto longest = [](const Shutter& shutter) {
+    return std::abs(shutter.offset) + 0.5 * std::abs(shutter.readout);
+  };
+  return std::max(longest(timing.color), longest(timing.depth)) * camera.fx *
+         (twist.angular.norm() + twist.linear.norm() / kUsualDepth);
+}
+
+}  // namespace rgbd_pose

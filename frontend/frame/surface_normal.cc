@@ -1,0 +1,56 @@
+#include "frontend/frame/surface_normal.h"
+
+#include <cmath>
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kStridePx = 5;
+
+// Deviations from the plane, relative to depth, beyond this are another
+// surface: 1.5 % is 5 sigma of a Kinect at 2 m (Khoshelham & Elberink 2012).
+constexpr double kMaxDeviation = 0.015;
+
+}  // namespace
+
+// A plane A X + B Y + C Z = 1 has the inverse depth A x + B y + C over the
+// normalised image x = X / Z, y = Y / Z. Distortion changes the distance of
+// neighbouring pixels by a few percent at most and is left out.
+Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
+                             double v) {
+  const int column = static_cast<int>(std::lround(u));
+  const int row = static_cast<int>(std::lround(v));
+  if (column < kStridePx || row < kStridePx ||
+      column >= frame.depth.cols - kStridePx ||
+      row >= frame.depth.rows - kStridePx) {
+    return Eigen::Vector3d::Zero();
+  }
+  double inverse[3][3];
+  double mean = 0.0, slope_u = 0.0, slope_v = 0.0;
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      const double depth =
+          frame.DepthAt(column + j * kStridePx, row + i * kStridePx);
+      if (depth == 0.0) return Eigen::Vector3d::Zero();
+      inverse[i + 1][j + 1] = 1.0 / depth;
+      mean += inverse[i + 1][j + 1] / 9.0;
+      slope_u += j * inverse[i + 1][j + 1] / 6.0;
+      slope_v += i * inverse[i + 1][j + 1] / 6.0;
+    }
+  }
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      const double plane = mean + j * slope_u + i * slope_v;
+      if (std::abs(inverse[i + 1][j + 1] - plane) > kMaxDeviation * mean) {
+        return Eigen::Vector3d::Zero();
+      }
+    }
+  }
+  const double a = slope_u / kStridePx * camera.fx;
+  const double b = slope_v / kStridePx * camera.fy;
+  const double c = mean - a * (column - camera.cx) / camera.fx -
+                   b * (row - camera.cy) / camera.fy;
+  return -Eigen::Vector3d(a, b, c).normalized();
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,39 @@
+#include "frontend/frame/undistorter.h"
+
+#include <opencv2/imgproc.hpp>
+
+namespace rgbd_pose {
+
+Undistorter::Undistorter(const Camera& camera)
+    : has_distortion_(camera.HasDistortion()), ideal_(camera) {
+  for (double Camera::*value :
+       {&Camera::k1, &Camera::k2, &Camera::p1, &Camera::p2, &Camera::k3}) {
+    ideal_.*value = 0.0;
+  }
+  if (!has_distortion_) return;
+  map_x_.create(camera.height, camera.width, CV_32FC1);
+  map_y_.create(camera.height, camera.width, CV_32FC1);
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) {
+      const Eigen::Vector2d pixel = camera.Project(ideal_.Ray(x, y));
+      map_x_.at<float>(y, x) = static_cast<float>(pixel.x());
+      map_y_.at<float>(y, x) = static_cast<float>(pixel.y());
+    }
+  }
+}
+
+Frame Undistorter::Undistort(const Frame& frame) const {
+  Frame ideal = frame;
+  if (!has_distortion_) return ideal;
+  const auto remap = [this](const cv::Mat& image, int interpolation) {
+    cv::Mat moved;
+    if (!image.empty()) cv::remap(image, moved, map_x_, map_y_, interpolation);
+    return moved;
+  };
+  ideal.gray = remap(frame.gray, cv::INTER_LINEAR);
+  ideal.color = remap(frame.color, cv::INTER_LINEAR);
+  ideal.depth = remap(frame.depth, cv::INTER_NEAREST);
+  return ideal;
+}
+
+}  // namespace rgbd_pose

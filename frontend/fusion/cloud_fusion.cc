@@ -1,0 +1,83 @@
+#include "frontend/fusion/cloud_fusion.h"
+
+#include "frontend/frame/surface_pixel.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Below, there are more cubes than any sensor has noise-free points for;
+// above, rooms are no longer recognised.
+constexpr double kMinVoxelSize = 0.001;  // m
+constexpr double kMaxVoxelSize = 1.0;    // m
+
+}  // namespace
+
+std::string CloudFusionOptions::Check() const {
+  if (!(voxel_size >= kMinVoxelSize && voxel_size <= kMaxVoxelSize)) {
+    return "the voxel size must be 0.001 to 1 m";
+  }
+  const std::string noise_error = depth.noise.Check();
+  if (!noise_error.empty()) return "depth noise: " + noise_error;
+  if (!(depth.min_depth > 0.0) || !(depth.max_depth > depth.min_depth)) {
+    return "depth limits must satisfy 0 < min_depth < max_depth";
+  }
+  return camera.Check();
+}
+
+CloudFusion::CloudFusion(const CloudFusionOptions& options)
+    : options_(options), cloud_(static_cast<float>(options.voxel_size)) {
+  const Camera& camera = options.camera;
+  std::vector<Eigen::Vector2d> pixels;
+  for (int y = 0; y < camera.height; ++y) {
+    for (int x = 0; x < camera.width; ++x) pixels.emplace_back(x, y);
+  }
+  camera.UndistortPoints(&pixels);
+  rays_.reserve(pixels.size());
+  for (const Eigen::Vector2d& pixel : pixels) {
+    rays_.push_back(camera.Ray(pixel.x(), pixel.y()).cast<float>());
+  }
+}
+
+bool CloudFusion::ShouldIntegrate(const TrackedFrame& tracked) const {
+  if (tracked.status != TrackingStatus::kOk || tracked.segment != 0) {
+    return false;
+  }
+  if (!last_world_from_cam_.has_value()) return true;
+  return options_.step.IsReached(last_world_from_cam_->Inverse() *
+                                 tracked.world_from_cam);
+}
+
+void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
+  const Eigen::Matrix3f rotation =
+      world_from_cam.rotation.toRotationMatrix().cast<float>();
+  const Eigen::Vector3f translation = world_from_cam.translation.cast<float>();
+  const auto metres_per_unit = static_cast<float>(1.0 / frame.depth_scale);
+  const auto min_depth = static_cast<float>(options_.depth.min_depth);
+  const auto max_depth = static_cast<float>(options_.depth.max_depth);
+  ColoredPoint point;
+  for (int y = 1; y < frame.depth.rows - 1; ++y) {
+    const Eigen::Vector3f* rays =
+        &rays_[static_cast<size_t>(y) * frame.depth.cols];
+    for (int x = 1; x < frame.depth.cols - 1; ++x) {
+      const uint16_t raw = frame.depth.at<uint16_t>(y, x);
+      const float z = raw * metres_per_unit;
+      if (raw == Frame::kNoDepth || z < min_depth || z > max_depth ||
+          !IsOnSurface(
+              frame.depth, x, y,
+              static_cast<int>(MaxSurfaceStep(z, options_.depth.noise) *
+                               frame.depth_scale))) {
+        continue;
+      }
+      point.position = rotation * (z * rays[x]) + translation;
+      const cv::Vec3b& bgr = frame.color.at<cv::Vec3b>(y, x);
+      point.blue = bgr[0];
+      point.green = bgr[1];
+      point.red = bgr[2];
+      cloud_.Add(point);
+    }
+  }
+  last_world_from_cam_ = world_from_cam;
+  ++frames_;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,204 @@
+#include "frontend/fusion/surface_mesh.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace rgbd_pose {
+namespace {
+
+constexpr int kSide = TsdfVolume::kSide;
+constexpr int kNone = -1;
+
+// The eight corners of a voxel, x in the highest bit.
+using Corners = std::array<DistanceVoxel, 8>;
+
+int Bit(int corner, int axis) { return corner >> (2 - axis) & 1; }
+
+class Mesher {
+ public:
+  Mesher(const TsdfVolume& volume, double voxel_size, float min_weight)
+      : volume_(volume),
+        voxel_size_(voxel_size),
+        min_weight_(min_weight),
+        vertices_(volume.size()) {}
+
+  TriangleMesh Mesh() {
+    for (int i = 0; i < volume_.size(); ++i) AddVertices(i);
+    for (int i = 0; i < volume_.size(); ++i) AddTriangles(i);
+    return std::move(mesh_);
+  }
+
+ private:
+  using VertexOfVoxel = std::array<int, TsdfVolume::kBlockSize>;
+
+  // The blocks around one, itself first: towards higher (sign 1) or lower (-1)
+  // coordinates. kNone where there is none.
+  std::array<int, 8> Neighbours(int index, int sign) const {
+    const Eigen::Vector3i here = TsdfVolume::BlockOf(volume_.key(index));
+    std::array<int, 8> neighbours;
+    for (int n = 0; n < 8; ++n) {
+      neighbours[n] = volume_.Find(TsdfVolume::KeyOf(
+          here + sign * Eigen::Vector3i(Bit(n, 0), Bit(n, 1), Bit(n, 2))));
+    }
+    return neighbours;
+  }
+
+  void AddVertices(int index) {
+    const std::array<int, 8> around = Neighbours(index, 1);
+    const auto corner_at = [&](int x, int y, int z) -> DistanceVoxel {
+      const int n = around[x / kSide << 2 | y / kSide << 1 | z / kSide];
+      if (n == kNone) return {};
+      return volume_.block(
+          n)[TsdfVolume::PlaceOf(x % kSide, y % kSide, z % kSide)];
+    };
+    const Eigen::Vector3i first =
+        kSide * TsdfVolume::BlockOf(volume_.key(index));
+    Corners corners;
+    for (int x = 0; x < kSide; ++x) {
+      for (int y = 0; y < kSide; ++y) {
+        for (int z = 0; z < kSide; ++z) {
+          bool known = true;
+          int behind = 0;
+          for (int c = 0; c < 8 && known; ++c) {
+            corners[c] = corner_at(x + Bit(c, 0), y + Bit(c, 1), z + Bit(c, 2));
+            known = corners[c].weight >= min_weight_;
+            behind += corners[c].distance < 0.0F;
+          }
+          if (!known || behind == 0 || behind == 8) continue;
+          if (vertices_[index] == nullptr) {
+            vertices_[index] = std::make_unique<VertexOfVoxel>();
+            vertices_[index]->fill(kNone);
+          }
+          (*vertices_[index])[TsdfVolume::PlaceOf(x, y, z)] =
+              static_cast<int>(mesh_.vertices.size());
+          mesh_.vertices.push_back(
+              Vertex(first + Eigen::Vector3i(x, y, z), corners));
+        }
+      }
+    }
+  }
+
+  ColoredPoint Vertex(const Eigen::Vector3i& voxel,
+                      const Corners& corners) const {
+    Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+    int crossed = 0;
+    for (int c = 0; c < 8; ++c) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const int other = c | 4 >> axis;
+        const float a = corners[c].distance, b = corners[other].distance;
+        if (other == c || (a < 0.0F) == (b < 0.0F)) continue;
+        Eigen::Vector3f at(Bit(c, 0), Bit(c, 1), Bit(c, 2));
+        at[axis] += a / (a - b);
+        sum += at;
+        ++crossed;
+      }
+    }
+    const Eigen::Vector3f at = sum / static_cast<float>(crossed);
+    ColoredPoint point;
+    point.position = (voxel_size_ * (voxel.cast<double>() + at.cast<double>()))
+                         .cast<float>();
+    SetColor(at, corners, &point);
+    return point;
+  }
+
+  // That of the corners, by weight and nearness.
+  static void SetColor(const Eigen::Vector3f& at, const Corners& corners,
+                       ColoredPoint* point) {
+    std::array<float, 3> sum = {};
+    float total = 0.0F;
+    for (int c = 0; c < 8; ++c) {
+      float share = corners[c].weight;
+      for (int axis = 0; axis < 3; ++axis) {
+        share *= Bit(c, axis) == 1 ? at[axis] : 1.0F - at[axis];
+      }
+      for (int i = 0; i < 3; ++i) sum[i] += share * corners[c].color[i];
+      total += share;
+    }
+    const auto mean = [&](int i) {
+      constexpr float kSteps = 256.0F;
+      return static_cast<uint8_t>(
+          std::min(255.0F, std::round(sum[i] / (kSteps * total))));
+    };
+    point->red = mean(0);
+    point->green = mean(1);
+    point->blue = mean(2);
+  }
+
+  // Around each edge from a point of the grid along an axis are four voxels.
+  void AddTriangles(int index) {
+    if (vertices_[index] == nullptr) return;
+    const std::array<int, 8> below = Neighbours(index, -1);
+    const auto vertex_at = [&](const Eigen::Vector3i& voxel) {
+      int neighbour = 0;
+      Eigen::Vector3i in_block = voxel;
+      for (int axis = 0; axis < 3; ++axis) {
+        if (voxel[axis] >= 0) continue;
+        neighbour |= 4 >> axis;
+        in_block[axis] += kSide;
+      }
+      const int n = below[neighbour];
+      if (n == kNone || vertices_[n] == nullptr) return kNone;
+      return (*vertices_[n])[TsdfVolume::PlaceOf(in_block[0], in_block[1],
+                                                 in_block[2])];
+    };
+    const std::array<int, 8> beyond = Neighbours(index, 1);
+    for (int place = 0; place < TsdfVolume::kBlockSize; ++place) {
+      if ((*vertices_[index])[place] == kNone) continue;
+      const Eigen::Vector3i voxel(place / (kSide * kSide),
+                                  place / kSide % kSide, place % kSide);
+      const float here = volume_.block(index)[place].distance;
+      for (int axis = 0; axis < 3; ++axis) {
+        Eigen::Vector3i end = voxel;
+        ++end[axis];
+        const bool is_beyond = end[axis] == kSide;
+        if (is_beyond) end[axis] = 0;
+        // It is there: the voxel has a vertex, so all its corners are known.
+        const float there =
+            volume_
+                .block(beyond[is_beyond ? 4 >> axis : 0])[TsdfVolume::PlaceOf(
+                    end[0], end[1], end[2])]
+                .distance;
+        if ((here < 0.0F) == (there < 0.0F)) continue;
+        Eigen::Vector3i b = Eigen::Vector3i::Zero(), c = b;
+        b[(axis + 1) % 3] = 1;
+        c[(axis + 2) % 3] = 1;
+        // Counter-clockwise as seen from the far end of the axis.
+        AddQuad({vertex_at(voxel), vertex_at(voxel - b),
+                 vertex_at(voxel - b - c), vertex_at(voxel - c)},
+                /*is_seen_from_end=*/here < 0.0F);
+      }
+    }
+  }
+
+  void AddQuad(std::array<int, 4> corners, bool is_seen_from_end) {
+    if (*std::min_element(corners.begin(), corners.end()) == kNone) return;
+    if (!is_seen_from_end) std::swap(corners[1], corners[3]);
+    const auto at = [&](int i) { return mesh_.vertices[corners[i]].position; };
+    // Along the shorter diagonal.
+    const int from =
+        (at(0) - at(2)).squaredNorm() <= (at(1) - at(3)).squaredNorm() ? 0 : 1;
+    for (const int to : {from + 1, from + 2}) {
+      mesh_.triangles.emplace_back(corners[from], corners[to],
+                                   corners[(to + 1) % 4]);
+    }
+  }
+
+  const TsdfVolume& volume_;
+  const double voxel_size_;
+  const float min_weight_;
+  std::vector<std::unique_ptr<VertexOfVoxel>> vertices_;  // of each block
+  TriangleMesh mesh_;
+};
+
+}  // namespace
+
+TriangleMesh SurfaceMesh(const TsdfVolume& volume, double voxel_size,
+                         float min_weight) {
+  return Mesher(volume, voxel_size, min_weight).Mesh();
+}
+
+}  // namespace rgbd_pose

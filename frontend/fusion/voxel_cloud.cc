@@ -1,0 +1,131 @@
+#include "frontend/fusion/voxel_cloud.h"
+
+#include <cmath>
+
+#include "core/util/floor.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A cube's place is three numbers of 21 bits, counted from -2^20.
+constexpr int kBits = 21;
+constexpr uint64_t kMask = (uint64_t{1} << kBits) - 1;
+constexpr int kHalfRange = 1 << (kBits - 1);
+
+constexpr int kFirstSlotBits = 10;
+
+uint8_t Mean(uint32_t sum, uint32_t count) {
+  return static_cast<uint8_t>((sum + count / 2) / count);
+}
+
+}  // namespace
+
+VoxelCloud::VoxelCloud(float voxel_size)
+    : voxel_size_(voxel_size),
+      voxels_per_metre_(1.0F / voxel_size),
+      slots_(size_t{1} << kFirstSlotBits, 0),
+      hash_shift_(64 - kFirstSlotBits) {}
+
+void VoxelCloud::Add(const ColoredPoint& point) {
+  uint64_t key = 0;
+  for (int i = 0; i < 3; ++i) {
+    const float x = point.position[i] * voxels_per_metre_;
+    // Written so that it holds for no NaN.
+    if (!(x >= -kHalfRange && x < kHalfRange)) return;
+    key = key << kBits | static_cast<uint64_t>(FloorToInt(x) + kHalfRange);
+  }
+  Voxel* voxel = FindOrInsert(key);
+  const Eigen::Vector3f center = Center(key);
+  for (int i = 0; i < 3; ++i) voxel->offset[i] += point.position[i] - center[i];
+  voxel->color[0] += point.red;
+  voxel->color[1] += point.green;
+  voxel->color[2] += point.blue;
+  ++voxel->count;
+}
+
+size_t VoxelCloud::MemoryBytes() const {
+  return voxels_.capacity() * sizeof(Voxel) +
+         slots_.capacity() * sizeof(uint32_t);
+}
+
+std::vector<ColoredPoint> VoxelCloud::Points() const {
+  std::vector<ColoredPoint> points;
+  points.reserve(voxels_.size());
+  for (const Voxel& voxel : voxels_) {
+    const Eigen::Map<const Eigen::Vector3f> offset(voxel.offset);
+    ColoredPoint point;
+    point.position =
+        Center(voxel.key) + offset / static_cast<float>(voxel.count);
+    point.red = Mean(voxel.color[0], voxel.count);
+    point.green = Mean(voxel.color[1], voxel.count);
+    point.blue = Mean(voxel.color[2], voxel.count);
+    points.push_back(point);
+  }
+  return points;
+}
+
+std::vector<ColoredPoint> VoxelCloud::Thin(int max_points) const {
+  std::vector<ColoredPoint> points = Points();
+  float size = voxel_size_;
+  while (points.size() > static_cast<size_t>(max_points)) {
+    // What is seen are surfaces: the number of cubes falls with the square of
+    // their side. A little more, so that it ends where that is not quite so.
+    constexpr float kMore = 1.02F;
+    size *= kMore * std::sqrt(static_cast<float>(points.size()) /
+                              static_cast<float>(max_points));
+    VoxelCloud coarser(size);
+    for (const ColoredPoint& point : points) coarser.Add(point);
+    points = coarser.Points();
+  }
+  return points;
+}
+
+Eigen::Vector3f VoxelCloud::Center(uint64_t key) const {
+  Eigen::Vector3f center;
+  for (int i = 2; i >= 0; --i, key >>= kBits) {
+    const int cell = static_cast<int>(key & kMask) - kHalfRange;
+    center[i] = (static_cast<float>(cell) + 0.5F) * voxel_size_;
+  }
+  return center;
+}
+
+VoxelCloud::Voxel* VoxelCloud::FindOrInsert(uint64_t key) {
+  if (last_ < voxels_.size() && voxels_[last_].key == key) {
+    return &voxels_[last_];
+  }
+  size_t slot = FirstSlot(key);
+  while (slots_[slot] != 0) {
+    last_ = slots_[slot] - 1;
+    if (voxels_[last_].key == key) return &voxels_[last_];
+    slot = (slot + 1) & (slots_.size() - 1);
+  }
+  last_ = voxels_.size();
+  voxels_.push_back({key, {}, {}, 0});
+  slots_[slot] = static_cast<uint32_t>(voxels_.size());
+  // Half full at most: a search takes 1.5 looks on average.
+  if (2 * voxels_.size() > slots_.size()) Grow();
+  return &voxels_[last_];
+}
+
+size_t VoxelCloud::FirstSlot(uint64_t key) const {
+  // Knuth's multiplicative hashing: 2^64 over the golden ratio. Of a block of
+  // 2 x 2 x 4 cubes as a whole, whose slots share a line of the cache: what is
+  // looked up next is mostly next to what was looked up last.
+  constexpr uint64_t kInBlock = (1ULL << 2 * kBits) | (1ULL << kBits) | 3;
+  const uint64_t in_block =
+      (key >> (2 * kBits) & 1) << 3 | (key >> kBits & 1) << 2 | (key & 3);
+  const uint64_t hash = (key & ~kInBlock) * 0x9E3779B97F4A7C15ULL;
+  return ((hash >> hash_shift_) & ~uint64_t{15}) | in_block;
+}
+
+void VoxelCloud::Grow() {
+  slots_.assign(2 * slots_.size(), 0);
+  --hash_shift_;
+  for (size_t i = 0; i < voxels_.size(); ++i) {
+    size_t slot = FirstSlot(voxels_[i].key);
+    while (slots_[slot] != 0) slot = (slot + 1) & (slots_.size() - 1);
+    slots_[slot] = static_cast<uint32_t>(i + 1);
+  }
+}
+
+}  // namespace rgbd_pose

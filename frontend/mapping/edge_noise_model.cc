@@ -1,0 +1,138 @@
+#include "frontend/mapping/edge_noise_model.h"
+
+#include <Eigen/Cholesky>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+
+#include "core/util/quantile.h"
+#include "robust/m_estimator.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Losses of pairs, in sigmas. The odometry's own are hardly ever wrong. Of the
+// others most agree within a sigma or two, but some of those between views from
+// far off are up to ten sigmas too short: together they would shrink the map.
+constexpr double kTrackedWidth = 5.0;
+constexpr double kPairWidth = 2.0;
+
+// A wrong rotation displaces what is seen at this distance (m).
+constexpr double kTypicalDepth = 2.0;
+
+// What noise models do not know (calibration, stamps): at least so much is a
+// pair off.
+constexpr double kMinSigmaRotation = 1e-4;       // rad
+constexpr double kMinSigmaTranslation = 2.5e-4;  // m
+
+// The median of chi^2 of six degrees, and its 99.9 % quantile.
+constexpr double kMedianSquare = 5.35;
+constexpr double kLargestSquare = 22.46;
+
+// Slack is measured by so many pairs at least.
+constexpr int kMinPairsForSlack = 20;
+constexpr double kMaxSlack = 0.1;
+
+// Of a motion against another: omega (rad) about the current axes, and C (m).
+MotionVector Difference(const Rigid3d& motion, const Rigid3d& other) {
+  const Eigen::AngleAxisd omega(motion.rotation * other.rotation.conjugate());
+  MotionVector e;
+  e << omega.angle() * omega.axis(),
+      motion.Inverse().translation - other.Inverse().translation;
+  return e;
+}
+
+double SquaredSigmas(const MotionVector& e, const MotionMatrix& covariance) {
+  return e.dot(covariance.ldlt().solve(e));
+}
+
+}  // namespace
+
+EdgeNoiseModel::EdgeNoiseModel(double drift)
+    : drift_(drift),
+      tracked_loss_(FindMEstimator("huber")->make(kTrackedWidth)),
+      pair_loss_(FindMEstimator("cauchy")->make(kPairWidth)) {}
+
+MotionMatrix EdgeNoiseModel::CovarianceOf(const RelativePose& edge,
+                                          double proportional_error) const {
+  MotionMatrix covariance = edge.covariance;
+  const double angle = edge.cur_from_ref.Angle();
+  const double way =
+      edge.cur_from_ref.translation.norm() + kTypicalDepth * angle;
+  covariance.diagonal().head<3>().array() +=
+      std::pow(kMinSigmaRotation, 2) + std::pow(proportional_error * angle, 2);
+  covariance.diagonal().tail<3>().array() +=
+      std::pow(kMinSigmaTranslation, 2) + std::pow(proportional_error * way, 2);
+  return covariance;
+}
+
+MotionMatrix EdgeNoiseModel::CovarianceOf(const RelativePose& edge) const {
+  return CovarianceOf(edge, proportional_error_);
+}
+
+const ceres::LossFunction* EdgeNoiseModel::LossOf(
+    const KeyframePair& pair) const {
+  return pair.is_tracked ? tracked_loss_.get() : pair_loss_.get();
+}
+
+MotionMatrix EdgeNoiseModel::CovarianceAsSolved(
+    const KeyframePair& pair, const Rigid3d& cur_from_ref) const {
+  const MotionMatrix covariance = CovarianceOf(pair.edge);
+  const MotionVector e = Difference(cur_from_ref, pair.edge.cur_from_ref);
+  double rho[3];
+  LossOf(pair)->Evaluate(SquaredSigmas(e, covariance), rho);
+  return covariance / std::max(rho[1], 1e-9);
+}
+
+void EdgeNoiseModel::FitProportionalError(
+    const std::vector<KeyframePair>& pairs,
+    const std::vector<Rigid3d>& cur_from_ref) {
+  const auto median = [&](double proportional_error) {
+    std::vector<double> squares;
+    for (size_t i = 0; i < pairs.size(); ++i) {
+      if (pairs[i].is_tracked) continue;
+      const RelativePose& edge = pairs[i].edge;
+      squares.push_back(
+          SquaredSigmas(Difference(cur_from_ref[i], edge.cur_from_ref),
+                        CovarianceOf(edge, proportional_error)));
+    }
+    return Median(squares);
+  };
+  proportional_error_ = 0.0;
+  const auto found = std::count_if(pairs.begin(), pairs.end(),
+                                   [](const auto& p) { return !p.is_tracked; });
+  if (found < kMinPairsForSlack || median(0.0) <= kMedianSquare) return;
+  double low = 0.0, high = kMaxSlack;
+  for (int step = 0; step < 12; ++step) {
+    const double middle = 0.5 * (low + high);
+    (median(middle) > kMedianSquare ? low : high) = middle;
+  }
+  proportional_error_ = high;
+}
+
+// Along a way errors add up, and an error of the rotation swings all that
+// follows.
+bool EdgeNoiseModel::PassesMahalanobisGate(
+    const RelativePose& edge, const std::vector<Rigid3d>& map_from_cam) const {
+  double way = 0.0, turns = 0.0;
+  const size_t pairs = map_from_cam.size() - 1;
+  for (size_t i = pairs; i > 0; --i) {
+    const Rigid3d step = map_from_cam[i].Inverse() * map_from_cam[i - 1];
+    way += step.translation.norm();
+    turns += step.Angle();
+  }
+  const double drift = std::max(drift_, proportional_error_);
+  const double rotation =
+      pairs * std::pow(kMinSigmaRotation, 2) + std::pow(drift * turns, 2);
+  const double translation = pairs * std::pow(kMinSigmaTranslation, 2) +
+                             std::pow(drift * way, 2) +
+                             rotation * way * way / 3.0;
+  MotionMatrix covariance = CovarianceOf(edge);
+  covariance.diagonal().head<3>().array() += rotation;
+  covariance.diagonal().tail<3>().array() += translation;
+  const Rigid3d along = map_from_cam.back().Inverse() * map_from_cam.front();
+  return SquaredSigmas(Difference(edge.cur_from_ref, along), covariance) <
+         kLargestSquare;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,234 @@
+#include "frontend/mapping/keyframe_graph.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/util/input_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+// Slack is measured in turns with the poses.
+constexpr int kMaxFitRounds = 4;
+
+}  // namespace
+
+int KeyframeGraph::Add(const Rigid3d& map_from_cam, int segment, bool is_held) {
+  Node node;
+  node.map_from_cam = map_from_cam;
+  node.segment = segment;
+  node.is_held = is_held;
+  nodes_.push_back(std::move(node));
+  links_.Add();
+  first_of_.emplace(segment, size() - 1);
+  return size() - 1;
+}
+
+void KeyframeGraph::AddPair(const RelativePose& edge, bool is_tracked,
+                            bool is_loop) {
+  pairs_.push_back({edge, is_tracked, is_loop});
+  links_.Join(edge.ref, edge.cur);
+}
+
+Rigid3d KeyframeGraph::MotionOf(const RelativePose& edge) const {
+  return pose(edge.cur).Inverse() * pose(edge.ref);
+}
+
+bool KeyframeGraph::PassesMahalanobisGate(const RelativePose& edge) const {
+  std::vector<Rigid3d> way;
+  for (const int at : links_.ShortestPath(edge.ref, edge.cur))
+    way.push_back(pose(at));
+  return !way.empty() && noise_.PassesMahalanobisGate(edge, way);
+}
+
+bool KeyframeGraph::IsHeld(int segment) const {
+  return nodes_[first_of_.at(segment)].is_held;
+}
+
+bool KeyframeGraph::Join(const RelativePose& edge) {
+  int from = segment(edge.cur), to = segment(edge.ref);
+  Rigid3d to_from_from =
+      pose(edge.ref) * edge.cur_from_ref.Inverse() * pose(edge.cur).Inverse();
+  if (IsHeld(from)) {
+    if (IsHeld(to)) return false;
+    std::swap(from, to);
+    to_from_from = to_from_from.Inverse();
+  }
+  for (Node& node : nodes_) {
+    if (node.segment != from) continue;
+    node.segment = to;
+    node.map_from_cam = to_from_from * node.map_from_cam;
+  }
+  first_of_.erase(from);
+  return true;
+}
+
+bool KeyframeGraph::IsRedundant(int at) const {
+  return !IsFixed(at) && links_.StaysConnectedWithout(at);
+}
+
+void KeyframeGraph::Remove(int at, int anchor) {
+  Node& node = nodes_[at];
+  node.anchor = anchor;
+  node.from_anchor.ref = anchor;
+  node.from_anchor.cur = at;
+  node.from_anchor.cur_from_ref = pose(at).Inverse() * pose(anchor);
+  for (const KeyframePair& pair : pairs_) {
+    const bool is_it = (pair.edge.ref == at && pair.edge.cur == anchor) ||
+                       (pair.edge.ref == anchor && pair.edge.cur == at);
+    if (is_it) node.from_anchor.covariance = noise_.CovarianceOf(pair.edge);
+  }
+  links_.Separate(at);
+  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
+                              [=](const KeyframePair& pair) {
+                                return pair.edge.ref == at ||
+                                       pair.edge.cur == at;
+                              }),
+               pairs_.end());
+}
+
+RelativePose KeyframeGraph::Reanchor(RelativePose edge) const {
+  while (IsRemoved(edge.ref)) {
+    const RelativePose& step = nodes_[edge.ref].from_anchor;
+    edge.covariance = ComposedCovariance(edge.cur_from_ref, edge.covariance,
+                                         step.cur_from_ref, step.covariance);
+    edge.cur_from_ref = edge.cur_from_ref * step.cur_from_ref;
+    edge.ref = step.ref;
+  }
+  return edge;
+}
+
+bool KeyframeGraph::IsFixed(int at) const {
+  return nodes_[at].is_held || first_of_.at(segment(at)) == at;
+}
+
+MotionMatrix KeyframeGraph::CovarianceAsSolved(const KeyframePair& pair) const {
+  return noise_.CovarianceAsSolved(pair, MotionOf(pair.edge));
+}
+
+void KeyframeGraph::FitProportionalError() {
+  std::vector<Rigid3d> motions;
+  for (const KeyframePair& pair : pairs_) {
+    motions.push_back(MotionOf(pair.edge));
+  }
+  noise_.FitProportionalError(pairs_, motions);
+}
+
+// A graph, and which of its poses are keyframes.
+struct KeyframeGraph::Problem {
+  PoseGraph graph;
+  std::vector<int> pose_of;  // of each keyframe; -1: none
+};
+
+KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
+                                            bool graduated) const {
+  PoseGraphOptions options;
+  options.graduated = graduated;
+  options.max_rounds = 3;
+  options.step_tolerance = 1e-5;
+  // What hangs on a doubtful motion alone must not keep all others from being
+  // solved for.
+  options.max_standard_deviation = 1e3;
+  Problem problem{PoseGraph(options), std::vector<int>(nodes_.size(), -1)};
+  const auto add = [&](int at, bool is_fixed) {
+    if (problem.pose_of[at] < 0) {
+      problem.pose_of[at] = problem.graph.AddPose(pose(at), is_fixed);
+    }
+  };
+  // Nor must a part that hangs on nothing: its first keyframe stays, too.
+  const std::vector<int> first = links_.FirstOfParts();
+  std::vector<bool> is_held(nodes_.size(), false);
+  for (int at = 0; at < size(); ++at) {
+    if (IsFixed(at)) is_held[first[at]] = true;
+  }
+  std::vector<bool> is_free(nodes_.size(), false);
+  for (const int at : free) {
+    is_free[at] = !IsFixed(at) && (first[at] != at || is_held[at]);
+    add(at, !is_free[at]);
+  }
+  for (const KeyframePair& pair : pairs_) {
+    RelativePose edge = pair.edge;
+    if (!is_free[edge.ref] && !is_free[edge.cur]) continue;
+    add(edge.ref, true);
+    add(edge.cur, true);
+    edge.covariance = noise_.CovarianceOf(edge);
+    edge.ref = problem.pose_of[edge.ref];
+    edge.cur = problem.pose_of[edge.cur];
+    problem.graph.AddEdge(edge, noise_.LossOf(pair));
+  }
+  return problem;
+}
+
+std::string KeyframeGraph::Solve(const std::vector<int>& free, bool graduated) {
+  Problem problem = Build(free, graduated);
+  const GraphSolution solution = problem.graph.Solve();
+  if (!solution.ok()) return solution.reason;
+  for (const int at : free) {
+    nodes_[at].map_from_cam = problem.graph.pose(problem.pose_of[at]);
+  }
+  FollowAnchors();
+  return "";
+}
+
+void KeyframeGraph::FollowAnchors() {
+  // An anchor may have been dropped later, but it is older.
+  for (Node& node : nodes_) {
+    if (node.anchor < 0) continue;
+    node.map_from_cam =
+        pose(node.anchor) * node.from_anchor.cur_from_ref.Inverse();
+    node.segment = segment(node.anchor);
+  }
+}
+
+std::string KeyframeGraph::SolveNear(int newest) {
+  std::vector<int> free;
+  int latest = 0;
+  for (int at = newest; at >= 0 && latest < window_; --at) {
+    if (IsRemoved(at)) continue;
+    free.push_back(at);
+    ++latest;
+  }
+  const int oldest = free.back();
+  for (const int at : links_.Neighbors(newest)) {
+    if (at < oldest) free.push_back(at);
+  }
+  return Solve(free, /*graduated=*/false);
+}
+
+std::vector<int> KeyframeGraph::All() const {
+  std::vector<int> all;
+  for (int at = 0; at < size(); ++at) {
+    if (!IsRemoved(at)) all.push_back(at);
+  }
+  return all;
+}
+
+std::string KeyframeGraph::SolveAll() {
+  std::string error = Solve(All(), /*graduated=*/true);
+  for (int round = 1; round < kMaxFitRounds && error.empty(); ++round) {
+    const double before = proportional_error();
+    FitProportionalError();
+    if (proportional_error() == before) break;
+    error = Solve(All(), /*graduated=*/true);
+    if (std::abs(proportional_error() - before) <= 0.1 * before) break;
+  }
+  return error;
+}
+
+std::vector<MotionMatrix> KeyframeGraph::Covariances() const {
+  const Problem problem = Build(All(), /*graduated=*/false);
+  std::vector<int> poses;
+  for (const int at : All()) poses.push_back(problem.pose_of[at]);
+  std::vector<MotionMatrix> all(nodes_.size(), MotionMatrix::Zero());
+  const std::vector<MotionMatrix> found =
+      problem.graph.MarginalCovariances(poses);
+  if (found.empty()) return {};
+  size_t next = 0;
+  for (const int at : All()) {
+    all[at] = problem.graph.OvercountingFactor() * found[next++];
+  }
+  return all;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <deque>
+#include <memory>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "frontend/mapping/keyframe_graph.h"
+#include "frontend/mapping/map_update.h"
+#include "frontend/mapping/mapped_keyframe.h"
+#include "frontend/mapping/mapping_options.h"
+#include "frontend/mapping/pair_tracker.h"
+#include "frontend/places/place_database.h"
+
+namespace rgbd_pose {
+
+// Finds which keyframes see the same as a new one and adds their pairs to a
+// graph. Keyframes are named by their numbers in the graph.
+class KeyframePairing {
+ public:
+  // All must outlive it.
+  KeyframePairing(const MappingOptions& options,
+                  const std::deque<MappedKeyframe>& keyframes,
+                  const PlaceDatabase& index, PairTracker* tracker,
+                  KeyframeGraph* graph)
+      : options_(options),
+        keyframes_(keyframes),
+        index_(index),
+        tracker_(*tracker),
+        graph_(*graph) {}
+
+  // With those of its segment that see the same by their poses.
+  void PairByPose(int newest, const PreparedFrame& frame, MapUpdate* update);
+
+  // With those that look alike, of any segment; segments that meet are joined.
+  void CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
+                              MapUpdate* update);
+
+ private:
+  // A motion between two segments that one pair alone speaks for.
+  struct Meeting {
+    int ref_segment = 0, cur_segment = 0;
+    Rigid3d ref_from_cur;  // between their worlds
+  };
+
+  // How much of each of the two the other one sees, the less of both; 0 if one
+  // sees it too much larger.
+  double SharedView(int ref, int cur, const Rigid3d& cur_from_ref) const;
+  std::vector<int> SeeingTheSame(int newest) const;
+  std::optional<RelativePose> MakePair(int ref, int cur,
+                                       const PreparedFrame& frame,
+                                       const Rigid3d& cur_from_ref_guess,
+                                       double min_inlier_share);
+  bool AgreesWithOthers(const RelativePose& edge, const PreparedFrame& frame);
+  bool AreConnected(const RelativePose& edge);
+
+  const MappingOptions& options_;
+  const std::deque<MappedKeyframe>& keyframes_;
+  const PlaceDatabase& index_;
+  PairTracker& tracker_;
+  KeyframeGraph& graph_;
+  std::vector<Meeting> meetings_;
+};
+
+}  // namespace rgbd_pose

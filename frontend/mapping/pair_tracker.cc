@@ -1,0 +1,68 @@
+#include "frontend/mapping/pair_tracker.h"
+
+#include <algorithm>
+#include <string>
+
+#include "frontend/mapping/near_motions.h"
+
+namespace rgbd_pose {
+namespace {
+
+// References kept made, some 3 MB each.
+constexpr size_t kMaxReferences = 24;
+
+// Of a good pair the tracker sees at least such a share, and its residuals
+// spread by no more sigmas.
+constexpr double kMinSeenShare = 0.1;
+constexpr double kMaxPairSigma = 3.0;
+
+// A pair is wrong if it differs from what the poses or the descriptors say by
+// more than this.
+constexpr double kMaxPairRotation = 0.2;     // rad
+constexpr double kMaxPairTranslation = 0.3;  // m
+
+}  // namespace
+
+std::optional<RelativePose> PairTracker::MakePair(
+    int ref, int cur, const StoredImages& ref_images,
+    const PreparedFrame& frame, const Rigid3d& cur_from_ref_guess,
+    double min_inlier_share) {
+  const Reference* reference = ReferenceOf(ref, ref_images);
+  if (reference == nullptr) return std::nullopt;
+  tracker_->Track(*reference, frame, cur_from_ref_guess, &tracked_);
+  const MotionEstimate& estimate = tracked_.estimate;
+  if (tracked_.status != TrackingStatus::kOk || !estimate.ok() ||
+      estimate.num_inliers < min_inlier_share * estimate.num_used ||
+      estimate.sigma > kMaxPairSigma ||
+      tracked_.overlap.share < kMinSeenShare ||
+      !IsWithin(estimate.cur_from_prev, cur_from_ref_guess, kMaxPairRotation,
+                kMaxPairTranslation)) {
+    return std::nullopt;
+  }
+  return RelativePose{ref, cur, estimate.cur_from_prev, estimate.covariance};
+}
+
+void PairTracker::Forget(int keyframe) {
+  references_.remove_if(
+      [=](const auto& entry) { return entry.first == keyframe; });
+}
+
+const Reference* PairTracker::ReferenceOf(int at, const StoredImages& images) {
+  const auto made =
+      std::find_if(references_.begin(), references_.end(),
+                   [=](const auto& entry) { return entry.first == at; });
+  if (made != references_.end()) {
+    references_.splice(references_.begin(), references_, made);
+    return references_.front().second.get();
+  }
+  const auto prepared = tracker_->Prepare(images.Restore());
+  std::string why_not;
+  auto reference =
+      tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
+  if (reference == nullptr) return nullptr;
+  if (references_.size() == kMaxReferences) references_.pop_back();
+  references_.emplace_front(at, std::move(reference));
+  return references_.front().second.get();
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,51 @@
+#pragma once
+
+#include <list>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "core/geometry/rigid3.h"
+#include "core/pose_graph/relative_pose.h"
+#include "frontend/frame/frame.h"
+#include "frontend/map/stored_images.h"
+#include "frontend/tracking/tracker.h"
+
+namespace rgbd_pose {
+
+// Measures the motion between two keyframes by a Tracker. References of the
+// latest keyframes are kept.
+class PairTracker {
+ public:
+  explicit PairTracker(std::unique_ptr<Tracker> tracker)
+      : tracker_(std::move(tracker)), tracked_(tracker_->images().camera) {}
+
+  // What images are used for, see Tracker.
+  const FrontendOptions& images() const { return tracker_->images(); }
+
+  // A frame that is to be `frame` of MakePair.
+  std::unique_ptr<const PreparedFrame> Prepare(const Frame& frame) const {
+    return tracker_->Prepare(frame);
+  }
+
+  // The motion from keyframe `ref`, whose images are given, to a frame near a
+  // guess, if it is a good pair.
+  std::optional<RelativePose> MakePair(int ref, int cur,
+                                       const StoredImages& ref_images,
+                                       const PreparedFrame& frame,
+                                       const Rigid3d& cur_from_ref_guess,
+                                       double min_inlier_share);
+
+  // The keyframe is not needed any more.
+  void Forget(int keyframe);
+
+ private:
+  const Reference* ReferenceOf(int at, const StoredImages& images);
+
+  const std::unique_ptr<Tracker> tracker_;
+  // References in use, the latest first.
+  std::list<std::pair<int, std::unique_ptr<Reference>>> references_;
+  TrackingResult tracked_;
+};
+
+}  // namespace rgbd_pose

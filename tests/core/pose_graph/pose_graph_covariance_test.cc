@@ -1,0 +1,105 @@
+// Monte Carlo: do the covariances of a graph's poses say how far off they are?
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Cholesky>
+#include <string>
+#include <vector>
+
+#include "core/pose_graph/pose_graph.h"
+#include "costs/cost_factory.h"
+#include "tests/support/graph_world.h"
+
+namespace rgbd_pose {
+namespace {
+
+// R_true = Exp(omega) R and C of cam_from_world.
+MotionVector ErrorOfPose(const Rigid3d& estimate, const Rigid3d& truth) {
+  const Eigen::AngleAxisd omega(truth.rotation.inverse() * estimate.rotation);
+  MotionVector error;
+  error << omega.angle() * omega.axis(),
+      truth.translation - estimate.translation;
+  return error;
+}
+
+double Nees(const PoseGraph& graph, const std::vector<Rigid3d>& truth, int pose,
+            double factor) {
+  const MotionVector error = ErrorOfPose(graph.pose(pose), truth[pose]);
+  const MotionMatrix covariance =
+      factor * graph.MarginalCovariances({pose}).at(0);
+  return error.dot(covariance.ldlt().solve(error));
+}
+
+// A loop of edges that are independent.
+TEST(PoseGraphCovarianceTest, IndependentEdgesAreHonest) {
+  constexpr int kTrials = 300;
+  const std::vector<Rigid3d> truth = CircleOfPoses(12, 2.0);
+  double nees = 0.0;
+  for (int seed = 0; seed < kTrials; ++seed) {
+    RandomWorld world(100 + seed);
+    PoseGraph graph;
+    for (int i = 0; i < 12; ++i) graph.AddPose(truth[i], i == 0);
+    for (int i = 0; i < 12; ++i) {
+      graph.AddEdge(MeasuredEdge(truth, i, (i + 1) % 12, 0.003, 0.005, &world));
+      graph.AddEdge(MeasuredEdge(truth, i, (i + 5) % 12, 0.005, 0.003, &world));
+    }
+    ASSERT_TRUE(graph.Solve().ok());
+    nees += Nees(graph, truth, 6, 1.0);
+  }
+  RecordProperty("nees", std::to_string(nees / kTrials));
+  EXPECT_NEAR(nees / kTrials, 6.0, 0.6);  // its own sigma is 0.2
+}
+
+// Five frames that see the same 60 points, all matched with all: each frame's
+// noise is in four edges.
+TEST(PoseGraphCovarianceTest, EdgesThatShareFeaturesAreHonestByRedundancy) {
+  constexpr int kTrials = 200, kFrames = 5, kPoints = 60;
+  Estimator estimator({}, MakeRobustCosts("mahalanobis_point", "none"));
+  double nees = 0.0, naive = 0.0;
+  for (int seed = 0; seed < kTrials; ++seed) {
+    RandomWorld world(500 + seed);
+    std::vector<Rigid3d> truth;
+    for (int i = 0; i < kFrames; ++i) truth.push_back(world.Motion(0.1, 0.1));
+    std::vector<std::vector<Observation>> seen(kFrames);
+    while (seen[0].size() < kPoints) {
+      Observation first, other;
+      world.Match(Camera(), Rigid3d(), &first, &other);
+      const Eigen::Vector3d point =
+          truth[0] * Correspondences(Camera()).Point(first);
+      for (int i = 0; i < kFrames; ++i) {
+        const Eigen::Vector3d p = truth[i].Inverse() * point;
+        const Eigen::Vector2d pixel = Camera().Project(p);
+        Observation o = first;
+        o.u = pixel.x();
+        o.v = pixel.y();
+        o.depth = p.z();
+        o.sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(p.z());
+        world.AddNoise(&o);
+        seen[i].push_back(o);
+      }
+    }
+    PoseGraph graph;
+    for (int i = 0; i < kFrames; ++i) graph.AddPose(truth[i], i == 0);
+    for (int cur = 1; cur < kFrames; ++cur) {
+      for (int ref = 0; ref < cur; ++ref) {
+        Correspondences matches{Camera()};
+        for (int k = 0; k < kPoints; ++k)
+          matches.Add(seen[ref][k], seen[cur][k]);
+        const MotionEstimate estimate =
+            estimator.Estimate(matches, truth[cur].Inverse() * truth[ref]);
+        ASSERT_TRUE(estimate.ok());
+        graph.AddEdge({ref, cur, estimate.cur_from_prev, estimate.covariance});
+      }
+    }
+    ASSERT_TRUE(graph.Solve().ok());
+    EXPECT_DOUBLE_EQ(graph.OvercountingFactor(), 2.5);  // 10 edges, 4 motions
+    nees += Nees(graph, truth, 4, graph.OvercountingFactor());
+    naive += Nees(graph, truth, 4, 1.0);
+  }
+  RecordProperty("nees", std::to_string(nees / kTrials));
+  EXPECT_NEAR(nees / kTrials, 6.0, 1.2);
+  EXPECT_GT(naive / kTrials, 12.0);
+}
+
+}  // namespace
+}  // namespace rgbd_pose

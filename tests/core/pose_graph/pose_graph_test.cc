@@ -1,0 +1,228 @@
+#include "core/pose_graph/pose_graph.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "core/pose_graph/graph_blocks.h"
+#include "robust/m_estimator.h"
+#include "tests/support/edge_oracle.h"
+#include "tests/support/graph_world.h"
+#include "tests/support/motion_error.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+// The circle as odometry has it: from pose to pose, so that errors add up.
+struct Circle {
+  explicit Circle(int poses, unsigned seed = 1)
+      : world(seed), truth(CircleOfPoses(poses, 3.0)) {
+    for (int i = 1; i < poses; ++i) {
+      edges.push_back(MeasuredEdge(truth, i - 1, i, 0.002, 0.002, &world));
+    }
+  }
+
+  PoseGraph Graph(const PoseGraphOptions& options = {}) const {
+    PoseGraph graph(options);
+    Rigid3d pose = truth[0];
+    graph.AddPose(pose, /*is_fixed=*/true);
+    for (const RelativePose& edge : edges) {
+      pose = pose * edge.cur_from_ref.Inverse();
+      graph.AddPose(pose);
+      graph.AddEdge(edge);
+    }
+    return graph;
+  }
+
+  RandomWorld world;
+  std::vector<Rigid3d> truth;
+  std::vector<RelativePose> edges;
+};
+
+TEST(PoseGraphTest, ATreeTellsNothingTwice) {
+  Circle circle(4);
+  EXPECT_EQ(circle.Graph().OvercountingFactor(), 1.0);
+  PoseGraph alone;
+  alone.AddPose(Rigid3d());
+  EXPECT_EQ(alone.OvercountingFactor(), 1.0);
+  PoseGraph graph = circle.Graph();
+  for (int i = 0; i < 3; ++i) graph.AddEdge(circle.edges[0]);
+  EXPECT_EQ(graph.OvercountingFactor(), 2.0);
+}
+
+TEST(EdgeBlockTest, JacobianIsThatOfTheOracle) {
+  RandomWorld world(3);
+  for (int trial = 0; trial < 50; ++trial) {
+    const LinearizationPoint ref(world.Motion(2.0, 2.0)),
+        cur(world.Motion(2.0, 2.0));
+    MotionVector x[2];
+    for (MotionVector& pose : x) {
+      pose << world.Vector(0.3), world.Vector(0.3);
+    }
+    MotionMatrix root;
+    for (double& value : root.reshaped()) value = world.Uniform(-1.0, 1.0);
+    const Rigid3d measured = ref.CurFromPrev(x[0].data()).Inverse();
+    const RelativePoseErrorTerm term = RelativePoseErrorTerm::Of(
+        cur.CurFromPrev(x[1].data()) * measured * world.Motion(2.0, 1.0), root);
+    const auto oracle = MakeEdgeOracle(term, &ref, &cur);
+    const double* at[] = {x[0].data(), x[1].data()};
+    Eigen::Matrix<double, 6, 6, Eigen::RowMajor> hand[2], jet[2];
+    double* by_hand[] = {hand[0].data(), hand[1].data()};
+    double* by_jet[] = {jet[0].data(), jet[1].data()};
+    MotionVector r, r_jet;
+    ASSERT_TRUE(EdgeBlock(term, &ref, &cur).Evaluate(at, r.data(), by_hand));
+    ASSERT_TRUE(oracle->Evaluate(at, r_jet.data(), by_jet));
+    EXPECT_LT((r - r_jet).norm(), 1e-12);
+    EXPECT_LT((hand[0] - jet[0]).norm(), 1e-11);
+    EXPECT_LT((hand[1] - jet[1]).norm(), 1e-11);
+  }
+}
+
+TEST(PoseGraphTest, ExactEdgesBringPosesBack) {
+  Circle circle(20);
+  PoseGraph graph;
+  for (size_t i = 0; i < circle.truth.size(); ++i) {
+    graph.AddPose(i == 0 ? circle.truth[0]
+                         : circle.truth[i] * circle.world.Motion(0.5, 0.5),
+                  i == 0);
+  }
+  for (int i = 0; i < 20; ++i) {
+    RelativePose edge =
+        MeasuredEdge(circle.truth, i, (i + 1) % 20, 0.01, 0.01, &circle.world);
+    edge.cur_from_ref = circle.truth[edge.cur].Inverse() * circle.truth[i];
+    graph.AddEdge(edge);
+  }
+  const GraphSolution solution = graph.Solve();
+  ASSERT_TRUE(solution.ok()) << solution.reason;
+  EXPECT_GT(solution.initial_cost, 1.0);
+  EXPECT_LT(solution.final_cost, 1e-12);
+  for (int i = 0; i < 20; ++i) {
+    const MotionError error = ErrorOf(graph.pose(i), circle.truth[i]);
+    EXPECT_LT(error.angle + error.translation, 1e-7) << i;
+  }
+}
+
+TEST(PoseGraphTest, ALoopTakesDriftBack) {
+  Circle circle(100);
+  PoseGraph graph = circle.Graph();
+  const double drift = RmsDistance(graph, circle.truth);
+  graph.AddEdge(MeasuredEdge(circle.truth, 0, 99, 0.002, 0.002, &circle.world));
+  ASSERT_TRUE(graph.Solve().ok());
+  EXPECT_LT(RmsDistance(graph, circle.truth), 0.6 * drift);
+}
+
+// 30 of 43 loops are right. Losses narrow step by step, since right ones are
+// many sigmas off as well before the graph is solved.
+TEST(PoseGraphTest, PlantedFalseLoopsDoNoHarm) {
+  const auto loss = FindMEstimator("tukey")->MakeLoss(6);
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Circle circle(100, seed);
+    PoseGraphOptions options;
+    options.graduated = true;
+    PoseGraph right = circle.Graph(options);
+    PoseGraph both = circle.Graph(options);
+    for (int loop = 0; loop < 30; ++loop) {
+      const int ref = 3 * loop;
+      const int cur = (ref + 30 + 7 * (loop % 5)) % 100;
+      const RelativePose edge =
+          MeasuredEdge(circle.truth, ref, cur, 0.002, 0.002, &circle.world);
+      right.AddEdge(edge, loss.get());
+      both.AddEdge(edge, loss.get());
+    }
+    for (int loop = 0; loop < 13; ++loop) {
+      RelativePose edge =
+          MeasuredEdge(circle.truth, 7 * loop, (7 * loop + 45) % 100, 0.002,
+                       0.002, &circle.world);
+      edge.cur_from_ref = circle.world.Motion(1.0, 1.0);
+      both.AddEdge(edge, loss.get());
+    }
+    ASSERT_TRUE(right.Solve().ok());
+    ASSERT_TRUE(both.Solve().ok());
+    EXPECT_LT(RmsDistance(both, circle.truth),
+              1.05 * RmsDistance(right, circle.truth) + 1e-4)
+        << "seed " << seed;
+  }
+}
+
+struct BadCase {
+  const char* name;
+  void (*spoil)(PoseGraph* graph);
+  GraphStatus status;
+  const char* reason;
+};
+
+RelativePose AnyEdge(int ref, int cur) {
+  RelativePose edge;
+  edge.ref = ref;
+  edge.cur = cur;
+  edge.covariance.setIdentity();
+  return edge;
+}
+
+class BadGraphTest : public ::testing::TestWithParam<BadCase> {};
+
+TEST_P(BadGraphTest, IsAStatusAndMovesNothing) {
+  PoseGraph graph = Circle(5).Graph();
+  graph.SetPose(4, graph.pose(4) * Rigid3d(Eigen::Quaterniond::Identity(),
+                                           {0.1, 0.0, 0.0}));
+  const Rigid3d before = graph.pose(4);
+  GetParam().spoil(&graph);
+  const GraphSolution solution = graph.Solve();
+  EXPECT_EQ(solution.status, GetParam().status) << solution.reason;
+  EXPECT_EQ(solution.reason, GetParam().reason);
+  EXPECT_EQ(graph.pose(4).translation, before.translation);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    , BadGraphTest,
+    ::testing::Values(
+        BadCase{"no_gauge", [](PoseGraph* g) { g->SetFixed(0, false); },
+                GraphStatus::kNotAnchored,
+                "pose 0 and those joined to it hang on nothing that is fixed"},
+        BadCase{"disconnected", [](PoseGraph* g) { g->AddPose(Rigid3d()); },
+                GraphStatus::kNotAnchored,
+                "pose 5 and those joined to it hang on nothing that is fixed"},
+        BadCase{"nan_pose",
+                [](PoseGraph* g) {
+                  Rigid3d pose;
+                  pose.translation.x() = kNan;
+                  g->SetPose(2, pose);
+                },
+                GraphStatus::kBadInput, "pose 2 is not finite"},
+        BadCase{"nan_edge",
+                [](PoseGraph* g) {
+                  RelativePose edge = AnyEdge(0, 2);
+                  edge.cur_from_ref.translation.x() = kNan;
+                  g->AddEdge(edge);
+                },
+                GraphStatus::kBadInput,
+                "the edge from pose 0 to pose 2 has a motion that is not "
+                "finite"},
+        BadCase{"no_covariance",
+                [](PoseGraph* g) {
+                  RelativePose edge = AnyEdge(0, 2);
+                  edge.covariance.setZero();
+                  g->AddEdge(edge);
+                },
+                GraphStatus::kBadInput,
+                "the edge from pose 0 to pose 2 has a covariance that is not "
+                "positive definite"},
+        BadCase{"negative_covariance",
+                [](PoseGraph* g) {
+                  RelativePose edge = AnyEdge(0, 2);
+                  edge.covariance(3, 3) = -1.0;
+                  g->AddEdge(edge);
+                },
+                GraphStatus::kBadInput,
+                "the edge from pose 0 to pose 2 has a covariance that is not "
+                "positive definite"},
+        BadCase{"unknown_pose", [](PoseGraph* g) { g->AddEdge(AnyEdge(0, 7)); },
+                GraphStatus::kBadInput,
+                "the edge from pose 0 to pose 7 is not between two poses of "
+                "the graph"}),
+    [](const auto& info) { return info.param.name; });
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,132 @@
+#include "frontend/fusion/cloud_fusion.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "frontend/simulation/synthetic_dataset.h"
+
+namespace rgbd_pose {
+namespace {
+
+CloudFusionOptions Options(const Camera& camera) {
+  CloudFusionOptions options;
+  options.camera = camera;
+  return options;
+}
+
+// A wall 2 m ahead with, before its left half, a plate at 1 m.
+Frame WallAndPlate(const Camera& camera, int between_px) {
+  Frame frame;
+  frame.depth.create(camera.height, camera.width, CV_16UC1);
+  frame.depth.setTo(10000);
+  frame.depth.colRange(0, 200).setTo(5000);
+  // What sensors make of the edge: depths in between.
+  frame.depth.colRange(200, 200 + between_px).setTo(7500);
+  frame.color.create(frame.depth.size(), CV_8UC3);
+  frame.color.setTo(cv::Scalar(10, 20, 30));
+  return frame;
+}
+
+TEST(CloudFusionTest, LeavesOutPointsBetweenTwoSurfaces) {
+  const Camera camera;
+  CloudFusion fusion(Options(camera));
+  fusion.Add(WallAndPlate(camera, 1), Rigid3d());
+  ASSERT_GT(fusion.cloud().size(), 10000);
+  for (const ColoredPoint& point : fusion.cloud().Points()) {
+    const float z = point.position.z();
+    EXPECT_LT(std::min(std::abs(z - 1.0F), std::abs(z - 2.0F)), 1e-5F);
+    EXPECT_EQ(point.red, 30);
+    EXPECT_EQ(point.green, 20);
+    EXPECT_EQ(point.blue, 10);
+  }
+}
+
+TEST(CloudFusionTest, LeavesOutWhatIsTooNearTooFarOrMissing) {
+  const Camera camera;
+  // 0.3 m and 8 m are 1500 and 40000 units.
+  for (const int raw : {0, 1499, 40001, 65535}) {
+    CloudFusion fusion(Options(camera));
+    Frame frame;
+    frame.depth.create(camera.height, camera.width, CV_16UC1);
+    frame.depth.setTo(raw);
+    frame.color = cv::Mat::zeros(frame.depth.size(), CV_8UC3);
+    fusion.Add(frame, Rigid3d());
+    EXPECT_TRUE(fusion.cloud().empty()) << raw;
+  }
+}
+
+// The walls of a room seen through a lens that bends them are where they are.
+TEST(CloudFusionTest, PutsDistortedViewsTogetherToTheRoom) {
+  SyntheticOptions options;
+  options.path = "pan_tilt";
+  options.frames = 4;
+  options.noise = false;
+  options.camera = *CameraPreset("tum_fr1");
+  const SyntheticDataset dataset(options);
+  CloudFusion fusion(Options(dataset.camera().camera));
+  for (int i = 0; i < dataset.size(); ++i) {
+    fusion.Add(dataset.Read(i), dataset.WorldFromCam(i));
+  }
+  // The room is 5 x 4 x 2.6 m around the world's z axis.
+  constexpr float kTolerance = 0.005F;  // a step of depth, 0.2 mm, and slant
+  float deepest = 0.0F;
+  for (const ColoredPoint& point : fusion.cloud().Points()) {
+    deepest = std::max({deepest, std::abs(point.position.x()) - 2.5F,
+                        std::abs(point.position.y()) - 2.0F});
+  }
+  EXPECT_LT(deepest, kTolerance);
+  EXPECT_GT(deepest, -kTolerance);  // a wall is in view
+}
+
+TEST(CloudFusionTest, WantsGoodFramesThatMoved) {
+  CloudFusion fusion(Options(Camera()));
+  TrackedFrame tracked;
+  tracked.status = TrackingStatus::kDegraded;
+  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
+  tracked.status = TrackingStatus::kOk;
+  EXPECT_TRUE(fusion.ShouldIntegrate(tracked));
+  fusion.Add(WallAndPlate(Camera(), 0), tracked.world_from_cam);
+  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
+  tracked.world_from_cam.translation.x() = 0.049;
+  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
+  tracked.world_from_cam.translation.x() = 0.051;
+  EXPECT_TRUE(fusion.ShouldIntegrate(tracked));
+  tracked.world_from_cam =
+      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(3.1 * M_PI / 180.0,
+                                                   Eigen::Vector3d::UnitY())),
+              Eigen::Vector3d::Zero());
+  EXPECT_TRUE(fusion.ShouldIntegrate(tracked));
+  tracked.segment = 1;
+  EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
+}
+
+// Rows of pixels in turns 1 m and 1.03 m away: noise of one model, not of the
+// other.
+TEST(CloudFusionTest, NoiseIsWhatTheDepthNoiseModelSays) {
+  const Camera camera;
+  Frame frame = WallAndPlate(camera, 0);
+  frame.depth.setTo(5000);
+  for (int y = 0; y < frame.depth.rows; y += 2) frame.depth.row(y).setTo(5150);
+  for (const bool constant : {false, true}) {
+    CloudFusionOptions options = Options(camera);
+    options.depth.noise =
+        *FindDepthNoiseModel(constant ? "constant" : "khoshelham");
+    CloudFusion fusion(options);
+    fusion.Add(frame, Rigid3d());
+    EXPECT_EQ(fusion.cloud().size() > 0, constant);
+  }
+}
+
+TEST(CloudFusionTest, ChecksItsOptions) {
+  for (const double bad : {0.0, -0.01, 0.0009, 1.1, std::nan("")}) {
+    CloudFusionOptions options;
+    options.voxel_size = bad;
+    EXPECT_NE(options.Check(), "") << bad;
+  }
+  EXPECT_EQ(CloudFusionOptions().Check(), "");
+}
+
+}  // namespace
+}  // namespace rgbd_pose

@@ -1,0 +1,80 @@
+#include "frontend/fusion/surface_mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <cmath>
+#include <map>
+#include <utility>
+
+namespace rgbd_pose {
+namespace {
+
+constexpr double kVoxel = 0.02;                      // m
+constexpr double kRadius = 0.3;                      // m
+const Eigen::Vector3d kBallCentre(0.01, -0.2, 0.1);  // below and above 0
+
+// A ball, known where `is_known` says so. What is inside it is behind.
+template <typename IsKnown>
+TsdfVolume Ball(const IsKnown& is_known) {
+  constexpr int kSide = TsdfVolume::kSide;
+  TsdfVolume volume;
+  for (int b = 0; b < 512; ++b) {
+    const Eigen::Vector3i at(b / 64 - 4, b / 8 % 8 - 4, b % 8 - 4);
+    auto* block = volume.FindOrInsert(TsdfVolume::KeyOf(at));
+    for (int i = 0; i < TsdfVolume::kBlockSize; ++i) {
+      const Eigen::Vector3i in_block(i / 64, i / 8 % 8, i % 8);
+      const Eigen::Vector3d point =
+          kVoxel * (kSide * at + in_block).cast<double>();
+      DistanceVoxel& voxel = (*block)[i];
+      voxel.distance =
+          static_cast<float>((point - kBallCentre).norm() - kRadius);
+      voxel.weight = is_known(point) ? 1.0F : 0.0F;
+      voxel.color = {256 * 10, 256 * 20, 256 * 30};
+    }
+  }
+  return volume;
+}
+
+TEST(SurfaceMeshTest, ABallIsClosedAndItsFrontOutside) {
+  const TriangleMesh mesh = SurfaceMesh(
+      Ball([](const Eigen::Vector3d&) { return true; }), kVoxel, 1.0F);
+  std::map<std::pair<int, int>, int> edges;  // of each direction
+  double volume = 0.0;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    for (int i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}];
+    const auto at = [&](int i) -> Eigen::Vector3d {
+      return mesh.vertices[t[i]].position.cast<double>() - kBallCentre;
+    };
+    volume += at(0).cross(at(1)).dot(at(2)) / 6.0;
+  }
+  for (const auto& [edge, count] : edges) {
+    ASSERT_EQ(count, 1);
+    ASSERT_EQ(edges.count({edge.second, edge.first}), 1);
+  }
+  // > 0: corners are counter-clockwise as seen from outside. Chords cut a
+  // little off.
+  EXPECT_NEAR(volume / (4.0 / 3.0 * M_PI * std::pow(kRadius, 3)), 1.0, 0.01);
+  for (const ColoredPoint& vertex : mesh.vertices) {
+    // The sagitta of a voxel's diagonal.
+    EXPECT_NEAR((vertex.position.cast<double>() - kBallCentre).norm(), kRadius,
+                kVoxel * kVoxel / kRadius / 2.0);
+    EXPECT_EQ(vertex.red, 10);
+    EXPECT_EQ(vertex.green, 20);
+    EXPECT_EQ(vertex.blue, 30);
+  }
+}
+
+TEST(SurfaceMeshTest, EndsWhereNothingIsKnown) {
+  const TriangleMesh mesh = SurfaceMesh(
+      Ball([](const Eigen::Vector3d& point) { return point.x() > 0.05; }),
+      kVoxel, 1.0F);
+  ASSERT_GT(mesh.triangles.size(), 500);
+  for (const ColoredPoint& vertex : mesh.vertices) {
+    EXPECT_GT(vertex.position.x(), 0.05F);
+  }
+  EXPECT_TRUE(SurfaceMesh(TsdfVolume(), kVoxel, 1.0F).vertices.empty());
+}
+
+}  // namespace
+}  // namespace rgbd_pose
