@@ -23,8 +23,8 @@ LandmarksOfKeyframe LandmarkMatcher::Match(int anchor,
                                            const std::vector<int>& neighbours,
                                            const std::vector<bool>& held_out) {
   LandmarksOfKeyframe result;
-  const Frame frame = Images(anchor).first;
-  const auto features = frontend_->Detect(*Images(anchor).second);
+  const PreparedFrame frame = Images(anchor);
+  const auto features = frontend_->Detect(frame);
   std::vector<int> place(features->observations.size(), -1);
   for (size_t i = 0; i < features->observations.size(); ++i) {
     const Observation& o = features->observations[i];
@@ -41,9 +41,9 @@ LandmarksOfKeyframe LandmarkMatcher::Match(int anchor,
   result.views.resize(result.landmarks.size());
   for (size_t n = 0; n < neighbours.size(); ++n) {
     const int to = neighbours[n];
-    const auto& [there, prepared] = Images(to);
+    const PreparedFrame& there = Images(to);
     const Rigid3d cur_from_ref = Pose(to).Inverse() * Pose(anchor);
-    frontend_->Match(*features, *prepared, cur_from_ref, &matches_);
+    frontend_->Match(*features, there, cur_from_ref, &matches_);
     for (size_t i = 0; i < matches_.matches.size(); ++i) {
       const int landmark = place[matches_.features[i]];
       if (landmark < 0) continue;
@@ -62,7 +62,7 @@ LandmarksOfKeyframe LandmarkMatcher::Match(int anchor,
   return result;
 }
 
-const LandmarkMatcher::Both& LandmarkMatcher::Images(int at) {
+const PreparedFrame& LandmarkMatcher::Images(int at) {
   constexpr size_t kMost = 40;
   const auto found = images_.find(at);
   if (found != images_.end()) return found->second;
@@ -76,9 +76,8 @@ const LandmarkMatcher::Both& LandmarkMatcher::Images(int at) {
     }
     images_.erase(farthest);
   }
-  Frame frame = map_.keyframes[chosen_[at]].images.Restore();
-  auto prepared = frontend_->Prepare(frame);
-  return images_.emplace(at, Both(std::move(frame), std::move(prepared)))
+  return images_
+      .emplace(at, PreparedFrame(map_.keyframes[chosen_[at]].images.Restore()))
       .first->second;
 }
 

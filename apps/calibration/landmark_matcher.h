@@ -2,7 +2,6 @@
 
 #include <map>
 #include <memory>
-#include <utility>
 #include <vector>
 
 #include "apps/calibration/camera_velocity.h"
@@ -33,8 +32,6 @@ class LandmarkMatcher {
                             const std::vector<bool>& held_out);
 
  private:
-  using Both = std::pair<Frame, std::unique_ptr<const PreparedFrame>>;
-
   const Rigid3d& Pose(int at) const {
     return map_.keyframes[chosen_[at]].map_from_cam;
   }
@@ -43,7 +40,7 @@ class LandmarkMatcher {
     return map_.camera.Project(map_.camera.Ray(o.u, o.v));
   }
   // Decoded once for neighbours that follow each other.
-  const Both& Images(int at);
+  const PreparedFrame& Images(int at);
 
   // One of the keyframe's depths.
   MeasuredInverseDepth DepthOf(const Frame& frame, int keyframe,
@@ -55,7 +52,7 @@ class LandmarkMatcher {
   const std::vector<CameraVelocity>& velocities_;
   std::unique_ptr<Frontend> frontend_;
   DepthNoiseModel noise_;
-  std::map<int, Both> images_;
+  std::map<int, PreparedFrame> images_;
   FeatureMatches matches_;
 };
 

@@ -168,7 +168,7 @@ void RunRecording::ReadViews(const std::vector<int>& views, int threads,
   FrameStream stream(&picked, nullptr, threads);
   for (size_t i = 0; i < views.size(); ++i) {
     const std::optional<StreamedFrame> next = stream.Next();
-    on_view(*next->frame, poses[views[i]].world_from_cam);
+    on_view(next->frame, poses[views[i]].world_from_cam);
     bar.Update(static_cast<int>(i) + 1);
   }
 }

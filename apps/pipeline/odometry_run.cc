@@ -18,9 +18,9 @@ void SequenceRun::Add(const StreamedFrame& next) {
   std::optional<Rigid3d> guess;
   if (inputs_.motion_guess != nullptr && !frames.empty()) {
     guess = inputs_.motion_guess->CurFromPrev(frames.back().timestamp,
-                                              next.frame->timestamp);
+                                              next.frame.timestamp);
   }
-  frames.push_back(Track(*next.frame, guess.has_value() ? &*guess : nullptr));
+  frames.push_back(Track(next.frame, guess.has_value() ? &*guess : nullptr));
   TrackedFrame& tracked = frames.back();
   tracked.decode_ms = next.decode_ms;
   if (tracked.previous_is_reference) {
@@ -50,11 +50,11 @@ std::string TrackAll(FrameSource* source, int threads,
                      const std::function<bool(const Frame& frame)>& on_frame) {
   const Odometry& first = runs.front()->odometry();
   FrameStream stream(
-      source, [&first](const Frame& frame) { return first.Prepare(frame); },
+      source, [&first](const PreparedFrame& frame) { first.Prepare(frame); },
       threads, runs.front()->inputs().max_damaged);
   while (const std::optional<StreamedFrame> next = stream.Next()) {
     for (SequenceRun* run : runs) run->Add(*next);
-    if (on_frame && !on_frame(*next->frame)) break;
+    if (on_frame && !on_frame(next->frame)) break;
   }
   for (SequenceRun* run : runs) run->set_damaged(stream.damaged());
   return stream.stopped();

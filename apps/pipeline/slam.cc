@@ -55,15 +55,7 @@ void Slam::Load(KeyframeMap map, bool is_held) {
 
 SlamFrame Slam::Track(const Frame& frame, const Rigid3d* cur_from_prev_guess,
                       const MotionMatrix* guess_covariance) {
-  double prepare_ms = 0.0;
-  std::unique_ptr<const PreparedFrame> prepared;
-  {
-    const StageTimer timer(&prepare_ms);
-    prepared = Prepare(frame);
-  }
-  SlamFrame result = Track(*prepared, cur_from_prev_guess, guess_covariance);
-  result.tracked.track_ms += prepare_ms;
-  return result;
+  return Track(PreparedFrame(frame), cur_from_prev_guess, guess_covariance);
 }
 
 SlamFrame Slam::Track(const PreparedFrame& frame,

@@ -72,13 +72,11 @@ class Slam {
                   const Rigid3d* cur_from_prev_guess = nullptr,
                   const MotionMatrix* guess_covariance = nullptr);
 
-  // The same for a frame that Prepare has made.
+  // The same with what has been made of the frame already.
   SlamFrame Track(const PreparedFrame& frame,
                   const Rigid3d* cur_from_prev_guess = nullptr,
                   const MotionMatrix* guess_covariance = nullptr);
-  std::unique_ptr<const PreparedFrame> Prepare(const Frame& frame) const {
-    return odometry_.Prepare(frame);
-  }
+  void Prepare(const PreparedFrame& frame) const { odometry_.Prepare(frame); }
 
   // Waits for the work behind and solves for all keyframes once more. The last
   // call but for the following.

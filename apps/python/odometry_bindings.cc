@@ -108,10 +108,8 @@ void BindTrackedFrame(py::module_* module) {
       .def_readonly("is_predicted", &TrackedFrame::is_predicted,
                     "whether it is lost, but its pose follows motion_guess")
       .def_property_readonly(
-          "carried_by",
-          [](const TrackedFrame& frame) {
-            return std::string(frame.carried_by);
-          },
+          "tracking_source",
+          [](const TrackedFrame& frame) { return ToString(frame.source); },
           "what its motion comes from: 'features', 'direct' (pixels),\n"
           "'features+direct', or '' if it has none")
       .def_readonly("matches", &TrackedFrame::matches,

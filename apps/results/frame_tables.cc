@@ -25,17 +25,17 @@ std::string FormatPose(const Rigid3d& pose) {
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
   std::string text =
       "timestamp,status,reason,segment,reference,is_reference,relocalised,"
-      "predicted,carried_by,matches,inliers,iterations,sigma,"
+      "predicted,tracking_source,matches,inliers,iterations,sigma,"
       "tx,ty,tz,qx,qy,qz,qw,"
       "decode_ms,track_ms,match_ms,solve_ms,reference_ms,relocalise_ms\n";
   for (const TrackedFrame& frame : frames) {
     // Reasons are our own words and hold no quotes.
-    text += Format("%.6f,%s,\"%s\",%d,%d,%d,%d,%d,%s,%d,%d,%d,%.4f",
-                   frame.timestamp, ToString(frame.status),
-                   frame.reason.c_str(), frame.segment, frame.reference,
-                   frame.is_reference, frame.relocalised, frame.is_predicted,
-                   std::string(frame.carried_by).c_str(), frame.matches,
-                   frame.inliers, frame.iterations, frame.sigma);
+    text +=
+        Format("%.6f,%s,\"%s\",%d,%d,%d,%d,%d,%s,%d,%d,%d,%.4f",
+               frame.timestamp, ToString(frame.status), frame.reason.c_str(),
+               frame.segment, frame.reference, frame.is_reference,
+               frame.relocalised, frame.is_predicted, ToString(frame.source),
+               frame.matches, frame.inliers, frame.iterations, frame.sigma);
     text += FormatPose(frame.world_from_cam);
     for (const double ms :
          {frame.decode_ms, frame.track_ms, frame.match_ms, frame.solve_ms,

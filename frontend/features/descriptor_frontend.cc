@@ -25,26 +25,29 @@ struct DescribedFeatures : FeatureSet {
   DescribedKeypoints described;  // of each observation
 };
 
-struct DescribedFrame final : PreparedFrame {
-  using PreparedFrame::PreparedFrame;
-  std::unique_ptr<PreparedFrame> Copy() const override {
-    return std::make_unique<DescribedFrame>(*this);
+struct AllKeypoints {
+  AllKeypoints(const PreparedFrame& frame, const DescriptorMethod* method,
+               int max_keypoints) {
+    // OpenCV does not say that a detector may serve several threads.
+    method->make(max_keypoints)
+        ->detectAndCompute(frame.gray, cv::noArray(), described.keypoints,
+                           described.descriptors);
   }
-
   DescribedKeypoints described;
 };
 
 }  // namespace
 
-std::unique_ptr<const PreparedFrame> DescriptorFrontend::Prepare(
-    const Frame& frame) const {
-  auto prepared = std::make_unique<DescribedFrame>(frame);
-  // OpenCV does not say that a detector may serve several threads.
-  method_.make(kKeypointsPerFeature * options_.max_features)
-      ->detectAndCompute(frame.gray, cv::noArray(),
-                         prepared->described.keypoints,
-                         prepared->described.descriptors);
-  return prepared;
+void DescriptorFrontend::Prepare(const PreparedFrame& frame) const {
+  Keypoints(frame);
+}
+
+const DescribedKeypoints& DescriptorFrontend::Keypoints(
+    const PreparedFrame& frame) const {
+  return frame
+      .Derived<AllKeypoints>(&method_,
+                             kKeypointsPerFeature * options_.max_features)
+      .described;
 }
 
 Observation DescriptorFrontend::ObserveKeypoint(
@@ -55,8 +58,7 @@ Observation DescriptorFrontend::ObserveKeypoint(
 
 std::unique_ptr<FeatureSet> DescriptorFrontend::Detect(
     const PreparedFrame& frame) {
-  const DescribedKeypoints& all =
-      dynamic_cast<const DescribedFrame&>(frame).described;
+  const DescribedKeypoints& all = Keypoints(frame);
   auto features = std::make_unique<DescribedFeatures>();
   features->described = all.Select(SelectOverGrid(
       all.keypoints, frame.gray.size(), options_.max_features,
@@ -75,8 +77,7 @@ void DescriptorFrontend::Match(const FeatureSet& reference,
                                FeatureMatches* matches) {
   matches->Clear();
   const auto& features = static_cast<const DescribedFeatures&>(reference);
-  const DescribedKeypoints& current =
-      dynamic_cast<const DescribedFrame&>(frame).described;
+  const DescribedKeypoints& current = Keypoints(frame);
   const FrameTiming timing = frame.Timing();
   SearchGuide guide;
   guide.radius_px = static_cast<float>(kSearchAngle * options_.camera.fx);

@@ -3,6 +3,7 @@
 #include <memory>
 #include <opencv2/core.hpp>
 
+#include "frontend/features/descriptor_matching.h"
 #include "frontend/features/descriptor_method.h"
 #include "frontend/features/frontend.h"
 
@@ -20,14 +21,14 @@ class DescriptorFrontend final : public Frontend {
       : Frontend(options), method_(method) {}
 
   bool is_exhaustive() const override { return false; }
-  std::unique_ptr<const PreparedFrame> Prepare(
-      const Frame& frame) const override;
+  void Prepare(const PreparedFrame& frame) const override;
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override;
   void Match(const FeatureSet& reference, const PreparedFrame& frame,
              const Rigid3d& cur_from_ref_guess,
              FeatureMatches* matches) override;
 
  private:
+  const DescribedKeypoints& Keypoints(const PreparedFrame& frame) const;
   Observation ObserveKeypoint(const Frame& frame,
                               const cv::KeyPoint& keypoint) const;
 

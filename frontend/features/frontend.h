@@ -10,7 +10,7 @@
 #include "core/geometry/depth_noise.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/depth_lookup.h"
-#include "frontend/frame/frame.h"
+#include "frontend/frame/prepared_frame.h"
 
 namespace rgbd_pose {
 
@@ -69,9 +69,8 @@ struct FeatureMatches {
   }
 };
 
-// Finds the features of one frame again in others. Feature sets and prepared
-// frames are for frontends of the type that made them. One object serves one
-// thread.
+// Finds the features of one frame again in others. Feature sets are for
+// frontends of the type that made them. One object serves one thread.
 class Frontend {
  public:
   // The options must be sound (see Check).
@@ -86,12 +85,9 @@ class Frontend {
   // Detectors need not fire in the same place twice.
   virtual bool is_exhaustive() const { return true; }
 
-  // Works out what does not depend on other frames (a pyramid, say). May be
-  // called from several threads.
-  virtual std::unique_ptr<const PreparedFrame> Prepare(
-      const Frame& frame) const {
-    return std::make_unique<PreparedFrame>(frame);
-  }
+  // Makes what will be asked of the frame alone (PreparedFrame::Derived) ahead.
+  // May be called from several threads.
+  virtual void Prepare(const PreparedFrame& /*frame*/) const {}
 
   // The features of a frame. They keep copies, if anything, of its images: the
   // caller may write the next ones into the same memory.

@@ -15,36 +15,27 @@ const cv::TermCriteria kTermination(cv::TermCriteria::COUNT +
 // A mean grey difference over the window beyond this is another place.
 constexpr float kMaxMeanDifference = 25.0F;
 
-struct KltFrame final : PreparedFrame {
-  KltFrame(const Frame& frame, bool with_derivatives) : PreparedFrame(frame) {
-    cv::buildOpticalFlowPyramid(gray, pyramid, kWindow, kMaxLevel,
+struct KltPyramid {
+  KltPyramid(const PreparedFrame& frame, bool with_derivatives) {
+    cv::buildOpticalFlowPyramid(frame.gray, levels, kWindow, kMaxLevel,
                                 with_derivatives);
   }
-  std::unique_ptr<PreparedFrame> Copy() const override {
-    return std::make_unique<KltFrame>(*this);
-  }
-
-  std::vector<cv::Mat> pyramid;
+  std::vector<cv::Mat> levels;
 };
 
 }  // namespace
 
-std::unique_ptr<const PreparedFrame> KltFrontend::Prepare(
-    const Frame& frame) const {
-  return std::make_unique<KltFrame>(frame, /*with_derivatives=*/false);
-}
-
-std::unique_ptr<const PreparedFrame> KltFrontend::PrepareReference(
-    const Frame& frame) const {
-  return std::make_unique<KltFrame>(frame, /*with_derivatives=*/true);
+void KltFrontend::Prepare(const PreparedFrame& frame) const {
+  frame.Derived<KltPyramid>(/*with_derivatives=*/false);
 }
 
 void KltFrontend::Follow(const PreparedFrame& from, const Points& points,
                          const PreparedFrame& to, Points* moved, Found* found) {
-  cv::calcOpticalFlowPyrLK(dynamic_cast<const KltFrame&>(from).pyramid,
-                           dynamic_cast<const KltFrame&>(to).pyramid, points,
-                           *moved, *found, error_, kWindow, kMaxLevel,
-                           kTermination, cv::OPTFLOW_USE_INITIAL_FLOW);
+  cv::calcOpticalFlowPyrLK(
+      from.Derived<KltPyramid>(/*with_derivatives=*/true).levels,
+      to.Derived<KltPyramid>(/*with_derivatives=*/false).levels, points, *moved,
+      *found, error_, kWindow, kMaxLevel, kTermination,
+      cv::OPTFLOW_USE_INITIAL_FLOW);
   for (size_t i = 0; i < found->size(); ++i) {
     if (error_[i] > kMaxMeanDifference) (*found)[i] = 0;
   }

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
 #include "frontend/features/point_frontend.h"
@@ -17,12 +16,9 @@ class KltFrontend final : public PointFrontend {
 
   using PointFrontend::PointFrontend;
 
-  std::unique_ptr<const PreparedFrame> Prepare(
-      const Frame& frame) const override;
+  void Prepare(const PreparedFrame& frame) const override;
 
  private:
-  std::unique_ptr<const PreparedFrame> PrepareReference(
-      const Frame& frame) const override;
   void Follow(const PreparedFrame& from, const Points& points,
               const PreparedFrame& to, Points* moved, Found* found) override;
 

@@ -44,20 +44,11 @@ struct PatchStack {
   std::array<Patch, kPatchLevels> levels;
 };
 
-struct PatchFrame final : PreparedFrame {
-  explicit PatchFrame(const Frame& frame) : PreparedFrame(frame) {
-    BuildImagePyramid(gray, kPatchLevels, &pyramid);
-  }
-  std::unique_ptr<PreparedFrame> Copy() const override {
-    return std::make_unique<PatchFrame>(*this);
-  }
-
-  std::vector<cv::Mat> pyramid;
-};
-
 struct PatchFeatures : FeatureSet {
-  explicit PatchFeatures(const PatchFrame& frame) {
-    for (const cv::Mat& level : frame.pyramid) pyramid.push_back(level.clone());
+  explicit PatchFeatures(const PreparedFrame& frame)
+      : pyramid(frame.Derived<ImagePyramid>().levels) {
+    pyramid.resize(std::min<size_t>(pyramid.size(), kPatchLevels));
+    pyramid[0] = pyramid[0].clone();
   }
 
   // The patches of a feature for a warp near to `ref_from_patch`: a function
@@ -77,20 +68,20 @@ struct PatchFeatures : FeatureSet {
     return patch;
   }
 
-  std::vector<cv::Mat> pyramid;
+  std::vector<cv::Mat> pyramid;  // shares all but level 0 with the frame
   std::vector<cv::Point2f> corners;
   mutable std::vector<PatchStack> patches;  // see Patches
 };
 
 // Coarse to fine from a start (px): a level that fails is left out, but for
 // the last.
-AlignedPatch FindPatch(const PatchStack& patch,
+AlignedPatch FindPatch(const PatchStack& patch, int num_levels,
                        const std::vector<cv::Mat>& pyramid,
                        const Eigen::Vector2d& start) {
   auto u = static_cast<float>(start.x());
   auto v = static_cast<float>(start.y());
   AlignedPatch found;
-  for (int level = static_cast<int>(pyramid.size()) - 1; level >= 0; --level) {
+  for (int level = num_levels - 1; level >= 0; --level) {
     PatchAlignmentOptions options;
     // A coarse level need not be better than the start of the next.
     if (level > 0) options.min_step_px *= 4.0F;
@@ -105,14 +96,12 @@ AlignedPatch FindPatch(const PatchStack& patch,
 
 }  // namespace
 
-std::unique_ptr<const PreparedFrame> PatchFrontend::Prepare(
-    const Frame& frame) const {
-  return std::make_unique<PatchFrame>(frame);
+void PatchFrontend::Prepare(const PreparedFrame& frame) const {
+  frame.Derived<ImagePyramid>();
 }
 
 std::unique_ptr<FeatureSet> PatchFrontend::Detect(const PreparedFrame& frame) {
-  auto features =
-      std::make_unique<PatchFeatures>(dynamic_cast<const PatchFrame&>(frame));
+  auto features = std::make_unique<PatchFeatures>(frame);
   features->corners = DetectGridCorners(
       frame.gray, options_.max_features, [&](const cv::Point2f& pixel) {
         return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
@@ -133,8 +122,9 @@ void PatchFrontend::Match(const FeatureSet& reference,
   matches->Clear();
   const auto& features = static_cast<const PatchFeatures&>(reference);
   if (features.corners.empty()) return;
-  const std::vector<cv::Mat>& pyramid =
-      dynamic_cast<const PatchFrame&>(frame).pyramid;
+  const std::vector<cv::Mat>& pyramid = frame.Derived<ImagePyramid>().levels;
+  const int num_levels =
+      static_cast<int>(std::min(features.pyramid.size(), pyramid.size()));
   const Camera& camera = options_.camera;
   const FrameTiming timing = frame.Timing();
   for (size_t i = 0; i < features.corners.size(); ++i) {
@@ -148,7 +138,7 @@ void PatchFrontend::Match(const FeatureSet& reference,
     const float scale = warp.determinant();
     if (!(scale > 1.0F / kMaxScale && scale < kMaxScale)) continue;
     const PatchStack& patches = features.Patches(i, warp.inverse());
-    const AlignedPatch found = FindPatch(patches, pyramid, start);
+    const AlignedPatch found = FindPatch(patches, num_levels, pyramid, start);
     if (!found.found || found.correlation < kMinCorrelation) continue;
     const double sigma_px = std::hypot(
         kPatchSigmaPx, kNoiseFactor * found.residual /

@@ -14,8 +14,7 @@ class PatchFrontend final : public Frontend {
 
   using Frontend::Frontend;
 
-  std::unique_ptr<const PreparedFrame> Prepare(
-      const Frame& frame) const override;
+  void Prepare(const PreparedFrame& frame) const override;
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override;
   void Match(const FeatureSet& reference, const PreparedFrame& frame,
              const Rigid3d& cur_from_ref_guess,

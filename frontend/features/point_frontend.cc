@@ -13,7 +13,7 @@ namespace {
 constexpr double kPointSigmaPx = 0.5;
 
 struct PointFeatures : FeatureSet {
-  std::unique_ptr<const PreparedFrame> frame;  // a copy
+  PreparedFrame frame;  // a copy
   std::vector<cv::Point2f> points;
 };
 
@@ -32,7 +32,7 @@ std::unique_ptr<FeatureSet> PointFrontend::Detect(const PreparedFrame& frame) {
   Frame copy = frame;
   copy.gray = frame.gray.clone();
   copy.depth.release();
-  features->frame = PrepareReference(copy);
+  features->frame = PreparedFrame(copy);
   return features;
 }
 
@@ -55,7 +55,7 @@ void PointFrontend::Match(const FeatureSet& reference,
                             static_cast<float>(pixel.y()));
   }
   found_.assign(moved_.size(), 1);
-  Follow(*features.frame, features.points, frame, &moved_, &found_);
+  Follow(features.frame, features.points, frame, &moved_, &found_);
   const size_t count = features.points.size();
   if (moved_.size() != count || found_.size() != count) {
     throw InputError("a frontend followed " + std::to_string(moved_.size()) +

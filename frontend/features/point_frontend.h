@@ -27,18 +27,12 @@ class PointFrontend : public Frontend {
   // out. Unless overridden, corners with a depth, spread over a grid.
   virtual void Find(const Frame& frame, Points* points);
 
-  // Where `points` of the frame `from` are in the frame `to`. On entry `moved`
+  // Where `points` of the frame `from`, which has no depth any more, are in the
+  // frame `to`. On entry `moved`
   // holds where the guess has them, and all are found. Neither may change its
   // size: Match would throw InputError.
   virtual void Follow(const PreparedFrame& from, const Points& points,
                       const PreparedFrame& to, Points* moved, Found* found) = 0;
-
-  // As Prepare, for a copy of the frame that others are going to be compared
-  // with; without its depth.
-  virtual std::unique_ptr<const PreparedFrame> PrepareReference(
-      const Frame& frame) const {
-    return Prepare(frame);
-  }
 
  private:
   Observation ObserveAt(const Frame& frame, const cv::Point2f& point) const;

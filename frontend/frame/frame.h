@@ -2,7 +2,6 @@
 
 #include <cmath>
 #include <cstdint>
-#include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
 
@@ -63,22 +62,6 @@ struct Frame {
 
   // Some sensors mark "no measurement" by the largest value instead of 0.
   static constexpr uint16_t kNoDepth = 65535;
-};
-
-// A frame with what whoever tracks it needs of it alone (a pyramid, say): made
-// by the frontend that is to use it, which knows what has been added. It shares
-// the images, which must stay as they are for as long as it is in use. Nothing
-// of depth is prepared: that is moved to the time of colour once the motion is
-// known.
-struct PreparedFrame : Frame {
-  // With nothing added yet.
-  explicit PreparedFrame(const Frame& frame) : Frame(frame) {}
-  virtual ~PreparedFrame() = default;
-
-  // One of the same type, that shares the images.
-  virtual std::unique_ptr<PreparedFrame> Copy() const {
-    return std::make_unique<PreparedFrame>(*this);
-  }
 };
 
 }  // namespace rgbd_pose

@@ -7,6 +7,16 @@ namespace rgbd_pose {
 namespace {
 
 constexpr int kMinSidePx = 8;
+constexpr int kLevelsOfFrame = 6;
+
+void Smooth(const std::vector<cv::Mat>& sharp, std::vector<cv::Mat>* pyramid) {
+  constexpr double kSigmaPx = 1.0;
+  pyramid->resize(sharp.size());
+  (*pyramid)[0] = sharp[0];
+  for (size_t level = 1; level < sharp.size(); ++level) {
+    cv::GaussianBlur(sharp[level], (*pyramid)[level], {3, 3}, kSigmaPx);
+  }
+}
 
 }  // namespace
 
@@ -29,14 +39,17 @@ void BuildImagePyramid(const cv::Mat& gray, int levels,
 
 void BuildSmoothPyramid(const cv::Mat& gray, int levels,
                         std::vector<cv::Mat>* pyramid) {
-  constexpr double kSigmaPx = 1.0;
   std::vector<cv::Mat> sharp;
   BuildImagePyramid(gray, levels, &sharp);
-  pyramid->resize(sharp.size());
-  (*pyramid)[0] = gray;
-  for (size_t level = 1; level < sharp.size(); ++level) {
-    cv::GaussianBlur(sharp[level], (*pyramid)[level], {3, 3}, kSigmaPx);
-  }
+  Smooth(sharp, pyramid);
+}
+
+ImagePyramid::ImagePyramid(const PreparedFrame& frame) {
+  BuildImagePyramid(frame.gray, kLevelsOfFrame, &levels);
+}
+
+SmoothPyramid::SmoothPyramid(const PreparedFrame& frame) {
+  Smooth(frame.Derived<ImagePyramid>().levels, &levels);
 }
 
 Camera CameraOfLevel(const Camera& camera, int level) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "frontend/frame/prepared_frame.h"
 
 namespace rgbd_pose {
 
@@ -17,6 +18,16 @@ void BuildImagePyramid(const cv::Mat& gray, int levels,
 // which is more exact, and from farther away, where images are smooth.
 void BuildSmoothPyramid(const cv::Mat& gray, int levels,
                         std::vector<cv::Mat>* pyramid);
+
+// These of a frame (PreparedFrame::Derived), 640 x 480 to 20 x 15.
+struct ImagePyramid {
+  explicit ImagePyramid(const PreparedFrame& frame);
+  std::vector<cv::Mat> levels;
+};
+struct SmoothPyramid {
+  explicit SmoothPyramid(const PreparedFrame& frame);
+  std::vector<cv::Mat> levels;
+};
 
 // The camera of the pixels of a level.
 Camera CameraOfLevel(const Camera& camera, int level);

@@ -96,10 +96,10 @@ MapUpdate Mapper::Add(NewKeyframe added) {
     }
     graph_.AddPair(edge, /*is_tracked=*/true);
   }
-  const auto prepared = tracker_.Prepare(added.frame);
-  pairing_.PairByPose(newest, *prepared, &update);
-  pairing_.CloseLoopsByAppearance(newest, *prepared, &update);
-  if (update.joined > 0) pairing_.PairByPose(newest, *prepared, &update);
+  const PreparedFrame prepared(added.frame);
+  pairing_.PairByPose(newest, prepared, &update);
+  pairing_.CloseLoopsByAppearance(newest, prepared, &update);
+  if (update.joined > 0) pairing_.PairByPose(newest, prepared, &update);
   index_.Add(newest, keyframes_[newest].features.described.descriptors);
 
   update.error =

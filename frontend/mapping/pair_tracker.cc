@@ -55,10 +55,9 @@ const Reference* PairTracker::ReferenceOf(int at, const StoredImages& images) {
     references_.splice(references_.begin(), references_, made);
     return references_.front().second.get();
   }
-  const auto prepared = tracker_->Prepare(images.Restore());
   std::string why_not;
-  auto reference =
-      tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
+  auto reference = tracker_->MakeReference(PreparedFrame(images.Restore()),
+                                           nullptr, nullptr, &why_not);
   if (reference == nullptr) return nullptr;
   if (references_.size() == kMaxReferences) references_.pop_back();
   references_.emplace_front(at, std::move(reference));

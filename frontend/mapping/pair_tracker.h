@@ -23,11 +23,6 @@ class PairTracker {
   // What images are used for, see Tracker.
   const FrontendOptions& images() const { return tracker_->images(); }
 
-  // A frame that is to be `frame` of MakePair.
-  std::unique_ptr<const PreparedFrame> Prepare(const Frame& frame) const {
-    return tracker_->Prepare(frame);
-  }
-
   // The motion from keyframe `ref`, whose images are given, to a frame near a
   // guess, if it is a good pair.
   std::optional<RelativePose> MakePair(int ref, int cur,

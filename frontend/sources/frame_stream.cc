@@ -128,10 +128,9 @@ void FrameStream::ReadOne(Lock* lock) {
   const auto start = std::chrono::steady_clock::now();
   result.failed = Result::kRead;
   try {
-    const Frame frame = next->read();
+    result.frame.frame = PreparedFrame(next->read());
     result.failed = Result::kPrepare;
-    result.frame.frame =
-        prepare_ ? prepare_(frame) : std::make_unique<PreparedFrame>(frame);
+    if (prepare_) prepare_(result.frame.frame);
   } catch (...) {
     result.error = std::current_exception();
   }

@@ -5,7 +5,6 @@
 #include <functional>
 #include <limits>
 #include <map>
-#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
@@ -13,15 +12,15 @@
 #include <vector>
 
 #include "core/util/input_error.h"
-#include "frontend/frame/frame.h"
+#include "frontend/frame/prepared_frame.h"
 #include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {
 
 // A frame, and how long reading and preparing it took, in whichever thread.
 struct StreamedFrame {
-  std::unique_ptr<const PreparedFrame> frame;  // never null
-  double decode_ms = 0.0;                      // to read and to prepare it
+  PreparedFrame frame;
+  double decode_ms = 0.0;  // to read and to prepare it
 };
 
 // The frames of a source in order, read and prepared ahead by several threads.
@@ -31,8 +30,7 @@ struct StreamedFrame {
 class FrameStream {
  public:
   // Works on a frame in the thread that has read it (Frontend::Prepare, say).
-  using Prepare =
-      std::function<std::unique_ptr<const PreparedFrame>(const Frame& frame)>;
+  using Prepare = std::function<void(const PreparedFrame& frame)>;
 
   // `threads` >= 1 counts the calling one: 1 reads each frame when it is asked
   // for. `prepare` may be empty. The source must outlive the stream, and nobody

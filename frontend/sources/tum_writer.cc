@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <memory>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <system_error>
@@ -69,14 +68,13 @@ WrittenSequence WriteFrames(FrameSource* source, const fs::path& folder,
         WritePng(folder / ImagePath("rgb", frame.timestamp),
                  frame.color.empty() ? frame.gray : WithGrayOf(frame));
         WritePng(folder / ImagePath("depth", DepthStamp(frame)), frame.depth);
-        return std::make_unique<const PreparedFrame>(frame);
       },
       std::max(1, options.threads), options.max_damaged);
   const char* const kinds[] = {"rgb", "depth"};
   std::string lists[] = {"# timestamp filename\n", "# timestamp filename\n"};
   WrittenSequence written;
   while (const std::optional<StreamedFrame> next = stream.Next()) {
-    const double stamps[] = {next->frame->timestamp, DepthStamp(*next->frame)};
+    const double stamps[] = {next->frame.timestamp, DepthStamp(next->frame)};
     for (int i = 0; i < 2; ++i) {
       lists[i] +=
           FormatStamp(stamps[i]) + " " + ImagePath(kinds[i], stamps[i]) + "\n";

@@ -15,9 +15,6 @@
 namespace rgbd_pose {
 namespace {
 
-// 640 x 480 to 20 x 15.
-constexpr int kDirectLevels = 6;
-
 // Overlaps are told by pixels so far apart.
 constexpr int kSampleStepPx = 20;
 // Looks are compared where noise is small, as are errors of a pixel or two.
@@ -49,31 +46,26 @@ std::string DirectTrackerOptions::Check() const {
   return "";
 }
 
-DirectReference::DirectReference(const Frame& frame,
-                                 const std::vector<cv::Mat>& pyramid,
+DirectReference::DirectReference(const PreparedFrame& frame,
                                  const FrontendOptions& images, uint64_t id)
     : depth_(frame.depth.clone()),
+      pyramid_(frame.Derived<SmoothPyramid>().levels),
       samples_(frame, images.camera, kSampleStepPx, images.min_depth,
                images.max_depth) {
-  for (const cv::Mat& level : pyramid) pyramid_.push_back(level.clone());
+  pyramid_[0] = pyramid_[0].clone();
   Frame kept = frame;
   kept.depth = depth_;
   view_ = ViewFrame(kept, pyramid_, images.camera, images.depth_noise);
   view_.id = id;
 }
 
-ViewLikeness DirectReference::LikenessTo(const Frame& cur,
-                                         const std::vector<cv::Mat>& pyramid,
+ViewLikeness DirectReference::LikenessTo(const PreparedFrame& cur,
                                          const Rigid3d& cur_from_ref) const {
+  const std::vector<cv::Mat>& pyramid = cur.Derived<SmoothPyramid>().levels;
   const size_t level =
       std::min({kLikenessLevel, pyramid_.size() - 1, pyramid.size() - 1});
   return samples_.LikenessTo(cur, pyramid_[level], pyramid[level],
                              cur_from_ref);
-}
-
-DirectTracker::DirectFrame::DirectFrame(const Frame& frame)
-    : PreparedFrame(frame) {
-  BuildSmoothPyramid(gray, kDirectLevels, &pyramid);
 }
 
 DirectTracker::DirectTracker(const FrontendOptions& images,
@@ -90,12 +82,15 @@ DirectTracker::DirectTracker(const FrontendOptions& images,
   }
 }
 
+void DirectTracker::Prepare(const PreparedFrame& frame) const {
+  frame.Derived<SmoothPyramid>();
+}
+
 std::unique_ptr<Reference> DirectTracker::MakeReference(
     const PreparedFrame& frame, const Reference* /*last*/,
     const TrackingResult* /*tracked*/, std::string* why_not) {
-  auto reference = std::make_unique<DirectReference>(
-      frame, dynamic_cast<const DirectFrame&>(frame).pyramid, images_,
-      ++last_id_);
+  auto reference =
+      std::make_unique<DirectReference>(frame, images_, ++last_id_);
   if (reference->num_samples() < kMinSamples) {
     *why_not = "too few depths to start from";
     return nullptr;
@@ -182,9 +177,8 @@ Rigid3d DirectTracker::FindStart(const Reference& reference,
 FrameView DirectTracker::ViewOf(const PreparedFrame& frame,
                                 const FrameTiming& timing,
                                 const CellMask* moving) const {
-  FrameView view =
-      ViewFrame(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
-                images_.camera, images_.depth_noise);
+  FrameView view = ViewFrame(frame, frame.Derived<SmoothPyramid>().levels,
+                             images_.camera, images_.depth_noise);
   view.timing = timing;
   view.moving = moving;
   return view;
@@ -211,7 +205,7 @@ void DirectTracker::Begin(TrackingResult* tracked) {
   tracked->on_probation.Clear();
   tracked->is_ambiguous = false;
   tracked->match_ms = 0.0;
-  tracked->carried_by = kName;
+  tracked->source = TrackingSource::kDirect;
   tracked->twist.reset();
   tracked->twist_covariance.setZero();
 }
@@ -227,10 +221,7 @@ void DirectTracker::Judge(const Reference& reference,
     tracked->overlap.share *=
         static_cast<double>(estimate.num_inliers) / estimate.num_used;
   }
-  JudgeMotion(
-      ours.LikenessTo(frame, dynamic_cast<const DirectFrame&>(frame).pyramid,
-                      estimate.cur_from_prev),
-      tracked);
+  JudgeMotion(ours.LikenessTo(frame, estimate.cur_from_prev), tracked);
   tracked->needs_new_keyframe =
       tracked->status != TrackingStatus::kLost &&
       tracked->overlap.share < options_.min_seen_share_ok;

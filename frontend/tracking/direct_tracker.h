@@ -45,16 +45,16 @@ struct DirectTrackerOptions {
 // The images of a frame that direct costs look at, kept.
 class DirectReference final : public Reference {
  public:
-  // Of a frame with its smooth pyramid. `id`: another one for each reference.
-  DirectReference(const Frame& frame, const std::vector<cv::Mat>& pyramid,
-                  const FrontendOptions& images, uint64_t id);
+  // `id`: another one for each reference.
+  DirectReference(const PreparedFrame& frame, const FrontendOptions& images,
+                  uint64_t id);
 
   Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
     return samples_.SeenFrom(cur_from_ref);
   }
 
-  // How alike it and a frame with its smooth pyramid look.
-  ViewLikeness LikenessTo(const Frame& cur, const std::vector<cv::Mat>& pyramid,
+  // How alike it and a frame look.
+  ViewLikeness LikenessTo(const PreparedFrame& cur,
                           const Rigid3d& cur_from_ref) const;
 
   const FrameView* images() const override { return &view_; }
@@ -63,7 +63,7 @@ class DirectReference final : public Reference {
 
  private:
   cv::Mat depth_;
-  std::vector<cv::Mat> pyramid_;
+  std::vector<cv::Mat> pyramid_;  // shares all but level 0 with the frame
   FrameView view_;
   ViewOverlap samples_;
 };
@@ -85,25 +85,12 @@ class DirectTracker final : public Tracker {
  public:
   static constexpr char kName[] = "direct";  // as programs take it
 
-  // A frame with its smooth pyramid.
-  struct DirectFrame final : PreparedFrame {
-    // Builds it.
-    explicit DirectFrame(const Frame& frame);
-    std::unique_ptr<PreparedFrame> Copy() const override {
-      return std::make_unique<DirectFrame>(*this);
-    }
-    std::vector<cv::Mat> pyramid;  // see image_pyramid.h
-  };
-
   // Throws InputError for options that are not sound (see Check).
   DirectTracker(const FrontendOptions& images, DirectEstimators estimators,
                 const TrackerOptions& common = {},
                 const DirectTrackerOptions& options = {});
 
-  std::unique_ptr<const PreparedFrame> Prepare(
-      const Frame& frame) const override {
-    return std::make_unique<DirectFrame>(frame);
-  }
+  void Prepare(const PreparedFrame& frame) const override;
   std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
                                            const Reference* last,
                                            const TrackingResult* tracked,

@@ -131,7 +131,7 @@ void FeatureTracker::Track(const Reference& reference,
                            TrackingResult* tracked) {
   const auto& ours = dynamic_cast<const FeatureReference&>(reference);
   tracked->match_ms = 0.0;
-  tracked->carried_by = kName;
+  tracked->source = TrackingSource::kFeatures;
   tracked->twist.reset();
   tracked->twist_covariance.setZero();
   Match(ours, frame, cur_from_ref_start, tracked);
@@ -143,13 +143,12 @@ void FeatureTracker::Track(const Reference& reference,
     // Where the velocity was far off, few features were where they had been
     // looked for.
     if (tracked->estimate.ok() && ShareOf(ours, *tracked) < kFewFound) {
-      const std::unique_ptr<PreparedFrame> moved = frame.Copy();
-      moved->twist = tracked->twist;
+      const PreparedFrame moved = frame.WithTwist(tracked->twist);
       const Rigid3d found = tracked->estimate.cur_from_prev;
-      Match(ours, *moved, found, tracked);
+      Match(ours, moved, found, tracked);
       Estimate(found, prior, tracked);
       ChooseMotion(prior, tracked);
-      FindTwist(ours.features(), *moved, guess, tracked);
+      FindTwist(ours.features(), moved, guess, tracked);
     }
   }
   Judge(tracked);

@@ -39,9 +39,8 @@ class FeatureTracker final : public Tracker {
   FeatureTracker(std::unique_ptr<Frontend> frontend, Estimator estimator,
                  const TrackerOptions& options = {});
 
-  std::unique_ptr<const PreparedFrame> Prepare(
-      const Frame& frame) const override {
-    return frontend_->Prepare(frame);
+  void Prepare(const PreparedFrame& frame) const override {
+    frontend_->Prepare(frame);
   }
   std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
                                            const Reference* last,

@@ -8,31 +8,10 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr char kBoth[] = "features+direct";
-
 // Features and pixels contradict each other if their motions differ by more
 // than so many sigmas of the features' (in which what both share counts twice,
 // and calibration not at all: a wide limit).
 constexpr double kMaxDifference = 8.0;
-
-struct HybridFrame final : PreparedFrame {
-  using PreparedFrame::PreparedFrame;
-  std::unique_ptr<PreparedFrame> Copy() const override {
-    return std::make_unique<HybridFrame>(*this);
-  }
-
-  std::shared_ptr<const PreparedFrame> features, direct;
-};
-
-// A part with the velocity of the whole, which may be known better since.
-std::shared_ptr<const PreparedFrame> PartOf(
-    const HybridFrame& whole,
-    const std::shared_ptr<const PreparedFrame>& part) {
-  if (whole.IsOneMoment()) return part;
-  std::shared_ptr<PreparedFrame> moved = part->Copy();
-  moved->twist = whole.twist;
-  return moved;
-}
 
 // One of the two may be null.
 struct HybridReference final : Reference {
@@ -74,31 +53,25 @@ HybridTracker::HybridTracker(std::unique_ptr<FeatureTracker> features,
       pixels_(features_->images().camera),
       alone_(pixels_) {}
 
-std::unique_ptr<const PreparedFrame> HybridTracker::Prepare(
-    const Frame& frame) const {
-  auto prepared = std::make_unique<HybridFrame>(frame);
-  prepared->features = features_->Prepare(frame);
-  prepared->direct = direct_->Prepare(frame);
-  return prepared;
+void HybridTracker::Prepare(const PreparedFrame& frame) const {
+  features_->Prepare(frame);
+  direct_->Prepare(frame);
 }
 
 std::unique_ptr<Reference> HybridTracker::MakeReference(
     const PreparedFrame& frame, const Reference* last,
     const TrackingResult* tracked, std::string* why_not) {
-  const auto& ours = dynamic_cast<const HybridFrame&>(frame);
-  const auto with_features = PartOf(ours, ours.features);
-  const auto with_pixels = PartOf(ours, ours.direct);
   const auto* before = dynamic_cast<const HybridReference*>(last);
   // Where pixels alone have carried the frame nothing is known of its features.
   const bool by_features = before != nullptr && before->features != nullptr &&
-                           tracked->carried_by != DirectTracker::kName;
+                           tracked->source != TrackingSource::kDirect;
   auto reference = std::make_unique<HybridReference>();
   reference->features = features_->MakeReference(
-      *with_features, by_features ? before->features.get() : nullptr,
+      frame, by_features ? before->features.get() : nullptr,
       by_features ? tracked : nullptr, why_not);
   std::string why_not_direct;
   reference->direct =
-      direct_->MakeReference(*with_pixels, nullptr, nullptr, &why_not_direct);
+      direct_->MakeReference(frame, nullptr, nullptr, &why_not_direct);
   if (reference->features == nullptr &&
       (!refines_ || reference->direct == nullptr)) {
     return nullptr;
@@ -110,9 +83,6 @@ void HybridTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
                           const TrackingGuess& guess, TrackingResult* tracked) {
   const auto& ours = dynamic_cast<const HybridReference&>(reference);
-  HybridFrame both = dynamic_cast<const HybridFrame&>(frame);
-  const auto with_features = PartOf(both, both.features);
-  auto with_pixels = PartOf(both, both.direct);
   tracked->status = TrackingStatus::kLost;
   tracked->reason = "the reference has no features";
   if (ours.features != nullptr) {
@@ -120,15 +90,15 @@ void HybridTracker::Track(const Reference& reference,
     Rigid3d start = guess.cur_from_ref;
     if (ours.direct != nullptr) {
       const StageTimer timer(&start_ms);
-      start = direct_->FindStart(*ours.direct, *with_pixels, guess);
+      start = direct_->FindStart(*ours.direct, frame, guess);
     }
-    features_->Track(*ours.features, *with_features, start, guess, tracked);
+    features_->Track(*ours.features, frame, start, guess, tracked);
     tracked->match_ms += start_ms;
   }
   if (!refines_ || ours.direct == nullptr) return;
   if (tracked->status == TrackingStatus::kLost) {
     // Few features may lead astray: pixels find the way alone.
-    direct_->Track(*ours.direct, *with_pixels, guess, &pixels_);
+    direct_->Track(*ours.direct, frame, guess, &pixels_);
     pixels_.match_ms += tracked->match_ms;
     if (pixels_.status == TrackingStatus::kLost) {
       tracked->reason += "; by pixels: " + pixels_.reason;
@@ -137,11 +107,9 @@ void HybridTracker::Track(const Reference& reference,
     }
     return;
   }
-  if (tracked->twist.has_value()) {
-    both.twist = tracked->twist;
-    with_pixels = PartOf(both, both.direct);
-  }
-  direct_->Refine(*ours.direct, *with_pixels, guess, *tracked, &pixels_);
+  const PreparedFrame seen =
+      tracked->twist.has_value() ? frame.WithTwist(tracked->twist) : frame;
+  direct_->Refine(*ours.direct, seen, guess, *tracked, &pixels_);
   pixels_.estimate.covariance += tracked->twist_covariance;
   tracked->estimate.iterations += pixels_.estimate.iterations;
   tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
@@ -149,7 +117,7 @@ void HybridTracker::Track(const Reference& reference,
                      Agree(tracked->estimate, pixels_.estimate);
   if (tracked->status != TrackingStatus::kOk && !tracked->is_ambiguous) {
     // Few features may lead astray: pixels alone have to find the same.
-    direct_->Track(*ours.direct, *with_pixels, guess, &alone_);
+    direct_->Track(*ours.direct, seen, guess, &alone_);
     if (alone_.status == TrackingStatus::kOk) {
       if (Agree(agree ? pixels_.estimate : tracked->estimate,
                 alone_.estimate)) {
@@ -170,7 +138,7 @@ void HybridTracker::Track(const Reference& reference,
     }
   }
   if (!agree) return;
-  tracked->carried_by = kBoth;
+  tracked->source = TrackingSource::kBoth;
   tracked->estimate.cur_from_prev = pixels_.estimate.cur_from_prev;
   tracked->estimate.covariance = pixels_.estimate.covariance;
   // A reference is as good as what is seen of it, if its features are few.
@@ -182,7 +150,7 @@ void HybridTracker::Track(const Reference& reference,
 
 void HybridTracker::OnAccepted(Reference* reference, TrackingResult* tracked) {
   auto& ours = dynamic_cast<HybridReference&>(*reference);
-  if (ours.features == nullptr || tracked->carried_by == DirectTracker::kName) {
+  if (ours.features == nullptr || tracked->source == TrackingSource::kDirect) {
     return;
   }
   const Overlap overlap = tracked->overlap;

@@ -21,8 +21,7 @@ class HybridTracker final : public Tracker {
   HybridTracker(std::unique_ptr<FeatureTracker> features,
                 std::unique_ptr<DirectTracker> direct, bool refines);
 
-  std::unique_ptr<const PreparedFrame> Prepare(
-      const Frame& frame) const override;
+  void Prepare(const PreparedFrame& frame) const override;
   std::unique_ptr<Reference> MakeReference(const PreparedFrame& frame,
                                            const Reference* last,
                                            const TrackingResult* tracked,

@@ -50,15 +50,7 @@ Odometry::Odometry(const OdometryOptions& options,
 TrackedFrame Odometry::Track(const Frame& frame,
                              const Rigid3d* cur_from_prev_guess,
                              const MotionMatrix* guess_covariance) {
-  double prepare_ms = 0.0;
-  std::unique_ptr<const PreparedFrame> prepared;
-  {
-    const StageTimer timer(&prepare_ms);
-    prepared = Prepare(frame);
-  }
-  TrackedFrame result = Track(*prepared, cur_from_prev_guess, guess_covariance);
-  result.track_ms += prepare_ms;
-  return result;
+  return Track(PreparedFrame(frame), cur_from_prev_guess, guess_covariance);
 }
 
 TrackedFrame Odometry::Track(const PreparedFrame& frame,
@@ -264,9 +256,8 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   const bool is_lost = result->status == TrackingStatus::kLost;
   const bool was_tracked = reference_ != nullptr && !is_lost;
   std::string why_not;
-  std::unique_ptr<const PreparedFrame> at_one_moment;
-  if (has_shutter_) at_one_moment = shutter_tracking_.AtOneMoment(frame);
-  const PreparedFrame& seen = has_shutter_ ? *at_one_moment : frame;
+  const PreparedFrame seen =
+      has_shutter_ ? shutter_tracking_.AtOneMoment(frame) : frame;
   std::unique_ptr<Reference> reference = tracker_->MakeReference(
       seen, was_tracked ? reference_->reference.get() : nullptr,
       was_tracked ? &attempts_.kept() : nullptr, &why_not);
@@ -297,10 +288,9 @@ bool Odometry::InsertKeyframe(const Frame& frame, int id,
     keyframes_.Renew(keyframe);
     return true;
   }
-  const std::unique_ptr<const PreparedFrame> prepared = Prepare(frame);
   std::string why_not;
   std::unique_ptr<Reference> reference =
-      tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
+      tracker_->MakeReference(PreparedFrame(frame), nullptr, nullptr, &why_not);
   if (reference == nullptr) return false;
   auto place = std::make_unique<Place>(frame, id);
   keyframes_.Add({id,

@@ -37,17 +37,14 @@ class Odometry {
                      const Rigid3d* cur_from_prev_guess = nullptr,
                      const MotionMatrix* guess_covariance = nullptr);
 
-  // The same for a frame that Prepare has made, here or in an odometry with the
-  // same tracker and frontend.
+  // The same with what has been made of the frame already.
   TrackedFrame Track(const PreparedFrame& frame,
                      const Rigid3d* cur_from_prev_guess = nullptr,
                      const MotionMatrix* guess_covariance = nullptr);
 
-  // Works out what does not depend on other frames: may be done ahead, from any
-  // thread, as long as this lives.
-  std::unique_ptr<const PreparedFrame> Prepare(const Frame& frame) const {
-    return tracker_->Prepare(frame);
-  }
+  // Makes what does not depend on other frames ahead, in any thread, as long as
+  // this lives.
+  void Prepare(const PreparedFrame& frame) const { tracker_->Prepare(frame); }
 
   // Takes a frame of elsewhere (a map, an earlier visit) for a keyframe that
   // was seen a moment ago: where the view returns to it, frames are tracked

@@ -75,7 +75,7 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   reference_ = reference;
   cur_from_ref_ = cur_from_ref;
   covariance_ = covariance;
-  attempts_.TakeUpStashed();
+  attempts_.RestoreStashed();
   shutter_tracking_.PutBack(std::move(before));
   return found;
 }
@@ -83,18 +83,18 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
 bool Odometry::MakeLastReference() {
   if (!has_last_) return false;
   const Frame& frame = last_.frame;
-  const auto seen = shutter_tracking_.LastAtOneMoment(frame);
+  const PreparedFrame seen = shutter_tracking_.LastAtOneMoment(frame);
   std::string why_not;
   std::unique_ptr<Reference> reference =
-      tracker_->MakeReference(*seen, nullptr, nullptr, &why_not);
+      tracker_->MakeReference(seen, nullptr, nullptr, &why_not);
   if (reference == nullptr) return false;
   const int id = last_.result.index;
   has_last_ = false;
   reference_ = keyframes_.Add(
       {id, segment_, last_.result.world_from_cam, std::move(reference),
-       std::make_unique<Place>(*seen, id), last_.result.edges},
+       std::make_unique<Place>(seen, id), last_.result.edges},
       reference_);
-  shutter_tracking_.AddReference(frame, *seen, id);
+  shutter_tracking_.AddReference(frame, seen, id);
   reference_->velocity_covariance = last_.twist_covariance;
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();

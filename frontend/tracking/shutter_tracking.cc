@@ -1,16 +1,14 @@
 #include "frontend/tracking/shutter_tracking.h"
 
 #include <string>
-#include <typeinfo>
 #include <utility>
 
-#include "core/util/input_error.h"
 #include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
 namespace {
 
-// A reference is made anew if that moves something by this; one that was made
+// A reference is made again if that moves something by this; one that was made
 // when the next frame had been tracked already, by more.
 constexpr double kSmallFlowPx = 0.2;
 constexpr double kSmallFlowPxOfLate = 1.0;
@@ -42,19 +40,6 @@ Rigid3d TargetFromMiddle(const Frame& frame) {
       .Inverse();
 }
 
-std::unique_ptr<const PreparedFrame> WithTwist(
-    const PreparedFrame& frame, const std::optional<Twist>& twist) {
-  std::unique_ptr<PreparedFrame> copy = frame.Copy();
-  const PreparedFrame& copied = *copy;
-  if (typeid(copied) != typeid(frame)) {
-    throw InputError(
-        "a frontend's prepared frame needs a Copy of its own type where rows "
-        "are exposed one after another");
-  }
-  copy->twist = twist;
-  return copy;
-}
-
 }  // namespace
 
 void ShutterTracking::HandleLost() {
@@ -71,22 +56,21 @@ const PreparedFrame* ShutterTracking::Follow(
   found_ = Found();
   const auto forget = [&] {
     Forget();
-    found_.frame = WithTwist(frame, std::nullopt);
-    return track(*found_.frame, nullptr, nullptr) != nullptr
-               ? found_.frame.get()
-               : nullptr;
+    found_.frame = frame.WithTwist(std::nullopt);
+    return track(*found_.frame, nullptr, nullptr) != nullptr ? &*found_.frame
+                                                             : nullptr;
   };
   if (!(interval > 0.0 && interval <= VelocityModel::kMaxInterval)) {
     return forget();
   }
   const double middle = frame.color_shutter.offset;
-  found_.frame = WithTwist(frame, first_guess ? first_guess : velocity_.last());
+  found_.frame = frame.WithTwist(first_guess ? first_guess : velocity_.last());
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
   const TrackingResult* tracked = track(*found_.frame, &prior, nullptr);
   if (tracked == nullptr) return nullptr;
   const auto look = [&] {
     if (tracked->twist.has_value()) {
-      found_.frame = WithTwist(frame, tracked->twist);
+      found_.frame = frame.WithTwist(tracked->twist);
     }
     found_.between = prior.Between(tracked->estimate.cur_from_prev,
                                    found_.frame->twist.value_or(Twist()));
@@ -109,12 +93,12 @@ const PreparedFrame* ShutterTracking::Follow(
     return forget();
   }
   found_.interval = interval;
-  return found_.frame.get();
+  return &*found_.frame;
 }
 
 void ShutterTracking::Accept() {
   early_.reset();
-  if (found_.frame != nullptr && found_.frame->twist.has_value()) {
+  if (found_.frame.has_value() && found_.frame->twist.has_value()) {
     velocity_.Add(*found_.frame->twist, found_.frame->color_shutter.offset);
   }
   between_ = found_.between;
@@ -139,13 +123,13 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
     early_->target_from_middle = TargetFromMiddle(frame);
     velocity_.SetMiddle(early_->target_from_middle.Inverse());
   }
-  const Frame moved = rectifier_.Rectify(frame, early_->target_from_middle);
-  const auto prepared = tracker_->Prepare(moved);
+  const PreparedFrame moved(
+      rectifier_.Rectify(frame, early_->target_from_middle));
   std::string why_not;
-  auto mended = tracker_->MakeReference(*prepared, nullptr, nullptr, &why_not);
+  auto mended = tracker_->MakeReference(moved, nullptr, nullptr, &why_not);
   if (mended == nullptr) return false;
   reference->reference = std::move(mended);
-  reference->place = std::make_unique<Place>(*prepared, reference->id);
+  reference->place = std::make_unique<Place>(moved, reference->id);
   reference_frames_[reference->id] = moved;
   return true;
 }
@@ -155,18 +139,16 @@ const Frame* ShutterTracking::FindReferenceFrame(int id) const {
   return found != reference_frames_.end() ? &found->second : nullptr;
 }
 
-std::unique_ptr<const PreparedFrame> ShutterTracking::AtOneMoment(
-    const Frame& frame) {
-  return tracker_->Prepare(rectifier_.Rectify(frame));
+PreparedFrame ShutterTracking::AtOneMoment(const Frame& frame) {
+  return PreparedFrame(rectifier_.Rectify(frame));
 }
 
-std::unique_ptr<const PreparedFrame> ShutterTracking::LastAtOneMoment(
-    const Frame& last) {
+PreparedFrame ShutterTracking::LastAtOneMoment(const Frame& last) {
   if (!found_.between.has_value()) return AtOneMoment(last);
   Frame frame = last;
   frame.twist =
       VelocityBetween(between_, interval_, *found_.between, found_.interval);
-  return tracker_->Prepare(rectifier_.Rectify(frame, TargetFromMiddle(last)));
+  return PreparedFrame(rectifier_.Rectify(frame, TargetFromMiddle(last)));
 }
 
 void ShutterTracking::AddReference(const Frame& frame,

@@ -58,7 +58,7 @@ class ShutterTracking {
 
   // What the last Follow has found, to be put back after another one.
   struct Found {
-    std::unique_ptr<const PreparedFrame> frame;
+    std::optional<PreparedFrame> frame;
     std::optional<Twist> between;  // the mean velocity into it
     double interval = 0.0;         // of that, s
   };
@@ -72,11 +72,11 @@ class ShutterTracking {
 
   // A frame of Follow, or one whose velocity is not known, as it is to become a
   // reference: seen at one moment.
-  std::unique_ptr<const PreparedFrame> AtOneMoment(const Frame& frame);
+  PreparedFrame AtOneMoment(const Frame& frame);
 
   // The same of the frame before that of the last Follow, which has told its
   // velocity, too, if it was found.
-  std::unique_ptr<const PreparedFrame> LastAtOneMoment(const Frame& last);
+  PreparedFrame LastAtOneMoment(const Frame& last);
 
   // The frame, which AtOneMoment has moved, is the reference of that id now.
   void AddReference(const Frame& frame, const Frame& at_one_moment, int id);
@@ -97,7 +97,7 @@ class ShutterTracking {
     double interval = 0.0;        // of that, s
   };
 
-  // Makes the reference anew with the mean velocity since; false: there is
+  // Makes the reference again with the mean velocity since; false: there is
   // nothing to gain.
   bool MendReference(const Twist& since, double interval, Keyframe* reference);
 

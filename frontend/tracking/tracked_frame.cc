@@ -14,4 +14,18 @@ const char* ToString(TrackingStatus status) {
   return "unknown";
 }
 
+const char* ToString(TrackingSource source) {
+  switch (source) {
+    case TrackingSource::kNone:
+      return "";
+    case TrackingSource::kFeatures:
+      return "features";
+    case TrackingSource::kDirect:
+      return "direct";
+    case TrackingSource::kBoth:
+      return "features+direct";
+  }
+  return "unknown";
+}
+
 }  // namespace rgbd_pose

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "core/geometry/rigid3.h"
@@ -18,6 +17,17 @@ enum class TrackingStatus {
 
 // "ok", "degraded", "lost"
 const char* ToString(TrackingStatus status);
+
+// What the motion of a frame comes from.
+enum class TrackingSource {
+  kNone,      // it was not tracked
+  kFeatures,  // matches of features
+  kDirect,    // pixels alone
+  kBoth,      // pixels, from where features led
+};
+
+// "", "features", "direct", "features+direct"
+const char* ToString(TrackingSource source);
 
 // What became of one input frame.
 struct TrackedFrame {
@@ -55,8 +65,7 @@ struct TrackedFrame {
   // certain it is.
   std::vector<RelativePose> edges;
 
-  // What it was tracked by, see TrackingResult::carried_by; empty: not at all.
-  std::string_view carried_by;
+  TrackingSource source = TrackingSource::kNone;
 
   int matches = 0;     // with the reference: of features, or pixels
   int inliers = 0;     // of these, in agreement with the motion

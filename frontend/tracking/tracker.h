@@ -3,7 +3,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 
 #include "core/estimation/frame_view.h"
 #include "core/estimation/motion_estimate.h"
@@ -109,9 +108,7 @@ struct TrackingResult {
   // By features: where they contradict the motion.
   CellMask moving;
 
-  // What the motion comes from: "features", "direct" (pixels) or
-  // "features+direct" (pixels, from where features led).
-  std::string_view carried_by = "features";
+  TrackingSource source = TrackingSource::kFeatures;
   int num_found = 0;  // matches, or pixels
 
   double match_ms = 0.0;  // time of all but the estimation
@@ -122,17 +119,14 @@ struct TrackingResult {
   FeatureMatches on_probation;
 };
 
-// Finds the motion between a reference and a frame. References and prepared
-// frames are for trackers of the type that made them. One object serves one
-// thread.
+// Finds the motion between a reference and a frame. References are for trackers
+// of the type that made them. One object serves one thread.
 class Tracker {
  public:
   virtual ~Tracker() = default;
 
-  // Works out what does not depend on other frames. May be called from several
-  // threads.
-  virtual std::unique_ptr<const PreparedFrame> Prepare(
-      const Frame& frame) const = 0;
+  // Makes what will be asked of the frame alone ahead: see Frontend::Prepare.
+  virtual void Prepare(const PreparedFrame& frame) const = 0;
 
   // The frame as a reference for others; null, and why, if it shows too little.
   // Where the frame itself was tracked, `last` and `tracked` say against what

@@ -11,7 +11,7 @@ bool TrackingAttempts::Try(const PreparedFrame& frame, const Keyframe& keyframe,
   result->status = tracked_.status;
   result->reason = tracked_.reason;
   result->reference = keyframe.id;
-  result->carried_by = tracked_.carried_by;
+  result->source = tracked_.source;
   result->matches = tracked_.num_found;
   result->inliers = estimate.num_inliers;
   result->iterations += estimate.iterations;

@@ -41,9 +41,9 @@ class TrackingAttempts {
                    const TrackingGuess& guess, TrackedFrame* result,
                    const Accept& accept = nullptr);
 
-  // Puts what counts aside for another attempt, and takes it up again.
+  // Keeps what counts during another attempt, and restores it.
   void Stash() { std::swap(tracked_, stashed_); }
-  void TakeUpStashed() { std::swap(tracked_, stashed_); }
+  void RestoreStashed() { std::swap(tracked_, stashed_); }
 
   // What the tracker said of the attempt that counts.
   const TrackingResult& kept() const { return tracked_; }

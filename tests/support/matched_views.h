@@ -39,11 +39,11 @@ class MatchedViews {
   FeatureMatches MatchFrom(const FeatureSet& reference, const Frame& cur,
                            const Rigid3d& guess) {
     FeatureMatches found{Correspondences(dataset_.camera().camera), {}};
-    frontend_->Match(reference, *frontend_->Prepare(cur), guess, &found);
+    frontend_->Match(reference, PreparedFrame(cur), guess, &found);
     return found;
   }
   std::unique_ptr<FeatureSet> Detect(const Frame& frame) {
-    return frontend_->Detect(*frontend_->Prepare(frame));
+    return frontend_->Detect(PreparedFrame(frame));
   }
 
   // How far (px) each match is from where the true motion takes its point,

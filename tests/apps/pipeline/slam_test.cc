@@ -319,16 +319,22 @@ TEST(SlamTest, RollingShuttersGiveTheSameBytesForAnyThreads) {
   std::string first;
   for (const int threads : {1, 1, 3}) {
     Slam slam(walk.settings, {}, SmallCamera().camera);
-    std::vector<std::future<std::unique_ptr<const PreparedFrame>>> ahead;
+    std::vector<PreparedFrame> frames;
+    std::vector<std::future<void>> ahead;
     for (const Frame& frame : walk.frames) {
       if (threads == 1) {
         slam.Track(frame);
       } else {
-        ahead.push_back(std::async(std::launch::async,
-                                   [&] { return slam.Prepare(frame); }));
+        frames.emplace_back(frame);
+        ahead.push_back(std::async(
+            std::launch::async,
+            [&slam, frame = frames.back()] { slam.Prepare(frame); }));
       }
     }
-    for (auto& prepared : ahead) slam.Track(*prepared.get());
+    for (size_t i = 0; i < frames.size(); ++i) {
+      ahead[i].get();
+      slam.Track(frames[i]);
+    }
     slam.Finish();
     std::string text = FormatTrajectory(slam.Path());
     for (const MapKeyframe& keyframe : slam.Map().keyframes) {

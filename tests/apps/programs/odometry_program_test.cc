@@ -67,11 +67,12 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
   EXPECT_THAT(run.out, HasSubstr("frames/s with decoding"));
   EXPECT_THAT(run.out, HasSubstr("ATE, rigid alignment"));
   const std::string csv = ReadTextFile(folder_ / "run/frames.csv");
-  EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "timestamp,status,reason,segment,reference,is_reference,"
-            "relocalised,predicted,carried_by,matches,inliers,iterations,sigma,"
-            "tx,ty,tz,qx,qy,qz,qw,"
-            "decode_ms,track_ms,match_ms,solve_ms,reference_ms,relocalise_ms");
+  EXPECT_EQ(
+      csv.substr(0, csv.find('\n')),
+      "timestamp,status,reason,segment,reference,is_reference,"
+      "relocalised,predicted,tracking_source,matches,inliers,iterations,sigma,"
+      "tx,ty,tz,qx,qy,qz,qw,"
+      "decode_ms,track_ms,match_ms,solve_ms,reference_ms,relocalise_ms");
   EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 1 + kShortRun);
   const std::string edges = ReadTextFile(folder_ / "run/edges.csv");
   EXPECT_GE(std::count(edges.begin(), edges.end(), '\n'), kShortRun);

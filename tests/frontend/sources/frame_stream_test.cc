@@ -86,7 +86,7 @@ bool WaitFor(const std::function<bool()>& condition) {
 }
 
 void ExpectFrame(FrameStream* stream, int index) {
-  const Frame frame = *stream->Next().value().frame;
+  const Frame frame = stream->Next().value().frame;
   EXPECT_EQ(frame.index, index);
   EXPECT_EQ(frame.gray.at<uint8_t>(0, 0), index);
 }
@@ -109,18 +109,24 @@ TEST_P(FrameStreamTest, GivesEachFrameOnceAndInOrder) {
 
 TEST_P(FrameStreamTest, PreparesFrames) {
   FakeSource source(20);
-  struct Twice : PreparedFrame {
-    using PreparedFrame::PreparedFrame;
-    int twice = 2 * gray.at<uint8_t>(0, 0);
+  static std::atomic<int> made;
+  struct Twice {
+    explicit Twice(const PreparedFrame& frame)
+        : value(2 * frame.gray.at<uint8_t>(0, 0)) {
+      ++made;
+    }
+    int value;
   };
+  made = 0;
   FrameStream stream(
-      &source,
-      [](const Frame& frame) { return std::make_unique<Twice>(frame); },
+      &source, [](const PreparedFrame& frame) { frame.Derived<Twice>(); },
       GetParam());
   for (int i = 0; i < 20; ++i) {
     const StreamedFrame next = stream.Next().value();
-    EXPECT_EQ(dynamic_cast<const Twice&>(*next.frame).twice, 2 * i);
+    EXPECT_GE(made, i + 1);
+    EXPECT_EQ(next.frame.Derived<Twice>().value, 2 * i);
   }
+  EXPECT_EQ(made, 20);
 }
 
 TEST_P(FrameStreamTest, RethrowsForExactlyTheUnreadableFrames) {
@@ -200,9 +206,8 @@ TEST_P(FrameStreamTest, WhatPreparingThrowsIsNoDamage) {
   FakeSource source(4);
   FrameStream stream(
       &source,
-      [](const Frame& frame) -> std::unique_ptr<const PreparedFrame> {
+      [](const PreparedFrame& frame) {
         if (frame.index == 1) throw InputError("the disk is full");
-        return std::make_unique<PreparedFrame>(frame);
       },
       GetParam(), 0.5);
   ExpectFrame(&stream, 0);

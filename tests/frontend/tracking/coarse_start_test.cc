@@ -34,9 +34,9 @@ class CoarseStartTest : public ::testing::Test {
     TrackingGuess about = guess;
     about.covariance = guess_covariance;
     std::string why_not;
-    const auto reference = tracker_.MakeReference(*tracker_.Prepare(ref),
-                                                  nullptr, nullptr, &why_not);
-    return tracker_.FindStart(*reference, *tracker_.Prepare(cur), about);
+    const auto reference =
+        tracker_.MakeReference(PreparedFrame(ref), nullptr, nullptr, &why_not);
+    return tracker_.FindStart(*reference, PreparedFrame(cur), about);
   }
 
   // How far (px, RMS over a grid) points are from where the truth has them.

@@ -109,13 +109,13 @@ class TrackerTest : public ::testing::TestWithParam<std::string> {
 TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
   const auto tracker = Make();
   std::string why_not;
-  const auto reference = tracker->MakeReference(
-      *tracker->Prepare(room_.Read(0)), nullptr, nullptr, &why_not);
+  const auto reference = tracker->MakeReference(PreparedFrame(room_.Read(0)),
+                                                nullptr, nullptr, &why_not);
   ASSERT_NE(reference, nullptr) << why_not;
   TrackingResult tracked(tracker->images().camera);
   double share = 1.0, flow = 0.0;
   for (const int frame : {5, 15}) {
-    tracker->Track(*reference, *tracker->Prepare(room_.Read(frame)), Rigid3d(),
+    tracker->Track(*reference, PreparedFrame(room_.Read(frame)), Rigid3d(),
                    &tracked);
     ASSERT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
     const Rigid3d truth =
@@ -150,9 +150,9 @@ TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
           MakeDirectCosts(cost, "tukey,none")));
   const auto tracker = MakeTracker(GetParam(), std::move(parts));
   std::string why_not;
-  const auto reference = tracker->MakeReference(
-      *tracker->Prepare(room_.Read(0)), nullptr, nullptr, &why_not);
-  const auto frame = tracker->Prepare(room_.Read(3));
+  const auto reference = tracker->MakeReference(PreparedFrame(room_.Read(0)),
+                                                nullptr, nullptr, &why_not);
+  const PreparedFrame frame(room_.Read(3));
   const Rigid3d truth = room_.WorldFromCam(3).Inverse() * room_.WorldFromCam(0);
   const Rigid3d off(Eigen::Quaterniond::Identity(), {0.01, 0.0, 0.0});
   TrackingResult tracked(tracker->images().camera);
@@ -160,7 +160,7 @@ TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
     const MotionMatrix covariance = sigma * sigma * MotionMatrix::Identity();
     TrackingGuess guess = off * truth;
     guess.covariance = &covariance;
-    tracker->Track(*reference, *frame, guess, &tracked);
+    tracker->Track(*reference, frame, guess, &tracked);
     return (tracked.estimate.cur_from_prev * truth.Inverse())
         .translation.norm();
   };
@@ -176,14 +176,14 @@ TEST_P(TrackerTest, SaysWhyAFrameIsNoReferenceOrNotTracked) {
   black.gray = cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0));
   black.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
   std::string why_not;
-  EXPECT_EQ(tracker->MakeReference(*tracker->Prepare(black), nullptr, nullptr,
-                                   &why_not),
-            nullptr);
+  EXPECT_EQ(
+      tracker->MakeReference(PreparedFrame(black), nullptr, nullptr, &why_not),
+      nullptr);
   EXPECT_NE(why_not, "");
-  const auto reference = tracker->MakeReference(*tracker->Prepare(good),
-                                                nullptr, nullptr, &why_not);
+  const auto reference =
+      tracker->MakeReference(PreparedFrame(good), nullptr, nullptr, &why_not);
   TrackingResult tracked(tracker->images().camera);
-  tracker->Track(*reference, *tracker->Prepare(black), Rigid3d(), &tracked);
+  tracker->Track(*reference, PreparedFrame(black), Rigid3d(), &tracked);
   EXPECT_EQ(tracked.status, TrackingStatus::kLost);
   EXPECT_NE(tracked.reason, "");
 }
@@ -238,7 +238,7 @@ Tracks Follow(const char* tracker, const char* scene, const char* path,
       ++tracks.lost;
       tracks.reason = frame.reason;
     }
-    tracks.by_pixels_alone += frame.carried_by == DirectTracker::kName;
+    tracks.by_pixels_alone += frame.source == TrackingSource::kDirect;
     const Rigid3d truth =
         dataset.WorldFromCam(0).Inverse() * dataset.WorldFromCam(i);
     if (frame.status == TrackingStatus::kOk) {
@@ -288,11 +288,11 @@ TEST(DirectTrackerTest, AFrameHasToLookLikeItsReference) {
     if (is_strict) parts.direct_options.min_likeness = 1.0;
     const auto tracker = MakeTracker("direct", std::move(parts));
     std::string why_not;
-    const auto reference = tracker->MakeReference(
-        *tracker->Prepare(room.Read(0)), nullptr, nullptr, &why_not);
+    const auto reference = tracker->MakeReference(PreparedFrame(room.Read(0)),
+                                                  nullptr, nullptr, &why_not);
     ASSERT_NE(reference, nullptr) << why_not;
     TrackingResult tracked(room.camera().camera);
-    tracker->Track(*reference, *tracker->Prepare(next), Rigid3d(), &tracked);
+    tracker->Track(*reference, PreparedFrame(next), Rigid3d(), &tracked);
     EXPECT_EQ(tracked.status == TrackingStatus::kLost, is_strict)
         << tracked.reason;
     EXPECT_EQ(tracked.reason == "it does not look like its reference",
