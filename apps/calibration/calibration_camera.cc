@@ -31,14 +31,10 @@ RgbdCamera ApplyCalibration(const RgbdCamera& first,
       first.depth_correction.inverse_depth_offset / theta[kDepthFactor] +
       theta[kInverseDepth];
   changed.depth_shutter.offset = first.depth_shutter.offset + theta[kDepthTime];
-  const Eigen::Vector3d turn = theta.segment<3>(kRotationX);
-  const double angle = turn.norm();
-  const Eigen::Vector3d axis =
-      angle > 0.0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX();
   changed.depth_correction.depth_from_color =
       first.depth_correction.depth_from_color *
-      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)),
-              theta.segment<3>(kTranslationX));
+      Rigid3d::FromRotationVector(theta.segment<3>(kRotationX),
+                                  theta.segment<3>(kTranslationX));
   return changed;
 }
 
@@ -53,8 +49,7 @@ CalibrationVector ThetaBetween(const RgbdCamera& first,
   theta[kDepthTime] = changed.depth_shutter.offset - first.depth_shutter.offset;
   const Rigid3d moved =
       before.depth_from_color.Inverse() * after.depth_from_color;
-  const Eigen::AngleAxisd turn(moved.rotation);
-  theta.segment<3>(kRotationX) = turn.angle() * turn.axis();
+  theta.segment<3>(kRotationX) = RotationVector(moved.rotation);
   theta.segment<3>(kTranslationX) = moved.translation;
   return theta;
 }

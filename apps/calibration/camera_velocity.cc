@@ -41,8 +41,8 @@ CameraVelocity VelocityAt(const Trajectory& path, double time) {
   const auto moved = [&](std::ptrdiff_t there) {
     const Rigid3d from_at =
         path[there].world_from_cam.Inverse() * at->world_from_cam;
-    const Eigen::AngleAxisd turn(from_at.rotation);
-    return CameraVelocity{turn.angle() * turn.axis(), from_at.translation};
+    return CameraVelocity{RotationVector(from_at.rotation),
+                          from_at.translation};
   };
   const auto difference = [&](int steps) {
     const auto before = neighbour(-steps), after = neighbour(steps);

@@ -84,12 +84,8 @@ void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
   ParallelFor(num_keyframes, threads, [&](int k) {
     if (landmarks[k].empty() && views[k].empty()) return;
     const CameraVelocity moved = DisplacementOf(theta, data->velocities[k]);
-    const double angle = moved.rotation.norm();
-    const Eigen::Vector3d axis = angle > 0.0
-                                     ? Eigen::Vector3d(moved.rotation / angle)
-                                     : Eigen::Vector3d::UnitX();
-    const Rigid3d measured_from_moved(
-        Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), moved.translation);
+    const Rigid3d measured_from_moved =
+        Rigid3d::FromRotationVector(moved.rotation, moved.translation);
     Frame frame = map.keyframes[data->in_map[k]].images.Restore();
     frame.depth =
         DepthWarper(camera).Move(frame, measured_from_moved.Inverse()).clone();

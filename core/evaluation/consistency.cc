@@ -1,12 +1,11 @@
 #include "core/evaluation/consistency.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <cstddef>
 #include <optional>
 #include <utility>
 
 #include "core/evaluation/interpolated_path.h"
+#include "core/geometry/motion.h"
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {
@@ -18,17 +17,12 @@ constexpr double kDegreesOfFreedom = 6.0;
 
 double ChiSquare(const RelativePose& edge, const Rigid3d& true_cur_from_ref,
                  const TruthNoise& noise) {
-  const Eigen::AngleAxisd turn(true_cur_from_ref.rotation *
-                               edge.cur_from_ref.rotation.conjugate());
-  MotionVector error;
-  error << turn.angle() * turn.axis(),
-      true_cur_from_ref.Inverse().translation -
-          edge.cur_from_ref.Inverse().translation;
   MotionMatrix covariance = edge.covariance;
   covariance.diagonal().head<3>().array() += noise.rotation * noise.rotation;
   covariance.diagonal().tail<3>().array() +=
       noise.translation * noise.translation;
-  return error.dot(covariance.ldlt().solve(error));
+  return SquaredMahalanobisDistance(true_cur_from_ref, edge.cur_from_ref,
+                                    covariance);
 }
 
 Consistency Judge(const std::vector<RelativePose>& edges,

@@ -1,5 +1,6 @@
 #include "core/geometry/motion.h"
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -67,6 +68,15 @@ MotionMatrix ComposedCovariance(const Rigid3d& c_from_b,
   by_ba.bottomLeftCorner<3, 3>() = R_ab * cross;
   return by_cb * covariance_cb * by_cb.transpose() +
          by_ba * covariance_ba * by_ba.transpose();
+}
+
+double SquaredMahalanobisDistance(const Rigid3d& cur_from_prev,
+                                  const Rigid3d& other,
+                                  const MotionMatrix& covariance) {
+  MotionVector error;
+  error << RotationVector(cur_from_prev.rotation * other.rotation.conjugate()),
+      cur_from_prev.Inverse().translation - other.Inverse().translation;
+  return error.dot(covariance.ldlt().solve(error));
 }
 
 MotionVector MotionFromRigid(const Rigid3d& cur_from_prev) {

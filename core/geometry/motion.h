@@ -110,6 +110,12 @@ MotionMatrix ComposedCovariance(const Rigid3d& c_from_b,
                                 const Rigid3d& b_from_a,
                                 const MotionMatrix& covariance_ba);
 
+// How far a motion is from another one, squared, in sigmas of a covariance of
+// [omega C] as MotionEstimate has it, which is positive definite.
+double SquaredMahalanobisDistance(const Rigid3d& cur_from_prev,
+                                  const Rigid3d& other,
+                                  const MotionMatrix& covariance);
+
 // The thesis' six parameters of a motion and back (origin: the identity).
 // |beta| <= pi/2; at beta = +-pi/2 alpha and gamma are not unique, and the
 // vector returned is one that gives the motion back.

@@ -8,6 +8,12 @@
 
 namespace rgbd_pose {
 
+// The shortest vector that a rotation turns about, by its length (rad).
+inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
+  const Eigen::AngleAxisd turn(rotation);
+  return turn.angle() * turn.axis();
+}
+
 // A rigid motion, named target_from_source: point_in_target =
 // target_from_source * point_in_source. Inner names cancel in products:
 // a_from_c = a_from_b * b_from_c. Translation in metres.
@@ -23,6 +29,17 @@ struct Rigid3d {
           const Eigen::Vector3d& source_origin_in_target)
       : rotation(target_from_source_rotation.normalized()),
         translation(source_origin_in_target) {}
+
+  // The same of a rotation vector (rad).
+  static Rigid3d FromRotationVector(
+      const Eigen::Vector3d& rotation,
+      const Eigen::Vector3d& source_origin_in_target) {
+    const double angle = rotation.norm();
+    const Eigen::Vector3d axis = angle > 0.0 ? Eigen::Vector3d(rotation / angle)
+                                             : Eigen::Vector3d::UnitX();
+    return Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)),
+                   source_origin_in_target);
+  }
 
   // The point in the target.
   Eigen::Vector3d operator*(const Eigen::Vector3d& point_in_source) const {

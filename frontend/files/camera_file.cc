@@ -180,14 +180,10 @@ DepthCorrection ReadDepthCorrection(const YamlSection& file) {
   CheckSize(file, "inverse_depth_offset", std::abs(errors.inverse_depth_offset),
             0.5, "1/m");
   const Eigen::Vector3d turn = VectorOr0(file, "depth_rotation");
-  const double angle = turn.norm();
-  CheckSize(file, "depth_rotation", angle, 0.5, "rad");
+  CheckSize(file, "depth_rotation", turn.norm(), 0.5, "rad");
   const Eigen::Vector3d translation = VectorOr0(file, "depth_translation");
   CheckSize(file, "depth_translation", translation.norm(), 0.5, "m");
-  const Eigen::Vector3d axis =
-      angle > 0.0 ? Eigen::Vector3d(turn / angle) : Eigen::Vector3d::UnitX();
-  errors.depth_from_color =
-      Rigid3d(Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis)), translation);
+  errors.depth_from_color = Rigid3d::FromRotationVector(turn, translation);
   return errors;
 }
 

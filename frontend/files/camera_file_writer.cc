@@ -51,9 +51,8 @@ YamlLines RgbdLines(const RgbdCamera& camera) {
   add("inverse_depth_offset", camera.depth_correction.inverse_depth_offset);
   const Rigid3d& moved = camera.depth_correction.depth_from_color;
   if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {
-    const Eigen::AngleAxisd turn(moved.rotation);
     lines.emplace_back("depth_rotation",
-                       List(ToList(turn.angle() * turn.axis())));
+                       List(ToList(RotationVector(moved.rotation))));
     lines.emplace_back("depth_translation", List(ToList(moved.translation)));
   }
   return lines;

@@ -1,7 +1,5 @@
 #include "frontend/mapping/edge_noise_model.h"
 
-#include <Eigen/Cholesky>
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -32,19 +30,6 @@ constexpr double kLargestSquare = 22.46;
 // Slack is measured by so many pairs at least.
 constexpr int kMinPairsForSlack = 20;
 constexpr double kMaxSlack = 0.1;
-
-// Of a motion against another: omega (rad) about the current axes, and C (m).
-MotionVector Difference(const Rigid3d& motion, const Rigid3d& other) {
-  const Eigen::AngleAxisd omega(motion.rotation * other.rotation.conjugate());
-  MotionVector e;
-  e << omega.angle() * omega.axis(),
-      motion.Inverse().translation - other.Inverse().translation;
-  return e;
-}
-
-double SquaredSigmas(const MotionVector& e, const MotionMatrix& covariance) {
-  return e.dot(covariance.ldlt().solve(e));
-}
 
 }  // namespace
 
@@ -78,9 +63,10 @@ const ceres::LossFunction* EdgeNoiseModel::LossOf(
 MotionMatrix EdgeNoiseModel::CovarianceAsSolved(
     const KeyframePair& pair, const Rigid3d& cur_from_ref) const {
   const MotionMatrix covariance = CovarianceOf(pair.edge);
-  const MotionVector e = Difference(cur_from_ref, pair.edge.cur_from_ref);
   double rho[3];
-  LossOf(pair)->Evaluate(SquaredSigmas(e, covariance), rho);
+  LossOf(pair)->Evaluate(SquaredMahalanobisDistance(
+                             cur_from_ref, pair.edge.cur_from_ref, covariance),
+                         rho);
   return covariance / std::max(rho[1], 1e-9);
 }
 
@@ -93,8 +79,8 @@ void EdgeNoiseModel::FitProportionalError(
       if (pairs[i].is_tracked) continue;
       const RelativePose& edge = pairs[i].edge;
       squares.push_back(
-          SquaredSigmas(Difference(cur_from_ref[i], edge.cur_from_ref),
-                        CovarianceOf(edge, proportional_error)));
+          SquaredMahalanobisDistance(cur_from_ref[i], edge.cur_from_ref,
+                                     CovarianceOf(edge, proportional_error)));
     }
     return Median(squares);
   };
@@ -131,7 +117,7 @@ bool EdgeNoiseModel::PassesMahalanobisGate(
   covariance.diagonal().head<3>().array() += rotation;
   covariance.diagonal().tail<3>().array() += translation;
   const Rigid3d along = map_from_cam.back().Inverse() * map_from_cam.front();
-  return SquaredSigmas(Difference(edge.cur_from_ref, along), covariance) <
+  return SquaredMahalanobisDistance(edge.cur_from_ref, along, covariance) <
          kLargestSquare;
 }
 

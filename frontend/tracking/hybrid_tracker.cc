@@ -1,6 +1,5 @@
 #include "frontend/tracking/hybrid_tracker.h"
 
-#include <Eigen/Cholesky>
 #include <utility>
 
 #include "core/util/stage_timer.h"
@@ -25,21 +24,11 @@ struct HybridReference final : Reference {
   }
 };
 
-// The difference of two motions as MotionEstimate::covariance counts it.
-MotionVector Difference(const Rigid3d& a, const Rigid3d& b) {
-  const Eigen::AngleAxisd turn(a.rotation * b.rotation.conjugate());
-  MotionVector difference;
-  difference << turn.angle() * turn.axis(),
-      a.Inverse().translation - b.Inverse().translation;
-  return difference;
-}
-
 bool Agree(const MotionEstimate& features, const MotionEstimate& pixels) {
-  const MotionVector d =
-      Difference(pixels.cur_from_prev, features.cur_from_prev);
-  const MotionMatrix covariance = features.covariance + pixels.covariance;
-  const double square = d.dot(covariance.ldlt().solve(d));
-  return square <= 6.0 * kMaxDifference * kMaxDifference;  // false for NaN
+  return SquaredMahalanobisDistance(pixels.cur_from_prev,
+                                    features.cur_from_prev,
+                                    features.covariance + pixels.covariance) <=
+         6.0 * kMaxDifference * kMaxDifference;  // false for NaN
 }
 
 }  // namespace

@@ -162,5 +162,35 @@ TEST(MotionTest, CovariancesOfComposedMotionsAddUp) {
   EXPECT_LE((actual - expected).norm(), 1e-4 * expected.norm());
 }
 
+TEST(MotionTest, RotationVectorsGoRoundWhateverTheSignOfTheQuaternion) {
+  const Eigen::Vector3d axis = Eigen::Vector3d(0.6, -0.0, 0.8);
+  for (const double angle : {0.0, 1e-12, 0.3, 3.1}) {
+    const Rigid3d motion =
+        Rigid3d::FromRotationVector(angle * axis, {1.0, 2.0, 3.0});
+    EXPECT_NEAR(motion.Angle(), angle, 1e-15);
+    for (const double sign : {1.0, -1.0}) {
+      Eigen::Quaterniond q = motion.rotation;
+      q.coeffs() *= sign;
+      EXPECT_LE((RotationVector(q) - angle * axis).norm(), 1e-14) << angle;
+    }
+  }
+}
+
+TEST(MotionTest, MahalanobisDistanceCountsSigmasOfRotationAndCentre) {
+  const Rigid3d other(Eigen::Quaterniond(0.5, 0.1, -0.7, 0.4),
+                      {0.3, -0.2, 0.5});
+  const Eigen::Vector3d turn(0.01, 0.0, 0.0), shift(0.0, 0.02, 0.0);
+  // Turned about the axes of the current camera, its centre moved.
+  const Rigid3d turned =
+      Rigid3d::FromRotationVector(turn, Eigen::Vector3d::Zero()) * other;
+  const Eigen::Vector3d centre = other.Inverse().translation + shift;
+  const Rigid3d moved(turned.rotation, -(turned.rotation * centre));
+  MotionMatrix covariance = MotionMatrix::Identity();
+  covariance.diagonal().head<3>().setConstant(0.005 * 0.005);
+  covariance.diagonal().tail<3>().setConstant(0.01 * 0.01);
+  EXPECT_NEAR(SquaredMahalanobisDistance(moved, other, covariance), 8.0, 1e-9);
+  EXPECT_NEAR(SquaredMahalanobisDistance(other, other, covariance), 0.0, 1e-20);
+}
+
 }  // namespace
 }  // namespace rgbd_pose
