@@ -13,6 +13,10 @@ function(rgbd_pose_install_headers folder)
   install(DIRECTORY ${folder}/
           DESTINATION ${RGBD_POSE_HEADER_DIR}/${to} COMPONENT development
           FILES_MATCHING PATTERN *.h)
+  install(CODE "set(rgbd_pose_headers ${RGBD_POSE_HEADER_DIR}/${to})"
+          COMPONENT development)
+  install(SCRIPT ${PROJECT_SOURCE_DIR}/cmake/PrefixIncludes.cmake
+          COMPONENT development)
 endfunction()
 
 # A library and the headers of its folder. Each is an export set of its own, so

@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <vector>
 
-#include "apps/calibration/calibration_run.h"
-#include "frontend/simulation/synthetic_dataset.h"
+#include "rgbd_pose/apps/calibration/calibration_run.h"
+#include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
 
 int main() {
   const rgbd_pose::SyntheticDataset room({"room", "handheld", 60});  // yours

@@ -2,8 +2,8 @@
 #include <cstdio>
 #include <opencv2/imgproc.hpp>
 
-#include "apps/pipeline/settings.h"
-#include "frontend/simulation/synthetic_dataset.h"
+#include "rgbd_pose/apps/pipeline/settings.h"
+#include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
 
 int main() {
   const rgbd_pose::SyntheticDataset camera({"room", "pan_tilt", 60});  // yours

@@ -2,8 +2,8 @@
 // wrong.
 #include <cstdio>
 
-#include "core/estimation/estimator.h"
-#include "costs/cost_factory.h"
+#include "rgbd_pose/core/estimation/estimator.h"
+#include "rgbd_pose/costs/cost_factory.h"
 
 int main() {
   const rgbd_pose::Camera camera;  // yours: fx, fy, cx, cy in pixels

@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <vector>
 
-#include "frontend/frame/depth_lookup.h"
-#include "frontend/places/place_database.h"
-#include "frontend/places/place_features.h"
-#include "frontend/simulation/synthetic_dataset.h"
+#include "rgbd_pose/frontend/frame/depth_lookup.h"
+#include "rgbd_pose/frontend/places/place_database.h"
+#include "rgbd_pose/frontend/places/place_features.h"
+#include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
 
 int main() {
   rgbd_pose::SyntheticOptions tour;

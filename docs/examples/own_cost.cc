@@ -1,10 +1,10 @@
 // A cost of your own: the 3D error of a match in percent of its depth.
 #include <cstdio>
 
-#include "core/estimation/estimator.h"
-#include "costs/assembly/cost_of.h"
-#include "costs/parts/forward_error.h"
-#include "frontend/simulation/synthetic_matches.h"
+#include "rgbd_pose/core/estimation/estimator.h"
+#include "rgbd_pose/costs/assembly/cost_of.h"
+#include "rgbd_pose/costs/parts/forward_error.h"
+#include "rgbd_pose/frontend/simulation/synthetic_matches.h"
 
 struct RelativeError : rgbd_pose::ForwardError {  // kColumns and Pack of that
   static constexpr char kName[] = "relative_error";

@@ -2,10 +2,10 @@
 #include <cstdio>
 #include <opencv2/video/tracking.hpp>
 
-#include "costs/cost_factory.h"
-#include "frontend/features/point_frontend.h"
-#include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/tracking/odometry.h"
+#include "rgbd_pose/costs/cost_factory.h"
+#include "rgbd_pose/frontend/features/point_frontend.h"
+#include "rgbd_pose/frontend/simulation/synthetic_dataset.h"
+#include "rgbd_pose/frontend/tracking/odometry.h"
 
 struct Flow final : rgbd_pose::PointFrontend {
   using PointFrontend::PointFrontend;

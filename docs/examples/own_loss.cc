@@ -1,9 +1,9 @@
 // A loss of your own: least squares up to its width, no influence beyond.
 #include <cstdio>
 
-#include "core/estimation/estimator.h"
-#include "costs/cost_factory.h"
-#include "frontend/simulation/synthetic_matches.h"
+#include "rgbd_pose/core/estimation/estimator.h"
+#include "rgbd_pose/costs/cost_factory.h"
+#include "rgbd_pose/frontend/simulation/synthetic_matches.h"
 
 class TruncatedLoss final : public ceres::LossFunction {
  public:

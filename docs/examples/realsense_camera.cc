@@ -3,8 +3,8 @@
 #include <librealsense2/rs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "apps/pipeline/settings.h"
-#include "frontend/sources/latest_frame.h"
+#include "rgbd_pose/apps/pipeline/settings.h"
+#include "rgbd_pose/frontend/sources/latest_frame.h"
 
 class RealSense final : public rgbd_pose::FrameSource {
  public:

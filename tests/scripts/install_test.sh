@@ -46,6 +46,8 @@ mv "$work/first" "$prefix"
   fail "these files tell where they were built"
 [ "$(ls -m "$prefix/include/rgbd_pose/apps")" = "calibration, pipeline" ] ||
   fail "headers of the programs"
+! grep -rnE '#include "' "$prefix/include" | grep -v 'include "rgbd_pose/' \
+  >"$work/log" || fail "these includes lack rgbd_pose/"
 
 # Every link of a page leads to what is installed.
 docs=$(dirname "$(find "$prefix" -path '*/doc/*/README.md' | grep -v /docs/)")
@@ -107,7 +109,7 @@ read -ra libraries < <(pkg-config --libs rgbd_pose_simulation)
 [[ " $(pkg-config --libs rgbd_pose) " != *simulation* ]] ||
   fail "rgbd_pose.pc links the simulator"
 (cd "$prefix/include/rgbd_pose" && find . -name '*.h' |
-  sed 's|^\./\(.*\)|#include "\1"|') >"$work/all.cc"
+  sed 's|^\./\(.*\)|#include "rgbd_pose/\1"|') >"$work/all.cc"
 [ "$(wc -l <"$work/all.cc")" -gt 100 ] || fail "headers are missing"
 "${CXX:-c++}" -std=c++17 -fsyntax-only "${flags[@]}" "$work/all.cc" \
   >"$work/log" 2>&1 || fail "headers do not compile"
