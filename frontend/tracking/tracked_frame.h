@@ -65,6 +65,7 @@ struct TrackedFrame {
   // certain it is.
   std::vector<RelativePose> edges;
 
+  // What its motion comes from.
   TrackingSource source = TrackingSource::kNone;
 
   int matches = 0;     // with the reference: of features, or pixels

@@ -108,6 +108,7 @@ struct TrackingResult {
   // By features: where they contradict the motion.
   CellMask moving;
 
+  // What the motion comes from.
   TrackingSource source = TrackingSource::kFeatures;
   int num_found = 0;  // matches, or pixels
 
