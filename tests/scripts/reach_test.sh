@@ -24,7 +24,7 @@ input=$(sed -n '/^INPUT = /,/[^\\]$/p' docs/Doxyfile | tr -d '\\' | tr ' ' '\n' 
 for file in $input; do
   [ -f "$file" ] || missing "docs/Doxyfile: there is no $file"
 done
-included=$(sed -n 's/^#include "\(.*\)"/\1/p' docs/examples/*.cc docs/*.md)
+included=$(sed -n 's/^#include "rgbd_pose\/\(.*\)"/\1/p' docs/examples/*.cc docs/*.md)
 for file in $(sort -u <<<"$included"); do
   grep -qxF "$file" <<<"$input" ||
     missing "docs/Doxyfile: $file is missing, which examples include"
