@@ -87,11 +87,17 @@ void Trim(double excess, Residuals r) {
   }
 }
 
+// A Hessian to be factored. Of more parameters than a motion has Eigen would
+// unroll loops for half a minute of compiling; nothing is allocated either way.
+template <int K>
+using Factorable = Eigen::Matrix<double, K <= 6 ? K : Eigen::Dynamic,
+                                 K <= 6 ? K : Eigen::Dynamic, 0, K, K>;
+
 // H = V diag(l) V^T with some l = 0: J = diag(sqrt l) V^T, r = diag(1/sqrt l)
 // V^T g where l > 0. There g has no part in the null space of H.
 template <int K, typename Residuals, typename Rows>
 void FactorSingular(const CompressedSums<K>& sums, Residuals r, Rows J) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, K, K>> eigen(
+  const Eigen::SelfAdjointEigenSolver<Factorable<K>> eigen(
       sums.hessian);
   const double smallest = 1e-14 * std::max(0.0, eigen.eigenvalues().maxCoeff());
   for (int i = 0; i < K; ++i) {
@@ -120,7 +126,7 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
   if (!sums.gradient.allFinite() || !sums.hessian.allFinite()) return false;
   Eigen::Map<RowMajor> J(jacobian);
   J.setZero();
-  const Eigen::LLT<Eigen::Matrix<double, K, K>> cholesky(sums.hessian);
+  const Eigen::LLT<compressed::Factorable<K>> cholesky(sums.hessian);
   if (cholesky.info() == Eigen::Success) {
     r.template head<K>() = cholesky.matrixL().solve(sums.gradient);
     J.template topRows<K>() = cholesky.matrixU();
