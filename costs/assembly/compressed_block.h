@@ -97,8 +97,7 @@ using Factorable = Eigen::Matrix<double, K <= 6 ? K : Eigen::Dynamic,
 // V^T g where l > 0. There g has no part in the null space of H.
 template <int K, typename Residuals, typename Rows>
 void FactorSingular(const CompressedSums<K>& sums, Residuals r, Rows J) {
-  const Eigen::SelfAdjointEigenSolver<Factorable<K>> eigen(
-      sums.hessian);
+  const Eigen::SelfAdjointEigenSolver<Factorable<K>> eigen(sums.hessian);
   const double smallest = 1e-14 * std::max(0.0, eigen.eigenvalues().maxCoeff());
   for (int i = 0; i < K; ++i) {
     const double value = eigen.eigenvalues()[i];
