@@ -73,8 +73,9 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
   if (count < kMinOnPlane) return Eigen::Vector3d::Zero();
   const Eigen::Vector2d ideal = camera.Undistort({u, v});
   const Eigen::Vector3d ray = camera.Ray(ideal.x(), ideal.y());
-  Eigen::Vector3d plane(fit[0] / stride * camera.fx / middle,
-                        fit[1] / stride * camera.fy / middle, 0.0);
+  Eigen::Vector3d plane = Eigen::Vector3d::Zero();
+  plane.head<2>() = camera.ProjectDerivative(ray.head<2>()).transpose() *
+                    fit.head<2>() / (stride * middle);
   plane.z() = 1.0 - plane.x() * ray.x() - plane.y() * ray.y();
   return plane;
 }

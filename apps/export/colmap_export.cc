@@ -11,16 +11,21 @@ namespace rgbd_pose {
 namespace {
 
 std::string FormatCamera(const Camera& camera) {
+  const std::vector<double> distortion = camera.Distortion();
+  const bool is_fisheye = camera.lens_model == LensModel::kEquidistant;
+  const bool is_full = distortion.size() == 8 || camera.k3 != 0.0;
   const char* model = !camera.HasDistortion() ? "PINHOLE"
-                      : camera.k3 == 0.0      ? "OPENCV"
-                                              : "FULL_OPENCV";
+                      : is_fisheye            ? "OPENCV_FISHEYE"
+                      : is_full               ? "FULL_OPENCV"
+                                              : "OPENCV";
   std::string text = Format("1 %s %d %d %.12g %.12g %.12g %.12g", model,
                             camera.width, camera.height, camera.fx, camera.fy,
                             camera.cx + kPixelCentre, camera.cy + kPixelCentre);
   if (camera.HasDistortion()) {
-    text += Format(" %.12g %.12g %.12g %.12g", camera.k1, camera.k2, camera.p1,
-                   camera.p2);
-    if (camera.k3 != 0.0) text += Format(" %.12g 0 0 0", camera.k3);
+    const size_t count = !is_fisheye && is_full ? 8 : 4;
+    for (size_t i = 0; i < count; ++i) {
+      text += Format(" %.12g", i < distortion.size() ? distortion[i] : 0.0);
+    }
   }
   return "# camera, model, width, height, parameters\n" + text + "\n";
 }

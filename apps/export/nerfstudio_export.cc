@@ -6,6 +6,7 @@
 #include "apps/export/export_format.h"
 #include "apps/export/output_folder.h"
 #include "apps/export/view_images.h"
+#include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/fusion/ply_writer.h"
 
@@ -29,8 +30,13 @@ nlohmann::json TransformMatrix(const Rigid3d& world_from_cam) {
 
 nlohmann::json Transforms(const ViewImages& images) {
   const Camera& camera = images.camera;
+  const bool is_fisheye = camera.lens_model == LensModel::kEquidistant;
+  if (camera.MakeLens().factor == Lens<double>::Factor::kRational) {
+    throw InputError(
+        "nerfstudio has no lens with k4 k5 k6; export with --undistort");
+  }
   nlohmann::json json = {
-      {"camera_model", "OPENCV"},
+      {"camera_model", is_fisheye ? "OPENCV_FISHEYE" : "OPENCV"},
       {"w", camera.width},
       {"h", camera.height},
       {"fl_x", camera.fx},
@@ -40,6 +46,7 @@ nlohmann::json Transforms(const ViewImages& images) {
       {"k1", camera.k1},
       {"k2", camera.k2},
       {"k3", camera.k3},
+      {"k4", camera.k4},
       {"p1", camera.p1},
       {"p2", camera.p2},
       {"depth_unit_scale_factor", 0.001},

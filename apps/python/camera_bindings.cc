@@ -42,7 +42,7 @@ RgbdCamera MakeCamera(double fx, double fy, double cx, double cy, int width,
                       int height, const std::vector<double>& distortion,
                       double depth_scale, double color_time_offset,
                       double color_readout, double depth_time_offset,
-                      double depth_readout) {
+                      double depth_readout, const std::string& lens) {
   RgbdCamera result;
   result.depth_scale = depth_scale;
   result.color_shutter = {color_time_offset, color_readout};
@@ -54,17 +54,19 @@ RgbdCamera MakeCamera(double fx, double fy, double cx, double cy, int width,
   camera.fy = fy;
   camera.cx = cx;
   camera.cy = cy;
-  if (!distortion.empty()) {
-    if (distortion.size() != 4 && distortion.size() != 5) {
-      throw InputError("Camera: " + std::to_string(distortion.size()) +
-                       " distortion coefficients; it needs k1 k2 p1 p2 and "
-                       "maybe k3");
-    }
-    camera.k1 = distortion[0];
-    camera.k2 = distortion[1];
-    camera.p1 = distortion[2];
-    camera.p2 = distortion[3];
-    if (distortion.size() == 5) camera.k3 = distortion[4];
+  const bool is_equidistant = lens == "equidistant";
+  if (!is_equidistant && lens != "rational") {
+    throw InputError("Camera: lens '" + lens +
+                     "' is neither 'rational' nor 'equidistant'");
+  }
+  if (is_equidistant) camera.lens_model = LensModel::kEquidistant;
+  if (!distortion.empty() &&
+      !camera.SetDistortion(camera.lens_model, distortion)) {
+    throw InputError("Camera: " + std::to_string(distortion.size()) +
+                     " distortion coefficients; " +
+                     (is_equidistant ? "an equidistant lens has k1 k2 k3 k4"
+                                     : "it needs k1 k2 p1 p2 and maybe k3, or "
+                                       "k3 k4 k5 k6"));
   }
   return Checked(result);
 }
@@ -90,11 +92,16 @@ std::string CameraInWords(const RgbdCamera& camera) {
   char text[512];
   std::snprintf(text, sizeof(text),
                 "Camera(fx=%.9g, fy=%.9g, cx=%.9g, cy=%.9g, width=%d, "
-                "height=%d, distortion=(%.9g, %.9g, %.9g, %.9g, %.9g), "
-                "depth_scale=%.9g",
-                c.fx, c.fy, c.cx, c.cy, c.width, c.height, c.k1, c.k2, c.p1,
-                c.p2, c.k3, camera.depth_scale);
+                "height=%d, distortion=(",
+                c.fx, c.fy, c.cx, c.cy, c.width, c.height);
   std::string words = text;
+  const char* comma = "";
+  for (const double coefficient : c.Distortion()) {
+    words += comma + Format("%.9g", coefficient);
+    comma = ", ";
+  }
+  words += Format("), depth_scale=%.9g", camera.depth_scale);
+  if (c.lens_model == LensModel::kEquidistant) words += ", lens='equidistant'";
   for (const ShutterParameter& parameter : kShutterParameters) {
     const double value = camera.*parameter.image.*parameter.value;
     if (value == 0.0) continue;
@@ -128,8 +135,8 @@ A pinhole camera and how its depth images count. It does not change.
 
 Axes are optical: x right, y down, z forward. Pixel (0, 0) is the centre of the
 upper left pixel. Focal lengths and centre are in pixels, the distortion is
-OpenCV's plumb bob (k1 k2 p1 p2 and maybe k3), depth_scale is raw units of a
-depth image per metre.
+OpenCV's (k1 k2 p1 p2 and maybe k3, or k3 k4 k5 k6); of lens='equidistant', a
+fisheye's, k1 k2 k3 k4. depth_scale is raw units of a depth image per metre.
 
 A row r of the colour image is exposed color_time_offset + color_readout *
 ((r + 1/2) / height - 1/2) seconds after the image's time stamp; depth likewise,
@@ -141,7 +148,7 @@ after its own.)");
            py::arg_v("distortion", std::vector<double>(), "()"),
            py::arg("depth_scale") = 5000.0, py::arg("color_time_offset") = 0.0,
            py::arg("color_readout") = 0.0, py::arg("depth_time_offset") = 0.0,
-           py::arg("depth_readout") = 0.0)
+           py::arg("depth_readout") = 0.0, py::arg("lens") = "rational")
       .def_static("load", &LoadCamera, R"(
 A camera by the name of a preset (camera_presets()) or a YAML file in the layout
 of ORB-SLAM2/3, ROS camera_info or Kalibr. depth_scale, if given, replaces that
@@ -157,10 +164,17 @@ of the preset or file.)",
       .def_property_readonly(
           "distortion",
           [](const RgbdCamera& self) {
-            const Camera& c = self.camera;
-            return py::make_tuple(c.k1, c.k2, c.p1, c.p2, c.k3);
+            return py::tuple(py::cast(self.camera.Distortion()));
           },
-          "k1 k2 p1 p2 k3")
+          "k1 k2 p1 p2 k3, and k4 k5 k6 if not 0; of a fisheye k1 k2 k3 k4")
+      .def_property_readonly(
+          "lens",
+          [](const RgbdCamera& self) {
+            return self.camera.lens_model == LensModel::kEquidistant
+                       ? "equidistant"
+                       : "rational";
+          },
+          "'rational' (plumb bob, too) or 'equidistant'")
       .def_readonly("depth_scale", &RgbdCamera::depth_scale,
                     "raw units of a depth image per metre")
       .def_property_readonly(

@@ -13,35 +13,62 @@ namespace {
 
 using Eigen::Vector2d;
 
+constexpr int kMaxIterations = 100;
+constexpr double kTolerance = 1e-13;  // well below 1e-10 px for f < 1000
+// What is left is of pixels that have no place.
+constexpr double kLargestError = 1e-8;
+
 // Applies the distortion to a point on the plane z = 1.
-Vector2d Distort(const Camera& c, const Vector2d& point) {
-  const double x = point.x();
-  const double y = point.y();
-  const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
-  return {x * radial + 2.0 * c.p1 * x * y + c.p2 * (r2 + 2.0 * x * x),
-          y * radial + c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y};
+Vector2d Distort(const Lens<double>& lens, const Vector2d& point) {
+  Vector2d distorted;
+  lens.Distort(point.x(), point.y(), &distorted.x(), &distorted.y());
+  return distorted;
 }
 
-// The inverse of Distort. Divides by the radial factor instead of subtracting
-// the shift, since that contracts faster for large k1.
-Vector2d RemoveDistortion(const Camera& c, const Vector2d& distorted) {
-  constexpr int kMaxIterations = 100;
-  constexpr double kTolerance = 1e-13;  // well below 1e-10 px for f < 1000
+// The inverse of Distort, or something else where there is none. Divides by the
+// radial factor instead of subtracting the shift, since that contracts faster
+// for large k1.
+Vector2d InvertRational(const Lens<double>& lens, const Vector2d& distorted) {
   Vector2d point = distorted;
   for (int i = 0; i < kMaxIterations; ++i) {
     const double x = point.x();
     const double y = point.y();
     const double r2 = x * x + y * y;
-    const double radial = 1.0 + r2 * (c.k1 + r2 * (c.k2 + r2 * c.k3));
-    const Vector2d tangential(2.0 * c.p1 * x * y + c.p2 * (r2 + 2.0 * x * x),
-                              c.p1 * (r2 + 2.0 * y * y) + 2.0 * c.p2 * x * y);
+    double radial;
+    lens.Radial(r2, &radial);
+    const Vector2d tangential(
+        2.0 * lens.p1 * x * y + lens.p2 * (r2 + 2.0 * x * x),
+        lens.p1 * (r2 + 2.0 * y * y) + 2.0 * lens.p2 * x * y);
     const Vector2d next = (distorted - tangential) / radial;
     const double change = (next - point).lpNorm<Eigen::Infinity>();
     point = next;
     if (!(change > kTolerance)) break;
   }
   return point;
+}
+
+// The same of an equidistant lens: Newton's method for the angle.
+Vector2d InvertEquidistant(const Lens<double>& lens,
+                           const Vector2d& distorted) {
+  const double wanted = distorted.norm();
+  if (wanted < kTolerance) return distorted;
+  double t = wanted;
+  for (int i = 0; i < kMaxIterations; ++i) {
+    const double t2 = t * t;
+    const double found =
+        t *
+        (1.0 + t2 * (lens.k1 + t2 * (lens.k2 + t2 * (lens.k3 + t2 * lens.k4))));
+    const double slope =
+        1.0 +
+        t2 * (3.0 * lens.k1 +
+              t2 * (5.0 * lens.k2 + t2 * (7.0 * lens.k3 + t2 * 9.0 * lens.k4)));
+    const double change = (wanted - found) / slope;
+    t += change;
+    if (!(std::abs(change) > kTolerance)) break;
+  }
+  // tan folds what is beyond 90 degrees back.
+  if (!(t > 0.0 && t < 0.5 * M_PI)) t = std::nan("");
+  return distorted * (std::tan(t) / wanted);
 }
 
 // Of the larger side of the image: views of 157 and of 0.6 degrees.
@@ -107,6 +134,10 @@ std::string Camera::Check() const {
       return "fx and fy must be in pixels: 0.1 to 100 times the image's size";
     }
   }
+  if (lens_model == LensModel::kEquidistant &&
+      (p1 != 0.0 || p2 != 0.0 || k5 != 0.0 || k6 != 0.0)) {
+    return "an equidistant lens has k1 to k4 only";
+  }
   if (cx < 0.0 || cy < 0.0 || cx >= width || cy >= height) {
     return "the principal point must lie inside the image";
   }
@@ -136,19 +167,68 @@ std::string Camera::SanityWarning() const {
 }
 
 bool Camera::HasDistortion() const {
-  return k1 != 0.0 || k2 != 0.0 || p1 != 0.0 || p2 != 0.0 || k3 != 0.0;
+  return lens_model == LensModel::kEquidistant || k1 != 0.0 || k2 != 0.0 ||
+         p1 != 0.0 || p2 != 0.0 || k3 != 0.0 || k4 != 0.0 || k5 != 0.0 ||
+         k6 != 0.0;
+}
+
+std::vector<double> Camera::Distortion() const {
+  if (lens_model == LensModel::kEquidistant) return {k1, k2, k3, k4};
+  if (k4 == 0.0 && k5 == 0.0 && k6 == 0.0) return {k1, k2, p1, p2, k3};
+  return {k1, k2, p1, p2, k3, k4, k5, k6};
+}
+
+bool Camera::SetDistortion(LensModel model,
+                           const std::vector<double>& coefficients) {
+  static constexpr double Camera::*kEquidistant[] = {&Camera::k1, &Camera::k2,
+                                                     &Camera::k3, &Camera::k4};
+  static constexpr double Camera::*kRational[] = {
+      &Camera::k1, &Camera::k2, &Camera::p1, &Camera::p2,
+      &Camera::k3, &Camera::k4, &Camera::k5, &Camera::k6};
+  const bool is_equidistant = model == LensModel::kEquidistant;
+  const size_t given = coefficients.size();
+  const bool is_known =
+      given == 4 ||
+      (!is_equidistant &&
+       (given == 5 ||
+        (given >= 8 && std::all_of(coefficients.begin() + 8, coefficients.end(),
+                                   [](double c) { return c == 0.0; }))));
+  if (!is_known) return false;
+  for (double Camera::*coefficient : kRational) this->*coefficient = 0.0;
+  lens_model = model;
+  for (size_t i = 0; i < std::min<size_t>(given, 8); ++i) {
+    this->*(is_equidistant ? kEquidistant[i] : kRational[i]) = coefficients[i];
+  }
+  return true;
 }
 
 Vector2d Camera::Project(const Eigen::Vector3d& point) const {
   Vector2d plane = point.head<2>() / point.z();
-  if (HasDistortion()) plane = Distort(*this, plane);
+  if (HasDistortion()) plane = Distort(MakeLens(), plane);
   return {fx * plane.x() + cx, fy * plane.y() + cy};
+}
+
+Eigen::Matrix2d Camera::ProjectDerivative(const Vector2d& place) const {
+  Eigen::Matrix2d derivative = Eigen::Matrix2d::Zero();
+  derivative.diagonal() << fx, fy;
+  if (!HasDistortion()) return derivative;
+  DistortedPoint<double> p;
+  MakeLens().Distort(place.x(), place.y(), &p);
+  derivative << fx * p.x_x, fx * p.x_y, fy * p.x_y, fy * p.y_y;
+  return derivative;
 }
 
 Vector2d Camera::Undistort(const Vector2d& pixel) const {
   if (!HasDistortion()) return pixel;
-  const Vector2d plane =
-      RemoveDistortion(*this, Ray(pixel.x(), pixel.y()).head<2>());
+  const Lens<double> lens = MakeLens();
+  const Vector2d distorted = Ray(pixel.x(), pixel.y()).head<2>();
+  const Vector2d plane = lens_model == LensModel::kEquidistant
+                             ? InvertEquidistant(lens, distorted)
+                             : InvertRational(lens, distorted);
+  const Vector2d error = Distort(lens, plane) - distorted;
+  if (!(error.lpNorm<Eigen::Infinity>() < kLargestError)) {
+    return Vector2d::Constant(std::nan(""));
+  }
   return {fx * plane.x() + cx, fy * plane.y() + cy};
 }
 

@@ -7,12 +7,13 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/lens.h"
 #include "core/geometry/rigid3.h"
 #include "core/geometry/shutter.h"
 
 namespace rgbd_pose {
 
-// A pinhole camera with OpenCV's plumb-bob distortion (k1 k2 p1 p2 k3).
+// A pinhole camera with a lens (core/geometry/lens.h has the equations).
 // Optical axes: x right, y down, z forward. Pixel (0, 0) is the centre of the
 // upper left pixel. Lengths in pixels.
 struct Camera {
@@ -26,12 +27,18 @@ struct Camera {
   double cx = 319.5;
   double cy = 239.5;
 
-  // Distortion: radial k, tangential p.
+  // Distortion: radial k, tangential p; of an equidistant lens k1 to k4.
   double k1 = 0.0;
   double k2 = 0.0;
   double p1 = 0.0;
   double p2 = 0.0;
   double k3 = 0.0;
+  double k4 = 0.0;
+  double k5 = 0.0;
+  double k6 = 0.0;
+
+  // What the coefficients mean.
+  LensModel lens_model = LensModel::kRational;
 
   // One line that says what is wrong with the parameters, or empty.
   std::string Check() const;
@@ -42,14 +49,32 @@ struct Camera {
   // of another size of image.
   std::string SanityWarning() const;
 
-  // Whether any distortion coefficient is not 0.
+  // What the lens does, for coefficients of that type.
+  template <typename S = double>
+  Lens<S> MakeLens() const;
+
+  // Whether the lens does anything: an equidistant one does without
+  // coefficients, too.
   bool HasDistortion() const;
+
+  // The coefficients in the order of OpenCV and ROS: k1 k2 p1 p2 k3, and k4 k5
+  // k6 where one of them is not 0; of an equidistant lens k1 k2 k3 k4.
+  std::vector<double> Distortion() const;
+
+  // Takes 4, 5 or 8 of them, or more where those are 0; of an equidistant lens
+  // 4. False, and nothing has changed, for another number.
+  bool SetDistortion(LensModel model, const std::vector<double>& coefficients);
 
   // Image point (distorted px) of a point in camera axes; z must be > 0.
   Eigen::Vector2d Project(const Eigen::Vector3d& point) const;
 
-  // Ideal pixel (the same fx, fy, cx, cy, no distortion) of an image pixel,
-  // by fixed-point iteration (1e-10 px where the distortion is invertible).
+  // How the image point of a place on the plane z = 1 moves with that place,
+  // px.
+  Eigen::Matrix2d ProjectDerivative(const Eigen::Vector2d& place) const;
+
+  // Ideal pixel (the same fx, fy, cx, cy, no distortion) of an image pixel, to
+  // 1e-10 px. NaN where there is none: beyond 90 degrees, or where the lens'
+  // polynomial turns back.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
 
   // Undistorts many image points at once, in place.
@@ -79,7 +104,7 @@ struct CameraParameter {
 };
 
 // In the order in which Camera has them.
-inline constexpr std::array<CameraParameter, 9> kCameraParameters = {
+inline constexpr std::array<CameraParameter, 12> kCameraParameters = {
     {{"fx", &Camera::fx},
      {"fy", &Camera::fy},
      {"cx", &Camera::cx},
@@ -88,7 +113,36 @@ inline constexpr std::array<CameraParameter, 9> kCameraParameters = {
      {"k2", &Camera::k2},
      {"p1", &Camera::p1},
      {"p2", &Camera::p2},
-     {"k3", &Camera::k3}}};
+     {"k3", &Camera::k3},
+     {"k4", &Camera::k4},
+     {"k5", &Camera::k5},
+     {"k6", &Camera::k6}}};
+
+// Those of them that every file of a camera has; the others where they are not
+// 0.
+inline constexpr size_t kNumUsualParameters = 9;
+
+template <typename S>
+Lens<S> Camera::MakeLens() const {
+  using Factor = typename Lens<S>::Factor;
+  Lens<S> lens;
+  lens.k1 = S(k1);
+  lens.k2 = S(k2);
+  lens.p1 = S(p1);
+  lens.p2 = S(p2);
+  lens.k3 = S(k3);
+  lens.k4 = S(k4);
+  lens.k5 = S(k5);
+  lens.k6 = S(k6);
+  if (lens_model == LensModel::kEquidistant) {
+    lens.factor = Factor::kEquidistant;
+  } else if (k4 != 0.0 || k5 != 0.0 || k6 != 0.0) {
+    lens.factor = Factor::kRational;
+  } else if (HasDistortion()) {
+    lens.factor = Factor::kPolynomial;
+  }
+  return lens;
+}
 
 // What is wrong with the depth images of a camera, to be undone as they are
 // read (frontend/sources/corrected_source.h).

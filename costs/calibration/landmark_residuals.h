@@ -100,7 +100,7 @@ struct LandmarkDerivatives {
 
 // What was measured of a landmark: at its anchor and in one view.
 struct LandmarkData {
-  const Camera* rest = nullptr;           // of the lens, see Lens
+  const Camera* rest = nullptr;           // of the lens, see CalibratedLens
   double anchor_u = 0.0, anchor_v = 0.0;  // px, as seen (distorted)
   double u = 0.0, v = 0.0;                // likewise, in the view
   double inverse_sigma_px = 0.0;          // of u and v
@@ -113,8 +113,8 @@ template <typename T>
 Eigen::Matrix<T, 3, 1> InView(const RotationAndCenter<T>& anchor,
                               const RotationAndCenter<T>& view, const T& d,
                               const T* theta, const LandmarkData& data) {
-  const Eigen::Matrix<T, 2, 1> place =
-      Undistorted(Lens<T>{theta, *data.rest}, data.anchor_u, data.anchor_v);
+  const Eigen::Matrix<T, 2, 1> place = Undistorted(
+      CalibratedLens<T>(theta, *data.rest), data.anchor_u, data.anchor_v);
   const Eigen::Matrix<T, 3, 1> ray(place[0], place[1], T(1.0));
   const Eigen::Matrix<T, 3, 1> in_world =
       anchor.R.transpose() * ray + (anchor.C - view.C) * d;
@@ -130,7 +130,7 @@ struct InViewDerivatives {
 
   InViewDerivatives(const MotionDerivatives& a, const MotionDerivatives& b,
                     double d, const double* theta, const LandmarkData& data) {
-    const Lens<double> at{theta, *data.rest};
+    const CalibratedLens<double> at(theta, *data.rest);
     const Eigen::Vector2d seen = at.FromPixel(data.anchor_u, data.anchor_v);
     const Eigen::Vector2d place = Undistorted(at, data.anchor_u, data.anchor_v);
     const Eigen::Vector3d ray(place[0], place[1], 1.0);
@@ -145,12 +145,10 @@ struct InViewDerivatives {
       view.col(3 + k) = -b.R.col(k) * d;
     }
     // Of the ray by the lens: Distort(ray; k) = seen(f, c).
-    const double r2 = place.squaredNorm();
     Eigen::Matrix<double, 2, kInverseDepth> moved;
-    moved << -seen[0] / theta[kFx], 0.0, -1.0 / theta[kFx], 0.0, -place[0] * r2,
-        -place[0] * r2 * r2,  //
-        0.0, -seen[1] / theta[kFy], 0.0, -1.0 / theta[kFy], -place[1] * r2,
-        -place[1] * r2 * r2;
+    moved.leftCols<4>() << -seen[0] / theta[kFx], 0.0, -1.0 / theta[kFx], 0.0,
+        0.0, -seen[1] / theta[kFy], 0.0, -1.0 / theta[kFy];
+    moved.rightCols<2>() = -DistortByCoefficients(at, place[0], place[1]);
     lens = (b.R * a.R.transpose()).leftCols<2>() *
            (DistortDerivative(at, place[0], place[1]).inverse() * moved);
   }
@@ -166,7 +164,7 @@ struct LandmarkPixel {
   static void Residual(const RotationAndCenter<T>& anchor,
                        const RotationAndCenter<T>& view, const T& d,
                        const T* theta, const LandmarkData& data, T* r) {
-    const Lens<T> lens{theta, *data.rest};
+    const CalibratedLens<T> lens(theta, *data.rest);
     const Eigen::Matrix<T, 3, 1> Y = InView(anchor, view, d, theta, data);
     const Eigen::Matrix<T, 2, 1> pixel =
         lens.ToPixel(lens.Distort(Y[0] / Y[2], Y[1] / Y[2]));
@@ -179,7 +177,7 @@ struct LandmarkPixel {
                        const double* theta, const LandmarkData& data, double* r,
                        LandmarkDerivatives<2>* J) {
     const InViewDerivatives moved(anchor, view, d, theta, data);
-    const Lens<double> lens{theta, *data.rest};
+    const CalibratedLens<double> lens(theta, *data.rest);
     const double z = 1.0 / moved.Y[2];
     const double x = moved.Y[0] * z, y = moved.Y[1] * z;
     const Eigen::Vector2d seen = lens.Distort(x, y);
@@ -197,15 +195,12 @@ struct LandmarkPixel {
     J->inverse_depth = by_point * moved.inverse_depth;
     J->theta.setZero();
     J->theta.leftCols<kInverseDepth>() = by_point * moved.lens;
-    const double r2 = x * x + y * y;
     J->theta(0, kFx) += w * seen[0];
     J->theta(1, kFy) += w * seen[1];
     J->theta(0, kCx) += w;
     J->theta(1, kCy) += w;
-    J->theta(0, kK1) += scale[0] * x * r2;
-    J->theta(1, kK1) += scale[1] * y * r2;
-    J->theta(0, kK2) += scale[0] * x * r2 * r2;
-    J->theta(1, kK2) += scale[1] * y * r2 * r2;
+    J->theta.middleCols<2>(kK1) +=
+        scale.asDiagonal() * DistortByCoefficients(lens, x, y);
   }
 };
 

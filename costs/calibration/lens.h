@@ -13,18 +13,27 @@ namespace rgbd_pose {
 // CalibrationVector, for any scalar (double or ceres::Jet); the rest of the
 // distortion is that of `rest`.
 template <typename T>
-struct Lens {
+struct CalibratedLens {
   using Pair = Eigen::Matrix<T, 2, 1>;
 
   const T* theta;
   const Camera& rest;
+  Lens<T> lens;
+
+  CalibratedLens(const T* parameters, const Camera& camera)
+      : theta(parameters), rest(camera), lens(camera.MakeLens<T>()) {
+    lens.k1 = theta[kK1];
+    lens.k2 = theta[kK2];
+    if (lens.factor == Lens<T>::Factor::kNone) {
+      lens.factor = Lens<T>::Factor::kPolynomial;
+    }
+  }
 
   // Where a point (x, y, 1) is seen, on the plane z = 1.
   Pair Distort(const T& x, const T& y) const {
-    const T r2 = x * x + y * y;
-    const T radial = 1.0 + r2 * (theta[kK1] + r2 * (theta[kK2] + r2 * rest.k3));
-    return {x * radial + 2.0 * rest.p1 * x * y + rest.p2 * (r2 + 2.0 * x * x),
-            y * radial + rest.p1 * (r2 + 2.0 * y * y) + 2.0 * rest.p2 * x * y};
+    Pair distorted;
+    lens.Distort(x, y, &distorted[0], &distorted[1]);
+    return distorted;
   }
 
   // The pixel of it.
@@ -40,23 +49,27 @@ struct Lens {
 };
 
 // d Distort / d (x, y).
-inline Eigen::Matrix2d DistortDerivative(const Lens<double>& lens, double x,
-                                         double y) {
-  const double k1 = lens.theta[kK1], k2 = lens.theta[kK2], k3 = lens.rest.k3;
-  const double p1 = lens.rest.p1, p2 = lens.rest.p2;
-  const double r2 = x * x + y * y;
-  const double radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  const double slope = 2.0 * (k1 + r2 * (2.0 * k2 + r2 * 3.0 * k3));
+inline Eigen::Matrix2d DistortDerivative(const CalibratedLens<double>& at,
+                                         double x, double y) {
+  DistortedPoint<double> p;
+  at.lens.Distort(x, y, &p);
   Eigen::Matrix2d D;
-  D << radial + slope * x * x + 2.0 * p1 * y + 6.0 * p2 * x,
-      slope * x * y + 2.0 * p1 * x + 2.0 * p2 * y,  //
-      slope * x * y + 2.0 * p1 * x + 2.0 * p2 * y,
-      radial + slope * y * y + 6.0 * p1 * y + 2.0 * p2 * x;
+  D << p.x_x, p.x_y, p.x_y, p.y_y;
+  return D;
+}
+
+// d Distort / d (k1, k2).
+inline Eigen::Matrix2d DistortByCoefficients(const CalibratedLens<double>& at,
+                                             double x, double y) {
+  double by_k1, by_k2;
+  at.lens.RadialByCoefficients(x * x + y * y, &by_k1, &by_k2);
+  Eigen::Matrix2d D;
+  D << x * by_k1, x * by_k2, y * by_k1, y * by_k2;
   return D;
 }
 
 // The place (x, y, 1) that is seen at a pixel, by Newton's method.
-inline Eigen::Vector2d Undistorted(const Lens<double>& lens, double u,
+inline Eigen::Vector2d Undistorted(const CalibratedLens<double>& lens, double u,
                                    double v) {
   constexpr int kMaxSteps = 10;
   constexpr double kTolerance = 1e-13;
@@ -75,10 +88,11 @@ inline Eigen::Vector2d Undistorted(const Lens<double>& lens, double u,
 // The same with derivatives: one more step from where the values lead has them
 // exactly.
 template <typename T>
-Eigen::Matrix<T, 2, 1> Undistorted(const Lens<T>& lens, double u, double v) {
+Eigen::Matrix<T, 2, 1> Undistorted(const CalibratedLens<T>& lens, double u,
+                                   double v) {
   double values[kCalibrationSize];
   for (int k = 0; k < kCalibrationSize; ++k) values[k] = lens.theta[k].a;
-  const Lens<double> plain{values, lens.rest};
+  const CalibratedLens<double> plain{values, lens.rest};
   const Eigen::Vector2d place = Undistorted(plain, u, v);
   const Eigen::Matrix2d inverse =
       DistortDerivative(plain, place[0], place[1]).inverse();

@@ -199,7 +199,7 @@ class DirectCostOf final : public PackedCost<Type> {
       return;
     }
     input_.moving = pair.cur->moving;
-    input_.has_distortion = pair.cur->levels[0].camera.HasDistortion();
+    input_.lens = pair.cur->levels[0].camera.MakeLens();
     input_.moves_color = !pair.cur->timing.color.IsGlobal();
     input_.moves_depth = !pair.cur->timing.depth.IsGlobal();
     if (const std::string error = pair.prev->depth_noise.Check();

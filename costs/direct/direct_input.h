@@ -17,7 +17,7 @@ struct DirectInput {
   Eigen::Matrix3d R = Eigen::Matrix3d::Identity();  // cur_from_prev
   Eigen::Vector3d t = Eigen::Vector3d::Zero();      // m
 
-  bool has_distortion = false;  // of the current camera
+  Lens<double> lens;  // of the current camera
 
   // Whether rows of the current images were exposed at other times than the
   // motion is of (FrameView::timing).

@@ -159,6 +159,7 @@ void TexturedPoints(const FrameView& frame, int level_index,
       if (depth < selection.min_depth || depth > selection.max_depth) continue;
       const Eigen::Vector3d X =
           level.camera.Unproject(at.cast<double>(), depth);
+      if (!X.allFinite()) continue;
       writer.Add({X.x(), X.y(), X.z(), frame.depth_noise.sigma(depth),
                   static_cast<double>(gray.At(at.x(), at.y()))});
     }
@@ -183,10 +184,9 @@ void SmoothPoints(const FrameView& frame, const PointSelection& selection,
       const double depth = 1.0 / fit.inverse_depth;
       if (depth < selection.min_depth || depth > selection.max_depth) continue;
       const Eigen::Vector3d X = camera.Unproject(Eigen::Vector2d(u, v), depth);
-      // d pixel / d (x / z, y / z) but for distortion, which hardly turns it.
-      const Eigen::Vector2d slope(fit.slope.x() * camera.fx,
-                                  fit.slope.y() * camera.fy);
       const Eigen::Vector3d ray = X / depth;
+      const Eigen::Vector2d slope =
+          camera.ProjectDerivative(ray.head<2>()).transpose() * fit.slope;
       const Eigen::Vector3d N(slope.x(), slope.y(),
                               fit.inverse_depth - slope.dot(ray.head<2>()));
       if (!(N.dot(ray) > kMinCosine * N.norm() * ray.norm())) continue;

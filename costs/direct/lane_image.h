@@ -19,14 +19,14 @@ struct ProjectedPixel {
   D u_x, u_y, v_x, v_y;  // du / d(x / z), ...
 };
 
-// Of x / z and y / z.
+// Of x / z and y / z. `lens`: the camera's.
 template <typename D>
 [[gnu::always_inline]] inline void ProjectWithJacobian(const Camera& camera,
-                                                       bool has_distortion,
+                                                       const Lens<double>& lens,
                                                        const D& x, const D& y,
                                                        ProjectedPixel<D>* p) {
   const D zero = x - x;
-  if (!has_distortion) {
+  if (lens.factor == Lens<double>::Factor::kNone) {
     p->u = camera.fx * x + camera.cx;
     p->v = camera.fy * y + camera.cy;
     p->u_x = zero + camera.fx;
@@ -34,22 +34,14 @@ template <typename D>
     p->u_y = p->v_x = zero;
     return;
   }
-  const double k1 = camera.k1, k2 = camera.k2, k3 = camera.k3;
-  const double p1 = camera.p1, p2 = camera.p2;
-  const D r2 = x * x + y * y;
-  const D radial = 1.0 + r2 * (k1 + r2 * (k2 + r2 * k3));
-  const D by_r2 = k1 + r2 * (2.0 * k2 + r2 * (3.0 * k3));
-  const D cross = 2.0 * (x * y * by_r2 + p1 * x + p2 * y);
-  const D xd = x * radial + 2.0 * p1 * x * y + p2 * (r2 + 2.0 * x * x);
-  const D yd = y * radial + p1 * (r2 + 2.0 * y * y) + 2.0 * p2 * x * y;
-  p->u = camera.fx * xd + camera.cx;
-  p->v = camera.fy * yd + camera.cy;
-  p->u_x =
-      camera.fx * (radial + 2.0 * x * x * by_r2 + 2.0 * p1 * y + 6.0 * p2 * x);
-  p->u_y = camera.fx * cross;
-  p->v_x = camera.fy * cross;
-  p->v_y =
-      camera.fy * (radial + 2.0 * y * y * by_r2 + 6.0 * p1 * y + 2.0 * p2 * x);
+  DistortedPoint<D> seen;
+  lens.Distort(x, y, &seen);
+  p->u = camera.fx * seen.x + camera.cx;
+  p->v = camera.fy * seen.y + camera.cy;
+  p->u_x = camera.fx * seen.x_x;
+  p->u_y = camera.fx * seen.x_y;
+  p->v_x = camera.fy * seen.x_y;
+  p->v_y = camera.fy * seen.y_y;
 }
 
 // Where a point (axes of the stamp, m) is when its row is exposed: the row
@@ -57,14 +49,14 @@ template <typename D>
 // `level_camera`: of the pixels of the image.
 template <typename D>
 [[gnu::always_inline]] inline void MoveToRow(const Camera& level_camera,
-                                             bool has_distortion,
+                                             const Lens<double>& lens,
                                              const Shutter& shutter,
                                              const Twist& twist, const D* point,
                                              D* moved) {
   const D inverse = 1.0 / point[2];
   const D x = point[0] * inverse, y = point[1] * inverse;
   ProjectedPixel<D> pixel;
-  ProjectWithJacobian(level_camera, has_distortion, x, y, &pixel);
+  ProjectWithJacobian(level_camera, lens, x, y, &pixel);
   // Rows a second.
   D velocity[3];
   twist.PointVelocity(point, velocity);

@@ -162,18 +162,15 @@ struct Photometric {
     seen->y = (seen->turned[1] + input.t[1]) * inverse;
     const Camera& camera = input.cur->levels[input.level].camera;
     if (!input.moves_color) {
-      ProjectWithJacobian(camera, input.has_distortion, seen->x, seen->y,
-                          &seen->pixel);
+      ProjectWithJacobian(camera, input.lens, seen->x, seen->y, &seen->pixel);
       return;
     }
     const FrameTiming& timing = input.cur->timing;
     const D q[3] = {seen->x * seen->z, seen->y * seen->z, seen->z};
     D moved[3];
-    MoveToRow(camera, input.has_distortion, timing.color, timing.twist, q,
-              moved);
+    MoveToRow(camera, input.lens, timing.color, timing.twist, q, moved);
     const D inverse_moved = 1.0 / moved[2];
-    ProjectWithJacobian(camera, input.has_distortion,
-                        D(moved[0] * inverse_moved),
+    ProjectWithJacobian(camera, input.lens, D(moved[0] * inverse_moved),
                         D(moved[1] * inverse_moved), &seen->pixel);
   }
 };

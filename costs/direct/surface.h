@@ -52,7 +52,7 @@ struct Surface {
     Move(input, point, q, in_row);
     const D inverse = 1.0 / in_row[2];
     ProjectedPixel<D> pixel;
-    ProjectWithJacobian(input.cur->levels[0].camera, input.has_distortion,
+    ProjectWithJacobian(input.cur->levels[0].camera, input.lens,
                         D(in_row[0] * inverse), D(in_row[1] * inverse), &pixel);
     *place = {pixel.u, pixel.v, in_row[2]};
   }
@@ -66,7 +66,7 @@ struct Surface {
     for (int i = 0; i < 3; ++i) in_row[i] = q[i] += input.t[i];
     if (!input.moves_depth) return;
     const FrameTiming& timing = input.cur->timing;
-    MoveToRow(input.cur->levels[0].camera, input.has_distortion, timing.depth,
+    MoveToRow(input.cur->levels[0].camera, input.lens, timing.depth,
               timing.twist, q, in_row);
   }
 

@@ -163,29 +163,34 @@ Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
   camera.fy = by_p ? info.p[5] : info.k[4];
   camera.cx = by_p ? info.p[2] : info.k[2];
   camera.cy = by_p ? info.p[6] : info.k[5];
+  const std::string model(info.distortion_model);
+  // The last is what librealsense calls it.
+  const bool is_equidistant = model == "equidistant" || model == "fisheye" ||
+                              model == "Kannala Brandt4";
   const bool is_distorted =
-      !by_p && std::any_of(info.d.begin(), info.d.end(),
-                           [](double value) { return value != 0.0; });
+      !by_p && !info.d.empty() &&
+      (is_equidistant ||
+       std::any_of(info.d.begin(), info.d.end(),
+                   [](double value) { return value != 0.0; }));
   if (is_distorted) {
-    const std::string model(info.distortion_model);
-    // What rational_polynomial has more must be 0.
-    const bool is_known =
-        (model.empty() || model == "plumb_bob" || model == "Brown Conrady" ||
-         model == "rational_polynomial") &&
-        info.d.size() >= 4 &&
-        std::all_of(info.d.begin() + std::min<size_t>(5, info.d.size()),
-                    info.d.end(), [](double value) { return value == 0.0; });
-    if (!is_known) {
+    const bool is_known = is_equidistant || model.empty() ||
+                          model == "plumb_bob" || model == "Brown Conrady" ||
+                          model == "rational_polynomial";
+    // Of a fisheye RealSense has a fifth coefficient, which is 0.
+    std::vector<double> coefficients(info.d.begin(), info.d.end());
+    if (is_equidistant && coefficients.size() == 5 && coefficients[4] == 0.0) {
+      coefficients.pop_back();
+    }
+    if (!is_known ||
+        !camera.SetDistortion(
+            is_equidistant ? LensModel::kEquidistant : LensModel::kRational,
+            coefficients)) {
       throw InputError(name + ": distortion '" + model + "' with " +
                        std::to_string(info.d.size()) +
-                       " coefficients is not known, only plumb_bob is; give a "
-                       "calibration file (camera)");
+                       " coefficients is not known, only plumb_bob (4 or 5), "
+                       "rational_polynomial (8) and equidistant (4) are; give "
+                       "a calibration file (camera)");
     }
-    camera.k1 = info.d[0];
-    camera.k2 = info.d[1];
-    camera.p1 = info.d[2];
-    camera.p2 = info.d[3];
-    if (info.d.size() > 4) camera.k3 = info.d[4];
   }
   const std::string problem = camera.fx == 0.0
                                   ? "its camera is not calibrated (K is 0)"

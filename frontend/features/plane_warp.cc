@@ -1,5 +1,6 @@
 #include "frontend/features/plane_warp.h"
 
+#include <Eigen/LU>
 #include <cmath>
 
 namespace rgbd_pose {
@@ -35,6 +36,13 @@ Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
   for (int i = 0; i < 2; ++i) {
     const double f = (i == 0 ? camera.fx : camera.fy) / point.z();
     warp.row(i) = f * (moved.row(i) - point[i] / point.z() * moved.row(2));
+  }
+  if (camera.HasDistortion()) {
+    // Of ideal pixels so far.
+    const Eigen::Vector2d focal(camera.fx, camera.fy);
+    warp = camera.ProjectDerivative(point.head<2>() / point.z()) *
+           focal.cwiseInverse().asDiagonal() * warp * focal.asDiagonal() *
+           camera.ProjectDerivative(ray.head<2>()).inverse();
   }
   return warp.cast<float>();
 }

@@ -11,8 +11,7 @@ namespace rgbd_pose {
 // How the image around an observation (with a depth) is stretched and turned
 // by a motion: d(pixel in cur) / d(pixel in ref) over the plane of its depth
 // and normal, or parallel to the image if there is no normal or it is seen
-// edge-on. Lens distortion, nearly the same on both sides, is left out. The
-// point must lie before both cameras.
+// edge-on. The point must lie before both cameras.
 Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
                           const Rigid3d& cur_from_ref);
 

@@ -26,33 +26,33 @@ bool IsOfColor(const std::string& depth_camera) {
 Camera ReadOrbSlam(const YamlSection& file) {
   const std::string prefix =
       file.HasKeyStartingWith("Camera1.") ? "Camera1." : "Camera.";
-  file.CheckWord("Camera.type", {"PinHole", "Rectified"});
   Camera camera;
   camera.width = file.Pixels("Camera.width");
   camera.height = file.Pixels("Camera.height");
-  camera.fx = file.Number(prefix + "fx");
-  camera.fy = file.Number(prefix + "fy");
-  camera.cx = file.Number(prefix + "cx");
-  camera.cy = file.Number(prefix + "cy");
-  camera.k1 = file.NumberOr(prefix + "k1", 0.0);
-  camera.k2 = file.NumberOr(prefix + "k2", 0.0);
-  camera.p1 = file.NumberOr(prefix + "p1", 0.0);
-  camera.p2 = file.NumberOr(prefix + "p2", 0.0);
-  camera.k3 = file.NumberOr(prefix + "k3", 0.0);
+  for (const CameraParameter& parameter : kCameraParameters) {
+    const std::string key = prefix + parameter.name;
+    const bool is_needed = parameter.name[0] == 'f' || parameter.name[0] == 'c';
+    camera.*parameter.value =
+        is_needed ? file.Number(key) : file.NumberOr(key, 0.0);
+  }
+  const std::string type =
+      file.Word("Camera.type", {"PinHole", "Rectified", "KannalaBrandt8"});
+  if (type == "KannalaBrandt8") camera.lens_model = LensModel::kEquidistant;
   return camera;
 }
 
-// Coefficients in the order k1 k2 p1 p2 and maybe k3.
-void SetDistortion(const std::vector<double>& coefficients, Camera* camera) {
-  camera->k1 = coefficients[0];
-  camera->k2 = coefficients[1];
-  camera->p1 = coefficients[2];
-  camera->p2 = coefficients[3];
-  if (coefficients.size() > 4) camera->k3 = coefficients[4];
+// The coefficients at a key, of that many.
+void ReadDistortion(const YamlSection& file, const std::string& key,
+                    const std::vector<size_t>& counts, bool is_equidistant,
+                    Camera* camera) {
+  camera->SetDistortion(
+      is_equidistant ? LensModel::kEquidistant : LensModel::kRational,
+      file.Numbers(key, counts));
 }
 
 Camera ReadCameraInfoFile(const YamlSection& file) {
-  file.CheckWord("distortion_model", {"plumb_bob"});
+  const std::string model = file.Word(
+      "distortion_model", {"plumb_bob", "rational_polynomial", "equidistant"});
   Camera camera;
   camera.width = file.Pixels("image_width");
   camera.height = file.Pixels("image_height");
@@ -65,15 +65,20 @@ Camera ReadCameraInfoFile(const YamlSection& file) {
   camera.fy = k[4];
   camera.cx = k[2];
   camera.cy = k[5];
-  SetDistortion(file.Child("distortion_coefficients").Numbers("data", {4, 5}),
-                &camera);
+  const bool is_equidistant = model == "equidistant";
+  ReadDistortion(file.Child("distortion_coefficients"), "data",
+                 is_equidistant         ? std::vector<size_t>{4}
+                 : model == "plumb_bob" ? std::vector<size_t>{4, 5}
+                                        : std::vector<size_t>{8},
+                 is_equidistant, &camera);
   return camera;
 }
 
 Camera ReadKalibr(const YamlSection& file, const std::string& name) {
   const YamlSection cam = file.Child(name);
-  cam.CheckWord("camera_model", {"pinhole"});
-  cam.CheckWord("distortion_model", {"radtan"});
+  cam.Word("camera_model", {"pinhole"});
+  const std::string model =
+      cam.Word("distortion_model", {"radtan", "equidistant"});
   Camera camera;
   const std::vector<double> size = cam.Numbers("resolution", {2});
   camera.width = cam.Pixels("resolution", size[0]);
@@ -83,7 +88,8 @@ Camera ReadKalibr(const YamlSection& file, const std::string& name) {
   camera.fy = intrinsics[1];
   camera.cx = intrinsics[2];
   camera.cy = intrinsics[3];
-  SetDistortion(cam.Numbers("distortion_coeffs", {4}), &camera);
+  ReadDistortion(cam, "distortion_coeffs", {4}, model == "equidistant",
+                 &camera);
   return camera;
 }
 

@@ -10,12 +10,14 @@ namespace rgbd_pose {
 // Reads the calibration of an RGB-D camera from a YAML file in one of the
 // layouts that people already have:
 //  - settings of ORB-SLAM2 and 3: Camera.fx (or Camera1.fx), fy, cx, cy, maybe
-//    k1 k2 p1 p2 k3; Camera.width, Camera.height;
+//    k1 k2 p1 p2 k3 k4 k5 k6; of Camera.type KannalaBrandt8 k1 k2 k3 k4;
+//    Camera.width, Camera.height;
 //  - ROS camera_info: image_width, image_height, camera_matrix.data (3 x 3),
-//    distortion_coefficients.data (plumb_bob: k1 k2 p1 p2 and maybe k3);
+//    distortion_coefficients.data (plumb_bob: k1 k2 p1 p2 and maybe k3;
+//    rational_polynomial: k4 k5 k6, too; equidistant: k1 k2 k3 k4);
 //  - Kalibr: cam0 with camera_model pinhole, intrinsics [fx fy cx cy],
-//    distortion_model radtan with distortion_coeffs [k1 k2 p1 p2], resolution
-//    [width height].
+//    distortion_model radtan with distortion_coeffs [k1 k2 p1 p2] or
+//    equidistant with [k1 k2 k3 k4], resolution [width height].
 // The depth scale is the top-level key DepthMapFactor or RGBD.DepthMapFactor
 // (raw units per metre). Only ORB-SLAM writes it.
 // `depth_camera` names the camera of a Kalibr file that depth images are seen

@@ -65,6 +65,9 @@ YamlLines OrbSlamLines(const RgbdCamera& rgbd, const std::string& prefix) {
     lines.emplace_back(prefix + parameter.name,
                        Digits(camera.*parameter.value));
   }
+  if (camera.lens_model == LensModel::kEquidistant) {
+    lines.emplace_back("Camera.type", "\"KannalaBrandt8\"");
+  }
   lines.emplace_back("Camera.width", std::to_string(camera.width));
   lines.emplace_back("Camera.height", std::to_string(camera.height));
   return lines;
@@ -92,6 +95,8 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
                       const YamlLines& values, bool is_of_orb_slam,
                       YAML::Node file) {
   const Camera& c = rgbd.camera;
+  const std::vector<double> coefficients = c.Distortion();
+  const bool is_equidistant = c.lens_model == LensModel::kEquidistant;
   for (const auto& [key, value] : values) {
     file.reset(With(file, key, YAML::Node(value)));
   }
@@ -104,19 +109,28 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
         With(file, "camera_matrix",
              With(file["camera_matrix"], "data",
                   ToNode({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0}))));
-    YAML::Node distortion = With(file["distortion_coefficients"], "data",
-                                 ToNode({c.k1, c.k2, c.p1, c.p2, c.k3}));
+    YAML::Node distortion =
+        With(file["distortion_coefficients"], "data", ToNode(coefficients));
     if (distortion["cols"].IsDefined()) {
-      distortion.reset(With(distortion, "cols", YAML::Node(5)));
+      distortion.reset(
+          With(distortion, "cols", YAML::Node(coefficients.size())));
     }
     file.reset(With(file, "distortion_coefficients", distortion));
+    const char* const model = is_equidistant ? "equidistant"
+                              : coefficients.size() == 5
+                                  ? "plumb_bob"
+                                  : "rational_polynomial";
+    file.reset(With(file, "distortion_model", YAML::Node(model)));
     // What a rectified image would be seen with is of the old camera.
     file.reset(Without(file, {"projection_matrix"}));
   } else {
     YAML::Node cam0 =
         With(file["cam0"], "intrinsics", ToNode({c.fx, c.fy, c.cx, c.cy}));
-    cam0.reset(
-        With(cam0, "distortion_coeffs", ToNode({c.k1, c.k2, c.p1, c.p2})));
+    // What a radtan cannot hold is missed by Says.
+    cam0.reset(With(cam0, "distortion_coeffs",
+                    ToNode({coefficients.begin(), coefficients.begin() + 4})));
+    cam0.reset(With(cam0, "distortion_model",
+                    YAML::Node(is_equidistant ? "equidistant" : "radtan")));
     cam0.reset(With(
         cam0, "resolution",
         ToNode({static_cast<double>(c.width), static_cast<double>(c.height)})));
@@ -157,7 +171,8 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
   const DepthCorrection &a = read.depth_correction,
                         &b = camera.depth_correction;
   const Rigid3d between = a.depth_from_color.Inverse() * b.depth_from_color;
-  return read.camera.width == camera.camera.width &&
+  return read.camera.lens_model == camera.camera.lens_model &&
+         read.camera.width == camera.camera.width &&
          read.camera.height == camera.camera.height &&
          is_same(read.depth_scale, camera.depth_scale) &&
          is_same(a.inverse_depth_offset, b.inverse_depth_offset) &&

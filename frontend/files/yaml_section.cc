@@ -107,13 +107,13 @@ int YamlSection::Pixels(const std::string& key, double number) const {
   return static_cast<int>(number);
 }
 
-void YamlSection::CheckWord(const std::string& key,
-                            const std::vector<std::string>& known) const {
-  if (!Has(key)) return;
+std::string YamlSection::Word(const std::string& key,
+                              const std::vector<std::string>& known) const {
+  if (!Has(key)) return known.front();
   const std::string value = node_[key].Scalar();
   std::string list;
   for (const std::string& word : known) {
-    if (value == word) return;
+    if (value == word) return word;
     Append(word, ", ", &list);
   }
   Fail(key, "'" + value + "' is not supported, only: " + list);

@@ -42,9 +42,10 @@ class YamlSection {
   int Pixels(const std::string& key) const;
   int Pixels(const std::string& key, double number) const;
 
-  // Refuses a word that is not among the known ones; a missing key is fine.
-  void CheckWord(const std::string& key,
-                 const std::vector<std::string>& known) const;
+  // The word of a key, one of those that are known; the first of them where the
+  // key is missing.
+  std::string Word(const std::string& key,
+                   const std::vector<std::string>& known) const;
 
   // Throws about a key that is there: "<file>:<line>: <key> <message>".
   [[noreturn]] void Fail(const std::string& key,

@@ -1,5 +1,6 @@
 #include "frontend/frame/depth_registration.h"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cstdint>
 
@@ -21,6 +22,7 @@ constexpr double kOverlap = 1.1;
 // Beyond this square of its tangent a ray is outside every lens that radial
 // distortion describes: its polynomial may fold such rays back into the image.
 constexpr float kMaxTangentSquared = 4.0F;
+constexpr float kMaxTangentSquaredOfFisheye = 100.0F;
 
 // Values of up to kBlock pixels; the library makes vectors of what is done with
 // them.
@@ -37,6 +39,20 @@ void RequireCamera(const Camera& camera, const char* what) {
   if (!problem.empty()) throw InputError(what + (": " + problem));
 }
 
+// How large a depth pixel (ideal; NaN: none) is in the colour image at the same
+// distance, px: lenses make some larger than others.
+Eigen::Vector2d PixelSize(const Camera& depth, const Eigen::Vector2d& pixel,
+                          const Camera& color) {
+  const Eigen::Vector2d place = depth.Ray(pixel.x(), pixel.y()).head<2>();
+  if ((!depth.HasDistortion() && !color.HasDistortion()) ||
+      !place.allFinite()) {
+    return {color.fx / depth.fx, color.fy / depth.fy};
+  }
+  const Eigen::Matrix2d color_from_depth =
+      color.ProjectDerivative(place) * depth.ProjectDerivative(place).inverse();
+  return color_from_depth.cwiseAbs().rowwise().sum();
+}
+
 }  // namespace
 
 DepthRegistration::DepthRegistration(const DepthCamera& depth,
@@ -44,11 +60,7 @@ DepthRegistration::DepthRegistration(const DepthCamera& depth,
     : color_(color),
       translation_(depth.color_from_depth.translation.cast<float>()),
       width_(depth.camera.width),
-      height_(depth.camera.height),
-      half_width_(
-          static_cast<float>(0.5 * kOverlap * color.fx / depth.camera.fx)),
-      half_height_(
-          static_cast<float>(0.5 * kOverlap * color.fy / depth.camera.fy)) {
+      height_(depth.camera.height) {
   RequireCamera(depth.camera, "depth camera");
   RequireCamera(color, "colour camera");
   if (!depth.color_from_depth.IsFinite()) {
@@ -60,17 +72,24 @@ DepthRegistration::DepthRegistration(const DepthCamera& depth,
     for (int u = 0; u < width_; ++u) pixels.emplace_back(u, v);
   }
   depth.camera.UndistortPoints(&pixels);
-  for (std::vector<float>* axis : {&ray_x_, &ray_y_, &ray_z_}) {
-    axis->reserve(pixels.size());
+  for (std::vector<float>* values :
+       {&ray_x_, &ray_y_, &ray_z_, &half_width_, &half_height_}) {
+    values->reserve(pixels.size());
   }
   const Eigen::Matrix3d rotation =
       depth.color_from_depth.rotation.toRotationMatrix();
   for (const Eigen::Vector2d& pixel : pixels) {
+    // What the lens does not tell is behind the camera.
     const Eigen::Vector3d ray =
-        rotation * depth.camera.Ray(pixel.x(), pixel.y());
+        pixel.allFinite() ? rotation * depth.camera.Ray(pixel.x(), pixel.y())
+                          : Eigen::Vector3d(0.0, 0.0, -1e3);
     ray_x_.push_back(static_cast<float>(ray.x()));
     ray_y_.push_back(static_cast<float>(ray.y()));
     ray_z_.push_back(static_cast<float>(ray.z()));
+    const Eigen::Vector2d size =
+        0.5 * kOverlap * PixelSize(depth.camera, pixel, color);
+    half_width_.push_back(static_cast<float>(size.x()));
+    half_height_.push_back(static_cast<float>(size.y()));
   }
 }
 
@@ -83,11 +102,11 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
   const auto fy = static_cast<float>(color_.fy);
   const auto cx = static_cast<float>(color_.cx);
   const auto cy = static_cast<float>(color_.cy);
-  const auto k1 = static_cast<float>(color_.k1);
-  const auto k2 = static_cast<float>(color_.k2);
-  const auto k3 = static_cast<float>(color_.k3);
-  const auto p1 = static_cast<float>(color_.p1);
-  const auto p2 = static_cast<float>(color_.p2);
+  const auto lens = color_.MakeLens<float>();
+  const float p1 = lens.p1, p2 = lens.p2;
+  const float max_tangent_squared = color_.lens_model == LensModel::kEquidistant
+                                        ? kMaxTangentSquaredOfFisheye
+                                        : kMaxTangentSquared;
   const auto columns = static_cast<float>(registered->cols);
   const auto rows = static_cast<float>(registered->rows);
   using Raw = Eigen::Array<uint16_t, Eigen::Dynamic, 1>;
@@ -102,23 +121,26 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
     const Block a = (z * Rays(&ray_x_[first], n) + translation_.x()) * inverse;
     const Block b = (z * Rays(&ray_y_[first], n) + translation_.y()) * inverse;
     const Block ray_r2 = a * a + b * b;
-    const Block r2 = ray_r2.min(kMaxTangentSquared);
-    const Block radial = 1.0F + r2 * (k1 + r2 * (k2 + r2 * k3));
+    const Block r2 = ray_r2.min(max_tangent_squared);
+    Block radial;
+    lens.Radial(r2, &radial);
     const Block ab = 2.0F * a * b;
     const Block u = fx * (a * radial + p1 * ab + p2 * (r2 + 2.0F * a * a)) + cx;
     const Block v = fy * (b * radial + p1 * (r2 + 2.0F * b * b) + p2 * ab) + cy;
     const Block nearer = z * inverse;
+    const Block half_width = Rays(&half_width_[first], n) * nearer;
+    const Block half_height = Rays(&half_height_[first], n) * nearer;
     const Block there = there_z * units + 0.5F;
     const auto is_seen = raw > 0.0F && raw < Frame::kNoDepth &&
-                         there_z > kMinDepth && ray_r2 < kMaxTangentSquared &&
+                         there_z > kMinDepth && ray_r2 < max_tangent_squared &&
                          there < Frame::kNoDepth;
     // Half-open rectangles: those of neighbours do not overlap. What is not
     // seen has none.
-    const Block right = is_seen.select(u + half_width_ * nearer, -1.0F);
-    const Places u0 = FirstBeyond(u - half_width_ * nearer, columns);
+    const Block right = is_seen.select(u + half_width, -1.0F);
+    const Places u0 = FirstBeyond(u - half_width, columns);
     const Places u1 = FirstBeyond(right, columns);
-    const Places v0 = FirstBeyond(v - half_height_ * nearer, rows);
-    const Places v1 = FirstBeyond(v + half_height_ * nearer, rows);
+    const Places v0 = FirstBeyond(v - half_height, rows);
+    const Places v1 = FirstBeyond(v + half_height, rows);
     for (int i = 0; i < n; ++i) {
       if (u0[i] >= u1[i]) continue;
       // One less, so that none (0) is farther than all others.

@@ -35,10 +35,10 @@ class DepthRegistration {
   Eigen::Vector3f translation_;  // of color_from_depth, m
   int width_;
   int height_;
-  float half_width_;   // of a depth pixel in the colour image, both at the
-  float half_height_;  // same distance, px
   // The rays of all depth pixels in the colour camera's axes, row by row.
   std::vector<float> ray_x_, ray_y_, ray_z_;
+  // Half their sizes in the colour image at the same distance, px.
+  std::vector<float> half_width_, half_height_;
 };
 
 }  // namespace rgbd_pose

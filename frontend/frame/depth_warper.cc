@@ -25,8 +25,10 @@ DepthWarper::DepthWarper(const Camera& camera)
   constexpr double kMiddle = (kFlowBlock - 1) / 2.0;
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      rays_.push_back(camera.Unproject(
-          {column * kFlowBlock + kMiddle, row * kFlowBlock + kMiddle}, 1.0));
+      const Eigen::Vector3d ray = camera.Unproject(
+          {column * kFlowBlock + kMiddle, row * kFlowBlock + kMiddle}, 1.0);
+      // Of what the lens does not tell nothing is asked.
+      rays_.push_back(ray.allFinite() ? ray : Eigen::Vector3d::UnitZ());
     }
   }
 }

@@ -20,8 +20,10 @@ FrameRectifier::FrameRectifier(const Camera& camera)
       rows_((camera.height + kStep - 1) / kStep + 1) {
   for (int row = 0; row < rows_; ++row) {
     for (int column = 0; column < columns_; ++column) {
-      rays_.push_back(camera.Unproject(
-          Eigen::Vector2d(column * kStep + kFirstColumn, row * kStep), 1.0));
+      const Eigen::Vector3d ray = camera.Unproject(
+          Eigen::Vector2d(column * kStep + kFirstColumn, row * kStep), 1.0);
+      // Of what the lens does not tell nothing is asked.
+      rays_.push_back(ray.allFinite() ? ray : Eigen::Vector3d::UnitZ());
     }
   }
 }

@@ -41,11 +41,12 @@ Observation ObserveMoving(const Frame& frame, const Camera& camera,
   constexpr int kDepthSteps = 3;
   const Twist& twist = timing.twist;
   DepthSample sample;
-  Eigen::Vector2d in_depth;
+  Eigen::Vector2d in_depth, in_depth_place;
   Eigen::Vector3d point = twist.MovedPoint(ray * depth, -seconds);
   for (int step = 0; step < kDepthSteps; ++step) {
     Eigen::Vector3d measured;
     in_depth = SeenByRows(camera, timing.depth, twist, point, &measured);
+    in_depth_place = measured.head<2>() / measured.z();
     sample = LookUpDepth(frame, in_depth.x(), in_depth.y(), depth_options);
     if (sample.depth == 0.0) break;
     const double change = sample.depth - measured.z();
@@ -60,7 +61,8 @@ Observation ObserveMoving(const Frame& frame, const Camera& camera,
   if (sample.depth == 0.0) return seen;
   seen.depth = point.z();
   seen.sigma_depth = sample.sigma;
-  seen.normal = LookUpNormal(frame, camera, in_depth.x(), in_depth.y());
+  seen.normal =
+      LookUpNormal(frame, camera, in_depth.x(), in_depth.y(), in_depth_place);
   if (!seen.normal.isZero(0.0)) {
     const double taken_at = timing.depth.RowTime(in_depth.y(), camera.height);
     seen.normal += taken_at * twist.angular.cross(seen.normal);
@@ -75,17 +77,25 @@ Observation Observe(const Frame& frame, const Camera& camera, double u,
                     double v, double sigma_px,
                     const DepthLookupOptions& depth_options) {
   const FrameTiming timing = frame.Timing();
+  const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
+  // Where the lens tells no ray nothing is known: not even a depth.
+  if (!ideal.allFinite()) {
+    return {ideal.x(), ideal.y(), 0.0, sigma_px, 0.0, Eigen::Vector3d::Zero()};
+  }
   if (!timing.IsOneMoment()) {
-    const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
     return ObserveMoving(frame, camera, timing,
                          camera.Ray(ideal.x(), ideal.y()),
                          timing.color.RowTime(v, camera.height), kUsualDepth,
                          sigma_px, depth_options);
   }
-  const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
   const DepthSample sample = LookUpDepth(frame, u, v, depth_options);
-  return {ideal.x(), ideal.y(),    sample.depth,
-          sigma_px,  sample.sigma, LookUpNormal(frame, camera, u, v)};
+  return {ideal.x(),
+          ideal.y(),
+          sample.depth,
+          sigma_px,
+          sample.sigma,
+          LookUpNormal(frame, camera, u, v,
+                       camera.Ray(ideal.x(), ideal.y()).head<2>())};
 }
 
 Observation ObserveAgain(const Frame& frame, const Camera& camera,

@@ -1,5 +1,6 @@
 #include "frontend/frame/surface_normal.h"
 
+#include <Eigen/LU>
 #include <cmath>
 
 namespace rgbd_pose {
@@ -14,10 +15,9 @@ constexpr double kMaxDeviation = 0.015;
 }  // namespace
 
 // A plane A X + B Y + C Z = 1 has the inverse depth A x + B y + C over the
-// normalised image x = X / Z, y = Y / Z. Distortion changes the distance of
-// neighbouring pixels by a few percent at most and is left out.
+// normalised image x = X / Z, y = Y / Z.
 Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
-                             double v) {
+                             double v, const Eigen::Vector2d& place) {
   const int column = static_cast<int>(std::lround(u));
   const int row = static_cast<int>(std::lround(v));
   if (column < kStridePx || row < kStridePx ||
@@ -46,11 +46,13 @@ Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
       }
     }
   }
-  const double a = slope_u / kStridePx * camera.fx;
-  const double b = slope_v / kStridePx * camera.fy;
-  const double c = mean - a * (column - camera.cx) / camera.fx -
-                   b * (row - camera.cy) / camera.fy;
-  return -Eigen::Vector3d(a, b, c).normalized();
+  const Eigen::Matrix2d pixels = camera.ProjectDerivative(place);
+  const Eigen::Vector2d slope =
+      pixels.transpose() * Eigen::Vector2d(slope_u, slope_v) / kStridePx;
+  const Eigen::Vector2d middle =
+      place + pixels.inverse() * Eigen::Vector2d(column - u, row - v);
+  const double c = mean - slope.dot(middle);
+  return -Eigen::Vector3d(slope.x(), slope.y(), c).normalized();
 }
 
 }  // namespace rgbd_pose

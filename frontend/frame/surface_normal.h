@@ -11,8 +11,9 @@ namespace rgbd_pose {
 // point (px), or zero where there is none: a plane fitted to the inverse depths
 // of 3 x 3 pixels several pixels apart, so that the baseline is long against
 // the noise of depth. None if a depth is missing or the nine do not lie on one
-// plane (an edge between two surfaces).
+// plane (an edge between two surfaces). `place`: of the image point on the
+// plane z = 1, without distortion.
 Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
-                             double v);
+                             double v, const Eigen::Vector2d& place);
 
 }  // namespace rgbd_pose

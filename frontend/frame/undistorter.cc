@@ -6,10 +6,7 @@ namespace rgbd_pose {
 
 Undistorter::Undistorter(const Camera& camera)
     : has_distortion_(camera.HasDistortion()), ideal_(camera) {
-  for (double Camera::*value :
-       {&Camera::k1, &Camera::k2, &Camera::p1, &Camera::p2, &Camera::k3}) {
-    ideal_.*value = 0.0;
-  }
+  ideal_.SetDistortion(LensModel::kRational, {0.0, 0.0, 0.0, 0.0});
   if (!has_distortion_) return;
   map_x_.create(camera.height, camera.width, CV_32FC1);
   map_y_.create(camera.height, camera.width, CV_32FC1);

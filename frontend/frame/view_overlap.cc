@@ -21,7 +21,9 @@ ViewOverlap::ViewOverlap(const Frame& frame, const Camera& camera, int step_px,
     for (int u = step_px / 2; u < frame.depth.cols; u += step_px) {
       const double depth = frame.DepthAt(u, v);
       if (depth < min_depth || depth > max_depth) continue;
-      points_.push_back(camera.Unproject(Eigen::Vector2d(u, v), depth));
+      const Eigen::Vector3d point =
+          camera.Unproject(Eigen::Vector2d(u, v), depth);
+      if (point.allFinite()) points_.push_back(point);
     }
   }
 }

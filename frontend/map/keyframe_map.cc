@@ -74,6 +74,9 @@ std::string KeyframeMap::CheckCamera(const Camera& other) const {
     return Format("the map's images have %d x %d pixels, the camera's %d x %d",
                   camera.width, camera.height, other.width, other.height);
   }
+  if (camera.lens_model != other.lens_model) {
+    return "one lens is equidistant (fisheye), the other is not";
+  }
   for (const auto& [name, value] : kCameraParameters) {
     if (camera.*value != other.*value) {
       return Format("%s is %s in the map, %s in the camera", name,

@@ -15,10 +15,14 @@ namespace {
 constexpr std::string_view kMagic = "rgbd_pose_map ";
 constexpr std::string_view kVersion = "1";
 constexpr char kColumns[] =
-    "# camera width height fx fy cx cy k1 k2 p1 p2 k3\n"
+    "# camera width height fx fy cx cy k1 k2 p1 p2 k3 (k4 k5 k6 lens)\n"
     "# keyframe id segment timestamp depth_delay depth_scale tx ty tz qx qy "
     "qz qw gray depth\n"
     "# edge ref cur tx ty tz qx qy qz qw covariance (6 x 6)\n";
+
+// Names of lenses.
+constexpr char kRational[] = "rational";
+constexpr char kEquidistant[] = "equidistant";
 
 // Appends the words of a line.
 class LineWriter {
@@ -57,6 +61,7 @@ class LineReader {
          " words, this one has " + std::to_string(line_.words.size()));
   }
   const std::string& Kind() const { return line_.words[0]; }
+  size_t Count() const { return line_.words.size(); }
   const std::string& Word() { return line_.words[next_++]; }
   double Number() {
     return ParseNumber(Word(), path_, line_.number, "a " + Kind());
@@ -89,12 +94,21 @@ class LineReader {
 };
 
 void ReadCamera(LineReader* line, Camera* camera) {
-  line->Require(3 + kCameraParameters.size());
+  const bool is_usual = line->Count() <= 3 + kNumUsualParameters;
+  const size_t count =
+      is_usual ? kNumUsualParameters : kCameraParameters.size();
+  line->Require(3 + count + (is_usual ? 0 : 1));
   camera->width = line->Integer();
   camera->height = line->Integer();
-  for (const CameraParameter& parameter : kCameraParameters) {
-    camera->*parameter.value = line->Number();
+  for (size_t i = 0; i < count; ++i) {
+    camera->*kCameraParameters[i].value = line->Number();
   }
+  if (is_usual) return;
+  const std::string& lens = line->Word();
+  if (lens != kRational && lens != kEquidistant) {
+    line->Fail("a lens is 'rational' or 'equidistant', not '" + lens + "'");
+  }
+  if (lens == kEquidistant) camera->lens_model = LensModel::kEquidistant;
 }
 
 void ReadKeyframe(LineReader* line, MapIndex* index) {
@@ -167,9 +181,16 @@ std::string FormatMapIndex(const MapIndex& index) {
     LineWriter line("camera", &text);
     line.Integer(camera.width);
     line.Integer(camera.height);
-    for (const CameraParameter& parameter : kCameraParameters) {
-      line.Number(camera.*parameter.value);
+    // The longer line where the shorter one does not say it.
+    const bool is_equidistant = camera.lens_model == LensModel::kEquidistant;
+    const bool is_usual =
+        !is_equidistant &&
+        camera.MakeLens().factor != Lens<double>::Factor::kRational;
+    for (size_t i = 0; i < kCameraParameters.size(); ++i) {
+      if (is_usual && i == kNumUsualParameters) break;
+      line.Number(camera.*kCameraParameters[i].value);
     }
+    if (!is_usual) line.Word(is_equidistant ? kEquidistant : kRational);
   }
   for (size_t i = 0; i < index.map.keyframes.size(); ++i) {
     const MapKeyframe& keyframe = index.map.keyframes[i];

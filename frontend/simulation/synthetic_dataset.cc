@@ -37,6 +37,16 @@ void CheckShutters(const RgbdCamera& camera, double frame_s) {
 }
 
 // With its shutters in the camera.
+// Whether every pixel has a ray: a lens is worst in a corner.
+bool SeesEverywhere(const Camera& camera) {
+  for (const double u : {0.0, camera.width - 1.0}) {
+    for (const double v : {0.0, camera.height - 1.0}) {
+      if (!camera.Undistort({u, v}).allFinite()) return false;
+    }
+  }
+  return true;
+}
+
 SyntheticOptions Checked(SyntheticOptions options) {
   options.camera.color_shutter = options.color_shutter;
   options.camera.depth_shutter = options.depth_shutter;
@@ -59,6 +69,11 @@ SyntheticOptions Checked(SyntheticOptions options) {
   const std::string problem = options.camera.camera.Check();
   if (!problem.empty()) {
     throw InputError("camera of the synthetic sequence: " + problem);
+  }
+  if (!SeesEverywhere(options.camera.camera)) {
+    throw InputError(
+        "camera of the synthetic sequence: its lens tells no ray for the "
+        "corners of the image");
   }
   if (!(options.exposure_s >= 0.0 &&
         options.exposure_s <= 1.0 / options.rate_hz)) {

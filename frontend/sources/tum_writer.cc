@@ -115,8 +115,14 @@ std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
   const auto add = [&text](const std::string& key, double value) {
     text += key + ": " + ShortNumber(value) + "\n";
   };
-  for (const CameraParameter& parameter : kCameraParameters) {
-    add(std::string("Camera.") + parameter.name, camera.*parameter.value);
+  if (camera.lens_model == LensModel::kEquidistant) {
+    text += "Camera.type: \"KannalaBrandt8\"\n";
+  }
+  for (size_t i = 0; i < kCameraParameters.size(); ++i) {
+    const auto& [name, value] = kCameraParameters[i];
+    if (i < kNumUsualParameters || camera.*value != 0.0) {
+      add(std::string("Camera.") + name, camera.*value);
+    }
   }
   add("Camera.width", camera.width);
   add("Camera.height", camera.height);

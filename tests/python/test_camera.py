@@ -15,12 +15,27 @@ def test_keeps_what_it_is_given():
     assert (camera.fx, camera.fy, camera.cx, camera.cy) == (500, 501, 320, 240)
     assert (camera.width, camera.height) == (641, 482)
     assert camera.distortion == (0.1, -0.2, 0.003, 0.004, 0.0)
+    assert camera.lens == "rational"
     assert camera.depth_scale == 1000.0
     np.testing.assert_array_equal(
         camera.matrix, [[500, 0, 320], [0, 501, 240], [0, 0, 1]]
     )
     copy = eval(repr(camera), {"Camera": rgbd_pose.Camera})
     assert repr(copy) == repr(camera)
+
+
+def test_knows_lenses_of_eight_coefficients_and_fisheyes():
+    eight = (0.4, -2.5, 0.001, -0.0003, 1.5, 0.3, -2.3, 1.4)
+    rational = rgbd_pose.Camera(500, 500, 320, 240, distortion=eight)
+    fisheye = rgbd_pose.Camera(
+        285, 286, 320, 240, distortion=(1e-3, 2e-3, 3e-3, 4e-3),
+        lens="equidistant",
+    )
+    assert rational.distortion == eight
+    assert (fisheye.lens, len(fisheye.distortion)) == ("equidistant", 4)
+    for camera in (rational, fisheye):
+        copy = eval(repr(camera), {"Camera": rgbd_pose.Camera})
+        assert repr(copy) == repr(camera)
 
 
 def test_says_when_rows_are_exposed():
@@ -73,6 +88,16 @@ def test_loads_presets_and_files(tmp_path):
         (
             lambda: rgbd_pose.Camera(5, 5, 1, 1, distortion=[0.1]),
             "1 distortion coefficients",
+        ),
+        (
+            lambda: rgbd_pose.Camera(
+                500, 500, 320, 240, distortion=[0.1] * 5, lens="equidistant"
+            ),
+            "equidistant lens has k1 k2 k3 k4",
+        ),
+        (
+            lambda: rgbd_pose.Camera(500, 500, 320, 240, lens="wide"),
+            "lens 'wide' is neither 'rational' nor 'equidistant'",
         ),
         (
             lambda: rgbd_pose.Camera(500, 500, 320, 240, depth_scale=0),

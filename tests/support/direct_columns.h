@@ -25,7 +25,7 @@ inline DirectInput InputOf(const DirectPair& pair, int level,
   input.level = level;
   input.R = cur_from_prev.rotation.toRotationMatrix();
   input.t = cur_from_prev.translation;
-  input.has_distortion = pair.cur.camera.HasDistortion();
+  input.lens = pair.cur.camera.MakeLens();
   input.moves_color = !pair.cur.view.timing.color.IsGlobal();
   input.moves_depth = !pair.cur.view.timing.depth.IsGlobal();
   return input;

@@ -281,6 +281,48 @@ def check_g2o(path, poses):
     check(all(same(vertices[i], poses[i]) for i in vertices), 'vertices')
 
 
+def check_lenses(program, work):
+    """Each lens by the name and in the order that others have for it."""
+    lenses = {
+        'OPENCV_FISHEYE': ('Camera.type: KannalaBrandt8\n', (0.01, 0.02, 0.03, 0.04),
+                           ('k1', 'k2', 'k3', 'k4')),
+        'FULL_OPENCV': ('', (0.4, -2.5, 0.001, -0.0003, 1.5, 0.3, -2.3, 1.4),
+                        ('k1', 'k2', 'p1', 'p2', 'k3', 'k4', 'k5', 'k6')),
+    }
+    for model, (camera_type, values, names) in lenses.items():
+        base = os.path.join(work, model)
+        with open(f'{base}.yaml', 'w', encoding='utf-8') as file:
+            file.write('Camera.fx: 130\nCamera.fy: 131\nCamera.cx: 79.5\n'
+                       'Camera.cy: 59.5\nCamera.width: 160\nCamera.height: 120\n'
+                       + camera_type)
+            file.writelines(f'Camera.{name}: {value}\n'
+                            for name, value in zip(names, values))
+        run(program('rgbd_simulate'), '--frames=3', f'--camera={base}.yaml',
+            f'--output={base}')
+        run(program('rgbd_odometry'), f'--dataset={base}', '--noreport',
+            f'--camera={base}/camera.yaml', f'--output={base}.run')
+
+        def export(name, *flags):
+            command = [program('rgbd_export'), f'--run={base}.run', f'--to={name}',
+                       f'--output={base}.{name}', '--overwrite', *flags]
+            return subprocess.run(command, capture_output=True, text=True, check=False)
+
+        check(export('colmap').returncode == 0, 'colmap', model)
+        camera = data_lines(f'{base}.colmap', 'sparse/0/cameras.txt')[0].split()
+        check(camera[1] == model, camera)
+        check(tuple(map(float, camera[8:])) == values, camera)
+        nerfstudio = export('nerfstudio')
+        if model == 'FULL_OPENCV':
+            check(nerfstudio.returncode == 2 and '--undistort' in nerfstudio.stderr,
+                  nerfstudio.stderr)
+            check(not os.path.exists(f'{base}.nerfstudio'), 'half written')
+            check(export('nerfstudio', '--undistort').returncode == 0, 'undistort')
+        with open(f'{base}.nerfstudio/transforms.json', encoding='utf-8') as file:
+            scene = json.load(file)
+        expected = ('OPENCV', 0) if model == 'FULL_OPENCV' else (model, values[3])
+        check((scene['camera_model'], scene['k4']) == expected, scene['camera_model'])
+
+
 def main(bin_folder, work, colmap):
     program = lambda name: os.path.join(bin_folder, name)
     with open(os.path.join(work, 'half.yaml'), 'w', encoding='utf-8') as file:
@@ -333,6 +375,7 @@ def main(bin_folder, work, colmap):
               f'TUM: {line}')
     check(len(data_lines(tum)) == FRAMES, 'TUM')
     check_g2o(export('g2o', 'graph.g2o'), poses)
+    check_lenses(program, work)
 
 
 if __name__ == '__main__':

@@ -28,10 +28,19 @@ struct LandmarkSample {
   MotionVector x_anchor, x_view;
   CalibrationVector y;
 
-  explicit LandmarkSample(RandomWorld* world) {
+  // `lens`: 0 plumb bob, 1 rational, 2 equidistant.
+  LandmarkSample(RandomWorld* world, int lens) {
     rest.p1 = world->Uniform(-0.005, 0.005);
     rest.p2 = world->Uniform(-0.005, 0.005);
     rest.k3 = world->Uniform(-0.1, 0.1);
+    if (lens == 1) {
+      rest.k4 = world->Uniform(0.05, 0.1);
+      rest.k5 = world->Uniform(-0.1, 0.1);
+      rest.k6 = world->Uniform(-0.1, 0.1);
+    } else if (lens == 2) {
+      rest.SetDistortion(LensModel::kEquidistant,
+                         {0.0, 0.0, rest.k3, world->Uniform(-0.02, 0.02)});
+    }
     anchor = LinearizationPoint(world->Motion(0.2, 0.3));
     view = LinearizationPoint(world->Motion(0.2, 0.3));
     x_anchor << world->Vector(0.05), world->Vector(0.05);
@@ -74,7 +83,7 @@ TYPED_TEST(LandmarkJacobianTest, EqualsTheOracle) {
   RandomWorld world(1);
   double largest[4] = {};
   for (int i = 0; i < kSamples; ++i) {
-    const LandmarkSample s(&world);
+    const LandmarkSample s(&world, i % 3);
     const double* x[] = {s.x_anchor.data(), s.x_view.data(), &s.d, s.y.data()};
     double J_hand[4][kRows * kCalibrationSize];
     double J_jet[4][kRows * kCalibrationSize];

@@ -60,7 +60,7 @@ Eigen::Vector3d InRow(const Camera& camera, const Shutter& shutter,
                       const Twist& twist, const Eigen::Vector3d& q) {
   Eigen::Vector3d moved = q;
   if (!shutter.IsGlobal()) {
-    MoveToRow(camera, camera.HasDistortion(), shutter, twist, q.data(),
+    MoveToRow(camera, camera.MakeLens(), shutter, twist, q.data(),
               moved.data());
   }
   return moved;

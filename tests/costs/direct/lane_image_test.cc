@@ -17,14 +17,19 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-Camera TestCamera(bool is_distorted) {
-  Camera camera = {320, 240, 262.5, 262.5, 159.5, 119.5, 0, 0, 0};
-  if (is_distorted) {
-    camera.k1 = 0.1;
-    camera.k2 = -0.2;
-    camera.p1 = 0.002;
-    camera.p2 = -0.003;
-    camera.k3 = 0.1;
+enum class TestLens { kNone, kPlumbBob, kRational, kFisheye };
+constexpr TestLens kTestLenses[] = {TestLens::kNone, TestLens::kPlumbBob,
+                                    TestLens::kRational, TestLens::kFisheye};
+
+Camera TestCamera(TestLens lens) {
+  Camera camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
+  if (lens == TestLens::kFisheye) {
+    camera.SetDistortion(LensModel::kEquidistant, {-0.02, 0.01, 0.0, 0.001});
+  } else if (lens == TestLens::kRational) {
+    camera.SetDistortion(LensModel::kRational,
+                         {0.4, -0.2, 0.002, -0.003, 0.1, 0.3, -0.1, 0.05});
+  } else if (lens == TestLens::kPlumbBob) {
+    camera.SetDistortion(LensModel::kRational, {0.1, -0.2, 0.002, -0.003, 0.1});
   }
   return camera;
 }
@@ -50,14 +55,14 @@ std::vector<Vector3d> Points(const Camera& camera) {
 constexpr double kPixelTolerance = 0.05;
 
 TEST(MoveToRowTest, IsWhereIterationEnds) {
-  for (const bool is_distorted : {false, true}) {
-    const Camera camera = TestCamera(is_distorted);
+  for (const TestLens lens : kTestLenses) {
+    const Camera camera = TestCamera(lens);
     for (const Shutter& shutter : kShutters) {
       for (const Twist& twist : kTwists) {
         double farthest = 0.0;
         for (const Vector3d& point : Points(camera)) {
           Vector3d moved;
-          MoveToRow(camera, is_distorted, shutter, twist, point.data(),
+          MoveToRow(camera, camera.MakeLens(), shutter, twist, point.data(),
                     moved.data());
           Vector2d pixel = camera.Project(point);
           const Vector2d at_stamp = pixel;
@@ -78,7 +83,7 @@ TEST(MoveToRowTest, IsWhereIterationEnds) {
 
 // Rows of a level that is half as high are exposed for twice as long.
 TEST(MoveToRowTest, TimesAreTheSameAtEveryLevel) {
-  const Camera camera = TestCamera(false);
+  const Camera camera = TestCamera(TestLens::kNone);
   Camera half = camera;
   half.width /= 2;
   half.height /= 2;
@@ -88,9 +93,9 @@ TEST(MoveToRowTest, TimesAreTheSameAtEveryLevel) {
   half.cy = (camera.cy - 0.5) / 2.0;
   for (const Vector3d& point : Points(camera)) {
     Vector3d moved, moved_there;
-    MoveToRow(camera, false, kShutters[0], kTwists[2], point.data(),
+    MoveToRow(camera, camera.MakeLens(), kShutters[0], kTwists[2], point.data(),
               moved.data());
-    MoveToRow(half, false, kShutters[0], kTwists[2], point.data(),
+    MoveToRow(half, half.MakeLens(), kShutters[0], kTwists[2], point.data(),
               moved_there.data());
     EXPECT_LT((moved - moved_there).norm(), 1e-12);  // rounding
   }
@@ -98,17 +103,17 @@ TEST(MoveToRowTest, TimesAreTheSameAtEveryLevel) {
 
 TEST(MoveToRowTest, LanesAreScalars) {
   using Two = Lanes<2>::Type;
-  const Camera camera = TestCamera(true);
+  const Camera camera = TestCamera(TestLens::kPlumbBob);
   const std::vector<Vector3d> points = Points(camera);
   for (size_t i = 1; i < points.size(); ++i) {
     Two both[3], moved[3];
     Vector3d first, second;
     for (int k = 0; k < 3; ++k) both[k] = Two{points[i - 1][k], points[i][k]};
-    MoveToRow(camera, true, kShutters[0], kTwists[2], both, moved);
-    MoveToRow(camera, true, kShutters[0], kTwists[2], points[i - 1].data(),
-              first.data());
-    MoveToRow(camera, true, kShutters[0], kTwists[2], points[i].data(),
-              second.data());
+    MoveToRow(camera, camera.MakeLens(), kShutters[0], kTwists[2], both, moved);
+    MoveToRow(camera, camera.MakeLens(), kShutters[0], kTwists[2],
+              points[i - 1].data(), first.data());
+    MoveToRow(camera, camera.MakeLens(), kShutters[0], kTwists[2],
+              points[i].data(), second.data());
     for (int k = 0; k < 3; ++k) {
       EXPECT_NEAR(moved[k][0], first[k], 1e-13);  // rounding
       EXPECT_NEAR(moved[k][1], second[k], 1e-13);
@@ -121,15 +126,15 @@ TEST(MoveToRowTest, CostsLookWhereImagePointSays) {
   const Rigid3d motion(Eigen::Quaterniond(Eigen::AngleAxisd(
                            0.02, Vector3d(1, 2, -1).normalized())),
                        {0.02, -0.01, 0.03});
-  for (const bool is_distorted : {false, true}) {
+  for (const TestLens lens : kTestLenses) {
     FrameView view;
-    view.levels = {{{nullptr, 320, 240, 320}, TestCamera(is_distorted)}};
+    view.levels = {{{nullptr, 320, 240, 320}, TestCamera(lens)}};
     const Camera& camera = view.levels[0].camera;
     DirectInput input;
     input.cur = &view;
     input.R = motion.rotation.toRotationMatrix();
     input.t = motion.translation;
-    input.has_distortion = is_distorted;
+    input.lens = camera.MakeLens();
     input.moves_color = input.moves_depth = true;
     for (const Twist& twist : kTwists) {
       const Shutter& color = kShutters[0];

@@ -2,6 +2,8 @@
 
 #include <std_msgs/Float32.h>
 
+#include <tuple>
+
 #include "tests/frontend/bags/ros1_bag_fixture.h"
 
 namespace rgbd_pose {
@@ -67,15 +69,41 @@ TEST_F(Ros1BagTest, ReadsWhatTheRealSenseViewerRecords) {
   EXPECT_EQ(frame.DepthAt(kWidth - 1, 5), 0.0) << "not seen";
 }
 
+// As an Azure Kinect and the fisheyes of RealSense say theirs.
+TEST_F(Ros1BagTest, TakesLensesOfEveryModel) {
+  const std::vector<double> eight = {0.4, -2.5, 1e-3, -3e-4,
+                                     1.5, 0.3,  -2.3, 1.4};
+  const std::vector<double> four = {-0.008, 0.045, -0.042, 0.008};
+  std::vector<double> five = four;
+  five.push_back(0.0);
+  for (const auto& [model, given, expected] :
+       {std::tuple("rational_polynomial", eight, eight),
+        std::tuple("equidistant", four, four),
+        std::tuple("Kannala Brandt4", five, four)}) {
+    Open();
+    sensor_msgs::CameraInfo info = MakeInfo(SmallCamera().camera);
+    info.distortion_model = model;
+    info.D = given;
+    Write("/camera/rgb/camera_info", kStart, info);
+    WriteColor(0);
+    WriteDepth(0);
+    const Camera camera = Source()->camera().camera;
+    EXPECT_EQ(camera.Distortion(), expected) << model;
+    EXPECT_EQ(camera.lens_model == LensModel::kEquidistant, expected == four)
+        << model;
+  }
+}
+
 TEST_F(Ros1BagTest, RefusesDistortionThatItDoesNotKnow) {
   Open();
   sensor_msgs::CameraInfo info = MakeInfo(SmallCamera().camera);
-  info.distortion_model = "equidistant";
+  info.distortion_model = "omnidirectional";
   info.D = {0.1, 0.1, 0.1, 0.1};
   Write("/camera/rgb/camera_info", kStart, info);
   WriteColor(0);
   WriteDepth(0);
-  ExpectRefused({"camera_info: distortion 'equidistant'", "calibration file"});
+  ExpectRefused(
+      {"camera_info: distortion 'omnidirectional'", "calibration file"});
 }
 
 }  // namespace

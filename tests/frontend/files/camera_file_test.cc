@@ -21,15 +21,10 @@ std::string Replace(std::string text, const std::string& from,
 void ExpectCamera(const Camera& camera, const Camera& expected) {
   EXPECT_EQ(camera.width, expected.width);
   EXPECT_EQ(camera.height, expected.height);
-  EXPECT_EQ(camera.fx, expected.fx);
-  EXPECT_EQ(camera.fy, expected.fy);
-  EXPECT_EQ(camera.cx, expected.cx);
-  EXPECT_EQ(camera.cy, expected.cy);
-  EXPECT_EQ(camera.k1, expected.k1);
-  EXPECT_EQ(camera.k2, expected.k2);
-  EXPECT_EQ(camera.p1, expected.p1);
-  EXPECT_EQ(camera.p2, expected.p2);
-  EXPECT_EQ(camera.k3, expected.k3);
+  EXPECT_EQ(camera.lens_model, expected.lens_model);
+  for (const auto& [name, value] : kCameraParameters) {
+    EXPECT_EQ(camera.*value, expected.*value) << name;
+  }
 }
 
 struct GoodFile {
@@ -68,26 +63,54 @@ std::string WithCrLf(const std::string& text) {
   return result;
 }
 
-Camera WithoutK3(Camera camera) {
-  camera.k3 = 0.0;
+Camera WithLens(Camera camera, LensModel model,
+                const std::vector<double>& coefficients) {
+  EXPECT_TRUE(camera.SetDistortion(model, coefficients));
   return camera;
 }
 
 INSTANTIATE_TEST_SUITE_P(
     CameraFile, GoodCameraFileTest,
-    testing::Values(GoodFile{"OrbSlam2", kOrbSlam2, kOrbSlam2Camera, 5208.0},
-                    GoodFile{"OrbSlam2CrLfAndByteOrderMark",
-                             "\xEF\xBB\xBF" + WithCrLf(kOrbSlam2),
-                             kOrbSlam2Camera, 5208.0},
-                    GoodFile{"OrbSlam3", kOrbSlam3, kOrbSlam3Camera, 1000.0},
-                    GoodFile{"Ros", kRos, kRosCamera, 5000.0},
-                    GoodFile{"RosFourCoefficients",
-                             Replace(kRos, ", 0.05]", "]"),
-                             WithoutK3(kRosCamera), 5000.0},
-                    GoodFile{"RosWithDepthScale",
-                             std::string(kRos) + "DepthMapFactor: 1000\n",
-                             kRosCamera, 1000.0},
-                    GoodFile{"Kalibr", kKalibr, kKalibrCamera, 5000.0}),
+    testing::Values(
+        GoodFile{"OrbSlam2", kOrbSlam2, kOrbSlam2Camera, 5208.0},
+        GoodFile{"OrbSlam2CrLfAndByteOrderMark",
+                 "\xEF\xBB\xBF" + WithCrLf(kOrbSlam2), kOrbSlam2Camera, 5208.0},
+        GoodFile{"OrbSlam3", kOrbSlam3, kOrbSlam3Camera, 1000.0},
+        GoodFile{"Ros", kRos, kRosCamera, 5000.0},
+        GoodFile{"RosFourCoefficients", Replace(kRos, ", 0.05]", "]"),
+                 WithLens(kRosCamera, LensModel::kRational,
+                          {0.01, 0.02, 0.03, 0.04}),
+                 5000.0},
+        GoodFile{"RosRational",
+                 Replace(Replace(kRos, "plumb_bob", "rational_polynomial"),
+                         ", 0.05]", ", 0.05, 0.06, 0.07, 0.08]"),
+                 WithLens(kRosCamera, LensModel::kRational,
+                          {0.01, 0.02, 0.03, 0.04, 0.05, 0.06, 0.07, 0.08}),
+                 5000.0},
+        GoodFile{
+            "RosEquidistant",
+            Replace(Replace(kRos, "plumb_bob", "equidistant"), ", 0.05]", "]"),
+            WithLens(kRosCamera, LensModel::kEquidistant,
+                     {0.01, 0.02, 0.03, 0.04}),
+            5000.0},
+        GoodFile{"KalibrEquidistant", Replace(kKalibr, "radtan", "equidistant"),
+                 WithLens(kKalibrCamera, LensModel::kEquidistant,
+                          {0.01, 0.02, 0.03, 0.04}),
+                 5000.0},
+        GoodFile{"OrbSlamKannalaBrandt",
+                 "Camera.type: \"KannalaBrandt8\"\n"
+                 "Camera1.fx: 285\nCamera1.fy: 286\n"
+                 "Camera1.cx: 319\nCamera1.cy: 240\n"
+                 "Camera1.k1: 0.1\nCamera1.k2: 0.2\n"
+                 "Camera1.k3: 0.3\nCamera1.k4: 0.4\n"
+                 "Camera.width: 640\nCamera.height: 480\n",
+                 WithLens({640, 480, 285, 286, 319, 240},
+                          LensModel::kEquidistant, {0.1, 0.2, 0.3, 0.4}),
+                 5000.0},
+        GoodFile{"RosWithDepthScale",
+                 std::string(kRos) + "DepthMapFactor: 1000\n", kRosCamera,
+                 1000.0},
+        GoodFile{"Kalibr", kKalibr, kKalibrCamera, 5000.0}),
     [](const auto& info) { return info.param.name; });
 
 struct BadFile {
@@ -148,7 +171,10 @@ INSTANTIATE_TEST_SUITE_P(
                 {"yaml:13:", "Camera.width"}},
         BadFile{"FishEye",
                 Replace(kOrbSlam3, "PinHole", "KannalaBrandt8"),
-                {"yaml:4:", "Camera.type", "KannalaBrandt8", "PinHole"}},
+                {"yaml: an equidistant lens has k1 to k4 only"}},
+        BadFile{"AnotherType",
+                Replace(kOrbSlam3, "PinHole", "Unified"),
+                {"yaml:4:", "Camera.type", "Unified", "PinHole"}},
         BadFile{"InvertedDepthScale",
                 Replace(kOrbSlam2, "5208.0", "0.0002"),
                 {"yaml:16:", "DepthMapFactor", "inverted"}},
@@ -174,8 +200,12 @@ INSTANTIATE_TEST_SUITE_P(
                 "camera_matrix: 3\nimage_width: 3\nimage_height: 3\n",
                 {"yaml:1:", "camera_matrix"}},
         BadFile{"RosOtherModel",
+                Replace(kRos, "plumb_bob", "omnidirectional"),
+                {"yaml:8:", "distortion_model", "omnidirectional", "plumb_bob",
+                 "equidistant"}},
+        BadFile{"RosFisheyeOfFive",
                 Replace(kRos, "plumb_bob", "equidistant"),
-                {"yaml:8:", "distortion_model", "equidistant", "plumb_bob"}},
+                {"yaml:12:", "distortion_coefficients.data", "4 numbers"}},
         BadFile{"RosThreeCoefficients",
                 Replace(kRos, ", 0.04, 0.05]", "]"),
                 {"yaml:12:", "distortion_coefficients.data", "4 or 5"}},
@@ -194,9 +224,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadFile{"KalibrOmni",
                 Replace(kKalibr, "pinhole", "omni"),
                 {"yaml:2:", "cam0.camera_model", "omni", "pinhole"}},
-        BadFile{"KalibrEquidistant",
-                Replace(kKalibr, "radtan", "equidistant"),
-                {"yaml:4:", "cam0.distortion_model", "equidistant", "radtan"}},
+        BadFile{"KalibrFieldOfView",
+                Replace(kKalibr, "radtan", "fov"),
+                {"yaml:4:", "cam0.distortion_model", "fov", "radtan"}},
         BadFile{"KalibrResolution",
                 Replace(kKalibr, "[848, 480]", "[848, -480]"),
                 {"yaml:6:", "cam0.resolution"}}),

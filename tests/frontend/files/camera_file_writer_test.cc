@@ -74,6 +74,33 @@ TEST_P(EveryLayoutTest, IsWrittenAsItIsRead) {
   ExpectEqual(ResolveCamera(third), camera);
 }
 
+// A file becomes one of another lens, in its own layout or, where that has
+// none, in another one.
+TEST_P(EveryLayoutTest, TakesEveryLens) {
+  const TempFolder folder;
+  const std::string first = folder.Write("camera.yaml", GetParam());
+  RgbdCamera camera = ResolveCamera(first);
+  for (const auto& [model, coefficients] :
+       {std::pair(
+            LensModel::kRational,
+            std::vector<double>{0.5, -2.5, 1e-3, 2e-3, 1.5, 0.4, -2.3, 1}),
+        std::pair(LensModel::kEquidistant,
+                  std::vector<double>{-0.008, 0.045, -0.042, 0.008}),
+        std::pair(LensModel::kRational,
+                  std::vector<double>{0.1, -0.2, 1e-3, 2e-3, 0.0})}) {
+    ASSERT_TRUE(camera.camera.SetDistortion(model, coefficients));
+    const std::string next =
+        folder.Write("next.yaml", FormatCameraFile(camera, first));
+    ExpectEqual(ResolveCamera(next), camera);
+    EXPECT_EQ(ResolveCamera(next).camera.lens_model, model);
+    // And from there to the next lens.
+    EXPECT_EQ(
+        ResolveCamera(folder.Write("same.yaml", FormatCameraFile(camera, next)))
+            .camera.Distortion(),
+        coefficients);
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(CameraFileWriter, EveryLayoutTest,
                          testing::Values(kOrbSlam2, kOrbSlam3, kRos, kKalibr));
 

@@ -39,17 +39,26 @@ TEST(DepthRegistrationTest, OfTheSameCameraChangesNothing) {
 
 // A camera with other lens, size and place that looks at the simulated room,
 // against the colour camera's own rendering of its depth.
-TEST(DepthRegistrationTest, IsWhatTheColourCameraWouldHaveSeen) {
+// A lens each of colour and depth.
+struct TwoLenses {
+  const char* name;
+  LensModel color_model, depth_model;
+  std::vector<double> color, depth;
+};
+
+class RegistrationOfLensesTest : public testing::TestWithParam<TwoLenses> {};
+
+TEST_P(RegistrationOfLensesTest, IsWhatTheColourCameraWouldHaveSeen) {
   SyntheticOptions options;
   options.frames = 3;
   options.noise = false;
   options.camera.camera = CameraOfSize(320, 240, 260.0);
-  options.camera.camera.k1 = 0.1;
-  options.camera.camera.k2 = -0.2;
-  options.camera.camera.p1 = 0.002;
+  ASSERT_TRUE(options.camera.camera.SetDistortion(GetParam().color_model,
+                                                  GetParam().color));
   const SyntheticDataset color(options);
   Camera depth_camera = CameraOfSize(400, 300, 290.0);
-  depth_camera.k1 = -0.05;
+  ASSERT_TRUE(
+      depth_camera.SetDistortion(GetParam().depth_model, GetParam().depth));
   const Rigid3d color_from_depth(
       Eigen::Quaterniond(Eigen::AngleAxisd(
           0.02, Eigen::Vector3d(1.0, -2.0, 0.5).normalized())),
@@ -94,6 +103,27 @@ TEST(DepthRegistrationTest, IsWhatTheColourCameraWouldHaveSeen) {
     EXPECT_LT(behind, 0.004 * both);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(
+    DepthRegistration, RegistrationOfLensesTest,
+    testing::Values(TwoLenses{"PlumbBobs",
+                              LensModel::kRational,
+                              LensModel::kRational,
+                              {0.1, -0.2, 0.002, 0.0},
+                              {-0.05, 0.0, 0.0, 0.0}},
+                    // As an Azure Kinect's.
+                    TwoLenses{
+                        "Rationals",
+                        LensModel::kRational,
+                        LensModel::kRational,
+                        {0.47, -2.5, 9e-4, -3e-4, 1.48, 0.35, -2.33, 1.41},
+                        {0.3, 0.1, 0.0, 1e-4, 0.005, 0.64, 0.16, 0.01}},
+                    TwoLenses{"Fisheyes",
+                              LensModel::kEquidistant,
+                              LensModel::kEquidistant,
+                              {-0.02, 0.004, 0.0, 0.0},
+                              {-0.008, 0.045, -0.042, 0.008}}),
+    [](const auto& info) { return info.param.name; });
 
 TEST(DepthRegistrationTest, WhatIsNearHidesWhatIsBehind) {
   const Camera camera = CameraOfSize(64, 48, 50.0);

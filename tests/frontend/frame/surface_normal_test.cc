@@ -7,6 +7,12 @@
 namespace rgbd_pose {
 namespace {
 
+// Of a camera without distortion.
+Eigen::Vector3d NormalAt(const Frame& frame, const Camera& camera, double u,
+                         double v) {
+  return LookUpNormal(frame, camera, u, v, camera.Ray(u, v).head<2>());
+}
+
 using Eigen::Vector3d;
 
 // The depth image of the plane normal . X = -distance (normal towards us).
@@ -35,7 +41,7 @@ TEST(SurfaceNormalTest, FindsSlantedPlanes) {
     const Vector3d normal = direction.normalized();
     const Frame frame = PlaneFrame(camera, normal, 1.5);
     for (const double u : {200.0, 320.0, 430.0}) {
-      const Vector3d found = LookUpNormal(frame, camera, u, 240.0);
+      const Vector3d found = NormalAt(frame, camera, u, 240.0);
       // 0.2 mm steps of the image over 10 px of about 3 mm.
       EXPECT_LE((found - normal).norm(), 0.02) << direction.transpose();
     }
@@ -45,12 +51,12 @@ TEST(SurfaceNormalTest, FindsSlantedPlanes) {
 TEST(SurfaceNormalTest, HasNoneAtEdgesHolesAndBorders) {
   const Camera camera;
   Frame frame = PlaneFrame(camera, Vector3d(0, 0, -1), 2.0);
-  EXPECT_EQ(LookUpNormal(frame, camera, 2.0, 240.0), Vector3d::Zero());
+  EXPECT_EQ(NormalAt(frame, camera, 2.0, 240.0), Vector3d::Zero());
   frame.depth.colRange(322, 640).setTo(12500);
-  EXPECT_EQ(LookUpNormal(frame, camera, 320.0, 240.0), Vector3d::Zero());
+  EXPECT_EQ(NormalAt(frame, camera, 320.0, 240.0), Vector3d::Zero());
   frame.depth.at<uint16_t>(100, 105) = 0;
-  EXPECT_EQ(LookUpNormal(frame, camera, 100.0, 100.0), Vector3d::Zero());
-  EXPECT_NE(LookUpNormal(frame, camera, 200.0, 200.0), Vector3d::Zero());
+  EXPECT_EQ(NormalAt(frame, camera, 100.0, 100.0), Vector3d::Zero());
+  EXPECT_NE(NormalAt(frame, camera, 200.0, 200.0), Vector3d::Zero());
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -15,6 +16,7 @@
 #include <map>
 #include <random>
 #include <thread>
+#include <tuple>
 
 #include "core/util/text_file.h"
 #include "frontend/map/map_index.h"
@@ -74,6 +76,31 @@ TEST_F(MapFolderTest, GivesBackWhatWasSaved) {
   const std::string index = ReadTextFile(map_ + "/map.txt");
   SaveMap(map_, loaded);
   EXPECT_EQ(ReadTextFile(map_ + "/map.txt"), index);
+}
+
+TEST_F(MapFolderTest, KeepsEveryLens) {
+  KeyframeMap saved = NoiseMap(1, 0);
+  for (const auto& [model, coefficients, words] :
+       {std::tuple(LensModel::kRational, std::vector<double>{1, 2, 3, 4, 5},
+                   12),
+        std::tuple(LensModel::kRational,
+                   std::vector<double>{1, 2, 3, 4, 5, 6, 7, 8}, 16),
+        std::tuple(LensModel::kEquidistant, std::vector<double>{1, 2, 3, 4},
+                   16)}) {
+    ASSERT_TRUE(saved.camera.SetDistortion(model, coefficients));
+    SaveMap(map_, saved);
+    const KeyframeMap loaded = LoadMap(map_);
+    EXPECT_EQ(loaded.CheckCamera(saved.camera), "");
+    EXPECT_EQ(loaded.camera.Distortion(), coefficients);
+    const std::string index = ReadTextFile(map_ + "/map.txt");
+    const size_t line = index.find("\ncamera ") + 1;
+    const std::string camera =
+        index.substr(line, index.find('\n', line) - line);
+    EXPECT_EQ(std::count(camera.begin(), camera.end(), ' ') + 1, words);
+  }
+  Camera other = saved.camera;
+  other.lens_model = LensModel::kRational;
+  EXPECT_NE(saved.CheckCamera(other), "");
 }
 
 TEST_F(MapFolderTest, TakesAnEmptyMap) {
@@ -187,6 +214,8 @@ TEST_F(MapFolderTest, RefusesWrongLines) {
       {"keyframe 0\n", "map.txt:2: the camera must come first, and once"},
       {kCamera + kCamera, "map.txt:3: the camera must come first, and once"},
       {"camera 32\n", "map.txt:2: a line 'camera' must have 12 words"},
+      {kCamera.substr(0, kCamera.size() - 1) + " 0 0 0 wide\n",
+       "map.txt:2: a lens is 'rational' or 'equidistant', not 'wide'"},
       {"camera 3.5" + kCamera.substr(9), "map.txt:2: '3.5' must be an integer"},
       {kCamera + "landmark 1\n", "map.txt:3: 'landmark' is none of camera"},
       {kCamera + "keyframe 0" + kPose + kName + " ../secret\n",

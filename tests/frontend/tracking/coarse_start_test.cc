@@ -10,6 +10,7 @@
 #include "costs/direct_cost_factory.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/tracking/direct_tracker.h"
+#include "tests/support/tracker_parts.h"
 
 namespace rgbd_pose {
 namespace {
