@@ -16,6 +16,9 @@ set(CPACK_COMPONENT_DEVELOPMENT_DESCRIPTION
     "Libraries, headers and files for find_package(rgbd_pose) and pkg-config:
 costs, M-estimators, frontends and odometry, each a named, swappable piece.")
 set(dependencies libceres-dev libeigen3-dev libopencv-dev libyaml-cpp-dev)
+if(ChunkCodecs_FOUND)
+  list(APPEND dependencies libzstd-dev liblz4-dev)
+endif()
 if(Libdeflate_FOUND)
   list(APPEND dependencies libdeflate-dev)
 endif()

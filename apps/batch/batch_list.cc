@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 bool IsRecording(const fs::path& path) {
   std::error_code error;
   return fs::is_directory(path, error) || path.extension() == ".bag" ||
-         path.extension() == ".db3";
+         path.extension() == ".db3" || path.extension() == ".mcap";
 }
 
 // The folders and bags that match a pattern, sorted; a path without wildcards

@@ -68,13 +68,6 @@ class Rows {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-std::string WithoutMsg(std::string type) {
-  const std::string part = "/msg/";
-  const size_t place = type.find(part);
-  if (place != std::string::npos) type.replace(place, part.size(), "/");
-  return type;
-}
-
 // Opened so that nothing is written next to it, which sqlite3 otherwise does,
 // and cannot where that is forbidden. Not where a recorder left messages in the
 // log next to it: only sqlite3 can put them into their places.
@@ -154,7 +147,7 @@ class BagDatabase final : public BagReader {
       if (format != "cdr") continue;  // nobody knows what it holds
       places_[rows.Number(0)] = static_cast<int>(topics_.size());
       ids_.push_back(rows.Number(0));
-      topics_.push_back({rows.Bytes(1), WithoutMsg(rows.Bytes(2))});
+      topics_.push_back({rows.Bytes(1), Ros1Type(rows.Bytes(2))});
     }
   }
 

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "core/util/input_error.h"
@@ -15,6 +16,14 @@ struct BagTopic {
   std::string name;  // with its slash
   std::string type;  // as in ROS 1: sensor_msgs/Image
 };
+
+// The name of a type in ROS 1: of sensor_msgs/msg/Image, sensor_msgs/Image.
+inline std::string Ros1Type(std::string type) {
+  constexpr std::string_view kPart = "/msg/";
+  const size_t place = type.find(kPart);
+  if (place != std::string::npos) type.replace(place, kPart.size(), "/");
+  return type;
+}
 
 // A message as it is in the bag.
 struct BagMessage {

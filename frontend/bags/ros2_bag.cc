@@ -5,6 +5,7 @@
 
 #include "core/util/input_error.h"
 #include "frontend/bags/bag_database.h"
+#include "frontend/bags/mcap_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -41,30 +42,37 @@ std::vector<fs::path> FilesOf(const std::string& path) {
   return files;
 }
 
-// The databases of a recording, one after the other.
+// The files of a recording, one after the other.
 class Ros2Bag final : public BagReader {
  public:
   Ros2Bag(const std::string& path, const std::vector<fs::path>& files)
       : path_(path) {
     for (const fs::path& file : files) {
-      databases_.push_back(OpenBagDatabase(file.string()));
+      files_.push_back(file.extension() == kMcap
+                           ? OpenMcapFile(file.string())
+                           : OpenBagDatabase(file.string()));
+      if (files_.back()->format() != format()) {
+        throw InputError(file.string() +
+                         ": has messages of another version of ROS than the "
+                         "files before");
+      }
       std::vector<int>& places = places_.emplace_back();
-      for (const BagTopic& topic : databases_.back()->topics()) {
+      for (const BagTopic& topic : files_.back()->topics()) {
         places.push_back(PlaceOf(topic));
       }
     }
   }
 
   const std::string& path() const override { return path_; }
-  WireFormat format() const override { return WireFormat::kCdr; }
+  WireFormat format() const override { return files_.front()->format(); }
   const std::vector<BagTopic>& topics() const override { return topics_; }
 
   std::vector<BagMessage> First(int topic, int count) override {
     std::vector<BagMessage> first;
-    for (size_t i = 0; i < databases_.size(); ++i) {
+    for (size_t i = 0; i < files_.size(); ++i) {
       for (const int inner : InnerPlaces(i, {topic})) {
         const int missing = count - static_cast<int>(first.size());
-        for (BagMessage& message : databases_[i]->First(inner, missing)) {
+        for (BagMessage& message : files_[i]->First(inner, missing)) {
           message.topic = topic;
           first.push_back(std::move(message));
         }
@@ -74,15 +82,15 @@ class Ros2Bag final : public BagReader {
   }
 
   void Select(const std::vector<int>& topics) override {
-    for (size_t i = 0; i < databases_.size(); ++i) {
-      databases_[i]->Select(InnerPlaces(i, topics));
+    for (size_t i = 0; i < files_.size(); ++i) {
+      files_[i]->Select(InnerPlaces(i, topics));
     }
     at_ = 0;
   }
 
   std::optional<BagMessage> Next() override {
-    for (; at_ < databases_.size(); ++at_) {
-      if (std::optional<BagMessage> message = databases_[at_]->Next()) {
+    for (; at_ < files_.size(); ++at_) {
+      if (std::optional<BagMessage> message = files_[at_]->Next()) {
         message->topic = places_[at_][message->topic];
         return message;
       }
@@ -113,7 +121,7 @@ class Ros2Bag final : public BagReader {
   }
 
   std::string path_;
-  std::vector<std::unique_ptr<BagReader>> databases_;
+  std::vector<std::unique_ptr<BagReader>> files_;
   std::vector<std::vector<int>> places_;  // of each one's topics in topics_
   std::vector<BagTopic> topics_;
   size_t at_ = 0;  // the database that is read
@@ -129,22 +137,13 @@ bool IsRos2Bag(const std::string& path) {
 
 std::unique_ptr<BagReader> OpenRos2Bag(const std::string& path) {
   const std::vector<fs::path> files = FilesOf(path);
-  if (files.empty()) throw InputError(path + ": has no .db3 file of ROS 2");
+  if (files.empty()) {
+    throw InputError(path + ": has no .db3 or .mcap file");
+  }
   for (const fs::path& file : files) {
     if (file.extension() == kPacked) {
       throw InputError(file.string() +
-                       ": is packed, and only plain .db3 files are read; "
-                       "`unzstd` unpacks a file that is packed as a whole, "
-                       "`ros2 bag convert` any bag");
-    }
-    if (file.extension() == kMcap) {
-      throw InputError(
-          file.string() +
-          ": is in mcap, and only sqlite3 is read; `ros2 bag convert -i " +
-          path +
-          " -o to.yaml` makes one, with the line `output_bags: [{uri: NAME, "
-          "storage_id: sqlite3, all: true}]` in to.yaml (from Jazzy on "
-          "all_topics: true)");
+                       ": is packed as a whole; unpack it by `unzstd`");
     }
   }
   return std::make_unique<Ros2Bag>(path, files);

@@ -68,7 +68,7 @@ const std::vector<SourceType>& Types() {
            return std::make_unique<BagSource>(OpenRos1Bag(options.path),
                                               options);
          }},
-        {"rosbag2", "ROS 2 bag (.db3, or a folder of such)",
+        {"rosbag2", "ROS 2 bag (.db3 or .mcap, or a folder of such)",
          [](const SourceOptions& options) { return IsRos2Bag(options.path); },
          [](const SourceOptions& options) {
            return std::make_unique<BagSource>(OpenRos2Bag(options.path),

@@ -113,10 +113,6 @@ TEST_F(Ros2BagTest, MotionCaptureIsTheGroundTruth) {
 }
 
 TEST_F(Ros2BagTest, SaysWhatMakesOneOfOtherKinds) {
-  folder_.Write("mcap/metadata.yaml", "");
-  folder_.Write("mcap/mcap_0.mcap", "x");
-  ExpectRefused("mcap",
-                {"mcap_0.mcap: is in mcap", "ros2 bag convert", " all: true"});
   folder_.Write("packed/packed_0.db3.zstd", "x");
   ExpectRefused("packed", {"packed_0.db3.zstd: is packed", "unzstd"});
 }
