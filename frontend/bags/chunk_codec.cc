@@ -10,7 +10,7 @@ namespace rgbd_pose {
 namespace {
 
 // No recorder makes chunks of more, and a damaged number is most likely larger.
-constexpr uint64_t kMaxSize = uint64_t{1} << 30;
+constexpr uint64_t kMaxSize = uint64_t{1} << 28;
 
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
 
