@@ -14,6 +14,17 @@
 
 namespace rgbd_pose {
 
+// A reference whose velocity the next frame will tell. Not within
+// ShutterTracking: clang 14 fails there.
+struct EarlyReference {
+  Frame frame;                 // as exposed
+  Rigid3d target_from_middle;  // the camera that it is resampled for
+  bool is_free = false;  // its pose came without a velocity: it is the stamp's
+  bool is_late = false;  // the next frame has told its velocity already
+  std::optional<Twist> before;  // the mean velocity into it
+  double interval = 0.0;        // of that, s
+};
+
 // Tracks frames whose rows were exposed one after another, or whose depth was
 // not taken when colour was: with the velocity that their rows and the frames
 // before tell. A frame becomes a reference as seen at one moment, with a
@@ -86,17 +97,6 @@ class ShutterTracking {
   const Frame* FindReferenceFrame(int id) const;
 
  private:
-  // A reference whose velocity the next frame will tell.
-  struct Early {
-    Frame frame;                 // as exposed
-    Rigid3d target_from_middle;  // the camera that it is resampled for
-    bool is_free =
-        false;  // its pose came without a velocity: it is the stamp's
-    bool is_late = false;  // the next frame has told its velocity already
-    std::optional<Twist> before;  // the mean velocity into it
-    double interval = 0.0;        // of that, s
-  };
-
   // Makes the reference again with the mean velocity since; false: there is
   // nothing to gain.
   bool MendReference(const Twist& since, double interval, Keyframe* reference);
@@ -106,7 +106,7 @@ class ShutterTracking {
   VelocityModel velocity_;
   std::optional<Twist> between_;  // mean velocity into the last frame
   double interval_ = 0.0;         // of that, s
-  std::optional<Early> early_;
+  std::optional<EarlyReference> early_;
   Found found_;
   std::map<int, Frame> reference_frames_;  // by id; the latest two
 };
