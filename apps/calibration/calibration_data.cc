@@ -108,8 +108,8 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
   data.in_map = chosen.in_map;
   data.pairs = chosen.pairs;
   for (const int place : chosen.in_map) {
-    const MapKeyframe& keyframe = map.keyframes[place];
-    data.views.world_from_cam.push_back(keyframe.map_from_cam);
+    const Keyframe& keyframe = map.keyframes[place];
+    data.views.world_from_cam.push_back(keyframe.world_from_cam);
     data.timestamps.push_back(keyframe.images.timestamp);
     data.velocities.push_back(VelocityAt(path, keyframe.images.timestamp));
   }

@@ -33,7 +33,7 @@ class LandmarkMatcher {
 
  private:
   const Rigid3d& Pose(int at) const {
-    return map_.keyframes[chosen_[at]].map_from_cam;
+    return map_.keyframes[chosen_[at]].world_from_cam;
   }
   // The pixel that was measured.
   Eigen::Vector2d Seen(const Observation& o) const {

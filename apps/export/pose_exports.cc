@@ -29,10 +29,10 @@ KeyframeMap GraphOfFrames(const FinishedRun& run) {
   KeyframeMap graph;
   std::map<int, bool> has_pose;
   for (size_t i = 0; i < run.frames().size(); ++i) {
-    MapKeyframe keyframe;
+    Keyframe keyframe;
     keyframe.id = run.frames()[i];
     keyframe.segment = run.segments()[i];
-    keyframe.map_from_cam = run.trajectory()[i].world_from_cam;
+    keyframe.world_from_cam = run.trajectory()[i].world_from_cam;
     graph.keyframes.push_back(keyframe);
     has_pose[keyframe.id] = true;
   }

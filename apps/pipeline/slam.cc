@@ -7,19 +7,7 @@
 #include "core/util/stage_timer.h"
 
 namespace rgbd_pose {
-namespace {
-
-// A copy: the next frame may be written into the same memory.
-Frame CopyOf(const Frame& frame) {
-  Frame copy = frame;
-  copy.gray = frame.gray.clone();
-  copy.depth = frame.depth.clone();
-  copy.depth_delay = 0.0;
-  copy.color.release();
-  return copy;
-}
-
-}  // namespace
+namespace {}  // namespace
 
 Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
            const Camera& camera)
@@ -35,7 +23,7 @@ Slam::~Slam() = default;
 
 void Slam::Load(KeyframeMap map, bool is_held) {
   // Names may be those of an earlier map.
-  for (MapKeyframe& keyframe : map.keyframes) {
+  for (Keyframe& keyframe : map.keyframes) {
     keyframe.id += first_id_;
     keyframe.segment += first_segment_;
   }
@@ -44,18 +32,19 @@ void Slam::Load(KeyframeMap map, bool is_held) {
     edge.cur += first_id_;
   }
   mapper_.Load(map, is_held);
-  for (const MapKeyframe& keyframe : map.keyframes) {
+  for (const Keyframe& keyframe : map.keyframes) {
     // The odometry has no names from -1 on for what is not its own.
     first_id_ = std::max(first_id_, keyframe.id + 2);
     first_segment_ = std::max(first_segment_, keyframe.segment + 1);
-    map_from_keyframe_[keyframe.id] = keyframe.map_from_cam;
+    map_from_keyframe_[keyframe.id] = keyframe.world_from_cam;
     segments_[keyframe.id] = keyframe.segment;
   }
 }
 
 SlamFrame Slam::Track(const Frame& frame, const Rigid3d* cur_from_prev_guess,
                       const MotionMatrix* guess_covariance) {
-  return Track(PreparedFrame(frame), cur_from_prev_guess, guess_covariance);
+  return Track(PreparedFrame(frame.Clone()), cur_from_prev_guess,
+               guess_covariance);
 }
 
 SlamFrame Slam::Track(const PreparedFrame& frame,
@@ -65,19 +54,13 @@ SlamFrame Slam::Track(const PreparedFrame& frame,
   result.tracked =
       odometry_.Track(frame, cur_from_prev_guess, guess_covariance);
   const TrackedFrame& tracked = result.tracked;
-  AddLateKeyframe();
-  if (tracked.previous_is_reference) {
-    BecomeReference(previous_);
-    late_keyframe_ = KeyframeOf(previous_);
-    AddLateKeyframe();
+  if (tracked.previous_is_reference) BecomeReference(previous_);
+  if (is_previous_late_ || tracked.previous_is_reference) {
+    AddKeyframe(previous_);
   }
   Follow(tracked);
-  if (tracked.is_reference) {
-    late_keyframe_ = KeyframeOf(tracked);
-    // Where the next frame shows how the camera moved in this one, the keyframe
-    // waits for it.
-    if (!odometry_.HasShutter(frame)) AddLateKeyframe(&frame);
-  }
+  is_previous_late_ = tracked.is_reference && odometry_.HasShutter(frame);
+  if (tracked.is_reference && !is_previous_late_) AddKeyframe(tracked);
   previous_ = tracked;
   if (tracked.status == TrackingStatus::kLost) SearchMap(frame, tracked.index);
   ApplyPendingUpdates(tracked.index, &result);
@@ -141,34 +124,25 @@ void Slam::BecomeReference(const TrackedFrame& tracked) {
   odom_from_reference_ = odom_from_cam_;
 }
 
-NewKeyframe Slam::KeyframeOf(const TrackedFrame& tracked) const {
-  NewKeyframe keyframe;
+void Slam::AddKeyframe(const TrackedFrame& tracked) {
+  Keyframe keyframe = *odometry_.FindKeyframe(tracked.index);
   keyframe.id = MapId(tracked.index);
   keyframe.segment = segments_.at(keyframe.id);
-  keyframe.map_from_cam = map_from_keyframe_.at(keyframe.id);
-  if (tracked.reference != -1) keyframe.edges = tracked.edges;
-  for (RelativePose& edge : keyframe.edges) edge.ref = MapId(edge.ref);
-  return keyframe;
-}
-
-void Slam::AddLateKeyframe(const Frame* frame) {
-  if (!late_keyframe_.has_value()) return;
-  const int id = OdometryId(late_keyframe_->id);
-  late_keyframe_->frame =
-      CopyOf(frame != nullptr ? *frame : *odometry_.FindReferenceFrame(id));
-  updates_.push_back(
-      {id + settings_.update_delay,
-       worker_.Submit([this, keyframe = *std::move(late_keyframe_)]() mutable {
-         return mapper_.Add(std::move(keyframe));
-       })});
-  late_keyframe_.reset();
+  keyframe.world_from_cam = map_from_keyframe_.at(keyframe.id);
+  std::vector<RelativePose> edges;
+  if (tracked.reference != -1) edges = tracked.edges;
+  for (RelativePose& edge : edges) edge.ref = MapId(edge.ref);
+  updates_.push_back({tracked.index + settings_.update_delay,
+                      worker_.Submit([this, keyframe = std::move(keyframe),
+                                      edges = std::move(edges)]() mutable {
+                        return mapper_.Add(std::move(keyframe), edges);
+                      })});
 }
 
 void Slam::SearchMap(const PreparedFrame& frame, int index) {
   if (search_.has_value()) return;
   search_ = {index + settings_.update_delay,
-             worker_.Submit(
-                 [this, lost = CopyOf(frame)] { return mapper_.Find(lost); })};
+             worker_.Submit([this, frame] { return mapper_.Find(frame); })};
 }
 
 void Slam::ApplyPendingUpdates(int frame, SlamFrame* result) {
@@ -182,7 +156,7 @@ void Slam::ApplyPendingUpdates(int frame, SlamFrame* result) {
     Apply(std::move(update), result);
   }
   if (!search_.has_value() || search_->frame > frame) return;
-  std::optional<FoundKeyframe> found;
+  std::optional<Keyframe> found;
   {
     const StageTimer timer(&result->wait_ms);
     found = search_->result.get();
@@ -224,16 +198,18 @@ void Slam::MoveNewer() {
 }
 
 // The odometry has it where the map has it, seen from where the camera is.
-void Slam::Adopt(const FoundKeyframe& keyframe) {
+void Slam::Adopt(Keyframe keyframe) {
   const Rigid3d map_from_cam = map_from_odom_ * odom_from_cam_;
-  odometry_.InsertKeyframe(keyframe.frame, OdometryId(keyframe.id),
-                           world_from_cam_ * map_from_cam.Inverse() *
-                               map_from_keyframe_.at(keyframe.id));
+  keyframe.world_from_cam = world_from_cam_ * map_from_cam.Inverse() *
+                            map_from_keyframe_.at(keyframe.id);
+  keyframe.id = OdometryId(keyframe.id);
+  odometry_.InsertKeyframe(keyframe);
 }
 
 void Slam::Finish() {
   SlamFrame unused;
-  AddLateKeyframe();
+  if (is_previous_late_) AddKeyframe(previous_);
+  is_previous_late_ = false;
   while (!updates_.empty()) {
     Apply(updates_.front().result.get(), &unused);
     updates_.pop_front();

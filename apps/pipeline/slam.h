@@ -120,23 +120,22 @@ class Slam {
 
   void Follow(const TrackedFrame& tracked);
   void BecomeReference(const TrackedFrame& tracked);
-  NewKeyframe KeyframeOf(const TrackedFrame& tracked) const;
-  // Hands late_keyframe_, if there is one, to the mapper; null: the images that
-  // the odometry has made of it.
-  void AddLateKeyframe(const Frame* frame = nullptr);
+  // Hands a keyframe of the odometry to the mapper.
+  void AddKeyframe(const TrackedFrame& tracked);
   void SearchMap(const PreparedFrame& frame, int index);
   void ApplyPendingUpdates(int frame, SlamFrame* result);
   void Apply(MapUpdate update, SlamFrame* result);
   void MoveNewer();
-  void Adopt(const FoundKeyframe& keyframe);
+  void Adopt(Keyframe keyframe);
 
   const SlamSettings settings_;
   Odometry odometry_;
   Mapper mapper_;  // of worker_, once it has begun
 
-  // Of the last frame, without its images yet.
-  std::optional<NewKeyframe> late_keyframe_;
   TrackedFrame previous_;  // the last frame
+  // It is a keyframe that waits for the next one, which shows how the camera
+  // moved in it.
+  bool is_previous_late_ = false;
 
   // As last taken up.
   std::map<int, Rigid3d> map_from_keyframe_;
@@ -163,7 +162,7 @@ class Slam {
   };
   std::deque<Pending> pending_;
   std::deque<PendingResult<MapUpdate>> updates_;
-  std::optional<PendingResult<std::optional<FoundKeyframe>>> search_;
+  std::optional<PendingResult<std::optional<Keyframe>>> search_;
   Worker worker_;  // the last: it works with what is above
 };
 

@@ -49,12 +49,12 @@ std::vector<KeyframePose> SharedSlam::Keyframes() {
   RequireFinished("keyframes");
   const std::vector<MotionMatrix> covariances = slam_.Covariances();
   std::vector<KeyframePose> poses;
-  for (const MapKeyframe& keyframe : slam_.Map().keyframes) {
+  for (const Keyframe& keyframe : slam_.Map().keyframes) {
     KeyframePose pose;
     pose.id = keyframe.id;
     pose.segment = keyframe.segment;
     pose.timestamp = keyframe.images.timestamp;
-    pose.map_from_cam = keyframe.map_from_cam;
+    pose.map_from_cam = keyframe.world_from_cam;
     if (!covariances.empty()) pose.covariance = covariances[poses.size()];
     poses.push_back(pose);
   }

@@ -45,12 +45,12 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
   WritePngFile((folder / Format("%06d.png", tracked.index)).string(),
                DrawMatches(frame, camera, odometry.last_matches(),
                            odometry.last_estimate(), caption));
-  const Reference* reference = odometry.FindReference(tracked.reference);
-  if (tracked.status != TrackingStatus::kLost && reference != nullptr &&
-      reference->images() != nullptr) {
+  const OdometryKeyframe* keyframe = odometry.FindKeyframe(tracked.reference);
+  if (tracked.status != TrackingStatus::kLost && keyframe != nullptr &&
+      keyframe->reference->images() != nullptr) {
     WritePngFile(
         (folder / Format("%06d_residuals.png", tracked.index)).string(),
-        DrawResiduals(*reference->images(), frame,
+        DrawResiduals(*keyframe->reference->images(), frame,
                       odometry.last_estimate().cur_from_prev));
   }
 }

@@ -83,10 +83,10 @@ std::string FormatKeyframesCsv(const KeyframeMap& map,
   }
   text += "\n";
   for (size_t k = 0; k < map.keyframes.size(); ++k) {
-    const MapKeyframe& keyframe = map.keyframes[k];
+    const Keyframe& keyframe = map.keyframes[k];
     text += Format("%d,%.6f,%d", keyframe.id, keyframe.images.timestamp,
                    keyframe.segment) +
-            FormatPose(keyframe.map_from_cam, ",");
+            FormatPose(keyframe.world_from_cam, ",");
     for (int i = 0; i < 6; ++i) {
       for (int j = i; j < 6; ++j) {
         text += covariances.empty() ? std::string(",")
@@ -101,9 +101,9 @@ std::string FormatKeyframesCsv(const KeyframeMap& map,
 std::string FormatG2o(const KeyframeMap& map) {
   std::string text;
   std::map<int, int> first_of_segment;
-  for (const MapKeyframe& keyframe : map.keyframes) {
+  for (const Keyframe& keyframe : map.keyframes) {
     text += Format("VERTEX_SE3:QUAT %d", keyframe.id) +
-            FormatPose(keyframe.map_from_cam, " ") + "\n";
+            FormatPose(keyframe.world_from_cam, " ") + "\n";
     if (first_of_segment.emplace(keyframe.segment, keyframe.id).second) {
       text += Format("FIX %d\n", keyframe.id);
     }

@@ -60,6 +60,15 @@ struct Frame {
     return {color_shutter, DepthShutter(), velocity};
   }
 
+  // The same with images of its own, but no colours.
+  Frame Clone() const {
+    Frame clone = *this;
+    clone.gray = gray.clone();
+    clone.depth = depth.clone();
+    clone.color.release();
+    return clone;
+  }
+
   // Some sensors mark "no measurement" by the largest value instead of 0.
   static constexpr uint16_t kNoDepth = 65535;
 };

@@ -48,10 +48,10 @@ std::string KeyframeMap::Check() const {
   const std::string wrong_camera = camera.Check();
   if (!wrong_camera.empty()) return "camera: " + wrong_camera;
   std::set<int> ids;
-  for (const MapKeyframe& keyframe : keyframes) {
+  for (const Keyframe& keyframe : keyframes) {
     const std::string name = "keyframe " + std::to_string(keyframe.id) + ": ";
     if (!ids.insert(keyframe.id).second) return name + "is there twice";
-    if (!IsMotion(keyframe.map_from_cam)) {
+    if (!IsMotion(keyframe.world_from_cam)) {
       return name +
              "the pose must be of finite numbers, the quaternion of length 1";
     }

@@ -92,7 +92,7 @@ std::string SaveImage(const fs::path& folder, const PngBytes& image) {
 void Save(const fs::path& folder, const KeyframeMap& map) {
   MapIndex index = {map, {}};
   std::set<std::string> used;
-  for (const MapKeyframe& keyframe : map.keyframes) {
+  for (const Keyframe& keyframe : map.keyframes) {
     const StoredImages& images = keyframe.images;
     used.insert(SaveImage(folder, *images.gray));
     used.insert(SaveImage(folder, *images.depth));

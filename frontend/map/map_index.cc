@@ -113,13 +113,13 @@ void ReadCamera(LineReader* line, Camera* camera) {
 
 void ReadKeyframe(LineReader* line, MapIndex* index) {
   line->Require(15);
-  MapKeyframe keyframe;
+  Keyframe keyframe;
   keyframe.id = line->Integer();
   keyframe.segment = line->Integer();
   keyframe.images.timestamp = line->Number();
   keyframe.images.depth_delay = line->Number();
   keyframe.images.depth_scale = line->Number();
-  keyframe.map_from_cam = line->Motion();
+  keyframe.world_from_cam = line->Motion();
   const std::string gray = line->ImageName();
   index->images.push_back({gray, line->ImageName()});
   index->map.keyframes.push_back(std::move(keyframe));
@@ -193,14 +193,14 @@ std::string FormatMapIndex(const MapIndex& index) {
     if (!is_usual) line.Word(is_equidistant ? kEquidistant : kRational);
   }
   for (size_t i = 0; i < index.map.keyframes.size(); ++i) {
-    const MapKeyframe& keyframe = index.map.keyframes[i];
+    const Keyframe& keyframe = index.map.keyframes[i];
     LineWriter line("keyframe", &text);
     line.Integer(keyframe.id);
     line.Integer(keyframe.segment);
     line.Number(keyframe.images.timestamp);
     line.Number(keyframe.images.depth_delay);
     line.Number(keyframe.images.depth_scale);
-    line.Motion(keyframe.map_from_cam);
+    line.Motion(keyframe.world_from_cam);
     line.Word(index.images[i].gray);
     line.Word(index.images[i].depth);
   }

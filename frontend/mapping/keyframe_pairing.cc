@@ -68,8 +68,8 @@ std::vector<int> KeyframePairing::SeeingTheSame(int newest) const {
 std::optional<RelativePose> KeyframePairing::MakePair(
     int ref, int cur, const PreparedFrame& frame,
     const Rigid3d& cur_from_ref_guess, double min_inlier_share) {
-  return tracker_.MakePair(ref, cur, keyframes_[ref].images, frame,
-                           cur_from_ref_guess, min_inlier_share);
+  return tracker_.MakePair(ref, cur, keyframes_[ref], frame, cur_from_ref_guess,
+                           min_inlier_share);
 }
 
 void KeyframePairing::PairByPose(int newest, const PreparedFrame& frame,
@@ -93,7 +93,7 @@ void KeyframePairing::CloseLoopsByAppearance(int newest,
                                              const PreparedFrame& frame,
                                              MapUpdate* update) {
   if (options_.max_loop_candidates == 0) return;
-  const PlaceFeatures& cur = keyframes_[newest].features;
+  const PlaceFeatures& cur = *keyframes_[newest].features;
   const std::vector<bool> is_near = graph_.links().Within(newest, kLoopHops);
   const auto filter = [&](int at) { return !is_near[at]; };
   const std::vector<PlaceCandidate> alike = index_.Query(
@@ -102,7 +102,7 @@ void KeyframePairing::CloseLoopsByAppearance(int newest,
     if (candidate.score < kMinScoreShare * alike.front().score) break;
     const int at = candidate.keyframe;
     const auto rough = VerifyGeometrically(
-        MatchPlaces(keyframes_[at].features, cur, tracker_.images().camera));
+        MatchPlaces(*keyframes_[at].features, cur, tracker_.images().camera));
     if (!rough.has_value()) continue;
     const auto edge =
         MakePair(at, newest, frame, rough->cur_from_prev, kMinLookalikeInliers);

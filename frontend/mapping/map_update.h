@@ -5,15 +5,9 @@
 #include <string>
 
 #include "core/geometry/rigid3.h"
-#include "frontend/frame/frame.h"
+#include "frontend/places/keyframe.h"
 
 namespace rgbd_pose {
-
-// A frame of the map, with its images.
-struct FoundKeyframe {
-  int id = 0;  // as in NewKeyframe
-  Frame frame;
-};
 
 // Where a keyframe is.
 struct KeyframePlace {
@@ -31,7 +25,7 @@ struct MapUpdate {
   double ms = 0.0;    // of work
 
   // An old keyframe that the view has come back to.
-  std::optional<FoundKeyframe> returned_to;
+  std::optional<Keyframe> returned_to;
 };
 
 }  // namespace rgbd_pose

@@ -3,21 +3,16 @@
 #include <optional>
 
 #include "frontend/frame/view_overlap.h"
-#include "frontend/map/stored_images.h"
 #include "frontend/mapping/map_update.h"
-#include "frontend/places/place_features.h"
+#include "frontend/places/keyframe.h"
 
 namespace rgbd_pose {
 
-// What a Mapper keeps of a keyframe; of those that were removed neither images
-// nor what was made of them.
-struct MappedKeyframe {
-  int id = 0;                              // as in NewKeyframe
+// A keyframe of a Mapper, packed; of those that were removed neither images nor
+// what was made of them. Its pose and segment: see KeyframeGraph.
+struct MappedKeyframe : Keyframe {
   std::optional<KeyframePlace> published;  // as the last MapUpdate had it
-
-  StoredImages images;     // to track against
-  ViewOverlap samples;     // what it sees, to compare views by
-  PlaceFeatures features;  // what it looks like
+  ViewOverlap samples;                     // what it sees, to compare views by
 };
 
 }  // namespace rgbd_pose

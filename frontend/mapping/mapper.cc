@@ -34,22 +34,26 @@ Mapper::Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker)
 
 Mapper::~Mapper() = default;
 
-int Mapper::AddKeyframe(int id, const Frame& frame, const Rigid3d& map_from_cam,
-                        int segment, bool is_held) {
+int Mapper::AddKeyframe(Keyframe keyframe, const PreparedFrame& frame,
+                        bool is_held) {
   const FrontendOptions& images = tracker_.images();
-  const int at = graph_.Add(map_from_cam, segment, is_held);
-  MappedKeyframe keyframe;
-  keyframe.id = id;
-  keyframe.images = StoredImages(frame);
-  keyframe.samples = ViewOverlap(frame, images.camera, kSampleStepPx,
-                                 images.min_depth, images.max_depth);
-  if (options_.max_loop_candidates > 0) {
-    keyframe.features =
-        DescribeKeyframe(frame, images.camera, images.DepthLookup());
+  const int at = graph_.Add(keyframe.world_from_cam, keyframe.segment, is_held);
+  numbers_[keyframe.id] = at;
+  keyframe.frame = PreparedFrame();
+  if (keyframe.images.gray == nullptr) keyframe.images = StoredImages(frame);
+  if (keyframe.features == nullptr && options_.max_loop_candidates > 0) {
+    keyframe.features = std::make_shared<const PlaceFeatures>(
+        DescribeKeyframe(frame, images.camera, images.DepthLookup()));
   }
-  keyframes_.push_back(std::move(keyframe));
-  numbers_[id] = at;
+  keyframes_.push_back({std::move(keyframe), std::nullopt,
+                        ViewOverlap(frame, images.camera, kSampleStepPx,
+                                    images.min_depth, images.max_depth)});
   return at;
+}
+
+void Mapper::Index(int at) {
+  if (options_.max_loop_candidates == 0) return;
+  index_.Add(at, keyframes_[at].features->described.descriptors);
 }
 
 void Mapper::Load(const KeyframeMap& map, bool is_held) {
@@ -57,11 +61,8 @@ void Mapper::Load(const KeyframeMap& map, bool is_held) {
        {map.Check(), map.CheckCamera(tracker_.images().camera)}) {
     if (!error.empty()) throw InputError("map: " + error);
   }
-  for (const MapKeyframe& keyframe : map.keyframes) {
-    const int at =
-        AddKeyframe(keyframe.id, keyframe.images.Restore(),
-                    keyframe.map_from_cam, keyframe.segment, is_held);
-    index_.Add(at, keyframes_[at].features.described.descriptors);
+  for (const Keyframe& keyframe : map.keyframes) {
+    Index(AddKeyframe(keyframe, keyframe.Unpacked(), is_held));
   }
   for (const RelativePose& edge : map.edges) {
     RelativePose numbered = edge;
@@ -71,11 +72,12 @@ void Mapper::Load(const KeyframeMap& map, bool is_held) {
   }
 }
 
-MapUpdate Mapper::Add(NewKeyframe added) {
+MapUpdate Mapper::Add(Keyframe added,
+                      const std::vector<RelativePose>& tracked) {
   MapUpdate update;
   const StageTimer timer(&update.ms);
   std::vector<RelativePose> edges;
-  for (RelativePose edge : added.edges) {
+  for (RelativePose edge : tracked) {
     const auto ref = numbers_.find(edge.ref);
     if (ref == numbers_.end()) continue;
     edge.ref = ref->second;
@@ -83,11 +85,11 @@ MapUpdate Mapper::Add(NewKeyframe added) {
   }
   if (!edges.empty()) {
     added.segment = graph_.segment(edges[0].ref);
-    added.map_from_cam =
+    added.world_from_cam =
         graph_.pose(edges[0].ref) * edges[0].cur_from_ref.Inverse();
   }
-  const int newest = AddKeyframe(added.id, added.frame, added.map_from_cam,
-                                 added.segment, /*is_held=*/false);
+  const PreparedFrame frame = added.Unpacked();
+  const int newest = AddKeyframe(std::move(added), frame, /*is_held=*/false);
   for (RelativePose& edge : edges) {
     edge.cur = newest;
     if (graph_.segment(edge.ref) != graph_.segment(newest)) {
@@ -96,11 +98,10 @@ MapUpdate Mapper::Add(NewKeyframe added) {
     }
     graph_.AddPair(edge, /*is_tracked=*/true);
   }
-  const PreparedFrame prepared(added.frame);
-  pairing_.PairByPose(newest, prepared, &update);
-  pairing_.CloseLoopsByAppearance(newest, prepared, &update);
-  if (update.joined > 0) pairing_.PairByPose(newest, prepared, &update);
-  index_.Add(newest, keyframes_[newest].features.described.descriptors);
+  pairing_.PairByPose(newest, frame, &update);
+  pairing_.CloseLoopsByAppearance(newest, frame, &update);
+  if (update.joined > 0) pairing_.PairByPose(newest, frame, &update);
+  Index(newest);
 
   update.error =
       update.loops > 0 ? graph_.SolveAll() : graph_.SolveNear(newest);
@@ -110,16 +111,21 @@ MapUpdate Mapper::Add(NewKeyframe added) {
   return update;
 }
 
-std::optional<FoundKeyframe> Mapper::Find(const Frame& lost) {
+Keyframe Mapper::WithImages(int at) const {
+  Keyframe keyframe = keyframes_[at];
+  keyframe.frame = keyframe.Unpacked();
+  return keyframe;
+}
+
+std::optional<Keyframe> Mapper::Find(const Frame& lost) {
   const FrontendOptions& images = tracker_.images();
   const Relocaliser relocaliser(images.camera, images.DepthLookup());
   const auto found = relocaliser.FindInMap(
       lost, index_, [this](int at) -> const PlaceFeatures& {
-        return keyframes_[at].features;
+        return *keyframes_[at].features;
       });
   if (!found.has_value()) return std::nullopt;
-  const MappedKeyframe& keyframe = keyframes_[found->place_id];
-  return FoundKeyframe{keyframe.id, keyframe.images.Restore()};
+  return WithImages(found->keyframe);
 }
 
 // The one whose view is nearest, but for those that the odometry has itself.
@@ -138,9 +144,7 @@ void Mapper::FindReturn(int newest, MapUpdate* update) const {
     least = overlap.flow_px;
     nearest = at;
   }
-  if (nearest < 0) return;
-  const MappedKeyframe& keyframe = keyframes_[nearest];
-  update->returned_to = FoundKeyframe{keyframe.id, keyframe.images.Restore()};
+  if (nearest >= 0) update->returned_to = WithImages(nearest);
 }
 
 // Looks at the keyframe that leaves the window.
@@ -190,8 +194,9 @@ KeyframeMap Mapper::Map(bool as_solved) const {
   map.camera = tracker_.images().camera;
   for (int at = 0; at < graph_.size(); ++at) {
     if (graph_.IsRemoved(at)) continue;
-    map.keyframes.push_back({keyframes_[at].id, graph_.segment(at),
-                             graph_.pose(at), keyframes_[at].images});
+    map.keyframes.push_back(keyframes_[at]);
+    map.keyframes.back().segment = graph_.segment(at);
+    map.keyframes.back().world_from_cam = graph_.pose(at);
   }
   for (const KeyframePair& pair : graph_.pairs()) {
     RelativePose edge = pair.edge;

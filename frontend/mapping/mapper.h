@@ -8,7 +8,6 @@
 
 #include "core/geometry/rigid3.h"
 #include "core/pose_graph/relative_pose.h"
-#include "frontend/frame/frame.h"
 #include "frontend/map/keyframe_map.h"
 #include "frontend/mapping/keyframe_graph.h"
 #include "frontend/mapping/keyframe_pairing.h"
@@ -20,15 +19,6 @@
 #include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
-
-// A frame that is to be a keyframe of the map.
-struct NewKeyframe {
-  int id = 0;                       // another one for each
-  Frame frame;                      // its own images
-  int segment = 0;                  // of the odometry
-  Rigid3d map_from_cam;             // where it is, if it has no edges
-  std::vector<RelativePose> edges;  // to earlier keyframes, by id; it is `cur`
-};
 
 // Joins keyframes to a map: pairs them with those that see the same (Tracker),
 // found by their poses or by their looks (PlaceDatabase), and keeps all poses
@@ -44,11 +34,12 @@ class Mapper {
   // Throws InputError for a map of another camera or one that is not sound.
   void Load(const KeyframeMap& map, bool is_held);
 
-  // Takes a keyframe in.
-  MapUpdate Add(NewKeyframe keyframe);
+  // Takes a keyframe in, where its edges to earlier ones (by id; it is `cur`)
+  // lead, or, without any, where its pose is.
+  MapUpdate Add(Keyframe keyframe, const std::vector<RelativePose>& edges);
 
   // Looks for a lost frame in the whole map.
-  std::optional<FoundKeyframe> Find(const Frame& lost);
+  std::optional<Keyframe> Find(const Frame& lost);
 
   // Solves for all poses.
   MapUpdate Finish();
@@ -62,8 +53,11 @@ class Mapper {
   const KeyframeGraph& graph() const { return graph_; }
 
  private:
-  int AddKeyframe(int id, const Frame& frame, const Rigid3d& map_from_cam,
-                  int segment, bool is_held);
+  // Packs its images; returns its number in graph_.
+  int AddKeyframe(Keyframe keyframe, const PreparedFrame& frame, bool is_held);
+  void Index(int at);
+  // A keyframe, unpacked.
+  Keyframe WithImages(int at) const;
   void FindReturn(int newest, MapUpdate* update) const;
   void CullKeyframes(int newest);
   void PublishMovedPoses(MapUpdate* update);

@@ -24,10 +24,9 @@ constexpr double kMaxPairTranslation = 0.3;  // m
 }  // namespace
 
 std::optional<RelativePose> PairTracker::MakePair(
-    int ref, int cur, const StoredImages& ref_images,
-    const PreparedFrame& frame, const Rigid3d& cur_from_ref_guess,
-    double min_inlier_share) {
-  const Reference* reference = ReferenceOf(ref, ref_images);
+    int ref, int cur, const Keyframe& keyframe, const PreparedFrame& frame,
+    const Rigid3d& cur_from_ref_guess, double min_inlier_share) {
+  const Reference* reference = ReferenceOf(ref, keyframe);
   if (reference == nullptr) return std::nullopt;
   tracker_->Track(*reference, frame, cur_from_ref_guess, &tracked_);
   const MotionEstimate& estimate = tracked_.estimate;
@@ -47,7 +46,7 @@ void PairTracker::Forget(int keyframe) {
       [=](const auto& entry) { return entry.first == keyframe; });
 }
 
-const Reference* PairTracker::ReferenceOf(int at, const StoredImages& images) {
+const Reference* PairTracker::ReferenceOf(int at, const Keyframe& keyframe) {
   const auto made =
       std::find_if(references_.begin(), references_.end(),
                    [=](const auto& entry) { return entry.first == at; });
@@ -56,8 +55,8 @@ const Reference* PairTracker::ReferenceOf(int at, const StoredImages& images) {
     return references_.front().second.get();
   }
   std::string why_not;
-  auto reference = tracker_->MakeReference(PreparedFrame(images.Restore()),
-                                           nullptr, nullptr, &why_not);
+  auto reference =
+      tracker_->MakeReference(keyframe.Unpacked(), nullptr, nullptr, &why_not);
   if (reference == nullptr) return nullptr;
   if (references_.size() == kMaxReferences) references_.pop_back();
   references_.emplace_front(at, std::move(reference));

@@ -7,8 +7,7 @@
 
 #include "core/geometry/rigid3.h"
 #include "core/pose_graph/relative_pose.h"
-#include "frontend/frame/frame.h"
-#include "frontend/map/stored_images.h"
+#include "frontend/places/keyframe.h"
 #include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
@@ -23,10 +22,10 @@ class PairTracker {
   // What images are used for, see Tracker.
   const FrontendOptions& images() const { return tracker_->images(); }
 
-  // The motion from keyframe `ref`, whose images are given, to a frame near a
-  // guess, if it is a good pair.
+  // The motion from `keyframe`, of number `ref`, to a frame near a guess, if it
+  // is a good pair.
   std::optional<RelativePose> MakePair(int ref, int cur,
-                                       const StoredImages& ref_images,
+                                       const Keyframe& keyframe,
                                        const PreparedFrame& frame,
                                        const Rigid3d& cur_from_ref_guess,
                                        double min_inlier_share);
@@ -35,7 +34,7 @@ class PairTracker {
   void Forget(int keyframe);
 
  private:
-  const Reference* ReferenceOf(int at, const StoredImages& images);
+  const Reference* ReferenceOf(int at, const Keyframe& keyframe);
 
   const std::unique_ptr<Tracker> tracker_;
   // References in use, the latest first.

@@ -1,6 +1,7 @@
 #include "frontend/places/relocaliser.h"
 
 #include <algorithm>
+#include <memory>
 
 namespace rgbd_pose {
 namespace {
@@ -12,32 +13,28 @@ constexpr size_t kMaxDescriptions = 2;
 
 }  // namespace
 
-Place::Place(const Frame& keyframe, int id) : id_(id), frame_(keyframe) {
-  frame_.gray = keyframe.gray.clone();
-  frame_.depth = keyframe.depth.clone();
-}
-
 std::optional<Relocalisation> Relocaliser::Find(
-    const Frame& frame, const std::vector<Place*>& places) {
-  if (places.empty()) return std::nullopt;
-  if (places.front()->id_ != latest_id_ || next_ >= places.size()) next_ = 1;
-  latest_id_ = places.front()->id_;
+    const Frame& frame, const std::vector<Keyframe*>& keyframes) {
+  const size_t count = keyframes.size();
+  if (count == 0) return std::nullopt;
+  if (keyframes.front()->id != latest_id_ || next_ >= count) next_ = 1;
+  latest_id_ = keyframes.front()->id;
   const PlaceFeatures current =
       DescribeKeyframe(frame, camera_, depth_options_);
   size_t descriptions = 0;
-  for (size_t look = 0; look < std::min(kMaxLooks, places.size()); ++look) {
+  for (size_t look = 0; look < std::min(kMaxLooks, count); ++look) {
     // The latest, and those whose turn it is.
     const size_t at = look == 0 ? 0 : next_;
-    Place& place = *places[at];
-    if (!place.features_) {
+    Keyframe& keyframe = *keyframes[at];
+    if (keyframe.features == nullptr) {
       if (++descriptions > kMaxDescriptions) break;
-      place.features_ = DescribeKeyframe(place.frame_, camera_, depth_options_);
-      place.frame_ = Frame();
+      keyframe.features = std::make_shared<const PlaceFeatures>(
+          DescribeKeyframe(keyframe.Unpacked(), camera_, depth_options_));
     }
-    if (look > 0 && ++next_ >= places.size()) next_ = 1;
+    if (look > 0 && ++next_ >= count) next_ = 1;
     if (const auto found = VerifyGeometrically(
-            MatchPlaces(*place.features_, current, camera_))) {
-      return Relocalisation{place.id_, found->cur_from_prev,
+            MatchPlaces(*keyframe.features, current, camera_))) {
+      return Relocalisation{keyframe.id, found->cur_from_prev,
                             static_cast<int>(found->inliers.size())};
     }
   }

@@ -9,37 +9,23 @@
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
+#include "frontend/places/keyframe.h"
 #include "frontend/places/place_database.h"
 #include "frontend/places/place_features.h"
 
 namespace rgbd_pose {
 
-// A keyframe as the relocaliser knows it: a copy of its images until it is
-// first looked at, its described features from then on.
-class Place {
- public:
-  // `id` is the caller's, another one for each place.
-  Place(const Frame& keyframe, int id);
-
- private:
-  friend class Relocaliser;
-
-  int id_;
-  Frame frame_;  // its images are let go once it is described
-  std::optional<PlaceFeatures> features_;
-};
-
 // Where a lost frame was found again.
 struct Relocalisation {
-  int place_id = 0;
-  Rigid3d cur_from_place;
+  int keyframe = 0;  // its id; of FindInMap: as the index has it
+  Rigid3d cur_from_keyframe;
   int inliers = 0;  // matches that agree with the motion
 };
 
 // Finds a frame again among keyframes, without a guess: see
 // VerifyGeometrically.
 //
-// Places are described as they are first looked at, a few in each search, so
+// Keyframes are described as they are first looked at, a few in each search, so
 // that a search takes some tens of milliseconds at most. The same calls give
 // the same results. One object serves one thread.
 class Relocaliser {
@@ -48,10 +34,10 @@ class Relocaliser {
                        const DepthLookupOptions& depth_options)
       : camera_(camera), depth_options_(depth_options) {}
 
-  // Looks for the frame among places (the latest first): in the latest and in
-  // some more, others in each call. Nothing if it is not found among them.
+  // Looks for the frame among keyframes (the latest first): in the latest and
+  // in some more, others in each call. Nothing if it is not found among them.
   std::optional<Relocalisation> Find(const Frame& frame,
-                                     const std::vector<Place*>& places);
+                                     const std::vector<Keyframe*>& keyframes);
 
   // Looks for the frame in a whole map: of the keyframes of the index that are
   // most like it, whose features the caller has, the one most matches agree to.
@@ -63,7 +49,7 @@ class Relocaliser {
  private:
   Camera camera_;
   DepthLookupOptions depth_options_;
-  int latest_id_ = -1;  // of the places of the last Find
+  int latest_id_ = -1;  // of the keyframes of the last Find
   size_t next_ = 1;     // of them, for the next Find
 };
 

@@ -48,14 +48,11 @@ std::string DirectTrackerOptions::Check() const {
 
 DirectReference::DirectReference(const PreparedFrame& frame,
                                  const FrontendOptions& images, uint64_t id)
-    : depth_(frame.depth.clone()),
+    : depth_(frame.depth),
       pyramid_(frame.Derived<SmoothPyramid>().levels),
       samples_(frame, images.camera, kSampleStepPx, images.min_depth,
                images.max_depth) {
-  pyramid_[0] = pyramid_[0].clone();
-  Frame kept = frame;
-  kept.depth = depth_;
-  view_ = ViewFrame(kept, pyramid_, images.camera, images.depth_noise);
+  view_ = ViewFrame(frame, pyramid_, images.camera, images.depth_noise);
   view_.id = id;
 }
 

@@ -63,7 +63,7 @@ class DirectReference final : public Reference {
 
  private:
   cv::Mat depth_;
-  std::vector<cv::Mat> pyramid_;  // shares all but level 0 with the frame
+  std::vector<cv::Mat> pyramid_;
   FrameView view_;
   ViewOverlap samples_;
 };

@@ -5,42 +5,44 @@
 
 namespace rgbd_pose {
 
-Keyframe* Keyframes::Add(Keyframe keyframe, const Keyframe* in_use) {
+OdometryKeyframe* Keyframes::Add(OdometryKeyframe keyframe,
+                                 const OdometryKeyframe* in_use) {
   if (keyframes_.size() == kMaxKeyframes) {
     keyframes_.erase(keyframes_.begin() +
                      (keyframes_.front().get() == in_use ? 1 : 0));
   }
-  keyframes_.push_back(std::make_unique<Keyframe>(std::move(keyframe)));
+  keyframes_.push_back(std::make_unique<OdometryKeyframe>(std::move(keyframe)));
   return keyframes_.back().get();
 }
 
-void Keyframes::Renew(const Keyframe* keyframe) {
+void Keyframes::Renew(const OdometryKeyframe* keyframe) {
   const auto at =
       std::find_if(keyframes_.begin(), keyframes_.end(),
                    [=](const auto& kept) { return kept.get() == keyframe; });
   if (at != keyframes_.end()) std::rotate(at, at + 1, keyframes_.end());
 }
 
-Keyframe* Keyframes::Find(int id) const {
+OdometryKeyframe* Keyframes::Find(int id) const {
   for (const auto& keyframe : keyframes_) {
     if (keyframe->id == id) return keyframe.get();
   }
   return nullptr;
 }
 
-std::vector<Place*> Keyframes::PlacesBefore(int segment) const {
-  std::vector<Place*> places;
+std::vector<Keyframe*> Keyframes::Before(int segment) const {
+  std::vector<Keyframe*> before;
   for (const auto& keyframe : keyframes_) {
     if (keyframe->segment >= segment) continue;
-    places.insert(places.begin(), keyframe->place.get());
+    before.insert(before.begin(), keyframe.get());
   }
-  return places;
+  return before;
 }
 
-Keyframe* Keyframes::FindNearest(const Rigid3d& world_from_cam, int segment,
-                                 double min_share, double max_flow_px,
-                                 const Keyframe* except) const {
-  Keyframe* nearest = nullptr;
+OdometryKeyframe* Keyframes::FindNearest(const Rigid3d& world_from_cam,
+                                         int segment, double min_share,
+                                         double max_flow_px,
+                                         const OdometryKeyframe* except) const {
+  OdometryKeyframe* nearest = nullptr;
   for (const auto& keyframe : keyframes_) {
     if (keyframe.get() == except || keyframe->segment != segment) continue;
     const Overlap overlap = keyframe->reference->SeenFrom(

@@ -50,7 +50,8 @@ Odometry::Odometry(const OdometryOptions& options,
 TrackedFrame Odometry::Track(const Frame& frame,
                              const Rigid3d* cur_from_prev_guess,
                              const MotionMatrix* guess_covariance) {
-  return Track(PreparedFrame(frame), cur_from_prev_guess, guess_covariance);
+  return Track(PreparedFrame(frame.Clone()), cur_from_prev_guess,
+               guess_covariance);
 }
 
 TrackedFrame Odometry::Track(const PreparedFrame& frame,
@@ -224,7 +225,7 @@ bool Odometry::NeedsNewReference() const {
 void Odometry::ChangeReference(const PreparedFrame& frame,
                                TrackedFrame* result) {
   const Rigid3d world_from_cam = WorldFromCam();
-  Keyframe* const earlier =
+  OdometryKeyframe* const earlier =
       keyframes_.FindNearest(world_from_cam, segment_, kMinReturnShare,
                              kMaxReturnFlow * options_.max_flow_px, reference_);
   if (earlier != nullptr &&
@@ -237,7 +238,7 @@ void Odometry::ChangeReference(const PreparedFrame& frame,
   if (!wants_reference_) TakeReference(frame, world_from_cam, result);
 }
 
-bool Odometry::ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
+bool Odometry::ReturnTo(const PreparedFrame& frame, OdometryKeyframe* earlier,
                         const Rigid3d& cur_from_earlier_guess,
                         TrackedFrame* result) {
   if (!attempts_.TryFallback(frame, *earlier, cur_from_earlier_guess, result,
@@ -265,47 +266,45 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
     if (is_lost) result->reason = why_not;
     return false;
   }
-  auto place = std::make_unique<Place>(seen, result->index);
-  reference_ =
-      keyframes_.Add({result->index, segment_, world_from_cam,
-                      std::move(reference), std::move(place), result->edges});
-  if (has_shutter_) {
-    shutter_tracking_.AddReference(frame, seen, result->index);
-  }
+  reference_ = AddKeyframe({result->index, segment_, world_from_cam, seen},
+                           std::move(reference), nullptr);
+  if (has_shutter_) shutter_tracking_.AddReference(frame, seen);
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   result->is_reference = true;
   return true;
 }
 
-bool Odometry::InsertKeyframe(const Frame& frame, int id,
-                              const Rigid3d& world_from_cam) {
-  Keyframe* keyframe = keyframes_.Find(id);
+OdometryKeyframe* Odometry::AddKeyframe(Keyframe keyframe,
+                                        std::unique_ptr<Reference> reference,
+                                        const OdometryKeyframe* in_use) {
+  keyframe.frame.depth_delay = 0.0;
+  keyframe.frame.color.release();
+  return keyframes_.Add({std::move(keyframe), std::move(reference)}, in_use);
+}
+
+bool Odometry::InsertKeyframe(const Keyframe& inserted) {
+  OdometryKeyframe* keyframe = keyframes_.Find(inserted.id);
   if (keyframe != nullptr && keyframe == reference_) return true;
   if (keyframe != nullptr) {
-    keyframe->world_from_cam = world_from_cam;
+    keyframe->world_from_cam = inserted.world_from_cam;
     keyframe->segment = segment_;
     keyframes_.Renew(keyframe);
     return true;
   }
   std::string why_not;
+  const PreparedFrame frame = inserted.Unpacked();
   std::unique_ptr<Reference> reference =
-      tracker_->MakeReference(PreparedFrame(frame), nullptr, nullptr, &why_not);
+      tracker_->MakeReference(frame, nullptr, nullptr, &why_not);
   if (reference == nullptr) return false;
-  auto place = std::make_unique<Place>(frame, id);
-  keyframes_.Add({id,
-                  segment_,
-                  world_from_cam,
-                  std::move(reference),
-                  std::move(place),
-                  {}},
-                 reference_);
+  AddKeyframe({inserted.id,
+               segment_,
+               inserted.world_from_cam,
+               frame,
+               {},
+               inserted.features},
+              std::move(reference), reference_);
   return true;
-}
-
-const Reference* Odometry::FindReference(int id) const {
-  const Keyframe* keyframe = keyframes_.Find(id);
-  return keyframe != nullptr ? keyframe->reference.get() : nullptr;
 }
 
 Rigid3d Odometry::WorldFromCam() const {

@@ -31,13 +31,13 @@ class Odometry {
   // tells (wheels, an inertial sensor); tried first, and believed only as far
   // as the images agree. While lost, the pose follows it. Its covariance, as
   // that of MotionEstimate, becomes the prior of costs that have one; null: not
-  // known (see OdometryOptions). What is kept of the images is copied: the next
-  // ones may be written into the same memory.
+  // known (see OdometryOptions). The images are copied: the next ones may be
+  // written into the same memory.
   TrackedFrame Track(const Frame& frame,
                      const Rigid3d* cur_from_prev_guess = nullptr,
                      const MotionMatrix* guess_covariance = nullptr);
 
-  // The same with what has been made of the frame already.
+  // The same with what has been made of the frame already. Shares its images.
   TrackedFrame Track(const PreparedFrame& frame,
                      const Rigid3d* cur_from_prev_guess = nullptr,
                      const MotionMatrix* guess_covariance = nullptr);
@@ -48,12 +48,11 @@ class Odometry {
 
   // Takes a frame of elsewhere (a map, an earlier visit) for a keyframe that
   // was seen a moment ago: where the view returns to it, frames are tracked
-  // against it, and a lost one is searched for there first. `id`: that of the
-  // frame if it was one of these, else one below -1; `world_from_cam`: in the
-  // world of these poses. False, and nothing has changed, if the frame shows
-  // too little.
-  bool InsertKeyframe(const Frame& frame, int id,
-                      const Rigid3d& world_from_cam);
+  // against it, and a lost one is searched for there first. Its id: that of the
+  // frame if it was one of these, else one below -1; its pose: in the world of
+  // these poses; its segment does not count. False, and nothing has changed, if
+  // the frame shows too little.
+  bool InsertKeyframe(const Keyframe& inserted);
 
   // The pose after the last frame, found or not (see LostPolicy).
   Rigid3d WorldFromCam() const;
@@ -67,9 +66,12 @@ class Odometry {
     return attempts_.kept().estimate;
   }
 
-  // The reference of that number (TrackedFrame::reference); null if there is
-  // none any more.
-  const Reference* FindReference(int id) const;
+  // The keyframe of that number (TrackedFrame::reference); null if there is
+  // none any more. Where its rows were exposed at different times, its images
+  // are as exposed at one moment: final once the next frame was tracked.
+  const OdometryKeyframe* FindKeyframe(int id) const {
+    return keyframes_.Find(id);
+  }
 
   // Whether something has to be done about the times of a frame's rows.
   bool HasShutter(const Frame& frame) const {
@@ -79,14 +81,6 @@ class Odometry {
   // The velocity of the last frame, where its rows were exposed at different
   // times and it was found; see Frame::twist.
   const std::optional<Twist>& last_twist() const { return twist_; }
-
-  // The images of a frame with a shutter that became a reference, as those
-  // after it see them: as exposed at one moment. Final once the next frame was
-  // tracked; good until the one after. Null: it is neither the latest reference
-  // nor the one before.
-  const Frame* FindReferenceFrame(int id) const {
-    return shutter_tracking_.FindReferenceFrame(id);
-  }
 
  private:
   // What a motion guess makes of the last pose.
@@ -132,8 +126,12 @@ class Odometry {
   bool NeedsNewReference() const;
   // Goes on from an earlier reference instead; false, and nothing has changed,
   // if it does not serve.
-  bool ReturnTo(const PreparedFrame& frame, Keyframe* earlier,
+  bool ReturnTo(const PreparedFrame& frame, OdometryKeyframe* earlier,
                 const Rigid3d& cur_from_earlier_guess, TrackedFrame* result);
+  // `in_use`: see Keyframes.
+  OdometryKeyframe* AddKeyframe(Keyframe keyframe,
+                                std::unique_ptr<Reference> reference,
+                                const OdometryKeyframe* in_use);
   // False, and nothing has changed, if the frame shows too little.
   bool TakeReference(const PreparedFrame& frame, const Rigid3d& world_from_cam,
                      TrackedFrame* result);
@@ -147,7 +145,7 @@ class Odometry {
   bool has_shutter_ = false;                              // of the last frame
   std::optional<Twist> twist_;                            // see last_twist
   MotionMatrix twist_covariance_ = MotionMatrix::Zero();  // see TrackingResult
-  Keyframe* reference_ = nullptr;                         // null: none yet
+  OdometryKeyframe* reference_ = nullptr;                 // null: none yet
   int num_frames_ = 0;
   Rigid3d cur_from_ref_;                            // of the last frame
   MotionMatrix covariance_ = MotionMatrix::Zero();  // of cur_from_ref_
@@ -156,12 +154,11 @@ class Odometry {
   double interval_ = 0.0;                           // since the one before, s
   // The last frame, where it was tracked and is no reference.
   struct LastFrame {
-    Frame frame;                    // its images are copies
+    PreparedFrame frame;
     MotionMatrix twist_covariance;  // see TrackingResult
     TrackedFrame result;
   };
-  LastFrame last_;
-  bool has_last_ = false;
+  std::optional<LastFrame> last_;
   bool wants_reference_ = false;  // the last frame is to become one
   int segment_ = 0;
   int latest_segment_ = 0;

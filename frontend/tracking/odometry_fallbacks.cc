@@ -12,19 +12,9 @@ namespace rgbd_pose {
 
 void Odometry::KeepLast(const PreparedFrame& frame,
                         const TrackedFrame& result) {
-  has_last_ = result.status != TrackingStatus::kLost && !result.is_reference;
-  if (!has_last_) return;
-  // Memory is used again.
-  cv::Mat gray = last_.frame.gray, depth = last_.frame.depth;
-  frame.gray.copyTo(gray);
-  frame.depth.copyTo(depth);
-  last_.frame = frame;
-  last_.frame.gray = gray;
-  last_.frame.depth = depth;
-  last_.frame.color.release();
-  last_.frame.twist = twist_;
-  last_.result = result;
-  last_.twist_covariance = twist_covariance_;
+  last_.reset();
+  if (result.status == TrackingStatus::kLost || result.is_reference) return;
+  last_ = LastFrame{frame.WithTwist(twist_), twist_covariance_, result};
 }
 
 // A frame that is about to become a reference should be certain of its own
@@ -44,7 +34,7 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
                                             const Prediction* prediction,
                                             const PreparedFrame* found,
                                             TrackedFrame* result) {
-  Keyframe* const reference = reference_;
+  OdometryKeyframe* const reference = reference_;
   const Rigid3d cur_from_ref = cur_from_ref_;
   const MotionMatrix covariance = covariance_;
   {
@@ -81,21 +71,19 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
 }
 
 bool Odometry::MakeLastReference() {
-  if (!has_last_) return false;
-  const Frame& frame = last_.frame;
+  if (!last_.has_value()) return false;
+  const PreparedFrame& frame = last_->frame;
   const PreparedFrame seen = shutter_tracking_.LastAtOneMoment(frame);
   std::string why_not;
   std::unique_ptr<Reference> reference =
       tracker_->MakeReference(seen, nullptr, nullptr, &why_not);
   if (reference == nullptr) return false;
-  const int id = last_.result.index;
-  has_last_ = false;
-  reference_ = keyframes_.Add(
-      {id, segment_, last_.result.world_from_cam, std::move(reference),
-       std::make_unique<Place>(seen, id), last_.result.edges},
-      reference_);
-  shutter_tracking_.AddReference(frame, seen, id);
-  reference_->velocity_covariance = last_.twist_covariance;
+  reference_ = AddKeyframe(
+      {last_->result.index, segment_, last_->result.world_from_cam, seen},
+      std::move(reference), reference_);
+  shutter_tracking_.AddReference(frame, seen);
+  reference_->velocity_covariance = last_->twist_covariance;
+  last_.reset();
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   return true;
@@ -105,12 +93,11 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   std::optional<Relocalisation> place;
   {
     const StageTimer timer(&result->relocalise_ms);
-    place =
-        relocaliser_.Find(frame, keyframes_.PlacesBefore(latest_segment_ + 1));
+    place = relocaliser_.Find(frame, keyframes_.Before(latest_segment_ + 1));
   }
   if (!place.has_value()) return false;
-  Keyframe* keyframe = keyframes_.Find(place->place_id);
-  TrackingGuess guess = place->cur_from_place;
+  OdometryKeyframe* keyframe = keyframes_.Find(place->keyframe);
+  TrackingGuess guess = place->cur_from_keyframe;
   VelocityPrior velocity;
   if (has_shutter_) {
     velocity = shutter_tracking_.LostPrior(frame, interval_);
@@ -200,16 +187,16 @@ void Odometry::ReturnToEarlierSegment(const PreparedFrame& frame,
     earlier_segment_.reset();
     return;
   }
-  Keyframe* found = keyframes_.Find(earlier_segment_->reference);
+  OdometryKeyframe* found = keyframes_.Find(earlier_segment_->reference);
   if (found == nullptr ||
       !attempts_.TryFallback(frame, *found, earlier_segment_->cur_from_ref,
                              result)) {
     const StageTimer timer(&result->relocalise_ms);
-    const auto place =
-        relocaliser_.Find(frame, keyframes_.PlacesBefore(segment_));
+    const auto place = relocaliser_.Find(frame, keyframes_.Before(segment_));
     if (!place.has_value()) return;
-    found = keyframes_.Find(place->place_id);
-    if (!attempts_.TryFallback(frame, *found, place->cur_from_place, result)) {
+    found = keyframes_.Find(place->keyframe);
+    if (!attempts_.TryFallback(frame, *found, place->cur_from_keyframe,
+                               result)) {
       return;
     }
   }

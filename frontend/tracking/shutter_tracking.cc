@@ -51,7 +51,7 @@ void ShutterTracking::HandleLost() {
 const PreparedFrame* ShutterTracking::Follow(
     const PreparedFrame& frame, double interval,
     const std::optional<Rigid3d>& prev_from_ref,
-    const std::optional<Twist>& first_guess, Keyframe* reference,
+    const std::optional<Twist>& first_guess, OdometryKeyframe* reference,
     const Track& track) {
   found_ = Found();
   const auto forget = [&] {
@@ -106,7 +106,7 @@ void ShutterTracking::Accept() {
 }
 
 bool ShutterTracking::MendReference(const Twist& since, double interval,
-                                    Keyframe* reference) {
+                                    OdometryKeyframe* reference) {
   if (!early_.has_value()) return false;
   const Twist twist =
       VelocityBetween(early_->before, early_->interval, since, interval);
@@ -129,14 +129,9 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
   auto mended = tracker_->MakeReference(moved, nullptr, nullptr, &why_not);
   if (mended == nullptr) return false;
   reference->reference = std::move(mended);
-  reference->place = std::make_unique<Place>(moved, reference->id);
-  reference_frames_[reference->id] = moved;
+  reference->frame = moved;
+  reference->features.reset();
   return true;
-}
-
-const Frame* ShutterTracking::FindReferenceFrame(int id) const {
-  const auto found = reference_frames_.find(id);
-  return found != reference_frames_.end() ? &found->second : nullptr;
 }
 
 PreparedFrame ShutterTracking::AtOneMoment(const Frame& frame) {
@@ -152,17 +147,9 @@ PreparedFrame ShutterTracking::LastAtOneMoment(const Frame& last) {
 }
 
 void ShutterTracking::AddReference(const Frame& frame,
-                                   const Frame& at_one_moment, int id) {
-  Frame& kept = reference_frames_[id] = at_one_moment;
-  kept.gray = at_one_moment.gray.clone();
-  kept.depth = at_one_moment.depth.clone();
-  if (reference_frames_.size() > 2) {
-    reference_frames_.erase(reference_frames_.begin());
-  }
+                                   const Frame& at_one_moment) {
   early_.emplace();
   early_->frame = frame;
-  early_->frame.gray = frame.gray.clone();
-  early_->frame.depth = frame.depth.clone();
   early_->frame.color.release();
   early_->target_from_middle = TargetFromMiddle(frame);
   early_->is_free = !frame.twist.has_value();

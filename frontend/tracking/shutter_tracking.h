@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <optional>
 
@@ -48,7 +47,7 @@ class ShutterTracking {
   const PreparedFrame* Follow(const PreparedFrame& frame, double interval,
                               const std::optional<Rigid3d>& prev_from_ref,
                               const std::optional<Twist>& first_guess,
-                              Keyframe* reference, const Track& track);
+                              OdometryKeyframe* reference, const Track& track);
 
   // The frame of the last Follow has that pose: the next one goes on from it.
   void Accept();
@@ -89,17 +88,14 @@ class ShutterTracking {
   // velocity, too, if it was found.
   PreparedFrame LastAtOneMoment(const Frame& last);
 
-  // The frame, which AtOneMoment has moved, is the reference of that id now.
-  void AddReference(const Frame& frame, const Frame& at_one_moment, int id);
-
-  // The images of a reference, as they have become; null: it is neither the
-  // latest nor the one before.
-  const Frame* FindReferenceFrame(int id) const;
+  // The frame, which AtOneMoment has moved, is a reference now.
+  void AddReference(const Frame& frame, const Frame& at_one_moment);
 
  private:
   // Makes the reference again with the mean velocity since; false: there is
   // nothing to gain.
-  bool MendReference(const Twist& since, double interval, Keyframe* reference);
+  bool MendReference(const Twist& since, double interval,
+                     OdometryKeyframe* reference);
 
   Tracker* tracker_;
   FrameRectifier rectifier_;
@@ -108,7 +104,6 @@ class ShutterTracking {
   double interval_ = 0.0;         // of that, s
   std::optional<EarlyReference> early_;
   Found found_;
-  std::map<int, Frame> reference_frames_;  // by id; the latest two
 };
 
 }  // namespace rgbd_pose

@@ -42,8 +42,8 @@ struct TrackerOptions {
   std::string Check() const;
 };
 
-// What a tracker keeps of a frame that others are tracked against, and what it
-// has learnt of it since; of the frame's images, copies.
+// What a tracker keeps of a frame that others are tracked against, whose images
+// it shares, and what it has learnt of it since.
 class Reference {
  public:
   virtual ~Reference() = default;

@@ -4,7 +4,8 @@
 
 namespace rgbd_pose {
 
-bool TrackingAttempts::Try(const PreparedFrame& frame, const Keyframe& keyframe,
+bool TrackingAttempts::Try(const PreparedFrame& frame,
+                           const OdometryKeyframe& keyframe,
                            const TrackingGuess& guess, TrackedFrame* result) {
   tracker_->Track(*keyframe.reference, frame, guess, &tracked_);
   const MotionEstimate& estimate = tracked_.estimate;
@@ -22,7 +23,7 @@ bool TrackingAttempts::Try(const PreparedFrame& frame, const Keyframe& keyframe,
 }
 
 bool TrackingAttempts::TryEither(const PreparedFrame& frame,
-                                 const Keyframe& keyframe,
+                                 const OdometryKeyframe& keyframe,
                                  const TrackingGuess& first,
                                  const TrackingGuess& second,
                                  TrackedFrame* result) {
@@ -36,7 +37,7 @@ bool TrackingAttempts::TryEither(const PreparedFrame& frame,
 }
 
 bool TrackingAttempts::TryFallback(const PreparedFrame& frame,
-                                   const Keyframe& keyframe,
+                                   const OdometryKeyframe& keyframe,
                                    const TrackingGuess& guess,
                                    TrackedFrame* result, const Accept& accept) {
   TrackedFrame attempt = *result;

@@ -25,19 +25,19 @@ class TrackingAttempts {
         stashed_(tracked_) {}
 
   // Against a keyframe from one guess; true if the result is a pose.
-  bool Try(const PreparedFrame& frame, const Keyframe& keyframe,
+  bool Try(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
            const TrackingGuess& guess, TrackedFrame* result);
 
   // The same from two guesses: the second counts where the first leads to no
   // pose, or to a doubtful one and itself to a good one.
-  bool TryEither(const PreparedFrame& frame, const Keyframe& keyframe,
+  bool TryEither(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
                  const TrackingGuess& first, const TrackingGuess& second,
                  TrackedFrame* result);
 
   // Another one after a pose was found: it counts if it is good and accepted
   // (asked when kept() is the new one). False, and nothing has changed but the
   // times, if not.
-  bool TryFallback(const PreparedFrame& frame, const Keyframe& keyframe,
+  bool TryFallback(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
                    const TrackingGuess& guess, TrackedFrame* result,
                    const Accept& accept = nullptr);
 

@@ -20,7 +20,7 @@ void AddImages(KeyframeMap* map) {
   frame.gray = cv::Mat::zeros(camera.height, camera.width, CV_8UC1);
   frame.depth = cv::Mat::zeros(camera.height, camera.width, CV_16UC1);
   const StoredImages images(frame);
-  for (MapKeyframe& keyframe : map->keyframes) {
+  for (Keyframe& keyframe : map->keyframes) {
     keyframe.images.gray = images.gray;
     keyframe.images.depth = images.depth;
   }

@@ -37,7 +37,7 @@ inline KeyframeMap NoiseMap(int keyframes, int seed) {
     const Rigid3d pose(rotation, place);
     const int id = 7 * i - 3;
     map.keyframes.push_back(
-        {id, i / 3, pose, StoredImages(NoiseFrame(100 * seed + i))});
+        {id, i / 3, pose, {}, StoredImages(NoiseFrame(100 * seed + i))});
     if (i == 0) continue;
     const MotionMatrix root = MotionMatrix::Identity() / (3.0 + i) +
                               MotionMatrix::Constant(1e-5 * M_PI);
@@ -60,10 +60,10 @@ inline bool IsSameMap(const KeyframeMap& a, const KeyframeMap& b) {
     return false;
   }
   for (size_t i = 0; i < a.keyframes.size(); ++i) {
-    const MapKeyframe& x = a.keyframes[i];
-    const MapKeyframe& y = b.keyframes[i];
+    const Keyframe& x = a.keyframes[i];
+    const Keyframe& y = b.keyframes[i];
     if (x.id != y.id || x.segment != y.segment ||
-        !IsSameMotion(x.map_from_cam, y.map_from_cam) ||
+        !IsSameMotion(x.world_from_cam, y.world_from_cam) ||
         x.images.timestamp != y.images.timestamp ||
         x.images.depth_delay != y.images.depth_delay ||
         x.images.depth_scale != y.images.depth_scale ||

@@ -111,9 +111,9 @@ TEST(SlamTest, KnowsWhereTheMapHasItsKeyframes) {
   player.slam.Finish();
   const Trajectory path = player.slam.Path();
   int keyframes = 0;
-  for (const MapKeyframe& keyframe : player.slam.Map().keyframes) {
+  for (const Keyframe& keyframe : player.slam.Map().keyframes) {
     const Rigid3d& pose = path.at(keyframe.id).world_from_cam;
-    EXPECT_LT((pose.translation - keyframe.map_from_cam.translation).norm(),
+    EXPECT_LT((pose.translation - keyframe.world_from_cam.translation).norm(),
               1e-12)
         << keyframe.id;
     ++keyframes;
@@ -219,8 +219,8 @@ TEST(SlamTest, AMapThatIsHeldIsTrackedInAndStaysAsItIs) {
   ASSERT_GE(after.keyframes.size(), map.keyframes.size());
   for (size_t k = 0; k < map.keyframes.size(); ++k) {
     EXPECT_EQ(after.keyframes[k].id, map.keyframes[k].id);
-    EXPECT_EQ(after.keyframes[k].map_from_cam.translation,
-              map.keyframes[k].map_from_cam.translation);
+    EXPECT_EQ(after.keyframes[k].world_from_cam.translation,
+              map.keyframes[k].world_from_cam.translation);
   }
 }
 
@@ -237,7 +237,7 @@ TEST(SlamTest, TwoMapsOfOnePlaceBecomeOne) {
   player.Play(Range(20, 50));
   player.Play(Range(50, 10));
   player.slam.Finish();
-  for (const MapKeyframe& keyframe : player.slam.Map().keyframes) {
+  for (const Keyframe& keyframe : player.slam.Map().keyframes) {
     EXPECT_EQ(keyframe.segment, 0) << keyframe.id;
   }
 }
@@ -289,16 +289,13 @@ TEST(SlamTest, KeyframesOfRollingShuttersAreOfOneMoment) {
     const TrackedFrame tracked = slam.Track(frame).tracked;
     ASSERT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
     for (int id = 0; id < tracked.index; ++id) {
-      const Frame* const seen = slam.odometry().FindReferenceFrame(id);
-      if (seen == nullptr) continue;
-      Frame& kept = rectified[id] = *seen;
-      kept.gray = seen->gray.clone();
-      kept.depth = seen->depth.clone();
+      const Keyframe* const kept = slam.odometry().FindKeyframe(id);
+      if (kept != nullptr) rectified[id] = kept->frame;
     }
   }
   slam.Finish();
   int compared = 0;
-  for (const MapKeyframe& keyframe : slam.Map().keyframes) {
+  for (const Keyframe& keyframe : slam.Map().keyframes) {
     if (rectified.count(keyframe.id) == 0) continue;  // the very last frame
     const Frame& expected = rectified.at(keyframe.id);
     const Frame stored = keyframe.images.Restore();
@@ -337,7 +334,7 @@ TEST(SlamTest, RollingShuttersGiveTheSameBytesForAnyThreads) {
     }
     slam.Finish();
     std::string text = FormatTrajectory(slam.Path());
-    for (const MapKeyframe& keyframe : slam.Map().keyframes) {
+    for (const Keyframe& keyframe : slam.Map().keyframes) {
       text += std::to_string(cv::sum(keyframe.images.Restore().gray)[0]) + "\n";
     }
     if (first.empty()) first = text;

@@ -181,7 +181,7 @@ KeyframeMap SolvedMap() {
   const GraphSolution solution = graph.Solve();
   EXPECT_TRUE(solution.ok()) << solution.reason;
   for (int i = 0; i < kPoses; ++i) {
-    map.keyframes[i].map_from_cam = graph.pose(i);
+    map.keyframes[i].world_from_cam = graph.pose(i);
   }
   return map;
 }
@@ -198,10 +198,10 @@ TEST(G2oTest, OthersFindNothingToImprove) {
   // Chi^2 / 2 of what these edges disagree by.
   EXPECT_GT(after, 50.0);
   EXPECT_LT(before, (1.0 + 1e-6) * after);
-  for (const MapKeyframe& keyframe : map.keyframes) {
+  for (const Keyframe& keyframe : map.keyframes) {
     const G2oPose& pose = graph.poses.at(keyframe.id);
     const MotionError moved =
-        ErrorOf(Rigid3d(pose.q, pose.t), keyframe.map_from_cam);
+        ErrorOf(Rigid3d(pose.q, pose.t), keyframe.world_from_cam);
     EXPECT_LT(moved.translation, 1e-6);
     EXPECT_LT(moved.angle, 1e-6);
   }
@@ -215,8 +215,8 @@ TEST(G2oTest, CostOfAnEdgeIsOurs) {
     for (int id = 0; id < 2; ++id) {
       map.keyframes.push_back({id, 0, world.Motion(3.0, 2.0), {}});
     }
-    const Rigid3d motion =
-        map.keyframes[1].map_from_cam.Inverse() * map.keyframes[0].map_from_cam;
+    const Rigid3d motion = map.keyframes[1].world_from_cam.Inverse() *
+                           map.keyframes[0].world_from_cam;
     RelativePose edge;
     edge.cur = 1;
     edge.cur_from_ref = world.Motion(1.0, 0.5) * motion;

@@ -27,11 +27,11 @@ TEST(KeyframeMapTest, SaysWhatIsWrong) {
       {[](KeyframeMap* map) { map->keyframes[2].id = 4; },
        "keyframe 4: is there twice"},
       {[](KeyframeMap* map) {
-         map->keyframes[1].map_from_cam.translation.x() = NAN;
+         map->keyframes[1].world_from_cam.translation.x() = NAN;
        },
        "keyframe 4: the pose must be of finite numbers"},
       {[](KeyframeMap* map) {
-         map->keyframes[1].map_from_cam.rotation.coeffs() *= 1.1;
+         map->keyframes[1].world_from_cam.rotation.coeffs() *= 1.1;
        },
        "keyframe 4: the pose"},
       {[](KeyframeMap* map) { map->keyframes[1].images = {}; },

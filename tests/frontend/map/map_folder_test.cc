@@ -43,7 +43,7 @@ std::vector<std::string> Names(const std::string& folder) {
 // The names that a map's files should have.
 std::vector<std::string> NamesOf(const KeyframeMap& map) {
   std::vector<std::string> names = {"map.txt"};
-  for (const MapKeyframe& keyframe : map.keyframes) {
+  for (const Keyframe& keyframe : map.keyframes) {
     names.push_back(keyframe.images.gray->checksum + ".png");
     names.push_back(keyframe.images.depth->checksum + ".png");
   }
@@ -72,7 +72,7 @@ TEST_F(MapFolderTest, GivesBackWhatWasSaved) {
   SaveMap(map_, saved);
   const KeyframeMap loaded = LoadMap(map_);
   EXPECT_TRUE(IsSameMap(loaded, saved));
-  EXPECT_TRUE(std::signbit(loaded.keyframes[0].map_from_cam.translation.y()));
+  EXPECT_TRUE(std::signbit(loaded.keyframes[0].world_from_cam.translation.y()));
   const std::string index = ReadTextFile(map_ + "/map.txt");
   SaveMap(map_, loaded);
   EXPECT_EQ(ReadTextFile(map_ + "/map.txt"), index);

@@ -2,18 +2,20 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
 #include "apps/pipeline/settings.h"
 #include "tests/support/map_parts.h"
 
 namespace rgbd_pose {
 namespace {
 
-NewKeyframe Noise(int id) {
-  NewKeyframe keyframe;
+Keyframe Noise(int id) {
+  Keyframe keyframe;
   keyframe.id = id;
   keyframe.segment = id;
-  keyframe.frame = NoiseFrame(id);
-  keyframe.map_from_cam.translation.x() = id;
+  keyframe.frame = PreparedFrame(NoiseFrame(id));
+  keyframe.world_from_cam.translation.x() = id;
   return keyframe;
 }
 
@@ -22,7 +24,7 @@ TEST(MapperTest, TellsOfEachKeyframeOnce) {
   const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
   Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), camera));
   for (const int id : {3, 7}) {
-    const MapUpdate update = mapper.Add(Noise(id));
+    const MapUpdate update = mapper.Add(Noise(id), {});
     ASSERT_EQ(update.moved.size(), 1u);
     EXPECT_EQ(update.moved.begin()->first, id);
     EXPECT_EQ(update.moved.at(id).map_from_cam.translation.x(), id);
@@ -35,25 +37,25 @@ TEST(MapperTest, TellsOfEachKeyframeOnce) {
 TEST(MapperTest, TrackedEdgesJoinSegments) {
   const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
   Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), camera));
-  mapper.Add(Noise(3));
-  mapper.Add(Noise(7));
-  NewKeyframe both = Noise(9);
+  mapper.Add(Noise(3), {});
+  mapper.Add(Noise(7), {});
+  std::vector<RelativePose> edges;
   RelativePose edge;
   edge.cur = 9;
   edge.covariance = 1e-6 * MotionMatrix::Identity();
   for (const int ref : {3, 7}) {
     edge.ref = ref;
     edge.cur_from_ref.translation.z() = ref;
-    both.edges.push_back(edge);
+    edges.push_back(edge);
   }
-  EXPECT_EQ(mapper.Add(std::move(both)).joined, 1);
+  EXPECT_EQ(mapper.Add(Noise(9), edges).joined, 1);
   const KeyframeMap map = mapper.Map();
-  for (const MapKeyframe& keyframe : map.keyframes) {
+  for (const Keyframe& keyframe : map.keyframes) {
     EXPECT_EQ(keyframe.segment, 7);
-    EXPECT_NEAR(keyframe.map_from_cam.translation.x(), 7.0, 1e-9);
+    EXPECT_NEAR(keyframe.world_from_cam.translation.x(), 7.0, 1e-9);
   }
-  EXPECT_NEAR(map.keyframes[2].map_from_cam.translation.z(), -7.0, 1e-9);
-  EXPECT_NEAR(map.keyframes[0].map_from_cam.translation.z(), -4.0, 1e-9);
+  EXPECT_NEAR(map.keyframes[2].world_from_cam.translation.z(), -7.0, 1e-9);
+  EXPECT_NEAR(map.keyframes[0].world_from_cam.translation.z(), -4.0, 1e-9);
 }
 
 }  // namespace

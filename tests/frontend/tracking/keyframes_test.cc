@@ -26,14 +26,13 @@ Rigid3d CameraAt(double x) {
   return Rigid3d(Eigen::Quaterniond::Identity(), {x, 0.0, 0.0});
 }
 
-Keyframe MakeKeyframe(int id, int segment, double x) {
-  return {id,      segment, CameraAt(x), std::make_unique<WallReference>(),
-          nullptr, {}};
+OdometryKeyframe MakeKeyframe(int id, int segment, double x) {
+  return {{id, segment, CameraAt(x)}, std::make_unique<WallReference>()};
 }
 
 TEST(KeyframesTest, FindsByIdAndForgetsTheOldest) {
   Keyframes keyframes;
-  Keyframe* const second = [&] {
+  OdometryKeyframe* const second = [&] {
     keyframes.Add(MakeKeyframe(0, 0, 0.0));
     return keyframes.Add(MakeKeyframe(1, 0, 0.0));
   }();
@@ -45,28 +44,27 @@ TEST(KeyframesTest, FindsByIdAndForgetsTheOldest) {
   EXPECT_EQ(keyframes.Find(99), nullptr);
 }
 
-TEST(KeyframesTest, ThePlacesAreThoseOfTheKeyframesTheLatestFirst) {
+TEST(KeyframesTest, ThoseOfEarlierSegmentsComeTheLatestFirst) {
   Keyframes keyframes;
-  std::vector<Place*> expected;
+  std::vector<Keyframe*> expected;
   for (int i = 0; i < static_cast<int>(Keyframes::kMaxKeyframes) + 3; ++i) {
-    Keyframe keyframe = MakeKeyframe(i, i / 10, 0.0);
-    keyframe.place = std::make_unique<Place>(Frame(), i);
-    expected.insert(expected.begin(), keyframe.place.get());
-    keyframes.Add(std::move(keyframe));
+    expected.insert(expected.begin(),
+                    keyframes.Add(MakeKeyframe(i, i / 10, 0.0)));
   }
   expected.resize(Keyframes::kMaxKeyframes);
-  EXPECT_EQ(keyframes.PlacesBefore(3), expected);
+  EXPECT_EQ(keyframes.Before(3), expected);
   expected.erase(expected.begin(), expected.begin() + 3);  // of segment 2
-  EXPECT_EQ(keyframes.PlacesBefore(2), expected);
+  EXPECT_EQ(keyframes.Before(2), expected);
 }
 
 TEST(KeyframesTest, TheNearestIsTheOneWithTheSmallestFlow) {
   Keyframes keyframes;
   // 525 px / 2 m: a centimetre is 2.6 px.
-  Keyframe* const far = keyframes.Add(MakeKeyframe(0, 0, 0.10));
-  Keyframe* const near = keyframes.Add(MakeKeyframe(1, 0, -0.03));
+  OdometryKeyframe* const far = keyframes.Add(MakeKeyframe(0, 0, 0.10));
+  OdometryKeyframe* const near = keyframes.Add(MakeKeyframe(1, 0, -0.03));
   keyframes.Add(MakeKeyframe(2, 0, 0.12));
-  const auto nearest = [&](int segment, const Keyframe* except, double flow) {
+  const auto nearest = [&](int segment, const OdometryKeyframe* except,
+                           double flow) {
     return keyframes.FindNearest(CameraAt(0.0), segment, kMinShare, flow,
                                  except);
   };

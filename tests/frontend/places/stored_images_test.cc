@@ -1,4 +1,4 @@
-#include "frontend/map/stored_images.h"
+#include "frontend/places/stored_images.h"
 
 #include <gtest/gtest.h>
 
