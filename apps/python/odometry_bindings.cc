@@ -97,7 +97,7 @@ void BindTrackedFrame(py::module_* module) {
       .def_readonly("segment", &TrackedFrame::segment,
                     "frames of one segment hang together")
       .def_readonly("reference", &TrackedFrame::reference,
-                    "index of the frame it was tracked against; -1: none")
+                    "index of the frame its motion counts from; -1: none")
       .def_readonly("is_reference", &TrackedFrame::is_reference,
                     "whether it became the reference of those that follow")
       .def_readonly("previous_is_reference",

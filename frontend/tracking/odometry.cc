@@ -124,8 +124,10 @@ void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
 bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
   const PreparedFrame* frame = Look(measured, prediction, result);
-  if (!is_lost_ && (wants_reference_ || !IsTrusted(frame, *result))) {
+  bool last_is_due = wants_reference_;
+  if (!is_lost_ && !IsTrusted(frame, *result)) {
     frame = LookFromLast(measured, prediction, frame, result);
+    last_is_due = false;
   }
   // A doubtful pose is no way back from being lost.
   if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
@@ -136,11 +138,12 @@ bool Odometry::Follow(const PreparedFrame& measured,
   if (attempts_.kept().twist.has_value()) {
     twist_covariance_ = attempts_.kept().twist_covariance;
   }
-  if (has_shutter_) shutter_tracking_.Accept();
   TakeMotion(result);
   cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
+  last_is_due = last_is_due && GoOnFromLast(result);
+  if (has_shutter_) shutter_tracking_.Accept();
   if (earlier_segment_.has_value()) ReturnToEarlierSegment(*frame, result);
-  Accept(*frame, result);
+  if (!last_is_due) Accept(*frame, result);
   return true;
 }
 

@@ -105,6 +105,9 @@ class Odometry {
                                     const Prediction* prediction,
                                     const PreparedFrame* found,
                                     TrackedFrame* result);
+  // The last frame is the reference of the frames after this one, which has
+  // told its velocity.
+  bool GoOnFromLast(TrackedFrame* result);
   // False, and nothing has changed, if there is none or it shows too little.
   bool MakeLastReference();
   void KeepLast(const PreparedFrame& frame, const TrackedFrame& result);
@@ -156,6 +159,7 @@ class Odometry {
   struct LastFrame {
     PreparedFrame frame;
     MotionMatrix twist_covariance;  // see TrackingResult
+    MotionMatrix covariance;        // of its motion since its reference
     TrackedFrame result;
   };
   std::optional<LastFrame> last_;

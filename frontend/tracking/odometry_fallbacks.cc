@@ -14,7 +14,8 @@ void Odometry::KeepLast(const PreparedFrame& frame,
                         const TrackedFrame& result) {
   last_.reset();
   if (result.status == TrackingStatus::kLost || result.is_reference) return;
-  last_ = LastFrame{frame.WithTwist(twist_), twist_covariance_, result};
+  last_ = LastFrame{frame.WithTwist(twist_), twist_covariance_, covariance_,
+                    result};
 }
 
 // A frame that is about to become a reference should be certain of its own
@@ -23,11 +24,12 @@ bool Odometry::IsTrusted(const PreparedFrame* frame,
                          const TrackedFrame& result) const {
   constexpr double kMaxSigma = 1.7;
   if (frame == nullptr) return false;
+  const bool is_certain = result.sigma <= kMaxSigma;
   // Of a new reference nothing would be known of what moves.
-  if (attempts_.kept().is_ambiguous) return true;
+  if (attempts_.kept().is_ambiguous) return is_certain;
   if (result.status != TrackingStatus::kOk) return false;
   return !NeedsNewReference() ||
-         (result.sigma <= kMaxSigma && !attempts_.kept().needs_new_keyframe);
+         (is_certain && !attempts_.kept().needs_new_keyframe);
 }
 
 const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
@@ -68,6 +70,23 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   attempts_.RestoreStashed();
   shutter_tracking_.PutBack(std::move(before));
   return found;
+}
+
+bool Odometry::GoOnFromLast(TrackedFrame* result) {
+  if (!last_.has_value()) return false;
+  const StageTimer timer(&result->reference_ms);
+  Reference* const reference = reference_->reference.get();
+  const MotionMatrix covariance = last_->covariance + covariance_;
+  if (!MakeLastReference()) return false;
+  tracker_->OnAccepted(reference, attempts_.mutable_kept());
+  cur_from_ref_ = cur_from_prev_;
+  covariance_ = covariance;
+  result->previous_is_reference = true;
+  result->reference = reference_->id;
+  result->cur_from_reference = cur_from_ref_;
+  wants_reference_ = false;
+  is_unconnected_ = false;
+  return true;
 }
 
 bool Odometry::MakeLastReference() {

@@ -44,14 +44,13 @@ struct TrackedFrame {
   // where a frame is found in it, its edges join both.
   int segment = 0;
 
-  int reference = -1;  // index of the frame it was tracked against; -1: none
+  int reference = -1;  // index of the frame its motion counts from; -1: none
   Rigid3d cur_from_reference;  // the motion since then
   bool is_reference = false;   // became the reference of the frames that follow
   bool relocalised = false;    // found again among earlier references
 
-  // The frame before became a reference after all: this one was found against
-  // it, not against what it was tracked by itself. Its images: see
-  // Odometry::FindReferenceFrame.
+  // The frame before has become a reference, from which this one's motion
+  // counts. Its images: see Odometry::FindKeyframe.
   bool previous_is_reference = false;
 
   // Lost, but the pose follows what others say of the motion since it was not
@@ -59,7 +58,7 @@ struct TrackedFrame {
   bool is_predicted = false;
 
   // The motions that it was tracked by, their frames named by their index: the
-  // first gives the pose; a second, where the reference changes to an earlier
+  // first leads to what it was tracked against; a second, where the reference changes to an earlier
   // one, leads to the one that was left. Of a predicted frame, the prediction,
   // less certain with every frame. None where no motion is known or not how
   // certain it is.
