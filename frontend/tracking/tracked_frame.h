@@ -58,10 +58,10 @@ struct TrackedFrame {
   bool is_predicted = false;
 
   // The motions that it was tracked by, their frames named by their index: the
-  // first leads to what it was tracked against; a second, where the reference changes to an earlier
-  // one, leads to the one that was left. Of a predicted frame, the prediction,
-  // less certain with every frame. None where no motion is known or not how
-  // certain it is.
+  // first leads to what it was tracked against; a second, where the reference
+  // changes to an earlier one, leads to the one that was left. Of a predicted
+  // frame, the prediction, less certain with every frame. None where no motion
+  // is known or not how certain it is.
   std::vector<RelativePose> edges;
 
   // What its motion comes from.
