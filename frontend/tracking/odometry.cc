@@ -124,10 +124,10 @@ void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
 bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
   const PreparedFrame* frame = Look(measured, prediction, result);
-  bool last_is_due = wants_reference_;
-  if (!is_lost_ && !IsTrusted(frame, *result)) {
+  const bool is_trusted = IsTrusted(frame, *result);
+  bool goes_on = wants_reference_ && is_trusted && IsSlow();
+  if (!is_lost_ && !goes_on && (wants_reference_ || !is_trusted)) {
     frame = LookFromLast(measured, prediction, frame, result);
-    last_is_due = false;
   }
   // A doubtful pose is no way back from being lost.
   if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
@@ -140,10 +140,10 @@ bool Odometry::Follow(const PreparedFrame& measured,
   }
   TakeMotion(result);
   cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
-  last_is_due = last_is_due && GoOnFromLast(result);
+  goes_on = goes_on && GoOnFromLast(result);
   if (has_shutter_) shutter_tracking_.Accept();
   if (earlier_segment_.has_value()) ReturnToEarlierSegment(*frame, result);
-  if (!last_is_due) Accept(*frame, result);
+  if (!goes_on) Accept(*frame, result);
   return true;
 }
 

@@ -99,6 +99,8 @@ class Odometry {
   const PreparedFrame* Look(const PreparedFrame& frame,
                             const Prediction* prediction, TrackedFrame* result);
   bool IsTrusted(const PreparedFrame* frame, const TrackedFrame& result) const;
+  // Whether little has moved since the last frame.
+  bool IsSlow() const;
   // The same against the last frame, which becomes a reference for it; where
   // that is no better, what Look found.
   const PreparedFrame* LookFromLast(const PreparedFrame& frame,
