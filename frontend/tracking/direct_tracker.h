@@ -16,27 +16,14 @@ namespace rgbd_pose {
 
 // What is believed of a motion that is estimated from pixels.
 struct DirectTrackerOptions {
-  // A frame is lost if less of its reference is seen where it should be, and
-  // degraded below the second.
+  // A frame is lost if less of its reference is seen where it should be.
   double min_seen_share = 0.15;
-  double min_seen_share_ok = 0.3;
 
   // It is lost if neither gray levels nor depths of more than this agree with
   // those of its reference, as where something covers the lens. Measured: right
   // motions have 0.4 (half of the image covered) to 0.99 of one of the two,
   // wrong ones -0.4 to 0.1 of both.
   double min_likeness = 0.25;
-
-  // It is lost with fewer pixels.
-  int min_pixels = 200;
-
-  // It is degraded where a direction is known no better than this.
-  double max_sigma_rotation = 0.005;    // rad
-  double max_sigma_translation = 0.01;  // m
-
-  // By pixels alone it is degraded if its residuals spread wider than this, in
-  // sigmas. Measured: right motions have 0.8, with blur 1.9; wrong ones 2 to 5.
-  double max_sigma_ok = 2.0;
 
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;

@@ -301,8 +301,7 @@ void FeatureTracker::Judge(TrackingResult* tracked) const {
                       std::to_string(estimate.num_used) + " matches agree";
   } else if (estimate.sigma > options_.max_sigma_ok) {
     tracked->status = TrackingStatus::kDegraded;
-    tracked->reason =
-        "residuals spread by " + ShortNumber(estimate.sigma) + " sigmas";
+    tracked->reason = Format("residuals spread by %.1f sigmas", estimate.sigma);
   }
 }
 

