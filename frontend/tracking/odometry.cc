@@ -125,7 +125,9 @@ bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
   const PreparedFrame* frame = Look(measured, prediction, result);
   const bool is_trusted = IsTrusted(frame, *result);
-  bool goes_on = wants_reference_ && is_trusted && IsSlow();
+  // Pixels alone know a velocity half a frame late; a second look mends it.
+  bool goes_on = wants_reference_ && is_trusted && IsSlow() &&
+                 result->source != TrackingSource::kDirect;
   if (!is_lost_ && !goes_on && (wants_reference_ || !is_trusted)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }

@@ -123,8 +123,7 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
     early_->target_from_middle = TargetFromMiddle(frame);
     velocity_.SetMiddle(early_->target_from_middle.Inverse());
   }
-  const PreparedFrame moved(
-      rectifier_.Rectify(frame, early_->target_from_middle));
+  const PreparedFrame moved = Rectified(frame, early_->target_from_middle);
   std::string why_not;
   auto mended = tracker_->MakeReference(moved, nullptr, nullptr, &why_not);
   if (mended == nullptr) return false;
@@ -134,8 +133,14 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
   return true;
 }
 
+PreparedFrame ShutterTracking::Rectified(Frame frame,
+                                         const Rigid3d& target_from_middle) {
+  frame.color.release();  // nobody tracks by colours
+  return PreparedFrame(rectifier_.Rectify(frame, target_from_middle));
+}
+
 PreparedFrame ShutterTracking::AtOneMoment(const Frame& frame) {
-  return PreparedFrame(rectifier_.Rectify(frame));
+  return Rectified(frame, TargetFromMiddle(frame));
 }
 
 PreparedFrame ShutterTracking::LastAtOneMoment(const Frame& last) {
@@ -143,7 +148,7 @@ PreparedFrame ShutterTracking::LastAtOneMoment(const Frame& last) {
   Frame frame = last;
   frame.twist =
       VelocityBetween(between_, interval_, *found_.between, found_.interval);
-  return PreparedFrame(rectifier_.Rectify(frame, TargetFromMiddle(last)));
+  return Rectified(frame, TargetFromMiddle(last));
 }
 
 void ShutterTracking::AddReference(const Frame& frame,

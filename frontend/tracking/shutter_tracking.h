@@ -92,6 +92,7 @@ class ShutterTracking {
   void AddReference(const Frame& frame, const Frame& at_one_moment);
 
  private:
+  PreparedFrame Rectified(Frame frame, const Rigid3d& target_from_middle);
   // Makes the reference again with the mean velocity since; false: there is
   // nothing to gain.
   bool MendReference(const Twist& since, double interval,
