@@ -25,6 +25,7 @@
 #include "core/util/text_file.h"
 #include "costs/cost_factory.h"
 #include "frontend/features/frontend.h"
+#include "frontend/tracking/tracker_factory.h"
 #include "robust/m_estimator.h"
 
 DEFINE_string(sequences, "",
@@ -36,7 +37,15 @@ DEFINE_string(
     losses, "tukey",
     "M-estimators, also with widths as huber(1.5), set apart by commas");
 DEFINE_string(frontends, "patch", "frontends, set apart by commas");
-DEFINE_int32(repeats, 1, "how often each combination is run");
+DEFINE_string(trackers, "hybrid", "trackers, set apart by commas");
+DEFINE_string(parts, "",
+              "parts of each sequence, as --frames of the program takes them, "
+              "set apart by commas: 0-,3-,7- (other starts) or "
+              "0-299,300-599; each is a run, the table has their median and "
+              "range; empty: the whole sequence");
+DEFINE_int32(repeats, 1,
+             "how often each combination is run: for times, all else is the "
+             "same");
 DEFINE_string(settings, "",
               "flag file of the program for all runs; paths in it must be "
               "absolute; empty: its defaults");
@@ -69,17 +78,19 @@ ProgramInfo Info() {
       "each run in a process and a folder of its own, and makes one table of "
       "it.";
   info.example =
-      "rgbd_batch --sequences=list.txt --losses=huber,tukey --repeats=2 "
+      "rgbd_batch --sequences=list.txt --losses=huber,tukey --parts=0-,3-,7- "
       "--output=runs";
   info.flag_groups = {
       {"Plan",
-       {"sequences", "costs", "losses", "frontends", "repeats", "settings"}},
+       {"sequences", "costs", "losses", "frontends", "trackers", "parts",
+        "repeats", "settings"}},
       {"How it is run",
        {"jobs", "timeout", "resume", "shard", "merge", "dry_run", "program"}},
       {"Output", {"output"}}};
   info.choices = {{"costs", CostNames()},
                   {"losses", MEstimatorNames()},
-                  {"frontends", FrontendNames()}};
+                  {"frontends", FrontendNames()},
+                  {"trackers", TrackerNames()}};
   return info;
 }
 
@@ -226,8 +237,9 @@ int WriteSummary(const std::vector<BatchRun>& plan, const BatchFolder& folder,
 
 int Main() {
   CheckFlags();
-  const BatchGrid grid =
-      ParseGrid(FLAGS_costs, FLAGS_losses, FLAGS_frontends, FLAGS_repeats);
+  const BatchGrid grid = ParseGrid(
+      {FLAGS_costs, FLAGS_losses, FLAGS_frontends, FLAGS_trackers, FLAGS_parts},
+      FLAGS_repeats);
   const BatchShard shard = FLAGS_merge ? BatchShard() : ParseShard(FLAGS_shard);
   const std::string program = ProgramPath();
   const std::vector<BatchRun> plan = MakePlan(

@@ -35,11 +35,13 @@ std::vector<std::string> CommandOf(const BatchRun& run,
   std::vector<std::string> command = {options.program};
   command.insert(command.end(), options.arguments.begin(),
                  options.arguments.end());
-  command.insert(
-      command.end(),
-      {"--dataset=" + run.sequence.folder, "--camera=" + run.sequence.camera,
-       "--cost=" + run.cost, "--loss=" + run.loss, "--frontend=" + run.frontend,
-       "--threads=1", "--output=."});
+  for (size_t k = 0; k < run.values.size(); ++k) {
+    command.push_back(std::string("--") + BatchSettings()[k].flag + "=" +
+                      run.values[k]);
+  }
+  command.insert(command.end(), {"--dataset=" + run.sequence.folder,
+                                 "--camera=" + run.sequence.camera,
+                                 "--threads=1", "--output=."});
   return command;
 }
 

@@ -2,9 +2,11 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <optional>
 
 #include "core/util/format.h"
+#include "core/util/quantile.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
@@ -53,13 +55,13 @@ ordered_json FindFigure(const json& metrics, const char* pointer) {
 
 ordered_json MakeRow(const BatchRun& run, const BatchFolder& folder) {
   const std::optional<RunEnd> end = folder.ReadEnd(run);
-  ordered_json row = {{"sequence", run.sequence.name},
-                      {"cost", run.cost},
-                      {"loss", run.loss},
-                      {"frontend", run.frontend},
-                      {"repeat", run.repeat},
-                      {"status", end ? end->status : "missing"},
-                      {"exit_code", nullptr}};
+  ordered_json row = {{"sequence", run.sequence.name}};
+  for (size_t k = 0; k < run.values.size(); ++k) {
+    row[BatchSettings()[k].column] = run.values[k];
+  }
+  row["repeat"] = run.repeat;
+  row["status"] = end ? end->status : "missing";
+  row["exit_code"] = nullptr;
   if (end) row["exit_code"] = end->exit_code;
   const json metrics = end ? ReadMetrics(folder.Complete(run)) : json();
   for (const Figure& figure : kFigures) {
@@ -79,6 +81,101 @@ std::string FormatScaled(const ordered_json& value, double factor, int digits) {
   return Format("%.*f", digits, factor * value.get<double>());
 }
 
+// The setting whose values are repeats of one another.
+constexpr char kPart[] = "part";
+
+bool IsVaried(const BatchSummary& summary, const char* column) {
+  return std::any_of(summary.begin(), summary.end(), [&](const auto& row) {
+    return row[column] != summary[0][column];
+  });
+}
+
+// Rows under a header; the columns from `first_figure` on are to the right.
+std::string FormatColumns(const std::vector<std::vector<std::string>>& rows,
+                          size_t first_figure) {
+  std::vector<size_t> widths(rows[0].size());
+  for (const auto& row : rows) {
+    for (size_t i = 0; i < row.size(); ++i) {
+      widths[i] = std::max(widths[i], row[i].size());
+    }
+  }
+  std::string text;
+  for (const auto& row : rows) {
+    for (size_t i = 0; i < row.size(); ++i) {
+      const std::string space(widths[i] - row[i].size(), ' ');
+      text += i < first_figure ? row[i] + space : space + row[i];
+      text += i + 1 < row.size() ? "  " : "\n";
+    }
+  }
+  return text;
+}
+
+std::string TableOfRuns(const BatchSummary& summary,
+                        std::vector<std::string> names) {
+  for (const char* name : {"repeat", "status"}) names.push_back(name);
+  std::vector<std::vector<std::string>> rows = {names};
+  for (const char* figure :
+       {"tracked %", "ATE mm", "RPE over 1 s mm", "deg", "ms/frame"}) {
+    rows[0].push_back(figure);
+  }
+  for (const ordered_json& row : summary) {
+    std::vector<std::string> cells;
+    for (const std::string& name : names) {
+      cells.push_back(FormatCell(row[name]));
+    }
+    cells.push_back(FormatScaled(row["tracked_share"], 100.0, 1));
+    cells.push_back(FormatScaled(row["ate_rmse_m"], 1000.0, 2));
+    cells.push_back(FormatScaled(row["rpe_seconds_translation_m"], 1000.0, 2));
+    cells.push_back(FormatScaled(row["rpe_seconds_rotation_deg"], 1.0, 3));
+    cells.push_back(FormatScaled(row["track_ms_median"], 1.0, 2));
+    rows.push_back(std::move(cells));
+  }
+  return FormatColumns(rows, names.size());
+}
+
+// A row for all parts of a sequence with the same other settings: what one part
+// says may be chance.
+std::string TableOfParts(const BatchSummary& summary,
+                         const std::vector<std::string>& names) {
+  std::vector<std::vector<std::string>> rows = {names};
+  for (const char* figure : {"runs", "tracked % least", "ATE mm", "least",
+                             "most", "RPE over 1 s mm", "least", "most"}) {
+    rows[0].push_back(figure);
+  }
+  std::vector<std::vector<std::string>> settings;  // in order of appearance
+  std::map<std::vector<std::string>, std::vector<const ordered_json*>> runs;
+  for (const ordered_json& row : summary) {
+    std::vector<std::string> own;
+    for (const std::string& name : names) own.push_back(FormatCell(row[name]));
+    if (runs.count(own) == 0) settings.push_back(own);
+    runs[own].push_back(&row);
+  }
+  for (const std::vector<std::string>& own : settings) {
+    std::vector<std::string> cells = own;
+    cells.push_back(std::to_string(runs[own].size()));
+    double least_tracked = 1.0;
+    for (const ordered_json* row : runs[own]) {
+      const ordered_json& share = (*row)["tracked_share"];
+      least_tracked = std::min(least_tracked,
+                               share.is_number() ? share.get<double>() : 0.0);
+    }
+    cells.push_back(Format("%.1f", 100.0 * least_tracked));
+    for (const char* figure : {"ate_rmse_m", "rpe_seconds_translation_m"}) {
+      std::vector<double> values;
+      for (const ordered_json* row : runs[own]) {
+        const ordered_json& value = (*row)[figure];
+        if (value.is_number()) values.push_back(1000.0 * value.get<double>());
+      }
+      for (const double share : {0.5, 0.0, 1.0}) {
+        cells.push_back(
+            values.empty() ? "-" : Format("%.2f", Quantile(values, share)));
+      }
+    }
+    rows.push_back(std::move(cells));
+  }
+  return FormatColumns(rows, names.size());
+}
+
 }  // namespace
 
 BatchSummary Summarise(const std::vector<BatchRun>& runs,
@@ -95,7 +192,11 @@ int CountNotOk(const BatchSummary& summary) {
 }
 
 std::string FormatBatchCsv(const BatchSummary& summary) {
-  std::string text = "sequence,cost,loss,frontend,repeat,status,exit_code";
+  std::string text = "sequence";
+  for (const BatchSetting& setting : BatchSettings()) {
+    text += std::string(",") + setting.column;
+  }
+  text += ",repeat,status,exit_code";
   for (const Figure& figure : kFigures) {
     text += std::string(",") + figure.column;
   }
@@ -116,35 +217,25 @@ std::string FormatBatchJson(const BatchSummary& summary) {
 }
 
 std::string FormatBatchTable(const BatchSummary& summary) {
-  std::vector<std::vector<std::string>> rows = {
-      {"sequence", "cost", "loss", "frontend", "run", "status", "tracked %",
-       "ATE mm", "RPE mm/s", "RPE deg/s", "ms/frame"}};
-  for (const ordered_json& row : summary) {
-    rows.push_back({FormatCell(row["sequence"]), FormatCell(row["cost"]),
-                    FormatCell(row["loss"]), FormatCell(row["frontend"]),
-                    FormatCell(row["repeat"]), FormatCell(row["status"]),
-                    FormatScaled(row["tracked_share"], 100.0, 1),
-                    FormatScaled(row["ate_rmse_m"], 1000.0, 2),
-                    FormatScaled(row["rpe_seconds_translation_m"], 1000.0, 2),
-                    FormatScaled(row["rpe_seconds_rotation_deg"], 1.0, 3),
-                    FormatScaled(row["track_ms_median"], 1.0, 2)});
-  }
-  std::vector<size_t> widths(rows[0].size());
-  for (const auto& row : rows) {
-    for (size_t i = 0; i < row.size(); ++i) {
-      widths[i] = std::max(widths[i], row[i].size());
+  std::string same;
+  std::vector<std::string> names = {"sequence"};
+  bool has_parts = false;
+  for (const BatchSetting& setting : BatchSettings()) {
+    if (!IsVaried(summary, setting.column)) {
+      const std::string value =
+          summary.empty() ? "" : FormatCell(summary[0][setting.column]);
+      if (value.empty()) continue;
+      same +=
+          std::string(same.empty() ? "" : ", ") + setting.column + " " + value;
+    } else if (setting.column == std::string(kPart)) {
+      has_parts = true;
+    } else {
+      names.push_back(setting.column);
     }
   }
-  constexpr size_t kFirstFigure = 6;  // figures to the right
-  std::string text;
-  for (const auto& row : rows) {
-    for (size_t i = 0; i < row.size(); ++i) {
-      const std::string space(widths[i] - row[i].size(), ' ');
-      text += i < kFirstFigure ? row[i] + space : space + row[i];
-      text += i + 1 < row.size() ? "  " : "\n";
-    }
-  }
-  return text;
+  return (same.empty() ? "" : "the same in all runs: " + same + "\n") +
+         (has_parts ? TableOfParts(summary, names)
+                    : TableOfRuns(summary, std::move(names)));
 }
 
 }  // namespace rgbd_pose

@@ -24,7 +24,8 @@ int CountNotOk(const BatchSummary& summary);
 std::string FormatBatchCsv(const BatchSummary& summary);
 std::string FormatBatchJson(const BatchSummary& summary);
 
-// For people: the main figures.
+// For people: the main figures of each run; of several parts of a sequence
+// their median, least and most instead.
 std::string FormatBatchTable(const BatchSummary& summary);
 
 }  // namespace rgbd_pose

@@ -14,7 +14,8 @@ json BatchReportData(const std::string& batch_folder) {
   const fs::path folder = fs::absolute(batch_folder).lexically_normal();
   const CsvTable table = CsvTable::Read((folder / "summary.csv").string());
   json rows(std::vector<json>(table.size(), json::object()));
-  for (const char* name : {"sequence", "cost", "loss", "frontend", "status"}) {
+  for (const char* name :
+       {"sequence", "cost", "loss", "frontend", "tracker", "part", "status"}) {
     const std::vector<std::string> words = table.Words(name);
     for (size_t i = 0; i < words.size(); ++i) rows[i][name] = words[i];
   }

@@ -27,9 +27,9 @@ def simulated(folder, options='', frames=4):
 BEFORE = {
     'docs/batch.md':
         'mkdir simulated\n' +
-        simulated('rgbd_dataset_freiburg1_xyz', '--camera=tum_fr1') +
-        simulated('simulated/xyz', '--path=xyz') +
-        simulated('simulated/pan_tilt', '--path=pan_tilt'),
+        simulated('rgbd_dataset_freiburg1_xyz', '--camera=tum_fr1', 10) +
+        simulated('simulated/xyz', '--path=xyz', 10) +
+        simulated('simulated/pan_tilt', '--path=pan_tilt', 10),
     'docs/thesis_experiments.md':
         simulated('rgbd_dataset_freiburg2_xyz', '--camera=tum_fr2'),
 }

@@ -4,6 +4,8 @@
 
 const SETTING_SYMBOLS = ['circle', 'square', 'diamond', 'triangle-up', 'x', 'star'];
 
+const BATCH_SETTINGS = ['tracker', 'cost', 'loss', 'frontend'];
+
 const BATCH_FIGURES = [
   {key: 'ate_rmse_m', id: 'batch-ate', title: 'Position error (ATE, RMSE)',
    label: 'ATE', unit: 'mm', factor: 1000,
@@ -32,7 +34,7 @@ function settingName(row, varied) {
 function batchHeader(data, varied) {
   const rows = data.rows;
   document.title = data.name + ': rgbd_pose batch';
-  const fixed = ['cost', 'loss', 'frontend'].filter(name => !varied.includes(name));
+  const fixed = BATCH_SETTINGS.filter(name => !varied.includes(name));
   const page = document.getElementById('page');
   page.append(make('h1', {}, 'Batch: ' + data.name));
   if (rows.length > 0 && fixed.length > 0) {
@@ -46,7 +48,7 @@ function batchHeader(data, varied) {
     [rows.length, 'runs'], [ok, 'of them ok'],
     [count('sequence'), 'sequences'],
     [distinct(rows.map(row => settingName(row, varied))).length, 'settings'],
-    [count('repeat'), 'repeats'],
+    [count('part'), 'parts of each'], [count('repeat'), 'repeats'],
   ]) {
     figures.append(figureTile(String(value), text));
   }
@@ -67,7 +69,7 @@ function batchPlot(data, figure, sequences, settings, varied) {
       type: 'scatter', mode: 'markers', name: setting,
       x: own.map(row => figure.factor * row[figure.key]),
       y: own.map(row => sequences.indexOf(row.sequence) + shift),
-      customdata: own.map(row => `${row.sequence}, run ${row.repeat}`),
+      customdata: own.map(row => `${row.sequence} ${row.part}, run ${row.repeat}`),
       hovertemplate: `%{customdata}: %{x:.3~g} ${figure.unit}` +
           '<extra>%{fullData.name}</extra>',
       marker: {size: 9, color: SEGMENT_COLORS[k % SEGMENT_COLORS.length],
@@ -99,23 +101,55 @@ function batchTable(data, varied) {
   const number = (value, factor, count = 3) => (
       {number: known(value) ? digits(value * factor, count) : '–'});
   section('All runs').append(table(
-      ['sequence', ...varied, {number: 'run'}, 'status', {number: 'tracked (%)'},
-       {number: 'ATE (mm)'}, {number: 'RPE (mm/s)'}, {number: 'RPE (°/s)'},
-       {number: 'ms/frame'}],
+      ['sequence', ...varied, 'part', {number: 'run'}, 'status',
+       {number: 'tracked (%)'}, {number: 'ATE (mm)'}, {number: 'RPE over 1 s (mm)'},
+       {number: 'RPE over 1 s (°)'}, {number: 'ms/frame'}],
       data.rows.map(row => [
         {class: 'name', text: row.sequence}, ...varied.map(name => row[name]),
-        {number: String(row.repeat)}, row.status, number(row.tracked_share, 100),
+        row.part || 'all', {number: String(row.repeat)}, row.status, number(row.tracked_share, 100),
         number(row.ate_rmse_m, 1000), number(row.rpe_seconds_translation_m, 1000),
         number(row.rpe_seconds_rotation_deg, 1), number(row.track_ms_median, 1),
       ]), 'stack wide'));
 }
 
+// Of one part the error may be chance: what several say.
+function partsTable(data, sequences, settings, varied) {
+  if (distinct(data.rows.map(row => row.part)).length < 2) return;
+  const range = (rows, key, factor) => {
+    const values = rows.map(row => row[key]).filter(known).sort((a, b) => a - b)
+        .map(v => v * factor);
+    if (values.length === 0) return {number: '–'};
+    const middle = (values.length - 1) / 2;
+    const median = (values[Math.floor(middle)] + values[Math.ceil(middle)]) / 2;
+    return {number: `${digits(median, 3)} (${digits(values[0], 3)} to ` +
+        `${digits(values[values.length - 1], 3)})`};
+  };
+  const rows = [];
+  for (const sequence of sequences) {
+    for (const setting of settings) {
+      const own = data.rows.filter(row => row.sequence === sequence &&
+          settingName(row, varied) === setting);
+      rows.push([{class: 'name', text: sequence}, setting,
+                 {number: String(own.length)}, range(own, 'tracked_share', 100),
+                 range(own, 'ate_rmse_m', 1000),
+                 range(own, 'rpe_seconds_translation_m', 1000),
+                 range(own, 'rpe_seconds_rotation_deg', 1)]);
+    }
+  }
+  section('Settings over parts', 'Median (least to most) of the parts of a sequence. ' +
+      'Settings whose ranges overlap are not told apart by it.').append(table(
+      ['sequence', 'setting', {number: 'runs'}, {number: 'tracked (%)'},
+       {number: 'ATE (mm)'}, {number: 'RPE over 1 s (mm)'},
+       {number: 'RPE over 1 s (°)'}], rows, 'stack wide'));
+}
+
 function showBatch(data) {
-  const varied = ['cost', 'loss', 'frontend'].filter(
+  const varied = BATCH_SETTINGS.filter(
       name => distinct(data.rows.map(row => row[name])).length > 1);
   const sequences = distinct(data.rows.map(row => row.sequence));
   const settings = distinct(data.rows.map(row => settingName(row, varied)));
   batchHeader(data, varied);
+  partsTable(data, sequences, settings, varied);
   for (const figure of BATCH_FIGURES) {
     batchPlot(data, figure, sequences, settings, varied);
   }

@@ -18,8 +18,8 @@ const std::vector<BatchSequence> kSequences = {
     {"three", "/none/three", "tum_fr2"}};
 
 TEST(BatchPlanTest, HasAllCombinationsInOrder) {
-  const BatchGrid grid = ParseGrid("epipolar,reprojection_depth+epipolar",
-                                   "huber,tukey", "klt", 2);
+  const BatchGrid grid = ParseGrid(
+      {"epipolar,reprojection_depth+epipolar", "huber, tukey", "klt"}, 2);
   const std::vector<BatchRun> plan = MakePlan(kSequences, grid, {}, "");
   ASSERT_EQ(plan.size(), 3u * 2 * 2 * 1 * 2);
   EXPECT_EQ(plan[0].Name(), "one/epipolar-huber-klt-r1");
@@ -33,15 +33,34 @@ TEST(BatchPlanTest, HasAllCombinationsInOrder) {
 }
 
 TEST(BatchPlanTest, LossesMayHaveWidths) {
-  const BatchGrid grid = ParseGrid("epipolar", "huber(1),huber(2)", "klt", 1);
+  const BatchGrid grid = ParseGrid({"epipolar", "huber(1),huber(2)", "klt"}, 1);
   const auto plan = MakePlan({kSequences[0]}, grid, {}, "");
   ASSERT_EQ(plan.size(), 2u);
   EXPECT_EQ(plan[0].Name(), "one/epipolar-huber(1)-klt-r1");
   EXPECT_NE(plan[0].hash, plan[1].hash);
 }
 
+TEST(BatchPlanTest, TrackersAndPartsAreVariedToo) {
+  const BatchGrid grid =
+      ParseGrid({"epipolar", "huber", "klt", "features,hybrid", "0-,3-"}, 1);
+  const auto plan = MakePlan({kSequences[0]}, grid, {}, "");
+  ASSERT_EQ(plan.size(), 4u);
+  EXPECT_EQ(plan[1].Name(), "one/epipolar-huber-klt-features-3-r1");
+  EXPECT_EQ(plan[2].Name(), "one/epipolar-huber-klt-hybrid-0-r1");
+  EXPECT_NE(plan[0].hash, plan[1].hash);
+  const BatchGrid whole =
+      ParseGrid({"epipolar", "huber", "klt", "hybrid", ""}, 1);
+  EXPECT_EQ(MakePlan({kSequences[0]}, whole, {}, "")[0].Name(),
+            "one/epipolar-huber-klt-hybrid-r1");
+  ExpectInputError(
+      [] {
+        ParseGrid({"epipolar", "huber", "klt", "hybrid", "3"}, 1);
+      },
+      {"--parts", "'3'"});
+}
+
 TEST(BatchPlanTest, AShardHasWholeSequences) {
-  const BatchGrid grid = ParseGrid("epipolar", "huber,tukey", "klt", 1);
+  const BatchGrid grid = ParseGrid({"epipolar", "huber,tukey", "klt"}, 1);
   const std::vector<BatchRun> plan = MakePlan(kSequences, grid, {0, 2}, "");
   ASSERT_EQ(plan.size(), 4u);
   EXPECT_EQ(plan[1].sequence.name, "one");
@@ -50,7 +69,7 @@ TEST(BatchPlanTest, AShardHasWholeSequences) {
 }
 
 TEST(BatchPlanTest, TheHashTellsAllButRepeats) {
-  const BatchGrid grid = ParseGrid("epipolar", "huber,tukey", "klt,orb", 2);
+  const BatchGrid grid = ParseGrid({"epipolar", "huber,tukey", "klt,orb"}, 2);
   const auto plan = MakePlan(kSequences, grid, {}, "");
   const auto again = MakePlan(kSequences, grid, {}, "");
   const auto other = MakePlan(kSequences, grid, {}, "--scale=mad");
@@ -65,16 +84,31 @@ TEST(BatchPlanTest, TheHashTellsAllButRepeats) {
 }
 
 TEST(BatchPlanTest, RefusesNamesThatAreNotThere) {
-  ExpectInputError([] { ParseGrid("magic", "huber", "klt", 1); },
-                   {"--costs", "'magic'", "bidirectional_point"});
-  ExpectInputError([] { ParseGrid("epipolar+magic", "huber", "klt", 1); },
-                   {"--costs", "'magic'"});
-  ExpectInputError([] { ParseGrid("epipolar", "huber,", "klt", 1); },
-                   {"--losses", "''"});
-  ExpectInputError([] { ParseGrid("epipolar", "huber", "klt,klt", 1); },
-                   {"--frontends", "'klt'", "twice"});
-  ExpectInputError([] { ParseGrid("epipolar", "huber", "klt", 0); },
-                   {"--repeats"});
+  ExpectInputError(
+      [] {
+        ParseGrid({"magic", "huber", "klt"}, 1);
+      },
+      {"--costs", "'magic'", "bidirectional_point"});
+  ExpectInputError(
+      [] {
+        ParseGrid({"epipolar+magic", "huber", "klt"}, 1);
+      },
+      {"--costs", "'magic'"});
+  ExpectInputError(
+      [] {
+        ParseGrid({"epipolar", "huber,", "klt"}, 1);
+      },
+      {"--losses", "''"});
+  ExpectInputError(
+      [] {
+        ParseGrid({"epipolar", "huber", "klt,klt"}, 1);
+      },
+      {"--frontends", "'klt'", "twice"});
+  ExpectInputError(
+      [] {
+        ParseGrid({"epipolar", "huber", "klt"}, 0);
+      },
+      {"--repeats"});
 }
 
 }  // namespace

@@ -83,7 +83,7 @@ TEST_F(BadInputTest, BatchFlags) {
 
 TEST_F(BadInputTest, BatchRuns) {
   const auto list = List("../seq\n");
-  const std::string kRun = "out/seq/bidirectional_point-tukey-patch-r1/";
+  const std::string kRun = "out/seq/bidirectional_point-tukey-patch-hybrid-r1/";
   const auto call = [&](const std::string& words) {
     return RunCommand(Fill(kBadBatch) + words, folder_);
   };
@@ -112,7 +112,7 @@ TEST_F(BadInputTest, BatchRuns) {
   ASSERT_EQ(call("--merge").exit_code, 0);
   const std::string table = ReadTextFile(folder_ / "out/summary.csv");
   EXPECT_EQ(std::count(table.begin(), table.end(), '\n'), 2);
-  EXPECT_EQ(std::count(table.begin(), table.end(), ','), 2 * 18);
+  EXPECT_EQ(std::count(table.begin(), table.end(), ','), 2 * 20);
 }
 
 // Runs that cannot write their results fail; nothing of them looks whole.
@@ -122,7 +122,7 @@ TEST_F(BadInputTest, BatchOnAFullDisk) {
   const RunResult run =
       RunCommand("ulimit -f 3; exec " + Fill(kBadBatch), folder_);
   EXPECT_EQ(run.exit_code, 4) << run.err;
-  const std::string kRun = "out/seq/bidirectional_point-tukey-patch-r1/";
+  const std::string kRun = "out/seq/bidirectional_point-tukey-patch-hybrid-r1/";
   EXPECT_THAT(ReadTextFile(folder_ / (kRun + "run.log")),
               testing::HasSubstr("metrics.json: writing failed (File too"));
   EXPECT_THAT(ReadTextFile(folder_ / (kRun + "done.json")),

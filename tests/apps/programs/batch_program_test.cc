@@ -141,8 +141,8 @@ class BatchProgramTest : public testing::Test {
   const TempFolder folder_;
 };
 
-constexpr size_t kStatus = 5;
-constexpr size_t kExitCode = 6;
+constexpr size_t kStatus = 7;
+constexpr size_t kExitCode = 8;
 
 TEST_F(BatchProgramTest, ProgramsBesideItHaveNames) {
   const RunResult slam =
@@ -150,7 +150,7 @@ TEST_F(BatchProgramTest, ProgramsBesideItHaveNames) {
           " --program=rgbd_slam --output=" + (folder_ / "runs"));
   EXPECT_EQ(slam.exit_code, 0) << slam.err;
   EXPECT_THAT(Column("runs/summary.csv", kStatus), ElementsAre("ok", "ok"));
-  const std::string run = "runs/xyz/bidirectional_point-tukey-patch-r1/";
+  const std::string run = "runs/xyz/bidirectional_point-tukey-patch-hybrid-r1/";
   EXPECT_THAT(Read(run + "metrics.json"), HasSubstr("\"graph_keyframes\""));
   EXPECT_THAT(Read(run + "graph.g2o"), StartsWith("VERTEX_SE3:QUAT 0 "));
 
@@ -174,19 +174,21 @@ TEST_F(BatchProgramTest, RunsThePlanAndWhatIsMissingOfItLater) {
   EXPECT_THAT(first.out, HasSubstr("8 runs, 0 not ok"));
   const std::string csv = Read("runs/summary.csv");
   EXPECT_EQ(csv.substr(0, csv.find('\n')),
-            "sequence,cost,loss,frontend,repeat,status,exit_code,frames,ok,"
+            "sequence,cost,loss,frontend,tracker,part,repeat,status,exit_code,"
+            "frames,ok,"
             "degraded,lost,tracked_share,ate_rmse_m,rpe_seconds_translation_m,"
             "rpe_seconds_rotation_deg,final_translation_m,final_rotation_deg,"
             "track_ms_median,wall_seconds");
   EXPECT_THAT(Column("runs/summary.csv", 0),
               ElementsAre("xyz", "xyz", "xyz", "xyz", "pan_tilt", "pan_tilt",
                           "pan_tilt", "pan_tilt"));
-  EXPECT_THAT(csv,
-              HasSubstr("\nxyz,bidirectional_point,huber,patch,1,ok,0,6,"));
+  EXPECT_THAT(
+      csv,
+      HasSubstr("\nxyz,bidirectional_point,huber,patch,hybrid,,1,ok,0,6,"));
   EXPECT_EQ(nlohmann::json::parse(Read("runs/summary.json")).size(), 8u);
 
   const auto before = TimelessFiles(folder_ / "runs");
-  const std::string run = "xyz/bidirectional_point-tukey-patch-r";
+  const std::string run = "xyz/bidirectional_point-tukey-patch-hybrid-r";
   for (const std::string file :
        {"trajectory.txt", "frames.csv", "metrics.json", "config.flags"}) {
     ASSERT_EQ(before.count(run + "1/" + file), 1u) << file;
@@ -243,8 +245,9 @@ TEST_F(BatchProgramTest, OneThatFailsDoesNotStopTheOthers) {
               ElementsAre("137", "139", "2", "0"));
   EXPECT_THAT(run.err, HasSubstr("timeout (exit code 137)  slow/"));
   EXPECT_THAT(run.out, HasSubstr("4 runs, 3 not ok"));
-  EXPECT_THAT(Read("runs/broken/bidirectional_point-tukey-patch-r1/run.log"),
-              HasSubstr(".png"));
+  EXPECT_THAT(
+      Read("runs/broken/bidirectional_point-tukey-patch-hybrid-r1/run.log"),
+      HasSubstr(".png"));
 
   // Those that failed are tried again.
   EXPECT_EQ(Run(call + " --resume").exit_code, 4);
