@@ -17,7 +17,7 @@
 #include "apps/shell/program.h"
 #include "apps/shell/setting_flags.h"
 
-DEFINE_int32(threads, 0, "threads; 0: one a core");
+DEFINE_int32(threads, 0, "threads; 0: one for each core");
 DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
 DEFINE_string(output, "", "folder to make for the results");
 

@@ -55,7 +55,9 @@ const SettingFlags& Flags() {
 ProgramInfo Info() {
   ProgramInfo info;
   info.name = "rgbd_compare";
-  info.summary = "compares M-estimators as the thesis' fourth chapter does.";
+  info.summary =
+      "compares M-estimators as the thesis' fourth chapter does: by features "
+      "alone, unless --tracker says otherwise.";
   info.example = "rgbd_compare --experiment=xyz --output=compare/xyz";
   Flags().Describe(&info);
   info.flag_groups.push_back({"Output", {"output", "report"}});

@@ -20,12 +20,16 @@ DEFINE_string(output, "",
 DEFINE_bool(overwrite, false, "replace a folder that an export has written");
 DEFINE_string(dataset, "",
               "where the recording of the run is, if not where it was");
-DEFINE_string(camera, "", "its camera, if the file is not where it was");
+DEFINE_string(camera, "",
+              "where the camera file of the run is, if not where it was");
 DEFINE_double(min_distance, rgbd_pose::MotionFilter().min_distance,
-              "of formats with images: a frame takes part if the camera has "
-              "moved so far (m) since the last one that did,");
+              "in formats with images a frame takes part if the camera has "
+              "moved so far (m) since the last one that did, or turned by "
+              "--min_angle");
 DEFINE_double(min_angle, rgbd_pose::MotionFilter().min_angle_deg,
-              "or turned so far (degrees); 0: every frame");
+              "in formats with images a frame takes part if the camera has "
+              "turned so far (degrees) since the last one that did; 0: every "
+              "frame");
 DEFINE_bool(undistort, false,
             "images of an ideal camera, without distortion, for tools that "
             "know no other");
@@ -35,7 +39,7 @@ DEFINE_double(max_depth, 0.0,
               "depths beyond (m) are left out of meshes and clouds; 0: those "
               "that the run left out, and for meshes beyond 4 m");
 DEFINE_int32(max_points, rgbd_pose::ExportOptions().max_points,
-             "of the cloud that comes along with images");
+             "points, at most, of the cloud that comes along with images");
 DEFINE_int32(
     threads, 0,
     "threads that read images ahead; 0: one for each core; the result does "

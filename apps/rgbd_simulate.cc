@@ -55,8 +55,8 @@ DEFINE_double(registration_shift, 0.0,
               "error of the registration of depth: everything is so far (m) to "
               "the right, along the camera's x axis");
 DEFINE_double(registration_turn, 0.0,
-              "the same: and is turned so far (degrees) to the right, around "
-              "its y axis");
+              "error of the registration of depth: everything is turned so far "
+              "(degrees) to the right, around its y axis");
 DEFINE_string(camera, "ros_default", "preset or YAML file");
 DEFINE_string(
     depth_camera, "",

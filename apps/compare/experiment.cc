@@ -35,7 +35,8 @@ Experiment FindExperiment(const std::string& name) {
 std::vector<std::string> ParseLosses(const std::string& text) {
   std::vector<std::string> losses;
   std::istringstream words(text);
-  for (std::string loss; std::getline(words, loss, ',');) {
+  for (std::string loss; std::getline(words >> std::ws, loss, ',');) {
+    loss.erase(loss.find_last_not_of(' ') + 1);
     try {
       ParseLoss(loss);
     } catch (const InputError& error) {

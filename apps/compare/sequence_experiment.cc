@@ -44,7 +44,10 @@ class SequenceExperiment {
       : settings_(settings),
         losses_(losses),
         output_(output),
-        report_("# M-estimators on " + name + "\n\n") {}
+        report_("# M-estimators on " + name + "\n\nTracker " +
+                settings.odometry.tracker + ", cost " +
+                settings.odometry.estimator.cost + ", frontend " +
+                settings.odometry.frontend + ".\n\n") {}
 
   void Add(const std::string& title, const std::string& figure,
            FrameSource* source, const std::optional<Trajectory>& truth,

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cctype>
+#include <numeric>
 #include <set>
 #include <string_view>
+#include <vector>
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -46,6 +48,37 @@ std::string_view WithoutSpaceAround(std::string_view line) {
   return line;
 }
 
+// How many letters have to be put in, left out or changed.
+int EditDistance(const std::string& a, const std::string& b) {
+  std::vector<int> row(b.size() + 1);
+  std::iota(row.begin(), row.end(), 0);
+  for (size_t i = 0; i < a.size(); ++i) {
+    int diagonal = row[0]++;
+    for (size_t j = 0; j < b.size(); ++j) {
+      const int changed = diagonal + (a[i] != b[j]);
+      diagonal = row[j + 1];
+      row[j + 1] = std::min({changed, row[j] + 1, row[j + 1] + 1});
+    }
+  }
+  return row.back();
+}
+
+// The flag that was probably meant, or what to do without one.
+std::string Hint(const std::string& name) {
+  std::vector<CommandLineFlagInfo> flags;
+  gflags::GetAllFlags(&flags);
+  std::string nearest;
+  int least = static_cast<int>(name.size()) / 3 + 1;
+  for (const CommandLineFlagInfo& flag : flags) {
+    const int distance = EditDistance(name, flag.name);
+    if (IsOfGflags(flag.name) || distance >= least) continue;
+    least = distance;
+    nearest = flag.name;
+  }
+  return nearest.empty() ? "--help lists the flags"
+                         : "did you mean --" + nearest + "?";
+}
+
 class FlagReader {
  public:
   // `where` goes before messages.
@@ -54,8 +87,11 @@ class FlagReader {
       // gflags would read a word up to its first zero byte.
       if (word->size() < 2 || word->front() != '-' || *word == "--" ||
           word->find('\0') != std::string::npos) {
-        throw InputError(where + "'" + *word +
-                         "' is no flag; flags look like --name=value");
+        const bool is_of_list =
+            word != words.begin() && (word - 1)->back() == ',';
+        throw InputError(where + "'" + *word + "' is no flag; " +
+                         (is_of_list ? "lists have no space after the comma"
+                                     : "flags look like --name=value"));
       }
       const std::string text = word->substr((*word)[1] == '-' ? 2 : 1);
       const size_t equals = text.find('=');
@@ -64,8 +100,8 @@ class FlagReader {
       CommandLineFlagInfo flag;
       if (name != "flagfile" && !FindFlag(name, &flag)) {
         if (has_value || !FindNegated(name, &flag)) {
-          throw InputError(where + "unknown flag --" + name +
-                           "; --help lists the flags");
+          throw InputError(where + "unknown flag --" + name + "; " +
+                           Hint(name));
         }
         Set(flag, "false", where);
       } else if (has_value) {

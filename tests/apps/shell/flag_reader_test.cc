@@ -46,7 +46,10 @@ TEST(FlagReaderTest, RefusesAllElse) {
     std::vector<std::string> words;
     std::string message;
   } kCases[] = {
-      {{"--test_wrd=a"}, "unknown flag --test_wrd"},
+      {{"--test_wrd=a"}, "unknown flag --test_wrd; did you mean --test_word?"},
+      {{"--tests"}, "unknown flag --tests; --help lists the flags"},
+      {{"--test_word=a,", "b"},
+       "'b' is no flag; lists have no space after the comma"},
       {{"word"}, "'word' is no flag"},
       {{"-"}, "'-' is no flag"},
       {{"--"}, "'--' is no flag"},
