@@ -207,9 +207,10 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
   if (!(gain >= settings.min_gain) ||
       !(result.gain_sigmas >= settings.min_gain_sigmas)) {
     return "pairs that were held out fit no better with the camera found: "
-           "their cost falls by " +
-           Percent(gain) + " (" + Short(result.gain_sigmas) +
-           " standard deviations)";
+           "their cost " +
+           std::string(gain < 0.0 ? "rises by " : "falls by ") +
+           Percent(std::abs(gain)) + " (" +
+           Short(std::abs(result.gain_sigmas)) + " standard deviations)";
   }
   if (result.truth_after > result.truth_before) {
     return "the ground truth contradicts it: motions of pairs are off by " +

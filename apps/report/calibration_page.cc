@@ -41,12 +41,26 @@ std::string Escaped(const std::string& text) {
   return result;
 }
 
-// From -1 to 1 prior standard deviation: where it was, and what was found.
+// From -1 to 1 prior standard deviation: where it was, and what was found; an
+// arrow where that is beyond.
 std::string Bar(const CalibratedParameter& parameter) {
   constexpr double kHalf = 80.0;
+  const auto sigmas = [&](double value) {
+    return (value - parameter.before) / parameter.prior;
+  };
+  const double found = sigmas(parameter.found);
+  if (std::abs(found) > 1.0) {
+    const double tip = found > 0.0 ? 2.0 * kHalf : 0.0;
+    const double base = found > 0.0 ? tip - 10.0 : 10.0;
+    return Format(
+        "<svg width=\"%.0f\" height=\"14\"><line x1=\"%.0f\" x2=\"%.0f\" "
+        "y1=\"0\" y2=\"14\" stroke=\"#aaa\"/><path d=\"M%.0f 7H%.0f\" "
+        "stroke=\"#d62728\" stroke-width=\"4\"/><path d=\"M%.0f 0L%.0f 7L%.0f "
+        "14Z\" fill=\"#d62728\"/></svg> %+.1f sigma",
+        2.0 * kHalf, kHalf, kHalf, kHalf, base, base, tip, base, found);
+  }
   const auto at = [&](double value) {
-    const double x = (value - parameter.before) / parameter.prior;
-    return kHalf * (1.0 + std::clamp(x, -1.0, 1.0));
+    return kHalf * (1.0 + std::clamp(sigmas(value), -1.0, 1.0));
   };
   const double low = at(parameter.found - parameter.sigma);
   const double high = at(parameter.found + parameter.sigma);
@@ -123,6 +137,33 @@ std::string Picture(const CalibrationResult& result, bool after, double zoom) {
                     zoom);
 }
 
+// A camera that is refused is mostly a recording that cannot tell, or a fault
+// that is none of the parameters.
+constexpr char kWhatNext[] =
+    "<p>What to do next:</p><ul>"
+    "<li>&ldquo;fit no better&rdquo;: the camera there is does as well; go on "
+    "with it.</li>"
+    "<li>&ldquo;halves contradict each other&rdquo;: something is wrong that "
+    "is "
+    "no parameter: rows exposed one after another (give the camera its "
+    "readouts, or move slowly), blur, things that move, a depth unit.</li>"
+    "<li>&ldquo;not plausible&rdquo; or an arrow in the table: what is found "
+    "is an error of something else; --fix= keeps that parameter.</li>"
+    "<li>too few pairs, or nothing determined: record half a minute, turning "
+    "and moving at the same time, near and far things in view.</li></ul>\n";
+
+std::string NoiseInWords(const CalibrationResult& result) {
+  if (!result.noise.has_value()) return "";
+  const DepthNoiseFit& noise = *result.noise;
+  return Format(
+      "<p>Depth scatters by %.3g times what --depth_noise said%s.</p>\n",
+      noise.in_old_sigmas,
+      noise.in_old_sigmas > kMuchNoise
+          ? ": <b>that is no noise of a sensor</b>; depth is in the "
+            "wrong place, so do not take depth_noise.yaml"
+          : "");
+}
+
 std::string PathPicture(const Trajectory& path) {
   if (path.size() < 2) return "";
   Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
@@ -163,16 +204,22 @@ std::string CalibrationPage(const CalibrationResult& result,
   text +=
       Format("<p>%d keyframes, %d pairs, %d landmarks in %d views.</p>\n",
              result.keyframes, result.pairs, result.landmarks, result.views);
+  if (!result.is_accepted) text += kWhatNext;
+  text += NoiseInWords(result);
   text += ParameterTable(result);
   text += result.scale_from.empty()
               ? "<p>Nothing gives depth a scale: images alone cannot.</p>\n"
               : "<p>Depth has its scale from " + result.scale_from + ".</p>\n";
   if (result.held_out_pairs > 0) {
+    const double change =
+        100.0 * (result.cost_after / result.cost_before - 1.0);
     text += Format(
-        "<h2>Pairs that were held out</h2><p>%d pairs: the cost of a view goes "
-        "from %.4g to %.4g, %.1f standard deviations of the difference.</p>\n",
-        result.held_out_pairs, result.cost_before, result.cost_after,
-        result.gain_sigmas);
+        "<h2>Pairs that were held out</h2><p>%d pairs: the cost of a view %s "
+        "by %.2g %%, from %.4g to %.4g (%.1f standard deviations of the "
+        "difference).</p>\n",
+        result.held_out_pairs, change > 0.0 ? "rises" : "falls",
+        std::abs(change), result.cost_before, result.cost_after,
+        std::abs(result.gain_sigmas));
     text += "<p>And " + HalvesInWords(result) + ".</p>\n";
     const double spread = std::max(0.5 * result.pixel_before, 1e-3);
     const double zoom = std::clamp(std::round(10.0 / spread), 1.0, 200.0);

@@ -87,6 +87,11 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
         "depths), %.3g of what --depth_noise said\n",
         noise.model.constant, noise.model.quadratic, noise.constant_sigma,
         noise.quadratic_sigma, noise.samples, noise.in_old_sigmas);
+    if (noise.in_old_sigmas > kMuchNoise) {
+      text +=
+          "that is no noise of a sensor: depth is in the wrong place, so do "
+          "not take depth_noise.yaml\n";
+    }
   }
   text += result.is_accepted
               ? "the new camera is better: take camera.yaml\n"

@@ -8,6 +8,10 @@
 
 namespace rgbd_pose {
 
+// Depths that scatter by more than so many times their noise model are in the
+// wrong place, not noisy.
+constexpr double kMuchNoise = 5.0;
+
 // What rgbd_calibrate prints of a result.
 std::string FormatCalibrationSummary(const CalibrationResult& result);
 
