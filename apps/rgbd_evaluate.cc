@@ -27,6 +27,10 @@ DEFINE_string(run, "",
               "--estimate: its motions are compared with their covariances, "
               "too");
 DEFINE_string(groundtruth, "", "the true trajectory, as TUM text");
+DEFINE_string(align, "rigid",
+              "what is done to the estimate before positions are compared: "
+              "rigid: turned and shifted to fit best; none: its world is that "
+              "of the ground truth, such as of poses in a map");
 DEFINE_double(max_time_difference,
               rgbd_pose::EvaluationOptions().max_time_difference,
               "pair poses at most this far apart in time, in seconds");
@@ -42,7 +46,10 @@ DEFINE_string(rpe_frames, "1,6",
 DEFINE_double(truth_sigma_metres, 0.0,
               "by how much (1 sigma, m) a motion of the ground truth may be "
               "off itself, when covariances are judged");
-DEFINE_double(truth_sigma_degrees, 0.0, "the same of its rotation, in degrees");
+DEFINE_double(
+    truth_sigma_degrees, 0.0,
+    "by how much (1 sigma, degrees) a rotation of the ground truth may "
+    "be off itself, when covariances are judged");
 DEFINE_bool(json, false, "print JSON instead of a table");
 DEFINE_string(aligned, "",
               "write the estimate, moved by the alignment into the world of "
@@ -58,8 +65,9 @@ ProgramInfo Info() {
           "--groundtruth=groundtruth.txt",
           {{"Input", {"estimate", "run", "groundtruth"}},
            {"Definitions",
-            {"max_time_difference", "rpe_delta_seconds", "rpe_delta_metres",
-             "rpe_frames", "truth_sigma_metres", "truth_sigma_degrees"}},
+            {"align", "max_time_difference", "rpe_delta_seconds",
+             "rpe_delta_metres", "rpe_frames", "truth_sigma_metres",
+             "truth_sigma_degrees"}},
            {"Output", {"json", "aligned"}}}};
 }
 
@@ -99,6 +107,9 @@ int Main() {
   if (!(FLAGS_truth_sigma_metres >= 0.0 && FLAGS_truth_sigma_degrees >= 0.0)) {
     throw InputError("sigmas of the truth must not be negative");
   }
+  if (FLAGS_align != "rigid" && FLAGS_align != "none") {
+    throw InputError("--align=" + FLAGS_align + " is neither rigid nor none");
+  }
   if (FLAGS_run.empty()) RequireFlag("estimate", FLAGS_estimate);
   RequireFlag("groundtruth", FLAGS_groundtruth);
   std::vector<std::string> remarks;
@@ -110,7 +121,8 @@ int Main() {
   EvaluationReport report =
       Evaluate(estimate, truth,
                {FLAGS_max_time_difference, FLAGS_rpe_delta_seconds,
-                FLAGS_rpe_delta_metres, ParseFrames(FLAGS_rpe_frames)});
+                FLAGS_rpe_delta_metres, ParseFrames(FLAGS_rpe_frames),
+                FLAGS_align == "rigid"});
   if (!FLAGS_run.empty()) {
     report.consistency =
         JudgeFrames(ReadFrames(run), truth,

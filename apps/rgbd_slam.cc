@@ -225,7 +225,7 @@ int Main() {
   const KeyframeMap map = slam.Map();
   output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
   output.WriteFile("trajectory_online.txt",
-                   FormatOnlineTrajectory(run.slam_frames()));
+                   FormatOnlineTrajectory(slam, run.slam_frames()));
   output.WriteFile("trajectory_odometry.txt",
                    FormatOdometryTrajectory(run.slam_frames()));
   output.WriteFile("keyframes.csv",

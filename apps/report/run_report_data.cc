@@ -74,6 +74,11 @@ json FrameColumns(const CsvTable& frames, const ReportThinning& thinning) {
   for (const char* name : {"matches", "inliers"}) {
     columns[name] = thinning.First(frames.Numbers(name), 0);
   }
+  std::vector<double> by_pixels;
+  for (const std::string& source : frames.Words("tracking_source")) {
+    by_pixels.push_back(source == "direct");
+  }
+  columns["by_pixels"] = thinning.First(by_pixels, 0);
   columns["is_reference"] = thinning.Largest(frames.Numbers("is_reference"), 0);
   for (const char* name : {"decode_ms", "track_ms", "match_ms", "solve_ms",
                            "reference_ms", "relocalise_ms"}) {

@@ -38,7 +38,7 @@ ErrorStatistics Scaled(ErrorStatistics errors, double factor) {
 
 std::string FormatStatistics(const char* quantity, const ErrorStatistics& e) {
   if (e.count == 0) return Format("  %-30s%12s\n", quantity, "n/a");
-  return Format("  %-30s%12.5f%12.5f%12.5f%12.5f\n", quantity, e.rmse, e.median,
+  return Format("  %-30s%12.4f%12.4f%12.4f%12.4f\n", quantity, e.rmse, e.median,
                 e.mean, e.max);
 }
 

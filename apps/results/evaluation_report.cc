@@ -11,7 +11,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr char kAteDefinition[] = "rigid alignment, no scale";
+const char* AteDefinition(const EvaluationReport& report) {
+  return report.options.align ? "rigid alignment, no scale" : "no alignment";
+}
+
 constexpr char kFinalPoseDefinition[] = "last pose relative to the first";
 
 struct RelativeEntry {
@@ -51,21 +54,25 @@ std::string FormatEvaluation(const EvaluationReport& report) {
                  report.path_length);
   text +=
       Format("%-32s%12s%12s%12s%12s\n", "", "RMSE", "median", "mean", "max");
-  text += Format("ATE, %s (%d poses)\n", kAteDefinition, report.ate.count);
-  text += FormatStatistics("position (m)", report.ate);
-  text += Format("  %-30s%12.5f  at %.5f times the size\n", "  with scale",
-                 report.sim3.residual_rmse, report.sim3.truth_per_estimate);
+  text +=
+      Format("ATE, %s (%d poses)\n", AteDefinition(report), report.ate.count);
+  text += FormatStatistics("position (mm)",
+                           Scaled(report.ate, kMillimetresPerMetre));
+  text += Format("  %-30s%12.4f  at %.5f times the size\n", "  with scale",
+                 kMillimetresPerMetre * report.sim3.residual_rmse,
+                 report.sim3.truth_per_estimate);
   for (const RelativeEntry& entry : RelativeEntries(report)) {
     text += Format("RPE, %s (%d pairs)\n", entry.definition.c_str(),
                    entry.error.translation.count);
-    text += FormatStatistics("translation (m)", entry.error.translation);
+    text += FormatStatistics("translation (mm)", Scaled(entry.error.translation,
+                                                        kMillimetresPerMetre));
     text += FormatStatistics("rotation (deg)", InDegrees(entry.error.rotation));
   }
   text += Format("Final pose error, %s\n", kFinalPoseDefinition);
   if (report.final_pose.has_value()) {
-    text += Format("  %-30s%12.5f\n", "translation (m)",
-                   report.final_pose->translation);
-    text += Format("  %-30s%12.5f\n", "rotation (deg)",
+    text += Format("  %-30s%12.4f\n", "translation (mm)",
+                   kMillimetresPerMetre * report.final_pose->translation);
+    text += Format("  %-30s%12.4f\n", "rotation (deg)",
                    report.final_pose->angle * kDegreesPerRadian);
   } else {
     text += Format("  %-30s%12s\n", "", "n/a");
@@ -97,7 +104,7 @@ json EvaluationToJson(const EvaluationReport& report) {
       {"duration_s", report.duration},
       {"path_length_m", report.path_length},
       {"ate",
-       {{"definition", kAteDefinition},
+       {{"definition", AteDefinition(report)},
         {"count", report.ate.count},
         {"position_m", StatisticsToJson(report.ate)}}},
       {"with_scale",

@@ -1,12 +1,16 @@
 #include "apps/results/run_output.h"
 
+#include <algorithm>
+
 #include "apps/results/cloud_preview.h"
 #include "apps/results/evaluation_report.h"
 #include "apps/results/frame_errors.h"
 #include "apps/results/frame_tables.h"
+#include "apps/results/motion_jumps.h"
 #include "apps/results/run_metrics.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/quantile.h"
 #include "core/util/text_file.h"
 #include "frontend/features/match_overlay.h"
 #include "frontend/files/image_file.h"
@@ -19,6 +23,15 @@ namespace rgbd_pose {
 namespace {
 
 constexpr char kDebug[] = "debug";
+
+nlohmann::json ShutterToJson(const RgbdCamera& camera) {
+  const auto both = [](const Shutter& shutter) -> nlohmann::json {
+    return {{"offset_ms", 1e3 * shutter.offset},
+            {"readout_ms", 1e3 * shutter.readout}};
+  };
+  return {{"color", both(camera.color_shutter)},
+          {"depth", both(camera.depth_shutter)}};
+}
 
 CloudFusionOptions CloudOptions(const Camera& camera, double voxel,
                                 const DepthLookupOptions& depth) {
@@ -101,7 +114,16 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
   }
 }
 
+nlohmann::json RunOutput::DepthStampsToJson() const {
+  if (depth_stamps_ms_.empty()) return nullptr;
+  const auto [least, most] =
+      std::minmax_element(depth_stamps_ms_.begin(), depth_stamps_ms_.end());
+  return {
+      {"least", *least}, {"median", Median(depth_stamps_ms_)}, {"most", *most}};
+}
+
 void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
+  depth_stamps_ms_.push_back(1e3 * frame.depth_delay);
   const TrackedFrame& tracked = run.frames().back();
   const bool is_drawn = drawn_.Contains(tracked.index);
   const bool is_fused = cloud_.has_value() && cloud_->ShouldIntegrate(tracked);
@@ -123,7 +145,9 @@ std::string RunOutput::Write(const RunResults& results,
                              const std::string& flags,
                              const std::string& program,
                              const nlohmann::json& more) {
-  std::string text = FormatSummary(summary);
+  const std::vector<MotionJump> jumps = FindJumps(results.frames);
+  std::string text =
+      FormatSummary(summary) + FormatJumps(jumps, results.frames);
   nlohmann::json metrics = {{"program", program},
                             {"dataset", dataset},
                             {"unmatched_color", source_.unmatched_color()},
@@ -132,6 +156,9 @@ std::string RunOutput::Write(const RunResults& results,
                             {"remarks", source_.remarks()},
                             {"peak_rss_mb", PeakMemoryMb()},
                             {"run", SummaryToJson(summary)},
+                            {"jumps", JumpsToJson(jumps, results.frames)},
+                            {"shutter", ShutterToJson(source_.camera())},
+                            {"depth_stamp_ms", DepthStampsToJson()},
                             {"residuals", ResidualsToJson(results.residuals)}};
   if (more.is_object()) metrics.update(more);
   Rigid3d shown_from_world;

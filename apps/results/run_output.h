@@ -61,6 +61,7 @@ class RunOutput {
   void Publish() { folder_.Publish(); }
 
  private:
+  nlohmann::json DepthStampsToJson() const;
   nlohmann::json WriteCloud(const Rigid3d& shown_from_world,
                             std::string* text) const;
 
@@ -70,6 +71,7 @@ class RunOutput {
   CloudFusionOptions cloud_options_;
   std::optional<CloudFusion> cloud_;
   RunFolder folder_;
+  std::vector<double> depth_stamps_ms_;  // of each frame, after colour's
 };
 
 }  // namespace rgbd_pose

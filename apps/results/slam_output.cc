@@ -3,7 +3,9 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
+#include <set>
 
 #include "core/util/format.h"
 #include "core/util/quantile.h"
@@ -42,6 +44,17 @@ MotionMatrix G2oInformation(const RelativePose& edge) {
   return (J * edge.covariance * J.transpose()).inverse();
 }
 
+// The first frame whose pose was known in a loaded map, -1 if none was; null
+// where no map was loaded: the segments of frames count on from its own.
+nlohmann::json LocalisedFrom(const std::vector<SlamFrame>& frames) {
+  if (frames.empty() || frames[0].segment == 0) return nullptr;
+  const auto found =
+      std::find_if(frames.begin(), frames.end(), [&](const SlamFrame& frame) {
+        return frame.segment < frames[0].segment;
+      });
+  return found == frames.end() ? -1 : static_cast<int>(found - frames.begin());
+}
+
 }  // namespace
 
 std::string FormatSlamCsv(const std::vector<SlamFrame>& frames) {
@@ -63,9 +76,17 @@ std::string FormatSlamCsv(const std::vector<SlamFrame>& frames) {
   return text;
 }
 
-std::string FormatOnlineTrajectory(const std::vector<SlamFrame>& frames) {
-  return FormatPath(frames,
-                    [](const SlamFrame& f) { return f.map_from_cam(); });
+std::string FormatOnlineTrajectory(const Slam& slam,
+                                   const std::vector<SlamFrame>& frames) {
+  std::set<int> segments;
+  for (int at = 0; at < slam.graph().size(); ++at) {
+    segments.insert(slam.graph().segment(at));
+  }
+  std::vector<SlamFrame> known;
+  std::copy_if(
+      frames.begin(), frames.end(), std::back_inserter(known),
+      [&](const SlamFrame& frame) { return segments.count(frame.segment); });
+  return FormatPath(known, [](const SlamFrame& f) { return f.map_from_cam(); });
 }
 
 std::string FormatOdometryTrajectory(const std::vector<SlamFrame>& frames) {
@@ -160,6 +181,7 @@ nlohmann::json SlamToJson(const Slam& slam,
           {"pairs", pairs},
           {"loops", loops},
           {"segments_joined", joined},
+          {"localised_from_frame", LocalisedFrom(frames)},
           {"proportional_error", graph.proportional_error()},
           {"unsolved", unsolved},
           {"error", error},
@@ -180,7 +202,14 @@ std::string SlamWarning(const nlohmann::json& slam) {
 }
 
 std::string FormatSlamSummary(const nlohmann::json& slam) {
-  return Format(
+  const nlohmann::json& from = slam.at("localised_from_frame");
+  const std::string localised =
+      from.is_null() ? ""
+      : from < 0 ? "localised   never: no frame was found in the loaded map\n"
+                 : Format("localised   in the loaded map from frame %d on\n",
+                          from.get<int>());
+  return localised +
+         Format(
              "map         %d keyframes (%d more removed), %d pairs, %d "
              "loops, %d segments joined\n",
              slam.at("keyframes").get<int>(),

@@ -74,11 +74,13 @@ std::string FormatTruthAlignment(const TruthAlignment& alignment,
   text +=
       Format("%-32s%12s%12s%12s%12s\n", "", "RMSE", "median", "mean", "max");
   text += Format("ATE there (%d poses)\n", alignment.ate.count);
-  text += FormatStatistics("position (m)", alignment.ate);
+  text += FormatStatistics("position (mm)",
+                           Scaled(alignment.ate, kMillimetresPerMetre));
   text += Format("RPE there, fixed delta %g s (%d pairs)\n", rpe_delta_seconds,
                  alignment.rpe_seconds.translation.count);
-  text +=
-      FormatStatistics("translation (m)", alignment.rpe_seconds.translation);
+  text += FormatStatistics(
+      "translation (mm)",
+      Scaled(alignment.rpe_seconds.translation, kMillimetresPerMetre));
   text += FormatStatistics("rotation (deg)",
                            InDegrees(alignment.rpe_seconds.rotation));
   return text;

@@ -94,7 +94,7 @@ EvaluationReport Evaluate(const Trajectory& estimate,
   report.paired_poses = static_cast<int>(pairs.size());
   report.duration = times.back() - times.front();
   report.path_length = path.back();
-  report.truth_from_estimate = AlignRigidly(pairs);
+  if (options.align) report.truth_from_estimate = AlignRigidly(pairs);
   report.sim3 = Compare(pairs, report.truth_from_estimate);
   const std::vector<PoseInterval> intervals = TimeIntervals(
       times, options.rpe_delta_seconds, options.max_time_difference);

@@ -28,6 +28,9 @@ struct EvaluationOptions {
   // And in frames, at least 1 each.
   std::vector<int> rpe_frames = {1, 6};
 
+  // Off: both are in one world already, as poses within a map may be.
+  bool align = true;
+
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
@@ -58,7 +61,8 @@ struct EvaluationReport {
   double path_length = 0.0;   // of the paired ground truth, m
 
   // Absolute trajectory error: distances (m) of positions after the rigid
-  // alignment, without scale, by truth_from_estimate (of worlds).
+  // alignment, without scale, by truth_from_estimate (of worlds; the identity
+  // without alignment).
   ErrorStatistics ate;
   Rigid3d truth_from_estimate;
 

@@ -39,8 +39,9 @@ function comparisonHeader(data) {
   document.getElementById('page').append(
       make('h1', {}, 'M-estimators on ' + name),
       make('p', {class: 'soft'},
-          `${losses} loss${losses === 1 ? '' : 'es'} on the same frames; cost ` +
-          `${setting(data, 'cost')}, frontend ${setting(data, 'frontend')}.`));
+          `${losses} loss${losses === 1 ? '' : 'es'} on the same frames; tracker ` +
+          `${setting(data, 'tracker')}, cost ${setting(data, 'cost')}, frontend ` +
+          `${setting(data, 'frontend')}.`));
 }
 
 // The losses with the smallest and the greatest of a figure.
@@ -201,7 +202,7 @@ function comparedTables(data, sequence, prefix, parent) {
       'As in the thesis\' Tables 4.7 and 4.8. Logarithmic; less is better.');
   comparedFigures(sequence, prefix, element);
   element.append(table(
-      ['loss', {number: 'ATE (mm)'}, {number: 'RPE (mm/s)'}, {number: 'RPE (°/s)'},
+      ['loss', {number: 'ATE (mm)'}, {number: 'RPE over 1 s (mm)'}, {number: 'RPE over 1 s (°)'},
        {number: 'end (mm)'}, {number: 'end (°)'}, {number: 'tracked (%)'}],
       sequence.losses.map(({name, figures: f}) => [
         {class: 'name', text: name}, number(f.ate_mm, 3), number(f.rpe_seconds_mm, 3),

@@ -144,7 +144,9 @@ function rowsLayout(rows, xTitle, xRange) {
     const number = i === 0 ? '' : String(i + 1);
     const bottom = Math.max(0, top - height * (row.weight || 1));
     layout['yaxis' + number] = axis(row.y, Object.assign(
-        {domain: [bottom, top], nticks: 5, rangemode: 'tozero'}, row.axis));
+        // No margins of its own: the time axes of all plots are to line up.
+        {domain: [bottom, top], nticks: 5, rangemode: 'tozero', automargin: false},
+        row.axis));
     layout.annotations.push({
       text: row.title, showarrow: false, xref: 'paper', yref: 'paper', x: 0,
       xanchor: 'left', y: top, yanchor: 'bottom', yshift: 3, align: 'left',
@@ -154,7 +156,7 @@ function rowsLayout(rows, xTitle, xRange) {
   });
   const last = rows.length === 1 ? '' : String(rows.length);
   layout.xaxis = axis(xTitle, {anchor: 'y' + last, range: xRange});
-  layout.margin = {l: 10, r: 14, t: 26, b: 10};
+  layout.margin = {l: 74, r: 14, t: 26, b: 10};
   return layout;
 }
 

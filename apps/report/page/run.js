@@ -7,6 +7,24 @@ function baseName(path) {
   return parts.length ? parts[parts.length - 1] : 'run';
 }
 
+// When rows were exposed, and what was done about it.
+function shutterInWords(data) {
+  const shutter = data.metrics.shutter, stamps = data.metrics.depth_stamp_ms;
+  if (!shutter || !stamps) return '';
+  const {color, depth} = shutter;
+  const all = [color.offset_ms, color.readout_ms, depth.offset_ms, depth.readout_ms,
+               stamps.least, stamps.most];
+  if (all.every(ms => ms === 0)) return '';
+  const ms = value => digits(value, 2).replace('-', '−');
+  return `Times: depth is stamped ${ms(stamps.least)} to ${ms(stamps.most)} ms after ` +
+      `colour (median ${ms(stamps.median)} ms). The camera exposes its middle row ` +
+      `${ms(color.offset_ms)} ms after the stamp in colour and ${ms(depth.offset_ms)} ms ` +
+      `in depth, and all rows within ${ms(color.readout_ms)} and ` +
+      `${ms(depth.readout_ms)} ms. ` +
+      (setting(data, 'shutter') === 'none' ? 'None of it was undone (--shutter=none).'
+          : 'All is moved to the stamp of colour.');
+}
+
 function header(data) {
   const run = data.metrics.run;
   const name = baseName(data.metrics.dataset);
@@ -18,8 +36,9 @@ function header(data) {
       make('h1', {}, 'Camera motion: ' + name),
       make('p', {class: 'soft'},
           `${run.frames} frame${run.frames === 1 ? '' : 's'} over ` +
-          `${digits(seconds, 3)} s; cost ${setting(data, 'cost')}, loss ` +
-          `${setting(data, 'loss')}, frontend ${setting(data, 'frontend')}.`));
+          `${digits(seconds, 3)} s; tracker ${setting(data, 'tracker')}, cost ` +
+          `${setting(data, 'cost')}, loss ${setting(data, 'loss')}, frontend ` +
+          `${setting(data, 'frontend')}.`));
   const figures = make('div', {class: 'figures'});
   const add = (value, text) => figures.append(figureTile(value, text));
   const evaluation = data.metrics.evaluation;
@@ -37,17 +56,29 @@ function header(data) {
       `of frames tracked (${run.ok} ok, ${run.degraded} degraded, ${run.lost} lost)`);
   const segments = mapSegments(data.metrics.slam) || run.segments;
   if (segments > 1) add(String(segments), 'segments; what joins them is unknown');
+  const jumps = data.metrics.jumps || [];
+  if (jumps.length > 0) {
+    add(digits(1000 * jumps[0].translation_m, 2) + ' mm',
+        `largest of ${jumps.length} jumps, at frame no. ${jumps[0].frame}`);
+  }
+  if (evaluation && known(evaluation.with_scale.truth_per_estimate)) {
+    const percent = 100 * (1 / evaluation.with_scale.truth_per_estimate - 1);
+    add((percent < 0 ? '−' : '+') + digits(Math.abs(percent), 2) + ' %',
+        'size of the path against the truth');
+  }
   add(digits(run.track_ms_median, 3) + ' ms', 'tracking a frame, median');
   add(digits(run.frames_per_second, 3),
       `frames/s with decoding, ${run.threads} thread${run.threads === 1 ? '' : 's'}`);
   for (const [key, text] of [
     ['damaged_frames', 'damaged frames, left out'],
     ['unmatched_color', 'colour images without depth, left out'],
-    ['dropped_frames', 'frames came too fast and were left out'],
+    ['dropped_frames', 'frames left out: they came faster than they were tracked'],
   ]) {
     if (data.metrics[key]) add(String(data.metrics[key]), text);
   }
   page.append(figures);
+  const moved = shutterInWords(data);
+  if (moved) page.append(make('p', {class: 'soft'}, moved));
   for (const remark of data.metrics.remarks || []) {
     page.append(make('p', {}, remark));
   }
@@ -91,6 +122,11 @@ function metrics(data) {
     ];
     element.append(table(['', {number: 'RMSE'}, {number: 'median'}, {number: '90 %'},
                           {number: '99 %'}, {number: 'max'}, 'what it is'], rows, 'stack'));
+    element.append(make('p', {},
+        `With another scale the path fits best at ` +
+        `${digits(e.with_scale.truth_per_estimate, 4)} times its size; the ATE is ` +
+        `${digits(e.with_scale.position_rmse_m * 1000, 3)} mm then. More than 1 % off ` +
+        'points to the unit of depth (--depth_scale) or the focal length.'));
     if (e.final_pose) {
       element.append(make('p', {},
           `Last pose against the truth, both relative to the first: ` +
@@ -120,8 +156,11 @@ function metrics(data) {
     ['tracking', digits(run.track_ms_median, 3) + ' ms',
      `Median per frame without decoding; 99 of 100 frames take less than ` +
      `${digits(run.track_ms_p99, 3)} ms.`],
-    ['matching', digits(run.match_ms_median, 3) + ' ms', 'Part of tracking, median.'],
-    ['pose solve', digits(run.solve_ms_median, 3) + ' ms', 'Part of tracking, median.'],
+    ['matching', digits(run.match_ms_median, 3) + ' ms',
+     'Part of tracking, median: finding features again, choosing pixels.'],
+    ['pose solve', digits(run.solve_ms_median, 3) + ' ms',
+     'Part of tracking, median: every solve of the frame, from features and from ' +
+     'pixels, with its steps, weights and covariance.'],
     ['new reference', digits(run.reference_ms_median, 3) + ' ms',
      'Median of the frames that became one.'],
     ['decoding', digits(run.decode_ms_median, 3) + ' ms',

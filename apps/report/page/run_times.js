@@ -36,8 +36,18 @@ function lineTrace(data, y, number, name, color, format, more) {
     type: 'scatter', mode: data.frames.t.length === 1 ? 'markers' : 'lines',
     x: data.frames.t, y, name, connectgaps: false, line: {color, width: 1.5},
     marker: {color}, yaxis: 'y' + number,
-    hovertemplate: `%{y:${format}}`,
+    customdata: data.frames.t.map((t, i) => i * data.every),
+    hovertemplate: `%{y:${format}} (frame no. %{customdata})`,
   }, more);
+}
+
+// Dotted lines where the path jumps.
+function jumpLines(data) {
+  return (data.metrics.jumps || []).map(jump => ({
+    type: 'line', xref: 'x', yref: 'paper', y0: 0, y1: 1, x0: jump.seconds,
+    x1: jump.seconds, line: {color: COLOR.black, width: 1, dash: 'dot'},
+    layer: 'below',
+  }));
 }
 
 function errors(data) {
@@ -48,7 +58,10 @@ function errors(data) {
       'Above: how far each position is from the truth after the alignment. ' +
       'Below: the error of the motion over the second that starts at that time, ' +
       'unaffected by earlier drift. Dashed: root mean square (RMSE).' + PER_POINT(data) +
-      (lost ? ' Grey: lost, no pose.' : ''));
+      (lost ? ' Grey: lost, no pose.' : '') +
+      ' Where a line is broken there is no truth within ' +
+      `${evaluation.max_time_difference_s} s, at the time or a second later.` +
+      ((data.metrics.jumps || []).length ? ' Dotted: a jump.' : ''));
   const rmse = (statistics, factor, unit) => (statistics
       ? `, RMSE ${digits(statistics.rmse * factor, 3)} ${unit}` : ': n/a');
   const position = lengthUnit(largest(data.errors.position_m));
@@ -78,7 +91,7 @@ function errors(data) {
   }
   plot('errors', rows.length > 1 ? 'rows3' : 'small', element, traces,
       Object.assign(rowsLayout(rows, TIME_AXIS, timeRange(data)),
-          {shapes: lostBands(data).concat(levels)}));
+          {shapes: lostBands(data).concat(levels, jumpLines(data))}));
 }
 
 function tracking(data) {
@@ -86,13 +99,15 @@ function tracking(data) {
   const element = section('Tracking',
       'Status of every frame; how many matches were found against the reference ' +
       'frame and how many of them agree with one motion; and sigma, the spread of ' +
-      'whitened residuals: 1 means that the noise model fits.' + PER_POINT(data));
+      'whitened residuals: 1 means that the noise model fits. Frames tracked by ' +
+      'pixels alone have points of their own: they count pixels, not features. The ' +
+      'first frame has nothing to be tracked against.' + PER_POINT(data));
   const rows = [
     {title: 'Status, and new references', y: '', weight: 0.8,
      axis: {range: [-1.6, 2.6], tickvals: [2, 1, 0, -1], showgrid: false,
             ticktext: [...STATUS.map(s => s.name), 'reference']}},
-    {title: key(COLOR.sky) + 'matches   ' + key(COLOR.blue) + 'in agreement',
-     y: 'matches'},
+    {title: key(COLOR.sky) + 'features matched   ' + key(COLOR.blue) +
+         'in agreement', y: 'features'},
     {title: 'Sigma, ideally 1 (dashed)', y: 'sigma', weight: 0.8},
   ];
   const traces = STATUS.map((status, code) => ({
@@ -107,18 +122,54 @@ function tracking(data) {
     y: references.map(() => -1), hoverinfo: 'skip',
     marker: {symbol: 'line-ns-open', size: 9, color: COLOR.black},
   });
-  // The first frame has nothing to be matched against.
-  const matched = values => values.map(
-      (v, i) => (frames.matches[i] > 0 || frames.status[i] > 0 ? v : null));
+  const byFeatures = values => values.map((v, i) => (frames.by_pixels[i] === 0 &&
+      (frames.matches[i] > 0 || frames.status[i] > 0) ? v : null));
+  const byPixels = values => values.map((v, i) => (frames.by_pixels[i] ? v : null));
+  const pixelRow = frames.by_pixels.some(v => v);
+  const last = pixelRow ? '4' : '3';
   traces.push(
-      lineTrace(data, matched(frames.matches), '2', 'matches', COLOR.sky, 'd'),
-      lineTrace(data, matched(frames.inliers), '2', 'in agreement', COLOR.blue, 'd'),
-      lineTrace(data, frames.sigma.map(s => (s > 0 ? s : null)), '3', 'sigma',
-          COLOR.purple, '.2f'));
+      lineTrace(data, byFeatures(frames.matches), '2', 'features matched', COLOR.sky, 'd'),
+      lineTrace(data, byFeatures(frames.inliers), '2', 'in agreement', COLOR.blue, 'd'));
+  if (pixelRow) {
+    rows.splice(2, 0, {title: key(COLOR.orange) + 'pixels compared   ' +
+        key(COLOR.vermillion) + 'in agreement', y: 'pixels', weight: 0.8});
+    for (const [values, name, color] of [
+      [frames.matches, 'pixels compared', COLOR.orange],
+      [frames.inliers, 'in agreement', COLOR.vermillion],
+    ]) {
+      traces.push(lineTrace(data, byPixels(values), '3', name, color, 'd',
+          {mode: 'markers', marker: {color, size: 4}}));
+    }
+  }
+  traces.push(lineTrace(data, frames.sigma.map(s => (s > 0 ? s : null)), last, 'sigma',
+      COLOR.purple, '.2f'));
   const layout = rowsLayout(rows, TIME_AXIS, timeRange(data));
-  layout.shapes = lostBands(data).concat(level(1, '3'));
-  plot('tracking', 'rows3', element, traces, layout);
+  layout.shapes = lostBands(data).concat(level(1, last), jumpLines(data));
+  plot('tracking', pixelRow ? 'rows4' : 'rows3', element, traces, layout);
+  jumpTable(data, element);
   incidents(data, element);
+}
+
+// What a jump looks like, and how to look at it.
+function jumpTable(data, element) {
+  const jumps = data.metrics.jumps || [];
+  if (jumps.length === 0) return;
+  element.append(make('h3', {}, 'Jumps'), make('p', {class: 'soft'},
+      'Frames whose motion differs most from the mean of the motions before and ' +
+      'after, by more than 10 mm and six times what is usual here. Of few matches or ' +
+      'at a large sigma it is an error; of a camera that was pushed it is not. To see ' +
+      'what the largest of them was tracked by:'),
+      make('pre', {}, `${data.metrics.program} --flagfile=config.flags ` +
+          `--debug_images=${jumps.slice(0, 3).map(jump => jump.frame).join(',')}`),
+      table([{number: 'frame no.'}, {number: 'time (s)'}, {number: 'off by (mm)'},
+             'tracked by', {number: 'in agreement'}, {number: 'sigma'}, 'status'],
+          jumps.map(jump => [
+            {number: String(jump.frame)}, {number: jump.seconds.toFixed(2)},
+            {number: digits(1000 * jump.translation_m, 2)},
+            {direct: 'pixels alone', 'features+direct': 'features and pixels'}[
+                jump.tracking_source] || jump.tracking_source,
+            {number: `${jump.inliers} of ${jump.matches}`},
+            {number: digits(jump.sigma, 2)}, jump.status])));
 }
 
 function incidents(data, element) {
@@ -129,7 +180,7 @@ function incidents(data, element) {
   const shown = data.incidents.slice(0, 20);
   element.append(make('h3', {}, 'Frames that are not ok'));
   element.append(table(
-      [{number: 'from (s)'}, {number: 'to (s)'}, {number: 'frames'}, 'status', 'why'],
+      [{number: 'from (s)'}, {number: 'to (s)'}, {number: 'frame no.'}, 'status', 'why'],
       shown.map(i => [
         {number: i.from_s.toFixed(2)}, {number: i.to_s.toFixed(2)},
         {number: i.first === i.last ? String(i.first) : `${i.first}–${i.last}`},
@@ -145,8 +196,10 @@ function incidents(data, element) {
 function times(data) {
   const frames = data.frames;
   const element = section('Time per frame',
-      'Above: where the time of tracking goes, stacked. Below: decoding of the ' +
-      'images, which may run on other threads meanwhile.' + PER_POINT(data));
+      'Above: where the time of tracking goes, stacked; "pose solve" is every solve of ' +
+      'the frame, from features and from pixels, with weights and covariance. Below: ' +
+      'decoding of the images, which may run on other threads meanwhile.' +
+      PER_POINT(data));
   const other = frames.track_ms.map((all, i) => Math.max(0, all - STAGES.slice(0, 4)
       .reduce((sum, stage) => sum + (frames[stage.key][i] || 0), 0)));
   const traces = [];

@@ -78,6 +78,15 @@ TEST_F(SlamProgramTest, LeavesItsFilesAndKeepsAMapToTrackIn) {
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(ReadTextFile(map + "/map.txt"), before);
   EXPECT_THAT(again.out, HasSubstr("1 segments joined"));
+  // Poses before the map was met are of another world.
+  const int from = nlohmann::json::parse(Read("again/metrics.json"))
+                       .at("slam")
+                       .at("localised_from_frame");
+  EXPECT_THAT(again.out,
+              HasSubstr("from frame " + std::to_string(from) + " on"));
+  EXPECT_GT(from, 0);
+  EXPECT_EQ(ReadTrajectory(folder_ / "again/trajectory_online.txt").size(),
+            kSlamFrames - from);
 }
 
 TEST_F(SlamProgramTest, SaysInOneLineWhatIsWrongWithMaps) {

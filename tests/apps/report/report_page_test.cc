@@ -20,15 +20,16 @@ using testing::Not;
 void WriteRun(const TempFolder& folder, int frames) {
   std::string csv =
       "timestamp,status,reason,segment,reference,is_reference,relocalised,"
-      "matches,inliers,iterations,sigma,decode_ms,track_ms,match_ms,solve_ms,"
+      "tracking_source,matches,inliers,iterations,sigma,decode_ms,track_ms,"
+      "match_ms,solve_ms,"
       "reference_ms,relocalise_ms\n";
   std::string poses;
   for (int i = 0; i < frames; ++i) {
     const bool lost = i % 7 == 6;
     const std::string time = std::to_string(100.0 + i / 32.0);
     csv += time + (lost ? ",lost,\"too few, all\"" : ",ok,\"\"") +
-           ",0,0,0,0,300,250,3,1.01,2.5," + (i == 13 ? "50" : "1.25") +
-           ",1,0.1,0,0\n";
+           (i == 5 ? ",0,0,0,0,direct" : ",0,0,0,0,features") +
+           ",300,250,3,1.01,2.5," + (i == 13 ? "50" : "1.25") + ",1,0.1,0,0\n";
     if (!lost) poses += time + " 0.1 0.2 " + std::to_string(i) + " 0 0 0 1\n";
   }
   folder.Write("frames.csv", csv);
@@ -48,6 +49,8 @@ TEST(RunReportData, LostFramesAreGaps) {
   EXPECT_EQ(data.at("frames").at("t")[1], 0.0313);  // 1/32 s in short
   EXPECT_EQ(data.at("frames").at("status")[5], 0);
   EXPECT_EQ(data.at("frames").at("status")[6], 2);
+  EXPECT_EQ(data.at("frames").at("by_pixels")[4], 0);
+  EXPECT_EQ(data.at("frames").at("by_pixels")[5], 1);
   const json& z = data.at("path").at("z");
   ASSERT_EQ(z.size(), 15u);
   EXPECT_EQ(z[5], 5.0);

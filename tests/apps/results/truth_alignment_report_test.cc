@@ -43,11 +43,11 @@ TEST(TruthAlignmentReportTest, TableHasEstimatesWithTheirErrors) {
       "                                        RMSE      median        mean"
       "         max\n"
       "ATE there (790 poses)\n"
-      "  position (m)                       0.25000     0.12500     0.20000"
-      "     1.50000\n"
+      "  position (mm)                     250.0000    125.0000    200.0000"
+      "   1500.0000\n"
       "RPE there, fixed delta 1 s (751 pairs)\n"
-      "  translation (m)                    1.50000     1.30000     1.40000"
-      "     1.60000\n"
+      "  translation (mm)                 1500.0000   1300.0000   1400.0000"
+      "   1600.0000\n"
       "  rotation (deg)                         n/a\n");
 }
 

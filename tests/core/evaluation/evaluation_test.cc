@@ -65,6 +65,18 @@ TEST(EvaluationTest, FindsNoErrorInTheTruth) {
   }
 }
 
+// Of poses in one world already, its own place counts.
+TEST(EvaluationTest, WithoutAlignmentAShiftIsAnError) {
+  const Trajectory truth = Walk(1, 20);
+  Trajectory shifted = truth;
+  for (StampedPose& pose : shifted) pose.world_from_cam.translation.x() += 0.25;
+  EvaluationOptions options;
+  EXPECT_NEAR(Evaluate(shifted, truth, options).ate.max, 0.0, kErrorTolerance);
+  options.align = false;
+  EXPECT_NEAR(Evaluate(shifted, truth, options).ate.rmse, 0.25,
+              kErrorTolerance);
+}
+
 // Places 0, 1, 2, 3, 4 m seen as 0, 1.1, 2.2, 3.3, 4.4 m are off by 0.2, 0.1,
 // 0, 0.1, 0.2 m once their means agree: without scale, no more can be had.
 TEST(EvaluationTest, AteOfAWrongScaleOnALine) {
