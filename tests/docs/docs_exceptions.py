@@ -58,9 +58,10 @@ EXCEPTIONS = {
         'scripts/mutants': left_out('takes minutes'),
         'scripts/endurance': left_out('takes an hour'),
         'scripts/check_packages': left_out('takes minutes and needs root'),
-        'scripts/benchmark':
+        'scripts/benchmark --quick':
             left_out('takes minutes; tests/benchmarks/benchmark_programs_test.cc runs '
                      'the programs'),
+        'scripts/benchmark --write': left_out('takes minutes, as above'),
         'scripts/accuracy': left_out('takes minutes'),
         'scripts/cost_accuracy': left_out('takes minutes'),
         'scripts/frontends': left_out('takes minutes'),
