@@ -137,7 +137,7 @@ function partsTable(data, sequences, settings, varied) {
     }
   }
   section('Settings over parts', 'Median (least to most) of the parts of a sequence. ' +
-      'Settings whose ranges overlap are not told apart by it.').append(table(
+      'Settings whose ranges overlap cannot be ranked by it.').append(table(
       ['sequence', 'setting', {number: 'runs'}, {number: 'tracked (%)'},
        {number: 'ATE (mm)'}, {number: 'RPE over 1 s (mm)'},
        {number: 'RPE over 1 s (°)'}], rows, 'stack wide'));
