@@ -94,8 +94,9 @@ EvaluationReport Evaluate(const Trajectory& estimate,
   report.paired_poses = static_cast<int>(pairs.size());
   report.duration = times.back() - times.front();
   report.path_length = path.back();
-  if (options.align) report.truth_from_estimate = AlignRigidly(pairs);
-  report.sim3 = Compare(pairs, report.truth_from_estimate);
+  const Rigid3d aligned = AlignRigidly(pairs);
+  if (options.align) report.truth_from_estimate = aligned;
+  report.sim3 = Compare(pairs, aligned);
   const std::vector<PoseInterval> intervals = TimeIntervals(
       times, options.rpe_delta_seconds, options.max_time_difference);
   report.poses = PoseErrors(pairs, report.truth_from_estimate, intervals);
