@@ -74,7 +74,9 @@ SlamFrame Slam::Track(const PreparedFrame& frame,
 void Slam::Follow(const TrackedFrame& tracked) {
   const Rigid3d moved = world_from_cam_.Inverse() * tracked.world_from_cam;
   world_from_cam_ = tracked.world_from_cam;
-  if (tracked.status == TrackingStatus::kLost) {
+  const bool is_lost = tracked.status == TrackingStatus::kLost;
+  // A lost frame may begin a segment: the second in a row.
+  if (is_lost && !tracked.is_reference) {
     if (tracked.is_predicted) odom_from_cam_ = odom_from_cam_ * moved;
     return;
   }
@@ -105,6 +107,7 @@ void Slam::Follow(const TrackedFrame& tracked) {
         map_from_keyframe_.at(reference) * odom_from_reference_.Inverse();
   }
   if (tracked.is_reference) BecomeReference(tracked);
+  if (is_lost) path_.pop_back();
 }
 
 // The last frame of path_ is a keyframe.

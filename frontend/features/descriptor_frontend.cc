@@ -82,8 +82,7 @@ void DescriptorFrontend::Match(const FeatureSet& reference,
   SearchGuide guide;
   guide.radius_px = static_cast<float>(kSearchAngle * options_.camera.fx);
   for (const Observation& o : features.observations) {
-    const Eigen::Vector3d point =
-        cur_from_ref_guess * matches->matches.Point(o);
+    const Eigen::Vector3d point = cur_from_ref_guess * PointOf(o);
     Eigen::Vector2d pixel =
         Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
     if (point.z() > 0.0) pixel = ImagePoint(options_.camera, timing, point);

@@ -100,6 +100,11 @@ class Frontend {
                      FeatureMatches* matches) = 0;
 
  protected:
+  // Point in camera axes (m) of an observation with a depth.
+  Eigen::Vector3d PointOf(const Observation& o) const {
+    return options_.camera.Ray(o.u, o.v) * o.depth;
+  }
+
   const FrontendOptions options_;           // as it was made with
   const DepthLookupOptions depth_options_;  // what follows of them for depths
 };

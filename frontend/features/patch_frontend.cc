@@ -129,8 +129,7 @@ void PatchFrontend::Match(const FeatureSet& reference,
   const FrameTiming timing = frame.Timing();
   for (size_t i = 0; i < features.corners.size(); ++i) {
     const Observation& ref = features.observations[i];
-    const Eigen::Vector3d point =
-        cur_from_ref_guess * matches->matches.Point(ref);
+    const Eigen::Vector3d point = cur_from_ref_guess * PointOf(ref);
     if (!(point.z() >= options_.min_depth)) continue;
     const Eigen::Vector2d start = ImagePoint(camera, timing, point);
     if (!camera.Contains(start)) continue;

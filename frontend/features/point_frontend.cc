@@ -44,11 +44,10 @@ void PointFrontend::Match(const FeatureSet& reference,
   const auto& features = static_cast<const PointFeatures&>(reference);
   if (features.points.empty()) return;
   moved_ = features.points;
-  const Correspondences& camera = matches->matches;
   const FrameTiming timing = frame.Timing();
   for (size_t i = 0; i < moved_.size(); ++i) {
     const Eigen::Vector3d point =
-        cur_from_ref_guess * camera.Point(features.observations[i]);
+        cur_from_ref_guess * PointOf(features.observations[i]);
     if (point.z() < options_.min_depth) continue;
     const Eigen::Vector2d pixel = ImagePoint(options_.camera, timing, point);
     moved_[i] = cv::Point2f(static_cast<float>(pixel.x()),
