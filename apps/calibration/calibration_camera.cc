@@ -30,7 +30,9 @@ RgbdCamera ApplyCalibration(const RgbdCamera& first,
   changed.depth_correction.inverse_depth_offset =
       first.depth_correction.inverse_depth_offset / theta[kDepthFactor] +
       theta[kInverseDepth];
-  changed.depth_shutter.offset = first.depth_shutter.offset + theta[kDepthTime];
+  changed.depth_shutter.offset += theta[kDepthTime];
+  changed.depth_shutter.readout += theta[kDepthReadout];
+  changed.color_shutter.readout += theta[kColorReadout];
   changed.depth_correction.depth_from_color =
       first.depth_correction.depth_from_color *
       Rigid3d::FromRotationVector(theta.segment<3>(kRotationX),
@@ -47,6 +49,10 @@ CalibrationVector ThetaBetween(const RgbdCamera& first,
   theta[kInverseDepth] = after.inverse_depth_offset -
                          before.inverse_depth_offset / theta[kDepthFactor];
   theta[kDepthTime] = changed.depth_shutter.offset - first.depth_shutter.offset;
+  theta[kDepthReadout] =
+      changed.depth_shutter.readout - first.depth_shutter.readout;
+  theta[kColorReadout] =
+      changed.color_shutter.readout - first.color_shutter.readout;
   const Rigid3d moved =
       before.depth_from_color.Inverse() * after.depth_from_color;
   theta.segment<3>(kRotationX) = RotationVector(moved.rotation);

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "apps/calibration/calibration_pairs.h"
+#include "apps/calibration/path_twist.h"
 #include "apps/calibration/landmark_matcher.h"
 #include "core/util/input_error.h"
 #include "core/util/parallel_for.h"
@@ -28,7 +29,6 @@ int FeaturesOfEach(int max_views, size_t num_pairs) {
 // Of all keyframes.
 std::vector<LandmarksOfKeyframe> FindLandmarks(
     const KeyframeMap& map, const CalibrationPairs& pairs,
-    const std::vector<CameraVelocity>& velocities,
     const OdometrySettings& settings, int max_features, int threads) {
   const int num_keyframes = static_cast<int>(pairs.in_map.size());
   std::vector<std::vector<int>> neighbours(num_keyframes);
@@ -44,7 +44,7 @@ std::vector<LandmarksOfKeyframe> FindLandmarks(
   threads = std::max(1, std::min(threads, num_keyframes));
   ParallelFor(threads, threads, [&](int thread) {
     // A run of keyframes each: neighbours are decoded once.
-    LandmarkMatcher matcher(map, pairs.in_map, velocities, settings,
+    LandmarkMatcher matcher(map, pairs.in_map, settings,
                             max_features);
     const int begin = thread * num_keyframes / threads;
     const int end = (thread + 1) * num_keyframes / threads;
@@ -111,11 +111,11 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
     const Keyframe& keyframe = map.keyframes[place];
     data.views.world_from_cam.push_back(keyframe.world_from_cam);
     data.timestamps.push_back(keyframe.images.timestamp);
-    data.velocities.push_back(VelocityAt(path, keyframe.images.timestamp));
+    data.views.twists.push_back(TwistAt(path, keyframe.images.timestamp));
   }
   const int features = FeaturesOfEach(options.max_views, data.pairs.size());
   AddLandmarks(
-      FindLandmarks(map, chosen, data.velocities, settings, features, threads),
+      FindLandmarks(map, chosen, settings, features, threads),
       options.max_views, &data.views);
   return data;
 }

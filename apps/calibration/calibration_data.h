@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/calibration/camera_velocity.h"
 #include "apps/pipeline/settings.h"
 #include "core/evaluation/trajectory.h"
 #include "costs/calibration/calibration_views.h"
@@ -34,7 +33,6 @@ struct CalibrationData {
   std::vector<double> timestamps;         // of keyframes, s
   std::vector<std::array<int, 2>> pairs;  // of keyframes
   std::vector<int> in_map;                // their places in the map
-  std::vector<CameraVelocity> velocities;
 };
 
 // Finds the features of each keyframe of the map's largest segment again in

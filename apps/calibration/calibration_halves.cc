@@ -33,6 +33,8 @@ Part PartOf(const CalibrationViews& all, const CalibrationState& found,
   part.views.world_from_cam.assign(found.world_from_cam.begin() + begin,
                                    found.world_from_cam.begin() + end);
   part.state.world_from_cam = part.views.world_from_cam;
+  part.views.twists.assign(all.twists.begin() + begin,
+                           all.twists.begin() + end);
   const auto is_in = [&](int keyframe) {
     return keyframe >= begin && keyframe < end;
   };

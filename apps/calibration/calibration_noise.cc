@@ -34,11 +34,12 @@ class Collector {
     const double* const theta = state_.theta.data();
     const size_t first = samples->size();
     double information = 0.0;
-    const auto add = [&](const MeasuredInverseDepth& depth, double w,
+    const auto add = [&](const LandmarkData& data, double w,
                          const Eigen::Vector3d& ray, double by_depth) {
+      const MeasuredInverseDepth& depth = data.depth;
       information += by_depth;
       if (depth.pixel_value == 0.0) return;
-      const double expected = MeasuredFrom<double>(w, theta, depth);
+      const double expected = MeasuredFrom<double>(w, theta, data.motion, depth);
       // Along the plane to where the landmark is.
       const double there = depth.plane.dot(ray);
       const double pixel =
@@ -52,7 +53,7 @@ class Collector {
     LandmarkDerivatives<2> J2;
     const LandmarkData own = DataOf(views_, landmark, state_);
     AnchorDepth::Jacobian(anchor, anchor, d, theta, own, r, &J1);
-    add(landmark.depth, d, landmark.depth.ray, J1.inverse_depth.squaredNorm());
+    add(own, d, landmark.depth.ray, J1.inverse_depth.squaredNorm());
     for (int k = 0; k < landmark.num_views; ++k) {
       const LandmarkView& view = views_.views[landmark.first_view + k];
       const LandmarkData data = DataOf(views_, landmark, view, state_);
@@ -66,7 +67,7 @@ class Collector {
                                    0.0);
       LandmarkDepth::Jacobian(anchor, there, d, theta, data, r, &J1);
       const Eigen::Vector3d Y = InView<double>(anchor, there, d, theta, data);
-      add(view.depth, d / Y.z(), view.depth.ray + beside,
+      add(data, d / Y.z(), view.depth.ray + beside,
           J1.inverse_depth.squaredNorm());
     }
     for (size_t s = first; s < samples->size(); ++s) {

@@ -1,35 +1,45 @@
 #include "apps/calibration/displaced_depths.h"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "apps/calibration/measured_depth.h"
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"
+#include "costs/calibration/calibration_state.h"
 #include "frontend/frame/depth_warper.h"
 #include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
 namespace {
 
-// How far (rad and m, not per second) depth is off in an image that was taken
-// at this velocity.
-CameraVelocity DisplacementOf(const CalibrationVector& theta,
-                              const CameraVelocity& velocity) {
-  const double delay = theta[kDepthTime];
-  return {theta.segment<3>(kRotationX) + delay * velocity.rotation,
-          theta.segment<3>(kTranslationX) + delay * velocity.translation};
-}
+// How far depth is off where it was measured.
+struct Displacement {
+  Eigen::Vector3d rotation;     // rad
+  Eigen::Vector3d translation;  // m
+
+  Displacement(const CalibrationVector& theta, const RowMotion& motion) {
+    const double lag = DepthLag(theta.data(), motion.row);
+    rotation = theta.segment<3>(kRotationX) - lag * motion.twist.angular;
+    translation = theta.segment<3>(kTranslationX) - lag * motion.twist.linear;
+  }
+
+  // How far (px, about) it moves what is seen along a ray at an inverse depth.
+  double Flow(double fx, const Eigen::Vector3d& ray, double inverse) const {
+    const Eigen::Vector3d moved = rotation.cross(ray) + inverse * translation;
+    return fx * (moved - moved.z() * ray).head<2>().norm();
+  }
+};
 
 // Looks a depth up in an image in which a displacement has been undone.
 void LookUpAnew(const Frame& frame, const Camera& camera,
                 const DepthLookupOptions& options, double u, double v,
-                const CameraVelocity& undone, MeasuredInverseDepth* depth) {
+                const Displacement& undone, MeasuredInverseDepth* depth) {
   const Observation o = Observe(frame, camera, u, v, 1.0, options);
-  const CameraVelocity velocity{depth->rate_rotation, depth->rate_translation};
   MeasuredInverseDepth updated =
-      MeasuredAt(frame, camera, o, {u, v}, velocity, options.noise);
+      MeasuredAt(frame, camera, o, {u, v}, options.noise);
   updated.undone_rotation = undone.rotation;
   updated.undone_translation = undone.translation;
   // A landmark keeps a value to begin with.
@@ -45,7 +55,9 @@ bool IsDisplaced(const CalibrationVector& theta) {
   constexpr double kDelay = 5e-4;        // s
   return theta.segment<3>(kRotationX).norm() > kRotation ||
          theta.segment<3>(kTranslationX).norm() > kTranslation ||
-         std::abs(theta[kDepthTime]) > kDelay;
+         std::abs(theta[kDepthTime]) +
+                 0.5 * std::abs(theta[kDepthReadout] - theta[kColorReadout]) >
+             kDelay;
 }
 
 double DisplacementPx(const CalibrationViews& views,
@@ -53,13 +65,15 @@ double DisplacementPx(const CalibrationViews& views,
   std::vector<double> all;
   for (const Landmark& landmark : views.landmarks) {
     const MeasuredInverseDepth& at = landmark.depth;
-    const Eigen::Vector3d turn =
-        change.segment<3>(kRotationX) + change[kDepthTime] * at.rate_rotation;
-    const Eigen::Vector3d shift = change.segment<3>(kTranslationX) +
-                                  change[kDepthTime] * at.rate_translation;
-    const Eigen::Vector3d moved = turn.cross(at.ray) + at.value * shift;
-    all.push_back(views.camera.fx *
-                  (moved - moved.z() * at.ray).head<2>().norm());
+    const RowMotion motion = MotionAt(views, landmark.anchor, landmark.v);
+    const double depth =
+        Displacement(change, motion).Flow(views.camera.fx, at.ray, at.value);
+    // The first row of colour.
+    CalibrationVector readout = CalibrationVector::Zero();
+    readout[kDepthTime] = 0.5 * change[kColorReadout];
+    const double color =
+        Displacement(readout, motion).Flow(views.camera.fx, at.ray, at.value);
+    all.push_back(std::max(depth, color));
   }
   return all.empty() ? 0.0 : Median(all);
 }
@@ -83,18 +97,26 @@ void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
   }
   ParallelFor(num_keyframes, threads, [&](int k) {
     if (landmarks[k].empty() && views[k].empty()) return;
-    const CameraVelocity moved = DisplacementOf(theta, data->velocities[k]);
-    const Rigid3d measured_from_moved =
-        Rigid3d::FromRotationVector(moved.rotation, moved.translation);
+    const auto moved_at = [&](double row) {
+      return Displacement(theta, MotionAt(data->views, k, row));
+    };
     Frame frame = map.keyframes[data->in_map[k]].images.Restore();
-    frame.depth =
-        DepthWarper(camera).Move(frame, measured_from_moved.Inverse()).clone();
+    frame.depth = DepthWarper(camera)
+                      .Move(frame,
+                            [&](double row) {
+                              const Displacement moved = moved_at(row);
+                              return Rigid3d::FromRotationVector(
+                                         moved.rotation, moved.translation)
+                                  .Inverse();
+                            })
+                      .clone();
     for (Landmark* landmark : landmarks[k]) {
-      LookUpAnew(frame, camera, options, landmark->u, landmark->v, moved,
-                 &landmark->depth);
+      LookUpAnew(frame, camera, options, landmark->u, landmark->v,
+                 moved_at(landmark->v), &landmark->depth);
     }
     for (LandmarkView* view : views[k]) {
-      LookUpAnew(frame, camera, options, view->u, view->v, moved, &view->depth);
+      LookUpAnew(frame, camera, options, view->u, view->v, moved_at(view->v),
+                 &view->depth);
     }
   });
 }

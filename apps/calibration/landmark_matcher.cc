@@ -8,10 +8,9 @@ namespace rgbd_pose {
 
 LandmarkMatcher::LandmarkMatcher(const KeyframeMap& map,
                                  const std::vector<int>& chosen,
-                                 const std::vector<CameraVelocity>& velocities,
                                  const OdometrySettings& settings,
                                  int max_features)
-    : map_(map), chosen_(chosen), velocities_(velocities) {
+    : map_(map), chosen_(chosen) {
   FrontendOptions options = settings.features;
   options.camera = map.camera;
   options.max_features = max_features;
@@ -33,7 +32,7 @@ LandmarksOfKeyframe LandmarkMatcher::Match(int anchor,
     landmark.anchor = anchor;
     landmark.u = pixel.x();
     landmark.v = pixel.y();
-    landmark.depth = DepthOf(frame, anchor, o, pixel);
+    landmark.depth = DepthOf(frame, o, pixel);
     if (landmark.depth.inverse_sigma == 0.0) continue;
     place[i] = static_cast<int>(result.landmarks.size());
     result.landmarks.push_back(landmark);
@@ -54,7 +53,7 @@ LandmarksOfKeyframe LandmarkMatcher::Match(int anchor,
       view.u = pixel.x();
       view.v = pixel.y();
       view.sigma_px = o.sigma_px;
-      view.depth = DepthOf(there, to, o, pixel);
+      view.depth = DepthOf(there, o, pixel);
       view.is_held_out = held_out[n];
       result.views[landmark].push_back(view);
     }
@@ -82,10 +81,9 @@ const PreparedFrame& LandmarkMatcher::Images(int at) {
 }
 
 MeasuredInverseDepth LandmarkMatcher::DepthOf(
-    const Frame& frame, int keyframe, const Observation& o,
+    const Frame& frame, const Observation& o,
     const Eigen::Vector2d& pixel) const {
-  return MeasuredAt(frame, map_.camera, o, pixel, velocities_[keyframe],
-                    noise_);
+  return MeasuredAt(frame, map_.camera, o, pixel, noise_);
 }
 
 }  // namespace rgbd_pose

@@ -4,7 +4,6 @@
 #include <memory>
 #include <vector>
 
-#include "apps/calibration/camera_velocity.h"
 #include "apps/pipeline/settings.h"
 #include "costs/calibration/calibration_views.h"
 #include "frontend/features/frontend.h"
@@ -22,9 +21,8 @@ struct LandmarksOfKeyframe {
 class LandmarkMatcher {
  public:
   // All must outlive it but `settings`. `chosen`: places in the map of the
-  // keyframes, by whose numbers all is asked for; `velocities` of each of them.
+  // keyframes, by whose numbers all is asked for.
   LandmarkMatcher(const KeyframeMap& map, const std::vector<int>& chosen,
-                  const std::vector<CameraVelocity>& velocities,
                   const OdometrySettings& settings, int max_features);
 
   // `held_out`: of each of the neighbours.
@@ -43,13 +41,11 @@ class LandmarkMatcher {
   const PreparedFrame& Images(int at);
 
   // One of the keyframe's depths.
-  MeasuredInverseDepth DepthOf(const Frame& frame, int keyframe,
-                               const Observation& o,
+  MeasuredInverseDepth DepthOf(const Frame& frame, const Observation& o,
                                const Eigen::Vector2d& pixel) const;
 
   const KeyframeMap& map_;
   const std::vector<int>& chosen_;
-  const std::vector<CameraVelocity>& velocities_;
   std::unique_ptr<Frontend> frontend_;
   DepthNoiseModel noise_;
   std::map<int, PreparedFrame> images_;

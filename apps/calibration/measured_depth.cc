@@ -85,7 +85,6 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
 MeasuredInverseDepth MeasuredAt(const Frame& frame, const Camera& camera,
                                 const Observation& o,
                                 const Eigen::Vector2d& pixel,
-                                const CameraVelocity& velocity,
                                 const DepthNoiseModel& noise) {
   MeasuredInverseDepth depth;
   if (o.depth <= 0.0) return depth;
@@ -94,8 +93,6 @@ MeasuredInverseDepth MeasuredAt(const Frame& frame, const Camera& camera,
   if (depth.plane.isZero(0.0)) return depth;
   depth.ray = camera.Ray(o.u, o.v);
   depth.inverse_sigma = o.depth * o.depth / o.sigma_depth;
-  depth.rate_rotation = velocity.rotation;
-  depth.rate_translation = velocity.translation;
   const Eigen::Vector2d middle(std::round(pixel.x()), std::round(pixel.y()));
   const double at_middle =
       frame.DepthAt(static_cast<int>(middle.x()), static_cast<int>(middle.y()));

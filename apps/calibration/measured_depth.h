@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 
-#include "apps/calibration/camera_velocity.h"
 #include "core/estimation/correspondences.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_noise.h"
@@ -12,11 +11,10 @@
 namespace rgbd_pose {
 
 // What an observation at `pixel` (as seen, distorted) says of depth. Nothing
-// where the surface is no plane. `velocity`: of the camera, then.
+// where the surface is no plane.
 MeasuredInverseDepth MeasuredAt(const Frame& frame, const Camera& camera,
                                 const Observation& o,
                                 const Eigen::Vector2d& pixel,
-                                const CameraVelocity& velocity,
                                 const DepthNoiseModel& noise);
 
 }  // namespace rgbd_pose

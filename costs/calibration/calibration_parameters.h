@@ -17,6 +17,8 @@ enum CalibrationIndex {
   kK2,
   kInverseDepth,  // 1 / z = 1 / measured z + this, 1/m
   kDepthTime,     // depth is so much later than its stamp says, s
+  kColorReadout,  // from the first row to the last, longer than what has been
+  kDepthReadout,  // undone, s
   kRotationX,     // where a point X is in the axes of colour, the registered
   kRotationY,     // depth image has Exp(rotation) X + translation: rad
   kRotationZ,
@@ -60,6 +62,8 @@ inline constexpr std::array<CalibrationParameter, kCalibrationSize>
         {"inverse_depth_offset", "offset of inverse depth", "1/m", 0.02, 6e-5},
         {"depth_time_offset", "time of depth after its stamp", "s", 0.02,
          1.5e-5},
+        {"color_readout", "readout of colour", "s", 0.02, 1e-4},
+        {"depth_readout", "readout of depth", "s", 0.02, 1e-4},
         {"rotation_x", "registration of depth, rotation about x", "rad", 0.02,
          1.4e-4},
         {"rotation_y", "registration of depth, rotation about y", "rad", 0.02,

@@ -23,6 +23,9 @@ struct CalibrationState {
 // motion that is added to them, where it is zero.
 std::vector<MotionDerivatives> PosesOf(const CalibrationState& state);
 
+// When a row (px) of a keyframe was exposed.
+RowMotion MotionAt(const CalibrationViews& views, int keyframe, double row);
+
 // What is measured of a landmark in one view, its sigmas as a state has them.
 LandmarkData DataOf(const CalibrationViews& views, const Landmark& landmark,
                     const LandmarkView& view, const CalibrationState& state);

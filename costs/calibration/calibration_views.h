@@ -46,6 +46,7 @@ struct KnownDistance {
 struct CalibrationViews {
   Camera camera;                        // to begin with
   std::vector<Rigid3d> world_from_cam;  // of keyframes, as far as known
+  std::vector<Twist> twists;            // of each of them
   std::vector<Landmark> landmarks;
   std::vector<LandmarkView> views;       // of each landmark in a row
   std::vector<KnownDistance> distances;  // may be empty: then there is no scale

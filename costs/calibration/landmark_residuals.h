@@ -5,6 +5,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/motion.h"
+#include "core/geometry/twist.h"
 #include "costs/calibration/calibration_parameters.h"
 #include "costs/calibration/lens.h"
 
@@ -22,11 +23,9 @@ struct MeasuredInverseDepth {
   double inverse_sigma = 0.0;  // m; 0: none was measured
 
   // The surface there: m with m . X / z = 1 for its points X at this depth's z,
-  // where the ray of the pixel is (a, b, 1), and the camera's velocity.
+  // where the ray of the pixel is (a, b, 1).
   Eigen::Vector3d plane = Eigen::Vector3d::Zero();
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
-  Eigen::Vector3d rate_rotation = Eigen::Vector3d::Zero();     // rad/s
-  Eigen::Vector3d rate_translation = Eigen::Vector3d::Zero();  // m/s
 
   // The same of the nearest pixel alone, on the ray of its middle: to measure
   // noise by. 0: none.
@@ -38,23 +37,39 @@ struct MeasuredInverseDepth {
   Eigen::Vector3d undone_translation = Eigen::Vector3d::Zero();  // m
 };
 
-// What is measured of an inverse depth w that is seen at a pixel, and how that
-// changes. The depth camera is displaced by omega, v (registration and delay);
-// it sees the plane m of the same surface, w m . X = 1, at the same pixel at
+// When a pixel of a keyframe was exposed, and how the camera moved then.
+struct RowMotion {
+  Twist twist;
+  double row = 0.0;  // as a share of the readout: -1/2 the first, 1/2 the last
+};
+
+// How long after colour the depth of a pixel was taken, beyond what has been
+// undone: s.
+template <typename T>
+T DepthLag(const T* theta, double row) {
+  return theta[kDepthTime] + row * (theta[kDepthReadout] - theta[kColorReadout]);
+}
+
+// What is measured of an inverse depth w that is seen at a pixel when its row
+// of colour is exposed, and how that changes. The depth camera is displaced by
+// omega, v (registration less what the camera moves until depth is taken); it
+// sees the plane m of the same surface, w m . X = 1, at the same pixel at
 //
 //   w' = w (1 + omega . (m x r) - w (m . v))
 //
 // to first order, and measures factor * (w' - offset).
 template <typename T>
-T MeasuredFrom(const T& w, const T* theta, const MeasuredInverseDepth& at) {
+T MeasuredFrom(const T& w, const T* theta, const RowMotion& motion,
+               const MeasuredInverseDepth& at) {
   const Eigen::Vector3d lever = at.plane.cross(at.ray);
+  const T lag = DepthLag(theta, motion.row);
   T turned(0.0), shifted(0.0);
   for (int i = 0; i < 3; ++i) {
     turned += lever[i] *
-              (theta[kRotationX + i] + theta[kDepthTime] * at.rate_rotation[i] -
+              (theta[kRotationX + i] - lag * motion.twist.angular[i] -
                at.undone_rotation[i]);
-    shifted += at.plane[i] * (theta[kTranslationX + i] +
-                              theta[kDepthTime] * at.rate_translation[i] -
+    shifted += at.plane[i] * (theta[kTranslationX + i] -
+                              lag * motion.twist.linear[i] -
                               at.undone_translation[i]);
   }
   return theta[kDepthFactor] *
@@ -63,25 +78,28 @@ T MeasuredFrom(const T& w, const T* theta, const MeasuredInverseDepth& at) {
 
 // The same with its derivatives: by w, the result; by theta, in J.
 inline double MeasuredFrom(double w, const double* theta,
+                           const RowMotion& motion,
                            const MeasuredInverseDepth& at, double* value,
                            double* J) {
   const Eigen::Vector3d lever = at.plane.cross(at.ray);
   const Eigen::Map<const Eigen::Vector3d> rotation(theta + kRotationX);
   const Eigen::Map<const Eigen::Vector3d> translation(theta + kTranslationX);
-  const double delay = theta[kDepthTime];
+  const Twist& twist = motion.twist;
+  const double lag = DepthLag(theta, motion.row);
   const double factor = theta[kDepthFactor];
   const double turned =
-      lever.dot(rotation + delay * at.rate_rotation - at.undone_rotation);
-  const double shifted = at.plane.dot(
-      translation + delay * at.rate_translation - at.undone_translation);
+      lever.dot(rotation - lag * twist.angular - at.undone_rotation);
+  const double shifted =
+      at.plane.dot(translation - lag * twist.linear - at.undone_translation);
   const double seen = w * (1.0 + turned - w * shifted) - theta[kInverseDepth];
   *value = factor * seen;
   for (int k = 0; k < kCalibrationSize; ++k) J[k] = 0.0;
   J[kInverseDepth] = -factor;
   J[kDepthFactor] = seen;
   J[kDepthTime] =
-      factor * w *
-      (lever.dot(at.rate_rotation) - w * at.plane.dot(at.rate_translation));
+      factor * w * (w * at.plane.dot(twist.linear) - lever.dot(twist.angular));
+  J[kDepthReadout] = motion.row * J[kDepthTime];
+  J[kColorReadout] = -J[kDepthReadout];
   for (int i = 0; i < 3; ++i) {
     J[kRotationX + i] = factor * w * lever[i];
     J[kTranslationX + i] = -factor * w * w * at.plane[i];
@@ -102,30 +120,48 @@ struct LandmarkDerivatives {
 struct LandmarkData {
   const Camera* rest = nullptr;           // of the lens, see CalibratedLens
   double anchor_u = 0.0, anchor_v = 0.0;  // px, as seen (distorted)
-  double u = 0.0, v = 0.0;                // likewise, in the view
+  RowMotion anchor_motion;                // of that pixel
+  double u = 0.0, v = 0.0;                // px, in the view
+  RowMotion motion;                       // of u, v; or of the anchor's own
   double inverse_sigma_px = 0.0;          // of u and v
   MeasuredInverseDepth depth;             // of the view, or of the anchor's own
 };
 
-// A landmark in the axes of a view, times d: Y = R_v (R_a^T r + (C_a - C_v) d)
-// with the ray r = (x, y, 1) of the anchor's pixel.
+// A landmark in the axes of a view when its row is exposed, times d. On the ray
+// r = (x, y, 1) of the anchor's pixel, whose row is exposed t_a after the stamp,
+//
+//   r' = r + t_a (omega_a x r + v_a d)
+//   Y  = R_v (R_a^T r' + (C_a - C_v) d)
+//   Y' = Y - t_v (omega_v x Y + v_v d)
+//
+// with the velocities omega, v of the camera and t = color_readout * row.
 template <typename T>
 Eigen::Matrix<T, 3, 1> InView(const RotationAndCenter<T>& anchor,
                               const RotationAndCenter<T>& view, const T& d,
                               const T* theta, const LandmarkData& data) {
+  using Vector = Eigen::Matrix<T, 3, 1>;
   const Eigen::Matrix<T, 2, 1> place = Undistorted(
       CalibratedLens<T>(theta, *data.rest), data.anchor_u, data.anchor_v);
-  const Eigen::Matrix<T, 3, 1> ray(place[0], place[1], T(1.0));
-  const Eigen::Matrix<T, 3, 1> in_world =
+  const auto moved = [&](const RowMotion& motion, const Vector& X, double sign) {
+    const Vector omega = motion.twist.angular.template cast<T>();
+    const Vector v = motion.twist.linear.template cast<T>();
+    const Vector apart = (omega.cross(X) + v * d) * (sign * motion.row);
+    return Vector(X + apart * theta[kColorReadout]);
+  };
+  const Vector ray =
+      moved(data.anchor_motion, Vector(place[0], place[1], T(1.0)), 1.0);
+  const Vector in_world =
       anchor.R.transpose() * ray + (anchor.C - view.C) * d;
-  return view.R * in_world;
+  return moved(data.motion, view.R * in_world, -1.0);
 }
 
-// The same with its derivatives, which leave out all of theta but the lens.
+// The same with its derivatives, which leave out all of theta but lens and
+// readout.
 struct InViewDerivatives {
   Eigen::Vector3d Y;
   Eigen::Matrix<double, 3, 6> anchor, view;
   Eigen::Vector3d inverse_depth;
+  Eigen::Vector3d color_readout;
   Eigen::Matrix<double, 3, kInverseDepth> lens;  // fx fy cx cy k1 k2
 
   InViewDerivatives(const MotionDerivatives& a, const MotionDerivatives& b,
@@ -133,25 +169,51 @@ struct InViewDerivatives {
     const CalibratedLens<double> at(theta, *data.rest);
     const Eigen::Vector2d seen = at.FromPixel(data.anchor_u, data.anchor_v);
     const Eigen::Vector2d place = Undistorted(at, data.anchor_u, data.anchor_v);
-    const Eigen::Vector3d ray(place[0], place[1], 1.0);
+    const double readout = theta[kColorReadout];
+    const Moved from(data.anchor_motion, readout);
+    const Moved to(data.motion, -readout);
+    const Eigen::Vector3d at_row(place[0], place[1], 1.0);
+    const Eigen::Vector3d ray = from.turn * at_row + from.shift * d;
     const Eigen::Vector3d baseline = a.C - b.C;
     const Eigen::Vector3d in_world = a.R.transpose() * ray + baseline * d;
-    Y = b.R * in_world;
-    inverse_depth = b.R * baseline;
+    const Eigen::Vector3d in_view = b.R * in_world;
+    const Eigen::Matrix3d R = to.turn * b.R;
+    const Eigen::Matrix3d from_anchor = R * a.R.transpose();
+    Y = to.turn * in_view + to.shift * d;
+    inverse_depth = R * baseline + from_anchor * from.shift + to.shift;
+    color_readout =
+        from_anchor * data.anchor_motion.row *
+            (data.anchor_motion.twist.angular.cross(at_row) +
+             d * data.anchor_motion.twist.linear) -
+        data.motion.row * (data.motion.twist.angular.cross(in_view) +
+                           d * data.motion.twist.linear);
     for (int k = 0; k < 3; ++k) {
-      anchor.col(k) = b.R * (a.dR[k].transpose() * ray);
-      view.col(k) = b.dR[k] * in_world;
-      anchor.col(3 + k) = b.R.col(k) * d;
-      view.col(3 + k) = -b.R.col(k) * d;
+      anchor.col(k) = R * (a.dR[k].transpose() * ray);
+      view.col(k) = to.turn * (b.dR[k] * in_world);
+      anchor.col(3 + k) = R.col(k) * d;
+      view.col(3 + k) = -R.col(k) * d;
     }
     // Of the ray by the lens: Distort(ray; k) = seen(f, c).
     Eigen::Matrix<double, 2, kInverseDepth> moved;
     moved.leftCols<4>() << -seen[0] / theta[kFx], 0.0, -1.0 / theta[kFx], 0.0,
         0.0, -seen[1] / theta[kFy], 0.0, -1.0 / theta[kFy];
     moved.rightCols<2>() = -DistortByCoefficients(at, place[0], place[1]);
-    lens = (b.R * a.R.transpose()).leftCols<2>() *
+    lens = (from_anchor * from.turn).leftCols<2>() *
            (DistortDerivative(at, place[0], place[1]).inverse() * moved);
   }
+
+ private:
+  // X + readout row (omega x X + v d) = turn X + shift d.
+  struct Moved {
+    Eigen::Matrix3d turn;
+    Eigen::Vector3d shift;
+
+    Moved(const RowMotion& motion, double readout)
+        : shift(readout * motion.row * motion.twist.linear) {
+      const Eigen::Vector3d w = readout * motion.row * motion.twist.angular;
+      turn << 1.0, -w[2], w[1], w[2], 1.0, -w[0], -w[1], w[0], 1.0;
+    }
+  };
 };
 
 // Where a view sees the landmark: u and v.
@@ -195,6 +257,7 @@ struct LandmarkPixel {
     J->inverse_depth = by_point * moved.inverse_depth;
     J->theta.setZero();
     J->theta.leftCols<kInverseDepth>() = by_point * moved.lens;
+    J->theta.col(kColorReadout) = by_point * moved.color_readout;
     J->theta(0, kFx) += w * seen[0];
     J->theta(1, kFy) += w * seen[1];
     J->theta(0, kCx) += w;
@@ -215,7 +278,7 @@ struct LandmarkDepth {
                        const RotationAndCenter<T>& view, const T& d,
                        const T* theta, const LandmarkData& data, T* r) {
     const Eigen::Matrix<T, 3, 1> Y = InView(anchor, view, d, theta, data);
-    r[0] = (MeasuredFrom<T>(d / Y[2], theta, data.depth) - data.depth.value) *
+    r[0] = (MeasuredFrom<T>(d / Y[2], theta, data.motion, data.depth) - data.depth.value) *
            data.depth.inverse_sigma;
   }
 
@@ -227,7 +290,8 @@ struct LandmarkDepth {
     const double z = 1.0 / moved.Y[2];
     double value;
     const double by_w =
-        MeasuredFrom(d * z, theta, data.depth, &value, J->theta.data());
+        MeasuredFrom(
+        d * z, theta, data.motion, data.depth, &value, J->theta.data());
     const double weight = data.depth.inverse_sigma;
     r[0] = (value - data.depth.value) * weight;
     const double by_z = -by_w * d * z * z * weight;
@@ -236,6 +300,7 @@ struct LandmarkDepth {
     J->inverse_depth[0] = by_z * moved.inverse_depth[2] + by_w * z * weight;
     J->theta *= weight;
     J->theta.leftCols<kInverseDepth>() += by_z * moved.lens.row(2);
+    J->theta[kColorReadout] += by_z * moved.color_readout[2];
   }
 };
 
@@ -249,7 +314,7 @@ struct AnchorDepth {
   static void Residual(const RotationAndCenter<T>& /*anchor*/,
                        const RotationAndCenter<T>& /*view*/, const T& d,
                        const T* theta, const LandmarkData& data, T* r) {
-    r[0] = (MeasuredFrom<T>(d, theta, data.depth) - data.depth.value) *
+    r[0] = (MeasuredFrom<T>(d, theta, data.motion, data.depth) - data.depth.value) *
            data.depth.inverse_sigma;
   }
 
@@ -259,7 +324,8 @@ struct AnchorDepth {
                        LandmarkDerivatives<1>* J) {
     double value;
     const double by_w =
-        MeasuredFrom(d, theta, data.depth, &value, J->theta.data());
+        MeasuredFrom(
+        d, theta, data.motion, data.depth, &value, J->theta.data());
     r[0] = (value - data.depth.value) * data.depth.inverse_sigma;
     J->anchor.setZero();
     J->view.setZero();

@@ -32,6 +32,7 @@ struct NoisyScene {
       Rigid3d pose;
       pose.translation.x() = 0.02 * k;
       views.world_from_cam.push_back(pose);
+      views.twists.emplace_back();
     }
     state.world_from_cam = views.world_from_cam;
     state.theta.setZero();

@@ -172,8 +172,8 @@ TEST(CalibrationTest, WhatChangesACameraIsFoundBetweenBoth) {
       Eigen::Quaterniond(Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ())),
       {0.01, 0.0, -0.02});
   CalibrationVector theta;
-  theta << 520.0, 521.0, 318.0, 241.0, 0.01, -0.02, 0.003, 0.004, 0.005, -0.006,
-      0.007, 0.008, -0.009, 0.010, 1.02;
+  theta << 520.0, 521.0, 318.0, 241.0, 0.01, -0.02, 0.003, 0.004, 0.025, -0.01,
+      0.005, -0.006, 0.007, 0.008, -0.009, 0.010, 1.02;
   EXPECT_TRUE(ThetaBetween(first, ApplyCalibration(first, theta))
                   .isApprox(theta, 1e-9));
 }

@@ -45,8 +45,8 @@ struct LandmarkSample {
     view = LinearizationPoint(world->Motion(0.2, 0.3));
     x_anchor << world->Vector(0.05), world->Vector(0.05);
     x_view << world->Vector(0.05), world->Vector(0.05);
-    origin.start << 525.0, 520.0, 319.5, 239.5, 0.1, -0.1, 0.01, 0.01, 0.01,
-        0.02, -0.01, 0.01, 0.02, 0.01, 1.02;
+    origin.start << 525.0, 520.0, 319.5, 239.5, 0.1, -0.1, 0.01, 0.01, 0.02,
+        0.03, 0.01, 0.02, -0.01, 0.01, 0.02, 0.01, 1.02;
     for (int k = 0; k < kCalibrationSize; ++k) {
       y[k] = world->Uniform(-0.5, 0.5);
       origin.width[k] =
@@ -64,8 +64,10 @@ struct LandmarkSample {
     data.depth.plane = world->Vector(0.5) + Eigen::Vector3d::UnitZ();
     data.depth.ray = world->Vector(0.5);
     data.depth.ray.z() = 1.0;
-    data.depth.rate_rotation = world->Vector(1.0);
-    data.depth.rate_translation = world->Vector(1.0);
+    for (RowMotion* motion : {&data.anchor_motion, &data.motion}) {
+      motion->twist = {world->Vector(1.0), world->Vector(1.0)};
+      motion->row = world->Uniform(-0.5, 0.5);
+    }
     data.depth.undone_rotation = world->Vector(0.02);
     data.depth.undone_translation = world->Vector(0.02);
   }

@@ -31,8 +31,6 @@ MeasuredInverseDepth SomeDepth(RandomWorld* world) {
   depth.plane = world->Vector(0.3) + Eigen::Vector3d::UnitZ();
   depth.ray = world->Vector(0.4);
   depth.ray.z() = 1.0;
-  depth.rate_rotation = world->Vector(0.5);
-  depth.rate_translation = world->Vector(0.5);
   return depth;
 }
 
@@ -48,9 +46,10 @@ struct Problem {
     RandomWorld world(11);
     for (int k = 0; k < kKeyframes; ++k) {
       state.world_from_cam.push_back(world.Motion(0.1, 0.2));
+      views.twists.push_back({world.Vector(0.5), world.Vector(0.5)});
     }
-    origin.start << 525.0, 520.0, 319.5, 239.5, 0.05, -0.02, 0.01, 0.01, 0.01,
-        0.02, -0.01, 0.01, 0.02, 0.01, 1.02;
+    origin.start << 525.0, 520.0, 319.5, 239.5, 0.05, -0.02, 0.01, 0.01, 0.02,
+        0.03, 0.01, 0.02, -0.01, 0.01, 0.02, 0.01, 1.02;
     for (double& width : origin.width) width = world.Uniform(0.5, 2.0);
     state.theta = origin.start;
     state.pixel_scale = 1.3;

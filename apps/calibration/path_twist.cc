@@ -1,6 +1,5 @@
-#include "apps/calibration/camera_velocity.h"
+#include "apps/calibration/path_twist.h"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
@@ -12,12 +11,11 @@ constexpr double kMaxGap = 0.15;  // s
 
 }  // namespace
 
-CameraVelocity VelocityAt(const Trajectory& path, double time) {
+Twist TwistAt(const Trajectory& path, double time) {
   const auto at = std::lower_bound(
       path.begin(), path.end(), time - 1e-4,
       [](const StampedPose& pose, double t) { return pose.timestamp < t; });
-  CameraVelocity velocity;
-  if (at == path.end()) return velocity;
+  if (at == path.end()) return {};
   // The last frame that comes so many after, without a gap.
   const auto place = at - path.begin();
   const auto neighbour = [&](int steps) {
@@ -34,15 +32,9 @@ CameraVelocity VelocityAt(const Trajectory& path, double time) {
     return there;
   };
   struct Difference {
-    CameraVelocity velocity;
+    Twist twist;
     double interval = 0.0;  // s
     double lean = 0.0;      // how far its middle is from the frame, s
-  };
-  const auto moved = [&](std::ptrdiff_t there) {
-    const Rigid3d from_at =
-        path[there].world_from_cam.Inverse() * at->world_from_cam;
-    return CameraVelocity{RotationVector(from_at.rotation),
-                          from_at.translation};
   };
   const auto difference = [&](int steps) {
     const auto before = neighbour(-steps), after = neighbour(steps);
@@ -51,10 +43,12 @@ CameraVelocity VelocityAt(const Trajectory& path, double time) {
     result.interval = t1 - t0;
     result.lean = std::abs(0.5 * (t0 + t1) - at->timestamp);
     if (!(result.interval > 0.0)) return result;
-    const CameraVelocity a = moved(before), b = moved(after);
-    result.velocity.rotation = (b.rotation - a.rotation) / result.interval;
-    result.velocity.translation =
-        (b.translation - a.translation) / result.interval;
+    // Where the camera was and will be, in its own axes now.
+    const auto seen = [&](std::ptrdiff_t there) {
+      return TwistOf(path[there].world_from_cam.Inverse() * at->world_from_cam,
+                     result.interval);
+    };
+    result.twist = seen(after) - seen(before);
     return result;
   };
   const Difference near = difference(1);
@@ -62,13 +56,8 @@ CameraVelocity VelocityAt(const Trajectory& path, double time) {
   constexpr double kEven = 0.05;
   const bool is_even = std::abs(far.interval / near.interval - 2.0) < kEven &&
                        std::max(near.lean, far.lean) < kEven * near.interval;
-  velocity = near.velocity;
-  if (is_even) {
-    velocity.rotation += (near.velocity.rotation - far.velocity.rotation) / 3.0;
-    velocity.translation +=
-        (near.velocity.translation - far.velocity.translation) / 3.0;
-  }
-  return velocity;
+  return is_even ? near.twist + (1.0 / 3.0) * (near.twist - far.twist)
+                 : near.twist;
 }
 
 }  // namespace rgbd_pose
