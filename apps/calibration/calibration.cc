@@ -67,8 +67,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   result.landmarks = static_cast<int>(data.views.landmarks.size());
   result.views = static_cast<int>(data.views.views.size());
 
-  CalibrationVector start = ThetaOf(map.camera);
-  start[kDepthTime] = settings.known_delay;
+  const CalibrationVector start = ThetaOf(map.camera);
   const CalibrationVector prior = PriorOf(settings, start);
   for (int k = 0; k < kCalibrationSize; ++k) {
     CalibratedParameter& parameter = result.parameters[k];
@@ -90,7 +89,6 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     LookUpDepthsAnew(map, ApplyCalibration(first, theta).camera, odometry,
                      theta, threads, &data);
   };
-  if (IsDisplaced(start)) look_up(start);
 
   // What pairs tell that are not held out, with both cameras.
   constexpr int kRounds = 2;
@@ -145,6 +143,10 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     result.truth_before = TruthError(data, before, *scale.ground_truth);
     result.truth_after = TruthError(data, after, *scale.ground_truth);
   }
+  CalibrationResult with_map_poses;
+  CompareHeldOut(views_before, training.Begin(), data.views, after,
+                 &with_map_poses);
+  result.cost_of_map = with_map_poses.cost_before;
   CompareHeldOut(views_before, before, data.views, after, &result);
 
   // And in the end all.

@@ -5,8 +5,8 @@
 #include <string>
 
 #include "apps/calibration/calibration_pairs.h"
-#include "apps/calibration/path_twist.h"
 #include "apps/calibration/landmark_matcher.h"
+#include "apps/calibration/path_twist.h"
 #include "core/util/input_error.h"
 #include "core/util/parallel_for.h"
 
@@ -27,9 +27,10 @@ int FeaturesOfEach(int max_views, size_t num_pairs) {
 }
 
 // Of all keyframes.
-std::vector<LandmarksOfKeyframe> FindLandmarks(
-    const KeyframeMap& map, const CalibrationPairs& pairs,
-    const OdometrySettings& settings, int max_features, int threads) {
+std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
+                                               const CalibrationPairs& pairs,
+                                               const OdometrySettings& settings,
+                                               int max_features, int threads) {
   const int num_keyframes = static_cast<int>(pairs.in_map.size());
   std::vector<std::vector<int>> neighbours(num_keyframes);
   std::vector<std::vector<bool>> is_held_out(num_keyframes);
@@ -44,8 +45,7 @@ std::vector<LandmarksOfKeyframe> FindLandmarks(
   threads = std::max(1, std::min(threads, num_keyframes));
   ParallelFor(threads, threads, [&](int thread) {
     // A run of keyframes each: neighbours are decoded once.
-    LandmarkMatcher matcher(map, pairs.in_map, settings,
-                            max_features);
+    LandmarkMatcher matcher(map, pairs.in_map, settings, max_features);
     const int begin = thread * num_keyframes / threads;
     const int end = (thread + 1) * num_keyframes / threads;
     for (int i = begin; i < end; ++i) {
@@ -114,9 +114,8 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
     data.views.twists.push_back(TwistAt(path, keyframe.images.timestamp));
   }
   const int features = FeaturesOfEach(options.max_views, data.pairs.size());
-  AddLandmarks(
-      FindLandmarks(map, chosen, settings, features, threads),
-      options.max_views, &data.views);
+  AddLandmarks(FindLandmarks(map, chosen, settings, features, threads),
+               options.max_views, &data.views);
   return data;
 }
 

@@ -39,7 +39,8 @@ class Collector {
       const MeasuredInverseDepth& depth = data.depth;
       information += by_depth;
       if (depth.pixel_value == 0.0) return;
-      const double expected = MeasuredFrom<double>(w, theta, data.motion, depth);
+      const double expected =
+          MeasuredFrom<double>(w, theta, data.motion, depth);
       // Along the plane to where the landmark is.
       const double there = depth.plane.dot(ray);
       const double pixel =

@@ -1,6 +1,7 @@
 #include "apps/calibration/calibration_passes.h"
 
 #include <cmath>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -82,24 +83,24 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
   RecordingCalibration all;
   RgbdCamera first;
   SequenceSettings part = sequence;
+  OdometrySettings with_shutter = odometry;
+  with_shutter.odometry.shutter = ShutterUse::kCamera;
   if (part.frames.empty()) {
     part.frames =
         Thinned(OpenSequence(sequence).source->timestamps(), settings.max_rate);
   }
+  std::optional<RgbdCamera> known;
+  if (odometry.odometry.shutter == ShutterUse::kNone) {
+    // It is to be found from nothing.
+    known = OpenSequence(sequence).source->camera();
+    known->color_shutter = known->depth_shutter = Shutter();
+  }
   for (int pass = 1;; ++pass) {
-    // A delay of depth is undone as depths are looked up, by the path of all
-    // frames: trackers only know how the camera has moved so far.
-    CalibrationSettings asked = settings;
-    RgbdCamera known = all.result.camera;
-    if (pass > 1) {
-      double* const delay = &known.depth_shutter.offset;
-      asked.known_delay = *delay;
-      *delay = 0.0;
-    }
-    Sequence opened =
-        OpenSequence(part, /*keep_color=*/false, pass > 1 ? &known : nullptr);
+    if (pass > 1) known = all.result.camera;
+    Sequence opened = OpenSequence(part, /*keep_color=*/false,
+                                   known.has_value() ? &*known : nullptr);
     const auto frames = opened.source->timestamps().size();
-    CalibrationRun run(odometry, slam, asked, &opened);
+    CalibrationRun run(with_shutter, slam, settings, &opened);
     int done = 0;
     all.stopped = run.Track(opened.source.get(), threads, [&] {
       if (on_frame) on_frame(pass, ++done, static_cast<int>(frames));

@@ -63,6 +63,7 @@ struct CalibrationResult {
   double cost_before = 0.0;  // with the first camera
   double cost_after = 0.0;   // with the camera found
   double gain_sigmas = 0.0;  // their difference
+  double cost_of_map = 0.0;  // with the first camera, poses as they were mapped
 
   // Spread of residuals with either: px, and in sigmas of the depth noise.
   double pixel_before = 0.0;  // with the first camera
@@ -82,8 +83,9 @@ struct CalibrationResult {
   // What the halves of the recording say of what is determined; may be empty.
   std::vector<HalvesOfParameter> halves;
 
-  // How far depth turned out to be displaced, px (the median of views). If that
-  // is much, it is due to be mapped again with the camera found.
+  // How far depth, or the first row of colour, turned out to be displaced, px
+  // (the median of views). If that is much, it is due to be mapped again with
+  // the camera found.
   double displacement_px = 0.0;
   int passes = 1;
 

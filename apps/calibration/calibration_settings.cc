@@ -19,6 +19,7 @@ std::vector<NamedParts> PartNames() {
       {"focal", {kFx, kFy}},
       {"centre", {kCx, kCy}},
       {"distortion", {kK1, kK2}},
+      {"readouts", {kColorReadout, kDepthReadout}},
       {"registration",
        {kRotationX, kRotationY, kRotationZ, kTranslationX, kTranslationY,
         kTranslationZ}},
@@ -57,7 +58,7 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
   return {
       {"fix", kGroup,
        "what is to stay as it is, separated by commas: focal, centre, "
-       "distortion, registration, or a parameter's name",
+       "distortion, readouts, registration, or a parameter's name",
        Text(&settings->fix)},
       {"known_length", kGroup,
        "gives depth a scale: T0,T1,METRES, two time stamps (s) and how far "
@@ -81,8 +82,8 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
        "or more, unless --frames says which; 0: none",
        &settings->max_rate},
       {"max_passes", kGroup,
-       "a recording whose depth turns out to be displaced by pixels is mapped "
-       "again with the camera found, so many times at most",
+       "a recording whose depth or rows turn out to be displaced by pixels is "
+       "mapped again with the camera found, so many times at most",
        &settings->max_passes},
       {"max_views", kGroup,
        "views of landmarks that are solved for, about: the time it takes grows "

@@ -13,7 +13,7 @@ namespace rgbd_pose {
 // How a camera is calibrated from its own recording.
 struct CalibrationSettings {
   // Names of parameters that stay as they are, separated by commas; a name may
-  // stand for several: focal, centre, distortion, registration.
+  // stand for several: focal, centre, distortion, readouts, registration.
   std::string fix;
 
   // A length that is known: two times (s) and how far apart the camera was then
@@ -36,10 +36,6 @@ struct CalibrationSettings {
   // What both halves of a recording say by themselves may differ by so many
   // standard deviations.
   double max_halves_sigmas = 4.0;
-
-  // How much later than its stamp depth is known to be (s), beyond what the
-  // camera that frames were tracked with says.
-  double known_delay = 0.0;
 
   // Of a recording with more frames a second every second one is left out, or
   // more, unless a part of it was asked for: near ones tell the same. 0: none.

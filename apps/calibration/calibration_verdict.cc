@@ -136,8 +136,16 @@ double TruthError(const CalibrationData& data, const CalibrationState& state,
 }
 
 bool IsAnotherPassDue(const CalibrationResult& result) {
-  constexpr double kManyPx = 1.5;
+  constexpr double kManyPx = 1.0;
   return result.displacement_px > kManyPx;
+}
+
+std::string WhatIsLeft(const CalibrationResult& result) {
+  constexpr double kOfFeatures = 0.3;  // px, of rendered recordings
+  const double px = 0.5 * result.pixel_after;
+  return "residuals spread by " + Short(px) + " px, " +
+         (px > 1.5 * kOfFeatures ? "more than features alone: " : "as ") +
+         Short(kOfFeatures) + " px where nothing is wrong";
 }
 
 std::string WhyHalvesDisagree(const CalibrationSettings& settings,
@@ -150,10 +158,10 @@ std::string WhyHalvesDisagree(const CalibrationSettings& settings,
   const std::string unit =
       row.unit[0] == '\0' ? "" : " " + std::string(row.unit);
   return "the halves of the recording contradict each other, so something else "
-         "is wrong than the camera: their " +
-         std::string(row.name) + " differs by " +
-         Short(std::abs(worst->second - worst->first)) + unit + " (" +
-         Short(worst->Sigmas()) + " standard deviations)";
+         "is wrong than the camera (" +
+         WhatIsLeft(result) + "): their " + std::string(row.name) +
+         " differs by " + Short(std::abs(worst->second - worst->first)) + unit +
+         " (" + Short(worst->Sigmas()) + " standard deviations)";
 }
 
 std::string HalvesInWords(const CalibrationResult& result) {
@@ -202,6 +210,11 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
                             const CalibrationResult& result) {
   if (result.held_out_pairs < 2) {
     return "there are too few pairs to judge it by";
+  }
+  if (result.cost_after > result.cost_of_map) {
+    return "the solution fails: pairs that were held out fit worse (cost " +
+           Short(result.cost_after) + ") than with the poses of the map (" +
+           Short(result.cost_of_map) + "), so some matches are wrong";
   }
   const double gain = 1.0 - result.cost_after / result.cost_before;
   if (!(gain >= settings.min_gain) ||

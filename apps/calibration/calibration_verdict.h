@@ -21,6 +21,9 @@ double TruthError(const CalibrationData& data, const CalibrationState& state,
 // Whether depth was displaced so far that what was found is a first step.
 bool IsAnotherPassDue(const CalibrationResult& result);
 
+// How far residuals spread with the camera found, in words.
+std::string WhatIsLeft(const CalibrationResult& result);
+
 // Why the halves of a recording contradict each other, in words, or empty.
 std::string WhyHalvesDisagree(const CalibrationSettings& settings,
                               const CalibrationResult& result);

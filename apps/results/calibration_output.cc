@@ -37,13 +37,14 @@ const char* ToString(Status status) {
 }
 
 std::string FormatCalibrationSummary(const CalibrationResult& result) {
-  std::string text = Format(
-      "%d keyframes, %d pairs, %d landmarks in %d views%s\n", result.keyframes,
-      result.pairs, result.landmarks, result.views,
-      result.passes > 1 ? Format("; %d passes: depth was displaced by %.1f px",
-                                 result.passes, result.displacement_px)
-                              .c_str()
-                        : "");
+  std::string text =
+      Format("%d keyframes, %d pairs, %d landmarks in %d views%s\n",
+             result.keyframes, result.pairs, result.landmarks, result.views,
+             result.passes > 1
+                 ? Format("; %d passes: images were displaced by %.1f px",
+                          result.passes, result.displacement_px)
+                       .c_str()
+                 : "");
   text += Format("%-22s %12s %12s %10s  %s\n", "", "before", "found", "+-", "");
   std::string undetermined;
   for (int k = 0; k < kCalibrationSize; ++k) {
@@ -78,7 +79,7 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
         result.held_out_pairs, result.cost_before, result.cost_after,
         result.gain_sigmas, 0.5 * result.pixel_before,
         0.5 * result.pixel_after);
-    text += HalvesInWords(result) + "\n";
+    text += WhatIsLeft(result) + "\n" + HalvesInWords(result) + "\n";
   }
   if (result.noise.has_value()) {
     const DepthNoiseFit& noise = *result.noise;

@@ -47,7 +47,8 @@ struct RowMotion {
 // undone: s.
 template <typename T>
 T DepthLag(const T* theta, double row) {
-  return theta[kDepthTime] + row * (theta[kDepthReadout] - theta[kColorReadout]);
+  return theta[kDepthTime] +
+         row * (theta[kDepthReadout] - theta[kColorReadout]);
 }
 
 // What is measured of an inverse depth w that is seen at a pixel when its row
@@ -65,12 +66,12 @@ T MeasuredFrom(const T& w, const T* theta, const RowMotion& motion,
   const T lag = DepthLag(theta, motion.row);
   T turned(0.0), shifted(0.0);
   for (int i = 0; i < 3; ++i) {
-    turned += lever[i] *
-              (theta[kRotationX + i] - lag * motion.twist.angular[i] -
-               at.undone_rotation[i]);
-    shifted += at.plane[i] * (theta[kTranslationX + i] -
-                              lag * motion.twist.linear[i] -
-                              at.undone_translation[i]);
+    turned +=
+        lever[i] * (theta[kRotationX + i] - lag * motion.twist.angular[i] -
+                    at.undone_rotation[i]);
+    shifted +=
+        at.plane[i] * (theta[kTranslationX + i] - lag * motion.twist.linear[i] -
+                       at.undone_translation[i]);
   }
   return theta[kDepthFactor] *
          (w * (1.0 + turned - w * shifted) - theta[kInverseDepth]);
@@ -128,7 +129,8 @@ struct LandmarkData {
 };
 
 // A landmark in the axes of a view when its row is exposed, times d. On the ray
-// r = (x, y, 1) of the anchor's pixel, whose row is exposed t_a after the stamp,
+// r = (x, y, 1) of the anchor's pixel, whose row is exposed t_a after the
+// stamp,
 //
 //   r' = r + t_a (omega_a x r + v_a d)
 //   Y  = R_v (R_a^T r' + (C_a - C_v) d)
@@ -142,7 +144,8 @@ Eigen::Matrix<T, 3, 1> InView(const RotationAndCenter<T>& anchor,
   using Vector = Eigen::Matrix<T, 3, 1>;
   const Eigen::Matrix<T, 2, 1> place = Undistorted(
       CalibratedLens<T>(theta, *data.rest), data.anchor_u, data.anchor_v);
-  const auto moved = [&](const RowMotion& motion, const Vector& X, double sign) {
+  const auto moved = [&](const RowMotion& motion, const Vector& X,
+                         double sign) {
     const Vector omega = motion.twist.angular.template cast<T>();
     const Vector v = motion.twist.linear.template cast<T>();
     const Vector apart = (omega.cross(X) + v * d) * (sign * motion.row);
@@ -150,8 +153,7 @@ Eigen::Matrix<T, 3, 1> InView(const RotationAndCenter<T>& anchor,
   };
   const Vector ray =
       moved(data.anchor_motion, Vector(place[0], place[1], T(1.0)), 1.0);
-  const Vector in_world =
-      anchor.R.transpose() * ray + (anchor.C - view.C) * d;
+  const Vector in_world = anchor.R.transpose() * ray + (anchor.C - view.C) * d;
   return moved(data.motion, view.R * in_world, -1.0);
 }
 
@@ -278,7 +280,8 @@ struct LandmarkDepth {
                        const RotationAndCenter<T>& view, const T& d,
                        const T* theta, const LandmarkData& data, T* r) {
     const Eigen::Matrix<T, 3, 1> Y = InView(anchor, view, d, theta, data);
-    r[0] = (MeasuredFrom<T>(d / Y[2], theta, data.motion, data.depth) - data.depth.value) *
+    r[0] = (MeasuredFrom<T>(d / Y[2], theta, data.motion, data.depth) -
+            data.depth.value) *
            data.depth.inverse_sigma;
   }
 
@@ -289,9 +292,8 @@ struct LandmarkDepth {
     const InViewDerivatives moved(anchor, view, d, theta, data);
     const double z = 1.0 / moved.Y[2];
     double value;
-    const double by_w =
-        MeasuredFrom(
-        d * z, theta, data.motion, data.depth, &value, J->theta.data());
+    const double by_w = MeasuredFrom(d * z, theta, data.motion, data.depth,
+                                     &value, J->theta.data());
     const double weight = data.depth.inverse_sigma;
     r[0] = (value - data.depth.value) * weight;
     const double by_z = -by_w * d * z * z * weight;
@@ -314,7 +316,8 @@ struct AnchorDepth {
   static void Residual(const RotationAndCenter<T>& /*anchor*/,
                        const RotationAndCenter<T>& /*view*/, const T& d,
                        const T* theta, const LandmarkData& data, T* r) {
-    r[0] = (MeasuredFrom<T>(d, theta, data.motion, data.depth) - data.depth.value) *
+    r[0] = (MeasuredFrom<T>(d, theta, data.motion, data.depth) -
+            data.depth.value) *
            data.depth.inverse_sigma;
   }
 
@@ -323,9 +326,8 @@ struct AnchorDepth {
                        const double* theta, const LandmarkData& data, double* r,
                        LandmarkDerivatives<1>* J) {
     double value;
-    const double by_w =
-        MeasuredFrom(
-        d, theta, data.motion, data.depth, &value, J->theta.data());
+    const double by_w = MeasuredFrom(d, theta, data.motion, data.depth, &value,
+                                     J->theta.data());
     r[0] = (value - data.depth.value) * data.depth.inverse_sigma;
     J->anchor.setZero();
     J->view.setZero();

@@ -23,8 +23,9 @@ using Status = CalibratedParameter::Status;
 
 constexpr int kCalibrationFrames = 45;
 
-std::vector<Frame> Render(const std::string& path, int frames) {
-  SyntheticOptions options;
+std::vector<Frame> Render(const std::string& path, int frames,
+                          const SyntheticOptions& simulated = {}) {
+  SyntheticOptions options = simulated;
   options.path = path;
   options.frames = frames;
   const SyntheticDataset dataset(options);
@@ -137,6 +138,43 @@ TEST(CalibrationTest, ACameraAtRestDeterminesNothing) {
   for (const CalibratedParameter& parameter : result.parameters) {
     EXPECT_NE(parameter.status, Status::kDetermined);
   }
+}
+
+SyntheticOptions RollingShutters() {
+  SyntheticOptions options;
+  options.color_shutter = {0.0, 0.028};
+  options.depth_shutter = {-0.015, 0.022};
+  return options;
+}
+
+TEST(CalibrationTest, FindsShuttersAndClocks) {
+  const CalibrationResult result =
+      Mapped(Render("handheld", kCalibrationFrames, RollingShutters()), {})
+          .Calibrate();
+  EXPECT_TRUE(result.is_accepted) << result.reason;
+  EXPECT_NEAR(result.camera.color_shutter.readout, 0.028, 3e-3);
+  EXPECT_NEAR(result.camera.depth_shutter.readout, 0.022, 3e-3);
+  EXPECT_NEAR(result.camera.depth_shutter.offset, -0.015, 1e-3);
+}
+
+TEST(CalibrationTest, ACameraAtRestDoesNotTellItsShutters) {
+  const CalibrationResult result =
+      Mapped(Render("still", 5, RollingShutters()), {}).Calibrate();
+  for (const CalibrationIndex k : {kColorReadout, kDepthReadout, kDepthTime}) {
+    EXPECT_EQ(Of(result, k).status, Status::kUndetermined);
+    EXPECT_EQ(Of(result, k).found, 0.0);
+  }
+}
+
+TEST(CalibrationTest, ASolutionThatIsWorseThanTheMapIsAFailure) {
+  CalibrationResult result;
+  result.held_out_pairs = 10;
+  result.cost_of_map = 1.0;
+  result.cost_before = 3.0;
+  result.cost_after = 2.0;
+  result.gain_sigmas = 5.0;
+  EXPECT_NE(RejectionReason({}, {}, {}, result).find("the solution fails"),
+            std::string::npos);
 }
 
 TEST(CalibrationTest, HalvesOfOneCameraAgree) {

@@ -40,6 +40,7 @@ struct World {
     truth.world_from_cam = {Rigid3d(), world.Motion(0.1, 0.4),
                             world.Motion(0.1, 0.4)};
     views.world_from_cam = truth.world_from_cam;
+    views.twists.resize(3);
     for (int i = 0; i < 40; ++i) {
       Landmark landmark;
       landmark.anchor = i % 3;

@@ -34,6 +34,19 @@ TEST_P(EveryFrontendTest, FindsFeaturesAgain) {
   ExpectMostlyRight(found, 100, 1.0, 4.0);
 }
 
+// Whatever camera the matches are made for: the frontend's own tells where to
+// look.
+TEST_P(EveryFrontendTest, LooksWhereItsOwnCameraSees) {
+  const auto reference = Detect(dataset_.Read(kPrev));
+  Camera other = dataset_.camera().camera;
+  other.cy += 100.0;
+  FeatureMatches found{Correspondences(other), {}};
+  const PreparedFrame cur(dataset_.Read(kCur));
+  frontend_->Match(*reference, cur, cur_from_prev_, &found);
+  EXPECT_EQ(found.features,
+            MatchFrom(*reference, cur, cur_from_prev_).features);
+}
+
 TEST_P(EveryFrontendTest, TracksAlongItsAxes) {
   ExpectTracksAlongItsAxes(0.01);  // the noise of a pose is about 2 mm
 }
