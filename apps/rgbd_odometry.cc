@@ -19,6 +19,7 @@
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "apps/shell/setting_flags.h"
+#include "apps/view/live_view.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
@@ -64,6 +65,7 @@ ProgramInfo Info() {
   Flags().Describe(&info);
   info.flag_groups.push_back(
       {"Run", {"report", "validate_only", "finish_on_signal", "threads"}});
+  info.flag_groups.push_back({"View", {"view", "view_port", "view_speed"}});
   return info;
 }
 
@@ -123,8 +125,15 @@ int Main() {
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
+  LiveView view(settings.sequence.dataset, source.camera().camera, run,
+                nullptr);
+
   RunIssues flaws;
-  flaws.stopped = TrackSource(&source, threads, &run, &output);
+  flaws.stopped =
+      TrackSource(&source, threads, &run, &output,
+                  [&view](const Frame& frame, const StopSignal& signal) {
+                    return view.Add(frame, signal);
+                  });
   const double seconds = SecondsSince(start);
 
   const RunResults results = run.Finish(sequence.GroundTruth());
@@ -141,6 +150,7 @@ int Main() {
   text += SaveMesh(settings.output, threads);
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
+  view.Finish(settings.output.output);
   return ExitCodeOf(Info().name, results, settings.output.output, flaws);
 }
 

@@ -27,6 +27,7 @@
 #include "apps/shell/calibration_progress.h"
 #include "apps/shell/program.h"
 #include "apps/shell/setting_flags.h"
+#include "apps/view/live_view.h"
 #include "core/util/input_error.h"
 #include "frontend/files/camera_file_writer.h"
 #include "frontend/files/depth_noise_file.h"
@@ -77,6 +78,7 @@ ProgramInfo Info() {
   Flags().Describe(&info);
   info.flag_groups.push_back(
       {"Run", {"calibrate", "report", "finish_on_signal", "threads"}});
+  info.flag_groups.push_back({"View", {"view", "view_port", "view_speed"}});
   return info;
 }
 
@@ -205,8 +207,15 @@ int Main() {
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
+  LiveView view(settings.sequence.dataset, source.camera().camera, run,
+                &run.slam());
+
   RunIssues flaws;
-  flaws.stopped = TrackSource(&source, threads, &run, &output);
+  flaws.stopped =
+      TrackSource(&source, threads, &run, &output,
+                  [&view](const Frame& frame, const StopSignal& signal) {
+                    return view.Add(frame, signal);
+                  });
   const double seconds = SecondsSince(start);
 
   const RunResults results = run.Finish(sequence.GroundTruth());
@@ -244,6 +253,7 @@ int Main() {
   }
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
+  view.Finish(settings.output.output);
   return ExitCodeOf(Info().name, results, settings.output.output, flaws);
 }
 

@@ -35,6 +35,16 @@ rgbd_pose_embed(script kScript ${folder}/plots.js ${folder}/run.js
                 ${folder}/run_times.js
                 ${folder}/run_residuals.js ${folder}/batch.js
                 ${folder}/compare.js ${folder}/sweep.js ${folder}/main.js)
+set(folder ${CMAKE_CURRENT_SOURCE_DIR}/view/page)
+rgbd_pose_embed(view_page kViewPage ${folder}/view.html)
+rgbd_pose_embed(view_style kViewStyle
+                ${CMAKE_CURRENT_SOURCE_DIR}/report/page/style.css
+                ${folder}/view.css)
+rgbd_pose_embed(view_script kViewScript
+                ${CMAKE_CURRENT_SOURCE_DIR}/report/page/plots.js
+                ${folder}/view_map.js ${folder}/view_scene.js
+                ${folder}/view_images.js ${folder}/view_strips.js
+                ${folder}/view.js)
 if(RGBD_POSE_PLOTLY_DIR)
   rgbd_pose_embed(library kLibrary ${RGBD_POSE_PLOTLY_DIR}/plotly-gl3d.min.js)
   rgbd_pose_embed(license kLicense ${RGBD_POSE_PLOTLY_DIR}/LICENSE)
@@ -49,6 +59,7 @@ file(WRITE ${report_assets}.new
      "#include \"apps/report/report_assets.h\"\n\n"
      "namespace rgbd_pose {\nnamespace {\n\n"
      "${page}${style}${script}${library}${license}"
+     "${view_page}${view_style}${view_script}"
      "\n// Without the zero at the end.\n"
      "template <size_t N>\n"
      "constexpr std::string_view View(const char (&text)[N]) {\n"
@@ -56,7 +67,8 @@ file(WRITE ${report_assets}.new
      "}  // namespace\n\n"
      "ReportAssets EmbeddedReportAssets() {\n"
      "  return {View(kLibrary), View(kLicense), View(kPage), View(kStyle),\n"
-     "          View(kScript)};\n}\n\n"
+     "          View(kScript), View(kViewPage), View(kViewStyle),\n"
+     "          View(kViewScript)};\n}\n\n"
      "}  // namespace rgbd_pose\n")
 # Only a change makes it compile again.
 configure_file(${report_assets}.new ${report_assets} COPYONLY)

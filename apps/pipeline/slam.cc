@@ -30,6 +30,7 @@ void Slam::Load(KeyframeMap map, bool is_held) {
   for (RelativePose& edge : map.edges) {
     edge.ref += first_id_;
     edge.cur += first_id_;
+    links_.push_back({edge.ref, edge.cur, false});
   }
   mapper_.Load(map, is_held);
   for (const Keyframe& keyframe : map.keyframes) {
@@ -179,6 +180,7 @@ void Slam::Apply(MapUpdate update, SlamFrame* result) {
     map_from_odom_ =
         map_from_keyframe_.at(*reference_) * odom_from_reference_.Inverse();
   }
+  links_.insert(links_.end(), update.links.begin(), update.links.end());
   result->pairs += update.pairs;
   result->loops += update.loops;
   result->joined += update.joined;

@@ -102,6 +102,16 @@ class Slam {
   // The poses of all frames that were not lost, map_from_cam, as known now.
   Trajectory Path() const;
 
+  // Keyframes by their names in the map: where they are (map_from_cam) and what
+  // joins them, as taken up so far.
+  const std::map<int, Rigid3d>& keyframe_poses() const {
+    return map_from_keyframe_;
+  }
+  const std::vector<MapLink>& links() const { return links_; }
+  // The name in the map of a keyframe that the odometry knows by
+  // TrackedFrame::reference.
+  int MapId(int frame) const { return frame + first_id_; }
+
   // What the last frame was tracked by.
   const Odometry& odometry() const { return odometry_; }
 
@@ -113,9 +123,7 @@ class Slam {
     Rigid3d keyframe_from_cam;
   };
 
-  // A keyframe's name in the map and in the odometry, which counts its own
-  // frames from 0.
-  int MapId(int frame) const { return frame + first_id_; }
+  // The odometry counts its own frames from 0.
   int OdometryId(int keyframe) const { return keyframe - first_id_; }
 
   void Follow(const TrackedFrame& tracked);
@@ -140,6 +148,7 @@ class Slam {
   // As last taken up.
   std::map<int, Rigid3d> map_from_keyframe_;
   std::map<int, int> segments_;
+  std::vector<MapLink> links_;
 
   // Where the last frame is.
   std::optional<int> reference_;  // by its name in the map

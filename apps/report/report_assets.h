@@ -11,6 +11,11 @@ struct ReportAssets {
   std::string_view page;  // with places for the rest: %STYLE% and so on
   std::string_view style;
   std::string_view script;
+
+  // The live page, its style and script besides those of reports.
+  std::string_view view_page;
+  std::string_view view_style;
+  std::string_view view_script;
 };
 
 ReportAssets EmbeddedReportAssets();

@@ -26,14 +26,6 @@ std::string InlineScript(std::string_view script) {
   return text;
 }
 
-std::string InlineData(const nlohmann::json& data) {
-  // Words that are no UTF-8 (names of folders) must not stop a report.
-  std::string text = data.dump(-1, ' ', /*ensure_ascii=*/false,
-                               nlohmann::json::error_handler_t::replace);
-  ReplaceAll("<", "\\u003c", &text);
-  return text;
-}
-
 std::string WritePage(const std::string& folder, const std::string& page) {
   std::string path = (std::filesystem::path(folder) / "report.html").string();
   WriteFileAtomically(path, page);
@@ -42,32 +34,41 @@ std::string WritePage(const std::string& folder, const std::string& page) {
 
 }  // namespace
 
+std::string InlineData(const nlohmann::json& data) {
+  // Words that are no UTF-8 (names of folders) must not stop a report.
+  std::string text = data.dump(-1, ' ', /*ensure_ascii=*/false,
+                               nlohmann::json::error_handler_t::replace);
+  ReplaceAll("<", "\\u003c", &text);
+  return text;
+}
+
+std::string FillPage(
+    std::string_view page,
+    const std::vector<std::pair<std::string_view, std::string>>& parts) {
+  // In the order of the page, so that no place is looked for in a content.
+  std::string filled;
+  size_t done = 0;
+  for (const auto& [place, content] : parts) {
+    const size_t at = page.find(place, done);
+    filled += page.substr(done, at - done);
+    filled += content;
+    done = at + place.size();
+  }
+  filled += page.substr(done);
+  return filled;
+}
+
 bool HasReportLibrary() { return !EmbeddedReportAssets().library.empty(); }
 
 std::string ReportPage(std::string_view kind, const nlohmann::json& data) {
   const ReportAssets assets = EmbeddedReportAssets();
-  const struct {
-    std::string_view place;
-    std::string content;
-  } kParts[] = {
-      {"%STYLE%", std::string(assets.style)},
-      {"%KIND%", std::string(kind)},
-      {"%DATA%", InlineData(data)},
-      {"%LICENSE%", std::string(assets.library_license)},
-      {"%LIBRARY%", InlineScript(assets.library)},
-      {"%SCRIPT%", InlineScript(assets.script)},
-  };
-  // In the order of the page, so that no place is looked for in a content.
-  std::string page;
-  size_t done = 0;
-  for (const auto& part : kParts) {
-    const size_t at = assets.page.find(part.place, done);
-    page += assets.page.substr(done, at - done);
-    page += part.content;
-    done = at + part.place.size();
-  }
-  page += assets.page.substr(done);
-  return page;
+  return FillPage(assets.page,
+                  {{"%STYLE%", std::string(assets.style)},
+                   {"%KIND%", std::string(kind)},
+                   {"%DATA%", InlineData(data)},
+                   {"%LICENSE%", std::string(assets.library_license)},
+                   {"%LIBRARY%", InlineScript(assets.library)},
+                   {"%SCRIPT%", InlineScript(assets.script)}});
 }
 
 std::string WriteRunReport(const std::string& run_folder) {

@@ -3,6 +3,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 namespace rgbd_pose {
 
@@ -13,6 +15,15 @@ bool HasReportLibrary();
 constexpr char kNoReportLibrary[] =
     "no file: built without plotly.js, which scripts/install_dependencies "
     "fetches";
+
+// Data within a page: JSON that ends no element.
+std::string InlineData(const nlohmann::json& data);
+
+// A page with each place (%STYLE%, say) replaced by its content, in their
+// order.
+std::string FillPage(
+    std::string_view page,
+    const std::vector<std::pair<std::string_view, std::string>>& parts);
 
 // A page in one file that needs nothing else: the data, the plotting library
 // and our scripts (apps/report), which draw what `kind` says: "run", "batch",

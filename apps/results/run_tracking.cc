@@ -7,7 +7,6 @@
 #include "apps/pipeline/sequence.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
-#include "apps/shell/stop_signal.h"
 #include "frontend/frame/depth_scale.h"
 
 namespace rgbd_pose {
@@ -19,10 +18,10 @@ constexpr double kMinTrackedShare = 0.5;
 }  // namespace
 
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
-                        RunOutput* output) {
+                        RunOutput* output, const FrameWatcher& watcher) {
   const StopSignal signal;
   const size_t size = source->timestamps().size();
-  std::string by_signal;
+  std::string ended_by;
   ProgressBar bar("tracking", static_cast<int>(size));
   const std::string stopped =
       TrackAll(source, threads, {run}, [&](const Frame& frame) {
@@ -35,12 +34,13 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
         }
         output->Add(frame, *run);
         bar.Update(static_cast<int>(run->frames().size()));
-        by_signal = signal.name();
-        return by_signal.empty();
+        if (watcher) ended_by = watcher(frame, signal);
+        if (!signal.name().empty()) ended_by = signal.name();
+        return ended_by.empty();
       });
   Warn(DroppedFrames(*source, run->damaged()));
   if (!stopped.empty()) return stopped;
-  return run->frames().size() + run->damaged().size() == size ? "" : by_signal;
+  return run->frames().size() + run->damaged().size() == size ? "" : ended_by;
 }
 
 void LogWarnings(const RunResults& results) {

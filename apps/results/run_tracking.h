@@ -1,9 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "apps/pipeline/odometry_run.h"
 #include "apps/results/run_output.h"
+#include "apps/shell/stop_signal.h"
 #include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {
@@ -14,12 +16,18 @@ struct RunIssues {
   std::string no_report;  // why there is no page
 };
 
+// Hears of each frame that was tracked; returns why the run is to end, or
+// nothing. Who waits there looks at the signal.
+using FrameWatcher =
+    std::function<std::string(const Frame& frame, const StopSignal& signal)>;
+
 // Tracks the frames of a source, with a progress bar and the warnings that
-// people should see. Returns why it ended before the last frame, or nothing: a
-// signal (StopSignal), a source that gave no further frame, too many damaged
-// ones. Throws InputError where there was no frame at all.
+// people should see; `watcher` may be empty. Returns why it ended before the
+// last frame, or nothing: a signal (StopSignal), its watcher, a source that
+// gave no further frame, too many damaged ones. Throws InputError where there
+// was no frame at all.
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
-                        RunOutput* output);
+                        RunOutput* output, const FrameWatcher& watcher = {});
 
 // Says on stderr what the errors of a run tell of its input.
 void LogWarnings(const RunResults& results);

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/geometry/rigid3.h"
 #include "frontend/places/keyframe.h"
@@ -15,9 +16,17 @@ struct KeyframePlace {
   int segment = 0;       // whose world `map` is
 };
 
+// Two keyframes that a measured motion joins, by id.
+struct MapLink {
+  int ref = 0;
+  int cur = 0;
+  bool is_loop = false;
+};
+
 // What became of the map.
 struct MapUpdate {
   std::map<int, KeyframePlace> moved;  // by id, since the last update
+  std::vector<MapLink> links;          // new, those by tracking among them
   int pairs = 0;                       // that were added
   int loops = 0;                       // of these
   int joined = 0;                      // segments that became one

@@ -76,6 +76,7 @@ MapUpdate Mapper::Add(Keyframe added,
                       const std::vector<RelativePose>& tracked) {
   MapUpdate update;
   const StageTimer timer(&update.ms);
+  const size_t known_pairs = graph_.pairs().size();
   std::vector<RelativePose> edges;
   for (RelativePose edge : tracked) {
     const auto ref = numbers_.find(edge.ref);
@@ -102,6 +103,11 @@ MapUpdate Mapper::Add(Keyframe added,
   pairing_.CloseLoopsByAppearance(newest, frame, &update);
   if (update.joined > 0) pairing_.PairByPose(newest, frame, &update);
   Index(newest);
+  for (size_t i = known_pairs; i < graph_.pairs().size(); ++i) {
+    const KeyframePair& pair = graph_.pairs()[i];
+    update.links.push_back({keyframes_[pair.edge.ref].id,
+                            keyframes_[pair.edge.cur].id, pair.is_loop});
+  }
 
   update.error =
       update.loops > 0 ? graph_.SolveAll() : graph_.SolveNear(newest);

@@ -66,6 +66,7 @@ room apps/results "$programs" "$libraries"
 room apps/compare "$programs" "$libraries"
 room apps/batch "$programs" "$libraries"
 room apps/report "$programs" "$libraries"
+room apps/view "$programs" "$libraries|httplib\.h"
 room apps/export "$programs" "$libraries"
 room apps/python "$programs" "$libraries|pybind11/"
 

@@ -1,0 +1,177 @@
+#include "apps/view/live_view.h"
+
+#include <gflags/gflags.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+
+#include "apps/view/view_points.h"
+#include "core/util/input_error.h"
+
+DEFINE_bool(view, false,
+            "show the run in a browser on this machine while it goes on: the "
+            "path, the map, images and figures; prints the page's address");
+DEFINE_int32(view_port, 0, "port of that page; 0: one that is free");
+DEFINE_double(view_speed, 0.0,
+              "with --view: plays a recording at so many times its own rate at "
+              "most; 0: as fast as frames are tracked");
+
+namespace rgbd_pose {
+namespace {
+
+using std::chrono::milliseconds;
+
+// Signals are looked at so often while waiting.
+constexpr milliseconds kSlice(50);
+
+// A run that is paused goes on if no page is there to end the pause.
+constexpr std::chrono::seconds kAlone(10);
+
+// Where matches are in the image as taken, px.
+cv::Vec2f ImagePoint(const Camera& camera, const Observation& seen) {
+  const Eigen::Vector2d pixel = camera.Project(camera.Ray(seen.u, seen.v));
+  return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
+}
+
+}  // namespace
+
+LiveView::LiveView(const std::string& dataset, const Camera& camera,
+                   const SequenceRun& run, const Slam* map)
+    : camera_(camera), run_(run), map_(map) {
+  if (!(FLAGS_view_speed >= 0.0)) {
+    throw InputError("--view_speed must not be negative");
+  }
+  if (FLAGS_view_port < 0 || FLAGS_view_port > 65535) {
+    throw InputError("--view_port: ports are 1 to 65535, 0 a free one");
+  }
+  if (!FLAGS_view) {
+    if (FLAGS_view_speed > 0.0 || FLAGS_view_port > 0) {
+      throw InputError("--view_speed and --view_port need --view");
+    }
+    return;
+  }
+  server_ = std::make_unique<ViewServer>(dataset, FLAGS_view_port, &state_);
+  std::fprintf(stderr, "view on     %s\n", server_->address().c_str());
+}
+
+std::string LiveView::Add(const Frame& frame, const StopSignal& signal) {
+  if (server_ == nullptr) return "";
+  const std::vector<TrackedFrame>& frames = run_.frames();
+  const TrackedFrame& tracked = frames.back();
+  ViewNews news;
+  if (tracked.previous_is_reference) {
+    AddKeyframe(frames[frames.size() - 2], &news);
+  }
+  if (tracked.is_reference) AddKeyframe(tracked, &news);
+  news.frames.push_back(Describe(tracked));
+  AddMap(!news.keyframes.empty(), &news);
+  if (state_.readers() > 0) news.images = Show(frame);
+  state_.Add(std::move(news));
+  KeepPace(tracked.timestamp, signal);
+  WaitWhilePaused(signal);
+  return state_.is_stopped() ? "its page's stop button" : "";
+}
+
+void LiveView::Finish(const std::string& results) {
+  if (server_ == nullptr) return;
+  ViewNews news;
+  AddMap(/*has_moved=*/true, &news);
+  state_.Add(std::move(news));
+  state_.Finish(results);
+  server_.reset();
+}
+
+ViewFrame LiveView::Describe(const TrackedFrame& tracked) const {
+  ViewFrame shown;
+  shown.timestamp = tracked.timestamp;
+  shown.status = tracked.status;
+  shown.reason = tracked.reason;
+  shown.track_ms = tracked.track_ms;
+  shown.matches = tracked.matches;
+  shown.inliers = tracked.inliers;
+  shown.sigma = tracked.sigma;
+  shown.segment = tracked.segment;
+  if (tracked.status == TrackingStatus::kLost) return shown;
+  int keyframe = tracked.index;
+  if (!tracked.is_reference && tracked.reference != -1) {
+    keyframe = tracked.reference;
+    shown.keyframe_from_cam = tracked.cur_from_reference.Inverse();
+  }
+  shown.keyframe = map_ == nullptr ? keyframe : map_->MapId(keyframe);
+  return shown;
+}
+
+void LiveView::AddKeyframe(const TrackedFrame& tracked, ViewNews* news) {
+  if (map_ == nullptr) keyframes_[tracked.index] = tracked.world_from_cam;
+  const OdometryKeyframe* keyframe =
+      run_.odometry().FindKeyframe(tracked.index);
+  if (keyframe == nullptr) return;
+  news->keyframes.push_back(
+      {map_ == nullptr ? tracked.index : map_->MapId(tracked.index),
+       SamplePoints(keyframe->frame, camera_)});
+}
+
+// Where keyframes are, if that is new, and what joins them.
+void LiveView::AddMap(bool has_moved, ViewNews* news) {
+  if (map_ == nullptr) {
+    if (has_moved) news->poses = keyframes_;
+    return;
+  }
+  const std::vector<MapLink>& links = map_->links();
+  if (links.size() > links_) has_moved = true;
+  if (has_moved) news->poses = map_->keyframe_poses();
+  news->links.assign(links.begin() + links_, links.end());
+  links_ = links.size();
+}
+
+ViewImages LiveView::Show(const Frame& frame) const {
+  ViewImages images;
+  images.gray = frame.gray;
+  images.depth = frame.depth;
+  images.depth_scale = frame.depth_scale;
+  if (run_.frames().back().reference == -1) return images;
+  const Correspondences& matches = run_.odometry().last_matches().matches;
+  for (const Match& match : matches) {
+    const cv::Vec2f from = ImagePoint(camera_, match.prev);
+    const cv::Vec2f to = ImagePoint(camera_, match.cur);
+    images.moves.emplace_back(from[0], from[1], to[0], to[1]);
+  }
+  const std::vector<double>& weights = run_.odometry().last_estimate().weights;
+  if (weights.size() == matches.size()) {
+    images.weights.assign(weights.begin(), weights.end());
+  }
+  return images;
+}
+
+// A frame that is late makes all after it later: the rate is never made up for.
+void LiveView::KeepPace(double timestamp, const StopSignal& signal) {
+  if (FLAGS_view_speed <= 0.0) return;
+  const Clock::time_point now = Clock::now();
+  if (run_.frames().size() > 1) {
+    const std::chrono::duration<double> wait((timestamp - last_timestamp_) /
+                                             FLAGS_view_speed);
+    due_ =
+        std::max(now, due_ + std::chrono::duration_cast<Clock::duration>(wait));
+  } else {
+    due_ = now;
+  }
+  last_timestamp_ = timestamp;
+  while (Clock::now() < due_ && signal.name().empty() && !state_.is_stopped() &&
+         !state_.is_paused()) {
+    state_.WaitForControl(std::min(
+        kSlice, std::chrono::duration_cast<milliseconds>(due_ - Clock::now()) +
+                    milliseconds(1)));
+  }
+}
+
+void LiveView::WaitWhilePaused(const StopSignal& signal) {
+  Clock::time_point last_seen = Clock::now();
+  while (state_.is_paused() && !state_.is_stopped() && signal.name().empty()) {
+    if (state_.readers() > 0) last_seen = Clock::now();
+    if (Clock::now() - last_seen > kAlone) state_.Pause(false);
+    state_.WaitForControl(kSlice);
+  }
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,216 @@
+#include "apps/view/view_server.h"
+
+#include "core/util/input_error.h"
+
+#ifdef RGBD_POSE_HAS_HTTPLIB
+#include <httplib.h>
+
+#include <atomic>
+#include <chrono>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <thread>
+
+#include "apps/view/view_events.h"
+#include "apps/view/view_page.h"
+#endif
+
+namespace rgbd_pose {
+
+#ifdef RGBD_POSE_HAS_HTTPLIB
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr char kHost[] = "127.0.0.1";
+
+// Each open page holds a thread; others are turned away.
+constexpr int kMaxReaders = 12;
+constexpr size_t kThreads = kMaxReaders + 4;
+
+// A page hears at most so often; encoding images takes time from tracking.
+constexpr milliseconds kInterval(80);
+// If nothing happens, it hears that, and so is missed when it is gone.
+constexpr milliseconds kHeartbeat(500);
+
+// A browser that does not read is let go, s. Only its own thread waits.
+constexpr int kWriteTimeout = 2;
+
+// How long the end may take to reach the pages.
+constexpr milliseconds kFarewell(1500);
+
+}  // namespace
+
+class ViewServer::Impl {
+ public:
+  Impl(const std::string& title, int port, ViewState* state)
+      : state_(state), page_(ViewPage(title)) {
+    server_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
+    // Not SO_REUSEPORT, its default: a port belongs to one program.
+    server_.set_socket_options([](socket_t socket) {
+      const int yes = 1;
+      setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+    });
+    server_.set_tcp_nodelay(true);
+    server_.set_write_timeout(kWriteTimeout);
+    server_.set_read_timeout(kWriteTimeout);
+    server_.set_keep_alive_timeout(1);
+    server_.set_payload_max_length(1024);
+    server_.set_default_headers(
+        {{"Cache-Control", "no-store"},
+         {"X-Content-Type-Options", "nosniff"},
+         {"Referrer-Policy", "no-referrer"},
+         {"Content-Security-Policy",
+          "default-src 'none'; style-src 'unsafe-inline'; script-src "
+          "'unsafe-inline'; img-src data:; connect-src 'self'; "
+          "frame-ancestors 'none'; base-uri 'none'; form-action 'none'"}});
+    Route();
+    port_ = port == 0 ? server_.bind_to_any_port(kHost)
+            : server_.bind_to_port(kHost, port) ? port
+                                                : -1;
+    if (port_ <= 0) {
+      throw InputError("--view_port=" + std::to_string(port) +
+                       ": cannot listen there; another program may do so "
+                       "(0: a free port)");
+    }
+    thread_ = std::thread([this] {
+      server_.listen_after_bind();
+      has_ended_ = true;
+    });
+  }
+
+  ~Impl() {
+    const auto end = std::chrono::steady_clock::now() + kFarewell;
+    while (state_->readers() > 0 && std::chrono::steady_clock::now() < end) {
+      std::this_thread::sleep_for(milliseconds(10));
+    }
+    is_closing_ = true;
+    // Until it listens it cannot be told to stop.
+    while (!server_.is_running() && !has_ended_) std::this_thread::yield();
+    server_.stop();
+    thread_.join();
+  }
+
+  int port() const { return port_; }
+
+ private:
+  using Request = httplib::Request;
+  using Response = httplib::Response;
+
+  void Route() {
+    server_.set_pre_routing_handler(
+        [this](const Request& request, Response& response) {
+          if (IsOurs(request))
+            return httplib::Server::HandlerResponse::Unhandled;
+          response.status = 403;
+          response.set_content("not for this host\n", "text/plain");
+          return httplib::Server::HandlerResponse::Handled;
+        });
+    server_.Get("/", [this](const Request&, Response& response) {
+      response.set_content(page_, "text/html; charset=utf-8");
+    });
+    server_.Get("/events", [this](const Request&, Response& response) {
+      ServeEvents(&response);
+    });
+    const auto button = [this](const char* path, auto press) {
+      server_.Post(path, [press](const Request&, Response& response) {
+        press();
+        response.set_content("ok\n", "text/plain");
+      });
+    };
+    button("/pause", [this] { state_->Pause(true); });
+    button("/resume", [this] { state_->Pause(false); });
+    button("/stop", [this] { state_->Stop(); });
+  }
+
+  // Another site can make a browser ask this machine, by a name of its own or
+  // in the name of its page.
+  bool IsOurs(const Request& request) const {
+    const std::string port = ":" + std::to_string(port_);
+    const std::string host = request.get_header_value("Host");
+    if (host != kHost + port && host != "localhost" + port) return false;
+    return !request.has_header("Origin") ||
+           request.get_header_value("Origin") == "http://" + host;
+  }
+
+  void ServeEvents(Response* response) {
+    if (state_->readers() >= kMaxReaders) {
+      response->status = 503;
+      response->set_content("too many pages are open\n", "text/plain");
+      return;
+    }
+    state_->AddReaders(1);
+    auto cursor = std::make_shared<ViewCursor>();
+    response->set_chunked_content_provider(
+        "text/event-stream",
+        [this, cursor](size_t, httplib::DataSink& sink) {
+          return SendNext(cursor.get(), &sink);
+        },
+        [this](bool) { state_->AddReaders(-1); });
+  }
+
+  // False ends the connection.
+  bool SendNext(ViewCursor* cursor, httplib::DataSink* sink) {
+    if (is_closing_) return false;
+    const ViewNews news = state_->Next(kHeartbeat, cursor);
+    std::string events = FormatNews(news);
+    if (news.images.has_value()) events += Images(news);
+    if (!sink->write(events.data(), events.size())) return false;
+    if (news.is_finished) {
+      sink->done();
+      return true;
+    }
+    std::this_thread::sleep_for(kInterval);
+    return true;
+  }
+
+  // Packed once for all pages.
+  std::string Images(const ViewNews& news) {
+    const std::lock_guard<std::mutex> lock(images_mutex_);
+    if (news.images_index > packed_index_) {
+      packed_ = FormatImages(*news.images, news.images_index);
+      packed_index_ = news.images_index;
+    }
+    return packed_;
+  }
+
+  ViewState* const state_;
+  const std::string page_;
+  httplib::Server server_;
+  int port_ = 0;
+  std::atomic<bool> is_closing_{false};
+  std::atomic<bool> has_ended_{false};
+  std::mutex images_mutex_;
+  std::string packed_;
+  int packed_index_ = -1;
+  std::thread thread_;
+};
+
+bool HasViewServer() { return true; }
+
+ViewServer::ViewServer(const std::string& title, int port, ViewState* state)
+    : impl_(std::make_unique<Impl>(title, port, state)) {}
+ViewServer::~ViewServer() = default;
+
+std::string ViewServer::address() const {
+  return "http://" + std::string(kHost) + ":" + std::to_string(impl_->port()) +
+         "/";
+}
+
+#else
+
+class ViewServer::Impl {};
+
+bool HasViewServer() { return false; }
+
+ViewServer::ViewServer(const std::string&, int, ViewState*) {
+  throw InputError(
+      "--view: built without cpp-httplib, which serves the page "
+      "(libcpp-httplib-dev; scripts/install_dependencies)");
+}
+ViewServer::~ViewServer() = default;
+std::string ViewServer::address() const { return ""; }
+
+#endif
+
+}  // namespace rgbd_pose

@@ -1,0 +1,146 @@
+#include "apps/view/view_state.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "apps/view/view_points.h"
+
+namespace rgbd_pose {
+namespace {
+
+// A page's first events are of a long run: so much of it at once.
+constexpr size_t kMaxFrames = 2000;
+constexpr size_t kMaxKeyframes = 20;
+
+// More points than a browser draws fluently are not kept.
+constexpr size_t kMaxPointBytes = 200000 * kViewPointBytes;
+
+// Copies what comes after `at`, at most `most`.
+template <typename T>
+void TakeNew(const std::vector<T>& all, size_t most, size_t* at,
+             std::vector<T>* news) {
+  const size_t end = std::min(all.size(), *at + most);
+  news->assign(all.begin() + *at, all.begin() + end);
+  *at = end;
+}
+
+template <typename T>
+void Append(std::vector<T> more, std::vector<T>* all) {
+  std::move(more.begin(), more.end(), std::back_inserter(*all));
+}
+
+}  // namespace
+
+void ViewState::Add(ViewNews news) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    for (const ViewKeyframe& keyframe : news.keyframes) {
+      point_bytes_ += keyframe.points.size();
+    }
+    Append(std::move(news.frames), &all_.frames);
+    Append(std::move(news.keyframes), &all_.keyframes);
+    Append(std::move(news.links), &all_.links);
+    if (!news.poses.empty()) {
+      all_.poses = std::move(news.poses);
+      ++poses_;
+    }
+    if (news.images.has_value()) {
+      all_.images = std::move(news.images);
+      all_.images_index = static_cast<int>(all_.frames.size()) - 1;
+      ++images_;
+    }
+    while (point_bytes_ > kMaxPointBytes) ThinPoints();
+  }
+  changed_.notify_all();
+}
+
+// Points come in random order: half of them are a thinner picture of the same.
+void ViewState::ThinPoints() {
+  point_bytes_ = 0;
+  for (ViewKeyframe& keyframe : all_.keyframes) {
+    const size_t points = keyframe.points.size() / kViewPointBytes;
+    keyframe.points.resize(points / 2 * kViewPointBytes);
+    point_bytes_ += keyframe.points.size();
+  }
+}
+
+void ViewState::Finish(const std::string& results) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    all_.results = results;
+    all_.is_finished = true;
+    all_.is_paused = false;
+    ++controls_;
+  }
+  changed_.notify_all();
+}
+
+ViewNews ViewState::Next(std::chrono::milliseconds patience,
+                         ViewCursor* cursor) {
+  ViewNews news;
+  std::unique_lock<std::mutex> lock(mutex_);
+  changed_.wait_for(lock, patience, [&] {
+    return cursor->frames < all_.frames.size() || cursor->poses != poses_ ||
+           cursor->keyframes < all_.keyframes.size() ||
+           cursor->images != images_ || cursor->controls != controls_;
+  });
+  TakeNew(all_.frames, kMaxFrames, &cursor->frames, &news.frames);
+  TakeNew(all_.keyframes, kMaxKeyframes, &cursor->keyframes, &news.keyframes);
+  TakeNew(all_.links, all_.links.size(), &cursor->links, &news.links);
+  if (cursor->poses != poses_) news.poses = all_.poses;
+  if (cursor->images != images_) news.images = all_.images;
+  news.images_index = all_.images_index;
+  news.is_paused = all_.is_paused;
+  // The end comes after all that was before it.
+  news.is_finished = all_.is_finished && cursor->frames == all_.frames.size() &&
+                     cursor->keyframes == all_.keyframes.size();
+  news.results = all_.results;
+  cursor->poses = poses_;
+  cursor->images = images_;
+  cursor->controls = controls_;
+  return news;
+}
+
+void ViewState::AddReaders(int more) {
+  readers_ += more;
+  control_.notify_all();
+}
+
+void ViewState::Pause(bool is_paused) {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    all_.is_paused = is_paused;
+    ++controls_;
+  }
+  changed_.notify_all();
+  control_.notify_all();
+}
+
+void ViewState::Stop() {
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    is_stopped_ = true;
+    all_.is_paused = false;
+    ++controls_;
+  }
+  changed_.notify_all();
+  control_.notify_all();
+}
+
+bool ViewState::is_stopped() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return is_stopped_;
+}
+
+bool ViewState::is_paused() const {
+  const std::lock_guard<std::mutex> lock(mutex_);
+  return all_.is_paused;
+}
+
+void ViewState::WaitForControl(std::chrono::milliseconds patience) {
+  std::unique_lock<std::mutex> lock(mutex_);
+  const int before = controls_;
+  control_.wait_for(lock, patience, [&] { return controls_ != before; });
+}
+
+}  // namespace rgbd_pose
