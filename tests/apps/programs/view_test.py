@@ -87,12 +87,13 @@ class Browser:
 class Page:
     def __init__(self, browser, address):
         self.browser = browser
-        target = browser.call('Target.createTarget', url='about:blank',
-                              width=1440, height=1200)
+        target = browser.call('Target.createTarget', url='about:blank')
         self.session = browser.call('Target.attachToTarget', flatten=True,
                                     targetId=target['targetId'])['sessionId']
         self.call('Runtime.enable')
         self.call('Page.enable')
+        self.call('Emulation.setDeviceMetricsOverride', width=1440, height=1180,
+                  deviceScaleFactor=1, mobile=False)
         self.call('Page.navigate', url=address)
 
     def call(self, method, **parameters):
@@ -162,7 +163,8 @@ def watch_a_run(folder, browser, picture):
     seen = page.frames()
     page.wait_for('a longer path', lambda: page.frames() > seen)
     check(page.ask('map.path().filter(step => step.p).length') > 20, 'no path')
-    check(page.ask('new Set(scene.pixels).size') > 50, 'no points are drawn')
+    page.call('Page.bringToFront')  # only what is in front is drawn
+    page.wait_for('points', lambda: page.ask('new Set(scene.pixels).size') > 50)
 
     page.press('pause')
     for each in (page, other):
