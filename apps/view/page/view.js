@@ -7,7 +7,8 @@ const scene = new Scene(byId('scene'), map);
 const images = new Images(byId('image'), byId('depth'));
 const strips = new Strips(byId('strips'), map);
 const page = byId('page');
-const title = JSON.parse(byId('data').textContent).title;
+const path = JSON.parse(byId('data').textContent).title;
+const title = path.split('/').filter(Boolean).pop() || path;  // the folder's name
 
 let paused = false, ended = false, stopping = false;
 

@@ -8,7 +8,7 @@ const SCENE = {
   link: 'rgba(140, 152, 165, 0.45)', loop: '#ffd479', keyframe: '#e6edf3',
   camera: '#ffffff', ghost: '255, 120, 70',
 };
-const POINT_SIZE = 0.012;  // m
+const POINT_SIZE = 0.018;  // m
 const GHOST_MS = 6000;
 
 class Scene {
@@ -83,7 +83,7 @@ class Scene {
   }
 
   focal() { return 0.9 * Math.min(this.width, 1.3 * this.height); }
-  distance() { return 2.1 * this.radius / this.zoom; }
+  distance() { return 1.75 * this.radius / this.zoom; }
 
   // The middle and size of what is to be seen: most points and the whole path.
   fit() {

@@ -22,7 +22,6 @@ class Strips {
     const left = 12, right = width - 12;
     const begin = frames[0].t, end = Math.max(frames[frames.length - 1].t, begin + 1);
     this.x = t => left + (right - left) * (t - begin) / (end - begin);
-    const half = (width - 40) / 2;
     this.strip(frames, 24, 74, 'Tracking, ms a frame', frame => frame.ms, COLOR.blue);
     this.strip(frames, 104, 154, 'Matches that agree, %',
         frame => (frame.matches ? 100 * frame.inliers / frame.matches : null),
@@ -86,7 +85,7 @@ class Strips {
     }
     context.stroke();
     this.text(title, 12, top - 8, 'left', '#1b1f24');
-    this.text(`top of the strip: ${digits(high, 2)}`, this.canvas.clientWidth - 12, top - 8,
+    this.text(`0 to ${digits(high, 2)}`, this.canvas.clientWidth - 12, top - 8,
         'right');
   }
 }
