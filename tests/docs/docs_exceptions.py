@@ -30,6 +30,7 @@ BEFORE = {
         simulated('rgbd_dataset_freiburg1_xyz', '--camera=tum_fr1', 10) +
         simulated('simulated/xyz', '--path=xyz', 10) +
         simulated('simulated/pan_tilt', '--path=pan_tilt', 10),
+    'docs/view.md': simulated('table', '--path=handheld', 30),
     'docs/thesis_experiments.md':
         simulated('rgbd_dataset_freiburg2_xyz', '--camera=tum_fr2'),
 }
