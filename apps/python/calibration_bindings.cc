@@ -10,6 +10,8 @@
 #include "apps/calibration/calibration_run.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
+#include "apps/python/pickled_fields.h"
+#include "apps/python/released_gil.h"
 #include "apps/results/calibration_output.h"
 #include "apps/shell/available_cores.h"
 #include "core/util/input_error.h"
@@ -20,6 +22,17 @@
 namespace py = pybind11;
 
 namespace rgbd_pose {
+static void EachField(PickledBytes* bytes, HeldOutResidual& residual) {
+  (*bytes)(residual.u, residual.v, residual.before, residual.after);
+}
+
+static void EachField(PickledBytes* bytes, DepthNoiseFit& noise) {
+  DepthNoiseModel& model = noise.model;
+  (*bytes)(model.name, model.constant, model.quadratic, model.centre,
+           model.mean_share, noise.constant_sigma, noise.quadratic_sigma,
+           noise.scatter, noise.samples, noise.in_old_sigmas);
+}
+
 namespace {
 
 // A result, and the file whose layout the new camera's has.
@@ -29,6 +42,26 @@ struct Calibration {
 };
 
 struct Parameter : CalibratedParameter {};
+
+void EachField(PickledBytes* bytes, Parameter& parameter) {
+  (*bytes)(static_cast<CalibratedParameter&>(parameter));
+}
+
+void EachField(PickledBytes* bytes, Calibration& calibration) {
+  CalibrationResult& r = calibration.result;
+  (*bytes)(calibration.like, r.parameters, r.is_accepted, r.reason, r.camera,
+           r.found, r.keyframes, r.pairs, r.held_out_pairs, r.landmarks,
+           r.views, r.cost_before, r.cost_after, r.gain_sigmas, r.pixel_before,
+           r.pixel_after, r.depth_before, r.depth_after, r.residuals, r.noise,
+           r.truth_before, r.truth_after, r.halves, r.displacement_px, r.passes,
+           r.scale_from);
+}
+
+// Called after each frame without the GIL: Ctrl-C ends a calibration.
+void ThrowIfInterrupted() {
+  const py::gil_scoped_acquire gil;
+  if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+}
 
 Calibration CalibrateFile(const py::object& path, const py::object& camera,
                           const std::string& source, const std::string& frames,
@@ -50,9 +83,10 @@ Calibration CalibrateFile(const py::object& path, const py::object& camera,
   settings.known_length = known_length;
   settings.fix = fix;
   settings.max_passes = max_passes;
-  const py::gil_scoped_release no_gil;
+  const ReleasedGil no_gil;
   return {CalibrateRecording(sequence, CalibrationOdometry(), CalibrationSlam(),
-                             settings, NumThreads(threads), nullptr)
+                             settings, NumThreads(threads),
+                             [](int, int, int) { ThrowIfInterrupted(); })
               .result,
           sequence.camera};
 }
@@ -74,7 +108,8 @@ void BindResult(py::module_* module) {
       .def_readonly("before", &Parameter::before, "of the first camera")
       .def_readonly("found", &Parameter::found,
                     "where the recording would have it")
-      .def_readonly("sigma", &Parameter::sigma, "standard deviation of that");
+      .def_readonly("sigma", &Parameter::sigma, "standard deviation of that")
+      .def(Pickled<Parameter>());
   py::class_<Calibration>(*module, "Calibration", "What came of calibrate().")
       .def_property_readonly(
           "accepted",
@@ -124,7 +159,8 @@ void BindResult(py::module_* module) {
           },
           "Writes a file for the argument depth_noise. InputError if there is "
           "none.",
-          py::arg("path"));
+          py::arg("path"))
+      .def(Pickled<Calibration>());
 }
 
 }  // namespace

@@ -9,6 +9,7 @@
 
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
+#include "apps/python/pickled_fields.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/shutter_parameters.h"
 #include "core/util/format.h"
@@ -183,7 +184,8 @@ of the preset or file.)",
             return ArrayFromMatrix(Intrinsics(self.camera));
           },
           "(3, 3) [fx 0 cx; 0 fy cy; 0 0 1], px")
-      .def("__repr__", &CameraInWords);
+      .def("__repr__", &CameraInWords)
+      .def(Pickled<RgbdCamera>());
   BindShutters(&camera);
 }
 

@@ -10,6 +10,7 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/estimate_rows.h"
+#include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
 #include "core/estimation/correspondences.h"
 #include "core/estimation/estimator.h"
@@ -129,7 +130,7 @@ void BindFunction(py::module_* module, const char* name,
         Estimator estimator = MakeEstimator(settings.estimator);
         const Camera seen_by = camera == nullptr ? Camera() : camera->camera;
 
-        const py::gil_scoped_release no_gil;
+        const ReleasedGil no_gil;
         const RowMatches matches =
             MakeMatches(seen_by, to_observation, prev, cur,
                         normals.has_value() ? &*normals : nullptr, sigma_px,

@@ -5,11 +5,20 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/estimate_rows.h"
+#include "apps/python/pickling.h"
 #include "core/estimation/motion_estimate.h"
 
 namespace py = pybind11;
 
 namespace rgbd_pose {
+static void EachField(PickledBytes* bytes, EstimateResult& result) {
+  MotionEstimate& e = result.estimate;
+  (*bytes)(e.status, e.reason, e.cur_from_prev, e.covariance, e.weights,
+           e.residual_norms, e.residual_degrees, e.num_used, e.num_inliers,
+           e.sigma, e.initial_cost, e.final_cost, e.iterations, e.solve_ms,
+           result.is_inlier, result.num_rejected);
+}
+
 namespace {
 
 std::string ResultInWords(const EstimateResult& result) {
@@ -132,7 +141,8 @@ or False for rows that no cost could use.)");
                              "of the solver, all stages together")
       .def_property_readonly("solve_ms", &Field<&MotionEstimate::solve_ms>,
                              "time that the solve took, ms")
-      .def("__repr__", &ResultInWords);
+      .def("__repr__", &ResultInWords)
+      .def(Pickled<EstimateResult>());
 }
 
 }  // namespace rgbd_pose

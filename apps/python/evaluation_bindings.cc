@@ -7,6 +7,8 @@
 
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
+#include "apps/python/pickling.h"
+#include "apps/python/released_gil.h"
 #include "apps/python/trajectory_arrays.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
@@ -33,12 +35,23 @@ struct RpeResult {
   Errors rotation;
 };
 
+void EachField(PickledBytes* bytes, Errors& errors) {
+  (*bytes)(static_cast<ErrorStatistics&>(errors), errors.values);
+}
+void EachField(PickledBytes* bytes, AteResult& ate) {
+  (*bytes)(static_cast<Errors&>(ate), ate.timestamps,
+           ate.reference_from_estimated);
+}
+void EachField(PickledBytes* bytes, RpeResult& rpe) {
+  (*bytes)(rpe.timestamps, rpe.translation, rpe.rotation);
+}
+
 EvaluationReport EvaluateObjects(const py::object& estimated,
                                  const py::object& reference,
                                  const EvaluationOptions& options) {
   const Trajectory estimate = TrajectoryFrom(estimated, "estimated");
   const Trajectory truth = TrajectoryFrom(reference, "reference");
-  const py::gil_scoped_release no_gil;
+  const ReleasedGil no_gil;
   return Evaluate(estimate, truth, options);
 }
 
@@ -97,10 +110,12 @@ void BindResults(py::module_* module) {
       .def_readonly("max", &Errors::max, "the largest")
       .def_property_readonly("values", &List<&Errors::values, Errors>,
                              "(count,), in the order of time")
-      .def("__repr__", [](const Errors& self) {
-        return "Errors(rmse=" + std::to_string(self.rmse) +
-               ", count=" + std::to_string(self.count) + ")";
-      });
+      .def("__repr__",
+           [](const Errors& self) {
+             return "Errors(rmse=" + std::to_string(self.rmse) +
+                    ", count=" + std::to_string(self.count) + ")";
+           })
+      .def(Pickled<Errors>());
   py::class_<AteResult, Errors>(
       *module, "AteResult",
       "Absolute trajectory error: distances (m) of positions after the best "
@@ -114,7 +129,8 @@ void BindResults(py::module_* module) {
             return ArrayFromMatrix(
                 MatrixFromRigid(self.reference_from_estimated));
           },
-          "(4, 4), the alignment of the worlds");
+          "(4, 4), the alignment of the worlds")
+      .def(Pickled<AteResult>());
   py::class_<RpeResult>(
       *module, "RpeResult",
       "Relative pose errors: of every motion over the interval.")
@@ -122,7 +138,8 @@ void BindResults(py::module_* module) {
       .def_readonly("rotation", &RpeResult::rotation, "Errors, rad")
       .def_property_readonly("timestamps",
                              &List<&RpeResult::timestamps, RpeResult>,
-                             "(count,), of the intervals' first poses, s");
+                             "(count,), of the intervals' first poses, s")
+      .def(Pickled<RpeResult>());
 }
 
 }  // namespace

@@ -69,7 +69,11 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
   frame.color_shutter = camera.color_shutter;
   frame.depth_shutter = camera.depth_shutter;
   frame.gray = GrayFrom(image, camera.camera);
-  const py::array array = ToArray(depth, "depth");
+  py::array array = ToArray(depth, "depth");
+  // As many libraries keep images of one channel.
+  if (array.ndim() == 3 && array.shape(2) == 1) {
+    array = array.attr("squeeze")(2);
+  }
   const bool is_raw = py::isinstance<py::array_t<uint16_t>>(array);
   if (Channels(array, camera.camera) != 1 || array.ndim() != 2 ||
       !(is_raw || array.dtype().kind() == 'f')) {

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "apps/python/arrays.h"
+#include "apps/python/released_gil.h"
 #include "core/geometry/camera.h"
 #include "frontend/frame/frame.h"
 
@@ -31,7 +32,7 @@ auto TrackArrays(Shared* shared, const pybind11::object& image,
   if (!motion_guess.is_none()) {
     guess = RigidFromArray(motion_guess, "motion_guess");
   }
-  const pybind11::gil_scoped_release no_gil;
+  const ReleasedGil no_gil;
   return shared->Track(std::move(frame), timestamp, guess);
 }
 

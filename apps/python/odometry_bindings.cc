@@ -10,6 +10,8 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"
+#include "apps/python/pickled_fields.h"
+#include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
 #include "apps/python/shared_odometry.h"
 #include "apps/python/trajectory_arrays.h"
@@ -32,7 +34,7 @@ std::unique_ptr<SharedOdometry> MakeSharedOdometry(const RgbdCamera& camera,
 }
 
 Trajectory TrajectoryOf(SharedOdometry* odometry) {
-  const py::gil_scoped_release no_gil;
+  const ReleasedGil no_gil;
   return odometry->trajectory();
 }
 
@@ -61,7 +63,8 @@ void BindTrackedFrame(py::module_* module) {
           [](const RelativePose& self) {
             return ArrayFromMatrix(self.covariance);
           },
-          "(6, 6), as that of MotionEstimate");
+          "(6, 6), as that of MotionEstimate")
+      .def(Pickled<RelativePose>());
   py::class_<TrackedFrame>(*module, "TrackedFrame",
                            "What became of one input frame.")
       .def_readonly("index", &TrackedFrame::index, "of the frame, from 0")
@@ -127,7 +130,8 @@ void BindTrackedFrame(py::module_* module) {
                     "of it: features of a new reference")
       .def_readonly("relocalise_ms", &TrackedFrame::relocalise_ms,
                     "of it: search for the place when lost")
-      .def("__repr__", &FrameInWords);
+      .def("__repr__", &FrameInWords)
+      .def(Pickled<TrackedFrame>());
 }
 
 void BindSharedOdometry(py::module_* module) {

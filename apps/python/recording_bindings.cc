@@ -13,6 +13,8 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"
+#include "apps/python/pickling.h"
+#include "apps/python/released_gil.h"
 #include "apps/python/trajectory_arrays.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/sources/corrected_source.h"
@@ -23,6 +25,11 @@
 namespace py = pybind11;
 
 namespace rgbd_pose {
+static void EachField(PickledBytes* bytes, Frame& f) {
+  (*bytes)(f.index, f.timestamp, f.depth_delay, f.gray, f.depth, f.depth_scale,
+           f.color_shutter, f.depth_shutter);
+}
+
 namespace {
 
 std::unique_ptr<TumDataset> OpenTumDataset(const py::object& folder,
@@ -43,7 +50,7 @@ Frame ReadFrame(const TumDataset& dataset, int index) {
     throw py::index_error("the dataset has " + std::to_string(dataset.size()) +
                           " frames");
   }
-  const py::gil_scoped_release no_gil;
+  const ReleasedGil no_gil;
   return CorrectDepth(dataset.camera(), dataset.Read(index));
 }
 
@@ -105,7 +112,7 @@ std::unique_ptr<Recording> OpenRecording(
 Frame NextFrame(RecordingIterator* self) {
   std::optional<Frame> frame;
   {
-    const py::gil_scoped_release no_gil;
+    const ReleasedGil no_gil;
     const std::optional<RgbdFrame> next = self->source->Next();
     if (next.has_value()) frame = next->read();
   }
@@ -131,7 +138,8 @@ void BindFrame(py::module_* module) {
             return ArrayOfImage<uint16_t>(self.cast<const Frame&>().depth,
                                           self);
           },
-          "(height, width) uint16, raw units; 0 and 65535: none");
+          "(height, width) uint16, raw units; 0 and 65535: none")
+      .def(Pickled<Frame>());
 }
 
 void BindTumDataset(py::module_* module) {

@@ -17,8 +17,10 @@ void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
   frame->index = last == nullptr ? 0 : last->index + 1;
   frame->timestamp = timestamp.value_or(
       last == nullptr ? 0.0 : last->timestamp + 1.0 / kDefaultFrameRate);
-  if (!std::isfinite(frame->timestamp) ||
-      (last != nullptr && frame->timestamp <= last->timestamp)) {
+  if (!std::isfinite(frame->timestamp)) {
+    throw InputError("timestamp: is not a finite number of seconds");
+  }
+  if (last != nullptr && frame->timestamp <= last->timestamp) {
     throw InputError("timestamp: " + std::to_string(frame->timestamp) +
                      " s is not after that of the frame before; frames must "
                      "come in the order of time");

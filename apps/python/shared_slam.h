@@ -18,7 +18,7 @@ namespace rgbd_pose {
 
 // A frame as Python has it: what Odometry says of it, and where the map has it.
 struct FrameInMap : TrackedFrame {
-  explicit FrameInMap(SlamFrame frame)
+  explicit FrameInMap(SlamFrame frame = {})
       : TrackedFrame(frame.tracked), slam(std::move(frame)) {}
 
   SlamFrame slam;

@@ -11,6 +11,8 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"
+#include "apps/python/pickled_fields.h"
+#include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
 #include "apps/python/shared_slam.h"
 #include "apps/python/trajectory_arrays.h"
@@ -19,6 +21,17 @@
 namespace py = pybind11;
 
 namespace rgbd_pose {
+static void EachField(PickledBytes* bytes, FrameInMap& f) {
+  SlamFrame& slam = f.slam;
+  (*bytes)(static_cast<TrackedFrame&>(f), slam.tracked, slam.odom_from_cam,
+           slam.map_from_odom, slam.segment, slam.pairs, slam.loops,
+           slam.joined, slam.error, slam.map_ms, slam.wait_ms);
+}
+
+static void EachField(PickledBytes* bytes, KeyframePose& k) {
+  (*bytes)(k.id, k.segment, k.timestamp, k.map_from_cam, k.covariance);
+}
+
 namespace {
 
 struct Settings {
@@ -42,7 +55,7 @@ std::unique_ptr<SharedSlam> MakeSharedSlam(const RgbdCamera& camera,
 }
 
 Trajectory TrajectoryOf(SharedSlam* slam) {
-  const py::gil_scoped_release no_gil;
+  const ReleasedGil no_gil;
   return slam->trajectory();
 }
 
@@ -92,7 +105,8 @@ void BindFrames(py::module_* module) {
       .def_property_readonly("map_ms", Taken(&SlamFrame::map_ms),
                              "time of that work, behind the tracking, ms")
       .def_property_readonly("wait_ms", Taken(&SlamFrame::wait_ms),
-                             "for which the tracking waited, ms");
+                             "for which the tracking waited, ms")
+      .def(Pickled<FrameInMap>());
   py::class_<KeyframePose>(*module, "Keyframe", "A keyframe of the map.")
       .def_readonly("id", &KeyframePose::id,
                     "its name in the map; without a loaded map the index of "
@@ -112,7 +126,8 @@ void BindFrames(py::module_* module) {
           },
           "(6, 6), of a small rotation about the axes of the camera (rad) and "
           "of its\ncentre in the map (m); zero for the first of a segment, "
-          "None if it cannot\nbe computed");
+          "None if it cannot\nbe computed")
+      .def(Pickled<KeyframePose>());
 }
 
 void BindSlamClass(py::module_* module) {
@@ -133,7 +148,7 @@ threads wait for each other; objects do not share anything.
              py::arg("camera").none(false),
              py::arg("frontend") = settings.odometry.frontend);
   }
-  const py::call_guard<py::gil_scoped_release> no_gil;
+  const py::call_guard<ReleasedGil> no_gil;
   slam.def("track", &TrackArrays<SharedSlam>,
            "Tracks the next frame; arguments are those of Odometry.track. The "
            "GIL is\nreleased. InputError after finish().",
@@ -167,7 +182,7 @@ threads wait for each other; objects do not share anything.
           "save_map",
           [](SharedSlam* self, const py::object& folder) {
             const std::string path = PathFrom(folder);
-            const py::gil_scoped_release released;
+            const ReleasedGil released;
             self->SaveMap(path);
           },
           "After finish(): keeps the map in a folder, in place of the one that "
@@ -177,7 +192,7 @@ threads wait for each other; objects do not share anything.
           "load_map",
           [](SharedSlam* self, const py::object& folder, bool localise_only) {
             const std::string path = PathFrom(folder);
-            const py::gil_scoped_release released;
+            const ReleasedGil released;
             self->LoadMap(path, localise_only);
           },
           "Before the first frame: begins with a map that was saved, or "

@@ -1,5 +1,8 @@
 """calibrate(): what is wrong with a camera, from a recording."""
 
+import subprocess
+import sys
+
 import pytest
 
 import rgbd_pose
@@ -67,3 +70,27 @@ def test_says_what_makes_no_sense(recording):
         rgbd_pose.calibrate(recording / "nothing")
     with pytest.raises(rgbd_pose.InputError, match="max_passes"):
         rgbd_pose.calibrate(recording, max_passes=0)
+
+
+def test_an_interrupt_ends_it(recording):
+    # Ctrl-C, as a terminal sends it; in time of the processor.
+    program = f"""
+import os, signal, threading, time, rgbd_pose
+def calibrate():
+    begun = time.process_time()
+    try:
+        rgbd_pose.calibrate({str(recording)!r}, {str(recording / "camera.yaml")!r})
+    except KeyboardInterrupt:
+        print("interrupted")
+    return time.process_time() - begun
+whole = calibrate()
+threading.Timer(0.1, os.kill, (os.getpid(), signal.SIGINT)).start()
+print("early" if calibrate() < 0.5 * whole else "late")
+"""
+    said = subprocess.run(
+        [sys.executable, "-c", program],
+        check=True,
+        capture_output=True,
+        text=True,
+    ).stdout
+    assert said.split() == ["interrupted", "early"]

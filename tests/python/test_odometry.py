@@ -245,10 +245,29 @@ def test_time_stamps(dataset, camera):
     assert odometry.track(f.gray, f.depth).timestamp == 0.0
     assert odometry.track(f.gray, f.depth).timestamp == 1.0 / 30.0
     assert odometry.track(f.gray, f.depth, 5).timestamp == 5.0
-    for bad in (5.0, 4.0, np.nan, np.inf):
-        with pytest.raises(rgbd_pose.InputError, match="timestamp: .* after"):
+    for bad, words in (
+        (5.0, "not after"),
+        (4.0, "not after"),
+        (np.nan, "not a finite"),
+        (np.inf, "not a finite"),
+    ):
+        with pytest.raises(rgbd_pose.InputError, match=f"timestamp: .*{words}"):
             odometry.track(f.gray, f.depth, bad)
     assert odometry.track(f.gray, f.depth, 6.0).index == 3
+    with pytest.raises(rgbd_pose.InputError, match="not a finite"):
+        rgbd_pose.Odometry(camera).track(f.gray, f.depth, np.nan)
+
+
+def test_depth_of_one_channel(dataset, camera):
+    f = dataset[0]
+    flat = rgbd_pose.Odometry(camera)
+    deep = rgbd_pose.Odometry(camera)
+    for k in (0, 1):
+        f = dataset[k]
+        a = flat.track(f.gray, f.depth)
+        b = deep.track(f.gray[:, :, None], f.depth[:, :, None])
+        assert np.array_equal(a.world_from_cam, b.world_from_cam)
+        assert b.matches == a.matches
 
 
 def test_motion_guess(dataset, camera):

@@ -1,5 +1,6 @@
 """The GIL is released while the library works."""
 
+import subprocess
 import sys
 import threading
 import time
@@ -105,3 +106,21 @@ def test_calls_of_one_odometry_wait_for_each_other(sequence, camera):
         thread.join()
     assert sorted(f.index for f in frames) == list(range(20))
     assert all(f.status == "ok" for f in frames)
+
+
+def test_daemon_threads_do_not_abort_the_end():
+    # Python ends threads that ask for the GIL after its end.
+    program = """
+import threading, time, numpy as np, rgbd_pose
+points = np.random.default_rng(1).random((1000, 3)) + [0, 0, 2]
+def run():
+    while True:
+        rgbd_pose.estimate_motion(points, points)
+for _ in range(3):
+    threading.Thread(target=run, daemon=True).start()
+time.sleep(0.3)
+"""
+    ended = subprocess.run(
+        [sys.executable, "-c", program], capture_output=True, timeout=60
+    )
+    assert ended.returncode == 0, ended.stderr

@@ -1,0 +1,132 @@
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <cstring>
+#include <opencv2/core.hpp>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "core/geometry/rigid3.h"
+#include "core/util/input_error.h"
+
+// Objects as bytes, for `pickle` and `copy`: between processes of one version,
+// not to be kept. A class has a function, found by its argument,
+//
+//   void EachField(PickledBytes* bytes, Class& object)
+//
+// that calls (*bytes)(object.field, ...) with all fields that count, both to
+// write and to read them.
+
+namespace rgbd_pose {
+
+// Writes fields, or reads them in the same order.
+class PickledBytes {
+ public:
+  PickledBytes() = default;  // to write
+
+  // To read.
+  explicit PickledBytes(std::string bytes)
+      : bytes_(std::move(bytes)), is_reading_(true) {}
+
+  const std::string& bytes() const { return bytes_; }
+
+  // Throws InputError if there are too few bytes.
+  template <typename... Ts>
+  void operator()(Ts&... fields) {
+    (Field(fields), ...);
+  }
+
+ private:
+  void Raw(void* data, size_t size) {
+    if (size == 0) return;
+    if (!is_reading_) {
+      bytes_.append(static_cast<const char*>(data), size);
+      return;
+    }
+    if (size > bytes_.size() - at_) throw InputError("pickle: is cut off");
+    std::memcpy(data, bytes_.data() + at_, size);
+    at_ += size;
+  }
+
+  template <typename List>
+  void Resize(List* list) {
+    uint64_t size = list->size();
+    Field(size);
+    if (!is_reading_) return;
+    if (size > bytes_.size() - at_) throw InputError("pickle: is cut off");
+    list->resize(size);
+  }
+
+  template <typename T>
+  void Field(T& value) {
+    if constexpr (std::is_trivially_copyable_v<T>) {
+      Raw(&value, sizeof(value));
+    } else {
+      EachField(this, value);
+    }
+  }
+  void Field(std::string& text) {
+    Resize(&text);
+    Raw(text.data(), text.size());
+  }
+  template <typename T>
+  void Field(std::vector<T>& list) {
+    Resize(&list);
+    for (auto&& value : list) Field(value);
+  }
+  template <typename T>
+  void Field(std::optional<T>& value) {
+    bool is_there = value.has_value();
+    Field(is_there);
+    if (is_there && is_reading_) value.emplace();
+    if (is_there) Field(*value);
+  }
+  template <int kRows, int kColumns>
+  void Field(Eigen::Matrix<double, kRows, kColumns>& matrix) {
+    Raw(matrix.data(), sizeof(double) * matrix.size());
+  }
+  void Field(Rigid3d& motion) {
+    (*this)(motion.rotation.coeffs(), motion.translation);
+  }
+  void Field(cv::Mat& image) {
+    int rows = image.rows, columns = image.cols, type = image.type();
+    (*this)(rows, columns, type);
+    if (is_reading_) image.create(rows, columns, type);
+    const size_t row_bytes = image.elemSize() * image.cols;
+    for (int y = 0; y < image.rows; ++y) Raw(image.ptr(y), row_bytes);
+  }
+
+  std::string bytes_;
+  bool is_reading_ = false;
+  size_t at_ = 0;
+};
+
+// For py::class_<T>::def.
+template <typename T>
+auto Pickled() {
+  namespace py = pybind11;
+  return py::pickle(
+      [](const T& self) {
+        PickledBytes bytes;
+        T copy = self;  // fields are written by what reads them
+        EachField(&bytes, copy);
+        return py::make_tuple(RGBD_POSE_VERSION, py::bytes(bytes.bytes()));
+      },
+      [](const py::tuple& state) {
+        if (state.size() != 2 ||
+            state[0].cast<std::string>() != RGBD_POSE_VERSION) {
+          throw InputError("pickle: is of another version of rgbd_pose");
+        }
+        PickledBytes bytes(state[1].cast<std::string>());
+        T object;
+        EachField(&bytes, object);
+        return object;
+      });
+}
+
+}  // namespace rgbd_pose

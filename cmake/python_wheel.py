@@ -1,0 +1,83 @@
+"""Builds the Python package for `pip install .` (PEP 517) by CMake, with
+nothing but Python's own library: pip may be offline.
+
+RGBD_POSE_BUILD_DIR names a build folder to use that is there already;
+otherwise it is build-python.
+"""
+
+import base64
+import hashlib
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import sysconfig
+import tempfile
+import zipfile
+
+SOURCES = pathlib.Path(__file__).resolve().parent.parent
+
+
+def version():
+    text = (SOURCES / "CMakeLists.txt").read_text(encoding="utf-8")
+    return re.search(r"project\(rgbd_pose VERSION ([\d.]+)", text).group(1)
+
+
+def build_package(prefix):
+    """Builds the module; returns the folder of the package below prefix."""
+    folder = os.environ.get("RGBD_POSE_BUILD_DIR")
+    if not folder:
+        folder = str(SOURCES / "build-python")
+        subprocess.run(
+            ["cmake", "-S", str(SOURCES), "-B", folder]
+            + ["-DCMAKE_BUILD_TYPE=Release", "-DRGBD_POSE_BUILD_TESTS=OFF"]
+            + ["-DRGBD_POSE_BUILD_BENCHMARKS=OFF"]
+            + ["-DRGBD_POSE_BUILD_PYTHON=ON"]
+            + [f"-DPython_EXECUTABLE={sys.executable}"],
+            check=True,
+        )
+    jobs = str(os.cpu_count() or 1)
+    subprocess.run(
+        ["cmake", "--build", folder, "--target", "_rgbd_pose", "-j", jobs],
+        check=True,
+    )
+    subprocess.run(
+        ["cmake", "--install", folder, "--component", "python"]
+        + ["--prefix", prefix],
+        check=True,
+    )
+    return next(pathlib.Path(prefix).rglob("rgbd_pose/__init__.py")).parent
+
+
+def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):
+    python = f"cp{sys.version_info.major}{sys.version_info.minor}"
+    platform = re.sub(r"[-.]", "_", sysconfig.get_platform())
+    tag = f"{python}-{python}-{platform}"
+    info = f"rgbd_pose-{version()}.dist-info"
+    with tempfile.TemporaryDirectory() as prefix:
+        files = {
+            f"rgbd_pose/{path.name}": path.read_bytes()
+            for path in sorted(build_package(prefix).iterdir())
+            if path.is_file()
+        }
+    files[f"{info}/METADATA"] = (
+        f"Metadata-Version: 2.1\nName: rgbd_pose\nVersion: {version()}\n"
+        "Requires-Python: >=3.8\nRequires-Dist: numpy\n"
+    ).encode()
+    files[f"{info}/WHEEL"] = (
+        "Wheel-Version: 1.0\nGenerator: rgbd_pose\n"
+        f"Root-Is-Purelib: false\nTag: {tag}\n"
+    ).encode()
+    record = ""
+    for name, content in files.items():
+        digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest())
+        record += f"{name},sha256={digest.decode().rstrip('=')},{len(content)}\n"
+    files[f"{info}/RECORD"] = f"{record}{info}/RECORD,,\n".encode()
+    wheel = f"rgbd_pose-{version()}-{tag}.whl"
+    with zipfile.ZipFile(
+        pathlib.Path(wheel_directory) / wheel, "w", zipfile.ZIP_DEFLATED
+    ) as archive:
+        for name, content in files.items():
+            archive.writestr(name, content)
+    return wheel

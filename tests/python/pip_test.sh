@@ -1,0 +1,36 @@
+#!/bin/sh
+# `pip install .` in a fresh virtual environment, without the network: the
+# module can be imported, has its stubs, and can be removed.
+# usage: pip_test.sh PYTHON SOURCE_FOLDER BUILD_FOLDER
+set -eu
+python=$1 sources=$2
+export RGBD_POSE_BUILD_DIR="$3"
+unset PYTHONPATH
+if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then
+  echo "skipped: needs python3-venv"
+  exit 77
+fi
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+# With the distribution's numpy.
+"$python" -m venv --system-site-packages "$folder/venv"
+pip="$folder/venv/bin/python -m pip --disable-pip-version-check"
+$pip install --no-index --no-build-isolation --quiet "$sources"
+cd "$folder"
+venv/bin/python - <<'END'
+import pathlib
+import sys
+
+import rgbd_pose
+
+folder = pathlib.Path(rgbd_pose.__file__).parent
+assert str(folder).startswith(sys.prefix), folder
+assert (folder / "py.typed").exists() and (folder / "__init__.pyi").exists()
+assert "tum_fr1" in rgbd_pose.camera_presets()
+END
+$pip show rgbd_pose | grep -q '^Version: [0-9]'
+$pip uninstall --yes --quiet rgbd_pose
+if venv/bin/python -c 'import rgbd_pose' 2>/dev/null; then
+  echo "is still there after pip uninstall"
+  exit 1
+fi
