@@ -120,8 +120,22 @@ std::optional<Rigid3d> FixedTransform(BagReader* bag, const BagTopics& topics,
   return tree.Fixed(target, source);
 }
 
-bool IsCalledRegistered(const std::string& topic) {
-  return Contains(topic, "regist") || Contains(topic, "align");
+// The camera of the images, which are a part of the full image and have so many
+// of its pixels in one: their centre is the middle of these.
+void CropAndBin(const RosCameraInfo& info, Camera* camera) {
+  const uint32_t bin_x = std::max(info.binning_x, 1u);
+  const uint32_t bin_y = std::max(info.binning_y, 1u);
+  const bool is_part = info.roi_width > 0 && info.roi_height > 0;
+  const auto size = [](uint32_t full, uint32_t part, bool is_part,
+                       uint32_t bin) {
+    return static_cast<int>(std::min((is_part ? part : full) / bin, 1u << 20));
+  };
+  camera->width = size(info.width, info.roi_width, is_part, bin_x);
+  camera->height = size(info.height, info.roi_height, is_part, bin_y);
+  camera->fx /= bin_x;
+  camera->fy /= bin_y;
+  camera->cx = (camera->cx - info.x_offset + 0.5) / bin_x - 0.5;
+  camera->cy = (camera->cy - info.y_offset + 0.5) / bin_y - 0.5;
 }
 
 // Nothing: depth is registered to colour.
@@ -153,16 +167,19 @@ std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
 
 }  // namespace
 
+bool IsCalledRegistered(const std::string& topic) {
+  return Contains(topic, "regist") || Contains(topic, "align");
+}
+
 Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
                     const std::string& name) {
   Camera camera;
-  camera.width = static_cast<int>(std::min(info.width, 1u << 20));
-  camera.height = static_cast<int>(std::min(info.height, 1u << 20));
   const bool by_p = is_rectified && info.p[0] > 0.0;
   camera.fx = by_p ? info.p[0] : info.k[0];
   camera.fy = by_p ? info.p[5] : info.k[4];
   camera.cx = by_p ? info.p[2] : info.k[2];
   camera.cy = by_p ? info.p[6] : info.k[5];
+  CropAndBin(info, &camera);
   const std::string model(info.distortion_model);
   // The last is what librealsense calls it.
   const bool is_equidistant = model == "equidistant" || model == "fisheye" ||

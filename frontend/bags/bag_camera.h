@@ -10,8 +10,12 @@
 
 namespace rgbd_pose {
 
-// The camera of a CameraInfo: of the raw image or the rectified one. Throws
-// InputError, which begins with `name`, for one that Camera does not have.
+// Whether by its name a topic of depth is registered to colour.
+bool IsCalledRegistered(const std::string& topic);
+
+// The camera of the images of a CameraInfo: of the raw image or the rectified
+// one. Throws InputError, which begins with `name`, for one that Camera does
+// not have.
 Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
                     const std::string& name);
 

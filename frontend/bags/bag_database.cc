@@ -6,6 +6,8 @@
 
 #include <filesystem>
 #include <map>
+
+#include "frontend/bags/chunk_codec.h"
 #endif
 
 namespace rgbd_pose {
@@ -167,7 +169,15 @@ class BagDatabase final : public BagReader {
     BagMessage message;
     message.topic = places_.at(rows->Number(0));
     message.received = static_cast<double>(rows->Number(1)) * 1e-9;
-    message.bytes = std::make_shared<std::string>(rows->Bytes(2));
+    std::string bytes = rows->Bytes(2);
+    if (IsZstd(bytes)) {
+      try {
+        bytes = UnpackZstdMessage(bytes);
+      } catch (const InputError& error) {
+        throw InputError(path_ + ": a message " + error.what());
+      }
+    }
+    message.bytes = std::make_shared<std::string>(std::move(bytes));
     return message;
   }
 

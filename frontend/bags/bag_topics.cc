@@ -190,6 +190,11 @@ BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {
     }
     chosen.color = Best(*bag, fitness, &Fitness::color, "colour");
     chosen.depth = Best(*bag, fitness, &Fitness::depth, "depth");
+    for (int Fitness::*what : {&Fitness::color, &Fitness::depth}) {
+      chosen.had_choice |=
+          std::count_if(fitness.begin(), fitness.end(),
+                        [what](const Fitness& f) { return f.*what > 0; }) > 1;
+    }
   } else {
     if (names.size() < 2 || names.size() > 3) {
       throw InputError(

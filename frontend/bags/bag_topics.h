@@ -16,6 +16,7 @@ struct BagTopics {
   int color_info = -1;  // CameraInfo; -1: there is none
   int depth_info = -1;
   std::vector<int> transforms;  // of /tf and /tf_static
+  bool had_choice = false;      // other topics would have done, too
 };
 
 // Those that `names` says (colour, depth and, if it is not the one beside

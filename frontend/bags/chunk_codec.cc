@@ -1,5 +1,9 @@
 #include "frontend/bags/chunk_codec.h"
 
+#include <fstream>
+#include <memory>
+#include <vector>
+
 #include "core/util/input_error.h"
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
 #include <lz4frame.h>
@@ -13,6 +17,8 @@ namespace {
 constexpr uint64_t kMaxSize = uint64_t{1} << 28;
 
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
+
+using ZstdStream = std::unique_ptr<ZSTD_DStream, size_t (*)(ZSTD_DStream*)>;
 
 bool UnpackZstd(std::string_view packed, std::string* unpacked) {
   return ZSTD_decompress(unpacked->data(), unpacked->size(), packed.data(),
@@ -38,6 +44,16 @@ bool UnpackLz4(std::string_view packed, std::string* unpacked) {
   return left == 0 && given == unpacked->size();
 }
 
+#else
+
+// In a build without the libraries.
+[[noreturn]] void FailWithout(std::string_view codec) {
+  throw InputError("is packed by " + std::string(codec) +
+                   ", which this build does not read; install libzstd-dev and "
+                   "liblz4-dev (scripts/install_dependencies formats) and "
+                   "build again");
+}
+
 #endif
 
 }  // namespace
@@ -60,10 +76,58 @@ std::string Unpack(std::string_view packed, std::string_view codec,
   if (!is_whole) throw InputError("a chunk is damaged");
   return unpacked;
 #else
-  throw InputError("is packed by " + std::string(codec) +
-                   ", which this build does not read; install libzstd-dev and "
-                   "liblz4-dev (scripts/install_dependencies formats) and "
-                   "build again");
+  FailWithout(codec);
+#endif
+}
+
+bool IsZstd(std::string_view bytes) {
+  return bytes.substr(0, 4) == "\x28\xB5\x2F\xFD";
+}
+
+std::string UnpackZstdMessage(std::string_view packed) {
+#ifdef RGBD_POSE_HAS_CHUNK_CODECS
+  // Unknown sizes and errors are more than any chunk has.
+  const uint64_t size = ZSTD_getFrameContentSize(packed.data(), packed.size());
+#else
+  const uint64_t size = 0;
+#endif
+  return Unpack(packed, "zstd", size);
+}
+
+void UnpackZstdFile(const std::string& packed, const std::string& unpacked) {
+#ifdef RGBD_POSE_HAS_CHUNK_CODECS
+  std::ifstream from(packed, std::ios::binary);
+  std::ofstream to(unpacked, std::ios::binary);
+  const ZstdStream stream(ZSTD_createDStream(), ZSTD_freeDStream);
+  std::vector<char> read(ZSTD_DStreamInSize());
+  std::vector<char> written(ZSTD_DStreamOutSize());
+  size_t left = 1;  // of a frame: 0 at its end
+  while (from.read(read.data(), static_cast<std::streamsize>(read.size())),
+         from.gcount() > 0) {
+    ZSTD_inBuffer in = {read.data(), static_cast<size_t>(from.gcount()), 0};
+    while (in.pos < in.size) {
+      ZSTD_outBuffer out = {written.data(), written.size(), 0};
+      left = ZSTD_decompressStream(stream.get(), &out, &in);
+      if (ZSTD_isError(left)) break;
+      to.write(written.data(), static_cast<std::streamsize>(out.pos));
+    }
+    if (ZSTD_isError(left)) break;
+  }
+  if (left != 0) {
+    throw InputError(packed + ": is damaged or cut off; copy it again");
+  }
+  to.close();
+  if (!to) {
+    throw InputError(packed + ": cannot be unpacked to " + unpacked +
+                     "; TMPDIR names a folder with more room");
+  }
+#else
+  static_cast<void>(unpacked);
+  try {
+    FailWithout("zstd");
+  } catch (const InputError& error) {
+    throw InputError(packed + ": " + error.what());
+  }
 #endif
 }
 

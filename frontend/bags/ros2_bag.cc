@@ -1,10 +1,13 @@
 #include "frontend/bags/ros2_bag.h"
 
+#include <stdlib.h>  // mkdtemp
+
 #include <algorithm>
 #include <filesystem>
 
 #include "core/util/input_error.h"
 #include "frontend/bags/bag_database.h"
+#include "frontend/bags/chunk_codec.h"
 #include "frontend/bags/mcap_file.h"
 
 namespace rgbd_pose {
@@ -30,6 +33,44 @@ bool ComesBefore(const fs::path& a, const fs::path& b) {
                                        : first < second;
 }
 
+// A file that its recorder has packed as a whole, unpacked in a folder of its
+// own for as long as this lives.
+class UnpackedFile {
+ public:
+  explicit UnpackedFile(const fs::path& packed) {
+    std::error_code error;
+    std::string folder =
+        (fs::temp_directory_path(error) / "rgbd_pose-XXXXXX").string();
+    if (mkdtemp(folder.data()) == nullptr) {
+      throw InputError(packed.string() + ": cannot be unpacked below " +
+                       folder + "; TMPDIR names another folder");
+    }
+    folder_ = folder;
+    try {
+      UnpackZstdFile(packed.string(), path(packed).string());
+    } catch (const InputError&) {
+      Remove();
+      throw;
+    }
+  }
+  ~UnpackedFile() { Remove(); }
+  UnpackedFile(const UnpackedFile&) = delete;
+  UnpackedFile& operator=(const UnpackedFile&) = delete;
+
+  // Of what was in `packed`.
+  fs::path path(const fs::path& packed) const {
+    return folder_ / packed.stem();
+  }
+
+ private:
+  void Remove() {
+    std::error_code error;
+    fs::remove_all(folder_, error);
+  }
+
+  fs::path folder_;
+};
+
 // The files of a bag in their order.
 std::vector<fs::path> FilesOf(const std::string& path) {
   std::error_code error;
@@ -47,7 +88,11 @@ class Ros2Bag final : public BagReader {
  public:
   Ros2Bag(const std::string& path, const std::vector<fs::path>& files)
       : path_(path) {
-    for (const fs::path& file : files) {
+    for (fs::path file : files) {
+      if (file.extension() == kPacked) {
+        unpacked_.push_back(std::make_unique<UnpackedFile>(file));
+        file = unpacked_.back()->path(file);
+      }
       files_.push_back(file.extension() == kMcap
                            ? OpenMcapFile(file.string())
                            : OpenBagDatabase(file.string()));
@@ -121,6 +166,7 @@ class Ros2Bag final : public BagReader {
   }
 
   std::string path_;
+  std::vector<std::unique_ptr<UnpackedFile>> unpacked_;
   std::vector<std::unique_ptr<BagReader>> files_;
   std::vector<std::vector<int>> places_;  // of each one's topics in topics_
   std::vector<BagTopic> topics_;
@@ -139,12 +185,6 @@ std::unique_ptr<BagReader> OpenRos2Bag(const std::string& path) {
   const std::vector<fs::path> files = FilesOf(path);
   if (files.empty()) {
     throw InputError(path + ": has no .db3 or .mcap file");
-  }
-  for (const fs::path& file : files) {
-    if (file.extension() == kPacked) {
-      throw InputError(file.string() +
-                       ": is packed as a whole; unpack it by `unzstd`");
-    }
   }
   return std::make_unique<Ros2Bag>(path, files);
 }

@@ -1,5 +1,6 @@
 #include "frontend/bags/ros_image.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <opencv2/imgcodecs.hpp>
@@ -57,6 +58,13 @@ InputError Unreadable(const std::string& name, std::string_view encoding,
                     " and, compressed, jpeg and png");
 }
 
+// Turns the bytes of each number of `size` bytes round.
+void SwapBytes(uint8_t* row, size_t row_bytes, size_t size) {
+  for (uint8_t* number = row; number < row + row_bytes; number += size) {
+    std::reverse(number, number + size);
+  }
+}
+
 // The rows as they are; those of bytes are shared with the message, as numbers
 // they need not lie where a processor likes them.
 cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
@@ -73,9 +81,6 @@ cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
   if (image.width > kMaxSize || image.height > kMaxSize) {
     throw InputError(name + ": is too large to be an image");
   }
-  if (image.is_bigendian && CV_ELEM_SIZE1(encoding.type) > 1) {
-    throw InputError(name + ": is big-endian, which is not read");
-  }
   const auto width = static_cast<int>(image.width);
   const auto height = static_cast<int>(image.height);
   if (CV_ELEM_SIZE1(encoding.type) == 1) {  // they are only read from
@@ -86,6 +91,9 @@ cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
   for (int y = 0; y < height; ++y) {
     std::memcpy(rows.ptr(y), image.data.data() + size_t{image.step} * y,
                 row_bytes);
+    if (image.is_bigendian) {
+      SwapBytes(rows.ptr(y), row_bytes, CV_ELEM_SIZE1(encoding.type));
+    }
   }
   return rows;
 }

@@ -61,6 +61,10 @@ RosCameraInfo ReadRosCameraInfo(WireReader reader) {
   std::array<double, 9> rectification;  // of a stereo pair
   ReadNumbers(&reader, &rectification);
   ReadNumbers(&reader, &info.p);
+  for (uint32_t* number : {&info.binning_x, &info.binning_y, &info.x_offset,
+                           &info.y_offset, &info.roi_height, &info.roi_width}) {
+    *number = reader.Number<uint32_t>();
+  }
   return info;
 }
 

@@ -40,6 +40,15 @@ struct RosCameraInfo {
   std::vector<double> d;       // its coefficients
   std::array<double, 9> k{};   // of the raw image, row by row
   std::array<double, 12> p{};  // of the rectified one
+
+  // What of the full image, whose size, K and P these are, the images are: a
+  // part of it (of no size: all), in which so many pixels became one (0: 1).
+  uint32_t binning_x = 0;
+  uint32_t binning_y = 0;
+  uint32_t x_offset = 0;
+  uint32_t y_offset = 0;
+  uint32_t roi_height = 0;
+  uint32_t roi_width = 0;
 };
 
 // geometry_msgs/TransformStamped.

@@ -61,7 +61,10 @@ void BagSource::Add(const BagMessage& message) {
   // Who does not say when an image was taken leaves it to the recorder.
   const double stamp = header.stamp > 0.0 ? header.stamp : message.received;
   if (!is_color) {
-    if (num_depth_++ == 0) first_depth_ = stamp;
+    if (num_depth_++ == 0) {
+      first_depth_ = stamp;
+      depth_frame_ = header.frame_id;
+    }
     pairing_.AddDepth({stamp, message.bytes});
     return;
   }
@@ -149,6 +152,19 @@ RgbdFrame BagSource::MakeFrame(const StampedPair& pair) {
 
 std::vector<std::string> BagSource::remarks() const {
   std::vector<std::string> lines;
+  const std::string& color = bag_->topics()[topics_.color].name;
+  const std::string& depth = bag_->topics()[topics_.depth].name;
+  if (topics_.had_choice) {
+    lines.push_back(bag_->path() + ": colour is " + color + ", depth " + depth +
+                    "; topics=COLOUR,DEPTH takes others");
+  }
+  if (IsCalledRegistered(depth) && num_color_ > 0 && num_depth_ > 0 &&
+      color_frame_ != depth_frame_) {
+    lines.push_back(bag_->path() + ": " + depth +
+                    " is taken to be registered to colour by its name, but is "
+                    "of frame '" +
+                    depth_frame_ + "', colour of '" + color_frame_ + "'");
+  }
   if (pairing_.same_stamp() > 0) {
     lines.push_back(SameStampRemark(bag_->path(), pairing_.same_stamp()));
   }

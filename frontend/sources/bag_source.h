@@ -47,6 +47,7 @@ class BagSource final : public FrameSource {
   BagTopics topics_;
   double max_time_difference_;
   std::string color_frame_;  // of reference
+  std::string depth_frame_;
   FrameAssembly assembly_;
   ImagePairing pairing_;
   TransformTree transforms_;

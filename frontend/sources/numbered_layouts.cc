@@ -29,12 +29,13 @@ std::optional<CameraSetup> IclCamera(const std::string&, const std::string&,
   return CameraSetup(camera);
 }
 
-// intrinsic.json: width, height, intrinsic_matrix column by column. JSON is
-// YAML, too.
+// intrinsic.json, or as Open3D's recorder calls it: width, height,
+// intrinsic_matrix column by column. JSON is YAML, too.
 std::optional<CameraSetup> Open3dCamera(const std::string& folder,
                                         const std::string&,
                                         const std::string&) {
-  const fs::path path = fs::path(folder) / "intrinsic.json";
+  fs::path path = fs::path(folder) / "intrinsic.json";
+  if (!PathExists(path)) path = fs::path(folder) / "camera_intrinsic.json";
   if (!PathExists(path)) return std::nullopt;
   const YamlSection file = YamlSection::FromFile(path.string());
   Camera camera;

@@ -94,6 +94,34 @@ TEST_F(Ros1BagTest, TakesLensesOfEveryModel) {
   }
 }
 
+// A driver that sends a part of the image, two by two pixels in one.
+TEST_F(Ros1BagTest, PartsAndBinsOfTheImageHaveTheirCamera) {
+  Open();
+  const Camera small = SmallCamera().camera;
+  sensor_msgs::CameraInfo info = MakeInfo(small);
+  info.width = 4 * kWidth;
+  info.height = 3 * kHeight;
+  info.K[0] = info.K[4] = 2.0 * small.fx;
+  info.K[2] = 2.0 * small.cx + 0.5 + 10.0;
+  info.K[5] = 2.0 * small.cy + 0.5 + 20.0;
+  info.binning_x = info.binning_y = 2;
+  info.roi.x_offset = 10;
+  info.roi.y_offset = 20;
+  info.roi.width = 2 * kWidth;
+  info.roi.height = 2 * kHeight;
+  Write("/camera/rgb/camera_info", kStart, info);
+  WriteColor(0);
+  WriteDepth(0);
+  const auto source = Source();
+  const Camera camera = source->camera().camera;
+  EXPECT_EQ(camera.width, kWidth);
+  EXPECT_EQ(camera.height, kHeight);
+  EXPECT_DOUBLE_EQ(camera.fx, small.fx);
+  EXPECT_DOUBLE_EQ(camera.cx, small.cx);
+  EXPECT_DOUBLE_EQ(camera.cy, small.cy);
+  EXPECT_FALSE(source->Next()->read().gray.empty()) << "images fit it";
+}
+
 TEST_F(Ros1BagTest, RefusesDistortionThatItDoesNotKnow) {
   Open();
   sensor_msgs::CameraInfo info = MakeInfo(SmallCamera().camera);

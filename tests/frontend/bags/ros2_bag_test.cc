@@ -1,5 +1,10 @@
 #include "frontend/bags/ros2_bag.h"
 
+#ifdef RGBD_POSE_MCAP
+#include <zstd.h>
+#endif
+
+#include <cstdlib>
 #include <filesystem>
 
 #include "core/util/text_file.h"
@@ -112,10 +117,79 @@ TEST_F(Ros2BagTest, MotionCaptureIsTheGroundTruth) {
   EXPECT_EQ(truth[4].world_from_cam.translation, Eigen::Vector3d(2, 0, 1));
 }
 
-TEST_F(Ros2BagTest, SaysWhatMakesOneOfOtherKinds) {
-  folder_.Write("packed/packed_0.db3.zstd", "x");
-  ExpectRefused("packed", {"packed_0.db3.zstd: is packed", "unzstd"});
+TEST_F(Ros2BagTest, SaysWhichTopicsItChose) {
+  Ros2Database database(folder_ / "a.db3");
+  database.WriteFrames(0, kFrames);
+  const auto alone = OpenSource("auto", Options("a.db3"));
+  EXPECT_TRUE(alone->remarks().empty()) << "there was no choice";
+  database.WriteImage("/camera/depth/image_raw", DepthImage(0), "16UC1",
+                      kStart);
+  const auto source = OpenSource("auto", Options("a.db3"));
+  ASSERT_EQ(source->remarks().size(), 1u);
+  EXPECT_NE(source->remarks()[0].find(Ros2Database::kDepth), std::string::npos);
 }
+
+TEST_F(Ros2BagTest, SaysWhereAlignedDepthIsOfAnotherFrame) {
+  Ros2Database database(folder_ / "a.db3");
+  database.WriteInfo("/camera/color/camera_info");
+  database.WriteImage(Ros2Database::kColor, ColorImage(0), "bgr8", kStart);
+  database.WriteImage(Ros2Database::kDepth, DepthImage(0), "16UC1", kStart,
+                      "depth_optical");
+  const auto source = OpenSource("auto", Options("a.db3"));
+  ASSERT_TRUE(source->Next().has_value());
+  ASSERT_EQ(source->remarks().size(), 1u);
+  EXPECT_NE(source->remarks()[0].find("'depth_optical', colour of 'color"),
+            std::string::npos);
+}
+
+#ifdef RGBD_POSE_MCAP
+
+std::string PackZstd(const std::string& bytes) {
+  std::string packed(ZSTD_compressBound(bytes.size()), '\0');
+  packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(),
+                              bytes.size(), 3));
+  return packed;
+}
+
+// --compression-mode message.
+TEST_F(Ros2BagTest, ReadsPackedMessages) {
+  {
+    Ros2Database database(folder_ / "a.db3");
+    database.pack = PackZstd;
+    database.WriteFrames(0, kFrames);
+  }
+  ExpectFrames(OpenSource("auto", Options("a.db3")).get(), kFrames);
+  Ros2Database cut(folder_ / "cut.db3");
+  cut.pack = [](const std::string& bytes) {
+    const std::string packed = PackZstd(bytes);
+    return packed.substr(0, packed.size() / 2);
+  };
+  cut.WriteFrames(0, kFrames);
+  ExpectRefused("cut.db3", {"cut.db3: a message a chunk is damaged"});
+}
+
+// --compression-mode file.
+TEST_F(Ros2BagTest, ReadsPackedFilesAndLeavesNothing) {
+  const std::string temporary = folder_ / "temporary";
+  std::filesystem::create_directories(temporary);
+  setenv("TMPDIR", temporary.c_str(), 1);
+  for (int k = 0; k < 2; ++k) {
+    const std::string name = "bag_" + std::to_string(k) + ".db3";
+    Ros2Database(folder_ / name).WriteFrames(6 * k, 6 * k + 6);
+    folder_.Write("bag/" + name + ".zstd",
+                  PackZstd(ReadTextFile(folder_ / name)));
+  }
+  ExpectFrames(OpenSource("auto", Options("bag")).get(), kFrames);
+  folder_.Write("cut/a.db3.zstd",
+                PackZstd(ReadTextFile(folder_ / "bag_0.db3")).substr(0, 500));
+  ExpectRefused("cut", {"a.db3.zstd: is damaged or cut off"});
+  folder_.Write("text/a.db3.zstd", "no zstd");
+  ExpectRefused("text", {"a.db3.zstd: is damaged or cut off"});
+  EXPECT_TRUE(std::filesystem::is_empty(temporary));
+  unsetenv("TMPDIR");
+}
+
+#endif
 
 TEST_F(Ros2BagTest, RefusesWhatIsNoRecording) {
   { Ros2Database empty(folder_ / "a.db3"); }

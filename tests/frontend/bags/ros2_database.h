@@ -4,6 +4,7 @@
 #include <sqlite3.h>
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,9 @@ class Ros2Database {
   Ros2Database(const Ros2Database&) = delete;
   Ros2Database& operator=(const Ros2Database&) = delete;
 
+  // What each message is packed by; empty: nothing.
+  std::function<std::string(const std::string&)> pack;
+
   void Execute(const std::string& query) {
     EXPECT_EQ(sqlite3_exec(database_, query.c_str(), nullptr, nullptr, nullptr),
               SQLITE_OK)
@@ -43,7 +47,8 @@ class Ros2Database {
 
   // One that is there already is not made again.
   void Write(const std::string& topic, const std::string& type, double received,
-             const std::string& message) {
+             const std::string& said) {
+    const std::string message = pack ? pack(said) : said;
     size_t id = 0;
     while (id < topics_.size() && topics_[id] != topic) ++id;
     const std::string number = std::to_string(id + 7);

@@ -35,6 +35,17 @@ TEST_F(Ros1BagTest, ReadsColours) {
   }
 }
 
+TEST_F(Ros1BagTest, ReadsBigEndianDepth) {
+  Open();
+  WriteInfo();
+  WriteColor(0);
+  cv::Mat depth(kHeight, kWidth, CV_16UC1, cv::Scalar(0x3412));
+  sensor_msgs::Image message = MakeImage(depth, "16UC1", kStart + 0.004);
+  message.is_bigendian = 1;
+  Write(kDepth, kStart, message);
+  EXPECT_EQ(Source()->Next()->read().depth.at<uint16_t>(5, 5), 0x1234);
+}
+
 TEST_F(Ros1BagTest, ReadsMetres) {
   Open();
   WriteInfo();

@@ -195,6 +195,10 @@ TEST_F(NumberedDatasetTest, ReadsOpen3d) {
   EXPECT_EQ(source->camera().camera.fy, 31.0);
   EXPECT_EQ(source->camera().camera.cx, 15.5);
   ExpectPoses(*source);
+  // As Open3D's recorder calls it.
+  std::filesystem::rename(Options().path + "/intrinsic.json",
+                          Options().path + "/camera_intrinsic.json");
+  EXPECT_EQ(OpenSource("auto", Options())->camera().camera.fy, 31.0);
 }
 
 TEST_F(NumberedDatasetTest, MirrorsIclNuim) {
