@@ -23,6 +23,16 @@ std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
   return terms;
 }
 
+// Whether most points are beyond what any RGB-D camera measures.
+bool AreFarAway(const Correspondences& matches) {
+  constexpr double kFarthest = 100.0;  // m
+  size_t far = 0;
+  for (size_t i = 0; i < matches.size(); ++i) {
+    far += matches[i].prev.depth > kFarthest ? 1 : 0;
+  }
+  return 2 * far > matches.size();
+}
+
 }  // namespace
 
 // The work of Estimate and its memory.
@@ -56,6 +66,10 @@ class Estimator::Impl {
       Judge(guess);
     } else {
       JudgeGuess(guess);
+    }
+    if (!out_->ok() && AreFarAway(*matches_)) {
+      out_->reason +=
+          "; depths are of hundreds of metres: are they millimetres?";
     }
     out_->num_used = terms_.num_used();
   }
