@@ -6,6 +6,7 @@
 #include "apps/export/view_images.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
+#include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
 namespace {
@@ -55,6 +56,23 @@ std::string FormatPoints(const std::vector<ColoredPoint>& points) {
   return text;
 }
 
+// The same as points3D.bin: some read a text of many points slowly.
+std::string PackPoints(const std::vector<ColoredPoint>& points) {
+  std::string bytes;
+  AppendLittleEndian(uint64_t{points.size()}, &bytes);
+  for (size_t i = 0; i < points.size(); ++i) {
+    const ColoredPoint& p = points[i];
+    AppendLittleEndian(uint64_t{i + 1}, &bytes);
+    for (const float x : p.position) AppendLittleEndian(double{x}, &bytes);
+    for (const uint8_t c : {p.red, p.green, p.blue}) {
+      bytes.push_back(static_cast<char>(c));
+    }
+    AppendLittleEndian(0.0, &bytes);          // error
+    AppendLittleEndian(uint64_t{0}, &bytes);  // length of its track
+  }
+  return bytes;
+}
+
 }  // namespace
 
 std::string ExportColmap(const FinishedRun& run, const ExportOptions& options) {
@@ -67,6 +85,8 @@ std::string ExportColmap(const FinishedRun& run, const ExportOptions& options) {
   WriteFileAtomically((model / "images.txt").string(), FormatImages(images));
   WriteFileAtomically((model / "points3D.txt").string(),
                       FormatPoints(images.cloud));
+  WriteFileAtomically((model / "points3D.bin").string(),
+                      PackPoints(images.cloud));
   folder.Publish();
   return std::to_string(images.names.size()) + " images, " +
          std::to_string(images.cloud.size()) + " points in " + options.output +

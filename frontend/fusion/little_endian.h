@@ -18,6 +18,17 @@ inline void AppendLittleEndian(uint16_t bits, std::string* bytes) {
   bytes->push_back(static_cast<char>(bits >> 8));
 }
 
+inline void AppendLittleEndian(uint64_t bits, std::string* bytes) {
+  AppendLittleEndian(static_cast<uint32_t>(bits), bytes);
+  AppendLittleEndian(static_cast<uint32_t>(bits >> 32), bytes);
+}
+
+inline void AppendLittleEndian(double value, std::string* bytes) {
+  uint64_t bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  AppendLittleEndian(bits, bytes);
+}
+
 inline void AppendLittleEndian(float value, std::string* bytes) {
   uint32_t bits;
   std::memcpy(&bits, &value, sizeof(bits));

@@ -29,6 +29,7 @@ class Mesher {
   TriangleMesh Mesh() {
     for (int i = 0; i < volume_.size(); ++i) AddVertices(i);
     for (int i = 0; i < volume_.size(); ++i) AddTriangles(i);
+    DropUnusedVertices();
     return std::move(mesh_);
   }
 
@@ -171,6 +172,24 @@ class Mesher {
                  vertex_at(voxel - b - c), vertex_at(voxel - c)},
                 /*is_seen_from_end=*/here < 0.0F);
       }
+    }
+  }
+
+  // Those at the surface's ends, around whose edges not all voxels are known.
+  void DropUnusedVertices() {
+    std::vector<int> places(mesh_.vertices.size(), kNone);
+    for (const Eigen::Vector3i& triangle : mesh_.triangles) {
+      for (const int vertex : triangle) places[vertex] = 0;
+    }
+    int count = 0;
+    for (size_t i = 0; i < places.size(); ++i) {
+      if (places[i] == kNone) continue;
+      mesh_.vertices[count] = mesh_.vertices[i];
+      places[i] = count++;
+    }
+    mesh_.vertices.resize(count);
+    for (Eigen::Vector3i& triangle : mesh_.triangles) {
+      for (int& vertex : triangle) vertex = places[vertex];
     }
   }
 

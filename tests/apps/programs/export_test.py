@@ -211,6 +211,15 @@ def check_colmap(folder, poses, depth_folder):
     check(all(line == '' for line in lines[1::2]), 'lines of features')
     points = [numbers(line)[1:7]
               for line in data_lines(folder, 'sparse/0/points3D.txt')]
+    with open(os.path.join(folder, 'sparse/0/points3D.bin'), 'rb') as file:
+        packed = file.read()
+    count, = struct.unpack_from('<Q', packed)
+    check(count == len(points) and len(packed) == 8 + 51 * count, count)
+    for i in range(0, count, 97):
+        same_point = struct.unpack_from('<Q3d3BdQ', packed, 8 + 51 * i)
+        check(same_point[0] == i + 1 and same_point[-1] == 0, same_point)
+        check(all(abs(a - b) < 1e-4 for a, b in zip(same_point[1:7], points[i])),
+              same_point, points[i])
     views = []
     for line in lines[::2]:
         words = line.split()

@@ -5,6 +5,7 @@
 #include <Eigen/Geometry>
 #include <cmath>
 #include <map>
+#include <set>
 #include <utility>
 
 namespace rgbd_pose {
@@ -73,6 +74,11 @@ TEST(SurfaceMeshTest, EndsWhereNothingIsKnown) {
   for (const ColoredPoint& vertex : mesh.vertices) {
     EXPECT_GT(vertex.position.x(), 0.05F);
   }
+  std::set<int> used;
+  for (const Eigen::Vector3i& triangle : mesh.triangles) {
+    used.insert(triangle.begin(), triangle.end());
+  }
+  EXPECT_EQ(used.size(), mesh.vertices.size()) << "each is in a triangle";
   EXPECT_TRUE(SurfaceMesh(TsdfVolume(), kVoxel, 1.0F).vertices.empty());
 }
 
