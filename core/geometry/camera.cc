@@ -88,7 +88,7 @@ constexpr double kTumDepthScale = 5000.0;
 // (Kerl et al., ICCV 2015). How early depth is depends on the recording's
 // driver: 15 to 20 ms on freiburg1, 0 to 5 on freiburg3, not known of
 // freiburg2.
-constexpr Shutter kTumColor = {-0.0075, 0.028};
+constexpr Shutter kTumColor = {-0.0075, 0.028, true};
 constexpr double kTumDepthReadout = 0.027;
 const std::array<Preset, 4> kPresets = {{
     {"tum_fr1",

@@ -12,6 +12,10 @@ struct Shutter {
   double offset = 0.0;   // of the middle row after the stamp, s
   double readout = 0.0;  // s
 
+  // Whether somebody says so. Of a camera of which nobody does, motions are as
+  // uncertain as a usual shutter makes them.
+  bool is_known = false;
+
   // Whether all rows are exposed at the stamp.
   bool IsGlobal() const { return offset == 0.0 && readout == 0.0; }
 

@@ -174,6 +174,7 @@ void ReadShutters(const YamlSection& file, CameraSetup* setup) {
     double* const value = &(read.*parameter.image.*parameter.value);
     *value = file.NumberOr(parameter.name, 0.0);
     CheckSize(file, parameter.name, std::abs(*value), parameter.most, "s");
+    read.color_shutter.is_known |= file.Has(parameter.name);
   }
   setup->color_shutter = read.color_shutter;
   setup->depth_shutter = read.depth_shutter;

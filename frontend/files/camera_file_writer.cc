@@ -42,13 +42,15 @@ std::vector<double> ToList(const Eigen::Vector3d& v) {
 // The keys that all layouts share.
 YamlLines RgbdLines(const RgbdCamera& camera) {
   YamlLines lines;
-  const auto add = [&lines](const char* key, double value) {
-    if (value != 0.0) lines.emplace_back(key, Digits(value));
+  const auto add = [&lines](const char* key, double value, bool is_said) {
+    if (value != 0.0 || is_said) lines.emplace_back(key, Digits(value));
   };
   for (const ShutterParameter& parameter : kShutterParameters) {
-    add(parameter.name, camera.*parameter.image.*parameter.value);
+    add(parameter.name, camera.*parameter.image.*parameter.value,
+        camera.color_shutter.is_known);
   }
-  add("inverse_depth_offset", camera.depth_correction.inverse_depth_offset);
+  add("inverse_depth_offset", camera.depth_correction.inverse_depth_offset,
+      false);
   const Rigid3d& moved = camera.depth_correction.depth_from_color;
   if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {
     lines.emplace_back("depth_rotation",
@@ -160,7 +162,8 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
     return std::abs(a - b) <= 1e-8 * (1.0 + std::abs(b));
   };
   const auto is_same_shutter = [&](const Shutter& a, const Shutter& b) {
-    return is_same(a.offset, b.offset) && is_same(a.readout, b.readout);
+    return is_same(a.offset, b.offset) && is_same(a.readout, b.readout) &&
+           a.is_known == b.is_known;
   };
   for (const CameraParameter& parameter : kCameraParameters) {
     if (!is_same(read.camera.*parameter.value,

@@ -43,6 +43,12 @@ struct Frame {
     return color_shutter.IsGlobal() && DepthShutter().IsGlobal();
   }
 
+  // Whether somebody says when its rows were exposed.
+  bool HasKnownTimes() const {
+    return color_shutter.is_known || !color_shutter.IsGlobal() ||
+           !depth_shutter.IsGlobal();
+  }
+
   // When depth was taken, from the stamp of colour.
   Shutter DepthShutter() const {
     const double delay = std::abs(depth_delay);

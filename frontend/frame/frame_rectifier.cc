@@ -40,7 +40,8 @@ Frame FrameRectifier::Rectify(const Frame& frame,
   if (timing.IsOneMoment()) return frame;
   Frame rectified = frame;
   rectified.depth_delay = 0.0;
-  rectified.color_shutter = rectified.depth_shutter = Shutter();
+  rectified.depth_shutter = Shutter();
+  rectified.color_shutter = {0.0, 0.0, frame.color_shutter.is_known};
   const double middle = timing.color.offset;
   rectified.depth =
       mover_

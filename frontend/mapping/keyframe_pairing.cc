@@ -68,8 +68,13 @@ std::vector<int> KeyframePairing::SeeingTheSame(int newest) const {
 std::optional<RelativePose> KeyframePairing::MakePair(
     int ref, int cur, const PreparedFrame& frame,
     const Rigid3d& cur_from_ref_guess, double min_inlier_share) {
-  return tracker_.MakePair(ref, cur, keyframes_[ref], frame, cur_from_ref_guess,
-                           min_inlier_share);
+  auto pair = tracker_.MakePair(ref, cur, keyframes_[ref], frame,
+                                cur_from_ref_guess, min_inlier_share);
+  if (pair.has_value()) {
+    pair->covariance +=
+        keyframes_[ref].timing_covariance + keyframes_[cur].timing_covariance;
+  }
+  return pair;
 }
 
 void KeyframePairing::PairByPose(int newest, const PreparedFrame& frame,

@@ -2,6 +2,7 @@
 
 #include <memory>
 
+#include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/prepared_frame.h"
 #include "frontend/places/place_features.h"
@@ -19,6 +20,10 @@ struct Keyframe {
   // Its images, grey and depth: as they are, and packed. One may be empty.
   PreparedFrame frame = {};
   StoredImages images = {};
+
+  // What the uncertainty of its velocity, and of when it was seen, adds to that
+  // of motions from it.
+  MotionMatrix timing_covariance = MotionMatrix::Zero();
 
   // What it looks like; null: not described yet.
   std::shared_ptr<const PlaceFeatures> features = nullptr;

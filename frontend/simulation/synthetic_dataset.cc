@@ -48,6 +48,7 @@ bool SeesEverywhere(const Camera& camera) {
 }
 
 SyntheticOptions Checked(SyntheticOptions options) {
+  options.color_shutter.is_known = true;
   options.camera.color_shutter = options.color_shutter;
   options.camera.depth_shutter = options.depth_shutter;
   if (options.frames < 1 || options.frames > kMaxFrames) {

@@ -59,7 +59,7 @@ std::unique_ptr<FrameSource> ApplyDepthCorrection(
     std::unique_ptr<FrameSource> source) {
   const RgbdCamera& camera = source->camera();
   if (camera.depth_correction.IsIdentity() && camera.color_shutter.IsGlobal() &&
-      camera.depth_shutter.IsGlobal()) {
+      camera.depth_shutter.IsGlobal() && !camera.color_shutter.is_known) {
     return source;
   }
   return std::make_unique<CorrectedSource>(std::move(source));

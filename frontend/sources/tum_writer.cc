@@ -129,7 +129,9 @@ std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
   add("DepthMapFactor", rgbd_camera.depth_scale);
   for (const ShutterParameter& parameter : kShutterParameters) {
     const double value = rgbd_camera.*parameter.image.*parameter.value;
-    if (value != 0.0) add(parameter.name, value);
+    if (value != 0.0 || rgbd_camera.color_shutter.is_known) {
+      add(parameter.name, value);
+    }
   }
   return text;
 }

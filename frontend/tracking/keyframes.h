@@ -12,8 +12,6 @@ namespace rgbd_pose {
 // A keyframe that frames are tracked against. Its id: TrackedFrame::index.
 struct OdometryKeyframe : Keyframe {
   std::unique_ptr<Reference> reference;  // of the tracker that made it
-  // What the uncertainty of its velocity adds to that of motions from it.
-  MotionMatrix velocity_covariance = MotionMatrix::Zero();
 };
 
 // The latest keyframes, for when the view returns to one of them. Bounded: the

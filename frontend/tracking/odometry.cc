@@ -27,6 +27,13 @@ constexpr double kMaxMovedOn = 0.2;
 constexpr double kSigmaAngular = 0.5;  // rad/s
 constexpr double kSigmaLinear = 0.3;   // m/s
 
+// What is seen is of its time to within this (s). Of known shutters: what blur
+// and stamps leave. Else: what a Kinect's shutter makes of it. By simulated and
+// real sequences; with both NEES is 0.7 to 1.5 (1.6 to 6.6 without, and of
+// frames that are ok up to 27 % wrong by more than five sigmas, now below 1 %).
+constexpr double kSigmaKnownTime = 3e-5;
+constexpr double kSigmaUnknownTime = 4e-3;
+
 }  // namespace
 
 Odometry::Odometry(const OdometryOptions& options,
@@ -76,6 +83,8 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
     twist_covariance_ = MotionCovarianceOfTwist(frame.Timing(Twist()),
                                                 kSigmaAngular, kSigmaLinear);
   }
+  timing_covariance_ = TimingCovariance(
+      frame, {{kSigmaAngular, 0.0, 0.0}, {kSigmaLinear, 0.0, 0.0}});
   {
     const StageTimer timer(&result.track_ms);
     std::optional<Prediction> predicted;
@@ -100,6 +109,14 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   }
   KeepLast(frame, result);
   return result;
+}
+
+MotionMatrix Odometry::TimingCovariance(const Frame& frame,
+                                        const Twist& twist) const {
+  const bool is_known =
+      options_.shutter == ShutterUse::kCamera && frame.HasKnownTimes();
+  return MotionCovarianceOfTiming(
+      twist, is_known ? kSigmaKnownTime : kSigmaUnknownTime);
 }
 
 Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
@@ -140,8 +157,13 @@ bool Odometry::Follow(const PreparedFrame& measured,
   if (attempts_.kept().twist.has_value()) {
     twist_covariance_ = attempts_.kept().twist_covariance;
   }
+  cur_from_prev_ =
+      is_lost_ ? Rigid3d() : last_estimate().cur_from_prev * last.Inverse();
+  if (!is_lost_ && interval_ > 0.0) {
+    timing_covariance_ =
+        TimingCovariance(measured, TwistOf(cur_from_prev_, interval_));
+  }
   TakeMotion(result);
-  cur_from_prev_ = is_lost_ ? Rigid3d() : cur_from_ref_ * last.Inverse();
   goes_on = goes_on && GoOnFromLast(result);
   if (has_shutter_) shutter_tracking_.Accept();
   if (earlier_segment_.has_value()) ReturnToEarlierSegment(*frame, result);
@@ -203,7 +225,7 @@ void Odometry::TakeMotion(TrackedFrame* result) {
   cur_from_ref_ = estimate.cur_from_prev;
   covariance_ = estimate.covariance;
   if (!attempts_.kept().twist.has_value()) covariance_ += twist_covariance_;
-  covariance_ += reference_->velocity_covariance;
+  covariance_ += timing_covariance_ + reference_->timing_covariance;
   result->cur_from_reference = cur_from_ref_;
   if (!estimate.ok() && estimate.status != EstimateStatus::kNotConverged) {
     return;
@@ -274,6 +296,7 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   reference_ = AddKeyframe({result->index, segment_, world_from_cam, seen},
                            std::move(reference), nullptr);
   if (has_shutter_) shutter_tracking_.AddReference(frame, seen);
+  reference_->timing_covariance = timing_covariance_;
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   result->is_reference = true;

@@ -90,6 +90,8 @@ class Odometry {
     bool is_certain = false;  // the guess came with its covariance
   };
 
+  // What a velocity adds to the covariance of the last frame's motion.
+  MotionMatrix TimingCovariance(const Frame& frame, const Twist& twist) const;
   Prediction Predict(const Rigid3d& cur_from_prev,
                      const MotionMatrix* covariance) const;
   void Start(const PreparedFrame& frame, TrackedFrame* result);
@@ -150,7 +152,9 @@ class Odometry {
   bool has_shutter_ = false;                              // of the last frame
   std::optional<Twist> twist_;                            // see last_twist
   MotionMatrix twist_covariance_ = MotionMatrix::Zero();  // see TrackingResult
-  OdometryKeyframe* reference_ = nullptr;                 // null: none yet
+  MotionMatrix timing_covariance_ =
+      MotionMatrix::Zero();                // of when it was seen
+  OdometryKeyframe* reference_ = nullptr;  // null: none yet
   int num_frames_ = 0;
   Rigid3d cur_from_ref_;                            // of the last frame
   MotionMatrix covariance_ = MotionMatrix::Zero();  // of cur_from_ref_
@@ -160,8 +164,8 @@ class Odometry {
   // The last frame, where it was tracked and is no reference.
   struct LastFrame {
     PreparedFrame frame;
-    MotionMatrix twist_covariance;  // see TrackingResult
-    MotionMatrix covariance;        // of its motion since its reference
+    MotionMatrix timing_covariance;  // see Keyframe
+    MotionMatrix covariance;         // of its motion since its reference
     TrackedFrame result;
   };
   std::optional<LastFrame> last_;

@@ -15,8 +15,9 @@ void Odometry::KeepLast(const PreparedFrame& frame,
                         const TrackedFrame& result) {
   last_.reset();
   if (result.status == TrackingStatus::kLost || result.is_reference) return;
-  last_ = LastFrame{frame.WithTwist(twist_), twist_covariance_, covariance_,
-                    result};
+  last_ =
+      LastFrame{frame.WithTwist(twist_), twist_covariance_ + timing_covariance_,
+                covariance_, result};
 }
 
 // A frame that is about to become a reference should be certain of its own
@@ -114,7 +115,7 @@ bool Odometry::MakeLastReference() {
       {last_->result.index, segment_, last_->result.world_from_cam, seen},
       std::move(reference), reference_);
   shutter_tracking_.AddReference(frame, seen);
-  reference_->velocity_covariance = last_->twist_covariance;
+  reference_->timing_covariance = last_->timing_covariance;
   last_.reset();
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();

@@ -85,7 +85,7 @@ const PreparedFrame* ShutterTracking::Follow(
     if (tracked == nullptr) return nullptr;
     look();
     if (early_->is_free) {
-      reference->velocity_covariance = tracked->twist_covariance;
+      reference->timing_covariance = tracked->twist_covariance;
     }
   }
   if (!IsOfAHand(found_.between.value_or(Twist())) ||

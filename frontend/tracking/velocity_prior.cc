@@ -25,6 +25,17 @@ constexpr double kSigmaOfChange = 0.5;
 // How fast the mean squares forget: some ten frames.
 constexpr double kShareOfNew = 0.1;
 
+// Rows of other times than they are taken for make a turn look like a shift, of
+// part of what a thing in a room moves by: m.
+constexpr double kShiftOfTurn = 0.5;
+
+MotionMatrix IndependentErrors(double turn, double shift) {
+  MotionMatrix covariance = MotionMatrix::Zero();
+  covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
+      shift * shift, shift * shift;
+  return covariance;
+}
+
 }  // namespace
 
 std::optional<Twist> VelocityPrior::Between(const Rigid3d& cur_from_ref,
@@ -55,11 +66,13 @@ MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
   const double time = std::abs(color.offset) +
                       kShareOfReadout * std::abs(color.readout) +
                       std::abs(timing.depth.offset - color.offset);
-  const double turn = sigma_angular * time, shift = sigma_linear * time;
-  MotionMatrix covariance = MotionMatrix::Zero();
-  covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
-      shift * shift, shift * shift;
-  return covariance;
+  return IndependentErrors(sigma_angular * time, sigma_linear * time);
+}
+
+MotionMatrix MotionCovarianceOfTiming(const Twist& twist, double sigma_s) {
+  const double turn = twist.angular.norm();
+  const double shift = twist.linear.norm() + kShiftOfTurn * turn;
+  return IndependentErrors(sigma_s * turn, sigma_s * shift);
 }
 
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
@@ -73,12 +86,9 @@ MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
                                     color.readout * color.readout / 12.0 +
                                     kShareOfDepth * late * late);
   const double per_second = 1.0 / (kSigmaOfChange * prior.interval);
-  const double turn = half_square * per_second * prior.sigma_angular;
-  const double shift = half_square * per_second * prior.sigma_linear;
-  MotionMatrix covariance = MotionMatrix::Zero();
-  covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
-      shift * shift, shift * shift;
-  return covariance;
+  const double scale = half_square * per_second;
+  return IndependentErrors(scale * prior.sigma_angular,
+                           scale * prior.sigma_linear);
 }
 
 VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,

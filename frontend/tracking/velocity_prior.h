@@ -42,6 +42,10 @@ struct VelocityPrior {
 MotionMatrix MotionCovarianceOfTwist(const FrameTiming& timing,
                                      double sigma_angular, double sigma_linear);
 
+// What is left of the error of a motion to a frame of a camera that moves like
+// that, where what it sees is of its stamp to within so many seconds.
+MotionMatrix MotionCovarianceOfTiming(const Twist& twist, double sigma_s);
+
 // What accelerations within a frame add to it: the velocity changes from row to
 // row by as much as the prior says from frame to frame.
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,

@@ -4,13 +4,13 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <string>
 #include <typeinfo>
 #include <utility>
 #include <vector>
 
+#include "core/evaluation/consistency.h"
 #include "core/evaluation/evaluation.h"
 #include "frontend/features/frontend.h"
 #include "tests/support/expect_input_error.h"
@@ -275,31 +275,39 @@ TEST(ShutterTrackingTest, ReferencesOfOneMomentAreNotMended) {
   EXPECT_LT(ErrorOf(tracked.cur_from_reference, truth).translation, 0.005);
 }
 
+// How edges of frames that are ok are off, beside their covariances.
+struct Honesty {
+  double nees = 0.0;  // mean chi^2 (of 6 degrees)
+  int wrong = 0;      // by more than five sigmas
+  int edges = 0;
+};
+
+Honesty HonestyOf(const Shutters& shutters, const std::string& tracker,
+                  ShutterUse use) {
+  const ShutterSequence sequence("handheld", shutters, 45);
+  Odometry odometry = OdometryFor(sequence, tracker, use);
+  Honesty honesty;
+  for (const Frame& frame : sequence.frames) {
+    const TrackedFrame tracked = odometry.Track(frame);
+    if (tracked.status != TrackingStatus::kOk) continue;
+    for (const RelativePose& edge : tracked.edges) {
+      const double chi_square =
+          ChiSquare(edge, sequence.Motion(edge.ref, edge.cur), {});
+      honesty.nees += chi_square;
+      honesty.wrong += chi_square > kWrongChiSquare;
+      ++honesty.edges;
+    }
+  }
+  EXPECT_GE(honesty.edges, 40);
+  honesty.nees /= honesty.edges;
+  return honesty;
+}
+
 // Of frames whose middle row is exposed at the stamp: else references are those
 // of a time that is known only as well as their velocity.
 TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {
   const auto nees_with = [](const Shutters& shutters) {
-    const ShutterSequence sequence("handheld", shutters, 45);
-    Odometry odometry = OdometryFor(sequence, "features", ShutterUse::kCamera);
-    double sum = 0.0;
-    int count = 0;
-    for (const Frame& frame : sequence.frames) {
-      const TrackedFrame tracked = odometry.Track(frame);
-      if (tracked.status != TrackingStatus::kOk) continue;
-      for (const RelativePose& edge : tracked.edges) {
-        const Rigid3d truth = sequence.Motion(edge.ref, edge.cur);
-        const Eigen::AngleAxisd omega(truth.rotation *
-                                      edge.cur_from_ref.rotation.inverse());
-        MotionVector error;
-        error << omega.angle() * omega.axis(),
-            truth.Inverse().translation -
-                edge.cur_from_ref.Inverse().translation;
-        sum += error.dot(edge.covariance.ldlt().solve(error));
-        ++count;
-      }
-    }
-    EXPECT_GE(count, 40);
-    return sum / count;
+    return HonestyOf(shutters, "features", ShutterUse::kCamera).nees;
   };
   const double without = nees_with({});
   for (const double sign : {1.0, -1.0}) {
@@ -307,6 +315,33 @@ TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {
         nees_with({{0.0, sign * 0.028}, {-0.0105, sign * 0.028}});
     EXPECT_LT(with, 2.0 * without);
     EXPECT_GT(with, 1.0);
+  }
+}
+
+// What nobody knows is in the covariance. Without that nearly all are wrong.
+TEST(ShutterTrackingTest, ShuttersThatNobodyKnowsAreAllowedFor) {
+  for (const std::string tracker : {"features", "hybrid"}) {
+    const Honesty honesty =
+        HonestyOf(RollingShutters(1.0), tracker, ShutterUse::kNone);
+    EXPECT_LE(honesty.wrong, honesty.edges / 20) << tracker;
+    EXPECT_LT(honesty.nees, 6.0 * 1.5) << tracker;
+    EXPECT_GT(honesty.nees, 6.0 * 0.2) << tracker;
+  }
+}
+
+// Cameras that say nothing of their shutters count as those that are ignored.
+TEST(ShutterTrackingTest, OnlyWhoSaysSoHasAGlobalShutter) {
+  const ShutterSequence sequence("handheld", {}, 4);
+  Odometry said = OdometryFor(sequence, "features", ShutterUse::kCamera);
+  Odometry unsaid = OdometryFor(sequence, "features", ShutterUse::kCamera);
+  for (Frame frame : sequence.frames) {
+    ASSERT_TRUE(frame.HasKnownTimes());
+    const TrackedFrame sure = said.Track(frame);
+    frame.color_shutter.is_known = false;
+    const TrackedFrame unsure = unsaid.Track(frame);
+    if (sure.edges.empty()) continue;
+    EXPECT_GT(unsure.edges[0].covariance.trace(),
+              10.0 * sure.edges[0].covariance.trace());
   }
 }
 
