@@ -11,10 +11,8 @@
 
 #include "apps/batch/batch_hash.h"
 #include "apps/batch/batch_list.h"
-#include "apps/batch/batch_lock.h"
 #include "apps/batch/batch_plan.h"
 #include "apps/batch/batch_pool.h"
-#include "apps/batch/batch_process.h"
 #include "apps/batch/batch_run_folder.h"
 #include "apps/batch/batch_shard.h"
 #include "apps/batch/batch_summary.h"

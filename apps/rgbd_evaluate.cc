@@ -74,18 +74,15 @@ ProgramInfo Info() {
 std::vector<int> ParseFrames(const std::string& text) {
   std::vector<int> frames;
   if (text.empty()) return frames;
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
+  for (const std::string& word : SplitText(text, ',')) {
     int number = 0;
-    const auto [rest, error] =
-        std::from_chars(text.data() + begin, text.data() + end, number);
-    if (error != std::errc() || rest != text.data() + end || number < 1) {
-      throw InputError("--rpe_frames=" + text + ": '" +
-                       text.substr(begin, end - begin) +
+    const char* const end = word.data() + word.size();
+    const auto [rest, error] = std::from_chars(word.data(), end, number);
+    if (error != std::errc() || rest != end || number < 1) {
+      throw InputError("--rpe_frames=" + text + ": '" + word +
                        "' is no number of frames; give a list such as 1,6");
     }
     frames.push_back(number);
-    begin = end + 1;
   }
   return frames;
 }

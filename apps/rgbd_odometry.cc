@@ -12,7 +12,7 @@
 
 #include "apps/export/export_format.h"
 #include "apps/pipeline/sequence.h"
-#include "apps/report/run_page.h"
+#include "apps/report/report_page.h"
 #include "apps/results/run_output.h"
 #include "apps/results/run_tracking.h"
 #include "apps/shell/available_cores.h"

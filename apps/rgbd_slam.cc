@@ -10,7 +10,6 @@
 #include <filesystem>
 #include <opencv2/core.hpp>
 #include <optional>
-#include <sstream>
 #include <string>
 
 #include "apps/calibration/calibration_run.h"
@@ -18,7 +17,7 @@
 #include "apps/pipeline/sequence.h"
 #include "apps/pipeline/slam_run.h"
 #include "apps/report/calibration_page.h"
-#include "apps/report/run_page.h"
+#include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/results/run_output.h"
 #include "apps/results/run_tracking.h"
@@ -29,6 +28,7 @@
 #include "apps/shell/setting_flags.h"
 #include "apps/view/live_view.h"
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 #include "frontend/files/camera_file_writer.h"
 #include "frontend/files/depth_noise_file.h"
 #include "frontend/map/map_folder.h"
@@ -88,19 +88,10 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-// The folders of --load_map.
-std::vector<std::string> MapFolders() {
-  std::vector<std::string> folders;
-  std::stringstream list(Settings().maps.load_map);
-  for (std::string folder; std::getline(list, folder, ',');) {
-    if (!folder.empty()) folders.push_back(folder);
-  }
-  return folders;
-}
-
 void LoadMaps(SlamRun* run) {
   const MapSettings& maps = Settings().maps;
-  const std::vector<std::string> folders = MapFolders();
+  std::vector<std::string> folders = SplitText(maps.load_map, ',');
+  folders.erase(std::remove(folders.begin(), folders.end(), ""), folders.end());
   if (maps.localise_only && folders.empty()) {
     throw InputError("--localise_only needs --load_map");
   }

@@ -26,17 +26,6 @@ std::vector<CostEntry> EntriesOf(TypeList<Residuals...>) {
   return {CostEntry{Residuals::kName, &MakeCost<Residuals>}...};
 }
 
-std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  size_t begin = 0;
-  while (true) {
-    const size_t end = text.find(separator, begin);
-    parts.push_back(text.substr(begin, end - begin));
-    if (end == std::string::npos) return parts;
-    begin = end + 1;
-  }
-}
-
 }  // namespace
 
 std::vector<std::string> CostNames() {
@@ -62,8 +51,8 @@ std::vector<RobustCost> MakeRobustCosts(
     const std::vector<std::string>& names,
     const std::function<std::unique_ptr<MotionCost>(const std::string& name)>&
         make) {
-  const std::vector<std::string> costs = Split(cost_names, '+');
-  const std::vector<std::string> losses = Split(loss_names, ',');
+  const std::vector<std::string> costs = SplitText(cost_names, '+');
+  const std::vector<std::string> losses = SplitText(loss_names, ',');
   if (losses.size() != 1 && losses.size() != costs.size()) {
     throw InputError("'" + loss_names + "' names " +
                      std::to_string(losses.size()) + " losses for " +

@@ -8,13 +8,7 @@
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
-#include "robust/barron_loss.h"
-#include "robust/fair_loss.h"
-#include "robust/geman_mcclure_loss.h"
-#include "robust/huber_loss.h"
-#include "robust/power_loss.h"
-#include "robust/tukey_loss.h"
-#include "robust/welsch_loss.h"
+#include "robust/losses.h"
 
 namespace rgbd_pose {
 namespace {

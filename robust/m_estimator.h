@@ -13,7 +13,7 @@ namespace rgbd_pose {
 // A row of the table of M-estimators. With Zhang's rho(x) (Image and Vision
 // Computing 15, 1997) a Ceres loss is 2 rho(sqrt s), s = |r|^2 of one block of
 // whitened residuals; so a width counts sigmas. All have R'' <= 0, and R of k
-// times the width is k^2 R(s / k^2) (core/estimation/scaled_loss.h).
+// times the width is k^2 R(s / k^2) (core/estimation/batch_loss.h).
 struct MEstimator {
   // The most independent components there are widths for.
   static constexpr int kMaxDimension = 6;

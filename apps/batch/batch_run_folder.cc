@@ -1,9 +1,17 @@
 #include "apps/batch/batch_run_folder.h"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
+#include <chrono>
+#include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 #include "core/util/input_error.h"
@@ -38,6 +46,38 @@ std::vector<fs::path> FoldersIn(const fs::path& folder) {
   }
   std::sort(folders.begin(), folders.end());
   return folders;
+}
+
+// The kernel needs a moment to end the runs of a batch that was killed.
+constexpr auto kPatience = std::chrono::seconds(1);
+constexpr auto kRetryEvery = std::chrono::milliseconds(20);
+
+// Opens and locks a file; `kind` is LOCK_EX (alone) or LOCK_SH (with others).
+int Lock(const std::string& path, int kind) {
+  const int file = open(path.c_str(), O_RDWR | O_CREAT, 0666);
+  if (file < 0) {
+    throw InputError(path + ": cannot be opened (" + std::strerror(errno) +
+                     ")");
+  }
+  const auto start = std::chrono::steady_clock::now();
+  while (flock(file, kind | LOCK_NB) != 0) {
+    const int error = errno;
+    if (error == EINTR) continue;
+    if (error == EWOULDBLOCK &&
+        std::chrono::steady_clock::now() - start < kPatience) {
+      std::this_thread::sleep_for(kRetryEvery);
+      continue;
+    }
+    close(file);
+    if (error != EWOULDBLOCK) {
+      throw InputError(path + ": cannot be locked (" + std::strerror(error) +
+                       ")");
+    }
+    throw InputError(path +
+                     ": held by another rgbd_batch that works on this folder; "
+                     "wait for it or choose another --output");
+  }
+  return file;
 }
 
 }  // namespace
@@ -107,6 +147,23 @@ void BatchFolder::Finish(const BatchRun& run, const RunEnd& end) const {
   Check(error, Complete(run));
   fs::rename(Partial(run), Complete(run), error);
   Check(error, Complete(run));
+}
+
+BatchLock::BatchLock(const std::string& output, const BatchShard& shard)
+    : folder_file_(
+          Lock(output + "/.lock", shard.IsWhole() ? LOCK_EX : LOCK_SH)) {
+  if (shard.IsWhole()) return;
+  try {
+    shard_file_ = Lock(output + "/.lock-" + shard.Name(), LOCK_EX);
+  } catch (const InputError&) {
+    close(folder_file_);
+    throw;
+  }
+}
+
+BatchLock::~BatchLock() {
+  if (shard_file_ >= 0) close(shard_file_);
+  close(folder_file_);
 }
 
 }  // namespace rgbd_pose

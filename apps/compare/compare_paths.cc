@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "apps/figures/svg_chart.h"
-#include "core/evaluation/pose_pairs.h"
+#include "core/evaluation/association.h"
 #include "core/util/format.h"
 #include "core/util/units.h"
 

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "core/evaluation/pose_pairs.h"
+#include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {

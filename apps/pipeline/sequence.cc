@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
@@ -82,11 +83,8 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
   options.path = settings.dataset;
   options.keep_color = keep_color;
   options.associations_file = settings.associations;
-  for (size_t from = 0; from < settings.topics.size();) {
-    const size_t to =
-        std::min(settings.topics.find(',', from), settings.topics.size());
-    options.topics.push_back(settings.topics.substr(from, to - from));
-    from = to + 1;
+  if (!settings.topics.empty()) {
+    options.topics = SplitText(settings.topics, ',');
   }
   options.depth_scale = settings.depth_scale;
   if (!settings.camera.empty()) {

@@ -11,7 +11,6 @@
 #include "apps/python/bindings.h"
 #include "apps/python/pickled_fields.h"
 #include "core/geometry/camera.h"
-#include "core/geometry/shutter_parameters.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/files/camera_file.h"

@@ -13,7 +13,7 @@
 #include "apps/python/pickled_fields.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
-#include "apps/python/shared_odometry.h"
+#include "apps/python/shared_slam.h"
 #include "apps/python/trajectory_arrays.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/text_file.h"

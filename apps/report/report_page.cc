@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <string>
+#include <system_error>
 
 #include "apps/report/report_assets.h"
 #include "apps/report/run_report_data.h"
+#include "core/util/input_error.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
@@ -85,6 +87,22 @@ std::string WriteComparisonReport(const std::string& folder) {
   return WritePage(
       folder,
       ReportPage(data.contains("sequences") ? "comparison" : "sweep", data));
+}
+
+std::string WriteRunPage(const std::filesystem::path& staging_dir,
+                         const std::string& out, std::string* why_not) {
+  if (!HasReportLibrary()) {
+    return std::string("report in   ") + kNoReportLibrary + "\n";
+  }
+  try {
+    WriteRunReport(staging_dir.string());
+    return "report in   " + out + "/report.html\n";
+  } catch (const InputError& error) {
+    *why_not = error.what();
+    std::error_code ignored;
+    std::filesystem::remove(staging_dir / "report.html", ignored);
+    return "";
+  }
 }
 
 }  // namespace rgbd_pose

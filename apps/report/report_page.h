@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
@@ -39,5 +40,12 @@ std::string WriteBatchReport(const std::string& batch_folder);
 
 // The same for a comparison by rgbd_compare, from the files in its folder.
 std::string WriteComparisonReport(const std::string& folder);
+
+// Writes report.html into the folder of a run that is not published yet, `out`
+// being the one it will have. Returns what a program prints of it: where it is,
+// or that this build writes none. A disk that is too full for the page costs no
+// other result: the part of it is removed, and `why_not` says so.
+std::string WriteRunPage(const std::filesystem::path& staging_dir,
+                         const std::string& out, std::string* why_not);
 
 }  // namespace rgbd_pose

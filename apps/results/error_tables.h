@@ -4,7 +4,6 @@
 #include <string>
 
 #include "core/evaluation/consistency.h"
-#include "core/evaluation/error_statistics.h"
 #include "core/evaluation/relative_errors.h"
 #include "core/util/units.h"
 

@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/pipeline/residual_histogram.h"
 #include "apps/pipeline/run_summary.h"
 
 namespace rgbd_pose {

@@ -4,7 +4,6 @@
 
 #include "apps/results/cloud_preview.h"
 #include "apps/results/evaluation_report.h"
-#include "apps/results/frame_errors.h"
 #include "apps/results/frame_tables.h"
 #include "apps/results/motion_jumps.h"
 #include "apps/results/run_metrics.h"

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -35,9 +36,7 @@ FrameSelection::FrameSelection(const std::string& flag,
     ranges_ = {{0, std::numeric_limits<int>::max(), 1}};
     return;
   }
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(',', begin), text.size());
-    const std::string item = text.substr(begin, end - begin);
+  for (const std::string& item : SplitText(text, ',')) {
     const std::optional<Range> range = ParseRange(item);
     if (!range.has_value()) {
       throw InputError(
@@ -46,7 +45,6 @@ FrameSelection::FrameSelection(const std::string& flag,
           "last, step >= 1); give a list such as 10,20-40,100-200:10, or all");
     }
     ranges_.push_back(*range);
-    begin = end + 1;
   }
 }
 

@@ -6,7 +6,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_noise.h"
-#include "core/geometry/frame_timing.h"
+#include "core/geometry/twist.h"
 
 namespace rgbd_pose {
 

@@ -6,8 +6,8 @@
 #include <memory>
 #include <vector>
 
+#include "core/estimation/batch_loss.h"
 #include "core/estimation/motion_cost.h"
-#include "core/estimation/scaled_loss.h"
 
 namespace rgbd_pose {
 

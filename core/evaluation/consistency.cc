@@ -4,7 +4,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/evaluation/interpolated_path.h"
+#include "core/evaluation/moving_poses.h"
 #include "core/geometry/motion.h"
 #include "core/util/quantile.h"
 

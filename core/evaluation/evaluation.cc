@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "core/evaluation/alignment.h"
-#include "core/evaluation/pose_pairs.h"
+#include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {

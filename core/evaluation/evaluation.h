@@ -4,10 +4,9 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluation/alignment.h"
 #include "core/evaluation/consistency.h"
-#include "core/evaluation/error_statistics.h"
 #include "core/evaluation/relative_errors.h"
-#include "core/evaluation/sim3_alignment.h"
 #include "core/evaluation/trajectory.h"
 #include "core/evaluation/truth_alignment.h"
 #include "core/geometry/rigid3.h"
@@ -50,7 +49,7 @@ struct PoseError {
   std::optional<double> rpe_rotation;     // rad
 };
 
-// All figures are over poses paired in time (core/evaluation/pose_pairs.h).
+// All figures are over poses paired in time (core/evaluation/association.h).
 // Those of relative and final errors do not depend on the worlds of the
 // trajectories.
 struct EvaluationReport {

@@ -9,11 +9,9 @@
 #include <vector>
 
 #include "core/evaluation/alignment.h"
+#include "core/evaluation/association.h"
 #include "core/evaluation/fixing_equations.h"
-#include "core/evaluation/fixing_parameters.h"
-#include "core/evaluation/interpolated_path.h"
 #include "core/evaluation/moving_poses.h"
-#include "core/evaluation/pose_pairs.h"
 #include "core/evaluation/relative_errors.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/format.h"

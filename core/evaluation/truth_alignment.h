@@ -3,8 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "core/evaluation/error_statistics.h"
-#include "core/evaluation/fixing_parameters.h"
+#include "core/evaluation/fixing_equations.h"
 #include "core/evaluation/relative_errors.h"
 #include "core/evaluation/trajectory.h"
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "core/geometry/rigid3.h"
+#include "core/geometry/shutter.h"
 
 namespace rgbd_pose {
 
@@ -59,5 +60,16 @@ inline Twist operator*(double factor, const Twist& twist) {
 
 // The twist at which a motion takes so many seconds, not 0.
 Twist TwistOf(const Rigid3d& later_from_earlier, double seconds);
+
+// When the images of an RGB-D frame were taken, and how the camera moved
+// meanwhile: what it takes to say where things were seen at the frame's stamp.
+struct FrameTiming {
+  Shutter color;  // from the frame's stamp
+  Shutter depth;  // from the frame's stamp, too
+  Twist twist;    // at the stamp
+
+  // Whether all was seen at the stamp.
+  bool IsOneMoment() const { return color.IsGlobal() && depth.IsGlobal(); }
+};
 
 }  // namespace rgbd_pose

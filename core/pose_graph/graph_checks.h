@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "core/pose_graph/graph_blocks.h"
 #include "core/pose_graph/graph_problem.h"
-#include "core/pose_graph/graph_terms.h"
 
 // Why the graph cannot be solved, as one line; empty: it can.
 // Poses are named by the numbers that users know them by.

@@ -8,9 +8,9 @@
 #include <memory>
 #include <vector>
 
-#include "core/estimation/scaled_loss.h"
+#include "core/estimation/batch_loss.h"
 #include "core/geometry/motion.h"
-#include "core/pose_graph/graph_terms.h"
+#include "core/pose_graph/graph_blocks.h"
 
 namespace rgbd_pose {
 

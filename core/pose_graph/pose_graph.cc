@@ -9,7 +9,6 @@
 #include "core/pose_graph/graph_blocks.h"
 #include "core/pose_graph/graph_checks.h"
 #include "core/pose_graph/graph_problem.h"
-#include "core/pose_graph/graph_terms.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {

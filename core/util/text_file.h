@@ -24,6 +24,9 @@ std::vector<TextLine> SplitTextTable(std::string_view content);
 // A text without the byte order mark that some editors put before it.
 std::string_view WithoutByteOrderMark(std::string_view text);
 
+// The parts of a text between separators; one at least, which may be empty.
+std::vector<std::string> SplitText(std::string_view text, char separator);
+
 // Names as a list for a message: "a, b, c".
 std::string Join(const std::vector<std::string>& names);
 

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/estimation/motion_cost.h"
@@ -150,12 +151,19 @@ struct LookUpKernel {
   }
 };
 
+// Whether a direct residual type says what noise of slopes would look like.
+template <typename Residual, typename = void>
+struct HasNoiseRow : std::false_type {};
+template <typename Residual>
+struct HasNoiseRow<Residual, std::void_t<decltype(&Residual::NoiseRow)>>
+    : std::true_type {};
+
 // The MotionCost of a direct residual type (photometric.h): its points are made
 // once of each previous frame, and looked up in the current one after
 // every step. A residual type says
 //
-//   kName, kRows, kDegreesOfFreedom, kColumns, kIsWhitened, kScaleGroup
-//   kPointColumns, kMaxPoints, kInformation
+//   kName, kPointColumns, kSamples, kColumns; the rest as DirectResidual, which
+//                                            it derives from
 //   Points(frame, level, selection, points)  of the previous frame
 //   Locate(input, point, place)              of vectors of doubles: where it is
 //   Read(input, u, v, stride, samples)       kSamples numbers read there
@@ -164,7 +172,14 @@ struct LookUpKernel {
 //                                            kept with a rejection below 1
 //   Residual(motion pose, columns, r)        for any scalars
 //   Jacobian(motion derivatives, columns, r, J)
-//   NoiseRow(input, axis, columns)           makes a row one of noise alone
+//                                            may be missing: by Ceres' Jets
+//   NoiseRow(input, axis, columns)           may be missing: makes a row one
+//                                            that is the noise of slopes alone,
+//                                            along an axis of the image (0: u,
+//                                            1: v)
+//
+// One on surfaces has all but kName, kColumns, LookUp and Residual from Surface
+// (surface.h).
 template <typename Type>
 class DirectCostOf final : public PackedCost<Type> {
   using Residual = typename PackedCost<Type>::Residual;
@@ -233,13 +248,15 @@ class DirectCostOf final : public PackedCost<Type> {
 
   void AddSpuriousInformation(const MotionDerivatives& motion,
                               MotionMatrix* hessian) const override {
-    if (input_.cur == nullptr) return;
-    this->AddSample(
-        motion, kSpuriousStep, 2,
-        [this](int axis, double* columns) {
-          Residual::NoiseRow(input_, axis, columns);
-        },
-        hessian);
+    if constexpr (HasNoiseRow<Residual>::value) {
+      if (input_.cur == nullptr) return;
+      this->AddSample(
+          motion, kSpuriousStep, 2,
+          [this](int axis, double* columns) {
+            Residual::NoiseRow(input_, axis, columns);
+          },
+          hessian);
+    }
   }
 
  private:

@@ -44,4 +44,16 @@ struct ProjectedPoint {
   D u, v, z;
 };
 
+// What a direct cost need not say: it is so of most (see DirectCostOf).
+struct DirectResidual {
+  static constexpr int kRows = 1;
+  static constexpr int kDegreesOfFreedom = 1;
+  static constexpr bool kIsWhitened = true;
+  static constexpr int kScaleGroup = 0;        // see MotionCost::scale_group
+  static constexpr int kMaxPoints = 3000;      // see DirectOptions
+  static constexpr double kInformation = 1.0;  // likewise
+  // Whether it reads gray levels, whose brightness may have changed.
+  static constexpr bool kSeesBrightness = false;
+};
+
 }  // namespace rgbd_pose

@@ -3,7 +3,6 @@
 #include "core/estimation/motion_cost.h"
 #include "core/util/lane_math.h"
 #include "costs/direct/direct_input.h"
-#include "costs/direct/direct_points.h"
 #include "costs/direct/surface.h"
 #include "costs/parts/moved_point.h"
 
@@ -20,17 +19,7 @@ namespace rgbd_pose {
 //   r = (N . q - 1) / (sigma q_z)
 struct InverseDepth : Surface {
   static constexpr char kName[] = "inverse_depth";
-  static constexpr int kRows = 1;
-  static constexpr int kDegreesOfFreedom = 1;
-  static constexpr bool kIsWhitened = true;
-  static constexpr int kScaleGroup = 2;  // depths
-  static constexpr bool kSeesBrightness = false;
   static constexpr int kColumns = 7;  // X_prev, N / sigma, 1 / sigma
-
-  static void Points(const FrameView& frame, int /*level*/,
-                     const PointSelection& selection, PackedColumns* points) {
-    SmoothPoints(frame, selection, points);
-  }
 
   template <typename D>
   [[gnu::always_inline]] static void LookUp(const DirectInput& input,

@@ -26,11 +26,8 @@ namespace rgbd_pose {
 //
 // sigma^2 = sigma_gray^2 (1 + gain^2) + (dI / d depth)^2 sigma_depth^2: the
 // noise of both images, and the wrong place that a wrong depth leads to.
-struct Photometric {
+struct Photometric : DirectResidual {
   static constexpr char kName[] = "photometric";
-  static constexpr int kRows = 1;
-  static constexpr int kDegreesOfFreedom = 1;
-  static constexpr bool kIsWhitened = true;
   static constexpr int kScaleGroup = 1;  // gray levels
   static constexpr bool kSeesBrightness = true;
   static constexpr int kColumns = 6;  // X_prev, k_0, k_x, k_y

@@ -3,7 +3,6 @@
 #include "core/estimation/motion_cost.h"
 #include "core/util/lane_math.h"
 #include "costs/direct/direct_input.h"
-#include "costs/direct/direct_points.h"
 #include "costs/direct/surface.h"
 #include "costs/parts/moved_point.h"
 
@@ -23,17 +22,7 @@ namespace rgbd_pose {
 // point along its ray (x, y, 1), of which N . ray / |N| = 1 / (z |N|) does.
 struct ProjectivePlane : Surface {
   static constexpr char kName[] = "projective_plane";
-  static constexpr int kRows = 1;
-  static constexpr int kDegreesOfFreedom = 1;
-  static constexpr bool kIsWhitened = true;
-  static constexpr int kScaleGroup = 2;  // depths
-  static constexpr bool kSeesBrightness = false;
   static constexpr int kColumns = 7;  // X_prev, w N, w with w = 1 / (|N| sigma)
-
-  static void Points(const FrameView& frame, int /*level*/,
-                     const PointSelection& selection, PackedColumns* points) {
-    SmoothPoints(frame, selection, points);
-  }
 
   template <typename D>
   [[gnu::always_inline]] static void LookUp(const DirectInput& input,

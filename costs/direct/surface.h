@@ -3,6 +3,7 @@
 #include "core/estimation/frame_view.h"
 #include "core/util/lane_math.h"
 #include "costs/direct/direct_input.h"
+#include "costs/direct/direct_points.h"
 #include "costs/direct/lane_image.h"
 
 namespace rgbd_pose {
@@ -37,12 +38,17 @@ constexpr double kSurfaceSigma = 0.707;
 
 // What the costs on surfaces share. Columns of a point (see SmoothPoints):
 // X_prev (m), the plane N . X_prev = 1 (1 / m), the sigma of its depth (m).
-struct Surface {
+struct Surface : DirectResidual {
+  static constexpr int kScaleGroup = 2;  // depths
   static constexpr int kPointColumns = 7;
-  static constexpr int kMaxPoints = 3000;
 
   // As Photometric's: noise of depths reaches over some pixels.
   static constexpr double kInformation = 0.75;
+
+  static void Points(const FrameView& frame, int /*level*/,
+                     const PointSelection& selection, PackedColumns* points) {
+    SmoothPoints(frame, selection, points);
+  }
 
   template <typename D>
   [[gnu::always_inline]] static void Locate(const DirectInput& input,

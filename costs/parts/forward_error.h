@@ -5,7 +5,7 @@
 #include "core/geometry/motion.h"
 #include "costs/parts/cost_input.h"
 #include "costs/parts/moved_point.h"
-#include "costs/parts/point_covariance.h"
+#include "costs/parts/whitening.h"
 
 namespace rgbd_pose {
 

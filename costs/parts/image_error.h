@@ -7,7 +7,6 @@
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "costs/parts/moved_point.h"
-#include "costs/parts/point_covariance.h"
 #include "costs/parts/projection.h"
 #include "costs/parts/whitening.h"
 

@@ -1,6 +1,7 @@
 #include "frontend/features/grid_selection.h"
 
 #include <algorithm>
+#include <opencv2/features2d.hpp>
 #include <utility>
 
 namespace rgbd_pose {
@@ -14,6 +15,9 @@ bool IsStronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
   // Ties by place keep the order independent of the sort's implementation.
   return std::make_pair(a.pt.y, a.pt.x) < std::make_pair(b.pt.y, b.pt.x);
 }
+
+constexpr int kFastThreshold = 12;
+constexpr int kWeakFastThreshold = 6;  // for dark or blurred frames
 
 }  // namespace
 
@@ -48,6 +52,21 @@ std::vector<int> SelectOverGrid(
     }
   }
   return selected;
+}
+
+std::vector<cv::Point2f> DetectGridCorners(
+    const cv::Mat& gray, int max_corners,
+    const std::function<bool(const cv::Point2f&)>& accept) {
+  std::vector<cv::KeyPoint> found;
+  cv::FAST(gray, found, kFastThreshold, /*nonmaxSuppression=*/true);
+  if (static_cast<int>(found.size()) < 2 * max_corners) {
+    cv::FAST(gray, found, kWeakFastThreshold, /*nonmaxSuppression=*/true);
+  }
+  std::vector<cv::Point2f> corners;
+  for (const int i : SelectOverGrid(found, gray.size(), max_corners, accept)) {
+    corners.push_back(found[i].pt);
+  }
+  return corners;
 }
 
 }  // namespace rgbd_pose

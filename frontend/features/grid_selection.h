@@ -13,4 +13,10 @@ std::vector<int> SelectOverGrid(
     const std::vector<cv::KeyPoint>& keypoints, const cv::Size& image,
     int max_count, const std::function<bool(const cv::Point2f&)>& accept);
 
+// Up to about max_corners FAST corners that `accept` takes, spread over the
+// image as SelectOverGrid does.
+std::vector<cv::Point2f> DetectGridCorners(
+    const cv::Mat& gray, int max_corners,
+    const std::function<bool(const cv::Point2f&)>& accept);
+
 }  // namespace rgbd_pose

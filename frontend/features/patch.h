@@ -3,6 +3,10 @@
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
 
+#include "core/estimation/correspondences.h"
+#include "core/geometry/camera.h"
+#include "core/geometry/rigid3.h"
+
 namespace rgbd_pose {
 
 // Side of a patch. Larger ones (16) scatter less from frame to frame, but reach
@@ -37,5 +41,12 @@ struct Patch {
 // * (i, j)). Beyond its border the image goes on as it is there.
 void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
                const Eigen::Matrix2f& image_from_patch, Patch* patch);
+
+// How the image around an observation (with a depth) is stretched and turned
+// by a motion: d(pixel in cur) / d(pixel in ref) over the plane of its depth
+// and normal, or parallel to the image if there is no normal or it is seen
+// edge-on. The point must lie before both cameras.
+Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
+                          const Rigid3d& cur_from_ref);
 
 }  // namespace rgbd_pose

@@ -5,10 +5,9 @@
 #include <cmath>
 #include <memory>
 
-#include "frontend/features/grid_corners.h"
+#include "frontend/features/grid_selection.h"
 #include "frontend/features/patch.h"
 #include "frontend/features/patch_alignment.h"
-#include "frontend/features/plane_warp.h"
 #include "frontend/frame/image_pyramid.h"
 #include "frontend/frame/observe.h"
 

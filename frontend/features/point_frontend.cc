@@ -3,7 +3,7 @@
 #include <string>
 
 #include "core/util/input_error.h"
-#include "frontend/features/grid_corners.h"
+#include "frontend/features/grid_selection.h"
 #include "frontend/frame/observe.h"
 
 namespace rgbd_pose {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/shutter_parameters.h"
+#include "core/geometry/camera.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/yaml_section.h"

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/shutter_parameters.h"
+#include "core/geometry/camera.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "frontend/files/png_chunks.h"
-#include "frontend/files/png_filters.h"
+#include "frontend/files/png_format.h"
 #include "frontend/frame/gray_level.h"
 
 namespace rgbd_pose {

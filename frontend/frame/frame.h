@@ -5,7 +5,7 @@
 #include <opencv2/core.hpp>
 #include <optional>
 
-#include "core/geometry/frame_timing.h"
+#include "core/geometry/twist.h"
 
 namespace rgbd_pose {
 

@@ -4,7 +4,7 @@
 
 #include "core/estimation/correspondences.h"
 #include "core/geometry/camera.h"
-#include "core/geometry/frame_timing.h"
+#include "core/geometry/twist.h"
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
 

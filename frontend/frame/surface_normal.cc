@@ -2,6 +2,9 @@
 
 #include <Eigen/LU>
 #include <cmath>
+#include <cstdlib>
+
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 namespace {
@@ -11,6 +14,15 @@ constexpr int kStridePx = 5;
 // Deviations from the plane, relative to depth, beyond this are another
 // surface: 1.5 % is 5 sigma of a Kinect at 2 m (Khoshelham & Elberink 2012).
 constexpr double kMaxDeviation = 0.015;
+
+// Neighbouring pixels on one surface differ by noise and by slope. Noise: 4
+// standard deviations of a difference, which has sqrt(2) times that of a depth.
+// Slope: a surface seen at 80 degrees, at f = 525 px.
+constexpr double kMaxNoiseStep = 4.0 * M_SQRT2;  // of the depth's sigma
+constexpr double kMaxSlopeStep = 0.011;          // of the depth
+
+// A pixel with fewer neighbours (of 4) hangs in the air.
+constexpr int kMinNeighbours = 2;
 
 }  // namespace
 
@@ -53,6 +65,24 @@ Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
       place + pixels.inverse() * Eigen::Vector2d(column - u, row - v);
   const double c = mean - slope.dot(middle);
   return -Eigen::Vector3d(slope.x(), slope.y(), c).normalized();
+}
+
+double MaxSurfaceStep(double depth, const DepthNoiseModel& noise) {
+  return kMaxNoiseStep * noise.sigma(depth) + kMaxSlopeStep * depth;
+}
+
+bool IsOnSurface(const cv::Mat& depth, int x, int y, int max_step) {
+  const uint16_t* row = depth.ptr<uint16_t>(y);
+  const int raw = row[x];
+  int neighbours = 0;
+  for (const uint16_t other :
+       {row[x - 1], row[x + 1], depth.ptr<uint16_t>(y - 1)[x],
+        depth.ptr<uint16_t>(y + 1)[x]}) {
+    if (other == 0 || other == Frame::kNoDepth) continue;
+    if (std::abs(other - raw) > max_step) return false;
+    ++neighbours;
+  }
+  return neighbours >= kMinNeighbours;
 }
 
 }  // namespace rgbd_pose

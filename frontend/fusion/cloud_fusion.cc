@@ -1,6 +1,6 @@
 #include "frontend/fusion/cloud_fusion.h"
 
-#include "frontend/frame/surface_pixel.h"
+#include "frontend/frame/surface_normal.h"
 
 namespace rgbd_pose {
 namespace {

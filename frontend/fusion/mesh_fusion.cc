@@ -6,7 +6,7 @@
 
 #include "core/util/floor.h"
 #include "core/util/parallel_for.h"
-#include "frontend/frame/surface_pixel.h"
+#include "frontend/frame/surface_normal.h"
 #include "frontend/fusion/surface_mesh.h"
 
 namespace rgbd_pose {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "frontend/fusion/colored_point.h"
+#include "frontend/fusion/triangle_mesh.h"
 
 namespace rgbd_pose {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "frontend/mapping/near_motions.h"
+#include "frontend/mapping/pair_tracker.h"
 #include "frontend/places/relocaliser.h"
 
 namespace rgbd_pose {

@@ -8,7 +8,6 @@
 
 #include "frontend/mapping/keyframe_graph.h"
 #include "frontend/mapping/map_update.h"
-#include "frontend/mapping/mapped_keyframe.h"
 #include "frontend/mapping/mapping_options.h"
 #include "frontend/mapping/pair_tracker.h"
 #include "frontend/places/place_database.h"

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/geometry/rigid3.h"
+#include "frontend/frame/view_overlap.h"
 #include "frontend/places/keyframe.h"
 
 namespace rgbd_pose {
@@ -35,6 +36,13 @@ struct MapUpdate {
 
   // An old keyframe that the view has come back to.
   std::optional<Keyframe> returned_to;
+};
+
+// A keyframe of a Mapper, packed; of those that were removed neither images nor
+// what was made of them. Its pose and segment: see KeyframeGraph.
+struct MappedKeyframe : Keyframe {
+  std::optional<KeyframePlace> published;  // as the last MapUpdate had it
+  ViewOverlap samples;                     // what it sees, to compare views by
 };
 
 }  // namespace rgbd_pose

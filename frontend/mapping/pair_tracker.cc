@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <string>
 
-#include "frontend/mapping/near_motions.h"
-
 namespace rgbd_pose {
 namespace {
 

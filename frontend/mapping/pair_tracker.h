@@ -42,4 +42,12 @@ class PairTracker {
   TrackingResult tracked_;
 };
 
+// Whether two motions differ by no more than a rotation (rad) and a translation
+// (m).
+inline bool IsWithin(const Rigid3d& a, const Rigid3d& b, double rotation,
+                     double translation) {
+  const Rigid3d moved = a.Inverse() * b;
+  return moved.Angle() <= rotation && moved.translation.norm() <= translation;
+}
+
 }  // namespace rgbd_pose

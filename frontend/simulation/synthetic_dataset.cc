@@ -5,10 +5,9 @@
 #include <utility>
 #include <vector>
 
-#include "core/geometry/shutter_parameters.h"
+#include "core/geometry/camera.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
-#include "frontend/simulation/synthetic_exposure.h"
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_movers.h"
 #include "frontend/simulation/synthetic_path.h"

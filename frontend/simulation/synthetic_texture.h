@@ -5,6 +5,11 @@
 
 namespace rgbd_pose {
 
+// The grain of a surface at (u, v) (m), seen by a pixel of extent `footprint`
+// (m): a sum of octaves of value noise in about -3..3. The same bits with every
+// instruction set.
+float Grain(float u, float v, float footprint, uint32_t seed);
+
 // A procedural surface: colour, grain (several octaves of noise), tiles
 // (rectangles of random colour) and glyphs (words of random blocks). Lengths
 // in metres, contrasts as a share of full brightness.

@@ -6,7 +6,7 @@
 #include <optional>
 #include <system_error>
 
-#include "core/geometry/shutter_parameters.h"
+#include "core/geometry/camera.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"

@@ -4,7 +4,7 @@
 
 #include "core/estimation/correspondences.h"
 #include "core/estimation/motion_estimate.h"
-#include "core/geometry/frame_timing.h"
+#include "core/geometry/twist.h"
 #include "frontend/tracking/velocity_prior.h"
 
 namespace rgbd_pose {

@@ -2,7 +2,6 @@
 
 #include <optional>
 
-#include "core/geometry/frame_timing.h"
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 #include "core/geometry/twist.h"

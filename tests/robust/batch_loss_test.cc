@@ -5,9 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "core/estimation/scaled_loss.h"
-#include "robust/huber_loss.h"
-#include "robust/tukey_loss.h"
+#include "robust/losses.h"
 
 namespace rgbd_pose {
 namespace {

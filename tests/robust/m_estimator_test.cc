@@ -8,9 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "core/estimation/scaled_loss.h"
-#include "robust/barron_loss.h"
-#include "robust/power_loss.h"
+#include "core/estimation/batch_loss.h"
+#include "robust/losses.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {

@@ -1,10 +1,10 @@
-#include "apps/compare/compare_statistics.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <random>
 #include <vector>
+
+#include "apps/compare/compare_sweep.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,5 +1,3 @@
-#include "apps/results/frame_errors.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -7,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/results/frame_tables.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/text_file.h"
 #include "tests/support/temp_folder.h"

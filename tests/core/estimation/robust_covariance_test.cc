@@ -1,11 +1,10 @@
 // The sandwich A^-1 B A^-1, number by number.
 
-#include "core/estimation/robust_covariance.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 
+#include "core/estimation/covariance_accumulator.h"
 #include "core/estimation/motion_cost.h"
 
 namespace rgbd_pose {

@@ -1,10 +1,9 @@
-#include "core/evaluation/fixing_parameters.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/evaluation/fixing_equations.h"
 #include "core/util/units.h"
 
 namespace rgbd_pose {

@@ -1,6 +1,6 @@
-#include "core/evaluation/interpolated_path.h"
-
 #include <gtest/gtest.h>
+
+#include "core/evaluation/moving_poses.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,8 +1,7 @@
-#include "core/evaluation/pose_pairs.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "core/evaluation/association.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {

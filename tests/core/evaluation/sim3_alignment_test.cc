@@ -1,10 +1,9 @@
-#include "core/evaluation/sim3_alignment.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "core/evaluation/alignment.h"
 #include "core/evaluation/evaluation.h"
 
 namespace rgbd_pose {

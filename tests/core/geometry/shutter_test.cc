@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "core/geometry/shutter_parameters.h"
+#include "core/geometry/camera.h"
 
 namespace rgbd_pose {
 namespace {

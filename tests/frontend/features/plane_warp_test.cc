@@ -1,8 +1,8 @@
-#include "frontend/features/plane_warp.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+
+#include "frontend/features/patch.h"
 
 namespace rgbd_pose {
 namespace {

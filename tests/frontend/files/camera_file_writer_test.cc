@@ -4,7 +4,7 @@
 
 #include <string>
 
-#include "core/geometry/shutter_parameters.h"
+#include "core/geometry/camera.h"
 #include "frontend/files/camera_file.h"
 #include "tests/support/camera_file_samples.h"
 #include "tests/support/expect_input_error.h"

@@ -1,7 +1,6 @@
-#include "frontend/places/stored_images.h"
-
 #include <gtest/gtest.h>
 
+#include "frontend/places/keyframe.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/map_parts.h"
 

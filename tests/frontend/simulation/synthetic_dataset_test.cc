@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/shutter_parameters.h"
+#include "core/geometry/camera.h"
 #include "core/geometry/twist.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_path.h"

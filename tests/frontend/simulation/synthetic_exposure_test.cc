@@ -1,5 +1,3 @@
-#include "frontend/simulation/synthetic_exposure.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 
 #include "core/geometry/shutter.h"
 #include "frontend/simulation/synthetic_path.h"
+#include "frontend/simulation/synthetic_sensor.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,8 +1,6 @@
 // The grain of simulated surfaces: eight octaves at once are the octaves one
 // after the other.
 
-#include "frontend/simulation/synthetic_grain.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +9,7 @@
 
 #include "core/util/vector_lanes.h"
 #include "frontend/simulation/synthetic_hash.h"
+#include "frontend/simulation/synthetic_texture.h"
 
 namespace rgbd_pose {
 namespace {

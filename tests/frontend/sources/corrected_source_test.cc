@@ -7,7 +7,7 @@
 #include <optional>
 #include <utility>
 
-#include "core/geometry/shutter_parameters.h"
+#include "core/geometry/camera.h"
 
 namespace rgbd_pose {
 namespace {

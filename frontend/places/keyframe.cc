@@ -1,4 +1,4 @@
-#include "frontend/places/stored_images.h"
+#include "frontend/places/keyframe.h"
 
 #include <cmath>
 

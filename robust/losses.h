@@ -1,0 +1,202 @@
+#pragma once
+
+#include <ceres/loss_function.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/estimation/batch_loss.h"
+#include "core/util/lane_math.h"
+
+namespace rgbd_pose {
+
+// Huber's loss, w(x) = 1 if x <= c, c / x beyond:
+//
+//   R(s) = s if s <= c^2, 2 c sqrt(s) - c^2 beyond,
+//
+// as ceres::HuberLoss.
+class HuberFormula {
+ public:
+  explicit HuberFormula(double width) : c_(width), c2_(width * width) {}
+
+  template <typename T>
+  void Weigh(const T& s, T* rho, T* weight) const {
+    // sqrt of at least c^2: where it does not count it must not divide by 0.
+    T limited;
+    Max(s, c2_, &limited);
+    const T root = sqrt(limited);
+    const T one = T{} + 1.0;
+    *rho = s > c2_ ? 2.0 * c_ * root - c2_ : s;
+    *weight = s > c2_ ? c_ / root : one;
+  }
+
+  double Curvature(double s) const {
+    return s > c2_ ? -0.5 * c_ / (s * std::sqrt(s)) : 0.0;
+  }
+
+ private:
+  double c_, c2_;
+};
+
+using HuberLoss = BatchLossOf<HuberFormula>;
+
+// Tukey's biweight, w(x) = (1 - (x/c)^2)^2 if x <= c, 0 beyond:
+//
+//   R(s) = c^2/3 (1 - (1 - s/c^2)^3) if s <= c^2, c^2/3 beyond,
+//
+// as ceres::TukeyLoss of 2.0 and later (before, it was half of that).
+class TukeyFormula {
+ public:
+  explicit TukeyFormula(double width) : c2_(width * width) {}
+
+  template <typename T>
+  void Weigh(const T& s, T* rho, T* weight) const {
+    T rest;  // 1 - s/c^2, not below 0
+    Max(T(1.0 - s / c2_), 0.0, &rest);
+    *weight = rest * rest;
+    *rho = c2_ / 3.0 * (1.0 - *weight * rest);
+  }
+
+  double Curvature(double s) const {
+    return s > c2_ ? 0.0 : -2.0 / c2_ * (1.0 - s / c2_);
+  }
+
+ private:
+  double c2_;
+};
+
+using TukeyLoss = BatchLossOf<TukeyFormula>;
+
+// Fair's loss, w(x) = 1 / (1 + |x|/c):
+//
+//   R(s) = 2 c^2 (|x|/c - ln(1 + |x|/c)),  |x| = sqrt s.
+//
+// R''(0) is minus infinity; what is given there is huge, but finite, so that
+// s R''(s) is 0.
+class FairLoss final : public ceres::LossFunction {
+ public:
+  explicit FairLoss(double width) : width_(width) {}
+
+  void Evaluate(double s, double rho[3]) const override {
+    constexpr double kTiny = std::numeric_limits<double>::min();
+    const double q = std::sqrt(s) / width_;
+    const double weight = 1.0 / (1.0 + q);
+    rho[0] = 2.0 * width_ * width_ * (q - std::log1p(q));
+    rho[1] = weight;
+    rho[2] = -0.5 * weight * weight / (width_ * std::sqrt(std::max(s, kTiny)));
+  }
+
+ private:
+  double width_;
+};
+
+// Geman and McClure's loss, w(x) = (1 + (x/c)^2)^-2:
+//
+//   R(s) = s / (1 + s/c^2).
+//
+// It is bounded by c^2. Zhang's has c = 1.
+class GemanMcClureLoss final : public ceres::LossFunction {
+ public:
+  explicit GemanMcClureLoss(double width) : inverse_(1.0 / (width * width)) {}
+
+  void Evaluate(double s, double rho[3]) const override {
+    const double t = 1.0 / (1.0 + s * inverse_);
+    rho[0] = s * t;
+    rho[1] = t * t;
+    rho[2] = -2.0 * inverse_ * t * t * t;
+  }
+
+ private:
+  double inverse_;
+};
+
+// Welsch's loss, w(x) = exp(-(x/c)^2):
+//
+//   R(s) = c^2 (1 - exp(-s/c^2)).
+class WelschLoss final : public ceres::LossFunction {
+ public:
+  explicit WelschLoss(double width) : width2_(width * width) {}
+
+  void Evaluate(double s, double rho[3]) const override {
+    const double q = s / width2_;
+    rho[0] = -width2_ * std::expm1(-q);
+    rho[1] = std::exp(-q);
+    rho[2] = -rho[1] / width2_;
+  }
+
+ private:
+  double width2_;
+};
+
+// |x|^v for 1 <= v < 2 (Zhang's L1 and Lp), w(x) = (|x|/c)^(v-2):
+//
+//   R(s) = (2/v) c^2 (s / c^2)^(v/2).
+//
+// The width c only scales it; c = 1 is Zhang's. As its slope at 0 is infinite,
+// s is replaced by s + (kEpsilon c)^2, less the value at 0: nearer than
+// kEpsilon widths it turns into least squares of weight kEpsilon^(v-2). So its
+// weights exceed 1 for residuals below the width.
+class PowerLoss final : public ceres::LossFunction {
+ public:
+  static constexpr double kEpsilon = 0.01;
+
+  PowerLoss(double exponent, double width)
+      : exponent_(exponent),
+        width2_(width * width),
+        at_zero_(std::pow(kEpsilon, exponent)) {}
+
+  void Evaluate(double s, double rho[3]) const override {
+    const double q = s / width2_ + kEpsilon * kEpsilon;
+    const double power = std::pow(q, 0.5 * exponent_);
+    rho[0] = 2.0 / exponent_ * width2_ * (power - at_zero_);
+    rho[1] = power / q;
+    rho[2] = (0.5 * exponent_ - 1.0) * rho[1] / (q * width2_);
+  }
+
+ private:
+  double exponent_;
+  double width2_;
+  double at_zero_;
+};
+
+// Barron's family (A General and Adaptive Robust Loss Function, CVPR 2019),
+// scaled to R'(0) = 1; w(x) = (1 + (x/c)^2 / (2-a))^(a/2-1):
+//
+//   R(s) = 2 c^2 (2-a)/a ((1 + s / (c^2 (2-a)))^(a/2) - 1).
+//
+// The shape a <= 2 leads from least squares (2) by L1-L2 (1), Cauchy (0) and
+// Geman-McClure (-2) towards Welsch (minus infinity): the lower, the less far
+// residuals count. Below 1 it is redescending. (The R'' of shapes above 2 is
+// positive, which the compressed block does not support.)
+class BarronLoss final : public ceres::LossFunction {
+ public:
+  // Half-way between Cauchy and Geman-McClure.
+  static constexpr double kDefaultAlpha = -1.0;
+
+  explicit BarronLoss(double width, double alpha = kDefaultAlpha)
+      : alpha_(alpha), width2_(width * width) {}
+
+  void Evaluate(double s, double rho[3]) const override {
+    const double gap = 2.0 - alpha_;
+    if (gap <= 0.0) {
+      rho[0] = s;
+      rho[1] = 1.0;
+      rho[2] = 0.0;
+      return;
+    }
+    const double q = s / (width2_ * gap);
+    const double log = std::log1p(q);
+    const double growth =
+        alpha_ == 0.0 ? 0.5 * log : std::expm1(0.5 * alpha_ * log) / alpha_;
+    rho[0] = 2.0 * width2_ * gap * growth;
+    rho[1] = std::exp(-0.5 * gap * log);
+    rho[2] = -0.5 * rho[1] / (width2_ * (1.0 + q));
+  }
+
+ private:
+  double alpha_;
+  double width2_;
+};
+
+}  // namespace rgbd_pose
