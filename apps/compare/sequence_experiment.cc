@@ -5,7 +5,6 @@
 
 #include "apps/compare/compare_paths.h"
 #include "apps/compare/compare_sequence.h"
-#include "apps/compare/compare_sequence_report.h"
 #include "apps/compare/experiment.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/shell/available_cores.h"

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/evaluation/trajectory.h"
 #include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
@@ -83,5 +84,14 @@ pybind11::array ViewOf(const std::vector<T>& values, pybind11::handle owner) {
 // A path from a string or whatever has one.
 std::string PathFrom(const pybind11::object& path);
 bool IsPath(const pybind11::object& object);
+
+// A trajectory from the path of a TUM text file or a pair of time stamps (N,)
+// and poses (N, 7) tx ty tz qx qy qz qw or (N, 4, 4). Throws InputError, naming
+// the argument, for anything else.
+Trajectory TrajectoryFrom(const pybind11::object& object,
+                          const std::string& name);
+
+// A pair of time stamps (N,) and poses (N, 4, 4).
+pybind11::tuple ArraysFromTrajectory(const Trajectory& trajectory);
 
 }  // namespace rgbd_pose

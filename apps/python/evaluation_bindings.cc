@@ -9,7 +9,6 @@
 #include "apps/python/bindings.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
-#include "apps/python/trajectory_arrays.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/text_file.h"

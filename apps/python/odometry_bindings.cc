@@ -14,7 +14,6 @@
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
 #include "apps/python/shared_slam.h"
-#include "apps/python/trajectory_arrays.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/text_file.h"
 #include "frontend/sources/tum_dataset.h"

@@ -15,7 +15,6 @@
 #include "apps/python/frame_images.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
-#include "apps/python/trajectory_arrays.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/sources/corrected_source.h"
 #include "frontend/sources/frame_range.h"

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/pose_graph/graph_blocks.h"
-#include "core/pose_graph/graph_checks.h"
 #include "core/pose_graph/graph_problem.h"
 #include "core/util/input_error.h"
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string>
 
-#include "apps/compare/compare_sequence_report.h"
+#include "apps/compare/compare_sequence.h"
 
 namespace rgbd_pose {
 namespace {
