@@ -15,7 +15,6 @@
 #include "apps/shell/available_cores.h"
 #include "apps/shell/calibration_progress.h"
 #include "apps/shell/program.h"
-#include "apps/shell/setting_flags.h"
 
 DEFINE_int32(threads, 0, "threads; 0: one for each core");
 DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
@@ -36,14 +35,6 @@ ProgramSettings& Settings() {
   return settings;
 }
 
-// All other flags.
-const SettingFlags& Flags() {
-  static const SettingFlags flags(
-      {SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
-       SettingTable(&Settings().slam), SettingTable(&Settings().calibration)});
-  return flags;
-}
-
 ProgramInfo Info() {
   ProgramInfo info;
   info.name = "rgbd_calibrate";
@@ -51,13 +42,14 @@ ProgramInfo Info() {
   info.example =
       "rgbd_calibrate --dataset=my_recording --camera=my_camera.yaml "
       "--output=calibration";
-  Flags().Describe(&info);
-  info.flag_groups.push_back({"Run", {"output", "report", "threads"}});
+  info.settings = {
+      SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
+      SettingTable(&Settings().slam), SettingTable(&Settings().calibration)};
+  info.flag_groups = {{"Run", {"output", "report", "threads"}}};
   return info;
 }
 
 int Main() {
-  Flags().Apply();
   const ProgramSettings& settings = Settings();
   RequireFlag("dataset", settings.sequence.dataset);
   RequireFlag("output", FLAGS_output);

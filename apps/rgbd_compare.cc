@@ -10,7 +10,6 @@
 #include "apps/pipeline/setting_table.h"
 #include "apps/report/report_page.h"
 #include "apps/shell/program.h"
-#include "apps/shell/setting_flags.h"
 #include "core/geometry/camera.h"
 #include "robust/m_estimator.h"
 
@@ -45,13 +44,6 @@ std::vector<Setting> ExperimentTable(ExperimentSettings* settings) {
   };
 }
 
-const SettingFlags& Flags() {
-  static const SettingFlags flags(
-      {ExperimentTable(&Settings()),
-       WithoutRow("loss", SettingTable(&Settings().odometry))});
-  return flags;
-}
-
 ProgramInfo Info() {
   ProgramInfo info;
   info.name = "rgbd_compare";
@@ -59,13 +51,13 @@ ProgramInfo Info() {
       "compares M-estimators as the thesis' fourth chapter does: by features "
       "alone, unless --tracker says otherwise.";
   info.example = "rgbd_compare --experiment=xyz --output=compare/xyz";
-  Flags().Describe(&info);
-  info.flag_groups.push_back({"Output", {"output", "report"}});
+  info.settings = {ExperimentTable(&Settings()),
+                   WithoutRow("loss", SettingTable(&Settings().odometry))};
+  info.flag_groups = {{"Output", {"output", "report"}}};
   return info;
 }
 
 int Main() {
-  Flags().Apply();
   RequireFlag("experiment", Settings().experiment);
   RequireFlag("output", FLAGS_output);
   cv::setNumThreads(1);  // the threads are ours

@@ -10,7 +10,6 @@
 #include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
-#include "apps/shell/setting_flags.h"
 #include "frontend/sources/tum_writer.h"
 
 DEFINE_string(output, "", "folder to make, in TUM RGB-D layout");
@@ -27,24 +26,18 @@ SequenceSettings& Settings() {
   return settings;
 }
 
-const SettingFlags& Flags() {
-  static const SettingFlags flags({SettingTable(&Settings())});
-  return flags;
-}
-
 ProgramInfo Info() {
   ProgramInfo info;
   info.name = "rgbd_convert";
   info.summary =
       "writes a recording of any kind, or part of it, as a TUM RGB-D folder.";
   info.example = "rgbd_convert --dataset=scene0000_00 --output=scene_tum";
-  Flags().Describe(&info);
-  info.flag_groups.push_back({"Run", {"output", "threads"}});
+  info.settings = {SettingTable(&Settings())};
+  info.flag_groups = {{"Run", {"output", "threads"}}};
   return info;
 }
 
 int Main() {
-  Flags().Apply();
   RequireFlag("dataset", Settings().dataset);
   RequireFlag("output", FLAGS_output);
   cv::setNumThreads(1);  // the threads are ours

@@ -18,7 +18,6 @@
 #include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
-#include "apps/shell/setting_flags.h"
 #include "apps/view/live_view.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -47,14 +46,6 @@ ProgramSettings& Settings() {
   return settings;
 }
 
-// All other flags.
-const SettingFlags& Flags() {
-  static const SettingFlags flags({SettingTable(&Settings().sequence),
-                                   SettingTable(&Settings().odometry),
-                                   SettingTable(&Settings().output)});
-  return flags;
-}
-
 ProgramInfo Info() {
   ProgramInfo info;
   info.name = "rgbd_odometry";
@@ -62,10 +53,12 @@ ProgramInfo Info() {
   info.example =
       "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
       "--output=runs/fr1_xyz";
-  Flags().Describe(&info);
-  info.flag_groups.push_back(
-      {"Run", {"report", "validate_only", "finish_on_signal", "threads"}});
-  info.flag_groups.push_back({"View", {"view", "view_port", "view_speed"}});
+  info.settings = {SettingTable(&Settings().sequence),
+                   SettingTable(&Settings().odometry),
+                   SettingTable(&Settings().output)};
+  info.flag_groups = {
+      {"Run", {"report", "validate_only", "finish_on_signal", "threads"}},
+      {"View", {"view", "view_port", "view_speed"}}};
   return info;
 }
 
@@ -104,7 +97,6 @@ int ValidateOnly(const Sequence& sequence, int threads) {
 
 int Main() {
   const Clock::time_point start = Clock::now();
-  Flags().Apply();
   const ProgramSettings& settings = Settings();
   RequireFlag("dataset", settings.sequence.dataset);
   if (!FLAGS_validate_only) RequireFlag("output", settings.output.output);

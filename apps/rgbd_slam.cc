@@ -25,7 +25,6 @@
 #include "apps/shell/available_cores.h"
 #include "apps/shell/calibration_progress.h"
 #include "apps/shell/program.h"
-#include "apps/shell/setting_flags.h"
 #include "apps/view/live_view.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -58,15 +57,6 @@ ProgramSettings& Settings() {
   return settings;
 }
 
-// All other flags.
-const SettingFlags& Flags() {
-  static const SettingFlags flags(
-      {SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
-       SettingTable(&Settings().slam), SettingTable(&Settings().maps),
-       SettingTable(&Settings().output)});
-  return flags;
-}
-
 ProgramInfo Info() {
   ProgramInfo info;
   info.name = "rgbd_slam";
@@ -75,10 +65,13 @@ ProgramInfo Info() {
   info.example =
       "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
       "--output=runs/fr1_room --save_map=maps/room";
-  Flags().Describe(&info);
-  info.flag_groups.push_back(
-      {"Run", {"calibrate", "report", "finish_on_signal", "threads"}});
-  info.flag_groups.push_back({"View", {"view", "view_port", "view_speed"}});
+  info.settings = {
+      SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
+      SettingTable(&Settings().slam), SettingTable(&Settings().maps),
+      SettingTable(&Settings().output)};
+  info.flag_groups = {
+      {"Run", {"calibrate", "report", "finish_on_signal", "threads"}},
+      {"View", {"view", "view_port", "view_speed"}}};
   return info;
 }
 
@@ -173,7 +166,6 @@ class Calibration {
 
 int Main() {
   const Clock::time_point start = Clock::now();
-  Flags().Apply();
   const ProgramSettings& settings = Settings();
   RequireFlag("dataset", settings.sequence.dataset);
   RequireFlag("output", settings.output.output);

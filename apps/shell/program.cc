@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <deque>
 #include <exception>
 #include <stdexcept>
 #include <system_error>
@@ -14,6 +15,7 @@
 #include "apps/shell/flag_reader.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 
 namespace rgbd_pose {
 namespace {
@@ -22,6 +24,61 @@ namespace {
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
+};
+
+// A flag of gflags for each row of some tables of settings. Must live as long
+// as flags are read.
+class SettingFlags {
+ public:
+  explicit SettingFlags(const std::vector<std::vector<Setting>>& tables) {
+    for (const std::vector<Setting>& table : tables) {
+      for (const Setting& setting : table) Add(setting);
+    }
+  }
+
+  // The flags write numbers into the settings themselves; this, when they have
+  // been read, sets what goes by name. Throws InputError for unknown names.
+  void Apply() const {
+    for (const Row& row : rows_) row.named.set(row.text);
+  }
+
+ private:
+  // A setting by name, and what its flag holds.
+  struct Row {
+    NamedSetting named;
+    std::string text;
+  };
+
+  void Add(const Setting& setting) {
+    if (int* const* whole = std::get_if<int*>(&setting.value)) {
+      Register(setting, *whole, &ints_);
+    } else if (double* const* real = std::get_if<double*>(&setting.value)) {
+      Register(setting, *real, &doubles_);
+    } else if (bool* const* yes = std::get_if<bool*>(&setting.value)) {
+      Register(setting, *yes, &bools_);
+    } else {
+      const auto& named = std::get<NamedSetting>(setting.value);
+      rows_.push_back({named, named.get()});
+      Register(setting, &rows_.back().text, &texts_);
+    }
+  }
+
+  // gflags holds on to both places.
+  template <typename Value>
+  static void Register(const Setting& setting, Value* current,
+                       std::deque<Value>* defaults) {
+    defaults->push_back(*current);
+    gflags::FlagRegisterer(setting.name, setting.help, __FILE__, current,
+                           &defaults->back());
+  }
+
+  // In deques, where what they hold stays.
+  std::deque<Row> rows_;
+  // What gflags has as the defaults.
+  std::deque<int> ints_;
+  std::deque<double> doubles_;
+  std::deque<bool> bools_;
+  std::deque<std::string> texts_;
 };
 
 bool IsHelp(const std::string& argument) {
@@ -38,10 +95,36 @@ std::string FlagValue(const gflags::CommandLineFlagInfo& flag,
              : value;
 }
 
+// Of the settings, then the program's own.
+std::vector<FlagGroup> AllGroups(const ProgramInfo& info) {
+  std::vector<FlagGroup> groups;
+  for (const std::vector<Setting>& table : info.settings) {
+    for (const Setting& setting : table) {
+      if (groups.empty() || groups.back().title != setting.group) {
+        groups.push_back({std::string(setting.group), {}});
+      }
+      groups.back().flags.push_back(setting.name);
+    }
+  }
+  groups.insert(groups.end(), info.flag_groups.begin(), info.flag_groups.end());
+  return groups;
+}
+
+// The names that a flag takes; empty: it takes others.
+std::vector<std::string> ChoicesOf(const ProgramInfo& info,
+                                   const std::string& flag) {
+  for (const std::vector<Setting>& table : info.settings) {
+    if (const Setting* row = FindNamed(table, flag)) return row->choices;
+  }
+  const auto choices = info.choices.find(flag);
+  return choices == info.choices.end() ? std::vector<std::string>()
+                                       : choices->second;
+}
+
 void PrintHelp(const ProgramInfo& info) {
   std::printf("%s: %s\n\nExample:\n  %s\n", info.name.c_str(),
               info.summary.c_str(), info.example.c_str());
-  for (const FlagGroup& group : info.flag_groups) {
+  for (const FlagGroup& group : AllGroups(info)) {
     std::printf("\n%s:\n", group.title.c_str());
     for (const std::string& name : group.flags) {
       const auto flag = gflags::GetCommandLineFlagInfoOrDie(name.c_str());
@@ -51,10 +134,10 @@ void PrintHelp(const ProgramInfo& info) {
                     FlagValue(flag, flag.default_value).c_str());
       }
       std::printf(")\n      %s\n", flag.description.c_str());
-      const auto choices = info.choices.find(name);
-      if (choices == info.choices.end()) continue;
+      const std::vector<std::string> choices = ChoicesOf(info, name);
+      if (choices.empty()) continue;
       std::printf("      one of:");
-      for (const std::string& choice : choices->second) {
+      for (const std::string& choice : choices) {
         std::printf(" %s", choice.c_str());
       }
       std::printf("\n");
@@ -68,13 +151,14 @@ void PrintHelp(const ProgramInfo& info) {
 }
 
 int Run(int argc, char** argv, const ProgramInfo& info,
-        const std::function<int()>& body) {
+        const SettingFlags& settings, const std::function<int()>& body) {
   try {
     ReadFlags({argv + 1, argv + argc});
     FLAGS_logtostderr = true;
     google::InitGoogleLogging(argv[0]);
     // A file that grows beyond a limit is reported as a full disk is.
     std::signal(SIGXFSZ, SIG_IGN);
+    settings.Apply();
     const int exit_code = body();
     if (std::fflush(stdout) != 0) {
       throw InputError("the standard output cannot be written (" +
@@ -98,6 +182,7 @@ int Run(int argc, char** argv, const ProgramInfo& info,
 
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body) {
+  const SettingFlags settings(info.settings);
   for (int i = 1; i < argc; ++i) {
     if (IsHelp(argv[i])) {
       PrintHelp(info);
@@ -108,12 +193,12 @@ int RunProgram(int argc, char** argv, const ProgramInfo& info,
       return kExitOk;
     }
   }
-  return Run(argc, argv, info, body);
+  return Run(argc, argv, info, settings, body);
 }
 
 std::string FormatFlagFile(const ProgramInfo& info) {
   std::string text;
-  for (const FlagGroup& group : info.flag_groups) {
+  for (const FlagGroup& group : AllGroups(info)) {
     text += "# " + group.title + "\n";
     for (const std::string& name : group.flags) {
       const auto flag = gflags::GetCommandLineFlagInfoOrDie(name.c_str());

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "apps/pipeline/setting_table.h"
+
 namespace rgbd_pose {
 
 // What every program of the project exits with.
@@ -32,12 +34,15 @@ struct ProgramInfo {
   std::vector<FlagGroup> flag_groups;
   // Flags that take a name of a list: which names there are.
   std::map<std::string, std::vector<std::string>> choices = {};
+  // Tables of settings whose rows are flags, shown before the groups above.
+  // What they write to must live as long as the program.
+  std::vector<std::vector<Setting>> settings = {};
 };
 
 // Runs a program: --help and --version first, then the flags (one clear line
 // and exit 2 for an unknown flag or a value of the wrong type), logging to
-// stderr, then `body`, whose InputError becomes one line on stderr and exit 2.
-// Call it from main with main's own arguments.
+// stderr and the settings, then `body`, whose InputError becomes one line on
+// stderr and exit 2. Call it from main with main's own arguments.
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body);
 
