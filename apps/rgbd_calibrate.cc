@@ -58,7 +58,7 @@ int Main() {
 
   // All that can be wrong with the input is looked at before anything is made.
   OpenSequence(settings.sequence);
-  CalibrationOutput output(FLAGS_output);
+  RunFolder folder(FLAGS_output);
   const auto start = std::chrono::steady_clock::now();
   const RecordingCalibration calibration =
       CalibrateWithProgress(settings.sequence, settings.odometry, settings.slam,
@@ -67,12 +67,12 @@ int Main() {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count();
-  output.Write(calibration, settings.sequence.camera, FormatFlagFile(Info()),
-               seconds);
+  WriteCalibration(calibration, settings.sequence.camera,
+                   FormatFlagFile(Info()), seconds, folder);
   if (FLAGS_report) {
-    output.WriteFile("report.html", CalibrationPage(result, calibration.path));
+    folder.WriteFile("report.html", CalibrationPage(result, calibration.path));
   }
-  output.Publish();
+  folder.Publish();
   std::printf("%s%.1f s; results in %s\n",
               FormatCalibrationSummary(result).c_str(), seconds,
               FLAGS_output.c_str());

@@ -7,6 +7,7 @@
 #include <array>
 #include <cstring>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
@@ -73,6 +74,28 @@ pybind11::array ReadOnly(pybind11::array array);
 
 // A copy of a small matrix, row by row, not to be written.
 pybind11::array ArrayFromMatrix(const Eigen::MatrixXd& matrix);
+
+// A value as Python has it: motions and matrices as arrays, states in words,
+// all else as pybind11 does.
+inline pybind11::array ToPython(const Rigid3d& motion) {
+  return ArrayFromMatrix(MatrixFromRigid(motion));
+}
+template <typename T>
+auto ToPython(const T& value) {
+  if constexpr (std::is_enum_v<T>) {
+    return ToString(value);
+  } else if constexpr (std::is_base_of_v<Eigen::MatrixBase<T>, T>) {
+    return ArrayFromMatrix(value);
+  } else {
+    return value;
+  }
+}
+
+// A property that is a member of what it is bound to.
+template <typename Self, typename T>
+auto Get(T Self::*member) {
+  return [member](const Self& self) { return ToPython(self.*member); };
+}
 
 // What an object holds, seen as an array that keeps the object alive; no copy.
 template <typename T>

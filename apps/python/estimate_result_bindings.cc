@@ -46,7 +46,7 @@ const EstimateResult& RaiseIfFailed(const EstimateResult& self) {
 // A property that is a field of MotionEstimate.
 template <auto kMember>
 auto Field(const EstimateResult& result) {
-  return result.estimate.*kMember;
+  return ToPython(result.estimate.*kMember);
 }
 
 // The same, a list seen as an array without a copy.
@@ -71,10 +71,7 @@ or False for rows that no cost could use.)");
   result.attr("_error_type") = module->attr("EstimateError");
   result
       .def_property_readonly(
-          "status",
-          [](const EstimateResult& self) {
-            return ToString(self.estimate.status);
-          },
+          "status", &Field<&MotionEstimate::status>,
           "'ok', 'too_few_matches' (fewer than three usable), 'degenerate' "
           "(some\ndirection of motion is not determined), 'not_converged' or\n"
           "'inconsistent' (too few matches agree with one motion)")
@@ -88,18 +85,11 @@ or False for rows that no cost could use.)");
            "Raises EstimateError with status and reason unless ok; returns\n"
            "the estimate itself.")
       .def_property_readonly(
-          "cur_from_prev",
-          [](const EstimateResult& self) {
-            return ArrayFromMatrix(
-                MatrixFromRigid(self.estimate.cur_from_prev));
-          },
+          "cur_from_prev", &Field<&MotionEstimate::cur_from_prev>,
           "(4, 4): point_in_cur = cur_from_prev @ point_in_prev (m); the "
           "guess,\nif the status is 'too_few_matches'")
       .def_property_readonly(
-          "covariance",
-          [](const EstimateResult& self) {
-            return ArrayFromMatrix(self.estimate.covariance);
-          },
+          "covariance", &Field<&MotionEstimate::covariance>,
           "(6, 6), of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a "
           "small\nrotation about the axes of the current camera, R_true = "
           "Exp(omega) R; C (m)\nis the centre of the current camera in the "

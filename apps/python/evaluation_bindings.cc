@@ -122,13 +122,9 @@ void BindResults(py::module_* module) {
       .def_property_readonly("timestamps",
                              &List<&AteResult::timestamps, AteResult>,
                              "(count,), of the estimated poses, s")
-      .def_property_readonly(
-          "reference_from_estimated",
-          [](const AteResult& self) {
-            return ArrayFromMatrix(
-                MatrixFromRigid(self.reference_from_estimated));
-          },
-          "(4, 4), the alignment of the worlds")
+      .def_property_readonly("reference_from_estimated",
+                             Get(&AteResult::reference_from_estimated),
+                             "(4, 4), the alignment of the worlds")
       .def(Pickled<AteResult>());
   py::class_<RpeResult>(
       *module, "RpeResult",

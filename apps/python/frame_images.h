@@ -36,6 +36,31 @@ auto TrackArrays(Shared* shared, const pybind11::object& image,
   return shared->Track(std::move(frame), timestamp, guess);
 }
 
+// What Odometry and Slam have in common: track, trajectory, save_trajectory.
+template <typename Shared>
+void BindTracking(pybind11::class_<Shared>* type, const char* track_help,
+                  const char* trajectory_help) {
+  namespace py = pybind11;
+  const auto trajectory = [](Shared* self) {
+    const ReleasedGil no_gil;
+    return self->trajectory();
+  };
+  type->def("track", &TrackArrays<Shared>, track_help, py::arg("image"),
+            py::arg("depth"), py::arg("timestamp") = py::none(),
+            py::arg("motion_guess") = py::none(), py::arg("depth_delay") = 0.0)
+      .def_property_readonly(
+          "trajectory",
+          [=](Shared* self) { return ArraysFromTrajectory(trajectory(self)); },
+          trajectory_help)
+      .def(
+          "save_trajectory",
+          [=](Shared* self, const py::object& path) {
+            WriteFileAtomically(PathFrom(path),
+                                FormatTrajectory(trajectory(self)));
+          },
+          "Writes the trajectory as TUM text.", py::arg("path"));
+}
+
 // An image that an object holds, seen as an array that keeps it alive; no copy.
 template <typename T>
 pybind11::array ArrayOfImage(const cv::Mat& image, pybind11::handle owner) {

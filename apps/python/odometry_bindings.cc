@@ -32,11 +32,6 @@ std::unique_ptr<SharedOdometry> MakeSharedOdometry(const RgbdCamera& camera,
   return std::make_unique<SharedOdometry>(settings, camera);
 }
 
-Trajectory TrajectoryOf(SharedOdometry* odometry) {
-  const ReleasedGil no_gil;
-  return odometry->trajectory();
-}
-
 std::string FrameInWords(const TrackedFrame& frame) {
   std::string text = "TrackedFrame(" + std::to_string(frame.index) + ": " +
                      ToString(frame.status);
@@ -52,34 +47,23 @@ void BindTrackedFrame(py::module_* module) {
       .def_readonly("ref", &RelativePose::ref, "index of the reference")
       .def_readonly("cur", &RelativePose::cur, "index of the frame")
       .def_property_readonly(
-          "cur_from_ref",
-          [](const RelativePose& self) {
-            return ArrayFromMatrix(MatrixFromRigid(self.cur_from_ref));
-          },
+          "cur_from_ref", Get(&RelativePose::cur_from_ref),
           "(4, 4): point_in_cur = cur_from_ref @ point_in_ref (m)")
-      .def_property_readonly(
-          "covariance",
-          [](const RelativePose& self) {
-            return ArrayFromMatrix(self.covariance);
-          },
-          "(6, 6), as that of MotionEstimate")
+      .def_property_readonly("covariance", Get(&RelativePose::covariance),
+                             "(6, 6), as that of MotionEstimate")
       .def(Pickled<RelativePose>());
   py::class_<TrackedFrame>(*module, "TrackedFrame",
                            "What became of one input frame.")
       .def_readonly("index", &TrackedFrame::index, "of the frame, from 0")
       .def_readonly("timestamp", &TrackedFrame::timestamp, "s")
       .def_property_readonly(
-          "status",
-          [](const TrackedFrame& self) { return ToString(self.status); },
+          "status", Get(&TrackedFrame::status),
           "'ok', 'degraded' (a pose, but from few or contradicting matches) "
           "or\n'lost' (no pose was found: see on_lost for the one reported)")
       .def_readonly("reason", &TrackedFrame::reason,
                     "of the status, in words; empty if ok")
       .def_property_readonly(
-          "world_from_cam",
-          [](const TrackedFrame& self) {
-            return ArrayFromMatrix(MatrixFromRigid(self.world_from_cam));
-          },
+          "world_from_cam", Get(&TrackedFrame::world_from_cam),
           "(4, 4): point_in_world = world_from_cam @ point_in_cam (m); the "
           "world\nis the camera of the first frame")
       .def_property_readonly(
@@ -110,8 +94,7 @@ void BindTrackedFrame(py::module_* module) {
       .def_readonly("is_predicted", &TrackedFrame::is_predicted,
                     "whether it is lost, but its pose follows motion_guess")
       .def_property_readonly(
-          "tracking_source",
-          [](const TrackedFrame& frame) { return ToString(frame.source); },
+          "tracking_source", Get(&TrackedFrame::source),
           "what its motion comes from: 'features', 'direct' (pixels),\n"
           "'features+direct', or '' if it has none")
       .def_readonly("matches", &TrackedFrame::matches,
@@ -141,16 +124,9 @@ from several threads wait for each other; objects do not share anything.
 
 )" + HelpOf(SettingTable(&settings));
   py::class_<SharedOdometry> odometry(*module, "Odometry", doc.c_str());
-  {
-    py::options options;
-    options.disable_function_signatures();
-    odometry.def(py::init(&MakeSharedOdometry),
-                 InitSignature("Odometry", SettingTable(&settings)).c_str(),
-                 py::arg("camera").none(false),
-                 py::arg("frontend") = settings.frontend);
-  }
-  odometry
-      .def("track", &TrackArrays<SharedOdometry>, R"(
+  DefineInit(&odometry, &MakeSharedOdometry, "Odometry", settings.frontend,
+             SettingTable(&settings));
+  BindTracking(&odometry, R"(
 Tracks the next frame. The GIL is released.
 
 image: (height, width) uint8 grey, or (height, width, 3) uint8 in the order red,
@@ -167,22 +143,8 @@ depth_delay: how much later than the image depth was measured, s.
 Both images are copied: what becomes of the arrays afterwards does not matter.
 A frame that is lost is a status; images of a wrong shape or type raise
 InputError and count as no frame.)",
-           py::arg("image"), py::arg("depth"),
-           py::arg("timestamp") = py::none(),
-           py::arg("motion_guess") = py::none(), py::arg("depth_delay") = 0.0)
-      .def_property_readonly(
-          "trajectory",
-          [](SharedOdometry* self) {
-            return ArraysFromTrajectory(TrajectoryOf(self));
-          },
-          "(timestamps (N,), world_from_cam (N, 4, 4)) of frames not lost")
-      .def(
-          "save_trajectory",
-          [](SharedOdometry* self, const py::object& path) {
-            WriteFileAtomically(PathFrom(path),
-                                FormatTrajectory(TrajectoryOf(self)));
-          },
-          "Writes the trajectory as TUM text.", py::arg("path"));
+               "(timestamps (N,), world_from_cam (N, 4, 4)) of frames not "
+               "lost");
 }
 
 }  // namespace

@@ -29,6 +29,19 @@ std::string InitSignature(const std::string& class_name,
 // The rows in words, a paragraph each.
 std::string HelpOf(const std::vector<Setting>& table);
 
+// Defines the constructor of such a class, by a function of the camera, the
+// frontend and py::kwargs.
+template <typename Type, typename Make>
+void DefineInit(pybind11::class_<Type>* type, const Make& make,
+                const char* class_name, const std::string& frontend,
+                const std::vector<Setting>& table) {
+  namespace py = pybind11;
+  py::options options;
+  options.disable_function_signatures();
+  type->def(py::init(make), InitSignature(class_name, table).c_str(),
+            py::arg("camera").none(false), py::arg("frontend") = frontend);
+}
+
 // Defines a function whose last argument is py::kwargs: its signature and help
 // say the rows of the table in their place.
 template <typename Function, typename... Extra>

@@ -53,23 +53,11 @@ std::unique_ptr<SharedSlam> MakeSharedSlam(const RgbdCamera& camera,
   return std::make_unique<SharedSlam>(settings.odometry, settings.slam, camera);
 }
 
-Trajectory TrajectoryOf(SharedSlam* slam) {
-  const ReleasedGil no_gil;
-  return slam->trajectory();
-}
-
-// A pose of FrameInMap or KeyframePose as an array.
-template <typename Frame, typename PoseOf>
-auto Pose(PoseOf pose_of) {
-  return [pose_of](const Frame& self) {
-    return ArrayFromMatrix(MatrixFromRigid(pose_of(self)));
-  };
-}
-
-// Of what was taken up of the work behind.
+// Of what a SlamFrame says besides.
 template <typename T>
-auto Taken(T SlamFrame::*member) {
-  return [member](const FrameInMap& self) { return self.slam.*member; };
+auto InMap(T SlamFrame::*member) {
+  return
+      [member](const FrameInMap& self) { return ToPython(self.slam.*member); };
 }
 
 void BindFrames(py::module_* module) {
@@ -78,32 +66,32 @@ void BindFrames(py::module_* module) {
       "What became of one input frame: all that Odometry says of it, and where "
       "the\nmap has it.")
       .def_property_readonly(
-          "odom_from_cam",
-          Pose<FrameInMap>([](const auto& f) { return f.slam.odom_from_cam; }),
+          "odom_from_cam", InMap(&SlamFrame::odom_from_cam),
           "(4, 4), m: never jumps, whatever is corrected; drifts")
       .def_property_readonly(
-          "map_from_odom",
-          Pose<FrameInMap>([](const auto& f) { return f.slam.map_from_odom; }),
+          "map_from_odom", InMap(&SlamFrame::map_from_odom),
           "(4, 4), m: the correction; changes at keyframes and loops")
       .def_property_readonly(
           "map_from_cam",
-          Pose<FrameInMap>([](const auto& f) { return f.slam.map_from_cam(); }),
+          [](const FrameInMap& self) {
+            return ToPython(self.slam.map_from_cam());
+          },
           "(4, 4), m: map_from_odom @ odom_from_cam, the pose in the map as "
           "known now")
-      .def_property_readonly("segment", Taken(&SlamFrame::segment),
+      .def_property_readonly("segment", InMap(&SlamFrame::segment),
                              "of the map: frames of one segment hang together")
-      .def_property_readonly("pairs", Taken(&SlamFrame::pairs),
+      .def_property_readonly("pairs", InMap(&SlamFrame::pairs),
                              "of keyframes, that the map got since the frame "
                              "before")
-      .def_property_readonly("loops", Taken(&SlamFrame::loops),
+      .def_property_readonly("loops", InMap(&SlamFrame::loops),
                              "of these pairs: that join what was far apart")
-      .def_property_readonly("joined", Taken(&SlamFrame::joined),
+      .def_property_readonly("joined", InMap(&SlamFrame::joined),
                              "segments that became one with another")
-      .def_property_readonly("error", Taken(&SlamFrame::error),
+      .def_property_readonly("error", InMap(&SlamFrame::error),
                              "why poses were not corrected; empty: they were")
-      .def_property_readonly("map_ms", Taken(&SlamFrame::map_ms),
+      .def_property_readonly("map_ms", InMap(&SlamFrame::map_ms),
                              "time of that work, behind the tracking, ms")
-      .def_property_readonly("wait_ms", Taken(&SlamFrame::wait_ms),
+      .def_property_readonly("wait_ms", InMap(&SlamFrame::wait_ms),
                              "for which the tracking waited, ms")
       .def(Pickled<FrameInMap>());
   py::class_<KeyframePose>(*module, "Keyframe", "A keyframe of the map.")
@@ -113,10 +101,8 @@ void BindFrames(py::module_* module) {
       .def_readonly("segment", &KeyframePose::segment,
                     "poses of one segment share one map")
       .def_readonly("timestamp", &KeyframePose::timestamp, "s")
-      .def_property_readonly(
-          "map_from_cam",
-          Pose<KeyframePose>([](const auto& k) { return k.map_from_cam; }),
-          "(4, 4), m")
+      .def_property_readonly("map_from_cam", Get(&KeyframePose::map_from_cam),
+                             "(4, 4), m")
       .def_property_readonly(
           "covariance",
           [](const KeyframePose& self) -> py::object {
@@ -139,38 +125,17 @@ threads wait for each other; objects do not share anything.
 
 )" + HelpOf(settings.Table());
   py::class_<SharedSlam> slam(*module, "Slam", doc.c_str());
-  {
-    py::options options;
-    options.disable_function_signatures();
-    slam.def(py::init(&MakeSharedSlam),
-             InitSignature("Slam", settings.Table()).c_str(),
-             py::arg("camera").none(false),
-             py::arg("frontend") = settings.odometry.frontend);
-  }
+  DefineInit(&slam, &MakeSharedSlam, "Slam", settings.odometry.frontend,
+             settings.Table());
+  BindTracking(&slam,
+               "Tracks the next frame; arguments are those of Odometry.track. "
+               "The GIL is\nreleased. InputError after finish().",
+               "(timestamps (N,), map_from_cam (N, 4, 4)) of frames not lost, "
+               "as corrected by\nnow");
   const py::call_guard<ReleasedGil> no_gil;
-  slam.def("track", &TrackArrays<SharedSlam>,
-           "Tracks the next frame; arguments are those of Odometry.track. The "
-           "GIL is\nreleased. InputError after finish().",
-           py::arg("image"), py::arg("depth"),
-           py::arg("timestamp") = py::none(),
-           py::arg("motion_guess") = py::none(), py::arg("depth_delay") = 0.0)
-      .def("finish", &SharedSlam::Finish, no_gil,
+  slam.def("finish", &SharedSlam::Finish, no_gil,
            "Waits for the work behind and corrects all poses once more. No "
            "frame can be\ntracked afterwards.")
-      .def_property_readonly(
-          "trajectory",
-          [](SharedSlam* self) {
-            return ArraysFromTrajectory(TrajectoryOf(self));
-          },
-          "(timestamps (N,), map_from_cam (N, 4, 4)) of frames not lost, as "
-          "corrected by\nnow")
-      .def(
-          "save_trajectory",
-          [](SharedSlam* self, const py::object& path) {
-            WriteFileAtomically(PathFrom(path),
-                                FormatTrajectory(TrajectoryOf(self)));
-          },
-          "Writes the trajectory as TUM text.", py::arg("path"))
       .def("keyframes", &SharedSlam::Keyframes, no_gil,
            "After finish(): list of Keyframe, in the order of the map.")
       .def(

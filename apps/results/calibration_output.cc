@@ -161,27 +161,23 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result) {
           {"passes", result.passes}};
 }
 
-void CalibrationOutput::WriteFile(const char* name,
-                                  const std::string& content) const {
-  WriteFileAtomically((folder_.staging_dir() / name).string(), content);
-}
-
-void CalibrationOutput::Write(const RecordingCalibration& calibration,
-                              const std::string& camera,
-                              const std::string& flags, double seconds) {
+void WriteCalibration(const RecordingCalibration& calibration,
+                      const std::string& camera, const std::string& flags,
+                      double seconds, const RunFolder& folder) {
   const CalibrationResult& result = calibration.result;
-  WriteFile("camera.yaml", FormatCameraFile(result.camera, camera));
+  folder.WriteFile("camera.yaml", FormatCameraFile(result.camera, camera));
   if (result.noise.has_value()) {
-    WriteFile("depth_noise.yaml", FormatDepthNoiseFile(result.noise->model));
+    folder.WriteFile("depth_noise.yaml",
+                     FormatDepthNoiseFile(result.noise->model));
   }
-  WriteFile("residuals.csv", FormatResiduals(result));
-  WriteFile("config.flags", flags);
+  folder.WriteFile("residuals.csv", FormatResiduals(result));
+  folder.WriteFile("config.flags", flags);
   nlohmann::json metrics = {{"program", "rgbd_calibrate"},
                             {"seconds", seconds},
                             {"stopped", calibration.stopped},
                             {"damaged_frames", calibration.damaged},
                             {"calibration", CalibrationToJson(result)}};
-  WriteFile("metrics.json", metrics.dump(2) + "\n");
+  folder.WriteFile("metrics.json", metrics.dump(2) + "\n");
 }
 
 }  // namespace rgbd_pose

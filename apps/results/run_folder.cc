@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -121,6 +122,10 @@ RunFolder::~RunFolder() {
   fs::remove(staging_dir_, ignored);
   if (is_new_) fs::remove(path_, ignored);  // if it is empty
   close(lock_);
+}
+
+void RunFolder::WriteFile(const char* name, const std::string& content) const {
+  WriteFileAtomically((staging_dir_ / name).string(), content);
 }
 
 void RunFolder::Publish() {

@@ -23,6 +23,9 @@ class RunFolder {
   // Where to write the results meanwhile.
   const std::filesystem::path& staging_dir() const { return staging_dir_; }
 
+  // Writes a file into it. Throws InputError.
+  void WriteFile(const char* name, const std::string& content) const;
+
   // Moves all files to their places, metrics.json last, and removes what an
   // earlier run has left of these or other results, images in debug/ included.
   // Files of others stay. Throws InputError.

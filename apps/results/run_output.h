@@ -55,7 +55,9 @@ class RunOutput {
                     const nlohmann::json& more = nullptr);
 
   // A further file, by its name.
-  void WriteFile(const char* name, const std::string& content) const;
+  void WriteFile(const char* name, const std::string& content) const {
+    folder_.WriteFile(name, content);
+  }
 
   // Puts all files into their places.
   void Publish() { folder_.Publish(); }
