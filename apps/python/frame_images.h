@@ -10,6 +10,7 @@
 #include "apps/python/arrays.h"
 #include "apps/python/released_gil.h"
 #include "core/geometry/camera.h"
+#include "core/util/text_file.h"
 #include "frontend/frame/frame.h"
 
 namespace rgbd_pose {

@@ -330,6 +330,7 @@ bool Odometry::InsertKeyframe(const Keyframe& inserted) {
                inserted.world_from_cam,
                frame,
                {},
+               inserted.timing_covariance,
                inserted.features},
               std::move(reference), reference_);
   return true;
