@@ -161,9 +161,12 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
   const auto is_same = [](double a, double b) {
     return std::abs(a - b) <= 1e-8 * (1.0 + std::abs(b));
   };
+  const auto are_times_known = [](const RgbdCamera& rgbd) {
+    return rgbd.color_shutter.is_known || !rgbd.color_shutter.IsGlobal() ||
+           !rgbd.depth_shutter.IsGlobal();
+  };
   const auto is_same_shutter = [&](const Shutter& a, const Shutter& b) {
-    return is_same(a.offset, b.offset) && is_same(a.readout, b.readout) &&
-           a.is_known == b.is_known;
+    return is_same(a.offset, b.offset) && is_same(a.readout, b.readout);
   };
   for (const CameraParameter& parameter : kCameraParameters) {
     if (!is_same(read.camera.*parameter.value,
@@ -181,6 +184,7 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
          is_same(a.inverse_depth_offset, b.inverse_depth_offset) &&
          is_same_shutter(read.color_shutter, camera.color_shutter) &&
          is_same_shutter(read.depth_shutter, camera.depth_shutter) &&
+         are_times_known(read) == are_times_known(camera) &&
          is_same(between.Angle(), 0.0) &&
          is_same(between.translation.norm(), 0.0);
 }

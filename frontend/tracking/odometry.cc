@@ -32,7 +32,7 @@ constexpr double kSigmaLinear = 0.3;   // m/s
 // real sequences; with both NEES is 0.7 to 1.5 (1.6 to 6.6 without, and of
 // frames that are ok up to 27 % wrong by more than five sigmas, now below 1 %).
 constexpr double kSigmaKnownTime = 3e-5;
-constexpr double kSigmaUnknownTime = 4e-3;
+constexpr double kSigmaUnknownTime = 5e-3;
 
 }  // namespace
 

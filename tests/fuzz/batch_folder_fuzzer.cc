@@ -9,7 +9,8 @@
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace rgbd_pose;
   static const FuzzFolder files;
-  static const BatchRun run = {{"a", "", ""}, "b", "c", "d", 1, "0123"};
+  static const BatchRun run = {
+      {"a", "", ""}, {"b", "c", "d", "e", ""}, 1, "0123"};
   static const BatchFolder folder(files.path());
   std::filesystem::create_directories(folder.Complete(run));
   std::string_view rest = FuzzText(data, size);
