@@ -15,9 +15,9 @@ namespace rgbd_pose {
 // confirms them by simulation.
 struct SmallSample {
   std::array<double, 8> factors;  // for n = 2 ... 9
-  double shift_even;
-  double shift_odd;
-
+  double shift_even;              // for even n above
+  double shift_odd;               // for odd n above
+  // Of so many values.
   double Factor(size_t n) const {
     if (n < 10) return factors[n - 2];
     const double size = static_cast<double>(n);

@@ -186,7 +186,7 @@ struct ShutterParameter {
   double most;                 // no camera has more, either way, s
 };
 
-inline constexpr std::array<ShutterParameter, 4> kShutterParameters = {
+inline constexpr std::array<ShutterParameter, 4> kShutterParameters = {  // all
     {{"color_time_offset", &RgbdCamera::color_shutter, &Shutter::offset, 0.5},
      {"color_readout", &RgbdCamera::color_shutter, &Shutter::readout, 0.1},
      {"depth_time_offset", &RgbdCamera::depth_shutter, &Shutter::offset, 0.5},

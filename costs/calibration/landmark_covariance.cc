@@ -12,10 +12,6 @@ namespace {
 // As RobustCovariance has it.
 constexpr double kMinSlope = 0.2;
 
-// Keyframes that follow each other see the same surfaces with the same errors:
-// so many batches of them are told apart at most.
-constexpr int kMostBatches = 24;
-
 }  // namespace
 
 bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
@@ -64,13 +60,8 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
   const double slope =
       equations.weight_p > 0.0 ? equations.slope_p / equations.weight_p : 1.0;
   if (!invert(std::max(slope, kMinSlope))) return false;
-  // What the landmarks of each batch of keyframes move y by.
-  const Eigen::MatrixXd of_keyframes = last.transpose() * equations.gradients;
-  const int batches = std::min(num_poses, kMostBatches);
-  Eigen::MatrixXd moves = Eigen::MatrixXd::Zero(kCalibrationSize, batches);
-  for (int k = 0; k < num_poses; ++k) {
-    moves.col(k * batches / num_poses) += of_keyframes.col(k);
-  }
+  // What each keyframe's landmarks move y by.
+  Eigen::MatrixXd moves = last.transpose() * equations.gradients;
   // Distances and the prior have the noise that they say.
   CalibrationMatrix exact = last.bottomRows<kCalibrationSize>().transpose() *
                             last.bottomRows<kCalibrationSize>();
@@ -90,7 +81,7 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
     exact += move * move.transpose();
   }
   int groups = 0;
-  for (int k = 0; k < batches; ++k) groups += moves.col(k).norm() > 0.0;
+  for (int k = 0; k < num_poses; ++k) groups += moves.col(k).norm() > 0.0;
   const double correction =
       groups > 1 ? static_cast<double>(groups) / (groups - 1) : 1.0;
   *sandwich_covariance =

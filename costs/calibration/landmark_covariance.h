@@ -9,8 +9,8 @@ namespace rgbd_pose {
 
 // The covariance of theta at a solution of a BundleAdjustment, all else being
 // free too: once as the residuals' noise has it, and once as their scatter over
-// batches of keyframes has it, whatever their noise. Both know the prior. Zero
-// for what `origin` says is not free; false if they cannot be computed.
+// the keyframes has it, whatever their noise. Both know the prior. Zero for
+// what `origin` says is not free; false if they cannot be computed.
 bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
                         const CalibrationOrigin& origin,
                         const CalibrationState& state,

@@ -1,8 +1,7 @@
 #include "frontend/bags/ros2_bag.h"
 
-#include <stdlib.h>  // mkdtemp
-
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 
 #include "core/util/input_error.h"

@@ -19,9 +19,9 @@ struct KeyframePlace {
 
 // Two keyframes that a measured motion joins, by id.
 struct MapLink {
-  int ref = 0;
-  int cur = 0;
-  bool is_loop = false;
+  int ref = 0;           // the earlier one
+  int cur = 0;           // the later one
+  bool is_loop = false;  // joins what was far apart
 };
 
 // What became of the map.

@@ -68,7 +68,7 @@ room apps/batch "$programs" "$libraries"
 room apps/report "$programs" "$libraries"
 room apps/view "$programs" "$libraries|httplib\.h"
 room apps/export "$programs" "$libraries"
-room apps/python "$programs" "$libraries|pybind11/"
+room apps/python "$programs" "$libraries|pybind11/|Python.h"
 
 # Circles within a room, too.
 circles=$(grep -roE --include='*.h' '^#include "[^"]+"' core robust costs \

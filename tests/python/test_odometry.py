@@ -292,7 +292,7 @@ DEPTH = np.zeros((480, 640), np.uint16)
         (np.zeros((480, 640, 4), np.uint8), DEPTH, "image: is uint8 of shape"),
         (IMAGE, DEPTH[:-1], r"depth: is uint16 of shape \(479, 640\)"),
         (IMAGE, DEPTH.astype(np.int32), "depth: is int32"),
-        (IMAGE, np.zeros((480, 640, 1), np.uint16), "depth: is uint16"),
+        (IMAGE, np.zeros((480, 640, 2), np.uint16), "depth: is uint16"),
         (IMAGE, IMAGE, "depth: is uint8 of shape"),
         (None, DEPTH, "image: is object"),
     ],

@@ -103,7 +103,8 @@ TEST_F(BadInputTest, Flags) {
   ExpectEach(
       Odometry(),
       {
-          {"unknown", nullptr, "--los=tukey", 2, "unknown flag --los; --help"},
+          {"unknown", nullptr, "--los=tukey", 2,
+           "unknown flag --los; did you mean --loss?"},
           {"no flag", nullptr, "tukey", 2, "'tukey' is no flag"},
           {"after two dashes", nullptr, "-- tukey", 2, "'--' is no flag"},
           {"of gflags", nullptr, "--fromenv=loss", 2, "unknown flag --fromenv"},
