@@ -185,8 +185,8 @@ struct ShutterParameter {
   double Shutter::*value;      // where it is
   double most;                 // no camera has more, either way, s
 };
-
-inline constexpr std::array<ShutterParameter, 4> kShutterParameters = {  // all
+// All of them.
+inline constexpr std::array<ShutterParameter, 4> kShutterParameters = {
     {{"color_time_offset", &RgbdCamera::color_shutter, &Shutter::offset, 0.5},
      {"color_readout", &RgbdCamera::color_shutter, &Shutter::readout, 0.1},
      {"depth_time_offset", &RgbdCamera::depth_shutter, &Shutter::offset, 0.5},
