@@ -322,8 +322,8 @@ TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {
   }
 }
 
-// What nobody knows is in the covariance: of a hand as fast as that, whose NEES
-// is a hundred times as large without, in part; of real ones see odometry.cc.
+// What nobody knows is in the covariance: for a hand as fast as this one in
+// part, for real ones (see odometry.cc) as a whole.
 TEST(ShutterTrackingTest, ShuttersThatNobodyKnowsAreAllowedFor) {
   for (const std::string tracker : {"features", "hybrid"}) {
     const Honesty honesty =
