@@ -18,8 +18,8 @@ namespace {
 using FreeParts = std::array<bool, kCalibrationSize>;
 using Status = CalibratedParameter::Status;
 
-CalibrationVector PriorOf(const CalibrationSettings& settings,
-                          const CalibrationVector& start) {
+CalibrationVector PriorSigmas(const CalibrationSettings& settings,
+                              const CalibrationVector& start) {
   CalibrationVector prior;
   for (int k = 0; k < kCalibrationSize; ++k) {
     prior[k] = settings.prior[k] > 0.0 ? settings.prior[k]
@@ -45,13 +45,52 @@ void SolveWithScales(const BundleAdjustment& problem, const FreeParts& is_free,
   }
 }
 
+// Parameters that are known together, those that are known best first.
+struct Group {
+  int first, size;
+};
+constexpr Group kGroups[] = {
+    {kFx, 2},           {kK1, 2},        {kCx, 2},           {kDepthFactor, 1},
+    {kInverseDepth, 1}, {kRotationX, 6}, {kColorReadout, 2}, {kDepthTime, 1},
+};
+
+// Takes back what the pairs that are held out do not ask for: parameters that
+// make up for each other, or for something else than the camera, make them fit
+// no better.
+void TakeBackNeedless(const CalibrationViews& views,
+                      const CalibrationPrior& prior,
+                      const CalibrationVector& start, double min_gain_sigmas,
+                      FreeParts* is_free, CalibrationState* state) {
+  constexpr int kNearby = 5;  // iterations: it begins where others ended
+  const BundleAdjustment training(views, prior, true, kNearby);
+  CalibrationState best = *state;
+  for (const Group& group : kGroups) {
+    FreeParts fewer = *is_free;
+    CalibrationState simpler = *state;
+    for (int k = group.first; k < group.first + group.size; ++k) {
+      fewer[k] = false;
+      simpler.theta[k] = start[k];
+    }
+    if (fewer == *is_free) continue;
+    SolveWithScales(training, fewer, 1, &simpler);
+    CalibrationResult compared;
+    CompareHeldOut(views, simpler, views, best, &compared);
+    if (compared.held_out_pairs < 2) return;  // nothing tells
+    if (compared.gain_sigmas >= min_gain_sigmas) continue;
+    if (compared.gain_sigmas < 0.0) best = simpler;
+    *is_free = fewer;
+    *state = simpler;
+  }
+}
+
 }  // namespace
 
 CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const RgbdCamera& first,
                             const OdometrySettings& odometry,
                             const CalibrationSettings& settings,
-                            const CalibrationScale& scale, int threads) {
+                            const CalibrationScale& scale, int threads,
+                            const RgbdCamera* known) {
   const std::string error = settings.Check();
   if (!error.empty()) throw InputError("calibration: " + error);
   CalibrationResult result;
@@ -60,19 +99,20 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
       CollectCalibrationData(map, path, odometry, settings.data, threads);
   result.scale_from =
       AddKnownDistances(map, path, settings.known_length, scale, &data);
-  const FreeParts asked =
-      FreeParameters(settings.fix, !data.views.distances.empty());
   result.keyframes = static_cast<int>(data.timestamps.size());
   result.pairs = static_cast<int>(data.pairs.size());
   result.landmarks = static_cast<int>(data.views.landmarks.size());
   result.views = static_cast<int>(data.views.views.size());
-
   const CalibrationVector start = ThetaOf(map.camera);
-  const CalibrationVector prior = PriorOf(settings, start);
+  CalibrationPrior prior;
+  prior.mean = ThetaBetween(first, known != nullptr ? *known : first);
+  prior.sigma = PriorSigmas(settings, start);
+  const FreeParts asked =
+      FreeParameters(settings.fix, !data.views.distances.empty());
   for (int k = 0; k < kCalibrationSize; ++k) {
     CalibratedParameter& parameter = result.parameters[k];
     parameter.before = parameter.found = start[k];
-    parameter.prior = parameter.sigma = prior[k];
+    parameter.prior = parameter.sigma = prior.sigma[k];
     if (asked[k]) parameter.status = Status::kUndetermined;
   }
   constexpr int kMinViews = 100;
@@ -92,8 +132,8 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
 
   // What pairs tell that are not held out, with both cameras.
   constexpr int kRounds = 2;
-  const BundleAdjustment training(data.views, start, prior, true);
-  CalibrationState before = training.Begin();
+  const BundleAdjustment training(data.views, prior, true);
+  CalibrationState before = training.Begin(start);
   training.MeasureScales(&before);
   SolveWithScales(training, FreeParts{}, kRounds, &before);
   CalibrationState after = before;
@@ -104,39 +144,62 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     look_up(after.theta);
     SolveWithScales(training, asked, kRounds, &after);
   }
-  CalibrationMatrix model_covariance, sandwich_covariance;
   FreeParts is_free = asked;
+  TakeBackNeedless(data.views, prior, start, settings.min_gain_sigmas, &is_free,
+                   &after);
+  if (IsDisplaced(after.theta - undone)) {
+    look_up(after.theta);
+    SolveWithScales(training, is_free, kRounds, &after);
+  }
+  result.halves = SplitHalfConsistency(data.views, after, is_free, prior);
+  // Halves that are farther apart than their error bars tell how wide these
+  // are; beyond that they contradict each other.
+  constexpr double kMaxSpread = 4.0;
+  const double spread = SpreadOfHalves(result.halves);
+  result.spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
+  for (HalvesOfParameter& half : result.halves) half.sigma *= result.spread;
+  const FreeParts needed = is_free;
+  CalibrationMatrix model_covariance, sandwich_covariance;
   const auto judge = [&](const BundleAdjustment& problem,
                          const CalibrationState& state) {
-    const bool can_tell = problem.Covariance(asked, state, &model_covariance,
+    const bool can_tell = problem.Covariance(needed, state, &model_covariance,
                                              &sandwich_covariance);
     for (int k = 0; k < kCalibrationSize; ++k) {
-      if (!asked[k]) continue;
+      if (!needed[k]) continue;
       CalibratedParameter& parameter = result.parameters[k];
       parameter.found = state.theta[k];
       parameter.sigma =
-          can_tell ? std::hypot(std::sqrt(std::max(model_covariance(k, k),
-                                                   sandwich_covariance(k, k))),
-                                CalibrationFloor(k, result.keyframes))
-                   : prior[k];
-      is_free[k] =
-          parameter.sigma < settings.determined_share * parameter.prior;
-      parameter.status =
-          is_free[k] ? Status::kDetermined : Status::kUndetermined;
+          can_tell
+              ? std::hypot(result.spread *
+                               std::sqrt(std::max(model_covariance(k, k),
+                                                  sandwich_covariance(k, k))),
+                           CalibrationFloor(k, result.keyframes))
+              : prior.sigma[k];
     }
   };
   judge(training, after);
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    CalibratedParameter& parameter = result.parameters[k];
+    is_free[k] = needed[k] &&
+                 parameter.sigma < settings.determined_share * parameter.prior;
+    if (is_free[k]) parameter.status = Status::kDetermined;
+  }
   result.noise =
       FitDepthNoise(views_before, before, odometry.features.depth_noise);
   if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
     result.reason = "the recording determines nothing of it";
     return result;
   }
-  if (is_free != asked) {
+  if (is_free != needed) {
     // The rest stays where it was.
     for (int k = 0; k < kCalibrationSize; ++k) {
       if (!is_free[k]) after.theta[k] = start[k];
     }
+    std::vector<HalvesOfParameter> halves;
+    for (const HalvesOfParameter& half : result.halves) {
+      if (is_free[half.part]) halves.push_back(half);
+    }
+    result.halves = halves;
     SolveWithScales(training, is_free, kRounds, &after);
   }
   if (scale.ground_truth != nullptr) {
@@ -144,24 +207,16 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     result.truth_after = TruthError(data, after, *scale.ground_truth);
   }
   CalibrationResult with_map_poses;
-  CompareHeldOut(views_before, training.Begin(), data.views, after,
+  CompareHeldOut(views_before, training.Begin(start), data.views, after,
                  &with_map_poses);
   result.cost_of_map = with_map_poses.cost_before;
   CompareHeldOut(views_before, before, data.views, after, &result);
 
   // And in the end all.
-  const BundleAdjustment all(data.views, start, prior, false);
+  const BundleAdjustment all(data.views, prior, false);
   CalibrationState found = after;
   SolveWithScales(all, is_free, kRounds, &found);
-  const FreeParts determined = is_free;
   judge(all, found);
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    if (asked[k] && !determined[k]) {
-      result.parameters[k].status = Status::kUndetermined;
-    }
-  }
-  result.halves =
-      SplitHalfConsistency(data.views, found, is_free, start, prior, threads);
   result.displacement_px = DisplacementPx(data.views, found.theta - start);
   result.pixel_before = before.pixel_scale;
   result.pixel_after = found.pixel_scale;

@@ -18,11 +18,13 @@ struct CalibrationScale {
 
 // Calibrates a camera from keyframes and pairs of its recording. `first`: the
 // camera that they were tracked with; `path`: a smooth path of all frames, see
-// CollectCalibrationData. Throws InputError for invalid settings.
+// CollectCalibrationData; `known`: the camera that priors are around, null: the
+// first one. Throws InputError for invalid settings.
 CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const RgbdCamera& first,
                             const OdometrySettings& odometry,
                             const CalibrationSettings& settings,
-                            const CalibrationScale& scale, int threads);
+                            const CalibrationScale& scale, int threads,
+                            const RgbdCamera* known = nullptr);
 
 }  // namespace rgbd_pose

@@ -6,8 +6,6 @@
 #include <optional>
 #include <utility>
 
-#include "core/util/parallel_for.h"
-
 namespace rgbd_pose {
 namespace {
 
@@ -73,10 +71,9 @@ struct Told {
 
 // Nothing if the part has too few views or does not tell.
 std::optional<Told> Calibrated(Part part, const FreeParts& is_free,
-                               const CalibrationVector& start,
-                               const CalibrationVector& prior) {
+                               const CalibrationPrior& prior) {
   if (part.views.views.size() < static_cast<size_t>(kMinViews)) return {};
-  const BundleAdjustment problem(part.views, start, prior, false);
+  const BundleAdjustment problem(part.views, prior, false);
   if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
   problem.MeasureScales(&part.state);
   CalibrationMatrix model_covariance, sandwich_covariance;
@@ -94,18 +91,26 @@ double HalvesOfParameter::Sigmas() const {
   return std::abs(second - first) / sigma;
 }
 
+double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves) {
+  if (halves.empty()) return 0.0;
+  double squares = 0.0;
+  for (const HalvesOfParameter& half : halves) {
+    squares += half.Sigmas() * half.Sigmas();
+  }
+  return std::sqrt(squares / halves.size());
+}
+
 std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
-    const FreeParts& is_free, const CalibrationVector& start,
-    const CalibrationVector& prior, int threads) {
+    const FreeParts& is_free, const CalibrationPrior& prior) {
   const int all = static_cast<int>(views.world_from_cam.size());
   std::array<std::optional<Told>, 2> halves;
-  ParallelFor(2, threads, [&](int half) {
+  // One after the other: at the same time they would add up in another order.
+  for (int half = 0; half < 2; ++half) {
     const int begin = half * (all / 2), end = half == 0 ? all / 2 : all;
-    if (end - begin < kMinKeyframes) return;
-    halves[half] =
-        Calibrated(PartOf(views, found, begin, end), is_free, start, prior);
-  });
+    if (end - begin < kMinKeyframes) return {};
+    halves[half] = Calibrated(PartOf(views, found, begin, end), is_free, prior);
+  }
   if (!halves[0].has_value() || !halves[1].has_value()) return {};
   std::vector<HalvesOfParameter> result;
   for (int k = 0; k < kCalibrationSize; ++k) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "costs/calibration/bundle_adjustment.h"
 #include "costs/calibration/calibration_state.h"
 #include "costs/calibration/calibration_views.h"
 
@@ -21,6 +22,10 @@ struct HalvesOfParameter {
   double Sigmas() const;
 };
 
+// How far halves are apart in all, as a root mean square in standard
+// deviations: about 1 if error bars are right; 0: they were not compared.
+double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves);
+
 // Calibrates both halves of a recording (in time) by themselves, from where all
 // of it ended. What is wrong with a camera is wrong in both; what is absorbed
 // of something else depends on what is seen. Empty if a half has too few views
@@ -28,7 +33,6 @@ struct HalvesOfParameter {
 std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
     const std::array<bool, kCalibrationSize>& is_free,
-    const CalibrationVector& start, const CalibrationVector& prior,
-    int threads);
+    const CalibrationPrior& prior);
 
 }  // namespace rgbd_pose

@@ -25,6 +25,7 @@ bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
     all->is_accepted = false;
     all->reason = disagree;
     all->halves = further.halves;
+    all->spread = further.spread;
     all->camera = first;
     return false;
   }
@@ -48,6 +49,7 @@ bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
   merged.camera = merged.found = further.found;
   merged.noise = further.noise;
   merged.halves = further.halves;
+  merged.spread = further.spread;
   merged.pixel_after = further.pixel_after;
   merged.depth_after = further.depth_after;
   merged.truth_after = further.truth_after;
@@ -109,7 +111,8 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
     all.left_out = DroppedFrames(*opened.source, run.run().damaged());
     all.left_out.insert(all.left_out.begin(), opened.remarks.begin(),
                         opened.remarks.end());
-    const CalibrationResult result = run.Solve(threads);
+    const CalibrationResult result =
+        run.Solve(threads, pass > 1 ? &first : nullptr);
     all.path = run.run().slam().Path();
     bool goes_on;
     if (pass == 1) {

@@ -18,7 +18,7 @@ struct CalibratedParameter {
   // What the recording says of it.
   enum class Status {
     kFixed,         // was not asked for, or nothing could tell it
-    kUndetermined,  // the recording does not tell it
+    kUndetermined,  // that stays: it does not tell, or fits no better so
     kDetermined,
   };
   Status status = Status::kFixed;  // what the recording says of it
@@ -82,6 +82,10 @@ struct CalibrationResult {
 
   // What the halves of the recording say of what is determined; may be empty.
   std::vector<HalvesOfParameter> halves;
+
+  // So many times wider than residuals say error bars are, as halves were so
+  // far apart.
+  double spread = 1.0;
 
   // How far depth, or the first row of colour, turned out to be displaced, px
   // (the median of views). If that is much, it is due to be mapped again with

@@ -40,12 +40,12 @@ std::string CalibrationRun::Track(FrameSource* source, int threads,
   });
 }
 
-CalibrationResult CalibrationRun::Solve(int threads) {
+CalibrationResult CalibrationRun::Solve(int threads, const RgbdCamera* known) {
   const Trajectory* const truth = sequence_->GroundTruth();
   run_.Finish(truth);
   return Calibrate(run_.slam().Map(), SmoothPath(run_.slam_frames()), first_,
                    odometry_, settings_,
-                   {truth, sequence_->inputs().motion_guess}, threads);
+                   {truth, sequence_->inputs().motion_guess}, threads, known);
 }
 
 Trajectory SmoothPath(const std::vector<SlamFrame>& frames) {

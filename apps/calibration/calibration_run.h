@@ -30,8 +30,8 @@ class CalibrationRun {
   std::string Track(FrameSource* source, int threads,
                     const std::function<void()>& on_frame);
 
-  // After that, once: what came of it.
-  CalibrationResult Solve(int threads);
+  // After that, once: what came of it. `known`: see Calibrate.
+  CalibrationResult Solve(int threads, const RgbdCamera* known = nullptr);
 
   // After that: the map and the path it was made from.
   const SlamRun& run() const { return run_; }

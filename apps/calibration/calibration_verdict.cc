@@ -169,7 +169,11 @@ std::string HalvesInWords(const CalibrationResult& result) {
   return worst == nullptr
              ? "the halves of the recording see too little to be compared"
              : "the halves of the recording, each by itself, differ by " +
-                   Short(worst->Sigmas()) + " standard deviations at most";
+                   Short(worst->Sigmas()) + " standard deviations at most" +
+                   (result.spread > 1.0
+                        ? "; error bars are " + Short(result.spread) +
+                              " times wider than residuals say, for that"
+                        : "");
 }
 
 std::string ImplausibilityReason(const RgbdCamera& first,

@@ -62,8 +62,9 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
                NumberTo(parameter.sigma, parameter.sigma).c_str(), row.unit);
   }
   if (!undetermined.empty()) {
-    text += "the recording does not determine " + undetermined +
-            ": they stay as they are\n";
+    text += undetermined +
+            " stay as they are: the recording does not determine them, or "
+            "pairs held out fit no better with others\n";
   }
   if (result.scale_from.empty()) {
     text +=

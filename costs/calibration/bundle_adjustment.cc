@@ -49,29 +49,30 @@ std::vector<LinearizationPoint> OriginsOf(
 }  // namespace
 
 BundleAdjustment::BundleAdjustment(const CalibrationViews& views,
-                                   const CalibrationVector& start,
-                                   const CalibrationVector& prior,
+                                   const CalibrationPrior& prior,
                                    bool training_only, int max_iterations)
     : views_(views),
-      start_(start),
       prior_(prior),
       training_only_(training_only),
       max_iterations_(max_iterations) {}
 
-CalibrationState BundleAdjustment::Begin() const {
+CalibrationState BundleAdjustment::Begin(const CalibrationVector& theta) const {
   CalibrationState state;
   state.world_from_cam = views_.world_from_cam;
-  state.theta = start_;
+  state.theta = theta;
   for (const Landmark& landmark : views_.landmarks) {
     state.inverse_depths.push_back(landmark.depth.value);
   }
   return state;
 }
 
-CalibrationOrigin BundleAdjustment::OriginOf(const FreeParts& is_free) const {
-  CalibrationOrigin origin{start_, prior_};
+CalibrationOrigin BundleAdjustment::OriginOf(
+    const FreeParts& is_free, const CalibrationVector& theta) const {
+  CalibrationOrigin origin{theta, CalibrationVector::Zero()};
   for (int k = 0; k < kCalibrationSize; ++k) {
-    if (!is_free[k]) origin.width[k] = 0.0;
+    if (!is_free[k]) continue;
+    origin.start[k] = prior_.mean[k];
+    origin.width[k] = prior_.sigma[k];
   }
   return origin;
 }
@@ -117,13 +118,14 @@ void BundleAdjustment::MeasureScales(CalibrationState* state) const {
 
 double BundleAdjustment::Solve(const FreeParts& is_free,
                                CalibrationState* state) const {
-  const CalibrationOrigin origin = OriginOf(is_free);
+  const CalibrationOrigin origin = OriginOf(is_free, state->theta);
   const std::vector<LinearizationPoint> origins =
       OriginsOf(state->world_from_cam);
   std::vector<MotionVector> x(origins.size(), MotionVector::Zero());
   CalibrationVector y;
   for (int k = 0; k < kCalibrationSize; ++k) {
-    y[k] = is_free[k] ? (state->theta[k] - start_[k]) / prior_[k] : 0.0;
+    y[k] =
+        is_free[k] ? (state->theta[k] - prior_.mean[k]) / prior_.sigma[k] : 0.0;
   }
   const size_t num_landmarks = views_.landmarks.size();
   std::vector<LandmarkData> data;  // stays where it is
@@ -208,7 +210,8 @@ bool BundleAdjustment::Covariance(
     const FreeParts& is_free, const CalibrationState& state,
     CalibrationMatrix* model_covariance,
     CalibrationMatrix* sandwich_covariance) const {
-  return LandmarkCovariance(views_, training_only_, OriginOf(is_free), state,
+  return LandmarkCovariance(views_, training_only_,
+                            OriginOf(is_free, state.theta), state,
                             model_covariance, sandwich_covariance);
 }
 

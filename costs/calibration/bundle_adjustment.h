@@ -9,6 +9,11 @@
 
 namespace rgbd_pose {
 
+// What is known of theta before, of each parameter by itself.
+struct CalibrationPrior {
+  CalibrationVector mean, sigma;
+};
+
 // A bundle adjustment of keyframes, landmarks and the camera itself. What of
 // the camera is free has a normal prior. On one thread: several would add up in
 // an order of their own, with other last digits each time.
@@ -16,13 +21,11 @@ class BundleAdjustment {
  public:
   // `views` must outlive it. Views that are held out take no part if
   // `training_only`.
-  BundleAdjustment(const CalibrationViews& views,
-                   const CalibrationVector& start,
-                   const CalibrationVector& prior, bool training_only,
-                   int max_iterations = 20);
+  BundleAdjustment(const CalibrationViews& views, const CalibrationPrior& prior,
+                   bool training_only, int max_iterations = 20);
 
   // Where all begins: poses of the views, depths as measured.
-  CalibrationState Begin() const;
+  CalibrationState Begin(const CalibrationVector& theta) const;
 
   // Measures the scales of a state's residuals.
   void MeasureScales(CalibrationState* state) const;
@@ -39,11 +42,12 @@ class BundleAdjustment {
                   CalibrationMatrix* sandwich_covariance) const;
 
  private:
-  CalibrationOrigin OriginOf(
-      const std::array<bool, kCalibrationSize>& is_free) const;
+  // What is free begins at its mean, the rest stays where it is.
+  CalibrationOrigin OriginOf(const std::array<bool, kCalibrationSize>& is_free,
+                             const CalibrationVector& theta) const;
 
   const CalibrationViews& views_;
-  const CalibrationVector start_, prior_;
+  const CalibrationPrior prior_;
   const bool training_only_;
   const int max_iterations_;
 };

@@ -98,6 +98,11 @@ TEST(CalibrationTest, FindsWhatIsWrongOnAnyNumberOfThreads) {
   EXPECT_NEAR(result.camera.depth_correction.inverse_depth_offset, 0.0, 2e-3);
   EXPECT_NEAR(result.camera.depth_shutter.offset, 0.0, 1e-3);
   EXPECT_LT(result.cost_after, result.cost_before);
+  // What was right is not touched.
+  EXPECT_EQ(result.camera.camera.k1, truth.k1);
+  EXPECT_EQ(result.camera.color_shutter.readout, 0.0);
+  EXPECT_TRUE(
+      result.camera.depth_correction.depth_from_color.translation.isZero(0.0));
   // Images alone do not tell how large the world is.
   EXPECT_EQ(Of(result, kDepthFactor).status, Status::kFixed);
   EXPECT_EQ(result.camera.depth_scale, Wrong().depth_scale);
@@ -119,7 +124,8 @@ TEST(CalibrationTest, WhatIsFixedStays) {
   EXPECT_EQ(Of(result, kCx).found, Wrong().camera.cx);
   EXPECT_EQ(Of(result, kDepthTime).found, 0.0);
   EXPECT_EQ(Of(result, kRotationY).found, 0.0);
-  EXPECT_EQ(Of(result, kFx).status, Status::kDetermined);
+  EXPECT_NE(Of(result, kFx).status, Status::kFixed);
+  EXPECT_EQ(Of(result, kK1).status, Status::kDetermined);
   settings.fix = "centre,size";
   EXPECT_THROW(MappedWrongly().Calibrate(settings), InputError);
 }
@@ -190,6 +196,13 @@ TEST(CalibrationTest, HalvesOfOneCameraAgree) {
               Status::kDetermined);
     EXPECT_GT(half.sigma, 0.0);
   }
+}
+
+TEST(CalibrationTest, HalvesTellHowWideErrorBarsAre) {
+  EXPECT_EQ(SpreadOfHalves({}), 0.0);
+  EXPECT_DOUBLE_EQ(
+      SpreadOfHalves({{kCx, 320.0, 321.0, 1.0}, {kFx, 520.0, 534.0, 2.0}}),
+      5.0);
 }
 
 TEST(CalibrationTest, HalvesThatContradictEachOtherAreNamed) {

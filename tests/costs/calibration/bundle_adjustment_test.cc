@@ -89,7 +89,7 @@ struct World {
   }
 
   BundleAdjustment Problem(int max_iterations = 50) const {
-    return {views, start, prior, /*training_only=*/false, max_iterations};
+    return {views, {start, prior}, /*training_only=*/false, max_iterations};
   }
 
   // The cost of a state, which stays as it is.
@@ -114,7 +114,7 @@ TEST(BundleAdjustmentTest, TheTruthCostsWhatThePriorSays) {
 TEST(BundleAdjustmentTest, EndsWhereItCostsLeast) {
   World world;
   world.prior[kFx] = 5.0;
-  CalibrationState state = world.Problem().Begin();
+  CalibrationState state = world.Problem().Begin(world.start);
   const double cost = world.Problem().Solve(World::FreeFocal(), &state);
   EXPECT_NEAR(world.CostOf(state), cost, 1e-9 * cost);
   const double found = state.theta[kFx] - world.start[kFx];
@@ -125,7 +125,8 @@ TEST(BundleAdjustmentTest, EndsWhereItCostsLeast) {
     beside.theta[kFx] += side * 0.01 * kFocalOff;
     // The rest settles as it likes.
     Free none = {};
-    BundleAdjustment held(world.views, beside.theta, world.prior, false, {});
+    const CalibrationPrior prior = {beside.theta, world.prior};
+    BundleAdjustment held(world.views, prior, false, {});
     held.Solve(none, &beside);
     EXPECT_GT(world.CostOf(beside), cost) << side;
   }
@@ -138,7 +139,7 @@ TEST(BundleAdjustmentTest, TheFirstPoseStays) {
     pose = pose * random.Motion(0.01, 0.01);
   }
   const BundleAdjustment problem = world.Problem();
-  CalibrationState state = problem.Begin();
+  CalibrationState state = problem.Begin(world.start);
   const CalibrationState before = state;
   ASSERT_TRUE(std::isfinite(problem.Solve(World::FreeFocal(), &state)));
   constexpr double kRounding = 1e-14;  // m, of two inversions
@@ -170,7 +171,7 @@ TEST(BundleAdjustmentTest, TheFirstKeyframeMaySeeNothing) {
     landmark.first_view += 1;
     landmark.num_views = landmark.anchor == 0 ? 0 : 1;
   }
-  CalibrationState state = world.Problem().Begin();
+  CalibrationState state = world.Problem().Begin(world.start);
   EXPECT_TRUE(std::isfinite(world.Problem().Solve(World::FreeFocal(), &state)));
 }
 
