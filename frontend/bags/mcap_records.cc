@@ -17,6 +17,7 @@ namespace {
 constexpr std::string_view kMagic = "\x89MCAP0\r\n";
 constexpr uint64_t kRecordHead = 9;  // bytes: opcode and length
 constexpr uint64_t kFooterSize = 20;
+constexpr char kCopy[] = "; it is damaged: copy it again";
 
 enum Opcode : uint8_t {
   kFooter = 0x02,
@@ -44,7 +45,8 @@ class Fields {
   }
   std::string_view Text() { return Take(Number<uint32_t>()); }
   std::string_view Take(uint64_t size) {
-    if (size > rest_.size()) throw InputError("a record ends too early");
+    if (size > rest_.size())
+      throw InputError(std::string("a record ends too early") + kCopy);
     const std::string_view taken = rest_.substr(0, size);
     rest_.remove_prefix(size);
     return taken;
@@ -155,7 +157,7 @@ std::optional<McapMessage> McapRecords::Next() {
         Take(record->opcode, record->content);
       }
     } catch (const InputError& error) {
-      Fail(std::string(error.what()) + "; it is damaged: copy it again");
+      Fail(error.what());
     }
   }
   return messages_[next_++];
@@ -181,7 +183,7 @@ void McapRecords::Take(uint8_t opcode, std::string_view content) {
     fields.Number<uint64_t>();  // when it was published
     message.bytes = fields.rest();
     if (channels_.count(message.channel) == 0) {
-      throw InputError("a message is of no channel");
+      throw InputError(std::string("a message is of no channel") + kCopy);
     }
     messages_.push_back(message);
   }
@@ -196,7 +198,8 @@ void McapRecords::TakeChunk(std::string_view content) {
   const std::string_view packed = chunk.Take(chunk.Number<uint64_t>());
   chunk_ = Unpack(packed, codec, size);
   if (!IsChecksumOf(chunk_, checksum)) {
-    throw InputError("a chunk is not what its checksum says");
+    throw InputError(std::string("a chunk is not what its checksum says") +
+                     kCopy);
   }
   Fields records(chunk_);
   while (!records.rest().empty()) {

@@ -22,6 +22,7 @@ class WireReader {
   WireReader(std::string_view message, WireFormat format);
 
   WireFormat format() const { return format_; }
+  bool is_at_end() const { return rest_.empty(); }
 
   // A whole or floating-point number of 1, 2, 4 or 8 bytes.
   template <typename T>

@@ -106,7 +106,7 @@ TEST_F(McapFileTest, SaysWhatItDoesNotRead) {
       {"a.mcap: has messages of txt", "only those of ROS"});
   const std::string lz4("\x03\0\0\0lz4", 7), lz9("\x03\0\0\0lz9", 7);
   ExpectRefusedSource(Write("a.mcap", Replace(Bytes("ros1_lz4"), lz4, lz9)),
-                      {"a.mcap: is packed by 'lz9'", "zstd and lz4"});
+                      {"a.mcap: is packed by 'lz9'", "zstd, lz4 and bz2"});
 }
 
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
@@ -126,7 +126,7 @@ TEST_F(McapFileTest, ADamagedChunkIsNotRead) {
       ExpectFrames(OpenSource("auto", options).get(), kFrames);
     } catch (const InputError& error) {
       const std::string what = error.what();
-      EXPECT_NE(what.find("it is damaged: copy it again"), what.npos);
+      EXPECT_NE(what.find("damaged: copy it again"), what.npos);
       seen_by_checksum += what.find("what its checksum says") != what.npos;
     }
   }
