@@ -2,6 +2,8 @@
 
 #include <bzlib.h>
 
+#include <filesystem>
+
 #include "core/util/text_file.h"
 #include "tests/frontend/bags/ros1_bag_fixture.h"
 
@@ -71,6 +73,40 @@ TEST_F(Ros1BagTest, UnpacksAChunkOnceWhereTheirTimesOverlap) {
   ExpectFrames(source.get(), kFrames);
   EXPECT_GT(chunks, 10);
   EXPECT_LE(unpacked_chunks, chunks);
+}
+
+// As `rosbag record --split` leaves them: part 10 is after part 9.
+TEST_F(Ros1BagTest, ReadsAFolderOfParts) {
+  const std::string folder = folder_ / "walk";
+  std::filesystem::create_directories(folder);
+  for (int k = 0; k < kFrames; ++k) {
+    path_ = folder + "/walk_" + std::to_string(k) + (k > 0 ? ".bag" : ".BAG");
+    Open();
+    if (k % 2 == 0) WriteInfo();
+    WriteColor(k);
+    WriteDepth(k);
+    bag_.close();
+  }
+  path_ = folder;
+  ExpectFrames(Source().get(), kFrames);
+
+  path_ = folder + "/walk_20.bag";
+  Open();
+  Camera other = SmallCamera().camera;
+  other.fx += 1.0;
+  Write("/camera/rgb/camera_info", kStart + 9, MakeInfo(other));
+  bag_.close();
+  path_ = folder;
+  ExpectRefused({"walk_20.bag: /camera/rgb/camera_info: ", "another camera"});
+
+  std::filesystem::rename(folder + "/walk_20.bag",
+                          folder + "/walk_20.bag.active");
+  ExpectRefused({"walk_20.bag.active: its recorder was not ended"});
+
+  // Two recordings.
+  std::filesystem::rename(folder + "/walk_20.bag.active",
+                          folder + "/sit_1.bag");
+  ExpectRefused({"walk: ", "one at a time"});
 }
 
 TEST_F(Ros1BagTest, RefusesDamagedBags) {

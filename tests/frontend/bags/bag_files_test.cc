@@ -1,4 +1,4 @@
-#include "frontend/bags/ros2_bag.h"
+#include "frontend/bags/bag_files.h"
 
 #ifdef RGBD_POSE_MCAP
 #include <zstd.h>
