@@ -96,7 +96,7 @@ using Factorable = Eigen::Matrix<double, K <= 6 ? K : Eigen::Dynamic,
 // Of H scaled to a diagonal of ones: below the first Cholesky's pivots may be
 // rounding alone, below the second eigenvalues are.
 inline constexpr double kSafePivot = 1e-6;
-inline constexpr double kRounding = 1e-12;
+inline constexpr double kRounding = 2e-14;
 
 // H = D V diag(l) V^T D, D^2 the diagonal of H so that units do not matter,
 // with some l = 0: J = diag(sqrt l) V^T D, r = diag(1/sqrt l) V^T D^-1 g where

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/util/input_error.h"
+#include "frontend/bags/wire_reader.h"
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
 #include <bzlib.h>
 #include <lz4frame.h>
@@ -16,8 +17,6 @@ namespace {
 
 // No recorder makes chunks of more, and a damaged number is most likely larger.
 constexpr uint64_t kMaxSize = uint64_t{1} << 28;
-
-constexpr char kDamaged[] = "a chunk is damaged: copy it again";
 
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
 
@@ -73,7 +72,8 @@ bool UnpackBz2(std::string_view packed, std::string* unpacked) {
 std::string Unpack(std::string_view packed, std::string_view codec,
                    uint64_t size) {
   if (codec.empty()) {
-    if (packed.size() != size) throw InputError(kDamaged);
+    if (packed.size() != size)
+      throw InputError(std::string("a chunk does not unpack") + kDamaged);
     return std::string(packed);
   }
   if (codec != "zstd" && codec != "lz4" && codec != "bz2") {
@@ -81,12 +81,14 @@ std::string Unpack(std::string_view packed, std::string_view codec,
                      "', and only zstd, lz4 and bz2 are known");
   }
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
-  if (size > kMaxSize) throw InputError(kDamaged);
+  if (size > kMaxSize)
+    throw InputError(std::string("a chunk does not unpack") + kDamaged);
   std::string unpacked(size, '\0');
   const bool is_whole = codec == "zstd"  ? UnpackZstd(packed, &unpacked)
                         : codec == "lz4" ? UnpackLz4(packed, &unpacked)
                                          : UnpackBz2(packed, &unpacked);
-  if (!is_whole) throw InputError(kDamaged);
+  if (!is_whole)
+    throw InputError(std::string("a chunk does not unpack") + kDamaged);
   return unpacked;
 #else
   FailWithout(codec);

@@ -30,7 +30,7 @@ WireReader Reading(std::string_view bytes) {
 // Of a header; empty where it has none of this name.
 std::string_view Field(std::string_view header, std::string_view name) {
   WireReader fields = Reading(header);
-  while (!fields.is_at_end()) {
+  while (!fields.rest().empty()) {
     const std::string_view field = fields.Bytes();
     if (field.size() > name.size() && field[name.size()] == '=' &&
         field.substr(0, name.size()) == name) {
@@ -127,8 +127,7 @@ class Ros1Bag final : public BagReader {
       call();
     } catch (const InputError& error) {
       throw InputError(path_ + ": " + error.what() +
-                       "; it is damaged or cut off: copy it again, or try "
-                       "`rosbag reindex`");
+                       ", or try `rosbag reindex`");
     }
   }
 
@@ -139,7 +138,7 @@ class Ros1Bag final : public BagReader {
     const auto length = Reading({head, sizeof(head)}).Number<uint32_t>();
     if (!file_ || length > size_ - static_cast<uint64_t>(file_.tellg())) {
       file_.clear();
-      throw InputError("a record ends too early");
+      throw InputError(std::string("a record ends too early") + kDamaged);
     }
     std::string block(length, '\0');
     file_.read(block.data(), length);
@@ -167,10 +166,11 @@ class Ros1Bag final : public BagReader {
         chunk.place = NumberField<uint64_t>(header, "chunk_pos");
         chunk.start = TimeField(header, "start_time");
         WireReader counts = Reading(data);
-        while (!counts.is_at_end()) {
+        while (!counts.rest().empty()) {
           chunk.connections.push_back(counts.Number<uint32_t>());
           if (topics_of_.count(chunk.connections.back()) == 0) {
-            throw InputError("a chunk has messages of no topic");
+            throw InputError(std::string("a chunk has messages of no topic") +
+                             kDamaged);
           }
           counts.Number<uint32_t>();
         }
@@ -228,7 +228,7 @@ class Ros1Bag final : public BagReader {
   // Of the chunk that is loaded.
   void TakeMessages(Reader* reader) const {
     WireReader records = Reading(records_);
-    while (!records.is_at_end()) {
+    while (!records.rest().empty()) {
       const std::string_view header = records.Bytes();
       const std::string_view data = records.Bytes();
       if (NumberField<uint8_t>(header, "op") != kMessageData) continue;
