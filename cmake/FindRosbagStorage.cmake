@@ -1,6 +1,5 @@
-# The target RosbagStorage::RosbagStorage, if the library that reads ROS 1 bags
-# is there: without catkin, which not everybody has who has a bag. Installed
-# too: a static rgbd_pose::frontend links it.
+# The target RosbagStorage::RosbagStorage, if the library that writes ROS 1 bags
+# is there: without catkin. Tests alone need it.
 set(rosbag_libraries)
 set(rosbag_includes)
 foreach(library rosbag_storage roscpp_serialization rostime cpp_common

@@ -93,19 +93,33 @@ template <int K>
 using Factorable = Eigen::Matrix<double, K <= 6 ? K : Eigen::Dynamic,
                                  K <= 6 ? K : Eigen::Dynamic, 0, K, K>;
 
-// H = V diag(l) V^T with some l = 0: J = diag(sqrt l) V^T, r = diag(1/sqrt l)
-// V^T g where l > 0. There g has no part in the null space of H.
+// Of H scaled to a diagonal of ones: below the first Cholesky's pivots may be
+// rounding alone, below the second eigenvalues are.
+inline constexpr double kSafePivot = 1e-6;
+inline constexpr double kRounding = 2e-14;
+
+// H = D V diag(l) V^T D, D^2 the diagonal of H so that units do not matter,
+// with some l = 0: J = diag(sqrt l) V^T D, r = diag(1/sqrt l) V^T D^-1 g where
+// l > 0. g has no part in the null space of H, whose rows are 0:
+// ceres::Covariance sees the rank.
 template <int K, typename Residuals, typename Rows>
 void FactorSingular(const CompressedSums<K>& sums, Residuals r, Rows J) {
-  const Eigen::SelfAdjointEigenSolver<Factorable<K>> eigen(sums.hessian);
-  const double smallest = 1e-14 * std::max(0.0, eigen.eigenvalues().maxCoeff());
+  const Eigen::Matrix<double, K, 1> D = sums.hessian.diagonal().unaryExpr(
+      [](double square) { return square > 0.0 ? std::sqrt(square) : 1.0; });
+  const auto inverse = D.cwiseInverse().eval();
+  const Factorable<K> scaled =
+      inverse.asDiagonal() * sums.hessian * inverse.asDiagonal();
+  const Eigen::SelfAdjointEigenSolver<Factorable<K>> eigen(scaled);
+  const double smallest =
+      kRounding * std::max(0.0, eigen.eigenvalues().maxCoeff());
   for (int i = 0; i < K; ++i) {
     const double value = eigen.eigenvalues()[i];
     if (!(value > smallest)) continue;
     const double root = std::sqrt(value);
     const int row = K - 1 - i;  // the weakest last
-    J.row(row) = root * eigen.eigenvectors().col(i).transpose();
-    r[row] = eigen.eigenvectors().col(i).dot(sums.gradient) / root;
+    const Eigen::Matrix<double, K, 1> direction = eigen.eigenvectors().col(i);
+    J.row(row) = root * direction.cwiseProduct(D).transpose();
+    r[row] = direction.dot(inverse.cwiseProduct(sums.gradient)) / root;
   }
 }
 
@@ -126,7 +140,11 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
   Eigen::Map<RowMajor> J(jacobian);
   J.setZero();
   const Eigen::LLT<compressed::Factorable<K>> cholesky(sums.hessian);
-  if (cholesky.info() == Eigen::Success) {
+  const auto pivots = cholesky.matrixLLT().diagonal().cwiseAbs2();
+  if (cholesky.info() == Eigen::Success &&
+      (pivots.array() >
+       compressed::kSafePivot * sums.hessian.diagonal().array())
+          .all()) {
     r.template head<K>() = cholesky.matrixL().solve(sums.gradient);
     J.template topRows<K>() = cholesky.matrixU();
   } else {

@@ -174,7 +174,7 @@ class BagDatabase final : public BagReader {
       try {
         bytes = UnpackZstdMessage(bytes);
       } catch (const InputError& error) {
-        throw InputError(path_ + ": a message " + error.what());
+        throw InputError(path_ + ": a message: " + error.what());
       }
     }
     message.bytes = std::make_shared<std::string>(std::move(bytes));

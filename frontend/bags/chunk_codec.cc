@@ -5,7 +5,9 @@
 #include <vector>
 
 #include "core/util/input_error.h"
+#include "frontend/bags/wire_reader.h"
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
+#include <bzlib.h>
 #include <lz4frame.h>
 #include <zstd.h>
 #endif
@@ -44,14 +46,23 @@ bool UnpackLz4(std::string_view packed, std::string* unpacked) {
   return left == 0 && given == unpacked->size();
 }
 
+bool UnpackBz2(std::string_view packed, std::string* unpacked) {
+  auto size = static_cast<unsigned>(unpacked->size());
+  // It changes nothing of what is packed.
+  return BZ2_bzBuffToBuffDecompress(
+             unpacked->data(), &size, const_cast<char*>(packed.data()),
+             static_cast<unsigned>(packed.size()), 0, 0) == BZ_OK &&
+         size == unpacked->size();
+}
+
 #else
 
 // In a build without the libraries.
 [[noreturn]] void FailWithout(std::string_view codec) {
   throw InputError("is packed by " + std::string(codec) +
-                   ", which this build does not read; install libzstd-dev and "
-                   "liblz4-dev (scripts/install_dependencies formats) and "
-                   "build again");
+                   ", which this build does not read; install libzstd-dev, "
+                   "liblz4-dev and libbz2-dev (scripts/install_dependencies "
+                   "formats) and build again");
 }
 
 #endif
@@ -61,19 +72,23 @@ bool UnpackLz4(std::string_view packed, std::string* unpacked) {
 std::string Unpack(std::string_view packed, std::string_view codec,
                    uint64_t size) {
   if (codec.empty()) {
-    if (packed.size() != size) throw InputError("a chunk is damaged");
+    if (packed.size() != size)
+      throw InputError(std::string("a chunk does not unpack") + kDamaged);
     return std::string(packed);
   }
-  if (codec != "zstd" && codec != "lz4") {
+  if (codec != "zstd" && codec != "lz4" && codec != "bz2") {
     throw InputError("is packed by '" + std::string(codec) +
-                     "', and only zstd and lz4 are known");
+                     "', and only zstd, lz4 and bz2 are known");
   }
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
-  if (size > kMaxSize) throw InputError("a chunk is damaged");
+  if (size > kMaxSize)
+    throw InputError(std::string("a chunk does not unpack") + kDamaged);
   std::string unpacked(size, '\0');
-  const bool is_whole = codec == "zstd" ? UnpackZstd(packed, &unpacked)
-                                        : UnpackLz4(packed, &unpacked);
-  if (!is_whole) throw InputError("a chunk is damaged");
+  const bool is_whole = codec == "zstd"  ? UnpackZstd(packed, &unpacked)
+                        : codec == "lz4" ? UnpackLz4(packed, &unpacked)
+                                         : UnpackBz2(packed, &unpacked);
+  if (!is_whole)
+    throw InputError(std::string("a chunk does not unpack") + kDamaged);
   return unpacked;
 #else
   FailWithout(codec);

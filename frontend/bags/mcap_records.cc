@@ -10,6 +10,7 @@
 
 #include "core/util/input_error.h"
 #include "frontend/bags/chunk_codec.h"
+#include "frontend/bags/wire_reader.h"
 
 namespace rgbd_pose {
 namespace {
@@ -25,34 +26,6 @@ enum Opcode : uint8_t {
   kMessage = 0x05,
   kChunk = 0x06,
   kDataEnd = 0x0f,
-};
-
-// Little-endian numbers and texts, one after the other.
-class Fields {
- public:
-  explicit Fields(std::string_view rest) : rest_(rest) {}
-
-  template <typename T>
-  T Number() {
-    const std::string_view bytes = Take(sizeof(T));
-    T value = 0;
-    for (size_t i = sizeof(T); i-- > 0;) {
-      value = static_cast<T>((value << (i + 1 < sizeof(T) ? 8 : 0)) |
-                             static_cast<uint8_t>(bytes[i]));
-    }
-    return value;
-  }
-  std::string_view Text() { return Take(Number<uint32_t>()); }
-  std::string_view Take(uint64_t size) {
-    if (size > rest_.size()) throw InputError("a record ends too early");
-    const std::string_view taken = rest_.substr(0, size);
-    rest_.remove_prefix(size);
-    return taken;
-  }
-  std::string_view rest() const { return rest_; }
-
- private:
-  std::string_view rest_;
 };
 
 // CRC-32; 0: the recorder made none. Without libdeflate all pass.
@@ -92,7 +65,7 @@ std::optional<McapRecords::Record> McapRecords::ReadRecord() {
   if (size_ - at < kRecordHead || !file_.read(head, kRecordHead)) {
     return std::nullopt;
   }
-  Fields fields({head, kRecordHead});
+  WireReader fields({head, kRecordHead}, WireFormat::kRos1);
   Record record;
   record.opcode = fields.Number<uint8_t>();
   const auto length = fields.Number<uint64_t>();
@@ -112,7 +85,7 @@ std::optional<McapChannels> McapRecords::ReadSummary() {
   uint64_t start = 0;
   if (footer && footer->opcode == kFooter &&
       footer->content.size() == kFooterSize) {
-    start = Fields(footer->content).Number<uint64_t>();
+    start = WireReader(footer->content, WireFormat::kRos1).Number<uint64_t>();
   }
   if (start >= kMagic.size() && start < size_ - tail) {
     file_.seekg(static_cast<std::streamoff>(start));
@@ -155,14 +128,14 @@ std::optional<McapMessage> McapRecords::Next() {
         Take(record->opcode, record->content);
       }
     } catch (const InputError& error) {
-      Fail(std::string(error.what()) + "; it is damaged: copy it again");
+      Fail(error.what());
     }
   }
   return messages_[next_++];
 }
 
 void McapRecords::Take(uint8_t opcode, std::string_view content) {
-  Fields fields(content);
+  WireReader fields(content, WireFormat::kRos1);
   if (opcode == kSchema) {
     const auto id = fields.Number<uint16_t>();
     schemas_[id] = fields.Text();
@@ -181,14 +154,14 @@ void McapRecords::Take(uint8_t opcode, std::string_view content) {
     fields.Number<uint64_t>();  // when it was published
     message.bytes = fields.rest();
     if (channels_.count(message.channel) == 0) {
-      throw InputError("a message is of no channel");
+      throw InputError(std::string("a message is of no channel") + kDamaged);
     }
     messages_.push_back(message);
   }
 }
 
 void McapRecords::TakeChunk(std::string_view content) {
-  Fields chunk(content);
+  WireReader chunk(content, WireFormat::kRos1);
   chunk.Take(2 * sizeof(uint64_t));  // times of its first and last message
   const auto size = chunk.Number<uint64_t>();
   const auto checksum = chunk.Number<uint32_t>();
@@ -196,9 +169,10 @@ void McapRecords::TakeChunk(std::string_view content) {
   const std::string_view packed = chunk.Take(chunk.Number<uint64_t>());
   chunk_ = Unpack(packed, codec, size);
   if (!IsChecksumOf(chunk_, checksum)) {
-    throw InputError("a chunk is not what its checksum says");
+    throw InputError(std::string("a chunk is not what its checksum says") +
+                     kDamaged);
   }
-  Fields records(chunk_);
+  WireReader records(chunk_, WireFormat::kRos1);
   while (!records.rest().empty()) {
     const auto opcode = records.Number<uint8_t>();
     Take(opcode, records.Take(records.Number<uint64_t>()));

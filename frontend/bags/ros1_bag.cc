@@ -1,79 +1,86 @@
 #include "frontend/bags/ros1_bag.h"
 
-#include "core/util/input_error.h"
-#ifdef RGBD_POSE_HAS_ROSBAG
-#include <console_bridge/console.h>
-#include <rosbag/bag.h>
-#include <rosbag/view.h>
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <set>
+#include <utility>
 
-#include <filesystem>
-#endif
+#include "core/util/input_error.h"
+#include "frontend/bags/chunk_codec.h"
+
+// http://wiki.ros.org/Bags/Format/2.0: records of a header, which has fields
+// NAME=VALUE, and data, each after its length.
 
 namespace rgbd_pose {
-
-#ifdef RGBD_POSE_HAS_ROSBAG
-
 namespace {
 
-// Keeps the library from printing while this lives: what it says is in its
-// exceptions, too.
-class Silence {
- public:
-  Silence() : former_(console_bridge::getOutputHandler()) {
-    console_bridge::noOutputHandler();
-  }
-  ~Silence() { console_bridge::useOutputHandler(former_); }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
+constexpr std::string_view kVersion = "#ROSBAG V2.0\n";
 
- private:
-  console_bridge::OutputHandler* former_;
+enum Ros1Op : uint8_t {
+  kMessageData = 0x02,
+  kChunkInfo = 0x06,
+  kConnection = 0x07,
 };
 
-// Calls what may throw exceptions of the library, which are InputErrors here.
-template <typename Call>
-auto Guarded(const std::string& path, Call call) {
-  const Silence silence;
-  try {
-    return call();
-  } catch (const InputError&) {
-    throw;
-  } catch (const rosbag::BagUnindexedException&) {
-    throw InputError(path +
-                     ": has no index: its recorder was not ended properly; "
-                     "`rosbag reindex` makes one");
-  } catch (const std::exception& error) {
-    throw InputError(path + ": cannot be read as a ROS 1 bag: " + error.what() +
-                     "; it is damaged or cut off: copy it again, or try "
-                     "`rosbag reindex`");
-  }
+WireReader Reading(std::string_view bytes) {
+  return {bytes, WireFormat::kRos1};
 }
 
-BagMessage MessageOf(const rosbag::MessageInstance& message, int topic) {
-  auto bytes = std::make_shared<std::string>(message.size(), '\0');
-  ros::serialization::OStream stream(reinterpret_cast<uint8_t*>(bytes->data()),
-                                     static_cast<uint32_t>(bytes->size()));
-  message.write(stream);
-  return {topic, message.getTime().toSec(), std::move(bytes)};
+// Of a header; empty where it has none of this name.
+std::string_view Field(std::string_view header, std::string_view name) {
+  WireReader fields = Reading(header);
+  while (!fields.rest().empty()) {
+    const std::string_view field = fields.Bytes();
+    if (field.size() > name.size() && field[name.size()] == '=' &&
+        field.substr(0, name.size()) == name) {
+      return field.substr(name.size() + 1);
+    }
+  }
+  return {};
+}
+
+template <typename T>
+T NumberField(std::string_view header, std::string_view name) {
+  return Reading(Field(header, name)).Number<T>();
+}
+
+// In nanoseconds.
+uint64_t TimeField(std::string_view header, std::string_view name) {
+  WireReader time = Reading(Field(header, name));
+  const uint64_t seconds = time.Number<uint32_t>();
+  return seconds * 1'000'000'000 + time.Number<uint32_t>();
 }
 
 class Ros1Bag final : public BagReader {
  public:
-  explicit Ros1Bag(const std::string& path) : path_(path) {
-    std::error_code error;
-    if (std::filesystem::file_size(path, error) == 0 && !error) {
-      throw InputError(path + ": is empty; copy it again");
+  explicit Ros1Bag(const std::string& path)
+      : path_(path), file_(path, std::ios::binary | std::ios::ate) {
+    const std::streamoff size = file_.tellg();
+    if (size < 0) throw InputError(path + ": cannot be read");
+    if (size == 0) throw InputError(path + ": is empty; copy it again");
+    size_ = static_cast<uint64_t>(size);
+    file_.seekg(0);
+    std::string version(kVersion.size(), '\0');
+    file_.read(version.data(), static_cast<std::streamsize>(version.size()));
+    if (version != kVersion) {
+      throw InputError(path + ": is no ROS 1 bag (of format 2.0)");
     }
-    Guarded(path_, [&] {
-      bag_.open(path, rosbag::bagmode::Read);
-      rosbag::View all(bag_);
-      for (const rosbag::ConnectionInfo* info : all.getConnections()) {
-        // A topic has a connection for each that published it.
-        if (places_.emplace(info->topic, topics_.size()).second) {
-          topics_.push_back({info->topic, info->datatype});
-        }
-      }
+    std::string header;
+    uint64_t index = 0;
+    Guarded([&] {
+      header = ReadBlock();
+      index = NumberField<uint64_t>(header, "index_pos");
     });
+    if (!Field(header, "encryptor").empty()) {
+      throw InputError(path + ": is encrypted; `rosbag decrypt` it");
+    }
+    if (index == 0) {
+      throw InputError(path +
+                       ": has no index: its recorder was not ended properly; "
+                       "`rosbag reindex` makes one");
+    }
+    Guarded([&] { ReadIndex(index); });
   }
 
   const std::string& path() const override { return path_; }
@@ -81,44 +88,168 @@ class Ros1Bag final : public BagReader {
   const std::vector<BagTopic>& topics() const override { return topics_; }
 
   std::vector<BagMessage> First(int topic, int count) override {
-    return Guarded(path_, [&] {
-      std::vector<BagMessage> first;
-      rosbag::View view(bag_, rosbag::TopicQuery(topics_[topic].name));
-      for (const rosbag::MessageInstance& message : view) {
-        if (static_cast<int>(first.size()) == count) break;
-        first.push_back(MessageOf(message, topic));
-      }
-      return first;
-    });
+    std::vector<BagMessage> first;
+    Reader reader;
+    reader.topics = {topic};
+    while (static_cast<int>(first.size()) < count) {
+      std::optional<BagMessage> message = NextOf(&reader);
+      if (!message.has_value()) break;
+      first.push_back(*std::move(message));
+    }
+    return first;
   }
 
   void Select(const std::vector<int>& topics) override {
-    Guarded(path_, [&] {
-      std::vector<std::string> names;
-      for (const int topic : topics) names.push_back(topics_[topic].name);
-      view_ = std::make_unique<rosbag::View>(bag_, rosbag::TopicQuery(names));
-      next_ = view_->begin();
-    });
+    selected_ = {};
+    selected_.topics = {topics.begin(), topics.end()};
   }
 
-  std::optional<BagMessage> Next() override {
-    return Guarded(path_, [&]() -> std::optional<BagMessage> {
-      if (view_ == nullptr || next_ == view_->end()) return std::nullopt;
-      const rosbag::MessageInstance& message = *next_;
-      BagMessage taken =
-          MessageOf(message, static_cast<int>(places_.at(message.getTopic())));
-      ++next_;
-      return taken;
-    });
-  }
+  std::optional<BagMessage> Next() override { return NextOf(&selected_); }
 
  private:
+  struct Chunk {
+    uint64_t place = 0;  // in the file
+    uint64_t start = 0;  // time of its first message, ns
+    std::vector<uint32_t> connections;
+  };
+
+  // Where one is among the messages of some topics.
+  struct Reader {
+    std::set<int> topics;
+    size_t chunk = 0;                             // that comes next
+    std::multimap<uint64_t, BagMessage> waiting;  // of those before, by time
+  };
+
+  // Has bytes of the file read: they are damaged where that fails.
+  template <typename Call>
+  void Guarded(Call call) const {
+    try {
+      call();
+    } catch (const InputError& error) {
+      throw InputError(path_ + ": " + error.what() +
+                       ", or try `rosbag reindex`");
+    }
+  }
+
+  // A header or data, at the file's place.
+  std::string ReadBlock() {
+    char head[sizeof(uint32_t)];
+    file_.read(head, sizeof(head));
+    const auto length = Reading({head, sizeof(head)}).Number<uint32_t>();
+    if (!file_ || length > size_ - static_cast<uint64_t>(file_.tellg())) {
+      file_.clear();
+      throw InputError(std::string("a record ends too early") + kDamaged);
+    }
+    std::string block(length, '\0');
+    file_.read(block.data(), length);
+    return block;
+  }
+
+  void ReadIndex(uint64_t index) {
+    std::map<std::string, size_t, std::less<>> places;  // of topics by name
+    file_.seekg(static_cast<std::streamoff>(std::min(index, size_)));
+    while (static_cast<uint64_t>(file_.tellg()) < size_) {
+      const std::string header = ReadBlock();
+      const std::string data = ReadBlock();
+      const auto op = NumberField<uint8_t>(header, "op");
+      if (op == kConnection) {
+        // A topic has a connection for each that published it.
+        const auto [place, is_new] =
+            places.emplace(Field(header, "topic"), topics_.size());
+        if (is_new) {
+          topics_.push_back({place->first, std::string(Field(data, "type"))});
+        }
+        topics_of_[NumberField<uint32_t>(header, "conn")] =
+            static_cast<int>(place->second);
+      } else if (op == kChunkInfo) {
+        Chunk chunk;
+        chunk.place = NumberField<uint64_t>(header, "chunk_pos");
+        chunk.start = TimeField(header, "start_time");
+        WireReader counts = Reading(data);
+        while (!counts.rest().empty()) {
+          chunk.connections.push_back(counts.Number<uint32_t>());
+          if (topics_of_.count(chunk.connections.back()) == 0) {
+            throw InputError(std::string("a chunk has messages of no topic") +
+                             kDamaged);
+          }
+          counts.Number<uint32_t>();
+        }
+        chunks_.push_back(std::move(chunk));
+      }
+    }
+    std::stable_sort(
+        chunks_.begin(), chunks_.end(),
+        [](const Chunk& a, const Chunk& b) { return a.start < b.start; });
+  }
+
+  bool Has(const Reader& reader, uint32_t connection) const {
+    const auto topic = topics_of_.find(connection);
+    return topic != topics_of_.end() && reader.topics.count(topic->second) > 0;
+  }
+
+  // Opens a chunk as the time of its first message comes, and then has all of
+  // its messages waiting.
+  std::optional<BagMessage> NextOf(Reader* reader) {
+    auto& waiting = reader->waiting;
+    while (reader->chunk < chunks_.size() &&
+           (waiting.empty() ||
+            chunks_[reader->chunk].start <= waiting.begin()->first)) {
+      const Chunk& chunk = chunks_[reader->chunk++];
+      if (std::any_of(chunk.connections.begin(), chunk.connections.end(),
+                      [&](uint32_t of) { return Has(*reader, of); })) {
+        Load(chunk);
+        Guarded([&] { TakeMessages(reader); });
+      }
+    }
+    if (waiting.empty()) return std::nullopt;
+    return std::move(waiting.extract(waiting.begin()).mapped());
+  }
+
+  void Load(const Chunk& chunk) {
+    if (loaded_ == &chunk) return;
+    loaded_ = nullptr;
+    std::string header, packed;
+    uint32_t size = 0;
+    Guarded([&] {
+      file_.seekg(static_cast<std::streamoff>(std::min(chunk.place, size_)));
+      header = ReadBlock();
+      packed = ReadBlock();
+      size = NumberField<uint32_t>(header, "size");
+    });
+    const std::string_view codec = Field(header, "compression");
+    try {
+      records_ = Unpack(packed, codec == "none" ? "" : codec, size);
+    } catch (const InputError& error) {
+      throw InputError(path_ + ": " + error.what());
+    }
+    loaded_ = &chunk;
+  }
+
+  // Of the chunk that is loaded.
+  void TakeMessages(Reader* reader) const {
+    WireReader records = Reading(records_);
+    while (!records.rest().empty()) {
+      const std::string_view header = records.Bytes();
+      const std::string_view data = records.Bytes();
+      if (NumberField<uint8_t>(header, "op") != kMessageData) continue;
+      const auto connection = NumberField<uint32_t>(header, "conn");
+      if (!Has(*reader, connection)) continue;
+      const uint64_t time = TimeField(header, "time");
+      reader->waiting.emplace(time,
+                              BagMessage{topics_of_.at(connection), 1e-9 * time,
+                                         std::make_shared<std::string>(data)});
+    }
+  }
+
   std::string path_;
-  rosbag::Bag bag_;
+  std::ifstream file_;
+  uint64_t size_ = 0;
   std::vector<BagTopic> topics_;
-  std::map<std::string, size_t> places_;  // of topics by name
-  std::unique_ptr<rosbag::View> view_;    // of those selected
-  rosbag::View::iterator next_;
+  std::map<uint32_t, int> topics_of_;  // connections
+  std::vector<Chunk> chunks_;          // by time
+  const Chunk* loaded_ = nullptr;
+  std::string records_;  // of it
+  Reader selected_;
 };
 
 }  // namespace
@@ -126,16 +257,5 @@ class Ros1Bag final : public BagReader {
 std::unique_ptr<BagReader> OpenRos1Bag(const std::string& path) {
   return std::make_unique<Ros1Bag>(path);
 }
-
-#else
-
-std::unique_ptr<BagReader> OpenRos1Bag(const std::string& path) {
-  throw InputError(path +
-                   ": this build reads no ROS 1 bags; install "
-                   "librosbag-storage-dev (scripts/install_dependencies "
-                   "formats) and build again");
-}
-
-#endif
 
 }  // namespace rgbd_pose

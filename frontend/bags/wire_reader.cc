@@ -34,7 +34,7 @@ std::string_view WireReader::Take(size_t size) {
   if (size > rest_.size()) {
     throw InputError("a message ends too early: " + std::to_string(size) +
                      " bytes were to follow, " + std::to_string(rest_.size()) +
-                     " do");
+                     " do" + kDamaged);
   }
   const std::string_view taken = rest_.substr(0, size);
   rest_.remove_prefix(size);
@@ -63,7 +63,8 @@ uint32_t WireReader::Count(size_t least_bytes) {
   const uint32_t count = Number<uint32_t>();
   if (count > rest_.size() / least_bytes) {
     throw InputError("a message ends too early: a list of " +
-                     std::to_string(count) + " is longer than the rest of it");
+                     std::to_string(count) + " is longer than the rest of it" +
+                     kDamaged);
   }
   return count;
 }

@@ -6,6 +6,9 @@
 
 namespace rgbd_pose {
 
+// Ends messages on files, or parts of them, that are not as they were written.
+inline constexpr char kDamaged[] = "; it is damaged: copy it again";
+
 // How the messages of a bag are laid out: the same fields in the same order,
 // but for padding, the ends of texts and the header's counter.
 enum class WireFormat {
@@ -22,6 +25,12 @@ class WireReader {
   WireReader(std::string_view message, WireFormat format);
 
   WireFormat format() const { return format_; }
+
+  // What has not been taken.
+  std::string_view rest() const { return rest_; }
+
+  // So many bytes.
+  std::string_view Take(size_t size);
 
   // A whole or floating-point number of 1, 2, 4 or 8 bytes.
   template <typename T>
@@ -43,7 +52,6 @@ class WireReader {
 
  private:
   void ReadNumber(void* value, size_t size);
-  std::string_view Take(size_t size);
 
   std::string_view rest_;
   size_t place_ = 0;  // of rest_, where CDR counts from

@@ -4,13 +4,11 @@
 #include <filesystem>
 #include <functional>
 #include <set>
-#include <string_view>
 
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
-#include "frontend/bags/ros1_bag.h"
-#include "frontend/bags/ros2_bag.h"
+#include "frontend/bags/bag_files.h"
 #include "frontend/sources/bag_source.h"
 #include "frontend/sources/corrected_source.h"
 #include "frontend/sources/numbered_dataset.h"
@@ -37,15 +35,15 @@ bool HasFile(const SourceOptions& options, const char* name) {
   return fs::exists(fs::path(options.path) / name, error);
 }
 
-bool EndsWith(const std::string& path, std::string_view ending) {
-  return path.size() > ending.size() &&
-         path.compare(path.size() - ending.size(), ending.size(), ending) == 0;
-}
-
-bool IsFile(const SourceOptions& options, std::string_view ending) {
-  std::error_code error;
-  return EndsWith(options.path, ending) &&
-         fs::is_regular_file(options.path, error);
+SourceType BagType(BagKind kind, const char* name, const char* what) {
+  return {name, what,
+          [kind](const SourceOptions& options) {
+            return IsBag(options.path, kind);
+          },
+          [kind](const SourceOptions& options) {
+            return std::make_unique<BagSource>(OpenBag(options.path, kind),
+                                               options);
+          }};
 }
 
 // The first that recognises a path has it.
@@ -60,20 +58,11 @@ const std::vector<SourceType>& Types() {
          [](const SourceOptions& options) {
            return std::make_unique<TumDataset>(options);
          }},
-        {"rosbag", "ROS 1 bag (.bag, also the RealSense viewer's)",
-         [](const SourceOptions& options) {
-           return IsFile(options, ".bag") || IsFile(options, ".BAG");
-         },
-         [](const SourceOptions& options) {
-           return std::make_unique<BagSource>(OpenRos1Bag(options.path),
-                                              options);
-         }},
-        {"rosbag2", "ROS 2 bag (.db3 or .mcap, or a folder of such)",
-         [](const SourceOptions& options) { return IsRos2Bag(options.path); },
-         [](const SourceOptions& options) {
-           return std::make_unique<BagSource>(OpenRos2Bag(options.path),
-                                              options);
-         }},
+        BagType(BagKind::kRos1, "rosbag",
+                "ROS 1 bag (.bag, also the RealSense viewer's, or a folder of "
+                "NAME_0.bag, NAME_1.bag, ...)"),
+        BagType(BagKind::kRos2, "rosbag2",
+                "ROS 2 bag (.db3 or .mcap, or a folder of such)"),
         // It looks like no path.
         {"openni2", "camera by OpenNI 2 (source=openni2, dataset=any)",
          [](const SourceOptions&) { return false; }, OpenOpenNi2},
@@ -132,18 +121,13 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   if (!fs::exists(options.path, error)) {
     throw InputError(options.path + ": no such file or folder");
   }
-  if (EndsWith(options.path, ".bag.active")) {
-    throw InputError(options.path +
-                     ": its recorder was not ended properly; `rosbag reindex` "
-                     "it and give it a name that ends in .bag");
-  }
   if (!fs::is_directory(options.path, error)) {
     throw InputError(options.path +
                      ": is no known kind of recording; known are: " + known);
   }
   throw InputError(options.path + ": is no known kind of recording: it holds " +
                    Content(options.path) + "; known are: " + known +
-                   " (of the bags of a folder one is read at a time)");
+                   " (bags of several recordings are read one at a time)");
 }
 
 }  // namespace rgbd_pose

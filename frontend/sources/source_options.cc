@@ -5,19 +5,25 @@
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
+namespace {
+
+bool IsScale(double scale) { return std::isfinite(scale) && scale > 0.0; }
+
+std::string ProblemOf(const CameraSetup& setup) {
+  const std::string problem = setup.camera.Check();
+  return !problem.empty() || IsScale(setup.depth_scale.value_or(1.0))
+             ? problem
+             : "the depth scale must be a positive number";
+}
+
+}  // namespace
 
 std::string SourceOptions::Check() const {
-  const auto is_scale = [](double scale) {
-    return std::isfinite(scale) && scale > 0.0;
-  };
   if (camera.has_value()) {
-    const std::string problem = camera->camera.Check();
+    const std::string problem = ProblemOf(*camera);
     if (!problem.empty()) return "camera: " + problem;
-    if (camera->depth_scale.has_value() && !is_scale(*camera->depth_scale)) {
-      return "the depth scale must be a positive number";
-    }
   }
-  if (depth_scale != 0.0 && !is_scale(depth_scale)) {
+  if (depth_scale != 0.0 && !IsScale(depth_scale)) {
     return "depth_scale must be positive (raw units per metre)";
   }
   if (!(max_time_difference >= 0.0)) {
@@ -28,7 +34,7 @@ std::string SourceOptions::Check() const {
 
 CameraSetup ChooseCamera(const SourceOptions& options,
                          const std::optional<CameraSetup>& of_recording) {
-  const std::string problem = options.Check();
+  std::string problem = options.Check();
   if (!problem.empty()) throw InputError(problem);
   if (!options.camera.has_value() && !of_recording.has_value()) {
     throw InputError(options.path +
@@ -42,6 +48,11 @@ CameraSetup ChooseCamera(const SourceOptions& options,
     if (!chosen.depth_camera) chosen.depth_camera = of_recording->depth_camera;
   }
   if (options.depth_scale > 0.0) chosen.depth_scale = options.depth_scale;
+  problem = ProblemOf(chosen);
+  if (!problem.empty()) {
+    throw InputError(options.path + ": what it says of its camera: " + problem +
+                     "; name a preset or a calibration file (camera)");
+  }
   return chosen;
 }
 

@@ -8,6 +8,8 @@
 #include <cmath>
 #include <initializer_list>
 #include <memory>
+#include <random>
+#include <utility>
 #include <vector>
 
 #include "costs/assembly/compressed_residuals.h"
@@ -183,6 +185,99 @@ TEST(CompressedBlockTest, SurvivesASingularHessian) {
   EXPECT_TRUE(summary.IsSolutionUsable());
   EXPECT_NEAR(x[0], 2.0, 1e-8);
   EXPECT_NEAR(x[1], 7.0, 1e-8);
+}
+
+// R p + t - q at the motion exp(x[0..2]), x[3..5], the rotation to first order.
+struct PointResidual {
+  static constexpr int kRows = 3, kParameters = 6;
+  Eigen::Vector3d p, q;
+  bool operator()(const double* x, double* r, double* J) const {
+    const Eigen::Vector3d w(x[0], x[1], x[2]), t(x[3], x[4], x[5]);
+    Eigen::Map<Eigen::Vector3d> error(r);
+    error = p + w.cross(p) + t - q;
+    if (J == nullptr) return true;
+    Eigen::Map<Eigen::Matrix<double, 3, 6, Eigen::RowMajor>> jacobian(J);
+    for (int k = 0; k < 3; ++k) {
+      jacobian.col(k) = Eigen::Vector3d::Unit(k).cross(p);
+    }
+    jacobian.rightCols<3>().setIdentity();
+    return true;
+  }
+};
+
+// Of `count` points that span so many dimensions (a line, a plane, space), and
+// in so small units: whether Ceres finds a covariance of their motion.
+bool HasCovariance(int count, int dimensions, double unit, int seed,
+                   bool compressed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  const auto draw = [&] {
+    return Eigen::Vector3d(normal(random), normal(random), normal(random));
+  };
+  const Eigen::Vector3d origin = draw();
+  const Eigen::Matrix3d axes =
+      (Eigen::Matrix3d() << draw(), draw(), draw()).finished();
+  std::vector<PointResidual> residuals;
+  for (int i = 0; i < count; ++i) {
+    const Eigen::Vector3d p =
+        origin + axes.leftCols(dimensions) * draw().head(dimensions);
+    residuals.push_back({unit * p, unit * (p + 0.01 * draw())});
+  }
+  double x[6] = {0.0};
+  ceres::Problem problem;
+  AddTo(&problem, residuals, nullptr, compressed, x);
+  ceres::Covariance::Options options;
+  options.algorithm_type = ceres::SPARSE_QR;
+  ceres::Covariance covariance(options);
+  return covariance.Compute(
+      std::vector<std::pair<const double*, const double*>>{{x, x}}, &problem);
+}
+
+// What rounding leaves of H is no information.
+TEST(CompressedBlockTest, CovarianceKnowsWhatPointsDoNotDetermine) {
+  struct Points {
+    int count, dimensions;
+    bool determine_a_motion;
+  };
+  for (const Points& points : {Points{300, 1, false},
+                               {2, 1, false},
+                               {1, 1, false},
+                               {3, 2, true},
+                               {300, 2, true},
+                               {300, 3, true}}) {
+    for (const double unit : {1e-3, 1.0, 1e3}) {
+      for (int seed = 0; seed < 10; ++seed) {
+        for (const bool compressed : {false, true}) {
+          EXPECT_EQ(HasCovariance(points.count, points.dimensions, unit, seed,
+                                  compressed),
+                    points.determine_a_motion)
+              << points.count << " points of " << points.dimensions
+              << " dimensions, unit " << unit << ", compressed " << compressed;
+        }
+      }
+    }
+  }
+}
+
+// As docs/compressed_block.md says.
+TEST(CompressedBlockTest, LossesStayAndGradientsAreNotChecked) {
+  const auto residuals = Waves<3>();
+  ceres::HuberLoss loss(0.5);
+  double x[3] = {0.3, 0.3, 0.3};
+  ceres::Problem problem(KeepingLosses());
+  AddTo(&problem, residuals, &loss, /*compressed=*/true, x);
+  ceres::Problem::EvaluateOptions without;
+  without.apply_loss_function = false;
+  double cost, cost_without;
+  problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
+  problem.Evaluate(without, &cost_without, nullptr, nullptr, nullptr);
+  EXPECT_EQ(cost_without, cost);
+  ceres::Solver::Options options;
+  options.logging_type = ceres::SILENT;
+  options.check_gradients = true;
+  ceres::Solver::Summary summary;
+  ceres::Solve(options, &problem, &summary);
+  EXPECT_EQ(summary.termination_type, ceres::FAILURE) << summary.message;
 }
 
 struct FailingResidual {

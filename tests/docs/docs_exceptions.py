@@ -92,7 +92,7 @@ EXCEPTIONS = {
         'rgbd_convert --dataset=recording_folder '
         '--topics=/camera/color/image_raw,/camera/depth/image_raw '
         '--output=tum':
-            left_out('needs a bag; tests/frontend/bags/ros2_bag_test.cc '
+            left_out('needs a bag; tests/frontend/bags/bag_files_test.cc '
                      'writes some'),
         'rgbd_odometry --source=openni2 --dataset=any --frames=0s-60s '
         '--output=runs/live':

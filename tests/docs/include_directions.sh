@@ -45,7 +45,7 @@ room costs/calibration 'core/|costs' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
 room frontend/frame 'core/|frontend/' "$opencv"
 room frontend/files 'core/|frontend/' "$opencv|yaml-cpp/|libdeflate\.h"
-room frontend/bags 'core/|frontend/' "$opencv|rosbag/|console_bridge/|sqlite3\.h|zstd\.h|lz4frame\.h|libdeflate\.h"
+room frontend/bags 'core/|frontend/' "$opencv|sqlite3\.h|zstd\.h|lz4frame\.h|bzlib\.h|libdeflate\.h"
 room frontend/sources 'core/|frontend/' "$opencv|OpenNI\.h"
 room frontend/features 'core/|frontend/' "$opencv"
 room frontend/places 'core/|frontend/' "$opencv"

@@ -199,6 +199,17 @@ TEST_F(NumberedDatasetTest, ReadsOpen3d) {
   std::filesystem::rename(Options().path + "/intrinsic.json",
                           Options().path + "/camera_intrinsic.json");
   EXPECT_EQ(OpenSource("auto", Options())->camera().camera.fy, 31.0);
+  // No camera at all.
+  for (const char* wrong : {"-30, 0, 0, 0, 31, 0, 15.5, 11.5, 1]}",
+                            "30, 0, 0, 0, 31, 0, 15.5, 11.5, 1], "
+                            "\"depth_scale\": 0}"}) {
+    WriteText("camera_intrinsic.json",
+              std::string(R"({"width": 32, "height": 24,
+                              "intrinsic_matrix": [)") +
+                  wrong);
+    ExpectInputError([&] { OpenSource("auto", Options()); },
+                     {"its camera: ", "must be", "positive"});
+  }
 }
 
 TEST_F(NumberedDatasetTest, MirrorsIclNuim) {

@@ -1,13 +1,17 @@
-#include "frontend/bags/ros2_bag.h"
+#include "frontend/bags/bag_files.h"
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
+#include <map>
+#include <set>
 
 #include "core/util/input_error.h"
 #include "frontend/bags/bag_database.h"
 #include "frontend/bags/chunk_codec.h"
 #include "frontend/bags/mcap_file.h"
+#include "frontend/bags/ros1_bag.h"
+#include "frontend/bags/ros_messages.h"
 
 namespace rgbd_pose {
 namespace {
@@ -17,11 +21,16 @@ namespace fs = std::filesystem;
 constexpr char kSqlite[] = ".db3";
 constexpr char kMcap[] = ".mcap";
 constexpr char kPacked[] = ".zstd";
+constexpr char kUnclosed[] = ".active";
 
-bool IsPartOfBag(const fs::path& path) {
-  const fs::path unpacked =
-      path.extension() == kPacked ? path.stem() : path.filename();
-  return unpacked.extension() == kSqlite || unpacked.extension() == kMcap;
+bool IsPartOfBag(const fs::path& path, BagKind kind) {
+  const bool is_ros1 = kind == BagKind::kRos1;
+  const fs::path name = path.extension() == (is_ros1 ? kUnclosed : kPacked)
+                            ? path.stem()
+                            : path.filename();
+  const fs::path ending = name.extension();
+  return is_ros1 ? ending == ".bag" || ending == ".BAG"
+                 : ending == kSqlite || ending == kMcap;
 }
 
 // NAME_2.db3 comes before NAME_10.db3.
@@ -70,31 +79,60 @@ class UnpackedFile {
   fs::path folder_;
 };
 
+// Whether files are the parts of one recording: NAME_0.bag, NAME_1.bag, ...,
+// where NAME may have another date in each.
+bool AreNumbered(const std::vector<fs::path>& files) {
+  std::set<std::string> numbers;
+  for (const fs::path& file : files) {
+    const bool is_closed = file.extension() != kUnclosed;
+    const std::string stem = (is_closed ? file : file.stem()).stem().string();
+    const size_t place = stem.find_last_not_of("0123456789");
+    if (place == stem.npos || stem[place] != '_' ||
+        !numbers.insert(stem.substr(place)).second) {
+      return false;
+    }
+  }
+  return true;
+}
+
 // The files of a bag in their order.
-std::vector<fs::path> FilesOf(const std::string& path) {
+std::vector<fs::path> FilesOf(const std::string& path, BagKind kind) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return {path};
   std::vector<fs::path> files;
   for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
-    if (IsPartOfBag(entry.path())) files.push_back(entry.path());
+    if (IsPartOfBag(entry.path(), kind)) files.push_back(entry.path());
   }
   std::sort(files.begin(), files.end(), ComesBefore);
+  if (kind == BagKind::kRos1 && !AreNumbered(files)) return {};
   return files;
 }
 
+std::unique_ptr<BagReader> OpenFile(const fs::path& file, BagKind kind) {
+  if (kind == BagKind::kRos2) {
+    return file.extension() == kMcap ? OpenMcapFile(file.string())
+                                     : OpenBagDatabase(file.string());
+  }
+  if (file.extension() == kUnclosed) {
+    throw InputError(file.string() +
+                     ": its recorder was not ended properly; `rosbag reindex` "
+                     "it and give it a name that ends in .bag");
+  }
+  return OpenRos1Bag(file.string());
+}
+
 // The files of a recording, one after the other.
-class Ros2Bag final : public BagReader {
+class BagFiles final : public BagReader {
  public:
-  Ros2Bag(const std::string& path, const std::vector<fs::path>& files)
+  BagFiles(const std::string& path, const std::vector<fs::path>& files,
+           BagKind kind)
       : path_(path) {
     for (fs::path file : files) {
       if (file.extension() == kPacked) {
         unpacked_.push_back(std::make_unique<UnpackedFile>(file));
         file = unpacked_.back()->path(file);
       }
-      files_.push_back(file.extension() == kMcap
-                           ? OpenMcapFile(file.string())
-                           : OpenBagDatabase(file.string()));
+      files_.push_back(OpenFile(file, kind));
       if (files_.back()->format() != format()) {
         throw InputError(file.string() +
                          ": has messages of another version of ROS than the "
@@ -104,6 +142,7 @@ class Ros2Bag final : public BagReader {
       for (const BagTopic& topic : files_.back()->topics()) {
         places.push_back(PlaceOf(topic));
       }
+      if (files.size() > 1) CheckCameras(files_.back().get(), places);
     }
   }
 
@@ -151,11 +190,31 @@ class Ros2Bag final : public BagReader {
     return static_cast<int>(topics_.size() - 1);
   }
 
-  // Of the topics, among those of a database.
-  std::vector<int> InnerPlaces(size_t database,
+  // That those of a file are the ones of the files before.
+  void CheckCameras(BagReader* file, const std::vector<int>& places) {
+    for (size_t i = 0; i < places.size(); ++i) {
+      if (file->topics()[i].type != "sensor_msgs/CameraInfo") continue;
+      const auto first = file->First(static_cast<int>(i), 1);
+      if (first.empty()) continue;
+      const auto info = ReadMessage(*file, first.front(), ReadRosCameraInfo);
+      std::vector<double> camera(info.k.begin(), info.k.end());
+      camera.insert(camera.end(), info.d.begin(), info.d.end());
+      camera.push_back(info.width);
+      camera.push_back(info.height);
+      const auto known = cameras_.emplace(places[i], camera).first;
+      if (known->second != camera) {
+        throw InputError(file->path() + ": " + file->topics()[i].name +
+                         ": is of another camera than in the files before; "
+                         "move it to a folder of its own");
+      }
+    }
+  }
+
+  // Of the topics, among those of a file.
+  std::vector<int> InnerPlaces(size_t file,
                                const std::vector<int>& topics) const {
     std::vector<int> inner;
-    const std::vector<int>& places = places_[database];
+    const std::vector<int>& places = places_[file];
     for (size_t i = 0; i < places.size(); ++i) {
       if (std::find(topics.begin(), topics.end(), places[i]) != topics.end()) {
         inner.push_back(static_cast<int>(i));
@@ -169,23 +228,27 @@ class Ros2Bag final : public BagReader {
   std::vector<std::unique_ptr<BagReader>> files_;
   std::vector<std::vector<int>> places_;  // of each one's topics in topics_
   std::vector<BagTopic> topics_;
-  size_t at_ = 0;  // the database that is read
+  std::map<int, std::vector<double>> cameras_;  // of CameraInfo among them
+  size_t at_ = 0;                               // the file that is read
 };
 
 }  // namespace
 
-bool IsRos2Bag(const std::string& path) {
+bool IsBag(const std::string& path, BagKind kind) {
   std::error_code error;
-  if (fs::is_directory(path, error)) return !FilesOf(path).empty();
-  return fs::is_regular_file(path, error) && IsPartOfBag(path);
+  if (fs::is_directory(path, error)) return !FilesOf(path, kind).empty();
+  return fs::is_regular_file(path, error) && IsPartOfBag(path, kind);
 }
 
-std::unique_ptr<BagReader> OpenRos2Bag(const std::string& path) {
-  const std::vector<fs::path> files = FilesOf(path);
+std::unique_ptr<BagReader> OpenBag(const std::string& path, BagKind kind) {
+  const std::vector<fs::path> files = FilesOf(path, kind);
   if (files.empty()) {
-    throw InputError(path + ": has no .db3 or .mcap file");
+    throw InputError(path + (kind == BagKind::kRos1
+                                 ? ": has no .bag file, or several that are "
+                                   "not NAME_0.bag, NAME_1.bag, ...; name one"
+                                 : ": has no .db3 or .mcap file"));
   }
-  return std::make_unique<Ros2Bag>(path, files);
+  return std::make_unique<BagFiles>(path, files, kind);
 }
 
 }  // namespace rgbd_pose

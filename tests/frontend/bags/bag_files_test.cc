@@ -1,4 +1,4 @@
-#include "frontend/bags/ros2_bag.h"
+#include "frontend/bags/bag_files.h"
 
 #ifdef RGBD_POSE_MCAP
 #include <zstd.h>
@@ -165,7 +165,7 @@ TEST_F(Ros2BagTest, ReadsPackedMessages) {
     return packed.substr(0, packed.size() / 2);
   };
   cut.WriteFrames(0, kFrames);
-  ExpectRefused("cut.db3", {"cut.db3: a message a chunk is damaged"});
+  ExpectRefused("cut.db3", {"cut.db3: a message: a chunk does not unpack"});
 }
 
 // --compression-mode file.

@@ -1,0 +1,62 @@
+// Recordings of ROS: a byte for their kind, then the bytes of a file, or of two
+// parts in a folder with the length of the first before them.
+
+#include <algorithm>
+
+#include "frontend/bags/bag_files.h"
+#include "frontend/sources/open_source.h"
+#include "tests/fuzz/fuzz_input.h"
+
+namespace {
+
+using namespace rgbd_pose;
+
+void ReadAll(const std::string& path, BagKind kind) {
+  MayRefuse([&] {
+    const auto bag = OpenBag(path, kind);
+    std::vector<int> all;
+    for (int i = 0; i < static_cast<int>(bag->topics().size()); ++i) {
+      MayRefuse([&] { bag->First(i, 2); });
+      all.push_back(i);
+    }
+    bag->Select(all);
+    while (const auto message = bag->Next()) {
+      Require(message->topic < static_cast<int>(all.size()), "a topic");
+    }
+  });
+  MayRefuse([&] {
+    SourceOptions options;
+    options.path = path;
+    const auto source = OpenSource("auto", options);
+    while (const auto frame = source->Next()) {
+      MayRefuse([&] { frame->read(); });
+    }
+  });
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  if (size < 3) return 0;
+  static const FuzzFolder folder;
+  const std::string_view bytes = FuzzText(data + 3, size - 3);
+  const size_t first = data[1] + 256u * data[2];
+  switch (data[0] % 4) {
+    case 0:
+      ReadAll(folder.Write("a.bag", bytes), BagKind::kRos1);
+      break;
+    case 1:
+      std::filesystem::create_directory(folder.path() + "/parts");
+      folder.Write("parts/a_0.bag", bytes.substr(0, first));
+      folder.Write("parts/a_1.bag",
+                   bytes.substr(std::min(first, bytes.size())));
+      ReadAll(folder.path() + "/parts", BagKind::kRos1);
+      break;
+    case 2:
+      ReadAll(folder.Write("a.db3", bytes), BagKind::kRos2);
+      break;
+    default:
+      ReadAll(folder.Write("a.db3.zstd", bytes), BagKind::kRos2);
+  }
+  return 0;
+}

@@ -1,0 +1,27 @@
+// Cameras of recordings in numbered files: the input as each of their files.
+
+#include "frontend/sources/numbered_layouts.h"
+#include "frontend/sources/source_options.h"
+#include "tests/fuzz/fuzz_input.h"
+
+int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  using namespace rgbd_pose;
+  static const FuzzFolder folder;
+  static const bool has_folder =
+      std::filesystem::create_directory(folder.path() + "/intrinsic");
+  Require(has_folder, "a folder of cameras");
+  for (const char* name : {"camera_intrinsic.json", "cam_params.json",
+                           "intrinsic/intrinsic_color.txt"}) {
+    folder.Write(name, FuzzText(data, size));
+  }
+  for (const NumberedLayout& layout : NumberedLayouts()) {
+    MayRefuse([&] {
+      SourceOptions options;
+      options.path = folder.path();
+      const CameraSetup setup =
+          ChooseCamera(options, layout.camera(folder.path(), "", ""));
+      Require(setup.camera.Check().empty(), "a camera that can be used");
+    });
+  }
+  return 0;
+}
