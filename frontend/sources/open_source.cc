@@ -12,7 +12,6 @@
 #include "frontend/bags/ros1_bag.h"
 #include "frontend/bags/ros2_bag.h"
 #include "frontend/sources/bag_source.h"
-#include "frontend/sources/corrected_source.h"
 #include "frontend/sources/numbered_dataset.h"
 #include "frontend/sources/openni2_source.h"
 #include "frontend/sources/tum_dataset.h"
@@ -124,7 +123,7 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   std::string known;
   for (const SourceType& type : Types()) {
     if (name == kAuto ? type.recognises(options) : name == type.name) {
-      return ApplyDepthCorrection(type.open(options));
+      return type.open(options);
     }
     known += (known.empty() ? "" : "; ") + type.what;
   }

@@ -13,7 +13,7 @@
 #include "apps/pipeline/slam.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/sources/corrected_source.h"
+#include "frontend/sources/frame_assembly.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {
