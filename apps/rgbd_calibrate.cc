@@ -8,7 +8,6 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "apps/calibration/calibration_passes.h"
 #include "apps/calibration/calibration_run.h"
 #include "apps/report/calibration_page.h"
 #include "apps/results/calibration_output.h"

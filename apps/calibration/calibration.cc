@@ -4,9 +4,6 @@
 #include <cmath>
 
 #include "apps/calibration/calibration_camera.h"
-#include "apps/calibration/calibration_data.h"
-#include "apps/calibration/calibration_halves.h"
-#include "apps/calibration/calibration_scale.h"
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/calibration/displaced_depths.h"
 #include "core/util/input_error.h"
@@ -18,12 +15,10 @@ namespace {
 using FreeParts = std::array<bool, kCalibrationSize>;
 using Status = CalibratedParameter::Status;
 
-CalibrationVector PriorOf(const CalibrationSettings& settings,
-                          const CalibrationVector& start) {
+CalibrationVector PriorOf(const CalibrationVector& start) {
   CalibrationVector prior;
   for (int k = 0; k < kCalibrationSize; ++k) {
-    prior[k] = settings.prior[k] > 0.0 ? settings.prior[k]
-                                       : kCalibrationParameters[k].prior;
+    prior[k] = kCalibrationParameters[k].prior;
     if (k == kFx || k == kFy) prior[k] *= start[k];
   }
   return prior;
@@ -57,9 +52,9 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   CalibrationResult result;
   result.camera = result.found = first;
   CalibrationData data =
-      CollectCalibrationData(map, path, odometry, settings.data, threads);
+      CollectCalibrationData(map, path, odometry, settings.max_views, threads);
   result.scale_from =
-      AddKnownDistances(map, path, settings.known_length, scale, &data);
+      AddKnownDistances(path, settings.known_length, scale, &data);
   const FreeParts asked =
       FreeParameters(settings.fix, !data.views.distances.empty());
   result.keyframes = static_cast<int>(data.timestamps.size());
@@ -68,7 +63,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   result.views = static_cast<int>(data.views.views.size());
 
   const CalibrationVector start = ThetaOf(map.camera);
-  const CalibrationVector prior = PriorOf(settings, start);
+  const CalibrationVector prior = PriorOf(start);
   for (int k = 0; k < kCalibrationSize; ++k) {
     CalibratedParameter& parameter = result.parameters[k];
     parameter.before = parameter.found = start[k];

@@ -1,13 +1,8 @@
 #pragma once
 
-#include <map>
-#include <memory>
 #include <vector>
 
-#include "apps/pipeline/settings.h"
-#include "costs/calibration/calibration_views.h"
-#include "frontend/features/frontend.h"
-#include "frontend/map/keyframe_map.h"
+#include "apps/calibration/calibration_data.h"
 
 namespace rgbd_pose {
 
@@ -17,39 +12,11 @@ struct LandmarksOfKeyframe {
   std::vector<std::vector<LandmarkView>> views;  // of each landmark
 };
 
-// Finds features of keyframes in other keyframes: what one thread works with.
-class LandmarkMatcher {
- public:
-  // All must outlive it but `settings`. `chosen`: places in the map of the
-  // keyframes, by whose numbers all is asked for.
-  LandmarkMatcher(const KeyframeMap& map, const std::vector<int>& chosen,
-                  const OdometrySettings& settings, int max_features);
-
-  // `held_out`: of each of the neighbours.
-  LandmarksOfKeyframe Match(int anchor, const std::vector<int>& neighbours,
-                            const std::vector<bool>& held_out);
-
- private:
-  const Rigid3d& Pose(int at) const {
-    return map_.keyframes[chosen_[at]].world_from_cam;
-  }
-  // The pixel that was measured.
-  Eigen::Vector2d Seen(const Observation& o) const {
-    return map_.camera.Project(map_.camera.Ray(o.u, o.v));
-  }
-  // Decoded once for neighbours that follow each other.
-  const PreparedFrame& Images(int at);
-
-  // One of the keyframe's depths.
-  MeasuredInverseDepth DepthOf(const Frame& frame, const Observation& o,
-                               const Eigen::Vector2d& pixel) const;
-
-  const KeyframeMap& map_;
-  const std::vector<int>& chosen_;
-  std::unique_ptr<Frontend> frontend_;
-  DepthNoiseModel noise_;
-  std::map<int, PreparedFrame> images_;
-  FeatureMatches matches_;
-};
+// Finds up to `max_features` features of each keyframe again in those that it
+// is paired with.
+std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
+                                               const CalibrationPairs& pairs,
+                                               const OdometrySettings& settings,
+                                               int max_features, int threads);
 
 }  // namespace rgbd_pose

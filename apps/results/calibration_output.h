@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/calibration/calibration_passes.h"
+#include "apps/calibration/calibration_run.h"
 #include "apps/results/run_folder.h"
 
 namespace rgbd_pose {

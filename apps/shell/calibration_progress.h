@@ -1,6 +1,6 @@
 #pragma once
 
-#include "apps/calibration/calibration_passes.h"
+#include "apps/calibration/calibration_run.h"
 
 namespace rgbd_pose {
 

@@ -1,6 +1,6 @@
 // Depths with noise in; its model out.
 
-#include "apps/calibration/calibration_noise.h"
+#include "apps/calibration/calibration_result.h"
 
 #include <gtest/gtest.h>
 

@@ -50,7 +50,7 @@ struct Mapped {
 
   CalibrationResult Calibrate(CalibrationSettings settings = {},
                               int threads = 2) const {
-    settings.data.max_views = 5000;
+    settings.max_views = 5000;
     return rgbd_pose::Calibrate(map, path, first, CalibrationOdometry(),
                                 settings, {}, threads);
   }
