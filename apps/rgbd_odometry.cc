@@ -130,10 +130,10 @@ int Main() {
 
   const RunResults results = run.Finish(sequence.GroundTruth());
   LogWarnings(results);
-  std::string text = output.Write(
-      results, Summarise(results.frames, threads, seconds),
-      sequence.GroundTruth(), settings.sequence.dataset, FormatFlagFile(Info()),
-      Info().name, {{"stopped", flaws.stopped}});
+  std::string text =
+      output.Write(results, threads, seconds, sequence.GroundTruth(),
+                   settings.sequence.dataset, FormatFlagFile(Info()),
+                   Info().name, {{"stopped", flaws.stopped}});
   if (FLAGS_report) {
     text += WriteRunPage(output.staging_dir(), settings.output.output,
                          &flaws.no_report);

@@ -210,16 +210,16 @@ int Main() {
   std::string text = calibration.Write(output);
   nlohmann::json more = {{"stopped", flaws.stopped}, {"slam", map_json}};
   if (!calibration.Json().is_null()) more["calibration"] = calibration.Json();
-  text += output.Write(results, Summarise(results.frames, threads, seconds),
-                       sequence.GroundTruth(), settings.sequence.dataset,
-                       FormatFlagFile(Info()), Info().name, more);
+  text += output.Write(results, threads, seconds, sequence.GroundTruth(),
+                       settings.sequence.dataset, FormatFlagFile(Info()),
+                       Info().name, more);
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
   output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
   output.WriteFile("trajectory_online.txt",
                    FormatOnlineTrajectory(slam, run.slam_frames()));
   output.WriteFile("trajectory_odometry.txt",
-                   FormatOdometryTrajectory(run.slam_frames()));
+                   FormatTrajectory(SmoothPath(run.slam_frames())));
   output.WriteFile("keyframes.csv",
                    FormatKeyframesCsv(map, slam.Covariances()));
   output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));

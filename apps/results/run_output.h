@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "apps/pipeline/odometry_run.h"
-#include "apps/pipeline/run_summary.h"
 #include "apps/pipeline/setting_table.h"
 #include "apps/results/run_folder.h"
 #include "apps/shell/frame_selection.h"
@@ -46,9 +45,10 @@ class RunOutput {
   }
 
   // Writes all files but the page: `flags` into config.flags, `dataset`, the
-  // program's name and `more` (an object) into metrics.json. `truth` may be
-  // null. Returns what the program prints of them.
-  std::string Write(const RunResults& results, const RunSummary& summary,
+  // program's name and `more` (an object) into metrics.json. `seconds`: of the
+  // whole program, up to the last frame, by `threads`. `truth` may be null.
+  // Returns what the program prints of them.
+  std::string Write(const RunResults& results, int threads, double seconds,
                     const Trajectory* truth, const std::string& dataset,
                     const std::string& flags,
                     const std::string& program = "rgbd_odometry",

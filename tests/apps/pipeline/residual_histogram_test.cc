@@ -3,7 +3,7 @@
 
 #include <numeric>
 
-#include "apps/pipeline/run_summary.h"
+#include "apps/pipeline/residual_histogram.h"
 
 namespace rgbd_pose {
 namespace {
