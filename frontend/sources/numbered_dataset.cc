@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -69,8 +70,7 @@ NumberedDataset::NumberedDataset(const NumberedLayout& layout,
 
 bool NumberedDataset::Recognises(const NumberedLayout& layout,
                                  const std::string& folder) {
-  std::error_code error;
-  return fs::exists(fs::path(folder) / layout.mark, error) &&
+  return PathExists(fs::path(folder) / layout.mark) &&
          !List(folder, layout.color).empty() &&
          !List(folder, layout.depth).empty();
 }

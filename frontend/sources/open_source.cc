@@ -32,8 +32,7 @@ struct SourceType {
 };
 
 bool HasFile(const SourceOptions& options, const char* name) {
-  std::error_code error;
-  return fs::exists(fs::path(options.path) / name, error);
+  return PathExists(fs::path(options.path) / name);
 }
 
 bool EndsWith(const std::string& path, std::string_view ending) {
@@ -128,7 +127,7 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
     known += (known.empty() ? "" : "; ") + type.what;
   }
   if (name != kAuto) throw UnknownName("source", name, SourceNames());
-  if (!fs::exists(options.path, error)) {
+  if (!PathExists(options.path)) {
     throw InputError(options.path + ": no such file or folder");
   }
   if (EndsWith(options.path, ".bag.active")) {

@@ -68,8 +68,7 @@ std::vector<ListedImage> ReadImageList(const std::string& folder,
                                        const std::string& name,
                                        int* same_stamp) {
   const std::string list = (fs::path(folder) / name).string();
-  std::error_code error;
-  if (!fs::exists(list, error)) {
+  if (!PathExists(list)) {
     throw InputError(list +
                      ": missing; a TUM RGB-D sequence has rgb.txt and "
                      "depth.txt, or else give an associations file");
