@@ -14,7 +14,6 @@
 #include "core/util/text_file.h"
 #include "frontend/fusion/mesh_file.h"
 #include "frontend/fusion/mesh_fusion.h"
-#include "frontend/fusion/ply_writer.h"
 #include "frontend/fusion/surface_mesh.h"
 
 namespace rgbd_pose {

@@ -16,7 +16,6 @@
 #include "frontend/files/image_file.h"
 #include "frontend/frame/frame_rectifier.h"
 #include "frontend/fusion/mesh_file.h"
-#include "frontend/fusion/ply_writer.h"
 #include "frontend/tracking/residual_image.h"
 
 namespace rgbd_pose {

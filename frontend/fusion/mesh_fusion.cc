@@ -8,6 +8,7 @@
 #include "core/util/parallel_for.h"
 #include "frontend/frame/surface_normal.h"
 #include "frontend/fusion/surface_mesh.h"
+#include "frontend/fusion/voxel_key.h"
 
 namespace rgbd_pose {
 namespace {
@@ -155,11 +156,11 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
             (2.0F * static_cast<float>(i) / static_cast<float>(steps) - 1.0F);
         const float z = end + from_end;
         const Eigen::Vector3f at = (z * ray + t) * blocks_per_metre;
-        if (!(at.cwiseAbs().maxCoeff() < TsdfVolume::kHalfRange - 1)) {
+        if (!(at.cwiseAbs().maxCoeff() < kVoxelKeyRange - 1)) {
           continue;
         }
         const SeenBlock block = {
-            TsdfVolume::KeyOf(
+            VoxelKey(
                 {FloorToInt(at.x()), FloorToInt(at.y()), FloorToInt(at.z())}),
             std::abs(from_end) <= near};
         if (block == last[i]) continue;
@@ -193,8 +194,8 @@ void MeshFusion::AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
   const auto height = static_cast<float>(depth_.rows);
   const Eigen::Matrix3d R = cam_from_world.rotation.toRotationMatrix();
   const Eigen::Matrix3f steps = (R * options_.voxel_size).cast<float>();
-  const Eigen::Vector3d first = kBlockSide * options_.voxel_size *
-                                TsdfVolume::BlockOf(key).cast<double>();
+  const Eigen::Vector3d first =
+      kBlockSide * options_.voxel_size * VoxelOfKey(key).cast<double>();
   const Eigen::Vector3f origin = (cam_from_world * first).cast<float>();
   DistanceVoxel* voxel = block->data();
   for (int i = 0; i < kBlockSide; ++i) {
