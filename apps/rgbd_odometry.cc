@@ -47,19 +47,16 @@ ProgramSettings& Settings() {
 }
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_odometry";
-  info.summary = "estimates the motion of an RGB-D camera along a sequence.";
-  info.example =
+  return {
+      "rgbd_odometry",
+      "estimates the motion of an RGB-D camera along a sequence.",
       "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
-      "--output=runs/fr1_xyz";
-  info.settings = {SettingTable(&Settings().sequence),
-                   SettingTable(&Settings().odometry),
-                   SettingTable(&Settings().output)};
-  info.flag_groups = {
-      {"Run", {"report", "validate_only", "finish_on_signal", "threads"}},
-      {"View", {"view", "view_port", "view_speed"}}};
-  return info;
+      "--output=runs/fr1_xyz",
+      {{"Run", {"report", "validate_only", "finish_on_signal", "threads"}},
+       {"View", {"view", "view_port", "view_speed"}}},
+      /*choices=*/{},
+      {SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
+       SettingTable(&Settings().output)}};
 }
 
 using Clock = std::chrono::steady_clock;

@@ -23,7 +23,6 @@
 #include "apps/results/run_tracking.h"
 #include "apps/results/slam_output.h"
 #include "apps/shell/available_cores.h"
-#include "apps/shell/calibration_progress.h"
 #include "apps/shell/program.h"
 #include "apps/view/live_view.h"
 #include "core/util/input_error.h"
@@ -58,21 +57,16 @@ ProgramSettings& Settings() {
 }
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_slam";
-  info.summary =
-      "maps what an RGB-D camera sees, and finds its path in the map.";
-  info.example =
-      "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
-      "--output=runs/fr1_room --save_map=maps/room";
-  info.settings = {
-      SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
-      SettingTable(&Settings().slam), SettingTable(&Settings().maps),
-      SettingTable(&Settings().output)};
-  info.flag_groups = {
-      {"Run", {"calibrate", "report", "finish_on_signal", "threads"}},
-      {"View", {"view", "view_port", "view_speed"}}};
-  return info;
+  return {"rgbd_slam",
+          "maps what an RGB-D camera sees, and finds its path in the map.",
+          "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
+          "--output=runs/fr1_room --save_map=maps/room",
+          {{"Run", {"calibrate", "report", "finish_on_signal", "threads"}},
+           {"View", {"view", "view_port", "view_speed"}}},
+          /*choices=*/{},
+          {SettingTable(&Settings().sequence),
+           SettingTable(&Settings().odometry), SettingTable(&Settings().slam),
+           SettingTable(&Settings().maps), SettingTable(&Settings().output)}};
 }
 
 using Clock = std::chrono::steady_clock;

@@ -12,6 +12,13 @@ namespace rgbd_pose {
 // wrong place, not noisy.
 constexpr double kMuchNoise = 5.0;
 
+// CalibrateRecording with a progress bar for each pass.
+RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
+                                           const OdometrySettings& odometry,
+                                           const SlamSettings& slam,
+                                           const CalibrationSettings& settings,
+                                           int threads);
+
 // What rgbd_calibrate prints of a result.
 std::string FormatCalibrationSummary(const CalibrationResult& result);
 
