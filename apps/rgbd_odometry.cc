@@ -132,10 +132,10 @@ int Main() {
                    settings.sequence.dataset, FormatFlagFile(Info()),
                    Info().name, {{"stopped", flaws.stopped}});
   if (FLAGS_report) {
-    text += WriteRunPage(output.staging_dir(), settings.output.output,
+    text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
                          &flaws.no_report);
   }
-  output.Publish();
+  output.folder().Publish();
   text += SaveMesh(settings.output, threads);
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());

@@ -119,7 +119,7 @@ class Calibration {
 
   // Writes its files; returns what the program prints of it. From here on the
   // flags are those of a run with the camera found.
-  std::string Write(const RunOutput& output) const {
+  std::string Write(const RunFolder& output) const {
     if (!found_.has_value()) return "";
     const CalibrationResult& result = found_->result;
     if (result.is_accepted) {
@@ -201,7 +201,7 @@ int Main() {
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
   const std::string warning = SlamWarning(map_json);
   if (!warning.empty()) LOG(WARNING) << warning;
-  std::string text = calibration.Write(output);
+  std::string text = calibration.Write(output.folder());
   nlohmann::json more = {{"stopped", flaws.stopped}, {"slam", map_json}};
   if (!calibration.Json().is_null()) more["calibration"] = calibration.Json();
   text += output.Write(results, threads, seconds, sequence.GroundTruth(),
@@ -209,19 +209,20 @@ int Main() {
                        Info().name, more);
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
-  output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
-  output.WriteFile("trajectory_online.txt",
-                   FormatOnlineTrajectory(slam, run.slam_frames()));
-  output.WriteFile("trajectory_odometry.txt",
-                   FormatTrajectory(SmoothPath(run.slam_frames())));
-  output.WriteFile("keyframes.csv",
-                   FormatKeyframesCsv(map, slam.Covariances()));
-  output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
+  output.folder().WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
+  output.folder().WriteFile("trajectory_online.txt",
+                            FormatOnlineTrajectory(slam, run.slam_frames()));
+  output.folder().WriteFile("trajectory_odometry.txt",
+                            FormatTrajectory(SmoothPath(run.slam_frames())));
+  output.folder().WriteFile("keyframes.csv",
+                            FormatKeyframesCsv(map, slam.Covariances()));
+  output.folder().WriteFile("graph.g2o",
+                            FormatG2o(slam.Map(/*as_solved=*/true)));
   if (FLAGS_report) {
-    text += WriteRunPage(output.staging_dir(), settings.output.output,
+    text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
                          &flaws.no_report);
   }
-  output.Publish();
+  output.folder().Publish();
   text += SaveMesh(settings.output, threads);
   // The results stay if the map cannot be saved.
   if (!settings.maps.save_map.empty()) {

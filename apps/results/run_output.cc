@@ -32,9 +32,9 @@ nlohmann::json ShutterToJson(const RgbdCamera& camera) {
           {"depth", both(camera.depth_shutter)}};
 }
 
-CloudFusionOptions CloudOptions(const Camera& camera, double voxel,
-                                const DepthLookupOptions& depth) {
-  CloudFusionOptions options;
+FusionOptions CloudOptions(const Camera& camera, double voxel,
+                           const DepthLookupOptions& depth) {
+  FusionOptions options;
   options.camera = camera;
   options.voxel_size = voxel;
   options.depth = depth;
@@ -204,7 +204,7 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
           CloudOptions(source.camera().camera, settings.voxel, depth)),
       folder_(settings.output) {
   if (!settings.debug_images.empty()) {
-    std::filesystem::create_directory(staging_dir() / kDebug);
+    std::filesystem::create_directory(folder_.staging_dir() / kDebug);
   }
   if (!settings.save_mesh.empty()) RequireMeshFile(settings.save_mesh);
   if (!settings.save_cloud.empty()) {
@@ -232,7 +232,7 @@ void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
   seen.twist = run.odometry().last_twist();
   seen = FrameRectifier(camera).Rectify(seen);
   if (is_drawn) {
-    WriteDebugImage(staging_dir() / kDebug, seen, tracked, camera,
+    WriteDebugImage(folder_.staging_dir() / kDebug, seen, tracked, camera,
                     run.odometry());
   }
   if (is_fused) cloud_->Add(seen, tracked.world_from_cam);
@@ -266,21 +266,21 @@ std::string RunOutput::Write(const RunResults& results, int threads,
     text += FormatEvaluation(*results.evaluation);
     metrics["evaluation"] = EvaluationToJson(*results.evaluation);
     shown_from_world = results.evaluation->truth_from_estimate;
-    WriteFile("errors.csv",
-              FormatErrorsCsv(results.frames, *truth, *results.evaluation));
+    folder_.WriteFile("errors.csv", FormatErrorsCsv(results.frames, *truth,
+                                                    *results.evaluation));
   }
   if (cloud_.has_value()) {
     metrics["cloud"] = WriteCloud(shown_from_world, &text);
   }
-  WriteFile("trajectory.txt", FormatTrajectory(results.trajectory));
-  WriteFile("frames.csv", FormatFramesCsv(results.frames));
-  WriteFile("edges.csv", FormatEdgesCsv(results.frames));
-  WriteFile("config.flags", flags);
+  folder_.WriteFile("trajectory.txt", FormatTrajectory(results.trajectory));
+  folder_.WriteFile("frames.csv", FormatFramesCsv(results.frames));
+  folder_.WriteFile("edges.csv", FormatEdgesCsv(results.frames));
+  folder_.WriteFile("config.flags", flags);
   // The name of the dataset may be no UTF-8.
-  WriteFile("metrics.json",
-            metrics.dump(2, ' ', /*ensure_ascii=*/false,
-                         nlohmann::json::error_handler_t::replace) +
-                "\n");
+  folder_.WriteFile("metrics.json",
+                    metrics.dump(2, ' ', /*ensure_ascii=*/false,
+                                 nlohmann::json::error_handler_t::replace) +
+                        "\n");
   return text;
 }
 
@@ -293,7 +293,7 @@ nlohmann::json RunOutput::WriteCloud(const Rigid3d& shown_from_world,
   *text += "cloud       " + std::to_string(points.size()) + " points of " +
            std::to_string(cloud_->frames()) + " frames in " +
            settings_.save_cloud + "\n";
-  WriteFile(
+  folder_.WriteFile(
       kCloudPreviewFile,
       CloudPreview(points.Thin(kMaxPreviewPoints), shown_from_world).dump());
   return {{"points", points.size()},

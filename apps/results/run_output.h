@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -39,10 +38,8 @@ class RunOutput {
   // After the run has tracked a frame.
   void Add(const Frame& frame, const SequenceRun& run);
 
-  // Where files are until they are published, see RunFolder.
-  const std::filesystem::path& staging_dir() const {
-    return folder_.staging_dir();
-  }
+  // Where its files are written, and further ones may be.
+  RunFolder& folder() { return folder_; }
 
   // Writes all files but the page: `flags` into config.flags, `dataset`, the
   // program's name and `more` (an object) into metrics.json. `seconds`: of the
@@ -54,14 +51,6 @@ class RunOutput {
                     const std::string& program = "rgbd_odometry",
                     const nlohmann::json& more = nullptr);
 
-  // A further file, by its name.
-  void WriteFile(const char* name, const std::string& content) const {
-    folder_.WriteFile(name, content);
-  }
-
-  // Puts all files into their places.
-  void Publish() { folder_.Publish(); }
-
  private:
   nlohmann::json DepthStampsToJson() const;
   nlohmann::json WriteCloud(const Rigid3d& shown_from_world,
@@ -70,7 +59,7 @@ class RunOutput {
   RunOutputSettings settings_;
   const FrameSource& source_;
   FrameSelection drawn_;
-  CloudFusionOptions cloud_options_;
+  FusionOptions cloud_options_;
   std::optional<CloudFusion> cloud_;
   RunFolder folder_;
   std::vector<double> depth_stamps_ms_;  // of each frame, after colour's

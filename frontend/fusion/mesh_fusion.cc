@@ -13,11 +13,6 @@
 namespace rgbd_pose {
 namespace {
 
-// Below, there are more cubes than any sensor has noise-free points for;
-// above, rooms are no longer recognised.
-constexpr double kMinMeshVoxel = 0.001;  // m
-constexpr double kMaxMeshVoxel = 1.0;    // m
-
 constexpr int kBlockSide = TsdfVolume::kSide;
 
 // Of the fixed point that colours are kept in.
@@ -35,23 +30,18 @@ void AverageColor(const cv::Vec3b& bgr, float share, DistanceVoxel* voxel) {
 }  // namespace
 
 std::string MeshFusionOptions::Check() const {
-  if (!(voxel_size >= kMinMeshVoxel && voxel_size <= kMaxMeshVoxel)) {
-    return "the voxel size must be 0.001 to 1 m";
-  }
   if (!(truncation_voxels >= 1.0) || !(truncation_sigmas >= 0.0)) {
     return "the truncation must be at least one voxel";
   }
   if (!(max_sigma >= 0.0)) return "max_sigma must not be negative";
   if (threads < 1) return "at least one thread is needed";
-  const std::string noise_error = depth.noise.Check();
-  if (!noise_error.empty()) return "depth noise: " + noise_error;
   constexpr double kFar = 1000.0;  // m, beyond all sensors
   const double farthest = std::min(depth.max_depth, max_depth);
   if (!(depth.min_depth > 0.0) || !(farthest > depth.min_depth) ||
       !(farthest <= kFar)) {
     return "depth limits must satisfy 0 < min_depth < max_depth <= 1000 m";
   }
-  return camera.Check();
+  return FusionOptions::Check();
 }
 
 MeshFusion::MeshFusion(const MeshFusionOptions& options)
