@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/calibration/calibration_camera.h"
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/calibration/displaced_depths.h"
 #include "core/util/input_error.h"

@@ -6,6 +6,7 @@
 #include "apps/pipeline/settings.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
+#include "costs/calibration/calibration_parameters.h"
 #include "frontend/map/keyframe_map.h"
 
 namespace rgbd_pose {
@@ -18,5 +19,17 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const OdometrySettings& odometry,
                             const CalibrationSettings& settings,
                             const CalibrationScale& scale, int threads);
+
+// A camera as the parameters of its calibration: its lens, and nothing wrong
+// with depth as it is corrected.
+CalibrationVector ThetaOf(const Camera& camera);
+
+// The camera that was the first as theta changes it.
+RgbdCamera ApplyCalibration(const RgbdCamera& first,
+                            const CalibrationVector& theta);
+
+// The theta that changes the first camera to another.
+CalibrationVector ThetaBetween(const RgbdCamera& first,
+                               const RgbdCamera& changed);
 
 }  // namespace rgbd_pose

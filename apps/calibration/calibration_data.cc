@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/calibration/landmark_matcher.h"
 #include "core/geometry/twist.h"
 
 namespace rgbd_pose {

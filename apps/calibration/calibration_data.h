@@ -25,6 +25,19 @@ struct CalibrationPairs {
 // that two keyframes hang together by.
 CalibrationPairs ChoosePairs(const KeyframeMap& map);
 
+// The landmarks of one keyframe, with its views still its own.
+struct LandmarksOfKeyframe {
+  std::vector<Landmark> landmarks;
+  std::vector<std::vector<LandmarkView>> views;  // of each landmark
+};
+
+// Finds up to `max_features` features of each keyframe again in those that it
+// is paired with.
+std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
+                                               const CalibrationPairs& pairs,
+                                               const OdometrySettings& settings,
+                                               int max_features, int threads);
+
 // The keyframes that the views are of.
 struct CalibrationData {
   CalibrationViews views;

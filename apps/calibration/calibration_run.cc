@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/calibration/calibration_camera.h"
+#include "apps/calibration/calibration.h"
 #include "apps/calibration/calibration_verdict.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"

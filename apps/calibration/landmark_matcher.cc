@@ -1,11 +1,10 @@
-#include "apps/calibration/landmark_matcher.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <memory>
 
-#include "apps/calibration/measured_depth.h"
+#include "apps/calibration/calibration_data.h"
+#include "apps/calibration/displaced_depths.h"
 #include "core/util/parallel_for.h"
 #include "frontend/features/frontend.h"
 

@@ -4,8 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/export/export_options.h"
-#include "apps/export/finished_run.h"
+#include "apps/export/export_format.h"
 #include "core/util/input_error.h"
 #include "frontend/frame/undistorter.h"
 #include "frontend/fusion/cloud_fusion.h"

@@ -9,8 +9,8 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_hash.h"
-#include "frontend/simulation/synthetic_movers.h"
 #include "frontend/simulation/synthetic_path.h"
+#include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/simulation/synthetic_sensor.h"
 
 namespace rgbd_pose {

@@ -1,9 +1,8 @@
-#include "frontend/simulation/synthetic_movers.h"
-
 #include <cmath>
 
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_materials.h"
+#include "frontend/simulation/synthetic_renderer.h"
 
 namespace rgbd_pose {
 namespace {

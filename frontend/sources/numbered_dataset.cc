@@ -129,7 +129,7 @@ Trajectory NumberedDataset::ground_truth() const {
   for (const NumberedFrame& frame : frames_) numbers.push_back(frame.number);
   Trajectory truth;
   for (const auto& [number, pose] : layout_.poses(folder_, numbers)) {
-    truth.push_back({number / layout_.rate_hz, pose});
+    truth.push_back({number / kNumberedRate, pose});
   }
   return truth;
 }

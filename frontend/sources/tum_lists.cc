@@ -1,5 +1,3 @@
-#include "frontend/sources/tum_lists.h"
-
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -10,6 +8,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
+#include "frontend/sources/tum_dataset.h"
 
 namespace rgbd_pose {
 namespace {

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <string>
 
-#include "apps/calibration/calibration_camera.h"
 #include "apps/calibration/calibration_run.h"
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/pipeline/slam.h"
