@@ -13,16 +13,16 @@ namespace rgbd_pose {
 struct ImagePair {
   double timestamp = 0.0;    // of the colour image, s
   double depth_delay = 0.0;  // of the depth image, s after it
-  std::string color_path;
-  std::string depth_path;
+  std::string color_path;    // of its file
+  std::string depth_path;    // likewise
 };
 
 // The frames of a sequence in the layout of the TUM RGB-D benchmark, in strict
 // time order; never empty.
 struct TumLists {
-  std::vector<ImagePair> pairs;
-  int unmatched_color = 0;  // colour images without a depth image
-  int same_stamp = 0;       // images left out that have another one's stamp
+  std::vector<ImagePair> pairs;  // never empty
+  int unmatched_color = 0;       // colour images without a depth image
+  int same_stamp = 0;  // images left out that have another one's stamp
 };
 
 // Both readers check columns and time stamps (in order; of one the first image
