@@ -69,27 +69,23 @@ namespace {
 namespace fs = std::filesystem;
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_batch";
-  info.summary =
-      "runs rgbd_odometry, or rgbd_slam, on many sequences with many settings, "
-      "each run in a process and a folder of its own, and makes one table of "
-      "it.";
-  info.example =
-      "rgbd_batch --sequences=list.txt --losses=huber,tukey --parts=0-,3-,7- "
-      "--output=runs";
-  info.flag_groups = {
-      {"Plan",
-       {"sequences", "costs", "losses", "frontends", "trackers", "parts",
-        "repeats", "settings"}},
-      {"How it is run",
-       {"jobs", "timeout", "resume", "shard", "merge", "dry_run", "program"}},
-      {"Output", {"output"}}};
-  info.choices = {{"costs", CostNames()},
-                  {"losses", MEstimatorNames()},
-                  {"frontends", FrontendNames()},
-                  {"trackers", TrackerNames()}};
-  return info;
+  return {
+      "rgbd_batch",
+      "runs rgbd_odometry, or rgbd_slam, on many sequences with many "
+      "settings, each run in a process and a folder of its own, and makes "
+      "one table of it.",
+      "rgbd_batch --sequences=list.txt --losses=huber,tukey "
+      "--parts=0-,3-,7- --output=runs",
+      {{"Plan",
+        {"sequences", "costs", "losses", "frontends", "trackers", "parts",
+         "repeats", "settings"}},
+       {"How it is run",
+        {"jobs", "timeout", "resume", "shard", "merge", "dry_run", "program"}},
+       {"Output", {"output"}}},
+      {{"costs", CostNames()},
+       {"losses", MEstimatorNames()},
+       {"frontends", FrontendNames()},
+       {"trackers", TrackerNames()}}};
 }
 
 std::string ProgramPath() {

@@ -8,12 +8,10 @@
 #include <opencv2/core.hpp>
 #include <string>
 
-#include "apps/calibration/calibration_passes.h"
 #include "apps/calibration/calibration_run.h"
 #include "apps/report/calibration_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/shell/available_cores.h"
-#include "apps/shell/calibration_progress.h"
 #include "apps/shell/program.h"
 
 DEFINE_int32(threads, 0, "threads; 0: one for each core");
@@ -36,17 +34,15 @@ ProgramSettings& Settings() {
 }
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_calibrate";
-  info.summary = "calibrates an RGB-D camera from its own recording.";
-  info.example =
+  return {
+      "rgbd_calibrate",
+      "calibrates an RGB-D camera from its own recording.",
       "rgbd_calibrate --dataset=my_recording --camera=my_camera.yaml "
-      "--output=calibration";
-  info.settings = {
-      SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
-      SettingTable(&Settings().slam), SettingTable(&Settings().calibration)};
-  info.flag_groups = {{"Run", {"output", "report", "threads"}}};
-  return info;
+      "--output=calibration",
+      {{"Run", {"output", "report", "threads"}}},
+      /*choices=*/{},
+      {SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
+       SettingTable(&Settings().slam), SettingTable(&Settings().calibration)}};
 }
 
 int Main() {

@@ -45,16 +45,14 @@ std::vector<Setting> ExperimentTable(ExperimentSettings* settings) {
 }
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_compare";
-  info.summary =
-      "compares M-estimators as the thesis' fourth chapter does: by features "
-      "alone, unless --tracker says otherwise.";
-  info.example = "rgbd_compare --experiment=xyz --output=compare/xyz";
-  info.settings = {ExperimentTable(&Settings()),
-                   WithoutRow("loss", SettingTable(&Settings().odometry))};
-  info.flag_groups = {{"Output", {"output", "report"}}};
-  return info;
+  return {"rgbd_compare",
+          "compares M-estimators as the thesis' fourth chapter does: by "
+          "features alone, unless --tracker says otherwise.",
+          "rgbd_compare --experiment=xyz --output=compare/xyz",
+          {{"Output", {"output", "report"}}},
+          /*choices=*/{},
+          {ExperimentTable(&Settings()),
+           WithoutRow("loss", SettingTable(&Settings().odometry))}};
 }
 
 int Main() {

@@ -27,14 +27,13 @@ SequenceSettings& Settings() {
 }
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_convert";
-  info.summary =
-      "writes a recording of any kind, or part of it, as a TUM RGB-D folder.";
-  info.example = "rgbd_convert --dataset=scene0000_00 --output=scene_tum";
-  info.settings = {SettingTable(&Settings())};
-  info.flag_groups = {{"Run", {"output", "threads"}}};
-  return info;
+  return {
+      "rgbd_convert",
+      "writes a recording of any kind, or part of it, as a TUM RGB-D folder.",
+      "rgbd_convert --dataset=scene0000_00 --output=scene_tum",
+      {{"Run", {"output", "threads"}}},
+      /*choices=*/{},
+      {SettingTable(&Settings())}};
 }
 
 int Main() {

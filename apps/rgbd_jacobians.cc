@@ -147,15 +147,12 @@ int Main() {
 }
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_jacobians";
-  info.summary =
-      "compares hand-written Jacobians with automatic differentiation and "
-      "central differences; exit 3 if one is wrong.";
-  info.example = "rgbd_jacobians --samples=1000";
-  info.flag_groups = {{"What to check", {"cost", "samples", "seed"}}};
-  info.choices = {{"cost", CostNames()}};
-  return info;
+  return {"rgbd_jacobians",
+          "compares hand-written Jacobians with automatic differentiation and "
+          "central differences; exit 3 if one is wrong.",
+          "rgbd_jacobians --samples=1000",
+          {{"What to check", {"cost", "samples", "seed"}}},
+          {{"cost", CostNames()}}};
 }
 
 }  // namespace

@@ -47,19 +47,16 @@ ProgramSettings& Settings() {
 }
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_odometry";
-  info.summary = "estimates the motion of an RGB-D camera along a sequence.";
-  info.example =
+  return {
+      "rgbd_odometry",
+      "estimates the motion of an RGB-D camera along a sequence.",
       "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
-      "--output=runs/fr1_xyz";
-  info.settings = {SettingTable(&Settings().sequence),
-                   SettingTable(&Settings().odometry),
-                   SettingTable(&Settings().output)};
-  info.flag_groups = {
-      {"Run", {"report", "validate_only", "finish_on_signal", "threads"}},
-      {"View", {"view", "view_port", "view_speed"}}};
-  return info;
+      "--output=runs/fr1_xyz",
+      {{"Run", {"report", "validate_only", "finish_on_signal", "threads"}},
+       {"View", {"view", "view_port", "view_speed"}}},
+      /*choices=*/{},
+      {SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
+       SettingTable(&Settings().output)}};
 }
 
 using Clock = std::chrono::steady_clock;
@@ -130,15 +127,15 @@ int Main() {
 
   const RunResults results = run.Finish(sequence.GroundTruth());
   LogWarnings(results);
-  std::string text = output.Write(
-      results, Summarise(results.frames, threads, seconds),
-      sequence.GroundTruth(), settings.sequence.dataset, FormatFlagFile(Info()),
-      Info().name, {{"stopped", flaws.stopped}});
+  std::string text =
+      output.Write(results, threads, seconds, sequence.GroundTruth(),
+                   settings.sequence.dataset, FormatFlagFile(Info()),
+                   Info().name, {{"stopped", flaws.stopped}});
   if (FLAGS_report) {
-    text += WriteRunPage(output.staging_dir(), settings.output.output,
+    text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
                          &flaws.no_report);
   }
-  output.Publish();
+  output.folder().Publish();
   text += SaveMesh(settings.output, threads);
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());

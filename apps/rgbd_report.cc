@@ -21,12 +21,10 @@ namespace rgbd_pose {
 namespace {
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_report";
-  info.summary = "writes report.html, a page to look at in a browser.";
-  info.example = "rgbd_report --run=runs/fr1_xyz";
-  info.flag_groups = {{"Input", {"run", "batch", "comparison"}}};
-  return info;
+  return {"rgbd_report",
+          "writes report.html, a page to look at in a browser.",
+          "rgbd_report --run=runs/fr1_xyz",
+          {{"Input", {"run", "batch", "comparison"}}}};
 }
 
 std::string WriteReport() {

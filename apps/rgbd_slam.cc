@@ -23,7 +23,6 @@
 #include "apps/results/run_tracking.h"
 #include "apps/results/slam_output.h"
 #include "apps/shell/available_cores.h"
-#include "apps/shell/calibration_progress.h"
 #include "apps/shell/program.h"
 #include "apps/view/live_view.h"
 #include "core/util/input_error.h"
@@ -58,21 +57,16 @@ ProgramSettings& Settings() {
 }
 
 ProgramInfo Info() {
-  ProgramInfo info;
-  info.name = "rgbd_slam";
-  info.summary =
-      "maps what an RGB-D camera sees, and finds its path in the map.";
-  info.example =
-      "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
-      "--output=runs/fr1_room --save_map=maps/room";
-  info.settings = {
-      SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
-      SettingTable(&Settings().slam), SettingTable(&Settings().maps),
-      SettingTable(&Settings().output)};
-  info.flag_groups = {
-      {"Run", {"calibrate", "report", "finish_on_signal", "threads"}},
-      {"View", {"view", "view_port", "view_speed"}}};
-  return info;
+  return {"rgbd_slam",
+          "maps what an RGB-D camera sees, and finds its path in the map.",
+          "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
+          "--output=runs/fr1_room --save_map=maps/room",
+          {{"Run", {"calibrate", "report", "finish_on_signal", "threads"}},
+           {"View", {"view", "view_port", "view_speed"}}},
+          /*choices=*/{},
+          {SettingTable(&Settings().sequence),
+           SettingTable(&Settings().odometry), SettingTable(&Settings().slam),
+           SettingTable(&Settings().maps), SettingTable(&Settings().output)}};
 }
 
 using Clock = std::chrono::steady_clock;
@@ -125,7 +119,7 @@ class Calibration {
 
   // Writes its files; returns what the program prints of it. From here on the
   // flags are those of a run with the camera found.
-  std::string Write(const RunOutput& output) const {
+  std::string Write(const RunFolder& output) const {
     if (!found_.has_value()) return "";
     const CalibrationResult& result = found_->result;
     if (result.is_accepted) {
@@ -207,27 +201,28 @@ int Main() {
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
   const std::string warning = SlamWarning(map_json);
   if (!warning.empty()) LOG(WARNING) << warning;
-  std::string text = calibration.Write(output);
+  std::string text = calibration.Write(output.folder());
   nlohmann::json more = {{"stopped", flaws.stopped}, {"slam", map_json}};
   if (!calibration.Json().is_null()) more["calibration"] = calibration.Json();
-  text += output.Write(results, Summarise(results.frames, threads, seconds),
-                       sequence.GroundTruth(), settings.sequence.dataset,
-                       FormatFlagFile(Info()), Info().name, more);
+  text += output.Write(results, threads, seconds, sequence.GroundTruth(),
+                       settings.sequence.dataset, FormatFlagFile(Info()),
+                       Info().name, more);
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
-  output.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
-  output.WriteFile("trajectory_online.txt",
-                   FormatOnlineTrajectory(slam, run.slam_frames()));
-  output.WriteFile("trajectory_odometry.txt",
-                   FormatOdometryTrajectory(run.slam_frames()));
-  output.WriteFile("keyframes.csv",
-                   FormatKeyframesCsv(map, slam.Covariances()));
-  output.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
+  output.folder().WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
+  output.folder().WriteFile("trajectory_online.txt",
+                            FormatOnlineTrajectory(slam, run.slam_frames()));
+  output.folder().WriteFile("trajectory_odometry.txt",
+                            FormatTrajectory(SmoothPath(run.slam_frames())));
+  output.folder().WriteFile("keyframes.csv",
+                            FormatKeyframesCsv(map, slam.Covariances()));
+  output.folder().WriteFile("graph.g2o",
+                            FormatG2o(slam.Map(/*as_solved=*/true)));
   if (FLAGS_report) {
-    text += WriteRunPage(output.staging_dir(), settings.output.output,
+    text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
                          &flaws.no_report);
   }
-  output.Publish();
+  output.folder().Publish();
   text += SaveMesh(settings.output, threads);
   // The results stay if the map cannot be saved.
   if (!settings.maps.save_map.empty()) {

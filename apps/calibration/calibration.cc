@@ -3,10 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "apps/calibration/calibration_camera.h"
-#include "apps/calibration/calibration_data.h"
-#include "apps/calibration/calibration_halves.h"
-#include "apps/calibration/calibration_scale.h"
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/calibration/displaced_depths.h"
 #include "core/util/input_error.h"
@@ -18,12 +14,10 @@ namespace {
 using FreeParts = std::array<bool, kCalibrationSize>;
 using Status = CalibratedParameter::Status;
 
-CalibrationVector PriorSigmas(const CalibrationSettings& settings,
-                              const CalibrationVector& start) {
+CalibrationVector PriorSigmas(const CalibrationVector& start) {
   CalibrationVector prior;
   for (int k = 0; k < kCalibrationSize; ++k) {
-    prior[k] = settings.prior[k] > 0.0 ? settings.prior[k]
-                                       : kCalibrationParameters[k].prior;
+    prior[k] = kCalibrationParameters[k].prior;
     if (k == kFx || k == kFy) prior[k] *= start[k];
   }
   return prior;
@@ -59,8 +53,8 @@ constexpr Group kGroups[] = {
 // no better.
 void TakeBackNeedless(const CalibrationViews& views,
                       const CalibrationPrior& prior,
-                      const CalibrationVector& start, double min_gain_sigmas,
-                      FreeParts* is_free, CalibrationState* state) {
+                      const CalibrationVector& start, FreeParts* is_free,
+                      CalibrationState* state) {
   constexpr int kNearby = 5;  // iterations: it begins where others ended
   const BundleAdjustment training(views, prior, true, kNearby);
   CalibrationState best = *state;
@@ -76,7 +70,7 @@ void TakeBackNeedless(const CalibrationViews& views,
     CalibrationResult compared;
     CompareHeldOut(views, simpler, views, best, &compared);
     if (compared.held_out_pairs < 2) return;  // nothing tells
-    if (compared.gain_sigmas >= min_gain_sigmas) continue;
+    if (compared.gain_sigmas >= kMinSigmas) continue;
     if (compared.gain_sigmas < 0.0) best = simpler;
     *is_free = fewer;
     *state = simpler;
@@ -96,9 +90,9 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   CalibrationResult result;
   result.camera = result.found = first;
   CalibrationData data =
-      CollectCalibrationData(map, path, odometry, settings.data, threads);
+      CollectCalibrationData(map, path, odometry, settings.max_views, threads);
   result.scale_from =
-      AddKnownDistances(map, path, settings.known_length, scale, &data);
+      AddKnownDistances(path, settings.known_length, scale, &data);
   result.keyframes = static_cast<int>(data.timestamps.size());
   result.pairs = static_cast<int>(data.pairs.size());
   result.landmarks = static_cast<int>(data.views.landmarks.size());
@@ -106,7 +100,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   const CalibrationVector start = ThetaOf(map.camera);
   CalibrationPrior prior;
   prior.mean = ThetaBetween(first, known != nullptr ? *known : first);
-  prior.sigma = PriorSigmas(settings, start);
+  prior.sigma = PriorSigmas(start);
   const FreeParts asked =
       FreeParameters(settings.fix, !data.views.distances.empty());
   for (int k = 0; k < kCalibrationSize; ++k) {
@@ -145,8 +139,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     SolveWithScales(training, asked, kRounds, &after);
   }
   FreeParts is_free = asked;
-  TakeBackNeedless(data.views, prior, start, settings.min_gain_sigmas, &is_free,
-                   &after);
+  TakeBackNeedless(data.views, prior, start, &is_free, &after);
   if (IsDisplaced(after.theta - undone)) {
     look_up(after.theta);
     SolveWithScales(training, is_free, kRounds, &after);

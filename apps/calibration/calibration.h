@@ -1,20 +1,15 @@
 #pragma once
 
+#include "apps/calibration/calibration_data.h"
 #include "apps/calibration/calibration_result.h"
 #include "apps/calibration/calibration_settings.h"
 #include "apps/pipeline/settings.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
+#include "costs/calibration/calibration_parameters.h"
 #include "frontend/map/keyframe_map.h"
-#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
-
-// What else is known of where the camera was; null: nothing.
-struct CalibrationScale {
-  const Trajectory* ground_truth = nullptr;   // the true path
-  const MotionGuess* motion_guess = nullptr;  // wheels, say
-};
 
 // Calibrates a camera from keyframes and pairs of its recording. `first`: the
 // camera that they were tracked with; `path`: a smooth path of all frames, see
@@ -26,5 +21,17 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const CalibrationSettings& settings,
                             const CalibrationScale& scale, int threads,
                             const RgbdCamera* known = nullptr);
+
+// A camera as the parameters of its calibration: its lens, and nothing wrong
+// with depth as it is corrected.
+CalibrationVector ThetaOf(const Camera& camera);
+
+// The camera that was the first as theta changes it.
+RgbdCamera ApplyCalibration(const RgbdCamera& first,
+                            const CalibrationVector& theta);
+
+// The theta that changes the first camera to another.
+CalibrationVector ThetaBetween(const RgbdCamera& first,
+                               const RgbdCamera& changed);
 
 }  // namespace rgbd_pose

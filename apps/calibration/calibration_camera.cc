@@ -1,6 +1,6 @@
-#include "apps/calibration/calibration_camera.h"
-
 #include <Eigen/Geometry>
+
+#include "apps/calibration/calibration.h"
 
 namespace rgbd_pose {
 

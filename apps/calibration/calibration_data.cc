@@ -2,13 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
-#include "apps/calibration/calibration_pairs.h"
-#include "apps/calibration/landmark_matcher.h"
-#include "apps/calibration/path_twist.h"
-#include "core/util/input_error.h"
-#include "core/util/parallel_for.h"
+#include "core/geometry/twist.h"
 
 namespace rgbd_pose {
 namespace {
@@ -24,35 +19,6 @@ int FeaturesOfEach(int max_views, size_t num_pairs) {
       max_views / (kFoundAgain * 2.0 * std::max<double>(1.0, num_pairs));
   return static_cast<int>(
       std::clamp<double>(in_each, kFewestFeatures, kMostFeatures));
-}
-
-// Of all keyframes.
-std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
-                                               const CalibrationPairs& pairs,
-                                               const OdometrySettings& settings,
-                                               int max_features, int threads) {
-  const int num_keyframes = static_cast<int>(pairs.in_map.size());
-  std::vector<std::vector<int>> neighbours(num_keyframes);
-  std::vector<std::vector<bool>> is_held_out(num_keyframes);
-  for (size_t i = 0; i < pairs.pairs.size(); ++i) {
-    const auto [a, b] = pairs.pairs[i];
-    neighbours[a].push_back(b);
-    neighbours[b].push_back(a);
-    is_held_out[a].push_back(pairs.is_held_out[i]);
-    is_held_out[b].push_back(pairs.is_held_out[i]);
-  }
-  std::vector<LandmarksOfKeyframe> found(num_keyframes);
-  threads = std::max(1, std::min(threads, num_keyframes));
-  ParallelFor(threads, threads, [&](int thread) {
-    // A run of keyframes each: neighbours are decoded once.
-    LandmarkMatcher matcher(map, pairs.in_map, settings, max_features);
-    const int begin = thread * num_keyframes / threads;
-    const int end = (thread + 1) * num_keyframes / threads;
-    for (int i = begin; i < end; ++i) {
-      found[i] = matcher.Match(i, neighbours[i], is_held_out[i]);
-    }
-  });
-  return found;
 }
 
 // Of all that were seen again as many as make the views that are wanted.
@@ -85,24 +51,68 @@ void AddLandmarks(const std::vector<LandmarksOfKeyframe>& found, int max_views,
   }
 }
 
-}  // namespace
+// Longer than this between two frames, a velocity is not known.
+constexpr double kMaxGap = 0.15;  // s
 
-std::string CalibrationDataOptions::Check() const {
-  if (max_views < 1000) return "max_views must be at least 1000";
-  if (max_keyframes < 2) return "max_keyframes must be at least 2";
-  if (hold_out < 2) return "hold_out must be at least 2";
-  return "";
+// From a smooth path of the camera (world from camera, any world), at the time
+// of one of its frames (s): central differences of the fourth order, where
+// frames follow each other evenly. Zero where nothing is known.
+Twist TwistAt(const Trajectory& path, double time) {
+  const auto at = std::lower_bound(
+      path.begin(), path.end(), time - 1e-4,
+      [](const StampedPose& pose, double t) { return pose.timestamp < t; });
+  if (at == path.end()) return {};
+  // The last frame that comes so many after, without a gap.
+  const auto place = at - path.begin();
+  const auto neighbour = [&](int steps) {
+    const int direction = steps > 0 ? 1 : -1;
+    auto there = place;
+    for (int i = 0; i < std::abs(steps); ++i) {
+      const auto next = there + direction;
+      if (next < 0 || next >= static_cast<std::ptrdiff_t>(path.size()) ||
+          std::abs(path[next].timestamp - path[there].timestamp) > kMaxGap) {
+        break;
+      }
+      there = next;
+    }
+    return there;
+  };
+  struct Difference {
+    Twist twist;
+    double interval = 0.0;  // s
+    double lean = 0.0;      // how far its middle is from the frame, s
+  };
+  const auto difference = [&](int steps) {
+    const auto before = neighbour(-steps), after = neighbour(steps);
+    const double t0 = path[before].timestamp, t1 = path[after].timestamp;
+    Difference result;
+    result.interval = t1 - t0;
+    result.lean = std::abs(0.5 * (t0 + t1) - at->timestamp);
+    if (!(result.interval > 0.0)) return result;
+    // Where the camera was and will be, in its own axes now.
+    const auto seen = [&](std::ptrdiff_t there) {
+      return TwistOf(path[there].world_from_cam.Inverse() * at->world_from_cam,
+                     result.interval);
+    };
+    result.twist = seen(after) - seen(before);
+    return result;
+  };
+  const Difference near = difference(1);
+  const Difference far = difference(2);
+  constexpr double kEven = 0.05;
+  const bool is_even = std::abs(far.interval / near.interval - 2.0) < kEven &&
+                       std::max(near.lean, far.lean) < kEven * near.interval;
+  return is_even ? near.twist + (1.0 / 3.0) * (near.twist - far.twist)
+                 : near.twist;
 }
+
+}  // namespace
 
 CalibrationData CollectCalibrationData(const KeyframeMap& map,
                                        const Trajectory& path,
                                        const OdometrySettings& settings,
-                                       const CalibrationDataOptions& options,
-                                       int threads) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("calibration: " + error);
-  const CalibrationPairs chosen =
-      ChoosePairs(map, options.max_keyframes, options.hold_out);
+                                       int max_views, int threads) {
+  const CalibrationPairs chosen = ChoosePairs(map);
   CalibrationData data;
   data.views.camera = map.camera;
   data.in_map = chosen.in_map;
@@ -113,9 +123,9 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
     data.timestamps.push_back(keyframe.images.timestamp);
     data.views.twists.push_back(TwistAt(path, keyframe.images.timestamp));
   }
-  const int features = FeaturesOfEach(options.max_views, data.pairs.size());
+  const int features = FeaturesOfEach(max_views, data.pairs.size());
   AddLandmarks(FindLandmarks(map, chosen, settings, features, threads),
-               options.max_views, &data.views);
+               max_views, &data.views);
   return data;
 }
 

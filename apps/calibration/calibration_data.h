@@ -8,24 +8,35 @@
 #include "core/evaluation/trajectory.h"
 #include "costs/calibration/calibration_views.h"
 #include "frontend/map/keyframe_map.h"
+#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 
-// Which views a camera is calibrated from.
-struct CalibrationDataOptions {
-  // Views of landmarks, about: the time that a solution takes grows with it.
-  int max_views = 40000;
-
-  // At most so many keyframes, evenly chosen: the work grows with the third
-  // power of their number.
-  int max_keyframes = 300;
-
-  // Every n-th pair is kept to judge the result by.
-  int hold_out = 5;
-
-  // One line that says what is wrong with the options, or empty.
-  std::string Check() const;
+// Which keyframes of a map a camera is calibrated from, and which of them see
+// the same.
+struct CalibrationPairs {
+  std::vector<int> in_map;                // places of keyframes in the map
+  std::vector<std::array<int, 2>> pairs;  // of these keyframes, near ones first
+  std::vector<bool> is_held_out;          // of each pair
 };
+
+// Up to 300 keyframes of the largest segment, evenly chosen, in the order of
+// their times. Every fifth pair is held out, to judge the result by, but none
+// that two keyframes hang together by.
+CalibrationPairs ChoosePairs(const KeyframeMap& map);
+
+// The landmarks of one keyframe, with its views still its own.
+struct LandmarksOfKeyframe {
+  std::vector<Landmark> landmarks;
+  std::vector<std::vector<LandmarkView>> views;  // of each landmark
+};
+
+// Finds up to `max_features` features of each keyframe again in those that it
+// is paired with.
+std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
+                                               const CalibrationPairs& pairs,
+                                               const OdometrySettings& settings,
+                                               int max_features, int threads);
 
 // The keyframes that the views are of.
 struct CalibrationData {
@@ -37,11 +48,25 @@ struct CalibrationData {
 
 // Finds the features of each keyframe of the map's largest segment again in
 // those that it is paired with. `path`: a smooth path of the camera (world from
-// camera, any world), for its velocities.
+// camera, any world), for its velocities. `max_views`: of landmarks, about.
 CalibrationData CollectCalibrationData(const KeyframeMap& map,
                                        const Trajectory& path,
                                        const OdometrySettings& settings,
-                                       const CalibrationDataOptions& options,
-                                       int threads);
+                                       int max_views, int threads);
+
+// What else is known of where the camera was; null: nothing.
+struct CalibrationScale {
+  const Trajectory* ground_truth = nullptr;   // the true path
+  const MotionGuess* motion_guess = nullptr;  // wheels, say
+};
+
+// Adds the distances that are known (KnownDistance): of --known_length, of the
+// ground truth or of a motion guess, the first there is. `path`: of all frames,
+// as they were tracked. Returns in words where they are from; empty: nothing is
+// known. Throws InputError for a known length that makes no sense.
+std::string AddKnownDistances(const Trajectory& path,
+                              const std::string& known_length,
+                              const CalibrationScale& scale,
+                              CalibrationData* data);
 
 }  // namespace rgbd_pose

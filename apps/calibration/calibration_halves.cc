@@ -1,10 +1,10 @@
-#include "apps/calibration/calibration_halves.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
+
+#include "apps/calibration/calibration_result.h"
 
 namespace rgbd_pose {
 namespace {

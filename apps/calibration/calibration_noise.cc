@@ -1,9 +1,8 @@
-#include "apps/calibration/calibration_noise.h"
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
+#include "apps/calibration/calibration_result.h"
 #include "core/geometry/motion.h"
 #include "core/util/quantile.h"
 #include "costs/calibration/landmark_residuals.h"

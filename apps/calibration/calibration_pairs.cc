@@ -1,14 +1,20 @@
-#include "apps/calibration/calibration_pairs.h"
-
 #include <algorithm>
 #include <map>
 #include <utility>
 
+#include "apps/calibration/calibration_data.h"
+
 namespace rgbd_pose {
 namespace {
 
+// The work grows with the third power of their number.
+constexpr size_t kMaxKeyframes = 300;
+
+// Every n-th pair is kept to judge the result by.
+constexpr int kHoldOut = 5;
+
 // The largest segment's keyframes, by their places in the map.
-std::vector<int> ChosenKeyframes(const KeyframeMap& map, int most) {
+std::vector<int> ChosenKeyframes(const KeyframeMap& map) {
   std::map<int, std::vector<int>> segments;
   for (size_t i = 0; i < map.keyframes.size(); ++i) {
     segments[map.keyframes[i].segment].push_back(static_cast<int>(i));
@@ -21,18 +27,17 @@ std::vector<int> ChosenKeyframes(const KeyframeMap& map, int most) {
     return map.keyframes[a].images.timestamp <
            map.keyframes[b].images.timestamp;
   });
-  if (static_cast<int>(largest.size()) <= most) return largest;
+  if (largest.size() <= kMaxKeyframes) return largest;
   std::vector<int> chosen;
-  for (int i = 0; i < most; ++i) {
-    chosen.push_back(largest[i * largest.size() / most]);
+  for (size_t i = 0; i < kMaxKeyframes; ++i) {
+    chosen.push_back(largest[i * largest.size() / kMaxKeyframes]);
   }
   return chosen;
 }
 
 // Every n-th pair, but none that two keyframes hang together by.
 std::vector<bool> HeldOut(int num_keyframes,
-                          const std::vector<std::array<int, 2>>& pairs,
-                          int every) {
+                          const std::vector<std::array<int, 2>>& pairs) {
   std::vector<int> root(num_keyframes);
   for (int i = 0; i < num_keyframes; ++i) root[i] = i;
   const auto find = [&](int i) {
@@ -49,9 +54,9 @@ std::vector<bool> HeldOut(int num_keyframes,
       root[a] = b;
     }
   }
-  // One in `every` of all, as far as there are any to spare.
-  const double step =
-      std::max(1.0, static_cast<double>(spare.size()) * every / pairs.size());
+  // One in kHoldOut of all, as far as there are any to spare.
+  const double step = std::max(
+      1.0, static_cast<double>(spare.size()) * kHoldOut / pairs.size());
   for (double i = 0.0; i < spare.size(); i += step) {
     held_out[spare[static_cast<size_t>(i)]] = true;
   }
@@ -60,10 +65,9 @@ std::vector<bool> HeldOut(int num_keyframes,
 
 }  // namespace
 
-CalibrationPairs ChoosePairs(const KeyframeMap& map, int max_keyframes,
-                             int hold_out) {
+CalibrationPairs ChoosePairs(const KeyframeMap& map) {
   CalibrationPairs result;
-  result.in_map = ChosenKeyframes(map, max_keyframes);
+  result.in_map = ChosenKeyframes(map);
   const int num_keyframes = static_cast<int>(result.in_map.size());
   std::map<int, int> number_of;  // by the map's id
   for (int i = 0; i < num_keyframes; ++i) {
@@ -81,7 +85,7 @@ CalibrationPairs ChoosePairs(const KeyframeMap& map, int max_keyframes,
   });
   result.pairs.erase(std::unique(result.pairs.begin(), result.pairs.end()),
                      result.pairs.end());
-  result.is_held_out = HeldOut(num_keyframes, result.pairs, hold_out);
+  result.is_held_out = HeldOut(num_keyframes, result.pairs);
   return result;
 }
 

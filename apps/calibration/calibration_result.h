@@ -6,10 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "apps/calibration/calibration_halves.h"
-#include "apps/calibration/calibration_noise.h"
 #include "core/geometry/camera.h"
-#include "costs/calibration/calibration_parameters.h"
+#include "core/geometry/depth_noise.h"
+#include "costs/calibration/bundle_adjustment.h"
 
 namespace rgbd_pose {
 
@@ -34,6 +33,36 @@ struct HeldOutResidual {
   double v = 0.0;          // likewise
   Eigen::Vector2d before;  // with the first camera
   Eigen::Vector2d after;   // with the camera found
+};
+
+// What the first half of a recording and the second one say of the same
+// parameter, each by itself.
+struct HalvesOfParameter {
+  int part = 0;         // which, see CalibrationIndex
+  double first = 0.0;   // of the first half
+  double second = 0.0;  // of the second one
+  double sigma = 0.0;   // of their difference
+
+  // How far apart they are, in standard deviations.
+  double Sigmas() const;
+};
+
+// How much depths of about one size scatter.
+struct DepthScatter {
+  double depth = 0.0;  // m
+  double sigma = 0.0;  // m, of single pixels
+};
+
+// What a recording says of the noise of its depths.
+struct DepthNoiseFit {
+  DepthNoiseModel model;         // sigma(z) = constant + quadratic z^2
+  double constant_sigma = 0.0;   // their standard deviations; 0: taken as 0
+  double quadratic_sigma = 0.0;  // since it is not separable from that
+  std::vector<DepthScatter> scatter;  // what it was fitted to
+  int samples = 0;                    // depths
+
+  // How much depths scatter, in the sigmas of the model that was there.
+  double in_old_sigmas = 0.0;
 };
 
 // What came of a calibration.
@@ -96,5 +125,26 @@ struct CalibrationResult {
   // What gave depth its scale, in words; empty: nothing did.
   std::string scale_from;
 };
+
+// How far halves are apart in all, as a root mean square in standard
+// deviations: about 1 if error bars are right; 0: they were not compared.
+double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves);
+
+// Calibrates both halves of a recording (in time) by themselves, from where all
+// of it ended. What is wrong with a camera is wrong in both; what is absorbed
+// of something else depends on what is seen. Empty if a half has too few views
+// or does not tell.
+std::vector<HalvesOfParameter> SplitHalfConsistency(
+    const CalibrationViews& views, const CalibrationState& found,
+    const std::array<bool, kCalibrationSize>& is_free,
+    const CalibrationPrior& prior);
+
+// Fits the noise of single pixels' depths to how they scatter about landmarks
+// that are seen in several keyframes, robustly. Errors of where a feature is
+// seen do not count: depths are compared where the landmark is. `old`: the
+// model that was there. Nothing if there are too few.
+std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
+                                           const CalibrationState& state,
+                                           const DepthNoiseModel& old);
 
 }  // namespace rgbd_pose

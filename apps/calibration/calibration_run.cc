@@ -1,8 +1,79 @@
 #include "apps/calibration/calibration_run.h"
 
+#include <cmath>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "apps/calibration/calibration.h"
+#include "apps/calibration/calibration_verdict.h"
 #include "core/util/input_error.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
+namespace {
+
+using Status = CalibratedParameter::Status;
+
+// Takes up what a further pass found from where the last one ended: the same,
+// but nearer to where it was linearised. Returns whether it is any good.
+bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
+            const CalibrationResult& further, CalibrationResult* all) {
+  ++all->passes;
+  const std::string disagree = WhyHalvesDisagree(settings, further);
+  if (!disagree.empty()) {
+    all->is_accepted = false;
+    all->reason = disagree;
+    all->halves = further.halves;
+    all->spread = further.spread;
+    all->camera = first;
+    return false;
+  }
+  if (further.held_out_pairs < 2 || further.gain_sigmas < -kMinSigmas ||
+      further.truth_after > all->truth_after) {
+    return false;
+  }
+  CalibrationResult merged = *all;
+  const CalibrationVector theta = ThetaBetween(first, further.found);
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    CalibratedParameter& parameter = merged.parameters[k];
+    if (further.parameters[k].status == Status::kDetermined) {
+      parameter.status = Status::kDetermined;
+      parameter.sigma = further.parameters[k].sigma;
+    }
+    if (parameter.status == Status::kDetermined) parameter.found = theta[k];
+  }
+  merged.reason = ImplausibilityReason(first, further.found, merged);
+  if (!merged.reason.empty()) return false;
+  merged.camera = merged.found = further.found;
+  merged.noise = further.noise;
+  merged.halves = further.halves;
+  merged.spread = further.spread;
+  merged.pixel_after = further.pixel_after;
+  merged.depth_after = further.depth_after;
+  merged.truth_after = further.truth_after;
+  *all = merged;
+  return true;
+}
+
+// The part of a recording that leaves frames out, as many as there are more
+// than asked for a second; empty: none.
+std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
+  if (timestamps.size() < 2 || max_rate == 0.0) return "";
+  std::vector<double> intervals;
+  for (size_t i = 1; i < timestamps.size(); ++i) {
+    intervals.push_back(timestamps[i] - timestamps[i - 1]);
+  }
+  // Stamps are not quite even.
+  constexpr double kSlack = 0.1;
+  const int step = static_cast<int>(
+      std::ceil(1.0 / (Median(intervals) * max_rate) - kSlack));
+  if (step < 2) return "";
+  return "0-" + std::to_string(timestamps.size() - 1) + ":" +
+         std::to_string(step);
+}
+
+}  // namespace
 
 OdometrySettings CalibrationOdometry() {
   OdometrySettings settings;
@@ -19,35 +90,6 @@ SlamSettings CalibrationSlam() {
   return settings;
 }
 
-CalibrationRun::CalibrationRun(const OdometrySettings& odometry,
-                               const SlamSettings& slam,
-                               const CalibrationSettings& settings,
-                               Sequence* sequence)
-    : odometry_(odometry),
-      settings_(settings),
-      sequence_(sequence),
-      first_(sequence->source->camera()),
-      run_(odometry, slam, first_.camera, sequence->inputs()) {
-  const std::string error = settings.Check();
-  if (!error.empty()) throw InputError("calibration: " + error);
-}
-
-std::string CalibrationRun::Track(FrameSource* source, int threads,
-                                  const std::function<void()>& on_frame) {
-  return TrackAll(source, threads, {&run_}, [&](const Frame& /*frame*/) {
-    if (on_frame) on_frame();
-    return true;
-  });
-}
-
-CalibrationResult CalibrationRun::Solve(int threads, const RgbdCamera* known) {
-  const Trajectory* const truth = sequence_->GroundTruth();
-  run_.Finish(truth);
-  return Calibrate(run_.slam().Map(), SmoothPath(run_.slam_frames()), first_,
-                   odometry_, settings_,
-                   {truth, sequence_->inputs().motion_guess}, threads, known);
-}
-
 Trajectory SmoothPath(const std::vector<SlamFrame>& frames) {
   Trajectory path;
   for (const SlamFrame& frame : frames) {
@@ -55,6 +97,70 @@ Trajectory SmoothPath(const std::vector<SlamFrame>& frames) {
     path.push_back({frame.tracked.timestamp, frame.odom_from_cam});
   }
   return path;
+}
+
+RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
+                                        const OdometrySettings& odometry,
+                                        const SlamSettings& slam,
+                                        const CalibrationSettings& settings,
+                                        int threads,
+                                        const CalibrationProgress& on_frame) {
+  RecordingCalibration all;
+  RgbdCamera first;
+  SequenceSettings part = sequence;
+  OdometrySettings with_shutter = odometry;
+  with_shutter.odometry.shutter = ShutterUse::kCamera;
+  if (part.frames.empty()) {
+    part.frames =
+        Thinned(OpenSequence(sequence).source->timestamps(), settings.max_rate);
+  }
+  std::optional<RgbdCamera> known;
+  if (odometry.odometry.shutter == ShutterUse::kNone) {
+    // It is to be found from nothing.
+    known = OpenSequence(sequence).source->camera();
+    known->color_shutter = known->depth_shutter = Shutter();
+  }
+  for (int pass = 1;; ++pass) {
+    if (pass > 1) known = all.result.camera;
+    Sequence opened = OpenSequence(part, /*keep_color=*/false,
+                                   known.has_value() ? &*known : nullptr);
+    const auto frames = opened.source->timestamps().size();
+    const std::string error = settings.Check();
+    if (!error.empty()) throw InputError("calibration: " + error);
+    const RgbdCamera camera = opened.source->camera();
+    SlamRun run(with_shutter, slam, camera.camera, opened.inputs());
+    int done = 0;
+    all.stopped = TrackAll(opened.source.get(), threads, {&run},
+                           [&](const Frame& /*frame*/) {
+                             if (on_frame)
+                               on_frame(pass, ++done, static_cast<int>(frames));
+                             return true;
+                           });
+    all.damaged = static_cast<int>(run.damaged().size());
+    all.left_out = DroppedFrames(*opened.source, run.damaged());
+    all.left_out.insert(all.left_out.begin(), opened.remarks.begin(),
+                        opened.remarks.end());
+    const Trajectory* const truth = opened.GroundTruth();
+    run.Finish(truth);
+    const CalibrationResult result =
+        Calibrate(run.slam().Map(), SmoothPath(run.slam_frames()), camera,
+                  with_shutter, settings, {truth, opened.inputs().motion_guess},
+                  threads, pass > 1 ? &first : nullptr);
+    all.path = run.slam().Path();
+    bool goes_on;
+    if (pass == 1) {
+      first = camera;
+      all.result = result;
+      goes_on = result.is_accepted;
+    } else {
+      goes_on = TakeUp(first, settings, result, &all.result);
+    }
+    // A camera that is no recording does not come again.
+    if (!goes_on || frames == 0 || pass >= settings.max_passes ||
+        !IsAnotherPassDue(result)) {
+      return all;
+    }
+  }
 }
 
 }  // namespace rgbd_pose

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "apps/calibration/calibration.h"
 #include "apps/pipeline/sequence.h"
@@ -16,36 +17,35 @@ namespace rgbd_pose {
 OdometrySettings CalibrationOdometry();
 SlamSettings CalibrationSlam();
 
-// Maps a recording with the camera that is there, then calibrates that camera
-// from the map.
-class CalibrationRun {
- public:
-  // The sequence must outlive it. Throws InputError for settings that are of no
-  // use.
-  CalibrationRun(const OdometrySettings& odometry, const SlamSettings& slam,
-                 const CalibrationSettings& settings, Sequence* sequence);
-
-  // Tracks all frames; `on_frame` hears of each, may be empty. Returns why the
-  // source ended before its last frame, see TrackAll.
-  std::string Track(FrameSource* source, int threads,
-                    const std::function<void()>& on_frame);
-
-  // After that, once: what came of it. `known`: see Calibrate.
-  CalibrationResult Solve(int threads, const RgbdCamera* known = nullptr);
-
-  // After that: the map and the path it was made from.
-  const SlamRun& run() const { return run_; }
-
- private:
-  const OdometrySettings odometry_;
-  const CalibrationSettings settings_;
-  Sequence* const sequence_;
-  const RgbdCamera first_;
-  SlamRun run_;
-};
-
 // The path of all frames that were tracked as the odometry has it: without the
 // steps of corrections.
 Trajectory SmoothPath(const std::vector<SlamFrame>& frames);
+
+// What came of a recording's calibration, and the path from above.
+struct RecordingCalibration {
+  CalibrationResult result;  // of all passes together
+  Trajectory path;           // of the last map
+
+  // Why the recording ended early, or empty; what of it is left out
+  // (DroppedFrames).
+  std::string stopped;
+  int damaged = 0;  // frames
+  std::vector<std::string> left_out;
+};
+
+// Hears of each frame that is tracked: in which pass, how many of it so far and
+// of all (0: not known ahead).
+using CalibrationProgress = std::function<void(int pass, int done, int all)>;
+
+// Maps a recording and calibrates its camera from the map.
+// Where depth turns out to be displaced by pixels all is done again with the
+// camera found, which was far away from the first one. `on_frame` may be empty.
+// Throws InputError as OpenSequence does, and for settings that are of no use.
+RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
+                                        const OdometrySettings& odometry,
+                                        const SlamSettings& slam,
+                                        const CalibrationSettings& settings,
+                                        int threads,
+                                        const CalibrationProgress& on_frame);
 
 }  // namespace rgbd_pose

@@ -1,11 +1,10 @@
-#include "apps/calibration/calibration_scale.h"
-
 #include <algorithm>
 #include <cmath>
 #include <functional>
 #include <optional>
 #include <vector>
 
+#include "apps/calibration/calibration_data.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 
@@ -121,8 +120,7 @@ std::optional<Eigen::Vector3d> PlaceOf(const Trajectory& truth, double time) {
 
 }  // namespace
 
-std::string AddKnownDistances(const KeyframeMap& /*map*/,
-                              const Trajectory& path,
+std::string AddKnownDistances(const Trajectory& path,
                               const std::string& known_length,
                               const CalibrationScale& scale,
                               CalibrationData* data) {

@@ -1,10 +1,10 @@
 #include "apps/calibration/calibration_settings.h"
 
-#include <algorithm>
 #include <sstream>
 #include <string_view>
 
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 
 namespace rgbd_pose {
 namespace {
@@ -36,21 +36,19 @@ std::string CalibrationSettings::Check() const {
   if (!(determined_share > 0.0 && determined_share <= 1.0)) {
     return "determined_share must be above 0 and at most 1";
   }
-  if (!(min_gain >= 0.0) || !(min_gain_sigmas >= 0.0)) {
+  if (!(min_gain >= 0.0)) {
     return "what held-out pairs have to gain must not be negative";
   }
   if (!(max_halves_sigmas > 0.0)) return "max_halves_sigmas must be positive";
   if (!(max_rate >= 0.0)) return "max_rate must not be negative";
   if (max_passes < 1 || max_passes > 10) return "max_passes must be 1 to 10";
-  if (!prior.allFinite() || !(prior.array() >= 0.0).all()) {
-    return "standard deviations must not be negative";
-  }
+  if (max_views < 1000) return "max_views must be at least 1000";
   try {
     FreeParameters(fix, false);
   } catch (const InputError& error) {
     return error.what();
   }
-  return data.Check();
+  return "";
 }
 
 std::vector<Setting> SettingTable(CalibrationSettings* settings) {
@@ -88,7 +86,7 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
       {"max_views", kGroup,
        "views of landmarks that are solved for, about: the time it takes grows "
        "with it",
-       &settings->data.max_views},
+       &settings->max_views},
   };
 }
 
@@ -100,16 +98,10 @@ std::array<bool, kCalibrationSize> FreeParameters(const std::string& fix,
   const std::vector<NamedParts> names = PartNames();
   std::stringstream list(fix);
   for (std::string word; std::getline(list, word, ',');) {
-    const auto named =
-        std::find_if(names.begin(), names.end(),
-                     [&](const NamedParts& n) { return n.name == word; });
-    if (named == names.end()) {
-      std::string known;
-      for (const NamedParts& n : names) {
-        known += (known.empty() ? "" : ", ") + std::string(n.name);
-      }
+    const NamedParts* const named = FindNamed(names, word);
+    if (named == nullptr) {
       throw InputError("fix: there is no parameter '" + word + "'; there are " +
-                       known);
+                       Join(NamesOf(names)));
     }
     for (const int part : named->parts) is_free[part] = false;
   }

@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/calibration/calibration_data.h"
 #include "apps/pipeline/setting_table.h"
 #include "costs/calibration/calibration_parameters.h"
 
@@ -20,18 +19,13 @@ struct CalibrationSettings {
   // (m), as T0,T1,METRES; empty: none.
   std::string known_length;
 
-  // Standard deviations of what the first camera says, see
-  // kCalibrationParameters.
-  CalibrationVector prior = CalibrationVector::Zero();  // 0: of the table
-
   // A parameter is determined by the recording if its standard deviation falls
   // to this share of what it was before.
   double determined_share = 0.3;
 
   // Another camera has to fit held-out pairs so much better (a share of their
-  // cost), in so many standard deviations.
+  // cost).
   double min_gain = 0.01;
-  double min_gain_sigmas = 3.0;
 
   // What both halves of a recording say by themselves may differ by so many
   // standard deviations.
@@ -44,7 +38,8 @@ struct CalibrationSettings {
   // A recording is mapped and calibrated so many times at most.
   int max_passes = 3;
 
-  CalibrationDataOptions data;  // which views
+  // Views of landmarks, about: the time that a solution takes grows with it.
+  int max_views = 40000;
 
   // One line that says what is wrong with the settings, or empty.
   std::string Check() const;

@@ -221,8 +221,7 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
            Short(result.cost_of_map) + "), so some matches are wrong";
   }
   const double gain = 1.0 - result.cost_after / result.cost_before;
-  if (!(gain >= settings.min_gain) ||
-      !(result.gain_sigmas >= settings.min_gain_sigmas)) {
+  if (!(gain >= settings.min_gain) || !(result.gain_sigmas >= kMinSigmas)) {
     return "pairs that were held out fit no better with the camera found: "
            "their cost " +
            std::string(gain < 0.0 ? "rises by " : "falls by ") +
@@ -243,11 +242,11 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
       [&](const CalibratedParameter& parameter) {
         return parameter.status == CalibratedParameter::Status::kDetermined &&
                std::abs(parameter.found - parameter.before) >
-                   settings.min_gain_sigmas * parameter.sigma;
+                   kMinSigmas * parameter.sigma;
       });
   if (!has_moved) {
     return "nothing is wrong with it: what was found is within " +
-           Short(settings.min_gain_sigmas) + " standard deviations of it";
+           Short(kMinSigmas) + " standard deviations of it";
   }
   return ImplausibilityReason(first, found, result);
 }

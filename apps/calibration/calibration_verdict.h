@@ -6,6 +6,9 @@
 
 namespace rgbd_pose {
 
+// A gain or a change that is less, in standard deviations, may be chance.
+constexpr double kMinSigmas = 3.0;
+
 // Fills in what held-out views make of two solutions: costs, their difference,
 // residuals. The views of either differ in their depths alone.
 void CompareHeldOut(const CalibrationViews& views_before,

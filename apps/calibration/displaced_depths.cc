@@ -5,7 +5,6 @@
 #include <cmath>
 #include <vector>
 
-#include "apps/calibration/measured_depth.h"
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"
 #include "costs/calibration/calibration_state.h"

@@ -1,10 +1,16 @@
 #pragma once
 
+#include <Eigen/Core>
+
 #include "apps/calibration/calibration_data.h"
 #include "apps/pipeline/settings.h"
+#include "core/estimation/correspondences.h"
 #include "core/geometry/camera.h"
+#include "core/geometry/depth_noise.h"
 #include "costs/calibration/calibration_parameters.h"
 #include "costs/calibration/calibration_views.h"
+#include "costs/calibration/landmark_residuals.h"
+#include "frontend/frame/frame.h"
 #include "frontend/map/keyframe_map.h"
 
 namespace rgbd_pose {
@@ -25,5 +31,12 @@ void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
                       const OdometrySettings& settings,
                       const CalibrationVector& theta, int threads,
                       CalibrationData* data);
+
+// What an observation at `pixel` (as seen, distorted) says of depth. Nothing
+// where the surface is no plane.
+MeasuredInverseDepth MeasuredAt(const Frame& frame, const Camera& camera,
+                                const Observation& o,
+                                const Eigen::Vector2d& pixel,
+                                const DepthNoiseModel& noise);
 
 }  // namespace rgbd_pose

@@ -1,10 +1,51 @@
-#include "apps/calibration/landmark_matcher.h"
-
+#include <algorithm>
 #include <cmath>
+#include <map>
+#include <memory>
 
-#include "apps/calibration/measured_depth.h"
+#include "apps/calibration/calibration_data.h"
+#include "apps/calibration/displaced_depths.h"
+#include "core/util/parallel_for.h"
+#include "frontend/features/frontend.h"
 
 namespace rgbd_pose {
+namespace {
+
+// Finds features of keyframes in other keyframes: what one thread works with.
+class LandmarkMatcher {
+ public:
+  // All must outlive it but `settings`. `chosen`: places in the map of the
+  // keyframes, by whose numbers all is asked for.
+  LandmarkMatcher(const KeyframeMap& map, const std::vector<int>& chosen,
+                  const OdometrySettings& settings, int max_features);
+
+  // `held_out`: of each of the neighbours.
+  LandmarksOfKeyframe Match(int anchor, const std::vector<int>& neighbours,
+                            const std::vector<bool>& held_out);
+
+ private:
+  const Rigid3d& Pose(int at) const {
+    return map_.keyframes[chosen_[at]].world_from_cam;
+  }
+  // The pixel that was measured.
+  Eigen::Vector2d Seen(const Observation& o) const {
+    return map_.camera.Project(map_.camera.Ray(o.u, o.v));
+  }
+  // Decoded once for neighbours that follow each other.
+  const PreparedFrame& Images(int at);
+
+  MeasuredInverseDepth DepthOf(const Frame& frame, const Observation& o,
+                               const Eigen::Vector2d& pixel) const {
+    return MeasuredAt(frame, map_.camera, o, pixel, noise_);
+  }
+
+  const KeyframeMap& map_;
+  const std::vector<int>& chosen_;
+  std::unique_ptr<Frontend> frontend_;
+  DepthNoiseModel noise_;
+  std::map<int, PreparedFrame> images_;
+  FeatureMatches matches_;
+};
 
 LandmarkMatcher::LandmarkMatcher(const KeyframeMap& map,
                                  const std::vector<int>& chosen,
@@ -80,10 +121,34 @@ const PreparedFrame& LandmarkMatcher::Images(int at) {
       .first->second;
 }
 
-MeasuredInverseDepth LandmarkMatcher::DepthOf(
-    const Frame& frame, const Observation& o,
-    const Eigen::Vector2d& pixel) const {
-  return MeasuredAt(frame, map_.camera, o, pixel, noise_);
+}  // namespace
+
+std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
+                                               const CalibrationPairs& pairs,
+                                               const OdometrySettings& settings,
+                                               int max_features, int threads) {
+  const int num_keyframes = static_cast<int>(pairs.in_map.size());
+  std::vector<std::vector<int>> neighbours(num_keyframes);
+  std::vector<std::vector<bool>> is_held_out(num_keyframes);
+  for (size_t i = 0; i < pairs.pairs.size(); ++i) {
+    const auto [a, b] = pairs.pairs[i];
+    neighbours[a].push_back(b);
+    neighbours[b].push_back(a);
+    is_held_out[a].push_back(pairs.is_held_out[i]);
+    is_held_out[b].push_back(pairs.is_held_out[i]);
+  }
+  std::vector<LandmarksOfKeyframe> found(num_keyframes);
+  threads = std::max(1, std::min(threads, num_keyframes));
+  ParallelFor(threads, threads, [&](int thread) {
+    // A run of keyframes each: neighbours are decoded once.
+    LandmarkMatcher matcher(map, pairs.in_map, settings, max_features);
+    const int begin = thread * num_keyframes / threads;
+    const int end = (thread + 1) * num_keyframes / threads;
+    for (int i = begin; i < end; ++i) {
+      found[i] = matcher.Match(i, neighbours[i], is_held_out[i]);
+    }
+  });
+  return found;
 }
 
 }  // namespace rgbd_pose

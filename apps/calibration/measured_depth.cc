@@ -1,10 +1,9 @@
-#include "apps/calibration/measured_depth.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 
+#include "apps/calibration/displaced_depths.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_noise.h"
 #include "frontend/frame/frame.h"

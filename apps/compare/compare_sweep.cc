@@ -30,18 +30,6 @@ MotionError ErrorOf(const Rigid3d& estimate, const Rigid3d& truth) {
           difference.translation.norm() * 1e3};
 }
 
-std::vector<SweepMethod> Methods(const std::vector<std::string>& losses) {
-  std::vector<SweepMethod> methods;
-  for (const std::string& loss : losses) {
-    for (const char* schedule : {"gnc", "direct"}) {
-      for (const bool ransac : {false, true}) {
-        methods.push_back({loss, schedule, ransac});
-      }
-    }
-  }
-  return methods;
-}
-
 Estimator MakeEstimator(EstimatorSettings settings, const SweepMethod& method) {
   settings.loss = method.loss;
   settings.options.schedule =
@@ -101,8 +89,20 @@ std::string FormatBand(const MedianBand& band) {
   return Format("%.3g [%.3g, %.3g]", band.median, band.low, band.high);
 }
 
+std::vector<SweepMethod> SweepMethods(const std::vector<std::string>& losses) {
+  std::vector<SweepMethod> methods;
+  for (const std::string& loss : losses) {
+    for (const char* schedule : {"gnc", "direct"}) {
+      for (const bool ransac : {false, true}) {
+        methods.push_back({loss, schedule, ransac});
+      }
+    }
+  }
+  return methods;
+}
+
 std::vector<SweepCell> RunSweep(const SweepOptions& options) {
-  const std::vector<SweepMethod> methods = Methods(options.losses);
+  const std::vector<SweepMethod> methods = SweepMethods(options.losses);
   // An estimator serves one thread at a time.
   std::vector<std::vector<Estimator>> estimators(options.threads);
   for (std::vector<Estimator>& own : estimators) {

@@ -43,6 +43,9 @@ struct SweepMethod {
   bool ransac = false;   // the solver starts from RANSAC, else from no motion
 };
 
+// All ways to go with these losses, ordered by loss, schedule, start.
+std::vector<SweepMethod> SweepMethods(const std::vector<std::string>& losses);
+
 // The errors of a method at a share of wrong matches.
 struct SweepCell {
   SweepMethod method;

@@ -13,6 +13,21 @@
 namespace rgbd_pose {
 namespace {
 
+// The figures of sweep.csv.
+constexpr struct {
+  const char* name;
+  MedianBand SweepCell::*band;
+  double MedianBand::*value;
+} kColumns[] = {
+    {"rotation_median_deg", &SweepCell::rotation_deg, &MedianBand::median},
+    {"rotation_low_deg", &SweepCell::rotation_deg, &MedianBand::low},
+    {"rotation_high_deg", &SweepCell::rotation_deg, &MedianBand::high},
+    {"rotation_p90_deg", &SweepCell::rotation_deg, &MedianBand::p90},
+    {"translation_median_mm", &SweepCell::translation_mm, &MedianBand::median},
+    {"translation_low_mm", &SweepCell::translation_mm, &MedianBand::low},
+    {"translation_high_mm", &SweepCell::translation_mm, &MedianBand::high},
+    {"translation_p90_mm", &SweepCell::translation_mm, &MedianBand::p90}};
+
 bool Meet(const MedianBand& a, const MedianBand& b) {
   return a.low <= b.high && b.low <= a.high;
 }
@@ -137,18 +152,17 @@ std::string SweepVerdict(const std::vector<SweepCell>& cells) {
 }
 
 std::string SweepCsv(const std::vector<SweepCell>& cells) {
-  std::string text =
-      "loss,schedule,start,wrong_share,rotation_median_deg,rotation_low_deg,"
-      "rotation_high_deg,rotation_p90_deg,translation_median_mm,"
-      "translation_low_mm,translation_high_mm,translation_p90_mm\n";
+  std::string text = "loss,schedule,start,wrong_share";
+  for (const auto& column : kColumns) text += std::string(",") + column.name;
+  text += "\n";
   for (const SweepCell& cell : cells) {
-    const MedianBand& r = cell.rotation_deg;
-    const MedianBand& t = cell.translation_mm;
-    text +=
-        Format("%s,%s,%s,%.1f,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g,%.6g\n",
-               cell.method.loss.c_str(), cell.method.schedule.c_str(),
-               cell.method.ransac ? "ransac" : "none", cell.outlier_share,
-               r.median, r.low, r.high, r.p90, t.median, t.low, t.high, t.p90);
+    text += Format("%s,%s,%s,%.1f", cell.method.loss.c_str(),
+                   cell.method.schedule.c_str(),
+                   cell.method.ransac ? "ransac" : "none", cell.outlier_share);
+    for (const auto& column : kColumns) {
+      text += Format(",%.6g", cell.*column.band.*column.value);
+    }
+    text += "\n";
   }
   return text;
 }
@@ -164,37 +178,17 @@ std::vector<SweepCell> ReadSweepCsv(const std::string& path) {
     cells[i].method = {losses[i], schedules[i], starts[i] == "ransac"};
     cells[i].outlier_share = shares[i];
   }
-  const struct {
-    const char* column;
-    MedianBand SweepCell::*band;
-    double MedianBand::*value;
-  } kColumns[] = {
-      {"rotation_median_deg", &SweepCell::rotation_deg, &MedianBand::median},
-      {"rotation_low_deg", &SweepCell::rotation_deg, &MedianBand::low},
-      {"rotation_high_deg", &SweepCell::rotation_deg, &MedianBand::high},
-      {"rotation_p90_deg", &SweepCell::rotation_deg, &MedianBand::p90},
-      {"translation_median_mm", &SweepCell::translation_mm,
-       &MedianBand::median},
-      {"translation_low_mm", &SweepCell::translation_mm, &MedianBand::low},
-      {"translation_high_mm", &SweepCell::translation_mm, &MedianBand::high},
-      {"translation_p90_mm", &SweepCell::translation_mm, &MedianBand::p90}};
-  for (const auto& c : kColumns) {
-    const std::vector<double> numbers = table.Numbers(c.column);
+  for (const auto& column : kColumns) {
+    const std::vector<double> numbers = table.Numbers(column.name);
     for (size_t i = 0; i < cells.size(); ++i) {
-      cells[i].*c.band.*c.value = numbers[i];
+      cells[i].*column.band.*column.value = numbers[i];
     }
   }
-  for (const std::string& loss : LossesOf(cells)) {
-    for (const char* schedule : {"gnc", "direct"}) {
-      for (const bool ransac : {false, true}) {
-        if (CellsOf(cells, {loss, schedule, ransac}).size() == kSweepShares) {
-          continue;
-        }
-        throw InputError(path + ": not all shares of " + loss + ", " +
-                         schedule + ", " + (ransac ? "RANSAC" : "no guess") +
-                         "; repeat the sweep");
-      }
-    }
+  for (const SweepMethod& method : SweepMethods(LossesOf(cells))) {
+    if (CellsOf(cells, method).size() == kSweepShares) continue;
+    throw InputError(
+        path + ": not all shares of " + method.loss + ", " + method.schedule +
+        ", " + (method.ransac ? "RANSAC" : "no guess") + "; repeat the sweep");
   }
   if (cells.empty()) throw InputError(path + ": no rows; repeat the sweep");
   return cells;

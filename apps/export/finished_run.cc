@@ -1,6 +1,5 @@
 #include "apps/export/finished_run.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -22,14 +21,14 @@ namespace fs = std::filesystem;
 // Trajectories have 6 decimals.
 constexpr double kSameTime = 1e-5;  // s
 
-// Sets what the flags of a run say, as far as the table has it.
+// Sets what the flags of a run say, as far as the table has it. Settings that
+// the run does not have, as one of an earlier version, stay.
 void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
   for (const Setting& setting : table) {
     const std::string text = SettingOf(flags, setting.name);
+    if (text.empty()) continue;
     if (auto* named = std::get_if<NamedSetting>(&setting.value)) {
       named->set(text);
-    } else if (text.empty()) {
-      continue;
     } else if (int* const* whole = std::get_if<int*>(&setting.value)) {
       **whole = std::atoi(text.c_str());
     } else if (double* const* real = std::get_if<double*>(&setting.value)) {
@@ -38,18 +37,6 @@ void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
       *std::get<bool*>(setting.value) = text == "true";
     }
   }
-}
-
-// Without settings by name that the run does not have, as one of an earlier
-// version.
-std::vector<Setting> Known(const nlohmann::json& flags,
-                           std::vector<Setting> table) {
-  table.erase(std::remove_if(table.begin(), table.end(),
-                             [&](const Setting& setting) {
-                               return SettingOf(flags, setting.name).empty();
-                             }),
-              table.end());
-  return table;
 }
 
 // Segments that rgbd_slam has joined keep their numbers in frames.csv.
@@ -104,9 +91,9 @@ FinishedRun::FinishedRun(const std::string& folder, const std::string& dataset,
     }
   }
   const nlohmann::json flags = ReadReportSettings(path / "config.flags");
-  Apply(flags, Known(flags, SettingTable(&sequence_)));
+  Apply(flags, SettingTable(&sequence_));
   OdometrySettings odometry;
-  Apply(flags, Known(flags, SettingTable(&odometry)));
+  Apply(flags, SettingTable(&odometry));
   depth_ = odometry.features.DepthLookup();
   if (!dataset.empty()) sequence_.dataset = dataset;
   if (!camera.empty()) sequence_.camera = camera;

@@ -14,7 +14,6 @@
 #include "core/util/text_file.h"
 #include "frontend/fusion/mesh_file.h"
 #include "frontend/fusion/mesh_fusion.h"
-#include "frontend/fusion/ply_writer.h"
 #include "frontend/fusion/surface_mesh.h"
 
 namespace rgbd_pose {
@@ -23,16 +22,9 @@ namespace {
 MeshFusionOptions MeshOptions(const Camera& camera, const FinishedRun& run,
                               const ExportOptions& options) {
   MeshFusionOptions fusion;
-  fusion.camera = camera;
-  fusion.voxel_size = options.voxel;
   fusion.threads = options.threads;
-  fusion.depth = run.depth();
-  if (options.max_depth > 0.0) {
-    fusion.depth.max_depth = fusion.max_depth = options.max_depth;
-  }
-  const std::string problem = fusion.Check();
-  if (!problem.empty()) throw InputError("--voxel or --max_depth: " + problem);
-  return fusion;
+  if (options.max_depth > 0.0) fusion.max_depth = options.max_depth;
+  return FusionOf(camera, run, options, fusion);
 }
 
 // In the page of the run, if it has one. Whoever may only read the run has the
@@ -68,7 +60,8 @@ void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
 
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
   RunRecording recording(run);
-  CloudFusion cloud(CloudOptions(recording.camera().camera, run, options));
+  CloudFusion cloud(
+      FusionOf<FusionOptions>(recording.camera().camera, run, options));
   RequireWritable(options.output);
   recording.ReadViews(run.PickViews(options.step), options.threads,
                       [&](const Frame& frame, const Rigid3d& world_from_cam) {

@@ -8,7 +8,7 @@
 #include "apps/export/view_images.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/fusion/ply_writer.h"
+#include "frontend/fusion/mesh_file.h"
 
 namespace rgbd_pose {
 namespace {

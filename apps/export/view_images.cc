@@ -3,7 +3,6 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "core/util/format.h"
-#include "core/util/input_error.h"
 #include "core/util/units.h"
 #include "frontend/files/image_file.h"
 #include "frontend/fusion/cloud_fusion.h"
@@ -23,18 +22,6 @@ cv::Mat InMillimetres(const Frame& frame) {
 
 }  // namespace
 
-CloudFusionOptions CloudOptions(const Camera& camera, const FinishedRun& run,
-                                const ExportOptions& options) {
-  CloudFusionOptions cloud;
-  cloud.camera = camera;
-  cloud.voxel_size = options.voxel;
-  cloud.depth = run.depth();
-  if (options.max_depth > 0.0) cloud.depth.max_depth = options.max_depth;
-  const std::string problem = cloud.Check();
-  if (!problem.empty()) throw InputError("--voxel or --max_depth: " + problem);
-  return cloud;
-}
-
 ViewImages WriteViewImages(const FinishedRun& run, const ExportOptions& options,
                            const std::filesystem::path& color_folder,
                            const std::filesystem::path& depth_folder) {
@@ -43,7 +30,7 @@ ViewImages WriteViewImages(const FinishedRun& run, const ExportOptions& options,
   const Camera& camera = recording.camera().camera;
   const Undistorter undistorter(camera);
   images.camera = options.undistort ? undistorter.camera() : camera;
-  CloudFusion cloud(CloudOptions(camera, run, options));
+  CloudFusion cloud(FusionOf<FusionOptions>(camera, run, options));
   const std::vector<int> views = run.PickViews(options.step);
   recording.ReadViews(
       views, options.threads,

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "apps/export/export_options.h"
-#include "apps/export/finished_run.h"
+#include "apps/export/export_format.h"
+#include "core/util/input_error.h"
 #include "frontend/frame/undistorter.h"
 #include "frontend/fusion/cloud_fusion.h"
 
@@ -26,8 +26,18 @@ ViewImages WriteViewImages(const FinishedRun& run, const ExportOptions& options,
                            const std::filesystem::path& color_folder,
                            const std::filesystem::path& depth_folder = {});
 
-// How the cloud is fused. Throws InputError for options that make no sense.
-CloudFusionOptions CloudOptions(const Camera& camera, const FinishedRun& run,
-                                const ExportOptions& options);
+// How the views are fused, to a cloud or a mesh. Throws InputError for options
+// that make no sense.
+template <typename Fusion>
+Fusion FusionOf(const Camera& camera, const FinishedRun& run,
+                const ExportOptions& options, Fusion fusion = {}) {
+  fusion.camera = camera;
+  fusion.voxel_size = options.voxel;
+  fusion.depth = run.depth();
+  if (options.max_depth > 0.0) fusion.depth.max_depth = options.max_depth;
+  const std::string problem = fusion.Check();
+  if (!problem.empty()) throw InputError("--voxel or --max_depth: " + problem);
+  return fusion;
+}
 
 }  // namespace rgbd_pose

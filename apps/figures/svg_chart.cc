@@ -11,6 +11,8 @@
 namespace rgbd_pose {
 namespace {
 
+constexpr int kColumns = 2;
+
 // Around panels, in pixels.
 constexpr int kLeft = 74;
 constexpr int kRight = 16;
@@ -96,7 +98,7 @@ class Drawing {
     cell_width_ = kLeft + chart.panel_width_px + kRight +
                   (chart.label_lines ? kLabelColumn : 0);
     cell_height_ = kTop + chart.panel_height_px + kBottom;
-    width_ = chart.columns * cell_width_;
+    width_ = kColumns * cell_width_;
     per_row_ = std::max(1, (width_ - kLeft) / kLegendColumn);
     const int labels = chart.panels.empty() || chart.label_lines
                            ? 0
@@ -106,8 +108,7 @@ class Drawing {
 
   std::string Draw() {
     const int rows =
-        (static_cast<int>(chart_.panels.size()) + chart_.columns - 1) /
-        chart_.columns;
+        (static_cast<int>(chart_.panels.size()) + kColumns - 1) / kColumns;
     const int height = top_ + rows * cell_height_;
     text_ = Format(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" "
@@ -118,9 +119,8 @@ class Drawing {
     text_ += Text(kLeft, 22, "font-size=\"15\"", Title());
     if (!chart_.label_lines) DrawLegend();
     for (size_t i = 0; i < chart_.panels.size(); ++i) {
-      left_ = static_cast<int>(i) % chart_.columns * cell_width_ + kLeft;
-      upper_ =
-          static_cast<int>(i) / chart_.columns * cell_height_ + top_ + kTop;
+      left_ = static_cast<int>(i) % kColumns * cell_width_ + kLeft;
+      upper_ = static_cast<int>(i) / kColumns * cell_height_ + top_ + kTop;
       DrawPanel(chart_.panels[i]);
     }
     return text_ + "</svg>\n";

@@ -43,12 +43,11 @@ struct ChartPanel {
   bool is_map = false;
 };
 
-// Panels side by side, below one legend, which is that of the first panel, or
-// with the names of lines at their ends.
+// Panels, two side by side, below one legend, which is that of the first panel,
+// or with the names of lines at their ends.
 struct Chart {
   std::string title;
   std::vector<ChartPanel> panels;
-  int columns = 2;
   int panel_width_px = 360;
   int panel_height_px = 360;
   bool same_ranges = false;  // of all panels that are no maps

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/run_summary.h"
+#include "apps/pipeline/residual_histogram.h"
 #include "apps/pipeline/settings.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"

@@ -94,12 +94,8 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
                      "': needs the Kalibr file that it is of (camera)");
   }
   if (camera != nullptr) {
-    if (!options.camera.has_value()) options.camera.emplace();
-    options.camera->camera = camera->camera;
-    options.camera->depth_scale = camera->depth_scale;
-    options.camera->depth_correction = camera->depth_correction;
-    options.camera->color_shutter = camera->color_shutter;
-    options.camera->depth_shutter = camera->depth_shutter;
+    const CameraSetup said = options.camera.value_or(CameraSetup());
+    options.camera.emplace(*camera).depth_camera = said.depth_camera;
     options.depth_scale = 0.0;
   }
   return options;

@@ -7,7 +7,6 @@
 #include "core/util/stage_timer.h"
 
 namespace rgbd_pose {
-namespace {}  // namespace
 
 Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
            const Camera& camera)

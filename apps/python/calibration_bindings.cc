@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "apps/calibration/calibration_passes.h"
 #include "apps/calibration/calibration_run.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"

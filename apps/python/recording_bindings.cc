@@ -16,7 +16,6 @@
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "frontend/files/camera_file.h"
-#include "frontend/sources/corrected_source.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
 #include "frontend/sources/tum_dataset.h"
@@ -50,7 +49,7 @@ Frame ReadFrame(const TumDataset& dataset, int index) {
                           " frames");
   }
   const ReleasedGil no_gil;
-  return CorrectDepth(dataset.camera(), dataset.Read(index));
+  return dataset.Read(index);
 }
 
 // A recording of any kind. Each loop over it reads it again.

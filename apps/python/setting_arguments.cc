@@ -1,7 +1,6 @@
 #include "apps/python/setting_arguments.h"
 
-#include <algorithm>
-
+#include "core/util/named_values.h"
 #include "core/util/text_file.h"
 
 namespace py = pybind11;
@@ -46,10 +45,8 @@ void SetFromKeywords(const std::string& function, const py::kwargs& keywords,
                      const std::vector<Setting>& table) {
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();
-    const auto row = std::find_if(
-        table.begin(), table.end(),
-        [&name](const Setting& setting) { return setting.name == name; });
-    if (row == table.end()) {
+    const Setting* const row = FindNamed(table, name);
+    if (row == nullptr) {
       throw py::type_error(
           function + "() got an unexpected keyword argument '" + name + "'");
     }
@@ -75,12 +72,9 @@ std::string ArgumentsOf(const std::vector<Setting>& table) {
 
 std::string InitSignature(const std::string& class_name,
                           const std::vector<Setting>& table) {
-  const auto frontend =
-      std::find_if(table.begin(), table.end(), [](const Setting& setting) {
-        return setting.name == std::string("frontend");
-      });
   return "__init__(self: rgbd_pose." + class_name +
-         ", camera: rgbd_pose.Camera, " + ArgumentsOf({*frontend}) + ", *, " +
+         ", camera: rgbd_pose.Camera, " +
+         ArgumentsOf({*FindNamed(table, "frontend")}) + ", *, " +
          ArgumentsOf(WithoutRow("frontend", table)) +
          ") -> None\n\nInputError for unknown names and values out of range.";
 }

@@ -75,12 +75,6 @@ class PathTable {
   std::map<std::string, std::vector<double>> columns_;
 };
 
-// Times since the first frame, s.
-std::vector<double> Elapsed(std::vector<double> times) {
-  for (size_t i = times.size(); i-- > 0;) times[i] -= times[0];
-  return times;
-}
-
 json PathColumns(const PathTable& table, const PathRows& rows,
                  const ReportThinning& thinning) {
   json path;
@@ -170,22 +164,17 @@ json BandColumns(const std::vector<SweepCell>& cells,
   return columns;
 }
 
-// One method a loss, schedule and start, with its errors at all shares.
+// All methods, with their errors at all shares.
 json Methods(const std::vector<SweepCell>& cells) {
   json methods = json::array();
-  for (const std::string& loss : LossesOf(cells)) {
-    for (const char* schedule : {"gnc", "direct"}) {
-      for (const bool ransac : {false, true}) {
-        const std::vector<SweepCell> own =
-            CellsOf(cells, {loss, schedule, ransac});
-        methods.push_back(
-            {{"loss", loss},
-             {"schedule", schedule},
-             {"ransac", ransac},
-             {"translation_mm", BandColumns(own, &SweepCell::translation_mm)},
-             {"rotation_deg", BandColumns(own, &SweepCell::rotation_deg)}});
-      }
-    }
+  for (const SweepMethod& method : SweepMethods(LossesOf(cells))) {
+    const std::vector<SweepCell> own = CellsOf(cells, method);
+    methods.push_back(
+        {{"loss", method.loss},
+         {"schedule", method.schedule},
+         {"ransac", method.ransac},
+         {"translation_mm", BandColumns(own, &SweepCell::translation_mm)},
+         {"rotation_deg", BandColumns(own, &SweepCell::rotation_deg)}});
   }
   return methods;
 }

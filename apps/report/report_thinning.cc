@@ -19,6 +19,11 @@ json Rounded(double value, int decimals) {
 
 }  // namespace
 
+std::vector<double> Elapsed(std::vector<double> times) {
+  for (size_t i = times.size(); i-- > 0;) times[i] -= times[0];
+  return times;
+}
+
 ReportThinning::ReportThinning(size_t frames, size_t max_points)
     : every_(std::max<size_t>((frames + max_points - 1) / max_points, 1)) {}
 

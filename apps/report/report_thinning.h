@@ -5,6 +5,9 @@
 
 namespace rgbd_pose {
 
+// Times since the first frame, s.
+std::vector<double> Elapsed(std::vector<double> times);
+
 // Puts frames in groups of `every`, each drawn as one point, so that a page
 // stays small.
 class ReportThinning {

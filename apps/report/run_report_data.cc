@@ -35,19 +35,12 @@ std::vector<double> StatusCodes(const CsvTable& frames) {
   return codes;
 }
 
-// Times since the first frame, s.
-std::vector<double> Elapsed(const CsvTable& frames) {
-  std::vector<double> times = frames.Numbers("timestamp");
-  for (size_t i = times.size(); i-- > 0;) times[i] -= times[0];
-  return times;
-}
-
 // Stretches of frames that are not ok, each with the reason of its first.
 json Incidents(const CsvTable& frames) {
   constexpr size_t kMaxIncidents = 100;
   const std::vector<std::string> status = frames.Words("status");
   const std::vector<std::string> reason = frames.Words("reason");
-  const std::vector<double> times = Elapsed(frames);
+  const std::vector<double> times = Elapsed(frames.Numbers("timestamp"));
   json list = json::array();
   size_t begin = 0;
   while (begin < status.size()) {
@@ -67,10 +60,11 @@ json Incidents(const CsvTable& frames) {
 }
 
 json FrameColumns(const CsvTable& frames, const ReportThinning& thinning) {
-  json columns = {{"t", thinning.First(Elapsed(frames), 4)},
-                  {"status", thinning.Largest(StatusCodes(frames), 0)},
-                  {"segment", thinning.First(frames.Numbers("segment"), 0)},
-                  {"sigma", thinning.Largest(frames.Numbers("sigma"), 3)}};
+  json columns = {
+      {"t", thinning.First(Elapsed(frames.Numbers("timestamp")), 4)},
+      {"status", thinning.Largest(StatusCodes(frames), 0)},
+      {"segment", thinning.First(frames.Numbers("segment"), 0)},
+      {"sigma", thinning.Largest(frames.Numbers("sigma"), 3)}};
   for (const char* name : {"matches", "inliers"}) {
     columns[name] = thinning.First(frames.Numbers(name), 0);
   }

@@ -1,8 +1,11 @@
 #include "apps/results/calibration_output.h"
 
 #include <cmath>
+#include <memory>
 
 #include "apps/calibration/calibration_verdict.h"
+#include "apps/shell/program.h"
+#include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file_writer.h"
@@ -34,6 +37,28 @@ const char* ToString(Status status) {
       return "determined";
   }
   return "";
+}
+
+RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
+                                           const OdometrySettings& odometry,
+                                           const SlamSettings& slam,
+                                           const CalibrationSettings& settings,
+                                           int threads) {
+  std::unique_ptr<ProgressBar> bar;
+  int shown = 0;
+  RecordingCalibration calibration = CalibrateRecording(
+      sequence, odometry, slam, settings, threads,
+      [&](int pass, int done, int all) {
+        if (pass != shown) {
+          bar.reset();
+          bar = std::make_unique<ProgressBar>(
+              pass == 1 ? "calibrating" : "calibrating again", all);
+          shown = pass;
+        }
+        bar->Update(done);
+      });
+  Warn(calibration.left_out);
+  return calibration;
 }
 
 std::string FormatCalibrationSummary(const CalibrationResult& result) {

@@ -3,7 +3,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "apps/calibration/calibration_passes.h"
+#include "apps/calibration/calibration_run.h"
 #include "apps/results/run_folder.h"
 
 namespace rgbd_pose {
@@ -11,6 +11,13 @@ namespace rgbd_pose {
 // Depths that scatter by more than so many times their noise model are in the
 // wrong place, not noisy.
 constexpr double kMuchNoise = 5.0;
+
+// CalibrateRecording with a progress bar for each pass.
+RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
+                                           const OdometrySettings& odometry,
+                                           const SlamSettings& slam,
+                                           const CalibrationSettings& settings,
+                                           int threads);
 
 // What rgbd_calibrate prints of a result.
 std::string FormatCalibrationSummary(const CalibrationResult& result);

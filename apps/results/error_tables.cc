@@ -1,5 +1,4 @@
-#include "apps/results/error_tables.h"
-
+#include "apps/results/evaluation_report.h"
 #include "core/util/format.h"
 #include "core/util/units.h"
 

@@ -2,7 +2,6 @@
 
 #include <vector>
 
-#include "apps/results/error_tables.h"
 #include "core/util/format.h"
 #include "core/util/units.h"
 

@@ -8,21 +8,11 @@
 #include "core/evaluation/association.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 #include "core/util/units.h"
 
 namespace rgbd_pose {
 namespace {
-
-constexpr const char* kParts[] = {"wx", "wy", "wz", "cx", "cy", "cz"};
-
-std::string FormatPose(const Rigid3d& pose) {
-  std::string text;
-  for (const double value : pose.translation) text += Format(",%.9g", value);
-  for (const double value : pose.rotation.coeffs()) {
-    text += Format(",%.9g", value);
-  }
-  return text;
-}
 
 void AddNumber(double value, std::string* row) {
   *row += Format(",%.6f", value);
@@ -33,6 +23,31 @@ void AddPosition(const Eigen::Vector3d& position, std::string* row) {
 }
 
 }  // namespace
+
+const char kCovarianceColumns[] =
+    ",cov_wx_wx,cov_wx_wy,cov_wx_wz,cov_wx_cx,cov_wx_cy,cov_wx_cz,cov_wy_wy"
+    ",cov_wy_wz,cov_wy_cx,cov_wy_cy,cov_wy_cz,cov_wz_wz,cov_wz_cx,cov_wz_cy"
+    ",cov_wz_cz,cov_cx_cx,cov_cx_cy,cov_cx_cz,cov_cy_cy,cov_cy_cz,cov_cz_cz";
+
+std::string FormatPose(const Rigid3d& pose, char separator) {
+  std::string text;
+  for (const double value : pose.translation) {
+    text += separator + Format("%.9g", value);
+  }
+  for (const double value : pose.rotation.coeffs()) {
+    text += separator + Format("%.9g", value);
+  }
+  return text;
+}
+
+std::string FormatTriangle(const MotionMatrix& matrix, char separator) {
+  std::string text;
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j)
+      text += separator + Format("%.9g", matrix(i, j));
+  }
+  return text;
+}
 
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
   std::string text =
@@ -60,23 +75,13 @@ std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
 }
 
 std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames) {
-  std::string text = "ref,cur,tx,ty,tz,qx,qy,qz,qw";
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) {
-      text += Format(",cov_%s_%s", kParts[i], kParts[j]);
-    }
-  }
-  text += "\n";
+  std::string text =
+      std::string("ref,cur,tx,ty,tz,qx,qy,qz,qw") + kCovarianceColumns + "\n";
   for (const TrackedFrame& frame : frames) {
     for (const RelativePose& edge : frame.edges) {
-      text += Format("%d,%d", edge.ref, edge.cur);
-      text += FormatPose(edge.cur_from_ref);
-      for (int i = 0; i < 6; ++i) {
-        for (int j = i; j < 6; ++j) {
-          text += Format(",%.9g", edge.covariance(i, j));
-        }
-      }
-      text += "\n";
+      text += Format("%d,%d", edge.ref, edge.cur) +
+              FormatPose(edge.cur_from_ref) + FormatTriangle(edge.covariance) +
+              "\n";
     }
   }
   return text;
@@ -84,19 +89,14 @@ std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames) {
 
 std::vector<RelativePose> ReadEdges(const std::filesystem::path& folder) {
   const CsvTable table = CsvTable::Read((folder / "edges.csv").string());
-  const auto column = [&](const std::string& name) {
-    return table.Numbers(name);
-  };
-  const std::vector<double> ref = column("ref"), cur = column("cur");
+  const std::vector<double> ref = table.Numbers("ref");
+  const std::vector<double> cur = table.Numbers("cur");
   std::vector<std::vector<double>> pose, covariance;
   for (const char* name : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
-    pose.push_back(column(name));
+    pose.push_back(table.Numbers(name));
   }
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) {
-      covariance.push_back(
-          column(std::string("cov_") + kParts[i] + "_" + kParts[j]));
-    }
+  for (const std::string& name : SplitText(kCovarianceColumns + 1, ',')) {
+    covariance.push_back(table.Numbers(name));
   }
   std::vector<RelativePose> edges(table.size());
   for (size_t row = 0; row < table.size(); ++row) {

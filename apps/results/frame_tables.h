@@ -10,6 +10,14 @@
 
 namespace rgbd_pose {
 
+// tx ty tz qx qy qz qw, each after the separator.
+std::string FormatPose(const Rigid3d& pose, char separator = ',');
+
+// The upper triangle of a 6 x 6 matrix, row by row, each after the separator;
+// and the names of these columns for a covariance (see MotionEstimate).
+std::string FormatTriangle(const MotionMatrix& matrix, char separator = ',');
+extern const char kCovarianceColumns[];
+
 // frames.csv: a header and one row an input frame.
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames);
 

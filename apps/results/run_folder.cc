@@ -18,7 +18,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kAside[] = ".rgbd_odometry.partial";
-constexpr char kLock[] = "lock";
 constexpr char kLast[] = "metrics.json";
 constexpr const char* kResults[] = {kLast,
                                     "report.html",
@@ -59,7 +58,7 @@ void RemoveDebugImages(const fs::path& folder) {
   fs::remove(folder, error);  // if nothing else is in it
 }
 
-// Whether an open file is still the one of that path.
+// Whether an open folder is still the one of that path.
 bool IsAt(int file, const fs::path& path) {
   struct stat open_one, one_there;
   return fstat(file, &open_one) == 0 && stat(path.c_str(), &one_there) == 0 &&
@@ -86,21 +85,19 @@ RunFolder::RunFolder(const std::string& path)
   if (error) FailOnFolder(path_, error);
   Lock();
   for (const auto& entry : fs::directory_iterator(staging_dir_, error)) {
-    // Of a run that was killed.
-    if (entry.path().filename() != kLock) fs::remove_all(entry, error);
+    fs::remove_all(entry, error);  // of a run that was killed
   }
 }
 
-// The last run to have the folder removes the lock; who opened it just before
-// that has to make a new one.
+// The last run to have the folder removes it; who opened it just before that
+// has to make a new one.
 void RunFolder::Lock() {
-  const fs::path file = staging_dir_ / kLock;
   do {
     if (lock_ >= 0) close(lock_);
     std::error_code error;
     fs::create_directories(staging_dir_, error);
     if (error) FailOnFolder(path_, error);
-    lock_ = open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    lock_ = open(staging_dir_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0 && errno == ENOENT) continue;
     if (lock_ < 0) FailOnFolder(path_, {errno, std::generic_category()});
     // File systems without locks have to do without.
@@ -110,16 +107,12 @@ void RunFolder::Lock() {
                        ": another rgbd_odometry writes its results here; wait "
                        "for it or choose another folder");
     }
-  } while (!IsAt(lock_, file));
+  } while (!IsAt(lock_, staging_dir_));
 }
 
 RunFolder::~RunFolder() {
   std::error_code ignored;
-  for (const auto& entry : fs::directory_iterator(staging_dir_, ignored)) {
-    if (entry.path().filename() != kLock) fs::remove_all(entry, ignored);
-  }
-  fs::remove(staging_dir_ / kLock, ignored);
-  fs::remove(staging_dir_, ignored);
+  fs::remove_all(staging_dir_, ignored);
   if (is_new_) fs::remove(path_, ignored);  // if it is empty
   close(lock_);
 }
@@ -133,7 +126,7 @@ void RunFolder::Publish() {
     for (const char* name : kResults) fs::remove(path_ / name);
     RemoveDebugImages(path_ / kImages);
     for (const fs::path& file : FilesBelow(staging_dir_)) {
-      if (file == kLock || file == kLast) continue;
+      if (file == kLast) continue;
       fs::create_directories((path_ / file).parent_path());
       fs::rename(staging_dir_ / file, path_ / file);
     }

@@ -8,6 +8,7 @@
 #include "apps/results/evaluation_report.h"
 #include "apps/results/frame_tables.h"
 #include "apps/results/motion_jumps.h"
+#include "apps/results/run_summary.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
@@ -16,7 +17,6 @@
 #include "frontend/files/image_file.h"
 #include "frontend/frame/frame_rectifier.h"
 #include "frontend/fusion/mesh_file.h"
-#include "frontend/fusion/ply_writer.h"
 #include "frontend/tracking/residual_image.h"
 
 namespace rgbd_pose {
@@ -33,9 +33,9 @@ nlohmann::json ShutterToJson(const RgbdCamera& camera) {
           {"depth", both(camera.depth_shutter)}};
 }
 
-CloudFusionOptions CloudOptions(const Camera& camera, double voxel,
-                                const DepthLookupOptions& depth) {
-  CloudFusionOptions options;
+FusionOptions CloudOptions(const Camera& camera, double voxel,
+                           const DepthLookupOptions& depth) {
+  FusionOptions options;
   options.camera = camera;
   options.voxel_size = voxel;
   options.depth = depth;
@@ -66,50 +66,6 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
         DrawResiduals(*keyframe->reference->images(), frame,
                       odometry.last_estimate().cur_from_prev));
   }
-}
-
-// As the program prints it: lines of a title and figures.
-std::string FormatSummary(const RunSummary& summary) {
-  const char* const alone =
-      summary.frames == 1 ? "; one alone has no motion" : "";
-  return Format(
-      "frames      %d, %.1f %% tracked (%d ok, %d degraded, %d lost)%s\n"
-      "references  %d, %d segment(s), %d frame(s) found again\n"
-      "time        %.2f ms per frame median, %.2f ms 99th percentile, without "
-      "decoding\n"
-      "            of it %.2f ms matching, %.3f ms pose solve; %.2f ms for a "
-      "new reference\n"
-      "throughput  %.1f frames/s with decoding (%.2f ms per frame median), %d "
-      "thread(s)\n",
-      summary.frames, 100.0 * summary.TrackedShare(), summary.ok,
-      summary.degraded, summary.lost, alone, summary.references,
-      summary.segments, summary.relocalised, summary.median_track_ms,
-      summary.p99_track_ms, summary.median_match_ms, summary.median_solve_ms,
-      summary.median_reference_ms, summary.FramesPerSecond(),
-      summary.median_decode_ms, summary.threads);
-}
-
-nlohmann::json SummaryToJson(const RunSummary& summary) {
-  return {{"frames", summary.frames},
-          {"ok", summary.ok},
-          {"degraded", summary.degraded},
-          {"lost", summary.lost},
-          {"references", summary.references},
-          {"segments", summary.segments},
-          {"relocalised", summary.relocalised},
-          {"tracked_share", summary.TrackedShare()},
-          {"matches_median", summary.median_matches},
-          {"inlier_share_median", summary.median_inlier_share},
-          {"decode_ms_median", summary.median_decode_ms},
-          {"track_ms_median", summary.median_track_ms},
-          {"track_ms_p99", summary.p99_track_ms},
-          {"match_ms_median", summary.median_match_ms},
-          {"solve_ms_median", summary.median_solve_ms},
-          {"reference_ms_median", summary.median_reference_ms},
-          {"relocalise_ms_median", summary.median_relocalise_ms},
-          {"threads", summary.threads},
-          {"wall_seconds", summary.wall_seconds},
-          {"frames_per_second", summary.FramesPerSecond()}};
 }
 
 nlohmann::json ResidualsToJson(const ResidualHistogram& residuals) {
@@ -167,7 +123,7 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
           CloudOptions(source.camera().camera, settings.voxel, depth)),
       folder_(settings.output) {
   if (!settings.debug_images.empty()) {
-    std::filesystem::create_directory(staging_dir() / kDebug);
+    std::filesystem::create_directory(folder_.staging_dir() / kDebug);
   }
   if (!settings.save_mesh.empty()) RequireMeshFile(settings.save_mesh);
   if (!settings.save_cloud.empty()) {
@@ -195,18 +151,19 @@ void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
   seen.twist = run.odometry().last_twist();
   seen = FrameRectifier(camera).Rectify(seen);
   if (is_drawn) {
-    WriteDebugImage(staging_dir() / kDebug, seen, tracked, camera,
+    WriteDebugImage(folder_.staging_dir() / kDebug, seen, tracked, camera,
                     run.odometry());
   }
   if (is_fused) cloud_->Add(seen, tracked.world_from_cam);
 }
 
-std::string RunOutput::Write(const RunResults& results,
-                             const RunSummary& summary, const Trajectory* truth,
+std::string RunOutput::Write(const RunResults& results, int threads,
+                             double seconds, const Trajectory* truth,
                              const std::string& dataset,
                              const std::string& flags,
                              const std::string& program,
                              const nlohmann::json& more) {
+  const nlohmann::json summary = Summarise(results.frames, threads, seconds);
   const std::vector<MotionJump> jumps = FindJumps(results.frames);
   std::string text =
       FormatSummary(summary) + FormatJumps(jumps, results.frames);
@@ -217,7 +174,7 @@ std::string RunOutput::Write(const RunResults& results,
                             {"damaged_frames", results.damaged.size()},
                             {"remarks", source_.remarks()},
                             {"peak_rss_mb", PeakMemoryMb()},
-                            {"run", SummaryToJson(summary)},
+                            {"run", summary},
                             {"jumps", JumpsToJson(jumps, results.frames)},
                             {"shutter", ShutterToJson(source_.camera())},
                             {"depth_stamp_ms", DepthStampsToJson()},
@@ -228,21 +185,21 @@ std::string RunOutput::Write(const RunResults& results,
     text += FormatEvaluation(*results.evaluation);
     metrics["evaluation"] = EvaluationToJson(*results.evaluation);
     shown_from_world = results.evaluation->truth_from_estimate;
-    WriteFile("errors.csv",
-              FormatErrorsCsv(results.frames, *truth, *results.evaluation));
+    folder_.WriteFile("errors.csv", FormatErrorsCsv(results.frames, *truth,
+                                                    *results.evaluation));
   }
   if (cloud_.has_value()) {
     metrics["cloud"] = WriteCloud(shown_from_world, &text);
   }
-  WriteFile("trajectory.txt", FormatTrajectory(results.trajectory));
-  WriteFile("frames.csv", FormatFramesCsv(results.frames));
-  WriteFile("edges.csv", FormatEdgesCsv(results.frames));
-  WriteFile("config.flags", flags);
+  folder_.WriteFile("trajectory.txt", FormatTrajectory(results.trajectory));
+  folder_.WriteFile("frames.csv", FormatFramesCsv(results.frames));
+  folder_.WriteFile("edges.csv", FormatEdgesCsv(results.frames));
+  folder_.WriteFile("config.flags", flags);
   // The name of the dataset may be no UTF-8.
-  WriteFile("metrics.json",
-            metrics.dump(2, ' ', /*ensure_ascii=*/false,
-                         nlohmann::json::error_handler_t::replace) +
-                "\n");
+  folder_.WriteFile("metrics.json",
+                    metrics.dump(2, ' ', /*ensure_ascii=*/false,
+                                 nlohmann::json::error_handler_t::replace) +
+                        "\n");
   return text;
 }
 
@@ -255,7 +212,7 @@ nlohmann::json RunOutput::WriteCloud(const Rigid3d& shown_from_world,
   *text += "cloud       " + std::to_string(points.size()) + " points of " +
            std::to_string(cloud_->frames()) + " frames in " +
            settings_.save_cloud + "\n";
-  WriteFile(
+  folder_.WriteFile(
       kCloudPreviewFile,
       CloudPreview(points.Thin(kMaxPreviewPoints), shown_from_world).dump());
   return {{"points", points.size()},

@@ -1,16 +1,14 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/pipeline/odometry_run.h"
-#include "apps/pipeline/run_summary.h"
 #include "apps/pipeline/setting_table.h"
+#include "apps/results/frame_selection.h"
 #include "apps/results/run_folder.h"
-#include "apps/shell/frame_selection.h"
 #include "frontend/fusion/cloud_fusion.h"
 #include "frontend/sources/frame_source.h"
 
@@ -40,27 +38,18 @@ class RunOutput {
   // After the run has tracked a frame.
   void Add(const Frame& frame, const SequenceRun& run);
 
-  // Where files are until they are published, see RunFolder.
-  const std::filesystem::path& staging_dir() const {
-    return folder_.staging_dir();
-  }
+  // Where its files are written, and further ones may be.
+  RunFolder& folder() { return folder_; }
 
   // Writes all files but the page: `flags` into config.flags, `dataset`, the
-  // program's name and `more` (an object) into metrics.json. `truth` may be
-  // null. Returns what the program prints of them.
-  std::string Write(const RunResults& results, const RunSummary& summary,
+  // program's name and `more` (an object) into metrics.json. `seconds`: of the
+  // whole program, up to the last frame, by `threads`. `truth` may be null.
+  // Returns what the program prints of them.
+  std::string Write(const RunResults& results, int threads, double seconds,
                     const Trajectory* truth, const std::string& dataset,
                     const std::string& flags,
                     const std::string& program = "rgbd_odometry",
                     const nlohmann::json& more = nullptr);
-
-  // A further file, by its name.
-  void WriteFile(const char* name, const std::string& content) const {
-    folder_.WriteFile(name, content);
-  }
-
-  // Puts all files into their places.
-  void Publish() { folder_.Publish(); }
 
  private:
   nlohmann::json DepthStampsToJson() const;
@@ -70,7 +59,7 @@ class RunOutput {
   RunOutputSettings settings_;
   const FrameSource& source_;
   FrameSelection drawn_;
-  CloudFusionOptions cloud_options_;
+  FusionOptions cloud_options_;
   std::optional<CloudFusion> cloud_;
   RunFolder folder_;
   std::vector<double> depth_stamps_ms_;  // of each frame, after colour's

@@ -3,37 +3,15 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <map>
 #include <set>
 
+#include "apps/results/frame_tables.h"
 #include "core/util/format.h"
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {
 namespace {
-
-// tx ty tz qx qy qz qw, each after `separator`.
-std::string FormatPose(const Rigid3d& pose, const char* separator) {
-  std::string text;
-  for (const double value : pose.translation) {
-    text += separator + Format("%.9g", value);
-  }
-  for (const double value : pose.rotation.coeffs()) {
-    text += separator + Format("%.9g", value);
-  }
-  return text;
-}
-
-template <typename PoseOf>
-std::string FormatPath(const std::vector<SlamFrame>& frames, PoseOf pose_of) {
-  Trajectory path;
-  for (const SlamFrame& frame : frames) {
-    if (frame.tracked.status == TrackingStatus::kLost) continue;
-    path.push_back({frame.tracked.timestamp, pose_of(frame)});
-  }
-  return FormatTrajectory(path);
-}
 
 // g2o's error of an edge is [t, vec q] of measured^-1 * true, ref_from_cur; of
 // ours it is [R c, -omega / 2] with R of cur_from_ref.
@@ -68,8 +46,7 @@ std::string FormatSlamCsv(const std::vector<SlamFrame>& frames) {
   for (const SlamFrame& frame : frames) {
     text += Format("%.6f,%s,%d", frame.tracked.timestamp,
                    ToString(frame.tracked.status), frame.segment) +
-            FormatPose(frame.odom_from_cam, ",") +
-            FormatPose(frame.map_from_odom, ",") +
+            FormatPose(frame.odom_from_cam) + FormatPose(frame.map_from_odom) +
             Format(",%d,%d,%d,%.3f,%.3f\n", frame.pairs, frame.loops,
                    frame.joined, frame.map_ms, frame.wait_ms);
   }
@@ -82,39 +59,30 @@ std::string FormatOnlineTrajectory(const Slam& slam,
   for (int at = 0; at < slam.graph().size(); ++at) {
     segments.insert(slam.graph().segment(at));
   }
-  std::vector<SlamFrame> known;
-  std::copy_if(
-      frames.begin(), frames.end(), std::back_inserter(known),
-      [&](const SlamFrame& frame) { return segments.count(frame.segment); });
-  return FormatPath(known, [](const SlamFrame& f) { return f.map_from_cam(); });
-}
-
-std::string FormatOdometryTrajectory(const std::vector<SlamFrame>& frames) {
-  return FormatPath(frames, [](const SlamFrame& f) { return f.odom_from_cam; });
+  Trajectory path;
+  for (const SlamFrame& frame : frames) {
+    if (frame.tracked.status == TrackingStatus::kLost ||
+        segments.count(frame.segment) == 0) {
+      continue;
+    }
+    path.push_back({frame.tracked.timestamp, frame.map_from_cam()});
+  }
+  return FormatTrajectory(path);
 }
 
 std::string FormatKeyframesCsv(const KeyframeMap& map,
                                const std::vector<MotionMatrix>& covariances) {
-  constexpr const char* kParts[] = {"wx", "wy", "wz", "cx", "cy", "cz"};
-  std::string text = "keyframe,timestamp,segment,tx,ty,tz,qx,qy,qz,qw";
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) {
-      text += Format(",cov_%s_%s", kParts[i], kParts[j]);
-    }
-  }
-  text += "\n";
+  std::string text =
+      std::string("keyframe,timestamp,segment,tx,ty,tz,qx,qy,qz,qw") +
+      kCovarianceColumns + "\n";
   for (size_t k = 0; k < map.keyframes.size(); ++k) {
     const Keyframe& keyframe = map.keyframes[k];
     text += Format("%d,%.6f,%d", keyframe.id, keyframe.images.timestamp,
                    keyframe.segment) +
-            FormatPose(keyframe.world_from_cam, ",");
-    for (int i = 0; i < 6; ++i) {
-      for (int j = i; j < 6; ++j) {
-        text += covariances.empty() ? std::string(",")
-                                    : Format(",%.9g", covariances[k](i, j));
-      }
-    }
-    text += "\n";
+            FormatPose(keyframe.world_from_cam) +
+            (covariances.empty() ? std::string(21, ',')
+                                 : FormatTriangle(covariances[k])) +
+            "\n";
   }
   return text;
 }
@@ -124,19 +92,15 @@ std::string FormatG2o(const KeyframeMap& map) {
   std::map<int, int> first_of_segment;
   for (const Keyframe& keyframe : map.keyframes) {
     text += Format("VERTEX_SE3:QUAT %d", keyframe.id) +
-            FormatPose(keyframe.world_from_cam, " ") + "\n";
+            FormatPose(keyframe.world_from_cam, ' ') + "\n";
     if (first_of_segment.emplace(keyframe.segment, keyframe.id).second) {
       text += Format("FIX %d\n", keyframe.id);
     }
   }
   for (const RelativePose& edge : map.edges) {
     text += Format("EDGE_SE3:QUAT %d %d", edge.ref, edge.cur) +
-            FormatPose(edge.cur_from_ref.Inverse(), " ");
-    const MotionMatrix information = G2oInformation(edge);
-    for (int i = 0; i < 6; ++i) {
-      for (int j = i; j < 6; ++j) text += Format(" %.9g", information(i, j));
-    }
-    text += "\n";
+            FormatPose(edge.cur_from_ref.Inverse(), ' ');
+    text += FormatTriangle(G2oInformation(edge), ' ') + "\n";
   }
   return text;
 }

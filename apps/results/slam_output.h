@@ -12,12 +12,11 @@ namespace rgbd_pose {
 // was taken up of the work behind.
 std::string FormatSlamCsv(const std::vector<SlamFrame>& frames);
 
-// Poses as they were known at the time: map_from_cam and odom_from_cam.
-// Without frames whose segment has become part of another one since: their
-// poses were of another world.
+// Poses as they were known at the time, map_from_cam. Without frames whose
+// segment has become part of another one since: their poses were of another
+// world.
 std::string FormatOnlineTrajectory(const Slam& slam,
                                    const std::vector<SlamFrame>& frames);
-std::string FormatOdometryTrajectory(const std::vector<SlamFrame>& frames);
 
 // keyframes.csv: name, time, segment, pose and its covariance.
 std::string FormatKeyframesCsv(const KeyframeMap& map,

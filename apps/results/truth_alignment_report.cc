@@ -1,6 +1,5 @@
 #include <cmath>
 
-#include "apps/results/error_tables.h"
 #include "apps/results/evaluation_report.h"
 #include "core/geometry/twist.h"
 #include "core/util/format.h"

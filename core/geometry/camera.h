@@ -145,7 +145,7 @@ Lens<S> Camera::MakeLens() const {
 }
 
 // What is wrong with the depth images of a camera, to be undone as they are
-// read (frontend/sources/corrected_source.h).
+// read (frontend/sources/frame_assembly.h).
 struct DepthCorrection {
   // 1 / z = 1 / measured z + this, 1/m.
   double inverse_depth_offset = 0.0;

@@ -1,6 +1,7 @@
 #include "frontend/fusion/cloud_fusion.h"
 
 #include "frontend/frame/surface_normal.h"
+#include "frontend/fusion/motion_filter.h"
 
 namespace rgbd_pose {
 namespace {
@@ -12,7 +13,7 @@ constexpr double kMaxVoxelSize = 1.0;    // m
 
 }  // namespace
 
-std::string CloudFusionOptions::Check() const {
+std::string FusionOptions::Check() const {
   if (!(voxel_size >= kMinVoxelSize && voxel_size <= kMaxVoxelSize)) {
     return "the voxel size must be 0.001 to 1 m";
   }
@@ -24,7 +25,7 @@ std::string CloudFusionOptions::Check() const {
   return camera.Check();
 }
 
-CloudFusion::CloudFusion(const CloudFusionOptions& options)
+CloudFusion::CloudFusion(const FusionOptions& options)
     : options_(options), cloud_(static_cast<float>(options.voxel_size)) {
   const Camera& camera = options.camera;
   std::vector<Eigen::Vector2d> pixels;
@@ -43,8 +44,9 @@ bool CloudFusion::ShouldIntegrate(const TrackedFrame& tracked) const {
     return false;
   }
   if (!last_world_from_cam_.has_value()) return true;
-  return options_.step.IsReached(last_world_from_cam_->Inverse() *
-                                 tracked.world_from_cam);
+  // Nearer frames would cost time and bring the same again.
+  return MotionFilter().IsReached(last_world_from_cam_->Inverse() *
+                                  tracked.world_from_cam);
 }
 
 void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {

@@ -2,44 +2,22 @@
 
 #include <Eigen/Core>
 #include <optional>
-#include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
-#include "frontend/fusion/motion_filter.h"
+#include "frontend/fusion/fusion_options.h"
 #include "frontend/fusion/voxel_cloud.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {
-
-// What goes into a cloud.
-struct CloudFusionOptions {
-  Camera camera;  // of all frames
-
-  // Side of the cubes that points are merged in (m). Finer than the noise of
-  // the sensor, the cloud holds more noise, not more detail.
-  double voxel_size = 0.01;
-
-  // Which depths are used, and how far noise puts neighbours apart.
-  DepthLookupOptions depth;
-
-  // A frame adds to the cloud if it is so far from the last one that did:
-  // nearer ones would cost time and bring the same again.
-  MotionFilter step;
-
-  // One line that says what is wrong with the options, or empty.
-  std::string Check() const;
-};
 
 // Puts the depth images of tracked frames together to a coloured point cloud
 // in the world of their poses.
 class CloudFusion {
  public:
   // The options must be sound, see Check.
-  explicit CloudFusion(const CloudFusionOptions& options);
+  explicit CloudFusion(const FusionOptions& options);
 
   // Whether Add would bring anything new: the status is ok, the camera has
   // moved, and how the frame lies to the first one is known (its segment).
@@ -53,7 +31,7 @@ class CloudFusion {
   int frames() const { return frames_; }
 
  private:
-  CloudFusionOptions options_;
+  FusionOptions options_;
   std::vector<Eigen::Vector3f> rays_;  // of all pixels at depth 1, row by row
   VoxelCloud cloud_;
   int frames_ = 0;

@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "core/util/format.h"
-#include "core/util/text_file.h"
 #include "frontend/fusion/little_endian.h"
 #include "frontend/fusion/mesh_file.h"
 
@@ -129,10 +128,6 @@ std::string FormatGlb(const TriangleMesh& mesh) {
   AppendChunk(kJson, json, &bytes);
   if (!binary.empty()) AppendChunk(kBinary, binary, &bytes);
   return bytes;
-}
-
-void WriteGlb(const std::string& path, const TriangleMesh& mesh) {
-  WriteFileAtomically(path, FormatGlb(mesh));
 }
 
 }  // namespace rgbd_pose

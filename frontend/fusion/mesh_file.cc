@@ -5,22 +5,19 @@
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
-#include "frontend/fusion/ply_writer.h"
 
 namespace rgbd_pose {
 namespace {
 
-struct MeshFormat {
-  const char* name;  // the ending
-  void (*write)(const std::string& path, const TriangleMesh& mesh);
-};
-constexpr MeshFormat kFormats[] = {{".ply", WriteMeshPly}, {".glb", WriteGlb}};
+using Formatter = std::string (*)(const TriangleMesh& mesh);
 
-const MeshFormat& FormatOf(const std::string& path) {
+// By the endings of files.
+constexpr Named<Formatter> kFormats[] = {{".ply", FormatMeshPly},
+                                         {".glb", FormatGlb}};
+
+Formatter FormatOf(const std::string& path) {
   const std::string ending = std::filesystem::path(path).extension().string();
-  for (const MeshFormat& format : kFormats) {
-    if (ending == format.name) return format;
-  }
+  if (const auto* format = FindNamed(kFormats, ending)) return format->value;
   throw InputError(path + ": the name of a mesh must end in one of " +
                    Join(NamesOf(kFormats)));
 }
@@ -28,7 +25,7 @@ const MeshFormat& FormatOf(const std::string& path) {
 }  // namespace
 
 void WriteMesh(const std::string& path, const TriangleMesh& mesh) {
-  FormatOf(path).write(path, mesh);
+  WriteFileAtomically(path, FormatOf(path)(mesh));
 }
 
 void RequireMeshFile(const std::string& path) {

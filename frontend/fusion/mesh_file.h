@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "frontend/fusion/triangle_mesh.h"
 
@@ -19,7 +20,15 @@ void RequireMeshFile(const std::string& path);
 // of a trajectory, whose first camera has y down, is turned around x.
 std::string FormatGlb(const TriangleMesh& mesh);
 
+// A mesh as a PLY file: binary little-endian, per vertex x y z (float, metres)
+// and red green blue (uchar), per face three vertex_indices (int). (G. Turk,
+// The PLY Polygon File Format, 1994.)
+std::string FormatMeshPly(const TriangleMesh& mesh);
+
+// A point cloud: the same without faces.
+std::string FormatPly(const std::vector<ColoredPoint>& points);
+
 // Writes it as a whole or not at all. Throws InputError if it cannot.
-void WriteGlb(const std::string& path, const TriangleMesh& mesh);
+void WritePly(const std::string& path, const std::vector<ColoredPoint>& points);
 
 }  // namespace rgbd_pose

@@ -8,14 +8,10 @@
 #include "core/util/parallel_for.h"
 #include "frontend/frame/surface_normal.h"
 #include "frontend/fusion/surface_mesh.h"
+#include "frontend/fusion/voxel_key.h"
 
 namespace rgbd_pose {
 namespace {
-
-// Below, there are more cubes than any sensor has noise-free points for;
-// above, rooms are no longer recognised.
-constexpr double kMinMeshVoxel = 0.001;  // m
-constexpr double kMaxMeshVoxel = 1.0;    // m
 
 constexpr int kBlockSide = TsdfVolume::kSide;
 
@@ -34,23 +30,18 @@ void AverageColor(const cv::Vec3b& bgr, float share, DistanceVoxel* voxel) {
 }  // namespace
 
 std::string MeshFusionOptions::Check() const {
-  if (!(voxel_size >= kMinMeshVoxel && voxel_size <= kMaxMeshVoxel)) {
-    return "the voxel size must be 0.001 to 1 m";
-  }
   if (!(truncation_voxels >= 1.0) || !(truncation_sigmas >= 0.0)) {
     return "the truncation must be at least one voxel";
   }
   if (!(max_sigma >= 0.0)) return "max_sigma must not be negative";
   if (threads < 1) return "at least one thread is needed";
-  const std::string noise_error = depth.noise.Check();
-  if (!noise_error.empty()) return "depth noise: " + noise_error;
   constexpr double kFar = 1000.0;  // m, beyond all sensors
   const double farthest = std::min(depth.max_depth, max_depth);
   if (!(depth.min_depth > 0.0) || !(farthest > depth.min_depth) ||
       !(farthest <= kFar)) {
     return "depth limits must satisfy 0 < min_depth < max_depth <= 1000 m";
   }
-  return camera.Check();
+  return FusionOptions::Check();
 }
 
 MeshFusion::MeshFusion(const MeshFusionOptions& options)
@@ -155,11 +146,11 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
             (2.0F * static_cast<float>(i) / static_cast<float>(steps) - 1.0F);
         const float z = end + from_end;
         const Eigen::Vector3f at = (z * ray + t) * blocks_per_metre;
-        if (!(at.cwiseAbs().maxCoeff() < TsdfVolume::kHalfRange - 1)) {
+        if (!(at.cwiseAbs().maxCoeff() < kVoxelKeyRange - 1)) {
           continue;
         }
         const SeenBlock block = {
-            TsdfVolume::KeyOf(
+            VoxelKey(
                 {FloorToInt(at.x()), FloorToInt(at.y()), FloorToInt(at.z())}),
             std::abs(from_end) <= near};
         if (block == last[i]) continue;
@@ -193,8 +184,8 @@ void MeshFusion::AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
   const auto height = static_cast<float>(depth_.rows);
   const Eigen::Matrix3d R = cam_from_world.rotation.toRotationMatrix();
   const Eigen::Matrix3f steps = (R * options_.voxel_size).cast<float>();
-  const Eigen::Vector3d first = kBlockSide * options_.voxel_size *
-                                TsdfVolume::BlockOf(key).cast<double>();
+  const Eigen::Vector3d first =
+      kBlockSide * options_.voxel_size * VoxelOfKey(key).cast<double>();
   const Eigen::Vector3f origin = (cam_from_world * first).cast<float>();
   DistanceVoxel* voxel = block->data();
   for (int i = 0; i < kBlockSide; ++i) {

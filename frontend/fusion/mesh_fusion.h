@@ -6,27 +6,17 @@
 #include <string>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
 #include "frontend/frame/undistorter.h"
+#include "frontend/fusion/fusion_options.h"
 #include "frontend/fusion/triangle_mesh.h"
 #include "frontend/fusion/tsdf_volume.h"
 
 namespace rgbd_pose {
 
 // How depth images become one surface.
-struct MeshFusionOptions {
-  Camera camera;  // of all frames; may have distortion
-
-  // Side of the cubes (m) at whose corners distances to the surface are kept:
-  // details of this size are left.
-  double voxel_size = 0.01;
-
-  // Which depths are used, and how much each counts: by 1 / sigma^2.
-  DepthLookupOptions depth;
-
+struct MeshFusionOptions : FusionOptions {
   // Depths beyond (m) are left out, too: noise spreads each over so many voxels
   // that they take most of the time and memory and bring little.
   double max_depth = 4.0;

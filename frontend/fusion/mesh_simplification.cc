@@ -5,6 +5,7 @@
 #include <unordered_map>
 
 #include "frontend/fusion/surface_mesh.h"
+#include "frontend/fusion/voxel_key.h"
 
 namespace rgbd_pose {
 namespace {
@@ -16,15 +17,8 @@ struct Cube {
   int count = 0;
 };
 
-// Three numbers of 21 bits.
 uint64_t KeyOf(const Eigen::Vector3f& position, float size) {
-  uint64_t key = 0;
-  for (const float x : position) {
-    key = key << 21 |
-          (static_cast<uint64_t>(static_cast<int64_t>(std::floor(x / size))) &
-           0x1FFFFF);
-  }
-  return key;
+  return VoxelKey((position / size).array().floor().cast<int>());
 }
 
 uint8_t Round(double value) { return static_cast<uint8_t>(std::lround(value)); }

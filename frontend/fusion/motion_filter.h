@@ -1,6 +1,7 @@
 #pragma once
 
 #include "core/geometry/rigid3.h"
+#include "core/util/units.h"
 
 namespace rgbd_pose {
 
@@ -13,9 +14,8 @@ struct MotionFilter {
 
   // Whether it got so far.
   bool IsReached(const Rigid3d& last_from_cur) const {
-    constexpr double kDegFromRad = 57.29577951308232;
     return last_from_cur.translation.norm() >= min_distance ||
-           last_from_cur.Angle() * kDegFromRad >= min_angle_deg;
+           last_from_cur.Angle() * kDegreesPerRadian >= min_angle_deg;
   }
 };
 

@@ -1,9 +1,8 @@
-#include "frontend/fusion/ply_writer.h"
-
 #include <cstdint>
 
 #include "core/util/text_file.h"
 #include "frontend/fusion/little_endian.h"
+#include "frontend/fusion/mesh_file.h"
 
 namespace rgbd_pose {
 
@@ -48,10 +47,6 @@ std::string FormatMeshPly(const TriangleMesh& mesh) {
 
 std::string FormatPly(const std::vector<ColoredPoint>& points) {
   return FormatMeshPly(TriangleMesh{points, {}});
-}
-
-void WriteMeshPly(const std::string& path, const TriangleMesh& mesh) {
-  WriteFileAtomically(path, FormatMeshPly(mesh));
 }
 
 void WritePly(const std::string& path,

@@ -7,6 +7,8 @@
 #include <utility>
 #include <vector>
 
+#include "frontend/fusion/voxel_key.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -39,10 +41,10 @@ class Mesher {
   // The blocks around one, itself first: towards higher (sign 1) or lower (-1)
   // coordinates. kNone where there is none.
   std::array<int, 8> Neighbours(int index, int sign) const {
-    const Eigen::Vector3i here = TsdfVolume::BlockOf(volume_.key(index));
+    const Eigen::Vector3i here = VoxelOfKey(volume_.key(index));
     std::array<int, 8> neighbours;
     for (int n = 0; n < 8; ++n) {
-      neighbours[n] = volume_.Find(TsdfVolume::KeyOf(
+      neighbours[n] = volume_.Find(VoxelKey(
           here + sign * Eigen::Vector3i(Bit(n, 0), Bit(n, 1), Bit(n, 2))));
     }
     return neighbours;
@@ -56,8 +58,7 @@ class Mesher {
       return volume_.block(
           n)[TsdfVolume::PlaceOf(x % kSide, y % kSide, z % kSide)];
     };
-    const Eigen::Vector3i first =
-        kSide * TsdfVolume::BlockOf(volume_.key(index));
+    const Eigen::Vector3i first = kSide * VoxelOfKey(volume_.key(index));
     Corners corners;
     for (int x = 0; x < kSide; ++x) {
       for (int y = 0; y < kSide; ++y) {

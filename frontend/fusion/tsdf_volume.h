@@ -1,6 +1,5 @@
 #pragma once
 
-#include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -30,12 +29,8 @@ class TsdfVolume {
     return (x * kSide + y) * kSide + z;
   }
 
-  // Blocks as numbers that can be compared and sorted.
-  static constexpr int kHalfRange = 1 << 20;
-  static uint64_t KeyOf(const Eigen::Vector3i& block);
-  static Eigen::Vector3i BlockOf(uint64_t key);
-
-  // The block, made if it is not there. Stays where it is.
+  // The block of a key (voxel_key.h), made if it is not there. Stays where it
+  // is.
   Block* FindOrInsert(uint64_t key);
 
   // The number of blocks, and each in the order in which they were made.

@@ -3,14 +3,10 @@
 #include <cmath>
 
 #include "core/util/floor.h"
+#include "frontend/fusion/voxel_key.h"
 
 namespace rgbd_pose {
 namespace {
-
-// A cube's place is three numbers of 21 bits, counted from -2^20.
-constexpr int kBits = 21;
-constexpr uint64_t kMask = (uint64_t{1} << kBits) - 1;
-constexpr int kHalfRange = 1 << (kBits - 1);
 
 constexpr int kFirstSlotBits = 10;
 
@@ -27,13 +23,14 @@ VoxelCloud::VoxelCloud(float voxel_size)
       hash_shift_(64 - kFirstSlotBits) {}
 
 void VoxelCloud::Add(const ColoredPoint& point) {
-  uint64_t key = 0;
+  Eigen::Vector3i cell;
   for (int i = 0; i < 3; ++i) {
     const float x = point.position[i] * voxels_per_metre_;
     // Written so that it holds for no NaN.
-    if (!(x >= -kHalfRange && x < kHalfRange)) return;
-    key = key << kBits | static_cast<uint64_t>(FloorToInt(x) + kHalfRange);
+    if (!(x >= -kVoxelKeyRange && x < kVoxelKeyRange)) return;
+    cell[i] = FloorToInt(x);
   }
+  const uint64_t key = VoxelKey(cell);
   Voxel* voxel = FindOrInsert(key);
   const Eigen::Vector3f center = Center(key);
   for (int i = 0; i < 3; ++i) voxel->offset[i] += point.position[i] - center[i];
@@ -81,12 +78,7 @@ std::vector<ColoredPoint> VoxelCloud::Thin(int max_points) const {
 }
 
 Eigen::Vector3f VoxelCloud::Center(uint64_t key) const {
-  Eigen::Vector3f center;
-  for (int i = 2; i >= 0; --i, key >>= kBits) {
-    const int cell = static_cast<int>(key & kMask) - kHalfRange;
-    center[i] = (static_cast<float>(cell) + 0.5F) * voxel_size_;
-  }
-  return center;
+  return (VoxelOfKey(key).cast<float>().array() + 0.5F) * voxel_size_;
 }
 
 VoxelCloud::Voxel* VoxelCloud::FindOrInsert(uint64_t key) {
@@ -111,9 +103,10 @@ size_t VoxelCloud::FirstSlot(uint64_t key) const {
   // Knuth's multiplicative hashing: 2^64 over the golden ratio. Of a block of
   // 2 x 2 x 4 cubes as a whole, whose slots share a line of the cache: what is
   // looked up next is mostly next to what was looked up last.
-  constexpr uint64_t kInBlock = (1ULL << 2 * kBits) | (1ULL << kBits) | 3;
-  const uint64_t in_block =
-      (key >> (2 * kBits) & 1) << 3 | (key >> kBits & 1) << 2 | (key & 3);
+  constexpr uint64_t kInBlock =
+      (1ULL << 2 * kVoxelKeyBits) | (1ULL << kVoxelKeyBits) | 3;
+  const uint64_t in_block = (key >> (2 * kVoxelKeyBits) & 1) << 3 |
+                            (key >> kVoxelKeyBits & 1) << 2 | (key & 3);
   const uint64_t hash = (key & ~kInBlock) * 0x9E3779B97F4A7C15ULL;
   return ((hash >> hash_shift_) & ~uint64_t{15}) | in_block;
 }

@@ -117,8 +117,7 @@ void Save(const fs::path& folder, const KeyframeMap& map) {
 std::shared_ptr<const PngBytes> LoadImage(const fs::path& folder,
                                           const std::string& checksum) {
   const fs::path file = folder / (checksum + kImageType);
-  std::error_code error;
-  if (!fs::exists(file, error)) {
+  if (!PathExists(file)) {
     throw InputError(file.string() +
                      ": is missing, a keyframe of the map needs it; take a "
                      "copy of the map or map again");
@@ -180,8 +179,7 @@ void RequireMapFolder(const std::string& folder) {
 
 KeyframeMap LoadMap(const std::string& folder) {
   const std::string path = (fs::path(folder) / kIndex).string();
-  std::error_code error;
-  if (!fs::exists(path, error)) {
+  if (!PathExists(path)) {
     throw InputError(folder +
                      ": holds no map (there is no map.txt); name a folder that "
                      "a map was saved to");

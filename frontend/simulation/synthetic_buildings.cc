@@ -14,27 +14,23 @@ using Eigen::Vector3d;
 constexpr double kHeight = 2.6;  // m, of every room
 constexpr double kWall = 0.1;    // m, thickness
 
-void Put(const SceneBox& box, const Material& m, uint32_t seed, Scene* scene) {
-  AddBox(box, false, {m, m, m, m, m, m}, seed, scene);
-}
-
 // A wall between two points, from `bottom` up to the ceiling (m).
 void PutWall(const Vector2d& from, const Vector2d& to, double bottom,
              uint32_t seed, Scene* scene) {
   const Vector2d middle = (from + to) / 2.0;
   const Vector2d way = to - from;
-  Put({{middle.x(), middle.y(), bottom},
-       {way.norm() + kWall, kWall, kHeight - bottom},
-       std::atan2(way.y(), way.x()) * 180.0 / M_PI},
-      kWallpaper, seed, scene);
+  AddBox({{middle.x(), middle.y(), bottom},
+          {way.norm() + kWall, kWall, kHeight - bottom},
+          std::atan2(way.y(), way.x()) * 180.0 / M_PI},
+         kWallpaper, seed, scene);
 }
 
 void PutFloorAndCeiling(const Vector2d& middle, const Vector2d& size,
                         uint32_t seed, Scene* scene) {
   for (const bool is_floor : {true, false}) {
-    Put({{middle.x(), middle.y(), is_floor ? -kWall : kHeight},
-         {size.x(), size.y(), kWall}},
-        is_floor ? kParquet : kPlaster, seed, scene);
+    AddBox({{middle.x(), middle.y(), is_floor ? -kWall : kHeight},
+            {size.x(), size.y(), kWall}},
+           is_floor ? kParquet : kPlaster, seed, scene);
   }
 }
 
@@ -66,11 +62,10 @@ class Row {
            double yaw_deg, const Material& material) {
     const Vector2d out(-along_.y(), along_.x());
     const Vector2d foot = from_ + along_ * at + out * (gap + size.y() / 2);
-    rgbd_pose::Put(
-        {{foot.x(), foot.y(), bottom},
-         size,
-         std::atan2(along_.y(), along_.x()) * 180.0 / M_PI + yaw_deg},
-        material, seed_, scene_);
+    AddBox({{foot.x(), foot.y(), bottom},
+            size,
+            std::atan2(along_.y(), along_.x()) * 180.0 / M_PI + yaw_deg},
+           material, seed_, scene_);
   }
 
  private:
@@ -165,11 +160,11 @@ void PutDesk(const Vector2d& middle, double yaw_deg, uint32_t seed,
   const double yaw = yaw_deg * M_PI / 180.0;
   for (const Piece& piece : pieces) {
     const Vector3d& p = piece.foot;
-    Put({{middle.x() + std::cos(yaw) * p.x() - std::sin(yaw) * p.y(),
-          middle.y() + std::sin(yaw) * p.x() + std::cos(yaw) * p.y(), p.z()},
-         piece.size,
-         piece.yaw_deg + yaw_deg},
-        *piece.material, seed, scene);
+    AddBox({{middle.x() + std::cos(yaw) * p.x() - std::sin(yaw) * p.y(),
+             middle.y() + std::sin(yaw) * p.x() + std::cos(yaw) * p.y(), p.z()},
+            piece.size,
+            piece.yaw_deg + yaw_deg},
+           *piece.material, seed, scene);
   }
 }
 
@@ -211,8 +206,8 @@ Scene MakeTwoRooms(uint32_t seed) {
           &scene);
   for (const double x : {-1.0, 1.0}) {
     for (const double y : {-1.5, 1.5}) {
-      Put({{x * (kWall / 2 + 0.01), y, 1.0}, {0.015, 0.8 + 0.1 * y, 0.9}},
-          kPoster, seed, &scene);
+      AddBox({{x * (kWall / 2 + 0.01), y, 1.0}, {0.015, 0.8 + 0.1 * y, 0.9}},
+             kPoster, seed, &scene);
     }
   }
   PutDesk({-2.6, 0.0}, 80.0, seed, &scene);
@@ -269,7 +264,8 @@ Scene MakeDepot(uint32_t seed) {
   FurnishRoom({0, 0}, {kDepotPitch * kDepotAisles, 22.0}, 1, seed, &scene);
   for (int i = 1; i < kDepotAisles; ++i) {
     const double x = kDepotPitch * (i - kDepotAisles / 2.0);
-    Put({{x, 0.0, 0.0}, {kThick, 2 * kReach, 2.2}}, kWallpaper, seed, &scene);
+    AddBox({{x, 0.0, 0.0}, {kThick, 2 * kReach, 2.2}}, kWallpaper, seed,
+           &scene);
     const double right = x + kThick / 2;
     const double left = x - kThick / 2;
     Furnish({right, kReach}, {right, -kReach}, 100 + i, seed, &scene);

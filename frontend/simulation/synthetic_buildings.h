@@ -6,7 +6,7 @@
 
 namespace rgbd_pose {
 
-// Scenes to walk through, for paths that return (synthetic_tours.h). Walls are
+// Scenes to walk through, for paths that return (synthetic_path.h). Walls are
 // solid boxes 0.1 m thick, furniture stands along them in rows.
 
 // A room of 9.4 x 7 m with two desks, end to end, as an island in the middle.

@@ -9,8 +9,8 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_hash.h"
-#include "frontend/simulation/synthetic_movers.h"
 #include "frontend/simulation/synthetic_path.h"
+#include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/simulation/synthetic_sensor.h"
 
 namespace rgbd_pose {
@@ -35,7 +35,6 @@ void CheckShutters(const RgbdCamera& camera, double frame_s) {
   }
 }
 
-// With its shutters in the camera.
 // Whether every pixel has a ray: a lens is worst in a corner.
 bool SeesEverywhere(const Camera& camera) {
   for (const double u : {0.0, camera.width - 1.0}) {
@@ -46,76 +45,58 @@ bool SeesEverywhere(const Camera& camera) {
   return true;
 }
 
+// With its shutters in the camera.
 SyntheticOptions Checked(SyntheticOptions options) {
+  const auto require = [](bool holds, const std::string& problem) {
+    if (!holds) throw InputError(problem);
+  };
   options.color_shutter.is_known = true;
   options.camera.color_shutter = options.color_shutter;
   options.camera.depth_shutter = options.depth_shutter;
-  if (options.frames < 1 || options.frames > kMaxFrames) {
-    throw InputError("a synthetic sequence has 1 to " +
-                     std::to_string(kMaxFrames) + " frames, not " +
-                     std::to_string(options.frames));
-  }
-  if (options.laps < 1) {
-    throw InputError("a synthetic sequence has 1 or more laps, not " +
-                     std::to_string(options.laps));
-  }
+  require(options.frames >= 1 && options.frames <= kMaxFrames,
+          "a synthetic sequence has 1 to " + std::to_string(kMaxFrames) +
+              " frames, not " + std::to_string(options.frames));
+  require(options.laps >= 1, "a synthetic sequence has 1 or more laps, not " +
+                                 std::to_string(options.laps));
   // Time stamps are whole microseconds and must differ.
-  if (!(options.rate_hz > 0.0 && options.rate_hz <= 1e5)) {
-    throw InputError("the rate of a synthetic sequence must be in 0..1e5 Hz");
-  }
-  if (!(options.camera.depth_scale > 0.0)) {
-    throw InputError("depth_scale of a synthetic sequence must be positive");
-  }
+  require(options.rate_hz > 0.0 && options.rate_hz <= 1e5,
+          "the rate of a synthetic sequence must be in 0..1e5 Hz");
+  require(options.camera.depth_scale > 0.0,
+          "depth_scale of a synthetic sequence must be positive");
   const std::string problem = options.camera.camera.Check();
-  if (!problem.empty()) {
-    throw InputError("camera of the synthetic sequence: " + problem);
-  }
-  if (!SeesEverywhere(options.camera.camera)) {
-    throw InputError(
-        "camera of the synthetic sequence: its lens tells no ray for the "
-        "corners of the image");
-  }
-  if (!(options.exposure_s >= 0.0 &&
-        options.exposure_s <= 1.0 / options.rate_hz)) {
-    throw InputError("the shutter time of a synthetic sequence must be in 0.." +
-                     std::to_string(1.0 / options.rate_hz) +
-                     " s, the time from frame to frame");
-  }
-  CheckShutters(options.camera, 1.0 / options.rate_hz);
-  if (!(std::abs(options.depth_delay_s) < 0.5 / options.rate_hz)) {
-    throw InputError("the depth delay of a synthetic sequence must be below " +
-                     std::to_string(0.5 / options.rate_hz) +
-                     " s, half the time from frame to frame");
-  }
-  if (!(options.registration_error.Angle() < M_PI / 4) ||
-      !(options.registration_error.translation.norm() < 1.0)) {
-    throw InputError(
-        "the registration error of a synthetic sequence must be below 1 m and "
-        "45 degrees");
-  }
+  require(problem.empty(), "camera of the synthetic sequence: " + problem);
+  require(SeesEverywhere(options.camera.camera),
+          "camera of the synthetic sequence: its lens tells no ray for the "
+          "corners of the image");
+  const double frame_s = 1.0 / options.rate_hz;
+  require(options.exposure_s >= 0.0 && options.exposure_s <= frame_s,
+          "the shutter time of a synthetic sequence must be in 0.." +
+              std::to_string(frame_s) + " s, the time from frame to frame");
+  CheckShutters(options.camera, frame_s);
+  require(std::abs(options.depth_delay_s) < 0.5 / options.rate_hz,
+          "the depth delay of a synthetic sequence must be below " +
+              std::to_string(0.5 / options.rate_hz) +
+              " s, half the time from frame to frame");
+  require(
+      options.registration_error.Angle() < M_PI / 4 &&
+          options.registration_error.translation.norm() < 1.0,
+      "the registration error of a synthetic sequence must be below 1 m and "
+      "45 degrees");
   if (options.depth_camera.has_value()) {
     const std::string depth_problem = options.depth_camera->camera.Check();
-    if (!depth_problem.empty()) {
-      throw InputError("depth camera: " + depth_problem);
-    }
+    require(depth_problem.empty(), "depth camera: " + depth_problem);
   }
-  if (!(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0)) {
-    throw InputError("exposure_drift of a synthetic sequence must be in 0..1");
-  }
-  if (!(options.moving_patch >= 0.0 &&
-        options.moving_patch <= kMaxPatchShare)) {
-    throw InputError("moving_patch of a synthetic sequence must be in 0.." +
-                     Format("%g", kMaxPatchShare));
-  }
-  if (options.walking_boxes < 0 || options.walking_boxes > kMaxWalkingBoxes) {
-    throw InputError("a synthetic sequence has 0 to " +
-                     std::to_string(kMaxWalkingBoxes) + " walking boxes");
-  }
-  if (!(options.black_s >= 0.0)) {
-    throw InputError(
-        "the black time of a synthetic sequence must be 0 s or "
-        "more");
-  }
+  require(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0,
+          "exposure_drift of a synthetic sequence must be in 0..1");
+  require(options.moving_patch >= 0.0 && options.moving_patch <= kMaxPatchShare,
+          "moving_patch of a synthetic sequence must be in 0.." +
+              Format("%g", kMaxPatchShare));
+  require(
+      options.walking_boxes >= 0 && options.walking_boxes <= kMaxWalkingBoxes,
+      "a synthetic sequence has 0 to " + std::to_string(kMaxWalkingBoxes) +
+          " walking boxes");
+  require(options.black_s >= 0.0,
+          "the black time of a synthetic sequence must be 0 s or more");
   return options;
 }
 

@@ -50,7 +50,7 @@ struct SyntheticOptions {
   // Swing of the automatic exposure, 0..1: see DriftingGain.
   double exposure_drift = 0.0;
 
-  // What moves by itself (see synthetic_movers.h): a patch on this share of the
+  // What moves by itself (see MovingPatch): a patch on this share of the
   // view, 0 to kMaxPatchShare, and boxes, 0 to kMaxWalkingBoxes.
   double moving_patch = 0.0;
   int walking_boxes = 0;

@@ -1,9 +1,8 @@
-#include "frontend/simulation/synthetic_movers.h"
-
 #include <cmath>
 
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_materials.h"
+#include "frontend/simulation/synthetic_renderer.h"
 
 namespace rgbd_pose {
 namespace {
@@ -62,9 +61,7 @@ std::vector<SyntheticMover> WalkingBoxes(int count, uint32_t seed) {
     box.scene.lamp = {-1.0, 0.3, 2.2};
     SceneBox at_middle = walking.box;
     at_middle.foot.setZero();
-    AddBox(at_middle, false,
-           {kPoster, kPoster, kPoster, kPoster, kPoster, kPoster},
-           HashCell(i, 3, seed), &box.scene);
+    AddBox(at_middle, kPoster, HashCell(i, 3, seed), &box.scene);
     box.world_from_mover = [&walking](double t) {
       return Rigid3d(
           Quaterniond::Identity(),

@@ -7,7 +7,6 @@
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "core/util/units.h"
-#include "frontend/simulation/synthetic_tours.h"
 
 namespace rgbd_pose {
 namespace {
@@ -161,21 +160,18 @@ Rigid3d WhipPan(double t, double duration) {
   return pose;
 }
 
-struct NamedPath {
-  const char* name;
-  SyntheticPath path;
-};
-constexpr NamedPath kPaths[] = {{"xyz", Xyz},
-                                {"pan_tilt", PanTilt},
-                                {"circle", Circle},
-                                {"still", Still},
-                                {"walk", Walk},
-                                {"handheld", Handheld},
-                                {"whip_pan", WhipPan},
-                                {"table", TableTour},
-                                {"two_rooms", TwoRoomsTour},
-                                {"twin_corridors", TwinCorridorsTour},
-                                {"depot", DepotTour}};
+constexpr Named<SyntheticPath> kPaths[] = {
+    {"xyz", Xyz},
+    {"pan_tilt", PanTilt},
+    {"circle", Circle},
+    {"still", Still},
+    {"walk", Walk},
+    {"handheld", Handheld},
+    {"whip_pan", WhipPan},
+    {"table", TableTour},
+    {"two_rooms", TwoRoomsTour},
+    {"twin_corridors", TwinCorridorsTour},
+    {"depot", DepotTour}};
 
 }  // namespace
 
@@ -189,7 +185,7 @@ Rigid3d LookAt(const Vector3d& place, const Vector3d& target) {
 }
 
 SyntheticPath FindSyntheticPath(const std::string& name) {
-  return RowOf(kPaths, "path", name).path;
+  return ValueOf(kPaths, "path", name);
 }
 
 std::vector<std::string> SyntheticPathNames() { return NamesOf(kPaths); }

@@ -2,17 +2,57 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <cstdint>
+#include <functional>
 #include <opencv2/core.hpp>
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
-#include "frontend/simulation/synthetic_movers.h"
 #include "frontend/simulation/synthetic_scene.h"
-#include "frontend/simulation/synthetic_view.h"
 
 namespace rgbd_pose {
+
+// A face as a camera sees it. For the ray (x, y, 1) of a pixel in camera axes
+// face_from_ray * ray = (u, v, 1) / z: where it meets the face's plane, and the
+// inverse of the depth there. All of it is linear in the ray, which makes the
+// search for the nearest face a matter of multiplying and comparing.
+struct VisibleFace {
+  const SceneFace* face = nullptr;
+  Eigen::Matrix3f face_from_ray;
+  Eigen::Vector3f lamp;    // along u, along v, above the face (m)
+  Eigen::Vector3f camera;  // likewise
+  Eigen::Vector2f min;     // range of the face on the plane z = 1; without end
+  Eigen::Vector2f max;     // where it reaches behind the camera
+};
+
+// The faces of a scene whose front is turned to the camera and which are not
+// wholly behind it. They point into `scene`.
+std::vector<VisibleFace> FindVisibleFaces(const Scene& scene,
+                                          const Rigid3d& world_from_cam);
+
+// Something that moves by itself: what it looks like, in axes and under a lamp
+// of its own, and where it is at time t (s).
+struct SyntheticMover {
+  Scene scene;
+  std::function<Rigid3d(double t)> world_from_mover;
+};
+
+// A printed sheet that floats 1 m before a camera on a path, wherever that
+// goes, square to it and with the image's shape. It covers this share of the
+// view, above 0 and at most kMaxPatchShare, and goes round an ellipse at 5 to
+// 8 px a frame (of 640 x 480 at 30 Hz; image sizes scale it).
+constexpr double kMaxPatchShare = 0.45;  // more would leave the image
+SyntheticMover MovingPatch(double share, const Camera& camera,
+                           const std::function<Rigid3d(double t)>& path,
+                           uint32_t seed);
+
+// The first so many of three printed boxes, as tall as children, that walk to
+// and fro through the scene "room", at up to 0.9 m/s, and through what stands
+// there.
+constexpr int kMaxWalkingBoxes = 3;
+std::vector<SyntheticMover> WalkingBoxes(int count, uint32_t seed);
 
 // What an ideal RGB-D camera sees.
 struct Rendering {

@@ -15,16 +15,7 @@ namespace {
 // Scenes that lack what one or the other method lives on. All suit the paths
 // of the room.
 
-Material Painted(const cv::Vec3f& color) {
-  Material material;
-  material.color = color;
-  material.grain = 0.0f;
-  return material;
-}
-
-std::array<Material, 6> Everywhere(const Material& m) {
-  return {m, m, m, m, m, m};
-}
+Material Painted(const cv::Vec3f& color) { return Plain(color, 0.0f); }
 
 struct PaintedBox {
   SceneBox box;
@@ -52,11 +43,12 @@ const PaintedBox kBoxes[] = {
 Scene MakePlainRoom(uint32_t seed) {
   Scene scene;
   scene.lamp = {-0.4, 0.2, 2.2};
+  const Material wall = Painted({0.62f, 0.64f, 0.65f});
   AddBox({{0.0, 0.0, 0.0}, {5.0, 4.0, 2.6}, 0}, true,
-         Everywhere(Painted({0.62f, 0.64f, 0.65f})), seed, &scene);
+         {wall, wall, wall, wall, wall, wall}, seed, &scene);
   for (const PaintedBox& piece : kBoxes) {
     const float b = piece.brightness;
-    AddBox(piece.box, false, Everywhere(Painted({b, b, b})), seed, &scene);
+    AddBox(piece.box, Painted({b, b, b}), seed, &scene);
   }
   return scene;
 }
@@ -79,34 +71,22 @@ Scene MakeCorridor(uint32_t seed) {
 Scene MakePosterWall(uint32_t seed) {
   Scene scene;
   scene.lamp = {-0.4, 0.2, 2.2};
-  Material posters;
-  posters.color = {0.62f, 0.58f, 0.56f};
-  posters.grain = 0.20f;
-  posters.tile = {0.13f, 0.10f};
-  posters.tile_contrast = 0.22f;
-  posters.tile_tint = 0.18f;
-  posters.glyph = 0.011f;
-  posters.glyph_density = 0.35f;
-  AddBox({{1.0, 0.0, -5.0}, {0.2, 16.0, 14.0}, 0}, false, Everywhere(posters),
-         seed, &scene);
+  AddBox({{1.0, 0.0, -5.0}, {0.2, 16.0, 14.0}, 0}, kPoster, seed, &scene);
   return scene;
 }
 
 using Eigen::Vector3d;
 
-struct NamedScene {
-  const char* name;
-  Scene (*make)(uint32_t seed);
-};
-constexpr NamedScene kScenes[] = {{"room", MakeRoom},
-                                  {"plain_room", MakePlainRoom},
-                                  {"glossy_room", MakeGlossyRoom},
-                                  {"corridor", MakeCorridor},
-                                  {"poster_wall", MakePosterWall},
-                                  {"table", MakeTableRoom},
-                                  {"two_rooms", MakeTwoRooms},
-                                  {"twin_corridors", MakeTwinCorridors},
-                                  {"depot", MakeDepot}};
+constexpr Named<Scene (*)(uint32_t seed)> kScenes[] = {
+    {"room", MakeRoom},
+    {"plain_room", MakePlainRoom},
+    {"glossy_room", MakeGlossyRoom},
+    {"corridor", MakeCorridor},
+    {"poster_wall", MakePosterWall},
+    {"table", MakeTableRoom},
+    {"two_rooms", MakeTwoRooms},
+    {"twin_corridors", MakeTwinCorridors},
+    {"depot", MakeDepot}};
 
 struct Furniture {
   SceneBox box;
@@ -198,7 +178,7 @@ void AddBox(const SceneBox& box, bool from_within,
 }
 
 Scene MakeScene(const std::string& name, uint32_t seed) {
-  return RowOf(kScenes, "scene", name).make(seed);
+  return ValueOf(kScenes, "scene", name)(seed);
 }
 
 std::vector<std::string> SceneNames() { return NamesOf(kScenes); }
@@ -210,8 +190,7 @@ Scene MakeRoom(uint32_t seed) {
          {kWallpaper, kWallpaper, kWallpaper, kWallpaper, kParquet, kPlaster},
          seed, &scene);
   for (const Furniture& piece : kFurniture) {
-    const Material& m = *piece.material;
-    AddBox(piece.box, false, {m, m, m, m, m, m}, seed, &scene);
+    AddBox(piece.box, *piece.material, seed, &scene);
   }
   return scene;
 }

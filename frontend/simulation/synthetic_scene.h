@@ -43,6 +43,12 @@ void AddBox(const SceneBox& box, bool from_within,
             const std::array<Material, 6>& materials, uint32_t seed,
             Scene* scene);
 
+// The same of one material, seen from outside.
+inline void AddBox(const SceneBox& box, const Material& m, uint32_t seed,
+                   Scene* scene) {
+  AddBox(box, false, {m, m, m, m, m, m}, seed, scene);
+}
+
 // A scene known by name. Throws InputError that lists the names for another
 // one. `seed` picks the textures, never the geometry.
 //   room         furnished and textured everywhere

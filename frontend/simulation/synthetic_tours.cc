@@ -1,5 +1,3 @@
-#include "frontend/simulation/synthetic_tours.h"
-
 #include <Eigen/Geometry>
 #include <cmath>
 #include <vector>

@@ -1,6 +1,6 @@
-#include "frontend/simulation/synthetic_view.h"
-
 #include <limits>
+
+#include "frontend/simulation/synthetic_renderer.h"
 
 namespace rgbd_pose {
 namespace {

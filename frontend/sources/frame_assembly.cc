@@ -1,7 +1,11 @@
 #include "frontend/sources/frame_assembly.h"
 
+#include <cmath>
+#include <utility>
+
 #include "core/util/input_error.h"
 #include "frontend/files/image_file.h"
+#include "frontend/frame/depth_warper.h"
 
 namespace rgbd_pose {
 namespace {
@@ -16,7 +20,42 @@ void CheckSize(const FrameAssembly::Named& named, int width, int height,
                    "; is it the right camera file or preset?");
 }
 
+// Raw depths with their inverse moved by an offset (1/m).
+cv::Mat Offset(const cv::Mat& depth, double scale, double offset) {
+  cv::Mat moved(depth.size(), CV_16UC1);
+  const double per_unit = offset / scale;
+  for (int v = 0; v < depth.rows; ++v) {
+    const auto* from = depth.ptr<uint16_t>(v);
+    auto* to = moved.ptr<uint16_t>(v);
+    for (int u = 0; u < depth.cols; ++u) {
+      const uint16_t raw = from[u];
+      to[u] = 0;
+      if (raw == 0 || raw == Frame::kNoDepth) continue;
+      const double value = raw / (1.0 + per_unit * raw);
+      if (value > 0.0 && value < Frame::kNoDepth - 1) {
+        to[u] = static_cast<uint16_t>(std::lround(value));
+      }
+    }
+  }
+  return moved;
+}
+
 }  // namespace
+
+Frame CorrectDepth(const RgbdCamera& camera, Frame frame) {
+  if (camera.depth_correction.inverse_depth_offset != 0.0) {
+    frame.depth = Offset(frame.depth, frame.depth_scale,
+                         camera.depth_correction.inverse_depth_offset);
+  }
+  const Rigid3d& moved = camera.depth_correction.depth_from_color;
+  if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {
+    frame.depth =
+        DepthWarper(camera.camera).Move(frame, moved.Inverse()).clone();
+  }
+  frame.color_shutter = camera.color_shutter;
+  frame.depth_shutter = camera.depth_shutter;
+  return frame;
+}
 
 FrameAssembly::FrameAssembly(const CameraSetup& setup, bool keep_color)
     : camera_(RegisteredCamera(setup)),
@@ -42,7 +81,7 @@ Frame FrameAssembly::Make(const Named& gray, const cv::Mat& color,
                     ? depth.image
                     : registration_->Register(depth.image, camera_.depth_scale);
   frame.depth_scale = camera_.depth_scale;
-  return frame;
+  return CorrectDepth(camera_, std::move(frame));
 }
 
 Frame FrameAssembly::Read(const std::string& color_path,

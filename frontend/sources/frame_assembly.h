@@ -11,8 +11,13 @@
 
 namespace rgbd_pose {
 
+// A frame without the errors of depth that a camera is known to have
+// (RgbdCamera): the offset of its inverse depth, of its registration; and with
+// the camera's shutters.
+Frame CorrectDepth(const RgbdCamera& camera, Frame frame);
+
 // Makes frames of a recording's images, the same way for all sources: their
-// sizes checked, depth registered to colour where it is not.
+// sizes checked, depth registered to colour where it is not, and corrected.
 class FrameAssembly {
  public:
   // Throws InputError for cameras that make no sense.

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -69,8 +70,7 @@ NumberedDataset::NumberedDataset(const NumberedLayout& layout,
 
 bool NumberedDataset::Recognises(const NumberedLayout& layout,
                                  const std::string& folder) {
-  std::error_code error;
-  return fs::exists(fs::path(folder) / layout.mark, error) &&
+  return PathExists(fs::path(folder) / layout.mark) &&
          !List(folder, layout.color).empty() &&
          !List(folder, layout.depth).empty();
 }
@@ -129,7 +129,7 @@ Trajectory NumberedDataset::ground_truth() const {
   for (const NumberedFrame& frame : frames_) numbers.push_back(frame.number);
   Trajectory truth;
   for (const auto& [number, pose] : layout_.poses(folder_, numbers)) {
-    truth.push_back({number / layout_.rate_hz, pose});
+    truth.push_back({number / kNumberedRate, pose});
   }
   return truth;
 }

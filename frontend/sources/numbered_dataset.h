@@ -25,7 +25,7 @@ class NumberedDataset : public Dataset {
 
   int size() const override { return static_cast<int>(frames_.size()); }
   double timestamp(int index) const override {
-    return frames_[index].number / layout_.rate_hz;
+    return frames_[index].number / kNumberedRate;
   }
   Frame Read(int index) const override;
   const RgbdCamera& camera() const override { return assembly_.camera(); }

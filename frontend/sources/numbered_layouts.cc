@@ -38,15 +38,10 @@ std::optional<CameraSetup> Open3dCamera(const std::string& folder,
   if (!PathExists(path)) path = fs::path(folder) / "camera_intrinsic.json";
   if (!PathExists(path)) return std::nullopt;
   const YamlSection file = YamlSection::FromFile(path.string());
-  Camera camera;
-  camera.width = file.Pixels("width");
-  camera.height = file.Pixels("height");
+  const int width = file.Pixels("width");
+  const int height = file.Pixels("height");
   const std::vector<double> k = file.Numbers("intrinsic_matrix", {9});
-  camera.fx = k[0];
-  camera.fy = k[4];
-  camera.cx = k[6];
-  camera.cy = k[7];
-  CameraSetup setup(camera);
+  CameraSetup setup(Camera{width, height, k[0], k[4], k[6], k[7]});
   if (file.Has("depth_scale")) setup.depth_scale = file.Number("depth_scale");
   return setup;
 }
@@ -60,14 +55,9 @@ std::optional<CameraSetup> ReplicaCamera(const std::string& folder,
     if (!PathExists(path)) continue;
     const YamlSection file =
         YamlSection::FromFile(path.string()).Child("camera");
-    Camera camera;
-    camera.width = file.Pixels("w");
-    camera.height = file.Pixels("h");
-    camera.fx = file.Number("fx");
-    camera.fy = file.Number("fy");
-    camera.cx = file.Number("cx");
-    camera.cy = file.Number("cy");
-    CameraSetup setup(camera);
+    CameraSetup setup(Camera{file.Pixels("w"), file.Pixels("h"),
+                             file.Number("fx"), file.Number("fy"),
+                             file.Number("cx"), file.Number("cy")});
     if (file.Has("scale")) setup.depth_scale = file.Number("scale");
     return setup;
   }
@@ -87,13 +77,8 @@ Camera ReadIntrinsicText(const fs::path& file, const std::string& image_path) {
                        "camera matrix");
   };
   const cv::Mat image = ReadImageFile(image_path, cv::IMREAD_UNCHANGED);
-  Camera camera;
-  camera.width = image.cols;
-  camera.height = image.rows;
-  camera.fx = number(0, 0);
-  camera.fy = number(1, 1);
-  camera.cx = number(0, 2);
-  camera.cy = number(1, 2);
+  const Camera camera = {image.cols,   image.rows,   number(0, 0),
+                         number(1, 1), number(0, 2), number(1, 2)};
   const std::string problem = camera.Check();
   if (!problem.empty()) throw InputError(path + ": " + problem);
   return camera;
@@ -146,7 +131,6 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        {{"", "frame-", ".depth.png"}},
        "",
        1000.0,
-       30.0,
        NoCamera,
        ReadFramePoses},
       {"scannet",
@@ -155,7 +139,6 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        {{"depth", "", ".png"}},
        "intrinsic/intrinsic_color.txt",
        1000.0,
-       30.0,
        ScanNetCamera,
        ReadPoseFolder},
       {"replica",
@@ -165,7 +148,6 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        {{"results", "depth", ".png"}},
        "",
        6553.5,
-       30.0,
        ReplicaCamera,
        ReadPoseLines},
       {"icl_nuim",
@@ -175,7 +157,6 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        {{"depth", "", ".png"}},
        "associations.txt",
        5000.0,
-       30.0,
        IclCamera,
        ReadMirroredPoses},
       {"open3d",
@@ -190,7 +171,6 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        {{"depth", "", ".png"}},
        "",
        1000.0,
-       30.0,
        Open3dCamera,
        ReadPoseLog},
   };

@@ -1,5 +1,3 @@
-#include "frontend/sources/numbered_poses.h"
-
 #include <array>
 #include <cmath>
 #include <filesystem>
@@ -9,6 +7,7 @@
 #include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/sources/numbered_layouts.h"
 
 namespace rgbd_pose {
 namespace {

@@ -10,7 +10,6 @@
 #include "core/util/text_file.h"
 #include "frontend/bags/bag_files.h"
 #include "frontend/sources/bag_source.h"
-#include "frontend/sources/corrected_source.h"
 #include "frontend/sources/numbered_dataset.h"
 #include "frontend/sources/openni2_source.h"
 #include "frontend/sources/tum_dataset.h"
@@ -31,8 +30,7 @@ struct SourceType {
 };
 
 bool HasFile(const SourceOptions& options, const char* name) {
-  std::error_code error;
-  return fs::exists(fs::path(options.path) / name, error);
+  return PathExists(fs::path(options.path) / name);
 }
 
 SourceType BagType(BagKind kind, const char* name, const char* what) {
@@ -113,12 +111,12 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   std::string known;
   for (const SourceType& type : Types()) {
     if (name == kAuto ? type.recognises(options) : name == type.name) {
-      return ApplyDepthCorrection(type.open(options));
+      return type.open(options);
     }
     known += (known.empty() ? "" : "; ") + type.what;
   }
   if (name != kAuto) throw UnknownName("source", name, SourceNames());
-  if (!fs::exists(options.path, error)) {
+  if (!PathExists(options.path)) {
     throw InputError(options.path + ": no such file or folder");
   }
   if (!fs::is_directory(options.path, error)) {

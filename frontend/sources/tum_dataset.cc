@@ -42,13 +42,8 @@ CameraSetup ReadCalibrationText(const std::string& path,
                              "fx fy cx cy");
   }
   const cv::Mat image = ReadGrayImageFile(first_image);
-  Camera camera;
-  camera.width = image.cols;
-  camera.height = image.rows;
-  camera.fx = numbers[0];
-  camera.fy = numbers[1];
-  camera.cx = numbers[2];
-  camera.cy = numbers[3];
+  const Camera camera = {image.cols, image.rows, numbers[0],
+                         numbers[1], numbers[2], numbers[3]};
   const std::string problem = camera.Check();
   if (!problem.empty()) throw InputError(path + ": " + problem);
   return CameraSetup(camera);
@@ -58,11 +53,10 @@ std::optional<CameraSetup> OwnCamera(const SourceOptions& options,
                                      const TumLists& lists) {
   if (options.camera.has_value()) return std::nullopt;  // nobody asks for it
   const fs::path folder = options.path;
-  std::error_code error;
-  if (fs::exists(folder / "camera.yaml", error)) {
+  if (PathExists(folder / "camera.yaml")) {
     return ReadCameraFile((folder / "camera.yaml").string());
   }
-  if (fs::exists(folder / "calibration.txt", error)) {
+  if (PathExists(folder / "calibration.txt")) {
     return ReadCalibrationText((folder / "calibration.txt").string(),
                                lists.pairs.front().color_path);
   }
@@ -88,8 +82,7 @@ Frame TumDataset::Read(int index) const {
 
 Trajectory TumDataset::ground_truth() const {
   const fs::path path = fs::path(folder_) / "groundtruth.txt";
-  std::error_code error;
-  if (!fs::exists(path, error)) return {};
+  if (!PathExists(path)) return {};
   truth_remarks_.clear();
   return ReadTrajectory(path.string(), &truth_remarks_);
 }

@@ -1,5 +1,3 @@
-#include "frontend/sources/tum_lists.h"
-
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -10,6 +8,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
+#include "frontend/sources/tum_dataset.h"
 
 namespace rgbd_pose {
 namespace {
@@ -68,8 +67,7 @@ std::vector<ListedImage> ReadImageList(const std::string& folder,
                                        const std::string& name,
                                        int* same_stamp) {
   const std::string list = (fs::path(folder) / name).string();
-  std::error_code error;
-  if (!fs::exists(list, error)) {
+  if (!PathExists(list)) {
     throw InputError(list +
                      ": missing; a TUM RGB-D sequence has rgb.txt and "
                      "depth.txt, or else give an associations file");

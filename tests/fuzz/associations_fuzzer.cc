@@ -2,7 +2,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "frontend/sources/tum_lists.h"
+#include "frontend/sources/tum_dataset.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace {

@@ -2,7 +2,7 @@
 
 #include "apps/batch/batch_plan.h"
 #include "apps/batch/batch_shard.h"
-#include "apps/shell/frame_selection.h"
+#include "apps/results/frame_selection.h"
 #include "costs/cost_factory.h"
 #include "tests/fuzz/fuzz_input.h"
 

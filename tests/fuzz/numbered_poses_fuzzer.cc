@@ -1,6 +1,6 @@
 // Poses of recordings in numbered files: the input as each of their forms.
 
-#include "frontend/sources/numbered_poses.h"
+#include "frontend/sources/numbered_layouts.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

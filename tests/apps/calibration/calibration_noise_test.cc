@@ -1,11 +1,10 @@
 // Depths with noise in; its model out.
 
-#include "apps/calibration/calibration_noise.h"
-
 #include <gtest/gtest.h>
 
 #include <random>
 
+#include "apps/calibration/calibration_result.h"
 #include "core/geometry/depth_noise.h"
 
 namespace rgbd_pose {

@@ -7,13 +7,12 @@
 #include <cmath>
 #include <string>
 
-#include "apps/calibration/calibration_camera.h"
 #include "apps/calibration/calibration_run.h"
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/pipeline/slam.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/sources/corrected_source.h"
+#include "frontend/sources/frame_assembly.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {
@@ -50,7 +49,7 @@ struct Mapped {
 
   CalibrationResult Calibrate(CalibrationSettings settings = {},
                               int threads = 2) const {
-    settings.data.max_views = 5000;
+    settings.max_views = 5000;
     return rgbd_pose::Calibrate(map, path, first, CalibrationOdometry(),
                                 settings, {}, threads);
   }

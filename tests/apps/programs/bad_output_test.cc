@@ -171,7 +171,7 @@ TEST_F(BadInputTest, OneRunAtATimeWritesToAFolder) {
   const std::string staging_dir = "out/.rgbd_odometry.partial/";
   folder_.Write(staging_dir + "metrics.json", "of a run that was killed");
   const int lock =
-      open(folder_.Write(staging_dir + "lock", "").c_str(), O_RDWR);
+      open((folder_ / staging_dir).c_str(), O_RDONLY | O_DIRECTORY);
   ASSERT_EQ(flock(lock, LOCK_EX), 0);
   const RunResult refused = RunCommand(call, folder_);
   EXPECT_EQ(refused.exit_code, 2);

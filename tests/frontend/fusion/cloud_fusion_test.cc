@@ -10,8 +10,8 @@
 namespace rgbd_pose {
 namespace {
 
-CloudFusionOptions Options(const Camera& camera) {
-  CloudFusionOptions options;
+FusionOptions Options(const Camera& camera) {
+  FusionOptions options;
   options.camera = camera;
   return options;
 }
@@ -110,7 +110,7 @@ TEST(CloudFusionTest, NoiseIsWhatTheDepthNoiseModelSays) {
   frame.depth.setTo(5000);
   for (int y = 0; y < frame.depth.rows; y += 2) frame.depth.row(y).setTo(5150);
   for (const bool constant : {false, true}) {
-    CloudFusionOptions options = Options(camera);
+    FusionOptions options = Options(camera);
     options.depth.noise =
         *FindDepthNoiseModel(constant ? "constant" : "khoshelham");
     CloudFusion fusion(options);
@@ -121,11 +121,11 @@ TEST(CloudFusionTest, NoiseIsWhatTheDepthNoiseModelSays) {
 
 TEST(CloudFusionTest, ChecksItsOptions) {
   for (const double bad : {0.0, -0.01, 0.0009, 1.1, std::nan("")}) {
-    CloudFusionOptions options;
+    FusionOptions options;
     options.voxel_size = bad;
     EXPECT_NE(options.Check(), "") << bad;
   }
-  EXPECT_EQ(CloudFusionOptions().Check(), "");
+  EXPECT_EQ(FusionOptions().Check(), "");
 }
 
 }  // namespace

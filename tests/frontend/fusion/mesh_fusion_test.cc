@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "frontend/fusion/ply_writer.h"
+#include "frontend/fusion/mesh_file.h"
 #include "frontend/fusion/surface_mesh.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_scene.h"

@@ -8,6 +8,8 @@
 #include <set>
 #include <utility>
 
+#include "frontend/fusion/voxel_key.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -22,7 +24,7 @@ TsdfVolume Ball(const IsKnown& is_known) {
   TsdfVolume volume;
   for (int b = 0; b < 512; ++b) {
     const Eigen::Vector3i at(b / 64 - 4, b / 8 % 8 - 4, b % 8 - 4);
-    auto* block = volume.FindOrInsert(TsdfVolume::KeyOf(at));
+    auto* block = volume.FindOrInsert(VoxelKey(at));
     for (int i = 0; i < TsdfVolume::kBlockSize; ++i) {
       const Eigen::Vector3i in_block(i / 64, i / 8 % 8, i % 8);
       const Eigen::Vector3d point =

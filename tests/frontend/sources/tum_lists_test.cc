@@ -1,9 +1,8 @@
-#include "frontend/sources/tum_lists.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
+#include "frontend/sources/tum_dataset.h"
 #include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
+
+#include "frontend/sources/frame_range.h"
 
 namespace rgbd_pose {
 
@@ -20,16 +20,7 @@ class FrameSelection {
   bool Contains(int index) const;
 
  private:
-  struct Range {
-    int first = 0;
-    int last = 0;
-    int step = 1;
-  };
-
-  // One item of the list; nothing if it is invalid.
-  static std::optional<Range> ParseRange(std::string_view text);
-
-  std::vector<Range> ranges_;
+  std::vector<FrameRange> ranges_;
 };
 
 }  // namespace rgbd_pose

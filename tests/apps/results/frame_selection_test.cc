@@ -1,4 +1,4 @@
-#include "apps/shell/frame_selection.h"
+#include "apps/results/frame_selection.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

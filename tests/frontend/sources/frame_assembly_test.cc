@@ -1,11 +1,8 @@
-#include "frontend/sources/corrected_source.h"
+#include "frontend/sources/frame_assembly.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
-#include <optional>
-#include <utility>
 
 #include "core/geometry/camera.h"
 
@@ -23,7 +20,7 @@ Frame Wall(double depth) {
   return frame;
 }
 
-TEST(CorrectedSourceTest, InverseDepthMovesByItsOffset) {
+TEST(CorrectDepthTest, InverseDepthMovesByItsOffset) {
   RgbdCamera camera;
   camera.depth_correction.inverse_depth_offset = 0.01;
   const Frame frame = CorrectDepth(camera, Wall(2.0));
@@ -33,7 +30,7 @@ TEST(CorrectedSourceTest, InverseDepthMovesByItsOffset) {
 }
 
 // Stamps stay; when rows were exposed comes along, from the camera alone.
-TEST(CorrectedSourceTest, FramesHaveTheShuttersOfTheCamera) {
+TEST(CorrectDepthTest, FramesHaveTheShuttersOfTheCamera) {
   RgbdCamera camera;
   camera.color_shutter = {-0.007, 0.028};
   camera.depth_shutter = {0.015, 0.0};
@@ -50,42 +47,15 @@ TEST(CorrectedSourceTest, FramesHaveTheShuttersOfTheCamera) {
   EXPECT_EQ(frame.depth.data, wall.depth.data);
 }
 
-class SourceWithoutFrames : public FrameSource {
- public:
-  explicit SourceWithoutFrames(const RgbdCamera& camera) : camera_(camera) {}
-  const RgbdCamera& camera() const override { return camera_; }
-  std::optional<RgbdFrame> Next() override { return std::nullopt; }
-
- private:
-  RgbdCamera camera_;
-};
-
-TEST(CorrectedSourceTest, OnlyAPlainCameraNeedsNothing) {
-  const auto is_wrapped = [](const RgbdCamera& camera) {
-    auto source = std::make_unique<SourceWithoutFrames>(camera);
-    const FrameSource* const before = source.get();
-    return ApplyDepthCorrection(std::move(source)).get() != before;
-  };
-  EXPECT_FALSE(is_wrapped(RgbdCamera()));
-  for (const ShutterParameter& parameter : kShutterParameters) {
-    RgbdCamera camera;
-    camera.*parameter.image.*parameter.value = 0.001;
-    EXPECT_TRUE(is_wrapped(camera)) << parameter.name;
-  }
-  RgbdCamera camera;
-  camera.depth_correction.inverse_depth_offset = 0.01;
-  EXPECT_TRUE(is_wrapped(camera));
-}
-
 // Depth that is too far ahead comes back.
-TEST(CorrectedSourceTest, RegistrationIsUndone) {
+TEST(CorrectDepthTest, RegistrationIsUndone) {
   RgbdCamera camera;
   camera.depth_correction.depth_from_color.translation.z() = 0.02;
   const Frame frame = CorrectDepth(camera, Wall(2.0));
   EXPECT_NEAR(frame.DepthAt(320, 240), 1.98, 1e-3);
 }
 
-TEST(CorrectedSourceTest, PlainDepthIsLeftAlone) {
+TEST(CorrectDepthTest, PlainDepthIsLeftAlone) {
   const Frame wall = Wall(2.0);
   EXPECT_EQ(CorrectDepth(RgbdCamera(), wall).depth.data, wall.depth.data);
   EXPECT_TRUE(DepthCorrection().IsIdentity());
