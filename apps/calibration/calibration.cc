@@ -149,8 +149,9 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   // are; beyond that they contradict each other.
   constexpr double kMaxSpread = 4.0;
   const double spread = SpreadOfHalves(result.halves);
-  result.spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
-  for (HalvesOfParameter& half : result.halves) half.sigma *= result.spread;
+  result.halves_spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
+  for (HalvesOfParameter& half : result.halves)
+    half.sigma *= result.halves_spread;
   const FreeParts needed = is_free;
   CalibrationMatrix model_covariance, sandwich_covariance;
   const auto judge = [&](const BundleAdjustment& problem,
@@ -163,7 +164,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
       parameter.found = state.theta[k];
       parameter.sigma =
           can_tell
-              ? std::hypot(result.spread *
+              ? std::hypot(result.halves_spread *
                                std::sqrt(std::max(model_covariance(k, k),
                                                   sandwich_covariance(k, k))),
                            CalibrationFloor(k, result.keyframes))

@@ -114,7 +114,7 @@ struct CalibrationResult {
 
   // So many times wider than residuals say error bars are, as halves were so
   // far apart.
-  double spread = 1.0;
+  double halves_spread = 1.0;
 
   // How far depth, or the first row of colour, turned out to be displaced, px
   // (the median of views). If that is much, it is due to be mapped again with

@@ -25,7 +25,7 @@ bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
     all->is_accepted = false;
     all->reason = disagree;
     all->halves = further.halves;
-    all->spread = further.spread;
+    all->halves_spread = further.halves_spread;
     all->camera = first;
     return false;
   }
@@ -48,7 +48,7 @@ bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
   merged.camera = merged.found = further.found;
   merged.noise = further.noise;
   merged.halves = further.halves;
-  merged.spread = further.spread;
+  merged.halves_spread = further.halves_spread;
   merged.pixel_after = further.pixel_after;
   merged.depth_after = further.depth_after;
   merged.truth_after = further.truth_after;

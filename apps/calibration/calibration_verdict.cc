@@ -170,8 +170,8 @@ std::string HalvesInWords(const CalibrationResult& result) {
              ? "the halves of the recording see too little to be compared"
              : "the halves of the recording, each by itself, differ by " +
                    Short(worst->Sigmas()) + " standard deviations at most" +
-                   (result.spread > 1.0
-                        ? "; error bars are " + Short(result.spread) +
+                   (result.halves_spread > 1.0
+                        ? "; error bars are " + Short(result.halves_spread) +
                               " times wider than residuals say, for that"
                         : "");
 }

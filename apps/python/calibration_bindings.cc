@@ -52,8 +52,8 @@ void EachField(PickledBytes* bytes, Calibration& calibration) {
            r.found, r.keyframes, r.pairs, r.held_out_pairs, r.landmarks,
            r.views, r.cost_before, r.cost_after, r.gain_sigmas, r.pixel_before,
            r.pixel_after, r.depth_before, r.depth_after, r.residuals, r.noise,
-           r.truth_before, r.truth_after, r.halves, r.displacement_px, r.passes,
-           r.scale_from);
+           r.truth_before, r.truth_after, r.halves, r.halves_spread,
+           r.displacement_px, r.passes, r.scale_from);
 }
 
 // Called after each frame without the GIL: Ctrl-C ends a calibration.

@@ -183,6 +183,7 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result) {
           {"depth_spread_after", result.depth_after},
           {"depth_noise", noise},
           {"halves", halves},
+          {"halves_spread", result.halves_spread},
           {"displacement_px", result.displacement_px},
           {"passes", result.passes}};
 }

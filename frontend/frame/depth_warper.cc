@@ -29,6 +29,7 @@ DepthWarper::DepthWarper(const Camera& camera)
           {column * kFlowBlock + kMiddle, row * kFlowBlock + kMiddle}, 1.0);
       // Of what the lens does not tell nothing is asked.
       rays_.push_back(ray.allFinite() ? ray : Eigen::Vector3d::UnitZ());
+      middles_.push_back(camera.Project(rays_.back()));
     }
   }
 }
@@ -119,7 +120,7 @@ void DepthWarper::FindRanges() {
 
 DepthWarper::Flow DepthWarper::FlowAt(
     size_t block, const Rigid3d& measured_from_moved) const {
-  const Eigen::Vector2d pixel = camera_.Project(rays_[block]);
+  const Eigen::Vector2d& pixel = middles_[block];
   const Eigen::Vector3d turned = measured_from_moved.rotation * rays_[block];
   const Eigen::Vector2d turn = camera_.Project(turned) - pixel;
   const Eigen::Vector2d both =

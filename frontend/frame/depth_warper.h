@@ -61,9 +61,10 @@ class DepthWarper {
   float Sample(float u, float v) const;
 
   Camera camera_;
-  int columns_, rows_;                 // of blocks
-  std::vector<Eigen::Vector3d> rays_;  // of their middles
-  std::vector<Range> ranges_;          // of their depths
+  int columns_, rows_;                    // of blocks
+  std::vector<Eigen::Vector3d> rays_;     // of their middles
+  std::vector<Eigen::Vector2d> middles_;  // where these are, px
+  std::vector<Range> ranges_;             // of their depths
   std::vector<uint16_t> column_min_, column_max_;
   cv::Mat measured_;  // the depth image, 0: none
   cv::Mat moved_;

@@ -24,6 +24,7 @@ FrameRectifier::FrameRectifier(const Camera& camera)
           Eigen::Vector2d(column * kStep + kFirstColumn, row * kStep), 1.0);
       // Of what the lens does not tell nothing is asked.
       rays_.push_back(ray.allFinite() ? ray : Eigen::Vector3d::UnitZ());
+      nodes_.push_back(camera.Project(rays_.back()));
     }
   }
 }
@@ -83,16 +84,16 @@ void FrameRectifier::MakeFlows(const Frame& frame,
   };
   flows_.resize(rays_.size());
   for (size_t i = 0; i < rays_.size(); ++i) {
-    const Eigen::Vector2d node = camera_.Project(rays_[i]);
-    Eigen::Vector2d far = node, near = node;
     // The row decides the time, and that the row.
+    Eigen::Vector2d near = nodes_[i];
+    double time = 0.0;
     for (int step = 0; step < 2; ++step) {
-      const double time =
+      time =
           timing.color.RowTime(near.y(), camera_.height) - timing.color.offset;
-      far = see(rays_[i], 0.0, time);
       near = see(rays_[i], kRoomInverseDepth, time);
     }
-    const Eigen::Vector2d turn = far - node;
+    const Eigen::Vector2d far = see(rays_[i], 0.0, time);
+    const Eigen::Vector2d turn = far - nodes_[i];
     const Eigen::Vector2d shift = (near - far) / kRoomInverseDepth;
     flows_[i] = {
         {static_cast<float>(turn.x()), static_cast<float>(turn.y())},

@@ -42,10 +42,11 @@ class FrameRectifier {
 
   Camera camera_;
   DepthWarper mover_;
-  int columns_, rows_;                 // of nodes
-  std::vector<Eigen::Vector3d> rays_;  // of nodes
-  std::vector<Flow> flows_;            // at nodes
-  cv::Mat map_u_, map_v_;              // where each pixel is read, px
+  int columns_, rows_;                  // of nodes
+  std::vector<Eigen::Vector3d> rays_;   // of nodes
+  std::vector<Eigen::Vector2d> nodes_;  // where they are, px
+  std::vector<Flow> flows_;             // at nodes
+  cv::Mat map_u_, map_v_;               // where each pixel is read, px
 };
 
 }  // namespace rgbd_pose
