@@ -138,11 +138,19 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     look_up(after.theta);
     SolveWithScales(training, asked, kRounds, &after);
   }
+  result.noise =
+      FitDepthNoise(views_before, before, odometry.features.depth_noise);
   FreeParts is_free = asked;
   TakeBackNeedless(data.views, prior, start, &is_free, &after);
   if (IsDisplaced(after.theta - undone)) {
     look_up(after.theta);
     SolveWithScales(training, is_free, kRounds, &after);
+  }
+  if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
+    result.reason =
+        "nothing is wrong with it: pairs that were held out fit no better with "
+        "any other";
+    return result;
   }
   result.halves = SplitHalfConsistency(data.views, after, is_free, prior);
   // Halves that are farther apart than their error bars tell how wide these
@@ -178,8 +186,6 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                  parameter.sigma < settings.determined_share * parameter.prior;
     if (is_free[k]) parameter.status = Status::kDetermined;
   }
-  result.noise =
-      FitDepthNoise(views_before, before, odometry.features.depth_noise);
   if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
     result.reason = "the recording determines nothing of it";
     return result;
