@@ -50,11 +50,11 @@ constexpr Group kGroups[] = {
 
 // Takes back what the pairs that are held out do not ask for: parameters that
 // make up for each other, or for something else than the camera, make them fit
-// no better.
+// no better. `spread`: so many times as much as they scatter pairs may err.
 void TakeBackNeedless(const CalibrationViews& views,
                       const CalibrationPrior& prior,
-                      const CalibrationVector& start, FreeParts* is_free,
-                      CalibrationState* state) {
+                      const CalibrationVector& start, double spread,
+                      FreeParts* is_free, CalibrationState* state) {
   constexpr int kNearby = 5;  // iterations: it begins where others ended
   const BundleAdjustment training(views, prior, true, kNearby);
   CalibrationState best = *state;
@@ -70,7 +70,7 @@ void TakeBackNeedless(const CalibrationViews& views,
     CalibrationResult compared;
     CompareHeldOut(views, simpler, views, best, &compared);
     if (compared.held_out_pairs < 2) return;  // nothing tells
-    if (compared.gain_sigmas >= kMinSigmas) continue;
+    if (compared.gain_sigmas >= spread * kMinSigmas) continue;
     if (compared.gain_sigmas < 0.0) best = simpler;
     *is_free = fewer;
     *state = simpler;
@@ -141,7 +141,20 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   result.noise =
       FitDepthNoise(views_before, before, odometry.features.depth_noise);
   FreeParts is_free = asked;
-  TakeBackNeedless(data.views, prior, start, &is_free, &after);
+  // Halves that are farther apart than their error bars tell how wide these
+  // are; beyond that they contradict each other.
+  const auto split = [&] {
+    constexpr double kMaxSpread = 4.0;
+    result.halves = SplitHalfConsistency(data.views, after, is_free, prior);
+    const double spread = SpreadOfHalves(result.halves);
+    result.halves_spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
+    for (HalvesOfParameter& half : result.halves) {
+      half.sigma *= result.halves_spread;
+    }
+  };
+  split();
+  TakeBackNeedless(data.views, prior, start, result.halves_spread, &is_free,
+                   &after);
   if (IsDisplaced(after.theta - undone)) {
     look_up(after.theta);
     SolveWithScales(training, is_free, kRounds, &after);
@@ -152,14 +165,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
         "any other";
     return result;
   }
-  result.halves = SplitHalfConsistency(data.views, after, is_free, prior);
-  // Halves that are farther apart than their error bars tell how wide these
-  // are; beyond that they contradict each other.
-  constexpr double kMaxSpread = 4.0;
-  const double spread = SpreadOfHalves(result.halves);
-  result.halves_spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
-  for (HalvesOfParameter& half : result.halves)
-    half.sigma *= result.halves_spread;
+  split();
   const FreeParts needed = is_free;
   CalibrationMatrix model_covariance, sandwich_covariance;
   const auto judge = [&](const BundleAdjustment& problem,
