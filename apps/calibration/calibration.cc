@@ -143,17 +143,11 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   FreeParts is_free = asked;
   // Halves that are farther apart than their error bars tell how wide these
   // are; beyond that they contradict each other.
-  const auto split = [&] {
-    constexpr double kMaxSpread = 4.0;
-    result.halves = SplitHalfConsistency(data.views, after, is_free, prior);
-    const double spread = SpreadOfHalves(result.halves);
-    result.halves_spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
-    for (HalvesOfParameter& half : result.halves) {
-      half.sigma *= result.halves_spread;
-    }
-  };
-  split();
-  TakeBackNeedless(data.views, prior, start, result.halves_spread, &is_free,
+  constexpr double kMaxSpread = 4.0;
+  const double spread_of_all =
+      SpreadOfHalves(SplitHalfConsistency(data.views, after, is_free, prior));
+  TakeBackNeedless(data.views, prior, start,
+                   std::clamp(spread_of_all, 1.0, kMaxSpread), &is_free,
                    &after);
   if (IsDisplaced(after.theta - undone)) {
     look_up(after.theta);
@@ -165,7 +159,12 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
         "any other";
     return result;
   }
-  split();
+  result.halves = SplitHalfConsistency(data.views, after, is_free, prior);
+  const double spread = SpreadOfHalves(result.halves);
+  result.halves_spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
+  for (HalvesOfParameter& half : result.halves) {
+    half.sigma *= result.halves_spread;
+  }
   const FreeParts needed = is_free;
   CalibrationMatrix model_covariance, sandwich_covariance;
   const auto judge = [&](const BundleAdjustment& problem,
