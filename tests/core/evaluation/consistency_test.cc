@@ -12,7 +12,7 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-constexpr double kTolerance = 1e-9;
+constexpr double kChiTolerance = 1e-9;
 
 Rigid3d Pose(double angle, const Vector3d& place) {
   return Rigid3d(Quaterniond(AngleAxisd(angle, Vector3d(1, 2, 3).normalized())),
@@ -39,7 +39,7 @@ TEST(ConsistencyTest, ChiSquareIsOfTheErrorAsCovariancesHaveIt) {
   edge.covariance = 1e-4 * MotionMatrix::Identity();
   edge.covariance(0, 3) = edge.covariance(3, 0) = 4e-5;
   EXPECT_NEAR(ChiSquare(edge, truth, {}),
-              error.dot(edge.covariance.inverse() * error), kTolerance);
+              error.dot(edge.covariance.inverse() * error), kChiTolerance);
   const MotionMatrix covariance = edge.covariance;
   const TruthNoise noise = {0.002, 0.003};
   edge.covariance.topLeftCorner<3, 3>() += 9e-6 * Eigen::Matrix3d::Identity();
@@ -47,7 +47,7 @@ TEST(ConsistencyTest, ChiSquareIsOfTheErrorAsCovariancesHaveIt) {
       4e-6 * Eigen::Matrix3d::Identity();
   const double expected = ChiSquare(edge, truth, {});
   edge.covariance = covariance;
-  EXPECT_NEAR(ChiSquare(edge, truth, noise), expected, kTolerance);
+  EXPECT_NEAR(ChiSquare(edge, truth, noise), expected, kChiTolerance);
 }
 
 TEST(ConsistencyTest, CountsWhatIsBeyondFiveSigmas) {
