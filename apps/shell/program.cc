@@ -32,7 +32,10 @@ class SettingFlags {
  public:
   explicit SettingFlags(const std::vector<std::vector<Setting>>& tables) {
     for (const std::vector<Setting>& table : tables) {
-      for (const Setting& setting : table) Add(setting);
+      for (const Setting& setting : table) {
+        std::visit([&](const auto& value) { Add(setting, value); },
+                   setting.value);
+      }
     }
   }
 
@@ -49,36 +52,22 @@ class SettingFlags {
     std::string text;
   };
 
-  void Add(const Setting& setting) {
-    if (int* const* whole = std::get_if<int*>(&setting.value)) {
-      Register(setting, *whole, &ints_);
-    } else if (double* const* real = std::get_if<double*>(&setting.value)) {
-      Register(setting, *real, &doubles_);
-    } else if (bool* const* yes = std::get_if<bool*>(&setting.value)) {
-      Register(setting, *yes, &bools_);
-    } else {
-      const auto& named = std::get<NamedSetting>(setting.value);
-      rows_.push_back({named, named.get()});
-      Register(setting, &rows_.back().text, &texts_);
-    }
+  void Add(const Setting& setting, const NamedSetting& named) {
+    rows_.push_back({named, named.get()});
+    Add(setting, &rows_.back().text);
   }
 
   // gflags holds on to both places.
   template <typename Value>
-  static void Register(const Setting& setting, Value* current,
-                       std::deque<Value>* defaults) {
-    defaults->push_back(*current);
+  void Add(const Setting& setting, Value* current) {
+    defaults_.emplace_back(*current);
     gflags::FlagRegisterer(setting.name, setting.help, __FILE__, current,
-                           &defaults->back());
+                           &std::get<Value>(defaults_.back()));
   }
 
   // In deques, where what they hold stays.
   std::deque<Row> rows_;
-  // What gflags has as the defaults.
-  std::deque<int> ints_;
-  std::deque<double> doubles_;
-  std::deque<bool> bools_;
-  std::deque<std::string> texts_;
+  std::deque<std::variant<int, double, bool, std::string>> defaults_;
 };
 
 bool IsHelp(const std::string& argument) {
