@@ -11,7 +11,6 @@
 #include "apps/calibration/calibration_run.h"
 #include "apps/report/calibration_page.h"
 #include "apps/results/calibration_output.h"
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 
 DEFINE_int32(threads, 0, "threads; 0: one for each core");

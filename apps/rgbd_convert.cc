@@ -7,7 +7,6 @@
 #include <opencv2/core.hpp>
 
 #include "apps/pipeline/sequence.h"
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "frontend/sources/tum_writer.h"

@@ -6,7 +6,6 @@
 
 #include "apps/export/export_format.h"
 #include "apps/pipeline/setting_table.h"
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
 

@@ -12,7 +12,7 @@
 #include "apps/python/pickled_fields.h"
 #include "apps/python/released_gil.h"
 #include "apps/results/calibration_output.h"
-#include "apps/shell/available_cores.h"
+#include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file_writer.h"

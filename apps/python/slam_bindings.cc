@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "apps/pipeline/setting_table.h"
-#include "apps/pipeline/slam_settings.h"
+#include "apps/pipeline/slam.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"

@@ -7,7 +7,6 @@
 #include "apps/results/cloud_preview.h"
 #include "apps/results/evaluation_report.h"
 #include "apps/results/frame_tables.h"
-#include "apps/results/motion_jumps.h"
 #include "apps/results/run_summary.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"

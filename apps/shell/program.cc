@@ -2,7 +2,9 @@
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
+#include <sched.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -10,7 +12,9 @@
 #include <deque>
 #include <exception>
 #include <stdexcept>
+#include <string>
 #include <system_error>
+#include <thread>
 
 #include "apps/shell/flag_reader.h"
 #include "core/util/format.h"
@@ -167,6 +171,9 @@ int Run(int argc, char** argv, const ProgramInfo& info,
   }
 }
 
+// More than any machine can use for this.
+constexpr int kMaxThreads = 256;
+
 }  // namespace
 
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
@@ -205,6 +212,24 @@ void RequireFlag(const std::string& name, const std::string& value) {
   if (value.empty()) {
     throw UsageError("--" + name + " is needed; see --help");
   }
+}
+
+int AvailableCores() {
+  // Unlike the number of cores of the machine, this heeds what a scheduler
+  // such as Slurm has given.
+  cpu_set_t cores;
+  if (sched_getaffinity(0, sizeof(cores), &cores) == 0) {
+    return std::max(1, CPU_COUNT(&cores));
+  }
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+int NumThreads(int flag) {
+  if (flag < 0 || flag > kMaxThreads) {
+    throw InputError("--threads must be 0 (one a core) to " +
+                     std::to_string(kMaxThreads));
+  }
+  return flag > 0 ? flag : std::min(AvailableCores(), kMaxThreads);
 }
 
 }  // namespace rgbd_pose

@@ -56,4 +56,11 @@ void Warn(const std::vector<std::string>& lines);
 // Throws UsageError, which RunProgram turns into that exit.
 void RequireFlag(const std::string& name, const std::string& value);
 
+// How many processor cores this process may use, at least 1.
+int AvailableCores();
+
+// What the flag --threads of a program comes to: 0 is one a core. Throws
+// InputError for what is no number of threads.
+int NumThreads(int flag);
+
 }  // namespace rgbd_pose

@@ -1,7 +1,6 @@
 // Values of flags that are more than a word or a number.
 
 #include "apps/batch/batch_plan.h"
-#include "apps/batch/batch_shard.h"
 #include "apps/results/frame_selection.h"
 #include "costs/cost_factory.h"
 #include "tests/fuzz/fuzz_input.h"
