@@ -143,7 +143,7 @@ int AddOwnLibrary(dl_phdr_info* library, size_t /*size*/, void* hash) {
 void AddImagesOf(const fs::path& folder, const char* list, TextHash* hash) {
   AddFile(folder / list, hash);
   if (!IsFile(folder / list)) return;
-  for (const TextLine& line : ReadTextTable((folder / list).string())) {
+  for (const TextLine& line : ReadTextTable(folder / list)) {
     if (line.words.size() < 2) continue;
     std::error_code error;
     const auto size = fs::file_size(folder / line.words[1], error);

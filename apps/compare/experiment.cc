@@ -5,6 +5,9 @@
 #include <sstream>
 #include <system_error>
 
+#include "apps/compare/compare_sweep.h"
+#include "apps/compare/compare_sweep_report.h"
+#include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "robust/m_estimator.h"
@@ -51,6 +54,8 @@ std::vector<std::string> ParseLosses(const std::string& text) {
   return losses;
 }
 
+constexpr int kMaxSeeds = 100000;
+
 }  // namespace
 
 void CompareOutput::Prepare() const {
@@ -60,14 +65,14 @@ void CompareOutput::Prepare() const {
     throw InputError("--output=" + folder_.string() + ": cannot be made (" +
                      error.message() + ")");
   }
-  RequireWritable((folder_ / kReport).string());
+  RequireWritable(folder_ / kReport);
 }
 
 void CompareOutput::Write(const std::string& file,
                           const std::string& content) const {
   std::error_code ignored;
   std::filesystem::remove(folder_ / kReport, ignored);
-  WriteFileAtomically((folder_ / file).string(), content);
+  WriteFileAtomically(folder_ / file, content);
 }
 
 void CompareOutput::WriteReport(const std::string& content) const {
@@ -90,6 +95,33 @@ ExperimentResult RunExperiment(const ExperimentSettings& settings,
                         settings.losses.empty() ? experiment.losses()
                                                 : ParseLosses(settings.losses),
                         output);
+}
+
+ExperimentResult RunSweepOfMatches(const ExperimentSettings& settings,
+                                   const std::vector<std::string>& losses,
+                                   CompareOutput* output) {
+  SweepOptions options;
+  options.losses = losses;
+  options.estimator = settings.odometry.estimator;
+  options.seeds = settings.seeds;
+  options.threads = AvailableCores();
+  if (options.seeds < 1 || options.seeds > kMaxSeeds) {
+    throw InputError("--seeds must be 1 to " + std::to_string(kMaxSeeds));
+  }
+  output->Prepare();
+  const std::vector<SweepCell> cells = RunSweep(options);
+  output->Write("sweep.csv", SweepCsv(cells));
+  output->Write("translation.svg", SweepFigure(cells, /*rotation=*/false));
+  output->Write("rotation.svg", SweepFigure(cells, /*rotation=*/true));
+  return {"# M-estimators on wrong matches\n\n" + SweepVerdict(cells) +
+          "\n\nMedian translation errors (mm) and their 95 % bands over " +
+          std::to_string(options.seeds) + " trials of " +
+          std::to_string(options.matches) +
+          " matches with Kinect noise;\ngraduated losses that start from no "
+          "motion:\n\n" +
+          SweepTable(cells) +
+          "\n![Translation errors](translation.svg)\n"
+          "![Rotation errors](rotation.svg)\n"};
 }
 
 }  // namespace rgbd_pose

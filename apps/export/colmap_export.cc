@@ -80,13 +80,10 @@ std::string ExportColmap(const FinishedRun& run, const ExportOptions& options) {
   const ViewImages images =
       WriteViewImages(run, options, folder.MakeFolder("images"));
   const std::filesystem::path model = folder.MakeFolder("sparse/0");
-  WriteFileAtomically((model / "cameras.txt").string(),
-                      FormatCamera(images.camera));
-  WriteFileAtomically((model / "images.txt").string(), FormatImages(images));
-  WriteFileAtomically((model / "points3D.txt").string(),
-                      FormatPoints(images.cloud));
-  WriteFileAtomically((model / "points3D.bin").string(),
-                      PackPoints(images.cloud));
+  WriteFileAtomically(model / "cameras.txt", FormatCamera(images.camera));
+  WriteFileAtomically(model / "images.txt", FormatImages(images));
+  WriteFileAtomically(model / "points3D.txt", FormatPoints(images.cloud));
+  WriteFileAtomically(model / "points3D.bin", PackPoints(images.cloud));
   folder.Publish();
   return std::to_string(images.names.size()) + " images, " +
          std::to_string(images.cloud.size()) + " points in " + options.output +

@@ -45,7 +45,7 @@ void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
   const std::filesystem::path path(folder);
   try {
     WriteFileAtomically(
-        (path / kMeshPreviewFile).string(),
+        path / kMeshPreviewFile,
         preview.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     if (HasReportLibrary() && std::filesystem::exists(path / "report.html")) {
       WriteRunReport(folder);

@@ -72,8 +72,8 @@ std::string ExportNerfstudio(const FinishedRun& run,
                       options.overwrite);
   const ViewImages images = WriteViewImages(
       run, options, folder.MakeFolder("images"), folder.MakeFolder("depth"));
-  WritePly((folder.staging_dir() / "points.ply").string(), images.cloud);
-  WriteFileAtomically((folder.staging_dir() / "transforms.json").string(),
+  WritePly(folder.staging_dir() / "points.ply", images.cloud);
+  WriteFileAtomically(folder.staging_dir() / "transforms.json",
                       Transforms(images).dump(1) + "\n");
   folder.Publish();
   return std::to_string(images.names.size()) + " images, " +

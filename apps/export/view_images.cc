@@ -40,9 +40,9 @@ ViewImages WriteViewImages(const FinishedRun& run, const ExportOptions& options,
         cloud.Add(frame, world_from_cam);
         const Frame shown =
             options.undistort ? undistorter.Undistort(frame) : frame;
-        WritePngFile((color_folder / name).string(), shown.color, kQuick);
+        WritePngFile(color_folder / name, shown.color, kQuick);
         if (!depth_folder.empty()) {
-          WritePngFile((depth_folder / name).string(), InMillimetres(shown));
+          WritePngFile(depth_folder / name, InMillimetres(shown));
         }
         images.names.push_back(name);
         images.world_from_cam.push_back(world_from_cam);

@@ -11,7 +11,7 @@
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"
-#include "apps/python/pickled_fields.h"
+#include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
 #include "apps/python/shared_slam.h"

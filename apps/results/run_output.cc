@@ -54,16 +54,15 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                std::to_string(tracked.matches) + " matches agree  reference " +
                std::to_string(tracked.reference);
   }
-  WritePngFile((folder / Format("%06d.png", tracked.index)).string(),
+  WritePngFile(folder / Format("%06d.png", tracked.index),
                DrawMatches(frame, camera, odometry.last_matches(),
                            odometry.last_estimate(), caption));
   const OdometryKeyframe* keyframe = odometry.FindKeyframe(tracked.reference);
   if (tracked.status != TrackingStatus::kLost && keyframe != nullptr &&
       keyframe->reference->images() != nullptr) {
-    WritePngFile(
-        (folder / Format("%06d_residuals.png", tracked.index)).string(),
-        DrawResiduals(*keyframe->reference->images(), frame,
-                      odometry.last_estimate().cur_from_prev));
+    WritePngFile(folder / Format("%06d_residuals.png", tracked.index),
+                 DrawResiduals(*keyframe->reference->images(), frame,
+                               odometry.last_estimate().cur_from_prev));
   }
 }
 

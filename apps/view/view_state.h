@@ -60,12 +60,6 @@ struct ViewNews {
   bool is_paused = false;
   std::string results;  // after the end: where they are
   bool is_finished = false;
-
-  // Whether there is nothing to tell.
-  bool empty() const {
-    return frames.empty() && keyframes.empty() && links.empty() &&
-           poses.empty() && !images.has_value() && !is_finished;
-  }
 };
 
 // How far a reader is.
