@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/export/export_format.h"
-#include "apps/export/view_images.h"
 #include "apps/report/report_page.h"
 #include "apps/results/cloud_preview.h"
 #include "core/util/format.h"

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/setting_table.h"
 #include "apps/pipeline/settings.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/worker.h"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/estimate_result.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/settings.h"
 #include "apps/pipeline/slam.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/settings.h"
 
 namespace rgbd_pose {
 
@@ -45,6 +45,15 @@ struct ProgramInfo {
 // stderr and exit 2. Call it from main with main's own arguments.
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body);
+
+// The same for a program with tables of settings of its own.
+template <typename Settings>
+int RunProgram(int argc, char** argv, ProgramInfo (*info)(Settings*),
+               int (*body)(const Settings&, const ProgramInfo&)) {
+  Settings settings;
+  const ProgramInfo own = info(&settings);
+  return RunProgram(argc, argv, own, [&] { return body(settings, own); });
+}
 
 // All flags of the program's groups as a file for --flagfile.
 std::string FormatFlagFile(const ProgramInfo& info);
