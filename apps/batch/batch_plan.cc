@@ -26,14 +26,10 @@ namespace {
 
 // Spaces around the parts are not theirs.
 std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(separator, begin), text.size());
-    std::string part = text.substr(begin, end - begin);
+  std::vector<std::string> parts = SplitText(text, separator);
+  for (std::string& part : parts) {
     part.erase(0, part.find_first_not_of(' '));
     part.erase(part.find_last_not_of(' ') + 1);
-    parts.push_back(part);
-    begin = end + 1;
   }
   return parts;
 }

@@ -5,9 +5,6 @@
 #include <sstream>
 #include <system_error>
 
-#include "apps/compare/compare_sweep.h"
-#include "apps/compare/compare_sweep_report.h"
-#include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "robust/m_estimator.h"
@@ -16,6 +13,16 @@ namespace rgbd_pose {
 namespace {
 
 constexpr char kReport[] = "report.md";
+
+// All but those of folders.
+const std::vector<Experiment>& Experiments() {
+  static const std::vector<Experiment> rows = {
+      {"pan_tilt", SequenceLosses, RunSimulated},
+      {"xyz", SequenceLosses, RunSimulated},
+      {"sweep", MEstimatorNames, RunSweepOfMatches},
+  };
+  return rows;
+}
 
 // Of a folder.
 constexpr Experiment kRecorded = {"", SequenceLosses, RunRecorded};
@@ -54,8 +61,6 @@ std::vector<std::string> ParseLosses(const std::string& text) {
   return losses;
 }
 
-constexpr int kMaxSeeds = 100000;
-
 }  // namespace
 
 void CompareOutput::Prepare() const {
@@ -79,15 +84,6 @@ void CompareOutput::WriteReport(const std::string& content) const {
   Write(kReport, content);
 }
 
-const std::vector<Experiment>& Experiments() {
-  static const std::vector<Experiment> rows = {
-      {"pan_tilt", SequenceLosses, RunSimulated},
-      {"xyz", SequenceLosses, RunSimulated},
-      {"sweep", MEstimatorNames, RunSweepOfMatches},
-  };
-  return rows;
-}
-
 ExperimentResult RunExperiment(const ExperimentSettings& settings,
                                CompareOutput* output) {
   const Experiment experiment = FindExperiment(settings.experiment);
@@ -95,33 +91,6 @@ ExperimentResult RunExperiment(const ExperimentSettings& settings,
                         settings.losses.empty() ? experiment.losses()
                                                 : ParseLosses(settings.losses),
                         output);
-}
-
-ExperimentResult RunSweepOfMatches(const ExperimentSettings& settings,
-                                   const std::vector<std::string>& losses,
-                                   CompareOutput* output) {
-  SweepOptions options;
-  options.losses = losses;
-  options.estimator = settings.odometry.estimator;
-  options.seeds = settings.seeds;
-  options.threads = AvailableCores();
-  if (options.seeds < 1 || options.seeds > kMaxSeeds) {
-    throw InputError("--seeds must be 1 to " + std::to_string(kMaxSeeds));
-  }
-  output->Prepare();
-  const std::vector<SweepCell> cells = RunSweep(options);
-  output->Write("sweep.csv", SweepCsv(cells));
-  output->Write("translation.svg", SweepFigure(cells, /*rotation=*/false));
-  output->Write("rotation.svg", SweepFigure(cells, /*rotation=*/true));
-  return {"# M-estimators on wrong matches\n\n" + SweepVerdict(cells) +
-          "\n\nMedian translation errors (mm) and their 95 % bands over " +
-          std::to_string(options.seeds) + " trials of " +
-          std::to_string(options.matches) +
-          " matches with Kinect noise;\ngraduated losses that start from no "
-          "motion:\n\n" +
-          SweepTable(cells) +
-          "\n![Translation errors](translation.svg)\n"
-          "![Rotation errors](rotation.svg)\n"};
 }
 
 }  // namespace rgbd_pose

@@ -84,9 +84,8 @@ std::string ExportColmap(const FinishedRun& run, const ExportOptions& options) {
   WriteFileAtomically(model / "points3D.txt", FormatPoints(images.cloud));
   WriteFileAtomically(model / "points3D.bin", PackPoints(images.cloud));
   folder.Publish();
-  return std::to_string(images.names.size()) + " images, " +
-         std::to_string(images.cloud.size()) + " points in " + options.output +
-         "\n";
+  return Format("%zu images, %zu points in %s\n", images.names.size(),
+                images.cloud.size(), options.output.c_str());
 }
 
 }  // namespace rgbd_pose

@@ -5,6 +5,7 @@
 
 #include "apps/export/export_format.h"
 #include "apps/export/output_folder.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/fusion/mesh_file.h"
@@ -75,9 +76,8 @@ std::string ExportNerfstudio(const FinishedRun& run,
   WriteFileAtomically(folder.staging_dir() / "transforms.json",
                       Transforms(images).dump(1) + "\n");
   folder.Publish();
-  return std::to_string(images.names.size()) + " images, " +
-         std::to_string(images.cloud.size()) + " points in " + options.output +
-         "\n";
+  return Format("%zu images, %zu points in %s\n", images.names.size(),
+                images.cloud.size(), options.output.c_str());
 }
 
 }  // namespace rgbd_pose

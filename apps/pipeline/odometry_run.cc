@@ -8,12 +8,6 @@
 
 namespace rgbd_pose {
 
-OdometryRun::OdometryRun(const OdometrySettings& settings, const Camera& camera,
-                         const RunInputs& inputs)
-    : SequenceRun(inputs), odometry_(MakeOdometry(settings, camera)) {}
-
-Trajectory OdometryRun::FinishPath() { return TrackedTrajectory(frames()); }
-
 void SequenceRun::Add(const StreamedFrame& next) {
   std::vector<TrackedFrame>& frames = results_.frames;
   std::optional<Rigid3d> guess;

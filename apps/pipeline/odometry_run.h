@@ -109,12 +109,16 @@ class SequenceRun {
   RunResults results_;
 };
 
+// The poses of all frames that were not lost.
+Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
+
 // By an Odometry.
 class OdometryRun final : public SequenceRun {
  public:
   // Throws InputError for invalid settings.
   OdometryRun(const OdometrySettings& settings, const Camera& camera,
-              const RunInputs& inputs = {});
+              const RunInputs& inputs = {})
+      : SequenceRun(inputs), odometry_(MakeOdometry(settings, camera)) {}
 
   const Odometry& odometry() const override { return odometry_; }
 
@@ -123,7 +127,7 @@ class OdometryRun final : public SequenceRun {
                      const Rigid3d* cur_from_prev_guess) override {
     return odometry_.Track(frame, cur_from_prev_guess);
   }
-  Trajectory FinishPath() override;
+  Trajectory FinishPath() override { return TrackedTrajectory(frames()); }
 
   Odometry odometry_;
 };
@@ -177,8 +181,5 @@ void RequireOverlap(const FrameSource& source, const Trajectory& truth);
 RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
                            const Trajectory& truth,
                            const TruthNoise& noise = {});
-
-// The poses of all frames that were not lost.
-Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
 
 }  // namespace rgbd_pose

@@ -18,8 +18,6 @@ Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
   }
 }
 
-Slam::~Slam() = default;
-
 void Slam::Load(KeyframeMap map, bool is_held) {
   // Names may be those of an earlier map.
   for (Keyframe& keyframe : map.keyframes) {

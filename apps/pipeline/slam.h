@@ -87,7 +87,6 @@ class Slam {
   // `is_held`: tracks within the map without changing it. Throws InputError for
   // a map of another camera or one that is not sound.
   void Load(KeyframeMap map, bool is_held);
-  ~Slam();
 
   // As Odometry::Track.
   SlamFrame Track(const Frame& frame,

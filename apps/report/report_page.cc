@@ -4,7 +4,6 @@
 #include <string>
 #include <system_error>
 
-#include "apps/report/report_assets.h"
 #include "apps/report/report_data.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"

@@ -14,6 +14,7 @@ double QuantileOrZero(const std::vector<double>& values, double share) {
   return values.empty() ? 0.0 : Quantile(values, share);
 }
 
+// What makes a jump, and how many are told.
 constexpr double kLeastMetres = 0.01;
 constexpr double kTimesMedian = 6.0;
 constexpr size_t kMostJumps = 20;

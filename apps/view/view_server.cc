@@ -11,7 +11,6 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
-#include "apps/report/report_assets.h"
 #include "apps/report/report_page.h"
 #include "apps/view/view_events.h"
 #endif

@@ -32,10 +32,10 @@ void Append(std::vector<T> more, std::vector<T>* all) {
   std::move(more.begin(), more.end(), std::back_inserter(*all));
 }
 
-// So many across the image: some 2,000 in all.
+// So many points across the image: some 2,000 in all.
 constexpr int kColumns = 53;
 
-// Depth cameras see little that is right beyond, m.
+// Points beyond (m) are left out: depth cameras see little there that is right.
 constexpr double kMaxDepth = 6.0;
 
 }  // namespace
