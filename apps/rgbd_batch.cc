@@ -9,14 +9,11 @@
 #include <string>
 #include <vector>
 
-#include "apps/batch/batch_hash.h"
 #include "apps/batch/batch_list.h"
 #include "apps/batch/batch_plan.h"
 #include "apps/batch/batch_pool.h"
 #include "apps/batch/batch_run_folder.h"
-#include "apps/batch/batch_shard.h"
 #include "apps/batch/batch_summary.h"
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/input_error.h"

@@ -11,7 +11,6 @@
 #include "apps/calibration/calibration_run.h"
 #include "apps/report/calibration_page.h"
 #include "apps/results/calibration_output.h"
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 
 DEFINE_int32(threads, 0, "threads; 0: one for each core");
@@ -28,12 +27,7 @@ struct ProgramSettings {
   CalibrationSettings calibration;
 };
 
-ProgramSettings& Settings() {
-  static ProgramSettings settings;
-  return settings;
-}
-
-ProgramInfo Info() {
+ProgramInfo Info(ProgramSettings* settings) {
   return {
       "rgbd_calibrate",
       "calibrates an RGB-D camera from its own recording.",
@@ -41,12 +35,11 @@ ProgramInfo Info() {
       "--output=calibration",
       {{"Run", {"output", "report", "threads"}}},
       /*choices=*/{},
-      {SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
-       SettingTable(&Settings().slam), SettingTable(&Settings().calibration)}};
+      {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
+       SettingTable(&settings->slam), SettingTable(&settings->calibration)}};
 }
 
-int Main() {
-  const ProgramSettings& settings = Settings();
+int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   RequireFlag("dataset", settings.sequence.dataset);
   RequireFlag("output", FLAGS_output);
   const int threads = NumThreads(FLAGS_threads);
@@ -63,8 +56,8 @@ int Main() {
   const double seconds =
       std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
           .count();
-  WriteCalibration(calibration, settings.sequence.camera,
-                   FormatFlagFile(Info()), seconds, folder);
+  WriteCalibration(calibration, settings.sequence.camera, FormatFlagFile(info),
+                   seconds, folder);
   if (FLAGS_report) {
     folder.WriteFile("report.html", CalibrationPage(result, calibration.path));
   }
@@ -74,7 +67,7 @@ int Main() {
               FLAGS_output.c_str());
   if (!calibration.stopped.empty()) {
     std::fprintf(stderr, "%s: stopped early (%s); %s has what came of it\n",
-                 Info().name.c_str(), calibration.stopped.c_str(),
+                 info.name.c_str(), calibration.stopped.c_str(),
                  FLAGS_output.c_str());
     return kExitStopped;
   }
@@ -85,5 +78,5 @@ int Main() {
 }  // namespace rgbd_pose
 
 int main(int argc, char** argv) {
-  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info, rgbd_pose::Main);
 }

@@ -7,7 +7,7 @@
 #include <opencv2/core.hpp>
 
 #include "apps/compare/experiment.h"
-#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/settings.h"
 #include "apps/report/report_page.h"
 #include "apps/shell/program.h"
 #include "core/geometry/camera.h"
@@ -18,11 +18,6 @@ DEFINE_string(output, "", "folder for the results, made if missing");
 
 namespace rgbd_pose {
 namespace {
-
-ExperimentSettings& Settings() {
-  static ExperimentSettings settings;
-  return settings;
-}
 
 std::vector<Setting> ExperimentTable(ExperimentSettings* settings) {
   constexpr std::string_view kGroup = "Experiment";
@@ -44,24 +39,24 @@ std::vector<Setting> ExperimentTable(ExperimentSettings* settings) {
   };
 }
 
-ProgramInfo Info() {
+ProgramInfo Info(ExperimentSettings* settings) {
   return {"rgbd_compare",
           "compares M-estimators as the thesis' fourth chapter does: by "
           "features alone, unless --tracker says otherwise.",
           "rgbd_compare --experiment=xyz --output=compare/xyz",
           {{"Output", {"output", "report"}}},
           /*choices=*/{},
-          {ExperimentTable(&Settings()),
-           WithoutRow("loss", SettingTable(&Settings().odometry))}};
+          {ExperimentTable(settings),
+           WithoutRow("loss", SettingTable(&settings->odometry))}};
 }
 
-int Main() {
-  RequireFlag("experiment", Settings().experiment);
+int Main(const ExperimentSettings& settings, const ProgramInfo& info) {
+  RequireFlag("experiment", settings.experiment);
   RequireFlag("output", FLAGS_output);
   cv::setNumThreads(1);  // the threads are ours
   CompareOutput output(FLAGS_output);
-  const ExperimentResult result = RunExperiment(Settings(), &output);
-  output.Write("config.flags", FormatFlagFile(Info()));
+  const ExperimentResult result = RunExperiment(settings, &output);
+  output.Write("config.flags", FormatFlagFile(info));
   output.WriteReport(result.report);
   std::printf("%s", result.report.c_str());
   if (FLAGS_report) {
@@ -76,5 +71,5 @@ int Main() {
 }  // namespace rgbd_pose
 
 int main(int argc, char** argv) {
-  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info, rgbd_pose::Main);
 }

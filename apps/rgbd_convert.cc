@@ -7,7 +7,6 @@
 #include <opencv2/core.hpp>
 
 #include "apps/pipeline/sequence.h"
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "frontend/sources/tum_writer.h"
@@ -21,26 +20,21 @@ DEFINE_int32(
 namespace rgbd_pose {
 namespace {
 
-SequenceSettings& Settings() {
-  static SequenceSettings settings;
-  return settings;
-}
-
-ProgramInfo Info() {
+ProgramInfo Info(SequenceSettings* settings) {
   return {
       "rgbd_convert",
       "writes a recording of any kind, or part of it, as a TUM RGB-D folder.",
       "rgbd_convert --dataset=scene0000_00 --output=scene_tum",
       {{"Run", {"output", "threads"}}},
       /*choices=*/{},
-      {SettingTable(&Settings())}};
+      {SettingTable(settings)}};
 }
 
-int Main() {
-  RequireFlag("dataset", Settings().dataset);
+int Main(const SequenceSettings& settings, const ProgramInfo& info) {
+  RequireFlag("dataset", settings.dataset);
   RequireFlag("output", FLAGS_output);
   cv::setNumThreads(1);  // the threads are ours
-  Sequence sequence = OpenSequence(Settings(), /*keep_color=*/true);
+  Sequence sequence = OpenSequence(settings, /*keep_color=*/true);
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
   TumWriterOptions writer;
@@ -61,7 +55,7 @@ int Main() {
               sequence.GroundTruth() == nullptr ? "" : ", with ground truth");
   if (!written.stopped.empty()) {
     std::fprintf(stderr, "%s: stopped after %d frames (%s); %s has them\n",
-                 Info().name.c_str(), written.frames, written.stopped.c_str(),
+                 info.name.c_str(), written.frames, written.stopped.c_str(),
                  FLAGS_output.c_str());
     return kExitStopped;
   }
@@ -72,5 +66,5 @@ int Main() {
 }  // namespace rgbd_pose
 
 int main(int argc, char** argv) {
-  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info, rgbd_pose::Main);
 }

@@ -5,8 +5,7 @@
 #include <opencv2/core.hpp>
 
 #include "apps/export/export_format.h"
-#include "apps/pipeline/setting_table.h"
-#include "apps/shell/available_cores.h"
+#include "apps/pipeline/settings.h"
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
 
@@ -19,11 +18,6 @@ struct ExportSettings {
   std::string run, dataset, camera, to;
   ExportOptions options;
 };
-
-ExportSettings& Settings() {
-  static ExportSettings settings;
-  return settings;
-}
 
 std::vector<Setting> Table(ExportSettings* settings) {
   constexpr std::string_view kInput = "Input", kOutput = "Output",
@@ -74,17 +68,17 @@ std::vector<Setting> Table(ExportSettings* settings) {
   };
 }
 
-ProgramInfo Info() {
+ProgramInfo Info(ExportSettings* settings) {
   return {"rgbd_export",
           "writes what a run has found in the form that another tool takes.",
           "rgbd_export --run=runs/fr1_room --to=mesh --output=room.glb",
           {},
           /*choices=*/{},
-          {Table(&Settings())}};
+          {Table(settings)}};
 }
 
-int Main() {
-  const auto& [folder, dataset, camera, to, given] = Settings();
+int Main(const ExportSettings& settings, const ProgramInfo& /*info*/) {
+  const auto& [folder, dataset, camera, to, given] = settings;
   RequireFlag("run", folder);
   RequireFlag("to", to);
   const ExportFormat& format = FindExportFormat(to);
@@ -112,5 +106,5 @@ int Main() {
 }  // namespace rgbd_pose
 
 int main(int argc, char** argv) {
-  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info, rgbd_pose::Main);
 }

@@ -15,7 +15,6 @@
 #include "apps/report/report_page.h"
 #include "apps/results/run_output.h"
 #include "apps/results/run_tracking.h"
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "apps/view/live_view.h"
@@ -41,22 +40,16 @@ struct ProgramSettings {
   RunOutputSettings output;
 };
 
-ProgramSettings& Settings() {
-  static ProgramSettings settings;
-  return settings;
-}
-
-ProgramInfo Info() {
-  return {
-      "rgbd_odometry",
-      "estimates the motion of an RGB-D camera along a sequence.",
-      "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
-      "--output=runs/fr1_xyz",
-      {{"Run", {"report", "validate_only", "finish_on_signal", "threads"}},
-       {"View", {"view", "view_port", "view_speed"}}},
-      /*choices=*/{},
-      {SettingTable(&Settings().sequence), SettingTable(&Settings().odometry),
-       SettingTable(&Settings().output)}};
+ProgramInfo Info(ProgramSettings* settings) {
+  return {"rgbd_odometry",
+          "estimates the motion of an RGB-D camera along a sequence.",
+          "rgbd_odometry --dataset=rgbd_dataset_freiburg1_xyz --camera=tum_fr1 "
+          "--output=runs/fr1_xyz",
+          {{"Run", {"report", "validate_only", "finish_on_signal", "threads"}},
+           {"View", {"view", "view_port", "view_speed"}}},
+          /*choices=*/{},
+          {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
+           SettingTable(&settings->output)}};
 }
 
 using Clock = std::chrono::steady_clock;
@@ -92,9 +85,8 @@ int ValidateOnly(const Sequence& sequence, int threads) {
   return kExitOk;
 }
 
-int Main() {
+int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   const Clock::time_point start = Clock::now();
-  const ProgramSettings& settings = Settings();
   RequireFlag("dataset", settings.sequence.dataset);
   if (!FLAGS_validate_only) RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
@@ -129,8 +121,8 @@ int Main() {
   LogWarnings(results);
   std::string text =
       output.Write(results, threads, seconds, sequence.GroundTruth(),
-                   settings.sequence.dataset, FormatFlagFile(Info()),
-                   Info().name, {{"stopped", flaws.stopped}});
+                   settings.sequence.dataset, FormatFlagFile(info), info.name,
+                   {{"stopped", flaws.stopped}});
   if (FLAGS_report) {
     text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
                          &flaws.no_report);
@@ -140,12 +132,12 @@ int Main() {
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
   view.Finish(settings.output.output);
-  return ExitCodeOf(Info().name, results, settings.output.output, flaws);
+  return ExitCodeOf(info.name, results, settings.output.output, flaws);
 }
 
 }  // namespace
 }  // namespace rgbd_pose
 
 int main(int argc, char** argv) {
-  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info, rgbd_pose::Main);
 }

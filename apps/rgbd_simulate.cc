@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "frontend/files/camera_file.h"

@@ -14,15 +14,14 @@
 
 #include "apps/calibration/calibration_run.h"
 #include "apps/export/export_format.h"
+#include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/sequence.h"
-#include "apps/pipeline/slam_run.h"
 #include "apps/report/calibration_page.h"
 #include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/results/run_output.h"
 #include "apps/results/run_tracking.h"
 #include "apps/results/slam_output.h"
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "apps/view/live_view.h"
 #include "core/util/input_error.h"
@@ -51,12 +50,7 @@ struct ProgramSettings {
   RunOutputSettings output;
 };
 
-ProgramSettings& Settings() {
-  static ProgramSettings settings;
-  return settings;
-}
-
-ProgramInfo Info() {
+ProgramInfo Info(ProgramSettings* settings) {
   return {"rgbd_slam",
           "maps what an RGB-D camera sees, and finds its path in the map.",
           "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
@@ -64,9 +58,9 @@ ProgramInfo Info() {
           {{"Run", {"calibrate", "report", "finish_on_signal", "threads"}},
            {"View", {"view", "view_port", "view_speed"}}},
           /*choices=*/{},
-          {SettingTable(&Settings().sequence),
-           SettingTable(&Settings().odometry), SettingTable(&Settings().slam),
-           SettingTable(&Settings().maps), SettingTable(&Settings().output)}};
+          {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
+           SettingTable(&settings->slam), SettingTable(&settings->maps),
+           SettingTable(&settings->output)}};
 }
 
 using Clock = std::chrono::steady_clock;
@@ -75,8 +69,7 @@ double SecondsSince(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-void LoadMaps(SlamRun* run) {
-  const MapSettings& maps = Settings().maps;
+void LoadMaps(const MapSettings& maps, SlamRun* run) {
   std::vector<std::string> folders = SplitText(maps.load_map, ',');
   folders.erase(std::remove(folders.begin(), folders.end(), ""), folders.end());
   if (maps.localise_only && folders.empty()) {
@@ -99,9 +92,9 @@ void LoadMaps(SlamRun* run) {
 // What --calibrate found, and the camera to go on with.
 class Calibration {
  public:
-  explicit Calibration(int threads) {
+  Calibration(const ProgramSettings& settings, int threads)
+      : settings_(settings) {
     if (!FLAGS_calibrate) return;
-    const ProgramSettings& settings = Settings();
     OdometrySettings odometry = settings.odometry;
     odometry.odometry.max_flow_px =
         std::min(odometry.odometry.max_flow_px,
@@ -124,8 +117,8 @@ class Calibration {
     const CalibrationResult& result = found_->result;
     if (result.is_accepted) {
       output.WriteFile(
-          kFile, FormatCameraFile(result.camera, Settings().sequence.camera));
-      const std::filesystem::path folder(Settings().output.output);
+          kFile, FormatCameraFile(result.camera, settings_.sequence.camera));
+      const std::filesystem::path folder(settings_.output.output);
       SetFlag("camera", (folder / kFile).string());
       SetFlag("depth_scale", "0");
       SetFlag("calibrate", "false");
@@ -155,12 +148,12 @@ class Calibration {
     gflags::SetCommandLineOption(name, value.c_str());
   }
 
+  const ProgramSettings& settings_;
   std::optional<RecordingCalibration> found_;
 };
 
-int Main() {
+int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   const Clock::time_point start = Clock::now();
-  const ProgramSettings& settings = Settings();
   RequireFlag("dataset", settings.sequence.dataset);
   RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
@@ -171,7 +164,7 @@ int Main() {
   // and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
   if (FLAGS_calibrate) OpenSequence(settings.sequence);
-  const Calibration calibration(threads);
+  const Calibration calibration(settings, threads);
   Sequence sequence =
       OpenSequence(settings.sequence, keep_color, calibration.camera());
   FrameSource& source = *sequence.source;
@@ -179,7 +172,7 @@ int Main() {
   const RunInputs inputs = sequence.inputs();
   if (!settings.maps.save_map.empty()) RequireMapFolder(settings.maps.save_map);
   SlamRun run(settings.odometry, settings.slam, source.camera().camera, inputs);
-  LoadMaps(&run);
+  LoadMaps(settings.maps, &run);
   RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
@@ -205,8 +198,8 @@ int Main() {
   nlohmann::json more = {{"stopped", flaws.stopped}, {"slam", map_json}};
   if (!calibration.Json().is_null()) more["calibration"] = calibration.Json();
   text += output.Write(results, threads, seconds, sequence.GroundTruth(),
-                       settings.sequence.dataset, FormatFlagFile(Info()),
-                       Info().name, more);
+                       settings.sequence.dataset, FormatFlagFile(info),
+                       info.name, more);
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
   output.folder().WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
@@ -232,12 +225,12 @@ int Main() {
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());
   view.Finish(settings.output.output);
-  return ExitCodeOf(Info().name, results, settings.output.output, flaws);
+  return ExitCodeOf(info.name, results, settings.output.output, flaws);
 }
 
 }  // namespace
 }  // namespace rgbd_pose
 
 int main(int argc, char** argv) {
-  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info(), rgbd_pose::Main);
+  return rgbd_pose::RunProgram(argc, argv, rgbd_pose::Info, rgbd_pose::Main);
 }

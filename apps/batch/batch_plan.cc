@@ -1,8 +1,17 @@
 #include "apps/batch/batch_plan.h"
 
-#include <algorithm>
+#include <link.h>
 
-#include "apps/batch/batch_hash.h"
+#include <algorithm>
+#include <charconv>
+#include <cstdlib>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/geometry/camera.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "core/util/text_hash.h"
@@ -17,14 +26,10 @@ namespace {
 
 // Spaces around the parts are not theirs.
 std::vector<std::string> Split(const std::string& text, char separator) {
-  std::vector<std::string> parts;
-  for (size_t begin = 0; begin <= text.size();) {
-    const size_t end = std::min(text.find(separator, begin), text.size());
-    std::string part = text.substr(begin, end - begin);
+  std::vector<std::string> parts = SplitText(text, separator);
+  for (std::string& part : parts) {
     part.erase(0, part.find_first_not_of(' '));
     part.erase(part.find_last_not_of(' ') + 1);
-    parts.push_back(part);
-    begin = end + 1;
   }
   return parts;
 }
@@ -79,6 +84,88 @@ std::string HashRun(const BatchRun& run, const std::string& settings,
   hash.Add(settings);
   hash.Add(inputs);
   return hash.Hex();
+}
+
+std::optional<int> ParseWhole(std::string_view text) {
+  int value = 0;
+  const auto [end, error] =
+      std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < 0) {
+    return std::nullopt;
+  }
+  return value;
+}
+
+std::optional<int> FromEnvironment(const char* name) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? std::nullopt : ParseWhole(text);
+}
+
+BatchShard ShardOfSlurmTask() {
+  const std::optional<int> id = FromEnvironment("SLURM_ARRAY_TASK_ID");
+  const std::optional<int> count = FromEnvironment("SLURM_ARRAY_TASK_COUNT");
+  if (!id || !count) return {};
+  const int first = FromEnvironment("SLURM_ARRAY_TASK_MIN").value_or(0);
+  if (*id < first || *id - first >= *count) {
+    throw InputError("task " + std::to_string(*id) + " of a Slurm array of " +
+                     std::to_string(*count) + " from " + std::to_string(first) +
+                     " names no shard; use an array without gaps, such as "
+                     "0-9, or give --shard");
+  }
+  return {*id - first, *count};
+}
+
+namespace fs = std::filesystem;
+
+bool IsFile(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error);
+}
+
+void AddFile(const fs::path& path, TextHash* hash) {
+  hash->Add(IsFile(path) ? "file" : "none");
+  if (IsFile(path)) hash->Add(ReadTextFile(path.string()));
+}
+
+int AddOwnLibrary(dl_phdr_info* library, size_t /*size*/, void* hash) {
+  const fs::path path = library->dlpi_name;
+  if (path.filename().string().rfind("librgbd_pose_", 0) == 0) {
+    AddFile(path, static_cast<TextHash*>(hash));
+  }
+  return 0;  // go on
+}
+
+// Lines of any kind are taken; whether they make sense is found out by the run.
+void AddImagesOf(const fs::path& folder, const char* list, TextHash* hash) {
+  AddFile(folder / list, hash);
+  if (!IsFile(folder / list)) return;
+  for (const TextLine& line : ReadTextTable(folder / list)) {
+    if (line.words.size() < 2) continue;
+    std::error_code error;
+    const auto size = fs::file_size(folder / line.words[1], error);
+    hash->Add(error ? "none" : std::to_string(size));
+  }
+}
+
+// What is below a folder of another kind, or a file: names, sizes and texts.
+void AddAllOf(const fs::path& recording, TextHash* hash) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  if (IsFile(recording)) files.push_back(recording);
+  for (const fs::directory_entry& entry :
+       fs::recursive_directory_iterator(recording, error)) {
+    if (entry.is_regular_file(error)) files.push_back(entry.path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    hash->Add(file.lexically_relative(recording).string());
+    const auto size = fs::file_size(file, error);
+    hash->Add(error ? "none" : std::to_string(size));
+    const std::string type = file.extension().string();
+    if (type == ".txt" || type == ".json" || type == ".log") {
+      AddFile(file, hash);
+    }
+  }
 }
 
 }  // namespace
@@ -139,6 +226,47 @@ std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,
     }
   }
   return runs;
+}
+
+std::string BatchShard::Name() const {
+  return std::to_string(index) + "-of-" + std::to_string(count);
+}
+
+BatchShard ParseShard(const std::string& text) {
+  if (text.empty()) return ShardOfSlurmTask();
+  const size_t slash = text.find('/');
+  if (slash != std::string::npos) {
+    const std::string_view view = text;
+    const std::optional<int> index = ParseWhole(view.substr(0, slash));
+    const std::optional<int> count = ParseWhole(view.substr(slash + 1));
+    if (index && count && *index < *count) return {*index, *count};
+  }
+  throw InputError("--shard=" + text +
+                   ": must be i/n with i from 0 to n - 1, such as 0/4");
+}
+
+std::string HashProgram(const std::string& path) {
+  TextHash hash;
+  AddFile(path, &hash);
+  dl_iterate_phdr(AddOwnLibrary, &hash);
+  return hash.Hex();
+}
+
+std::string HashSequence(const BatchSequence& sequence) {
+  TextHash hash;
+  if (IsFile(fs::path(sequence.folder) / "rgb.txt")) {
+    AddImagesOf(sequence.folder, "rgb.txt", &hash);
+    AddImagesOf(sequence.folder, "depth.txt", &hash);
+    AddFile(fs::path(sequence.folder) / "groundtruth.txt", &hash);
+  } else {
+    AddAllOf(sequence.folder, &hash);
+  }
+  if (CameraPreset(sequence.camera)) {
+    hash.Add(sequence.camera);
+  } else {
+    AddFile(sequence.camera, &hash);
+  }
+  return hash.Hex();
 }
 
 }  // namespace rgbd_pose

@@ -5,9 +5,20 @@
 #include <vector>
 
 #include "apps/batch/batch_list.h"
-#include "apps/batch/batch_shard.h"
 
 namespace rgbd_pose {
+
+// A part of a batch: every count-th sequence, beginning with number index.
+struct BatchShard {
+  int index = 0;
+  int count = 1;
+
+  bool IsWhole() const { return count == 1; }
+  bool Has(int sequence) const { return sequence % count == index; }
+
+  // "0-of-4", for file names.
+  std::string Name() const;
+};
 
 // What may differ between the runs of a sequence. A row makes it a list of the
 // plan, a flag of every run, a part of its folder's name and a column of the
@@ -48,5 +59,20 @@ BatchGrid ParseGrid(const std::vector<std::string>& lists, int repeats);
 std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,
                                const BatchGrid& grid, const BatchShard& shard,
                                const std::string& settings);
+
+// The shard that "i/n" says, 0 <= i < n. If it is empty, the one of this task
+// of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT and _MIN), or else the
+// whole. Throws InputError for anything else, and for arrays with gaps.
+BatchShard ParseShard(const std::string& text);
+
+// A hash of all that a run reads of a sequence: rgb.txt, depth.txt, the name
+// and size of each image in them, groundtruth.txt and the camera. Files that
+// are missing count as such; where the sequence lies does not count.
+std::string HashSequence(const BatchSequence& sequence);
+
+// A hash of what a program does: of its file, and of the project's own shared
+// libraries, if it is built with such. (Those that this process has loaded:
+// programs that are installed together share them.)
+std::string HashProgram(const std::string& path);
 
 }  // namespace rgbd_pose

@@ -84,8 +84,10 @@ RunEnd EndOf(const Process& process, int state) {
   return end;
 }
 
-}  // namespace
-
+// Starts a program (path and arguments) in a folder, with nothing to read and
+// its output in run.log there. It is killed when this process ends, however
+// that ends; so call this from the main thread. Throws InputError if no process
+// can be made; a program that cannot be run exits with 127.
 pid_t StartProcess(const std::vector<std::string>& command,
                    const std::string& folder) {
   std::vector<std::string> words = command;
@@ -102,11 +104,14 @@ pid_t StartProcess(const std::vector<std::string>& command,
   return child;
 }
 
+// The state of waitpid once the process has ended; empty until then.
 std::optional<int> PollProcess(pid_t process) {
   int state = 0;
   if (waitpid(process, &state, WNOHANG) != process) return std::nullopt;
   return state;
 }
+
+}  // namespace
 
 void RunBatch(const std::vector<BatchRun>& runs, const BatchFolder& folder,
               const BatchPoolOptions& options) {

@@ -4,7 +4,6 @@
 #include <string>
 
 #include "apps/batch/batch_plan.h"
-#include "apps/batch/batch_shard.h"
 
 namespace rgbd_pose {
 

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "core/geometry/twist.h"
 
@@ -106,26 +108,103 @@ Twist TwistAt(const Trajectory& path, double time) {
                  : near.twist;
 }
 
+// The work grows with the third power of their number.
+constexpr size_t kMaxKeyframes = 300;
+
+// Every n-th pair is kept to judge the result by.
+constexpr int kHoldOut = 5;
+
+// The largest segment's keyframes, by their places in the map.
+std::vector<int> ChosenKeyframes(const KeyframeMap& map) {
+  std::map<int, std::vector<int>> segments;
+  for (size_t i = 0; i < map.keyframes.size(); ++i) {
+    segments[map.keyframes[i].segment].push_back(static_cast<int>(i));
+  }
+  std::vector<int> largest;
+  for (const auto& [segment, members] : segments) {
+    if (members.size() > largest.size()) largest = members;
+  }
+  std::sort(largest.begin(), largest.end(), [&](int a, int b) {
+    return map.keyframes[a].images.timestamp <
+           map.keyframes[b].images.timestamp;
+  });
+  if (largest.size() <= kMaxKeyframes) return largest;
+  std::vector<int> chosen;
+  for (size_t i = 0; i < kMaxKeyframes; ++i) {
+    chosen.push_back(largest[i * largest.size() / kMaxKeyframes]);
+  }
+  return chosen;
+}
+
+// Every n-th pair, but none that two keyframes hang together by.
+std::vector<bool> HeldOut(int num_keyframes,
+                          const std::vector<std::array<int, 2>>& pairs) {
+  std::vector<int> root(num_keyframes);
+  for (int i = 0; i < num_keyframes; ++i) root[i] = i;
+  const auto find = [&](int i) {
+    while (root[i] != i) i = root[i] = root[root[i]];
+    return i;
+  };
+  std::vector<bool> held_out(pairs.size(), false);
+  std::vector<size_t> spare;
+  for (size_t i = 0; i < pairs.size(); ++i) {
+    const int a = find(pairs[i][0]), b = find(pairs[i][1]);
+    if (a == b) {
+      spare.push_back(i);
+    } else {
+      root[a] = b;
+    }
+  }
+  // One in kHoldOut of all, as far as there are any to spare.
+  const double step = std::max(
+      1.0, static_cast<double>(spare.size()) * kHoldOut / pairs.size());
+  for (double i = 0.0; i < spare.size(); i += step) {
+    held_out[spare[static_cast<size_t>(i)]] = true;
+  }
+  return held_out;
+}
+
+CalibrationData ChoosePairs(const KeyframeMap& map) {
+  CalibrationData result;
+  result.in_map = ChosenKeyframes(map);
+  const int num_keyframes = static_cast<int>(result.in_map.size());
+  std::map<int, int> number_of;  // by the map's id
+  for (int i = 0; i < num_keyframes; ++i) {
+    number_of[map.keyframes[result.in_map[i]].id] = i;
+  }
+  for (const RelativePose& edge : map.edges) {
+    const auto a = number_of.find(edge.ref), b = number_of.find(edge.cur);
+    if (a == number_of.end() || b == number_of.end()) continue;
+    result.pairs.push_back(
+        {std::min(a->second, b->second), std::max(a->second, b->second)});
+  }
+  std::sort(result.pairs.begin(), result.pairs.end(), [](auto& a, auto& b) {
+    return std::make_pair(a[1] - a[0], a[0]) <
+           std::make_pair(b[1] - b[0], b[0]);
+  });
+  result.pairs.erase(std::unique(result.pairs.begin(), result.pairs.end()),
+                     result.pairs.end());
+  result.is_held_out = HeldOut(num_keyframes, result.pairs);
+  return result;
+}
+
 }  // namespace
 
 CalibrationData CollectCalibrationData(const KeyframeMap& map,
                                        const Trajectory& path,
                                        const OdometrySettings& settings,
                                        int max_views, int threads) {
-  const CalibrationPairs chosen = ChoosePairs(map);
-  CalibrationData data;
+  CalibrationData data = ChoosePairs(map);
   data.views.camera = map.camera;
-  data.in_map = chosen.in_map;
-  data.pairs = chosen.pairs;
-  for (const int place : chosen.in_map) {
+  for (const int place : data.in_map) {
     const Keyframe& keyframe = map.keyframes[place];
     data.views.world_from_cam.push_back(keyframe.world_from_cam);
     data.timestamps.push_back(keyframe.images.timestamp);
     data.views.twists.push_back(TwistAt(path, keyframe.images.timestamp));
   }
   const int features = FeaturesOfEach(max_views, data.pairs.size());
-  AddLandmarks(FindLandmarks(map, chosen, settings, features, threads),
-               max_views, &data.views);
+  AddLandmarks(FindLandmarks(map, data, settings, features, threads), max_views,
+               &data.views);
   return data;
 }
 

@@ -12,18 +12,15 @@
 
 namespace rgbd_pose {
 
-// Which keyframes of a map a camera is calibrated from, and which of them see
-// the same.
-struct CalibrationPairs {
-  std::vector<int> in_map;                // places of keyframes in the map
+// The keyframes of a map that a camera is calibrated from, which of them see
+// the same, and what.
+struct CalibrationData {
+  std::vector<int> in_map;                // their places in the map
+  std::vector<double> timestamps;         // s
   std::vector<std::array<int, 2>> pairs;  // of these keyframes, near ones first
   std::vector<bool> is_held_out;          // of each pair
+  CalibrationViews views;
 };
-
-// Up to 300 keyframes of the largest segment, evenly chosen, in the order of
-// their times. Every fifth pair is held out, to judge the result by, but none
-// that two keyframes hang together by.
-CalibrationPairs ChoosePairs(const KeyframeMap& map);
 
 // The landmarks of one keyframe, with its views still its own.
 struct LandmarksOfKeyframe {
@@ -34,21 +31,16 @@ struct LandmarksOfKeyframe {
 // Finds up to `max_features` features of each keyframe again in those that it
 // is paired with.
 std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
-                                               const CalibrationPairs& pairs,
+                                               const CalibrationData& chosen,
                                                const OdometrySettings& settings,
                                                int max_features, int threads);
 
-// The keyframes that the views are of.
-struct CalibrationData {
-  CalibrationViews views;
-  std::vector<double> timestamps;         // of keyframes, s
-  std::vector<std::array<int, 2>> pairs;  // of keyframes
-  std::vector<int> in_map;                // their places in the map
-};
-
-// Finds the features of each keyframe of the map's largest segment again in
-// those that it is paired with. `path`: a smooth path of the camera (world from
-// camera, any world), for its velocities. `max_views`: of landmarks, about.
+// Takes up to 300 keyframes of the map's largest segment, evenly chosen, in the
+// order of their times, and finds the features of each again in those that it
+// is paired with. Every fifth pair is held out, to judge the result by, but
+// none that two keyframes hang together by. `path`: a smooth path of the camera
+// (world from camera, any world), for its velocities. `max_views`: of
+// landmarks, about.
 CalibrationData CollectCalibrationData(const KeyframeMap& map,
                                        const Trajectory& path,
                                        const OdometrySettings& settings,

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "apps/calibration/calibration.h"
+#include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/sequence.h"
-#include "apps/pipeline/slam_run.h"
-#include "apps/pipeline/slam_settings.h"
+#include "apps/pipeline/slam.h"
 
 namespace rgbd_pose {
 

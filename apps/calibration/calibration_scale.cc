@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/calibration/calibration_data.h"
+#include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 
@@ -29,28 +30,22 @@ struct Place {
 
 Place PlaceAt(const CalibrationData& data, const Trajectory& path,
               double time) {
-  const auto nearest = [&](auto begin, auto end, auto stamp) {
-    return std::min_element(begin, end, [&](const auto& a, const auto& b) {
-      return std::abs(stamp(a) - time) < std::abs(stamp(b) - time);
-    });
+  const auto frame_at = [&path](double t) {
+    return std::min_element(path.begin(), path.end(),
+                            [t](const StampedPose& a, const StampedPose& b) {
+                              return std::abs(a.timestamp - t) <
+                                     std::abs(b.timestamp - t);
+                            });
   };
-  const auto stamp_of = [](const StampedPose& pose) { return pose.timestamp; };
-  const auto frame = nearest(path.begin(), path.end(), stamp_of);
+  const auto frame = frame_at(time);
   constexpr double kMaxOff = 0.1;  // s
   if (frame == path.end() || std::abs(frame->timestamp - time) > kMaxOff) {
     throw InputError("known_length: no frame was tracked at " +
                      std::to_string(time) + " s");
   }
-  const auto itself = [](double stamp) { return stamp; };
-  const auto keyframe =
-      nearest(data.timestamps.begin(), data.timestamps.end(), itself);
-  const auto at_keyframe =
-      std::min_element(path.begin(), path.end(),
-                       [&](const StampedPose& a, const StampedPose& b) {
-                         return std::abs(a.timestamp - *keyframe) <
-                                std::abs(b.timestamp - *keyframe);
-                       });
-  return {static_cast<int>(keyframe - data.timestamps.begin()),
+  const size_t keyframe = NearestTime(data.timestamps, time);
+  const auto at_keyframe = frame_at(data.timestamps[keyframe]);
+  return {static_cast<int>(keyframe),
           (at_keyframe->world_from_cam.Inverse() * frame->world_from_cam)
               .translation};
 }

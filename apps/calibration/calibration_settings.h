@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/settings.h"
 #include "costs/calibration/calibration_parameters.h"
 
 namespace rgbd_pose {

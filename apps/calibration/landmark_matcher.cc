@@ -124,24 +124,24 @@ const PreparedFrame& LandmarkMatcher::Images(int at) {
 }  // namespace
 
 std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
-                                               const CalibrationPairs& pairs,
+                                               const CalibrationData& chosen,
                                                const OdometrySettings& settings,
                                                int max_features, int threads) {
-  const int num_keyframes = static_cast<int>(pairs.in_map.size());
+  const int num_keyframes = static_cast<int>(chosen.in_map.size());
   std::vector<std::vector<int>> neighbours(num_keyframes);
   std::vector<std::vector<bool>> is_held_out(num_keyframes);
-  for (size_t i = 0; i < pairs.pairs.size(); ++i) {
-    const auto [a, b] = pairs.pairs[i];
+  for (size_t i = 0; i < chosen.pairs.size(); ++i) {
+    const auto [a, b] = chosen.pairs[i];
     neighbours[a].push_back(b);
     neighbours[b].push_back(a);
-    is_held_out[a].push_back(pairs.is_held_out[i]);
-    is_held_out[b].push_back(pairs.is_held_out[i]);
+    is_held_out[a].push_back(chosen.is_held_out[i]);
+    is_held_out[b].push_back(chosen.is_held_out[i]);
   }
   std::vector<LandmarksOfKeyframe> found(num_keyframes);
   threads = std::max(1, std::min(threads, num_keyframes));
   ParallelFor(threads, threads, [&](int thread) {
     // A run of keyframes each: neighbours are decoded once.
-    LandmarkMatcher matcher(map, pairs.in_map, settings, max_features);
+    LandmarkMatcher matcher(map, chosen.in_map, settings, max_features);
     const int begin = thread * num_keyframes / threads;
     const int end = (thread + 1) * num_keyframes / threads;
     for (int i = begin; i < end; ++i) {

@@ -17,56 +17,56 @@
 namespace rgbd_pose {
 namespace {
 
-// The last pose of a run seen from its first, in the thesis' parameters.
-struct EndPose {
-  Eigen::Vector3d angles_deg;  // alpha, beta, gamma of R = Rz Ry Rx
-  Eigen::Vector3d centre_mm;   // C
-  double angle_deg = 0.0;      // of R
-};
+// LossFigures of a run; nothing where there is nothing to judge.
+using LossFigures = std::vector<std::optional<double>>;
 
-std::optional<EndPose> EndPoseOf(const Trajectory& trajectory) {
-  if (trajectory.empty()) return std::nullopt;
+// The last pose of a run seen from its first, in the thesis' parameters: alpha,
+// beta, gamma of R = Rz Ry Rx (deg) and C (mm); then the angle of R and the
+// length of C.
+LossFigures EndPoseOf(const Trajectory& trajectory) {
+  if (trajectory.empty()) return LossFigures(8);
   const Rigid3d first_from_last = trajectory.front().world_from_cam.Inverse() *
                                   trajectory.back().world_from_cam;
   const MotionVector motion = MotionFromRigid(first_from_last.Inverse());
-  return EndPose{kDegreesPerRadian * motion.head<3>(),
-                 kMillimetresPerMetre * motion.tail<3>(),
-                 kDegreesPerRadian * first_from_last.Angle()};
+  const Eigen::Vector3d angles_deg = kDegreesPerRadian * motion.head<3>();
+  const Eigen::Vector3d centre_mm = kMillimetresPerMetre * motion.tail<3>();
+  LossFigures figures(angles_deg.begin(), angles_deg.end());
+  figures.insert(figures.end(), centre_mm.begin(), centre_mm.end());
+  figures.push_back(kDegreesPerRadian * first_from_last.Angle());
+  figures.push_back(centre_mm.norm());
+  return figures;
 }
 
-// What tables say of one run; empty where there is nothing to judge.
-struct PathErrors {
-  std::optional<double> ate_mm;
-  std::optional<double> rpe_mm;  // over 1 s
-  std::optional<double> rpe_deg;
-  std::optional<double> end_mm;
-  std::optional<double> end_deg;
-};
-
-PathErrors ErrorsOf(const LossRun& run) {
-  PathErrors errors;
-  if (!run.evaluation.has_value()) return errors;
-  errors.ate_mm = run.evaluation->ate.rmse * kMillimetresPerMetre;
-  const RelativePoseError& relative = run.evaluation->rpe_seconds;
-  if (relative.translation.count > 0) {
-    errors.rpe_mm = relative.translation.rmse * kMillimetresPerMetre;
-    errors.rpe_deg = relative.rotation.rmse * kDegreesPerRadian;
+// ATE (mm), RPE over 1 s (mm, deg), the error of the last pose (mm, deg) and
+// the share of frames tracked.
+LossFigures ErrorsOf(const LossRun& run) {
+  LossFigures figures(5);
+  if (run.evaluation.has_value()) {
+    figures[0] = run.evaluation->ate.rmse * kMillimetresPerMetre;
+    const RelativePoseError& relative = run.evaluation->rpe_seconds;
+    if (relative.translation.count > 0) {
+      figures[1] = relative.translation.rmse * kMillimetresPerMetre;
+      figures[2] = relative.rotation.rmse * kDegreesPerRadian;
+    }
+    if (run.evaluation->final_pose.has_value()) {
+      figures[3] =
+          run.evaluation->final_pose->translation * kMillimetresPerMetre;
+      figures[4] = run.evaluation->final_pose->angle * kDegreesPerRadian;
+    }
   }
-  if (run.evaluation->final_pose.has_value()) {
-    errors.end_mm =
-        run.evaluation->final_pose->translation * kMillimetresPerMetre;
-    errors.end_deg = run.evaluation->final_pose->angle * kDegreesPerRadian;
+  figures.push_back(run.TrackedShare());
+  return figures;
+}
+
+// A row of a table, with so many decimals a cell.
+std::string TableRow(const std::string& loss, const LossFigures& figures,
+                     const std::vector<int>& decimals) {
+  std::string text = "| " + loss + " |";
+  for (size_t i = 0; i < figures.size(); ++i) {
+    text += figures[i].has_value() ? Format(" %.*f |", decimals[i], *figures[i])
+                                   : " n/a |";
   }
-  return errors;
-}
-
-// A cell of a table with so many decimals.
-std::string Cell(const std::optional<double>& value, int decimals) {
-  return value.has_value() ? Format(" %.*f |", decimals, *value) : " n/a |";
-}
-
-void AddCsvCell(const std::optional<double>& value, std::string* row) {
-  *row += value.has_value() ? Format(",%.6g", *value) : ",";
+  return text + "\n";
 }
 
 }  // namespace
@@ -109,16 +109,8 @@ std::string EndPoseTable(const std::vector<LossRun>& runs,
       "|---|---:|---:|---:|---:|---:|---:|---:|---:|\n";
   if (returns_to_start) text += "| truth | 0 | 0 | 0 | 0 | 0 | 0 | 0 | 0 |\n";
   for (const LossRun& run : runs) {
-    const std::optional<EndPose> end = EndPoseOf(run.trajectory);
-    text += "| " + run.loss + " |";
-    if (!end.has_value()) {
-      for (int i = 0; i < 8; ++i) text += Cell(std::nullopt, 0);
-    } else {
-      for (const double angle : end->angles_deg) text += Cell(angle, 4);
-      for (const double length : end->centre_mm) text += Cell(length, 3);
-      text += Cell(end->angle_deg, 4) + Cell(end->centre_mm.norm(), 3);
-    }
-    text += "\n";
+    text +=
+        TableRow(run.loss, EndPoseOf(run.trajectory), {4, 4, 4, 3, 3, 3, 4, 3});
   }
   return text;
 }
@@ -129,11 +121,9 @@ std::string PathErrorTable(const std::vector<LossRun>& runs) {
       "end (deg) | tracked (%) |\n"
       "|---|---:|---:|---:|---:|---:|---:|\n";
   for (const LossRun& run : runs) {
-    const PathErrors errors = ErrorsOf(run);
-    text += "| " + run.loss + " |" + Cell(errors.ate_mm, 3) +
-            Cell(errors.rpe_mm, 3) + Cell(errors.rpe_deg, 4) +
-            Cell(errors.end_mm, 3) + Cell(errors.end_deg, 4) +
-            Cell(run.TrackedShare() * 100.0, 1) + "\n";
+    LossFigures errors = ErrorsOf(run);
+    *errors.back() *= 100.0;
+    text += TableRow(run.loss, errors, {3, 3, 4, 3, 4, 1});
   }
   return text;
 }
@@ -154,21 +144,15 @@ std::string SequenceCsvRows(const std::string& name,
                             const std::vector<LossRun>& runs) {
   std::string text;
   for (const LossRun& run : runs) {
-    const std::optional<EndPose> end = EndPoseOf(run.trajectory);
-    const PathErrors errors = ErrorsOf(run);
-    std::string row = "\"" + name + "\"," + run.loss;
-    for (int i = 0; i < 3; ++i) {
-      AddCsvCell(end ? std::optional(end->angles_deg(i)) : std::nullopt, &row);
+    LossFigures figures = EndPoseOf(run.trajectory);
+    figures.resize(6);
+    const LossFigures errors = ErrorsOf(run);
+    for (const int i : {4, 3, 0, 1, 2, 5}) figures.push_back(errors[i]);
+    text += "\"" + name + "\"," + run.loss;
+    for (const std::optional<double>& figure : figures) {
+      text += figure.has_value() ? Format(",%.6g", *figure) : ",";
     }
-    for (int i = 0; i < 3; ++i) {
-      AddCsvCell(end ? std::optional(end->centre_mm(i)) : std::nullopt, &row);
-    }
-    for (const std::optional<double>& value :
-         {errors.end_deg, errors.end_mm, errors.ate_mm, errors.rpe_mm,
-          errors.rpe_deg, std::optional(run.TrackedShare())}) {
-      AddCsvCell(value, &row);
-    }
-    text += row + "\n";
+    text += "\n";
   }
   return text;
 }

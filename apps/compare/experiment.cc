@@ -14,6 +14,16 @@ namespace {
 
 constexpr char kReport[] = "report.md";
 
+// All but those of folders.
+const std::vector<Experiment>& Experiments() {
+  static const std::vector<Experiment> rows = {
+      {"pan_tilt", SequenceLosses, RunSimulated},
+      {"xyz", SequenceLosses, RunSimulated},
+      {"sweep", MEstimatorNames, RunSweepOfMatches},
+  };
+  return rows;
+}
+
 // Of a folder.
 constexpr Experiment kRecorded = {"", SequenceLosses, RunRecorded};
 
@@ -60,27 +70,18 @@ void CompareOutput::Prepare() const {
     throw InputError("--output=" + folder_.string() + ": cannot be made (" +
                      error.message() + ")");
   }
-  RequireWritable((folder_ / kReport).string());
+  RequireWritable(folder_ / kReport);
 }
 
 void CompareOutput::Write(const std::string& file,
                           const std::string& content) const {
   std::error_code ignored;
   std::filesystem::remove(folder_ / kReport, ignored);
-  WriteFileAtomically((folder_ / file).string(), content);
+  WriteFileAtomically(folder_ / file, content);
 }
 
 void CompareOutput::WriteReport(const std::string& content) const {
   Write(kReport, content);
-}
-
-const std::vector<Experiment>& Experiments() {
-  static const std::vector<Experiment> rows = {
-      {"pan_tilt", SequenceLosses, RunSimulated},
-      {"xyz", SequenceLosses, RunSimulated},
-      {"sweep", MEstimatorNames, RunSweepOfMatches},
-  };
-  return rows;
 }
 
 ExperimentResult RunExperiment(const ExperimentSettings& settings,

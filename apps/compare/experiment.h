@@ -50,7 +50,7 @@ struct ExperimentResult {
   bool is_usable = true;
 };
 
-// A way to compare M-estimators.
+// A way to compare M-estimators: one file and one row of experiment.cc.
 struct Experiment {
   std::string_view name;                 // as --experiment takes it
   std::vector<std::string> (*losses)();  // where the user names none
@@ -61,9 +61,6 @@ struct Experiment {
                           const std::vector<std::string>& losses,
                           CompareOutput* output);
 };
-
-// One file and one row here make an experiment.
-const std::vector<Experiment>& Experiments();
 
 // Runs the experiment of that name, or if it is a folder that on a recorded
 // sequence. Throws InputError for anything else and for unknown losses.

@@ -7,7 +7,6 @@
 #include "apps/compare/compare_sequence.h"
 #include "apps/compare/experiment.h"
 #include "apps/pipeline/sequence.h"
-#include "apps/shell/available_cores.h"
 #include "apps/shell/program.h"
 #include "core/util/format.h"
 #include "frontend/files/camera_file.h"

@@ -3,7 +3,7 @@
 #include "apps/compare/compare_sweep.h"
 #include "apps/compare/compare_sweep_report.h"
 #include "apps/compare/experiment.h"
-#include "apps/shell/available_cores.h"
+#include "apps/shell/program.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {

@@ -3,7 +3,6 @@
 
 #include "apps/export/export_format.h"
 #include "apps/export/output_folder.h"
-#include "apps/export/view_images.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/fusion/little_endian.h"
@@ -32,7 +31,7 @@ std::string FormatCamera(const Camera& camera) {
 }
 
 // cam_from_world with w first, and an empty second line an image: no features.
-std::string FormatImages(const ViewImages& images) {
+std::string FormatImages(const ExportedViews& images) {
   std::string text = "# image, qw qx qy qz tx ty tz, camera, name; features\n";
   for (size_t i = 0; i < images.names.size(); ++i) {
     const Rigid3d cam_from_world = images.world_from_cam[i].Inverse();
@@ -77,20 +76,16 @@ std::string PackPoints(const std::vector<ColoredPoint>& points) {
 
 std::string ExportColmap(const FinishedRun& run, const ExportOptions& options) {
   OutputFolder folder(options.output, {"images", "sparse"}, options.overwrite);
-  const ViewImages images =
+  const ExportedViews images =
       WriteViewImages(run, options, folder.MakeFolder("images"));
   const std::filesystem::path model = folder.MakeFolder("sparse/0");
-  WriteFileAtomically((model / "cameras.txt").string(),
-                      FormatCamera(images.camera));
-  WriteFileAtomically((model / "images.txt").string(), FormatImages(images));
-  WriteFileAtomically((model / "points3D.txt").string(),
-                      FormatPoints(images.cloud));
-  WriteFileAtomically((model / "points3D.bin").string(),
-                      PackPoints(images.cloud));
+  WriteFileAtomically(model / "cameras.txt", FormatCamera(images.camera));
+  WriteFileAtomically(model / "images.txt", FormatImages(images));
+  WriteFileAtomically(model / "points3D.txt", FormatPoints(images.cloud));
+  WriteFileAtomically(model / "points3D.bin", PackPoints(images.cloud));
   folder.Publish();
-  return std::to_string(images.names.size()) + " images, " +
-         std::to_string(images.cloud.size()) + " points in " + options.output +
-         "\n";
+  return Format("%zu images, %zu points in %s\n", images.names.size(),
+                images.cloud.size(), options.output.c_str());
 }
 
 }  // namespace rgbd_pose

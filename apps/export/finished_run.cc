@@ -6,7 +6,7 @@
 #include <set>
 
 #include "apps/pipeline/settings.h"
-#include "apps/report/report_settings.h"
+#include "apps/report/report_data.h"
 #include "apps/shell/csv_table.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"

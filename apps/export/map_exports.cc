@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/export/export_format.h"
-#include "apps/export/view_images.h"
 #include "apps/report/report_page.h"
 #include "apps/results/cloud_preview.h"
 #include "core/util/format.h"
@@ -45,7 +44,7 @@ void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
   const std::filesystem::path path(folder);
   try {
     WriteFileAtomically(
-        (path / kMeshPreviewFile).string(),
+        path / kMeshPreviewFile,
         preview.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
     if (HasReportLibrary() && std::filesystem::exists(path / "report.html")) {
       WriteRunReport(folder);

@@ -5,7 +5,7 @@
 
 #include "apps/export/export_format.h"
 #include "apps/export/output_folder.h"
-#include "apps/export/view_images.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/fusion/mesh_file.h"
@@ -28,7 +28,7 @@ nlohmann::json TransformMatrix(const Rigid3d& world_from_cam) {
   return rows;
 }
 
-nlohmann::json Transforms(const ViewImages& images) {
+nlohmann::json Transforms(const ExportedViews& images) {
   const Camera& camera = images.camera;
   const bool is_fisheye = camera.lens_model == LensModel::kEquidistant;
   if (camera.MakeLens().factor == Lens<double>::Factor::kRational) {
@@ -70,15 +70,14 @@ std::string ExportNerfstudio(const FinishedRun& run,
   OutputFolder folder(options.output,
                       {"images", "depth", "points.ply", "transforms.json"},
                       options.overwrite);
-  const ViewImages images = WriteViewImages(
+  const ExportedViews images = WriteViewImages(
       run, options, folder.MakeFolder("images"), folder.MakeFolder("depth"));
-  WritePly((folder.staging_dir() / "points.ply").string(), images.cloud);
-  WriteFileAtomically((folder.staging_dir() / "transforms.json").string(),
+  WritePly(folder.staging_dir() / "points.ply", images.cloud);
+  WriteFileAtomically(folder.staging_dir() / "transforms.json",
                       Transforms(images).dump(1) + "\n");
   folder.Publish();
-  return std::to_string(images.names.size()) + " images, " +
-         std::to_string(images.cloud.size()) + " points in " + options.output +
-         "\n";
+  return Format("%zu images, %zu points in %s\n", images.names.size(),
+                images.cloud.size(), options.output.c_str());
 }
 
 }  // namespace rgbd_pose

@@ -66,8 +66,8 @@ std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
     poses += "\n";
     times += Format("%.6f\n", pose.timestamp - run.trajectory()[0].timestamp);
   }
-  WriteFileAtomically((folder.staging_dir() / "poses.txt").string(), poses);
-  WriteFileAtomically((folder.staging_dir() / "times.txt").string(), times);
+  WriteFileAtomically(folder.staging_dir() / "poses.txt", poses);
+  WriteFileAtomically(folder.staging_dir() / "times.txt", times);
   folder.Publish();
   std::string text = Said("poses", run.trajectory().size(), options.output);
   if (run.lost() > 0) {

@@ -28,21 +28,10 @@ constexpr double kLabelRow = 14.0;
 // A letter of a title.
 constexpr int kTitleLetter = 9;
 
-std::string Escape(const std::string& text) {
-  std::string escaped;
-  for (const char c : text) {
-    escaped += c == '&'   ? "&amp;"
-               : c == '<' ? "&lt;"
-               : c == '>' ? "&gt;"
-                          : std::string(1, c);
-  }
-  return escaped;
-}
-
 std::string Text(double x, double y, const std::string& style,
                  const std::string& text) {
   return Format("<text x=\"%.1f\" y=\"%.1f\" %s>", x, y, style.c_str()) +
-         Escape(text) + "</text>\n";
+         EscapeMarkup(text) + "</text>\n";
 }
 
 std::string LineStyle(const ChartSeries& series) {
@@ -285,6 +274,17 @@ class Drawing {
 };
 
 }  // namespace
+
+std::string EscapeMarkup(const std::string& text) {
+  std::string escaped;
+  for (const char c : text) {
+    escaped += c == '&'   ? "&amp;"
+               : c == '<' ? "&lt;"
+               : c == '>' ? "&gt;"
+                          : std::string(1, c);
+  }
+  return escaped;
+}
 
 SeriesStyle StyleOf(int i) {
   constexpr const char* kColours[] = {"#0072B2", "#D55E00", "#009E73",

@@ -54,6 +54,9 @@ struct Chart {
   bool label_lines = false;
 };
 
+// A text as the content of an element of SVG or HTML.
+std::string EscapeMarkup(const std::string& text);
+
 // The chart as a file of SVG 1.1.
 std::string FormatSvg(const Chart& chart);
 

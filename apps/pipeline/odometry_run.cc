@@ -1,17 +1,12 @@
 #include "apps/pipeline/odometry_run.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
-
-OdometryRun::OdometryRun(const OdometrySettings& settings, const Camera& camera,
-                         const RunInputs& inputs)
-    : SequenceRun(inputs), odometry_(MakeOdometry(settings, camera)) {}
-
-Trajectory OdometryRun::FinishPath() { return TrackedTrajectory(frames()); }
 
 void SequenceRun::Add(const StreamedFrame& next) {
   std::vector<TrackedFrame>& frames = results_.frames;
@@ -92,6 +87,46 @@ Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames) {
     trajectory.push_back({frame.timestamp, frame.world_from_cam});
   }
   return trajectory;
+}
+
+void ResidualHistogram::Add(const MotionEstimate& estimate) {
+  for (size_t i = 0; i < estimate.residual_norms.size(); ++i) {
+    const int count = estimate.residual_degrees[i];
+    if (count == 0) continue;
+    ++matches;
+    ++degrees[std::min<size_t>(count, degrees.size() - 1)];
+    // Compared as numbers: a huge norm does not fit into a place.
+    const double place = estimate.residual_norms[i] / kNormBin;
+    if (place < norms.size()) {
+      ++norms[static_cast<size_t>(place)];
+    } else {
+      ++norms_above;
+    }
+    const double weight = estimate.weights[i];
+    weights_zero += weight == 0.0;
+    ++weights[std::min(static_cast<size_t>(weight / kWeightBin),
+                       weights.size() - 1)];
+  }
+}
+
+TrackedFrame SlamRun::Track(const PreparedFrame& frame,
+                            const Rigid3d* cur_from_prev_guess) {
+  SlamFrame in_map = slam_.Track(frame, cur_from_prev_guess);
+  if (in_map.tracked.previous_is_reference) {
+    frames_.back().tracked.is_reference = true;
+  }
+  TrackedFrame tracked = in_map.tracked;
+  tracked.world_from_cam = in_map.map_from_cam();
+  tracked.segment = in_map.segment;
+  // Once in memory is enough for an hour of frames.
+  in_map.tracked.edges = {};
+  frames_.push_back(std::move(in_map));
+  return tracked;
+}
+
+Trajectory SlamRun::FinishPath() {
+  slam_.Finish();
+  return slam_.Path();
 }
 
 }  // namespace rgbd_pose

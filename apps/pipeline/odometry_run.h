@@ -1,12 +1,16 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "apps/pipeline/residual_histogram.h"
 #include "apps/pipeline/settings.h"
+#include "apps/pipeline/slam.h"
+#include "core/estimation/motion_estimate.h"
 #include "core/evaluation/evaluation.h"
 #include "core/evaluation/trajectory.h"
 #include "frontend/sources/frame_source.h"
@@ -15,6 +19,24 @@
 #include "frontend/tracking/odometry.h"
 
 namespace rgbd_pose {
+
+// How the whitened residuals and the robust weights of a run's matches are
+// spread, over all frames.
+struct ResidualHistogram {
+  // Bins of norms (sigmas) and of weights; the last bin of weights holds 1.
+  static constexpr double kNormBin = 0.1;
+  static constexpr double kWeightBin = 0.05;
+
+  int64_t matches = 0;  // that some cost could use
+  std::array<int64_t, 80> norms = {};
+  int64_t norms_above = 0;  // the last bin
+  std::array<int64_t, 20> weights = {};
+  int64_t weights_zero = 0;             // exactly
+  std::array<int64_t, 7> degrees = {};  // matches of 0 to 6 measurements
+
+  // Adds the matches of one frame.
+  void Add(const MotionEstimate& estimate);
+};
 
 // What is known of a sequence besides its frames; null: nothing. Must outlive
 // the run.
@@ -87,12 +109,16 @@ class SequenceRun {
   RunResults results_;
 };
 
+// The poses of all frames that were not lost.
+Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
+
 // By an Odometry.
 class OdometryRun final : public SequenceRun {
  public:
   // Throws InputError for invalid settings.
   OdometryRun(const OdometrySettings& settings, const Camera& camera,
-              const RunInputs& inputs = {});
+              const RunInputs& inputs = {})
+      : SequenceRun(inputs), odometry_(MakeOdometry(settings, camera)) {}
 
   const Odometry& odometry() const override { return odometry_; }
 
@@ -101,9 +127,40 @@ class OdometryRun final : public SequenceRun {
                      const Rigid3d* cur_from_prev_guess) override {
     return odometry_.Track(frame, cur_from_prev_guess);
   }
-  Trajectory FinishPath() override;
+  Trajectory FinishPath() override { return TrackedTrajectory(frames()); }
 
   Odometry odometry_;
+};
+
+// A sequence tracked by a Slam. Frames and what is drawn of them have the poses
+// that were known at the time, the trajectory those of the end.
+class SlamRun final : public SequenceRun {
+ public:
+  // Throws InputError for invalid settings.
+  SlamRun(const OdometrySettings& odometry, const SlamSettings& settings,
+          const Camera& camera, const RunInputs& inputs = {})
+      : SequenceRun(inputs), slam_(odometry, settings, camera) {}
+
+  // Before the first frame, see Slam::Load.
+  void Load(KeyframeMap map, bool is_held) {
+    slam_.Load(std::move(map), is_held);
+  }
+
+  const Odometry& odometry() const override { return slam_.odometry(); }
+
+  // After Finish: the map.
+  const Slam& slam() const { return slam_; }
+
+  // What became of each frame; RunResults has the edges.
+  const std::vector<SlamFrame>& slam_frames() const { return frames_; }
+
+ private:
+  TrackedFrame Track(const PreparedFrame& frame,
+                     const Rigid3d* cur_from_prev_guess) override;
+  Trajectory FinishPath() override;
+
+  Slam slam_;
+  std::vector<SlamFrame> frames_;
 };
 
 // Sends all frames of a source through one or several runs of the same
@@ -124,8 +181,5 @@ void RequireOverlap(const FrameSource& source, const Trajectory& truth);
 RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
                            const Trajectory& truth,
                            const TruthNoise& noise = {});
-
-// The poses of all frames that were not lost.
-Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
 
 }  // namespace rgbd_pose

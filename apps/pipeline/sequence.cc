@@ -14,6 +14,49 @@ namespace {
 
 constexpr char kNoGroundTruth[] = "none";
 
+SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
+                        const RgbdCamera* camera) {
+  SourceOptions options;
+  options.path = settings.dataset;
+  options.keep_color = keep_color;
+  options.associations_file = settings.associations;
+  if (!settings.topics.empty()) {
+    options.topics = SplitText(settings.topics, ',');
+  }
+  options.depth_scale = settings.depth_scale;
+  if (!settings.camera.empty()) {
+    options.camera = ResolveCameraSetup(settings.camera, settings.depth_camera);
+  } else if (!settings.depth_camera.empty()) {
+    throw InputError("depth_camera '" + settings.depth_camera +
+                     "': needs the Kalibr file that it is of (camera)");
+  }
+  if (camera != nullptr) {
+    const CameraSetup said = options.camera.value_or(CameraSetup());
+    options.camera.emplace(*camera).depth_camera = said.depth_camera;
+    options.depth_scale = 0.0;
+  }
+  return options;
+}
+
+// The path to compare with, as far as it is known before the frames.
+void FindTruth(const SequenceSettings& settings, Sequence* sequence) {
+  try {
+    if (!settings.groundtruth.empty()) {
+      sequence->ground_truth =
+          ReadTrajectory(settings.groundtruth, &sequence->remarks);
+    } else if (!sequence->source->timestamps().empty()) {
+      Trajectory truth = sequence->source->ground_truth();
+      if (!truth.empty()) sequence->ground_truth = std::move(truth);
+    }
+    if (sequence->ground_truth.has_value()) {
+      RequireOverlap(*sequence->source, *sequence->ground_truth);
+    }
+  } catch (const InputError& error) {
+    throw InputError(std::string(error.what()) +
+                     "; --groundtruth=none goes without it");
+  }
+}
+
 }  // namespace
 
 std::vector<Setting> SettingTable(SequenceSettings* settings) {
@@ -75,34 +118,6 @@ const Trajectory* Sequence::GroundTruth() {
   return is_there ? &*ground_truth : nullptr;
 }
 
-namespace {
-
-SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
-                        const RgbdCamera* camera) {
-  SourceOptions options;
-  options.path = settings.dataset;
-  options.keep_color = keep_color;
-  options.associations_file = settings.associations;
-  if (!settings.topics.empty()) {
-    options.topics = SplitText(settings.topics, ',');
-  }
-  options.depth_scale = settings.depth_scale;
-  if (!settings.camera.empty()) {
-    options.camera = ResolveCameraSetup(settings.camera, settings.depth_camera);
-  } else if (!settings.depth_camera.empty()) {
-    throw InputError("depth_camera '" + settings.depth_camera +
-                     "': needs the Kalibr file that it is of (camera)");
-  }
-  if (camera != nullptr) {
-    const CameraSetup said = options.camera.value_or(CameraSetup());
-    options.camera.emplace(*camera).depth_camera = said.depth_camera;
-    options.depth_scale = 0.0;
-  }
-  return options;
-}
-
-}  // namespace
-
 std::vector<std::string> DroppedFrames(
     const FrameSource& source, const std::vector<std::string>& damaged) {
   constexpr size_t kMaxNamed = 10;
@@ -127,29 +142,6 @@ std::vector<std::string> DroppedFrames(
   for (std::string& line : source.remarks()) lines.push_back(std::move(line));
   return lines;
 }
-
-namespace {
-
-// The path to compare with, as far as it is known before the frames.
-void FindTruth(const SequenceSettings& settings, Sequence* sequence) {
-  try {
-    if (!settings.groundtruth.empty()) {
-      sequence->ground_truth =
-          ReadTrajectory(settings.groundtruth, &sequence->remarks);
-    } else if (!sequence->source->timestamps().empty()) {
-      Trajectory truth = sequence->source->ground_truth();
-      if (!truth.empty()) sequence->ground_truth = std::move(truth);
-    }
-    if (sequence->ground_truth.has_value()) {
-      RequireOverlap(*sequence->source, *sequence->ground_truth);
-    }
-  } catch (const InputError& error) {
-    throw InputError(std::string(error.what()) +
-                     "; --groundtruth=none goes without it");
-  }
-}
-
-}  // namespace
 
 Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
                       const RgbdCamera* camera) {

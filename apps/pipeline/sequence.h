@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "apps/pipeline/odometry_run.h"
-#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/settings.h"
 #include "core/evaluation/trajectory.h"
 #include "frontend/sources/frame_source.h"
 #include "frontend/tracking/motion_guess.h"

@@ -1,6 +1,105 @@
 #include "apps/pipeline/settings.h"
 
+#include <algorithm>
+#include <iterator>
+
+#include "core/initial_guess/initial_guess.h"
+#include "core/util/named_values.h"
+#include "frontend/files/depth_noise_file.h"
+#include "robust/m_estimator.h"
+#include "robust/scale.h"
+
 namespace rgbd_pose {
+namespace {
+
+constexpr char kFeatures[] = "Features";
+constexpr char kTracking[] = "Tracking";
+
+constexpr Named<Assembly> kAssemblies[] = {
+    {"compressed", Assembly::kCompressed},
+    {"per_match", Assembly::kPerMatch},
+    {"autodiff", Assembly::kAutodiff},
+};
+
+constexpr Named<RobustSchedule> kRobustSchedules[] = {
+    {"gnc", RobustSchedule::kGnc},
+    {"direct", RobustSchedule::kDirect},
+};
+
+constexpr Named<LostPolicy> kLostPolicies[] = {
+    {"stop", LostPolicy::kStop},
+    {"hold", LostPolicy::kHold},
+    {"predict", LostPolicy::kPredict},
+    {"new_segment", LostPolicy::kNewSegment},
+};
+
+constexpr Named<ShutterUse> kShutterUses[] = {
+    {"camera", ShutterUse::kCamera},
+    {"none", ShutterUse::kNone},
+};
+
+template <typename Value, size_t N>
+NamedSetting ByName(const Named<Value> (&rows)[N], const char* what,
+                    Value* value) {
+  return {[&rows, value]() -> std::string {
+            return std::find_if(std::begin(rows), std::end(rows),
+                                [=](const Named<Value>& row) {
+                                  return row.value == *value;
+                                })
+                ->name;
+          },
+          [&rows, what, value](const std::string& name) {
+            *value = ValueOf(rows, what, name);
+          }};
+}
+
+NamedSetting ScaleByName(decltype(EstimatorOptions::scale)* scale) {
+  return {[=] {
+            for (const ScaleEstimator& row : ScaleEstimators()) {
+              if (row.estimate == *scale) return std::string(row.name);
+            }
+            return std::string("a function of its own");
+          },
+          [=](const std::string& name) {
+            const ScaleEstimator* row = FindScaleEstimator(name);
+            if (row == nullptr) {
+              throw UnknownName("scale", name, ScaleEstimatorNames());
+            }
+            *scale = row->estimate;
+          }};
+}
+
+// last (the last pose), velocity (moved on as it moved last) or one of
+// core/initial_guess/initial_guess.h.
+std::vector<std::string> GuessNames() {
+  std::vector<std::string> names = {"last", "velocity"};
+  for (const InitialGuess& row : InitialGuesses()) names.emplace_back(row.name);
+  return names;
+}
+
+NamedSetting GuessByName(TrackerOptions* tracking, OdometryOptions* odometry) {
+  return {[=]() -> std::string {
+            if (tracking->initial_guess != nullptr) {
+              return std::string(tracking->initial_guess->name);
+            }
+            return odometry->predict_velocity ? "velocity" : "last";
+          },
+          [=](const std::string& name) {
+            odometry->predict_velocity = name == "velocity";
+            tracking->initial_guess = FindInitialGuess(name);
+            if (tracking->initial_guess == nullptr && name != "last" &&
+                name != "velocity") {
+              throw UnknownName("initial guess", name, GuessNames());
+            }
+          }};
+}
+
+NamedSetting DepthNoiseByName(DepthNoiseModel* model) {
+  return {[=] { return model->name; },
+          [=](const std::string& name) { *model = ResolveDepthNoise(name); }};
+}
+
+}  // namespace
 
 Estimator MakeEstimator(const EstimatorSettings& settings) {
   return Estimator(settings.options,
@@ -34,6 +133,147 @@ std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
 
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
   return Odometry(settings.odometry, MakeTracker(settings, camera));
+}
+
+NamedSetting Text(std::string* text) {
+  return {[=] { return *text; },
+          [=](const std::string& name) { *text = name; }};
+}
+
+std::vector<Setting> SettingTable(OdometrySettings* settings) {
+  EstimatorSettings* estimator = &settings->estimator;
+  EstimatorOptions* options = &estimator->options;
+  FrontendOptions* features = &settings->features;
+  TrackerOptions* tracking = &settings->tracking;
+  OdometryOptions* odometry = &settings->odometry;
+  DirectSettings* direct = &settings->direct;
+  return {
+      {"cost", kEstimationGroup, "cost of a match; several added up: a+b",
+       Text(&estimator->cost), CostNames()},
+      {"loss", kEstimationGroup,
+       "M-estimator, or with its width in sigmas: huber(1.5); one for each of "
+       "several costs: a,b",
+       Text(&estimator->loss), MEstimatorNames()},
+      {"scale", kEstimationGroup,
+       "spread of the residuals: as the noise model says or estimated (units "
+       "of depth images: --depth_scale)",
+       ScaleByName(&options->scale), ScaleEstimatorNames()},
+      {"robust_schedule", kEstimationGroup,
+       "losses at their widths at once, or wide at first and narrowed step by "
+       "step",
+       ByName(kRobustSchedules, "robust schedule", &options->schedule),
+       NamesOf(kRobustSchedules)},
+      {"gnc_factor", kEstimationGroup,
+       "factor by which each step of --robust_schedule=gnc narrows the losses",
+       &options->gnc_factor},
+      {"max_iterations", kEstimationGroup,
+       "iterations of the solver, at most, in its last stage",
+       &options->max_iterations},
+      {"min_inlier_share", kEstimationGroup,
+       "a motion that a smaller share of matches agrees with is inconsistent",
+       &options->min_inlier_share},
+      {"max_scale", kEstimationGroup,
+       "a motion whose residuals spread wider than this is inconsistent",
+       &options->max_scale},
+      {"max_standard_deviation", kEstimationGroup,
+       "a motion with a direction less certain than this (rad or m) is "
+       "degenerate",
+       &options->max_standard_deviation},
+      {"depth_noise", kEstimationGroup,
+       "how uncertain a depth is: a model, or a file that rgbd_calibrate wrote",
+       DepthNoiseByName(&features->depth_noise), DepthNoiseModelNames()},
+      {"assembly", kEstimationGroup, "how matches become Ceres residual blocks",
+       ByName(kAssemblies, "assembly", &options->assembly),
+       NamesOf(kAssemblies)},
+      {"frontend", kFeatures, "how features are found again",
+       Text(&settings->frontend), FrontendNames()},
+      {"max_features", kFeatures, "features wanted in a reference frame",
+       &features->max_features},
+      {"min_depth", kFeatures, "nearer depths (m) are not used",
+       &features->min_depth},
+      {"max_depth", kFeatures, "farther depths (m) are not used",
+       &features->max_depth},
+      {"tracker", kTracking,
+       "how a frame is tracked: by features, pixels or both",
+       Text(&settings->tracker), TrackerNames()},
+      {"direct_cost", kTracking, "cost of a pixel; several added up: a+b",
+       Text(&direct->cost), DirectCostNames()},
+      {"direct_loss", kTracking,
+       "M-estimator of pixels in the last step, one for each cost",
+       Text(&direct->loss), MEstimatorNames()},
+      {"direct_points", kTracking,
+       "pixels compared for each cost; 0: what is good for it",
+       &direct->points.max_points},
+      {"direct_levels", kTracking,
+       "sizes of the image, halved each time, at which pixels are compared",
+       &direct->points.num_levels},
+      {"direct_information", kTracking,
+       "share of its information that a pixel brings; 0: the cost's own, for "
+       "which covariances are right",
+       &direct->points.information_factor},
+      {"min_seen_share", kTracking,
+       "a frame tracked by pixels that shows less of its reference is lost",
+       &settings->direct_tracking.min_seen_share},
+      {"initial_guess", kTracking, "where the solver starts in a frame",
+       GuessByName(tracking, odometry), GuessNames()},
+      {"on_lost", kTracking,
+       "what to do with frames whose motion is not found; they are searched "
+       "for among earlier references in any case but stop",
+       ByName(kLostPolicies, "policy", &odometry->on_lost),
+       NamesOf(kLostPolicies)},
+      {"shutter", kTracking,
+       "what is done about rows that are exposed one after another, and depth "
+       "at another time than colour: undo what camera and time stamps say of "
+       "them, or nothing",
+       ByName(kShutterUses, "shutter", &odometry->shutter),
+       NamesOf(kShutterUses)},
+      {"new_segment_after", kTracking,
+       "how long (s) the segment before is searched for when a new one starts",
+       &odometry->new_segment_after},
+      {"guess_sigma_rotation", kTracking,
+       "standard deviation (rad) of the rotation of --motion_guess between two "
+       "frames",
+       &odometry->guess_sigma_rotation},
+      {"guess_sigma_translation", kTracking,
+       "standard deviation (m) of the translation of --motion_guess between "
+       "two frames",
+       &odometry->guess_sigma_translation},
+      {"min_inliers", kTracking, "a frame in which fewer matches agree is lost",
+       &tracking->min_inliers},
+      {"min_inliers_ok", kTracking,
+       "a frame in which fewer matches agree is degraded",
+       &tracking->min_inliers_ok},
+      {"min_inlier_share_ok", kTracking,
+       "a frame in which a smaller share of the matches agrees is degraded",
+       &tracking->min_inlier_share_ok},
+      {"max_sigma_ok", kTracking,
+       "a frame whose residuals spread wider than this (in sigmas) is degraded",
+       &tracking->max_sigma_ok},
+      {"min_reference_share", kTracking,
+       "a new reference is taken if a smaller share of the features agrees",
+       &odometry->min_reference_share},
+      {"max_flow_px", kTracking,
+       "a new reference is taken if the matches that agree have moved farther "
+       "than this on average (px)",
+       &odometry->max_flow_px},
+      {"prior_sigma_rotation", kTracking,
+       "standard deviation (rad) of the rotation between two frames, for "
+       "--cost=...+motion_prior",
+       &tracking->prior_sigma_rotation},
+      {"prior_sigma_translation", kTracking,
+       "standard deviation (m) of the translation between two frames, for "
+       "--cost=...+motion_prior",
+       &tracking->prior_sigma_translation},
+  };
+}
+
+std::vector<Setting> WithoutRow(std::string_view name,
+                                std::vector<Setting> table) {
+  table.erase(
+      std::remove_if(table.begin(), table.end(),
+                     [name](const Setting& row) { return row.name == name; }),
+      table.end());
+  return table;
 }
 
 }  // namespace rgbd_pose

@@ -1,7 +1,11 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
 
 #include "core/estimation/estimator.h"
 #include "core/geometry/camera.h"
@@ -29,7 +33,7 @@ struct DirectSettings {
 };
 
 // What an odometry is made of: the one place for programs, Python and
-// benchmarks. setting_table.h gives each value that a user may want a name.
+// benchmarks. SettingTable gives each value that a user may want a name.
 struct OdometrySettings {
   EstimatorSettings estimator;           // what explains the matches
   std::string frontend = "patch";        // where matches come from
@@ -49,5 +53,35 @@ DirectEstimators MakeDirectEstimators(const EstimatorSettings& matches,
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
                                      const Camera& camera);
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
+
+// A value that is set by its name in some table.
+struct NamedSetting {
+  std::function<std::string()> get;
+  std::function<void(const std::string&)> set;  // InputError if unknown
+};
+
+// A value of the settings, for flags, keyword arguments and whatever else sets
+// them: one row here is all that it takes.
+struct Setting {
+  const char* name;        // as users write it
+  std::string_view group;  // of those that belong together
+  const char* help;        // what it means, with its unit
+  std::variant<int*, double*, bool*, NamedSetting> value;
+  std::vector<std::string> choices = {};  // the names there are, if by name
+};
+
+// Any text: whether it makes sense is found out where it is used.
+NamedSetting Text(std::string* text);
+
+// Rows that are about matches alone.
+inline constexpr char kEstimationGroup[] = "Estimation";
+
+// All rows, in the order of --help. They write to the settings, which must
+// outlive them.
+std::vector<Setting> SettingTable(OdometrySettings* settings);
+
+// A table without the row of that name.
+std::vector<Setting> WithoutRow(std::string_view name,
+                                std::vector<Setting> table);
 
 }  // namespace rgbd_pose

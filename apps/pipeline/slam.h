@@ -9,13 +9,35 @@
 #include <vector>
 
 #include "apps/pipeline/settings.h"
-#include "apps/pipeline/slam_settings.h"
 #include "core/evaluation/trajectory.h"
 #include "core/util/worker.h"
 #include "frontend/mapping/mapper.h"
 #include "frontend/tracking/odometry.h"
 
 namespace rgbd_pose {
+
+// What a Slam is made of besides its odometry.
+struct SlamSettings {
+  MappingOptions mapping;  // which keyframes are joined to which
+
+  // What is found out behind the tracking is taken up so many frames after the
+  // keyframe that it follows from, and waited for if it is late: so results do
+  // not depend on the speed of a machine.
+  int update_delay = 10;
+};
+
+// Their rows.
+std::vector<Setting> SettingTable(SlamSettings* settings);
+
+// Maps, as users say them; empty: none.
+struct MapSettings {
+  std::string save_map;        // folder
+  std::string load_map;        // folders, separated by commas
+  bool localise_only = false;  // the loaded map stays as it is
+};
+
+// Their rows.
+std::vector<Setting> SettingTable(MapSettings* settings);
 
 // What became of one frame. Its pose in the map, as known now, is map_from_odom
 // * odom_from_cam.
@@ -65,7 +87,6 @@ class Slam {
   // `is_held`: tracks within the map without changing it. Throws InputError for
   // a map of another camera or one that is not sound.
   void Load(KeyframeMap map, bool is_held);
-  ~Slam();
 
   // As Odometry::Track.
   SlamFrame Track(const Frame& frame,

@@ -54,13 +54,10 @@ Rigid3d PoseFromRow(const NumberArray& row, size_t i,
 
 Rigid3d PoseFromMatrix(const NumberArray& poses, size_t i,
                        const std::string& where) {
-  Eigen::Matrix4d matrix;
-  for (int row = 0; row < 4; ++row) {
-    for (int column = 0; column < 4; ++column) {
-      matrix(row, column) = poses(i, row, column);
-    }
-  }
-  return RigidFromMatrix(matrix, where);
+  return RigidFromMatrix(Eigen::Matrix4d::NullaryExpr([&](int row, int column) {
+                           return poses(i, row, column);
+                         }),
+                         where);
 }
 
 Trajectory FromArrays(const py::object& stamps, const py::object& poses,
@@ -142,11 +139,9 @@ Rigid3d RigidFromMatrix(const Eigen::Matrix4d& matrix,
 
 Rigid3d RigidFromArray(const py::object& object, const std::string& name) {
   const NumberArray numbers(object, name, {4, 4});
-  Eigen::Matrix4d matrix;
-  for (int i = 0; i < 4; ++i) {
-    for (int j = 0; j < 4; ++j) matrix(i, j) = numbers(i, j);
-  }
-  return RigidFromMatrix(matrix, name);
+  return RigidFromMatrix(
+      Eigen::Matrix4d::NullaryExpr([&](int i, int j) { return numbers(i, j); }),
+      name);
 }
 
 Eigen::Matrix4d MatrixFromRigid(const Rigid3d& motion) {

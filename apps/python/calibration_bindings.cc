@@ -9,10 +9,10 @@
 #include "apps/calibration/calibration_run.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
-#include "apps/python/pickled_fields.h"
+#include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "apps/results/calibration_output.h"
-#include "apps/shell/available_cores.h"
+#include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file_writer.h"
@@ -21,6 +21,10 @@
 namespace py = pybind11;
 
 namespace rgbd_pose {
+static void EachField(PickledBytes* bytes, CalibratedParameter& parameter) {
+  (*bytes)(parameter);
+}
+
 static void EachField(PickledBytes* bytes, HeldOutResidual& residual) {
   (*bytes)(residual.u, residual.v, residual.before, residual.after);
 }
@@ -39,12 +43,6 @@ struct Calibration {
   CalibrationResult result;
   std::string like;
 };
-
-struct Parameter : CalibratedParameter {};
-
-void EachField(PickledBytes* bytes, Parameter& parameter) {
-  (*bytes)(static_cast<CalibratedParameter&>(parameter));
-}
 
 void EachField(PickledBytes* bytes, Calibration& calibration) {
   CalibrationResult& r = calibration.result;
@@ -90,35 +88,42 @@ Calibration CalibrateFile(const py::object& path, const py::object& camera,
           sequence.camera};
 }
 
-std::map<std::string, Parameter> Parameters(const Calibration& self) {
-  std::map<std::string, Parameter> all;
+std::map<std::string, CalibratedParameter> Parameters(const Calibration& self) {
+  std::map<std::string, CalibratedParameter> all;
   for (int k = 0; k < kCalibrationSize; ++k) {
-    all[kCalibrationParameters[k].name] = {self.result.parameters[k]};
+    all[kCalibrationParameters[k].name] = self.result.parameters[k];
   }
   return all;
 }
 
+// A property of the result.
+template <auto kMember>
+auto Found(const Calibration& self) {
+  return self.result.*kMember;
+}
+
 void BindResult(py::module_* module) {
-  py::class_<Parameter>(*module, "CalibratedParameter",
-                        "What became of one parameter of a camera.")
+  py::class_<CalibratedParameter>(*module, "CalibratedParameter",
+                                  "What became of one parameter of a camera.")
       .def_property_readonly(
-          "status", [](const Parameter& self) { return ToString(self.status); },
+          "status",
+          [](const CalibratedParameter& self) { return ToString(self.status); },
           "fixed, not determined or determined")
-      .def_readonly("before", &Parameter::before, "of the first camera")
-      .def_readonly("found", &Parameter::found,
+      .def_readonly("before", &CalibratedParameter::before,
+                    "of the first camera")
+      .def_readonly("found", &CalibratedParameter::found,
                     "where the recording would have it")
-      .def_readonly("sigma", &Parameter::sigma, "standard deviation of that")
-      .def(Pickled<Parameter>());
+      .def_readonly("sigma", &CalibratedParameter::sigma,
+                    "standard deviation of that")
+      .def(Pickled<CalibratedParameter>());
   py::class_<Calibration>(*module, "Calibration", "What came of calibrate().")
       .def_property_readonly(
-          "accepted",
-          [](const Calibration& self) { return self.result.is_accepted; },
+          "accepted", &Found<&CalibrationResult::is_accepted>,
           "whether the camera found is better than the first one")
+      .def_property_readonly("reason", &Found<&CalibrationResult::reason>,
+                             "why it is not, in words")
       .def_property_readonly(
-          "reason", [](const Calibration& self) { return self.result.reason; },
-          "why it is not, in words")
-      .def_property_readonly(
-          "camera", [](const Calibration& self) { return self.result.camera; },
+          "camera", &Found<&CalibrationResult::camera>,
           "to go on with: the camera found, or the first one")
       .def_property_readonly("parameters", &Parameters,
                              "CalibratedParameter by name, such as fx")

@@ -2,14 +2,13 @@
 #include <pybind11/stl.h>
 
 #include <cmath>
-#include <cstdio>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
-#include "apps/python/pickled_fields.h"
+#include "apps/python/pickling.h"
 #include "core/geometry/camera.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -89,12 +88,10 @@ Eigen::Matrix3d Intrinsics(const Camera& camera) {
 
 std::string CameraInWords(const RgbdCamera& camera) {
   const Camera& c = camera.camera;
-  char text[512];
-  std::snprintf(text, sizeof(text),
-                "Camera(fx=%.9g, fy=%.9g, cx=%.9g, cy=%.9g, width=%d, "
-                "height=%d, distortion=(",
-                c.fx, c.fy, c.cx, c.cy, c.width, c.height);
-  std::string words = text;
+  std::string words = Format(
+      "Camera(fx=%.9g, fy=%.9g, cx=%.9g, cy=%.9g, width=%d, height=%d, "
+      "distortion=(",
+      c.fx, c.fy, c.cx, c.cy, c.width, c.height);
   const char* comma = "";
   for (const double coefficient : c.Distortion()) {
     words += comma + Format("%.9g", coefficient);

@@ -4,12 +4,13 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
-#include "apps/python/estimate_rows.h"
+#include "apps/python/estimate_result.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
 #include "core/estimation/correspondences.h"
@@ -63,10 +64,8 @@ std::optional<MotionPrior> PriorFrom(const py::object& prior) {
   MotionPrior result;
   result.mean = RigidFromArray(pair[0], "prior[0]");
   const NumberArray covariance(pair[1], "prior[1]", {6, 6});
-  MotionMatrix matrix;
-  for (int i = 0; i < 6; ++i) {
-    for (int j = 0; j < 6; ++j) matrix(i, j) = covariance(i, j);
-  }
+  const MotionMatrix matrix =
+      MotionMatrix::NullaryExpr([&](int i, int j) { return covariance(i, j); });
   // That of a failed estimate is zero: nothing is known.
   const Eigen::LLT<MotionMatrix> cholesky(matrix);
   if (cholesky.info() != Eigen::Success) return std::nullopt;
@@ -92,6 +91,88 @@ void CheckSizes(const NumberArray& prev, const std::string& prev_name,
                    " rows and " + other_name + " " +
                    std::to_string(other.size()) +
                    "; row i of both must belong to match i");
+}
+
+Eigen::Vector3d Row(const NumberArray& array, size_t i) {
+  return {array(i, 0), array(i, 1), array(i, 2)};
+}
+
+// The values of matches at the rows they were given in; zeros elsewhere.
+template <typename To, typename From>
+std::vector<To> AtRows(const std::vector<From>& values,
+                       const std::vector<size_t>& rows, size_t size) {
+  std::vector<To> result(size);
+  for (size_t i = 0; i < rows.size(); ++i) result[rows[i]] = values[i];
+  return result;
+}
+
+// From x, y, z in camera axes (m). z = 0 gives no numbers: no match.
+Observation ObservePoint(const Camera& camera, const Eigen::Vector3d& point) {
+  Observation o;
+  o.u = camera.fx * point.x() / point.z() + camera.cx;
+  o.v = camera.fy * point.y() / point.z() + camera.cy;
+  o.depth = point.z();
+  return o;
+}
+
+// From an image pixel u, v (px) and a depth (m), 0 where none was measured.
+Observation ObservePixel(const Camera& camera, const Eigen::Vector3d& pixel) {
+  const Eigen::Vector2d ideal = camera.Undistort(pixel.head<2>());
+  Observation o;
+  o.u = ideal.x();
+  o.v = ideal.y();
+  o.depth = pixel.z();
+  return o;
+}
+
+// What a camera has seen, from a row of three numbers.
+using ToObservation = decltype(&ObservePoint);
+
+// Matches and the rows of the given arrays that they are.
+struct RowMatches {
+  Correspondences matches;
+  std::vector<size_t> rows;
+};
+
+// The matches of rows that make one. `normals_cur` may be null.
+RowMatches MakeMatches(const Camera& camera, ToObservation to_observation,
+                       const NumberArray& prev, const NumberArray& cur,
+                       const NumberArray* normals_cur, double sigma_px,
+                       const DepthNoiseModel& depth_noise) {
+  RowMatches result;
+  result.matches = Correspondences(camera);
+  result.matches.Reserve(prev.size());
+  result.rows.reserve(prev.size());
+  const auto observe = [&](const NumberArray& array, size_t i) {
+    Observation o = to_observation(camera, Row(array, i));
+    o.sigma_px = sigma_px;
+    if (o.depth > 0.0) o.sigma_depth = depth_noise.sigma(o.depth);
+    return o;
+  };
+  for (size_t i = 0; i < prev.size(); ++i) {
+    Observation seen = observe(cur, i);
+    if (normals_cur != nullptr) seen.normal = Row(*normals_cur, i);
+    if (result.matches.Add(observe(prev, i), seen)) result.rows.push_back(i);
+  }
+  return result;
+}
+
+// The result of an estimate from `matches`, of `size` rows.
+EstimateResult MakeResult(MotionEstimate estimate, const RowMatches& matches,
+                          size_t size) {
+  EstimateResult result;
+  const std::vector<size_t>& rows = matches.rows;
+  result.num_rejected = matches.matches.rejected();
+  result.is_inlier = AtRows<uint8_t>(estimate.is_inlier, rows, size);
+  if (result.num_rejected > 0) {
+    estimate.weights = AtRows<double>(estimate.weights, rows, size);
+    estimate.residual_norms =
+        AtRows<double>(estimate.residual_norms, rows, size);
+    estimate.residual_degrees =
+        AtRows<int>(estimate.residual_degrees, rows, size);
+  }
+  result.estimate = std::move(estimate);
+  return result;
 }
 
 // Defines a function that takes matches as two arrays of rows.

@@ -4,7 +4,7 @@
 
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
-#include "apps/python/estimate_rows.h"
+#include "apps/python/estimate_result.h"
 #include "apps/python/pickling.h"
 #include "core/estimation/motion_estimate.h"
 

@@ -82,19 +82,18 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
   }
   frame.depth_scale = is_raw ? camera.depth_scale : kUnitsPerMetre;
   frame.depth.create(camera.camera.height, camera.camera.width, CV_16UC1);
-  if (is_raw) {
-    const auto from = array.unchecked<uint16_t, 2>();
+  const auto fill = [&frame](const auto& raw_at) {
     for (int y = 0; y < frame.depth.rows; ++y) {
       auto* to = frame.depth.ptr<uint16_t>(y);
-      for (int x = 0; x < frame.depth.cols; ++x) to[x] = from(y, x);
+      for (int x = 0; x < frame.depth.cols; ++x) to[x] = raw_at(y, x);
     }
+  };
+  if (is_raw) {
+    fill(array.unchecked<uint16_t, 2>());
   } else {
     const NumberArray from(array, "depth",
                            {camera.camera.height, camera.camera.width});
-    for (int y = 0; y < frame.depth.rows; ++y) {
-      auto* to = frame.depth.ptr<uint16_t>(y);
-      for (int x = 0; x < frame.depth.cols; ++x) to[x] = RawDepth(from(y, x));
-    }
+    fill([&from](int y, int x) { return RawDepth(from(y, x)); });
   }
   return frame;
 }

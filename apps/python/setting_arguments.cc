@@ -8,35 +8,34 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// How Python calls the type of a row and what it has now.
-struct Argument {
-  const char* type;
-  py::object value;
-};
+// What a row has now.
+py::object CurrentOf(const Setting& setting) {
+  return std::visit(
+      [](const auto& value) -> py::object {
+        if constexpr (std::is_pointer_v<std::decay_t<decltype(value)>>) {
+          return py::cast(*value);
+        } else {
+          return py::str(value.get());
+        }
+      },
+      setting.value);
+}
 
-Argument ArgumentOf(const Setting& setting) {
-  if (int* const* whole = std::get_if<int*>(&setting.value)) {
-    return {"int", py::int_(**whole)};
-  }
-  if (double* const* real = std::get_if<double*>(&setting.value)) {
-    return {"float", py::float_(**real)};
-  }
-  if (bool* const* yes = std::get_if<bool*>(&setting.value)) {
-    return {"bool", py::bool_(**yes)};
-  }
-  return {"str", py::str(std::get<NamedSetting>(setting.value).get())};
+// How Python calls the type of a row.
+std::string TypeOf(const Setting& setting) {
+  return py::str(py::type::of(CurrentOf(setting)).attr("__name__"));
 }
 
 void Set(const Setting& setting, const py::handle& value) {
-  if (int* const* whole = std::get_if<int*>(&setting.value)) {
-    **whole = value.cast<int>();
-  } else if (double* const* real = std::get_if<double*>(&setting.value)) {
-    **real = value.cast<double>();
-  } else if (bool* const* yes = std::get_if<bool*>(&setting.value)) {
-    **yes = value.cast<bool>();
-  } else {
-    std::get<NamedSetting>(setting.value).set(value.cast<std::string>());
-  }
+  std::visit(
+      [&value](const auto& to) {
+        if constexpr (std::is_pointer_v<std::decay_t<decltype(to)>>) {
+          *to = value.cast<std::decay_t<decltype(*to)>>();
+        } else {
+          to.set(value.cast<std::string>());
+        }
+      },
+      setting.value);
 }
 
 }  // namespace
@@ -54,7 +53,7 @@ void SetFromKeywords(const std::string& function, const py::kwargs& keywords,
       Set(*row, value);
     } catch (const py::cast_error&) {
       throw py::type_error(function + "(): " + name + " must be " +
-                           ArgumentOf(*row).type);
+                           TypeOf(*row));
     }
   }
 }
@@ -62,10 +61,9 @@ void SetFromKeywords(const std::string& function, const py::kwargs& keywords,
 std::string ArgumentsOf(const std::vector<Setting>& table) {
   std::string text;
   for (const Setting& setting : table) {
-    const Argument argument = ArgumentOf(setting);
     if (!text.empty()) text += ", ";
-    text += std::string(setting.name) + ": " + argument.type + " = " +
-            py::repr(argument.value).cast<std::string>();
+    text += std::string(setting.name) + ": " + TypeOf(setting) + " = " +
+            py::repr(CurrentOf(setting)).cast<std::string>();
   }
   return text;
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/settings.h"
 
 // Keyword arguments from a table of settings: functions take py::kwargs and
 // write their own signatures, which pybind11 could only say of fixed ones.

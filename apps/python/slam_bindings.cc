@@ -6,12 +6,12 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/setting_table.h"
-#include "apps/pipeline/slam_settings.h"
+#include "apps/pipeline/settings.h"
+#include "apps/pipeline/slam.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
 #include "apps/python/frame_images.h"
-#include "apps/python/pickled_fields.h"
+#include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
 #include "apps/python/shared_slam.h"

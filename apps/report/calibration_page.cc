@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "apps/calibration/calibration_verdict.h"
+#include "apps/figures/svg_chart.h"
 #include "apps/results/calibration_output.h"
 #include "core/util/format.h"
 
@@ -26,20 +27,6 @@ constexpr char kHead[] =
     "border-bottom:1px solid #ddd}td:first-child,th:first-child{text-align:"
     "left}figure{display:inline-block;margin:0 1em 1em 0}svg{background:#f7f7"
     "f7;border:1px solid #ccc}.no{color:#888}</style></head><body>\n";
-
-std::string Escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    if (c == '<') {
-      result += "&lt;";
-    } else if (c == '&') {
-      result += "&amp;";
-    } else {
-      result += c;
-    }
-  }
-  return result;
-}
 
 // From -1 to 1 prior standard deviation: where it was, and what was found; an
 // arrow where that is beyond.
@@ -200,7 +187,7 @@ std::string CalibrationPage(const CalibrationResult& result,
   std::string text = kHead;
   text += result.is_accepted ? "<h1>The new camera is better</h1>\n"
                              : "<h1>The first camera is kept</h1>\n<p>" +
-                                   Escaped(result.reason) + "</p>\n";
+                                   EscapeMarkup(result.reason) + "</p>\n";
   text +=
       Format("<p>%d keyframes, %d pairs, %d landmarks in %d views.</p>\n",
              result.keyframes, result.pairs, result.landmarks, result.views);

@@ -7,9 +7,7 @@
 
 #include "apps/compare/compare_paths.h"
 #include "apps/compare/compare_sweep_report.h"
-#include "apps/report/report_settings.h"
-#include "apps/report/report_thinning.h"
-#include "apps/report/run_report_data.h"
+#include "apps/report/report_data.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/input_error.h"
 

@@ -4,8 +4,7 @@
 #include <string>
 #include <system_error>
 
-#include "apps/report/report_assets.h"
-#include "apps/report/run_report_data.h"
+#include "apps/report/report_data.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 

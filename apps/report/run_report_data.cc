@@ -1,5 +1,3 @@
-#include "apps/report/run_report_data.h"
-
 #include <ceres/loss_function.h>
 
 #include <algorithm>
@@ -9,8 +7,7 @@
 #include <memory>
 #include <vector>
 
-#include "apps/report/report_settings.h"
-#include "apps/report/report_thinning.h"
+#include "apps/report/report_data.h"
 #include "apps/results/cloud_preview.h"
 #include "apps/shell/csv_table.h"
 #include "core/evaluation/trajectory.h"
@@ -204,6 +201,8 @@ json ParseJson(const std::string& file) {
   }
   return value;
 }
+
+using nlohmann::json;
 
 }  // namespace
 

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "apps/results/base64.h"
+#include "core/util/format.h"
 #include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {

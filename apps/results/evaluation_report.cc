@@ -1,8 +1,11 @@
 #include "apps/results/evaluation_report.h"
 
+#include <cmath>
 #include <vector>
 
+#include "core/geometry/twist.h"
 #include "core/util/format.h"
+#include "core/util/text_file.h"
 #include "core/util/units.h"
 
 namespace rgbd_pose {
@@ -42,6 +45,147 @@ json PoseToJson(const Rigid3d& pose) {
           {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
+// In another unit.
+ErrorStatistics Scaled(ErrorStatistics errors, double factor) {
+  for (double* value : {&errors.rmse, &errors.median, &errors.mean, &errors.max,
+                        &errors.p90, &errors.p99}) {
+    *value *= factor;
+  }
+  return errors;
+}
+
+ErrorStatistics InMillimetres(const ErrorStatistics& metres) {
+  return Scaled(metres, kMillimetresPerMetre);
+}
+
+ErrorStatistics InDegrees(const ErrorStatistics& radians) {
+  return Scaled(radians, kDegreesPerRadian);
+}
+
+// One line: RMSE, median, mean and maximum of a quantity, in its unit.
+std::string FormatStatistics(const char* quantity, const ErrorStatistics& e) {
+  if (e.count == 0) return Format("  %-30s%12s\n", quantity, "n/a");
+  return Format("  %-30s%12.4f%12.4f%12.4f%12.4f\n", quantity, e.rmse, e.median,
+                e.mean, e.max);
+}
+
+std::string FormatAte(const std::string& title, const ErrorStatistics& ate) {
+  return Format("%-32s%12s%12s%12s%12s\n", "", "RMSE", "median", "mean",
+                "max") +
+         Format("ATE%s (%d poses)\n", title.c_str(), ate.count) +
+         FormatStatistics("position (mm)", InMillimetres(ate));
+}
+
+std::string FormatRpe(const std::string& title,
+                      const RelativePoseError& error) {
+  return Format("RPE%s (%d pairs)\n", title.c_str(), error.translation.count) +
+         FormatStatistics("translation (mm)",
+                          InMillimetres(error.translation)) +
+         FormatStatistics("rotation (deg)", InDegrees(error.rotation));
+}
+
+json StatisticsToJson(const ErrorStatistics& e) {
+  if (e.count == 0) return nullptr;
+  return {{"rmse", e.rmse}, {"median", e.median}, {"mean", e.mean},
+          {"max", e.max},   {"p90", e.p90},       {"p99", e.p99}};
+}
+
+json AteToJson(const ErrorStatistics& ate) {
+  return {{"count", ate.count}, {"position_m", StatisticsToJson(ate)}};
+}
+
+json RpeToJson(const RelativePoseError& error, double delta) {
+  return {{"delta", delta},
+          {"count", error.translation.count},
+          {"translation_m", StatisticsToJson(error.translation)},
+          {"rotation_deg", StatisticsToJson(InDegrees(error.rotation))}};
+}
+
+std::string FormatQuantiles(const char* quantity, const ErrorStatistics& e) {
+  if (e.count == 0) return Format("  %-30s%12s\n", quantity, "n/a");
+  return Format("  %-30s%12.4f%12.4f%12.4f\n", quantity, e.median, e.p90,
+                e.p99);
+}
+
+// Median, 90 % and 99 % of relative errors.
+std::string FormatQuantiles(const std::string& delta,
+                            const RelativePoseError& error) {
+  return Format("RPE, fixed delta %s (%d pairs)\n", delta.c_str(),
+                error.translation.count) +
+         FormatQuantiles("translation (mm)", InMillimetres(error.translation)) +
+         FormatQuantiles("rotation (deg)", InDegrees(error.rotation));
+}
+
+std::string FormatLine(const char* what, const Consistency& c) {
+  return Format("  %-30s%12d%12d%12.2f%12.2f\n", what, c.count, c.wrong, c.nees,
+                c.median);
+}
+
+// Of the motions of a run: those that are wrong, and NEES.
+std::string FormatConsistency(const RunConsistency& consistency) {
+  const TruthNoise& noise = consistency.truth_noise;
+  return Format("\nAgainst covariances (sigma of the truth %g mm, %g deg)\n",
+                noise.translation * kMillimetresPerMetre,
+                noise.rotation * kDegreesPerRadian) +
+         Format("%-32s%12s%12s%12s%12s\n", "", "judged", "wrong", "NEES",
+                "median") +
+         FormatLine(Format("frames, of %d ok", consistency.ok).c_str(),
+                    consistency.ok_frames) +
+         FormatLine("all motions", consistency.edges);
+}
+
+json ToJson(const Consistency& c) {
+  return {{"count", c.count},
+          {"wrong", c.wrong},
+          {"nees", c.count > 0 ? json(c.nees) : json()},
+          {"nees_median", c.count > 0 ? json(c.median) : json()}};
+}
+
+json ConsistencyToJson(const RunConsistency& consistency) {
+  const TruthNoise& noise = consistency.truth_noise;
+  return {{"wrong_above_chi_square", kWrongChiSquare},
+          {"truth_sigma_m", noise.translation},
+          {"truth_sigma_deg", noise.rotation * kDegreesPerRadian},
+          {"ok", consistency.ok},
+          {"ok_frames", ToJson(consistency.ok_frames)},
+          {"edges", ToJson(consistency.edges)}};
+}
+
+// "1.40 +- 0.05"; "n/a" for what is not determined.
+std::string FormatEstimate(double value, double sigma, double factor,
+                           int decimals) {
+  if (!std::isfinite(sigma)) return "n/a";
+  const double unit = std::pow(10.0, -decimals);
+  // 0 has no sign.
+  const double rounded = unit * std::round(factor * value / unit) + 0.0;
+  return FixedNumber(rounded, decimals) + " +- " +
+         FixedNumber(factor * sigma, decimals);
+}
+
+std::string FormatEstimates(const char* quantity, const Eigen::Vector3d& values,
+                            const Eigen::Vector3d& sigmas, double factor,
+                            int decimals) {
+  std::string text = Format("  %-30s", quantity);
+  for (int i = 0; i < 3; ++i) {
+    text +=
+        Format("  %16s",
+               FormatEstimate(values[i], sigmas[i], factor, decimals).c_str());
+  }
+  return text + "\n";
+}
+
+json EstimatesToJson(const Eigen::Vector3d& values, double factor) {
+  json result = json::array();
+  for (const double value : values) {
+    result.push_back(std::isfinite(value) ? json(factor * value) : json());
+  }
+  return result;
+}
+
+Eigen::Vector3d RotationVectorOf(const TruthFixing& fixing) {
+  return TwistOf(fixing.camera_from_body, -1.0).angular;
+}
+
 }  // namespace
 
 std::string FormatEvaluation(const EvaluationReport& report) {
@@ -51,21 +195,12 @@ std::string FormatEvaluation(const EvaluationReport& report) {
              report.options.max_time_difference);
   text += Format("they span %.3f s and %.3f m of path.\n\n", report.duration,
                  report.path_length);
-  text +=
-      Format("%-32s%12s%12s%12s%12s\n", "", "RMSE", "median", "mean", "max");
-  text +=
-      Format("ATE, %s (%d poses)\n", AteDefinition(report), report.ate.count);
-  text += FormatStatistics("position (mm)",
-                           Scaled(report.ate, kMillimetresPerMetre));
+  text += FormatAte(Format(", %s", AteDefinition(report)), report.ate);
   text += Format("  %-30s%12.4f  at %.5f times the size\n", "  with scale",
                  kMillimetresPerMetre * report.sim3.residual_rmse,
                  report.sim3.truth_per_estimate);
   for (const RelativeEntry& entry : RelativeEntries(report)) {
-    text += Format("RPE, %s (%d pairs)\n", entry.definition.c_str(),
-                   entry.error.translation.count);
-    text += FormatStatistics("translation (mm)", Scaled(entry.error.translation,
-                                                        kMillimetresPerMetre));
-    text += FormatStatistics("rotation (deg)", InDegrees(entry.error.rotation));
+    text += FormatRpe(", " + entry.definition, entry.error);
   }
   text += Format("Final pose error, %s\n", kFinalPoseDefinition);
   if (report.final_pose.has_value()) {
@@ -80,14 +215,11 @@ std::string FormatEvaluation(const EvaluationReport& report) {
   for (size_t i = 0; i < report.rpe_frames.size(); ++i) {
     const int frames = report.options.rpe_frames[i];
     text +=
-        Format("RPE, fixed delta %d frame%s (%d pairs)\n", frames,
-               frames == 1 ? "" : "s", report.rpe_frames[i].translation.count);
-    text += FormatQuantiles(report.rpe_frames[i]);
+        FormatQuantiles(Format("%d frame%s", frames, frames == 1 ? "" : "s"),
+                        report.rpe_frames[i]);
   }
-  text += Format("RPE, fixed delta %g s (%d pairs)\n",
-                 report.options.rpe_delta_seconds,
-                 report.rpe_seconds.translation.count);
-  text += FormatQuantiles(report.rpe_seconds);
+  text += FormatQuantiles(Format("%g s", report.options.rpe_delta_seconds),
+                          report.rpe_seconds);
   if (report.consistency.has_value()) {
     text += FormatConsistency(*report.consistency);
   }
@@ -102,10 +234,7 @@ json EvaluationToJson(const EvaluationReport& report) {
       {"max_time_difference_s", report.options.max_time_difference},
       {"duration_s", report.duration},
       {"path_length_m", report.path_length},
-      {"ate",
-       {{"definition", AteDefinition(report)},
-        {"count", report.ate.count},
-        {"position_m", StatisticsToJson(report.ate)}}},
+      {"ate", AteToJson(report.ate)},
       {"with_scale",
        {{"truth_per_estimate", report.sim3.truth_per_estimate},
         {"position_rmse_m", report.sim3.residual_rmse}}},
@@ -115,21 +244,17 @@ json EvaluationToJson(const EvaluationReport& report) {
        TruthAlignmentToJson(report.truth_alignment,
                             report.options.rpe_delta_seconds)},
       {"final_pose", nullptr}};
+  result["ate"]["definition"] = AteDefinition(report);
   for (const RelativeEntry& entry : RelativeEntries(report)) {
-    result[entry.key] = {
-        {"definition", entry.definition},
-        {"delta", entry.delta},
-        {"count", entry.error.translation.count},
-        {"translation_m", StatisticsToJson(entry.error.translation)},
-        {"rotation_deg", StatisticsToJson(InDegrees(entry.error.rotation))}};
+    result[entry.key] = RpeToJson(entry.error, entry.delta);
+    result[entry.key]["definition"] = entry.definition;
   }
   for (size_t i = 0; i < report.rpe_frames.size(); ++i) {
     const RelativePoseError& error = report.rpe_frames[i];
     result["rpe_frames"].push_back(
         {{"frames", report.options.rpe_frames[i]},
          {"count", error.translation.count},
-         {"translation_mm",
-          StatisticsToJson(Scaled(error.translation, kMillimetresPerMetre))},
+         {"translation_mm", StatisticsToJson(InMillimetres(error.translation))},
          {"rotation_deg", StatisticsToJson(InDegrees(error.rotation))}});
   }
   if (report.consistency.has_value()) {
@@ -141,6 +266,56 @@ json EvaluationToJson(const EvaluationReport& report) {
         {"translation_m", report.final_pose->translation},
         {"rotation_deg", report.final_pose->angle * kDegreesPerRadian}};
   }
+  return result;
+}
+
+std::string FormatTruthAlignment(const TruthAlignment& alignment,
+                                 double rpe_delta_seconds) {
+  const std::string head =
+      "\nTruth shifted in time and fixed to the camera again";
+  if (!alignment.skipped.empty()) {
+    return head + ": not estimated; " + alignment.skipped + "\n";
+  }
+  const TruthFixing& fixing = alignment.fixing;
+  std::string text =
+      head + Format(", as fits best (%d motions)\n", alignment.motions);
+  text +=
+      Format("  %-30s  %16s\n", "time shift (ms)",
+             FormatEstimate(fixing.shift, alignment.sigma[0], 1e3, 1).c_str());
+  text += FormatEstimates("rotation x, y, z (deg)", RotationVectorOf(fixing),
+                          alignment.sigma.segment<3>(1), kDegreesPerRadian, 2);
+  text +=
+      FormatEstimates("lever x, y, z (mm)", fixing.camera_from_body.translation,
+                      alignment.sigma.tail<3>(), kMillimetresPerMetre, 1);
+  if (!alignment.undetermined.empty()) {
+    text += "  not determined by the motion: " + Join(alignment.undetermined) +
+            "\n";
+  }
+  return text + FormatAte(" there", alignment.ate) +
+         FormatRpe(Format(" there, fixed delta %g s", rpe_delta_seconds),
+                   alignment.rpe_seconds);
+}
+
+json TruthAlignmentToJson(const TruthAlignment& alignment,
+                          double rpe_delta_seconds) {
+  const bool found = alignment.skipped.empty();
+  json result = {{"skipped", found ? json() : json(alignment.skipped)},
+                 {"motions", alignment.motions},
+                 {"undetermined", alignment.undetermined}};
+  if (!found) return result;
+  const TruthFixing& fixing = alignment.fixing;
+  const double shift_sigma = alignment.sigma[0];
+  result["time_shift_s"] = fixing.shift;
+  result["time_shift_sigma_s"] =
+      std::isfinite(shift_sigma) ? json(shift_sigma) : json();
+  result["rotation_deg"] =
+      EstimatesToJson(RotationVectorOf(fixing), kDegreesPerRadian);
+  result["rotation_sigma_deg"] =
+      EstimatesToJson(alignment.sigma.segment<3>(1), kDegreesPerRadian);
+  result["lever_m"] = EstimatesToJson(fixing.camera_from_body.translation, 1.0);
+  result["lever_sigma_m"] = EstimatesToJson(alignment.sigma.tail<3>(), 1.0);
+  result["ate"] = AteToJson(alignment.ate);
+  result["rpe_seconds"] = RpeToJson(alignment.rpe_seconds, rpe_delta_seconds);
   return result;
 }
 

@@ -12,18 +12,6 @@
 #include "core/util/units.h"
 
 namespace rgbd_pose {
-namespace {
-
-void AddNumber(double value, std::string* row) {
-  *row += Format(",%.6f", value);
-}
-
-void AddPosition(const Eigen::Vector3d& position, std::string* row) {
-  for (const double value : position) AddNumber(value, row);
-}
-
-}  // namespace
-
 const char kCovarianceColumns[] =
     ",cov_wx_wx,cov_wx_wy,cov_wx_wz,cov_wx_cx,cov_wx_cy,cov_wx_cz,cov_wy_wy"
     ",cov_wy_wz,cov_wy_cx,cov_wy_cy,cov_wy_cz,cov_wz_wz,cov_wz_cx,cov_wz_cy"
@@ -88,7 +76,7 @@ std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames) {
 }
 
 std::vector<RelativePose> ReadEdges(const std::filesystem::path& folder) {
-  const CsvTable table = CsvTable::Read((folder / "edges.csv").string());
+  const CsvTable table = CsvTable::Read(folder / "edges.csv");
   const std::vector<double> ref = table.Numbers("ref");
   const std::vector<double> cur = table.Numbers("cur");
   std::vector<std::vector<double>> pose, covariance;
@@ -117,7 +105,7 @@ std::vector<RelativePose> ReadEdges(const std::filesystem::path& folder) {
 }
 
 std::vector<TrackedFrame> ReadFrames(const std::filesystem::path& folder) {
-  const CsvTable table = CsvTable::Read((folder / "frames.csv").string());
+  const CsvTable table = CsvTable::Read(folder / "frames.csv");
   const std::vector<double> times = table.Numbers("timestamp");
   const std::vector<std::string> status = table.Words("status");
   std::vector<TrackedFrame> frames(table.size());
@@ -153,33 +141,28 @@ std::string FormatErrorsCsv(const std::vector<TrackedFrame>& frames,
   for (const StampedPose& pose : truth) times.push_back(pose.timestamp);
   auto error = report.poses.begin();
   for (const TrackedFrame& frame : frames) {
-    text += Format("%.6f", frame.timestamp);
+    // Not a number where nothing is known.
+    Eigen::Matrix<double, 9, 1> cells = decltype(cells)::Constant(NAN);
     const size_t nearest = NearestTime(times, frame.timestamp);
     if (std::abs(times[nearest] - frame.timestamp) <=
         report.options.max_time_difference) {
-      AddPosition(truth[nearest].world_from_cam.translation, &text);
-    } else {
-      text += ",,,";
+      cells.head<3>() = truth[nearest].world_from_cam.translation;
     }
-    if (frame.status == TrackingStatus::kLost) {
-      text += ",,,,,,\n";
-      continue;
+    if (frame.status != TrackingStatus::kLost) {
+      cells.segment<3>(3) =
+          report.truth_from_estimate * frame.world_from_cam.translation;
+      if (error != report.poses.end() && error->timestamp == frame.timestamp) {
+        cells[6] = error->position;
+        cells[7] = error->rpe_translation.value_or(NAN);
+        cells[8] = error->rpe_rotation.value_or(NAN) * kDegreesPerRadian;
+        ++error;
+      }
     }
-    AddPosition(report.truth_from_estimate * frame.world_from_cam.translation,
-                &text);
-    if (error == report.poses.end() || error->timestamp != frame.timestamp) {
-      text += ",,,\n";
-      continue;
-    }
-    AddNumber(error->position, &text);
-    if (error->rpe_translation.has_value()) {
-      AddNumber(*error->rpe_translation, &text);
-      AddNumber(*error->rpe_rotation * kDegreesPerRadian, &text);
-    } else {
-      text += ",,";
+    text += Format("%.6f", frame.timestamp);
+    for (const double cell : cells) {
+      text += std::isnan(cell) ? "," : Format(",%.6f", cell);
     }
     text += "\n";
-    ++error;
   }
   return text;
 }

@@ -118,7 +118,7 @@ RunFolder::~RunFolder() {
 }
 
 void RunFolder::WriteFile(const char* name, const std::string& content) const {
-  WriteFileAtomically((staging_dir_ / name).string(), content);
+  WriteFileAtomically(staging_dir_ / name, content);
 }
 
 void RunFolder::Publish() {

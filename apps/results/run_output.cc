@@ -7,7 +7,6 @@
 #include "apps/results/cloud_preview.h"
 #include "apps/results/evaluation_report.h"
 #include "apps/results/frame_tables.h"
-#include "apps/results/motion_jumps.h"
 #include "apps/results/run_summary.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
@@ -55,16 +54,15 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                std::to_string(tracked.matches) + " matches agree  reference " +
                std::to_string(tracked.reference);
   }
-  WritePngFile((folder / Format("%06d.png", tracked.index)).string(),
+  WritePngFile(folder / Format("%06d.png", tracked.index),
                DrawMatches(frame, camera, odometry.last_matches(),
                            odometry.last_estimate(), caption));
   const OdometryKeyframe* keyframe = odometry.FindKeyframe(tracked.reference);
   if (tracked.status != TrackingStatus::kLost && keyframe != nullptr &&
       keyframe->reference->images() != nullptr) {
-    WritePngFile(
-        (folder / Format("%06d_residuals.png", tracked.index)).string(),
-        DrawResiduals(*keyframe->reference->images(), frame,
-                      odometry.last_estimate().cur_from_prev));
+    WritePngFile(folder / Format("%06d_residuals.png", tracked.index),
+                 DrawResiduals(*keyframe->reference->images(), frame,
+                               odometry.last_estimate().cur_from_prev));
   }
 }
 

@@ -6,10 +6,10 @@
 #include <vector>
 
 #include "apps/pipeline/odometry_run.h"
-#include "apps/pipeline/setting_table.h"
-#include "apps/results/frame_selection.h"
+#include "apps/pipeline/settings.h"
 #include "apps/results/run_folder.h"
 #include "frontend/fusion/cloud_fusion.h"
+#include "frontend/sources/frame_range.h"
 #include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {

@@ -1,7 +1,9 @@
 #include "apps/results/run_tracking.h"
 
+#include <gflags/gflags.h>
 #include <glog/logging.h>
 
+#include <csignal>
 #include <cstdio>
 
 #include "apps/pipeline/sequence.h"
@@ -9,11 +11,22 @@
 #include "apps/shell/progress_bar.h"
 #include "frontend/frame/depth_scale.h"
 
+DEFINE_bool(finish_on_signal, true,
+            "at SIGINT (Ctrl-C) or SIGTERM keep the results so far; a second "
+            "one ends the program at once");
+
 namespace rgbd_pose {
 namespace {
 
 // A run that tracked less of its frames than this has failed.
 constexpr double kMinTrackedShare = 0.5;
+
+constexpr int kSignals[] = {SIGINT, SIGTERM};
+
+volatile std::sig_atomic_t came = 0;
+struct sigaction before[2];
+
+void Remember(int signal) { came = signal; }
 
 }  // namespace
 
@@ -73,6 +86,37 @@ int ExitCodeOf(const std::string& program, const RunResults& results,
     return kExitStopped;
   }
   return kExitOk;
+}
+
+StopSignal::StopSignal() {
+  came = 0;
+  struct sigaction action = {};
+  action.sa_handler = Remember;
+  action.sa_flags = SA_RESETHAND | SA_RESTART;  // the next one does its work
+  sigemptyset(&action.sa_mask);
+  for (int i = 0; i < 2; ++i) {
+    sigaction(kSignals[i], nullptr, &before[i]);
+    // Who has started the program in the background may want it left alone.
+    const bool is_ignored = before[i].sa_handler == SIG_IGN;
+    if (FLAGS_finish_on_signal && !is_ignored) {
+      sigaction(kSignals[i], &action, nullptr);
+    }
+  }
+}
+
+StopSignal::~StopSignal() {
+  for (int i = 0; i < 2; ++i) sigaction(kSignals[i], &before[i], nullptr);
+}
+
+std::string StopSignal::name() const {
+  switch (came) {
+    case SIGINT:
+      return "SIGINT";
+    case SIGTERM:
+      return "SIGTERM";
+    default:
+      return "";
+  }
 }
 
 }  // namespace rgbd_pose

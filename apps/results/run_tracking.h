@@ -5,10 +5,24 @@
 
 #include "apps/pipeline/odometry_run.h"
 #include "apps/results/run_output.h"
-#include "apps/shell/stop_signal.h"
 #include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {
+
+// While it lives, SIGINT and SIGTERM ask a program to end its work early and
+// to keep what it has, if --finish_on_signal (else they end it, as always). A
+// second one ends it at once. Signals that are ignored stay so. One at a time.
+class StopSignal {
+ public:
+  StopSignal();
+  // Signals mean again what they meant before.
+  ~StopSignal();
+  StopSignal(const StopSignal&) = delete;
+  StopSignal& operator=(const StopSignal&) = delete;
+
+  // The name of the signal that came, or empty.
+  std::string name() const;
+};
 
 // What keeps a run from being whole though it has results.
 struct RunIssues {

@@ -2,7 +2,9 @@
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
+#include <sched.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <csignal>
 #include <cstdio>
@@ -10,7 +12,9 @@
 #include <deque>
 #include <exception>
 #include <stdexcept>
+#include <string>
 #include <system_error>
+#include <thread>
 
 #include "apps/shell/flag_reader.h"
 #include "core/util/format.h"
@@ -32,7 +36,10 @@ class SettingFlags {
  public:
   explicit SettingFlags(const std::vector<std::vector<Setting>>& tables) {
     for (const std::vector<Setting>& table : tables) {
-      for (const Setting& setting : table) Add(setting);
+      for (const Setting& setting : table) {
+        std::visit([&](const auto& value) { Add(setting, value); },
+                   setting.value);
+      }
     }
   }
 
@@ -49,36 +56,22 @@ class SettingFlags {
     std::string text;
   };
 
-  void Add(const Setting& setting) {
-    if (int* const* whole = std::get_if<int*>(&setting.value)) {
-      Register(setting, *whole, &ints_);
-    } else if (double* const* real = std::get_if<double*>(&setting.value)) {
-      Register(setting, *real, &doubles_);
-    } else if (bool* const* yes = std::get_if<bool*>(&setting.value)) {
-      Register(setting, *yes, &bools_);
-    } else {
-      const auto& named = std::get<NamedSetting>(setting.value);
-      rows_.push_back({named, named.get()});
-      Register(setting, &rows_.back().text, &texts_);
-    }
+  void Add(const Setting& setting, const NamedSetting& named) {
+    rows_.push_back({named, named.get()});
+    Add(setting, &rows_.back().text);
   }
 
   // gflags holds on to both places.
   template <typename Value>
-  static void Register(const Setting& setting, Value* current,
-                       std::deque<Value>* defaults) {
-    defaults->push_back(*current);
+  void Add(const Setting& setting, Value* current) {
+    defaults_.emplace_back(*current);
     gflags::FlagRegisterer(setting.name, setting.help, __FILE__, current,
-                           &defaults->back());
+                           &std::get<Value>(defaults_.back()));
   }
 
   // In deques, where what they hold stays.
   std::deque<Row> rows_;
-  // What gflags has as the defaults.
-  std::deque<int> ints_;
-  std::deque<double> doubles_;
-  std::deque<bool> bools_;
-  std::deque<std::string> texts_;
+  std::deque<std::variant<int, double, bool, std::string>> defaults_;
 };
 
 bool IsHelp(const std::string& argument) {
@@ -178,6 +171,9 @@ int Run(int argc, char** argv, const ProgramInfo& info,
   }
 }
 
+// More than any machine can use for this.
+constexpr int kMaxThreads = 256;
+
 }  // namespace
 
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
@@ -216,6 +212,24 @@ void RequireFlag(const std::string& name, const std::string& value) {
   if (value.empty()) {
     throw UsageError("--" + name + " is needed; see --help");
   }
+}
+
+int AvailableCores() {
+  // Unlike the number of cores of the machine, this heeds what a scheduler
+  // such as Slurm has given.
+  cpu_set_t cores;
+  if (sched_getaffinity(0, sizeof(cores), &cores) == 0) {
+    return std::max(1, CPU_COUNT(&cores));
+  }
+  return std::max(1, static_cast<int>(std::thread::hardware_concurrency()));
+}
+
+int NumThreads(int flag) {
+  if (flag < 0 || flag > kMaxThreads) {
+    throw InputError("--threads must be 0 (one a core) to " +
+                     std::to_string(kMaxThreads));
+  }
+  return flag > 0 ? flag : std::min(AvailableCores(), kMaxThreads);
 }
 
 }  // namespace rgbd_pose

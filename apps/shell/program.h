@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/setting_table.h"
+#include "apps/pipeline/settings.h"
 
 namespace rgbd_pose {
 
@@ -46,6 +46,15 @@ struct ProgramInfo {
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body);
 
+// The same for a program with tables of settings of its own.
+template <typename Settings>
+int RunProgram(int argc, char** argv, ProgramInfo (*info)(Settings*),
+               int (*body)(const Settings&, const ProgramInfo&)) {
+  Settings settings;
+  const ProgramInfo own = info(&settings);
+  return RunProgram(argc, argv, own, [&] { return body(settings, own); });
+}
+
 // All flags of the program's groups as a file for --flagfile.
 std::string FormatFlagFile(const ProgramInfo& info);
 
@@ -55,5 +64,12 @@ void Warn(const std::vector<std::string>& lines);
 // Stops with kExitUsage and one line where a flag that must be given is empty.
 // Throws UsageError, which RunProgram turns into that exit.
 void RequireFlag(const std::string& name, const std::string& value);
+
+// How many processor cores this process may use, at least 1.
+int AvailableCores();
+
+// What the flag --threads of a program comes to: 0 is one a core. Throws
+// InputError for what is no number of threads.
+int NumThreads(int flag);
 
 }  // namespace rgbd_pose

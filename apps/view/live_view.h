@@ -4,8 +4,8 @@
 #include <memory>
 #include <string>
 
-#include "apps/pipeline/slam_run.h"
-#include "apps/shell/stop_signal.h"
+#include "apps/pipeline/odometry_run.h"
+#include "apps/results/run_tracking.h"
 #include "apps/view/view_server.h"
 #include "apps/view/view_state.h"
 

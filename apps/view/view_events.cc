@@ -5,7 +5,6 @@
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
-#include "apps/results/base64.h"
 #include "core/util/format.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/frame.h"

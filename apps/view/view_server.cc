@@ -11,8 +11,8 @@
 #include <nlohmann/json.hpp>
 #include <thread>
 
+#include "apps/report/report_page.h"
 #include "apps/view/view_events.h"
-#include "apps/view/view_page.h"
 #endif
 
 namespace rgbd_pose {
@@ -38,6 +38,15 @@ constexpr int kWriteTimeout = 2;
 
 // How long the end may take to reach the pages.
 constexpr milliseconds kFarewell(1500);
+
+// One file that asks its server for events alone.
+std::string ViewPage(const std::string& title) {
+  const ReportAssets assets = EmbeddedReportAssets();
+  return FillPage(assets.view_page,
+                  {{"%STYLE%", std::string(assets.view_style)},
+                   {"%DATA%", InlineData({{"title", title}})},
+                   {"%SCRIPT%", std::string(assets.view_script)}});
+}
 
 }  // namespace
 

@@ -1,9 +1,12 @@
 #include "apps/view/view_state.h"
 
 #include <algorithm>
+#include <cmath>
+#include <random>
 #include <utility>
+#include <vector>
 
-#include "apps/view/view_points.h"
+#include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
 namespace {
@@ -28,6 +31,12 @@ template <typename T>
 void Append(std::vector<T> more, std::vector<T>* all) {
   std::move(more.begin(), more.end(), std::back_inserter(*all));
 }
+
+// So many points across the image: some 2,000 in all.
+constexpr int kColumns = 53;
+
+// Points beyond (m) are left out: depth cameras see little there that is right.
+constexpr double kMaxDepth = 6.0;
 
 }  // namespace
 
@@ -141,6 +150,32 @@ void ViewState::WaitForControl(std::chrono::milliseconds patience) {
   std::unique_lock<std::mutex> lock(mutex_);
   const int before = controls_;
   control_.wait_for(lock, patience, [&] { return controls_ != before; });
+}
+
+std::string SamplePoints(const Frame& frame, const Camera& camera) {
+  const int step = std::max(1, frame.gray.cols / kColumns);
+  std::vector<cv::Point> pixels;
+  for (int v = step / 2; v < frame.gray.rows; v += step) {
+    for (int u = step / 2; u < frame.gray.cols; u += step) {
+      pixels.emplace_back(u, v);
+    }
+  }
+  std::shuffle(pixels.begin(), pixels.end(), std::mt19937(1));
+  std::string bytes;
+  for (const cv::Point& pixel : pixels) {
+    const double depth = frame.DepthAt(pixel.x, pixel.y);
+    if (!(depth > 0.0) || depth > kMaxDepth) continue;
+    const Eigen::Vector2d ideal = camera.Undistort({pixel.x, pixel.y});
+    const Eigen::Vector3d point = depth * camera.Ray(ideal.x(), ideal.y());
+    if (!(point.cwiseAbs().maxCoeff() < 32.0)) continue;
+    for (const double metres : {point.x(), point.y(), point.z()}) {
+      AppendLittleEndian(static_cast<uint16_t>(
+                             static_cast<int16_t>(std::lround(1e3 * metres))),
+                         &bytes);
+    }
+    bytes += static_cast<char>(frame.gray.at<uint8_t>(pixel));
+  }
+  return bytes;
 }
 
 }  // namespace rgbd_pose

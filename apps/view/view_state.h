@@ -10,7 +10,9 @@
 #include <string>
 #include <vector>
 
+#include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
+#include "frontend/frame/frame.h"
 #include "frontend/mapping/map_update.h"
 #include "frontend/tracking/tracked_frame.h"
 
@@ -58,12 +60,6 @@ struct ViewNews {
   bool is_paused = false;
   std::string results;  // after the end: where they are
   bool is_finished = false;
-
-  // Whether there is nothing to tell.
-  bool empty() const {
-    return frames.empty() && keyframes.empty() && links.empty() &&
-           poses.empty() && !images.has_value() && !is_finished;
-  }
 };
 
 // How far a reader is.
@@ -112,5 +108,13 @@ class ViewState {
   bool is_stopped_ = false;
   std::atomic<int> readers_{0};
 };
+
+// A point on the page: x, y, z in camera axes (mm, 16 bits each, signed, low
+// byte first) and its gray level.
+constexpr size_t kViewPointBytes = 7;
+
+// Some points that a frame sees, in random order, so that the first n are a
+// picture of all.
+std::string SamplePoints(const Frame& frame, const Camera& camera);
 
 }  // namespace rgbd_pose

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdarg>
+#include <cstdint>
 #include <cstdio>
 
 namespace rgbd_pose {
@@ -40,6 +41,25 @@ std::string ShortNumber(double value) {
   return {text, std::to_chars(text, text + sizeof(text), value,
                               std::chars_format::general)
                     .ptr};
+}
+
+std::string Base64(const std::string& bytes) {
+  constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  text.reserve((bytes.size() + 2) / 3 * 4);
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t bits = 0;
+    for (size_t k = 0; k < 3; ++k) {
+      const size_t at = i + k;
+      bits =
+          bits << 8 | (at < bytes.size() ? static_cast<uint8_t>(bytes[at]) : 0);
+    }
+    for (size_t k = 0; k < 4; ++k) {
+      text += i + k > bytes.size() ? '=' : kDigits[bits >> (18 - 6 * k) & 63];
+    }
+  }
+  return text;
 }
 
 }  // namespace rgbd_pose

@@ -16,4 +16,7 @@ std::string NumberTo(double value, double sigma);
 // As few digits as tell the number from all others: 0.2, not 0.2000...01.
 std::string ShortNumber(double value);
 
+// Bytes as text (RFC 4648).
+std::string Base64(const std::string& bytes);
+
 }  // namespace rgbd_pose

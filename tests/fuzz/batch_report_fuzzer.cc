@@ -1,6 +1,6 @@
 // What the page of a batch is made from: summary.csv.
 
-#include "apps/report/run_report_data.h"
+#include "apps/report/report_data.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,9 +1,8 @@
 // Values of flags that are more than a word or a number.
 
 #include "apps/batch/batch_plan.h"
-#include "apps/batch/batch_shard.h"
-#include "apps/results/frame_selection.h"
 #include "costs/cost_factory.h"
+#include "frontend/sources/frame_range.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,7 +1,7 @@
 // What the page of a run is made from: frames.csv, metrics.json, config.flags,
 // trajectory.txt and maybe errors.csv, one after the other in the input.
 
-#include "apps/report/run_report_data.h"
+#include "apps/report/report_data.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

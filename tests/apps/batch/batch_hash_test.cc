@@ -1,9 +1,8 @@
-#include "apps/batch/batch_hash.h"
-
 #include <gtest/gtest.h>
 
 #include <string>
 
+#include "apps/batch/batch_plan.h"
 #include "tests/support/temp_folder.h"
 
 namespace rgbd_pose {

@@ -1,10 +1,9 @@
-#include "apps/batch/batch_shard.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <string>
 
+#include "apps/batch/batch_plan.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {

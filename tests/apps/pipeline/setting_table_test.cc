@@ -1,10 +1,9 @@
-#include "apps/pipeline/setting_table.h"
-
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
+#include "apps/pipeline/settings.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {

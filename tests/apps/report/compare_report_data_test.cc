@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "apps/report/run_report_data.h"
+#include "apps/report/report_data.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

@@ -1,6 +1,6 @@
-#include "apps/view/view_points.h"
-
 #include <gtest/gtest.h>
+
+#include "apps/view/view_state.h"
 
 namespace rgbd_pose {
 namespace {

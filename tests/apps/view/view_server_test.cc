@@ -8,7 +8,7 @@
 #include <string>
 #include <thread>
 
-#include "apps/view/view_points.h"
+#include "apps/view/view_state.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {

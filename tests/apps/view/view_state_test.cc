@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "apps/view/view_points.h"
-
 namespace rgbd_pose {
 namespace {
 

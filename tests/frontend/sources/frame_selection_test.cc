@@ -1,11 +1,10 @@
-#include "apps/results/frame_selection.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 #include <vector>
 
+#include "frontend/sources/frame_range.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {

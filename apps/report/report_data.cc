@@ -1,0 +1,112 @@
+#include "apps/report/report_data.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <sstream>
+
+#include "apps/shell/csv_table.h"
+#include "core/util/text_file.h"
+
+namespace rgbd_pose {
+
+using nlohmann::json;
+
+namespace {
+
+// Dividing by a power of ten gives the number nearest to the short decimal,
+// which is then written with as few digits.
+json Rounded(double value, int decimals) {
+  if (!std::isfinite(value)) return nullptr;
+  const double scale = std::pow(10.0, decimals);
+  return std::round(value * scale) / scale;
+}
+
+}  // namespace
+
+std::vector<double> Elapsed(std::vector<double> times) {
+  for (size_t i = times.size(); i-- > 0;) times[i] -= times[0];
+  return times;
+}
+
+ReportThinning::ReportThinning(size_t frames, size_t max_points)
+    : every_(std::max<size_t>((frames + max_points - 1) / max_points, 1)) {}
+
+json ReportThinning::First(const std::vector<double>& values,
+                           int decimals) const {
+  json result = json::array();
+  for (size_t i = 0; i < values.size(); i += every_) {
+    result.push_back(Rounded(values[i], decimals));
+  }
+  return result;
+}
+
+json ReportThinning::Largest(const std::vector<double>& values,
+                             int decimals) const {
+  json result = json::array();
+  for (size_t i = 0; i < values.size(); i += every_) {
+    double largest = std::numeric_limits<double>::quiet_NaN();
+    const size_t end = std::min(i + every_, values.size());
+    for (size_t k = i; k < end; ++k) {
+      if (!(largest >= values[k]) && !std::isnan(values[k])) {
+        largest = values[k];
+      }
+    }
+    result.push_back(Rounded(largest, decimals));
+  }
+  return result;
+}
+
+using nlohmann::json;
+
+json ReadReportSettings(const std::string& flag_file) {
+  json groups = json::array();
+  std::istringstream text(ReadTextFile(flag_file));
+  std::string line;
+  while (std::getline(text, line)) {
+    const size_t equals = line.find('=');
+    if (line.rfind("# ", 0) == 0) {
+      groups.push_back({line.substr(2), json::array()});
+    } else if (line.rfind("--", 0) == 0 && equals != std::string::npos &&
+               !groups.empty()) {
+      groups.back()[1].push_back(
+          {line.substr(2, equals - 2), line.substr(equals + 1)});
+    }
+  }
+  return groups;
+}
+
+std::string SettingOf(const json& groups, const std::string& name) {
+  for (const json& group : groups) {
+    for (const json& flag : group[1]) {
+      if (flag[0] == name) return flag[1];
+    }
+  }
+  return "";
+}
+
+json BatchReportData(const std::string& batch_folder) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::absolute(batch_folder).lexically_normal();
+  const CsvTable table = CsvTable::Read(folder / "summary.csv");
+  json rows(std::vector<json>(table.size(), json::object()));
+  for (const char* name :
+       {"sequence", "cost", "loss", "frontend", "tracker", "part", "status"}) {
+    const std::vector<std::string> words = table.Words(name);
+    for (size_t i = 0; i < words.size(); ++i) rows[i][name] = words[i];
+  }
+  for (const char* name : {"repeat", "frames", "tracked_share", "ate_rmse_m",
+                           "rpe_seconds_translation_m",
+                           "rpe_seconds_rotation_deg", "track_ms_median"}) {
+    const std::vector<double> numbers = table.Numbers(name);
+    for (size_t i = 0; i < numbers.size(); ++i) {
+      rows[i][name] = std::isnan(numbers[i]) ? json() : json(numbers[i]);
+    }
+  }
+  // A path with a slash at its end has no file name.
+  const fs::path named = folder.has_filename() ? folder : folder.parent_path();
+  return {{"name", named.filename().string()}, {"rows", rows}};
+}
+
+}  // namespace rgbd_pose
