@@ -1,6 +1,6 @@
 #include "frontend/fusion/cloud_fusion.h"
 
-#include "frontend/frame/surface_normal.h"
+#include "frontend/frame/depth_lookup.h"
 #include "frontend/fusion/motion_filter.h"
 
 namespace rgbd_pose {

@@ -1,6 +1,5 @@
-#include "frontend/sources/openni2_source.h"
-
 #include "core/util/input_error.h"
+#include "frontend/sources/source_kinds.h"
 #ifdef RGBD_POSE_HAS_OPENNI2
 #include <OpenNI.h>
 
