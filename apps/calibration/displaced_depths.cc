@@ -7,7 +7,6 @@
 
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"
-#include "costs/calibration/calibration_state.h"
 #include "frontend/frame/depth_warper.h"
 #include "frontend/frame/observe.h"
 

@@ -5,7 +5,7 @@
 
 #include "apps/export/finished_run.h"
 #include "apps/results/run_output.h"
-#include "frontend/fusion/motion_filter.h"
+#include "frontend/fusion/fusion_options.h"
 
 namespace rgbd_pose {
 

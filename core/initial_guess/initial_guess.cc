@@ -1,7 +1,6 @@
 #include "core/initial_guess/initial_guess.h"
 
-#include "core/initial_guess/clique.h"
-#include "core/initial_guess/ransac.h"
+#include "core/initial_guess/consensus.h"
 #include "core/util/named_values.h"
 
 namespace rgbd_pose {

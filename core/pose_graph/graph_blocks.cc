@@ -20,16 +20,6 @@ void Split(const Jacobian& both, double** jacobians) {
 
 }  // namespace
 
-double GraphTerms::SquaredMahalanobisDistance(const Edge& edge) const {
-  const Rigid3d motion = Between(edge.ref, edge.cur);
-  RelativeMotion pair;
-  pair.motion = {motion.rotation.toRotationMatrix(),
-                 motion.Inverse().translation};
-  return RelativePoseErrorTerm::Of(edge.cur_from_ref, edge.root)
-      .ResidualAt(pair, nullptr)
-      .squaredNorm();
-}
-
 MotionMatrix SqrtInformation(const MotionMatrix& information) {
   MotionMatrix none =
       MotionMatrix::Constant(std::numeric_limits<double>::quiet_NaN());

@@ -11,7 +11,7 @@
 
 #include "core/estimation/batch_loss.h"
 #include "core/geometry/motion.h"
-#include "core/pose_graph/graph_blocks.h"
+#include "core/pose_graph/pose_graph.h"
 
 namespace rgbd_pose {
 

@@ -10,8 +10,7 @@
 #include "core/util/parallel_for.h"
 #include "core/util/vector_lanes.h"
 #include "costs/assembly/autodiff_jacobian.h"
-#include "costs/assembly/match_blocks.h"
-#include "costs/assembly/motion_block.h"
+#include "costs/assembly/cost_blocks.h"
 #include "costs/assembly/packed_sum.h"
 
 namespace rgbd_pose {

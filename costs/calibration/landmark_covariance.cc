@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "costs/calibration/known_distance_block.h"
-#include "costs/calibration/reduced_camera_system.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,5 +1,4 @@
-#include "costs/calibration/reduced_camera_system.h"
-
+#include "costs/calibration/landmark_covariance.h"
 #include "costs/calibration/landmark_residuals.h"
 
 namespace rgbd_pose {

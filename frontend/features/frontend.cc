@@ -4,7 +4,7 @@
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "frontend/features/descriptor_frontend.h"
-#include "frontend/features/descriptor_method.h"
+#include "frontend/features/descriptor_matching.h"
 #include "frontend/features/klt_frontend.h"
 #include "frontend/features/patch_frontend.h"
 

@@ -196,6 +196,11 @@ DepthCorrection ReadDepthCorrection(const YamlSection& file) {
 
 }  // namespace
 
+RgbdCamera RegisteredCamera(const CameraSetup& setup) {
+  return {setup.camera, setup.depth_scale.value_or(RgbdCamera{}.depth_scale),
+          setup.depth_correction, setup.color_shutter, setup.depth_shutter};
+}
+
 CameraSetup ReadCameraFile(const std::string& path,
                            const std::string& depth_camera) {
   return ReadCameraText(ReadTextFile(path), path, depth_camera);

@@ -52,7 +52,7 @@ YamlLines RgbdLines(const RgbdCamera& camera) {
   add("inverse_depth_offset", camera.depth_correction.inverse_depth_offset,
       false);
   const Rigid3d& moved = camera.depth_correction.depth_from_color;
-  if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {
+  if (!moved.IsIdentity()) {
     lines.emplace_back("depth_rotation",
                        List(ToList(RotationVector(moved.rotation))));
     lines.emplace_back("depth_translation", List(ToList(moved.translation)));

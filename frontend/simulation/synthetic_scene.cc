@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "core/util/named_values.h"
-#include "frontend/simulation/synthetic_buildings.h"
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_materials.h"
 

@@ -11,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "frontend/sources/approximate_time_sync.h"
 #include "frontend/sources/frame_assembly.h"
+#include "frontend/sources/image_pairing.h"
 #include "frontend/sources/latest_frame.h"
 #endif
 

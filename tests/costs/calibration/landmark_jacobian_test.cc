@@ -9,6 +9,7 @@
 #include "costs/calibration/landmark_block.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/both_jacobians.h"
+#include "tests/support/landmark_oracle.h"
 
 namespace rgbd_pose {
 namespace {
