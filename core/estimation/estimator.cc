@@ -62,8 +62,7 @@ class Estimator::Impl {
       : options_(options),
         terms_(std::move(costs)),
         minimiser_(options_, &terms_) {
-    const std::string problem = options.Check();
-    if (!problem.empty()) throw InputError("estimator: " + problem);
+    RequireSound(options.Check(), "estimator: ");
   }
 
   void Run(const FramePair& pair, const Rigid3d& guess,

@@ -74,8 +74,7 @@ std::string EvaluationOptions::Check() const {
 EvaluationReport Evaluate(const Trajectory& estimate,
                           const Trajectory& ground_truth,
                           const EvaluationOptions& options) {
-  const std::string problem = options.Check();
-  if (!problem.empty()) throw InputError(problem);
+  RequireSound(options.Check());
   const std::vector<PosePair> pairs =
       PairPoses(estimate, ground_truth, options.max_time_difference);
   const std::vector<double> times = TimesOf(pairs);

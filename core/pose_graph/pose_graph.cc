@@ -53,8 +53,7 @@ std::string PoseGraphOptions::Check() const {
 }
 
 PoseGraph::PoseGraph(const PoseGraphOptions& options) : options_(options) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("motion graph: " + error);
+  RequireSound(options.Check(), "motion graph: ");
 }
 
 double PoseGraph::Round(double width, int max_iterations,

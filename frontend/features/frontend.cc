@@ -58,8 +58,7 @@ std::vector<std::string> FrontendNames() { return NamesOf(kFrontends); }
 
 std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
                                        const FrontendOptions& options) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("frontend: " + error);
+  RequireSound(options.Check(), "frontend: ");
   return RowOf(kFrontends, "frontend", name).make(options);
 }
 

@@ -35,11 +35,8 @@ Mapper::Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker)
       tracker_(std::move(tracker)),
       graph_(options.window, options.drift),
       pairing_(options_, keyframes_, index_, &tracker_, &graph_) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("mapping: " + error);
+  RequireSound(options.Check(), "mapping: ");
 }
-
-Mapper::~Mapper() = default;
 
 int Mapper::AddKeyframe(Keyframe keyframe, const PreparedFrame& frame,
                         bool is_held) {
@@ -64,10 +61,8 @@ void Mapper::Index(int at) {
 }
 
 void Mapper::Load(const KeyframeMap& map, bool is_held) {
-  for (const std::string& error :
-       {map.Check(), map.CheckCamera(tracker_.images().camera)}) {
-    if (!error.empty()) throw InputError("map: " + error);
-  }
+  RequireSound(map.Check(), "map: ");
+  RequireSound(map.CheckCamera(tracker_.images().camera), "map: ");
   for (const Keyframe& keyframe : map.keyframes) {
     Index(AddKeyframe(keyframe, keyframe.Unpacked(), is_held));
   }

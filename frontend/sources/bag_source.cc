@@ -1,8 +1,8 @@
 #include <algorithm>
-#include <cstdio>
 #include <exception>
 #include <utility>
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/bags/bag_topics.h"
 #include "frontend/bags/ros_image.h"
@@ -17,11 +17,7 @@ namespace {
 
 constexpr char kWorld[] = "world";
 
-std::string Seconds(double seconds) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.6f s", seconds);
-  return text;
-}
+std::string Seconds(double seconds) { return Format("%.6f s", seconds); }
 
 CameraSetup Setup(BagReader* bag, const BagTopics& topics,
                   const SourceOptions& options) {

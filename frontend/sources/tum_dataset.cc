@@ -120,8 +120,7 @@ bool IsDepthLeft(const std::string& list, const TextLine& line,
 }
 
 TumLists ReadLists(const SourceOptions& options) {
-  const std::string problem = options.Check();
-  if (!problem.empty()) throw InputError(problem);
+  RequireSound(options.Check());
   std::error_code error;
   if (!fs::is_directory(options.path, error)) {
     throw InputError(options.path +
@@ -148,8 +147,7 @@ CameraSetup ReadCalibrationText(const std::string& path,
   const cv::Mat image = ReadGrayImageFile(first_image);
   const Camera camera = {image.cols, image.rows, numbers[0],
                          numbers[1], numbers[2], numbers[3]};
-  const std::string problem = camera.Check();
-  if (!problem.empty()) throw InputError(path + ": " + problem);
+  RequireSound(camera.Check(), path + ": ");
   return CameraSetup(camera);
 }
 
