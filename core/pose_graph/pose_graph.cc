@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/pose_graph/graph_blocks.h"
 #include "core/pose_graph/graph_problem.h"
 #include "core/util/input_error.h"
 

@@ -140,32 +140,15 @@ double DescriptorMethod::SigmaPx(const cv::KeyPoint& keypoint) const {
   return base_sigma_px * std::max(1.0, keypoint.size / base_size_px);
 }
 
-const DescriptorMethod& Orb() {
-  constexpr double kMaxDistance = 64.0;  // of 256 bits 128 differ by chance
-  constexpr double kSizePx = 31.0;
-  constexpr double kSigmaPx = 0.7;  // whole pixels
-  static const DescriptorMethod kMethod = {
-      "orb", MakeOrb, HammingDistance, kMaxDistance, kSizePx, kSigmaPx};
-  return kMethod;
-}
-
-const DescriptorMethod& Sift() {
-  constexpr double kMaxDistance = 250.0;  // vectors of length 512
-  constexpr double kSizePx = 1.8;
-  constexpr double kSigmaPx = 0.5;
-  static const DescriptorMethod kMethod = {
-      "sift", MakeSift, EuclideanDistance, kMaxDistance, kSizePx, kSigmaPx};
-  return kMethod;
-}
-
-const DescriptorMethod& Akaze() {
-  constexpr double kMaxDistance = 121.0;  // of 486 bits 243 differ by chance
-  constexpr double kSizePx = 4.8;
-  constexpr double kSigmaPx = 0.5;
-  static const DescriptorMethod kMethod = {
-      "akaze", MakeAkaze, HammingDistance, kMaxDistance, kSizePx, kSigmaPx};
-  return kMethod;
-}
+// Of 256 bits 128 differ by chance; places are whole pixels.
+constexpr DescriptorMethod kOrb = {"orb", MakeOrb, HammingDistance,
+                                   64.0,  31.0,    0.7};
+// Vectors of length 512.
+constexpr DescriptorMethod kSift = {"sift", MakeSift, EuclideanDistance,
+                                    250.0,  1.8,      0.5};
+// Of 486 bits 243 differ by chance.
+constexpr DescriptorMethod kAkaze = {"akaze", MakeAkaze, HammingDistance,
+                                     121.0,   4.8,       0.5};
 
 DescribedKeypoints DescribedKeypoints::Select(
     const std::vector<int>& places) const {

@@ -31,14 +31,14 @@ struct DescriptorMethod {
 };
 
 // Oriented FAST corners, rotated binary tests (Rublee et al., ICCV 2011).
-const DescriptorMethod& Orb();
+extern const DescriptorMethod kOrb;
 
 // Blobs in scale space, histograms of gradients (Lowe, IJCV 2004).
-const DescriptorMethod& Sift();
+extern const DescriptorMethod kSift;
 
 // Blobs in a nonlinear scale space, binary tests of gradients (Alcantarilla,
 // Nuevo & Bartoli, BMVC 2013).
-const DescriptorMethod& Akaze();
+extern const DescriptorMethod kAkaze;
 
 // Keypoints of an image with their descriptors, a row each.
 struct DescribedKeypoints {

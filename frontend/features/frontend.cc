@@ -24,18 +24,18 @@ FrontendEntry EntryOf() {
           }};
 }
 
-template <const DescriptorMethod& (*method)()>
+template <const DescriptorMethod& method>
 FrontendEntry EntryOf() {
-  return {method().name,
+  return {method.name,
           [](const FrontendOptions& options) -> std::unique_ptr<Frontend> {
-            return std::make_unique<DescriptorFrontend>(options, method());
+            return std::make_unique<DescriptorFrontend>(options, method);
           }};
 }
 
 // One header and one row here make a frontend.
 const FrontendEntry kFrontends[] = {
-    EntryOf<KltFrontend>(), EntryOf<PatchFrontend>(), EntryOf<Orb>(),
-    EntryOf<Sift>(),        EntryOf<Akaze>(),
+    EntryOf<KltFrontend>(), EntryOf<PatchFrontend>(), EntryOf<kOrb>(),
+    EntryOf<kSift>(),       EntryOf<kAkaze>(),
 };
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "frontend/files/camera_file_writer.h"
-
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Geometry>

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "core/pose_graph/graph_blocks.h"
+#include "core/pose_graph/graph_problem.h"
 
 namespace rgbd_pose {
 

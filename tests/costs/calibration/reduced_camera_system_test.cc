@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "costs/calibration/known_distance_block.h"
+#include "costs/calibration/landmark_block.h"
 #include "costs/calibration/landmark_covariance.h"
 #include "costs/calibration/landmark_residuals.h"
 #include "frontend/simulation/synthetic_matches.h"
