@@ -12,10 +12,10 @@
 #include "apps/shell/program.h"
 #include "core/geometry/motion.h"
 #include "core/util/input_error.h"
-#include "costs/assembly/match_blocks.h"
+#include "costs/assembly/cost_blocks.h"
 #include "costs/cost_factory.h"
 #include "costs/cost_list.h"
-#include "frontend/simulation/residual_sample.h"
+#include "frontend/simulation/synthetic_matches.h"
 
 DEFINE_int32(samples, 1000, "random motions and matches for each cost");
 DEFINE_uint32(seed, 1, "seed of the samples");

@@ -26,7 +26,7 @@
 #include "apps/view/live_view.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/files/camera_file_writer.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/files/depth_noise_file.h"
 #include "frontend/map/map_folder.h"
 

@@ -15,7 +15,7 @@
 
 #include "benchmarks/pnp_peer.h"
 #include "core/estimation/estimator.h"
-#include "core/initial_guess/ransac.h"
+#include "core/initial_guess/consensus.h"
 #include "core/util/format.h"
 #include "core/util/quantile.h"
 #include "costs/cost_factory.h"

@@ -15,7 +15,7 @@
 #include <vector>
 
 #include "core/geometry/motion.h"
-#include "costs/assembly/match_blocks.h"
+#include "costs/assembly/cost_blocks.h"
 #include "costs/direct_cost_list.h"
 #include "robust/m_estimator.h"
 #include "tests/support/direct_columns.h"

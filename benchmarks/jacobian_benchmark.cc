@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "core/geometry/motion.h"
-#include "costs/assembly/match_blocks.h"
+#include "costs/assembly/cost_blocks.h"
 #include "costs/cost_list.h"
-#include "frontend/simulation/residual_sample.h"
+#include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {
 namespace {

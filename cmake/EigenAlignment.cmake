@@ -1,5 +1,5 @@
 # RGBD_POSE_EIGEN_ALIGN: to how many bytes Eigen aligns with the flags of this
-# build; empty if that is none of the usual ones. See core/util/eigen_alignment.h.
+# build; empty if that is none of the usual ones. See core/geometry/rigid3.h.
 include(CheckCXXSourceCompiles)
 
 function(rgbd_pose_find_eigen_alignment)

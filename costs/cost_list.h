@@ -8,11 +8,9 @@
 #include "costs/matches/point_to_plane.h"
 #include "costs/matches/point_to_point.h"
 #include "costs/matches/reprojection.h"
+#include "costs/parts/cost_input.h"
 
 namespace rgbd_pose {
-
-template <typename... Types>
-struct TypeList {};
 
 // All residual types. One header and one entry here make a cost: its Jacobian
 // test, its benchmark, its name for programs and its place in the assemblies

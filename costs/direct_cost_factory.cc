@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "costs/cost_factory.h"
 #include "costs/direct_cost_list.h"
 #include "robust/scale.h"
@@ -91,21 +92,15 @@ std::vector<RobustCost> JoinCosts(std::vector<RobustCost> matches,
 }
 
 std::vector<std::string> DirectCostNames() {
-  std::vector<std::string> names;
-  for (const Entry& entry : DirectEntriesOf(DirectResidualTypes())) {
-    names.emplace_back(entry.name);
-  }
-  return names;
+  return NamesOf(DirectEntriesOf(DirectResidualTypes()));
 }
 
 std::unique_ptr<MotionCost> MakeDirectCost(std::string_view name,
                                            const DirectOptions& options) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("direct cost: " + error);
-  for (const Entry& entry : DirectEntriesOf(DirectResidualTypes())) {
-    if (entry.name == name) return entry.make(options);
-  }
-  return nullptr;
+  RequireSound(options.Check(), "direct cost: ");
+  const std::vector<Entry> entries = DirectEntriesOf(DirectResidualTypes());
+  const Entry* const entry = FindNamed(entries, name);
+  return entry != nullptr ? entry->make(options) : nullptr;
 }
 
 std::vector<RobustCost> MakeDirectCosts(const std::string& cost_names,

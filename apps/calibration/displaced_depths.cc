@@ -11,7 +11,6 @@
 #include "core/geometry/depth_noise.h"
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"
-#include "costs/calibration/calibration_state.h"
 #include "frontend/frame/depth_warper.h"
 #include "frontend/frame/frame.h"
 #include "frontend/frame/observe.h"

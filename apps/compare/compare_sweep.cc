@@ -5,7 +5,7 @@
 #include <limits>
 #include <optional>
 
-#include "core/initial_guess/ransac.h"
+#include "core/initial_guess/consensus.h"
 #include "core/util/format.h"
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"

@@ -8,8 +8,7 @@
 #include "apps/results/run_output.h"
 #include "core/util/input_error.h"
 #include "frontend/frame/undistorter.h"
-#include "frontend/fusion/cloud_fusion.h"
-#include "frontend/fusion/motion_filter.h"
+#include "frontend/fusion/fusion_options.h"
 
 namespace rgbd_pose {
 

@@ -8,7 +8,7 @@
 #include "core/evaluation/trajectory.h"
 #include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/frame.h"
-#include "frontend/fusion/motion_filter.h"
+#include "frontend/fusion/fusion_options.h"
 
 namespace rgbd_pose {
 

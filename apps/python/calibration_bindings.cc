@@ -15,7 +15,7 @@
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/files/camera_file_writer.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/files/depth_noise_file.h"
 
 namespace py = pybind11;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
-#include "frontend/frame/gray_level.h"
+#include "frontend/files/image_file.h"
 
 namespace py = pybind11;
 

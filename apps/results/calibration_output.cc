@@ -8,7 +8,7 @@
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
-#include "frontend/files/camera_file_writer.h"
+#include "frontend/files/camera_file.h"
 #include "frontend/files/depth_noise_file.h"
 
 namespace rgbd_pose {

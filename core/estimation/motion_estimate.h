@@ -17,8 +17,12 @@ enum class EstimateStatus {
   kInconsistent,   // too few matches agree with one motion
 };
 
-// "ok", "too_few_matches", ...
-const char* ToString(EstimateStatus status);
+// As programs print it.
+inline const char* ToString(EstimateStatus status) {
+  constexpr const char* kNames[] = {"ok", "too_few_matches", "degenerate",
+                                    "not_converged", "inconsistent"};
+  return kNames[static_cast<int>(status)];
+}
 
 // The result of one motion estimation.
 struct MotionEstimate {

@@ -114,20 +114,11 @@ void RobustProblem::AddTo(Assembly assembly, const LinearizationPoint& origin,
   }
 }
 
-NormalEquations RobustProblem::Linearise(
-    const MotionDerivatives& motion) const {
+NormalEquations RobustProblem::Linearise(const MotionDerivatives& motion,
+                                         bool with_losses) const {
   NormalEquations sum;
   for (size_t i = 0; i < costs_.size(); ++i) {
-    costs_[i].cost->Linearise(motion, Loss(i), &sum);
-  }
-  return sum;
-}
-
-NormalEquations RobustProblem::LineariseWithoutLosses(
-    const MotionDerivatives& motion) const {
-  NormalEquations sum;
-  for (const RobustCost& term : costs_) {
-    term.cost->Linearise(motion, nullptr, &sum);
+    costs_[i].cost->Linearise(motion, with_losses ? Loss(i) : nullptr, &sum);
   }
   return sum;
 }

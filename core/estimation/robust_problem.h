@@ -69,8 +69,8 @@ class RobustProblem {
   void AddTo(Assembly assembly, const LinearizationPoint& origin, double* x,
              ceres::Problem* problem);
 
-  NormalEquations Linearise(const MotionDerivatives& motion) const;
-  NormalEquations LineariseWithoutLosses(const MotionDerivatives& motion) const;
+  NormalEquations Linearise(const MotionDerivatives& motion,
+                            bool with_losses = true) const;
 
   // Squared norms of all blocks; returns their robust spread in units of the
   // noise model at the scales in force, which is 1 for right matches.

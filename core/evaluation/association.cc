@@ -44,13 +44,6 @@ std::vector<Entry> MergeLists(const std::vector<double>& first,
   return entries;
 }
 
-std::vector<double> Times(const Trajectory& trajectory) {
-  std::vector<double> times;
-  times.reserve(trajectory.size());
-  for (const StampedPose& pose : trajectory) times.push_back(pose.timestamp);
-  return times;
-}
-
 std::string TimeRange(const std::vector<double>& times) {
   if (times.empty()) return "no poses";
   return Format("%.6f s to %.6f s", times.front(), times.back());
@@ -112,8 +105,8 @@ size_t NearestTime(const std::vector<double>& times, double time) {
 std::vector<PosePair> PairPoses(const Trajectory& estimate,
                                 const Trajectory& ground_truth,
                                 double max_time_difference) {
-  const std::vector<double> estimate_times = Times(estimate);
-  const std::vector<double> truth_times = Times(ground_truth);
+  const std::vector<double> estimate_times = TimesOf(estimate);
+  const std::vector<double> truth_times = TimesOf(ground_truth);
   std::vector<PosePair> pairs;
   for (const auto [i, j] :
        Associate(estimate_times, truth_times, max_time_difference)) {

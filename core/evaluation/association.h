@@ -32,6 +32,15 @@ struct PosePair {
   Rigid3d estimate;        // estimate_world_from_cam
 };
 
+// The time stamps of a list of what has one.
+template <typename Stamped>
+std::vector<double> TimesOf(const std::vector<Stamped>& list) {
+  std::vector<double> times;
+  times.reserve(list.size());
+  for (const Stamped& entry : list) times.push_back(entry.timestamp);
+  return times;
+}
+
 // The place of the time nearest to `time` in a sorted list that is not empty;
 // the earlier one of two that are as near.
 size_t NearestTime(const std::vector<double>& times, double time);

@@ -11,13 +11,6 @@
 namespace rgbd_pose {
 namespace {
 
-std::vector<double> Times(const std::vector<PosePair>& pairs) {
-  std::vector<double> times;
-  times.reserve(pairs.size());
-  for (const PosePair& pair : pairs) times.push_back(pair.timestamp);
-  return times;
-}
-
 // The length (m) of the ground truth's path from the first pose to each.
 std::vector<double> PathLengths(const std::vector<PosePair>& pairs) {
   std::vector<double> path = {0.0};
@@ -81,11 +74,10 @@ std::string EvaluationOptions::Check() const {
 EvaluationReport Evaluate(const Trajectory& estimate,
                           const Trajectory& ground_truth,
                           const EvaluationOptions& options) {
-  const std::string problem = options.Check();
-  if (!problem.empty()) throw InputError(problem);
+  RequireSound(options.Check());
   const std::vector<PosePair> pairs =
       PairPoses(estimate, ground_truth, options.max_time_difference);
-  const std::vector<double> times = Times(pairs);
+  const std::vector<double> times = TimesOf(pairs);
   const std::vector<double> path = PathLengths(pairs);
 
   EvaluationReport report;

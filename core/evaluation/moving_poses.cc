@@ -5,8 +5,6 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kMaxTruthGap = 0.05;  // s
-
 constexpr double kMaxVelocitySpan = 0.25;  // s
 
 }  // namespace
@@ -20,7 +18,7 @@ std::optional<Rigid3d> InterpolatedPath::At(double time) const {
   if (after == trajectory_.begin()) return std::nullopt;
   const StampedPose& before = *(after - 1);
   const double gap = after->timestamp - before.timestamp;
-  if (gap >= kMaxTruthGap) return std::nullopt;
+  if (gap >= max_gap_) return std::nullopt;
   const double share = (time - before.timestamp) / gap;
   const Rigid3d& a = before.world_from_cam;
   const Rigid3d& b = after->world_from_cam;

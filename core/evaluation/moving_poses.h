@@ -11,13 +11,13 @@
 namespace rgbd_pose {
 
 // A trajectory between its poses, too: places along the line, orientations
-// along the arc, but not across gaps of 50 ms or more, where a hand may do
-// anything.
+// along the arc, but not across gaps of `max_gap` (s) or more: in 50 ms a hand
+// may do anything.
 class InterpolatedPath {
  public:
   // Of a trajectory that outlives it.
-  explicit InterpolatedPath(const Trajectory& trajectory)
-      : trajectory_(trajectory) {}
+  explicit InterpolatedPath(const Trajectory& trajectory, double max_gap = 0.05)
+      : trajectory_(trajectory), max_gap_(max_gap) {}
 
   // world_from_cam at this time (s); nothing in a gap, before the first pose or
   // after the last.
@@ -29,6 +29,7 @@ class InterpolatedPath {
 
  private:
   const Trajectory& trajectory_;
+  const double max_gap_;
 };
 
 // A pose and the velocity there.

@@ -52,10 +52,9 @@ constexpr size_t kMaxMotions = 20000;
 
 TruthComparison::TruthComparison(const Trajectory& estimate,
                                  const Trajectory& ground_truth)
-    : estimate_(estimate), path_(ground_truth) {
+    : estimate_(estimate), path_(ground_truth), times_(TimesOf(estimate)) {
   std::vector<std::optional<Rigid3d>> poses;
   for (const StampedPose& pose : estimate) {
-    times_.push_back(pose.timestamp);
     poses.emplace_back(pose.world_from_cam);
   }
   moving_estimate_ = MovingPoses(times_, poses);
@@ -205,17 +204,16 @@ TruthAlignment AlignTruth(const Trajectory& estimate,
   if (!result.skipped.empty()) return result;
   const std::vector<PosePair> pairs = comparison.Pairs(result.fixing);
   const Rigid3d truth_from_estimate = AlignRigidly(pairs);
-  std::vector<double> times;
   std::vector<double> distances;
   for (const PosePair& pair : pairs) {
-    times.push_back(pair.timestamp);
     distances.push_back((truth_from_estimate * pair.estimate.translation -
                          pair.truth.translation)
                             .norm());
   }
   result.ate = Summarise(std::move(distances));
   result.rpe_seconds = SummariseIntervals(
-      pairs, TimeIntervals(times, rpe_delta_seconds, max_time_difference));
+      pairs,
+      TimeIntervals(TimesOf(pairs), rpe_delta_seconds, max_time_difference));
   return result;
 }
 

@@ -153,12 +153,6 @@ struct DepthCorrection {
   // Where the depth image, as it was registered to colour, has a point X of the
   // axes of colour: this * X.
   Rigid3d depth_from_color = {};
-
-  // Whether there are none.
-  bool IsIdentity() const {
-    return inverse_depth_offset == 0.0 && depth_from_color.Angle() == 0.0 &&
-           depth_from_color.translation.isZero(0.0);
-  }
 };
 
 // A camera together with how its depth images count, and when both images are

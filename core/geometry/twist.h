@@ -14,7 +14,9 @@ struct Twist {
 
   // later_from_earlier over so many seconds (negative: earlier), for fractions
   // of a second: the translation is to first order.
-  Rigid3d MotionDuring(double seconds) const;
+  Rigid3d MotionDuring(double seconds) const {
+    return Rigid3d::FromRotationVector(-seconds * angular, -seconds * linear);
+  }
 
   // Where a point that stands still (camera axes, m) is seen from the camera so
   // many seconds later, to second order. For double and for vectors of doubles.
@@ -59,7 +61,10 @@ inline Twist operator*(double factor, const Twist& twist) {
 }
 
 // The twist at which a motion takes so many seconds, not 0.
-Twist TwistOf(const Rigid3d& later_from_earlier, double seconds);
+inline Twist TwistOf(const Rigid3d& later_from_earlier, double seconds) {
+  return {-RotationVector(later_from_earlier.rotation) / seconds,
+          -later_from_earlier.translation / seconds};
+}
 
 // When the images of an RGB-D frame were taken, and how the camera moved
 // meanwhile: what it takes to say where things were seen at the frame's stamp.

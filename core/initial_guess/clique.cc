@@ -1,9 +1,9 @@
-#include "core/initial_guess/clique.h"
-
 #include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <vector>
+
+#include "core/initial_guess/consensus.h"
 
 namespace rgbd_pose {
 namespace {

@@ -39,4 +39,23 @@ std::optional<Consensus> FindConsensus(const std::vector<PointMatch>& matches,
                                        const Rigid3d& cur_from_prev,
                                        const ConsensusOptions& options);
 
+// The motion that most matches agree with, by random samples of three matches
+// and closed form (Fischler & Bolles 1981), each new best one fitted again to
+// those that agree with it (Chum, Matas & Kittler 2003). Distances are whitened
+// by the noise of both frames; matches without a depth on both sides do not
+// count. The same input gives the same bytes. Nothing if too few matches agree
+// with any motion or those that do leave it undetermined.
+std::optional<Consensus> FindByRansac(const Correspondences& matches,
+                                      const ConsensusOptions& options = {});
+
+// The motion of a greatest set of matches that are all consistent with each
+// other, found greedily: the match with the most consistent partners first,
+// then the next that is consistent with all taken so far (Howard, "Real-time
+// stereo visual odometry for autonomous ground vehicles", IROS 2008). Ties go
+// to the earlier match; nothing is random. The motion is that of the set in
+// closed form, fitted again to the matches that agree with it. Matches without
+// a depth on both sides do not count. Nothing if too few agree or those that do
+// leave the motion undetermined.
+std::optional<Consensus> FindByClique(const Correspondences& matches);
+
 }  // namespace rgbd_pose

@@ -1,7 +1,6 @@
 #include "core/initial_guess/initial_guess.h"
 
-#include "core/initial_guess/clique.h"
-#include "core/initial_guess/ransac.h"
+#include "core/initial_guess/consensus.h"
 #include "core/util/named_values.h"
 
 namespace rgbd_pose {
@@ -12,26 +11,14 @@ std::optional<Rigid3d> MotionOf(const std::optional<Consensus>& consensus) {
   return consensus->cur_from_prev;
 }
 
-std::optional<Rigid3d> Identity(const Correspondences& /*matches*/) {
-  return Rigid3d();
-}
-
-std::optional<Rigid3d> ByRansac(const Correspondences& matches) {
-  return MotionOf(FindByRansac(matches));
-}
-
-std::optional<Rigid3d> ByClique(const Correspondences& matches) {
-  return MotionOf(FindByClique(matches));
-}
-
 }  // namespace
 
 const std::vector<InitialGuess>& InitialGuesses() {
   static const std::vector<InitialGuess>& guesses =
       *new std::vector<InitialGuess>{
-          {"identity", Identity},
-          {"ransac", ByRansac},
-          {"clique", ByClique},
+          {"identity", [](const auto&) { return std::optional(Rigid3d()); }},
+          {"ransac", [](const auto& m) { return MotionOf(FindByRansac(m)); }},
+          {"clique", [](const auto& m) { return MotionOf(FindByClique(m)); }},
       };
   return guesses;
 }

@@ -19,8 +19,9 @@ struct InitialGuess {
 
 // All initial guesses:
 //   identity  no motion, whatever the matches say
-//   ransac    what random samples of three find most agreement with (ransac.h)
-//   clique    that of the matches that preserve all their distances (clique.h)
+//   ransac    what random samples of three find most agreement with
+//   (FindByRansac) clique    that of the matches that preserve all their
+//   distances (FindByClique)
 const std::vector<InitialGuess>& InitialGuesses();
 
 // The initial guess of that name, or null.

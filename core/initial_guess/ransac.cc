@@ -1,5 +1,3 @@
-#include "core/initial_guess/ransac.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -7,6 +5,7 @@
 #include <limits>
 #include <vector>
 
+#include "core/initial_guess/consensus.h"
 #include "core/util/counter_random.h"
 
 namespace rgbd_pose {

@@ -2,6 +2,7 @@
 
 #include <ceres/crs_matrix.h>
 #include <ceres/problem.h>
+#include <ceres/sized_cost_function.h>
 #include <ceres/solver.h>
 
 #include <deque>
@@ -11,9 +12,48 @@
 
 #include "core/estimation/batch_loss.h"
 #include "core/geometry/motion.h"
-#include "core/pose_graph/graph_blocks.h"
+#include "core/pose_graph/pose_graph.h"
+#include "core/pose_graph/pose_pair.h"
 
 namespace rgbd_pose {
+
+// S with S^T S = information, a positive semi-definite matrix; nothing (all
+// NaN) if it is invalid.
+MotionMatrix SqrtInformation(const MotionMatrix& information);
+
+// A measured motion between two poses as six rows,
+//
+//   r = S [ 2 vec q ; C - C_m ],   q the quaternion of R R_m^T,  q_w >= 0,
+//
+// S^T S = covariance^-1. 2 vec q is the rotation Exp(omega) = R R_m^T to first
+// order, and grows up to a half turn, where omega does.
+struct RelativePoseErrorTerm {
+  RotationAndCenter<double> measured;
+  MotionMatrix root;  // S
+
+  static RelativePoseErrorTerm Of(const Rigid3d& cur_from_ref,
+                                  const MotionMatrix& root);
+
+  // r and, unless null, d r / d[x_ref x_cur].
+  MotionVector ResidualAt(const RelativeMotion& pair,
+                          PosePairJacobian* jacobian) const;
+};
+
+// An edge with its hand-written Jacobian. The origins must outlive it.
+class EdgeBlock final : public ceres::SizedCostFunction<6, 6, 6> {
+ public:
+  EdgeBlock(const RelativePoseErrorTerm& term, const LinearizationPoint* ref,
+            const LinearizationPoint* cur)
+      : term_(term), ref_(ref), cur_(cur) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override;
+
+ private:
+  const RelativePoseErrorTerm term_;
+  const LinearizationPoint* const ref_;
+  const LinearizationPoint* const cur_;
+};
 
 // A graph as one Ceres problem: six parameters a pose, about where it is now,
 // of which those of fixed poses are constant.

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/pose_graph/graph_blocks.h"
 #include "core/pose_graph/graph_problem.h"
 #include "core/util/input_error.h"
 
@@ -21,6 +20,24 @@ constexpr double kWidest = 1024.0;
 // A stage before the last one need not settle.
 constexpr int kGraphIterationsPerEarlyStage = 3;
 
+// The least width of the losses, in theirs, at which all edges count.
+double FirstWidth(const GraphTerms& graph) {
+  double largest = 0.0;
+  for (const GraphTerms::Edge& edge : graph.edges) {
+    if (edge.loss == nullptr || graph.IsIdle(edge.ref, edge.cur)) continue;
+    // By how many sigmas, squared, it disagrees with the poses.
+    const Rigid3d motion = graph.Between(edge.ref, edge.cur);
+    RelativeMotion pair;
+    pair.motion = {motion.rotation.toRotationMatrix(),
+                   motion.Inverse().translation};
+    largest = std::max(largest,
+                       RelativePoseErrorTerm::Of(edge.cur_from_ref, edge.root)
+                           .ResidualAt(pair, nullptr)
+                           .squaredNorm());
+  }
+  return std::clamp(std::sqrt(largest), 1.0, kWidest);
+}
+
 }  // namespace
 
 std::string PoseGraphOptions::Check() const {
@@ -34,58 +51,13 @@ std::string PoseGraphOptions::Check() const {
   return "";
 }
 
-const char* ToString(GraphStatus status) {
-  switch (status) {
-    case GraphStatus::kOk:
-      return "ok";
-    case GraphStatus::kBadInput:
-      return "bad_input";
-    case GraphStatus::kNotAnchored:
-      return "not_anchored";
-    case GraphStatus::kSingular:
-      return "singular";
-    case GraphStatus::kNotConverged:
-      return "not_converged";
-  }
-  return "";
+PoseGraph::PoseGraph(const PoseGraphOptions& options) : options_(options) {
+  RequireSound(options.Check(), "motion graph: ");
 }
 
-class PoseGraph::Impl {
- public:
-  explicit Impl(const PoseGraphOptions& options) : options_(options) {
-    const std::string error = options.Check();
-    if (!error.empty()) throw InputError("motion graph: " + error);
-  }
-
-  GraphSolution Solve();
-  GraphProblem Problem(double width = 1.0) const {
-    return GraphProblem(graph_, width);
-  }
-
-  const PoseGraphOptions options_;
-  GraphTerms graph_;
-
- private:
-  // The least width of the losses, in theirs, at which all edges count.
-  double FirstWidth() const;
-  // One round at a width of the losses; by how much a pose moved at most (rad
-  // and m), or NaN if the solver gave up.
-  double Round(double width, int max_iterations, GraphSolution* solution);
-};
-
-double PoseGraph::Impl::FirstWidth() const {
-  double largest = 0.0;
-  for (const GraphTerms::Edge& edge : graph_.edges) {
-    if (edge.loss != nullptr && !graph_.IsIdle(edge.ref, edge.cur)) {
-      largest = std::max(largest, graph_.SquaredMahalanobisDistance(edge));
-    }
-  }
-  return std::clamp(std::sqrt(largest), 1.0, kWidest);
-}
-
-double PoseGraph::Impl::Round(double width, int max_iterations,
-                              GraphSolution* solution) {
-  GraphProblem problem = Problem(width);
+double PoseGraph::Round(double width, int max_iterations,
+                        GraphSolution* solution) {
+  GraphProblem problem(graph_, width);
   if (problem.is_empty()) return 0.0;
   ceres::Solver::Options options;
   options.linear_solver_type = ceres::SPARSE_NORMAL_CHOLESKY;
@@ -115,7 +87,7 @@ double PoseGraph::Impl::Round(double width, int max_iterations,
   return moved;
 }
 
-GraphSolution PoseGraph::Impl::Solve() {
+GraphSolution PoseGraph::Solve() {
   GraphSolution solution;
   const auto is_refused = [&](const std::string& reason, GraphStatus status) {
     if (reason.empty()) return false;
@@ -128,9 +100,10 @@ GraphSolution PoseGraph::Impl::Solve() {
     return solution;
   }
   const std::vector<GraphTerms::Pose> before = graph_.poses;
-  solution.initial_cost = solution.final_cost = Problem().Cost();
+  solution.initial_cost = solution.final_cost =
+      GraphProblem(graph_, 1.0).Cost();
   if (options_.graduated) {
-    for (double width = FirstWidth(); width > 1.0; width /= kNarrowing) {
+    for (double width = FirstWidth(graph_); width > 1.0; width /= kNarrowing) {
       if (std::isnan(Round(width, kGraphIterationsPerEarlyStage, &solution)))
         break;
     }
@@ -140,7 +113,7 @@ GraphSolution PoseGraph::Impl::Solve() {
     if (!(moved > options_.step_tolerance)) break;
   }
   if (solution.ok()) {
-    GraphProblem problem = Problem();
+    GraphProblem problem(graph_, 1.0);
     is_refused(
         FindUndetermined(graph_, options_.max_standard_deviation, &problem),
         GraphStatus::kSingular);
@@ -149,52 +122,22 @@ GraphSolution PoseGraph::Impl::Solve() {
   return solution;
 }
 
-PoseGraph::PoseGraph(const PoseGraphOptions& options)
-    : impl_(std::make_unique<Impl>(options)) {}
-PoseGraph::~PoseGraph() = default;
-PoseGraph::PoseGraph(PoseGraph&&) noexcept = default;
-PoseGraph& PoseGraph::operator=(PoseGraph&&) noexcept = default;
-
-int PoseGraph::AddPose(const Rigid3d& world_from_cam, bool is_fixed) {
-  impl_->graph_.poses.push_back({world_from_cam, is_fixed});
-  return num_poses() - 1;
-}
-
 int PoseGraph::AddEdge(const RelativePose& edge,
                        const ceres::LossFunction* loss) {
   // A covariance without an inverse has no finite root either.
-  impl_->graph_.edges.push_back({edge.ref, edge.cur, edge.cur_from_ref,
-                                 SqrtInformation(edge.covariance.inverse()),
-                                 loss});
-  return static_cast<int>(impl_->graph_.edges.size()) - 1;
-}
-
-void PoseGraph::SetPose(int pose, const Rigid3d& world_from_cam) {
-  impl_->graph_.poses[pose].world_from_cam = world_from_cam;
-}
-
-void PoseGraph::SetFixed(int pose, bool is_fixed) {
-  impl_->graph_.poses[pose].is_fixed = is_fixed;
-}
-
-GraphSolution PoseGraph::Solve() { return impl_->Solve(); }
-
-int PoseGraph::num_poses() const {
-  return static_cast<int>(impl_->graph_.poses.size());
-}
-
-const Rigid3d& PoseGraph::pose(int pose) const {
-  return impl_->graph_.poses[pose].world_from_cam;
+  graph_.edges.push_back({edge.ref, edge.cur, edge.cur_from_ref,
+                          SqrtInformation(edge.covariance.inverse()), loss});
+  return static_cast<int>(graph_.edges.size()) - 1;
 }
 
 std::vector<MotionMatrix> PoseGraph::MarginalCovariances(
     const std::vector<int>& poses) const {
-  return impl_->Problem().MarginalCovariances(poses, impl_->options_.threads);
+  return GraphProblem(graph_, 1.0).MarginalCovariances(poses, options_.threads);
 }
 
 double PoseGraph::OvercountingFactor() const {
   const auto motions = static_cast<double>(num_poses() - 1);
-  const auto edges = static_cast<double>(impl_->graph_.edges.size());
+  const auto edges = static_cast<double>(graph_.edges.size());
   return motions > 0.0 ? std::max(1.0, edges / motions) : 1.0;
 }
 

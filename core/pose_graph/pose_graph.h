@@ -2,7 +2,6 @@
 
 #include <ceres/loss_function.h>
 
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -11,6 +10,39 @@
 #include "core/pose_graph/relative_pose.h"
 
 namespace rgbd_pose {
+
+// What a PoseGraph holds, as its parts see it: poses, by their numbers, and
+// what is known of them.
+struct GraphTerms {
+  struct Pose {
+    Rigid3d world_from_cam;
+    bool is_fixed = false;
+  };
+  // A motion that was measured.
+  struct Edge {
+    int ref = 0, cur = 0;
+    Rigid3d cur_from_ref;
+    MotionMatrix root;  // see SqrtInformation
+    const ceres::LossFunction* loss = nullptr;
+  };
+  std::vector<Pose> poses;
+  std::vector<Edge> edges;
+
+  // cur_from_ref as the poses have it.
+  Rigid3d Between(int ref, int cur) const {
+    return poses[cur].world_from_cam.Inverse() * poses[ref].world_from_cam;
+  }
+
+  // Whether there is such a pose.
+  bool Has(int pose) const {
+    return pose >= 0 && pose < static_cast<int>(poses.size());
+  }
+
+  // Whether what is between the two changes nothing.
+  bool IsIdle(int ref, int cur) const {
+    return poses[ref].is_fixed && poses[cur].is_fixed;
+  }
+};
 
 // How a graph is solved.
 struct PoseGraphOptions {
@@ -47,8 +79,12 @@ enum class GraphStatus {
   kNotConverged,  // the solver gave up; the poses are those before
 };
 
-// "ok", "bad_input", ...
-const char* ToString(GraphStatus status);
+// As programs print it.
+inline const char* ToString(GraphStatus status) {
+  constexpr const char* kNames[] = {"ok", "bad_input", "not_anchored",
+                                    "singular", "not_converged"};
+  return kNames[static_cast<int>(status)];
+}
 
 // What came of a solve.
 struct GraphSolution {
@@ -73,12 +109,12 @@ class PoseGraph {
  public:
   // Throws InputError for options that are not sound (see Check).
   explicit PoseGraph(const PoseGraphOptions& options = {});
-  ~PoseGraph();
-  PoseGraph(PoseGraph&&) noexcept;
-  PoseGraph& operator=(PoseGraph&&) noexcept;
 
   // Returns its number: 0, 1, 2, ... A fixed pose stays where it is.
-  int AddPose(const Rigid3d& world_from_cam, bool is_fixed = false);
+  int AddPose(const Rigid3d& world_from_cam, bool is_fixed = false) {
+    graph_.poses.push_back({world_from_cam, is_fixed});
+    return num_poses() - 1;
+  }
 
   // `edge.ref` and `edge.cur` are numbers of poses. The loss must outlive the
   // graph and sees the whole edge: 6 whitened rows.
@@ -86,18 +122,24 @@ class PoseGraph {
               const ceres::LossFunction* loss = nullptr);
 
   // Where the next Solve begins, or stays if it is fixed.
-  void SetPose(int pose, const Rigid3d& world_from_cam);
+  void SetPose(int pose, const Rigid3d& world_from_cam) {
+    graph_.poses[pose].world_from_cam = world_from_cam;
+  }
   // Whether it is, from now on.
-  void SetFixed(int pose, bool is_fixed);
+  void SetFixed(int pose, bool is_fixed) {
+    graph_.poses[pose].is_fixed = is_fixed;
+  }
 
   // Moves the poses that are not fixed. What lies between fixed poses alone is
   // left out.
   GraphSolution Solve();
 
   // How many there are.
-  int num_poses() const;
+  int num_poses() const { return static_cast<int>(graph_.poses.size()); }
   // world_from_cam.
-  const Rigid3d& pose(int pose) const;
+  const Rigid3d& pose(int pose) const {
+    return graph_.poses[pose].world_from_cam;
+  }
 
   // Covariances of poses, [omega (rad), C (m)] with omega about the axes of the
   // camera and C its centre in the world, after a Solve that was ok; zero for
@@ -115,8 +157,12 @@ class PoseGraph {
   double OvercountingFactor() const;
 
  private:
-  class Impl;
-  std::unique_ptr<Impl> impl_;
+  // One round at a width of the losses; by how much a pose moved at most (rad
+  // and m), or NaN if the solver gave up.
+  double Round(double width, int max_iterations, GraphSolution* solution);
+
+  PoseGraphOptions options_;
+  GraphTerms graph_;
 };
 
 }  // namespace rgbd_pose

@@ -26,4 +26,10 @@ class InputError : public std::runtime_error {
   }
 };
 
+// Throws what a Check() says, with `before` before it, unless it is empty.
+inline void RequireSound(const std::string& problem,
+                         const std::string& before = "") {
+  if (!problem.empty()) throw InputError(before + problem);
+}
+
 }  // namespace rgbd_pose

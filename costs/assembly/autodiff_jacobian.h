@@ -3,19 +3,14 @@
 #include <ceres/jet.h>
 
 #include <cstring>
-#include <type_traits>
 
 #include "core/geometry/motion.h"
 
 namespace rgbd_pose {
 
-// Whether a residual type (costs/assembly/cost_of.h) has a Jacobian by hand.
-template <typename Type, typename = void>
-struct HasJacobian : std::false_type {};
+// Where a residual type (costs/assembly/cost_of.h) has a Jacobian by hand.
 template <typename Type>
-struct HasJacobian<Type,
-                   std::void_t<decltype(&Type::template Jacobian<double>)>>
-    : std::true_type {};
+using JacobianOf = decltype(&Type::template Jacobian<double>);
 
 // A residual type without one, given one by automatic differentiation: match by
 // match, so several times slower than by hand, but right at once.

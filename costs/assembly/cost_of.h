@@ -1,13 +1,17 @@
 #pragma once
 
 #include <memory>
-#include <type_traits>
 
 #include "core/estimation/motion_cost.h"
 #include "costs/assembly/packed_cost.h"
 #include "costs/parts/cost_input.h"
 
 namespace rgbd_pose {
+
+template <typename Residual>
+using IsPriorOf = decltype(Residual::kIsPrior);
+template <typename Residual>
+using AssociationOf = decltype(Residual::kAssociation);
 
 // The MotionCost of a residual type over matches: binding, sums and the three
 // assemblies. A residual type is stateless and says
@@ -37,31 +41,17 @@ namespace rgbd_pose {
 //
 // A type that packs the prior instead of matches says so by kIsPrior; it is
 // called with i = 0 if there is a prior.
-template <typename Residual, typename = void>
-struct IsPrior : std::false_type {};
-template <typename Residual>
-struct IsPrior<Residual, std::void_t<decltype(Residual::kIsPrior)>>
-    : std::true_type {};
-
-// How a residual type is associated: its kAssociation, else once.
-template <typename Residual, typename = void>
-struct HasAssociation : std::false_type {};
-template <typename Residual>
-struct HasAssociation<Residual, std::void_t<decltype(Residual::kAssociation)>>
-    : std::true_type {};
-
-// Of a residual type as described above.
 template <typename Type>
 class CostOf final : public PackedCost<Type> {
   using Residual = typename PackedCost<Type>::Residual;
 
  public:
   int scale_group() const override {
-    return IsPrior<Residual>() ? MotionCost::kFixedScale : 0;
+    return kIsPrior ? MotionCost::kFixedScale : 0;
   }
 
   AssociationPolicy association() const override {
-    if constexpr (HasAssociation<Residual>()) return Residual::kAssociation;
+    if constexpr (kHas<AssociationOf, Residual>) return Residual::kAssociation;
     return AssociationPolicy::kOnce;
   }
 
@@ -87,19 +77,21 @@ class CostOf final : public PackedCost<Type> {
   }
 
  private:
+  static constexpr bool kIsPrior = kHas<IsPriorOf, Residual>;
+
   void PackAll(const CostInput& input) {
     const size_t count = Count(input);
     this->BeginBlocks(count);
     double columns[Residual::kColumns];
     for (size_t i = 0; i < count; ++i) {
       if (!Residual::Pack(input, i, columns)) continue;
-      this->AddBlock(columns, IsPrior<Residual>() ? -1 : static_cast<int>(i));
+      this->AddBlock(columns, kIsPrior ? -1 : static_cast<int>(i));
     }
     this->EndBlocks();
   }
 
   static size_t Count(const CostInput& input) {
-    if (IsPrior<Residual>()) return input.prior != nullptr ? 1 : 0;
+    if (kIsPrior) return input.prior != nullptr ? 1 : 0;
     return input.matches.size();
   }
 

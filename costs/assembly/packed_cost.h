@@ -10,23 +10,15 @@
 #include "core/util/parallel_for.h"
 #include "core/util/vector_lanes.h"
 #include "costs/assembly/autodiff_jacobian.h"
-#include "costs/assembly/match_blocks.h"
-#include "costs/assembly/motion_block.h"
+#include "costs/assembly/cost_blocks.h"
 #include "costs/assembly/packed_sum.h"
 
 namespace rgbd_pose {
 
-template <typename Residual, typename = void>
-struct HasDegrees : std::false_type {};
 template <typename Residual>
-struct HasDegrees<Residual, std::void_t<decltype(&Residual::Degrees)>>
-    : std::true_type {};
-
-template <typename Residual, typename = void>
-struct HasInlierLimit : std::false_type {};
+using DegreesOf = decltype(&Residual::Degrees);
 template <typename Residual>
-struct HasInlierLimit<Residual, std::void_t<decltype(&Residual::InlierLimit)>>
-    : std::true_type {};
+using InlierLimitOf = decltype(&Residual::InlierLimit);
 
 // What the costs of all residual types share, whatever their blocks come from:
 // the blocks as columns, the sums over them and the three assemblies. A derived
@@ -35,7 +27,7 @@ template <typename Type>
 class PackedCost : public MotionCost {
  protected:
   // With a Jacobian, if the type has none of its own.
-  using Residual = std::conditional_t<HasJacobian<Type>::value, Type,
+  using Residual = std::conditional_t<kHas<JacobianOf, Type>, Type,
                                       WithAutodiffJacobian<Type>>;
 
  public:
@@ -50,7 +42,7 @@ class PackedCost : public MotionCost {
   bool is_whitened() const override { return Residual::kIsWhitened; }
 
   double InlierLimit(int k) const override {
-    if constexpr (HasInlierLimit<Residual>()) {
+    if constexpr (kHas<InlierLimitOf, Residual>) {
       double columns[kColumns];
       for (int i = 0; i < kColumns; ++i) {
         columns[i] = packed_.values[i * packed_.stride + k];
@@ -195,7 +187,7 @@ class PackedCost : public MotionCost {
 
  private:
   static int Degrees(const double* columns) {
-    if constexpr (HasDegrees<Residual>()) return Residual::Degrees(columns);
+    if constexpr (kHas<DegreesOf, Residual>) return Residual::Degrees(columns);
     return Residual::kDegreesOfFreedom;
   }
 

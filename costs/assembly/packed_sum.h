@@ -226,8 +226,8 @@ struct LineariseKernel {
                                          NormalEquations* sum) {
     using D = typename Lanes<W>::Type;
     using Sums =
-        std::conditional_t<HasPointTerms<Residual>::value,
-                           TermSums<Residual, D>, RowSums<Residual, D>>;
+        std::conditional_t<kHas<PointTermsOf, Residual>, TermSums<Residual, D>,
+                           RowSums<Residual, D>>;
     Sums sums;
     double cost = 0.0;
     for (int begin = first; begin < last; begin += kTile) {

@@ -10,8 +10,6 @@
 #include <limits>
 #include <memory>
 
-#include "costs/calibration/calibration_list.h"
-#include "costs/calibration/known_distance_block.h"
 #include "costs/calibration/landmark_block.h"
 #include "costs/calibration/landmark_covariance.h"
 

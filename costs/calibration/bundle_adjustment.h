@@ -3,7 +3,6 @@
 #include <array>
 
 #include "costs/calibration/calibration_parameters.h"
-#include "costs/calibration/calibration_state.h"
 #include "costs/calibration/calibration_views.h"
 #include "costs/calibration/landmark_block.h"
 

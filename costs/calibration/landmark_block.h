@@ -1,11 +1,11 @@
 #pragma once
 
-#include <ceres/autodiff_cost_function.h>
 #include <ceres/sized_cost_function.h>
 
 #include <Eigen/Core>
 
 #include "core/geometry/motion.h"
+#include "costs/calibration/calibration_views.h"
 #include "costs/calibration/landmark_residuals.h"
 
 namespace rgbd_pose {
@@ -77,34 +77,71 @@ class LandmarkBlock final
   const LandmarkData& data_;
 };
 
-// The same residual for ceres::AutoDiffCostFunction: the oracle.
-template <typename Residual>
-class LandmarkOracle {
- public:
-  LandmarkOracle(const LinearizationPoint& anchor,
-                 const LinearizationPoint& view,
-                 const CalibrationOrigin& origin, const LandmarkData& data)
-      : anchor_(anchor), view_(view), origin_(origin), data_(data) {}
+// The error of a KnownDistance, whitened, and its derivatives by both poses and
+// theta: |P_a - P_b| with P = C + R^T (factor * in).
+struct KnownDistanceError {
+  double r = 0.0;
+  Eigen::Matrix<double, 1, 6> a, b;
+  double by_factor = 0.0;
 
-  template <typename T>
-  bool operator()(const T* anchor, const T* view, const T* d, const T* y,
-                  T* residuals) const {
-    const auto theta = origin_.At(y);
-    Residual::Residual(anchor_.PoseAt(anchor), view_.PoseAt(view), d[0],
-                       theta.data(), data_, residuals);
+  KnownDistanceError(const MotionDerivatives& pose_a,
+                     const MotionDerivatives& pose_b, double factor,
+                     const KnownDistance& known) {
+    const Eigen::Vector3d in_a = factor * known.in_a;
+    const Eigen::Vector3d in_b = factor * known.in_b;
+    const Eigen::Vector3d apart = pose_a.C + pose_a.R.transpose() * in_a -
+                                  pose_b.C - pose_b.R.transpose() * in_b;
+    const double length = apart.norm();
+    const double weight = 1.0 / known.sigma;
+    r = (length - known.metres) * weight;
+    const Eigen::RowVector3d along =
+        (length > 0.0 ? Eigen::Vector3d(apart / length)
+                      : Eigen::Vector3d::Zero().eval())
+            .transpose() *
+        weight;
+    for (int k = 0; k < 3; ++k) {
+      a[k] = along * (pose_a.dR[k].transpose() * in_a);
+      b[k] = -along * (pose_b.dR[k].transpose() * in_b);
+    }
+    a.tail<3>() = along;
+    b.tail<3>() = -along;
+    by_factor = along * (pose_a.R.transpose() * known.in_a -
+                         pose_b.R.transpose() * known.in_b);
+  }
+};
+
+// The same as a Ceres cost function in [pose of a, pose of b, y].
+class KnownDistanceBlock final
+    : public ceres::SizedCostFunction<1, 6, 6, kCalibrationSize> {
+ public:
+  // All must outlive the block.
+  KnownDistanceBlock(const LinearizationPoint& a, const LinearizationPoint& b,
+                     const CalibrationOrigin& origin,
+                     const KnownDistance& known)
+      : a_(a), b_(b), origin_(origin), known_(known) {}
+
+  bool Evaluate(double const* const* x, double* residuals,
+                double** jacobians) const override {
+    const KnownDistanceError error(a_.DerivativesAt(x[0]),
+                                   b_.DerivativesAt(x[1]),
+                                   origin_.At(x[2])[kDepthFactor], known_);
+    residuals[0] = error.r;
+    if (jacobians == nullptr) return true;
+    for (int k = 0; k < 6; ++k) {
+      if (jacobians[0] != nullptr) jacobians[0][k] = error.a[k];
+      if (jacobians[1] != nullptr) jacobians[1][k] = error.b[k];
+    }
+    if (jacobians[2] == nullptr) return true;
+    for (int k = 0; k < kCalibrationSize; ++k) jacobians[2][k] = 0.0;
+    jacobians[2][kDepthFactor] = error.by_factor * origin_.width[kDepthFactor];
     return true;
   }
 
  private:
-  const LinearizationPoint& anchor_;
-  const LinearizationPoint& view_;
+  const LinearizationPoint& a_;
+  const LinearizationPoint& b_;
   const CalibrationOrigin& origin_;
-  const LandmarkData& data_;
+  const KnownDistance& known_;
 };
-
-template <typename Residual>
-using LandmarkOracleBlock =
-    ceres::AutoDiffCostFunction<LandmarkOracle<Residual>, Residual::kRows, 6, 6,
-                                1, kCalibrationSize>;
 
 }  // namespace rgbd_pose

@@ -3,8 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "costs/calibration/known_distance_block.h"
-#include "costs/calibration/reduced_camera_system.h"
+#include "costs/calibration/landmark_block.h"
 
 namespace rgbd_pose {
 namespace {
@@ -12,7 +11,179 @@ namespace {
 // As RobustCovariance has it.
 constexpr double kMinSlope = 0.2;
 
+// rho' of Cauchy's loss.
+double Weight(double squared) {
+  return 1.0 / (1.0 + squared / (kLandmarkLossWidth * kLandmarkLossWidth));
+}
+
+// The equations of one landmark at a time.
+class OneLandmark {
+ public:
+  OneLandmark(const CalibrationOrigin& origin, ReducedCameraSystem* equations)
+      : origin_(origin), equations_(*equations) {}
+
+  void Begin(const Landmark& landmark) {
+    anchor_ = landmark.anchor;
+    const int rows = kFixed + 6 * landmark.num_views;
+    local_.setZero(rows, rows);
+    by_depth_.setZero(rows);
+    gradient_.setZero(rows);
+    hessian_d_ = gradient_d_ = 0.0;
+    keyframes_.clear();
+  }
+
+  // What is added from now on is of this view.
+  void BeginView(int keyframe) { keyframes_.push_back(keyframe); }
+  int num_views() const { return static_cast<int>(keyframes_.size()); }
+
+  // A residual at the anchor, which no pose has a part in.
+  template <typename Derivatives, typename Residual>
+  void AddOfAnchor(const Derivatives& J, const Residual& r) {
+    AddFixed(J, r, WeightOf(r));
+  }
+
+  template <typename Derivatives, typename Residual>
+  void AddOfView(const Derivatives& J, const Residual& r) {
+    const double weight = WeightOf(r);
+    const auto head = AddFixed(J, r, weight);
+    const int place = kFixed + 6 * (num_views() - 1);
+    local_.block<6, kFixed>(place, 0).noalias() +=
+        weight * J.view.transpose() * head;
+    local_.block<6, 6>(place, place).noalias() +=
+        weight * J.view.transpose() * J.view;
+    by_depth_.segment<6>(place) +=
+        weight * J.view.transpose() * J.inverse_depth;
+    gradient_.segment<6>(place) += weight * J.view.transpose() * r;
+  }
+
+  // Eliminates the depth, which is at its best whatever the rest is, and adds
+  // what is left.
+  void MoveToEquations() {
+    if (!(hessian_d_ > 0.0)) return;
+    const int length = kFixed + 6 * num_views();
+    for (int k = 0; k < length; ++k) {
+      const int below = length - k;
+      local_.col(k).segment(k, below) -=
+          by_depth_[k] / hessian_d_ * by_depth_.segment(k, below);
+    }
+    gradient_.head(length) -=
+        by_depth_.head(length) * (gradient_d_ / hessian_d_);
+    Eigen::MatrixXd& H = equations_.hessian;
+    for (int i = 0; i < num_views() + 2; ++i) {
+      const Block a = BlockAt(i);
+      if (a.to < 0) continue;
+      equations_.gradients.col(anchor_).segment(a.to, a.size) +=
+          gradient_.segment(a.from, a.size);
+      for (int j = 0; j <= i; ++j) {
+        const Block b = BlockAt(j);
+        if (b.to < 0) continue;
+        const auto block = local_.block(a.from, b.from, a.size, b.size);
+        if (a.to > b.to) {
+          H.block(a.to, b.to, a.size, b.size) += block;
+        } else if (a.to < b.to) {
+          H.block(b.to, a.to, b.size, a.size) += block.transpose();
+        } else {
+          H.block(a.to, a.to, a.size, a.size).triangularView<Eigen::Lower>() +=
+              block;
+        }
+      }
+    }
+  }
+
+ private:
+  static constexpr int kFixed = 6 + kCalibrationSize;  // of the anchor and y
+
+  // The unknowns of the anchor, y or a view: where they are here, how many, and
+  // where they are among all.
+  struct Block {
+    int from;
+    int size;
+    int to;
+  };
+  Block BlockAt(int i) const {
+    if (i == 0) return {0, 6, equations_.PlaceOfPose(anchor_)};
+    if (i == 1) return {6, kCalibrationSize, equations_.PlaceOfY()};
+    return {kFixed + 6 * (i - 2), 6, equations_.PlaceOfPose(keyframes_[i - 2])};
+  }
+
+  template <typename Residual>
+  double WeightOf(const Residual& r) {
+    const double s = r.squaredNorm(), weight = Weight(s);
+    const double curvature =
+        -weight * weight / (kLandmarkLossWidth * kLandmarkLossWidth);
+    equations_.weight_p += weight * r.size();
+    equations_.slope_p += weight * r.size() + 2.0 * s * curvature;
+    return weight;
+  }
+
+  // Returns the derivatives by the anchor and y.
+  template <typename Derivatives, typename Residual>
+  auto AddFixed(const Derivatives& J, const Residual& r, double weight) {
+    Eigen::Matrix<double, Residual::RowsAtCompileTime, kFixed> head;
+    head << J.anchor, J.theta * origin_.width.asDiagonal();
+    local_.topLeftCorner<kFixed, kFixed>().noalias() +=
+        weight * head.transpose() * head;
+    by_depth_.head<kFixed>() += weight * head.transpose() * J.inverse_depth;
+    gradient_.head<kFixed>() += weight * head.transpose() * r;
+    hessian_d_ += weight * J.inverse_depth.squaredNorm();
+    gradient_d_ += weight * J.inverse_depth.dot(r);
+    return head;
+  }
+
+  const CalibrationOrigin& origin_;
+  ReducedCameraSystem& equations_;
+  int anchor_ = 0;
+  std::vector<int> keyframes_;  // of the views
+  Eigen::MatrixXd local_;       // [anchor, y, views], the lower triangle
+  Eigen::VectorXd by_depth_;    // with the landmark's own depth
+  Eigen::VectorXd gradient_;
+  double hessian_d_ = 0.0, gradient_d_ = 0.0;  // of the depth itself
+};
+
 }  // namespace
+
+ReducedCameraSystem MakeReducedCameraSystem(
+    const CalibrationViews& views, bool training_only,
+    const CalibrationOrigin& origin, const CalibrationState& state,
+    const std::vector<MotionDerivatives>& poses) {
+  const int num_poses = static_cast<int>(poses.size());
+  const int size = 6 * (num_poses - 1) + kCalibrationSize;
+  ReducedCameraSystem equations;
+  equations.hessian = Eigen::MatrixXd::Zero(size, size);
+  equations.gradients = Eigen::MatrixXd::Zero(size, num_poses);
+  OneLandmark one(origin, &equations);
+  Eigen::Matrix<double, 1, 1> r1;
+  Eigen::Vector2d r2;
+  LandmarkDerivatives<1> J1;
+  LandmarkDerivatives<2> J2;
+  for (size_t i = 0; i < views.landmarks.size(); ++i) {
+    const Landmark& landmark = views.landmarks[i];
+    const double d = state.inverse_depths[i];
+    const MotionDerivatives& anchor = poses[landmark.anchor];
+    one.Begin(landmark);
+    for (int k = 0; k < landmark.num_views; ++k) {
+      const LandmarkView& view = views.views[landmark.first_view + k];
+      if (!view.TakesPart(training_only)) continue;
+      const LandmarkData data = DataOf(views, landmark, view, state);
+      const MotionDerivatives& there = poses[view.keyframe];
+      one.BeginView(view.keyframe);
+      LandmarkPixel::Jacobian(anchor, there, d, state.theta.data(), data,
+                              r2.data(), &J2);
+      one.AddOfView(J2, r2);
+      if (data.depth.inverse_sigma > 0.0) {
+        LandmarkDepth::Jacobian(anchor, there, d, state.theta.data(), data,
+                                r1.data(), &J1);
+        one.AddOfView(J1, r1);
+      }
+    }
+    if (one.num_views() == 0) continue;
+    AnchorDepth::Jacobian(anchor, anchor, d, state.theta.data(),
+                          DataOf(views, landmark, state), r1.data(), &J1);
+    one.AddOfAnchor(J1, r1);
+    one.MoveToEquations();
+  }
+  return equations;
+}
 
 bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
                         const CalibrationOrigin& origin,

@@ -8,6 +8,7 @@
 #include "core/geometry/twist.h"
 #include "costs/calibration/calibration_parameters.h"
 #include "costs/calibration/lens.h"
+#include "costs/parts/cost_input.h"
 
 // Residuals of a landmark: a point on the ray of a pixel of one keyframe, its
 // anchor, whose inverse depth d there is a parameter. It is seen in others. All
@@ -335,5 +336,9 @@ struct AnchorDepth {
     J->theta *= data.depth.inverse_sigma;
   }
 };
+
+// All of them; their Jacobian tests follow from this list.
+using CalibrationResiduals =
+    TypeList<LandmarkPixel, LandmarkDepth, AnchorDepth>;
 
 }  // namespace rgbd_pose

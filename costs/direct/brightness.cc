@@ -1,11 +1,10 @@
-#include "costs/direct/brightness.h"
-
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <array>
 #include <cstring>
 
 #include "core/util/vector_lanes.h"
+#include "costs/direct/direct_points.h"
 #include "costs/direct/lane_image.h"
 #include "costs/direct/photometric.h"
 

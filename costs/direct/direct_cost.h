@@ -4,14 +4,12 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
-#include <type_traits>
 #include <vector>
 
 #include "core/estimation/motion_cost.h"
 #include "core/util/input_error.h"
 #include "core/util/vector_lanes.h"
 #include "costs/assembly/packed_cost.h"
-#include "costs/direct/brightness.h"
 #include "costs/direct/direct_input.h"
 #include "costs/direct/direct_points.h"
 
@@ -151,12 +149,9 @@ struct LookUpKernel {
   }
 };
 
-// Whether a direct residual type says what noise of slopes would look like.
-template <typename Residual, typename = void>
-struct HasNoiseRow : std::false_type {};
+// Where a direct residual type says what noise of slopes would look like.
 template <typename Residual>
-struct HasNoiseRow<Residual, std::void_t<decltype(&Residual::NoiseRow)>>
-    : std::true_type {};
+using NoiseRowOf = decltype(&Residual::NoiseRow);
 
 // The MotionCost of a direct residual type (photometric.h): its points are made
 // once of each previous frame, and looked up in the current one after
@@ -217,10 +212,8 @@ class DirectCostOf final : public PackedCost<Type> {
     input_.lens = pair.cur->levels[0].camera.MakeLens();
     input_.moves_color = !pair.cur->timing.color.IsGlobal();
     input_.moves_depth = !pair.cur->timing.depth.IsGlobal();
-    if (const std::string error = pair.prev->depth_noise.Check();
-        !error.empty()) {
-      throw InputError("direct cost: the view's depth_noise: " + error);
-    }
+    RequireSound(pair.prev->depth_noise.Check(),
+                 "direct cost: the view's depth_noise: ");
     if (pair.prev->id != 0 && pair.prev->id == points_of_) return;
     points_of_ = pair.prev->id;
     for (int level = 0; level < options_.num_levels; ++level) {
@@ -248,7 +241,7 @@ class DirectCostOf final : public PackedCost<Type> {
 
   void AddSpuriousInformation(const MotionDerivatives& motion,
                               MotionMatrix* hessian) const override {
-    if constexpr (HasNoiseRow<Residual>::value) {
+    if constexpr (kHas<NoiseRowOf, Residual>) {
       if (input_.cur == nullptr) return;
       this->AddSample(
           motion, kSpuriousStep, 2,

@@ -2,6 +2,7 @@
 
 #include "core/estimation/frame_view.h"
 #include "costs/assembly/packed_sum.h"
+#include "costs/direct/direct_input.h"
 
 // The pixels of the previous frame that direct costs look for in the current
 // one, as columns.
@@ -29,5 +30,12 @@ void TexturedPoints(const FrameView& frame, int level,
 // sigma of a measured depth there (m).
 void SmoothPoints(const FrameView& frame, const PointSelection& selection,
                   PackedColumns* points);
+
+// How gray levels change from the previous frame to the current one, whose
+// exposure is its own: sets input->gain and bias by robust regression over the
+// textured points that are seen at input's motion. Weak
+// priors (gain 1 +- 0.3, bias 0 +- 40 gray levels) decide where there is no
+// texture to tell.
+void EstimateBrightness(const PackedColumns& points, DirectInput* input);
 
 }  // namespace rgbd_pose

@@ -6,6 +6,10 @@
 
 namespace rgbd_pose {
 
+// Of residual types: see the lists of costs.
+template <typename... Types>
+struct TypeList {};
+
 // What a residual type over matches packs its columns from.
 struct CostInput {
   const Correspondences& matches;

@@ -18,6 +18,13 @@
 
 namespace rgbd_pose {
 
+// Whether a type has what an alias template, Member<Type>, asks of it: what a
+// residual type may leave out.
+template <template <typename> typename Member, typename Type, typename = void>
+constexpr bool kHas = false;
+template <template <typename> typename Member, typename Type>
+constexpr bool kHas<Member, Type, std::void_t<Member<Type>>> = true;
+
 // One match's share.
 template <typename D>
 struct PointTerm {
@@ -123,10 +130,7 @@ inline Eigen::Matrix3d EulerRateJacobian(const MotionDerivatives& motion) {
 // Whether a residual type says its terms, kPointTerms of them: that of the
 // forward point R (X_prev - C) and, if 2, that of R^T X_cur + C after it, by
 //   PointTerms(motion, columns, terms).
-template <typename Residual, typename = void>
-struct HasPointTerms : std::false_type {};
 template <typename Residual>
-struct HasPointTerms<Residual, std::void_t<decltype(Residual::kPointTerms)>>
-    : std::true_type {};
+using PointTermsOf = decltype(Residual::kPointTerms);
 
 }  // namespace rgbd_pose

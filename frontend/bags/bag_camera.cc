@@ -1,5 +1,3 @@
-#include "frontend/bags/bag_camera.h"
-
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -63,18 +61,18 @@ std::optional<double> ViewerDepthScale(BagReader* bag, int depth) {
   const auto viewer = ViewerTopicOf(bag->topics()[depth].name);
   if (!viewer.has_value()) return std::nullopt;
   const std::string name = viewer->sensor + "/option/Depth_Units/value";
-  for (size_t i = 0; i < bag->topics().size(); ++i) {
-    if (bag->topics()[i].name != name) continue;
-    const auto first = bag->First(static_cast<int>(i), 1);
-    if (first.empty() || bag->topics()[i].type != "std_msgs/Float32") break;
-    const double metres =
-        ReadMessage(*bag, first.front(),
-                    [](WireReader reader) { return reader.Number<float>(); });
-    if (!(metres > 1e-6 && metres < 1.0)) break;
-    // The float that 0.001 is becomes 1000 again.
-    return std::round(1e3 / metres) / 1e3;
+  const int topic = bag->FindTopic(name);
+  if (topic < 0) return std::nullopt;
+  const auto first = bag->First(topic, 1);
+  if (first.empty() || bag->topics()[topic].type != "std_msgs/Float32") {
+    return std::nullopt;
   }
-  return std::nullopt;
+  const double metres = ReadMessage(*bag, first.front(), [](WireReader reader) {
+    return reader.Number<float>();
+  });
+  if (!(metres > 1e-6 && metres < 1.0)) return std::nullopt;
+  // The float that 0.001 is becomes 1000 again.
+  return std::round(1e3 / metres) / 1e3;
 }
 
 // stream_from_reference of the viewer's .../tf/REFERENCE, by reference.

@@ -1,6 +1,5 @@
-#include "frontend/bags/bag_database.h"
-
 #include "core/util/input_error.h"
+#include "frontend/bags/bag_reader.h"
 #ifdef RGBD_POSE_HAS_SQLITE
 #include <sqlite3.h>
 
@@ -90,7 +89,8 @@ std::string UriOf(const std::string& path) {
 
 class BagDatabase final : public BagReader {
  public:
-  explicit BagDatabase(const std::string& path) : path_(path) {
+  explicit BagDatabase(const std::string& path)
+      : BagReader(path, WireFormat::kCdr) {
     std::error_code error;
     if (std::filesystem::file_size(path, error) == 0 && !error) {
       throw InputError(path + ": is empty; copy it again");
@@ -109,10 +109,6 @@ class BagDatabase final : public BagReader {
     Rows index(path_, database_.get(), "PRAGMA index_list(messages)");
     order_ = index.Next() ? " ORDER BY timestamp, id" : " ORDER BY id";
   }
-
-  const std::string& path() const override { return path_; }
-  WireFormat format() const override { return WireFormat::kCdr; }
-  const std::vector<BagTopic>& topics() const override { return topics_; }
 
   std::vector<BagMessage> First(int topic, int count) override {
     std::vector<BagMessage> first;
@@ -181,9 +177,7 @@ class BagDatabase final : public BagReader {
     return message;
   }
 
-  std::string path_;
   std::unique_ptr<sqlite3, Close> database_;
-  std::vector<BagTopic> topics_;
   std::vector<int64_t> ids_;       // of the topics, in the database
   std::map<int64_t, int> places_;  // of topics by their ids
   std::string order_;

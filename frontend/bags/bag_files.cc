@@ -1,5 +1,3 @@
-#include "frontend/bags/bag_files.h"
-
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -7,10 +5,8 @@
 #include <set>
 
 #include "core/util/input_error.h"
-#include "frontend/bags/bag_database.h"
+#include "frontend/bags/bag_reader.h"
 #include "frontend/bags/chunk_codec.h"
-#include "frontend/bags/mcap_file.h"
-#include "frontend/bags/ros1_bag.h"
 #include "frontend/bags/ros_messages.h"
 
 namespace rgbd_pose {
@@ -126,14 +122,15 @@ class BagFiles final : public BagReader {
  public:
   BagFiles(const std::string& path, const std::vector<fs::path>& files,
            BagKind kind)
-      : path_(path) {
+      : BagReader(path, WireFormat::kCdr) {
     for (fs::path file : files) {
       if (file.extension() == kPacked) {
         unpacked_.push_back(std::make_unique<UnpackedFile>(file));
         file = unpacked_.back()->path(file);
       }
       files_.push_back(OpenFile(file, kind));
-      if (files_.back()->format() != format()) {
+      if (files_.size() == 1) format_ = files_.back()->format();
+      if (files_.back()->format() != format_) {
         throw InputError(file.string() +
                          ": has messages of another version of ROS than the "
                          "files before");
@@ -145,10 +142,6 @@ class BagFiles final : public BagReader {
       if (files.size() > 1) CheckCameras(files_.back().get(), places);
     }
   }
-
-  const std::string& path() const override { return path_; }
-  WireFormat format() const override { return files_.front()->format(); }
-  const std::vector<BagTopic>& topics() const override { return topics_; }
 
   std::vector<BagMessage> First(int topic, int count) override {
     std::vector<BagMessage> first;
@@ -183,9 +176,7 @@ class BagFiles final : public BagReader {
 
  private:
   int PlaceOf(const BagTopic& topic) {
-    for (size_t i = 0; i < topics_.size(); ++i) {
-      if (topics_[i].name == topic.name) return static_cast<int>(i);
-    }
+    if (const int known = FindTopic(topic.name); known >= 0) return known;
     topics_.push_back(topic);
     return static_cast<int>(topics_.size() - 1);
   }
@@ -223,11 +214,9 @@ class BagFiles final : public BagReader {
     return inner;
   }
 
-  std::string path_;
   std::vector<std::unique_ptr<UnpackedFile>> unpacked_;
   std::vector<std::unique_ptr<BagReader>> files_;
   std::vector<std::vector<int>> places_;  // of each one's topics in topics_
-  std::vector<BagTopic> topics_;
   std::map<int, std::vector<double>> cameras_;  // of CameraInfo among them
   size_t at_ = 0;                               // the file that is read
 };

@@ -39,13 +39,21 @@ class BagReader {
   virtual ~BagReader() = default;
 
   // What to call it in messages.
-  virtual const std::string& path() const = 0;
+  const std::string& path() const { return path_; }
 
   // Of its messages.
-  virtual WireFormat format() const = 0;
+  WireFormat format() const { return format_; }
 
   // Those it has, each once.
-  virtual const std::vector<BagTopic>& topics() const = 0;
+  const std::vector<BagTopic>& topics() const { return topics_; }
+
+  // The place of the topic of that name among them; -1: there is none.
+  int FindTopic(const std::string& name) const {
+    for (size_t i = 0; i < topics_.size(); ++i) {
+      if (topics_[i].name == name) return static_cast<int>(i);
+    }
+    return -1;
+  }
 
   // The first messages of a topic, at most so many; does not disturb Next.
   virtual std::vector<BagMessage> First(int topic, int count) = 0;
@@ -56,6 +64,14 @@ class BagReader {
   // The next message in the order in which they were received; nothing after
   // the last one.
   virtual std::optional<BagMessage> Next() = 0;
+
+ protected:
+  BagReader(const std::string& path, WireFormat format)
+      : path_(path), format_(format) {}
+
+  const std::string path_;
+  WireFormat format_;
+  std::vector<BagTopic> topics_;  // for the reader to fill in
 };
 
 // Has a message read by `read`, which takes a WireReader. What that throws
@@ -69,5 +85,26 @@ auto ReadMessage(const BagReader& bag, const BagMessage& message, Read read) {
                      ": " + error.what());
   }
 }
+
+// By the recorder: .bag files; or .db3 (sqlite3) and .mcap files, of which an
+// .mcap may be of ROS 1.
+enum class BagKind { kRos1, kRos2 };
+
+// Whether a path is a bag of this kind, one that can be read or not: a file, or
+// a folder of the files of one recording.
+bool IsBag(const std::string& path, BagKind kind);
+
+// Opens it. Throws InputError for what is no bag, for files that are not closed
+// or packed as a whole by something else than zstd, for files of several
+// recordings or cameras, and for .db3 in a build without sqlite3.
+std::unique_ptr<BagReader> OpenBag(const std::string& path, BagKind kind);
+
+// Open one file of a kind. Throw InputError if it is not one. A bag of ROS 1
+// (also what the RealSense viewer records) must have been closed; each of its
+// chunks is unpacked once, also where their times overlap. Of an mcap file only
+// messages of ROS 2 (cdr) or ROS 1 are read.
+std::unique_ptr<BagReader> OpenRos1Bag(const std::string& path);
+std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path);
+std::unique_ptr<BagReader> OpenMcapFile(const std::string& path);
 
 }  // namespace rgbd_pose

@@ -46,13 +46,6 @@ std::string ListOf(const std::vector<BagTopic>& topics) {
   return Join(names) + (is_long ? ", ..." : "");
 }
 
-int FindTopic(const std::vector<BagTopic>& topics, const std::string& name) {
-  for (size_t i = 0; i < topics.size(); ++i) {
-    if (topics[i].name == name) return static_cast<int>(i);
-  }
-  return -1;
-}
-
 // How well a topic will do as colour or depth; 0: not at all.
 struct Fitness {
   int color = 0;
@@ -142,18 +135,19 @@ int Best(const BagReader& bag, const std::vector<Fitness>& fitness,
 
 // The CameraInfo that belongs to an image topic: next to it, or as the
 // RealSense viewer has it.
-int InfoOf(const std::vector<BagTopic>& topics, int image) {
+int InfoOf(const BagReader& bag, int image) {
+  const std::vector<BagTopic>& topics = bag.topics();
   std::string name = topics[image].name;
   // A compressed topic is one below that of the raw images.
   if (topics[image].type == kCompressedImage) {
-    const int info = FindTopic(topics, Parent(name) + "/camera_info");
+    const int info = bag.FindTopic(Parent(name) + "/camera_info");
     if (info >= 0) return info;
     name = Parent(name);
   }
   for (const std::string& candidate :
        {Parent(name) + "/camera_info",
         Parent(Parent(name)) + "/info/camera_info"}) {
-    const int info = FindTopic(topics, candidate);
+    const int info = bag.FindTopic(candidate);
     if (info >= 0 && topics[info].type == kCameraInfo) return info;
   }
   return -1;
@@ -161,7 +155,7 @@ int InfoOf(const std::vector<BagTopic>& topics, int image) {
 
 int TopicNamed(const BagReader& bag, const std::string& name, bool is_image) {
   const std::vector<BagTopic>& topics = bag.topics();
-  const int index = FindTopic(topics, name);
+  const int index = bag.FindTopic(name);
   if (index >= 0 &&
       (is_image ? IsImage(topics[index]) : topics[index].type == kCameraInfo)) {
     return index;
@@ -205,8 +199,8 @@ BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {
     chosen.depth = TopicNamed(*bag, names[1], true);
   }
   chosen.color_info = names.size() == 3 ? TopicNamed(*bag, names[2], false)
-                                        : InfoOf(topics, chosen.color);
-  chosen.depth_info = InfoOf(topics, chosen.depth);
+                                        : InfoOf(*bag, chosen.color);
+  chosen.depth_info = InfoOf(*bag, chosen.depth);
   for (size_t i = 0; i < topics.size(); ++i) {
     if (topics[i].type == "tf2_msgs/TFMessage" ||
         topics[i].type == "tf/tfMessage") {

@@ -71,9 +71,9 @@ bool UnpackBz2(std::string_view packed, std::string* unpacked) {
 
 std::string Unpack(std::string_view packed, std::string_view codec,
                    uint64_t size) {
+  constexpr char kWhat[] = "a chunk does not unpack";
   if (codec.empty()) {
-    if (packed.size() != size)
-      throw InputError(std::string("a chunk does not unpack") + kDamaged);
+    if (packed.size() != size) throw Damaged(kWhat);
     return std::string(packed);
   }
   if (codec != "zstd" && codec != "lz4" && codec != "bz2") {
@@ -81,14 +81,12 @@ std::string Unpack(std::string_view packed, std::string_view codec,
                      "', and only zstd, lz4 and bz2 are known");
   }
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
-  if (size > kMaxSize)
-    throw InputError(std::string("a chunk does not unpack") + kDamaged);
+  if (size > kMaxSize) throw Damaged(kWhat);
   std::string unpacked(size, '\0');
   const bool is_whole = codec == "zstd"  ? UnpackZstd(packed, &unpacked)
                         : codec == "lz4" ? UnpackLz4(packed, &unpacked)
                                          : UnpackBz2(packed, &unpacked);
-  if (!is_whole)
-    throw InputError(std::string("a chunk does not unpack") + kDamaged);
+  if (!is_whole) throw Damaged(kWhat);
   return unpacked;
 #else
   FailWithout(codec);

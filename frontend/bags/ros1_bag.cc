@@ -1,5 +1,3 @@
-#include "frontend/bags/ros1_bag.h"
-
 #include <algorithm>
 #include <fstream>
 #include <map>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
+#include "frontend/bags/bag_reader.h"
 #include "frontend/bags/chunk_codec.h"
 
 // http://wiki.ros.org/Bags/Format/2.0: records of a header, which has fields
@@ -55,7 +54,8 @@ uint64_t TimeField(std::string_view header, std::string_view name) {
 class Ros1Bag final : public BagReader {
  public:
   explicit Ros1Bag(const std::string& path)
-      : path_(path), file_(path, std::ios::binary | std::ios::ate) {
+      : BagReader(path, WireFormat::kRos1),
+        file_(path, std::ios::binary | std::ios::ate) {
     const std::streamoff size = file_.tellg();
     if (size < 0) throw InputError(path + ": cannot be read");
     if (size == 0) throw InputError(path + ": is empty; copy it again");
@@ -82,10 +82,6 @@ class Ros1Bag final : public BagReader {
     }
     Guarded([&] { ReadIndex(index); });
   }
-
-  const std::string& path() const override { return path_; }
-  WireFormat format() const override { return WireFormat::kRos1; }
-  const std::vector<BagTopic>& topics() const override { return topics_; }
 
   std::vector<BagMessage> First(int topic, int count) override {
     std::vector<BagMessage> first;
@@ -138,7 +134,7 @@ class Ros1Bag final : public BagReader {
     const auto length = Reading({head, sizeof(head)}).Number<uint32_t>();
     if (!file_ || length > size_ - static_cast<uint64_t>(file_.tellg())) {
       file_.clear();
-      throw InputError(std::string("a record ends too early") + kDamaged);
+      throw Damaged("a record ends too early");
     }
     std::string block(length, '\0');
     file_.read(block.data(), length);
@@ -169,8 +165,7 @@ class Ros1Bag final : public BagReader {
         while (!counts.rest().empty()) {
           chunk.connections.push_back(counts.Number<uint32_t>());
           if (topics_of_.count(chunk.connections.back()) == 0) {
-            throw InputError(std::string("a chunk has messages of no topic") +
-                             kDamaged);
+            throw Damaged("a chunk has messages of no topic");
           }
           counts.Number<uint32_t>();
         }
@@ -241,10 +236,8 @@ class Ros1Bag final : public BagReader {
     }
   }
 
-  std::string path_;
   std::ifstream file_;
   uint64_t size_ = 0;
-  std::vector<BagTopic> topics_;
   std::map<uint32_t, int> topics_of_;  // connections
   std::vector<Chunk> chunks_;          // by time
   const Chunk* loaded_ = nullptr;

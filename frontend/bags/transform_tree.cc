@@ -1,33 +1,18 @@
 #include "frontend/bags/transform_tree.h"
 
 #include <algorithm>
+#include <limits>
+
+#include "core/evaluation/moving_poses.h"
 
 namespace rgbd_pose {
 namespace {
 
+// s, between two samples.
+constexpr double kAnyGap = std::numeric_limits<double>::infinity();
+
 bool IsEarlier(const StampedPose& pose, double stamp) {
   return pose.timestamp < stamp;
-}
-
-bool AreSame(const Rigid3d& a, const Rigid3d& b) {
-  return a.translation == b.translation &&
-         a.rotation.coeffs() == b.rotation.coeffs();
-}
-
-// Between two samples; nothing before the first and after the last.
-std::optional<Rigid3d> At(const Trajectory& samples, double stamp) {
-  const auto after =
-      std::lower_bound(samples.begin(), samples.end(), stamp, IsEarlier);
-  if (after == samples.end()) return std::nullopt;
-  if (after->timestamp == stamp) return after->world_from_cam;
-  if (after == samples.begin()) return std::nullopt;
-  const auto before = after - 1;
-  const double share =
-      (stamp - before->timestamp) / (after->timestamp - before->timestamp);
-  const Rigid3d& a = before->world_from_cam;
-  const Rigid3d& b = after->world_from_cam;
-  return Rigid3d(a.rotation.slerp(share, b.rotation),
-                 a.translation + share * (b.translation - a.translation));
 }
 
 }  // namespace
@@ -38,7 +23,7 @@ void TransformTree::Add(const std::string& parent, const std::string& child,
   if (edge.parent != parent) edge = Edge{parent, false, {}};  // moved house
   Trajectory& samples = edge.samples;
   if (!edge.moves && !samples.empty() &&
-      AreSame(samples.front().world_from_cam, parent_from_child)) {
+      samples.front().world_from_cam == parent_from_child) {
     if (samples.size() == 1) samples.push_back(samples.front());
     samples.front().timestamp = std::min(samples.front().timestamp, stamp);
     samples.back().timestamp = std::max(samples.back().timestamp, stamp);
@@ -113,8 +98,9 @@ Trajectory TransformTree::PathOf(const std::string& world,
     std::optional<Rigid3d> pose = Rigid3d();
     for (const Edge* edge : *edges) {
       const std::optional<Rigid3d> step =
-          edge->moves ? At(edge->samples, sample.timestamp)
-                      : edge->samples.front().world_from_cam;
+          edge->moves
+              ? InterpolatedPath(edge->samples, kAnyGap).At(sample.timestamp)
+              : edge->samples.front().world_from_cam;
       if (!step.has_value()) {
         pose.reset();
         break;

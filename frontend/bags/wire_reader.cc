@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <string>
-
-#include "core/util/input_error.h"
 
 namespace rgbd_pose {
 namespace {
@@ -32,9 +29,9 @@ WireReader::WireReader(std::string_view message, WireFormat format)
 
 std::string_view WireReader::Take(size_t size) {
   if (size > rest_.size()) {
-    throw InputError("a message ends too early: " + std::to_string(size) +
-                     " bytes were to follow, " + std::to_string(rest_.size()) +
-                     " do" + kDamaged);
+    throw Damaged("a message ends too early: " + std::to_string(size) +
+                  " bytes were to follow, " + std::to_string(rest_.size()) +
+                  " do");
   }
   const std::string_view taken = rest_.substr(0, size);
   rest_.remove_prefix(size);
@@ -62,9 +59,8 @@ std::string_view WireReader::Bytes() { return Take(Number<uint32_t>()); }
 uint32_t WireReader::Count(size_t least_bytes) {
   const uint32_t count = Number<uint32_t>();
   if (count > rest_.size() / least_bytes) {
-    throw InputError("a message ends too early: a list of " +
-                     std::to_string(count) + " is longer than the rest of it" +
-                     kDamaged);
+    throw Damaged("a message ends too early: a list of " +
+                  std::to_string(count) + " is longer than the rest of it");
   }
   return count;
 }

@@ -2,12 +2,17 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <string_view>
+
+#include "core/util/input_error.h"
 
 namespace rgbd_pose {
 
-// Ends messages on files, or parts of them, that are not as they were written.
-inline constexpr char kDamaged[] = "; it is damaged: copy it again";
+// Of a file, or a part of it, that is not as it was written.
+inline InputError Damaged(const std::string& what) {
+  return InputError(what + "; it is damaged: copy it again");
+}
 
 // How the messages of a bag are laid out: the same fields in the same order,
 // but for padding, the ends of texts and the header's counter.

@@ -4,7 +4,6 @@
 #include <opencv2/core.hpp>
 
 #include "frontend/features/descriptor_matching.h"
-#include "frontend/features/descriptor_method.h"
 #include "frontend/features/frontend.h"
 
 namespace rgbd_pose {

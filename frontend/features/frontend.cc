@@ -4,7 +4,7 @@
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "frontend/features/descriptor_frontend.h"
-#include "frontend/features/descriptor_method.h"
+#include "frontend/features/descriptor_matching.h"
 #include "frontend/features/klt_frontend.h"
 #include "frontend/features/patch_frontend.h"
 
@@ -24,18 +24,18 @@ FrontendEntry EntryOf() {
           }};
 }
 
-template <const DescriptorMethod& (*method)()>
+template <const DescriptorMethod& method>
 FrontendEntry EntryOf() {
-  return {method().name,
+  return {method.name,
           [](const FrontendOptions& options) -> std::unique_ptr<Frontend> {
-            return std::make_unique<DescriptorFrontend>(options, method());
+            return std::make_unique<DescriptorFrontend>(options, method);
           }};
 }
 
 // One header and one row here make a frontend.
 const FrontendEntry kFrontends[] = {
-    EntryOf<KltFrontend>(), EntryOf<PatchFrontend>(), EntryOf<Orb>(),
-    EntryOf<Sift>(),        EntryOf<Akaze>(),
+    EntryOf<KltFrontend>(), EntryOf<PatchFrontend>(), EntryOf<kOrb>(),
+    EntryOf<kSift>(),       EntryOf<kAkaze>(),
 };
 
 }  // namespace
@@ -58,8 +58,7 @@ std::vector<std::string> FrontendNames() { return NamesOf(kFrontends); }
 
 std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
                                        const FrontendOptions& options) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("frontend: " + error);
+  RequireSound(options.Check(), "frontend: ");
   return RowOf(kFrontends, "frontend", name).make(options);
 }
 

@@ -7,7 +7,6 @@
 
 #include "frontend/features/grid_selection.h"
 #include "frontend/features/patch.h"
-#include "frontend/features/patch_alignment.h"
 #include "frontend/frame/image_pyramid.h"
 #include "frontend/frame/observe.h"
 

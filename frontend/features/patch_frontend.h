@@ -5,7 +5,7 @@
 namespace rgbd_pose {
 
 // Corners of the reference frame, each found again by aligning small patches
-// coarse to fine (patch_alignment.h), whatever the exposure, from within some
+// coarse to fine (patch.h), whatever the exposure, from within some
 // pixels (see DirectTracker::FindStart). Patches are stretched and turned as
 // depth, surface normal and motion have it.
 class PatchFrontend final : public Frontend {

@@ -4,11 +4,11 @@
 #include <cmath>
 #include <filesystem>
 #include <optional>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/yaml_section.h"
@@ -117,8 +117,7 @@ DepthCamera ReadDepthCamera(const std::string& path, const YamlSection& file,
     cam_from_color = ReadKalibrMotion(file, next) * cam_from_color;
     if (next != name) continue;
     DepthCamera depth = {ReadKalibr(file, name), cam_from_color.Inverse()};
-    const std::string problem = depth.camera.Check();
-    if (!problem.empty()) throw InputError(path + ": " + name + ": " + problem);
+    RequireSound(depth.camera.Check(), path + ": " + name + ": ");
     return depth;
   }
   throw InputError(path + ": has no camera '" + name +
@@ -162,9 +161,7 @@ Eigen::Vector3d VectorOr0(const YamlSection& file, const std::string& key) {
 void CheckSize(const YamlSection& file, const std::string& key, double size,
                double most, const std::string& unit) {
   if (size <= most) return;
-  std::ostringstream limit;
-  limit << most;
-  file.Fail(key, "must be at most " + limit.str() + " " + unit);
+  file.Fail(key, Format("must be at most %g ", most) + unit);
 }
 
 // When the rows of colour and of depth are exposed.
@@ -196,6 +193,11 @@ DepthCorrection ReadDepthCorrection(const YamlSection& file) {
 
 }  // namespace
 
+RgbdCamera RegisteredCamera(const CameraSetup& setup) {
+  return {setup.camera, setup.depth_scale.value_or(RgbdCamera{}.depth_scale),
+          setup.depth_correction, setup.color_shutter, setup.depth_shutter};
+}
+
 CameraSetup ReadCameraFile(const std::string& path,
                            const std::string& depth_camera) {
   return ReadCameraText(ReadTextFile(path), path, depth_camera);
@@ -209,8 +211,7 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   result.depth_scale = ReadDepthScale(file);
   result.depth_correction = ReadDepthCorrection(file);
   ReadShutters(file, &result);
-  const std::string problem = result.camera.Check();
-  if (!problem.empty()) throw InputError(path + ": " + problem);
+  RequireSound(result.camera.Check(), path + ": ");
   if (depth_camera.empty() && file.Has("cam0") && file.Has("cam1")) {
     throw InputError(path +
                      ": has several cameras; say which one depth images are "

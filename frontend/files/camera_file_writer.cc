@@ -1,31 +1,113 @@
-#include "frontend/files/camera_file_writer.h"
-
 #include <yaml-cpp/yaml.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <optional>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "core/geometry/camera.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
-#include "frontend/files/yaml_edit.h"
 #include "frontend/files/yaml_section.h"
 
 namespace rgbd_pose {
 namespace {
 
-// With all digits that make a difference.
-std::string Digits(double value) {
-  char text[32];
-  std::snprintf(text, sizeof(text), "%.10g", value);
-  return text;
+using YamlLines =
+    std::vector<std::pair<std::string, std::string>>;  // key, value
+
+// Where a key of the file stands, if that is within the lines.
+std::optional<size_t> LineOf(const YAML::Node& file, const std::string& key,
+                             const std::vector<std::string>& lines) {
+  for (const auto& entry : file) {
+    if (entry.first.Scalar() != key) continue;
+    const size_t line = entry.first.Mark().line;
+    if (line < lines.size()) return line;
+  }
+  return std::nullopt;
 }
+
+// The text of a file with other values, its other lines as they are. `file` is
+// what it was parsed to. Keys of `values` that it lacks are added where they
+// are not 0, lines of `left_out` go, those of `more` come. Right only where
+// each of these keys has a line of its own: many may share one, a value may
+// have several, or a name by which others refer to it.
+std::string EditLines(const std::string& text, const YAML::Node& file,
+                      const YamlLines& values,
+                      const std::vector<std::string>& left_out,
+                      const YamlLines& more) {
+  std::stringstream in(text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(in, line);) {
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    lines.push_back(line);
+  }
+  std::vector<bool> is_left_out(lines.size(), false);
+  for (const std::string& key : left_out) {
+    const std::optional<size_t> line = LineOf(file, key, lines);
+    if (line.has_value()) is_left_out[*line] = true;
+  }
+  size_t last = 0;  // of those that change
+  std::string added;
+  for (const auto& [key, value] : values) {
+    const std::optional<size_t> line = LineOf(file, key, lines);
+    if (!line.has_value()) {
+      if (value != "0") added += key + ": " + value + "\n";
+      continue;
+    }
+    const size_t comment = lines[*line].find(" #");
+    lines[*line] =
+        key + ": " + value +
+        (comment == std::string::npos ? "" : lines[*line].substr(comment));
+    last = std::max(last, *line);
+  }
+  for (const auto& [key, value] : more) added += key + ": " + value + "\n";
+  std::string result;
+  for (size_t i = 0; i < lines.size(); ++i) {
+    if (!is_left_out[i]) result += lines[i] + "\n";
+    if (i == last) result += added;
+  }
+  return result;
+}
+
+// Maps are made again: what a map had is left as it is, as other keys may refer
+// to it.
+
+// The map has another value of one key.
+void Set(YAML::Node* map, const std::string& key, const YAML::Node& value) {
+  YAML::Node result(YAML::NodeType::Map);
+  result.SetStyle(map->Style());
+  bool is_there = false;
+  for (const auto& entry : *map) {
+    const bool is_it = entry.first.Scalar() == key;
+    if (is_it && is_there) continue;  // it counts the first time only
+    result.force_insert(entry.first, is_it ? value : entry.second);
+    is_there |= is_it;
+  }
+  if (!is_there) result.force_insert(key, value);
+  map->reset(result);
+}
+
+// The map has none of these keys.
+void Remove(YAML::Node* map, const std::vector<std::string>& keys) {
+  YAML::Node result(YAML::NodeType::Map);
+  result.SetStyle(map->Style());
+  for (const auto& entry : *map) {
+    if (std::count(keys.begin(), keys.end(), entry.first.Scalar()) == 0) {
+      result.force_insert(entry.first, entry.second);
+    }
+  }
+  map->reset(result);
+}
+
+// With all digits that make a difference.
+std::string Digits(double value) { return Format("%.10g", value); }
 
 std::string List(const std::vector<double>& values) {
   std::string text = "[";
@@ -52,7 +134,7 @@ YamlLines RgbdLines(const RgbdCamera& camera) {
   add("inverse_depth_offset", camera.depth_correction.inverse_depth_offset,
       false);
   const Rigid3d& moved = camera.depth_correction.depth_from_color;
-  if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {
+  if (!moved.IsIdentity()) {
     lines.emplace_back("depth_rotation",
                        List(ToList(RotationVector(moved.rotation))));
     lines.emplace_back("depth_translation", List(ToList(moved.translation)));
@@ -99,46 +181,43 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
   const Camera& c = rgbd.camera;
   const std::vector<double> coefficients = c.Distortion();
   const bool is_equidistant = c.lens_model == LensModel::kEquidistant;
-  for (const auto& [key, value] : values) {
-    file.reset(With(file, key, YAML::Node(value)));
-  }
+  const auto set = [](YAML::Node* map, const char* key, const auto& value) {
+    Set(map, key, YAML::Node(value));
+  };
+  for (const auto& [key, value] : values) Set(&file, key, YAML::Node(value));
   if (is_of_orb_slam) {
     // These keys have none below.
   } else if (file["camera_matrix"].IsDefined()) {
-    file.reset(With(file, "image_width", YAML::Node(c.width)));
-    file.reset(With(file, "image_height", YAML::Node(c.height)));
-    file.reset(
-        With(file, "camera_matrix",
-             With(file["camera_matrix"], "data",
-                  ToNode({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0}))));
-    YAML::Node distortion =
-        With(file["distortion_coefficients"], "data", ToNode(coefficients));
+    set(&file, "image_width", c.width);
+    set(&file, "image_height", c.height);
+    YAML::Node matrix = file["camera_matrix"];
+    Set(&matrix, "data",
+        ToNode({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0}));
+    Set(&file, "camera_matrix", matrix);
+    YAML::Node distortion = file["distortion_coefficients"];
+    Set(&distortion, "data", ToNode(coefficients));
     if (distortion["cols"].IsDefined()) {
-      distortion.reset(
-          With(distortion, "cols", YAML::Node(coefficients.size())));
+      set(&distortion, "cols", coefficients.size());
     }
-    file.reset(With(file, "distortion_coefficients", distortion));
-    const char* const model = is_equidistant ? "equidistant"
-                              : coefficients.size() == 5
-                                  ? "plumb_bob"
-                                  : "rational_polynomial";
-    file.reset(With(file, "distortion_model", YAML::Node(model)));
+    Set(&file, "distortion_coefficients", distortion);
+    set(&file, "distortion_model",
+        is_equidistant             ? "equidistant"
+        : coefficients.size() == 5 ? "plumb_bob"
+                                   : "rational_polynomial");
     // What a rectified image would be seen with is of the old camera.
-    file.reset(Without(file, {"projection_matrix"}));
+    Remove(&file, {"projection_matrix"});
   } else {
-    YAML::Node cam0 =
-        With(file["cam0"], "intrinsics", ToNode({c.fx, c.fy, c.cx, c.cy}));
+    YAML::Node cam0 = file["cam0"];
+    Set(&cam0, "intrinsics", ToNode({c.fx, c.fy, c.cx, c.cy}));
     // What a radtan cannot hold is missed by Says.
-    cam0.reset(With(cam0, "distortion_coeffs",
-                    ToNode({coefficients.begin(), coefficients.begin() + 4})));
-    cam0.reset(With(cam0, "distortion_model",
-                    YAML::Node(is_equidistant ? "equidistant" : "radtan")));
-    cam0.reset(With(
-        cam0, "resolution",
-        ToNode({static_cast<double>(c.width), static_cast<double>(c.height)})));
-    file.reset(With(file, "cam0", cam0));
+    Set(&cam0, "distortion_coeffs",
+        ToNode({coefficients.begin(), coefficients.begin() + 4}));
+    set(&cam0, "distortion_model", is_equidistant ? "equidistant" : "radtan");
+    Set(&cam0, "resolution",
+        ToNode({static_cast<double>(c.width), static_cast<double>(c.height)}));
+    Set(&file, "cam0", cam0);
   }
-  file.reset(Without(file, RgbdKeys()));
+  Remove(&file, RgbdKeys());
   file.SetStyle(YAML::EmitterStyle::Block);
   // OpenCV's first line, which is no YAML.
   const bool is_of_opencv = text.rfind("%YAML", 0) == 0;

@@ -29,8 +29,7 @@ DepthNoiseModel ReadDepthNoiseFile(const std::string& path) {
   model.quadratic = file.Number("quadratic");
   model.centre = file.NumberOr("centre", model.centre);
   model.mean_share = file.NumberOr("mean_share", model.mean_share);
-  const std::string problem = model.Check();
-  if (!problem.empty()) throw InputError(path + ": " + problem);
+  RequireSound(model.Check(), path + ": ");
   // In millimetres, or of something else.
   constexpr double kMost = 1.0;  // m, at 1 m
   if (model.sigma(1.0) > kMost) {

@@ -8,8 +8,7 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
-#include "frontend/files/png_decoder.h"
-#include "frontend/files/png_encoder.h"
+#include "frontend/files/png_codec.h"
 #endif
 
 namespace rgbd_pose {

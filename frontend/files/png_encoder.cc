@@ -1,17 +1,13 @@
 // W3C, Portable Network Graphics (PNG) Specification, second edition, 2003.
 
-#include "frontend/files/png_encoder.h"
-
 #include <libdeflate.h>
 
 #include <algorithm>
-#include <cstdint>
 #include <memory>
 #include <new>
-#include <string_view>
 #include <vector>
 
-#include "frontend/files/png_format.h"
+#include "frontend/files/png_codec.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,14 +1,21 @@
 #include "frontend/frame/depth_lookup.h"
 
-#include <algorithm>
+#include <Eigen/LU>
 #include <cmath>
+#include <cstdlib>
+#include <vector>
+
+#include "core/util/format.h"
+#include "core/util/quantile.h"
+#include "frontend/frame/depth_scale.h"
 
 namespace rgbd_pose {
 namespace {
 
-// Neighbours further apart than this many sigmas (of a depth difference) lie
-// on two surfaces; slanted ones get the slack of kMaxSlope per pixel.
-constexpr double kMaxSpreadSigmas = 4.0;
+// Neighbours further apart than this many sigmas of a depth lie on two
+// surfaces: 4 standard deviations of a difference, which has sqrt(2) times that
+// of a depth. Slanted ones get the slack of kMaxSlope per pixel.
+constexpr double kMaxNoiseStep = 4.0 * M_SQRT2;
 
 // Relative change of depth from a pixel to the next on the steepest surface
 // that is still used: at f = 525 px this is a surface seen at 80 degrees.
@@ -16,6 +23,16 @@ constexpr double kMaxSlope = 0.011;
 
 // Fewer valid neighbours (of 9) mean the edge of an object or of a hole.
 constexpr int kMinValid = 6;
+
+// Of the pixels that a normal is made of.
+constexpr int kStridePx = 5;
+
+// Deviations from the plane, relative to depth, beyond this are another
+// surface: 1.5 % is 5 sigma of a Kinect at 2 m (Khoshelham & Elberink 2012).
+constexpr double kMaxDeviation = 0.015;
+
+// A pixel with fewer neighbours (of 4) hangs in the air.
+constexpr int kMinNeighbours = 2;
 
 }  // namespace
 
@@ -31,8 +48,7 @@ DepthSample LookUpDepth(const Frame& frame, double u, double v,
   if (centre < options.min_depth || centre > options.max_depth) return {};
 
   const double sigma = options.noise.sigma(centre);
-  const double limit =
-      kMaxSpreadSigmas * std::sqrt(2.0) * sigma + 2.0 * kMaxSlope * centre;
+  const double limit = kMaxNoiseStep * sigma + 2.0 * kMaxSlope * centre;
   int valid = 0;
   double sum = 0.0, slope_u = 0.0, slope_v = 0.0;
   for (int dv = -1; dv <= 1; ++dv) {
@@ -53,6 +69,85 @@ DepthSample LookUpDepth(const Frame& frame, double u, double v,
   const double inverse =
       sum / 9.0 + slope_u / 6.0 * (u - column) + slope_v / 6.0 * (v - row);
   return {1.0 / inverse, sigma * options.noise.mean_share};
+}
+
+// A plane A X + B Y + C Z = 1 has the inverse depth A x + B y + C over the
+// normalised image x = X / Z, y = Y / Z.
+Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
+                             double v, const Eigen::Vector2d& place) {
+  const int column = static_cast<int>(std::lround(u));
+  const int row = static_cast<int>(std::lround(v));
+  if (column < kStridePx || row < kStridePx ||
+      column >= frame.depth.cols - kStridePx ||
+      row >= frame.depth.rows - kStridePx) {
+    return Eigen::Vector3d::Zero();
+  }
+  double inverse[3][3];
+  double mean = 0.0, slope_u = 0.0, slope_v = 0.0;
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      const double depth =
+          frame.DepthAt(column + j * kStridePx, row + i * kStridePx);
+      if (depth == 0.0) return Eigen::Vector3d::Zero();
+      inverse[i + 1][j + 1] = 1.0 / depth;
+      mean += inverse[i + 1][j + 1] / 9.0;
+      slope_u += j * inverse[i + 1][j + 1] / 6.0;
+      slope_v += i * inverse[i + 1][j + 1] / 6.0;
+    }
+  }
+  for (int i = -1; i <= 1; ++i) {
+    for (int j = -1; j <= 1; ++j) {
+      const double plane = mean + j * slope_u + i * slope_v;
+      if (std::abs(inverse[i + 1][j + 1] - plane) > kMaxDeviation * mean) {
+        return Eigen::Vector3d::Zero();
+      }
+    }
+  }
+  const Eigen::Matrix2d pixels = camera.ProjectDerivative(place);
+  const Eigen::Vector2d slope =
+      pixels.transpose() * Eigen::Vector2d(slope_u, slope_v) / kStridePx;
+  const Eigen::Vector2d middle =
+      place + pixels.inverse() * Eigen::Vector2d(column - u, row - v);
+  const double c = mean - slope.dot(middle);
+  return -Eigen::Vector3d(slope.x(), slope.y(), c).normalized();
+}
+
+double MaxSurfaceStep(double depth, const DepthNoiseModel& noise) {
+  return kMaxNoiseStep * noise.sigma(depth) + kMaxSlope * depth;
+}
+
+bool IsOnSurface(const cv::Mat& depth, int x, int y, int max_step) {
+  const uint16_t* row = depth.ptr<uint16_t>(y);
+  const int raw = row[x];
+  int neighbours = 0;
+  for (const uint16_t other :
+       {row[x - 1], row[x + 1], depth.ptr<uint16_t>(y - 1)[x],
+        depth.ptr<uint16_t>(y + 1)[x]}) {
+    if (other == 0 || other == Frame::kNoDepth) continue;
+    if (std::abs(other - raw) > max_step) return false;
+    ++neighbours;
+  }
+  return neighbours >= kMinNeighbours;
+}
+
+std::string DepthScaleWarning(const Frame& frame) {
+  constexpr double kMinPlausible = 0.2;   // m
+  constexpr double kMaxPlausible = 20.0;  // m
+  std::vector<double> depths;
+  depths.reserve(frame.depth.total());
+  for (int row = 0; row < frame.depth.rows; ++row) {
+    for (int column = 0; column < frame.depth.cols; ++column) {
+      const double depth = frame.DepthAt(column, row);
+      if (depth > 0.0) depths.push_back(depth);
+    }
+  }
+  if (depths.empty()) return "";
+  const double median = UpperMedian(&depths);
+  if (median >= kMinPlausible && median <= kMaxPlausible) return "";
+  return Format(
+      "frame %d: the median depth is %.3g m; check the depth scale (%.6g raw "
+      "units per metre)",
+      frame.index, median, frame.depth_scale);
 }
 
 }  // namespace rgbd_pose

@@ -34,11 +34,6 @@ Places FirstBeyond(const Block& x, float end) {
   return (x + 1.0F).max(0.0F).min(end).cast<int>();
 }
 
-void RequireCamera(const Camera& camera, const char* what) {
-  const std::string problem = camera.Check();
-  if (!problem.empty()) throw InputError(what + (": " + problem));
-}
-
 // How large a depth pixel (ideal; NaN: none) is in the colour image at the same
 // distance, px: lenses make some larger than others.
 Eigen::Vector2d PixelSize(const Camera& depth, const Eigen::Vector2d& pixel,
@@ -61,8 +56,8 @@ DepthRegistration::DepthRegistration(const DepthCamera& depth,
       translation_(depth.color_from_depth.translation.cast<float>()),
       width_(depth.camera.width),
       height_(depth.camera.height) {
-  RequireCamera(depth.camera, "depth camera");
-  RequireCamera(color, "colour camera");
+  RequireSound(depth.camera.Check(), "depth camera: ");
+  RequireSound(color.Check(), "colour camera: ");
   if (!depth.color_from_depth.IsFinite()) {
     throw InputError("depth camera: its place is no finite motion");
   }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
+#include "frontend/frame/view_frame.h"
+
 namespace rgbd_pose {
 namespace {
 
@@ -16,6 +18,12 @@ void Smooth(const std::vector<cv::Mat>& sharp, std::vector<cv::Mat>* pyramid) {
   for (size_t level = 1; level < sharp.size(); ++level) {
     cv::GaussianBlur(sharp[level], (*pyramid)[level], {3, 3}, kSigmaPx);
   }
+}
+
+template <typename Pixel>
+ImageView<Pixel> ViewImage(const cv::Mat& image) {
+  return {image.ptr<Pixel>(), image.cols, image.rows,
+          static_cast<ptrdiff_t>(image.step / sizeof(Pixel))};
 }
 
 }  // namespace
@@ -62,6 +70,20 @@ Camera CameraOfLevel(const Camera& camera, int level) {
   result.width >>= level;
   result.height >>= level;
   return result;
+}
+
+FrameView ViewFrame(const Frame& frame, const std::vector<cv::Mat>& pyramid,
+                    const Camera& camera, const DepthNoiseModel& depth_noise) {
+  FrameView view;
+  for (size_t level = 0; level < pyramid.size(); ++level) {
+    view.levels.push_back({ViewImage<uint8_t>(pyramid[level]),
+                           CameraOfLevel(camera, static_cast<int>(level))});
+  }
+  view.depth = ViewImage<uint16_t>(frame.depth);
+  view.depth_scale = frame.depth_scale;
+  view.depth_noise = depth_noise;
+  view.timing = frame.Timing();
+  return view;
 }
 
 }  // namespace rgbd_pose

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/depth_warper.h"
-#include "frontend/frame/surface_normal.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,7 +1,7 @@
 #include "frontend/fusion/cloud_fusion.h"
 
-#include "frontend/frame/surface_normal.h"
-#include "frontend/fusion/motion_filter.h"
+#include "frontend/frame/depth_lookup.h"
+#include "frontend/fusion/fusion_options.h"
 
 namespace rgbd_pose {
 namespace {

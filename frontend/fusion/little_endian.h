@@ -3,36 +3,20 @@
 #include <cstdint>
 #include <cstring>
 #include <string>
+#include <type_traits>
 
 namespace rgbd_pose {
 
 // Appends a number's bytes, the lowest first, whatever the machine's order.
-inline void AppendLittleEndian(uint32_t bits, std::string* bytes) {
-  for (int shift = 0; shift < 32; shift += 8) {
-    bytes->push_back(static_cast<char>(bits >> shift & 0xFF));
+template <typename T>
+void AppendLittleEndian(T value, std::string* bytes) {
+  static_assert(sizeof(T) == 2 || sizeof(T) == 4 || sizeof(T) == 8);
+  using Half = std::conditional_t<sizeof(T) == 2, uint16_t, uint32_t>;
+  std::conditional_t<sizeof(T) == 8, uint64_t, Half> bits;
+  std::memcpy(&bits, &value, sizeof(bits));
+  for (size_t i = 0; i < sizeof(bits); ++i) {
+    bytes->push_back(static_cast<char>(bits >> 8 * i & 0xFF));
   }
-}
-
-inline void AppendLittleEndian(uint16_t bits, std::string* bytes) {
-  bytes->push_back(static_cast<char>(bits & 0xFF));
-  bytes->push_back(static_cast<char>(bits >> 8));
-}
-
-inline void AppendLittleEndian(uint64_t bits, std::string* bytes) {
-  AppendLittleEndian(static_cast<uint32_t>(bits), bytes);
-  AppendLittleEndian(static_cast<uint32_t>(bits >> 32), bytes);
-}
-
-inline void AppendLittleEndian(double value, std::string* bytes) {
-  uint64_t bits;
-  std::memcpy(&bits, &value, sizeof(bits));
-  AppendLittleEndian(bits, bytes);
-}
-
-inline void AppendLittleEndian(float value, std::string* bytes) {
-  uint32_t bits;
-  std::memcpy(&bits, &value, sizeof(bits));
-  AppendLittleEndian(bits, bytes);
 }
 
 }  // namespace rgbd_pose

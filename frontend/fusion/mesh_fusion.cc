@@ -6,7 +6,7 @@
 
 #include "core/util/floor.h"
 #include "core/util/parallel_for.h"
-#include "frontend/frame/surface_normal.h"
+#include "frontend/frame/depth_lookup.h"
 #include "frontend/fusion/surface_mesh.h"
 #include "frontend/fusion/voxel_key.h"
 

@@ -31,7 +31,14 @@ class TsdfVolume {
 
   // The block of a key (voxel_key.h), made if it is not there. Stays where it
   // is.
-  Block* FindOrInsert(uint64_t key);
+  Block* FindOrInsert(uint64_t key) {
+    const auto [place, is_new] = index_.emplace(key, size());
+    if (is_new) {
+      keys_.push_back(key);
+      blocks_.push_back(std::make_unique<Block>());
+    }
+    return blocks_[place->second].get();
+  }
 
   // The number of blocks, and each in the order in which they were made.
   int size() const { return static_cast<int>(blocks_.size()); }
@@ -39,7 +46,10 @@ class TsdfVolume {
   const Block& block(int index) const { return *blocks_[index]; }
 
   // Which one it is; -1: not there.
-  int Find(uint64_t key) const;
+  int Find(uint64_t key) const {
+    const auto place = index_.find(key);
+    return place == index_.end() ? -1 : place->second;
+  }
 
   // What the blocks take, in bytes.
   size_t MemoryBytes() const { return blocks_.size() * sizeof(Block); }

@@ -139,8 +139,7 @@ KeyframeMap LoadIndexed(const fs::path& folder, const std::string& text) {
     images.gray = LoadImage(folder, index.images[i].gray);
     images.depth = LoadImage(folder, index.images[i].depth);
   }
-  const std::string wrong = index.map.Check();
-  if (!wrong.empty()) throw InputError(path + ": " + wrong);
+  RequireSound(index.map.Check(), path + ": ");
   return std::move(index.map);
 }
 
@@ -158,8 +157,7 @@ void InFolder(const std::string& folder, Call call) {
 }  // namespace
 
 void SaveMap(const std::string& folder, const KeyframeMap& map) {
-  const std::string wrong = map.Check();
-  if (!wrong.empty()) throw InputError(folder + ": not saved: " + wrong);
+  RequireSound(map.Check(), folder + ": not saved: ");
   InFolder(folder, [&] {
     MakeFolder(folder);
     const FolderLock lock(folder);

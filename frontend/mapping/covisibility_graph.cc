@@ -28,38 +28,33 @@ bool CovisibilityGraph::AreJoined(int a, int b) const {
          neighbors_[a].end();
 }
 
-std::vector<bool> CovisibilityGraph::Within(int from, int hops) const {
-  std::vector<bool> seen(neighbors_.size(), false);
-  std::vector<int> reached = {from};
-  seen[from] = true;
-  size_t next = 0;
-  for (int hop = 0; hop < hops; ++hop) {
-    for (const size_t end = reached.size(); next < end; ++next) {
-      for (const int other : neighbors_[reached[next]]) {
-        if (!seen[other]) reached.push_back(other);
-        seen[other] = true;
-      }
+std::vector<int> CovisibilityGraph::Distances(int from, int most,
+                                              int without) const {
+  std::vector<int> distances(neighbors_.size(), -1), reached = {from};
+  distances[from] = 0;
+  for (size_t i = 0; i < reached.size(); ++i) {
+    const int at = reached[i];
+    if (distances[at] == most) break;
+    for (const int other : neighbors_[at]) {
+      if (distances[other] >= 0 || other == without) continue;
+      distances[other] = distances[at] + 1;
+      reached.push_back(other);
     }
   }
-  return seen;
+  return distances;
+}
+
+std::vector<bool> CovisibilityGraph::Within(int from, int hops) const {
+  std::vector<bool> within;
+  for (const int distance : Distances(from, hops)) {
+    within.push_back(distance >= 0);
+  }
+  return within;
 }
 
 int CovisibilityGraph::Hops(int from, int to, int most) const {
-  std::vector<int> reached = {from};
-  std::vector<bool> seen(neighbors_.size(), false);
-  seen[from] = true;
-  for (int hops = 0; hops < most; ++hops) {
-    std::vector<int> next;
-    for (const int at : reached) {
-      if (at == to) return hops;
-      for (const int other : neighbors_[at]) {
-        if (!seen[other]) next.push_back(other);
-        seen[other] = true;
-      }
-    }
-    reached = std::move(next);
-  }
-  return most;
+  const int distance = Distances(from, most)[to];
+  return distance >= 0 ? distance : most;
 }
 
 std::vector<int> CovisibilityGraph::ShortestPath(int from, int to) const {
@@ -99,20 +94,9 @@ std::vector<int> CovisibilityGraph::FirstOfParts() const {
 bool CovisibilityGraph::StaysConnectedWithout(int without) const {
   const std::vector<int>& around = neighbors_[without];
   if (around.empty()) return false;
-  std::vector<int> reached = {around.front()};
-  std::vector<bool> seen(neighbors_.size(), false);
-  seen[without] = seen[around.front()] = true;
-  for (int hops = 0; hops < kHopsAround; ++hops) {
-    const size_t end = reached.size();
-    for (size_t i = 0; i < end; ++i) {
-      for (const int other : neighbors_[reached[i]]) {
-        if (!seen[other]) reached.push_back(other);
-        seen[other] = true;
-      }
-    }
-  }
+  const std::vector<int> near = Distances(around.front(), kHopsAround, without);
   return std::all_of(around.begin(), around.end(),
-                     [&](int at) { return seen[at]; });
+                     [&](int at) { return near[at] >= 0; });
 }
 
 }  // namespace rgbd_pose

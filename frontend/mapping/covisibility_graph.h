@@ -35,6 +35,10 @@ class CovisibilityGraph {
   bool StaysConnectedWithout(int at) const;
 
  private:
+  // Of each keyframe the number of links on the shortest way from one that does
+  // not lead through `without`; -1: there are more than `most`.
+  std::vector<int> Distances(int from, int most, int without = -1) const;
+
   std::vector<std::vector<int>> neighbors_;
 };
 

@@ -15,24 +15,28 @@ constexpr int kSampleStepPx = 40;
 // How near a view must be to one that it makes redundant.
 constexpr double kRedundantFlowPx = 30.0;
 
-bool IsSame(const KeyframePlace& a, const KeyframePlace& b) {
-  return a.segment == b.segment &&
-         a.map_from_cam.rotation.coeffs() == b.map_from_cam.rotation.coeffs() &&
-         a.map_from_cam.translation == b.map_from_cam.translation;
-}
-
 }  // namespace
+
+std::string MappingOptions::Check() const {
+  if (max_pairs < 1) return "max_pairs must be at least 1";
+  if (!(min_pair_share > 0.0 && min_pair_share <= 1.0)) {
+    return "min_pair_share must be above 0 and at most 1";
+  }
+  if (max_loop_candidates < 0)
+    return "max_loop_candidates must not be negative";
+  if (!(redundant_share > 0.0)) return "redundant_share must be positive";
+  if (window < 1) return "graph: window must be at least 1";
+  if (!(drift > 0.0)) return "graph: drift must be positive";
+  return "";
+}
 
 Mapper::Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker)
     : options_(options),
       tracker_(std::move(tracker)),
       graph_(options.window, options.drift),
       pairing_(options_, keyframes_, index_, &tracker_, &graph_) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("mapping: " + error);
+  RequireSound(options.Check(), "mapping: ");
 }
-
-Mapper::~Mapper() = default;
 
 int Mapper::AddKeyframe(Keyframe keyframe, const PreparedFrame& frame,
                         bool is_held) {
@@ -57,10 +61,8 @@ void Mapper::Index(int at) {
 }
 
 void Mapper::Load(const KeyframeMap& map, bool is_held) {
-  for (const std::string& error :
-       {map.Check(), map.CheckCamera(tracker_.images().camera)}) {
-    if (!error.empty()) throw InputError("map: " + error);
-  }
+  RequireSound(map.Check(), "map: ");
+  RequireSound(map.CheckCamera(tracker_.images().camera), "map: ");
   for (const Keyframe& keyframe : map.keyframes) {
     Index(AddKeyframe(keyframe, keyframe.Unpacked(), is_held));
   }
@@ -188,8 +190,11 @@ void Mapper::PublishMovedPoses(MapUpdate* update) {
   for (int at = 0; at < graph_.size(); ++at) {
     MappedKeyframe& keyframe = keyframes_[at];
     const KeyframePlace place = {graph_.pose(at), graph_.segment(at)};
-    if (keyframe.published.has_value() && IsSame(*keyframe.published, place))
+    if (keyframe.published.has_value() &&
+        keyframe.published->segment == place.segment &&
+        keyframe.published->map_from_cam == place.map_from_cam) {
       continue;
+    }
     keyframe.published = place;
     update->moved[keyframe.id] = place;
   }

@@ -26,7 +26,6 @@ class Mapper {
  public:
   // `tracker` makes pairs. Throws InputError for options that are not sound.
   Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker);
-  ~Mapper();
 
   // Begins with a map. `is_held`: its poses never move, and none is removed. To
   // be called first; several maps are segments that are joined where they meet.

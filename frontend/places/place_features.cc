@@ -1,7 +1,7 @@
 #include "frontend/places/place_features.h"
 
-#include "core/initial_guess/ransac.h"
-#include "frontend/features/descriptor_method.h"
+#include "core/initial_guess/consensus.h"
+#include "frontend/features/descriptor_matching.h"
 #include "frontend/features/grid_selection.h"
 #include "frontend/frame/observe.h"
 
@@ -25,8 +25,7 @@ constexpr double kMinInlierShare = 0.1;
 PlaceFeatures DescribeKeyframe(const Frame& frame, const Camera& camera,
                                const DepthLookupOptions& depth_options) {
   DescribedKeypoints all;
-  Orb()
-      .make(kMaxKeypoints)
+  kOrb.make(kMaxKeypoints)
       ->detectAndCompute(frame.gray, cv::noArray(), all.keypoints,
                          all.descriptors);
   const auto has_depth = [&](const cv::Point2f& pixel) {
@@ -38,7 +37,7 @@ PlaceFeatures DescribeKeyframe(const Frame& frame, const Camera& camera,
   for (const cv::KeyPoint& keypoint : features.described.keypoints) {
     features.observations.push_back(
         Observe(frame, camera, keypoint.pt.x, keypoint.pt.y,
-                Orb().SigmaPx(keypoint), depth_options));
+                kOrb.SigmaPx(keypoint), depth_options));
   }
   return features;
 }
@@ -47,7 +46,7 @@ Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,
                             const Camera& camera) {
   Correspondences matches(camera);
   for (const KeypointMatch& match :
-       MatchKeypoints(Orb(), prev.described, cur.described, nullptr)) {
+       MatchKeypoints(kOrb, prev.described, cur.described, nullptr)) {
     matches.Add(prev.observations[match.reference],
                 cur.observations[match.current]);
   }

@@ -27,8 +27,8 @@ Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,
                             const Camera& camera);
 
 // The motion between two frames without a guess, by random samples
-// (core/initial_guess/ransac.h) of such matches: nothing unless more agree than
-// chance brings about. Good enough to track from, not more. The same input
+// (core/initial_guess/consensus.h) of such matches: nothing unless more agree
+// than chance brings about. Good enough to track from, not more. The same input
 // gives the same bytes.
 std::optional<Consensus> VerifyGeometrically(const Correspondences& matches);
 

@@ -1,9 +1,8 @@
-#include "frontend/simulation/synthetic_buildings.h"
-
 #include <cmath>
 
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_materials.h"
+#include "frontend/simulation/synthetic_scene.h"
 
 namespace rgbd_pose {
 namespace {

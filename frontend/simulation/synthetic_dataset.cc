@@ -162,8 +162,7 @@ Rendering SyntheticDataset::Render(double t) const {
     cam_from_depth = cam_from_depth * options_.depth_camera->color_from_depth;
   }
   if (depth_renderer_.has_value() || depth_time != color_time ||
-      depth.readout != color.readout || cam_from_depth.Angle() != 0.0 ||
-      !cam_from_depth.translation.isZero(0.0)) {
+      depth.readout != color.readout || !cam_from_depth.IsIdentity()) {
     seen.depth =
         Expose(
             depth_renderer_.has_value() ? *depth_renderer_ : renderer_,

@@ -4,52 +4,28 @@
 
 namespace rgbd_pose {
 
-// What furniture and walls are made of.
+// What furniture and walls are made of: colour and grain, then tiles, their
+// contrast and tint, then glyphs and their density.
 
-inline Material Plain(const cv::Vec3f& color, float grain) {
-  Material material;
-  material.color = color;
-  material.grain = grain;
-  return material;
-}
-
-inline Material Tiled(Material material, const cv::Vec2f& tile, float contrast,
-                      float tint) {
-  material.tile = tile;
-  material.tile_contrast = contrast;
-  material.tile_tint = tint;
-  return material;
-}
-
-inline Material Printed(Material material, float glyph, float density) {
-  material.glyph = glyph;
-  material.glyph_density = density;
-  return material;
-}
-
-inline const Material kPlaster = Plain({0.62f, 0.68f, 0.70f}, 0.16f);
-inline const Material kWallpaper = Printed(
-    Tiled(Plain({0.55f, 0.60f, 0.62f}, 0.14f), {0.16f, 0.21f}, 0.05f, 0.03f),
-    0.016f, 0.10f);
-inline const Material kParquet =
-    Tiled(Plain({0.26f, 0.38f, 0.52f}, 0.24f), {0.42f, 0.09f}, 0.10f, 0.03f);
-inline const Material kWood = Plain({0.30f, 0.45f, 0.62f}, 0.24f);
-inline const Material kDarkWood = Plain({0.16f, 0.24f, 0.36f}, 0.30f);
-inline const Material kMetal = Plain({0.42f, 0.40f, 0.38f}, 0.16f);
-inline const Material kFabric =
-    Tiled(Plain({0.48f, 0.32f, 0.26f}, 0.30f), {0.05f, 0.05f}, 0.08f, 0.05f);
-inline const Material kCarton =
-    Printed(Plain({0.36f, 0.52f, 0.66f}, 0.18f), 0.013f, 0.25f);
-inline const Material kPaper =
-    Printed(Plain({0.85f, 0.88f, 0.88f}, 0.08f), 0.006f, 0.75f);
-inline const Material kPoster = Printed(
-    Tiled(Plain({0.62f, 0.58f, 0.56f}, 0.20f), {0.13f, 0.10f}, 0.22f, 0.18f),
-    0.011f, 0.35f);
-inline const Material kBooks = Printed(
-    Tiled(Plain({0.42f, 0.42f, 0.46f}, 0.20f), {0.034f, 0.36f}, 0.22f, 0.20f),
-    0.008f, 0.30f);
-inline const Material kScreen = Printed(
-    Tiled(Plain({0.34f, 0.28f, 0.24f}, 0.12f), {0.11f, 0.07f}, 0.12f, 0.10f),
-    0.006f, 0.45f);
+inline const Material kPlaster = {{0.62f, 0.68f, 0.70f}, 0.16f};
+inline const Material kWallpaper = {
+    {0.55f, 0.60f, 0.62f}, 0.14f, {0.16f, 0.21f}, 0.05f, 0.03f, 0.016f, 0.10f};
+inline const Material kParquet = {
+    {0.26f, 0.38f, 0.52f}, 0.24f, {0.42f, 0.09f}, 0.10f, 0.03f};
+inline const Material kWood = {{0.30f, 0.45f, 0.62f}, 0.24f};
+inline const Material kDarkWood = {{0.16f, 0.24f, 0.36f}, 0.30f};
+inline const Material kMetal = {{0.42f, 0.40f, 0.38f}, 0.16f};
+inline const Material kFabric = {
+    {0.48f, 0.32f, 0.26f}, 0.30f, {0.05f, 0.05f}, 0.08f, 0.05f};
+inline const Material kCarton = {
+    {0.36f, 0.52f, 0.66f}, 0.18f, {}, 0.0f, 0.0f, 0.013f, 0.25f};
+inline const Material kPaper = {
+    {0.85f, 0.88f, 0.88f}, 0.08f, {}, 0.0f, 0.0f, 0.006f, 0.75f};
+inline const Material kPoster = {
+    {0.62f, 0.58f, 0.56f}, 0.20f, {0.13f, 0.10f}, 0.22f, 0.18f, 0.011f, 0.35f};
+inline const Material kBooks = {
+    {0.42f, 0.42f, 0.46f}, 0.20f, {0.034f, 0.36f}, 0.22f, 0.20f, 0.008f, 0.30f};
+inline const Material kScreen = {
+    {0.34f, 0.28f, 0.24f}, 0.12f, {0.11f, 0.07f}, 0.12f, 0.10f, 0.006f, 0.45f};
 
 }  // namespace rgbd_pose

@@ -47,7 +47,7 @@ SyntheticPath FindSyntheticPath(const std::string& name);
 std::vector<std::string> SyntheticPathNames();
 
 // Tours: paths of a camera that is carried through the scenes of the same name
-// (synthetic_buildings.h) at an even pace with the sway of a hand. They begin
+// (synthetic_scene.h) at an even pace with the sway of a hand. They begin
 // again when they are over, or come back. As SyntheticPath.
 Rigid3d TableTour(double t, double duration);
 Rigid3d TwoRoomsTour(double t, double duration);

@@ -5,7 +5,6 @@
 #include <cstdint>
 
 #include "core/util/named_values.h"
-#include "frontend/simulation/synthetic_buildings.h"
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_materials.h"
 
@@ -15,7 +14,7 @@ namespace {
 // Scenes that lack what one or the other method lives on. All suit the paths
 // of the room.
 
-Material Painted(const cv::Vec3f& color) { return Plain(color, 0.0f); }
+Material Painted(const cv::Vec3f& color) { return {color, 0.0f}; }
 
 struct PaintedBox {
   SceneBox box;

@@ -57,7 +57,7 @@ inline void AddBox(const SceneBox& box, const Material& m, uint32_t seed,
 //   corridor     40 m along the world's x axis, without texture: nothing shows
 //                how far along it one is
 //   poster_wall  one textured plane: depth shows nothing that it does not
-// and to walk through, with paths of the same name (synthetic_buildings.h):
+// and to walk through, with paths of the same name (below):
 //   table           a room with two desks in its middle
 //   two_rooms       with a door between them
 //   twin_corridors  that look exactly alike, a hall between them
@@ -72,5 +72,24 @@ Scene MakeRoom(uint32_t seed);
 
 // The same with the lamp's highlights on desk, screens, floor and pictures.
 Scene MakeGlossyRoom(uint32_t seed);
+
+// Scenes to walk through, for paths that return (synthetic_path.h). Walls are
+// solid boxes 0.1 m thick, furniture stands along them in rows.
+
+// A room of 9.4 x 7 m with two desks, end to end, as an island in the middle.
+Scene MakeTableRoom(uint32_t seed);
+
+// Two rooms of 5.4 x 5.4 m side by side, a door of 1.2 m between them.
+Scene MakeTwoRooms(uint32_t seed);
+
+// A corridor, 2.4 m wide and 8 m long, a hall, and the same corridor again,
+// kTwinShift further along x: the same to the last texture and light.
+constexpr double kTwinShift = 14.0;  // m
+Scene MakeTwinCorridors(uint32_t seed);
+
+// A depot of 42 x 22 m, rows of shelves along y and aisles between them.
+constexpr int kDepotAisles = 14;
+constexpr double kDepotPitch = 3.0;  // m, from aisle to aisle
+Scene MakeDepot(uint32_t seed);
 
 }  // namespace rgbd_pose

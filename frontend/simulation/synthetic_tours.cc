@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "core/util/units.h"
-#include "frontend/simulation/synthetic_buildings.h"
 #include "frontend/simulation/synthetic_path.h"
+#include "frontend/simulation/synthetic_scene.h"
 
 namespace rgbd_pose {
 namespace {

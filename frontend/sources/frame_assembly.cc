@@ -48,7 +48,7 @@ Frame CorrectDepth(const RgbdCamera& camera, Frame frame) {
                          camera.depth_correction.inverse_depth_offset);
   }
   const Rigid3d& moved = camera.depth_correction.depth_from_color;
-  if (moved.Angle() > 0.0 || !moved.translation.isZero(0.0)) {
+  if (!moved.IsIdentity()) {
     frame.depth =
         DepthWarper(camera.camera).Move(frame, moved.Inverse()).clone();
   }

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "core/util/format.h"
-#include "core/util/thread_priority.h"
+#include "core/util/worker.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,5 +1,3 @@
-#include "frontend/sources/numbered_dataset.h"
-
 #include <charconv>
 #include <filesystem>
 #include <map>
@@ -7,6 +5,10 @@
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/sources/dataset.h"
+#include "frontend/sources/frame_assembly.h"
+#include "frontend/sources/numbered_layouts.h"
+#include "frontend/sources/source_kinds.h"
 
 namespace rgbd_pose {
 namespace {
@@ -59,79 +61,110 @@ std::string Examples(const std::vector<NumberedFiles>& choices) {
   return text;
 }
 
+class NumberedDataset final : public Dataset {
+ public:
+  NumberedDataset(const NumberedLayout& layout, const SourceOptions& options)
+      : layout_(layout),
+        folder_(options.path),
+        frames_(FindFrames()),
+        assembly_(MakeAssembly(options)) {}
+
+  bool Recognises(const NumberedLayout& layout, const std::string& folder) {
+    return PathExists(fs::path(folder) / layout.mark) &&
+           !List(folder, layout.color).empty() &&
+           !List(folder, layout.depth).empty();
+  }
+
+  int size() const override { return static_cast<int>(frames_.size()); }
+  double timestamp(int index) const override {
+    return frames_[index].number / kNumberedRate;
+  }
+  Frame Read(int index) const override {
+    const NumberedFrame& files = frames_[index];
+    Frame frame = assembly_.Read(files.color_path, files.depth_path);
+    frame.index = index;
+    frame.timestamp = timestamp(index);
+    return frame;
+  }
+  const RgbdCamera& camera() const override { return assembly_.camera(); }
+  Trajectory ground_truth() const override {
+    std::vector<int> numbers;
+    for (const NumberedFrame& frame : frames_) numbers.push_back(frame.number);
+    Trajectory truth;
+    for (const auto& [number, pose] : layout_.poses(folder_, numbers)) {
+      truth.push_back({number / kNumberedRate, pose});
+    }
+    return truth;
+  }
+  int unmatched_color() const override { return unmatched_color_; }
+
+ private:
+  struct NumberedFrame {
+    int number;
+    std::string color_path;
+    std::string depth_path;
+  };
+
+  std::vector<NumberedFrame> FindFrames() {
+    const std::map<int, std::string> color = List(folder_, layout_.color);
+    const std::map<int, std::string> depth = List(folder_, layout_.depth);
+    if (color.empty()) {
+      throw InputError(folder_ + ": has no colour images " +
+                       Examples(layout_.color) + ", as " + layout_.what +
+                       " has");
+    }
+    std::vector<NumberedFrame> frames;
+    for (const auto& [number, path] : color) {
+      const auto match = depth.find(number);
+      if (match == depth.end()) {
+        ++unmatched_color_;
+      } else {
+        frames.push_back({number, path, match->second});
+      }
+    }
+    if (frames.empty()) {
+      throw InputError(folder_ + ": none of its " +
+                       std::to_string(color.size()) +
+                       " colour images has a depth image " +
+                       Examples(layout_.depth) + " of the same number");
+    }
+    return frames;
+  }
+
+  FrameAssembly MakeAssembly(const SourceOptions& options) const {
+    std::optional<CameraSetup> own;
+    if (!options.camera.has_value()) {
+      own = layout_.camera(folder_, frames_.front().color_path,
+                           frames_.front().depth_path);
+    }
+    SourceOptions said = options;
+    if (own.has_value() && !own->depth_scale) {
+      own->depth_scale = layout_.depth_scale;
+    }
+    if (said.camera.has_value() && !said.camera->depth_scale) {
+      said.camera->depth_scale = layout_.depth_scale;
+    }
+    return FrameAssembly(ChooseCamera(said, own), options.keep_color);
+  }
+
+  const NumberedLayout& layout_;
+  std::string folder_;
+  int unmatched_color_ = 0;
+  std::vector<NumberedFrame> frames_;
+  FrameAssembly assembly_;
+};
+
 }  // namespace
 
-NumberedDataset::NumberedDataset(const NumberedLayout& layout,
-                                 const SourceOptions& options)
-    : layout_(layout),
-      folder_(options.path),
-      frames_(FindFrames()),
-      assembly_(MakeAssembly(options)) {}
-
-bool NumberedDataset::Recognises(const NumberedLayout& layout,
-                                 const std::string& folder) {
+bool IsNumbered(const NumberedLayout& layout, const std::string& folder) {
   return PathExists(fs::path(folder) / layout.mark) &&
          !List(folder, layout.color).empty() &&
          !List(folder, layout.depth).empty();
 }
 
-std::vector<NumberedDataset::NumberedFrame> NumberedDataset::FindFrames() {
-  const std::map<int, std::string> color = List(folder_, layout_.color);
-  const std::map<int, std::string> depth = List(folder_, layout_.depth);
-  if (color.empty()) {
-    throw InputError(folder_ + ": has no colour images " +
-                     Examples(layout_.color) + ", as " + layout_.what + " has");
-  }
-  std::vector<NumberedFrame> frames;
-  for (const auto& [number, path] : color) {
-    const auto match = depth.find(number);
-    if (match == depth.end()) {
-      ++unmatched_color_;
-    } else {
-      frames.push_back({number, path, match->second});
-    }
-  }
-  if (frames.empty()) {
-    throw InputError(folder_ + ": none of its " + std::to_string(color.size()) +
-                     " colour images has a depth image " +
-                     Examples(layout_.depth) + " of the same number");
-  }
-  return frames;
-}
-
-FrameAssembly NumberedDataset::MakeAssembly(
-    const SourceOptions& options) const {
-  std::optional<CameraSetup> own;
-  if (!options.camera.has_value()) {
-    own = layout_.camera(folder_, frames_.front().color_path,
-                         frames_.front().depth_path);
-  }
-  SourceOptions said = options;
-  if (own.has_value() && !own->depth_scale) {
-    own->depth_scale = layout_.depth_scale;
-  }
-  if (said.camera.has_value() && !said.camera->depth_scale) {
-    said.camera->depth_scale = layout_.depth_scale;
-  }
-  return FrameAssembly(ChooseCamera(said, own), options.keep_color);
-}
-
-Frame NumberedDataset::Read(int index) const {
-  const NumberedFrame& files = frames_[index];
-  Frame frame = assembly_.Read(files.color_path, files.depth_path);
-  frame.index = index;
-  frame.timestamp = timestamp(index);
-  return frame;
-}
-
-Trajectory NumberedDataset::ground_truth() const {
-  std::vector<int> numbers;
-  for (const NumberedFrame& frame : frames_) numbers.push_back(frame.number);
-  Trajectory truth;
-  for (const auto& [number, pose] : layout_.poses(folder_, numbers)) {
-    truth.push_back({number / kNumberedRate, pose});
-  }
-  return truth;
+std::unique_ptr<FrameSource> OpenNumbered(const NumberedLayout& layout,
+                                          const SourceOptions& options) {
+  return std::make_unique<NumberedDataset>(layout, options);
 }
 
 }  // namespace rgbd_pose

@@ -79,8 +79,7 @@ Camera ReadIntrinsicText(const fs::path& file, const std::string& image_path) {
   const cv::Mat image = ReadImageFile(image_path, cv::IMREAD_UNCHANGED);
   const Camera camera = {image.cols,   image.rows,   number(0, 0),
                          number(1, 1), number(0, 2), number(1, 2)};
-  const std::string problem = camera.Check();
-  if (!problem.empty()) throw InputError(path + ": " + problem);
+  RequireSound(camera.Check(), path + ": ");
   return camera;
 }
 

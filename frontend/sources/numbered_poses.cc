@@ -1,10 +1,9 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
-#include <iomanip>
-#include <sstream>
 
 #include "core/evaluation/trajectory.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/sources/numbered_layouts.h"
@@ -73,10 +72,8 @@ NumberedPoses ReadFramePoses(const std::string& folder,
                              const std::vector<int>& numbers) {
   NumberedPoses poses;
   for (const int number : numbers) {
-    std::ostringstream name;
-    name << "frame-" << std::setw(6) << std::setfill('0') << number
-         << ".pose.txt";
-    const fs::path path = fs::path(folder) / name.str();
+    const fs::path path =
+        fs::path(folder) / Format("frame-%06d.pose.txt", number);
     if (PathExists(path)) ReadMatrixFile(path.string(), number, &poses);
   }
   return poses;

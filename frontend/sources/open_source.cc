@@ -8,10 +8,7 @@
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
-#include "frontend/bags/bag_files.h"
-#include "frontend/sources/bag_source.h"
-#include "frontend/sources/numbered_dataset.h"
-#include "frontend/sources/openni2_source.h"
+#include "frontend/sources/source_kinds.h"
 #include "frontend/sources/tum_dataset.h"
 
 namespace rgbd_pose {
@@ -39,8 +36,7 @@ SourceType BagType(BagKind kind, const char* name, const char* what) {
             return IsBag(options.path, kind);
           },
           [kind](const SourceOptions& options) {
-            return std::make_unique<BagSource>(OpenBag(options.path, kind),
-                                               options);
+            return OpenBagSource(OpenBag(options.path, kind), options);
           }};
 }
 
@@ -68,11 +64,10 @@ const std::vector<SourceType>& Types() {
     for (const NumberedLayout& layout : NumberedLayouts()) {
       all.push_back({layout.name, layout.what,
                      [&layout](const SourceOptions& options) {
-                       return NumberedDataset::Recognises(layout, options.path);
+                       return IsNumbered(layout, options.path);
                      },
                      [&layout](const SourceOptions& options) {
-                       return std::make_unique<NumberedDataset>(layout,
-                                                                options);
+                       return OpenNumbered(layout, options);
                      }});
     }
     return all;

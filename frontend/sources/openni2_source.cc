@@ -1,6 +1,5 @@
-#include "frontend/sources/openni2_source.h"
-
 #include "core/util/input_error.h"
+#include "frontend/sources/source_kinds.h"
 #ifdef RGBD_POSE_HAS_OPENNI2
 #include <OpenNI.h>
 
@@ -12,8 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "frontend/sources/approximate_time_sync.h"
 #include "frontend/sources/frame_assembly.h"
+#include "frontend/sources/image_pairing.h"
 #include "frontend/sources/latest_frame.h"
 #endif
 

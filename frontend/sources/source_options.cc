@@ -34,8 +34,7 @@ std::string SourceOptions::Check() const {
 
 CameraSetup ChooseCamera(const SourceOptions& options,
                          const std::optional<CameraSetup>& of_recording) {
-  std::string problem = options.Check();
-  if (!problem.empty()) throw InputError(problem);
+  RequireSound(options.Check());
   if (!options.camera.has_value() && !of_recording.has_value()) {
     throw InputError(options.path +
                      ": does not say what camera it is of; name a preset or a "
@@ -48,7 +47,7 @@ CameraSetup ChooseCamera(const SourceOptions& options,
     if (!chosen.depth_camera) chosen.depth_camera = of_recording->depth_camera;
   }
   if (options.depth_scale > 0.0) chosen.depth_scale = options.depth_scale;
-  problem = ProblemOf(chosen);
+  const std::string problem = ProblemOf(chosen);
   if (!problem.empty()) {
     throw InputError(options.path + ": what it says of its camera: " + problem +
                      "; name a preset or a calibration file (camera)");

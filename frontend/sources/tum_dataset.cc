@@ -1,9 +1,14 @@
 #include "frontend/sources/tum_dataset.h"
 
+#include <algorithm>
+#include <cctype>
 #include <filesystem>
+#include <opencv2/imgcodecs.hpp>
 #include <optional>
+#include <utility>
 #include <vector>
 
+#include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
@@ -15,9 +20,107 @@ namespace {
 
 namespace fs = std::filesystem;
 
+struct ListedImage {
+  double timestamp;
+  std::string path;
+  int line;  // in its list
+};
+
+std::string Quote(const TextLine& line) {
+  constexpr size_t kMaxLength = 120;
+  std::string text;
+  for (const std::string& word : line.words) {
+    text += (text.empty() ? "" : " ") + word;
+  }
+  if (text.size() > kMaxLength) text = text.substr(0, kMaxLength) + "...";
+  return "'" + text + "'";
+}
+
+ImagePair PairOf(const ListedImage& color, const ListedImage& depth) {
+  return {color.timestamp, depth.timestamp - color.timestamp, color.path,
+          depth.path};
+}
+
+// The lines of a list, each with `columns` words.
+std::vector<TextLine> ReadLines(const std::string& list, size_t columns,
+                                const std::string& wanted) {
+  std::vector<TextLine> lines = ReadTextTable(list);
+  if (lines.empty()) throw InputError(list + ": lists no images");
+  for (const TextLine& line : lines) {
+    if (line.words.size() != columns) {
+      throw InputError(list, line.number,
+                       "needs " + std::to_string(columns) + " columns (" +
+                           wanted + "), has " +
+                           std::to_string(line.words.size()) + ": " +
+                           Quote(line));
+    }
+  }
+  return lines;
+}
+
+void CheckTimeOrder(const std::string& list,
+                    const std::vector<ListedImage>& images) {
+  for (size_t i = 1; i < images.size(); ++i) {
+    if (images[i].timestamp >= images[i - 1].timestamp) continue;
+    throw InputError(list, images[i].line,
+                     "an earlier time stamp than the line before; sort the "
+                     "list");
+  }
+}
+
+std::vector<ListedImage> ReadImageList(const std::string& folder,
+                                       const std::string& name,
+                                       int* same_stamp) {
+  const std::string list = (fs::path(folder) / name).string();
+  if (!PathExists(list)) {
+    throw InputError(list +
+                     ": missing; a TUM RGB-D sequence has rgb.txt and "
+                     "depth.txt, or else give an associations file");
+  }
+  std::vector<ListedImage> images;
+  for (const TextLine& line : ReadLines(list, 2, "time image")) {
+    images.push_back({ParseTimestamp(line.words[0], list, line.number),
+                      (fs::path(folder) / line.words[1]).string(),
+                      line.number});
+  }
+  CheckTimeOrder(list, images);
+  const auto end = std::unique(images.begin(), images.end(),
+                               [](const ListedImage& a, const ListedImage& b) {
+                                 return a.timestamp == b.timestamp;
+                               });
+  *same_stamp += static_cast<int>(images.end() - end);
+  images.erase(end, images.end());
+  return images;
+}
+
+bool MentionsDepth(std::string path) {
+  std::transform(path.begin(), path.end(), path.begin(),
+                 [](unsigned char c) { return std::tolower(c); });
+  return path.find("depth") != std::string::npos;
+}
+
+bool IsDepthImage(const ListedImage& image) {
+  return ReadImageFile(image.path, cv::IMREAD_UNCHANGED).type() == CV_16UC1;
+}
+
+// Whether an associations file has the depth images in its left columns: by
+// the paths as written in its first line or else by the images themselves.
+bool IsDepthLeft(const std::string& list, const TextLine& line,
+                 const ListedImage& left, const ListedImage& right) {
+  const bool left_named = MentionsDepth(line.words[1]);
+  const bool right_named = MentionsDepth(line.words[3]);
+  if (left_named != right_named) return left_named;
+  const bool left_is_depth = IsDepthImage(left);
+  const bool right_is_depth = IsDepthImage(right);
+  if (left_is_depth != right_is_depth) return left_is_depth;
+  throw InputError(list, line.number,
+                   "one image of a line must be colour and one depth (16 "
+                   "bits, 1 channel): " +
+                       Quote(line));
+}
+
 TumLists ReadLists(const SourceOptions& options) {
-  const std::string problem = options.Check();
-  if (!problem.empty()) throw InputError(problem);
+  RequireSound(options.Check());
   std::error_code error;
   if (!fs::is_directory(options.path, error)) {
     throw InputError(options.path +
@@ -44,8 +147,7 @@ CameraSetup ReadCalibrationText(const std::string& path,
   const cv::Mat image = ReadGrayImageFile(first_image);
   const Camera camera = {image.cols, image.rows, numbers[0],
                          numbers[1], numbers[2], numbers[3]};
-  const std::string problem = camera.Check();
-  if (!problem.empty()) throw InputError(path + ": " + problem);
+  RequireSound(camera.Check(), path + ": ");
   return CameraSetup(camera);
 }
 
@@ -64,6 +166,57 @@ std::optional<CameraSetup> OwnCamera(const SourceOptions& options,
 }
 
 }  // namespace
+
+TumLists ReadTumLists(const std::string& folder, double max_time_difference) {
+  TumLists lists;
+  const std::vector<ListedImage> color =
+      ReadImageList(folder, "rgb.txt", &lists.same_stamp);
+  const std::vector<ListedImage> depth =
+      ReadImageList(folder, "depth.txt", &lists.same_stamp);
+  for (const auto [i, j] :
+       Associate(TimesOf(color), TimesOf(depth), max_time_difference)) {
+    lists.pairs.push_back(PairOf(color[i], depth[j]));
+  }
+  if (lists.pairs.empty()) {
+    throw InputError(folder + ": no image of rgb.txt is within " +
+                     std::to_string(max_time_difference) +
+                     " s of one of depth.txt; the lists start at " +
+                     std::to_string(color.front().timestamp) + " and " +
+                     std::to_string(depth.front().timestamp) + " s");
+  }
+  lists.unmatched_color = static_cast<int>(color.size() - lists.pairs.size());
+  return lists;
+}
+
+TumLists ReadTumAssociations(const std::string& folder,
+                             const std::string& associations_file) {
+  std::vector<ListedImage> left;
+  std::vector<ListedImage> right;
+  const std::vector<TextLine> lines =
+      ReadLines(associations_file, 4, "time image time image");
+  for (const TextLine& line : lines) {
+    for (const size_t column : {0, 2}) {
+      ListedImage image = {
+          ParseTimestamp(line.words[column], associations_file, line.number),
+          (fs::path(folder) / line.words[column + 1]).string(), line.number};
+      (column == 0 ? left : right).push_back(std::move(image));
+    }
+  }
+  const bool depth_left = IsDepthLeft(associations_file, lines.front(),
+                                      left.front(), right.front());
+  const std::vector<ListedImage>& color = depth_left ? right : left;
+  const std::vector<ListedImage>& depth = depth_left ? left : right;
+  CheckTimeOrder(associations_file, color);
+  TumLists lists;
+  for (size_t i = 0; i < color.size(); ++i) {
+    if (i > 0 && color[i].timestamp == color[i - 1].timestamp) {
+      ++lists.same_stamp;
+    } else {
+      lists.pairs.push_back(PairOf(color[i], depth[i]));
+    }
+  }
+  return lists;
+}
 
 TumDataset::TumDataset(const SourceOptions& options)
     : folder_(options.path),

@@ -11,7 +11,6 @@
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/image_file.h"
-#include "frontend/frame/gray_level.h"
 #include "frontend/sources/frame_stream.h"
 
 namespace rgbd_pose {

@@ -67,11 +67,11 @@ struct WithoutJacobian : ForwardError {
     PointToPoint::Residual(motion, columns, r);
   }
 };
-static_assert(!HasJacobian<WithoutJacobian>::value);
+static_assert(!kHas<JacobianOf, WithoutJacobian>);
 
 template <typename... Types>
 constexpr bool AllHaveJacobians(TypeList<Types...>) {
-  return (HasJacobian<Types>::value && ...);
+  return (kHas<JacobianOf, Types> && ...);
 }
 static_assert(AllHaveJacobians(ResidualTypes()),
               "a cost of this project is differentiated by hand");

@@ -9,7 +9,6 @@
 
 #include "core/geometry/motion.h"
 #include "costs/cost_list.h"
-#include "frontend/simulation/residual_sample.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/both_jacobians.h"
 

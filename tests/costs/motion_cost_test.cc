@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "core/estimation/estimator.h"
-#include "costs/assembly/motion_block.h"
+#include "costs/assembly/cost_blocks.h"
 #include "costs/cost_factory.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "robust/scale.h"

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "frontend/bags/bag_files.h"
+#include "frontend/bags/bag_reader.h"
 #include "frontend/sources/open_source.h"
 #include "tests/fuzz/fuzz_input.h"
 

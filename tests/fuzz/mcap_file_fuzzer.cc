@@ -1,6 +1,6 @@
 // mcap recordings: what they have, the first messages, all messages.
 
-#include "frontend/bags/mcap_file.h"
+#include "frontend/bags/bag_reader.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -1,6 +1,6 @@
 // Our own decoder of PNG files.
 
-#include "frontend/files/png_decoder.h"
+#include "frontend/files/png_codec.h"
 #include "tests/fuzz/fuzz_input.h"
 #include "tests/support/png_parts.h"
 

@@ -1,6 +1,6 @@
 // A message of a bag: a byte for its kind and encoding, then its bytes.
 
-#include "frontend/bags/bag_camera.h"
+#include "frontend/bags/bag_topics.h"
 #include "frontend/bags/ros_image.h"
 #include "frontend/bags/ros_messages.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "core/geometry/motion.h"
-#include "costs/assembly/match_blocks.h"
+#include "costs/assembly/cost_blocks.h"
 #include "costs/cost_list.h"
 
 namespace rgbd_pose {

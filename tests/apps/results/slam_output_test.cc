@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/pose_graph/graph_blocks.h"
+#include "core/pose_graph/graph_problem.h"
 #include "tests/support/graph_world.h"
 #include "tests/support/motion_error.h"
 

@@ -1,7 +1,6 @@
-#include "core/initial_guess/clique.h"
-
 #include <gtest/gtest.h>
 
+#include "core/initial_guess/consensus.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/motion_error.h"
 

@@ -9,8 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "core/initial_guess/clique.h"
-#include "core/initial_guess/ransac.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/motion_error.h"
 

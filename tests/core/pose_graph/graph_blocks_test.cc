@@ -1,13 +1,12 @@
 // What a graph hands to Ceres, far from where poses begin.
 
-#include "core/pose_graph/graph_blocks.h"
-
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <random>
 
+#include "core/pose_graph/graph_problem.h"
 #include "tests/support/edge_oracle.h"
 
 namespace rgbd_pose {

@@ -4,7 +4,7 @@
 
 #include <limits>
 
-#include "core/pose_graph/graph_blocks.h"
+#include "core/pose_graph/graph_problem.h"
 #include "robust/m_estimator.h"
 #include "tests/support/edge_oracle.h"
 #include "tests/support/graph_world.h"

@@ -4,7 +4,7 @@
 #include <ceres/autodiff_cost_function.h>
 #include <gtest/gtest.h>
 
-#include "costs/calibration/known_distance_block.h"
+#include "costs/calibration/landmark_block.h"
 #include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {

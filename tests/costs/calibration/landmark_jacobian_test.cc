@@ -5,10 +5,11 @@
 #include <algorithm>
 #include <cmath>
 
-#include "costs/calibration/calibration_list.h"
 #include "costs/calibration/landmark_block.h"
+#include "costs/calibration/landmark_residuals.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/both_jacobians.h"
+#include "tests/support/landmark_oracle.h"
 
 namespace rgbd_pose {
 namespace {

@@ -2,8 +2,6 @@
 // dense ones by ceres::Jet from which all depths are eliminated at once; and
 // the covariance of the camera that follows from them.
 
-#include "costs/calibration/reduced_camera_system.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -12,10 +10,11 @@
 #include <optional>
 #include <vector>
 
-#include "costs/calibration/known_distance_block.h"
+#include "costs/calibration/landmark_block.h"
 #include "costs/calibration/landmark_covariance.h"
 #include "costs/calibration/landmark_residuals.h"
 #include "frontend/simulation/synthetic_matches.h"
+#include "tests/support/landmark_oracle.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,12 +1,12 @@
 // The change of brightness of images that are known to the last gray level.
 
-#include "costs/direct/brightness.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdint>
 #include <functional>
 #include <vector>
+
+#include "costs/direct/direct_points.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,4 +1,4 @@
-#include "frontend/bags/bag_camera.h"
+#include "frontend/bags/bag_topics.h"
 
 #include <std_msgs/Float32.h>
 

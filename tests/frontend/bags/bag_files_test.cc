@@ -1,4 +1,4 @@
-#include "frontend/bags/bag_files.h"
+#include "frontend/bags/bag_reader.h"
 
 #ifdef RGBD_POSE_MCAP
 #include <zstd.h>

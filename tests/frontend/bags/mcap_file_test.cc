@@ -1,7 +1,7 @@
 // Recordings that the format's own library has written
 // (mcap/make_fixtures.mjs), and what may have happened to them.
 
-#include "frontend/bags/mcap_file.h"
+#include "frontend/bags/bag_reader.h"
 
 #include <filesystem>
 #include <random>

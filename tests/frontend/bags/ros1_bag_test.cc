@@ -1,4 +1,4 @@
-#include "frontend/bags/ros1_bag.h"
+#include "frontend/bags/bag_reader.h"
 
 #include <bzlib.h>
 

@@ -1,4 +1,3 @@
-#include "frontend/features/patch_alignment.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,3 @@
-#include "frontend/files/camera_file_writer.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "frontend/files/png_decoder.h"
+#include "frontend/files/png_codec.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,10 @@
-#include "frontend/files/png_encoder.h"
+#include "frontend/files/png_codec.h"
 
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
-#include "frontend/files/png_decoder.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,4 +1,4 @@
-#include "frontend/frame/surface_normal.h"
+#include "frontend/frame/depth_lookup.h"
 
 #include <gtest/gtest.h>
 

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "frontend/simulation/synthetic_buildings.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
 

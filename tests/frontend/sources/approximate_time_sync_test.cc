@@ -1,10 +1,9 @@
-#include "frontend/sources/approximate_time_sync.h"
-
 #include <gtest/gtest.h>
 
 #include <thread>
 #include <vector>
 
+#include "frontend/sources/image_pairing.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {

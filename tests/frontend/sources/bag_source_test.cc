@@ -1,4 +1,4 @@
-#include "frontend/sources/bag_source.h"
+#include "frontend/sources/open_source.h"
 
 #include <filesystem>
 

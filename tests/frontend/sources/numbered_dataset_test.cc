@@ -1,4 +1,4 @@
-#include "frontend/sources/numbered_dataset.h"
+#include "frontend/sources/open_source.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
-#include "frontend/sources/open_source.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/tum_sequence.h"

@@ -1,11 +1,10 @@
-#include "frontend/sources/openni2_source.h"
+#include "frontend/sources/open_source.h"
 
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <thread>
 
-#include "frontend/sources/open_source.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {

@@ -1,4 +1,4 @@
-#include "costs/calibration/calibration_state.h"
+#include "costs/calibration/calibration_views.h"
 
 namespace rgbd_pose {
 
