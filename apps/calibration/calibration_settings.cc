@@ -18,7 +18,7 @@ std::vector<NamedParts> PartNames() {
   std::vector<NamedParts> names = {
       {"focal", {kFx, kFy}},
       {"centre", {kCx, kCy}},
-      {"distortion", {kK1, kK2}},
+      {"distortion", {kK1, kK2, kK3, kK4, kP1, kP2}},
       {"readouts", {kColorReadout, kDepthReadout}},
       {"registration",
        {kRotationX, kRotationY, kRotationZ, kTranslationX, kTranslationY,
@@ -44,7 +44,7 @@ std::string CalibrationSettings::Check() const {
   if (max_passes < 1 || max_passes > 10) return "max_passes must be 1 to 10";
   if (max_views < 1000) return "max_views must be at least 1000";
   try {
-    FreeParameters(fix, false);
+    FreeParameters(fix, false, LensModel::kRational);
   } catch (const InputError& error) {
     return error.what();
   }
@@ -91,10 +91,13 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
 }
 
 std::array<bool, kCalibrationSize> FreeParameters(const std::string& fix,
-                                                  bool has_scale) {
+                                                  bool has_scale,
+                                                  LensModel lens) {
   std::array<bool, kCalibrationSize> is_free;
   is_free.fill(true);
   is_free[kDepthFactor] = has_scale;
+  is_free[kK4] = lens == LensModel::kEquidistant;
+  is_free[kP1] = is_free[kP2] = lens != LensModel::kEquidistant;
   const std::vector<NamedParts> names = PartNames();
   std::stringstream list(fix);
   for (std::string word; std::getline(list, word, ',');) {

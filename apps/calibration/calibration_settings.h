@@ -49,9 +49,11 @@ struct CalibrationSettings {
 std::vector<Setting> SettingTable(CalibrationSettings* settings);
 
 // Which parameters are free: all but what `fix` names (see
-// CalibrationSettings), and depth_factor only where something gives a scale.
-// Throws InputError for a name that there is not.
+// CalibrationSettings), depth_factor only where something gives a scale, and of
+// the distortion what such a lens has. Throws InputError for a name that there
+// is not.
 std::array<bool, kCalibrationSize> FreeParameters(const std::string& fix,
-                                                  bool has_scale);
+                                                  bool has_scale,
+                                                  LensModel lens);
 
 }  // namespace rgbd_pose

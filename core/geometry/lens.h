@@ -83,10 +83,10 @@ struct Lens {
     }
   }
 
-  // df / dk1 and df / dk2.
+  // df / dk1 .. dk4: the fourth is of an equidistant lens.
   template <typename D>
-  [[gnu::always_inline]] inline void RadialByCoefficients(const D& r2, D* by_k1,
-                                                          D* by_k2) const {
+  [[gnu::always_inline]] inline void RadialByCoefficients(const D& r2,
+                                                          D (&by)[4]) const {
     D of_k1 = r2, step = r2;
     if (factor == Factor::kEquidistant) {
       const D r = sqrt(r2 + S(kSmall));
@@ -96,8 +96,8 @@ struct Lens {
     } else if (factor == Factor::kRational) {
       of_k1 = r2 / (S(1) + r2 * (k4 + r2 * (k5 + r2 * k6)));
     }
-    *by_k1 = of_k1;
-    *by_k2 = of_k1 * step;
+    by[0] = of_k1;
+    for (int k = 1; k < 4; ++k) by[k] = by[k - 1] * step;
   }
 
   // The place alone.

@@ -15,6 +15,10 @@ enum CalibrationIndex {
   kCy,
   kK1,  // radial distortion
   kK2,
+  kK3,
+  kK4,  // of an equidistant lens alone
+  kP1,  // tangential distortion, of all others
+  kP2,
   kInverseDepth,  // 1 / z = 1 / measured z + this, 1/m
   kDepthTime,     // depth is so much later than its stamp says, s
   kColorReadout,  // from the first row to the last, longer than what has been
@@ -28,6 +32,10 @@ enum CalibrationIndex {
   kDepthFactor,  // z = this * measured z, without the offset of 1 / z
   kCalibrationSize
 };
+
+// Those of the lens are the first.
+inline constexpr int kLensSize = kInverseDepth;
+inline constexpr int kDistortionSize = kLensSize - kK1;
 
 // The numbers, and what is quadratic in them.
 using CalibrationVector = Eigen::Matrix<double, kCalibrationSize, 1>;
@@ -59,6 +67,10 @@ inline constexpr std::array<CalibrationParameter, kCalibrationSize>
         {"cy", "principal point, y", "px", 10.0, 0.05},
         {"k1", "radial distortion, r^2", "", 0.1, 1.5e-4},
         {"k2", "radial distortion, r^4", "", 0.2, 2e-4},
+        {"k3", "radial distortion, r^6", "", 0.5, 2e-4},
+        {"k4", "radial distortion, t^8", "", 0.1, 2e-4},
+        {"p1", "tangential distortion, along y", "", 0.005, 8e-5},
+        {"p2", "tangential distortion, along x", "", 0.005, 8e-5},
         {"inverse_depth_offset", "offset of inverse depth", "1/m", 0.02, 6e-5},
         {"depth_time_offset", "time of depth after its stamp", "s", 0.02,
          1.5e-5},

@@ -165,7 +165,7 @@ struct InViewDerivatives {
   Eigen::Matrix<double, 3, 6> anchor, view;
   Eigen::Vector3d inverse_depth;
   Eigen::Vector3d color_readout;
-  Eigen::Matrix<double, 3, kInverseDepth> lens;  // fx fy cx cy k1 k2
+  Eigen::Matrix<double, 3, kLensSize> lens;
 
   InViewDerivatives(const MotionDerivatives& a, const MotionDerivatives& b,
                     double d, const double* theta, const LandmarkData& data) {
@@ -197,10 +197,11 @@ struct InViewDerivatives {
       view.col(3 + k) = -R.col(k) * d;
     }
     // Of the ray by the lens: Distort(ray; k) = seen(f, c).
-    Eigen::Matrix<double, 2, kInverseDepth> moved;
+    Eigen::Matrix<double, 2, kLensSize> moved;
     moved.leftCols<4>() << -seen[0] / theta[kFx], 0.0, -1.0 / theta[kFx], 0.0,
         0.0, -seen[1] / theta[kFy], 0.0, -1.0 / theta[kFy];
-    moved.rightCols<2>() = -DistortByCoefficients(at, place[0], place[1]);
+    moved.rightCols<kDistortionSize>() =
+        -DistortByCoefficients(at, place[0], place[1]);
     lens = (from_anchor * from.turn).leftCols<2>() *
            (DistortDerivative(at, place[0], place[1]).inverse() * moved);
   }
@@ -259,13 +260,13 @@ struct LandmarkPixel {
     J->view = by_point * moved.view;
     J->inverse_depth = by_point * moved.inverse_depth;
     J->theta.setZero();
-    J->theta.leftCols<kInverseDepth>() = by_point * moved.lens;
+    J->theta.leftCols<kLensSize>() = by_point * moved.lens;
     J->theta.col(kColorReadout) = by_point * moved.color_readout;
     J->theta(0, kFx) += w * seen[0];
     J->theta(1, kFy) += w * seen[1];
     J->theta(0, kCx) += w;
     J->theta(1, kCy) += w;
-    J->theta.middleCols<2>(kK1) +=
+    J->theta.middleCols<kDistortionSize>(kK1) +=
         scale.asDiagonal() * DistortByCoefficients(lens, x, y);
   }
 };
@@ -302,7 +303,7 @@ struct LandmarkDepth {
     J->view = by_z * moved.view.row(2);
     J->inverse_depth[0] = by_z * moved.inverse_depth[2] + by_w * z * weight;
     J->theta *= weight;
-    J->theta.leftCols<kInverseDepth>() += by_z * moved.lens.row(2);
+    J->theta.leftCols<kLensSize>() += by_z * moved.lens.row(2);
     J->theta[kColorReadout] += by_z * moved.color_readout[2];
   }
 };

@@ -9,9 +9,9 @@
 
 namespace rgbd_pose {
 
-// The lens of a camera whose fx, fy, cx, cy, k1 and k2 are those of a
-// CalibrationVector, for any scalar (double or ceres::Jet); the rest of the
-// distortion is that of `rest`.
+// The lens of a camera whose parameters are those of a CalibrationVector, for
+// any scalar (double or ceres::Jet); its model, and what that has beyond them
+// (a rational lens: k4 k5 k6), are those of `rest`.
 template <typename T>
 struct CalibratedLens {
   using Pair = Eigen::Matrix<T, 2, 1>;
@@ -24,6 +24,13 @@ struct CalibratedLens {
       : theta(parameters), rest(camera), lens(camera.MakeLens<T>()) {
     lens.k1 = theta[kK1];
     lens.k2 = theta[kK2];
+    lens.k3 = theta[kK3];
+    if (lens.factor == Lens<T>::Factor::kEquidistant) {
+      lens.k4 = theta[kK4];
+      return;
+    }
+    lens.p1 = theta[kP1];
+    lens.p2 = theta[kP2];
     if (lens.factor == Lens<T>::Factor::kNone) {
       lens.factor = Lens<T>::Factor::kPolynomial;
     }
@@ -58,13 +65,23 @@ inline Eigen::Matrix2d DistortDerivative(const CalibratedLens<double>& at,
   return D;
 }
 
-// d Distort / d (k1, k2).
-inline Eigen::Matrix2d DistortByCoefficients(const CalibratedLens<double>& at,
-                                             double x, double y) {
-  double by_k1, by_k2;
-  at.lens.RadialByCoefficients(x * x + y * y, &by_k1, &by_k2);
-  Eigen::Matrix2d D;
-  D << x * by_k1, x * by_k2, y * by_k1, y * by_k2;
+// d Distort / d (k1, k2, k3, k4, p1, p2).
+inline Eigen::Matrix<double, 2, kDistortionSize> DistortByCoefficients(
+    const CalibratedLens<double>& at, double x, double y) {
+  const bool is_equidistant =
+      at.lens.factor == Lens<double>::Factor::kEquidistant;
+  const double r2 = x * x + y * y;
+  double by[4];
+  at.lens.RadialByCoefficients(r2, by);
+  Eigen::Matrix<double, 2, kDistortionSize> D;
+  for (int k = 0; k < 4; ++k) D.col(k) << x * by[k], y * by[k];
+  D.rightCols<2>() << 2.0 * x * y, r2 + 2.0 * x * x, r2 + 2.0 * y * y,
+      2.0 * x * y;
+  if (is_equidistant) {
+    D.rightCols<2>().setZero();
+  } else {
+    D.col(3).setZero();
+  }
   return D;
 }
 

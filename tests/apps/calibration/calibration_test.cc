@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+#include <vector>
 
 #include "apps/calibration/calibration_run.h"
 #include "apps/calibration/calibration_verdict.h"
@@ -113,6 +115,42 @@ TEST(CalibrationTest, FindsWhatIsWrongOnAnyNumberOfThreads) {
     EXPECT_EQ(one.parameters[k].sigma, result.parameters[k].sigma);
   }
   EXPECT_EQ(one.cost_after, result.cost_after);
+}
+
+// How far (px) two cameras see something apart, at most, within the image.
+double LargestDifferencePx(const Camera& a, const Camera& b) {
+  double largest = 0.0;
+  for (double v = 20.0; v < a.height; v += 40.0) {
+    for (double u = 20.0; u < a.width; u += 40.0) {
+      const Eigen::Vector3d ray = a.Unproject({u, v}, 1.0);
+      largest = std::max(largest, (b.Project(ray) - a.Project(ray)).norm());
+    }
+  }
+  return largest;
+}
+
+TEST(CalibrationTest, FindsAllCoefficientsOfALens) {
+  SyntheticOptions options;
+  for (const LensModel model :
+       {LensModel::kRational, LensModel::kEquidistant}) {
+    RgbdCamera& truth = options.camera;
+    truth.camera.SetDistortion(
+        model, model == LensModel::kRational
+                   ? std::vector<double>{0.15, -0.3, -0.003, 0.002, 0.15}
+                   : std::vector<double>{-0.05, 0.05, -0.03, 0.01});
+    RgbdCamera first = truth;
+    first.camera.SetDistortion(model, std::vector<double>(4, 0.0));
+    const CalibrationResult result =
+        Mapped(Render("handheld", kCalibrationFrames, options), first)
+            .Calibrate();
+    EXPECT_TRUE(result.is_accepted) << result.reason;
+    EXPECT_GT(LargestDifferencePx(truth.camera, first.camera), 3.0);
+    EXPECT_LT(LargestDifferencePx(truth.camera, result.camera.camera), 0.5);
+    // What such a lens has not stays out of it.
+    const bool is_fisheye = model == LensModel::kEquidistant;
+    EXPECT_EQ(Of(result, kP1).status == Status::kFixed, is_fisheye);
+    EXPECT_EQ(Of(result, kK4).status == Status::kFixed, !is_fisheye);
+  }
 }
 
 TEST(CalibrationTest, WhatIsFixedStays) {
@@ -223,8 +261,9 @@ TEST(CalibrationTest, WhatChangesACameraIsFoundBetweenBoth) {
       Eigen::Quaterniond(Eigen::AngleAxisd(0.01, Eigen::Vector3d::UnitZ())),
       {0.01, 0.0, -0.02});
   CalibrationVector theta;
-  theta << 520.0, 521.0, 318.0, 241.0, 0.01, -0.02, 0.003, 0.004, 0.025, -0.01,
-      0.005, -0.006, 0.007, 0.008, -0.009, 0.010, 1.02;
+  theta << 520.0, 521.0, 318.0, 241.0, 0.01, -0.02, 0.03, 0.04, 0.001, -0.002,
+      0.003, 0.004, 0.025, -0.01, 0.005, -0.006, 0.007, 0.008, -0.009, 0.010,
+      1.02;
   EXPECT_TRUE(ThetaBetween(first, ApplyCalibration(first, theta))
                   .isApprox(theta, 1e-9));
 }

@@ -14,7 +14,7 @@ namespace rgbd_pose {
 namespace {
 
 using Eigen::Vector2d;
-using Jet = ceres::Jet<double, 4>;
+using Jet = ceres::Jet<double, 6>;
 
 struct NamedCamera {
   const char* name;
@@ -55,6 +55,10 @@ TEST(LensTest, DerivativesAreThoseOfTheOracle) {
     auto oracle = c.camera.MakeLens<Jet>();
     oracle.k1 = Jet(c.camera.k1, 2);
     oracle.k2 = Jet(c.camera.k2, 3);
+    oracle.k3 = Jet(c.camera.k3, 4);
+    // Of other lenses it is no coefficient of the numerator.
+    const bool has_k4 = c.camera.lens_model == LensModel::kEquidistant;
+    if (has_k4) oracle.k4 = Jet(c.camera.k4, 5);
     for (const Vector2d& at : Places(c.largest_tangent)) {
       DistortedPoint<double> hand;
       lens.Distort(at.x(), at.y(), &hand);
@@ -68,10 +72,12 @@ TEST(LensTest, DerivativesAreThoseOfTheOracle) {
       EXPECT_NEAR(hand.x_y, y.v[0], kTolerance) << c.name << at.transpose();
       EXPECT_NEAR(hand.y_y, y.v[1], kTolerance) << c.name << at.transpose();
       if (!c.camera.HasDistortion()) continue;
-      double by_k1, by_k2;
-      lens.RadialByCoefficients(at.squaredNorm(), &by_k1, &by_k2);
-      EXPECT_NEAR(at.x() * by_k1, x.v[2], kTolerance) << c.name;
-      EXPECT_NEAR(at.y() * by_k2, y.v[3], kTolerance) << c.name;
+      double by[4];
+      lens.RadialByCoefficients(at.squaredNorm(), by);
+      for (int k = 0; k < (has_k4 ? 4 : 3); ++k) {
+        EXPECT_NEAR(at.x() * by[k], x.v[2 + k], kTolerance) << c.name << k;
+        EXPECT_NEAR(at.y() * by[k], y.v[2 + k], kTolerance) << c.name << k;
+      }
     }
   }
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "costs/calibration/landmark_block.h"
 #include "costs/calibration/landmark_residuals.h"
@@ -31,23 +32,20 @@ struct LandmarkSample {
 
   // `lens`: 0 plumb bob, 1 rational, 2 equidistant.
   LandmarkSample(RandomWorld* world, int lens) {
-    rest.p1 = world->Uniform(-0.005, 0.005);
-    rest.p2 = world->Uniform(-0.005, 0.005);
-    rest.k3 = world->Uniform(-0.1, 0.1);
     if (lens == 1) {
       rest.k4 = world->Uniform(0.05, 0.1);
       rest.k5 = world->Uniform(-0.1, 0.1);
       rest.k6 = world->Uniform(-0.1, 0.1);
     } else if (lens == 2) {
-      rest.SetDistortion(LensModel::kEquidistant,
-                         {0.0, 0.0, rest.k3, world->Uniform(-0.02, 0.02)});
+      rest.SetDistortion(LensModel::kEquidistant, std::vector<double>(4, 0.0));
     }
     anchor = LinearizationPoint(world->Motion(0.2, 0.3));
     view = LinearizationPoint(world->Motion(0.2, 0.3));
     x_anchor << world->Vector(0.05), world->Vector(0.05);
     x_view << world->Vector(0.05), world->Vector(0.05);
-    origin.start << 525.0, 520.0, 319.5, 239.5, 0.1, -0.1, 0.01, 0.01, 0.02,
-        0.03, 0.01, 0.02, -0.01, 0.01, 0.02, 0.01, 1.02;
+    origin.start << 525.0, 520.0, 319.5, 239.5, 0.1, -0.1, 0.05, 0.01, 0.003,
+        -0.002, 0.01, 0.01, 0.02, 0.03, 0.01, 0.02, -0.01, 0.01, 0.02, 0.01,
+        1.02;
     for (int k = 0; k < kCalibrationSize; ++k) {
       y[k] = world->Uniform(-0.5, 0.5);
       origin.width[k] =

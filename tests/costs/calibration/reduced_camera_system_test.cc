@@ -47,8 +47,9 @@ struct Problem {
       state.world_from_cam.push_back(world.Motion(0.1, 0.2));
       views.twists.push_back({world.Vector(0.5), world.Vector(0.5)});
     }
-    origin.start << 525.0, 520.0, 319.5, 239.5, 0.05, -0.02, 0.01, 0.01, 0.02,
-        0.03, 0.01, 0.02, -0.01, 0.01, 0.02, 0.01, 1.02;
+    origin.start << 525.0, 520.0, 319.5, 239.5, 0.05, -0.02, 0.03, 0.01, 0.002,
+        -0.003, 0.01, 0.01, 0.02, 0.03, 0.01, 0.02, -0.01, 0.01, 0.02, 0.01,
+        1.02;
     for (double& width : origin.width) width = world.Uniform(0.5, 2.0);
     state.theta = origin.start;
     state.pixel_scale = 1.3;
