@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/calibration/displaced_depths.h"
@@ -45,28 +46,50 @@ void SolveWithScales(const BundleAdjustment& problem, const FreeParts& is_free,
   }
 }
 
-// Pairs have to ask for another lens by so much. Where a lens was wrong they
-// did by 12 to 32 standard deviations; where it was right, of recordings
-// with shutters, real ones among them, by up to 4 times what halves differ by.
-constexpr double kLensSigmas = 3.0 * kMinSigmas;
+// By how many standard deviations pairs that are held out fit better with the
+// second state; nothing if there are too few of them.
+std::optional<double> GainSigmas(const CalibrationViews& views,
+                                 const CalibrationState& before,
+                                 const CalibrationState& after) {
+  CalibrationResult compared;
+  CompareHeldOut(views, before, views, after, &compared);
+  if (compared.held_out_pairs < 2) return std::nullopt;
+  return compared.gain_sigmas;
+}
 
-// Parameters that are known together, those that are known best first, and how
-// many standard deviations pairs have to ask for them by.
+// The higher coefficients of a lens are free only where pairs ask for them by
+// so much. Where they were wrong, pairs did by 12 and 25 standard deviations;
+// where they were right, but a hand moved unevenly within a frame, by 4 to 7.
+constexpr double kHigherSigmas = 9.0;
+constexpr int kNumHigher = kLensSize - kK3;
+
+// Solves without them, and with them where they are asked for. Returns what was
+// free.
+FreeParts SolveWithLensAsked(const BundleAdjustment& training,
+                             const CalibrationViews& views,
+                             const FreeParts& asked, int rounds,
+                             CalibrationState* state) {
+  FreeParts is_free = asked;
+  std::fill_n(is_free.begin() + kK3, kNumHigher, false);
+  SolveWithScales(training, is_free, rounds, state);
+  if (is_free == asked) return is_free;
+  CalibrationState higher = *state;
+  SolveWithScales(training, asked, rounds, &higher);
+  if (GainSigmas(views, *state, higher).value_or(0.0) < kHigherSigmas) {
+    return is_free;
+  }
+  *state = higher;
+  return asked;
+}
+
+// Parameters that are known together, those that are known best first.
 struct Group {
   int first, size;
-  double sigmas = kMinSigmas;
 };
 constexpr Group kGroups[] = {
-    {kFx, 2},
-    {kK1, kDistortionSize, kLensSigmas},
-    {kK3, 4, kLensSigmas},
-    {kK1, 2, kLensSigmas},
-    {kCx, 2},
-    {kDepthFactor, 1},
-    {kInverseDepth, 1},
-    {kRotationX, 6},
-    {kColorReadout, 2},
-    {kDepthTime, 1},
+    {kFx, 2},        {kK3, kNumHigher},  {kK1, 2},
+    {kCx, 2},        {kDepthFactor, 1},  {kInverseDepth, 1},
+    {kRotationX, 6}, {kColorReadout, 2}, {kDepthTime, 1},
 };
 
 // Takes back what the pairs that are held out do not ask for: parameters that
@@ -88,11 +111,10 @@ void TakeBackNeedless(const CalibrationViews& views,
     }
     if (fewer == *is_free) continue;
     SolveWithScales(training, fewer, 1, &simpler);
-    CalibrationResult compared;
-    CompareHeldOut(views, simpler, views, best, &compared);
-    if (compared.held_out_pairs < 2) return;  // nothing tells
-    if (compared.gain_sigmas >= spread * group.sigmas) continue;
-    if (compared.gain_sigmas < 0.0) best = simpler;
+    const std::optional<double> gain = GainSigmas(views, simpler, best);
+    if (!gain.has_value()) return;
+    if (*gain >= spread * kMinSigmas) continue;
+    if (*gain < 0.0) best = simpler;
     *is_free = fewer;
     *state = simpler;
   }
@@ -152,16 +174,16 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   training.MeasureScales(&before);
   SolveWithScales(training, FreeParts{}, kRounds, &before);
   CalibrationState after = before;
-  SolveWithScales(training, asked, kRounds, &after);
+  FreeParts is_free =
+      SolveWithLensAsked(training, data.views, asked, kRounds, &after);
   const CalibrationViews views_before = data.views;
   constexpr int kMostLookUps = 4;
   for (int i = 0; i < kMostLookUps && IsDisplaced(after.theta - undone); ++i) {
     look_up(after.theta);
-    SolveWithScales(training, asked, kRounds, &after);
+    SolveWithScales(training, is_free, kRounds, &after);
   }
   result.noise =
       FitDepthNoise(views_before, before, odometry.features.depth_noise);
-  FreeParts is_free = asked;
   // Halves that are farther apart than their error bars tell how wide these
   // are; beyond that they contradict each other.
   constexpr double kMaxSpread = 4.0;

@@ -18,7 +18,7 @@ constexpr struct {
   const char* name;
   MedianBand SweepCell::*band;
   double MedianBand::*value;
-} kColumns[] = {
+} kCsvColumns[] = {
     {"rotation_median_deg", &SweepCell::rotation_deg, &MedianBand::median},
     {"rotation_low_deg", &SweepCell::rotation_deg, &MedianBand::low},
     {"rotation_high_deg", &SweepCell::rotation_deg, &MedianBand::high},
@@ -153,13 +153,13 @@ std::string SweepVerdict(const std::vector<SweepCell>& cells) {
 
 std::string SweepCsv(const std::vector<SweepCell>& cells) {
   std::string text = "loss,schedule,start,wrong_share";
-  for (const auto& column : kColumns) text += std::string(",") + column.name;
+  for (const auto& column : kCsvColumns) text += std::string(",") + column.name;
   text += "\n";
   for (const SweepCell& cell : cells) {
     text += Format("%s,%s,%s,%.1f", cell.method.loss.c_str(),
                    cell.method.schedule.c_str(),
                    cell.method.ransac ? "ransac" : "none", cell.outlier_share);
-    for (const auto& column : kColumns) {
+    for (const auto& column : kCsvColumns) {
       text += Format(",%.6g", cell.*column.band.*column.value);
     }
     text += "\n";
@@ -178,7 +178,7 @@ std::vector<SweepCell> ReadSweepCsv(const std::string& path) {
     cells[i].method = {losses[i], schedules[i], starts[i] == "ransac"};
     cells[i].outlier_share = shares[i];
   }
-  for (const auto& column : kColumns) {
+  for (const auto& column : kCsvColumns) {
     const std::vector<double> numbers = table.Numbers(column.name);
     for (size_t i = 0; i < cells.size(); ++i) {
       cells[i].*column.band.*column.value = numbers[i];

@@ -29,7 +29,9 @@ def wrong(recording):
 
 @pytest.fixture(scope="module")
 def calibration(recording, wrong):
-    return rgbd_pose.calibrate(recording, wrong, groundtruth="none")
+    return rgbd_pose.calibrate(
+        recording, wrong, groundtruth="none", max_views=5000
+    )
 
 
 def test_finds_what_is_wrong(calibration):
@@ -45,7 +47,7 @@ def test_finds_what_is_wrong(calibration):
 
 def test_keeps_what_is_fixed(recording, wrong):
     fixed = rgbd_pose.calibrate(
-        recording, wrong, groundtruth="none", fix="focal"
+        recording, wrong, groundtruth="none", fix="focal", max_views=5000
     )
     assert fixed.parameters["fx"].status == "fixed"
     assert fixed.camera.fx == 535.5

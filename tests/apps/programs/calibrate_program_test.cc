@@ -54,7 +54,8 @@ class CalibrateProgramTest : public testing::Test {
 TEST_F(CalibrateProgramTest, FindsAWrongCameraAndKeepsARightOne) {
   // A damaged image costs its frame alone.
   fs::resize_file(Sequence() + "/depth/1000.666667.png", 1000);
-  const RunResult wrong = Run(kCalibrateProgram, "wrong", Wrong());
+  const RunResult wrong =
+      Run(kCalibrateProgram, "wrong", "--max_views=5000 " + Wrong());
   EXPECT_EQ(wrong.exit_code, 0) << wrong.out << wrong.err;
   EXPECT_THAT(wrong.out, HasSubstr("the new camera is better"));
   for (const char* file : {"camera.yaml", "depth_noise.yaml", "metrics.json",
@@ -70,7 +71,8 @@ TEST_F(CalibrateProgramTest, FindsAWrongCameraAndKeepsARightOne) {
   // With what was found there is nothing left to find.
   const RunResult right =
       Run(kCalibrateProgram, "right",
-          "--noreport --camera=" + (folder_ / "wrong/camera.yaml") +
+          "--noreport --max_views=5000 --camera=" +
+              (folder_ / "wrong/camera.yaml") +
               " --depth_noise=" + (folder_ / "wrong/depth_noise.yaml"));
   EXPECT_EQ(right.exit_code, 5) << right.out << right.err;
   EXPECT_THAT(right.out, HasSubstr("the first camera is kept: "));
