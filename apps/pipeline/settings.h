@@ -56,7 +56,7 @@ Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
 
 // A value that is set by its name in some table.
 struct NamedSetting {
-  std::function<std::string()> get;
+  std::function<std::string()> get;             // the name it has now
   std::function<void(const std::string&)> set;  // InputError if unknown
 };
 
@@ -66,7 +66,7 @@ struct Setting {
   const char* name;        // as users write it
   std::string_view group;  // of those that belong together
   const char* help;        // what it means, with its unit
-  std::variant<int*, double*, bool*, NamedSetting> value;
+  std::variant<int*, double*, bool*, NamedSetting> value;  // what it sets
   std::vector<std::string> choices = {};  // the names there are, if by name
 };
 
