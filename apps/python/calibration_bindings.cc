@@ -66,7 +66,8 @@ Calibration CalibrateFile(const py::object& path, const py::object& camera,
                           const std::string& depth_camera, double depth_scale,
                           const py::object& groundtruth,
                           const std::string& known_length,
-                          const std::string& fix, int max_passes, int threads) {
+                          const std::string& fix, int max_passes, int max_views,
+                          int threads) {
   SequenceSettings sequence;
   sequence.dataset = PathFrom(path);
   if (!camera.is_none()) sequence.camera = PathFrom(camera);
@@ -80,6 +81,7 @@ Calibration CalibrateFile(const py::object& path, const py::object& camera,
   settings.known_length = known_length;
   settings.fix = fix;
   settings.max_passes = max_passes;
+  settings.max_views = max_views;
   const ReleasedGil no_gil;
   return {CalibrateRecording(sequence, CalibrationOdometry(), CalibrationSlam(),
                              settings, NumThreads(threads),
@@ -183,6 +185,7 @@ groundtruth: trajectory (TUM text) that gives depth its scale; "none": not even
 known_length: "T0,T1,METRES", how far apart the camera was at two times (s).
 fix: names of parameters that stay as they are, separated by commas.
 max_passes: so often at most the recording is mapped.
+max_views: of landmarks, about; the time that a solution takes grows with it.
 threads: 0: one a core.
 
 InputError for what cannot be read or makes no sense.)",
@@ -193,6 +196,7 @@ InputError for what cannot be read or makes no sense.)",
               py::arg("groundtruth") = py::none(), py::arg("known_length") = "",
               py::arg("fix") = "",
               py::arg("max_passes") = CalibrationSettings().max_passes,
+              py::arg("max_views") = CalibrationSettings().max_views,
               py::arg("threads") = 0);
 }
 

@@ -511,5 +511,6 @@ def calibrate(
     known_length: str = "",
     fix: str = "",
     max_passes: int = 3,
+    max_views: int = 40000,
     threads: int = 0,
 ) -> Calibration: ...
