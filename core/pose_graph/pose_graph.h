@@ -14,19 +14,21 @@ namespace rgbd_pose {
 // What a PoseGraph holds, as its parts see it: poses, by their numbers, and
 // what is known of them.
 struct GraphTerms {
+  // A pose and whether it is held.
   struct Pose {
-    Rigid3d world_from_cam;
-    bool is_fixed = false;
+    Rigid3d world_from_cam;  // as it is estimated now
+    bool is_fixed = false;   // it stays where it is
   };
   // A motion that was measured.
   struct Edge {
-    int ref = 0, cur = 0;
-    Rigid3d cur_from_ref;
-    MotionMatrix root;  // see SqrtInformation
-    const ceres::LossFunction* loss = nullptr;
+    int ref = 0;                                // the pose it is seen from
+    int cur = 0;                                // the pose it leads to
+    Rigid3d cur_from_ref;                       // as it was measured
+    MotionMatrix root;                          // see SqrtInformation
+    const ceres::LossFunction* loss = nullptr;  // null: squares
   };
-  std::vector<Pose> poses;
-  std::vector<Edge> edges;
+  std::vector<Pose> poses;  // by their numbers
+  std::vector<Edge> edges;  // in the order they were added
 
   // cur_from_ref as the poses have it.
   Rigid3d Between(int ref, int cur) const {

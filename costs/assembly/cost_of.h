@@ -8,8 +8,10 @@
 
 namespace rgbd_pose {
 
+// Whether a residual type says that it is a prior.
 template <typename Residual>
 using IsPriorOf = decltype(Residual::kIsPrior);
+// Whether it says that its matches change with the motion.
 template <typename Residual>
 using AssociationOf = decltype(Residual::kAssociation);
 

@@ -15,8 +15,10 @@
 
 namespace rgbd_pose {
 
+// Whether a residual type says how many degrees of freedom a match has.
 template <typename Residual>
 using DegreesOf = decltype(&Residual::Degrees);
+// Whether it says what an inlier is.
 template <typename Residual>
 using InlierLimitOf = decltype(&Residual::InlierLimit);
 

@@ -148,9 +148,9 @@ class RandomWorld {
 // evaluate it at: what tests, benchmarks and rgbd_jacobians look at.
 template <typename Residual>
 struct ResidualSample {
-  LinearizationPoint origin;
-  MotionVector x;
-  double columns[Residual::kColumns];
+  LinearizationPoint origin;           // the motion it is near to
+  MotionVector x;                      // from there
+  double columns[Residual::kColumns];  // the match, as the type reads it
 
   explicit ResidualSample(RandomWorld* world) {
     // Enough lack a depth on one side for costs that use those matches.
