@@ -11,7 +11,7 @@ namespace rgbd_pose {
 // Whether a residual type says that it is a prior.
 template <typename Residual>
 using IsPriorOf = decltype(Residual::kIsPrior);
-// Whether it says that its matches change with the motion.
+// Whether it says when residuals are chosen again.
 template <typename Residual>
 using AssociationOf = decltype(Residual::kAssociation);
 
