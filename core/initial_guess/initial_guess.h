@@ -20,8 +20,9 @@ struct InitialGuess {
 // All initial guesses:
 //   identity  no motion, whatever the matches say
 //   ransac    what random samples of three find most agreement with
-//   (FindByRansac) clique    that of the matches that preserve all their
-//   distances (FindByClique)
+//   clique    that of the matches that preserve all their distances
+//
+// The last two are FindByRansac and FindByClique (consensus.h).
 const std::vector<InitialGuess>& InitialGuesses();
 
 // The initial guess of that name, or null.
