@@ -1,9 +1,8 @@
-#include "frontend/bags/bag_topics.h"
-
 #include <std_msgs/Float32.h>
 
 #include <tuple>
 
+#include "frontend/bags/bag_topics.h"
 #include "tests/frontend/bags/ros1_bag_fixture.h"
 
 namespace rgbd_pose {

@@ -1,14 +1,13 @@
 // Recordings that the format's own library has written
 // (mcap/make_fixtures.mjs), and what may have happened to them.
 
-#include "frontend/bags/bag_reader.h"
-
 #include <filesystem>
 #include <random>
 #include <string>
 #include <vector>
 
 #include "core/util/text_file.h"
+#include "frontend/bags/bag_reader.h"
 #include "tests/frontend/bags/bag_fixture.h"
 
 namespace rgbd_pose {

@@ -1,10 +1,9 @@
-#include "frontend/bags/bag_reader.h"
-
 #include <bzlib.h>
 
 #include <filesystem>
 
 #include "core/util/text_file.h"
+#include "frontend/bags/bag_reader.h"
 #include "tests/frontend/bags/ros1_bag_fixture.h"
 
 namespace {

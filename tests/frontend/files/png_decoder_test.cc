@@ -1,5 +1,3 @@
-#include "frontend/files/png_codec.h"
-
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "core/util/text_file.h"
+#include "frontend/files/png_codec.h"
 #include "tests/support/png_parts.h"
 #include "tests/support/temp_folder.h"
 

@@ -1,10 +1,9 @@
-#include "frontend/files/png_codec.h"
-
 #include <gtest/gtest.h>
 
 #include <opencv2/imgcodecs.hpp>
 #include <vector>
 
+#include "frontend/files/png_codec.h"
 
 namespace rgbd_pose {
 namespace {

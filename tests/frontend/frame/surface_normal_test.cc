@@ -1,8 +1,8 @@
-#include "frontend/frame/depth_lookup.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "frontend/frame/depth_lookup.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,8 +1,7 @@
-#include "frontend/sources/open_source.h"
-
 #include <filesystem>
 
 #include "core/util/text_file.h"
+#include "frontend/sources/open_source.h"
 #include "frontend/sources/tum_writer.h"
 #include "tests/frontend/bags/ros1_bag_fixture.h"
 

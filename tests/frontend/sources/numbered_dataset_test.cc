@@ -1,5 +1,3 @@
-#include "frontend/sources/open_source.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -7,6 +5,7 @@
 #include <memory>
 #include <opencv2/imgproc.hpp>
 
+#include "frontend/sources/open_source.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 #include "tests/support/tum_sequence.h"

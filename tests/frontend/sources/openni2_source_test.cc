@@ -1,10 +1,9 @@
-#include "frontend/sources/open_source.h"
-
 #include <gtest/gtest.h>
 
 #include <chrono>
 #include <thread>
 
+#include "frontend/sources/open_source.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {
