@@ -20,6 +20,22 @@ constexpr double kMaxOffCentre = 0.1;
 // Nothing may be farther from what was known before.
 constexpr double kMaxPriorSigmas = 4.0;
 
+// Whether every pixel of the border has a ray. Coefficients that fit where
+// features are may turn the lens over towards the corners.
+bool HasRaysAllAround(const Camera& camera) {
+  const auto has_ray = [&](double u, double v) {
+    return camera.Undistort({u, v}).allFinite();
+  };
+  const double right = camera.width - 1.0, bottom = camera.height - 1.0;
+  for (double u = 0.0; u <= right; ++u) {
+    if (!has_ray(u, 0.0) || !has_ray(u, bottom)) return false;
+  }
+  for (double v = 0.0; v <= bottom; ++v) {
+    if (!has_ray(0.0, v) || !has_ray(right, v)) return false;
+  }
+  return true;
+}
+
 // The robust cost of a view, and its error in pixels.
 double CostOf(const CalibrationViews& views, const Landmark& landmark,
               const LandmarkView& view, bool with_depth, double inverse_depth,
@@ -194,6 +210,10 @@ std::string ImplausibilityReason(const RgbdCamera& first,
     return "the camera found is not plausible: its principal point (" +
            Short(camera.cx) + ", " + Short(camera.cy) +
            ") is not in the middle of the image";
+  }
+  if (HasRaysAllAround(first.camera) && !HasRaysAllAround(camera)) {
+    return "the camera found is not plausible: its lens shows nothing at the "
+           "border of the image; record something there, too";
   }
   for (int k = 0; k < kCalibrationSize; ++k) {
     const CalibratedParameter& parameter = result.parameters[k];

@@ -221,6 +221,18 @@ TEST(CalibrationTest, ASolutionThatIsWorseThanTheMapIsAFailure) {
             std::string::npos);
 }
 
+TEST(CalibrationTest, ALensThatTurnsOverInTheCornersIsRefused) {
+  RgbdCamera found;
+  found.camera.k1 = -0.9;
+  const std::string why = ImplausibilityReason({}, found, {});
+  EXPECT_NE(why.find("its lens shows nothing at the border"), std::string::npos)
+      << why;
+  // One that has been like that is not made worse.
+  EXPECT_EQ(ImplausibilityReason(found, found, {}), "");
+  found.camera.k1 = -0.2;
+  EXPECT_EQ(ImplausibilityReason({}, found, {}), "");
+}
+
 TEST(CalibrationTest, HalvesOfOneCameraAgree) {
   // What is undone as frames are tracked is only roughly so.
   RgbdCamera wrong = Wrong();
