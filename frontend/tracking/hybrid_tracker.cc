@@ -85,6 +85,12 @@ void HybridTracker::Track(const Reference& reference,
     tracked->match_ms += start_ms;
   }
   if (!refines_ || ours.direct == nullptr) return;
+  // Pixels alone take twice as long as features from the next guess.
+  if (guess.is_tentative && ours.features != nullptr &&
+      tracked->status != TrackingStatus::kOk && !tracked->is_ambiguous) {
+    tracked->is_partial = true;
+    return;
+  }
   if (tracked->status == TrackingStatus::kLost) {
     // Few features may lead astray: pixels find the way alone.
     direct_->Track(*ours.direct, frame, guess, &pixels_);

@@ -70,6 +70,10 @@ struct TrackingGuess {
   // Of the frame's velocity, where that has to be found, too; null: it stays
   // what the frame says.
   const VelocityPrior* velocity = nullptr;
+
+  // If this guess does not lead to a good pose, another guess is tried next.
+  // The tracker may skip its slow methods (see TrackingResult::is_partial).
+  bool is_tentative = false;
 };
 
 // What is known of a motion by a guess: with its covariance, or with the
@@ -104,6 +108,10 @@ struct TrackingResult {
 
   // Matches agree with another motion nearly as well.
   bool is_ambiguous = false;
+
+  // The pose is not good, and slow methods that might have improved it were
+  // skipped because the guess was tentative.
+  bool is_partial = false;
 
   // By features: where they contradict the motion.
   CellMask moving;

@@ -7,6 +7,7 @@ namespace rgbd_pose {
 bool TrackingAttempts::Try(const PreparedFrame& frame,
                            const OdometryKeyframe& keyframe,
                            const TrackingGuess& guess, TrackedFrame* result) {
+  tracked_.is_partial = false;
   tracker_->Track(*keyframe.reference, frame, guess, &tracked_);
   const MotionEstimate& estimate = tracked_.estimate;
   result->status = tracked_.status;
@@ -27,9 +28,18 @@ bool TrackingAttempts::TryEither(const PreparedFrame& frame,
                                  const TrackingGuess& first,
                                  const TrackingGuess& second,
                                  TrackedFrame* result) {
-  if (!Try(frame, keyframe, first, result)) {
-    return Try(frame, keyframe, second, result);
+  TrackingGuess tentative = first;
+  tentative.is_tentative = true;
+  const bool has_pose = Try(frame, keyframe, tentative, result);
+  if (tracked_.is_partial) {
+    if (Try(frame, keyframe, second, result) &&
+        result->status == TrackingStatus::kOk) {
+      return true;
+    }
+    return Try(frame, keyframe, first, result) ||
+           Try(frame, keyframe, second, result);
   }
+  if (!has_pose) return Try(frame, keyframe, second, result);
   if (result->status != TrackingStatus::kOk) {
     TryFallback(frame, keyframe, second, result);
   }

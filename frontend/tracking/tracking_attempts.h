@@ -29,7 +29,8 @@ class TrackingAttempts {
            const TrackingGuess& guess, TrackedFrame* result);
 
   // The same from two guesses: the second counts where the first leads to no
-  // pose, or to a doubtful one and itself to a good one.
+  // pose, or to a doubtful one and itself to a good one. The slow methods of
+  // the tracker are used only if neither guess leads to a good pose without.
   bool TryEither(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
                  const TrackingGuess& first, const TrackingGuess& second,
                  TrackedFrame* result);

@@ -300,6 +300,29 @@ TEST(DirectTrackerTest, AFrameHasToLookLikeItsReference) {
   }
 }
 
+TEST(HybridTrackerTest, PixelsAloneWaitWhileAGuessIsTentative) {
+  SyntheticOptions options;
+  options.scene = "plain_room";
+  options.path = "pan_tilt";
+  options.frames = 40;
+  const SyntheticDataset room(options);
+  const PreparedFrame before(room.Read(10)), wall(room.Read(11));
+  const auto tracker = MakeTracker("hybrid", PartsFor(room.camera().camera));
+  std::string why_not;
+  const auto reference =
+      tracker->MakeReference(before, nullptr, nullptr, &why_not);
+  ASSERT_NE(reference, nullptr) << why_not;
+  TrackingResult tracked(room.camera().camera);
+  TrackingGuess guess = Rigid3d();
+  tracker->Track(*reference, wall, guess, &tracked);
+  EXPECT_EQ(tracked.source, TrackingSource::kDirect);
+  EXPECT_FALSE(tracked.is_partial);
+  guess.is_tentative = true;
+  tracker->Track(*reference, wall, guess, &tracked);
+  EXPECT_NE(tracked.source, TrackingSource::kDirect);
+  EXPECT_TRUE(tracked.is_partial);
+}
+
 TEST(HybridTrackerTest, PixelsMakeMotionsMoreAccurate) {
   const Tracks features = Follow("features", "room", "xyz", 12);
   const Tracks hybrid = Follow("hybrid", "room", "xyz", 12);
