@@ -1,4 +1,4 @@
-// Many runs of rgbd_odometry: sequences x settings in, one table out.
+// Runs rgbd_odometry on many sequences with many settings and makes a table.
 
 #include <gflags/gflags.h>
 #include <unistd.h>
@@ -101,7 +101,7 @@ std::string ProgramPath() {
   return path.string();
 }
 
-// All that changes the result of a run but its place in the plan.
+// Everything that affects the result of a run, except its place in the plan.
 std::string SettingsText(const std::string& program) {
   return "program " + HashProgram(program) + "\n" +
          (FLAGS_settings.empty() ? "" : ReadTextFile(FLAGS_settings));
@@ -141,7 +141,7 @@ int PrintPlan(const std::vector<BatchRun>& plan, const BatchFolder& folder) {
   return kExitOk;
 }
 
-// Results of another plan must not be mixed up with this one's unasked.
+// Prevents accidental mixing with the results of another plan.
 void RefuseEarlierRuns(const std::vector<BatchRun>& plan,
                        const BatchFolder& folder, const BatchShard& shard) {
   std::string found = shard.IsWhole() ? folder.FindRun("") : "";
@@ -159,9 +159,9 @@ void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
             const std::string& program) {
   BatchPoolOptions options;
   options.program = program;
-  // A page a run is much for many runs; --settings may ask for it, and
-  // rgbd_report makes it at any time.
-  // What a run has when it is stopped is not what the next call waits for.
+  // A page per run would be too much by default. --settings may request it, and
+  // rgbd_report can make it later. A stopped run must not count as finished,
+  // because the next call would then not repeat it.
   options.arguments = {"--report=false", "--finish_on_signal=false"};
   if (!FLAGS_settings.empty()) {
     options.arguments.push_back("--flagfile=" +
@@ -174,7 +174,7 @@ void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
   int done = 0;
   options.on_end = [&](const BatchRun& run, const RunEnd& end, double seconds) {
     ++done;
-    // The bar itself says enough of those that went well.
+    // For successful runs, the bar is sufficient.
     if (!bar.visible() || end.status != "ok") {
       std::string line = "[" + std::to_string(done) + "/" +
                          std::to_string(total) + "] " + end.status;
@@ -194,7 +194,7 @@ void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
   RunBatch(runs, folder, options);
 }
 
-// Results that another plan or other inputs have left are not this plan's.
+// Warns of results from another plan or other inputs.
 void WarnOfOtherHashes(const std::vector<BatchRun>& plan,
                        const BatchFolder& folder) {
   int others = 0;

@@ -45,7 +45,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   const int threads = NumThreads(FLAGS_threads);
   cv::setNumThreads(1);
 
-  // All that can be wrong with the input is looked at before anything is made.
+  // Check the input before anything is created.
   OpenSequence(settings.sequence);
   RunFolder folder(FLAGS_output);
   const auto start = std::chrono::steady_clock::now();

@@ -1,5 +1,6 @@
-// The thesis' fourth chapter: M-estimators compared on a camera that returns
-// to its start, on one that moves along its axes, and on wrong matches.
+// The experiments of the thesis' fourth chapter: compares M-estimators on a
+// camera that returns to its start, on a camera that moves along its axes, and
+// on wrong matches.
 
 #include <gflags/gflags.h>
 
@@ -53,7 +54,7 @@ ProgramInfo Info(ExperimentSettings* settings) {
 int Main(const ExperimentSettings& settings, const ProgramInfo& info) {
   RequireFlag("experiment", settings.experiment);
   RequireFlag("output", FLAGS_output);
-  cv::setNumThreads(1);  // the threads are ours
+  cv::setNumThreads(1);  // threads are created here
   CompareOutput output(FLAGS_output);
   const ExperimentResult result = RunExperiment(settings, &output);
   output.Write("config.flags", FormatFlagFile(info));

@@ -1,4 +1,4 @@
-// Any recording in, a TUM RGB-D folder out.
+// Converts any recording to a TUM RGB-D folder.
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
@@ -33,7 +33,7 @@ ProgramInfo Info(SequenceSettings* settings) {
 int Main(const SequenceSettings& settings, const ProgramInfo& info) {
   RequireFlag("dataset", settings.dataset);
   RequireFlag("output", FLAGS_output);
-  cv::setNumThreads(1);  // the threads are ours
+  cv::setNumThreads(1);  // threads are created here
   Sequence sequence = OpenSequence(settings, /*keep_color=*/true);
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);

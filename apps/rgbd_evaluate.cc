@@ -1,4 +1,4 @@
-// Judges an estimated trajectory against the ground truth.
+// Evaluates an estimated trajectory against the ground truth.
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>

@@ -1,4 +1,4 @@
-// What a run has found, in the form that another tool takes.
+// Exports the results of a run to the format of another tool.
 
 #include <cstdio>
 #include <filesystem>
@@ -12,8 +12,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Formats write into the folder of the run where no output is named; threads
-// are 0 for one each core.
+// The default output is in the folder of the run. 0 threads: one per core.
 struct ExportSettings {
   std::string run, dataset, camera, to;
   ExportOptions options;
@@ -85,7 +84,7 @@ int Main(const ExportSettings& settings, const ProgramInfo& /*info*/) {
   cv::setNumThreads(1);
   const FinishedRun run(folder, dataset, camera);
   ExportOptions options = given;
-  // At least 8 points: see VoxelCloud::Thin.
+  // VoxelCloud::Thin needs at least 8 points.
   if (options.max_points < 8) {
     throw InputError("--max_points must be 8 or more");
   }

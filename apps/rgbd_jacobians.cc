@@ -1,4 +1,4 @@
-// Proves every hand-written Jacobian: against automatic differentiation and
+// Checks every hand-written Jacobian against automatic differentiation and
 // against central differences, over random motions and matches.
 
 #include <gflags/gflags.h>
@@ -24,14 +24,14 @@ DEFINE_string(cost, "", "one cost; empty: all");
 namespace rgbd_pose {
 namespace {
 
-// Worst errors, relative to the largest entry of the row. Automatic
-// differentiation differs by rounding; central differences also by their own
-// error, of the order of the step squared and of rounding over the step.
+// Tolerances for the largest errors, relative to the largest entry of the row.
+// Automatic differentiation differs only by rounding. Central differences also
+// have an error of the order of the step squared plus rounding over the step.
 constexpr double kJetTolerance = 1e-12;
 constexpr double kDifferenceTolerance = 1e-5;
 constexpr double kStep = 1e-5;
 
-// A block of the Jacobian: the rows of one error by angles or centre.
+// A block of the Jacobian: one row of the residual by the angles or the centre.
 struct Block {
   std::string name;
   double jet = 0.0;
@@ -44,8 +44,8 @@ class Checker {
   using Jacobian = Eigen::Matrix<double, Residual::kRows, 6, Eigen::RowMajor>;
   using Rows = Eigen::Matrix<double, Residual::kRows, 1>;
 
-  // The worst errors over all samples, a block for each row and each half of
-  // the columns.
+  // The largest errors over all samples, with a block for each row and each
+  // half of the columns.
   std::vector<Block> Run() {
     std::vector<Block> blocks;
     for (int row = 0; row < Residual::kRows; ++row) {

@@ -1,5 +1,5 @@
-// Camera motion of an RGB-D sequence: dataset in; trajectory, figures and
-// errors out.
+// Estimates the camera motion of an RGB-D sequence. Writes the trajectory,
+// figures and errors.
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
@@ -90,11 +90,10 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   RequireFlag("dataset", settings.sequence.dataset);
   if (!FLAGS_validate_only) RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
-  // The threads are ours: OpenCV's own would only compete with them.
+  // OpenCV's threads would compete with those of this program.
   cv::setNumThreads(1);
 
-  // All that can be wrong with the input is looked at before the work starts
-  // and before anything is written.
+  // Check the input before the work starts and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
   Sequence sequence = OpenSequence(settings.sequence, keep_color);
   FrameSource& source = *sequence.source;

@@ -1,4 +1,4 @@
-// The page of a run, a batch or a comparison from its files.
+// Makes the page of a run, a batch or a comparison from its files.
 
 #include <gflags/gflags.h>
 

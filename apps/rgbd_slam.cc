@@ -1,5 +1,5 @@
-// A map of an RGB-D sequence and the camera's path in it: as rgbd_odometry,
-// with loops closed, maps kept and places found again.
+// Estimates a map of an RGB-D sequence and the camera path in it: as
+// rgbd_odometry, plus loop closure, saved maps and relocalisation.
 
 #include <gflags/gflags.h>
 #include <glog/logging.h>
@@ -89,7 +89,7 @@ void LoadMaps(const MapSettings& maps, SlamRun* run) {
   }
 }
 
-// What --calibrate found, and the camera to go on with.
+// The result of --calibrate, and the camera to continue with.
 class Calibration {
  public:
   Calibration(const ProgramSettings& settings, int threads)
@@ -103,15 +103,15 @@ class Calibration {
                                    CalibrationSlam(), {}, threads);
   }
 
-  // The camera that was found, or null.
+  // The camera found, or null.
   const RgbdCamera* camera() const {
     return found_.has_value() && found_->result.is_accepted
                ? &found_->result.camera
                : nullptr;
   }
 
-  // Writes its files; returns what the program prints of it. From here on the
-  // flags are those of a run with the camera found.
+  // Writes the calibration files and returns the text that the program prints.
+  // Afterwards the flags are those of a run with the camera found.
   std::string Write(const RunFolder& output) const {
     if (!found_.has_value()) return "";
     const CalibrationResult& result = found_->result;
@@ -135,7 +135,7 @@ class Calibration {
            (result.is_accepted ? "tracked with it:\n" : "tracked with that:\n");
   }
 
-  // For metrics.json; null: there is none.
+  // For metrics.json; null without a calibration.
   nlohmann::json Json() const {
     return found_.has_value() ? CalibrationToJson(found_->result)
                               : nlohmann::json();
@@ -157,11 +157,10 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   RequireFlag("dataset", settings.sequence.dataset);
   RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
-  // The threads are ours: OpenCV's own would only compete with them.
+  // OpenCV's threads would compete with those of this program.
   cv::setNumThreads(1);
 
-  // All that can be wrong with the input is looked at before the work starts
-  // and before anything is written.
+  // Check the input before the work starts and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
   if (FLAGS_calibrate) OpenSequence(settings.sequence);
   const Calibration calibration(settings, threads);
@@ -217,7 +216,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   }
   output.folder().Publish();
   text += SaveMesh(settings.output, threads);
-  // The results stay if the map cannot be saved.
+  // If the map cannot be saved, the results stay.
   if (!settings.maps.save_map.empty()) {
     SaveMap(settings.maps.save_map, map);
     text += "map in      " + settings.maps.save_map + "\n";

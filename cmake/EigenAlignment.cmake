@@ -1,5 +1,5 @@
-# RGBD_POSE_EIGEN_ALIGN: to how many bytes Eigen aligns with the flags of this
-# build; empty if that is none of the usual ones. See core/geometry/rigid3.h.
+# RGBD_POSE_EIGEN_ALIGN: Eigen's alignment in bytes with the flags of this
+# build; empty if it is not a usual one. See core/geometry/rigid3.h.
 include(CheckCXXSourceCompiles)
 
 function(rgbd_pose_find_eigen_alignment)
@@ -7,7 +7,7 @@ function(rgbd_pose_find_eigen_alignment)
                       INTERFACE_INCLUDE_DIRECTORIES)
   string(TOUPPER "CMAKE_CXX_FLAGS_${CMAKE_BUILD_TYPE}" type_flags)
   set(CMAKE_REQUIRED_FLAGS "${${type_flags}}")
-  # Other flags are another question.
+  # The cached result depends on the compiler and its flags.
   string(MD5 hash "${CMAKE_CXX_COMPILER} ${CMAKE_CXX_FLAGS} ${${type_flags}}")
   foreach(bytes 16 32 64)
     check_cxx_source_compiles(

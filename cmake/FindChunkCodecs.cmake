@@ -1,5 +1,5 @@
-# The target ChunkCodecs::ChunkCodecs, if libzstd, liblz4 and libbz2 are all there.
-# Installed too: a static rgbd_pose::frontend links it.
+# The target ChunkCodecs::ChunkCodecs, if libzstd, liblz4 and libbz2 are all
+# found. Installed as well, because a static rgbd_pose::frontend links it.
 find_library(ZSTD_LIBRARY zstd)
 find_path(ZSTD_INCLUDE_DIR zstd.h)
 find_library(LZ4_LIBRARY lz4)

@@ -1,5 +1,5 @@
-# The target Httplib::Httplib, if cpp-httplib is there, as the distribution
-# builds it: pkg-config says with which of its options.
+# The target Httplib::Httplib, if cpp-httplib is found. pkg-config gives the
+# options with which the distribution builds it.
 find_package(PkgConfig QUIET)
 if(PKG_CONFIG_FOUND)
   pkg_check_modules(HTTPLIB QUIET IMPORTED_TARGET cpp-httplib)

@@ -1,5 +1,5 @@
-# The target Jemalloc::Jemalloc, if jemalloc is there: programs that link it
-# allocate by it.
+# The target Jemalloc::Jemalloc, if jemalloc is found. Programs that link it use
+# it as their allocator.
 find_library(JEMALLOC_LIBRARY jemalloc)
 mark_as_advanced(JEMALLOC_LIBRARY)
 

@@ -1,5 +1,5 @@
-# The target Libdeflate::Libdeflate, if libdeflate is there. (Its own CMake
-# package came with 1.15.) Installed too: a static rgbd_pose::frontend links it.
+# The target Libdeflate::Libdeflate, if found (its own CMake package came with
+# 1.15). Installed as well: a static rgbd_pose::frontend links it.
 find_library(LIBDEFLATE_LIBRARY deflate)
 find_path(LIBDEFLATE_INCLUDE_DIR libdeflate.h)
 mark_as_advanced(LIBDEFLATE_LIBRARY LIBDEFLATE_INCLUDE_DIR)

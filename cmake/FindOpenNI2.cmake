@@ -1,5 +1,5 @@
-# The target OpenNI2::OpenNI2, if OpenNI 2 is there. (It has no CMake package.)
-# Installed too: a static rgbd_pose::frontend links it.
+# The target OpenNI2::OpenNI2, if OpenNI 2 is found (it has no CMake package).
+# Installed as well, because a static rgbd_pose::frontend links it.
 find_library(OPENNI2_LIBRARY OpenNI2)
 find_path(OPENNI2_INCLUDE_DIR OpenNI.h PATH_SUFFIXES openni2)
 mark_as_advanced(OPENNI2_LIBRARY OPENNI2_INCLUDE_DIR)

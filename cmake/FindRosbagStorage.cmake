@@ -1,5 +1,5 @@
 # The target RosbagStorage::RosbagStorage, if the library that writes ROS 1 bags
-# is there: without catkin. Tests alone need it.
+# is found; catkin is not needed. Used only by tests.
 set(rosbag_libraries)
 set(rosbag_includes)
 foreach(library rosbag_storage roscpp_serialization rostime cpp_common
@@ -9,8 +9,8 @@ foreach(library rosbag_storage roscpp_serialization rostime cpp_common
   mark_as_advanced(ROSBAG_${library}_LIBRARY)
   list(APPEND rosbag_libraries ROSBAG_${library}_LIBRARY)
 endforeach()
-# rosbag/bag.h includes them all, for plugins that decipher. Debian 12 keeps
-# some in folders of their own.
+# rosbag/bag.h includes all of these for its decryption plugins. On Debian 12,
+# some are in folders of their own.
 foreach(header rosbag/bag.h ros/time.h boost/shared_ptr.hpp
                console_bridge/console.h pluginlib/class_loader.hpp
                class_loader/class_loader.hpp rcpputils/shared_library.hpp
@@ -28,7 +28,7 @@ find_package_handle_standard_args(
 
 if(RosbagStorage_FOUND AND NOT TARGET RosbagStorage::RosbagStorage)
   add_library(RosbagStorage::RosbagStorage INTERFACE IMPORTED)
-  # A ROS of another time needs fewer of them.
+  # Other versions of ROS need fewer of these.
   foreach(path ${rosbag_includes})
     if(${path})
       set_property(TARGET RosbagStorage::RosbagStorage APPEND PROPERTY

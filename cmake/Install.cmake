@@ -1,12 +1,12 @@
-# What `cmake --install` puts where, with files for find_package and pkg-config.
-# Libraries with their headers are the component `development`, programs `tools`.
+# Destinations of `cmake --install`, with files for find_package and pkg-config.
+# Component `development`: libraries and headers; `tools`: programs.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(RGBD_POSE_CMAKE_DIR ${CMAKE_INSTALL_LIBDIR}/cmake/rgbd_pose)
 set(RGBD_POSE_HEADER_DIR ${CMAKE_INSTALL_INCLUDEDIR}/rgbd_pose)
 
-# The headers below a folder, which may be a relative path.
+# Installs the headers below a folder, which may be a relative path.
 function(rgbd_pose_install_headers folder)
   get_filename_component(folder ${folder} ABSOLUTE)
   file(RELATIVE_PATH to ${PROJECT_SOURCE_DIR} ${folder})
@@ -19,8 +19,8 @@ function(rgbd_pose_install_headers folder)
           COMPONENT development)
 endfunction()
 
-# A library and the headers of its folder. Each is an export set of its own, so
-# that who asks for one component needs no more than its dependencies.
+# Installs a library and the headers of its folder. Each library is an export
+# set of its own: users of one component only need its dependencies.
 function(rgbd_pose_install_library name)
   install(TARGETS rgbd_pose_${name} EXPORT rgbd_pose_${name}
           LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development
@@ -38,7 +38,8 @@ function(rgbd_pose_install_program name)
                                   COMPONENT tools)
 endfunction()
 
-# The package's own files. Those for find_package serve the build tree, too.
+# Installs the package's files; those for find_package serve the build tree,
+# too.
 function(rgbd_pose_install_package)
   set(source ${PROJECT_SOURCE_DIR}/cmake)
   set(binary ${PROJECT_BINARY_DIR})
@@ -67,7 +68,7 @@ function(rgbd_pose_install_package)
                  ${binary}/rgbd_pose_simulation.pc @ONLY)
   install(FILES ${binary}/rgbd_pose.pc ${binary}/rgbd_pose_simulation.pc
           DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT development)
-  # Pages with all that their links lead to.
+  # Pages and the targets of their links.
   foreach(file CHANGELOG.md CITATION.cff CONTRIBUTING.md LICENSE README.md
                third_party_notes.md)
     install(FILES ${PROJECT_SOURCE_DIR}/${file}
@@ -79,8 +80,8 @@ function(rgbd_pose_install_package)
           PATTERN doxygen_filter.awk EXCLUDE)
 endfunction()
 
-# As the targets' public dependencies; whatever else the libraries use must be
-# linked by hand only if they are static.
+# Lists the targets' public dependencies. All other dependencies must be linked
+# explicitly only if the libraries are static.
 function(rgbd_pose_configure_pkg_config input output)
   file(RELATIVE_PATH RGBD_POSE_PC_PREFIX
        ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig ${CMAKE_INSTALL_PREFIX})
@@ -103,7 +104,7 @@ function(rgbd_pose_configure_pkg_config input output)
     list(APPEND requires ${requires_private})
     set(requires_private)
   endif()
-  # What has no pkg-config file of use.
+  # Libraries without a usable pkg-config file.
   set(RGBD_POSE_PC_LIBS)
   if(ChunkCodecs_FOUND AND NOT BUILD_SHARED_LIBS)
     set(RGBD_POSE_PC_LIBS -lbz2)

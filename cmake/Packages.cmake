@@ -1,5 +1,5 @@
-# `cpack -G DEB`: librgbd-pose-dev (libraries, headers) and rgbd-pose-tools
-# (programs). Of static libraries only: programs must not need a -dev package.
+# `cpack -G DEB`: librgbd-pose-dev (libraries, headers), rgbd-pose-tools
+# (programs). Only for static libraries: programs must not need a -dev package.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME rgbd-pose)
 set(CPACK_PACKAGE_CONTACT "rgbd_pose developers <rgbd_pose@example.org>")
@@ -37,8 +37,8 @@ set(CPACK_COMPONENT_TOOLS_DESCRIPTION
     "Programs: visual odometry on sequences in TUM layout, evaluation, batches,
 reports and simulated sequences.")
 
-# Debian wants the licence of each package here; plain installs have it in their
-# own folder of documents.
+# Debian requires the licence of each package here; other installs have it in
+# their own folder of documents.
 foreach(component DEVELOPMENT TOOLS)
   string(TOLOWER ${component} name)
   set(folder

@@ -1,6 +1,6 @@
-# Run by an installation: the headers below `rgbd_pose_headers` include each
-# other as users do, by "rgbd_pose/core/...", so that no other "core/..." on the
-# include path can take their place.
+# Run at installation: headers below `rgbd_pose_headers` include each other by
+# "rgbd_pose/core/...", as users do. Hence no other "core/..." on the include
+# path can replace them.
 file(GLOB_RECURSE headers
      "$ENV{DESTDIR}${CMAKE_INSTALL_PREFIX}/${rgbd_pose_headers}/*.h")
 foreach(header IN LISTS headers)

@@ -1,5 +1,5 @@
-# Puts the files of the report's pages into the programs, as one generated
-# source with a string literal for each.
+# Embeds the files of the report's pages into the programs: one generated source
+# with a string literal for each file.
 
 # plotly.js is not part of the project: scripts/install_dependencies fetches it.
 set(plotly npm/node_modules/plotly.js-gl3d-dist-min)
@@ -70,5 +70,5 @@ file(WRITE ${report_assets}.new
      "          View(kScript), View(kViewPage), View(kViewStyle),\n"
      "          View(kViewScript)};\n}\n\n"
      "}  // namespace rgbd_pose\n")
-# Only a change makes it compile again.
+# Copied only if changed, which avoids compiling it again.
 configure_file(${report_assets}.new ${report_assets} COPYONLY)

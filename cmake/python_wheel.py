@@ -1,8 +1,8 @@
 """Builds the Python package for `pip install .` (PEP 517) by CMake, with
-nothing but Python's own library: pip may be offline.
+only Python's standard library, since pip may be offline.
 
-RGBD_POSE_BUILD_DIR names a build folder to use that is there already;
-otherwise it is build-python.
+RGBD_POSE_BUILD_DIR names an existing build folder to use; the default is
+build-python.
 """
 
 import base64

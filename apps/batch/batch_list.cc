@@ -20,8 +20,8 @@ bool IsRecording(const fs::path& path) {
          path.extension() == ".db3" || path.extension() == ".mcap";
 }
 
-// The folders and bags that match a pattern, sorted; a path without wildcards
-// matches itself.
+// Returns the folders and bags that match a pattern, sorted. A path without
+// wildcards matches itself.
 std::vector<std::string> MatchingFolders(const std::string& pattern) {
   glob_t matches = {};
   std::vector<std::string> folders;
@@ -36,7 +36,7 @@ std::vector<std::string> MatchingFolders(const std::string& pattern) {
   return folders;
 }
 
-// Names become folders and cells of a table.
+// Names are used as folder names and as table cells.
 bool IsUsableName(const std::string& name) {
   if (name.empty() || name[0] == '.') return false;
   for (const unsigned char c : name) {
@@ -77,7 +77,7 @@ class ListReader {
   }
 
   void AddSequence(const TextLine& line, const std::string& folder) {
-    // "folder/" has no last part.
+    // "folder/" has an empty last component.
     const fs::path path = fs::path(folder + "/").parent_path();
     const std::string name = path.lexically_normal().filename().string();
     if (!IsUsableName(name)) {
@@ -105,7 +105,7 @@ class ListReader {
     std::string file =
         given ? FromBase(line.words[1]) : (folder / "camera.yaml").string();
     std::error_code error;
-    // Recordings of other kinds say it themselves, or else their run says so.
+    // Other kinds of recordings contain the camera, or their run fails.
     const bool is_tum = fs::is_regular_file(folder / "rgb.txt", error);
     if (!given && !is_tum && !fs::is_regular_file(file, error)) return "";
     if (!fs::is_regular_file(file, error)) {
@@ -120,7 +120,7 @@ class ListReader {
 
   const std::string path_;
   const fs::path base_;
-  std::map<std::string, int> lines_;  // by name of the sequence
+  std::map<std::string, int> lines_;  // by sequence name
   std::vector<BatchSequence> sequences_;
 };
 

@@ -24,7 +24,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Spaces around the parts are not theirs.
+// Splits a text and removes spaces around the parts.
 std::vector<std::string> Split(const std::string& text, char separator) {
   std::vector<std::string> parts = SplitText(text, separator);
   for (std::string& part : parts) {
@@ -61,7 +61,7 @@ std::vector<std::string> ParseList(const BatchSetting& setting,
   return values;
 }
 
-// All combinations, the last list's values fastest.
+// Returns all combinations; the values of the last list vary fastest.
 std::vector<std::vector<std::string>> Combinations(const BatchGrid& grid) {
   std::vector<std::vector<std::string>> all = {{}};
   for (const std::vector<std::string>& values : grid.values) {
@@ -132,10 +132,10 @@ int AddOwnLibrary(dl_phdr_info* library, size_t /*size*/, void* hash) {
   if (path.filename().string().rfind("librgbd_pose_", 0) == 0) {
     AddFile(path, static_cast<TextHash*>(hash));
   }
-  return 0;  // go on
+  return 0;  // continue
 }
 
-// Lines of any kind are taken; whether they make sense is found out by the run.
+// Accepts any lines; the run checks whether they are valid.
 void AddImagesOf(const fs::path& folder, const char* list, TextHash* hash) {
   AddFile(folder / list, hash);
   if (!IsFile(folder / list)) return;
@@ -147,7 +147,7 @@ void AddImagesOf(const fs::path& folder, const char* list, TextHash* hash) {
   }
 }
 
-// What is below a folder of another kind, or a file: names, sizes and texts.
+// Hashes a file or everything in a folder of another kind: names, sizes, texts.
 void AddAllOf(const fs::path& recording, TextHash* hash) {
   std::error_code error;
   std::vector<fs::path> files;
@@ -192,7 +192,7 @@ std::string BatchRun::Name() const {
   std::string name = sequence.name + "/";
   for (const std::string& value : values) {
     name += value;
-    // A part such as 3- ends with one.
+    // A value such as 3- already ends with a dash.
     if (name.back() != '-' && name.back() != '/') name += "-";
   }
   return name + "r" + std::to_string(repeat);

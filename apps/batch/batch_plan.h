@@ -8,7 +8,7 @@
 
 namespace rgbd_pose {
 
-// A part of a batch: every count-th sequence, beginning with number index.
+// A part of a batch: every count-th sequence, starting at index.
 struct BatchShard {
   int index = 0;
   int count = 1;
@@ -20,13 +20,13 @@ struct BatchShard {
   std::string Name() const;
 };
 
-// What may differ between the runs of a sequence. A row makes it a list of the
-// plan, a flag of every run, a part of its folder's name and a column of the
-// summary.
+// A setting that may differ between the runs of a sequence. Each row defines a
+// list of the plan, a flag of every run, a part of the run's folder name and a
+// column of the summary.
 struct BatchSetting {
-  const char* list;    // of rgbd_batch, with values separated by commas
-  const char* flag;    // of the program that is run
-  const char* column;  // of the summary
+  const char* list;    // flag of rgbd_batch with comma-separated values
+  const char* flag;    // flag of the program that runs
+  const char* column;  // column of the summary
   std::function<void(const std::string& value)> check;  // throws InputError
 };
 
@@ -39,40 +39,40 @@ struct BatchRun {
   int repeat = 1;
   std::string hash;  // of settings, program and inputs: same hash, same result
 
-  // Where it is kept: "<sequence>/<values, joined by '-'>-r<repeat>".
+  // The folder of the run: "<sequence>/<values, joined by '-'>-r<repeat>".
   std::string Name() const;
 };
 
-// What is varied: all combinations are run.
+// The values to vary. All combinations are run.
 struct BatchGrid {
   std::vector<std::vector<std::string>> values;  // of each of BatchSettings()
   int repeats = 1;
 };
 
-// The grid from one list for each of BatchSettings(). Throws InputError for
-// values that do not exist or come twice.
+// Makes the grid from one list for each of BatchSettings(). Throws InputError
+// for unknown or duplicate values.
 BatchGrid ParseGrid(const std::vector<std::string>& lists, int repeats);
 
-// The runs of a shard, in the order of the list of sequences, then of the
-// values, the last ones fastest, then repeats. `settings` is all else that
-// changes a result.
+// Returns the runs of a shard, ordered by sequence (as listed), values (the
+// last ones vary fastest) and repeat. `settings` is everything else that
+// affects a result.
 std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,
                                const BatchGrid& grid, const BatchShard& shard,
                                const std::string& settings);
 
-// The shard that "i/n" says, 0 <= i < n. If it is empty, the one of this task
-// of a Slurm job array (SLURM_ARRAY_TASK_ID, _COUNT and _MIN), or else the
-// whole. Throws InputError for anything else, and for arrays with gaps.
+// Parses a shard "i/n" with 0 <= i < n. An empty text means the task of a Slurm
+// job array (SLURM_ARRAY_TASK_ID, _COUNT and _MIN) or, outside of one, the
+// whole batch. Throws InputError for other texts and for arrays with gaps.
 BatchShard ParseShard(const std::string& text);
 
-// A hash of all that a run reads of a sequence: rgb.txt, depth.txt, the name
-// and size of each image in them, groundtruth.txt and the camera. Files that
-// are missing count as such; where the sequence lies does not count.
+// Hashes all input of a run on a sequence: rgb.txt, depth.txt, the name and
+// size of each image in them, groundtruth.txt and the camera. Missing files are
+// part of the hash; the location of the sequence is not.
 std::string HashSequence(const BatchSequence& sequence);
 
-// A hash of what a program does: of its file, and of the project's own shared
-// libraries, if it is built with such. (Those that this process has loaded:
-// programs that are installed together share them.)
+// Hashes the program file and the project's shared libraries, if it uses any.
+// The libraries are those loaded by this process, because programs that are
+// installed together share them.
 std::string HashProgram(const std::string& path);
 
 }  // namespace rgbd_pose

@@ -18,10 +18,10 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kCannotRun = 127;  // as shells have it
+constexpr int kCannotRun = 127;  // as in shells
 
-// In the new process: only calls that are safe between fork and exec.
-// posix_spawn will not do, as it cannot tie a process to its parent's life.
+// Runs in the new process: only calls that are safe between fork and exec.
+// posix_spawn will not do: it cannot tie the child's life to its parent.
 [[noreturn]] void RunInChild(pid_t parent, char* const* arguments,
                              const char* folder) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -40,7 +40,7 @@ constexpr int kCannotRun = 127;  // as shells have it
 
 using Clock = std::chrono::steady_clock;
 
-// Short compared with any run, long compared with what looking costs.
+// Short compared with a run, long compared with the cost of polling.
 constexpr auto kLookEvery = std::chrono::milliseconds(10);
 
 struct Process {
@@ -54,8 +54,8 @@ struct Process {
   }
 };
 
-// A run works in its own folder and calls it ".": its files do not tell where
-// that was, and the folder may be renamed.
+// A run works in its own folder and refers to it as ".". Its files therefore do
+// not contain the path, and the folder may be renamed.
 std::vector<std::string> CommandOf(const BatchRun& run,
                                    const BatchPoolOptions& options) {
   std::vector<std::string> command = {options.program};
@@ -84,10 +84,10 @@ RunEnd EndOf(const Process& process, int state) {
   return end;
 }
 
-// Starts a program (path and arguments) in a folder, with nothing to read and
-// its output in run.log there. It is killed when this process ends, however
-// that ends; so call this from the main thread. Throws InputError if no process
-// can be made; a program that cannot be run exits with 127.
+// Starts a program (path and arguments) in a folder, without input and with its
+// output in run.log there. The program is killed when this process ends in any
+// way, so call this from the main thread. Throws InputError if no process can
+// be created; a program that cannot be executed exits with 127.
 pid_t StartProcess(const std::vector<std::string>& command,
                    const std::string& folder) {
   std::vector<std::string> words = command;
@@ -104,7 +104,7 @@ pid_t StartProcess(const std::vector<std::string>& command,
   return child;
 }
 
-// The state of waitpid once the process has ended; empty until then.
+// Returns the waitpid state once the process has ended; empty before.
 std::optional<int> PollProcess(pid_t process) {
   int state = 0;
   if (waitpid(process, &state, WNOHANG) != process) return std::nullopt;

@@ -32,7 +32,6 @@ void Check(const std::error_code& error, const std::string& folder) {
   }
 }
 
-// Of a run that has ended; see RunEnd.
 bool IsStatus(const std::string& word) {
   return word == "ok" || word == "failed" || word == "timeout" ||
          word == "crashed";
@@ -48,11 +47,11 @@ std::vector<fs::path> FoldersIn(const fs::path& folder) {
   return folders;
 }
 
-// The kernel needs a moment to end the runs of a batch that was killed.
+// The kernel needs a moment to end the runs of a killed batch.
 constexpr auto kPatience = std::chrono::seconds(1);
 constexpr auto kRetryEvery = std::chrono::milliseconds(20);
 
-// Opens and locks a file; `kind` is LOCK_EX (alone) or LOCK_SH (with others).
+// Opens and locks a file; `kind` is LOCK_EX (exclusive) or LOCK_SH (shared).
 int Lock(const std::string& path, int kind) {
   const int file = open(path.c_str(), O_RDWR | O_CREAT, 0666);
   if (file < 0) {
@@ -104,7 +103,7 @@ std::optional<RunEnd> BatchFolder::ReadEnd(const BatchRun& run) const {
     if (end.hash != run.hash || !IsStatus(end.status)) return std::nullopt;
     return end;
   } catch (const nlohmann::json::exception&) {
-    return std::nullopt;  // not written by this program
+    return std::nullopt;  // from another program
   }
 }
 

@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-// A column of figures: its name and where metrics.json of a run has it.
+// A column of the summary and its location in metrics.json of a run.
 struct Figure {
   const char* column;
   const char* pointer;
@@ -32,12 +32,12 @@ constexpr Figure kFigures[] = {
     {"rpe_seconds_rotation_deg", "/evaluation/rpe_seconds/rotation_deg/rmse"},
     {"final_translation_m", "/evaluation/final_pose/translation_m"},
     {"final_rotation_deg", "/evaluation/final_pose/rotation_deg"},
-    // From here on they differ from run to run.
+    // The following values differ between repeated runs.
     {"track_ms_median", "/run/track_ms_median"},
     {"wall_seconds", "/run/wall_seconds"},
 };
 
-// A run that failed may have none.
+// A failed run may have no metrics.
 json ReadMetrics(const std::string& folder) {
   const std::filesystem::path path =
       std::filesystem::path(folder) / "metrics.json";
@@ -70,7 +70,7 @@ ordered_json MakeRow(const BatchRun& run, const BatchFolder& folder) {
   return row;
 }
 
-// Names of runs hold neither commas nor quotes.
+// Names of runs contain neither commas nor quotes.
 std::string FormatCell(const ordered_json& value) {
   if (value.is_null()) return "";
   return value.is_string() ? value.get<std::string>() : value.dump();
@@ -81,7 +81,7 @@ std::string FormatScaled(const ordered_json& value, double factor, int digits) {
   return Format("%.*f", digits, factor * value.get<double>());
 }
 
-// The setting whose values are repeats of one another.
+// The setting whose values are treated as repeats of each other.
 constexpr char kPart[] = "part";
 
 bool IsVaried(const BatchSummary& summary, const char* column) {
@@ -90,7 +90,7 @@ bool IsVaried(const BatchSummary& summary, const char* column) {
   });
 }
 
-// Rows under a header; the columns from `first_figure` on are to the right.
+// Formats rows under a header; right-aligns columns from `first_figure` on.
 std::string FormatColumns(const std::vector<std::vector<std::string>>& rows,
                           size_t first_figure) {
   std::vector<size_t> widths(rows[0].size());
@@ -133,8 +133,8 @@ std::string TableOfRuns(const BatchSummary& summary,
   return FormatColumns(rows, names.size());
 }
 
-// A row for all parts of a sequence with the same other settings: what one part
-// says may be chance.
+// One row for all parts of a sequence with otherwise equal settings, because
+// the result of a single part may be chance.
 std::string TableOfParts(const BatchSummary& summary,
                          const std::vector<std::string>& names) {
   std::vector<std::vector<std::string>> rows = {names};
@@ -210,7 +210,7 @@ std::string FormatBatchCsv(const BatchSummary& summary) {
 }
 
 std::string FormatBatchJson(const BatchSummary& summary) {
-  // A name that is not UTF-8 must not cost the whole summary.
+  // Invalid UTF-8 in a name must not make the summary fail.
   return ordered_json(summary).dump(2, ' ', false,
                                     json::error_handler_t::replace) +
          "\n";

@@ -9,23 +9,23 @@
 
 namespace rgbd_pose {
 
-// A row for every run of a plan, in its order, of what its folder holds: keys
-// with units, null for what is not known, times last. Runs without a result of
-// the same hash have the status "missing".
+// One row per run of a plan, in plan order, from the files in its folder. Keys
+// include units, unknown values are null, and times are last. A run without a
+// result of the same hash has the status "missing".
 using BatchSummary = std::vector<nlohmann::ordered_json>;
 
 BatchSummary Summarise(const std::vector<BatchRun>& runs,
                        const BatchFolder& folder);
 
-// How many rows have another status than "ok".
+// The number of rows whose status is not "ok".
 int CountNotOk(const BatchSummary& summary);
 
-// For programs: a header and a row a run; a JSON array of objects.
+// For programs: CSV with a header and one row per run; a JSON array of objects.
 std::string FormatBatchCsv(const BatchSummary& summary);
 std::string FormatBatchJson(const BatchSummary& summary);
 
-// For people: the main figures of each run; of several parts of a sequence
-// their median, least and most instead.
+// For people: the main figures of each run. If a sequence has several parts,
+// their median, minimum and maximum instead.
 std::string FormatBatchTable(const BatchSummary& summary);
 
 }  // namespace rgbd_pose

@@ -30,7 +30,8 @@ CalibrationVector PriorSigmas(const CalibrationVector& start) {
   return prior;
 }
 
-// Solves, and takes the scales of what is left, until they stay.
+// Alternates between solving and measuring the scales of the residuals until
+// the scales converge.
 void SolveWithScales(const BundleAdjustment& problem, const FreeParts& is_free,
                      int rounds, CalibrationState* state) {
   constexpr double kSame = 0.02;
@@ -46,8 +47,8 @@ void SolveWithScales(const BundleAdjustment& problem, const FreeParts& is_free,
   }
 }
 
-// By how many standard deviations pairs that are held out fit better with the
-// second state; nothing if there are too few of them.
+// Returns by how many standard deviations the second state fits held-out pairs
+// better; nothing if there are too few of them.
 std::optional<double> GainSigmas(const CalibrationViews& views,
                                  const CalibrationState& before,
                                  const CalibrationState& after) {
@@ -57,14 +58,15 @@ std::optional<double> GainSigmas(const CalibrationViews& views,
   return compared.gain_sigmas;
 }
 
-// The higher coefficients of a lens are free only where pairs ask for them by
-// so much. Where they were wrong, pairs did by 12 and 25 standard deviations;
-// where they were right, but a hand moved unevenly within a frame, by 4 to 7.
+// The higher lens coefficients are free only if the held-out pairs improve by
+// at least this many standard deviations. Where these coefficients were wrong,
+// the gain was 12 and 25 standard deviations. Where they were right, but a hand
+// moved unevenly within a frame, the gain was 4 to 7.
 constexpr double kHigherSigmas = 9.0;
 constexpr int kNumHigher = kLensSize - kK3;
 
-// Solves without them, and with them where they are asked for. Returns what was
-// free.
+// Solves without the higher lens coefficients, then with them, and keeps them
+// if the gain is large enough. Returns which parameters were free.
 FreeParts SolveWithLensAsked(const BundleAdjustment& training,
                              const CalibrationViews& views,
                              const FreeParts& asked, int rounds,
@@ -82,7 +84,7 @@ FreeParts SolveWithLensAsked(const BundleAdjustment& training,
   return asked;
 }
 
-// Parameters that are known together, those that are known best first.
+// Parameters that are determined together, the best determined groups first.
 struct Group {
   int first, size;
 };
@@ -92,14 +94,15 @@ constexpr Group kGroups[] = {
     {kRotationX, 6}, {kColorReadout, 2}, {kDepthTime, 1},
 };
 
-// Takes back what the pairs that are held out do not ask for: parameters that
-// make up for each other, or for something else than the camera, make them fit
-// no better. `spread`: so many times as much as they scatter pairs may err.
+// Resets parameters that the held-out pairs do not need. Parameters that
+// compensate each other, or something other than the camera, do not improve the
+// fit of these pairs. `spread` is the factor by which errors may exceed the
+// scatter of the pairs.
 void TakeBackNeedless(const CalibrationViews& views,
                       const CalibrationPrior& prior,
                       const CalibrationVector& start, double spread,
                       FreeParts* is_free, CalibrationState* state) {
-  constexpr int kNearby = 5;  // iterations: it begins where others ended
+  constexpr int kNearby = 5;  // iterations; few, as the start is a solution
   const BundleAdjustment training(views, prior, true, kNearby);
   CalibrationState best = *state;
   for (const Group& group : kGroups) {
@@ -167,7 +170,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                      theta, threads, &data);
   };
 
-  // What pairs tell that are not held out, with both cameras.
+  // Solve for the training pairs (not held out) with both cameras.
   constexpr int kRounds = 2;
   const BundleAdjustment training(data.views, prior, true);
   CalibrationState before = training.Begin(start);
@@ -184,8 +187,8 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   }
   result.noise =
       FitDepthNoise(views_before, before, odometry.features.depth_noise);
-  // Halves that are farther apart than their error bars tell how wide these
-  // are; beyond that they contradict each other.
+  // The difference of the halves shows how wide the error bars have to be.
+  // Beyond this factor, the halves contradict each other.
   constexpr double kMaxSpread = 4.0;
   const double spread_of_all =
       SpreadOfHalves(SplitHalfConsistency(data.views, after, is_free, prior));
@@ -239,7 +242,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     return result;
   }
   if (is_free != needed) {
-    // The rest stays where it was.
+    // The other parameters keep their start values.
     for (int k = 0; k < kCalibrationSize; ++k) {
       if (!is_free[k]) after.theta[k] = start[k];
     }
@@ -260,7 +263,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   result.cost_of_map = with_map_poses.cost_before;
   CompareHeldOut(views_before, before, data.views, after, &result);
 
-  // And in the end all.
+  // Finally solve with all pairs.
   const BundleAdjustment all(data.views, prior, false);
   CalibrationState found = after;
   SolveWithScales(all, is_free, kRounds, &found);

@@ -11,10 +11,11 @@
 
 namespace rgbd_pose {
 
-// Calibrates a camera from keyframes and pairs of its recording. `first`: the
-// camera that they were tracked with; `path`: a smooth path of all frames, see
-// CollectCalibrationData; `known`: the camera that priors are around, null: the
-// first one. Throws InputError for invalid settings.
+// Calibrates a camera from the keyframes and keyframe pairs of its recording.
+// `first` is the camera that the keyframes were tracked with. `path` is a
+// smooth path of all frames, see CollectCalibrationData. `known` is the camera
+// that the priors are centred on; null means `first`. Throws InputError for
+// invalid settings.
 CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const RgbdCamera& first,
                             const OdometrySettings& odometry,
@@ -22,15 +23,15 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const CalibrationScale& scale, int threads,
                             const RgbdCamera* known = nullptr);
 
-// A camera as the parameters of its calibration: its lens, and nothing wrong
-// with depth as it is corrected.
+// A camera as calibration parameters: its lens, and no error in corrected
+// depth.
 CalibrationVector ThetaOf(const Camera& camera);
 
-// The camera that was the first as theta changes it.
+// Returns the first camera, changed by theta.
 RgbdCamera ApplyCalibration(const RgbdCamera& first,
                             const CalibrationVector& theta);
 
-// The theta that changes the first camera to another.
+// Returns the theta that turns the first camera into `changed`.
 CalibrationVector ThetaBetween(const RgbdCamera& first,
                                const RgbdCamera& changed);
 

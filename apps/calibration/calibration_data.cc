@@ -10,8 +10,9 @@
 namespace rgbd_pose {
 namespace {
 
-// Of a keyframe: as many as make the views that are wanted, since only some are
-// found again, but no fewer than lie all over the image.
+// The number of features per keyframe. It is chosen for the requested number of
+// views, since only a share of the features is found again, but it does not
+// fall below the number that covers the whole image.
 constexpr int kMostFeatures = 300;
 constexpr int kFewestFeatures = 80;
 constexpr double kFoundAgain = 0.2;
@@ -23,7 +24,7 @@ int FeaturesOfEach(int max_views, size_t num_pairs) {
       std::clamp<double>(in_each, kFewestFeatures, kMostFeatures));
 }
 
-// Of all that were seen again as many as make the views that are wanted.
+// Adds as many landmarks that have views as `max_views` allows.
 void AddLandmarks(const std::vector<LandmarksOfKeyframe>& found, int max_views,
                   CalibrationViews* views) {
   size_t all_views = 0;
@@ -35,11 +36,11 @@ void AddLandmarks(const std::vector<LandmarksOfKeyframe>& found, int max_views,
                            : std::min(1.0, static_cast<double>(max_views) /
                                                static_cast<double>(all_views));
   for (const LandmarksOfKeyframe& keyframe : found) {
-    std::vector<size_t> seen;  // again
+    std::vector<size_t> seen;  // in other keyframes
     for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
       if (!keyframe.views[i].empty()) seen.push_back(i);
     }
-    // Evenly chosen: they are in the order of their places in the image.
+    // Choose evenly: landmarks are ordered by their position in the image.
     const auto count = static_cast<size_t>(std::ceil(share * seen.size()));
     for (size_t chosen = 0; chosen < count; ++chosen) {
       const size_t i = seen[chosen * seen.size() / count];
@@ -53,18 +54,19 @@ void AddLandmarks(const std::vector<LandmarksOfKeyframe>& found, int max_views,
   }
 }
 
-// Longer than this between two frames, a velocity is not known.
+// No velocity is computed across a longer gap between two frames.
 constexpr double kMaxGap = 0.15;  // s
 
-// From a smooth path of the camera (world from camera, any world), at the time
-// of one of its frames (s): central differences of the fourth order, where
-// frames follow each other evenly. Zero where nothing is known.
+// The velocity (zero if unknown) from a smooth path of the camera (world from
+// camera, any world) at the time of one of its frames (s): fourth-order central
+// differences where frames are evenly spaced, else differences of adjacent
+// frames.
 Twist TwistAt(const Trajectory& path, double time) {
   const auto at = std::lower_bound(
       path.begin(), path.end(), time - 1e-4,
       [](const StampedPose& pose, double t) { return pose.timestamp < t; });
   if (at == path.end()) return {};
-  // The last frame that comes so many after, without a gap.
+  // The frame at this offset, or the last one before a gap.
   const auto place = at - path.begin();
   const auto neighbour = [&](int steps) {
     const int direction = steps > 0 ? 1 : -1;
@@ -82,7 +84,7 @@ Twist TwistAt(const Trajectory& path, double time) {
   struct Difference {
     Twist twist;
     double interval = 0.0;  // s
-    double lean = 0.0;      // how far its middle is from the frame, s
+    double lean = 0.0;      // offset of its middle from the frame, s
   };
   const auto difference = [&](int steps) {
     const auto before = neighbour(-steps), after = neighbour(steps);
@@ -91,7 +93,7 @@ Twist TwistAt(const Trajectory& path, double time) {
     result.interval = t1 - t0;
     result.lean = std::abs(0.5 * (t0 + t1) - at->timestamp);
     if (!(result.interval > 0.0)) return result;
-    // Where the camera was and will be, in its own axes now.
+    // A pose of the path, expressed in the camera frame of the given time.
     const auto seen = [&](std::ptrdiff_t there) {
       return TwistOf(path[there].world_from_cam.Inverse() * at->world_from_cam,
                      result.interval);
@@ -108,13 +110,13 @@ Twist TwistAt(const Trajectory& path, double time) {
                  : near.twist;
 }
 
-// The work grows with the third power of their number.
+// The work grows with the third power of the number of keyframes.
 constexpr size_t kMaxKeyframes = 300;
 
-// Every n-th pair is kept to judge the result by.
+// One pair in this number is held out for judging the result.
 constexpr int kHoldOut = 5;
 
-// The largest segment's keyframes, by their places in the map.
+// The keyframes of the largest segment, as indices in the map.
 std::vector<int> ChosenKeyframes(const KeyframeMap& map) {
   std::map<int, std::vector<int>> segments;
   for (size_t i = 0; i < map.keyframes.size(); ++i) {
@@ -136,7 +138,7 @@ std::vector<int> ChosenKeyframes(const KeyframeMap& map) {
   return chosen;
 }
 
-// Every n-th pair, but none that two keyframes hang together by.
+// Holds out one pair in kHoldOut, but none that is needed to connect keyframes.
 std::vector<bool> HeldOut(int num_keyframes,
                           const std::vector<std::array<int, 2>>& pairs) {
   std::vector<int> root(num_keyframes);
@@ -155,7 +157,7 @@ std::vector<bool> HeldOut(int num_keyframes,
       root[a] = b;
     }
   }
-  // One in kHoldOut of all, as far as there are any to spare.
+  // One in kHoldOut of all pairs, if there are enough spare ones.
   const double step = std::max(
       1.0, static_cast<double>(spare.size()) * kHoldOut / pairs.size());
   for (double i = 0.0; i < spare.size(); i += step) {
@@ -168,7 +170,7 @@ CalibrationData ChoosePairs(const KeyframeMap& map) {
   CalibrationData result;
   result.in_map = ChosenKeyframes(map);
   const int num_keyframes = static_cast<int>(result.in_map.size());
-  std::map<int, int> number_of;  // by the map's id
+  std::map<int, int> number_of;  // by keyframe id
   for (int i = 0; i < num_keyframes; ++i) {
     number_of[map.keyframes[result.in_map[i]].id] = i;
   }

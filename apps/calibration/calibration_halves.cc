@@ -11,11 +11,11 @@ namespace {
 
 using FreeParts = std::array<bool, kCalibrationSize>;
 
-// Less says nothing.
+// A smaller part cannot be calibrated.
 constexpr int kMinKeyframes = 3;
 constexpr int kMinViews = 200;
 
-// The views of some keyframes in a row, and where their solution begins.
+// The views of consecutive keyframes, and the start of their solution.
 struct Part {
   CalibrationViews views;
   CalibrationState state;
@@ -63,13 +63,13 @@ Part PartOf(const CalibrationViews& all, const CalibrationState& found,
   return part;
 }
 
-// What a part says of the parameters.
+// The estimate of the parameters from one part.
 struct Told {
   CalibrationVector theta;
   CalibrationVector variance;
 };
 
-// Nothing if the part has too few views or does not tell.
+// Returns nothing if the part does not determine the parameters.
 std::optional<Told> Calibrated(Part part, const FreeParts& is_free,
                                const CalibrationPrior& prior) {
   if (part.views.views.size() < static_cast<size_t>(kMinViews)) return {};
@@ -105,7 +105,7 @@ std::vector<HalvesOfParameter> SplitHalfConsistency(
     const FreeParts& is_free, const CalibrationPrior& prior) {
   const int all = static_cast<int>(views.world_from_cam.size());
   std::array<std::optional<Told>, 2> halves;
-  // One after the other: at the same time they would add up in another order.
+  // One half after the other: in parallel, the order of additions would change.
   for (int half = 0; half < 2; ++half) {
     const int begin = half * (all / 2), end = half == 0 ? all / 2 : all;
     if (end - begin < kMinKeyframes) return {};

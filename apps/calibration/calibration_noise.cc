@@ -10,17 +10,17 @@
 namespace rgbd_pose {
 namespace {
 
-// A depth and what it should be.
+// The error of a depth measurement at a landmark.
 struct Sample {
-  double depth = 0.0;  // m
-  double pixel = 0.0;  // what a pixel errs by, m
-  double mean = 0.0;   // what a depth that was looked up errs by, m
-  double share = 0.0;  // of the landmark's place that this depth gives
+  double depth = 0.0;  // expected depth, m
+  double pixel = 0.0;  // error of a single pixel, m
+  double mean = 0.0;   // error of the looked-up depth, m
+  double share = 0.0;  // share of the landmark position from this depth
 };
 
 constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution
 
-// The depths of a landmark, there and in all views.
+// Collects the depths of a landmark in its anchor and in all views.
 class Collector {
  public:
   Collector(const CalibrationViews& views, const CalibrationState& state)
@@ -40,7 +40,7 @@ class Collector {
       if (depth.pixel_value == 0.0) return;
       const double expected =
           MeasuredFrom<double>(w, theta, data.motion, depth);
-      // Along the plane to where the landmark is.
+      // Moves the depth along the plane to the position of the landmark.
       const double there = depth.plane.dot(ray);
       const double pixel =
           depth.pixel_value * there / depth.plane.dot(depth.pixel_ray);
@@ -61,7 +61,7 @@ class Collector {
       LandmarkPixel::Jacobian(anchor, there, d, theta, data, r, &J2);
       information += J2.inverse_depth.squaredNorm();
       if (view.depth.inverse_sigma == 0.0) continue;
-      // From where the feature was seen to where the landmark is.
+      // Offset from the position of the feature to that of the landmark.
       const Eigen::Vector3d beside(r[0] / data.inverse_sigma_px / theta[kFx],
                                    r[1] / data.inverse_sigma_px / theta[kFy],
                                    0.0);
@@ -81,9 +81,9 @@ class Collector {
   std::vector<MotionDerivatives> poses_;
 };
 
-// The variance of a mean of 3 x 3 pixels over that of one. What determines a
-// share h of a landmark's place leaves residuals of the variances (mean m,
-// pixel p)
+// The variance of a mean of 3 x 3 pixels, divided by the variance of one pixel.
+// A depth that contributes a share h to the position of a landmark leaves
+// residuals with these variances (mean m, pixel p):
 //   (1 - h) m   and   p - h m.
 double VarianceShare(const std::vector<Sample>& samples) {
   double share = 0.0;
@@ -102,8 +102,8 @@ double VarianceShare(const std::vector<Sample>& samples) {
   return share;
 }
 
-// Weighted least squares of sigma = a + b z^2, a part that is not given by the
-// scatter (2 standard deviations) being 0.
+// Weighted least-squares fit of sigma = a + b z^2. A coefficient that is not
+// significant (2 standard deviations) is set to 0.
 void FitSigmas(const std::vector<DepthScatter>& scatter, double relative_error,
                DepthNoiseFit* fit) {
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
@@ -182,7 +182,7 @@ std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
     fit.scatter.back().sigma = std::max(kLeast, fit.scatter.back().sigma);
   }
   fit.in_old_sigmas = kSigmaOfMedian * Median(in_old_sigmas);
-  // That of a median of absolute values is 1.17 / sqrt(n).
+  // The relative error of a median of absolute values is 1.17 / sqrt(n).
   const double in_bin =
       static_cast<double>(samples.size()) / static_cast<double>(bins);
   FitSigmas(fit.scatter, 1.17 / std::sqrt(in_bin), &fit);

@@ -15,8 +15,9 @@ namespace {
 
 using Status = CalibratedParameter::Status;
 
-// Takes up what a further pass found from where the last one ended: the same,
-// but nearer to where it was linearised. Returns whether it is any good.
+// Merges the result of a further pass. The pass started from the last result
+// and estimates the same parameters, but closer to the linearisation point.
+// Returns whether the result is usable.
 bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
             const CalibrationResult& further, CalibrationResult* all) {
   ++all->passes;
@@ -56,15 +57,15 @@ bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
   return true;
 }
 
-// The part of a recording that leaves frames out, as many as there are more
-// than asked for a second; empty: none.
+// Returns the range of frames (first-last:step) that reduces the frame rate to
+// `max_rate`, or an empty string if no frame has to be left out.
 std::string Thinned(const std::vector<double>& timestamps, double max_rate) {
   if (timestamps.size() < 2 || max_rate == 0.0) return "";
   std::vector<double> intervals;
   for (size_t i = 1; i < timestamps.size(); ++i) {
     intervals.push_back(timestamps[i] - timestamps[i - 1]);
   }
-  // Stamps are not quite even.
+  // Tolerates slightly uneven timestamps.
   constexpr double kSlack = 0.1;
   const int step = static_cast<int>(
       std::ceil(1.0 / (Median(intervals) * max_rate) - kSlack));
@@ -84,7 +85,7 @@ OdometrySettings CalibrationOdometry() {
 
 SlamSettings CalibrationSlam() {
   SlamSettings settings;
-  settings.mapping.redundant_share = 2.0;  // which no view reaches
+  settings.mapping.redundant_share = 2.0;  // never reached
   settings.mapping.max_pairs = 4;
   settings.mapping.max_loop_candidates = 0;
   return settings;
@@ -116,7 +117,7 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
   }
   std::optional<RgbdCamera> known;
   if (odometry.odometry.shutter == ShutterUse::kNone) {
-    // It is to be found from nothing.
+    // The shutter is to be estimated from zero.
     known = OpenSequence(sequence).source->camera();
     known->color_shutter = known->depth_shutter = Shutter();
   }
@@ -155,7 +156,7 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
     } else {
       goes_on = TakeUp(first, settings, result, &all.result);
     }
-    // A camera that is no recording does not come again.
+    // A live camera cannot be read again.
     if (!goes_on || frames == 0 || pass >= settings.max_passes ||
         !IsAnotherPassDue(result)) {
       return all;

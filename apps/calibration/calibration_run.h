@@ -11,36 +11,37 @@
 
 namespace rgbd_pose {
 
-// Settings to map a recording with that is to calibrate its camera: keyframes
-// follow each other more closely than a map needs, so that small motions, too,
-// have some, none is removed, and no more of them are paired than it takes.
+// Settings for mapping a recording that its camera is to be calibrated from.
+// Keyframes are closer than a map needs, which also yields pairs for small
+// motions. No keyframe is removed, and only as many are paired as the
+// calibration needs.
 OdometrySettings CalibrationOdometry();
 SlamSettings CalibrationSlam();
 
-// The path of all frames that were tracked as the odometry has it: without the
-// steps of corrections.
+// The path of all tracked frames as the odometry estimates it, without the
+// jumps of map corrections.
 Trajectory SmoothPath(const std::vector<SlamFrame>& frames);
 
-// What came of a recording's calibration, and the path from above.
+// The calibration of a recording, and the path of the frames.
 struct RecordingCalibration {
   CalibrationResult result;  // of all passes together
   Trajectory path;           // of the last map
 
-  // Why the recording ended early, or empty; what of it is left out
+  // Why the recording ended early, or empty; the left-out frames
   // (DroppedFrames).
   std::string stopped;
-  int damaged = 0;  // frames
+  int damaged = 0;  // number of damaged frames
   std::vector<std::string> left_out;
 };
 
-// Hears of each frame that is tracked: in which pass, how many of it so far and
-// of all (0: not known ahead).
+// Called for each tracked frame with the pass, the number of frames done in
+// this pass and the number of all frames (0: not known in advance).
 using CalibrationProgress = std::function<void(int pass, int done, int all)>;
 
-// Maps a recording and calibrates its camera from the map.
-// Where depth turns out to be displaced by pixels all is done again with the
-// camera found, which was far away from the first one. `on_frame` may be empty.
-// Throws InputError as OpenSequence does, and for settings that are of no use.
+// Maps a recording and calibrates its camera from the map. If depth turns out
+// to be displaced by more than a pixel, the camera found was far from the first
+// one; everything is then repeated with the camera found. `on_frame` may be
+// empty. Throws InputError as OpenSequence does, and for invalid settings.
 RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
                                         const OdometrySettings& odometry,
                                         const SlamSettings& slam,

@@ -12,17 +12,17 @@
 namespace rgbd_pose {
 namespace {
 
-// Standard deviations of distances: of a length that somebody measured, of a
-// ground truth's, of wheels' (and a share of the way).
+// Standard deviations of a length measured by hand, a ground-truth distance and
+// a motion guess, for example from wheels (plus a share of the distance).
 constexpr double kLengthSigma = 0.005;  // m
 constexpr double kTruthSigma = 0.005;   // m
 constexpr double kGuessSigma = 0.01;    // m
 constexpr double kGuessShare = 0.02;
 
-// Keyframes so far apart (m) tell the scale well; nearer ones tell less.
+// Keyframes at this distance (m) determine the scale well; nearer ones less so.
 constexpr double kFarApart = 0.5;
 
-// A frame by the nearest keyframe in time.
+// The position of a frame relative to the nearest keyframe in time.
 struct Place {
   int keyframe = 0;
   Eigen::Vector3d in_keyframe;
@@ -69,10 +69,11 @@ KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
           b.in_keyframe, metres,     kLengthSigma};
 }
 
-// From each keyframe to the first one far away, or the farthest.
+// The distance (m) between the camera positions at two times (s), if known.
 using DistanceBetween =
     std::function<std::optional<double>(double from, double to)>;
 
+// Connects each keyframe to the first distant one, or to the farthest one.
 std::vector<KnownDistance> Between(const CalibrationData& data,
                                    const DistanceBetween& distance,
                                    double sigma, double share) {

@@ -12,16 +12,16 @@
 namespace rgbd_pose {
 namespace {
 
-// A camera: fx and fy differ by no more, and the centre is this near to that of
-// the image, as shares.
+// Limits for a plausible camera, as shares: the difference of fx and fy, and
+// the distance of the principal point from the image centre.
 constexpr double kMaxAspect = 0.01;
 constexpr double kMaxOffCentre = 0.1;
 
-// Nothing may be farther from what was known before.
+// Limit for the distance of a parameter from its prior.
 constexpr double kMaxPriorSigmas = 4.0;
 
-// Whether every pixel of the border has a ray. Coefficients that fit where
-// features are may turn the lens over towards the corners.
+// Whether every pixel of the image border has a ray. Coefficients that fit
+// where the features are may make the lens model fold over towards the corners.
 bool HasRaysAllAround(const Camera& camera) {
   const auto has_ray = [&](double u, double v) {
     return camera.Undistort({u, v}).allFinite();
@@ -36,7 +36,7 @@ bool HasRaysAllAround(const Camera& camera) {
   return true;
 }
 
-// The robust cost of a view, and its error in pixels.
+// Returns the robust cost of a view and its error in pixels.
 double CostOf(const CalibrationViews& views, const Landmark& landmark,
               const LandmarkView& view, bool with_depth, double inverse_depth,
               const CalibrationState& state, const CalibrationState& scales,
@@ -63,7 +63,7 @@ std::string Short(double value) { return Format("%.3g", value); }
 
 std::string Percent(double share) { return Short(100.0 * share) + " %"; }
 
-// Of what they differ in most; nothing if they were not compared.
+// The parameter whose halves differ most; null if the halves were not compared.
 const HalvesOfParameter* WorstOfHalves(const CalibrationResult& result) {
   const auto worst = std::max_element(
       result.halves.begin(), result.halves.end(),
@@ -92,7 +92,7 @@ void CompareHeldOut(const CalibrationViews& views_before,
     const auto end = begin + landmark.num_views;
     const bool has_trained = std::any_of(
         begin, end, [](const LandmarkView& view) { return !view.is_held_out; });
-    // Others stand where their own depth has them.
+    // Other landmarks are placed only by their own depth.
     if (!has_trained) continue;
     for (auto view = begin; view != end; ++view) {
       if (!view->is_held_out) continue;
@@ -157,7 +157,7 @@ bool IsAnotherPassDue(const CalibrationResult& result) {
 }
 
 std::string WhatIsLeft(const CalibrationResult& result) {
-  constexpr double kOfFeatures = 0.3;  // px, of rendered recordings
+  constexpr double kOfFeatures = 0.3;  // px, with rendered recordings
   const double px = 0.5 * result.pixel_after;
   return "residuals spread by " + Short(px) + " px, " +
          (px > 1.5 * kOfFeatures ? "more than features alone: " : "as ") +

@@ -6,41 +6,39 @@
 
 namespace rgbd_pose {
 
-// A gain or a change that is less, in standard deviations, may be chance.
+// A gain or a change below this number of standard deviations may be chance.
 constexpr double kMinSigmas = 3.0;
 
-// Fills in what held-out views make of two solutions: costs, their difference,
-// residuals. The views of either differ in their depths alone.
+// Compares two solutions on the held-out views and fills in the costs, their
+// difference and the residuals. Both sets of views differ only in their depths.
 void CompareHeldOut(const CalibrationViews& views_before,
                     const CalibrationState& before,
                     const CalibrationViews& views_after,
                     const CalibrationState& after, CalibrationResult* result);
 
-// The RMSE (m) of the motions of pairs against the ground truth; 0 if none can
-// be compared.
+// The RMSE (m) of the motions of pairs against the ground truth; 0 if unknown.
 double TruthError(const CalibrationData& data, const CalibrationState& state,
                   const Trajectory& truth);
 
-// Whether depth was displaced so far that what was found is a first step.
+// Whether depth was displaced so far that the result is only a first step.
 bool IsAnotherPassDue(const CalibrationResult& result);
 
-// How far residuals spread with the camera found, in words.
+// Describes in words how far the residuals spread with the camera found.
 std::string WhatIsLeft(const CalibrationResult& result);
 
-// Why the halves of a recording contradict each other, in words, or empty.
+// Explains why the halves of a recording contradict each other, or empty.
 std::string WhyHalvesDisagree(const CalibrationSettings& settings,
                               const CalibrationResult& result);
 
-// How far the halves of a recording agree, in words.
+// Describes in words how well the halves of a recording agree.
 std::string HalvesInWords(const CalibrationResult& result);
 
-// Why what was found is no camera that can be believed in, in words, or empty.
+// Explains in words why the camera found is not plausible, or empty.
 std::string ImplausibilityReason(const RgbdCamera& first,
                                  const RgbdCamera& found,
                                  const CalibrationResult& result);
 
-// Why a camera that was found is not to be taken instead of the first one, in
-// words, or empty.
+// Explains why the camera found must not replace the first one, or empty.
 std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
                             const CalibrationSettings& settings,
                             const CalibrationResult& result);

@@ -18,7 +18,7 @@
 namespace rgbd_pose {
 namespace {
 
-// How far depth is off where it was measured.
+// How far the depth image is displaced at the row of a measurement.
 struct Displacement {
   Eigen::Vector3d rotation;     // rad
   Eigen::Vector3d translation;  // m
@@ -29,14 +29,14 @@ struct Displacement {
     translation = theta.segment<3>(kTranslationX) - lag * motion.twist.linear;
   }
 
-  // How far (px, about) it moves what is seen along a ray at an inverse depth.
+  // How far (px, about) a point on a ray at an inverse depth is displaced.
   double Flow(double fx, const Eigen::Vector3d& ray, double inverse) const {
     const Eigen::Vector3d moved = rotation.cross(ray) + inverse * translation;
     return fx * (moved - moved.z() * ray).head<2>().norm();
   }
 };
 
-// Looks a depth up in an image in which a displacement has been undone.
+// Looks up a depth again in an image in which a displacement has been undone.
 void LookUpAnew(const Frame& frame, const Camera& camera,
                 const DepthLookupOptions& options, double u, double v,
                 const Displacement& undone, MeasuredInverseDepth* depth) {
@@ -45,32 +45,33 @@ void LookUpAnew(const Frame& frame, const Camera& camera,
       MeasuredAt(frame, camera, o, {u, v}, options.noise);
   updated.undone_rotation = undone.rotation;
   updated.undone_translation = undone.translation;
-  // A landmark keeps a value to begin with.
+  // Without a valid depth, a landmark keeps its value as the initial guess.
   if (updated.inverse_sigma == 0.0) updated.value = depth->value;
   *depth = updated;
 }
 
-constexpr int kReach = 3;  // pixels of the grid to each side
+constexpr int kReach = 3;  // grid points on each side
 constexpr int kWindowSide = 2 * kReach + 1;
 
-// The spread of a plane's pixels: so many sigmas, or this share of the depth,
-// which lets a bulge pass.
+// Limit for the distance of a pixel from the plane: this many sigmas, or this
+// share of the depth, which tolerates a curved surface.
 constexpr double kMaxSigmas = 3.0;
 constexpr double kMaxBulge = 0.01;
 
-// So many of the 49 must be there and lie on it.
+// The number of pixels, out of 49, that must be valid and lie on the plane.
 constexpr int kMinOnPlane = 44;
 
-// The surface seen around an image point (px, distorted) as a plane m . X = z,
-// where X is on it and z its depth at the point: so m . r = 1 for the ray
-// r = (a, b, 1) there. Zero where there is no plane. Fitted to the inverse
-// depths of 49 pixels, of a VGA image up to 6 px away: the slope of fewer or
-// nearer ones is mostly noise.
+// Returns the surface around an image point (px, distorted) as a plane m . X =
+// z, where X is a point on the plane and z is the depth at the image point.
+// Thus m . r = 1 for the ray r = (a, b, 1) of the image point. Returns zero if
+// there is no plane. The plane is fitted to the inverse depths of 49 pixels,
+// which are up to 6 px away in a VGA image; with fewer or nearer pixels, the
+// slope is mostly noise.
 Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
                             double v, const DepthNoiseModel& noise) {
   const int column = static_cast<int>(std::lround(u));
   const int row = static_cast<int>(std::lround(v));
-  // As far apart as 2 px of a VGA image.
+  // The spacing corresponds to 2 px of a VGA image.
   const int stride = std::max(1, frame.depth.cols / 320);
   const int border = kReach * stride;
   if (column < border || row < border || column >= frame.depth.cols - border ||
@@ -139,7 +140,7 @@ double DisplacementPx(const CalibrationViews& views,
     const RowMotion motion = MotionAt(views, landmark.anchor, landmark.v);
     const double depth =
         Displacement(change, motion).Flow(views.camera.fx, at.ray, at.value);
-    // The first row of colour.
+    // Colour is displaced most in its first row.
     CalibrationVector readout = CalibrationVector::Zero();
     readout[kDepthTime] = 0.5 * change[kColorReadout];
     const double color =
@@ -157,7 +158,7 @@ void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
   features.camera = camera;
   const DepthLookupOptions options = features.DepthLookup();
   const int num_keyframes = static_cast<int>(data->in_map.size());
-  // By keyframe: its own landmarks, and what it sees of others.
+  // By keyframe: its own landmarks, and its views of other landmarks.
   std::vector<std::vector<Landmark*>> landmarks(num_keyframes);
   std::vector<std::vector<LandmarkView*>> views(num_keyframes);
   for (Landmark& landmark : data->views.landmarks) {

@@ -15,25 +15,24 @@
 
 namespace rgbd_pose {
 
-// Whether a change of theta is so large that depth has to be looked up
-// elsewhere.
+// Whether a change of theta moves depth so far that it must be looked up again.
 bool IsDisplaced(const CalibrationVector& theta);
 
-// How far a change of theta displaces depth in the image, px: the median of
-// landmarks.
+// How far a change of theta displaces depth, px (median over landmarks).
 double DisplacementPx(const CalibrationViews& views,
                       const CalibrationVector& change);
 
-// Undoes what theta says of the displacement of depth (registration, delay) in
-// the images of the keyframes and looks all depths up again: so large ones come
-// right that are not linear. `camera`: the lens as it is known by now.
+// Undoes the displacement of depth (registration, delay) that theta describes
+// in the images of the keyframes and looks up all depths again. This corrects
+// large, non-linear displacements. `camera` is the current estimate of the
+// lens.
 void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
                       const OdometrySettings& settings,
                       const CalibrationVector& theta, int threads,
                       CalibrationData* data);
 
-// What an observation at `pixel` (as seen, distorted) says of depth. Nothing
-// where the surface is no plane.
+// Returns the depth measurement for an observation at `pixel` (distorted). It
+// is invalid (inverse_sigma is 0) where the surface is not a plane.
 MeasuredInverseDepth MeasuredAt(const Frame& frame, const Camera& camera,
                                 const Observation& o,
                                 const Eigen::Vector2d& pixel,

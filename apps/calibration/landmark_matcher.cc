@@ -11,15 +11,15 @@
 namespace rgbd_pose {
 namespace {
 
-// Finds features of keyframes in other keyframes: what one thread works with.
+// Matches features of keyframes in other keyframes. Each thread has its own.
 class LandmarkMatcher {
  public:
-  // All must outlive it but `settings`. `chosen`: places in the map of the
-  // keyframes, by whose numbers all is asked for.
+  // All arguments except `settings` must outlive the matcher. `chosen` has the
+  // map indices of the keyframes; other functions use positions in `chosen`.
   LandmarkMatcher(const KeyframeMap& map, const std::vector<int>& chosen,
                   const OdometrySettings& settings, int max_features);
 
-  // `held_out`: of each of the neighbours.
+  // `held_out` has one entry for each neighbour.
   LandmarksOfKeyframe Match(int anchor, const std::vector<int>& neighbours,
                             const std::vector<bool>& held_out);
 
@@ -27,11 +27,11 @@ class LandmarkMatcher {
   const Rigid3d& Pose(int at) const {
     return map_.keyframes[chosen_[at]].world_from_cam;
   }
-  // The pixel that was measured.
+  // The measured (distorted) pixel.
   Eigen::Vector2d Seen(const Observation& o) const {
     return map_.camera.Project(map_.camera.Ray(o.u, o.v));
   }
-  // Decoded once for neighbours that follow each other.
+  // Decodes images once for consecutive neighbours.
   const PreparedFrame& Images(int at);
 
   MeasuredInverseDepth DepthOf(const Frame& frame, const Observation& o,
@@ -107,7 +107,7 @@ const PreparedFrame& LandmarkMatcher::Images(int at) {
   const auto found = images_.find(at);
   if (found != images_.end()) return found->second;
   if (images_.size() >= kMost) {
-    // The farthest in time will be needed last.
+    // The keyframe farthest in time is needed last.
     auto farthest = images_.begin();
     for (auto it = images_.begin(); it != images_.end(); ++it) {
       if (std::abs(it->first - at) > std::abs(farthest->first - at)) {
@@ -140,7 +140,7 @@ std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
   std::vector<LandmarksOfKeyframe> found(num_keyframes);
   threads = std::max(1, std::min(threads, num_keyframes));
   ParallelFor(threads, threads, [&](int thread) {
-    // A run of keyframes each: neighbours are decoded once.
+    // Consecutive keyframes per thread, because they share decoded neighbours.
     LandmarkMatcher matcher(map, chosen.in_map, settings, max_features);
     const int begin = thread * num_keyframes / threads;
     const int end = (thread + 1) * num_keyframes / threads;

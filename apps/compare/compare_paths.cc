@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// The truth at the times of all frames, where it has a pose near enough.
+// The truth at the times of all frames, where it has a pose close in time.
 ComparedPath TruthAt(const std::vector<TrackedFrame>& frames,
                      const Trajectory& truth) {
   std::vector<double> times;
@@ -34,7 +34,7 @@ ComparedPath TruthAt(const std::vector<TrackedFrame>& frames,
   return path;
 }
 
-// The motion that lays the first pose of a run that has a truth on it.
+// The motion that aligns a run with the truth at their first common pose.
 Rigid3d WorldFromRun(const LossRun& run, const ComparedPath* truth) {
   if (truth == nullptr) return {};
   for (size_t i = 0; i < run.frames.size(); ++i) {
@@ -104,7 +104,6 @@ ChartSeries Series(const std::vector<ComparedPath>& paths, size_t k) {
   return series;
 }
 
-// Y or Z over X.
 ChartPanel TopView(const std::vector<ComparedPath>& paths, int row) {
   ChartPanel panel;
   panel.title = row == 1 ? "X-Y" : "X-Z";

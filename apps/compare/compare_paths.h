@@ -10,40 +10,40 @@
 
 namespace rgbd_pose {
 
-// A frame of a path. What is not known is empty.
+// A frame of a path; unknown values are empty.
 struct ComparedPose {
   double timestamp = 0.0;  // s
   std::optional<Rigid3d> world_from_cam;
-  // From the truth of the same moment.
+  // Relative to the truth at the same time.
   std::optional<double> distance;  // m
   std::optional<double> angle;     // rad
-  // Of the motion over the second that starts here.
+  // Error of the motion over the second that starts at this frame.
   std::optional<double> rpe_translation;  // m
   std::optional<double> rpe_rotation;     // rad
 };
 
 struct ComparedPath {
-  std::string name;  // a loss, or kTruthName
+  std::string name;  // a loss or kTruthName
   std::vector<ComparedPose> poses;
 };
 
 constexpr char kTruthName[] = "truth";
 
-// The paths of all runs in one world, one pose for every frame of the sequence.
-// With a ground truth that is its world, each path's first paired pose is laid
-// on the truth's, and the first path is the truth. Without one it is the first
-// camera.
+// Returns the paths of all runs in one world, with one pose for each frame of
+// the sequence. With a ground truth, this is the world of the truth, and each
+// path is aligned to it at its first paired pose; the first returned path is
+// the truth. Without a ground truth, it is the world of the first camera.
 std::vector<ComparedPath> ComparePaths(const std::vector<LossRun>& runs,
                                        const std::optional<Trajectory>& truth);
 
-// paths.csv: a row for each frame of each path, each row beginning with `name`
-// (of the sequence); lengths in metres, angles in degrees.
+// paths.csv: one row per frame of each path. Each row starts with `name` (of
+// the sequence). Lengths are in metres, angles in degrees.
 std::string ComparedPathsCsvRows(const std::string& name,
                                  const std::vector<ComparedPath>& paths);
 extern const char kComparedPathsCsvHeader[];
 
-// Top views X-Y and X-Z of the paths, as in the thesis' Figures 4.8 and 4.9,
-// and where there is a truth how far off they are over time. SVG.
+// SVG with top views X-Y and X-Z of the paths, as in the thesis' Figures 4.8
+// and 4.9, and, with a truth, the errors over time.
 std::string PathFigure(const std::string& title,
                        const std::vector<ComparedPath>& paths);
 

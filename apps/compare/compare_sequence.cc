@@ -17,12 +17,12 @@
 namespace rgbd_pose {
 namespace {
 
-// LossFigures of a run; nothing where there is nothing to judge.
+// Figures of a run; unknown ones are empty.
 using LossFigures = std::vector<std::optional<double>>;
 
-// The last pose of a run seen from its first, in the thesis' parameters: alpha,
-// beta, gamma of R = Rz Ry Rx (deg) and C (mm); then the angle of R and the
-// length of C.
+// The last pose of a run relative to its first, in the thesis' parameters:
+// alpha, beta, gamma of R = Rz Ry Rx (deg) and C (mm); then the angle of R and
+// |C|.
 LossFigures EndPoseOf(const Trajectory& trajectory) {
   if (trajectory.empty()) return LossFigures(8);
   const Rigid3d first_from_last = trajectory.front().world_from_cam.Inverse() *
@@ -38,7 +38,7 @@ LossFigures EndPoseOf(const Trajectory& trajectory) {
 }
 
 // ATE (mm), RPE over 1 s (mm, deg), the error of the last pose (mm, deg) and
-// the share of frames tracked.
+// the share of tracked frames.
 LossFigures ErrorsOf(const LossRun& run) {
   LossFigures figures(5);
   if (run.evaluation.has_value()) {
@@ -58,7 +58,7 @@ LossFigures ErrorsOf(const LossRun& run) {
   return figures;
 }
 
-// A row of a table, with so many decimals a cell.
+// Formats a table row with the given number of decimals for each cell.
 std::string TableRow(const std::string& loss, const LossFigures& figures,
                      const std::vector<int>& decimals) {
   std::string text = "| " + loss + " |";

@@ -14,10 +14,10 @@
 namespace rgbd_pose {
 namespace {
 
-// A motion as between a reference and a frame some tenths of a second later.
+// Typical motion between a reference and a frame tenths of a second later.
 constexpr double kMaxAngle = 0.1;        // rad
 constexpr double kMaxTranslation = 0.1;  // m, along each axis
-constexpr unsigned kFirstSeed = 7000;    // others than the benchmarks'
+constexpr unsigned kFirstSeed = 7000;    // different from the benchmarks' seeds
 
 struct MotionError {
   double rotation_deg = 0.0;
@@ -59,7 +59,7 @@ std::vector<MotionError> RunSeed(int seed, double outlier_share, int matches,
 }  // namespace
 
 int MedianBandRank(int count) {
-  constexpr double kTail = 0.025;  // of each side
+  constexpr double kTail = 0.025;  // on each side
   double below = 0.0;  // probability that at most `rank` values are below
   for (int rank = 0; rank < count / 2; ++rank) {
     below += std::exp(std::lgamma(count + 1.0) - std::lgamma(rank + 1.0) -
@@ -103,7 +103,7 @@ std::vector<SweepMethod> SweepMethods(const std::vector<std::string>& losses) {
 
 std::vector<SweepCell> RunSweep(const SweepOptions& options) {
   const std::vector<SweepMethod> methods = SweepMethods(options.losses);
-  // An estimator serves one thread at a time.
+  // Each thread needs its own estimators.
   std::vector<std::vector<Estimator>> estimators(options.threads);
   for (std::vector<Estimator>& own : estimators) {
     for (const SweepMethod& method : methods) {

@@ -7,22 +7,22 @@
 
 namespace rgbd_pose {
 
-// A median of a sample and what the sample says of the population's.
+// The median of a sample with its confidence interval.
 struct MedianBand {
   double median = 0.0;
-  double low = 0.0;   // the population's median is within [low, high] in 95 %
-  double high = 0.0;  // of all samples or more, whatever the distribution
-  double p90 = 0.0;   // nine of ten are not above it
+  double low = 0.0;   // [low, high] contains the population's median
+  double high = 0.0;  // in at least 95 % of samples, for any distribution
+  double p90 = 0.0;   // 90 % quantile
 };
 
-// The rank r (from 0) such that the r-th smallest and the r-th greatest of
-// `count` values enclose the population's median with a probability of 95 % or
-// more: order statistics, the number of values below the median being binomial
-// (David & Nagaraja, Order Statistics, 2003, 7.1). 0, so smallest and greatest,
-// if there are too few (5 or less) for such a rank.
+// Returns the rank r (from 0) for which the r-th smallest and the r-th largest
+// of `count` values enclose the population's median with a probability of at
+// least 95 %. It uses order statistics: the number of values below the median
+// is binomial (David & Nagaraja, Order Statistics, 2003, 7.1). Returns 0
+// (smallest and largest value) if 5 or fewer values allow no such rank.
 int MedianBandRank(int count);
 
-// All NaN of no values.
+// All NaN if there are no values.
 MedianBand FindMedianBand(std::vector<double> values);
 
 // "median [low, high]", three digits each.
@@ -31,19 +31,19 @@ std::string FormatBand(const MedianBand& band);
 struct SweepOptions {
   std::vector<std::string> losses;
   EstimatorSettings estimator;  // without loss and schedule
-  int seeds = 200;              // random motions with their matches, per share
-  int matches = 300;            // right and wrong ones
-  int threads = 1;              // the result does not depend on it
+  int seeds = 200;              // random motions with matches, per share
+  int matches = 300;            // number of inliers and outliers together
+  int threads = 1;              // does not affect the result
 };
 
-// A way to get from matches to a motion: the loss and how it is helped.
+// A method to estimate a motion from matches.
 struct SweepMethod {
   std::string loss;
   std::string schedule;  // gnc or direct
-  bool ransac = false;   // the solver starts from RANSAC, else from no motion
+  bool ransac = false;   // starts from RANSAC, else from no motion
 };
 
-// All ways to go with these losses, ordered by loss, schedule, start.
+// All methods with these losses, ordered by loss, schedule and start.
 std::vector<SweepMethod> SweepMethods(const std::vector<std::string>& losses);
 
 // The errors of a method at a share of wrong matches.
@@ -58,16 +58,16 @@ struct SweepCell {
 constexpr int kSweepShares = 7;
 inline double SweepShare(int i) { return i * 0.1; }
 
-// Estimates the motions of simulated matches, some wrong, with every loss,
-// schedule and start; all methods see the same matches. Ordered by loss,
+// Estimates the motions of simulated matches, some of them wrong, with every
+// loss, schedule and start. All methods use the same matches. Ordered by loss,
 // schedule, start, share. Throws InputError for unknown names.
 std::vector<SweepCell> RunSweep(const SweepOptions& options);
 
-// The cells of one method, by share; nothing if it did not run.
+// The cells of one method, ordered by share; empty if the method was not run.
 std::vector<SweepCell> CellsOf(const std::vector<SweepCell>& cells,
                                const SweepMethod& method);
 
-// The losses of a sweep in its order.
+// The losses of a sweep in order.
 std::vector<std::string> LossesOf(const std::vector<SweepCell>& cells);
 
 }  // namespace rgbd_pose

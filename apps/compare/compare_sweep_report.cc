@@ -32,8 +32,8 @@ bool Meet(const MedianBand& a, const MedianBand& b) {
   return a.low <= b.high && b.low <= a.high;
 }
 
-// The geometric mean over all shares of the median translation error: every
-// share counts the same, whatever its size.
+// The geometric mean of the median translation errors over all shares. Each
+// share has the same weight, whatever the size of its errors.
 double MeanError(const std::vector<SweepCell>& of_method) {
   double sum = 0.0;
   for (const SweepCell& cell : of_method) {
@@ -42,8 +42,8 @@ double MeanError(const std::vector<SweepCell>& of_method) {
   return std::exp(sum / of_method.size());
 }
 
-// The losses whose medians under a schedule a start from RANSAC changes beyond
-// the bands, in one direction, each with where and how much.
+// The losses for which a start from RANSAC changes the median beyond the bands
+// in one direction, each with the shares and the amount.
 std::string ChangedByRansac(const std::vector<SweepCell>& cells,
                             const std::string& schedule, bool lowered) {
   std::vector<std::string> changed;
@@ -53,7 +53,7 @@ std::string ChangedByRansac(const std::vector<SweepCell>& cells,
     const std::vector<SweepCell> from_ransac =
         CellsOf(cells, {loss, schedule, true});
     std::vector<std::string> shares;
-    std::string last;  // the figures of the greatest share
+    std::string last;  // the figures of the largest share
     for (int i = 0; i < kSweepShares; ++i) {
       const MedianBand& before = alone[i].translation_mm;
       const MedianBand& after = from_ransac[i].translation_mm;
@@ -75,7 +75,7 @@ std::string ChangedByRansac(const std::vector<SweepCell>& cells,
   return Join(changed);
 }
 
-// What a start from RANSAC is worth under a schedule.
+// Describes the effect of a start from RANSAC under a schedule.
 std::string RansacVerdict(const std::vector<SweepCell>& cells,
                           const std::string& schedule) {
   const std::string lowered = ChangedByRansac(cells, schedule, true);
@@ -105,7 +105,7 @@ std::string SweepVerdict(const std::vector<SweepCell>& cells) {
   std::sort(ranking.begin(), ranking.end());
   const std::string& best = ranking.front().second;
   const std::vector<SweepCell> own = CellsOf(cells, {best, "gnc", false});
-  std::vector<std::string> level;  // bands meet the best one's at every share
+  std::vector<std::string> level;  // bands always overlap the best one's
   for (const auto& [error, loss] : ranking) {
     const std::vector<SweepCell> other = CellsOf(cells, {loss, "gnc", false});
     bool meets = loss != best;

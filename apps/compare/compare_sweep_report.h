@@ -7,23 +7,23 @@
 
 namespace rgbd_pose {
 
-// sweep.csv: a header and one row a cell.
+// sweep.csv: a header and one row per cell.
 std::string SweepCsv(const std::vector<SweepCell>& cells);
 
-// Reads it again. Throws InputError if it is missing, broken or incomplete.
+// Reads sweep.csv. Throws InputError if it is missing, broken or incomplete.
 std::vector<SweepCell> ReadSweepCsv(const std::string& path);
 
-// Median translation errors (mm) with their 95 % bands of the graduated losses
-// that start from no motion: one row a loss, one column a share.
+// Median translation errors (mm) with their 95 % bands for the graduated losses
+// that start from no motion: one row per loss, one column per share.
 std::string SweepTable(const std::vector<SweepCell>& cells);
 
-// Curves of the median errors over the share of wrong matches, with 95 % bands,
-// of all losses together: graduated in one panel, at once in the other, both
-// from no motion; in rotation or in translation. SVG.
+// SVG of the median errors, in rotation or in translation, over the share of
+// wrong matches with 95 % bands. It shows all losses, started from no motion,
+// in two panels: the graduated and the direct schedule.
 std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation);
 
-// What a sweep says, in words and its own figures: which M-estimator, by how
-// much, with what spread, and what a start from RANSAC changes.
+// Describes the result of a sweep with its figures: the best M-estimator, its
+// margin and spread, and the effect of a start from RANSAC.
 std::string SweepVerdict(const std::vector<SweepCell>& cells);
 
 }  // namespace rgbd_pose

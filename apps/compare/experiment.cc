@@ -14,7 +14,7 @@ namespace {
 
 constexpr char kReport[] = "report.md";
 
-// All but those of folders.
+// All experiments except those on a folder.
 const std::vector<Experiment>& Experiments() {
   static const std::vector<Experiment> rows = {
       {"pan_tilt", SequenceLosses, RunSimulated},
@@ -24,7 +24,7 @@ const std::vector<Experiment>& Experiments() {
   return rows;
 }
 
-// Of a folder.
+// The experiment on a folder.
 constexpr Experiment kRecorded = {"", SequenceLosses, RunRecorded};
 
 Experiment FindExperiment(const std::string& name) {

@@ -1,4 +1,4 @@
-// What becomes of whole sequences, simulated or recorded, under each loss.
+// Compares losses on whole sequences, simulated or recorded.
 
 #include <algorithm>
 #include <filesystem>
@@ -15,14 +15,14 @@
 namespace rgbd_pose {
 namespace {
 
-// ORB-SLAM2 uses it on freiburg2, whose depths it found 4 % too great.
+// Used by ORB-SLAM2 for freiburg2, whose depths it found to be 4 % too large.
 constexpr double kOtherFr2DepthScale = 5208.0;
-// A sequence of which less was tracked, whatever the loss, compares nothing.
+// A sequence compares nothing if all losses track a smaller share.
 constexpr double kMinTrackedShare = 0.5;
-// The camera of pan_tilt is at its start again in the end.
+// The camera of pan_tilt ends at its start.
 constexpr char kReturnsToStart[] = "pan_tilt";
 
-// The last name of a path, which may end with a slash; as a word of a table.
+// The last component of a path, which may end with a slash, usable in a table.
 std::string FolderName(const std::string& path) {
   const std::filesystem::path folder =
       std::filesystem::absolute(path).lexically_normal();
@@ -32,7 +32,7 @@ std::string FolderName(const std::string& path) {
   return name;
 }
 
-// Compares several sequences, one after the other.
+// Compares several sequences one after the other.
 class SequenceExperiment {
  public:
   SequenceExperiment(const std::string& name,
@@ -94,7 +94,7 @@ class SequenceExperiment {
   std::string report_;
   std::string tables_ = kSequenceCsvHeader;
   std::string paths_ = kComparedPathsCsvHeader;
-  bool any_tracked_ = false;  // by some loss, in some sequence
+  bool any_tracked_ = false;  // by any loss, in any sequence
 };
 
 }  // namespace
@@ -120,7 +120,7 @@ ExperimentResult RunSimulated(const ExperimentSettings& settings,
   return experiment.Finish();
 }
 
-// Once for each depth scale that the sequence may have.
+// Runs once for each possible depth scale of the sequence.
 ExperimentResult RunRecorded(const ExperimentSettings& settings,
                              const std::vector<std::string>& losses,
                              CompareOutput* output) {

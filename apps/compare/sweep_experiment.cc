@@ -1,4 +1,4 @@
-// How losses, schedules and starts bear wrong matches.
+// Compares losses, schedules and starts on wrong matches.
 
 #include "apps/compare/compare_sweep.h"
 #include "apps/compare/compare_sweep_report.h"

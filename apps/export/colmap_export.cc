@@ -1,5 +1,5 @@
-// A COLMAP model as text (colmap.github.io/format.html) with its images, laid
-// out as colmap and those who learn from it expect: images/, sparse/0/.
+// Exports a COLMAP model as text (colmap.github.io/format.html) with images, in
+// the layout that COLMAP and compatible tools expect: images/, sparse/0/.
 
 #include "apps/export/export_format.h"
 #include "apps/export/output_folder.h"
@@ -30,7 +30,7 @@ std::string FormatCamera(const Camera& camera) {
   return "# camera, model, width, height, parameters\n" + text + "\n";
 }
 
-// cam_from_world with w first, and an empty second line an image: no features.
+// cam_from_world with w first. The second line of an image (features) is empty.
 std::string FormatImages(const ExportedViews& images) {
   std::string text = "# image, qw qx qy qz tx ty tz, camera, name; features\n";
   for (size_t i = 0; i < images.names.size(); ++i) {
@@ -44,7 +44,7 @@ std::string FormatImages(const ExportedViews& images) {
   return text;
 }
 
-// Points of depth, which no features have seen: errors unknown, no tracks.
+// Points from depth, not from features: unknown errors, no tracks.
 std::string FormatPoints(const std::vector<ColoredPoint>& points) {
   std::string text = "# point, x y z, red green blue, error, track\n";
   for (size_t i = 0; i < points.size(); ++i) {
@@ -55,7 +55,7 @@ std::string FormatPoints(const std::vector<ColoredPoint>& points) {
   return text;
 }
 
-// The same as points3D.bin: some read a text of many points slowly.
+// The same as points3D.bin, because some tools read long texts slowly.
 std::string PackPoints(const std::vector<ColoredPoint>& points) {
   std::string bytes;
   AppendLittleEndian(uint64_t{points.size()}, &bytes);
@@ -67,7 +67,7 @@ std::string PackPoints(const std::vector<ColoredPoint>& points) {
       bytes.push_back(static_cast<char>(c));
     }
     AppendLittleEndian(0.0, &bytes);          // error
-    AppendLittleEndian(uint64_t{0}, &bytes);  // length of its track
+    AppendLittleEndian(uint64_t{0}, &bytes);  // track length
   }
   return bytes;
 }

@@ -21,7 +21,7 @@ constexpr ExportFormat kFormats[] = {
     {"g2o", "poses.g2o", ExportG2o},
 };
 
-// Colour images are large, and time goes where they are made small.
+// Colour images are large, and strong compression would take most of the time.
 const std::vector<int> kQuick = {cv::IMWRITE_PNG_COMPRESSION, 1};
 
 cv::Mat InMillimetres(const Frame& frame) {

@@ -18,11 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Trajectories have 6 decimals.
+// Trajectory files have 6 decimals.
 constexpr double kSameTime = 1e-5;  // s
 
-// Sets what the flags of a run say, as far as the table has it. Settings that
-// the run does not have, as one of an earlier version, stay.
+// Sets the settings of a table to the flags of a run. Settings without a flag,
+// for example in a run of an earlier version, keep their value.
 void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
   for (const Setting& setting : table) {
     const std::string text = SettingOf(flags, setting.name);
@@ -39,7 +39,7 @@ void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
   }
 }
 
-// Segments that rgbd_slam has joined keep their numbers in frames.csv.
+// In frames.csv, segments keep their numbers even if rgbd_slam has joined them.
 bool IsOneSegment(const std::string& keyframes_file) {
   if (!fs::exists(keyframes_file)) return false;
   const std::vector<std::string> words =
@@ -47,7 +47,7 @@ bool IsOneSegment(const std::string& keyframes_file) {
   return std::set<std::string>(words.begin(), words.end()).size() == 1;
 }
 
-// The frames of a source that were taken at given times.
+// The frames of a source at the given times.
 class PickedFrames final : public FrameSource {
  public:
   PickedFrames(FrameSource* source, std::vector<double> times)
@@ -139,7 +139,7 @@ RunRecording::RunRecording(const FinishedRun& run) : run_(run) {
     throw InputError("the recording of the run, " + settings.dataset +
                      ", is not there; --dataset says where it is");
   }
-  // Frames are all that is wanted of it.
+  // Only the frames are needed.
   settings.motion_guess.clear();
   settings.groundtruth = "none";
   sequence_ = OpenSequence(settings, /*keep_color=*/true);

@@ -12,40 +12,37 @@
 
 namespace rgbd_pose {
 
-// A run of rgbd_odometry or rgbd_slam that has ended, from the files in its
-// folder.
+// A finished run of rgbd_odometry or rgbd_slam, read from its folder.
 class FinishedRun {
  public:
-  // Reads the poses and the settings. `dataset` and `camera` take the place of
-  // the run's, unless empty: the recording may have moved. Throws InputError
-  // for a folder without a run or files that are broken.
+  // Reads the poses and settings. `dataset` and `camera`, unless empty,
+  // override those of the run, because the recording may have moved. Throws
+  // InputError for a folder without a run or with broken files.
   explicit FinishedRun(const std::string& folder,
                        const std::string& dataset = "",
                        const std::string& camera = "");
 
-  // Where it is.
   const std::string& folder() const { return folder_; }
 
-  // The poses of all frames that have one, and which frames these are: rows of
-  // frames.csv, from 0.
+  // The poses of all frames that have one, and the numbers of these frames:
+  // rows of frames.csv, from 0.
   const Trajectory& trajectory() const { return trajectory_; }
   const std::vector<int>& frames() const { return frames_; }
 
-  // Which segment each of these poses is of: how segments lie to each other is
-  // unknown.
+  // The segment of each of these poses. Segments have unrelated worlds.
   const std::vector<int>& segments() const { return segments_; }
 
-  // How many frames have no pose.
+  // The number of frames without a pose.
   int lost() const { return lost_; }
 
-  // Poses of the first segment, each so far from the one before: numbers in
-  // trajectory().
+  // Returns poses of the first segment, each at least `step` away from the one
+  // before, as indices in trajectory().
   std::vector<int> PickViews(const MotionFilter& step) const;
 
-  // Which depths were used.
+  // The depth options of the run.
   const DepthLookupOptions& depth() const { return depth_; }
 
-  // What the recording was opened by.
+  // The settings that the recording was opened with.
   const SequenceSettings& sequence() const { return sequence_; }
 
  private:
@@ -58,19 +55,18 @@ class FinishedRun {
   int lost_ = 0;
 };
 
-// The recording of a run, to read frames of it again.
+// The recording of a run, for reading its frames again.
 class RunRecording {
  public:
-  // Opens it. Throws InputError if it is gone or broken. The run must outlive
-  // it.
+  // Opens the recording. Throws InputError if it is missing or broken. The run
+  // must outlive this object.
   explicit RunRecording(const FinishedRun& run);
 
-  // That took it.
   const RgbdCamera& camera() const { return sequence_.source->camera(); }
 
-  // Reads the frames of some poses, numbers in trajectory() that increase, with
-  // colour, by `threads` threads ahead; once. Throws InputError if one of these
-  // frames is gone or unreadable.
+  // Reads the frames of some poses (increasing indices in trajectory()) with
+  // colour, in advance by `threads` threads. Call it once. Throws InputError if
+  // a frame is missing or unreadable.
   using OnView = std::function<void(const Frame&, const Rigid3d&)>;
   void ReadViews(const std::vector<int>& views, int threads,
                  const OnView& on_view);

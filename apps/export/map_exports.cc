@@ -1,4 +1,4 @@
-// What was seen: a point cloud or a mesh.
+// Exports surfaces: a point cloud or a mesh.
 
 #include <glog/logging.h>
 
@@ -26,8 +26,8 @@ MeshFusionOptions MeshOptions(const Camera& camera, const FinishedRun& run,
   return FusionOf(camera, run, options, fusion);
 }
 
-// In the page of the run, if it has one. Whoever may only read the run has the
-// mesh nevertheless.
+// Adds the mesh to the page of the run, if there is one. The export does not
+// fail if the run's folder is read-only.
 void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
               size_t frames, const ExportOptions& options) {
   TriangleMesh thin = mesh;

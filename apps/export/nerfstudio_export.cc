@@ -1,5 +1,5 @@
-// transforms.json with images, depth and points, as nerfstudio has it
-// (docs.nerf.studio/quickstart/data_conventions.html).
+// Exports transforms.json with images, depth and points in the format of
+// nerfstudio (docs.nerf.studio/quickstart/data_conventions.html).
 
 #include <nlohmann/json.hpp>
 
@@ -13,8 +13,7 @@
 namespace rgbd_pose {
 namespace {
 
-// world_from_cam with the camera's axes as OpenGL has them: x right, y up, z
-// back.
+// world_from_cam with the camera axes of OpenGL: x right, y up, z backward.
 nlohmann::json TransformMatrix(const Rigid3d& world_from_cam) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() = world_from_cam.rotation.toRotationMatrix();
@@ -50,7 +49,7 @@ nlohmann::json Transforms(const ExportedViews& images) {
       {"p1", camera.p1},
       {"p2", camera.p2},
       {"depth_unit_scale_factor", 0.001},
-      // None: the world is that of our trajectory.
+      // Identity: the world is that of the trajectory.
       {"applied_transform", {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
       {"ply_file_path", "points.ply"},
       {"frames", nlohmann::json::array()}};

@@ -37,7 +37,7 @@ OutputFolder::OutputFolder(const std::string& path,
                        "; choose another folder");
     }
   }
-  fs::remove_all(staging_dir_, error);  // of an export that was killed
+  fs::remove_all(staging_dir_, error);  // left by a killed export
   fs::create_directories(staging_dir_, error);
   if (error) FailToWrite(path, error);
 }

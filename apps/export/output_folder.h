@@ -6,28 +6,27 @@
 
 namespace rgbd_pose {
 
-// A folder that is written next to its place, and takes it when it is
-// whole.
+// A folder that is written to a staging folder next to its place and moved
+// there when complete.
 class OutputFolder {
  public:
-  // `entries`: all that will be in it. Throws InputError if it cannot be made,
-  // or there is one that is not empty and must not be overwritten or holds
-  // other things.
+  // `entries` are the names of everything that will be in the folder. Throws
+  // InputError if the folder cannot be created, or if a non-empty one exists
+  // that must not be overwritten or holds other files.
   OutputFolder(const std::string& path, const std::set<std::string>& entries,
                bool overwrite);
 
-  // Removes what has not been published.
+  // Removes everything that was not published.
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
-  // Makes a folder in it; returns its path for now.
+  // Creates a folder inside the staging folder and returns its current path.
   std::filesystem::path MakeFolder(const std::string& name) const;
 
-  // Where it is for now.
   const std::filesystem::path& staging_dir() const { return staging_dir_; }
 
-  // Puts it in its place.
+  // Moves the folder to its place.
   void Publish();
 
  private:

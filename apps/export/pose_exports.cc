@@ -1,4 +1,4 @@
-// Poses alone: TUM, KITTI, g2o.
+// Exports poses: TUM, KITTI, g2o.
 
 #include <filesystem>
 #include <map>
@@ -24,7 +24,7 @@ int Count(std::string_view word, std::string_view text) {
   return count;
 }
 
-// What rgbd_odometry has measured, as a graph of all frames with a pose.
+// The motions measured by rgbd_odometry, as a graph of all frames with a pose.
 KeyframeMap GraphOfFrames(const FinishedRun& run) {
   KeyframeMap graph;
   std::map<int, bool> has_pose;
@@ -51,8 +51,8 @@ std::string ExportTum(const FinishedRun& run, const ExportOptions& options) {
   return Said("poses", run.trajectory().size(), options.output);
 }
 
-// One line a pose, the upper three rows of world_from_cam; KITTI has no times
-// there but in a file of their own.
+// One line per pose, the upper three rows of world_from_cam. In the KITTI
+// format, times are in a separate file.
 std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
   OutputFolder folder(options.output, {"poses.txt", "times.txt"},
                       options.overwrite);

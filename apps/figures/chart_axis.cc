@@ -46,9 +46,9 @@ std::vector<AxisTic> LogTics(const AxisRange& range) {
 
 std::vector<double> SpreadOut(const std::vector<double>& places,
                               double distance) {
-  // Neighbours that touch move as one, around the middle of where they belong.
+  // Neighbours that touch move together, centred on the mean of their places.
   struct Run {
-    double sum;  // of the places, each without its shift within the run
+    double sum;  // of the places, each minus its offset within the run
     int count;
     double First() const { return sum / count; }
   };

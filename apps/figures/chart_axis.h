@@ -5,7 +5,7 @@
 
 namespace rgbd_pose {
 
-// The values from one end of an axis to the other.
+// The range of values of an axis.
 struct AxisRange {
   double low = 0.0;
   double high = 1.0;
@@ -14,8 +14,7 @@ struct AxisRange {
   double Share(double value) const { return (value - low) / span(); }
 };
 
-// The range of some values with some room around them. Values that are not
-// finite do not count.
+// Finds the range of some values with a margin. Non-finite values are ignored.
 class AxisRangeFinder {
  public:
   void Add(double value);
@@ -26,21 +25,20 @@ class AxisRangeFinder {
   double high_ = -INFINITY;
 };
 
-// A mark of an axis. Logarithmic axes are ranges of decimal logarithms: there
-// the place is the logarithm of the value.
+// A tick. On a logarithmic axis, `place` is the decimal logarithm of `value`.
 struct AxisTic {
   double place = 0.0;
   double value = 0.0;
 };
 
-// Steps of 1, 2 or 5 times a power of ten, some four to eight an axis.
+// Ticks at multiples of 1, 2 or 5 times a power of ten, about four to eight.
 std::vector<AxisTic> LinearTics(const AxisRange& range);
 
-// Powers of ten, with 2 and 5 times them where there are few.
+// Ticks at powers of ten, also at 2 and 5 times them if there are few.
 std::vector<AxisTic> LogTics(const AxisRange& range);
 
-// Moves sorted places apart where they are nearer than `distance`, each as
-// little as may be, least squares: labels that would lie over each other.
+// Moves sorted places apart to at least `distance`, with least-squares
+// displacements. Used for labels that would overlap.
 std::vector<double> SpreadOut(const std::vector<double>& places,
                               double distance);
 

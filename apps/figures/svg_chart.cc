@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kColumns = 2;
 
-// Around panels, in pixels.
+// Margins and sizes around the panels, px.
 constexpr int kLeft = 74;
 constexpr int kRight = 16;
 constexpr int kTop = 30;
@@ -22,10 +22,10 @@ constexpr int kTitle = 34;
 constexpr int kLegendRow = 20;
 constexpr int kLegendColumn = 170;
 
-// Names at the ends of lines: the room for them and the height of one.
+// Labels at the ends of lines: width of their column and height of one label.
 constexpr int kLabelColumn = 130;
 constexpr double kLabelRow = 14.0;
-// A letter of a title.
+// Width of a letter of the title.
 constexpr int kTitleLetter = 9;
 
 std::string Text(double x, double y, const std::string& style,
@@ -45,7 +45,7 @@ std::string LineStyle(const ChartSeries& series) {
 }
 
 std::string Marker(const SeriesStyle& style, double x, double y) {
-  // Around the point, closed.
+  // Closed shapes around the point.
   constexpr const char* kShapes[kNumMarkers] = {
       "m-3 0a3 3 0 1 0 6 0a3 3 0 1 0 -6 0", "m-2.7 -2.7h5.4v5.4h-5.4z",
       "m0 -3.8l3.8 3.8l-3.8 3.8l-3.8 -3.8z", "m0 -3.6l3.6 6h-7.2z",
@@ -55,7 +55,7 @@ std::string Marker(const SeriesStyle& style, double x, double y) {
                 kShapes[style.marker % kNumMarkers], style.colour.c_str());
 }
 
-// The value that counts on the axis; not finite if there is no place for it.
+// The position on the axis; not finite if y cannot be shown.
 double AxisY(const ChartPanel& panel, double y) {
   return panel.log_y ? std::log10(y) : y;
 }
@@ -116,7 +116,7 @@ class Drawing {
   }
 
  private:
-  // Names of folders may be long; it is their ends that differ.
+  // Long folder names are cut at the start, because they differ at their ends.
   std::string Title() const {
     const size_t fits = static_cast<size_t>((width_ - kLeft) / kTitleLetter);
     const std::string& title = chart_.title;
@@ -128,7 +128,7 @@ class Drawing {
   double PixelX(double x) const {
     return left_ + chart_.panel_width_px * ranges_.x.Share(x);
   }
-  // Of a value of the axis: the logarithm where that counts.
+  // `y` is an axis position: a logarithm on logarithmic axes.
   double PixelY(double y) const {
     return upper_ + chart_.panel_height_px * (1.0 - ranges_.y.Share(y));
   }
@@ -268,7 +268,7 @@ class Drawing {
 
   const Chart& chart_;
   int cell_width_, cell_height_, width_, per_row_, top_;
-  int left_ = 0, upper_ = 0;  // of the panel
+  int left_ = 0, upper_ = 0;  // of the current panel
   Ranges ranges_;
   std::string text_;
 };

@@ -95,7 +95,7 @@ void ResidualHistogram::Add(const MotionEstimate& estimate) {
     if (count == 0) continue;
     ++matches;
     ++degrees[std::min<size_t>(count, degrees.size() - 1)];
-    // Compared as numbers: a huge norm does not fit into a place.
+    // Compares before the conversion: a huge norm does not fit into an index.
     const double place = estimate.residual_norms[i] / kNormBin;
     if (place < norms.size()) {
       ++norms[static_cast<size_t>(place)];
@@ -118,7 +118,7 @@ TrackedFrame SlamRun::Track(const PreparedFrame& frame,
   TrackedFrame tracked = in_map.tracked;
   tracked.world_from_cam = in_map.map_from_cam();
   tracked.segment = in_map.segment;
-  // Once in memory is enough for an hour of frames.
+  // Edges are kept only once: a long recording would take much memory.
   in_map.tracked.edges = {};
   frames_.push_back(std::move(in_map));
   return tracked;

@@ -20,52 +20,50 @@
 
 namespace rgbd_pose {
 
-// How the whitened residuals and the robust weights of a run's matches are
-// spread, over all frames.
+// Histograms of whitened residuals and robust weights of all matches of a run.
 struct ResidualHistogram {
-  // Bins of norms (sigmas) and of weights; the last bin of weights holds 1.
+  // Bin widths for norms (sigmas) and weights. The last weight bin includes 1.
   static constexpr double kNormBin = 0.1;
   static constexpr double kWeightBin = 0.05;
 
-  int64_t matches = 0;  // that some cost could use
+  int64_t matches = 0;  // used by at least one cost
   std::array<int64_t, 80> norms = {};
-  int64_t norms_above = 0;  // the last bin
+  int64_t norms_above = 0;  // beyond the last bin
   std::array<int64_t, 20> weights = {};
   int64_t weights_zero = 0;             // exactly
-  std::array<int64_t, 7> degrees = {};  // matches of 0 to 6 measurements
+  std::array<int64_t, 7> degrees = {};  // matches with 0 to 6 measurements
 
   // Adds the matches of one frame.
   void Add(const MotionEstimate& estimate);
 };
 
-// What is known of a sequence besides its frames; null: nothing. Must outlive
-// the run.
+// Additional inputs of a run. A null pointer means that the input is not
+// available. The pointed-to objects must outlive the run.
 struct RunInputs {
   const MotionGuess* motion_guess = nullptr;
   // The share of frames that may be damaged, see FrameStream.
   double max_damaged = 0.05;
 };
 
-// What becomes of a sequence.
+// The results of a run.
 struct RunResults {
-  std::vector<TrackedFrame> frames;  // one an input frame, in order
+  std::vector<TrackedFrame> frames;  // one per input frame, in order
   std::vector<std::string> damaged;  // input frames left out, and why
   Trajectory trajectory;             // of the frames that were not lost
-  ResidualHistogram residuals;       // of their matches
+  ResidualHistogram residuals;       // of the matches
 
-  // Against the ground truth. Nothing where there is none, or where no pose can
-  // be compared: then no_evaluation says why.
+  // Comparison with the ground truth. Empty without ground truth or if no pose
+  // can be compared; in the second case no_evaluation has the reason.
   std::optional<EvaluationReport> evaluation;
   std::string no_evaluation;
 
-  // One line on what the errors say of the input, or empty.
+  // One line that warns of a suspicious input, judged by the errors, or empty.
   std::string Warning() const {
     return evaluation.has_value()
                ? Sim3Warning(evaluation->sim3, evaluation->ate.rmse)
                : "";
   }
 
-  // Share of frames with a pose, 0 to 1.
   double TrackedShare() const {
     return frames.empty() ? 0.0
                           : static_cast<double>(trajectory.size()) /
@@ -73,19 +71,18 @@ struct RunResults {
   }
 };
 
-// Tracks a sequence frame by frame and collects what becomes of it.
+// Tracks a sequence frame by frame and collects the results.
 class SequenceRun {
  public:
   explicit SequenceRun(const RunInputs& inputs) : inputs_(inputs) {}
   virtual ~SequenceRun() = default;
 
-  // Tracks the next frame.
   void Add(const StreamedFrame& next);
 
-  // What the last frame was tracked by, and what may be done ahead.
+  // The odometry that tracks the frames and can prepare frames in advance.
   virtual const Odometry& odometry() const = 0;
 
-  // The frames so far, and those that could not be read.
+  // All frames so far, and the frames that could not be read.
   const std::vector<TrackedFrame>& frames() const { return results_.frames; }
   const std::vector<std::string>& damaged() const { return results_.damaged; }
   void set_damaged(const std::vector<std::string>& damaged) {
@@ -94,14 +91,14 @@ class SequenceRun {
 
   const RunInputs& inputs() const { return inputs_; }
 
-  // After the last frame, once; compared with a ground truth (world from
-  // camera) unless it is null.
+  // Call once, after the last frame. Compares the path with the ground truth
+  // (world from camera) unless it is null.
   RunResults Finish(const Trajectory* ground_truth);
 
  protected:
   virtual TrackedFrame Track(const PreparedFrame& frame,
                              const Rigid3d* cur_from_prev_guess) = 0;
-  // The poses of all frames that were not lost, after the last one.
+  // Called after the last frame. Returns the poses of all frames not lost.
   virtual Trajectory FinishPath() = 0;
 
  private:
@@ -112,7 +109,7 @@ class SequenceRun {
 // The poses of all frames that were not lost.
 Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
 
-// By an Odometry.
+// A run with an Odometry.
 class OdometryRun final : public SequenceRun {
  public:
   // Throws InputError for invalid settings.
@@ -132,8 +129,8 @@ class OdometryRun final : public SequenceRun {
   Odometry odometry_;
 };
 
-// A sequence tracked by a Slam. Frames and what is drawn of them have the poses
-// that were known at the time, the trajectory those of the end.
+// A run with a Slam. Frames and debug images have the poses known at the time;
+// the trajectory has the final poses.
 class SlamRun final : public SequenceRun {
  public:
   // Throws InputError for invalid settings.
@@ -141,17 +138,17 @@ class SlamRun final : public SequenceRun {
           const Camera& camera, const RunInputs& inputs = {})
       : SequenceRun(inputs), slam_(odometry, settings, camera) {}
 
-  // Before the first frame, see Slam::Load.
+  // Call before the first frame, see Slam::Load.
   void Load(KeyframeMap map, bool is_held) {
     slam_.Load(std::move(map), is_held);
   }
 
   const Odometry& odometry() const override { return slam_.odometry(); }
 
-  // After Finish: the map.
+  // The map; complete after Finish.
   const Slam& slam() const { return slam_; }
 
-  // What became of each frame; RunResults has the edges.
+  // The SLAM results of each frame, without edges (these are in RunResults).
   const std::vector<SlamFrame>& slam_frames() const { return frames_; }
 
  private:
@@ -163,21 +160,21 @@ class SlamRun final : public SequenceRun {
   std::vector<SlamFrame> frames_;
 };
 
-// Sends all frames of a source through one or several runs of the same
-// frontend, each frame read and prepared once, by `threads` >= 1 threads ahead.
-// `on_frame` hears of each frame that all have tracked, and says whether to go
-// on; may be empty. Returns why the source ended before its last frame, or
-// nothing. Damaged frames are left out, as the first run's inputs say. Throws
-// InputError where no frame can be read.
+// Sends all frames of a source through one or more runs with the same frontend.
+// Each frame is read and prepared once, in advance, by `threads` >= 1 threads.
+// `on_frame` is called for each tracked frame and returns whether to continue;
+// it may be empty. Returns why the source ended before its last frame, or an
+// empty string. Damaged frames are left out, up to max_damaged of the first
+// run. Throws InputError if no frame can be read.
 std::string TrackAll(FrameSource* source, int threads,
                      const std::vector<SequenceRun*>& runs,
                      const std::function<bool(const Frame& frame)>& on_frame);
 
 // Throws InputError if no frame of the source is near in time to the ground
-// truth, as far as that is known before the work, when it is better said.
+// truth. The check is skipped if the timestamps are not known in advance.
 void RequireOverlap(const FrameSource& source, const Trajectory& truth);
 
-// What the motions that frames were tracked by are worth.
+// Judges the motions of tracked frames and their covariances against the truth.
 RunConsistency JudgeFrames(const std::vector<TrackedFrame>& frames,
                            const Trajectory& truth,
                            const TruthNoise& noise = {});

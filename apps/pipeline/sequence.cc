@@ -38,7 +38,7 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
   return options;
 }
 
-// The path to compare with, as far as it is known before the frames.
+// Reads the ground truth if it is available before the frames.
 void FindTruth(const SequenceSettings& settings, Sequence* sequence) {
   try {
     if (!settings.groundtruth.empty()) {

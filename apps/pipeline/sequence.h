@@ -13,49 +13,48 @@
 
 namespace rgbd_pose {
 
-// A sequence and what is known of it, as users say it; empty: none.
+// A sequence and its additional inputs, as users specify them; empty: none.
 struct SequenceSettings {
-  std::string dataset;          // path of a recording
-  std::string source = "auto";  // its kind, see OpenSource
-  std::string frames;           // part of it, see ParseFrameRange
+  std::string dataset;          // path of the recording
+  std::string source = "auto";  // kind of recording, see OpenSource
+  std::string frames;           // range of frames, see ParseFrameRange
   std::string associations;     // file
-  std::string topics;           // of a bag: COLOUR,DEPTH[,CAMERA_INFO]
-  std::string camera;           // file or preset; empty: the recording's own
-  std::string depth_camera;     // of that file; empty: depth is registered
-  double depth_scale = 0.0;     // raw units per metre; 0: as they say
+  std::string topics;           // bag topics: COLOUR,DEPTH[,CAMERA_INFO]
+  std::string camera;           // file or preset; empty: that in the recording
+  std::string depth_camera;     // name in that file; empty: depth is registered
+  double depth_scale = 0.0;     // raw units per metre; 0: from the recording
   std::string motion_guess;     // file
-  std::string groundtruth;      // file, or none; empty: the recording's own
+  std::string groundtruth;      // file or "none"; empty: truth of the recording
   double max_damaged = 0.05;    // share of frames, see FrameStream
 };
 
-// Their rows.
 std::vector<Setting> SettingTable(SequenceSettings* settings);
 
-// A sequence that is open.
+// An open sequence.
 struct Sequence {
   std::unique_ptr<FrameSource> source;
-  std::optional<Trajectory> ground_truth;  // if it is known before the frames
-  bool compares = true;                    // with the recording's own
+  std::optional<Trajectory> ground_truth;  // if known before the frames
+  bool compares = true;  // whether to use the recording's truth
   std::optional<MotionGuess> motion_guess;
   double max_damaged = 0.05;         // share of frames
-  std::vector<std::string> remarks;  // on its files, a line each, for users
+  std::vector<std::string> remarks;  // on the files, for users; one per line
 
-  // For a run, as long as this lives.
+  // Inputs for a run. They refer to this object.
   RunInputs inputs() const;
 
-  // The ground truth once all frames have been read, when that of any recording
-  // is known; null: there is none. As long as this lives.
+  // The ground truth, or null if there is none. For some recordings it is known
+  // only after all frames have been read. It refers to this object.
   const Trajectory* GroundTruth();
 };
 
-// What of a source made no frame so far, a line each, as users see it: the
-// first damaged ones, colour images without depth, frames that came too fast.
+// Describes input that produced no frame so far, one line each, for users: the
+// first damaged frames, colour images without depth, frames that came too fast.
 std::vector<std::string> DroppedFrames(const FrameSource& source,
                                        const std::vector<std::string>& damaged);
 
-// `keep_color`: in Frame::color. `camera`: that the frames are seen by,
-// whatever the settings say; null: as they say. Throws InputError for all that
-// can be wrong with it before its images are read.
+// Opens a sequence. `keep_color`: whether to fill Frame::color. `camera`:
+// overrides the camera of the settings unless null. Throws InputError for all
+// errors that can be detected before images are read.
 Sequence OpenSequence(const SequenceSettings& settings, bool keep_color = false,
                       const RgbdCamera* camera = nullptr);
 

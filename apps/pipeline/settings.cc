@@ -69,7 +69,7 @@ NamedSetting ScaleByName(decltype(EstimatorOptions::scale)* scale) {
           }};
 }
 
-// last (the last pose), velocity (moved on as it moved last) or one of
+// "last" (the last pose), "velocity" (constant motion), or one of
 // core/initial_guess/initial_guess.h.
 std::vector<std::string> GuessNames() {
   std::vector<std::string> names = {"last", "velocity"};

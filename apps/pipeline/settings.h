@@ -17,36 +17,36 @@
 
 namespace rgbd_pose {
 
-// What an estimator is made of. Defaults are those of the parts.
+// The parts of an estimator. Defaults are the defaults of the parts.
 struct EstimatorSettings {
-  std::string cost = kDefaultCost;  // of a match; several add up: "a+b"
-  std::string loss = kDefaultLoss;  // one for all costs or one each: "a,b"
-  EstimatorOptions options;         // how it is minimised
+  std::string cost = kDefaultCost;  // of a match; "a+b" adds two
+  std::string loss = kDefaultLoss;  // one for all costs, or one each: "a,b"
+  EstimatorOptions options;         // settings of the minimisation
 };
 
-// What an estimator of pixels is made of.
+// The parts of an estimator that aligns pixels directly.
 struct DirectSettings {
-  std::string cost = kDefaultDirectCost;  // of a pixel; several add up: "a+b"
-  std::string loss = kDefaultDirectLoss;  // one for all costs or one each
-  DirectOptions points;                   // which pixels
-  EstimatorOptions options = DirectEstimatorOptions();  // how it is minimised
+  std::string cost = kDefaultDirectCost;  // of a pixel; "a+b" adds two
+  std::string loss = kDefaultDirectLoss;  // one for all costs, or one each
+  DirectOptions points;                   // selection of pixels
+  EstimatorOptions options = DirectEstimatorOptions();  // of the minimisation
 };
 
-// What an odometry is made of: the one place for programs, Python and
-// benchmarks. SettingTable gives each value that a user may want a name.
+// All settings of an odometry, for programs, Python and benchmarks alike.
+// SettingTable names each value that users may want to set.
 struct OdometrySettings {
-  EstimatorSettings estimator;           // what explains the matches
-  std::string frontend = "patch";        // where matches come from
+  EstimatorSettings estimator;           // estimates motion from matches
+  std::string frontend = "patch";        // source of the matches
   FrontendOptions features;              // without the camera
-  std::string tracker = "hybrid";        // how a frame is followed
-  TrackerOptions tracking;               // what of that is believed
-  DirectSettings direct;                 // what explains the pixels
-  DirectTrackerOptions direct_tracking;  // what of that is believed
-  OdometryOptions odometry;              // when to go on, and what if lost
+  std::string tracker = "hybrid";        // tracking method
+  TrackerOptions tracking;               // validation of the estimates
+  DirectSettings direct;                 // estimates motion from pixels
+  DirectTrackerOptions direct_tracking;  // validation of these estimates
+  OdometryOptions odometry;              // keyframes, lost frames
 };
 
-// An estimator, tracker or odometry with these settings. Throws InputError for
-// unknown names and values that make no sense.
+// Create an estimator, tracker or odometry with these settings. Throw
+// InputError for unknown names and invalid values.
 Estimator MakeEstimator(const EstimatorSettings& settings);
 DirectEstimators MakeDirectEstimators(const EstimatorSettings& matches,
                                       const DirectSettings& pixels);
@@ -54,33 +54,32 @@ std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
                                      const Camera& camera);
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
 
-// A value that is set by its name in some table.
+// A value that is set by name.
 struct NamedSetting {
-  std::function<std::string()> get;             // the name it has now
+  std::function<std::string()> get;             // current name
   std::function<void(const std::string&)> set;  // InputError if unknown
 };
 
-// A value of the settings, for flags, keyword arguments and whatever else sets
-// them: one row here is all that it takes.
+// A user setting. One row here makes it available to flags, keyword arguments
+// and other interfaces.
 struct Setting {
   const char* name;        // as users write it
-  std::string_view group;  // of those that belong together
-  const char* help;        // what it means, with its unit
-  std::variant<int*, double*, bool*, NamedSetting> value;  // what it sets
-  std::vector<std::string> choices = {};  // the names there are, if by name
+  std::string_view group;  // title of the group of settings
+  const char* help;        // meaning and unit
+  std::variant<int*, double*, bool*, NamedSetting> value;  // value that is set
+  std::vector<std::string> choices = {};  // valid names, if set by name
 };
 
-// Any text: whether it makes sense is found out where it is used.
+// A free text. Its validity is checked where it is used.
 NamedSetting Text(std::string* text);
 
-// Rows that are about matches alone.
+// The group of the settings that concern only matches.
 inline constexpr char kEstimationGroup[] = "Estimation";
 
-// All rows, in the order of --help. They write to the settings, which must
-// outlive them.
+// All settings in the order of --help. `settings` must outlive the rows.
 std::vector<Setting> SettingTable(OdometrySettings* settings);
 
-// A table without the row of that name.
+// Returns the table without the row of this name.
 std::vector<Setting> WithoutRow(std::string_view name,
                                 std::vector<Setting> table);
 

@@ -19,7 +19,7 @@ Slam::Slam(const OdometrySettings& odometry, const SlamSettings& settings,
 }
 
 void Slam::Load(KeyframeMap map, bool is_held) {
-  // Names may be those of an earlier map.
+  // Ids of an earlier loaded map may be the same.
   for (Keyframe& keyframe : map.keyframes) {
     keyframe.id += first_id_;
     keyframe.segment += first_segment_;
@@ -31,7 +31,7 @@ void Slam::Load(KeyframeMap map, bool is_held) {
   }
   mapper_.Load(map, is_held);
   for (const Keyframe& keyframe : map.keyframes) {
-    // The odometry has no names from -1 on for what is not its own.
+    // In the odometry, ids of loaded keyframes stay below -1.
     first_id_ = std::max(first_id_, keyframe.id + 2);
     first_segment_ = std::max(first_segment_, keyframe.segment + 1);
     map_from_keyframe_[keyframe.id] = keyframe.world_from_cam;
@@ -68,12 +68,12 @@ SlamFrame Slam::Track(const PreparedFrame& frame,
   return result;
 }
 
-// Moves odom_from_cam_ on, without a jump where the reference changes.
+// Updates odom_from_cam_ without a jump when the reference changes.
 void Slam::Follow(const TrackedFrame& tracked) {
   const Rigid3d moved = world_from_cam_.Inverse() * tracked.world_from_cam;
   world_from_cam_ = tracked.world_from_cam;
   const bool is_lost = tracked.status == TrackingStatus::kLost;
-  // A lost frame may begin a segment: the second in a row.
+  // The second lost frame in a row may start a segment.
   if (is_lost && !tracked.is_reference) {
     if (tracked.is_predicted) odom_from_cam_ = odom_from_cam_ * moved;
     return;
@@ -85,7 +85,8 @@ void Slam::Follow(const TrackedFrame& tracked) {
     const int reference = MapId(tracked.reference);
     const Rigid3d& cur_from_ref = tracked.cur_from_reference;
     if (reference != reference_) {
-      // To an earlier one: the motion since the one that was left, if known.
+      // For a change to an earlier reference, use the measured motion from the
+      // previous reference, if known.
       const auto left = std::find_if(tracked.edges.begin(), tracked.edges.end(),
                                      [&](const RelativePose& edge) {
                                        return MapId(edge.ref) == reference_ &&
@@ -108,7 +109,7 @@ void Slam::Follow(const TrackedFrame& tracked) {
   if (is_lost) path_.pop_back();
 }
 
-// The last frame of path_ is a keyframe.
+// Requires that the last frame of path_ is the new keyframe.
 void Slam::BecomeReference(const TrackedFrame& tracked) {
   const int id = MapId(tracked.index);
   path_.back() = {tracked.timestamp, id, Rigid3d()};
@@ -187,10 +188,9 @@ void Slam::Apply(MapUpdate update, SlamFrame* result) {
   if (update.returned_to.has_value()) Adopt(*update.returned_to);
 }
 
-// Keyframes that are newer than the update move along with those they were
-// tracked against.
+// Keyframes newer than the update move with their reference keyframes.
 void Slam::MoveNewer() {
-  if (!pending_.empty()) pending_.pop_front();  // the one it is of
+  if (!pending_.empty()) pending_.pop_front();  // the keyframe of this update
   for (const Pending& keyframe : pending_) {
     if (!keyframe.ref.has_value()) continue;
     map_from_keyframe_[keyframe.id] =
@@ -199,7 +199,7 @@ void Slam::MoveNewer() {
   }
 }
 
-// The odometry has it where the map has it, seen from where the camera is.
+// Inserts a map keyframe into the odometry, placed relative to the camera.
 void Slam::Adopt(Keyframe keyframe) {
   const Rigid3d map_from_cam = map_from_odom_ * odom_from_cam_;
   keyframe.world_from_cam = world_from_cam_ * map_from_cam.Inverse() *

@@ -16,91 +16,90 @@
 
 namespace rgbd_pose {
 
-// What a Slam is made of besides its odometry.
+// The settings of a Slam in addition to those of its odometry.
 struct SlamSettings {
-  MappingOptions mapping;  // which keyframes are joined to which
+  MappingOptions mapping;  // which keyframes are connected
 
-  // What is found out behind the tracking is taken up so many frames after the
-  // keyframe that it follows from, and waited for if it is late: so results do
-  // not depend on the speed of a machine.
+  // Results of the mapping thread are applied this number of frames after their
+  // keyframe, and waited for if they are late. Results therefore do not depend
+  // on the speed of the machine.
   int update_delay = 10;
 };
 
-// Their rows.
 std::vector<Setting> SettingTable(SlamSettings* settings);
 
-// Maps, as users say them; empty: none.
+// Map files, as users specify them; empty: none.
 struct MapSettings {
   std::string save_map;        // folder
-  std::string load_map;        // folders, separated by commas
-  bool localise_only = false;  // the loaded map stays as it is
+  std::string load_map;        // comma-separated folders
+  bool localise_only = false;  // do not change the loaded map
 };
 
-// Their rows.
 std::vector<Setting> SettingTable(MapSettings* settings);
 
-// What became of one frame. Its pose in the map, as known now, is map_from_odom
-// * odom_from_cam.
+// The result for one frame. map_from_odom * odom_from_cam is its pose in the
+// map.
 struct SlamFrame {
-  TrackedFrame tracked;  // in the odometry's own world
+  TrackedFrame tracked;  // in the world of the odometry
 
-  // Moves on smoothly, whatever is corrected behind it.
+  // The pose in the odometry frame. It has no jumps from map corrections.
   Rigid3d odom_from_cam;
-  // The correction: changes at keyframes and loops.
+  // The map correction. It changes at keyframes and loop closures.
   Rigid3d map_from_odom;
 
-  // Of the map. Segments that nothing joins have worlds of their own.
+  // The map segment. Unconnected segments have separate worlds.
   int segment = 0;
 
-  // What was taken up here of the work behind, as MapUpdate has it.
+  // Map updates that were applied at this frame, see MapUpdate.
   int pairs = 0;
   int loops = 0;
   int joined = 0;
   std::string error;
   double map_ms = 0.0;
-  double wait_ms = 0.0;  // that it was late
+  double wait_ms = 0.0;  // waiting time for late updates
 
-  // As known now.
+  // The currently known pose in the map.
   Rigid3d map_from_cam() const { return map_from_odom * odom_from_cam; }
 };
 
-// Work behind, and the frame that it is due at. Not within Slam: clang 14 fails
-// there.
+// A result of the mapping thread and the frame at which it is due. Not nested
+// in Slam, because clang 14 fails on that.
 template <typename Result>
 struct PendingResult {
-  int frame = 0;               // the one that takes it over
-  std::future<Result> result;  // waited for there
+  int frame = 0;               // frame at which the result is applied
+  std::future<Result> result;  // waited for at that frame
 };
 
-// Tracks a camera (Odometry) and builds a map of its keyframes behind it, in a
-// thread of its own: where the view returns, the path is corrected. The same
-// frames give the same bytes. One object serves one thread.
+// Tracks a camera (Odometry) and builds a map of its keyframes in a background
+// thread. When the camera returns to a known place, the path is corrected. The
+// same frames give identical results, byte for byte. An object must be used
+// from one thread only.
 class Slam {
  public:
   // Throws InputError for invalid settings.
   Slam(const OdometrySettings& odometry, const SlamSettings& settings,
        const Camera& camera);
 
-  // Begins with maps of the same camera; to be called before the first frame.
-  // The first frames have a segment of their own, which is joined to the map
-  // where they meet it, and maps are joined where a camera sees both.
-  // `is_held`: tracks within the map without changing it. Throws InputError for
-  // a map of another camera or one that is not sound.
+  // Starts with maps of the same camera; call it before the first frame. The
+  // first frames form a segment of their own, which is joined to the map when
+  // they see a mapped place. Separate maps are joined when the camera sees
+  // both. `is_held`: tracks within the map without changing it. Throws
+  // InputError for a map of another camera or an invalid map.
   void Load(KeyframeMap map, bool is_held);
 
-  // As Odometry::Track.
+  // See Odometry::Track.
   SlamFrame Track(const Frame& frame,
                   const Rigid3d* cur_from_prev_guess = nullptr,
                   const MotionMatrix* guess_covariance = nullptr);
 
-  // The same with what has been made of the frame already.
+  // The same for a prepared frame.
   SlamFrame Track(const PreparedFrame& frame,
                   const Rigid3d* cur_from_prev_guess = nullptr,
                   const MotionMatrix* guess_covariance = nullptr);
   void Prepare(const PreparedFrame& frame) const { odometry_.Prepare(frame); }
 
-  // Waits for the work behind and solves for all keyframes once more. The last
-  // call but for the following.
+  // Waits for the mapping thread and optimises all keyframes once more.
+  // Afterwards only the following functions may be called.
   void Finish();
 
   // After Finish: the map, see Mapper::Map.
@@ -108,48 +107,46 @@ class Slam {
     return mapper_.Map(as_solved);
   }
 
-  // After Finish: covariances of its keyframes' poses in their order, [omega
-  // (rad), C (m)] as PoseGraph has them; empty if they cannot be computed.
+  // After Finish: covariances of the keyframe poses in map order, [omega (rad),
+  // C (m)] as in PoseGraph; empty if they cannot be computed.
   std::vector<MotionMatrix> Covariances() const {
     return mapper_.Covariances();
   }
 
-  // After Finish: the pairs it is held together by.
+  // After Finish: the graph of keyframe pairs.
   const KeyframeGraph& graph() const { return mapper_.graph(); }
 
-  // After Finish: why poses of the map were not solved for at last, or empty.
+  // After Finish: why the final optimisation failed, or empty.
   const std::string& error() const { return error_; }
 
-  // The poses of all frames that were not lost, map_from_cam, as known now.
+  // The current poses (map_from_cam) of all frames that were not lost.
   Trajectory Path() const;
 
-  // Keyframes by their names in the map: where they are (map_from_cam) and what
-  // joins them, as taken up so far.
+  // The current poses (map_from_cam) of keyframes by map id, and the links
+  // between keyframes that were applied so far.
   const std::map<int, Rigid3d>& keyframe_poses() const {
     return map_from_keyframe_;
   }
   const std::vector<MapLink>& links() const { return links_; }
-  // The name in the map of a keyframe that the odometry knows by
-  // TrackedFrame::reference.
+  // Converts an odometry frame number (TrackedFrame::reference) to a map id.
   int MapId(int frame) const { return frame + first_id_; }
 
-  // What the last frame was tracked by.
   const Odometry& odometry() const { return odometry_; }
 
  private:
-  // A frame by the keyframe that it was tracked against.
+  // A frame relative to the keyframe that it was tracked against.
   struct PathFrame {
     double timestamp = 0.0;
     int keyframe = 0;
     Rigid3d keyframe_from_cam;
   };
 
-  // The odometry counts its own frames from 0.
+  // The odometry numbers its frames from 0.
   int OdometryId(int keyframe) const { return keyframe - first_id_; }
 
   void Follow(const TrackedFrame& tracked);
   void BecomeReference(const TrackedFrame& tracked);
-  // Hands a keyframe of the odometry to the mapper.
+  // Passes a keyframe of the odometry to the mapper.
   void AddKeyframe(const TrackedFrame& tracked);
   void SearchMap(const PreparedFrame& frame, int index);
   void ApplyPendingUpdates(int frame, SlamFrame* result);
@@ -159,32 +156,32 @@ class Slam {
 
   const SlamSettings settings_;
   Odometry odometry_;
-  Mapper mapper_;  // of worker_, once it has begun
+  Mapper mapper_;  // used by worker_ only, once it has started
 
   TrackedFrame previous_;  // the last frame
-  // It is a keyframe that waits for the next one, which shows how the camera
-  // moved in it.
+  // Whether previous_ is a keyframe that is not yet passed to the mapper: the
+  // next frame shows how the camera moved during its exposure.
   bool is_previous_late_ = false;
 
-  // As last taken up.
+  // State after the last applied update.
   std::map<int, Rigid3d> map_from_keyframe_;
   std::map<int, int> segments_;
   std::vector<MapLink> links_;
 
-  // Where the last frame is.
-  std::optional<int> reference_;  // by its name in the map
+  // State of the last frame.
+  std::optional<int> reference_;  // map id of its reference
   Rigid3d odom_from_reference_;
   Rigid3d odom_from_cam_;
   Rigid3d map_from_odom_;
   Rigid3d world_from_cam_;  // of the odometry
 
-  int first_id_ = 0;       // of new keyframes
-  int first_segment_ = 0;  // of new ones
+  int first_id_ = 0;       // offset of new keyframe ids
+  int first_segment_ = 0;  // offset of new segments
 
-  std::string error_;  // at last
+  std::string error_;  // of the last update
   std::vector<PathFrame> path_;
-  // Keyframes that no update has taken in yet, the oldest first, by the one
-  // that they were tracked against.
+  // Keyframes that no update includes yet, oldest first, each relative to the
+  // keyframe that it was tracked against.
   struct Pending {
     int id = 0;
     std::optional<int> ref;
@@ -193,7 +190,7 @@ class Slam {
   std::deque<Pending> pending_;
   std::deque<PendingResult<MapUpdate>> updates_;
   std::optional<PendingResult<std::optional<Keyframe>>> search_;
-  Worker worker_;  // the last: it works with what is above
+  Worker worker_;  // last, as it uses the members above
 };
 
 }  // namespace rgbd_pose

@@ -14,7 +14,7 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// Rows of a rotation matrix may be off unit length and right angles by so much.
+// Tolerance for the orthonormality of rotation matrices.
 constexpr double kMaxRotationError = 0.01;
 
 std::string NumbersInWords(const std::vector<py::ssize_t>& shape) {
@@ -37,7 +37,7 @@ void RequireShape(const py::array& array, const std::string& name,
                    NumbersInWords(shape));
 }
 
-constexpr double kMaxQuaternionError = 0.01;  // as of TUM text
+constexpr double kMaxQuaternionError = 0.01;  // as for TUM text
 
 Rigid3d PoseFromRow(const NumberArray& row, size_t i,
                     const std::string& where) {

@@ -15,19 +15,19 @@
 
 namespace rgbd_pose {
 
-// Numbers that Python gave, in up to three dimensions and of any layout.
-// float64 and float32 are read where they are, other real numbers are
-// converted. Reading needs no GIL; making and destroying does.
+// A Python array of numbers with up to three dimensions and any memory layout.
+// float64 and float32 are read in place; other real numbers are converted.
+// Reading needs no GIL; construction and destruction do.
 class NumberArray {
  public:
   static constexpr pybind11::ssize_t kAny = -1;
 
-  // Throws InputError, naming the argument, if the object is no array of real
-  // numbers or not of that shape.
+  // Throws InputError with the name of the argument if the object is not an
+  // array of real numbers of this shape.
   NumberArray(const pybind11::object& object, const std::string& name,
               const std::vector<pybind11::ssize_t>& shape);
 
-  // Of the first dimension.
+  // The size of the first dimension.
   size_t size() const { return size_; }
 
   double operator()(size_t i, size_t j = 0, size_t k = 0) const {
@@ -37,7 +37,7 @@ class NumberArray {
   }
 
  private:
-  // An array need not be aligned.
+  // The array may be unaligned.
   template <typename T>
   static T Load(const char* at) {
     T value;
@@ -52,31 +52,31 @@ class NumberArray {
   bool is_float32_ = false;
 };
 
-// An object as an array; throws InputError, naming the argument, if it is
-// invalid.
+// Converts an object to an array. Throws InputError with the name of the
+// argument if the object is invalid.
 pybind11::array ToArray(const pybind11::object& object,
                         const std::string& name);
 
-// The shape of an array in words, as Python prints it: "(3, 4)".
+// The shape of an array as Python prints it: "(3, 4)".
 std::string ShapeInWords(const pybind11::array& array);
 
-// The rigid motion of a 4 x 4 matrix; throws InputError if it is invalid.
+// The rigid motion of a 4 x 4 matrix. Throws InputError if it is invalid.
 Rigid3d RigidFromMatrix(const Eigen::Matrix4d& matrix,
                         const std::string& where);
 
-// The same of a 4 x 4 array.
+// The same for a 4 x 4 array.
 Rigid3d RigidFromArray(const pybind11::object& object, const std::string& name);
 
 Eigen::Matrix4d MatrixFromRigid(const Rigid3d& motion);
 
-// Takes the right to write from an array.
+// Makes an array read-only.
 pybind11::array ReadOnly(pybind11::array array);
 
-// A copy of a small matrix, row by row, not to be written.
+// A read-only copy of a small matrix, row by row.
 pybind11::array ArrayFromMatrix(const Eigen::MatrixXd& matrix);
 
-// A value as Python has it: motions and matrices as arrays, states in words,
-// all else as pybind11 does.
+// Converts a value to Python: motions and matrices to arrays, enums to words,
+// everything else as pybind11 does.
 inline pybind11::array ToPython(const Rigid3d& motion) {
   return ArrayFromMatrix(MatrixFromRigid(motion));
 }
@@ -91,30 +91,30 @@ auto ToPython(const T& value) {
   }
 }
 
-// A property that is a member of what it is bound to.
+// A getter for a data member.
 template <typename Self, typename T>
 auto Get(T Self::*member) {
   return [member](const Self& self) { return ToPython(self.*member); };
 }
 
-// What an object holds, seen as an array that keeps the object alive; no copy.
+// A read-only array on a member of `owner`, no copy. Keeps `owner` alive.
 template <typename T>
 pybind11::array ViewOf(const std::vector<T>& values, pybind11::handle owner) {
   return ReadOnly(pybind11::array(pybind11::dtype::of<T>(), {values.size()}, {},
                                   values.data(), owner));
 }
 
-// A path from a string or whatever has one.
+// A path from a string or a path-like object.
 std::string PathFrom(const pybind11::object& path);
 bool IsPath(const pybind11::object& object);
 
-// A trajectory from the path of a TUM text file or a pair of time stamps (N,)
-// and poses (N, 7) tx ty tz qx qy qz qw or (N, 4, 4). Throws InputError, naming
-// the argument, for anything else.
+// A trajectory from the path of a TUM text file, or from a pair of timestamps
+// (N,) and poses (N, 7) tx ty tz qx qy qz qw or (N, 4, 4). Throws InputError
+// with the name of the argument for anything else.
 Trajectory TrajectoryFrom(const pybind11::object& object,
                           const std::string& name);
 
-// A pair of time stamps (N,) and poses (N, 4, 4).
+// A pair of timestamps (N,) and poses (N, 4, 4).
 pybind11::tuple ArraysFromTrajectory(const Trajectory& trajectory);
 
 }  // namespace rgbd_pose

@@ -4,7 +4,7 @@
 
 namespace rgbd_pose {
 
-// Each adds its classes and functions to the module.
+// Each function adds its classes and functions to the module.
 void BindCalibration(pybind11::module_* module);
 void BindCamera(pybind11::module_* module);
 void BindEstimateResult(pybind11::module_* module);

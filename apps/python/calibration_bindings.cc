@@ -38,7 +38,7 @@ static void EachField(PickledBytes* bytes, DepthNoiseFit& noise) {
 
 namespace {
 
-// A result, and the file whose layout the new camera's has.
+// A result, and the file whose layout the new camera file has.
 struct Calibration {
   CalibrationResult result;
   std::string like;
@@ -54,7 +54,7 @@ void EachField(PickledBytes* bytes, Calibration& calibration) {
            r.displacement_px, r.passes, r.scale_from);
 }
 
-// Called after each frame without the GIL: Ctrl-C ends a calibration.
+// Called after each frame without the GIL. Ctrl-C interrupts a calibration.
 void ThrowIfInterrupted() {
   const py::gil_scoped_acquire gil;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
@@ -98,7 +98,7 @@ std::map<std::string, CalibratedParameter> Parameters(const Calibration& self) {
   return all;
 }
 
-// A property of the result.
+// A getter for a member of the result.
 template <auto kMember>
 auto Found(const Calibration& self) {
   return self.result.*kMember;

@@ -107,7 +107,7 @@ std::string CameraInWords(const RgbdCamera& camera) {
   return words + ")";
 }
 
-// A property of the pinhole model.
+// A getter for a member of the pinhole model.
 template <auto kMember>
 auto Of(const RgbdCamera& camera) {
   return camera.camera.*kMember;

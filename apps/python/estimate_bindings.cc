@@ -25,10 +25,10 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// More than any machine can use for this.
+// More threads than any machine could use here.
 constexpr int kMaxThreads = 256;
 
-// Where the solver starts: a motion, or a way to find one in the matches.
+// The start of the solver: a motion, or a method to find one in the matches.
 struct Start {
   Rigid3d cur_from_prev;
   const InitialGuess* guess = nullptr;
@@ -66,14 +66,14 @@ std::optional<MotionPrior> PriorFrom(const py::object& prior) {
   const NumberArray covariance(pair[1], "prior[1]", {6, 6});
   const MotionMatrix matrix =
       MotionMatrix::NullaryExpr([&](int i, int j) { return covariance(i, j); });
-  // That of a failed estimate is zero: nothing is known.
+  // The covariance of a failed estimate is zero, so nothing is known.
   const Eigen::LLT<MotionMatrix> cholesky(matrix);
   if (cholesky.info() != Eigen::Success) return std::nullopt;
   result.information = cholesky.solve(MotionMatrix::Identity());
   return result;
 }
 
-// The rows that are about matches alone.
+// The rows that concern only matches.
 std::vector<Setting> EstimateTable(OdometrySettings* settings) {
   std::vector<Setting> table = SettingTable(settings);
   table.erase(std::remove_if(table.begin(), table.end(),
@@ -97,7 +97,7 @@ Eigen::Vector3d Row(const NumberArray& array, size_t i) {
   return {array(i, 0), array(i, 1), array(i, 2)};
 }
 
-// The values of matches at the rows they were given in; zeros elsewhere.
+// Moves the values of matches to their input rows; zero elsewhere.
 template <typename To, typename From>
 std::vector<To> AtRows(const std::vector<From>& values,
                        const std::vector<size_t>& rows, size_t size) {
@@ -106,7 +106,7 @@ std::vector<To> AtRows(const std::vector<From>& values,
   return result;
 }
 
-// From x, y, z in camera axes (m). z = 0 gives no numbers: no match.
+// From x, y, z in camera axes (m). z = 0 gives non-finite values and no match.
 Observation ObservePoint(const Camera& camera, const Eigen::Vector3d& point) {
   Observation o;
   o.u = camera.fx * point.x() / point.z() + camera.cx;
@@ -115,7 +115,7 @@ Observation ObservePoint(const Camera& camera, const Eigen::Vector3d& point) {
   return o;
 }
 
-// From an image pixel u, v (px) and a depth (m), 0 where none was measured.
+// From an image pixel u, v (px) and a depth (m), 0 if missing.
 Observation ObservePixel(const Camera& camera, const Eigen::Vector3d& pixel) {
   const Eigen::Vector2d ideal = camera.Undistort(pixel.head<2>());
   Observation o;
@@ -125,16 +125,16 @@ Observation ObservePixel(const Camera& camera, const Eigen::Vector3d& pixel) {
   return o;
 }
 
-// What a camera has seen, from a row of three numbers.
+// Makes an observation from a row of three numbers.
 using ToObservation = decltype(&ObservePoint);
 
-// Matches and the rows of the given arrays that they are.
+// Matches and their row numbers in the given arrays.
 struct RowMatches {
   Correspondences matches;
   std::vector<size_t> rows;
 };
 
-// The matches of rows that make one. `normals_cur` may be null.
+// Makes matches from the valid rows. `normals_cur` may be null.
 RowMatches MakeMatches(const Camera& camera, ToObservation to_observation,
                        const NumberArray& prev, const NumberArray& cur,
                        const NumberArray* normals_cur, double sigma_px,
@@ -157,7 +157,7 @@ RowMatches MakeMatches(const Camera& camera, ToObservation to_observation,
   return result;
 }
 
-// The result of an estimate from `matches`, of `size` rows.
+// The result of an estimate from `matches`, for `size` input rows.
 EstimateResult MakeResult(MotionEstimate estimate, const RowMatches& matches,
                           size_t size) {
   EstimateResult result;

@@ -8,8 +8,8 @@
 
 namespace rgbd_pose {
 
-// An estimate whose lists hold one entry for each row that was given, accepted
-// as a match or not.
+// An estimate whose lists have one entry for each input row, whether the row
+// was accepted as a match or not.
 struct EstimateResult {
   MotionEstimate estimate;
   std::vector<uint8_t> is_inlier;

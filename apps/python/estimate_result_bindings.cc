@@ -37,19 +37,19 @@ const EstimateResult& RaiseIfFailed(const EstimateResult& self) {
       py::type::of<EstimateResult>().attr("_error_type").cast<py::object>();
   const py::object error =
       type(std::string(ToString(e.status)) + ": " + e.reason);
-  // The object that Python has already, no copy.
+  // Refer to the existing Python object instead of copying it.
   error.attr("estimate") = py::cast(&self, py::return_value_policy::reference);
   PyErr_SetObject(type.ptr(), error.ptr());
   throw py::error_already_set();
 }
 
-// A property that is a field of MotionEstimate.
+// A getter for a member of MotionEstimate.
 template <auto kMember>
 auto Field(const EstimateResult& result) {
   return ToPython(result.estimate.*kMember);
 }
 
-// The same, a list seen as an array without a copy.
+// The same for a list, as an array without a copy.
 template <auto kMember>
 py::array List(const py::object& self) {
   return ViewOf(self.cast<const EstimateResult&>().estimate.*kMember, self);

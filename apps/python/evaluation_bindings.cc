@@ -18,7 +18,7 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// Errors, one by one and summed up.
+// Individual errors and their statistics.
 struct Errors : ErrorStatistics {
   std::vector<double> values;
 };
@@ -58,7 +58,7 @@ AteResult EvaluateAte(const py::object& estimated, const py::object& reference,
                       double max_time_difference) {
   EvaluationOptions options;
   options.max_time_difference = max_time_difference;
-  // Of no matter here, but it must exceed the difference.
+  // Not used here, but it must exceed the time difference.
   options.rpe_delta_seconds = 2.0 * max_time_difference + 1.0;
   const EvaluationReport report =
       EvaluateObjects(estimated, reference, options);

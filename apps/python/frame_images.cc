@@ -12,11 +12,10 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// Depths in metres become raw units of 0.2 mm, finer than any sensor measures.
+// Depths in metres are converted to raw units of 0.2 mm, finer than any sensor.
 constexpr double kUnitsPerMetre = 5000.0;
 
-// How many values an image has at a pixel; 0 if the array is no image of the
-// camera's size.
+// The number of channels; 0 if the array is not an image of the camera's size.
 int Channels(const py::array& array, const Camera& camera) {
   if (array.ndim() < 2 || array.ndim() > 3) return 0;
   if (array.shape(0) != camera.height || array.shape(1) != camera.width) {
@@ -70,7 +69,7 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
   frame.depth_shutter = camera.depth_shutter;
   frame.gray = GrayFrom(image, camera.camera);
   py::array array = ToArray(depth, "depth");
-  // As many libraries keep images of one channel.
+  // Many libraries store single-channel images in this way.
   if (array.ndim() == 3 && array.shape(2) == 1) {
     array = array.attr("squeeze")(2);
   }

@@ -15,14 +15,14 @@
 
 namespace rgbd_pose {
 
-// A frame with copies of the images that Python gave (see Odometry.track):
-// frontends keep the image of a reference, and cameras write the next image
-// into the same memory. Its rows were exposed as the camera says. Throws
-// InputError for images of a wrong shape or type.
+// Makes a frame with copies of the Python images (see Odometry.track). Copies
+// are needed because frontends keep the image of a reference, while camera
+// drivers overwrite their memory with the next image. The shutter times are
+// those of `camera`. Throws InputError for images of a wrong shape or type.
 Frame FrameFromArrays(const pybind11::object& image,
                       const pybind11::object& depth, const RgbdCamera& camera);
 
-// Odometry.track and Slam.track.
+// Implements Odometry.track and Slam.track.
 template <typename Shared>
 auto TrackArrays(Shared* shared, const pybind11::object& image,
                  const pybind11::object& depth, std::optional<double> timestamp,
@@ -37,7 +37,7 @@ auto TrackArrays(Shared* shared, const pybind11::object& image,
   return shared->Track(std::move(frame), timestamp, guess);
 }
 
-// What Odometry and Slam have in common: track, trajectory, save_trajectory.
+// Binds what Odometry and Slam share: track, trajectory, save_trajectory.
 template <typename Shared>
 void BindTracking(pybind11::class_<Shared>* type, const char* track_help,
                   const char* trajectory_help) {
@@ -62,7 +62,7 @@ void BindTracking(pybind11::class_<Shared>* type, const char* track_help,
           "Writes the trajectory as TUM text.", py::arg("path"));
 }
 
-// An image that an object holds, seen as an array that keeps it alive; no copy.
+// A read-only array on an image without a copy. It keeps `owner` alive.
 template <typename T>
 pybind11::array ArrayOfImage(const cv::Mat& image, pybind11::handle owner) {
   return ReadOnly(

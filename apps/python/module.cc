@@ -1,4 +1,4 @@
-// The Python module: what the C++ library does, with NumPy arrays.
+// The Python module: the functions of the C++ library with NumPy arrays.
 
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
@@ -14,7 +14,7 @@ namespace py = pybind11;
 
 PYBIND11_MODULE(_rgbd_pose, m) {
   using namespace rgbd_pose;
-  // Users know the package: names in messages and help are those of its parts.
+  // Messages and help name the package that users import, not this module.
   const py::object own_name = m.attr("__name__");
   m.attr("__name__") = "rgbd_pose";
   m.attr("__version__") = RGBD_POSE_VERSION;

@@ -17,22 +17,23 @@
 #include "core/util/input_error.h"
 #include "frontend/tracking/tracked_frame.h"
 
-// Objects as bytes, for `pickle` and `copy`: between processes of one version,
-// not to be kept. A class has a function, found by its argument,
+// Serialises objects for `pickle` and `copy`, between processes of the same
+// version, not for storage. A class provides a function, found by its argument
+// type,
 //
 //   void EachField(PickledBytes* bytes, Class& object)
 //
-// that calls (*bytes)(object.field, ...) with all fields that count, both to
-// write and to read them.
+// that calls (*bytes)(object.field, ...) with all relevant fields. It serves
+// both writing and reading.
 
 namespace rgbd_pose {
 
 // Writes fields, or reads them in the same order.
 class PickledBytes {
  public:
-  PickledBytes() = default;  // to write
+  PickledBytes() = default;  // for writing
 
-  // To read.
+  // For reading.
   explicit PickledBytes(std::string bytes)
       : bytes_(std::move(bytes)), is_reading_(true) {}
 
@@ -109,7 +110,7 @@ class PickledBytes {
   size_t at_ = 0;
 };
 
-// Of what is a part of several classes.
+// Parts of several classes.
 
 inline void EachField(PickledBytes* bytes, RgbdCamera& c) {
   (*bytes)(c.camera, c.depth_scale, c.depth_correction.inverse_depth_offset,
@@ -136,7 +137,7 @@ auto Pickled() {
   return py::pickle(
       [](const T& self) {
         PickledBytes bytes;
-        T copy = self;  // fields are written by what reads them
+        T copy = self;  // EachField takes a non-const object
         EachField(&bytes, copy);
         return py::make_tuple(RGBD_POSE_VERSION, py::bytes(bytes.bytes()));
       },

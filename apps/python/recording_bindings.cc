@@ -52,7 +52,7 @@ Frame ReadFrame(const TumDataset& dataset, int index) {
   return dataset.Read(index);
 }
 
-// A recording of any kind. Each loop over it reads it again.
+// A recording of any kind. Each iteration reads it from the start.
 class Recording {
  public:
   Recording(SourceOptions options, std::string source, const FrameRange& range)
@@ -63,7 +63,7 @@ class Recording {
 
   const FrameSource& source() const { return *source_; }
 
-  // The source, at its start.
+  // The source at its start.
   std::shared_ptr<FrameSource> Begin() {
     if (is_used_) source_ = Open();
     is_used_ = true;

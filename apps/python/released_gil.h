@@ -4,10 +4,10 @@
 
 namespace rgbd_pose {
 
-// Lets other threads of Python run as long as it lives. Unlike pybind11's own,
-// its end may be that of the thread: where Python is already ending, a daemon
-// thread that asks for the GIL is unwound, and a destructor that throws nothing
-// would end in std::terminate().
+// Releases the GIL for the lifetime of this object. Unlike pybind11's own
+// class, its destructor may throw: if Python is shutting down, a daemon thread
+// that asks for the GIL is unwound, and a noexcept destructor would call
+// std::terminate().
 class ReleasedGil {
  public:
   ReleasedGil() : state_(PyEval_SaveThread()) {}

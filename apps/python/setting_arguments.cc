@@ -8,7 +8,7 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// What a row has now.
+// The current value of a row.
 py::object CurrentOf(const Setting& setting) {
   return std::visit(
       [](const auto& value) -> py::object {
@@ -21,7 +21,7 @@ py::object CurrentOf(const Setting& setting) {
       setting.value);
 }
 
-// How Python calls the type of a row.
+// The Python type name of a row.
 std::string TypeOf(const Setting& setting) {
   return py::str(py::type::of(CurrentOf(setting)).attr("__name__"));
 }

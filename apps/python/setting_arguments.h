@@ -7,29 +7,29 @@
 
 #include "apps/pipeline/settings.h"
 
-// Keyword arguments from a table of settings: functions take py::kwargs and
-// write their own signatures, which pybind11 could only say of fixed ones.
+// Keyword arguments from a table of settings. The functions take py::kwargs and
+// define their own signatures, because pybind11 only knows fixed arguments.
 
 namespace rgbd_pose {
 
-// Sets what the keywords say. Raises TypeError for a keyword that is no row or
-// a value of another type; InputError for unknown names.
+// Sets the settings given as keywords. Raises TypeError for an unknown keyword
+// or a value of another type, and InputError for unknown names.
 void SetFromKeywords(const std::string& function,
                      const pybind11::kwargs& keywords,
                      const std::vector<Setting>& table);
 
-// The rows as arguments of a signature, as "cost: str = 'epipolar', ...".
+// The rows as the arguments of a signature: "cost: str = 'epipolar', ...".
 std::string ArgumentsOf(const std::vector<Setting>& table);
 
-// The signature of a class that is made of a camera and settings: these are
-// keyword-only, but the frontend may also stand in its place.
+// The signature of a class that is constructed from a camera and settings. The
+// settings are keyword-only, except that the frontend may also be positional.
 std::string InitSignature(const std::string& class_name,
                           const std::vector<Setting>& table);
 
-// The rows in words, a paragraph each.
+// The rows as help text, one paragraph each.
 std::string HelpOf(const std::vector<Setting>& table);
 
-// Defines the constructor of such a class, by a function of the camera, the
+// Defines the constructor of such a class. `make` takes the camera, the
 // frontend and py::kwargs.
 template <typename Type, typename Make>
 void DefineInit(pybind11::class_<Type>* type, const Make& make,
@@ -42,8 +42,8 @@ void DefineInit(pybind11::class_<Type>* type, const Make& make,
             py::arg("camera").none(false), py::arg("frontend") = frontend);
 }
 
-// Defines a function whose last argument is py::kwargs: its signature and help
-// say the rows of the table in their place.
+// Defines a function whose last argument is py::kwargs. In its signature and
+// help, the rows of the table replace this argument.
 template <typename Function, typename... Extra>
 void DefineWithSettings(pybind11::module_* module, const char* name,
                         const Function& function,

@@ -18,26 +18,26 @@
 
 namespace rgbd_pose {
 
-// Numbers a frame and says when it was taken: without a time stamp, frames come
-// at 30 Hz. `last`: the one before, or null. Throws InputError if time does not
-// go on.
+// Sets the number and the time of a frame. Frames without a timestamp are 1/30
+// s apart. `last` is the previous frame, or null. Throws InputError if time
+// does not increase.
 void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
                 Frame* frame);
 
-// An odometry for many threads: calls wait for each other, so they must not
-// hold the GIL. Remembers what became of all frames.
+// An odometry for several threads. Calls wait for each other and therefore must
+// not hold the GIL. Keeps the results of all frames.
 class SharedOdometry {
  public:
   SharedOdometry(const OdometrySettings& settings, const RgbdCamera& camera);
 
   const RgbdCamera& camera() const { return camera_; }
 
-  // Tracks the next frame. Throws InputError, and nothing has changed, if time
-  // does not go on (see StampFrame).
+  // Tracks the next frame. If time does not increase (see StampFrame), throws
+  // InputError and changes nothing.
   TrackedFrame Track(Frame frame, std::optional<double> timestamp,
                      const std::optional<Rigid3d>& guess);
 
-  // Of the frames that were not lost.
+  // The poses of the frames that were not lost.
   Trajectory trajectory();
 
  private:
@@ -47,7 +47,7 @@ class SharedOdometry {
   std::vector<TrackedFrame> frames_;
 };
 
-// A frame as Python has it: what Odometry says of it, and where the map has it.
+// A frame for Python: the result of the odometry and the pose in the map.
 struct FrameInMap : TrackedFrame {
   explicit FrameInMap(SlamFrame frame = {})
       : TrackedFrame(frame.tracked), slam(std::move(frame)) {}
@@ -61,10 +61,10 @@ struct KeyframePose {
   int segment = 0;
   double timestamp = 0.0;
   Rigid3d map_from_cam;
-  std::optional<MotionMatrix> covariance;  // if it can be computed
+  std::optional<MotionMatrix> covariance;  // empty if not computable
 };
 
-// A Slam for many threads, as SharedOdometry is an odometry.
+// A Slam for several threads, like SharedOdometry.
 class SharedSlam {
  public:
   SharedSlam(const OdometrySettings& odometry, const SlamSettings& settings,
@@ -72,22 +72,22 @@ class SharedSlam {
 
   const RgbdCamera& camera() const { return camera_; }
 
-  // Throws InputError after the first frame, for a folder that holds no map and
-  // for a map of another camera.
+  // Throws InputError if called after the first frame, for a folder without a
+  // map and for a map of another camera.
   void LoadMap(const std::string& folder, bool localise_only);
 
-  // Throws InputError, and nothing has changed, if time does not go on (see
-  // StampFrame) or all is finished.
+  // If time does not increase (see StampFrame) or after Finish, throws
+  // InputError and changes nothing.
   FrameInMap Track(Frame frame, std::optional<double> timestamp,
                    const std::optional<Rigid3d>& guess);
 
-  // Waits for the work behind; once more has no effect.
+  // Waits for the mapping thread. A second call has no effect.
   void Finish();
 
-  // Of the frames that were not lost, as known now.
+  // The current poses of the frames that were not lost.
   Trajectory trajectory();
 
-  // They throw InputError before Finish.
+  // These functions throw InputError before Finish.
   std::vector<KeyframePose> Keyframes();
   std::vector<RelativePose> Edges();
   void SaveMap(const std::string& folder);

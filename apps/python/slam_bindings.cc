@@ -53,7 +53,7 @@ std::unique_ptr<SharedSlam> MakeSharedSlam(const RgbdCamera& camera,
   return std::make_unique<SharedSlam>(settings.odometry, settings.slam, camera);
 }
 
-// Of what a SlamFrame says besides.
+// A getter for an additional member of SlamFrame.
 template <typename T>
 auto InMap(T SlamFrame::*member) {
   return

@@ -14,7 +14,7 @@ namespace {
 
 using Status = CalibratedParameter::Status;
 
-// Residuals are averaged over so many columns of the image.
+// Number of image columns over which residuals are averaged.
 constexpr int kColumns = 16;
 
 constexpr double kPictureWidth = 440.0;
@@ -28,8 +28,8 @@ constexpr char kHead[] =
     "left}figure{display:inline-block;margin:0 1em 1em 0}svg{background:#f7f7"
     "f7;border:1px solid #ccc}.no{color:#888}</style></head><body>\n";
 
-// From -1 to 1 prior standard deviation: where it was, and what was found; an
-// arrow where that is beyond.
+// Draws the start value and the value found, from -1 to 1 prior standard
+// deviation; an arrow marks a value outside of this range.
 std::string Bar(const CalibratedParameter& parameter) {
   constexpr double kHalf = 80.0;
   const auto sigmas = [&](double value) {
@@ -83,7 +83,7 @@ std::string ParameterTable(const CalibrationResult& result) {
   return text + "</table>\n";
 }
 
-// Mean residuals of the image's cells as arrows, so many times as long.
+// Mean residuals per image cell as arrows, enlarged by `zoom`.
 std::string Picture(const CalibrationResult& result, bool after, double zoom) {
   const Camera& camera = result.camera.camera;
   const double cell = static_cast<double>(camera.width) / kColumns;
@@ -95,7 +95,7 @@ std::string Picture(const CalibrationResult& result, bool after, double zoom) {
     const int row = static_cast<int>(residual.v / cell);
     if (column < 0 || row < 0 || column >= kColumns || row >= rows) continue;
     const Eigen::Vector2d& r = after ? residual.after : residual.before;
-    // Wrong matches would be all that is seen.
+    // Wrong matches would dominate the picture.
     constexpr double kMostPx = 20.0;
     if (!(r.norm() < kMostPx)) continue;
     sums[row * kColumns + column] += r;
@@ -124,8 +124,8 @@ std::string Picture(const CalibrationResult& result, bool after, double zoom) {
                     zoom);
 }
 
-// A camera that is refused is mostly a recording that cannot tell, or a fault
-// that is none of the parameters.
+// A camera is mostly rejected because the recording is not informative, or
+// because of an error that no parameter describes.
 constexpr char kWhatNext[] =
     "<p>What to do next:</p><ul>"
     "<li>&ldquo;fit no better&rdquo;: the camera there is does as well; go on "

@@ -7,9 +7,9 @@
 
 namespace rgbd_pose {
 
-// A page on a calibration that needs nothing else: the verdict, parameters with
-// error bars, what is left of held-out views over the image with either camera,
-// and the path from above.
+// A self-contained page about a calibration: the verdict, parameters with error
+// bars, residuals of held-out views over the image with both cameras, and the
+// path seen from above.
 std::string CalibrationPage(const CalibrationResult& result,
                             const Trajectory& path);
 

@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-// The rows of a table that belong to one path: [begin, end).
+// The rows of a table for one path: [begin, end).
 struct PathRows {
   std::string sequence;
   std::string loss;
@@ -38,7 +38,7 @@ std::vector<PathRows> FindPaths(const CsvTable& table) {
   return paths;
 }
 
-// paths.csv as columns of numbers.
+// paths.csv as numeric columns.
 class PathTable {
  public:
   explicit PathTable(const CsvTable& table) {
@@ -55,8 +55,8 @@ class PathTable {
     return {all.begin() + rows.begin, all.begin() + rows.end};
   }
 
-  // The axis that points down in the first known picture of a path, as the
-  // world has it: cameras are held upright.
+  // The downward axis of the first known camera pose of a path, in world
+  // coordinates: cameras are assumed to be upright.
   json Down(const PathRows& rows) const {
     for (size_t i = rows.begin; i < rows.end; ++i) {
       const Eigen::Quaterniond rotation(
@@ -162,7 +162,7 @@ json BandColumns(const std::vector<SweepCell>& cells,
   return columns;
 }
 
-// All methods, with their errors at all shares.
+// All methods with their errors at all shares.
 json Methods(const std::vector<SweepCell>& cells) {
   json methods = json::array();
   for (const SweepMethod& method : SweepMethods(LossesOf(cells))) {
@@ -184,7 +184,7 @@ json CompareReportData(const std::string& folder) {
     return (std::filesystem::path(folder) / name).string();
   };
   json data = {{"settings", ReadReportSettings(file("config.flags"))}};
-  // Both kinds of files may be there, of one comparison after another.
+  // The folder may hold files of both kinds from successive comparisons.
   if (SettingOf(data["settings"], "experiment") == "sweep") {
     const std::vector<SweepCell> cells = ReadSweepCsv(file("sweep.csv"));
     for (int i = 0; i < kSweepShares; ++i) {

@@ -15,8 +15,8 @@ using nlohmann::json;
 
 namespace {
 
-// Dividing by a power of ten gives the number nearest to the short decimal,
-// which is then written with as few digits.
+// Division by a power of ten gives the double nearest to the short decimal,
+// which is then written with few digits.
 json Rounded(double value, int decimals) {
   if (!std::isfinite(value)) return nullptr;
   const double scale = std::pow(10.0, decimals);
@@ -104,7 +104,7 @@ json BatchReportData(const std::string& batch_folder) {
       rows[i][name] = std::isnan(numbers[i]) ? json() : json(numbers[i]);
     }
   }
-  // A path with a slash at its end has no file name.
+  // A path that ends with a slash has no file name.
   const fs::path named = folder.has_filename() ? folder : folder.parent_path();
   return {{"name", named.filename().string()}, {"rows", rows}};
 }

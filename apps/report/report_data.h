@@ -6,46 +6,44 @@
 
 namespace rgbd_pose {
 
-// More frames than this are drawn in groups, so that a page stays small.
+// More frames are drawn in groups, to keep the page small.
 constexpr int kMaxReportPoints = 4000;
 
-// All that the page of a run shows, from the files in its folder: frames.csv,
-// trajectory.txt, metrics.json, config.flags and, where there was a ground
-// truth, errors.csv. Frames are in columns; numbers that are not known are
-// null. Throws InputError for files that are missing or broken.
+// All data for the page of a run, from the files in its folder: frames.csv,
+// trajectory.txt, metrics.json, config.flags and, with a ground truth,
+// errors.csv. Frames are stored as columns; unknown numbers are null. Throws
+// InputError for missing or broken files.
 nlohmann::json RunReportData(const std::string& run_folder);
 
-// All that the page of a batch shows: the name of its folder and a row for
-// every run, from summary.csv of rgbd_batch; figures that a run lacks are null.
-// Throws InputError if the file is missing or broken.
+// All data for the page of a batch: the name of its folder and one row per run
+// from summary.csv of rgbd_batch; missing figures are null. Throws InputError
+// if the file is missing or broken.
 nlohmann::json BatchReportData(const std::string& batch_folder);
 
-// More poses than this, of all paths of a comparison together, are drawn in
-// groups, so that a page stays small.
+// If the paths of a comparison have more poses together, the poses are drawn in
+// groups, to keep the page small.
 constexpr int kMaxComparedPoints = 15000;
 
-// All that the page of a comparison shows, from the files in its folder:
-// config.flags and, of a sweep, sweep.csv, else tables.csv and paths.csv.
-// `sequences` or `methods` (of a sweep) say which it is. Numbers that are not
-// known are null. Throws InputError for files that are missing or broken.
+// All data for the page of a comparison, from the files in its folder:
+// config.flags, and sweep.csv (of a sweep) or tables.csv and paths.csv. The key
+// `methods` marks a sweep, `sequences` the other kind. Unknown numbers are
+// null. Throws InputError for missing or broken files.
 nlohmann::json CompareReportData(const std::string& folder);
 
 // Times since the first frame, s.
 std::vector<double> Elapsed(std::vector<double> times);
 
-// Puts frames in groups of `every`, each drawn as one point, so that a page
-// stays small.
+// Groups `every` frames into one drawn point, to keep the page small.
 class ReportThinning {
  public:
   ReportThinning(size_t frames, size_t max_points);
 
   size_t every() const { return every_; }
 
-  // The first of each group; null where a value is not finite.
+  // The first value of each group; null if it is not finite.
   nlohmann::json First(const std::vector<double>& values, int decimals) const;
 
-  // The largest of each group, so that no peak is lost; null where there is
-  // none.
+  // The largest value of each group, which keeps peaks; null if there is none.
   nlohmann::json Largest(const std::vector<double>& values, int decimals) const;
 
  private:
@@ -56,7 +54,7 @@ class ReportThinning {
 // InputError if the file cannot be read.
 nlohmann::json ReadReportSettings(const std::string& flag_file);
 
-// The value of a flag in such groups; empty if it is not there.
+// The value of a flag in such groups, or an empty string.
 std::string SettingOf(const nlohmann::json& groups, const std::string& name);
 
 }  // namespace rgbd_pose

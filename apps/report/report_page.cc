@@ -18,8 +18,8 @@ void ReplaceAll(std::string_view from, std::string_view to, std::string* text) {
   }
 }
 
-// In strings of a script, the only place where it occurs, this means the same
-// but does not end the script for the browser.
+// Escapes a script for HTML. Both patterns occur only in strings of the
+// scripts. There the escaped form means the same but does not end the element.
 std::string InlineScript(std::string_view script) {
   std::string text(script);
   ReplaceAll("</script", "<\\/script", &text);
@@ -36,7 +36,7 @@ std::string WritePage(const std::string& folder, const std::string& page) {
 }  // namespace
 
 std::string InlineData(const nlohmann::json& data) {
-  // Words that are no UTF-8 (names of folders) must not stop a report.
+  // Invalid UTF-8 (in folder names) must not make a report fail.
   std::string text = data.dump(-1, ' ', /*ensure_ascii=*/false,
                                nlohmann::json::error_handler_t::replace);
   ReplaceAll("<", "\\u003c", &text);
@@ -46,7 +46,7 @@ std::string InlineData(const nlohmann::json& data) {
 std::string FillPage(
     std::string_view page,
     const std::vector<std::pair<std::string_view, std::string>>& parts) {
-  // In the order of the page, so that no place is looked for in a content.
+  // In the order of the page: contents are not searched for placeholders.
   std::string filled;
   size_t done = 0;
   for (const auto& [place, content] : parts) {

@@ -9,15 +9,15 @@
 
 namespace rgbd_pose {
 
-// Files that the build put into the program (apps/CMakeLists.txt).
+// Files that the build embeds in the program (apps/CMakeLists.txt).
 struct ReportAssets {
-  std::string_view library;  // plotly.js; empty if the build did not find it
+  std::string_view library;  // plotly.js; empty if not found by the build
   std::string_view library_license;
-  std::string_view page;  // with places for the rest: %STYLE% and so on
+  std::string_view page;  // with placeholders %STYLE% etc.
   std::string_view style;
   std::string_view script;
 
-  // The live page, its style and script besides those of reports.
+  // The live page with its additional style and script.
   std::string_view view_page;
   std::string_view view_style;
   std::string_view view_script;
@@ -25,42 +25,42 @@ struct ReportAssets {
 
 ReportAssets EmbeddedReportAssets();
 
-// Whether this program was built with the plotting library that pages need.
+// Whether the program was built with the plotting library that pages need.
 bool HasReportLibrary();
 
-// What a program says instead of the name of a page it cannot write.
+// Printed instead of the file name if a page cannot be written.
 constexpr char kNoReportLibrary[] =
     "no file: built without plotly.js, which scripts/install_dependencies "
     "fetches";
 
-// Data within a page: JSON that ends no element.
+// Data as JSON for embedding in a page; it cannot end an HTML element.
 std::string InlineData(const nlohmann::json& data);
 
-// A page with each place (%STYLE%, say) replaced by its content, in their
-// order.
+// Replaces each placeholder of a page (for example %STYLE%) by its content. The
+// placeholders must be given in the order of the page.
 std::string FillPage(
     std::string_view page,
     const std::vector<std::pair<std::string_view, std::string>>& parts);
 
-// A page in one file that needs nothing else: the data, the plotting library
-// and our scripts (apps/report), which draw what `kind` says: "run", "batch",
-// "comparison" or "sweep".
+// A self-contained page with the data, the plotting library and the scripts in
+// apps/report, which draw the given `kind`: "run", "batch", "comparison" or
+// "sweep".
 std::string ReportPage(std::string_view kind, const nlohmann::json& data);
 
-// Writes report.html of a run from the files in its folder; returns its path.
-// Throws InputError for files that are missing or broken.
+// Writes report.html for a run from the files in its folder; returns its path.
+// Throws InputError for missing or broken files.
 std::string WriteRunReport(const std::string& run_folder);
 
 // The same for a batch, from its summary.csv.
 std::string WriteBatchReport(const std::string& batch_folder);
 
-// The same for a comparison by rgbd_compare, from the files in its folder.
+// The same for a comparison by rgbd_compare.
 std::string WriteComparisonReport(const std::string& folder);
 
-// Writes report.html into the folder of a run that is not published yet, `out`
-// being the one it will have. Returns what a program prints of it: where it is,
-// or that this build writes none. A disk that is too full for the page costs no
-// other result: the part of it is removed, and `why_not` says so.
+// Writes report.html into the unpublished folder of a run; `out` is its final
+// folder. Returns the text that the program prints: the location of the page,
+// or that this build writes none. If the disk is full, the partial page is
+// removed, `why_not` says so, and all other results stay.
 std::string WriteRunPage(const std::filesystem::path& staging_dir,
                          const std::string& out, std::string* why_not);
 

@@ -23,7 +23,6 @@ using nlohmann::json;
 
 constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
-// 0 ok, 1 degraded, 2 lost
 std::vector<double> StatusCodes(const CsvTable& frames) {
   std::vector<double> codes;
   for (const std::string& word : frames.Words("status")) {
@@ -32,7 +31,7 @@ std::vector<double> StatusCodes(const CsvTable& frames) {
   return codes;
 }
 
-// Stretches of frames that are not ok, each with the reason of its first.
+// Sequences of frames that are not ok, each with the first frame's reason.
 json Incidents(const CsvTable& frames) {
   constexpr size_t kMaxIncidents = 100;
   const std::vector<std::string> status = frames.Words("status");
@@ -114,8 +113,7 @@ json PathOf(const CsvTable& frames, const Trajectory& trajectory,
           {"z", thinning.First(axes[2], 4)}};
 }
 
-// The paths before and after all that the map has corrected, from the same
-// first pose.
+// The paths before and after all map corrections, with the same first pose.
 json OdometryPath(const CsvTable& frames, const std::string& odometry_file,
                   const std::string& trajectory_file,
                   const ReportThinning& thinning) {
@@ -146,8 +144,7 @@ void AddErrors(const std::string& file, const ReportThinning& thinning,
       {"rpe_deg", thinning.Largest(table.Numbers("rpe_deg"), 4)}};
 }
 
-// The number of degrees of freedom that most residuals of the run have; 0 if
-// there are none.
+// The most frequent number of residual degrees of freedom; 0 if there are none.
 int CommonDegrees(const json& metrics, const std::string& file) {
   const json::json_pointer place("/residuals/degrees_counts");
   const json counts = metrics.contains(place) ? metrics.at(place) : json();
@@ -161,9 +158,8 @@ int CommonDegrees(const json& metrics, const std::string& file) {
                           counts.begin());
 }
 
-// The weight that the run's loss gives a norm, and the norm up to which a match
-// counts as in agreement; null where several costs each
-// have their own.
+// The weight of the run's loss as a function of the norm, and the norm up to
+// which a match is an inlier. Null if several costs have losses of their own.
 json LossCurve(const json& data, const std::string& metrics_file) {
   constexpr double kStep = 0.05;
   constexpr int kSteps = 160;
@@ -230,12 +226,12 @@ json RunReportData(const std::string& run_folder) {
                      file("trajectory.txt"), thinning);
   }
   data["loss"] = LossCurve(data, file("metrics.json"));
-  // Older files of the folder's name may be of another run.
+  // An older file in the folder may belong to another run.
   if (data["metrics"].contains("cloud") &&
       std::filesystem::exists(folder / kCloudPreviewFile)) {
     data["cloud"] = ParseJson(file(kCloudPreviewFile));
   }
-  // Written last, by whoever made the mesh; a new run removes it.
+  // Written last, by the program that made the mesh; a new run removes it.
   if (std::filesystem::exists(folder / kMeshPreviewFile)) {
     data["mesh"] = ParseJson(file(kMeshPreviewFile));
   }

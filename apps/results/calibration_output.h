@@ -8,29 +8,29 @@
 
 namespace rgbd_pose {
 
-// Depths that scatter by more than so many times their noise model are in the
-// wrong place, not noisy.
+// Depths that scatter by more than this times their noise model are misplaced.
 constexpr double kMuchNoise = 5.0;
 
-// CalibrateRecording with a progress bar for each pass.
+// Calls CalibrateRecording and shows a progress bar for each pass.
 RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
                                            const OdometrySettings& odometry,
                                            const SlamSettings& slam,
                                            const CalibrationSettings& settings,
                                            int threads);
 
-// What rgbd_calibrate prints of a result.
+// Formats a result as rgbd_calibrate prints it.
 std::string FormatCalibrationSummary(const CalibrationResult& result);
 
-// The result for metrics.json and the report.
+// Formats the result for metrics.json and the report.
 nlohmann::json CalibrationToJson(const CalibrationResult& result);
 
-// What a parameter is determined to be, in words.
+// The status of a parameter in words.
 const char* ToString(CalibratedParameter::Status status);
 
-// Writes what rgbd_calibrate leaves behind but for the page: camera.yaml in the
-// layout of `camera` (the file or preset of the first one), depth_noise.yaml if
-// there is one, metrics.json, residuals.csv, and `flags` into config.flags.
+// Writes all output files of rgbd_calibrate except the page: camera.yaml in the
+// layout of `camera` (file or preset of the first camera), depth_noise.yaml if
+// the noise was estimated, metrics.json, residuals.csv, and `flags` in
+// config.flags.
 void WriteCalibration(const RecordingCalibration& calibration,
                       const std::string& camera, const std::string& flags,
                       double seconds, const RunFolder& folder);

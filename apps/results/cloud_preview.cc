@@ -11,7 +11,7 @@
 namespace rgbd_pose {
 namespace {
 
-// The greatest number of 16 bits.
+// The largest 16-bit number.
 constexpr double kMaxStep = 65535.0;
 
 }  // namespace
@@ -30,7 +30,7 @@ nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
     low = low.cwiseMin(position);
     high = high.cwiseMax(position);
   }
-  // One step for all axes; a cloud of one point needs none.
+  // All axes share one step. For a cloud of one point any step works.
   const double span = (high - low).maxCoeff();
   const double step = span > 0.0 ? span / kMaxStep : 1.0;
   std::string position_bytes, color_bytes;

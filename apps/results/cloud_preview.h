@@ -8,28 +8,29 @@
 
 namespace rgbd_pose {
 
-// A page with more points than this would be large and turn slowly.
+// More points would make the page large and slow to rotate.
 constexpr int kMaxPreviewPoints = 30000;
 
-// In the folder of a run, what CloudPreview returns.
+// The file in a run's folder with the result of CloudPreview.
 constexpr char kCloudPreviewFile[] = "cloud_preview.json";
 
-// Points for the page of a run, moved by `shown_from_world`: `positions` are
-// their x, y, z in whole steps of `step_m` from `origin_m` (16 bits each, low
-// byte first), `colors` red, green, blue (8 bits each), both in base64.
+// Returns points for the page of a run, transformed by `shown_from_world`.
+// `positions` holds x, y, z in integer multiples of `step_m` from `origin_m`
+// (16 bits, low byte first), `colors` red, green, blue (8 bits), both in
+// base64.
 nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
                             const Rigid3d& shown_from_world);
 
-// A mesh of more triangles than this would, too; its vertices can be counted
-// in 16 bits.
+// Limits for meshes, for the same reason. Vertex indices have 16 bits.
 constexpr int kMaxPreviewTriangles = 60000;
 constexpr int kMaxPreviewVertices = 65535;
 
-// In the folder of a run, what MeshPreview returns.
+// The file in a run's folder with the result of MeshPreview.
 constexpr char kMeshPreviewFile[] = "mesh_preview.json";
 
-// The same of a mesh's vertices, and `triangles`: how many; `corners`: their
-// places among the vertices (16 bits each, low byte first), in base64.
+// The same for the vertices of a mesh. In addition, `triangles` is the number
+// of triangles and `corners` holds their vertex indices (16 bits each, low byte
+// first) in base64.
 nlohmann::json MeshPreview(const TriangleMesh& mesh,
                            const Rigid3d& shown_from_world);
 

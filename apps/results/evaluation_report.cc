@@ -45,7 +45,6 @@ json PoseToJson(const Rigid3d& pose) {
           {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-// In another unit.
 ErrorStatistics Scaled(ErrorStatistics errors, double factor) {
   for (double* value : {&errors.rmse, &errors.median, &errors.mean, &errors.max,
                         &errors.p90, &errors.p99}) {
@@ -107,7 +106,7 @@ std::string FormatQuantiles(const char* quantity, const ErrorStatistics& e) {
                 e.p99);
 }
 
-// Median, 90 % and 99 % of relative errors.
+// Formats median, 90 % and 99 % quantiles of relative errors.
 std::string FormatQuantiles(const std::string& delta,
                             const RelativePoseError& error) {
   return Format("RPE, fixed delta %s (%d pairs)\n", delta.c_str(),
@@ -121,7 +120,7 @@ std::string FormatLine(const char* what, const Consistency& c) {
                 c.median);
 }
 
-// Of the motions of a run: those that are wrong, and NEES.
+// Formats the wrong motions and the NEES of a run.
 std::string FormatConsistency(const RunConsistency& consistency) {
   const TruthNoise& noise = consistency.truth_noise;
   return Format("\nAgainst covariances (sigma of the truth %g mm, %g deg)\n",
@@ -151,12 +150,12 @@ json ConsistencyToJson(const RunConsistency& consistency) {
           {"edges", ToJson(consistency.edges)}};
 }
 
-// "1.40 +- 0.05"; "n/a" for what is not determined.
+// Formats "1.40 +- 0.05", or "n/a" if the value is undetermined.
 std::string FormatEstimate(double value, double sigma, double factor,
                            int decimals) {
   if (!std::isfinite(sigma)) return "n/a";
   const double unit = std::pow(10.0, -decimals);
-  // 0 has no sign.
+  // Adding 0.0 removes the sign of -0.
   const double rounded = unit * std::round(factor * value / unit) + 0.0;
   return FixedNumber(rounded, decimals) + " +- " +
          FixedNumber(factor * sigma, decimals);

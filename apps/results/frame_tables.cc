@@ -44,7 +44,7 @@ std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
       "tx,ty,tz,qx,qy,qz,qw,"
       "decode_ms,track_ms,match_ms,solve_ms,reference_ms,relocalise_ms\n";
   for (const TrackedFrame& frame : frames) {
-    // Reasons are our own words and hold no quotes.
+    // Reasons are fixed texts without quotes.
     text +=
         Format("%.6f,%s,\"%s\",%d,%d,%d,%d,%d,%s,%d,%d,%d,%.4f",
                frame.timestamp, ToString(frame.status), frame.reason.c_str(),
@@ -141,7 +141,7 @@ std::string FormatErrorsCsv(const std::vector<TrackedFrame>& frames,
   for (const StampedPose& pose : truth) times.push_back(pose.timestamp);
   auto error = report.poses.begin();
   for (const TrackedFrame& frame : frames) {
-    // Not a number where nothing is known.
+    // NaN stands for an unknown value.
     Eigen::Matrix<double, 9, 1> cells = decltype(cells)::Constant(NAN);
     const size_t nearest = NearestTime(times, frame.timestamp);
     if (std::abs(times[nearest] - frame.timestamp) <=

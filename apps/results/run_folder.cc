@@ -41,8 +41,8 @@ constexpr char kImages[] = "debug";
                    " cannot be made or written to (" + error.message() + ")");
 }
 
-// Those that runs name, by the number of a frame (000123.png,
-// 000123_residuals.png); whatever else is there is not ours.
+// Removes the debug images that runs write, named by frame number (000123.png,
+// 000123_residuals.png). Other files stay.
 void RemoveDebugImages(const fs::path& folder) {
   std::error_code error;
   std::vector<fs::path> ours;
@@ -55,10 +55,10 @@ void RemoveDebugImages(const fs::path& folder) {
       ours.push_back(entry.path());
   }
   for (const fs::path& image : ours) fs::remove(image);
-  fs::remove(folder, error);  // if nothing else is in it
+  fs::remove(folder, error);  // if empty
 }
 
-// Whether an open folder is still the one of that path.
+// Whether `file` is still the folder at `path`.
 bool IsAt(int file, const fs::path& path) {
   struct stat open_one, one_there;
   return fstat(file, &open_one) == 0 && stat(path.c_str(), &one_there) == 0 &&
@@ -85,12 +85,12 @@ RunFolder::RunFolder(const std::string& path)
   if (error) FailOnFolder(path_, error);
   Lock();
   for (const auto& entry : fs::directory_iterator(staging_dir_, error)) {
-    fs::remove_all(entry, error);  // of a run that was killed
+    fs::remove_all(entry, error);  // left by a killed run
   }
 }
 
-// The last run to have the folder removes it; who opened it just before that
-// has to make a new one.
+// The previous run removes the staging folder when it ends. A run that opened
+// the folder just before must create and lock it again.
 void RunFolder::Lock() {
   do {
     if (lock_ >= 0) close(lock_);
@@ -100,7 +100,7 @@ void RunFolder::Lock() {
     lock_ = open(staging_dir_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (lock_ < 0 && errno == ENOENT) continue;
     if (lock_ < 0) FailOnFolder(path_, {errno, std::generic_category()});
-    // File systems without locks have to do without.
+    // File systems without locks are accepted.
     if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       close(lock_);
       throw InputError("--output: " + path_.string() +
@@ -113,7 +113,7 @@ void RunFolder::Lock() {
 RunFolder::~RunFolder() {
   std::error_code ignored;
   fs::remove_all(staging_dir_, ignored);
-  if (is_new_) fs::remove(path_, ignored);  // if it is empty
+  if (is_new_) fs::remove(path_, ignored);  // if empty
   close(lock_);
 }
 

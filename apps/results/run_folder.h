@@ -5,30 +5,29 @@
 
 namespace rgbd_pose {
 
-// The folder that a run leaves its results in. They are written first into a
-// folder in it, and take their places together when all are written: a run that
-// fails, whenever it does, leaves those of an earlier one as they were. Two
-// runs at once are refused.
+// The folder for the results of a run. Files are first written to a staging
+// folder inside it and moved to their places together when all are written, so
+// a failed run leaves the results of an earlier run unchanged. Two runs cannot
+// use the folder at the same time.
 class RunFolder {
  public:
-  // Makes the folder. Throws InputError if it cannot be written to or another
-  // run works on it.
+  // Creates the folder. Throws InputError if it is in use or not writable.
   explicit RunFolder(const std::string& path);
 
-  // Removes what has not been published.
+  // Removes all unpublished files.
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
 
-  // Where to write the results meanwhile.
+  // The folder for files that are not yet published.
   const std::filesystem::path& staging_dir() const { return staging_dir_; }
 
-  // Writes a file into it. Throws InputError.
+  // Writes a file into the staging folder. Throws InputError.
   void WriteFile(const char* name, const std::string& content) const;
 
-  // Moves all files to their places, metrics.json last, and removes what an
-  // earlier run has left of these or other results, images in debug/ included.
-  // Files of others stay. Throws InputError.
+  // Moves all files to their places, metrics.json last, and removes other
+  // results of an earlier run, including images in debug/. Foreign files stay.
+  // Throws InputError.
   void Publish();
 
  private:

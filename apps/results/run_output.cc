@@ -43,7 +43,7 @@ FusionOptions CloudOptions(const Camera& camera, double voxel,
   return options;
 }
 
-// What the odometry has made of its last frame.
+// Draws the result of the odometry for its last frame.
 void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                      const TrackedFrame& tracked, const Camera& camera,
                      const Odometry& odometry) {
@@ -77,11 +77,11 @@ nlohmann::json ResidualsToJson(const ResidualHistogram& residuals) {
           {"degrees_counts", residuals.degrees}};
 }
 
-// The most memory (MB) that this process has had so far.
+// The peak memory use of this process, MB.
 double PeakMemoryMb() {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);
-  return usage.ru_maxrss * 1024 / 1e6;  // it counts KiB
+  return usage.ru_maxrss * 1024 / 1e6;  // ru_maxrss is in KiB
 }
 
 }  // namespace
@@ -193,7 +193,7 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   folder_.WriteFile("frames.csv", FormatFramesCsv(results.frames));
   folder_.WriteFile("edges.csv", FormatEdgesCsv(results.frames));
   folder_.WriteFile("config.flags", flags);
-  // The name of the dataset may be no UTF-8.
+  // The name of the dataset may be invalid UTF-8.
   folder_.WriteFile("metrics.json",
                     metrics.dump(2, ' ', /*ensure_ascii=*/false,
                                  nlohmann::json::error_handler_t::replace) +
@@ -201,8 +201,8 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   return text;
 }
 
-// And a few of its points in the world that the page of the run shows. Returns
-// what metrics.json says of it.
+// Also writes a preview of the cloud in the world of the run's page. Returns
+// the entry for metrics.json.
 nlohmann::json RunOutput::WriteCloud(const Rigid3d& shown_from_world,
                                      std::string* text) const {
   const VoxelCloud& points = cloud_->cloud();

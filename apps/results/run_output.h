@@ -14,37 +14,37 @@
 
 namespace rgbd_pose {
 
-// What a run of rgbd_odometry is to leave behind, by the names of its flags.
+// The outputs of a run of rgbd_odometry, named like its flags.
 struct RunOutputSettings {
   std::string output;        // folder
   std::string debug_images;  // FrameSelection
   std::string save_cloud;    // file; empty: no cloud
   std::string save_mesh;     // file; empty: no mesh
-  double voxel = 0.01;       // side of the cubes of both, m
+  double voxel = 0.01;       // side of the voxels of both, m
 };
 
-// Their rows.
 std::vector<Setting> SettingTable(RunOutputSettings* settings);
 
-// The files of a run: drawn and fused as frames come, written at the end.
+// The output files of a run. Images and the cloud are made while frames arrive;
+// the files are written at the end.
 class RunOutput {
  public:
-  // Makes what must be there before the work begins. Throws InputError if it
-  // cannot, or for options that make no sense. The source must outlive it and
-  // keep colours for a cloud.
+  // Creates the output folder before the run. Throws InputError if this fails
+  // or for invalid options. The source must outlive this object and keep
+  // colours if a cloud is requested.
   RunOutput(const RunOutputSettings& settings, const FrameSource& source,
             const DepthLookupOptions& depth);
 
-  // After the run has tracked a frame.
+  // Call after the run has tracked a frame.
   void Add(const Frame& frame, const SequenceRun& run);
 
-  // Where its files are written, and further ones may be.
+  // The folder of the files; callers may add further files.
   RunFolder& folder() { return folder_; }
 
-  // Writes all files but the page: `flags` into config.flags, `dataset`, the
-  // program's name and `more` (an object) into metrics.json. `seconds`: of the
-  // whole program, up to the last frame, by `threads`. `truth` may be null.
-  // Returns what the program prints of them.
+  // Writes all files except the page. `flags` goes into config.flags;
+  // `dataset`, the program's name and `more` (an object) go into metrics.json.
+  // `seconds` is the time of the whole program up to the last frame, with
+  // `threads` threads. `truth` may be null. Returns the text to print.
   std::string Write(const RunResults& results, int threads, double seconds,
                     const Trajectory* truth, const std::string& dataset,
                     const std::string& flags,
@@ -62,7 +62,7 @@ class RunOutput {
   FusionOptions cloud_options_;
   std::optional<CloudFusion> cloud_;
   RunFolder folder_;
-  std::vector<double> depth_stamps_ms_;  // of each frame, after colour's
+  std::vector<double> depth_stamps_ms_;  // relative to colour, per frame
 };
 
 }  // namespace rgbd_pose

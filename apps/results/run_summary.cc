@@ -9,21 +9,20 @@
 namespace rgbd_pose {
 namespace {
 
-// 0 where there is nothing to sum up.
 double QuantileOrZero(const std::vector<double>& values, double share) {
   return values.empty() ? 0.0 : Quantile(values, share);
 }
 
-// What makes a jump, and how many are told.
+// Thresholds for a jump, and the maximum number reported.
 constexpr double kLeastMetres = 0.01;
 constexpr double kTimesMedian = 6.0;
 constexpr size_t kMostJumps = 20;
 
-// Motions over unequal times cannot be compared.
+// Motions over unequal intervals cannot be compared.
 constexpr double kMaxIntervalRatio = 1.6;
 
-// How far the motion to frame i is from the mean of its neighbours'; negative
-// where it cannot be said.
+// The difference between the motion to frame i and the mean of its neighbours;
+// negative if it cannot be computed.
 double Deviation(const std::vector<TrackedFrame>& frames, size_t i) {
   double shortest = 1e9, longest = 0.0;
   for (size_t k = i - 2; k <= i + 1; ++k) {
@@ -128,7 +127,7 @@ std::vector<MotionJump> FindJumps(const std::vector<TrackedFrame>& frames) {
     const double deviation = Deviation(frames, i);
     if (deviation < 0.0) continue;
     deviations.push_back(deviation);
-    // One motion that is off makes its neighbours differ, too.
+    // A single wrong motion also affects the difference at its neighbours.
     if (!jumps.empty() && jumps.back().frame + 2 >= static_cast<int>(i)) {
       if (jumps.back().translation >= 0.99 * deviation) continue;
       jumps.pop_back();

@@ -18,7 +18,7 @@ DEFINE_bool(finish_on_signal, true,
 namespace rgbd_pose {
 namespace {
 
-// A run that tracked less of its frames than this has failed.
+// A run with a smaller share of tracked frames has failed.
 constexpr double kMinTrackedShare = 0.5;
 
 constexpr int kSignals[] = {SIGINT, SIGTERM};
@@ -92,11 +92,11 @@ StopSignal::StopSignal() {
   came = 0;
   struct sigaction action = {};
   action.sa_handler = Remember;
-  action.sa_flags = SA_RESETHAND | SA_RESTART;  // the next one does its work
+  action.sa_flags = SA_RESETHAND | SA_RESTART;  // a second one ends the program
   sigemptyset(&action.sa_mask);
   for (int i = 0; i < 2; ++i) {
     sigaction(kSignals[i], nullptr, &before[i]);
-    // Who has started the program in the background may want it left alone.
+    // A signal ignored by the parent process stays ignored.
     const bool is_ignored = before[i].sa_handler == SIG_IGN;
     if (FLAGS_finish_on_signal && !is_ignored) {
       sigaction(kSignals[i], &action, nullptr);

@@ -13,8 +13,8 @@
 namespace rgbd_pose {
 namespace {
 
-// g2o's error of an edge is [t, vec q] of measured^-1 * true, ref_from_cur; of
-// ours it is [R c, -omega / 2] with R of cur_from_ref.
+// g2o's error of an edge is [t, vec q] of measured^-1 * true, ref_from_cur. Our
+// error in these terms is [R c, -omega / 2] with R of cur_from_ref.
 MotionMatrix G2oInformation(const RelativePose& edge) {
   MotionMatrix J = MotionMatrix::Zero();
   J.topRightCorner<3, 3>() = edge.cur_from_ref.rotation.toRotationMatrix();
@@ -22,8 +22,8 @@ MotionMatrix G2oInformation(const RelativePose& edge) {
   return (J * edge.covariance * J.transpose()).inverse();
 }
 
-// The first frame whose pose was known in a loaded map, -1 if none was; null
-// where no map was loaded: the segments of frames count on from its own.
+// The first frame with a known pose in a loaded map; -1 if there is none, null
+// without a loaded map (whose segment numbers precede those of the frames).
 nlohmann::json LocalisedFrom(const std::vector<SlamFrame>& frames) {
   if (frames.empty() || frames[0].segment == 0) return nullptr;
   const auto found =

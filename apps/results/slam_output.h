@@ -8,32 +8,31 @@
 
 namespace rgbd_pose {
 
-// slam.csv: a line a frame: its segment, odom_from_cam, map_from_odom, and what
-// was taken up of the work behind.
+// slam.csv: one line per frame with segment, odom_from_cam, map_from_odom and
+// the map updates that were applied.
 std::string FormatSlamCsv(const std::vector<SlamFrame>& frames);
 
-// Poses as they were known at the time, map_from_cam. Without frames whose
-// segment has become part of another one since: their poses were of another
-// world.
+// The poses map_from_cam as known at the time. Frames whose segment was merged
+// into another one later are left out: their poses are in another world.
 std::string FormatOnlineTrajectory(const Slam& slam,
                                    const std::vector<SlamFrame>& frames);
 
-// keyframes.csv: name, time, segment, pose and its covariance.
+// keyframes.csv: id, time, segment, pose and pose covariance.
 std::string FormatKeyframesCsv(const KeyframeMap& map,
                                const std::vector<MotionMatrix>& covariances);
 
-// graph.g2o: VERTEX_SE3:QUAT and EDGE_SE3:QUAT as g2o has them, from_from_to
-// and its information of [t, vec q] in the axes of the edge's end.
+// graph.g2o: VERTEX_SE3:QUAT and EDGE_SE3:QUAT as defined by g2o. An edge has
+// from_from_to and the information of [t, vec q] in the axes of the edge's end.
 std::string FormatG2o(const KeyframeMap& map);
 
-// For the page: keyframes and pairs.
+// Keyframes and pairs for the page.
 nlohmann::json SlamToJson(const Slam& slam,
                           const std::vector<SlamFrame>& frames);
 
-// One line on what the map could not be made of, or empty.
+// Describes in one line what is missing in the map, or empty.
 std::string SlamWarning(const nlohmann::json& slam);
 
-// What the program prints of it.
+// Formats the text that the program prints.
 std::string FormatSlamSummary(const nlohmann::json& slam);
 
 }  // namespace rgbd_pose

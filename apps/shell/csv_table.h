@@ -5,12 +5,12 @@
 
 namespace rgbd_pose {
 
-// A text table as the programs write it: a line of column names, then rows of
-// cells set apart by commas; cells may be in double quotes.
+// A text table as written by the programs: a line of column names, then rows of
+// comma-separated cells. Cells may be in double quotes.
 class CsvTable {
  public:
-  // Throws InputError if the file cannot be read or a row has not as many
-  // cells as there are columns.
+  // Throws InputError if the file cannot be read or the number of cells in a
+  // row differs from the number of columns.
   static CsvTable Read(const std::string& path);
 
   size_t size() const { return rows_.size(); }
@@ -19,8 +19,8 @@ class CsvTable {
   // The cells of a column. Throws InputError if there is no such column.
   std::vector<std::string> Words(const std::string& column) const;
 
-  // The same as numbers, NaN where a cell is empty. Throws InputError for
-  // anything else that is no finite number.
+  // The same as numbers; NaN for an empty cell. Throws InputError for any other
+  // cell that is not a finite number.
   std::vector<double> Numbers(const std::string& column) const;
 
  private:

@@ -17,7 +17,7 @@ namespace {
 
 using gflags::CommandLineFlagInfo;
 
-// Flags that gflags acts upon itself, partly by ending the process.
+// Flags that gflags handles itself, partly by ending the process.
 bool IsOfGflags(const std::string& name) {
   static const std::set<std::string> kNames = {
       "flagfile",    "fromenv",
@@ -35,7 +35,7 @@ bool FindFlag(const std::string& name, CommandLineFlagInfo* flag) {
          gflags::GetCommandLineFlagInfo(name.c_str(), flag);
 }
 
-// The switch that "no<name>" turns off.
+// Finds the switch that "no<name>" turns off.
 bool FindNegated(const std::string& name, CommandLineFlagInfo* flag) {
   return name.rfind("no", 0) == 0 && FindFlag(name.substr(2), flag) &&
          flag->type == "bool";
@@ -48,7 +48,7 @@ std::string_view WithoutSpaceAround(std::string_view line) {
   return line;
 }
 
-// How many letters have to be put in, left out or changed.
+// The number of letters to insert, delete or replace.
 int EditDistance(const std::string& a, const std::string& b) {
   std::vector<int> row(b.size() + 1);
   std::iota(row.begin(), row.end(), 0);
@@ -63,7 +63,7 @@ int EditDistance(const std::string& a, const std::string& b) {
   return row.back();
 }
 
-// The flag that was probably meant, or what to do without one.
+// Suggests the most similar flag, or what to do if there is none.
 std::string Hint(const std::string& name) {
   std::vector<CommandLineFlagInfo> flags;
   gflags::GetAllFlags(&flags);
@@ -81,10 +81,10 @@ std::string Hint(const std::string& name) {
 
 class FlagReader {
  public:
-  // `where` goes before messages.
+  // `where` is the prefix of error messages.
   void Read(const std::vector<std::string>& words, const std::string& where) {
     for (auto word = words.begin(); word != words.end(); ++word) {
-      // gflags would read a word up to its first zero byte.
+      // gflags would read a word only up to its first zero byte.
       if (word->size() < 2 || word->front() != '-' || *word == "--" ||
           word->find('\0') != std::string::npos) {
         const bool is_of_list =

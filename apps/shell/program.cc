@@ -24,13 +24,13 @@
 namespace rgbd_pose {
 namespace {
 
-// A call without what the program needs.
+// The error of a call without a required flag.
 class UsageError : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
 };
 
-// A flag of gflags for each row of some tables of settings. Must live as long
+// Defines a gflag for each row of some tables of settings. It must live as long
 // as flags are read.
 class SettingFlags {
  public:
@@ -43,14 +43,14 @@ class SettingFlags {
     }
   }
 
-  // The flags write numbers into the settings themselves; this, when they have
-  // been read, sets what goes by name. Throws InputError for unknown names.
+  // gflags writes numbers directly into the settings. This sets values by name,
+  // after the flags have been read. Throws InputError for unknown names.
   void Apply() const {
     for (const Row& row : rows_) row.named.set(row.text);
   }
 
  private:
-  // A setting by name, and what its flag holds.
+  // A setting by name, and the text of its flag.
   struct Row {
     NamedSetting named;
     std::string text;
@@ -61,7 +61,7 @@ class SettingFlags {
     Add(setting, &rows_.back().text);
   }
 
-  // gflags holds on to both places.
+  // gflags keeps both addresses.
   template <typename Value>
   void Add(const Setting& setting, Value* current) {
     defaults_.emplace_back(*current);
@@ -69,7 +69,7 @@ class SettingFlags {
                            &std::get<Value>(defaults_.back()));
   }
 
-  // In deques, where what they hold stays.
+  // Deques keep the addresses of their elements.
   std::deque<Row> rows_;
   std::deque<std::variant<int, double, bool, std::string>> defaults_;
 };
@@ -80,7 +80,7 @@ bool IsHelp(const std::string& argument) {
          argument == "--helpfull" || argument == "--helpshort";
 }
 
-// gflags prints all 17 digits of a number.
+// Shortens numbers: gflags prints all 17 digits.
 std::string FlagValue(const gflags::CommandLineFlagInfo& flag,
                       const std::string& value) {
   return flag.type == "double"
@@ -88,7 +88,7 @@ std::string FlagValue(const gflags::CommandLineFlagInfo& flag,
              : value;
 }
 
-// Of the settings, then the program's own.
+// The groups of the settings, then the program's own groups.
 std::vector<FlagGroup> AllGroups(const ProgramInfo& info) {
   std::vector<FlagGroup> groups;
   for (const std::vector<Setting>& table : info.settings) {
@@ -103,7 +103,7 @@ std::vector<FlagGroup> AllGroups(const ProgramInfo& info) {
   return groups;
 }
 
-// The names that a flag takes; empty: it takes others.
+// The valid names of a flag; empty if it does not take a name.
 std::vector<std::string> ChoicesOf(const ProgramInfo& info,
                                    const std::string& flag) {
   for (const std::vector<Setting>& table : info.settings) {
@@ -149,7 +149,7 @@ int Run(int argc, char** argv, const ProgramInfo& info,
     ReadFlags({argv + 1, argv + argc});
     FLAGS_logtostderr = true;
     google::InitGoogleLogging(argv[0]);
-    // A file that grows beyond a limit is reported as a full disk is.
+    // Ignored: exceeding a file size limit is then reported like a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
     settings.Apply();
     const int exit_code = body();
@@ -171,7 +171,7 @@ int Run(int argc, char** argv, const ProgramInfo& info,
   }
 }
 
-// More than any machine can use for this.
+// More threads than any machine could use here.
 constexpr int kMaxThreads = 256;
 
 }  // namespace
@@ -215,8 +215,8 @@ void RequireFlag(const std::string& name, const std::string& value) {
 }
 
 int AvailableCores() {
-  // Unlike the number of cores of the machine, this heeds what a scheduler
-  // such as Slurm has given.
+  // Unlike the number of cores of the machine, this respects the limit of a
+  // scheduler such as Slurm.
   cpu_set_t cores;
   if (sched_getaffinity(0, sizeof(cores), &cores) == 0) {
     return std::max(1, CPU_COUNT(&cores));

@@ -9,44 +9,45 @@
 
 namespace rgbd_pose {
 
-// What every program of the project exits with.
+// Exit codes of all programs of the project.
 enum ExitCode {
   kExitOk = 0,
-  kExitUsage = 1,           // called without what it needs
-  kExitBadInput = 2,        // a flag, file or image that cannot be used
-  kExitTrackingFailed = 3,  // ran, but the result is not usable
+  kExitUsage = 1,           // a required flag is missing
+  kExitBadInput = 2,        // an unusable flag, file or image
+  kExitTrackingFailed = 3,  // finished, but the result is not usable
   kExitSomeFailed = 4,      // some items of a batch failed
-  kExitCameraKept = 5,      // no better camera was found than the one there is
+  kExitCameraKept = 5,      // no better camera was found
   kExitStopped = 6,         // by a signal, or no frame could be read
 };
 
-// Flags shown together in --help.
+// Flags that are shown together in --help.
 struct FlagGroup {
   std::string title;
   std::vector<std::string> flags;
 };
 
-// What --help says of a program.
+// The information that --help shows about a program.
 struct ProgramInfo {
   std::string name;
   std::string summary;  // one sentence
-  std::string example;  // one call
+  std::string example;  // one example call
   std::vector<FlagGroup> flag_groups;
-  // Flags that take a name of a list: which names there are.
+  // Flags whose value is one of a list of names, with these names.
   std::map<std::string, std::vector<std::string>> choices = {};
-  // Tables of settings whose rows are flags, shown before the groups above.
-  // What they write to must live as long as the program.
+  // Tables of settings whose rows become flags, shown before the groups above.
+  // The settings must live as long as the program.
   std::vector<std::vector<Setting>> settings = {};
 };
 
-// Runs a program: --help and --version first, then the flags (one clear line
-// and exit 2 for an unknown flag or a value of the wrong type), logging to
-// stderr and the settings, then `body`, whose InputError becomes one line on
-// stderr and exit 2. Call it from main with main's own arguments.
+// Runs a program. Handles --help and --version, then reads the flags (one line
+// and exit code 2 for an unknown flag or a value of the wrong type),
+// initialises logging to stderr, sets the settings and calls `body`. An
+// InputError of `body` becomes one line on stderr and exit code 2. Call it from
+// main with main's arguments.
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body);
 
-// The same for a program with tables of settings of its own.
+// The same for a program with its own tables of settings.
 template <typename Settings>
 int RunProgram(int argc, char** argv, ProgramInfo (*info)(Settings*),
                int (*body)(const Settings&, const ProgramInfo&)) {
@@ -55,21 +56,21 @@ int RunProgram(int argc, char** argv, ProgramInfo (*info)(Settings*),
   return RunProgram(argc, argv, own, [&] { return body(settings, own); });
 }
 
-// All flags of the program's groups as a file for --flagfile.
+// Formats all flags of the program's groups as a file for --flagfile.
 std::string FormatFlagFile(const ProgramInfo& info);
 
-// Warns on stderr, a line each.
+// Prints warnings on stderr, one per line.
 void Warn(const std::vector<std::string>& lines);
 
-// Stops with kExitUsage and one line where a flag that must be given is empty.
-// Throws UsageError, which RunProgram turns into that exit.
+// If a required flag is empty, throws UsageError, which RunProgram turns into
+// one line on stderr and kExitUsage.
 void RequireFlag(const std::string& name, const std::string& value);
 
-// How many processor cores this process may use, at least 1.
+// The number of processor cores that this process may use, at least 1.
 int AvailableCores();
 
-// What the flag --threads of a program comes to: 0 is one a core. Throws
-// InputError for what is no number of threads.
+// Resolves the --threads flag of a program: 0 means one thread per core. Throws
+// InputError for an invalid number.
 int NumThreads(int flag);
 
 }  // namespace rgbd_pose

@@ -5,8 +5,8 @@
 
 namespace rgbd_pose {
 
-// A progress bar with the time left, drawn on stderr only if that is a
-// terminal. Removes itself when destroyed.
+// A progress bar with the remaining time, drawn on stderr only if it is a
+// terminal. It is erased on destruction.
 class ProgressBar {
  public:
   ProgressBar(std::string label, int total);
@@ -14,18 +14,16 @@ class ProgressBar {
   ProgressBar(const ProgressBar&) = delete;
   ProgressBar& operator=(const ProgressBar&) = delete;
 
-  // Says that `done` of `total` items are ready; redraws at most ten times a
-  // second.
+  // Reports that `done` items are finished. Redraws at most ten times a second.
   void Update(int done);
 
-  // Prints a line on stderr, terminal or not; the bar moves below it with the
-  // next update.
+  // Prints a line on stderr, terminal or not; the bar is redrawn below it.
   void PrintLine(const std::string& line);
 
-  // Whether the bar is drawn at all.
+  // Whether the bar is drawn.
   bool visible() const { return visible_; }
 
-  // How long the rest will take, if it goes on like this: "12 s", "3 h 05 min".
+  // The estimated remaining time: "12 s", "3 h 05 min".
   std::string TimeLeft(int done) const;
 
  private:
@@ -37,7 +35,7 @@ class ProgressBar {
   Clock::time_point last_drawn_;
 };
 
-// A duration as people say it: "12 s", "4 min 08 s", "3 h 05 min".
+// Formats a duration for people: "12 s", "4 min 08 s", "3 h 05 min".
 std::string FormatDuration(double seconds);
 
 }  // namespace rgbd_pose

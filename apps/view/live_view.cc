@@ -22,13 +22,13 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// Signals are looked at so often while waiting.
+// Interval for checking signals while waiting.
 constexpr milliseconds kSlice(50);
 
-// A run that is paused goes on if no page is there to end the pause.
+// After this time without an open page, a paused run continues.
 constexpr std::chrono::seconds kAlone(10);
 
-// Where matches are in the image as taken, px.
+// The position of a match in the distorted image, px.
 cv::Vec2f ImagePoint(const Camera& camera, const Observation& seen) {
   const Eigen::Vector2d pixel = camera.Project(camera.Ray(seen.u, seen.v));
   return {static_cast<float>(pixel.x()), static_cast<float>(pixel.y())};
@@ -112,7 +112,7 @@ void LiveView::AddKeyframe(const TrackedFrame& tracked, ViewNews* news) {
        SamplePoints(keyframe->frame, camera_)});
 }
 
-// Where keyframes are, if that is new, and what joins them.
+// Adds the keyframe poses, if they have changed, and the new links.
 void LiveView::AddMap(bool has_moved, ViewNews* news) {
   if (map_ == nullptr) {
     if (has_moved) news->poses = keyframes_;
@@ -144,7 +144,7 @@ ViewImages LiveView::Show(const Frame& frame) const {
   return images;
 }
 
-// A frame that is late makes all after it later: the rate is never made up for.
+// A late frame delays all later ones: the lost time is not caught up.
 void LiveView::KeepPace(double timestamp, const StopSignal& signal) {
   if (FLAGS_view_speed <= 0.0) return;
   const Clock::time_point now = Clock::now();

@@ -11,19 +11,20 @@
 
 namespace rgbd_pose {
 
-// A page that shows a run as it goes on, if --view asks for it.
+// A page that shows a run while it is running, if requested by --view.
 class LiveView {
  public:
-  // Prints the page's address on stderr. `map` is that of the run; null: it has
-  // none. Both must outlive it. Throws InputError for flags that make no sense.
+  // Prints the address of the page on stderr. `map` is the map of the run, or
+  // null if it has none. `run` and `map` must outlive this object. Throws
+  // InputError for invalid flags.
   LiveView(const std::string& dataset, const Camera& camera,
            const SequenceRun& run, const Slam* map);
 
-  // After the run has tracked a frame: shows it, and waits where --view_speed
-  // or a button asks for it. Returns why the run is to end, or nothing.
+  // Call after a frame was tracked. Shows the frame and waits if --view_speed
+  // or a button requests it. Returns why the run is to end, or an empty string.
   std::string Add(const Frame& frame, const StopSignal& signal);
 
-  // After the last: `results` says where they are.
+  // Call after the last frame. `results` is the location of the results.
   void Finish(const std::string& results);
 
  private:
@@ -40,11 +41,11 @@ class LiveView {
   const SequenceRun& run_;
   const Slam* map_;
   ViewState state_;
-  std::unique_ptr<ViewServer> server_;  // null: not asked for
+  std::unique_ptr<ViewServer> server_;  // null: not requested
 
-  std::map<int, Rigid3d> keyframes_;  // of a run without a map
-  size_t links_ = 0;                  // of the map, that were shown
-  Clock::time_point due_ = {};        // when the last frame was to be shown
+  std::map<int, Rigid3d> keyframes_;  // for a run without a map
+  size_t links_ = 0;                  // number of map links shown so far
+  Clock::time_point due_ = {};        // when the last frame had to be shown
   double last_timestamp_ = 0.0;
 };
 

@@ -12,11 +12,11 @@
 namespace rgbd_pose {
 namespace {
 
-// Images are made this wide, px: what the page shows.
+// Widths of the images on the page, px.
 constexpr double kGrayWidth = 640.0;
 constexpr double kDepthWidth = 320.0;
 
-// Steps of depth, m: 255 of them reach beyond 10 m.
+// Depth step, m. 255 steps reach beyond 10 m.
 constexpr double kDepthStep = 0.04;
 
 std::string Event(const char* name, const std::string& json) {
@@ -28,7 +28,7 @@ std::string Text(const std::string& text) {
                                    nlohmann::json::error_handler_t::replace);
 }
 
-// The items in brackets, each as `format` has it.
+// Formats the items in brackets, each with `format`.
 template <typename Items, typename FormatItem>
 std::string List(const Items& items, const FormatItem& format) {
   std::string text = "[";

@@ -6,11 +6,11 @@
 
 namespace rgbd_pose {
 
-// What is new as events for the browser (text/event-stream): "news" always,
-// "end" after the last.
+// Formats news as events for the browser (text/event-stream): always "news",
+// and "end" after the last frame.
 std::string FormatNews(const ViewNews& news);
 
-// Images and matches as an event "images". Packing them takes milliseconds.
+// Formats images and matches as an event "images". Takes milliseconds.
 std::string FormatImages(const ViewImages& images, int index);
 
 }  // namespace rgbd_pose

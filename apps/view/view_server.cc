@@ -24,22 +24,23 @@ using std::chrono::milliseconds;
 
 constexpr char kHost[] = "127.0.0.1";
 
-// Each open page holds a thread; others are turned away.
+// Each open page occupies a thread; further pages are refused.
 constexpr int kMaxReaders = 12;
 constexpr size_t kThreads = kMaxReaders + 4;
 
-// A page hears at most so often; encoding images takes time from tracking.
+// Minimum interval between events: encoding images takes time from tracking.
 constexpr milliseconds kInterval(80);
-// If nothing happens, it hears that, and so is missed when it is gone.
+// Interval of events without news. They detect pages that have been closed.
 constexpr milliseconds kHeartbeat(500);
 
-// A browser that does not read is let go, s. Only its own thread waits.
+// A browser that does not read is disconnected after this time, s. Only the
+// thread of this page waits.
 constexpr int kWriteTimeout = 2;
 
-// How long the end may take to reach the pages.
+// Maximum time for sending the last news to the pages.
 constexpr milliseconds kFarewell(1500);
 
-// One file that asks its server for events alone.
+// A self-contained page that only requests events from its server.
 std::string ViewPage(const std::string& title) {
   const ReportAssets assets = EmbeddedReportAssets();
   return FillPage(assets.view_page,
@@ -55,7 +56,7 @@ class ViewServer::Impl {
   Impl(const std::string& title, int port, ViewState* state)
       : state_(state), page_(ViewPage(title)) {
     server_.new_task_queue = [] { return new httplib::ThreadPool(kThreads); };
-    // Not SO_REUSEPORT, its default: a port belongs to one program.
+    // Replaces the default SO_REUSEPORT: a port must belong to one program.
     server_.set_socket_options([](socket_t socket) {
       const int yes = 1;
       setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
@@ -94,7 +95,7 @@ class ViewServer::Impl {
       std::this_thread::sleep_for(milliseconds(10));
     }
     is_closing_ = true;
-    // Until it listens it cannot be told to stop.
+    // The server can only be stopped once it is listening.
     while (!server_.is_running() && !has_ended_) std::this_thread::yield();
     server_.stop();
     thread_.join();
@@ -132,8 +133,8 @@ class ViewServer::Impl {
     button("/stop", [this] { state_->Stop(); });
   }
 
-  // Another site can make a browser ask this machine, by a name of its own or
-  // in the name of its page.
+  // Rejects requests that another site makes through the user's browser, with a
+  // host name of its own or from its page.
   bool IsOurs(const Request& request) const {
     const std::string port = ":" + std::to_string(port_);
     const std::string host = request.get_header_value("Host");
@@ -158,7 +159,7 @@ class ViewServer::Impl {
         [this](bool) { state_->AddReaders(-1); });
   }
 
-  // False ends the connection.
+  // Returns false to end the connection.
   bool SendNext(ViewCursor* cursor, httplib::DataSink* sink) {
     if (is_closing_) return false;
     const ViewNews news = state_->Next(kHeartbeat, cursor);
@@ -173,7 +174,7 @@ class ViewServer::Impl {
     return true;
   }
 
-  // Packed once for all pages.
+  // Encoded once for all pages.
   std::string Images(const ViewNews& news) {
     const std::lock_guard<std::mutex> lock(images_mutex_);
     if (news.images_index > packed_index_) {

@@ -7,23 +7,23 @@
 
 namespace rgbd_pose {
 
-// Whether this program was built with the library that serves pages.
+// Whether the program was built with the web server library.
 bool HasViewServer();
 
-// Serves a live page of a state to browsers on this machine, in threads of its
-// own: the page, its events, and its buttons. Nothing is read from disk; who
-// asks for another host, or for another page's sake, is refused.
+// Serves a live page of a state to browsers on this machine, in its own
+// threads: the page, its events and its buttons. Nothing is read from disk.
+// Requests with another host name or from another page are refused.
 class ViewServer {
  public:
-  // `title` is that of the page; port 0: one that is free. The state must
-  // outlive it. Throws InputError if it cannot listen there.
+  // `title`: title of the page; port 0: any free port. The state must outlive
+  // this object. Throws InputError if it cannot listen on the port.
   ViewServer(const std::string& title, int port, ViewState* state);
-  // Pages that read get the last news first.
+  // Sends the last news to open pages first.
   ~ViewServer();
   ViewServer(const ViewServer&) = delete;
   ViewServer& operator=(const ViewServer&) = delete;
 
-  // For a browser: "http://127.0.0.1:40123/"
+  // The address for a browser: "http://127.0.0.1:40123/"
   std::string address() const;
 
  private:

@@ -11,14 +11,14 @@
 namespace rgbd_pose {
 namespace {
 
-// A page's first events are of a long run: so much of it at once.
+// Maximum news per event, for pages that open late in a long run.
 constexpr size_t kMaxFrames = 2000;
 constexpr size_t kMaxKeyframes = 20;
 
-// More points than a browser draws fluently are not kept.
+// Points are thinned above this limit to keep drawing fluent.
 constexpr size_t kMaxPointBytes = 200000 * kViewPointBytes;
 
-// Copies what comes after `at`, at most `most`.
+// Copies at most `most` items after `at`.
 template <typename T>
 void TakeNew(const std::vector<T>& all, size_t most, size_t* at,
              std::vector<T>* news) {
@@ -32,10 +32,10 @@ void Append(std::vector<T> more, std::vector<T>* all) {
   std::move(more.begin(), more.end(), std::back_inserter(*all));
 }
 
-// So many points across the image: some 2,000 in all.
+// Number of sample points across the image: about 2,000 in total.
 constexpr int kColumns = 53;
 
-// Points beyond (m) are left out: depth cameras see little there that is right.
+// Points beyond this depth (m) are left out as too inaccurate.
 constexpr double kMaxDepth = 6.0;
 
 }  // namespace
@@ -63,7 +63,7 @@ void ViewState::Add(ViewNews news) {
   changed_.notify_all();
 }
 
-// Points come in random order: half of them are a thinner picture of the same.
+// Points are in random order, so half of them show the same, only thinner.
 void ViewState::ThinPoints() {
   point_bytes_ = 0;
   for (ViewKeyframe& keyframe : all_.keyframes) {
@@ -100,7 +100,7 @@ ViewNews ViewState::Next(std::chrono::milliseconds patience,
   if (cursor->images != images_) news.images = all_.images;
   news.images_index = all_.images_index;
   news.is_paused = all_.is_paused;
-  // The end comes after all that was before it.
+  // The end is reported after all earlier news.
   news.is_finished = all_.is_finished && cursor->frames == all_.frames.size() &&
                      cursor->keyframes == all_.keyframes.size();
   news.results = all_.results;

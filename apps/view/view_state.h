@@ -18,7 +18,7 @@
 
 namespace rgbd_pose {
 
-// A frame on the page. Where it is hangs on its keyframe: a loop moves that.
+// A frame on the page, relative to its keyframe, which loop closures move.
 struct ViewFrame {
   double timestamp = 0.0;  // s
   TrackingStatus status = TrackingStatus::kLost;
@@ -28,64 +28,63 @@ struct ViewFrame {
   int inliers = 0;
   double sigma = 0.0;
   int segment = 0;
-  std::optional<int> keyframe;  // by id; nothing: it was lost
+  std::optional<int> keyframe;  // id; empty: the frame was lost
   Rigid3d keyframe_from_cam;
 };
 
-// A keyframe and some of the points that it sees, see SamplePoints.
+// A keyframe and a sample of its visible points, see SamplePoints.
 struct ViewKeyframe {
   int id = 0;
   std::string points;
 };
 
-// The images of a frame and its matches. They share the frame's memory.
+// The images and matches of a frame. They share the frame's memory.
 struct ViewImages {
   cv::Mat gray;                  // CV_8UC1
   cv::Mat depth;                 // CV_16UC1
   double depth_scale = 5000.0;   // raw units per metre
-  std::vector<cv::Vec4f> moves;  // of matches: from and to, px (u, v, u, v)
-  std::vector<float> weights;    // of these, 0 to 1; empty: not known
+  std::vector<cv::Vec4f> moves;  // matches: from and to, px (u, v, u, v)
+  std::vector<float> weights;    // of the matches, 0 to 1; empty: unknown
 };
 
-// What a page has been told so far, or what it is told now: all that came after
-// a cursor.
+// The state of a page: either everything so far, or everything after a cursor.
 struct ViewNews {
   std::vector<ViewFrame> frames;
   std::vector<ViewKeyframe> keyframes;
   std::vector<MapLink> links;
-  // Of all keyframes, map_from_cam; empty: none has moved.
+  // Poses map_from_cam of all keyframes; empty if no keyframe has moved.
   std::map<int, Rigid3d> poses;
   std::optional<ViewImages> images;
-  int images_index = -1;  // of their frame
+  int images_index = -1;  // number of the frame
   bool is_paused = false;
-  std::string results;  // after the end: where they are
+  std::string results;  // after the end: location of the results
   bool is_finished = false;
 };
 
-// How far a reader is.
+// The position of a reader in the news.
 struct ViewCursor {
   size_t frames = 0;
   size_t keyframes = 0;
   size_t links = 0;
-  int poses = 0;  // versions of these
+  int poses = 0;  // version of the poses
   int images = 0;
   int controls = 0;
 };
 
-// What live pages show: written by the thread that tracks, read by any number
-// of others. Whoever holds its lock only copies.
+// The data shown by live pages. It is written by the tracking thread and read
+// by any number of other threads. The lock is only held for copying.
 class ViewState {
  public:
-  // Adds what is new; poses and images replace earlier ones.
+  // Adds news. Poses and images replace earlier ones.
   void Add(ViewNews news);
-  // The last call: says where results are.
+  // The last call: sets the location of the results.
   void Finish(const std::string& results);
 
-  // What is new since the cursor, waiting for it up to `patience`. Long
-  // histories come in parts.
+  // Returns the news since the cursor and waits for news up to `patience`. Long
+  // histories are returned in parts.
   ViewNews Next(std::chrono::milliseconds patience, ViewCursor* cursor);
 
-  // Pages that are open now.
+  // The number of open pages.
   int readers() const { return readers_; }
   void AddReaders(int more);
 
@@ -94,7 +93,7 @@ class ViewState {
   void Stop();
   bool is_stopped() const;
   bool is_paused() const;
-  // Waits up to `patience` as long as nobody presses one.
+  // Waits up to `patience` for a button press.
   void WaitForControl(std::chrono::milliseconds patience);
 
  private:
@@ -109,12 +108,12 @@ class ViewState {
   std::atomic<int> readers_{0};
 };
 
-// A point on the page: x, y, z in camera axes (mm, 16 bits each, signed, low
-// byte first) and its gray level.
+// Bytes of a point on the page: x, y, z in camera axes (mm, 16 bits each,
+// signed, low byte first) and its grey level.
 constexpr size_t kViewPointBytes = 7;
 
-// Some points that a frame sees, in random order, so that the first n are a
-// picture of all.
+// Samples visible points of a frame in random order, so the first n points
+// cover the whole view.
 std::string SamplePoints(const Frame& frame, const Camera& camera);
 
 }  // namespace rgbd_pose

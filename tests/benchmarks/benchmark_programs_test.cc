@@ -1,5 +1,5 @@
-// Runs the benchmark programs, as briefly as they can be, and makes the page of
-// what they measured. No timing is judged here.
+// Runs the benchmark programs as briefly as possible and makes the page of
+// their results. No timing is checked here.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -19,7 +19,7 @@ using testing::Not;
 
 class BenchmarkProgramsTest : public testing::Test {
  protected:
-  // Measures what the filter names; the path of the results.
+  // Runs the benchmarks that match the filter; returns the path of the results.
   std::string Measure(const std::string& program, const std::string& filter) {
     const RunResult run = RunCommand(
         program + " --benchmark_min_time=0.001 --benchmark_repetitions=2" +

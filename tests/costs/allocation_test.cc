@@ -1,5 +1,5 @@
-// Nothing of ours allocates in steady state, and memory is linear in the number
-// of matches. A program of its own, since it replaces the global operator new.
+// Our code does not allocate in steady state, and memory is linear in the
+// number of matches. A separate program, since it replaces global operator new.
 
 #include <ceres/cost_function.h>
 #include <ceres/problem.h>
@@ -123,8 +123,8 @@ TEST(AllocationTest, TheCompressedBlockAllocatesNothing) {
             0);
 }
 
-// What Ceres allocates for a problem of one block does not depend on the number
-// of matches, so neither may all of Estimate.
+// Ceres' allocations for a problem of one block do not depend on the number of
+// matches. Hence the allocations of Estimate() must not either.
 TEST(AllocationTest, EstimateAllocatesTheSameForAnyNumberOfMatches) {
   std::vector<long> counts;
   for (const int count : {100, 20000}) {
@@ -146,7 +146,7 @@ TEST(AllocationTest, EstimateAllocatesTheSameForAnyNumberOfMatches) {
   EXPECT_EQ(counts[0], counts[1]);
 }
 
-// What an estimate adds, at its peak, to the matches themselves.
+// Peak memory of an estimate in addition to the matches themselves.
 long PeakBytesOfEstimate(int count) {
   RandomWorld world(3);
   const Rigid3d truth = world.Motion(0.1, 0.1);
@@ -162,9 +162,9 @@ long PeakBytesOfEstimate(int count) {
 
 TEST(AllocationTest, MemoryIsLinearInTheNumberOfMatches) {
   // As docs/benchmarks.md states: 12 columns of 8 bytes, norm, weight and
-  // place.
+  // index.
   constexpr long kMaxBytesAMatch = 160;
-  // What does not grow with the matches: options, Ceres.
+  // Independent of the number of matches: options, Ceres.
   constexpr long kFixedBytes = 100000;
   for (const int count : {10000, 100000, 1000000}) {
     EXPECT_LE(PeakBytesOfEstimate(count), kFixedBytes + kMaxBytesAMatch * count)

@@ -1,5 +1,5 @@
-// The three assemblies are one problem: equal cost, gradient, J^T J and, step
-// for step, equal iterations of Ceres.
+// The three assemblies are the same problem: equal cost, gradient and J^T J,
+// and equal steps of Ceres.
 
 #include <ceres/problem.h>
 #include <ceres/solver.h>
@@ -22,8 +22,8 @@ namespace {
 constexpr double kEqual = 1e-10;      // sums of some hundred terms
 constexpr double kEqualSteps = 1e-9;  // the same after some iterations
 
-// So many depths are missing on each side that every cost finds matches to use
-// and matches to leave.
+// Enough missing depths on each side for every cost to have both matches that
+// it can use and matches that it cannot use.
 constexpr double kMissingDepthShare = 0.25;
 
 class AssemblyTest
@@ -38,10 +38,10 @@ class AssemblyTest
     }
   }
 
-  // Binds `count` matches that the cost can use, a fifth of them wrong, among
-  // others that it cannot (a prior is one block), at a motion off the truth.
-  // The baseline is long: near C = 0, where all epipolar residuals vanish and
-  // wrong matches therefore push, one step amplifies rounding a thousandfold.
+  // Binds `count` matches that the cost can use, a fifth of them outliers,
+  // among others that it cannot use (a prior is one block), at a motion off the
+  // truth. The baseline is long: near C = 0 all epipolar residuals vanish,
+  // outliers push towards it, and one step amplifies rounding a thousandfold.
   void Bind(int count) {
     RandomWorld world(7);
     const Rigid3d truth = world.Motion(0.05, 0.3);
@@ -72,9 +72,9 @@ class AssemblyTest
     return EvaluateProblem(cost_.get(), assembly, origin_, loss_.get(), x);
   }
 
-  // Together with an anchor of 1 cm and 0.6 degrees, the same for all: epipolar
-  // matches alone leave the scale open, where steps are only rounding, and a
-  // prior alone is met exactly, so that costs are only rounding.
+  // Adds the same anchor of 1 cm and 0.6 degrees to all. Epipolar matches alone
+  // leave the scale open, where steps are only rounding; a prior alone is met
+  // exactly, where costs are only rounding.
   ceres::Solver::Summary Solve(Assembly assembly, MotionVector* x) {
     auto problem =
         BuildProblem(cost_.get(), assembly, origin_, loss_.get(), x->data());
@@ -82,7 +82,7 @@ class AssemblyTest
     ceres::Solver::Options options;
     options.logging_type = ceres::SILENT;
     options.linear_solver_type = ceres::DENSE_QR;
-    // Scaling by column norms rounds differently; it has no other influence.
+    // Scaling by column norms rounds differently but has no other effect.
     options.max_num_iterations = 8;
     ceres::Solver::Summary summary;
     ceres::Solve(options, problem.get(), &summary);
@@ -97,7 +97,7 @@ class AssemblyTest
 };
 
 TEST_P(AssemblyTest, CostGradientAndHessianAreEqual) {
-  // Sizes around the width of the vector loops' lanes: the tails matter.
+  // Sizes around the number of lanes of the vector loops, to test their tails.
   for (const int count : {6, 7, 8, 9, 301}) {
     Bind(count);
     MotionVector x;

@@ -1,4 +1,4 @@
-// Residual types without a Jacobian of their own get one.
+// Residual types without a Jacobian get one by automatic differentiation.
 
 #include "costs/assembly/autodiff_jacobian.h"
 
@@ -18,8 +18,8 @@
 
 namespace {
 
-// A cost that stands outside the project and calls all functions there are, on
-// the match's numbers and on the motion's: of e = 0 all are 0.
+// A cost defined outside the project that calls all available functions, with
+// the match's and the motion's numbers. All residuals are 0 for e = 0.
 struct WithFunctions : rgbd_pose::ForwardError {
   static constexpr char kName[] = "with_functions";
   static constexpr int kRows = 3, kDegreesOfFreedom = 3;
@@ -49,7 +49,7 @@ struct WithFunctions : rgbd_pose::ForwardError {
 namespace rgbd_pose {
 namespace {
 
-// As PointToPoint, but for the Jacobian.
+// PointToPoint without its Jacobian.
 struct WithoutJacobian : ForwardError {
   static constexpr char kName[] = "without_jacobian";
   static constexpr int kRows = 3;
@@ -121,7 +121,7 @@ TEST(AutodiffJacobianTest, AllAssembliesFindTheMotion) {
   }
 }
 
-// Lane by lane as one by one, and as Jets differentiate.
+// Lanes give the values of scalars, and derivatives equal those of Jets.
 TEST(AutodiffJacobianTest, FunctionsAreThereForAllScalars) {
   RandomWorld world(5);
   const Rigid3d truth = world.Motion(0.1, 0.1);

@@ -1,4 +1,4 @@
-// The reusable block against plain Ceres: the same residuals, one block each.
+// Compares the reusable block with plain Ceres: one block for each residual.
 
 #include "costs/assembly/compressed_block.h"
 
@@ -159,7 +159,7 @@ TEST(CompressedBlockTest, CostOnlyIsTheCost) {
   EXPECT_NEAR(cost_with, cost_without, kSameSum * cost_without);
 }
 
-// A parameter without any influence makes H singular; it must stay put.
+// A parameter without influence makes H singular; it must not change.
 struct BlindResidual {
   static constexpr int kRows = 1, kParameters = 2;
   double y;
@@ -179,7 +179,7 @@ TEST(CompressedBlockTest, SurvivesASingularHessian) {
   problem.AddResidualBlock(MakeCompressedBlock(&residuals), nullptr, x);
   ceres::Solver::Options options;
   options.logging_type = ceres::SILENT;
-  options.function_tolerance = 1e-16;  // Ceres damps; go on to the end
+  options.function_tolerance = 1e-16;  // Ceres damps; converge fully
   ceres::Solver::Summary summary;
   ceres::Solve(options, &problem, &summary);
   EXPECT_TRUE(summary.IsSolutionUsable());
@@ -187,7 +187,7 @@ TEST(CompressedBlockTest, SurvivesASingularHessian) {
   EXPECT_NEAR(x[1], 7.0, 1e-8);
 }
 
-// R p + t - q at the motion exp(x[0..2]), x[3..5], the rotation to first order.
+// R p + t - q with the motion exp(x[0..2]), x[3..5]; rotation to first order.
 struct PointResidual {
   static constexpr int kRows = 3, kParameters = 6;
   Eigen::Vector3d p, q;
@@ -205,8 +205,8 @@ struct PointResidual {
   }
 };
 
-// Of `count` points that span so many dimensions (a line, a plane, space), and
-// in so small units: whether Ceres finds a covariance of their motion.
+// Whether Ceres finds a covariance for the motion of `count` points that span
+// `dimensions` dimensions (a line, a plane, space), in units of `unit`.
 bool HasCovariance(int count, int dimensions, double unit, int seed,
                    bool compressed) {
   std::mt19937 random(seed);
@@ -233,7 +233,7 @@ bool HasCovariance(int count, int dimensions, double unit, int seed,
       std::vector<std::pair<const double*, const double*>>{{x, x}}, &problem);
 }
 
-// What rounding leaves of H is no information.
+// Rounding errors in H must not count as information.
 TEST(CompressedBlockTest, CovarianceKnowsWhatPointsDoNotDetermine) {
   struct Points {
     int count, dimensions;
@@ -259,7 +259,7 @@ TEST(CompressedBlockTest, CovarianceKnowsWhatPointsDoNotDetermine) {
   }
 }
 
-// As docs/compressed_block.md says.
+// As documented in docs/compressed_block.md.
 TEST(CompressedBlockTest, LossesStayAndGradientsAreNotChecked) {
   const auto residuals = Waves<3>();
   ceres::HuberLoss loss(0.5);
@@ -308,7 +308,7 @@ struct LogResidual {
 
 TEST(CompressedBlockTest, RejectsStepsToWhereResidualsAreNotFinite) {
   const std::vector<LogResidual> residuals = {{0.1}, {0.3}};
-  ceres::TukeyLoss tukey(20.0);  // for which NaN is an outlier
+  ceres::TukeyLoss tukey(20.0);  // treats NaN as an outlier
   for (ceres::LossFunction* loss :
        std::initializer_list<ceres::LossFunction*>{nullptr, &tukey}) {
     double x[2] = {10.0, 10.0};
@@ -355,7 +355,7 @@ struct Distance {
   }
 };
 
-// Both may change while x stays: nothing of an earlier solve may be left.
+// Loss and data may change while x stays: nothing may be kept of a solve.
 TEST(CompressedBlockTest, FollowsALossAndDataThatChangeBetweenSolves) {
   std::vector<Distance> residuals = {{0.0}, {0.1}, {10.0}};
   ceres::LossFunctionWrapper loss(nullptr, ceres::TAKE_OWNERSHIP);
@@ -368,7 +368,7 @@ TEST(CompressedBlockTest, FollowsALossAndDataThatChangeBetweenSolves) {
     return sum[0];
   };
   Solve(&problem);
-  EXPECT_NEAR(x, 10.1 / 3.0, 1e-2);  // Ceres damps
+  EXPECT_NEAR(x, 10.1 / 3.0, 1e-2);  // Ceres uses damping
   double cost;
   problem.Evaluate({}, &cost, nullptr, nullptr, nullptr);
   loss.Reset(new ceres::HuberLoss(0.5), ceres::TAKE_OWNERSHIP);

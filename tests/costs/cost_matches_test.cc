@@ -1,4 +1,4 @@
-// Which matches each cost takes in.
+// Which matches each cost uses.
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@ namespace {
 
 Rigid3d Motion() { return RandomWorld(4).Motion(0.1, 0.3); }
 
-// Match 0 has both depths, 1 that of the previous frame, 2 that of the current
-// frame, 3 none; 4 has both and no normal.
+// Match 0 has both depths, 1 only that of the previous frame, 2 only that of
+// the current frame, 3 none; 4 has both but no normal.
 Correspondences MatchesOfAllKinds() {
   RandomWorld world(3);
   const Correspondences whole = world.Matches(5, 0.0, Motion());
@@ -55,7 +55,7 @@ TEST(CostMatchesTest, EachCostTakesWhatItCanUse) {
   }
 }
 
-// Of one frame's depth bidirectional_image has u and v alone.
+// With depth in one frame only, bidirectional_image has just u and v.
 TEST(CostMatchesTest, DegreesTellWhatIsMissing) {
   const Correspondences matches = MatchesOfAllKinds();
   const MotionPrior prior{Rigid3d(), MotionMatrix::Identity()};
@@ -70,8 +70,8 @@ TEST(CostMatchesTest, DegreesTellWhatIsMissing) {
   }
 }
 
-// The rays of an epipolar match have to see the baseline and meet before both
-// cameras.
+// An epipolar match needs a baseline that is visible from both rays, and rays
+// that meet in front of both cameras.
 TEST(CostMatchesTest, EpipolarNeedsABaselineAndAPointInFront) {
   const Camera camera;
   const double short_baseline = 0.9 * Epipolar::kMinBaseline;
@@ -101,7 +101,7 @@ TEST(CostMatchesTest, EpipolarNeedsABaselineAndAPointInFront) {
   EXPECT_FALSE(uses(0.0, 2.0));
 }
 
-// Costs keep nothing of what they were bound to before.
+// Costs keep no data of an earlier Bind().
 TEST(CostMatchesTest, BindingToNothingLeavesNothing) {
   const Correspondences matches = MatchesOfAllKinds();
   const MotionPrior prior{Rigid3d(), MotionMatrix::Identity()};

@@ -1,5 +1,5 @@
-// What every cost is, computed a second time with Eigen's matrices and, for
-// covariances, by differences: nothing of the costs' own code.
+// The values of every cost, computed independently with Eigen's matrices and,
+// for covariances, by finite differences. None of the costs' own code is used.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kValueTolerance = 1e-6;  // differences of second order
+constexpr double kValueTolerance = 1e-6;  // second-order differences
 constexpr double kStep = 1e-5;
 constexpr int kValueMatches = 50;
 
@@ -29,7 +29,7 @@ Eigen::Vector3d PointOf(const Camera& camera, const Measured& m) {
   return camera.Unproject(m.head<2>(), m.z());
 }
 
-// Where the other camera sees a measured point: u, v, inverse depth.
+// A measured point as the other camera sees it: u, v, inverse depth.
 Eigen::Vector3d SeenFrom(const Camera& camera, const Rigid3d& other_from_this,
                          const Measured& m) {
   const Eigen::Vector3d point = other_from_this * PointOf(camera, m);
@@ -37,7 +37,7 @@ Eigen::Vector3d SeenFrom(const Camera& camera, const Rigid3d& other_from_this,
   return {pixel.x(), pixel.y(), 1.0 / point.z()};
 }
 
-// Covariance of f(u, v, depth) by the noise of an observation.
+// Covariance of f(u, v, depth) caused by the noise of an observation.
 template <typename F>
 Eigen::Matrix3d Propagate(const Observation& o, F f) {
   const Eigen::Vector3d sigma(o.sigma_px, o.sigma_px, o.sigma_depth);
@@ -56,7 +56,7 @@ Eigen::VectorXd Whiten(const Eigen::MatrixXd& covariance,
   return covariance.llt().matrixL().solve(e);
 }
 
-// A cost bound at one motion and asked at another.
+// A cost that is bound at one motion and evaluated at another.
 class CostValuesTest : public ::testing::Test {
  protected:
   CostValuesTest() : world_(5) {
@@ -84,7 +84,7 @@ class CostValuesTest : public ::testing::Test {
            });
   }
 
-  // u, v and inverse depth of `target`, less what `source` predicts of them.
+  // u, v and inverse depth of `target`, minus their prediction from `source`.
   Eigen::Vector3d ImageError(const Observation& source,
                              const Observation& target,
                              const Rigid3d& target_from_source) const {
@@ -104,7 +104,7 @@ class CostValuesTest : public ::testing::Test {
     return Propagate(target, measured) + Propagate(source, predicted);
   }
 
-  // Compares all residuals of a cost with those of a function of the match.
+  // Compares all residuals of a cost with a function of the match's index.
   void Expect(const std::string& name,
               const std::function<Eigen::VectorXd(size_t)>& expected) {
     const std::unique_ptr<MotionCost> cost = MakeCost(name);
@@ -198,7 +198,7 @@ TEST_F(CostValuesTest, BidirectionalImage) {
   });
 }
 
-// With depth on one side: u and v of the direction that can be projected.
+// With depth on one side: u and v in the direction that can be projected.
 TEST_F(CostValuesTest, BidirectionalImageWithDepthOnOneSide) {
   Correspondences partial(matches_.camera());
   for (size_t i = 0; i < matches_.size(); ++i) {
@@ -232,7 +232,7 @@ TEST_F(CostValuesTest, Epipolar) {
     without_depth.Add(prev, cur);
   }
   matches_ = without_depth;
-  bound_ = motion_;  // or most matches are not used
+  bound_ = motion_;  // otherwise most matches are not used
   const Camera& camera = matches_.camera();
   const auto N = [&](const Eigen::Vector4d& pixels) {
     const Eigen::Vector3d prev = camera.Unproject(pixels.head<2>(), 1.0);
@@ -255,7 +255,7 @@ TEST_F(CostValuesTest, Epipolar) {
 }
 
 TEST_F(CostValuesTest, MotionPrior) {
-  // R = Exp(omega) R_p: the residual holds the axis times the sine.
+  // R = Exp(omega) R_p: the residual contains the axis times the sine.
   const Eigen::AngleAxisd turn(motion_.rotation *
                                prior_.mean.rotation.inverse());
   MotionVector e;
@@ -299,7 +299,7 @@ TEST_F(CostValuesTest, APriorMayBeAsVagueOrExactAsItLikes) {
   }
 }
 
-// An inertial sensor knows rotation alone.
+// An inertial sensor, for example, only measures rotation.
 TEST_F(CostValuesTest, APriorMayTellOfSomeDirectionsOnly) {
   const MotionMatrix all = prior_.information;
   prior_.information.setZero();

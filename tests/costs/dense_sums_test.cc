@@ -1,4 +1,4 @@
-// Sums over many matches: taken chunk by chunk, on any number of threads.
+// Sums over many matches: chunk by chunk, on any number of threads.
 
 #include <gtest/gtest.h>
 
@@ -17,8 +17,8 @@
 namespace rgbd_pose {
 namespace {
 
-// Some chunks (costs/assembly/packed_sum.h) and a part of one, not a multiple
-// of a lane.
+// Several chunks (costs/assembly/packed_sum.h) and a partial one; not a
+// multiple of the number of lanes.
 constexpr int kMany = 30003;
 
 TEST(ParallelForTest, DoesEverythingOnce) {
@@ -72,7 +72,7 @@ TEST_P(DenseSumsTest, AreTheSameToTheLastBitOnAnyNumberOfThreads) {
   }
 }
 
-// The parts, each small enough for one chunk, add up to the whole.
+// Parts that each fit into one chunk add up to the whole.
 TEST_P(DenseSumsTest, AreThoseOfTheirParts) {
   const NormalEquations whole = Sum(matches_, 2);
   NormalEquations parts;
@@ -91,7 +91,7 @@ TEST_P(DenseSumsTest, AreThoseOfTheirParts) {
   EXPECT_NEAR(whole.cost, parts.cost, kEqual * parts.cost);
   EXPECT_LE((whole.hessian - parts.hessian).norm(),
             kEqual * parts.hessian.norm());
-  // The gradient is a small rest of large terms: sqrt(2 c H) bounds them.
+  // The gradient is a small sum of large terms, bounded by sqrt(2 c H).
   EXPECT_LE((whole.gradient - parts.gradient).norm(),
             kEqual * std::sqrt(2.0 * parts.cost * parts.hessian.norm()));
 }

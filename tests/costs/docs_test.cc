@@ -1,4 +1,4 @@
-// docs/costs.md and docs/losses.md against the lists of costs and losses.
+// Compares docs/costs.md and docs/losses.md with the lists of costs and losses.
 
 #include <gtest/gtest.h>
 
@@ -25,7 +25,7 @@ struct Entry {
   std::string degrees_of_freedom;
 };
 
-// The cells of a table's line "| a | b | c |"; of any other line none.
+// The cells of a table's line "| a | b | c |"; empty for any other line.
 std::vector<std::string> Cells(const std::string& line) {
   std::vector<std::string> cells;
   if (line.empty() || line[0] != '|') return cells;
@@ -65,7 +65,7 @@ class CostsDocumentTest : public ::testing::Test {
   std::map<std::string, int> sections_;
 };
 
-// Over matches or over images.
+// A cost over matches or over images.
 std::unique_ptr<MotionCost> MakeAnyCost(const std::string& name) {
   std::unique_ptr<MotionCost> cost = MakeCost(name);
   return cost != nullptr ? std::move(cost) : MakeDirectCost(name, {});
@@ -102,8 +102,8 @@ std::string Printed(double width) {
   return text;
 }
 
-// Whether the influence w(x) x of a residual 10^6 widths off is no more than
-// 1e-4 of the largest: 1 / x falls to 2e-6, a constant not at all.
+// Whether the influence w(x) x of a residual of 10^6 widths is at most 1e-4 of
+// the largest: 1 / x falls to 2e-6, a constant not at all.
 bool IsRedescending(const MEstimator& row) {
   if (row.make == nullptr) return false;
   const std::unique_ptr<ceres::LossFunction> loss = row.make(1.0);

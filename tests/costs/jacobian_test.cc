@@ -1,5 +1,5 @@
-// Every hand-written Jacobian against ceres::Jet, exactly; not against finite
-// differences, which would hide a wrong small term.
+// Compares every hand-written Jacobian with ceres::Jet, exactly. Finite
+// differences would hide a small wrong term.
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
@@ -16,7 +16,7 @@ namespace rgbd_pose {
 namespace {
 
 // Rounding of some tens of operations, relative to the largest entry of the
-// row: a row mixes terms of very different sizes that may cancel.
+// row, because a row mixes terms of very different sizes that may cancel.
 constexpr double kJacobianTolerance = 1e-12;
 constexpr int kJacobianSamples = 1000;
 
@@ -51,8 +51,8 @@ TYPED_TEST(JacobianTest, EqualsTheOracleRowByRow) {
   }
 }
 
-// The thesis' tables by number: which block of rows and columns each is, so
-// that a failure names the table to look at.
+// The thesis' tables by number, with their block of rows and columns: a failure
+// names the table to check.
 struct Table {
   const char* name;
   int row;
@@ -88,8 +88,8 @@ TEST_F(BidirectionalPointTest, EqualsTheOracleTableByTable) {
   }
 }
 
-// With unit whitening on the optical axis (a = b = 0) the rows are the plain
-// errors of the tables, here written out in matrices.
+// With unit whitening on the optical axis (a = b = 0), the rows are the plain
+// errors of the tables, here written with matrices.
 TEST_F(BidirectionalPointTest, RowsAreTheThesisErrors) {
   const Eigen::Vector3d prev(0.0, 0.0, 1.5), cur(0.0, 0.0, 2.0);
   const double columns[] = {0, 0, prev.z(), 1, 1, 1, 0, 0, cur.z(), 1, 1, 1};

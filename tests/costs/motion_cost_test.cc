@@ -1,5 +1,5 @@
-// A cost that is not over matches: gray levels of a textured wall, chosen again
-// at every step, coarse to fine, with a scale of their own.
+// A cost that does not use matches: gray levels of a textured wall, with pixels
+// selected at every step, coarse to fine, and with a scale of their own.
 
 #include "core/estimation/motion_cost.h"
 
@@ -42,8 +42,8 @@ Camera WallCamera() {
   return camera;
 }
 
-// A tilted wall n . X = 2 m in previous axes, with a texture of long waves that
-// show the way from afar and short ones that mislead there.
+// A tilted wall n . X = 2 m in previous axes. Long waves of its texture guide
+// the solver from far away; short waves would mislead it there.
 struct Wall {
   const Eigen::Vector3d n = Eigen::Vector3d(-0.2, 0.3, 1.0);
 
@@ -53,7 +53,7 @@ struct Wall {
            15.0 * std::sin(50.0 * X.x()) * std::sin(50.0 * X.y());
   }
 
-  // In previous axes, where the ray of a pixel of a camera meets it.
+  // The point, in previous axes, where the ray of a pixel meets the wall.
   Eigen::Vector3d Hit(const Camera& camera, const Rigid3d& prev_from_cam,
                       double u, double v) const {
     const Eigen::Vector3d d = prev_from_cam.rotation *
@@ -111,7 +111,7 @@ struct WallFrame {
 };
 
 // r = (I_cur(project(R (X - C))) - I_prev) / sigma for pixels of the previous
-// image that the current one sees.
+// image that are visible in the current one.
 class GrayCost final : public MotionCost {
  public:
   explicit GrayCost(double sigma, int group = 1, double information = 1.0)
@@ -142,7 +142,7 @@ class GrayCost final : public MotionCost {
     pixels_.clear();
     for (int v = 0; v < prev.gray.height; ++v) {
       for (int u = 0; u < prev.gray.width; ++u) {
-        // The depth where the middle of this pixel lies in the full image.
+        // The depth at the full-resolution pixel in the middle of this pixel.
         const double half = 0.5 * (1 << level_) - 0.5;
         const double z =
             pair_.prev->DepthAt(static_cast<int>((u << level_) + half),
@@ -206,7 +206,7 @@ class GrayCost final : public MotionCost {
     problem->AddResidualBlock(&*block_, nullptr, x);
   }
 
-  // Outlives the cost, which an estimator owns.
+  // Outlives the cost, which is owned by an estimator.
   std::shared_ptr<int> num_associations = std::make_shared<int>(0);
 
  private:
@@ -299,7 +299,7 @@ TEST_F(MotionCostTest, IsAssociatedAfterEveryStep) {
   EXPECT_GE(*count, estimate.iterations + kLevels);
 }
 
-// Gray levels four times as noisy as said, with matches as noisy as said.
+// The noise of gray levels is four times the model's; that of matches is right.
 TEST_F(MotionCostTest, EachGroupHasItsOwnScale) {
   const Correspondences matches = RandomWorld(3).Matches(60, 0.0, Truth());
   EstimatorOptions options;

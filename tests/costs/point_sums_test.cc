@@ -7,7 +7,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of sums of 12 numbers near 1
+constexpr double kRounding = 1e-12;  // sums of 12 numbers near 1
 constexpr int kLanes = 4;
 constexpr int kAdditions = 3;
 using D = Lanes<kLanes>::Type;
@@ -19,7 +19,7 @@ Eigen::Matrix3d Skew(const Eigen::Vector3d& v) {
 }
 
 // The normal equations of points that move by dq = [q]x^T omega + c, without
-// any zeros that would hide a wrong entry.
+// zeros that could hide a wrong entry.
 TEST(PointSumsTest, AreTheNormalEquationsOfMovedPoints) {
   Eigen::Matrix3d turn, shift;
   turn << 0.9, 0.2, -0.3, 0.1, 1.1, 0.4, -0.2, 0.3, 0.8;
@@ -32,7 +32,7 @@ TEST(PointSumsTest, AreTheNormalEquationsOfMovedPoints) {
     D weight;
     for (int lane = 0; lane < kLanes; ++lane) {
       const int i = kLanes * addition + lane;
-      // Numbers without a pattern, the same everywhere.
+      // Reproducible numbers without a pattern.
       const auto number = [&](int k) {
         return std::sin(1.0 + 7.0 * i + 3 * k);
       };

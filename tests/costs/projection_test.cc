@@ -30,7 +30,7 @@ TEST(ProjectionTest, IsThePinholeInFrontOfTheCamera) {
   }
 }
 
-// In front, at the seam and behind.
+// In front of the camera, at the transition and behind.
 TEST(ProjectionTest, DerivativeEqualsTheOracle) {
   using Jet = ceres::Jet<double, 3>;
   for (const double z : {4.0, kNearestDepth, 0.05, 0.0, -3.0}) {
@@ -51,7 +51,7 @@ TEST(ProjectionTest, DerivativeEqualsTheOracle) {
 }
 
 TEST(ProjectionTest, GoesOnSmoothlyAndGrowsBehindTheCamera) {
-  // Continuous with its slope, -1/z0^2: the second order is h^2 / z0^3.
+  // Continuous with slope -1/z0^2; the second-order term is h^2 / z0^3.
   constexpr double h = 1e-7;
   const double above = Project(0.0, 0.0, kNearestDepth + h).z();
   const double at = Project(0.0, 0.0, kNearestDepth).z();
@@ -68,8 +68,8 @@ TEST(ProjectionTest, GoesOnSmoothlyAndGrowsBehindTheCamera) {
   }
 }
 
-// The current camera turned by 180 degrees has all points behind it, and
-// through a plain pinhole a mirrored image. No image cost may like that.
+// If the current camera is rotated by 180 degrees, all points are behind it. A
+// plain pinhole would mirror them, which no image cost may accept.
 TEST(ProjectionTest, PointsBehindTheCameraCostMore) {
   RandomWorld world(8);
   const Rigid3d truth = world.Motion(0.05, 0.05);

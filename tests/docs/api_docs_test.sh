@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# api_docs_test.sh SOURCE: scripts/api_docs in a copy, so that nothing is left.
+# api_docs_test.sh SOURCE: runs scripts/api_docs in a copy, which is removed.
 set -euo pipefail
 for program in doxygen dot; do
   command -v $program >/dev/null || {
@@ -16,7 +16,7 @@ cp -r "$1"/{core,robust,costs,frontend,apps,docs,scripts} "$folder"
   exit 1
 }
 
-# A gap is found: an undocumented class.
+# A gap (an undocumented class) is found.
 comment='// What all frontends share.'
 grep -qxF "$comment" "$folder/frontend/features/frontend.h"
 sed -i "\\|^$comment\$|d" "$folder/frontend/features/frontend.h"

@@ -3,11 +3,11 @@
 
 The ```sh blocks of PAGE (a path within SOURCE) are run in order, by one bash
 that stops at the first failure, in a scratch folder that looks like a checkout
-whose BUILD is finished. tests/docs/docs_exceptions.py says which commands are
-replaced or left out, and what a page needs to be there before.
+with a finished BUILD. tests/docs/docs_exceptions.py lists the commands that are
+replaced or left out, and what a page needs before its commands are run.
 
-Tools that would install packages or build are stand-ins: what they are asked
-for must exist (a preset, say), and no more is done.
+Tools that would install packages or build are replaced by stand-ins, which only
+check that their arguments (a preset, for example) exist.
 """
 
 import os
@@ -23,9 +23,9 @@ import docs_exceptions
 FOLDERS = ('core robust costs frontend apps benchmarks tests docs '
            'scripts').split()
 TIMEOUT = 290  # s
-SKIPPED = 77  # as an exit code; for ctest
+SKIPPED = 77  # exit code for ctest
 
-# cmake knows the presets; it installs, and builds projects other than ours.
+# cmake checks presets, installs, and builds projects other than this one.
 CMAKE = r'''#!/usr/bin/env bash
 set -euo pipefail
 real=@CMAKE@
@@ -77,7 +77,7 @@ def commands(page):
 
 
 def script(page_name, page, exceptions):
-    """The page as a script whose line numbers are those of the page."""
+    """The page as a script with the same line numbers."""
     lines = [''] * len(page)
     language = None
     for number, line in enumerate(page):
@@ -90,7 +90,7 @@ def script(page_name, page, exceptions):
     count = 0
     for begin, end, text in commands(page):
         count += 1
-        if '&&' in text:  # bash goes on where the first of two fails
+        if '&&' in text:  # bash would continue if the first of two fails
             lines[begin] = text + ' || false'
             lines[begin + 1:end + 1] = [''] * (end - begin)
         if text not in exceptions:
@@ -102,14 +102,14 @@ def script(page_name, page, exceptions):
     if unused:
         sys.exit(f'{page_name}: tests/docs/docs_exceptions.py lists what the page '
                  'no longer says:\n  ' + '\n  '.join(unused))
-    # In place of the page's title.
+    # Replaces the page's title.
     lines[0] = ('set -euo pipefail; trap \'echo "FAILED: %s:$LINENO: '
                 '$BASH_COMMAND" >&2\' ERR' % page_name)
     return '\n'.join(lines) + '\n', count
 
 
 def make_checkout(source, build, scratch):
-    """A copy of the sources by links, a finished build, and the stand-ins."""
+    """Links to the sources, a finished build, and the stand-ins."""
     for entry in source.iterdir():
         if entry.is_file():
             (scratch / entry.name).symlink_to(entry)
@@ -138,7 +138,7 @@ def main():
     page_name = sys.argv[3]
     page = (source / page_name).read_text().splitlines()
     exceptions = docs_exceptions.EXCEPTIONS.get(page_name, {})
-    # Where cmake looks for it, too (cmake/ReportAssets.cmake).
+    # The places where cmake looks for it (cmake/ReportAssets.cmake).
     if ('rgbd_report' in '\n'.join(page) and
             not any((folder / 'npm' / 'node_modules').exists()
                     for folder in (build, source / 'build'))):

@@ -1,12 +1,12 @@
-"""What tests/docs/docs_commands.py does not run as a page says it.
+"""Commands that tests/docs/docs_commands.py does not run as written on a page.
 
-A command that is not listed here is run. A listed one that its page no longer
-holds fails the test.
+All other commands are run. A listed command that is no longer on its page fails
+the test.
 """
 
 import collections
 
-# Why, and what is run in its place (nothing, if empty).
+# The reason, and the command that is run instead (empty: none).
 Instead = collections.namedtuple('Instead', 'why run')
 
 
@@ -23,7 +23,7 @@ def simulated(folder, options='', frames=4):
             ' >/dev/null\n')
 
 
-# By page: what has to be there before its commands are run.
+# By page: commands that prepare its files.
 BEFORE = {
     'docs/batch.md':
         'mkdir simulated\n' +
@@ -37,7 +37,7 @@ BEFORE = {
 
 SLURM = 'needs a cluster; tests/apps/programs/slurm_test.sh runs a job array on one'
 
-# By page and command (on one line, without a comment).
+# By page and command (on one line, without its comment).
 EXCEPTIONS = {
     'docs/calibration.md': {
         'rgbd_simulate --path=handheld --frames=600 --output=room':

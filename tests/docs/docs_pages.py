@@ -1,13 +1,12 @@
 #!/usr/bin/env python3
 """Checks README.md, CONTRIBUTING.md and docs/: docs_pages.py SOURCE
 
-- Links lead to files of the project and to headings that are there.
+- Links lead to existing files of the project and to existing headings.
 - Every page of docs/ can be reached from README.md and is in docs/README.md.
-- A ```cpp block is the file that the comment before it names
-  (<!-- docs/examples/x.cc -->), which a test compiles and runs; so is any
-  other block with such a comment. With --write blocks are brought up to date
-  instead.
-- Blocks have a language that something reads: sh is run by
+- A ```cpp block equals the file named in the comment before it
+  (<!-- docs/examples/x.cc -->), which a test compiles and runs. This applies to
+  any other block with such a comment. With --write, blocks are updated instead.
+- Blocks have a language that is tested: sh is run by
   tests/docs/docs_commands.py, python by tests/python/test_docs.py.
 """
 
@@ -17,7 +16,7 @@ import sys
 
 import docs_exceptions
 
-# Their blocks are compiled as they stand, by tests/CMakeLists.txt.
+# Pages whose blocks are compiled unchanged, by tests/CMakeLists.txt.
 COMPILED = ['docs/compressed_block.md']
 LANGUAGES = ['cpp', 'diff', 'python', 'sh', 'text']
 
@@ -29,7 +28,7 @@ def without_blocks(text):
 
 
 def anchors(text):
-    """The names of a page's headings, as links have them."""
+    """The anchors of a page's headings, as used in links."""
     names = set()
     for heading in re.findall(r'^#+ (.*)$', without_blocks(text), re.M):
         heading = re.sub(r'\[([^]]*)\]\([^)]*\)', r'\1', heading).lower()
@@ -64,7 +63,7 @@ def check_links(source, pages):
 
 
 def check_blocks(source, name, text, write):
-    """Returns the problems and the page with its examples brought up to date."""
+    """Returns the problems and the page with updated examples."""
     problems = []
 
     def renew(match):

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
 # include_directions.sh SOURCE: each room (folder) includes only itself and the
 # rooms that docs/where_things_go.md lists above it, and no file includes itself
-# by way of others.
+# through others.
 set -euo pipefail
 cd "$1"
 status=0
-above=()  # the rooms so far
+above=()  # the rooms checked before
 
 # room FOLDER OURS THEIRS: its sources may include rooms above it that match
-# OURS and the libraries' headers that match THEIRS (regular expressions).
+# OURS and library headers that match THEIRS (regular expressions).
 room() {
   local files ours
   files=$(find "$1" -maxdepth 1 -name '*.h' -o -maxdepth 1 -name '*.cc')
@@ -19,7 +19,7 @@ room() {
   fi
   above+=("$1")
   ours=$(printf '%s\n' "${above[@]}" | grep -E "^($2)" | paste -sd'|')
-  # Standard headers have neither a folder nor an ending.
+  # Standard headers have neither a folder nor an extension.
   # shellcheck disable=SC2086
   if grep -nE '^ *# *include' $files /dev/null |
     grep -vE "include (\"($ours|$1)/[a-z_0-9]+\.h\"|<[a-z_0-9]+>|<($3))"; then
@@ -40,7 +40,7 @@ room costs/matches 'core/|costs/' 'Eigen/'
 room costs/assembly 'core/|costs/' 'Eigen/|ceres/'
 room costs/direct 'core/|costs/' 'Eigen/'
 room costs 'core/|costs|robust' 'Eigen/|ceres/'
-# It needs the list's type.
+# The type of the cost list is needed here.
 room costs/calibration 'core/|costs' 'Eigen/|ceres/'
 opencv='Eigen/|opencv2/'
 room frontend/frame 'core/|frontend/' "$opencv"
@@ -52,12 +52,12 @@ room frontend/places 'core/|frontend/' "$opencv"
 room frontend/tracking 'core/|frontend/' "$opencv"
 room frontend/map 'core/|frontend/' "$opencv|fcntl.h|unistd.h|sys/file.h"
 room frontend/fusion 'core/|frontend/' "$opencv"
-# In the library of apps/pipeline, as it needs losses and costs.
+# Part of the library apps/pipeline, because it needs losses and costs.
 room frontend/mapping 'core/|robust|costs|frontend/' 'Eigen/|ceres/'
 room frontend/simulation 'core/|frontend/' "$opencv"
 programs='core/|robust|costs|frontend/|apps/'
 libraries="$opencv|ceres/|nlohmann/|glog/|gflags/|sys/|sched.h|unistd.h|fcntl.h|glob.h|link.h"
-# A library: neither flags nor JSON.
+# A library without flags and JSON.
 room apps/pipeline 'core/|robust|costs|frontend/' 'Eigen/|ceres/'
 room apps/calibration 'core/|costs|frontend/|apps/pipeline' 'Eigen/'
 room apps/shell 'core/|apps/' "$libraries"
@@ -70,7 +70,7 @@ room apps/view "$programs" "$libraries|httplib\.h"
 room apps/export "$programs" "$libraries"
 room apps/python "$programs" "$libraries|pybind11/|Python.h"
 
-# Circles within a room, too.
+# Finds include cycles, also within a room.
 circles=$(grep -roE --include='*.h' '^#include "[^"]+"' core robust costs \
   frontend apps | sed 's/:#include "/ /; s/"$//' | tsort 2>&1 >/dev/null || true)
 if [ -n "$circles" ]; then

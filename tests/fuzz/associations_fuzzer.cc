@@ -1,4 +1,4 @@
-// Files that pair colour and depth images.
+// Files that associate colour and depth images.
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -7,7 +7,7 @@
 
 namespace {
 
-// Of the images that the input may name, `a` is colour and `b` depth.
+// Writes the images that the input may name: `a` is colour and `b` depth.
 void WriteImages(const rgbd_pose::FuzzFolder& folder) {
   std::vector<uint8_t> bytes;
   for (const int type : {CV_8UC1, CV_16UC1}) {

@@ -1,5 +1,5 @@
-// Recordings of ROS: a byte for their kind, then the bytes of a file, or of two
-// parts in a folder with the length of the first before them.
+// ROS recordings: a byte for the kind, then the bytes of one file, or the
+// length of the first part and the bytes of two parts in a folder.
 
 #include <algorithm>
 

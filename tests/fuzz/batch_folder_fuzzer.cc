@@ -1,5 +1,5 @@
-// What a batch reads of a run that has ended: done.json and metrics.json, one
-// after the other in the input.
+// The files of a finished run that a batch reads: done.json and metrics.json,
+// one after the other in the input.
 
 #include "apps/batch/batch_run_folder.h"
 #include "apps/batch/batch_summary.h"

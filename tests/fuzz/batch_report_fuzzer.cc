@@ -1,4 +1,4 @@
-// What the page of a batch is made from: summary.csv.
+// The input of a batch's page: summary.csv.
 
 #include "apps/report/report_data.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -1,4 +1,4 @@
-// Tables that the reports read.
+// Tables read by the reports.
 
 #include "apps/shell/csv_table.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -1,4 +1,4 @@
-// Values of flags that are more than a word or a number.
+// Values of flags that have a syntax of their own.
 
 #include "apps/batch/batch_plan.h"
 #include "costs/cost_factory.h"

@@ -10,8 +10,8 @@
 
 #include "core/util/input_error.h"
 
-// Every target takes any bytes, in builds for libFuzzer as well as from the
-// runner of the corpus.
+// The function that every target defines. It accepts any bytes, in builds for
+// libFuzzer as well as from the corpus runner.
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
 
 namespace rgbd_pose {
@@ -20,8 +20,8 @@ inline std::string_view FuzzText(const uint8_t* data, size_t size) {
   return {reinterpret_cast<const char*>(data), size};
 }
 
-// Takes what is before the next line of four dashes off `rest`: one input may
-// stand for several files.
+// Removes the part before the next line of four dashes from `rest` and returns
+// it: one input may contain several files.
 inline std::string_view NextFile(std::string_view* rest) {
   constexpr std::string_view kBetween = "----\n";
   const size_t end = rest->find(kBetween);
@@ -31,7 +31,7 @@ inline std::string_view NextFile(std::string_view* rest) {
   return file;
 }
 
-// What a target finds out by itself ends it as a crash does.
+// Reports an error found by the target, which ends it as a crash does.
 inline void Require(bool condition, const char* what) {
   if (condition) return;
   std::fprintf(stderr, "not as documented: %s\n", what);
@@ -49,7 +49,7 @@ void MayRefuse(Call call) {
   }
 }
 
-// A folder, in memory where the system has such, for parsers that read paths.
+// A folder, in memory if the system has that, for parsers that read paths.
 class FuzzFolder {
  public:
   FuzzFolder() {
@@ -69,11 +69,11 @@ class FuzzFolder {
 
   const std::string& path() const { return path_; }
 
-  // Writes a file, in place of an earlier one, and returns its path.
+  // Writes a file, replacing any earlier one, and returns its path.
   std::string Write(const std::string& name, std::string_view bytes) const {
     const std::string path = path_ + "/" + name;
     std::FILE* file = std::fopen(path.c_str(), "wb");
-    // fwrite takes no null, not even for nothing.
+    // fwrite() must not get a null pointer, even for 0 bytes.
     const bool is_written =
         file != nullptr &&
         (bytes.empty() ||

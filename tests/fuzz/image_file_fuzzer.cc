@@ -1,4 +1,4 @@
-// Images of any kind, by whichever decoder takes them.
+// Images of any kind, with the decoder that accepts them.
 
 #include <opencv2/imgcodecs.hpp>
 

@@ -1,4 +1,4 @@
-// The text file of a map, as it stands and with a checksum that fits.
+// The text file of a map, unchanged and with a valid checksum.
 
 #include <algorithm>
 
@@ -8,7 +8,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Images of the size of the camera, unless that takes long.
+// Adds images of the camera's size, unless they are too large to be fast.
 void AddImages(KeyframeMap* map) {
   constexpr int kMaxSide = 64;
   const Camera& camera = map->camera;

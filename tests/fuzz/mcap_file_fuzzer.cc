@@ -1,4 +1,4 @@
-// mcap recordings: what they have, the first messages, all messages.
+// mcap recordings: their topics, the first messages, all messages.
 
 #include "frontend/bags/bag_reader.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -1,4 +1,4 @@
-// Cameras of recordings in numbered files: the input as each of their files.
+// Cameras of recordings in numbered files: the input as each kind of file.
 
 #include "frontend/sources/numbered_layouts.h"
 #include "frontend/sources/source_options.h"

@@ -1,4 +1,4 @@
-// Poses of recordings in numbered files: the input as each of their forms.
+// Poses of recordings in numbered files: the input in each format.
 
 #include "frontend/sources/numbered_layouts.h"
 #include "tests/fuzz/fuzz_input.h"

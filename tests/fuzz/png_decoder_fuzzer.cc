@@ -1,4 +1,4 @@
-// Our own decoder of PNG files.
+// The project's own decoder of PNG files.
 
 #include "frontend/files/png_codec.h"
 #include "tests/fuzz/fuzz_input.h"
@@ -25,8 +25,8 @@ void Decode(std::string_view bytes) {
   Require(depth.image.empty() || depth.image.type() == CV_16UC1, "raw depths");
 }
 
-// Checksums would keep a fuzzer out, so bytes also become the rows of files
-// whose checksums are right: a width, then the rows with their filters.
+// Checksums would stop a fuzzer. Hence the bytes are also used as rows of files
+// with valid checksums: a width, then the rows with their filters.
 void DecodeAsRows(std::string_view bytes, bool is_depth) {
   rgbd_pose::PngParts png;
   png.width = 1 + static_cast<uint8_t>(bytes.front()) % 16;

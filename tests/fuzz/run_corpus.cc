@@ -1,5 +1,5 @@
-// In place of libFuzzer, for every compiler: hands all files of the folders
-// that are named to the target, once each.
+// Replaces libFuzzer, with any compiler: passes each file of the given folders
+// to the target once.
 
 #include <algorithm>
 #include <cstdio>
@@ -20,9 +20,9 @@ int main(int argc, char** argv) {
   std::sort(files.begin(), files.end());
   for (const fs::path& file : files) {
     std::printf("%s\n", file.c_str());
-    std::fflush(stdout);  // the last line names the one that crashes
+    std::fflush(stdout);  // the last line names the file of a crash
     const std::string bytes = rgbd_pose::ReadTextFile(file.string());
-    // A copy of just this size, so that a checker of memory sees its end.
+    // A copy of exactly this size: a memory checker finds reads past its end.
     const std::vector<uint8_t> copy(bytes.begin(), bytes.end());
     LLVMFuzzerTestOneInput(copy.data(), copy.size());
   }

@@ -1,5 +1,5 @@
-// What the page of a run is made from: frames.csv, metrics.json, config.flags,
-// trajectory.txt and maybe errors.csv, one after the other in the input.
+// The input of a run's page: frames.csv, metrics.json, config.flags,
+// trajectory.txt and optionally errors.csv, one after the other.
 
 #include "apps/report/report_data.h"
 #include "tests/fuzz/fuzz_input.h"

@@ -5,7 +5,7 @@
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   using namespace rgbd_pose;
-  // Whether the images named are there is all that is asked of them.
+  // Of the images named in the lists, only their existence is checked.
   static const FuzzFolder folder;
   static const std::string image = folder.Write("a", "");
   std::string_view rest = FuzzText(data, size);

@@ -1,5 +1,4 @@
-"""What tests share: random matches, and a sequence with what programs make of
-it."""
+"""Shared by tests: random matches, a sequence and the programs' results."""
 
 import os
 import pathlib
@@ -60,7 +59,7 @@ def random_points(count, seed=1):
 
 
 def add_kinect_noise(points, rng, camera):
-    """Noise as the estimator's default model has it."""
+    """Noise of the estimator's default model."""
     z = points[:, 2]
     pixels = points[:, :2] / z[:, None] * [camera.fx, camera.fy]
     pixels += rng.normal(0.0, 0.5, pixels.shape)

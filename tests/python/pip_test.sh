@@ -12,7 +12,7 @@ if ! "$python" -c 'import ensurepip, venv' 2>/dev/null; then
 fi
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
-# With the distribution's numpy.
+# Uses the distribution's numpy.
 "$python" -m venv --system-site-packages "$folder/venv"
 pip="$folder/venv/bin/python -m pip --disable-pip-version-check"
 $pip install --no-index --no-build-isolation --quiet "$sources"

@@ -1,4 +1,4 @@
-"""calibrate(): what is wrong with a camera, from a recording."""
+"""calibrate() finds the errors of a camera from a recording."""
 
 import subprocess
 import sys
@@ -20,7 +20,7 @@ def recording(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def wrong(recording):
-    """The recording's camera with a focal length of 2 % too much."""
+    """The recording's camera with a focal length that is 2 % too large."""
     text = (recording / "camera.yaml").read_text()
     path = recording.parent / "wrong.yaml"
     path.write_text(text.replace("525", "535.5"))
@@ -75,7 +75,7 @@ def test_says_what_makes_no_sense(recording):
 
 
 def test_an_interrupt_ends_it(recording):
-    # Ctrl-C, as a terminal sends it; in time of the processor.
+    # SIGINT, as sent by Ctrl-C in a terminal. Times are processor times.
     program = f"""
 import os, signal, threading, time, rgbd_pose
 def calibrate():

@@ -1,4 +1,4 @@
-"""The examples of docs/python.md run as they stand there, one after another."""
+"""Runs the examples of docs/python.md unchanged, one after another."""
 
 import os
 import pathlib
@@ -19,8 +19,8 @@ def test_examples_run(sequence, tmp_path):
             cwd=tmp_path, capture_output=True, text=True,
         )
         if "is not installed" in run.stderr:
-            continue  # by name: what a block needs besides NumPy
+            continue  # a module other than NumPy is missing
         assert run.returncode == 0, block + run.stderr
-        # What a line prints is written behind it, in words of its output.
+        # The expected output of a line is in the comment behind it.
         for expected in re.findall(r"# prints (.*)", block):
             assert expected in run.stdout, run.stdout

@@ -21,7 +21,7 @@ def noisy_matches(count, outlier_share, seed):
 
 
 def error_of(estimate):
-    """[omega C] of the estimate against motion(), as the covariance counts."""
+    """[omega C] of the estimate against motion(), as in the covariance."""
     R, true_R = estimate.cur_from_prev[:3, :3], motion()[:3, :3]
     W = true_R @ R.T
     omega = 0.5 * np.array([W[2, 1] - W[1, 2], W[0, 2] - W[2, 0],
@@ -39,7 +39,7 @@ def test_recovers_an_exact_motion(cost, loss):
         prev, move(motion(), prev), CAMERA, cost=cost, loss=loss
     )
     assert estimate.ok and estimate.status == "ok" and estimate.reason == ""
-    # What the solver's tolerance of 1e-9 leaves.
+    # Limited by the solver's tolerance of 1e-9.
     np.testing.assert_allclose(estimate.cur_from_prev, motion(), atol=1e-7)
     assert estimate.num_used == estimate.num_inliers == 300
     assert estimate.inliers.all()
@@ -52,8 +52,8 @@ def test_wrong_matches_are_found():
     prev, cur, right = noisy_matches(500, 0.4, seed=3)
     estimate = rgbd_pose.estimate_motion(prev, cur, CAMERA)
     assert estimate.ok
-    # 1 % of right matches are outside by definition; 3 times that is chance
-    # of 1e-4. A wrong match agrees by chance about as seldom.
+    # 1 % of right matches are outliers by definition; three times as many have
+    # a probability of 1e-4. Wrong matches agree by chance about as rarely.
     assert np.mean(estimate.inliers[right]) > 0.97
     assert np.mean(estimate.inliers[~right]) < 0.03
     assert estimate.weights[~right].mean() < 0.02 < 0.5
@@ -89,7 +89,7 @@ def test_point_and_pixel_input_agree():
 
 
 def project(camera, points):
-    """OpenCV's plumb bob, written out again."""
+    """OpenCV's plumb bob, implemented independently."""
     k1, k2, p1, p2, k3 = camera.distortion
     x, y = points[:, 0] / points[:, 2], points[:, 1] / points[:, 2]
     r2 = x * x + y * y
@@ -123,7 +123,7 @@ def test_rows_that_are_no_match_keep_their_place(estimate):
 
 def test_depth_of_zero():
     prev, cur, _ = noisy_matches(60, 0.0, seed=8)
-    prev[:20] = 0.0  # what cameras give where they measure nothing
+    prev[:20] = 0.0  # cameras give 0 where they measure nothing
     assert rgbd_pose.estimate_motion(prev, cur, CAMERA).num_rejected == 20
     pixels = [np.column_stack([project(CAMERA, p + [0, 0, 1e-9]), p[:, 2]])
               for p in (prev, cur)]
@@ -173,7 +173,7 @@ def test_initial_guess(guess):
     estimate = rgbd_pose.estimate_motion(
         prev, cur, CAMERA, robust_schedule="direct", initial_guess=guess
     )
-    # Ten standard deviations; from no motion it gets nowhere (docs/losses.md).
+    # Ten standard deviations. No motion is too poor a guess (docs/losses.md).
     assert estimate.ok
     deviation = np.sqrt(np.diag(estimate.covariance))
     assert (np.abs(error_of(estimate)) < 10.0 * deviation).all()
@@ -201,7 +201,7 @@ def test_normals_are_for_point_to_plane():
 def test_a_prior_decides_what_matches_leave_open():
     line = np.outer(np.linspace(1.0, 3.0, 50), [0.1, 0.2, 1.0])
     turn = np.eye(4)
-    turn[:3, :3] = rotation(line[0], 0.1)  # leaves the line as it is
+    turn[:3, :3] = rotation(line[0], 0.1)  # does not change the line
     estimate = rgbd_pose.estimate_motion(
         line,
         line,

@@ -1,4 +1,4 @@
-"""What arrays estimate_motion takes, and what it says of those it does not."""
+"""Arrays that estimate_motion accepts, and its errors for other arrays."""
 
 import gc
 import tracemalloc
@@ -14,7 +14,7 @@ CUR = move(motion(), PREV)
 
 
 def strided(array):
-    """The same numbers, three apart and backwards in memory."""
+    """The same numbers with a stride of three, in reverse order in memory."""
     room = np.full((3 * array.shape[0], 2 * array.shape[1]), np.nan)
     room = room.astype(array.dtype)
     view = room[::-3, ::2]
@@ -66,7 +66,7 @@ def test_whole_numbers():
 
 
 def traced_peak(function):
-    """Most memory (bytes) that Python and NumPy held during a call."""
+    """Peak memory (bytes) of Python and NumPy during a call."""
     gc.collect()
     tracemalloc.start()
     try:
@@ -86,7 +86,7 @@ def test_floats_are_not_copied(layout):
 
 
 def test_whole_numbers_are_copied():
-    """So the test above would see a copy."""
+    """Shows that the test above would detect a copy."""
     prev = np.ones((100000, 3), np.int64)
     assert traced_peak(
         lambda: rgbd_pose.estimate_motion(prev, prev)

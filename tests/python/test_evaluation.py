@@ -1,4 +1,4 @@
-"""Evaluation against the program rgbd_evaluate."""
+"""Compares the evaluation with the program rgbd_evaluate."""
 
 import json
 
@@ -40,7 +40,7 @@ def by_program(files, *flags):
     )
 
 
-# What sums of the same numbers in the same order may differ by: the unit.
+# The same sums in the same order: only the conversion of units may differ.
 TOLERANCE = 1e-14
 
 
@@ -68,7 +68,7 @@ def test_same_as_the_program(files, form):
     ate = rgbd_pose.evaluate_ate(estimated, reference)
     rpe = rgbd_pose.evaluate_rpe(estimated, reference)
     assert ate.rmse > 0.005
-    # Rotation matrices round quaternions.
+    # Rotation matrices round the quaternions.
     tolerance = 1e-9 if form is as_arrays else TOLERANCE
     want = expected["ate"]
     assert_same(ate, want["count"], want["position_m"], 1.0, tolerance)
@@ -133,7 +133,7 @@ def test_read_and_write(files, tmp_path):
     np.testing.assert_array_equal(stamps, table[:, 0])
     np.testing.assert_array_equal(poses[:, :3, 3], table[:, 1:4])
     rgbd_pose.write_trajectory(tmp_path / "copy.txt", files[0])
-    # Nine decimals, of quaternions that were normalised.
+    # Nine decimals of normalised quaternions.
     np.testing.assert_allclose(
         np.loadtxt(tmp_path / "copy.txt"), table, rtol=0.0, atol=2e-9
     )

@@ -1,4 +1,4 @@
-"""Odometry against the program rgbd_odometry and on frames that break."""
+"""Odometry, compared with the program rgbd_odometry, and with bad frames."""
 
 import csv
 
@@ -18,7 +18,7 @@ def dataset(sequence, camera):
     return rgbd_pose.TumDataset(sequence, camera)
 
 
-# akaze and sift are orb in this, but slow.
+# akaze and sift behave like orb here, but are slow.
 @pytest.mark.parametrize("frontend", ["patch", "klt", "orb"])
 def test_tracks_as_the_program_does(
     frontend, sequence, dataset, camera, tmp_path
@@ -33,7 +33,7 @@ def test_tracks_as_the_program_does(
     assert len(rows) == len(dataset)
 
     odometry = rgbd_pose.Odometry(camera, frontend)
-    # One memory for all images, as cameras have: nothing may be kept of it.
+    # All images share one memory, as with cameras: nothing may be kept of it.
     gray = np.empty((camera.height, camera.width), np.uint8)
     depth = np.empty((camera.height, camera.width), np.uint16)
     for frame, row in zip(dataset, rows):
@@ -104,7 +104,7 @@ def test_arrays_are_exposed_as_the_camera_says(tmp_path):
         return pose
 
     told = last_pose(camera, 0.0)
-    # It is the same whether depth is late after its stamp or by its stamp.
+    # A delay given by the camera or by the frame has the same effect.
     np.testing.assert_array_equal(told, last_pose(unaware, 0.015))
     assert np.abs(told - last_pose(unaware, 0.0)).max() > 1e-4
 
@@ -113,7 +113,7 @@ def test_settings_are_those_of_the_program(
     sequence, dataset, camera, tmp_path
 ):
     settings = {
-        "tracker": "features",  # pixels hide what some of them do
+        "tracker": "features",  # with pixel costs, some settings have no effect
         "cost": "reprojection_depth", "loss": "huber", "scale": "mad",
         "robust_schedule": "direct", "initial_guess": "velocity",
         "on_lost": "hold", "depth_noise": "nguyen", "assembly": "per_match",
@@ -129,8 +129,8 @@ def test_settings_are_those_of_the_program(
     odometry.save_trajectory(tmp_path / "trajectory.txt")
     expected = (tmp_path / "run/trajectory.txt").read_bytes()
     assert (tmp_path / "trajectory.txt").read_bytes() == expected
-    # Each setting matters but the assembly, which is the same problem, and
-    # the policy, as no frame is lost.
+    # Each setting has an effect, except assembly, which is the same problem,
+    # and on_lost, since no frame is lost.
     for key in settings.keys() - {"assembly", "on_lost"}:
         other = {k: v for k, v in settings.items() if k != key}
         odometry = rgbd_pose.Odometry(camera, **other)
@@ -199,7 +199,7 @@ def test_depth_scale_is_the_cameras(dataset, camera):
 
 
 def colourful(gray):
-    """An RGB image whose channels differ from place to place."""
+    """An RGB image whose channels differ and vary over the image."""
     shift = np.arange(gray.shape[1]) % 64
     channels = [gray, np.roll(gray, 3, axis=0) // 2 + shift, 255 - gray]
     return np.stack(channels, axis=-1).astype(np.uint8)
@@ -218,7 +218,7 @@ def test_colour_is_red_green_blue(dataset, camera):
 
     expected = trajectory(gray)
     np.testing.assert_array_equal(trajectory(lambda rgb: rgb), expected)
-    # BGR seen backwards, a view with a negative stride.
+    # BGR in reverse, a view with a negative stride.
     np.testing.assert_array_equal(
         trajectory(lambda rgb: rgb[..., ::-1].copy()[..., ::-1]), expected
     )

@@ -1,4 +1,4 @@
-"""Process pools take cameras, frames and results, and give errors back."""
+"""Cameras, frames, results and errors can be passed to and from processes."""
 
 import copy
 import multiprocessing

@@ -1,4 +1,4 @@
-"""Slam against the program rgbd_slam, its maps, and calls out of turn."""
+"""Slam, compared with the program rgbd_slam; maps; calls in wrong order."""
 
 import csv
 
@@ -11,7 +11,7 @@ from conftest import run_program
 
 @pytest.fixture(scope="module")
 def sequence(tmp_path_factory):
-    """Eight frames, so far apart that each becomes a keyframe."""
+    """Eight frames, far enough apart for each to become a keyframe."""
     folder = tmp_path_factory.mktemp("data") / "steps"
     run_program(
         "rgbd_simulate", "--path=handheld", "--frames=8", "--rate=3",
@@ -30,7 +30,7 @@ def frames(sequence, camera):
     return list(rgbd_pose.TumDataset(sequence, camera))
 
 
-# What is found out about a keyframe is taken up within these frames.
+# The map's update for a keyframe is applied within these frames.
 SETTINGS = {"update_delay": 1, "window": 4, "max_pairs": 6}
 
 

@@ -1,4 +1,4 @@
-"""__init__.pyi says what the module is."""
+"""__init__.pyi agrees with the module."""
 
 import ast
 import inspect
@@ -50,7 +50,7 @@ def parameters(function):
 
 
 def returned(function):
-    """The class of the module that it returns; None for all else."""
+    """The class of the module that it returns; None for other types."""
     name = ast.unparse(function.returns).split(".")[-1].strip("'\"")
     return name if name in CLASSES else None
 

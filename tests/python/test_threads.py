@@ -13,7 +13,7 @@ from conftest import motion, move, random_points
 
 
 class Counter(threading.Thread):
-    """Counts as long as it gets the GIL."""
+    """Counts whenever it gets the GIL."""
 
     def __init__(self):
         super().__init__(daemon=True)
@@ -23,12 +23,12 @@ class Counter(threading.Thread):
     def run(self):
         while not self.stopped:
             self.count += 1
-            time.sleep(0)  # offers the GIL
+            time.sleep(0)  # releases the GIL
 
 
 @pytest.fixture
 def counter():
-    """A thread that cannot take the GIL, only be given it."""
+    """A thread that gets the GIL only when it is released voluntarily."""
     interval = sys.getswitchinterval()
     thread = Counter()
     thread.start()
@@ -109,7 +109,7 @@ def test_calls_of_one_odometry_wait_for_each_other(sequence, camera):
 
 
 def test_daemon_threads_do_not_abort_the_end():
-    # Python ends threads that ask for the GIL after its end.
+    # Python terminates threads that request the GIL after Python's end.
     program = """
 import threading, time, numpy as np, rgbd_pose
 points = np.random.default_rng(1).random((1000, 3)) + [0, 0, 2]

@@ -20,7 +20,7 @@ std::vector<double> SquaredNorms(int n) {
   return s;
 }
 
-// Any number of residuals, whole vectors of them or not, weighs as one by one.
+// Any number of residuals, in full vectors or not, gets the scalar weights.
 void ExpectWeighsAsEvaluated(const ceres::LossFunction* loss) {
   for (int n = 0; n <= 19; ++n) {
     const std::vector<double> s = SquaredNorms(n);
@@ -60,8 +60,8 @@ TEST(BatchLossTest, WeighsInPlace) {
   EXPECT_EQ(s, weights);
 }
 
-// The losses that Ceres has too; Tukey's is written out, as it depends on
-// Ceres' version by a factor of two.
+// The losses that Ceres also has. Tukey's formula is written out, since it
+// differs by a factor of two between versions of Ceres.
 TEST(BatchLossTest, FormulasAreThoseOfCeres) {
   const HuberLoss huber(kWidth);
   const ceres::HuberLoss ceres_huber(kWidth);

@@ -46,10 +46,10 @@ struct RhoWeight {
   double weight;
 };
 
-// The published rho(x) and w(x) by name, written down independently: Zhang's
-// table, Barron's equation 1 times c^2, -ln of Student's density scaled to
-// w(0) = 1. Zhang's L1, L1-L2, Lp and Geman-McClure have no width; theirs is
-// c^2 rho(x / c).
+// The published rho(x) and w(x) by name, written independently: Zhang's table,
+// Barron's equation 1 times c^2, -ln of Student's density scaled to w(0) = 1.
+// Zhang's L1, L1-L2, Lp and Geman-McClure have no width: c^2 rho(x / c) is
+// used.
 RhoWeight Published(std::string_view name, double x, double c) {
   const double q = x / c;
   const double c2 = c * c;
@@ -95,7 +95,7 @@ RhoWeight Published(std::string_view name, double x, double c) {
 
 TEST(MEstimatorTest, AreThePublishedFormulas) {
   for (const MEstimator& row : Rows()) {
-    // L1 and Lp are so at sqrt(x^2 + epsilon^2), less the value at 0.
+    // L1 and Lp are evaluated at sqrt(x^2 + epsilon^2), minus the value at 0.
     const bool is_power = row.name == "l1" || row.name == "lp";
     const double epsilon = is_power ? PowerLoss::kEpsilon : 0.0;
     for (const double c : kWidths) {
@@ -137,7 +137,7 @@ TEST(MEstimatorTest, StartAtZeroWithUnitSlope) {
       } else {
         EXPECT_EQ(rho.first, 1.0) << row.name;
       }
-      // Fair's is infinite; that must not get out.
+      // Fair's second derivative is infinite there; the result must be finite.
       EXPECT_TRUE(std::isfinite(rho.second)) << row.name;
     }
   }
@@ -149,7 +149,7 @@ TEST(MEstimatorTest, DerivativesMatchDifferences) {
     const auto loss = row.make(2.0);
     for (const double s : {0.3, 1.0, 3.5, 4.5, 9.0, 40.0}) {
       constexpr double kStep = 1e-5;
-      constexpr double kTolerance = 1e-8;  // of a central difference
+      constexpr double kTolerance = 1e-8;  // error of a central difference
       const Rho low = Evaluate(*loss, s - kStep);
       const Rho at = Evaluate(*loss, s);
       const Rho high = Evaluate(*loss, s + kStep);
@@ -178,7 +178,7 @@ TEST(MEstimatorTest, AreConcaveInTheSquareEverywhere) {
   }
 }
 
-// The estimator widens losses by ScaledLoss instead of making them again.
+// The estimator widens losses with ScaledLoss instead of rebuilding them.
 TEST(MEstimatorTest, AScaledLossIsTheLossOfScaledWidth) {
   for (const MEstimator& row : Rows()) {
     for (const double scale : {0.05, 0.7, 3.0, 200.0}) {
@@ -211,7 +211,7 @@ TEST(BarronLossTest, LeadsFromLeastSquaresToWelsch) {
     const struct {
       double alpha;
       std::string name;
-      double width;  // that makes it Barron's of width c
+      double width;  // equal to Barron's loss of width c
     } members[] = {{1.0, "l1_l2", c / std::sqrt(2.0)},
                    {0.0, "cauchy", c * std::sqrt(2.0)},
                    {-2.0, "geman_mcclure", 2.0 * c},
@@ -225,7 +225,7 @@ TEST(BarronLossTest, LeadsFromLeastSquaresToWelsch) {
       EXPECT_NEAR(actual.first, expected.first, tolerance) << member.name;
       EXPECT_NEAR(actual.second, expected.second, tolerance) << member.name;
     }
-    // Without a jump where the formula changes.
+    // No jump where the formula changes.
     EXPECT_NEAR(Evaluate(BarronLoss(c, 1e-9), s).value,
                 Evaluate(BarronLoss(c, 0.0), s).value, 1e-7 * s);
     EXPECT_NEAR(Evaluate(BarronLoss(c, 2.0 - 1e-9), s).value, s, 1e-7 * s);

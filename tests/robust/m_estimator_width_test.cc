@@ -1,4 +1,4 @@
-// The widths of the table of M-estimators, found again.
+// Recomputes the widths in the table of M-estimators.
 
 #include <gtest/gtest.h>
 
@@ -38,7 +38,7 @@ double Efficiency(const ceres::LossFunction& loss, int p) {
   return slope * slope / psi2;
 }
 
-// The width of that efficiency, by bisection: the wider the more efficient.
+// The width with the given efficiency, by bisection; wider is more efficient.
 double FindWidth(const MEstimator& row, int p, double efficiency) {
   double low = 0.2, high = 20.0;
   while (high - low > 1e-6) {
@@ -63,11 +63,11 @@ TEST(MEstimatorWidthTest, WidthsGive95PercentEfficiency) {
   }
 }
 
-// What L1, Lp and t, which are not tuned, give.
+// Efficiencies of L1, Lp and t, which are not tuned.
 TEST(MEstimatorWidthTest, EfficiencyOfThoseNotTuned) {
   constexpr double kPrinted = 0.001;
   const std::map<std::string, std::array<double, 3>> expected = {
-      {"l1", {0.644, 0.849, 0.920}},  // p = 1: 2 / pi, but for epsilon
+      {"l1", {0.644, 0.849, 0.920}},  // p = 1: 2 / pi up to epsilon
       {"lp", {0.788, 0.907, 0.950}},
       {"student_t", {0.942, 0.927, 0.921}}};
   for (const auto& [name, efficiencies] : expected) {
@@ -80,7 +80,7 @@ TEST(MEstimatorWidthTest, EfficiencyOfThoseNotTuned) {
   }
 }
 
-// The widths for scalars that the literature prints.
+// Scalar widths printed in the literature.
 TEST(MEstimatorWidthTest, ScalarWidthsAreTheKnownOnes) {
   const std::map<std::string, double> known = {{"fair", 1.3998},
                                                {"huber", 1.345},

@@ -32,7 +32,7 @@ double Kth(std::vector<double> values, size_t k) {  // k >= 1
   return values[k - 1];
 }
 
-// The estimators from their definitions, without constants.
+// The estimators by their definitions, without constants.
 double Plain(std::string_view name, const std::vector<double>& x) {
   const size_t n = x.size();
   const size_t h = n / 2 + 1;
@@ -59,7 +59,7 @@ double Plain(std::string_view name, const std::vector<double>& x) {
   return Kth(outer, h * (h - 1) / 2);
 }
 
-// The constant of n values, from values of which the definition gives 1 or so.
+// The constant for n values: the ratio of the estimate to its definition.
 double Constant(const ScaleEstimator& row, int n) {
   std::vector<double> values(n);
   for (int i = 0; i < n; ++i) values[i] = i;
@@ -94,8 +94,8 @@ TEST(ScaleTest, AreTheirDefinitions) {
 // The mean over many normal samples is 1, whatever their size.
 TEST(ScaleTest, AreUnbiasedForSmallSamples) {
   constexpr int kTrials = 20000;
-  // 1 % that the factors' three digits and the formula beyond 9 leave, plus
-  // three sigmas of the mean: a single estimate's deviates by up to 0.8.
+  // 1 % for the factors' three digits and the formula beyond 9, plus three
+  // sigmas of the mean; a single estimate deviates by up to 0.8.
   constexpr double kTolerance = 0.01 + 3 * 0.0057;
   std::mt19937 generator(2);
   for (const ScaleEstimator& row : Estimators()) {
@@ -110,7 +110,7 @@ TEST(ScaleTest, AreUnbiasedForSmallSamples) {
   }
 }
 
-// The normal distribution's quantile, by bisection.
+// Quantile of the normal distribution, by bisection.
 double Quantile(double probability) {
   double low = -10.0, high = 10.0;
   while (high - low > 1e-12) {
@@ -120,10 +120,10 @@ double Quantile(double probability) {
   return low;
 }
 
-// Evenly spread over the normal distribution, values have a spread of 1.
+// Values spaced evenly over the normal distribution have a spread of 1.
 TEST(ScaleTest, AreConsistent) {
   constexpr int kSize = 20001;
-  constexpr double kTolerance = 2e-4;  // of few values and four-digit constants
+  constexpr double kTolerance = 2e-4;  // few values and four-digit constants
   for (const ScaleEstimator& row : Estimators()) {
     std::vector<double> values;
     for (int i = 0; i < kSize; ++i) {
@@ -150,7 +150,7 @@ TEST(ScaleTest, AreAsEfficientAsSaid) {
       EXPECT_LE(std::abs(error), 4.0 * sigma) << row.name;
       sum2 += error * error;
     }
-    // A variance of so many samples is known to sqrt(2 / 60) = 18 %.
+    // The variance of 60 samples is known to sqrt(2 / 60) = 18 %.
     EXPECT_NEAR(sum2 / kTrials / (sigma * sigma), 1.0, 3 * 0.18) << row.name;
   }
 }
@@ -167,8 +167,8 @@ TEST(ScaleTest, ShiftAndScaleFollow) {
   }
 }
 
-// With 40 % of the values at the worst place, on one side and far out, the
-// estimates stay in their largest possible bias; however far out they are.
+// With 40 % of the values at the worst place, on one side and however far out,
+// the estimates stay within their largest possible bias.
 TEST(ScaleTest, SurviveFortyPercentOutliers) {
   constexpr int kSize = 1000;
   for (const ScaleEstimator& row : Estimators()) {

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# scripts/download_tum against a server of its own. Called with the script.
+# Tests scripts/download_tum with a local server. The argument is the script.
 set -euo pipefail
 
 command -v curl >/dev/null && command -v python3 >/dev/null || {
@@ -17,7 +17,7 @@ fail() {
   exit 1
 }
 
-# run EXIT_CODE NAME: the script's exit code, and one line where it fails.
+# run EXIT_CODE NAME: checks the exit code, and that failures print one line.
 run() {
   local code=0
   "$script" "$2" "$work/to" >"$work/out" 2>"$work/err" || code=$?
@@ -40,7 +40,7 @@ for name in freiburg1_xyz freiburg1_desk freiburg1_rpy freiburg1_room; do
 done
 truncate -s 200000 "$work/www/freiburg1/rgbd_dataset_freiburg1_room.tgz"
 
-# Knows ranges, notes what it sends, and of freiburg1_rpy tells the wrong size.
+# Supports ranges, logs what it sends; reports a wrong size of freiburg1_rpy.
 cat >"$work/server.py" <<'END'
 import http.server, os, sys
 
@@ -92,12 +92,12 @@ run 0 freiburg1_xyz
 cmp "$work/"{,to/}rgbd_dataset_freiburg1_xyz/depth.bin || fail "other bytes"
 [ "$(ls "$work/to")" = rgbd_dataset_freiburg1_xyz ] || fail "left something"
 
-# Once more: nothing to do.
+# A second call has nothing to do.
 lines=$(wc -l <"$work/www/log")
 run 0 freiburg1_xyz
 [ "$(wc -l <"$work/www/log")" -eq "$lines" ] || fail "fetched again"
 
-# A cut download goes on where it stopped.
+# An interrupted download continues where it stopped.
 archive=rgbd_dataset_freiburg1_desk.tgz
 head -c 100000 "$work/www/freiburg1/$archive" >"$work/to/$archive.partial"
 run 0 freiburg1_desk

@@ -1,5 +1,5 @@
-"""endurance_test.py SOURCE: the frames that scripts/endurance makes, and what
-it calls a failure. Nothing is tracked here; the script itself takes long."""
+"""endurance_test.py SOURCE: the frames made by scripts/endurance, and its
+conditions for a failure. Nothing is tracked here, because that takes long."""
 import importlib.machinery
 import importlib.util
 import pathlib
@@ -21,7 +21,7 @@ def a_sequence_goes_to_and_fro():
             (leg / name).write_text("# a comment\n1.0 a\n1.1 b\n1.2 c\n")
         (leg / "camera.yaml").write_text("fx: 500\n")
         sequence = pathlib.Path(folder) / "sequence"
-        for _ in range(2):  # the second time all is there already
+        for _ in range(2):  # the second time, all files exist already
             endurance.go_to_and_fro(leg, sequence, 7)
         for name in ("rgb.txt", "depth.txt", "groundtruth.txt"):
             rows = [row.split() for row in

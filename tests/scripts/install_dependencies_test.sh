@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# install_dependencies_test.sh SOURCE: each script installs what it needs and no
-# more, as far as apt-get is asked for; nothing is installed here.
+# install_dependencies_test.sh SOURCE: each script requests exactly the packages
+# that it needs from apt-get; nothing is installed here.
 set -euo pipefail
 source=$1
 work=$(mktemp -d)
@@ -11,7 +11,7 @@ fail() {
   exit 1
 }
 
-# A machine on which nothing is installed; what apt-get is asked for is in log.
+# A machine without any packages; requests to apt-get are written to log.
 mkdir "$work/bin" "$work/scripts"
 cp "$source/scripts/install_dependencies" "$work/scripts"
 for program in dpkg-query npm sudo apt-get; do
@@ -23,7 +23,7 @@ echo 'echo "$@" >>"$LOG"' >>"$work/bin/apt-get"
 chmod +x "$work"/bin/*
 export LOG=$work/log
 
-# asked_by SCRIPT: the packages that it asks for.
+# asked_by SCRIPT: the packages that the script requests.
 asked_by() {
   local groups
   groups=$(sed -n 's/^ *scripts\/install_dependencies //p' "$source/scripts/$1")

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs a build, moves the result elsewhere and uses it there as a stranger
-# would: by find_package and by pkg-config. Called with source and build folder.
+# Installs a build, moves the result and uses it there as a user would, with
+# find_package and pkg-config. Arguments: source and build folder.
 set -euo pipefail
 
 readonly source=$1 build=$2
@@ -18,10 +18,10 @@ fail() {
   exit 1
 }
 
-# says PATTERN WHAT: what the last command wrote.
+# says PATTERN WHAT: checks the output of the last command.
 says() { grep -Eq -- "$1" "$work/log" || fail "$2 does not say '$1'"; }
 
-# configure FOLDER ARGUMENT...: a project that uses what is installed.
+# configure FOLDER ARGUMENT...: configures a project that uses the installation.
 configure() {
   local folder=$1
   shift
@@ -29,7 +29,7 @@ configure() {
     >"$work/log" 2>&1
 }
 
-# project NAME LANGUAGE FIND_PACKAGE_ARGUMENT...: a project that only finds.
+# project NAME LANGUAGE FIND_PACKAGE_ARGUMENT...: only calls find_package.
 project() {
   local folder=$work/$1 language=$2
   shift 2
@@ -49,7 +49,7 @@ mv "$work/first" "$prefix"
 ! grep -rnE '#include "' "$prefix/include" | grep -v 'include "rgbd_pose/' \
   >"$work/log" || fail "these includes lack rgbd_pose/"
 
-# Every link of a page leads to what is installed.
+# Every link of a page leads to an installed file.
 docs=$(dirname "$(find "$prefix" -path '*/doc/*/README.md' | grep -v /docs/)")
 while IFS= read -r page; do
   # shellcheck disable=SC2016
@@ -62,7 +62,7 @@ done < <(find "$docs" -name '*.md') >"$work/log"
 [ ! -s "$work/log" ] || fail "dead links"
 [ -s "$docs/docs/README.md" ] || fail "no index of pages"
 
-# The examples, in the middle of nowhere.
+# The examples, outside of the source tree.
 cp -r "$source/docs/examples" "$work/examples"
 configure "$work/examples" || fail "examples: find_package"
 cmake --build "$work/examples/build" --parallel 2 >"$work/log" 2>&1 ||
@@ -81,7 +81,7 @@ check "$examples/calibrate_camera" '^fx 535\.5 -> 52[45]\.[0-9] .* better$'
 check "$examples/camera_loop" '^back at the start within 0\.[0-9]+ mm$'
 check "$examples/find_places" '^28 shows what 0 shows, from 0\.0[0-9] m away$'
 
-# One component needs no more than its own dependencies.
+# A component only needs its own dependencies.
 project costs CXX REQUIRED COMPONENTS costs
 cp "$source/docs/examples/estimate_motion.cc" "$work/costs"
 printf '%s\n' 'add_executable(estimate_motion estimate_motion.cc)' \
@@ -93,7 +93,7 @@ configure "$work/costs" -DCMAKE_DISABLE_FIND_PACKAGE_OpenCV=TRUE \
 cmake --build "$work/costs/build" >"$work/log" 2>&1 || fail "costs: build"
 check "$work/costs/build/estimate_motion" '^ok'
 
-# What is not there is refused in words.
+# Unknown components and versions are refused with a message.
 project lidar NONE REQUIRED COMPONENTS core lidar
 ! configure "$work/lidar" || fail "took an unknown component"
 says "no component 'lidar'; there are core, robust, costs, frontend," lidar
@@ -101,7 +101,7 @@ project newer NONE 0.99 REQUIRED
 ! configure "$work/newer" || fail "took another version"
 says 'compatible with requested version "0.99"' newer
 
-# By pkg-config: all headers together, and a program.
+# With pkg-config: all headers together, and a program.
 export PKG_CONFIG_PATH
 PKG_CONFIG_PATH=$(dirname "$(find "$prefix" -name rgbd_pose.pc)")
 read -ra flags < <(pkg-config --cflags rgbd_pose)
@@ -118,7 +118,7 @@ read -ra libraries < <(pkg-config --libs rgbd_pose_simulation)
   -o "$work/camera_loop" >"$work/log" 2>&1 || fail "pkg-config: build"
 check "$work/camera_loop" '^back at the start within 0\.[0-9]+ mm$'
 
-# Flags that give Eigen another alignment are refused rather than a crash.
+# Flags that change Eigen's alignment are refused, as they lead to crashes.
 avx() {
   "${CXX:-c++}" -std=c++17 -O2 -mavx2 "$@" \
     "$source/docs/examples/estimate_motion.cc" "${flags[@]}" "${libraries[@]}" \

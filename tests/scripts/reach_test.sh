@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# reach_test.sh SOURCE: scripts/mutants sees every cost and loss, and
-# docs/Doxyfile every header that the examples include, wherever they are.
+# reach_test.sh SOURCE: scripts/mutants covers every cost and loss, and
+# docs/Doxyfile every header that the examples include.
 set -euo pipefail
 cd "$1"
 command -v python3 >/dev/null || {

@@ -1,4 +1,4 @@
-"""room_picture_test.py SOURCE: a floor, a ceiling and two paths, drawn."""
+"""room_picture_test.py SOURCE: draws a floor, a ceiling and two paths."""
 import pathlib
 import subprocess
 import sys
@@ -12,9 +12,9 @@ except ImportError as missing:
     sys.exit(77)
 
 SCRIPT = pathlib.Path(sys.argv[1]) / "scripts" / "room_picture"
-SIDE = 400  # triangles' corners along a side of 4 m
+SIDE = 400  # vertices along a side of 4 m
 FLOOR, CEILING = (40, 160, 40), (250, 250, 0)
-CAMERA_DOWN, CEILING_DOWN = 1.2, -1.3  # m, from the camera's height
+CAMERA_DOWN, CEILING_DOWN = 1.2, -1.3  # m below the camera's height
 
 
 def plane(down, colour, seen_from_above):
@@ -81,7 +81,7 @@ with tempfile.TemporaryDirectory() as name:
     assert green.mean() > 0.3, green.mean()
     assert not yellow.any(), "the ceiling hides the room"
     assert red.sum() > 500 and blue.sum() > 500, (red.sum(), blue.sum())
-    # Seen along x nearly: what is further in z is further to a side.
+    # The view is nearly along x: points further in z are further to one side.
     assert abs(np.nonzero(red)[1].mean() - np.nonzero(blue)[1].mean()) > 100
 
     few = subprocess.run([sys.executable, SCRIPT, picture],

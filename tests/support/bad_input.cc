@@ -5,7 +5,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// What must not be there unless a run was complete.
+// Files that must not exist unless a run was complete.
 bool IsResult(const fs::path& path) {
   const std::string name = path.filename().string();
   for (const char* result :
@@ -26,7 +26,7 @@ std::vector<std::string> ResultsBelow(const std::string& folder) {
   return files;
 }
 
-// The name of the program that a command runs.
+// The name of the program in a command.
 std::string NameOf(const std::string& command) {
   const std::string kBefore = "bin/rgbd_";
   const size_t begin = command.find(kBefore) + 4;
@@ -85,7 +85,7 @@ void BadInputTest::Expect(const std::string& command,
     return;
   }
 #ifndef RGBD_POSE_HAS_LIBDEFLATE
-  // libpng has had its word before.
+  // libpng may have printed messages before.
   const size_t own = run.err.find(NameOf(command) + ": ");
   if (own != std::string::npos) run.err.erase(0, own);
 #endif

@@ -14,7 +14,7 @@
 
 namespace rgbd_pose {
 
-// What a row of a table spoils: a copy of a good sequence of four frames.
+// A copy of a good sequence of four frames, which a row of a table damages.
 struct SpoiledSequence {
   std::string path;
 
@@ -33,7 +33,7 @@ struct SpoiledSequence {
   void Remove(const std::string& name) const {
     std::filesystem::remove_all(*this / name);
   }
-  // Replaces the first place where `from` is found.
+  // Replaces the first occurrence of `from`.
   void Replace(const std::string& name, const std::string& from,
                const std::string& to) const {
     std::string content = Read(name);
@@ -46,21 +46,21 @@ struct SpoiledSequence {
 // A bad input, or one that only looks bad.
 struct BadInput {
   std::string name;
-  std::function<void(const SpoiledSequence&)> spoil;  // null: nothing
-  // Further words for the program, or all of them where the table says so;
-  // {dir} is the folder of the test, {seq} that of the sequence.
+  std::function<void(const SpoiledSequence&)> spoil;  // null: no change
+  // Further arguments of the program, or all of them where the table says so.
+  // {dir} is the folder of the test, {seq} the sequence's.
   std::string words;
   int exit_code = 0;
-  std::string message;  // in the one line on stderr, with {dir} and {seq}
+  std::string message;  // in the single line on stderr, with {dir} and {seq}
 };
 
-// Runs the rows of tables and looks at all that programs promise: the exit
-// code, one line on stderr that names the program, and whole results or none.
+// Runs the rows of tables and checks what programs guarantee: the exit code,
+// one line on stderr with the program's name, complete results or none.
 class BadInputTest : public testing::Test {
  protected:
   BadInputTest();
 
-  // The rows of a table, each added to `command`.
+  // Runs the rows of a table, each with its words added to `command`.
   void ExpectEach(const std::string& command,
                   const std::vector<BadInput>& rows) const;
 

@@ -25,7 +25,7 @@ struct BothJacobians {
     ASSERT_TRUE(oracle.Evaluate(parameters, jet_r_.data(), by_jet));
   }
 
-  // Relative to the oracle's row; absolute where that is zero.
+  // Relative to the oracle's row; absolute if that row is zero.
   double RowError(int row, int first_column, int columns) const {
     const double size = jet_J_.row(row).template lpNorm<Eigen::Infinity>();
     const double error = (hand_J_.row(row) - jet_J_.row(row))
@@ -38,7 +38,7 @@ struct BothJacobians {
   Eigen::Matrix<double, Residual::kRows, 6, Eigen::RowMajor> hand_J_, jet_J_;
 };
 
-// A TypeList for TYPED_TEST_SUITE, and its tests by the names of the costs.
+// A TypeList for TYPED_TEST_SUITE; CostName names its tests after the costs.
 template <typename List>
 struct AsGTestTypes;
 template <typename... Types>

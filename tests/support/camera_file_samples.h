@@ -2,7 +2,7 @@
 
 namespace rgbd_pose {
 
-// Camera files as people have them, shortened.
+// Typical camera files, shortened.
 constexpr char kOrbSlam2[] =
     "%YAML:1.0\n"
     "\n"

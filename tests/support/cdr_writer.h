@@ -7,8 +7,8 @@
 
 namespace rgbd_pose {
 
-// Messages of ROS 2 as its middleware lays them out, little-endian: a header of
-// four bytes, then each number at a multiple of its size.
+// Messages of ROS 2 in CDR, little-endian: a header of four bytes, then each
+// number aligned to its size.
 class CdrWriter {
  public:
   template <typename T>

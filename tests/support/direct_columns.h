@@ -5,7 +5,7 @@
 
 namespace rgbd_pose {
 
-// The points of a pair's previous frame, so many at most.
+// The points of a pair's previous frame, at most `max_points`.
 template <typename Residual>
 PackedColumns PointsOf(const DirectPair& pair, int level, int max_points) {
   const DirectOptions options;
@@ -17,7 +17,7 @@ PackedColumns PointsOf(const DirectPair& pair, int level, int max_points) {
   return points;
 }
 
-// Where a pair's current frame is looked at.
+// The input for reading a pair's current frame.
 inline DirectInput InputOf(const DirectPair& pair, int level,
                            const Rigid3d& cur_from_prev) {
   DirectInput input;
@@ -31,7 +31,7 @@ inline DirectInput InputOf(const DirectPair& pair, int level,
   return input;
 }
 
-// The columns of the points that are seen.
+// The columns of the visible points.
 template <typename Residual>
 PackedColumns SeenColumns(const DirectInput& input,
                           const PackedColumns& points) {

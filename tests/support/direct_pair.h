@@ -13,8 +13,8 @@
 
 namespace rgbd_pose {
 
-// A rendered frame as direct costs see it. Its images may be changed, the
-// pyramid then be built again.
+// A rendered frame as direct costs see it. After changing its images, call
+// Build() to rebuild the pyramid.
 struct DirectFrame {
   static constexpr int kLevels = 6;
 
@@ -57,7 +57,7 @@ struct DirectPair {
   Rigid3d cur_from_prev;
 };
 
-// A small camera of the same field of view as TUM's, with or without lens
+// A small camera with the field of view of TUM's, with or without lens
 // distortion.
 inline SyntheticOptions SmallImages(bool is_distorted = false) {
   SyntheticOptions options;

@@ -15,7 +15,7 @@ struct EdgeFunctor {
     return true;
   }
 
-  // For any scalar, below a half turn.
+  // For any scalar type, with errors below a half turn.
   template <typename T>
   void Residual(const RotationAndCenter<T>& motion, T* r) const {
     using std::sqrt;

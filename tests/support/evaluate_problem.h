@@ -10,7 +10,7 @@
 
 namespace rgbd_pose {
 
-// The residual blocks of a cost as Ceres gets them.
+// The residual blocks of a cost as passed to Ceres.
 inline std::unique_ptr<ceres::Problem> BuildProblem(
     MotionCost* cost, Assembly assembly, const LinearizationPoint& origin,
     ceres::LossFunction* loss, double* x) {
@@ -22,7 +22,7 @@ inline std::unique_ptr<ceres::Problem> BuildProblem(
   return problem;
 }
 
-// What Ceres makes of them at x.
+// The normal equations that Ceres evaluates at x.
 inline NormalEquations EvaluateProblem(MotionCost* cost, Assembly assembly,
                                        const LinearizationPoint& origin,
                                        ceres::LossFunction* loss,

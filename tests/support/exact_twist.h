@@ -7,8 +7,8 @@
 
 namespace rgbd_pose {
 
-// later_from_earlier of a camera that keeps its velocity: in steps so small
-// that what they leave out is some 1e-6 m in a readout.
+// later_from_earlier of a camera at constant velocity, in steps small enough to
+// be accurate to about 1e-6 m in a readout.
 inline Rigid3d ExactMotion(const Twist& twist, double seconds) {
   constexpr int kSteps = 200;
   const Rigid3d step = twist.MotionDuring(seconds / kSteps);
@@ -17,9 +17,8 @@ inline Rigid3d ExactMotion(const Twist& twist, double seconds) {
   return motion;
 }
 
-// Where a point (camera axes at the stamp, m) is seen by rows that are exposed
-// one after another, px: by bisection of the row. The camera's velocity is
-// constant.
+// The pixel at which a rolling shutter sees a point (camera axes at the stamp,
+// m), by bisection of the row. The camera's velocity is constant.
 inline Eigen::Vector2d ExactlySeen(const Camera& camera, const Shutter& shutter,
                                    const Twist& twist,
                                    const Eigen::Vector3d& point) {

@@ -11,8 +11,8 @@
 
 namespace rgbd_pose {
 
-// Expects that a call throws an InputError of one line that has all the parts
-// in its message.
+// Expects that a call throws an InputError with a message of one line that
+// contains all parts.
 inline void ExpectInputError(const std::function<void()>& call,
                              const std::vector<std::string>& message_parts) {
   try {

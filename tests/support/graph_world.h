@@ -10,7 +10,7 @@
 
 namespace rgbd_pose {
 
-// A camera that goes once round a circle and looks outwards.
+// A camera that moves once around a circle and looks outwards.
 inline std::vector<Rigid3d> CircleOfPoses(int poses, double radius) {
   std::vector<Rigid3d> circle;
   for (int i = 0; i < poses; ++i) {
@@ -23,8 +23,8 @@ inline std::vector<Rigid3d> CircleOfPoses(int poses, double radius) {
   return circle;
 }
 
-// The motion between two of them, off by what its covariance says: standard
-// deviations in rad and m.
+// The motion between two poses with random errors, and the covariance of these
+// errors (standard deviations in rad and m).
 inline RelativePose MeasuredEdge(const std::vector<Rigid3d>& world_from_cam,
                                  int ref, int cur, double sigma_rotation,
                                  double sigma_translation, RandomWorld* world) {

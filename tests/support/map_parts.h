@@ -8,11 +8,11 @@
 
 namespace rgbd_pose {
 
-// The size of the images of maps in tests.
+// Image size of maps in tests.
 constexpr int kMapWidth = 32;
 constexpr int kMapHeight = 24;
 
-// A frame of noise, which needs many bytes; another one for each seed.
+// A frame of noise, which needs many bytes; differs for each seed.
 inline Frame NoiseFrame(int seed) {
   Frame frame;
   frame.timestamp = 1305031098.6659 + seed / 30.0;
@@ -25,8 +25,8 @@ inline Frame NoiseFrame(int seed) {
   return frame;
 }
 
-// A map of so many keyframes in two segments, each joined to the next; frames
-// and numbers with all their digits depend on the seed.
+// A map of `keyframes` keyframes in two segments, each joined to the next.
+// Frames and numbers depend on the seed and use all their digits.
 inline KeyframeMap NoiseMap(int keyframes, int seed) {
   KeyframeMap map;
   map.camera = {kMapWidth, kMapHeight, 30.1, 29.9, 15.5, 11.5, 0.1, -1.0 / 3.0};
@@ -52,7 +52,7 @@ inline bool IsSameMotion(const Rigid3d& a, const Rigid3d& b) {
          a.translation == b.translation;
 }
 
-// To the last bit.
+// Compares to the last bit.
 inline bool IsSameMap(const KeyframeMap& a, const KeyframeMap& b) {
   if (!a.CheckCamera(b.camera).empty() ||
       a.keyframes.size() != b.keyframes.size() ||

@@ -15,8 +15,8 @@
 
 namespace rgbd_pose {
 
-// Two views of the simulated room, a frontend, and how well its matches between
-// them agree with the truth.
+// Two views of the simulated room and a frontend whose matches between them are
+// compared with the truth.
 class MatchedViews {
  protected:
   // Half a second apart on path xyz: about 0.1 m and 20 px of flow.
@@ -46,8 +46,7 @@ class MatchedViews {
     return frontend_->Detect(PreparedFrame(frame));
   }
 
-  // How far (px) each match is from where the true motion takes its point,
-  // sorted.
+  // Distance (px) of each match from the true position of its point, sorted.
   std::vector<double> Errors(const Correspondences& matches) const {
     std::vector<double> errors;
     for (size_t i = 0; i < matches.size(); ++i) {
@@ -60,7 +59,7 @@ class MatchedViews {
     return errors;
   }
 
-  // `wrong_px`: a match further than this from the truth shows another place.
+  // `wrong_px`: a match with a larger error counts as an outlier.
   void ExpectMostlyRight(const FeatureMatches& found, size_t min_matches,
                          double median_px, double wrong_px) const {
     ASSERT_GE(found.matches.size(), min_matches);
@@ -69,11 +68,11 @@ class MatchedViews {
     EXPECT_LT(errors[errors.size() / 2], median_px);
     const auto wrong =
         errors.end() - std::lower_bound(errors.begin(), errors.end(), wrong_px);
-    // An M-estimator bears several times as many.
+    // An M-estimator tolerates several times as many.
     EXPECT_LE(wrong, 0.1 * static_cast<double>(errors.size()));
   }
 
-  // Takes the frontend. `max_error`: of the last position, m.
+  // Moves the frontend into an odometry. `max_error`: of the last position, m.
   void ExpectTracksAlongItsAxes(double max_error) {
     Odometry odometry(
         OdometryOptions(), std::move(frontend_),

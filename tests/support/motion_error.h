@@ -4,7 +4,7 @@
 
 namespace rgbd_pose {
 
-// How far an estimate of a motion is off.
+// The error of an estimated motion.
 struct MotionError {
   double angle;        // rad
   double translation;  // m

@@ -33,7 +33,7 @@ inline std::string Compress(const std::string& data) {
   return packed;
 }
 
-// The parts of a PNG file, each to be spoiled on its own.
+// The parts of a PNG file, which can be damaged one by one.
 struct PngParts {
   uint32_t width = 0;
   uint32_t height = 0;

@@ -10,15 +10,15 @@
 
 namespace rgbd_pose {
 
-// What a program said and how it ended.
+// Exit code and output of a program.
 struct RunResult {
   int exit_code = -1;  // -1: ended by a signal
   std::string out;
   std::string err;
 };
 
-// Runs a command of the shell with nothing to read; keeps its output in
-// `folder` meanwhile.
+// Runs a shell command with empty input; stores its output in `folder`
+// meanwhile.
 inline RunResult RunCommand(const std::string& command,
                             const TempFolder& folder) {
   const std::string out = folder / "stdout";

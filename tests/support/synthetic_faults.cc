@@ -22,9 +22,9 @@ constexpr int kThinning = 3;
 
 const Vector3d kBoxSize(0.62, 0.20, 0.46);  // width, depth, height (m)
 constexpr double kBoxFront = 0.8;           // m
-constexpr double kBoxRadius = 0.1;          // m, of its circle
-constexpr double kBoxSpeed = 0.3;           // m/s
-constexpr uint64_t kBoxNoise = 0x626f78;    // sets its noise apart
+constexpr double kBoxRadius = 0.1;        // m, radius of the circle it moves on
+constexpr double kBoxSpeed = 0.3;         // m/s
+constexpr uint64_t kBoxNoise = 0x626f78;  // seed that separates its noise
 
 // In axes of its own: x along its width, z up, from its centre.
 Scene MakeBox(uint32_t seed) {
@@ -50,8 +50,7 @@ SyntheticOptions Turned(SyntheticOptions options) {
   return options;
 }
 
-// The box `t` seconds after the frame it appears in, seen from the pose of
-// that.
+// The box `t` seconds after it appears, in axes of the camera at that frame.
 Rigid3d FirstCamFromBox(double t) {
   const double angle = kBoxSpeed / kBoxRadius * t;
   const Vector3d centre(kBoxRadius * std::cos(angle),
@@ -134,8 +133,8 @@ Frame FaultyDataset::Read(int index) const {
       case FaultKind::kBox:
         DrawBox(source_index, fault.first, &frame);
         break;
-      case FaultKind::kTurned:   // it is in Source
-      case FaultKind::kThinned:  // it is in source_
+      case FaultKind::kTurned:   // handled in Source()
+      case FaultKind::kThinned:  // handled in source_
         break;
     }
   }

@@ -11,12 +11,12 @@
 
 namespace rgbd_pose {
 
-// What may befall an RGB-D camera.
+// Faults of an RGB-D camera.
 enum class FaultKind {
   kBlack,    // the colour image is black
   kCovered,  // the depth image is empty
   kGain,     // gray levels are multiplied by Fault::gain and saturate
-  kTurned,   // the camera is turned at once, by kFaultTurnDeg about its y axis
+  kTurned,   // the camera jumps by kFaultTurnDeg about its y axis
   kBox,      // a printed box circles in front of the camera
   kThinned,  // only every third frame arrives
 };
@@ -27,22 +27,23 @@ constexpr double kFaultTurnDeg = 25.0;
 struct Fault {
   FaultKind kind = FaultKind::kBlack;
   int first = 0;
-  int end = std::numeric_limits<int>::max();  // stays to the last frame
-  double gain = 2.0;                          // of kGain
+  int end = std::numeric_limits<int>::max();  // by default until the last frame
+  double gain = 2.0;                          // for kGain
 };
 
-// A synthetic sequence with faults; frames without any are as they would be,
-// byte for byte. Ranges of faults count the frames of that sequence, before
-// any are left out. Several faults of one frame take effect in their order.
+// A synthetic sequence with faults. Frames without faults equal those of the
+// sequence without faults, byte for byte. Ranges of faults count the frames of
+// that sequence, before any are left out. Several faults of one frame are
+// applied in their order.
 //
-// The box is 0.62 x 0.46 x 0.2 m, its front 0.8 m before the camera's pose in
-// its first frame: 40 % of a 640 x 480 image. Its centre goes round a circle
-// of 0.1 m radius at 0.3 m/s, upright to and fixed in the axes of that pose,
-// wherever the camera goes. It hides what is farther away in both images, has
-// the noise of the sensor if the sequence has, and is always sharp.
+// The box is 0.62 x 0.46 x 0.2 m. In its first frame, its front is 0.8 m ahead
+// of the camera: 40 % of a 640 x 480 image. Its centre moves on a circle of 0.1
+// m radius at 0.3 m/s, upright to and fixed in the axes of that first pose. It
+// hides what is farther away in both images, has the sensor's noise if the
+// sequence has noise, and is always sharp.
 class FaultyDataset : public Dataset {
  public:
-  // Throws InputError if options or faults make no sense.
+  // Throws InputError if options or faults are invalid.
   FaultyDataset(const SyntheticOptions& options, std::vector<Fault> faults);
 
   int size() const override { return static_cast<int>(source_.size()); }
@@ -67,7 +68,7 @@ class FaultyDataset : public Dataset {
   SyntheticDataset sound_;
   SyntheticDataset turned_;
   Renderer box_renderer_;
-  std::vector<int> source_;  // index in the sequence, of every frame left
+  std::vector<int> source_;  // for each frame left: its index in the sequence
 };
 
 }  // namespace rgbd_pose

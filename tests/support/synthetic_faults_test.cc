@@ -20,7 +20,7 @@ constexpr int kFaultFrames = 12;
 constexpr int kFirst = 3;
 constexpr int kEnd = 9;
 
-// A smaller image of the same view, so that tests are quick.
+// A smaller image with the same field of view, for speed.
 SyntheticOptions SmallOptions(bool noise) {
   SyntheticOptions options;
   options.path = "circle";
@@ -120,7 +120,7 @@ TEST(SyntheticFaultsTest, TurnsToTheRightAndTheTruthFollows) {
   EXPECT_EQ(faulty.ground_truth()[kFirst].world_from_cam.translation,
             faulty.WorldFromCam(kFirst).translation);
 
-  // What the frame before saw is where the poses say.
+  // Points of the previous frame are where the poses predict them.
   const Frame prev = faulty.Read(kFirst - 1);
   const Frame cur = faulty.Read(kFirst);
   const Rigid3d cur_from_prev =
@@ -137,12 +137,12 @@ TEST(SyntheticFaultsTest, TurnsToTheRightAndTheTruthFollows) {
       const double depth =
           cur.DepthAt(static_cast<int>(std::lround(pixel.x())),
                       static_cast<int>(std::lround(pixel.y())));
-      // Half a pixel of a slanted surface is 2 cm in these small images.
+      // Half a pixel on a slanted surface is 2 cm in these small images.
       agree += std::abs(depth - point.z()) < 0.03;
     }
   }
   ASSERT_GT(seen, 700);
-  EXPECT_GT(agree, 0.9 * seen);  // the rest lies at depth edges
+  EXPECT_GT(agree, 0.9 * seen);  // the others are at depth edges
 }
 
 // The box in a frame without noise: its pixels and the centre of its front.
@@ -179,7 +179,7 @@ TEST(SyntheticFaultsTest, TheBoxCirclesInTheWorldBeforeEverythingElse) {
     EXPECT_EQ(cv::countNonZero((faulty.Read(i).depth >= sound.Read(i).depth) &
                                box.pixels),
               0);
-    // Sums over whole pixels at its border: half a pixel is 3 mm.
+    // Sums over whole pixels at the border of the box: half a pixel is 3 mm.
     constexpr double kTolerance = 0.003;
     const Vector3d in_first =
         first_from_world * sound.WorldFromCam(i) * box.centre;
@@ -187,7 +187,7 @@ TEST(SyntheticFaultsTest, TheBoxCirclesInTheWorldBeforeEverythingElse) {
     EXPECT_NEAR(in_first.head<2>().norm(), 0.1, kTolerance);
     if (i > kFirst) {
       const double speed = (in_first - last).norm() * options.rate_hz;
-      EXPECT_NEAR(speed, 0.3, 0.1);  // between two frames it goes 10 mm
+      EXPECT_NEAR(speed, 0.3, 0.1);  // it moves 10 mm per frame
     }
     last = in_first;
   }

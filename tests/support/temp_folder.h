@@ -9,8 +9,8 @@
 
 namespace rgbd_pose {
 
-// A folder for one test, removed after it. Named after the test, since tests
-// may run at the same time.
+// A folder for one test, removed afterwards. It is named after the test, since
+// tests may run at the same time.
 class TempFolder {
  public:
   TempFolder() {

@@ -13,7 +13,7 @@
 
 namespace rgbd_pose {
 
-// By features and one cost.
+// Odometry by features with a single cost.
 inline Odometry MakeOdometry(const Camera& camera, const std::string& loss,
                              const OdometryOptions& options = {}) {
   TrackerParts parts = PartsFor(camera);
@@ -21,7 +21,7 @@ inline Odometry MakeOdometry(const Camera& camera, const std::string& loss,
   return Odometry(options, MakeTracker("features", std::move(parts)));
 }
 
-// A sequence tracked, and what came of it.
+// The results of a tracked sequence.
 struct TrackedSequence {
   std::vector<TrackedFrame> frames;
   Trajectory trajectory;
@@ -45,7 +45,7 @@ inline TrackedSequence TrackAll(const Dataset& dataset, const std::string& loss,
   return run;
 }
 
-// The room as a camera sees it that moves along that path.
+// The room seen by a camera that moves along the given path.
 inline SyntheticDataset Room(const std::string& path, int frames) {
   SyntheticOptions options;
   options.path = path;
@@ -53,8 +53,8 @@ inline SyntheticDataset Room(const std::string& path, int frames) {
   return SyntheticDataset(options);
 }
 
-// The same with nothing to see. A matrix of its own: assigning cv::Mat::zeros
-// would write into the shared one.
+// The frame with a black image, in a new matrix: assigning cv::Mat::zeros would
+// write into the shared one.
 inline Frame Black(const Frame& frame) {
   Frame black = frame;
   black.gray = cv::Mat(frame.gray.size(), CV_8UC1, cv::Scalar(0));

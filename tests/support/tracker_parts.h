@@ -9,7 +9,7 @@
 
 namespace rgbd_pose {
 
-// The parts that any tracker needs, as programs take them by default.
+// The parts of any tracker, with the programs' defaults.
 inline TrackerParts PartsFor(const Camera& camera,
                              const TrackerOptions& options = {}) {
   TrackerParts parts{options, {}, "patch", Estimator({}, MakeRobustCosts())};

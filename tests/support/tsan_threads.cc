@@ -1,7 +1,7 @@
-// Linked into every program of a build for the thread sanitizer, which does not
-// see how the library under OpenCV's parallel loops synchronises its threads
-// and would call all they do a race. Here the loops run on threads that it
-// sees.
+// Linked into every program of a build for the thread sanitizer. The sanitizer
+// does not see how the library under OpenCV's parallel loops synchronises its
+// threads, and would report races. With this file the loops run on threads that
+// the sanitizer sees.
 
 #include <algorithm>
 #include <memory>
@@ -45,8 +45,8 @@ class SeenThreads : public cv::parallel::ParallelForAPI {
 
 const bool installed = [] {
   cv::parallel::setParallelForBackend(std::make_shared<SeenThreads>(), false);
-  // Nor how the first expression makes what all later ones share: here it comes
-  // before there are threads.
+  // The sanitizer also misses the initialisation of shared data in OpenCV's
+  // first matrix expression. Here it happens before there are threads.
   const cv::Mat first = cv::Mat::zeros(1, 1, CV_8U);
   return !first.empty();
 }();

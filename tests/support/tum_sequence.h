@@ -71,7 +71,7 @@ class TumSequenceTest : public testing::Test {
     ExpectInputError([this] { TumDataset{options_}; }, message_parts);
   }
 
-  // Expects that the sequence is taken, but not its first frame.
+  // Expects that the sequence is accepted, but not its first frame.
   void ExpectReadRefused(const std::vector<std::string>& message_parts) {
     const TumDataset dataset(options_);
     ExpectInputError([&dataset] { dataset.Read(0); }, message_parts);

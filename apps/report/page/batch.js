@@ -26,7 +26,7 @@ function distinct(values) {
   return [...new Set(values)];
 }
 
-// What sets a run apart from others: the settings that are not all the same.
+// The name of a run: all settings that vary within the batch.
 function settingName(row, varied) {
   return varied.map(name => row[name]).join(', ') || 'all runs';
 }
@@ -55,7 +55,7 @@ function batchHeader(data, varied) {
   page.append(figures);
 }
 
-// A row a sequence; settings side by side within it.
+// One row per sequence, with the settings next to each other.
 function batchPlot(data, figure, sequences, settings, varied) {
   const rows = data.rows.filter(row => known(row[figure.key]));
   if (rows.length === 0) return;
@@ -63,7 +63,7 @@ function batchPlot(data, figure, sequences, settings, varied) {
   const element = section(figure.title, figure.text + ' Logarithmic; less is better.');
   const traces = settings.map((setting, k) => {
     const own = rows.filter(row => settingName(row, varied) === setting);
-    // Within the height of 1 that a sequence has.
+    // Offset within the row, which has a height of 1.
     const shift = settings.length > 1 ? 0.6 * (k / (settings.length - 1) - 0.5) : 0;
     return {
       type: 'scatter', mode: 'markers', name: setting,
@@ -90,8 +90,8 @@ function batchPlot(data, figure, sequences, settings, varied) {
   div.style.height = '';
 }
 
-// Long names of sequences would leave no room for the plot on a phone; it is
-// their ends that differ.
+// Long names would leave no room for the plot on a phone. They are cut at the
+// start, because they differ at their ends.
 function shorten(name) {
   const kLongest = window.innerWidth < 600 ? 14 : 40;
   return name.length > kLongest ? '…' + name.slice(1 - kLongest) : name;
@@ -112,7 +112,7 @@ function batchTable(data, varied) {
       ]), 'stack wide'));
 }
 
-// Of one part the error may be chance: what several say.
+// Statistics over parts, because the error of a single part may be chance.
 function partsTable(data, sequences, settings, varied) {
   if (distinct(data.rows.map(row => row.part)).length < 2) return;
   const range = (rows, key, factor) => {

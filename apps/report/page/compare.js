@@ -44,7 +44,7 @@ function comparisonHeader(data) {
           `${setting(data, 'frontend')}.`));
 }
 
-// The losses with the smallest and the greatest of a figure.
+// The losses with the smallest and the largest value of a figure.
 function extremes(sequence, key) {
   const losses = sequence.losses.filter(loss => known(loss.figures[key]));
   losses.sort((a, b) => a.figures[key] - b.figures[key]);
@@ -153,7 +153,7 @@ function comparedErrors(sequence, prefix, parent) {
       element, traces, layout);
 }
 
-// The figures of the table, side by side.
+// Plots the figures of the table next to each other.
 function comparedFigures(sequence, prefix, element) {
   const losses = sequence.losses;
   const shown = COMPARED_FIGURES.filter(

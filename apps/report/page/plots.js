@@ -1,20 +1,20 @@
 'use strict';
 
-// What the pages share: elements, numbers in words and a plain look of plots.
+// Shared by the pages: elements, formatted numbers and a plain plot style.
 
-// Okabe and Ito: distinguishable for the colour-blind as well.
+// Okabe and Ito: also distinguishable for colour-blind people.
 const COLOR = {
   black: '#000000', orange: '#E69F00', sky: '#56B4E9', green: '#009E73',
   yellow: '#F0E442', blue: '#0072B2', vermillion: '#D55E00', purple: '#CC79A7',
   grey: '#8c959f',
 };
-// Of the segments of a path, in order; black is the truth's.
+// Colours of the segments of a path, in order. Black is used for the truth.
 const SEGMENT_COLORS = [
   COLOR.blue, COLOR.vermillion, COLOR.green, COLOR.purple, COLOR.orange,
   COLOR.sky,
 ];
 
-// How the k-th of several lines looks; all of the first twelve differ.
+// The style of the k-th of several lines. The first twelve are all different.
 const LINE_DASHES = ['solid', 'dash', 'dot', 'dashdot'];
 const LINE_SYMBOLS = ['circle', 'square', 'diamond', 'triangle-up', 'triangle-down'];
 
@@ -24,7 +24,7 @@ function lineStyle(k) {
           symbol: LINE_SYMBOLS[k % LINE_SYMBOLS.length]};
 }
 
-// Makes an element: make('td', {class: 'number'}, 'text' or child, ...).
+// Creates an element: make('td', {class: 'number'}, 'text' or child, ...).
 function make(tag, attributes, ...children) {
   const element = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes || {})) {
@@ -38,7 +38,7 @@ function known(value) {
   return value !== null && value !== undefined && Number.isFinite(value);
 }
 
-// A number with so many significant digits, never as 1e-7.
+// A number with `count` significant digits, without an exponent.
 function digits(value, count) {
   if (!known(value)) return 'n/a';
   if (value === 0) return '0';
@@ -50,7 +50,7 @@ function largest(values) {
   return values.reduce((most, v) => (known(v) && v > most ? v : most), 0);
 }
 
-// Metres as what reads best up to the largest of them.
+// The unit for lengths up to `most` metres.
 function lengthUnit(most) {
   return most < 1 ? {name: 'mm', factor: 1000} : {name: 'm', factor: 1};
 }
@@ -74,9 +74,9 @@ function axis(title, more) {
   }, more);
 }
 
-// A logarithmic axis for all values above 0: ticks at powers of ten and, where
-// they are few, between. At least from half to double, so that small
-// differences stay small.
+// A logarithmic axis for all values above 0, with ticks at powers of ten and,
+// if there are few, also between them. It spans at least a factor of 4, so
+// small differences look small.
 function logAxis(values) {
   const above = values.filter(v => known(v) && v > 0).map(Math.log10);
   const least = above.reduce((a, b) => Math.min(a, b), Infinity);
@@ -96,7 +96,7 @@ function logAxis(values) {
           ticktext: tickvals.map(String)};
 }
 
-// A figure of a page's head: a number and what it is.
+// A tile in the head of a page: a value and its description.
 function figureTile(value, text) {
   return make('div', {class: 'figure'}, make('b', {}, value), make('span', {}, text));
 }
@@ -114,11 +114,11 @@ const BASE_LAYOUT = {
   dragmode: false,
 };
 
-// The bar of buttons would lie over titles and legends; dragging zooms and a
-// double click goes back without it.
+// The button bar would cover titles and legends. It is not needed: dragging
+// zooms and a double click resets.
 const CONFIG = {displayModeBar: false, responsive: true};
 
-// Dragging zooms with a mouse; on a touch screen it must scroll the page.
+// Dragging zooms with a mouse, but must scroll the page on a touch screen.
 function dragMode() {
   return window.matchMedia('(pointer: coarse)').matches ? false : 'zoom';
 }
@@ -132,8 +132,8 @@ function plot(id, size, parent, traces, layout) {
   return div;
 }
 
-// Rows of one time axis, top to bottom: their y axes and titles. Each row is
-// {title, y, weight} with y the title of its axis.
+// Layout of rows with a common time axis, from top to bottom. Each row is
+// {title, y, weight}, where y is the title of its y axis.
 function rowsLayout(rows, xTitle, xRange) {
   const gap = rows.some(row => row.title) ? 0.11 : 0.05;
   const total = rows.reduce((sum, row) => sum + (row.weight || 1), 0);
@@ -144,7 +144,7 @@ function rowsLayout(rows, xTitle, xRange) {
     const number = i === 0 ? '' : String(i + 1);
     const bottom = Math.max(0, top - height * (row.weight || 1));
     layout['yaxis' + number] = axis(row.y, Object.assign(
-        // No margins of its own: the time axes of all plots are to line up.
+        // No automatic margins: the time axes of all plots must be aligned.
         {domain: [bottom, top], nticks: 5, rangemode: 'tozero', automargin: false},
         row.axis));
     layout.annotations.push({
@@ -160,24 +160,24 @@ function rowsLayout(rows, xTitle, xRange) {
   return layout;
 }
 
-// The same range of times in all plots, with room for markers at its ends.
+// The same time range in all plots, with room for markers at both ends.
 function timeRange(data) {
   const end = largest(data.frames.t) || 1;
   return [-0.01 * end, 1.01 * end];
 }
 
-// A dashed line across row `number` ('' is the first).
+// A dashed horizontal line in row `number` ('' is the first).
 function level(value, number) {
   return {type: 'line', xref: 'paper', x0: 0, x1: 1, yref: 'y' + number, y0: value,
           y1: value, line: {color: COLOR.grey, width: 1, dash: 'dash'}};
 }
 
-// A square of colour for a title that stands in for a legend.
+// A coloured square for a title that replaces a legend.
 function key(color) {
   return `<span style="color:${color}">\u25A0</span> `;
 }
 
-// A filled outline of bars of equal width that start at `from`.
+// The filled outline of a histogram with bars of equal width from `from` on.
 function bars(counts, from, width) {
   const x = [from], y = [0];
   counts.forEach((count, i) => {
@@ -208,7 +208,7 @@ function table(head, rows, className) {
           )))))));
 }
 
-// The flags of a run and how to repeat it; `data.settings` has them in groups.
+// The value of a flag; `data.settings` has the flags in groups.
 function setting(data, name) {
   for (const [, flags] of data.settings) {
     for (const [key, value] of flags) if (key === name) return value;
@@ -231,7 +231,7 @@ function settings(data, program) {
   element.append(columns);
 }
 
-// A part of a long section, which a printed page does not break.
+// A part of a long section. Printing does not break it across pages.
 function block(parent, title, text) {
   const element = make('div', {class: 'block'}, make('h3', {}, title));
   if (text) element.append(make('p', {class: 'soft'}, text));
@@ -239,7 +239,7 @@ function block(parent, title, text) {
   return element;
 }
 
-// A heading, a paragraph and what the caller adds.
+// A section with a heading and a paragraph; callers add more content.
 function section(title, text) {
   const element = make('section', {}, make('h2', {}, title));
   if (text) element.append(make('p', {class: 'soft'}, text));
@@ -247,7 +247,7 @@ function section(title, text) {
   return element;
 }
 
-// Plots keep the size they were drawn at; paper (A4) has another.
+// Plots keep their drawn size, but paper (A4) has another.
 const PAPER_WIDTH = 680;
 const PAPER_HEIGHT = {
   small: 240, paths: 300, rows2: 310, rows3: 390, rows4: 640, tall: 420,
@@ -256,7 +256,7 @@ const PAPER_HEIGHT = {
 function fitToPaper(div) {
   const half = div.parentElement.classList.contains('pair');
   const size = Object.keys(PAPER_HEIGHT).find(name => div.classList.contains(name));
-  // Others have the height of what they show.
+  // Other plots have the height of their content.
   const height = PAPER_HEIGHT[size] || div.offsetHeight;
   div.style.height = height + 'px';
   Plotly.relayout(div, {width: half ? PAPER_WIDTH / 2 - 8 : PAPER_WIDTH, height});

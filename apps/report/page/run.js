@@ -7,7 +7,7 @@ function baseName(path) {
   return parts.length ? parts[parts.length - 1] : 'run';
 }
 
-// When rows were exposed, and what was done about it.
+// Describes the exposure times of rows and how the run handled them.
 function shutterInWords(data) {
   const shutter = data.metrics.shutter, stamps = data.metrics.depth_stamp_ms;
   if (!shutter || !stamps) return '';

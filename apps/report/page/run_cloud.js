@@ -1,6 +1,6 @@
 'use strict';
 
-// What the camera saw: a thinned mesh, or a few points of the cloud, beside the
+// What the camera saw: a thinned mesh or some points of the cloud, with the
 // path in 3D.
 
 function bytesOf(base64) {
@@ -12,7 +12,7 @@ function wordsOf(base64) {
   return Array.from({length: view.byteLength / 2}, (_, i) => view.getUint16(2 * i, true));
 }
 
-// x, y, z and colours of the points of a preview.
+// Coordinates and colours of the points of a preview.
 function previewPoints(preview, move = point => point) {
   const steps = wordsOf(preview.positions), color = bytesOf(preview.colors);
   const points = [...Array(preview.points).keys()].map(i => move([0, 1, 2].map(
@@ -43,7 +43,7 @@ function meshTraces(data) {
   return [{
     type: 'mesh3d', name: 'what was seen', hoverinfo: 'skip', showlegend: true,
     x, y, z, i: at(0), j: at(1), k: at(2), vertexcolor: colors,
-    // The colours have their light already.
+    // The vertex colours already include lighting.
     lighting: {ambient: 1, diffuse: 0, specular: 0, fresnel: 0},
     lightposition: {x: 0, y: 0, z: 0},
   }];

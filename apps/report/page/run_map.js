@@ -1,17 +1,17 @@
 'use strict';
 
-// The map of a run of rgbd_slam: keyframes and what joins them, from above.
+// The map of a run of rgbd_slam: keyframes and their pairs, from above.
 
 const PAIR_KINDS = [
   {name: 'tracked pairs', color: COLOR.black, width: 1.2},
   {name: 'further pairs', color: COLOR.sky, width: 0.8},
   {name: 'loops', color: COLOR.vermillion, width: 2.5},
 ];
-// Of segments; pairs have the others.
+// Colours of segments, different from those of pairs.
 const KEYFRAME_COLORS = [COLOR.blue, COLOR.orange, COLOR.green, COLOR.purple];
 
-// Poses of the map are those of the first camera; errors, and so the paths
-// above, are in the world of the ground truth.
+// The transform from the map, whose world is the first camera, to the world of
+// the ground truth, which errors and the paths above refer to.
 function truthFromMap(data) {
   const e = data.metrics.evaluation;
   const pose = data.path.true_x && e && e.truth_from_estimate;
@@ -24,7 +24,7 @@ function truthFromMap(data) {
   ];
 }
 
-// The two axes that are level if the first camera is, nearly.
+// The two axes that are approximately horizontal if the first camera is level.
 function levelAxes(data) {
   const down = downVector(data).map(Math.abs);
   const vertical = down.indexOf(Math.max(...down));
@@ -40,7 +40,7 @@ function largestDistance(before, after) {
       ? Math.hypot(...point.map((v, k) => v - after[i][k])) : null)));
 }
 
-// How many there are in the end; 0 without a map.
+// The number of segments at the end; 0 without a map.
 function mapSegments(slam) {
   return new Set(((slam && slam.graph_keyframes) || []).map(k => k[3])).size;
 }

@@ -1,8 +1,8 @@
 'use strict';
 
-// Where the camera went: two views and one in 3D.
+// The path of the camera: two 2D views and one 3D view.
 
-// The path cut into pieces of one segment each, with gaps where lost.
+// Splits the path into one trace per segment, with gaps where lost.
 function segmentTraces(data, axes, type, line) {
   const path = data.path, frames = data.frames;
   const ids = [...new Set(frames.segment.filter((s, i) => known(path.x[i])))];
@@ -54,9 +54,9 @@ function pathTraces(data, axes, type, line) {
   return traces;
 }
 
-// The axis of the shown world that points down, if one nearly does: there the
-// picture is turned so that up is up. The world of an estimate alone is its
-// first camera: x right, y down, z ahead.
+// The downward direction in the world of the page, used to show the path
+// upright. Without a ground truth, the world is the first camera: x right, y
+// down, z forward.
 function downVector(data) {
   const e = data.metrics.evaluation;
   if (!data.path.true_x || !e || !e.truth_from_estimate) return [0, 1, 0];
@@ -72,8 +72,8 @@ function hasWebGl() {
   }
 }
 
-// The range of all positions along an axis with room around them; equal units
-// may widen it.
+// The range of all positions along an axis with a margin. Equal scales of both
+// axes may widen it.
 function pathRange(values, reversed) {
   const all = values.filter(known);
   const low = Math.min(...all), high = Math.max(...all);
@@ -81,8 +81,8 @@ function pathRange(values, reversed) {
   return reversed ? [high + room, low - room] : [low - room, high + room];
 }
 
-// The ranges of a scene that holds all traces, and its sides for equal units on
-// all axes, the longest always the same: a long path stays in the picture.
+// The ranges of a scene that holds all traces, and its aspect ratio for equal
+// scales. The longest side is constant, which keeps a long path in view.
 function sceneBox(traces) {
   const kLongestSide = 1.05, kThinnest = 0.1;
   const low = {}, high = {};
@@ -108,9 +108,9 @@ function sceneBox(traces) {
   return {ranges, ratio};
 }
 
-// Two views of paths and one in 3D, with ids that begin with `prefix`, the first
-// and the last of their `sizes`.
-// `positions` has all x, y and z, `down` the axis that points down;
+// Draws two 2D views of paths and one in 3D. Their ids begin with `prefix`;
+// `sizes` has the size class of the 2D views and that of the 3D view.
+// `positions` has all x, y and z, `down` is the downward axis;
 // `tracesOf(axes, type, line)` makes the traces.
 function pathViews(element, prefix, sizes, positions, down, tracesOf) {
   const pair = make('div', {class: 'pair'});
@@ -140,12 +140,12 @@ function pathViews(element, prefix, sizes, positions, down, tracesOf) {
   const {ranges, ratio} = sceneBox(traces);
   const axis3 = name => ({
     title: {text: name.toUpperCase() + ' (m)'}, range: ranges[name],
-    nticks: Math.max(2, Math.round(5 * ratio[name])),  // short sides have room for few
+    nticks: Math.max(2, Math.round(5 * ratio[name])),  // room for few on short sides
     gridcolor: '#d8dee4', backgroundcolor: '#fff', zeroline: false,
   });
   const side = down.map(v => -v);
-  // Looks from behind and above, whatever axis is up. A flat path fills its plot
-  // from nearer than a high one; a narrow window needs more distance.
+  // Looks from behind and above for any vertical axis. The distance is smaller
+  // for a flat path than for a high one, and larger in a narrow window.
   const height = ['x', 'y', 'z'].reduce((h, name, k) =>
       h + Math.abs(side[k]) * ratio[name], 0);
   const far = window.innerWidth < 600 ? 1.5

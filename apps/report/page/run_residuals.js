@@ -1,8 +1,8 @@
 'use strict';
 
-// How residuals and weights are spread.
+// The distributions of residuals and weights.
 
-// Density of the norm of so many independent normal numbers of variance 1.
+// Density of the norm of `degrees` independent standard normal numbers.
 function chiDensity(x, degrees) {
   const kGamma = [0, Math.sqrt(Math.PI), 1, Math.sqrt(Math.PI) / 2, 1,
                   Math.sqrt(Math.PI) * 3 / 4, 2];  // of degrees / 2

@@ -1,6 +1,6 @@
 'use strict';
 
-// What changes over time: errors, tracking, time spent.
+// Quantities over time: errors, tracking, computing time.
 
 const STATUS = [
   {name: 'ok', color: COLOR.green},
@@ -22,7 +22,7 @@ const PER_POINT = data => (data.every > 1
     ? ` Every point stands for ${data.every} frames: times and errors are the` +
       ' largest of them.' : '');
 
-// Grey bands over the times of frames without a pose.
+// Grey bands where frames have no pose.
 function lostBands(data) {
   return data.incidents.filter(i => i.status === 'lost').map(i => ({
     type: 'rect', xref: 'x', yref: 'paper', y0: 0, y1: 1, x0: i.from_s,
@@ -41,7 +41,7 @@ function lineTrace(data, y, number, name, color, format, more) {
   }, more);
 }
 
-// Dotted lines where the path jumps.
+// Dotted lines at jumps of the path.
 function jumpLines(data) {
   return (data.metrics.jumps || []).map(jump => ({
     type: 'line', xref: 'x', yref: 'paper', y0: 0, y1: 1, x0: jump.seconds,
@@ -150,7 +150,7 @@ function tracking(data) {
   incidents(data, element);
 }
 
-// What a jump looks like, and how to look at it.
+// Explains jumps and how to inspect them.
 function jumpTable(data, element) {
   const jumps = data.metrics.jumps || [];
   if (jumps.length === 0) return;

@@ -1,6 +1,6 @@
 'use strict';
 
-// The page of a sweep: all M-estimators on matches of which a share is wrong.
+// The page of a sweep: all M-estimators on matches with a share of wrong ones.
 
 const SWEEP_METHODS = [
   {schedule: 'gnc', ransac: false, name: 'graduated (gnc), from no motion'},
@@ -43,7 +43,7 @@ function sweepHeader(data) {
       text => make('p', {}, text)));
 }
 
-// Curves of one kind of error under one method, each loss with its band.
+// Curves of one kind of error for one method, each loss with its band.
 function sweepTraces(data, chosen, error) {
   const methods = data.methods.filter(
       m => m.schedule === chosen.schedule && m.ransac === chosen.ransac);
@@ -71,12 +71,12 @@ function sweepTraces(data, chosen, error) {
 }
 
 function sweepLayout(data, error) {
-  // The same for all methods, so that a change of the method shows.
+  // The same axes for all methods, to make them comparable.
   const values = [].concat(...data.methods.map(
       m => m[error.key].low.concat(m[error.key].high)));
   const end = data.wrong_percent[data.wrong_percent.length - 1];
   return {
-    uirevision: 'kept',  // what is hidden stays hidden
+    uirevision: 'kept',  // keeps hidden curves hidden
     xaxis: axis('wrong matches (%)', {range: [-0.03 * end, 1.03 * end]}),
     yaxis: axis(error.y, logAxis(values)),
   };

@@ -1,5 +1,5 @@
 
-// The live page: events in, pictures and figures out.
+// The live page: receives events, shows pictures and figures.
 
 const byId = id => document.getElementById(id);
 const map = new RunMap();
@@ -67,7 +67,7 @@ function showButtons() {
   byId('stop').disabled = ended || stopping;
 }
 
-// What tests and people with a console look at.
+// State for tests and for users of the console.
 function publish() {
   Object.assign(page.dataset, {
     frames: map.frames.length, keyframes: map.keyframes.size, links: map.links.length,
@@ -76,7 +76,7 @@ function publish() {
 }
 
 function take(news) {
-  // A page that opens late hears of old loops, but there is nothing to see move.
+  // A page that opens late receives old loops, but has no motion to show.
   const late = news.frames.length > 100;
   for (const event of map.add(news)) {
     log(event);
@@ -108,7 +108,7 @@ source.addEventListener('end', event => {
   publish();
 });
 source.addEventListener('open', () => {
-  // After a gap all is told again.
+  // After a reconnection, everything is sent again.
   Object.assign(map, new RunMap());
   byId('log').replaceChildren();
 });

@@ -1,10 +1,10 @@
 
-// The current image with its matches, and its depth.
+// The current image with its matches, and its depth image.
 
-// Plasma without its darkest part, as in the pictures of --debug_images.
+// Plasma without its darkest part, as in the images of --debug_images.
 const WEIGHT_COLORS = ['#7e03a8', '#a82296', '#cb4679', '#e56b5d', '#f89441', '#fdc328',
                        '#f0f921'];
-// Viridis, near to far.
+// Viridis, from near to far.
 const DEPTH_COLORS = ['#fde725', '#90d743', '#35b779', '#21918c', '#31688e', '#443983',
                       '#440154'];
 
@@ -12,7 +12,7 @@ function rgbOf(hex) {
   return [1, 3, 5].map(at => parseInt(hex.slice(at, at + 2), 16));
 }
 
-// A color at 0 to 1 of a row of them.
+// The colour at a position from 0 to 1 in a list of colours.
 function colorAt(colors, share) {
   const place = Math.min(1, Math.max(0, share)) * (colors.length - 1);
   const low = Math.min(colors.length - 2, Math.floor(place));
@@ -31,12 +31,12 @@ class Images {
   constructor(image, depth) {
     this.image = image;
     this.depth = depth;
-    this.far = 2;  // m; grows with what is seen
+    this.far = 2;  // m; grows with the depths seen
     document.querySelector('.bar.weights').style.background = gradientOf(WEIGHT_COLORS);
     document.querySelector('.bar.depths').style.background = gradientOf(DEPTH_COLORS);
   }
 
-  // The server's event; skipped while the one before is being decoded.
+  // Shows the images of an event; skipped while the previous ones are decoded.
   async show(event) {
     if (this.busy) return;
     this.busy = true;
@@ -64,7 +64,7 @@ class Images {
     context.drawImage(picture, 0, 0, canvas.width, canvas.height);
     context.filter = 'none';
     const scale = canvas.width / event.width;
-    // The best on top.
+    // Draws the best matches on top.
     const matches = event.matches.slice().sort((a, b) => a[4] - b[4]);
     context.lineWidth = 1.3;
     for (const [u0, v0, u1, v1, weight] of matches) {

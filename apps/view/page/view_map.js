@@ -1,13 +1,13 @@
 
-// What a live page knows of a run: frames hang on keyframes, and these move.
+// The run as a live page knows it. Frames are relative to moving keyframes.
 
 const STATUS = ['ok', 'degraded', 'lost'];
 
-// More points than this are not kept: then each keyframe gives half of its own.
+// Above this number of points, each keyframe drops half of its points.
 const MAX_POINTS = 200000;
 const POINT_BYTES = 7;
 
-// A pose as the server sends it, x, y, z and a quaternion x, y, z, w, from `at`.
+// Reads a pose of the server from index `at`: x, y, z, quaternion x, y, z, w.
 function readPose(row, at) {
   return {t: row.slice(at, at + 3), q: row.slice(at + 3, at + 7)};
 }
@@ -32,13 +32,13 @@ function bytesOf(base64) {
 class RunMap {
   constructor() {
     this.frames = [];
-    this.keyframes = new Map();  // by id: pose (as known), shown (moving there)
+    this.keyframes = new Map();  // by id: pose (known), shown (animated)
     this.links = [];
     this.loops = 0;
     this.points = 0;
   }
 
-  // Takes in news of the server; returns what happened, for people.
+  // Adds news of the server. Returns events for users.
   add(news) {
     const happened = [];
     for (const row of news.frames) happened.push(...this.addFrame(row));
@@ -104,8 +104,8 @@ class RunMap {
     if (!keyframe.shown) keyframe.shown = {t: pose.t.slice(), q: pose.q.slice()};
   }
 
-  // Moves what is shown towards what is known by a share of the way; returns
-  // whether anything is still on its way.
+  // Moves the shown poses by a share of the way to the known ones. Returns
+  // whether any pose is still moving.
   glide(share) {
     let moving = false;
     for (const {pose, shown} of this.keyframes.values()) {
@@ -128,7 +128,7 @@ class RunMap {
     return moving;
   }
 
-  // Where a frame is: as known, or as shown on the way there. Null: lost.
+  // The position of a frame, as known or as shown; null: lost.
   position(frame, which = 'pose') {
     const keyframe = frame.keyframe === null ? null : this.keyframes.get(frame.keyframe);
     if (!keyframe || !keyframe[which]) return null;
@@ -136,7 +136,7 @@ class RunMap {
     return transform(rotationOf(q), t, frame.pose.t);
   }
 
-  // All frames' positions, few enough to draw fluently.
+  // The positions of all frames, thinned for fluent drawing.
   path(which = 'pose') {
     const step = Math.ceil(this.frames.length / 4000) || 1;
     const path = [];

@@ -1,6 +1,6 @@
 
-// The path and the map in 3D, on a plain canvas: points into a depth buffer of
-// our own, lines above them.
+// The path and the map in 3D on a plain canvas: points with a depth buffer,
+// lines drawn above them.
 
 const SCENE = {
   ground: [0x12, 0x17, 0x1d],
@@ -16,7 +16,7 @@ class Scene {
     this.canvas = canvas;
     this.map = map;
     this.context = canvas.getContext('2d');
-    // World: x right, y down, z ahead of the first camera. Seen from behind it
+    // World: x right, y down, z forward of the first camera. Seen from behind
     // and above.
     this.yaw = 0.5;
     this.pitch = 0.55;
@@ -69,7 +69,7 @@ class Scene {
     new ResizeObserver(() => this.draw()).observe(canvas);
   }
 
-  // Of the view: rotation from the world, row by row.
+  // The rotation from the world to the view, row by row.
   rotation() {
     const cy = Math.cos(this.yaw), sy = Math.sin(this.yaw);
     const cp = Math.cos(this.pitch), sp = Math.sin(this.pitch);
@@ -85,7 +85,7 @@ class Scene {
   focal() { return 0.9 * Math.min(this.width, 1.3 * this.height); }
   distance() { return 1.75 * this.radius / this.zoom; }
 
-  // The middle and size of what is to be seen: most points and the whole path.
+  // Finds centre and size of the scene: most points and the whole path.
   fit() {
     const sides = [[], [], []];
     const add = p => p.forEach((value, k) => sides[k].push(value));
@@ -112,7 +112,7 @@ class Scene {
     this.radius = Math.max(0.5, Math.sqrt(square) / 2);
   }
 
-  // A loop: where the path was before fades away.
+  // Shows the path before a loop closure, fading out.
   addGhost(path) { this.ghosts.push({path, since: performance.now()}); }
 
   draw() {
@@ -163,7 +163,7 @@ class Scene {
     const f = this.focal(), cx = width / 2, cy = height / 2;
     for (const {shown, points} of this.map.keyframes.values()) {
       if (!shown || points.length === 0) continue;
-      // From the keyframe's axes (mm) to those of the view (m).
+      // From keyframe axes (mm) to view axes (m).
       const q = rotationOf(shown.q), r = this.r, m = new Float64Array(9);
       for (let i = 0; i < 3; ++i) {
         for (let k = 0; k < 3; ++k) {
@@ -197,7 +197,7 @@ class Scene {
     this.context.putImageData(this.image, 0, 0);
   }
 
-  // On the canvas; null: behind the view.
+  // Projects to the canvas; null: behind the view.
   project(p) {
     const [x, y, z] = transform(this.r, this.t, p);
     if (z < 0.05) return null;
@@ -273,7 +273,7 @@ class Scene {
     while (last >= 0 && frames[last].keyframe === null) --last;
     const keyframe = last >= 0 && this.map.keyframes.get(frames[last].keyframe);
     if (!keyframe || !keyframe.shown) return;
-    // The corners of what it sees, of a size that stays in view.
+    // The corners of the camera pyramid, with a size that stays visible.
     const size = 0.09 * this.radius;
     const ref = rotationOf(keyframe.shown.q), own = rotationOf(frames[last].pose.q);
     const place = p => transform(ref, keyframe.shown.t,
@@ -286,7 +286,7 @@ class Scene {
                eye, corners[2], null, eye, corners[3]], color, 2);
   }
 
-  // A length that reads well, at the distance of the middle.
+  // Draws a scale bar of a round length, valid at the distance of the centre.
   paintScale(distance) {
     const context = this.context, ratio = this.ratio;
     const perMetre = this.focal() / distance;

@@ -1,5 +1,5 @@
 
-// Figures over time, each in a strip of one time axis, with the status below.
+// Plots in strips with a common time axis, and the status below.
 
 const STATUS_COLORS = {ok: COLOR.green, degraded: COLOR.orange, lost: COLOR.vermillion};
 
@@ -26,7 +26,7 @@ class Strips {
     this.strip(frames, 104, 154, 'Matches that agree, %',
         frame => (frame.matches ? 100 * frame.inliers / frame.matches : null),
         COLOR.purple, 100);
-    // Status: worse ones stay visible however narrow.
+    // Draw worse statuses last and wider, to keep them visible.
     for (const status of ['ok', 'degraded', 'lost']) {
       context.fillStyle = STATUS_COLORS[status];
       frames.forEach((frame, i) => {
@@ -48,8 +48,8 @@ class Strips {
     context.fillText(words, x, y);
   }
 
-  // A line from `top` to `bottom` of 0 to `most`; where a pixel holds many
-  // frames, from the least to the greatest of them.
+  // Draws a curve between `top` and `bottom` for 0 to `most`. Where a pixel
+  // column holds many frames, it covers their minimum to maximum.
   strip(frames, top, bottom, title, valueOf, color, most) {
     const context = this.context;
     const values = frames.map(valueOf);

@@ -11,7 +11,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Folders that do not exist have a hash, too.
+// The folders do not exist; their inputs have a hash nevertheless.
 const std::vector<BatchSequence> kSequences = {
     {"one", "/none/one", "tum_fr1"},
     {"two", "/none/two", "tum_fr1"},
@@ -79,7 +79,7 @@ TEST(BatchPlanTest, TheHashTellsAllButRepeats) {
     EXPECT_EQ(plan[i].hash, again[i].hash);
     EXPECT_NE(plan[i].hash, other[i].hash);
   }
-  // Sequences one and two have the same inputs: none, and the same camera.
+  // Sequences one and two have the same inputs: no files and the same camera.
   EXPECT_EQ(hashes.size(), 2u * 2 * 2);
 }
 

@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Sets what Slurm gives the tasks of a job array; null: nothing.
+// Sets Slurm's variables for the tasks of a job array; null unsets one.
 void SetArray(const char* id, const char* count, const char* first) {
   const struct {
     const char* name;

@@ -1,4 +1,4 @@
-// Depths with noise in; its model out.
+// Fits the depth noise model to simulated depths with known noise.
 
 #include <gtest/gtest.h>
 
@@ -12,9 +12,9 @@ namespace {
 
 constexpr int kNoisyKeyframes = 6;
 
-// Landmarks on walls that face the camera, seen from places side by side. Each
-// depth is one of 3 x 3 pixels that err independently, or alike; so many of a
-// hundred are wrong.
+// Landmarks on walls that face the camera, seen from poses next to each other.
+// Each depth is the mean of 3 x 3 pixels, whose errors are independent or
+// equal. `percent_wrong` of the depths are outliers.
 struct NoisyScene {
   CalibrationViews views;
   CalibrationState state;
@@ -67,7 +67,7 @@ struct NoisyScene {
         view.keyframe = k;
         view.u = landmark.u - camera.fx * 0.02 * k / z;
         view.v = landmark.v;
-        view.sigma_px = 1e3;  // depth alone shows where it is
+        view.sigma_px = 1e3;  // only depth constrains the position
         view.depth = measure(view.u, view.v);
         views.views.push_back(view);
       }
@@ -113,7 +113,7 @@ TEST(DepthNoiseFitTest, TellsWhetherNeighboursErrAlike) {
   ASSERT_TRUE(apart.has_value() && alike.has_value());
   EXPECT_NEAR(apart->model.mean_share, 1.0 / 3.0, 0.03);
   EXPECT_GT(alike->model.mean_share, 0.9);
-  // A landmark is where its depths have it: they scatter less about it.
+  // The landmarks are fitted to the depths, which reduces the scatter.
   EXPECT_NEAR(alike->model.quadratic, 2e-3, 1e-4);
 }
 

@@ -1,4 +1,4 @@
-// Images in; what is wrong with their camera out.
+// Calibrates from rendered images and compares the result with the true camera.
 
 #include "apps/calibration/calibration.h"
 
@@ -35,7 +35,7 @@ std::vector<Frame> Render(const std::string& path, int frames,
   return result;
 }
 
-// What a camera is calibrated from: made once, since it takes seconds.
+// The input of a calibration. Shared by the tests: mapping takes seconds.
 struct Mapped {
   Mapped(const std::vector<Frame>& frames, const RgbdCamera& camera)
       : first(camera) {
@@ -99,12 +99,12 @@ TEST(CalibrationTest, FindsWhatIsWrongOnAnyNumberOfThreads) {
   EXPECT_NEAR(result.camera.depth_correction.inverse_depth_offset, 0.0, 2e-3);
   EXPECT_NEAR(result.camera.depth_shutter.offset, 0.0, 1e-3);
   EXPECT_LT(result.cost_after, result.cost_before);
-  // What was right is not touched.
+  // Parameters that were right are unchanged.
   EXPECT_EQ(result.camera.camera.k1, truth.k1);
   EXPECT_EQ(result.camera.color_shutter.readout, 0.0);
   EXPECT_TRUE(
       result.camera.depth_correction.depth_from_color.translation.isZero(0.0));
-  // Images alone do not tell how large the world is.
+  // Images alone do not determine the scale of the world.
   EXPECT_EQ(Of(result, kDepthFactor).status, Status::kFixed);
   EXPECT_EQ(result.camera.depth_scale, Wrong().depth_scale);
   EXPECT_TRUE(result.scale_from.empty());
@@ -117,7 +117,7 @@ TEST(CalibrationTest, FindsWhatIsWrongOnAnyNumberOfThreads) {
   EXPECT_EQ(one.cost_after, result.cost_after);
 }
 
-// How far (px) two cameras see something apart, at most, within the image.
+// The largest distance (px) between the images of a point in two cameras.
 double LargestDifferencePx(const Camera& a, const Camera& b) {
   double largest = 0.0;
   for (double v = 20.0; v < a.height; v += 40.0) {
@@ -146,7 +146,7 @@ TEST(CalibrationTest, FindsAllCoefficientsOfALens) {
     EXPECT_TRUE(result.is_accepted) << result.reason;
     EXPECT_GT(LargestDifferencePx(truth.camera, first.camera), 3.0);
     EXPECT_LT(LargestDifferencePx(truth.camera, result.camera.camera), 0.5);
-    // What such a lens has not stays out of it.
+    // Parameters that this lens model lacks stay fixed.
     const bool is_fisheye = model == LensModel::kEquidistant;
     EXPECT_EQ(Of(result, kP1).status == Status::kFixed, is_fisheye);
     EXPECT_EQ(Of(result, kK4).status == Status::kFixed, !is_fisheye);
@@ -162,7 +162,7 @@ TEST(CalibrationTest, WhatIsFixedStays) {
   EXPECT_EQ(Of(result, kDepthTime).found, 0.0);
   EXPECT_EQ(Of(result, kRotationY).found, 0.0);
   EXPECT_NE(Of(result, kFx).status, Status::kFixed);
-  // It is right, and makes up for nothing that is held where it is wrong.
+  // k1 was right and must not compensate for parameters fixed at wrong values.
   EXPECT_EQ(result.camera.camera.k1, Camera().k1);
   settings.fix = "centre,size";
   EXPECT_THROW(MappedWrongly().Calibrate(settings), InputError);
@@ -227,14 +227,14 @@ TEST(CalibrationTest, ALensThatTurnsOverInTheCornersIsRefused) {
   const std::string why = ImplausibilityReason({}, found, {});
   EXPECT_NE(why.find("its lens shows nothing at the border"), std::string::npos)
       << why;
-  // One that has been like that is not made worse.
+  // A camera that had this fault before is not refused.
   EXPECT_EQ(ImplausibilityReason(found, found, {}), "");
   found.camera.k1 = -0.2;
   EXPECT_EQ(ImplausibilityReason({}, found, {}), "");
 }
 
 TEST(CalibrationTest, HalvesOfOneCameraAgree) {
-  // What is undone as frames are tracked is only roughly so.
+  // Odometry corrects the wrong depth offset only approximately.
   RgbdCamera wrong = Wrong();
   wrong.depth_shutter.offset = 0.0;
   const CalibrationResult result = Mapped(Handheld(), wrong).Calibrate();

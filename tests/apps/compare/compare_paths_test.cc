@@ -19,8 +19,8 @@ Rigid3d At(double x, double turn = 0.0) {
           Eigen::Vector3d(x, 0.0, 0.0)};
 }
 
-// Ten frames a second along the x axis in a world of its own, `scale` times as
-// far as the camera went; frame 1 is lost.
+// Ten frames a second along the x axis in the run's own world. The path is
+// `scale` times as long as the true one; frame 1 is lost.
 LossRun MakeRun(const std::string& loss, int frames, double scale) {
   LossRun run;
   run.loss = loss;
@@ -36,7 +36,7 @@ LossRun MakeRun(const std::string& loss, int frames, double scale) {
   return run;
 }
 
-// From a turned world, in which frame 0 is at x = 5.
+// The true path, in a rotated world in which frame 0 is at x = 5.
 Trajectory Truth(int frames) {
   Trajectory truth;
   for (int i = 0; i < frames; ++i) {

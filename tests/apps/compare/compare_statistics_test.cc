@@ -10,7 +10,7 @@ namespace rgbd_pose {
 namespace {
 
 TEST(CompareStatisticsTest, RanksAreThoseOfTables) {
-  // Of David & Nagaraja's kind of table: the 40th and 61st of 100 values, the
+  // As in the tables of David & Nagaraja: the 40th and 61st of 100 values, the
   // 2nd and 9th of 10, the extremes of 6. Ranks count from 0.
   EXPECT_EQ(MedianBandRank(100), 39);
   EXPECT_EQ(MedianBandRank(10), 1);
@@ -39,7 +39,7 @@ TEST(CompareStatisticsTest, BandHoldsTheMedianAsOftenAsItSays) {
     const MedianBand band = FindMedianBand(values);
     held += band.low <= 0.5 && 0.5 <= band.high;
   }
-  // 96.7 % by the binomial distribution; 2000 trials spread by 0.4 %.
+  // Binomial distribution: 96.7 %; 2000 trials have a sigma of 0.4 %.
   EXPECT_NEAR(held / static_cast<double>(trials), 0.967, 0.016);
 }
 

@@ -17,7 +17,7 @@ MedianBand Around(double median) {
   return {median, 0.9 * median, 1.1 * median, 2.0 * median};
 }
 
-// All methods of some losses with errors of 1 mm and 0.1 degrees.
+// All methods with the given losses, each with errors of 1 mm and 0.1 degrees.
 std::vector<SweepCell> LevelCells(const std::vector<std::string>& losses) {
   std::vector<SweepCell> cells;
   for (const std::string& loss : losses) {
@@ -57,7 +57,7 @@ TEST(SweepVerdictTest, RansacThatChangesNothing) {
   EXPECT_THAT(verdict, HasSubstr("bands of the medians meet): tukey."));
 }
 
-// It is said of those shares alone at which it is so, in either direction.
+// The verdict names only shares at which RANSAC matters, in either direction.
 TEST(SweepVerdictTest, RansacThatHelpsAtSomeShares) {
   std::vector<SweepCell> cells = LevelCells({"none", "tukey", "welsch"});
   SetError({"tukey", "direct", false}, 1, 90.0, &cells);
@@ -81,8 +81,8 @@ TEST(SweepVerdictTest, RansacThatHelpsAtSomeShares) {
                         "8 times at 30 % and 8 times at 60 %."));
 }
 
-// Worse than the best where their bands meet, and better beyond the bands at
-// one share.
+// welsch is first worse than the best, with bands that meet, and then better at
+// one share, with bands that do not meet.
 TEST(SweepVerdictTest, LevelMeansThatBandsMeetFromEitherSide) {
   std::vector<SweepCell> cells = LevelCells({"tukey", "welsch"});
   for (int i = 0; i < kSweepShares; ++i) {

@@ -1,4 +1,4 @@
-// Images in; a map, and the path in it, out.
+// Runs SLAM on rendered images and compares map and path with the truth.
 
 #include "apps/pipeline/slam.h"
 
@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kFrames = 60;
 
-// Half as wide and high as usual, which takes a quarter of the time.
+// Half the usual width and height, which takes a quarter of the time.
 RgbdCamera SmallCamera() {
   RgbdCamera camera;
   camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
@@ -54,7 +54,7 @@ const WalkSequence& Walk() {
   return sequence;
 }
 
-// Plays frames of the walk at 30 Hz; -1: a black one.
+// Plays frames of the walk at 30 Hz; index -1 is a black frame.
 class Player {
  public:
   explicit Player(const SlamSettings& settings = {})
@@ -69,8 +69,8 @@ class Player {
     }
   }
 
-  // How far (m) the pose of the k-th frame played is off, in a map whose world
-  // is the camera of frame `origin`.
+  // Translation error (m) of the k-th frame played, in a map whose world is the
+  // camera of frame `origin`.
   double Error(int k, int origin = 0) const {
     const Rigid3d expected =
         Walk().truth[origin].Inverse() * Walk().truth[shown[k]];
@@ -90,7 +90,7 @@ std::vector<int> Range(int begin, int end) {
   return range;
 }
 
-// The same frames again: behind the tracking, yet always the same bytes.
+// The map is solved in another thread, yet the result is deterministic.
 TEST(SlamTest, GivesTheSameBytesTwice) {
   Trajectory paths[2];
   for (Trajectory& path : paths) {
@@ -103,7 +103,7 @@ TEST(SlamTest, GivesTheSameBytesTwice) {
   EXPECT_EQ(FormatTrajectory(paths[0]), FormatTrajectory(paths[1]));
 }
 
-// Poses of keyframes are kept twice: where they are solved for, and here.
+// Poses of keyframes are stored twice: in the pose graph and in the SLAM state.
 TEST(SlamTest, KnowsWhereTheMapHasItsKeyframes) {
   Player player;
   player.Play(Range(0, kFrames));
@@ -148,7 +148,7 @@ TEST(SlamTest, MapsTheWalkAndItsOdometryNeverJumps) {
   EXPECT_EQ(player.slam.Covariances().size(), map.keyframes.size());
 }
 
-// The map grows with the place, not with time.
+// The map grows with the area covered, not with time.
 TEST(SlamTest, ToAndFroNeedsNoMoreKeyframes) {
   Player player;
   player.Play(Range(0, kFrames));
@@ -181,8 +181,8 @@ TEST(SlamTest, AKidnappedCameraIsFoundInTheMap) {
   EXPECT_GT(found, 5);
 }
 
-// Two seconds of darkness: a new segment, which is joined where it meets the
-// old one.
+// Two seconds of darkness start a new segment, which is joined to the old one
+// as soon as the two overlap.
 TEST(SlamTest, SegmentsThatMeetAreJoined) {
   Player player;
   player.Play(Range(30, kFrames));
@@ -194,7 +194,7 @@ TEST(SlamTest, SegmentsThatMeetAreJoined) {
   player.slam.Finish();
   EXPECT_EQ(player.frames.back().segment, 0);
   EXPECT_LT(player.Error(player.frames.size() - 1, 30), 0.005);
-  // Frames of the new segment are in the old one's world in the end.
+  // In the end, frames of the new segment are in the world of the old one.
   const Trajectory path = player.slam.Path();
   const size_t first = path.size() - (player.frames.size() - back);
   ASSERT_LT(first, path.size());
@@ -261,7 +261,7 @@ TEST(SlamTest, RefusesOptionsThatMakeNoSense) {
   EXPECT_THROW(Player player(settings), InputError);
 }
 
-// A camera with rolling shutters.
+// Frames of a camera with rolling shutters.
 struct RollingWalk {
   RollingWalk() {
     SyntheticOptions options;
@@ -279,8 +279,8 @@ struct RollingWalk {
   OdometrySettings settings;
 };
 
-// Keyframes are what the odometry tracks against: of one moment, by the
-// velocity that the frame after them has told.
+// The map stores keyframes as the odometry tracks against them: rectified to
+// one moment with the velocity estimated from the next frame.
 TEST(SlamTest, KeyframesOfRollingShuttersAreOfOneMoment) {
   const RollingWalk walk;
   Slam slam(walk.settings, {}, SmallCamera().camera);
@@ -310,7 +310,7 @@ TEST(SlamTest, KeyframesOfRollingShuttersAreOfOneMoment) {
   EXPECT_GE(compared, 3);
 }
 
-// However many threads prepare frames ahead and whenever the map is ready.
+// The result depends neither on threads that prepare frames nor on timing.
 TEST(SlamTest, RollingShuttersGiveTheSameBytesForAnyThreads) {
   const RollingWalk walk;
   std::string first;

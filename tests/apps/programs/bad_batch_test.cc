@@ -1,4 +1,4 @@
-// Lists, grids, shards and folders of a batch that are wrong.
+// Wrong lists, grids, shards and folders of a batch.
 
 #include "tests/support/bad_input.h"
 
@@ -91,7 +91,7 @@ TEST_F(BadInputTest, BatchRuns) {
   list(Spoiled());
   ASSERT_EQ(call("").exit_code, 0);
 
-  // A marker that is no longer one: the run counts as not done.
+  // With a damaged marker the run counts as not done.
   const std::string marker = ReadTextFile(folder_ / (kRun + "done.json"));
   for (const std::string& content :
        {std::string(), marker.substr(0, marker.size() / 2),
@@ -107,7 +107,7 @@ TEST_F(BadInputTest, BatchRuns) {
     EXPECT_EQ(ReadTextFile(folder_ / (kRun + "done.json")), marker);
   }
 
-  // Figures that are none leave the table a table.
+  // Invalid figures do not break the table's format.
   folder_.Write(kRun + "metrics.json", "{\"run\": {\"frames\": \"a,b\\n\"}}");
   ASSERT_EQ(call("--merge").exit_code, 0);
   const std::string table = ReadTextFile(folder_ / "out/summary.csv");
@@ -115,7 +115,7 @@ TEST_F(BadInputTest, BatchRuns) {
   EXPECT_EQ(std::count(table.begin(), table.end(), ','), 2 * 20);
 }
 
-// Runs that cannot write their results fail; nothing of them looks whole.
+// Runs that cannot write their results fail and leave no complete results.
 TEST_F(BadInputTest, BatchOnAFullDisk) {
   fs::copy(folder_ / "good", folder_ / "seq", fs::copy_options::recursive);
   List("../seq\n")(Spoiled());

@@ -18,8 +18,8 @@ const std::string kBadEvaluation = RGBD_EVALUATE
 const std::string kSweep = RGBD_COMPARE
     " --experiment=sweep --seeds=1 --losses=none,huber --output={dir}/out ";
 
-// To the command, the disk is full when a file gets longer than so many blocks
-// of 512 bytes (1024 where sh is bash).
+// A full disk: writing fails once a file exceeds so many blocks of 512 bytes
+// (1024 where sh is bash).
 std::string WithFullDisk(int blocks, const std::string& command) {
   return "ulimit -f " + std::to_string(blocks) + "; exec " + command;
 }
@@ -112,7 +112,7 @@ std::string Contents(const std::string& folder) {
   return text;
 }
 
-// Whatever a run fails of, the results of the one before stay as they were.
+// A run that fails for any reason keeps the results of the previous run.
 TEST_F(BadInputTest, ARunThatFailsLeavesEarlierResultsAlone) {
   fs::rename(folder_ / "good", folder_ / "seq");
   const std::string call = Fill(Odometry()) + "--debug_images=1 ";
@@ -146,7 +146,7 @@ TEST_F(BadInputTest, ADiskTooFullForThePageCostsNothingElse) {
   }
 }
 
-// What a run does not write again must not pass for its own.
+// Files of an earlier run that this run does not write are removed.
 TEST_F(BadInputTest, ResultsAreThoseOfOneRun) {
   fs::rename(folder_ / "good", folder_ / "seq");
   const std::string call = Fill(Odometry());
@@ -182,7 +182,7 @@ TEST_F(BadInputTest, OneRunAtATimeWritesToAFolder) {
   EXPECT_FALSE(fs::exists(folder_ / staging_dir));
   EXPECT_THAT(ReadTextFile(folder_ / "out/metrics.json"), HasSubstr("ate"));
 
-  // Many at once: some may come too late, but the results are whole.
+  // Many runs at once: some may be refused, but the results are complete.
   const RunResult many = RunCommand("{ for i in 1 2 3 4 5 6; do (" + call +
                                         " >/dev/null; echo $?) & done; wait; }",
                                     folder_);

@@ -1,4 +1,4 @@
-// Sequences that are broken, as rgbd_odometry finds them.
+// Damaged sequences as input of rgbd_odometry.
 
 #include <opencv2/imgcodecs.hpp>
 
@@ -14,7 +14,7 @@ const std::string kDepth = "depth/1000.066667.png";
 constexpr int kWidth = 320;
 constexpr int kHeight = 240;
 
-// Puts another image in the place of one of the sequence.
+// Replaces an image of the sequence.
 auto Image(const std::string& name, int type, int width = kWidth) {
   return [=](const Seq& seq) {
     cv::imwrite(seq / name,
@@ -22,7 +22,7 @@ auto Image(const std::string& name, int type, int width = kWidth) {
   };
 }
 
-// Puts a file of the fuzzers' corpus in the place of an image.
+// Replaces an image by a file of the fuzzers' corpus.
 auto Corpus(const std::string& name, const std::string& image) {
   return [=](const Seq& seq) {
     seq.Write(name, ReadTextFile(RGBD_POSE_CORPUS "/image_file/" + image));
@@ -42,7 +42,7 @@ auto Gone(const std::string& name) {
   return [=](const Seq& seq) { seq.Remove(name); };
 }
 
-// As editors on Windows save it.
+// Rewrites a text file as editors on Windows save it.
 auto Windows(const std::string& name) {
   return [=](const Seq& seq) {
     std::string content = "\xEF\xBB\xBF";
@@ -54,7 +54,7 @@ auto Windows(const std::string& name) {
 }
 
 TEST_F(BadInputTest, Images) {
-  // The first damaged one ends it.
+  // Reading stops at the first damaged image.
   ExpectEach(
       Odometry() + "--validate_only --max_damaged=0 ",
       {
@@ -124,7 +124,7 @@ TEST_F(BadInputTest, Images) {
       });
 }
 
-// One costs its frame alone, too many end a run with what it has.
+// A damaged image costs its own frame; too many end the run with its results.
 TEST_F(BadInputTest, DamagedFrames) {
   for (const std::string& program :
        {Odometry(), Odometry() + "--validate_only ",
@@ -155,7 +155,7 @@ TEST_F(BadInputTest, DamagedFrames) {
   }
 }
 
-// One is taken of each, and one line says so.
+// One of two equal time stamps is used, and one line of output reports it.
 TEST_F(BadInputTest, DoubledTimeStamps) {
   const std::string kSecond = "1000.033333 rgb/1000.033333.png\n";
   const std::string kPose = "1000 0 0 0 0 0 0 1\n";

@@ -1,4 +1,4 @@
-// Cameras and flags that are wrong, as rgbd_odometry finds them.
+// Wrong cameras and flags as input of rgbd_odometry.
 
 #include "tests/support/bad_input.h"
 
@@ -16,7 +16,7 @@ constexpr char kKalibr[] =
     "  distortion_model: radtan\n  distortion_coeffs: [0, 0, 0, 0]\n"
     "  resolution: [320, 240]\n";
 
-// Changes a camera file: that of the sequence, in ORB-SLAM's layout, or `base`.
+// Changes a camera file: the sequence's (in ORB-SLAM's layout), or `base`.
 auto Camera(const std::string& from, const std::string& to,
             const std::string& base = "") {
   return [=](const Seq& seq) {

@@ -1,4 +1,4 @@
-// Bad input of the programs besides rgbd_odometry.
+// Bad input of the programs other than rgbd_odometry.
 
 #include <filesystem>
 #include <functional>
@@ -177,7 +177,7 @@ TEST_F(BadInputTest, Report) {
                        folder_)
                 .exit_code,
             0);
-  // A copy of that run with one file changed; "" takes it away.
+  // A copy of that run with one file changed; an empty `from` removes the file.
   const auto run = [this](const std::string& file, const std::string& from,
                           const std::string& to) {
     return [=](const Seq& seq) {
@@ -226,7 +226,7 @@ TEST_F(BadInputTest, Report) {
       });
 }
 
-// What a run in the folder of its recording would have left.
+// Writes the results that a run in the folder of its recording would leave.
 void LeaveRun(const Seq& s) {
   s.Write("config.flags", "# Input\n--dataset=" + s.path +
                               "\n--camera=" + s / "camera.yaml" + "\n");

@@ -27,7 +27,7 @@ const std::string kBatch = RGBD_BATCH;
 const std::string kOdometry = RGBD_ODOMETRY;
 const std::string kSimulate = RGBD_SIMULATE;
 
-// Columns of times at the end of a line of each table.
+// Number of timing columns at the end of each line.
 constexpr int kFrameTimes = 6;
 constexpr int kSummaryTimes = 2;
 
@@ -45,8 +45,8 @@ int CountLines(const std::string& text) {
   return static_cast<int>(std::count(text.begin(), text.end(), '\n'));
 }
 
-// All files of a folder by their paths in it, as far as they must not depend on
-// when and how fast they were made.
+// All files of a folder by relative path, without the parts that depend on when
+// and how fast the files were made.
 std::map<std::string, std::string> TimelessFiles(const std::string& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
@@ -74,7 +74,7 @@ std::map<std::string, std::string> TimelessFiles(const std::string& folder) {
 
 class BatchProgramTest : public testing::Test {
  protected:
-  // Two sequences small enough to be tracked in no time.
+  // Two sequences small enough to be tracked very quickly.
   BatchProgramTest() {
     const std::string camera = folder_.Write(
         "camera.yaml",
@@ -87,7 +87,7 @@ class BatchProgramTest : public testing::Test {
       EXPECT_EQ(run.exit_code, 0) << run.err;
     }
     folder_.Write("list.txt", "data/xyz\ndata/pan_tilt\n");
-    // In place of the odometry: ends as the name of the sequence says.
+    // Replaces the odometry: exits in the way given by the sequence's name.
     folder_.Write("program.sh",
                   "#!/bin/sh\ncase \"$*\" in\n"
                   "*data/slow*) exec sleep 1000 ;;\n"
@@ -97,12 +97,12 @@ class BatchProgramTest : public testing::Test {
     fs::permissions(folder_ / "program.sh", fs::perms::owner_all);
   }
 
-  // A sequence that is another one by another name.
+  // Makes an alias of a sequence.
   void Link(const std::string& name) const {
     fs::create_directory_symlink("xyz", folder_ / ("data/" + name));
   }
 
-  // A call of 8 runs; two at a time, however many cores there are.
+  // The command for 8 runs, two at a time, however many cores there are.
   std::string Call(const std::string& output,
                    const std::string& list = "list.txt") const {
     return kBatch + " --sequences=" + (folder_ / list) +
@@ -207,7 +207,7 @@ TEST_F(BatchProgramTest, RunsThePlanAndWhatIsMissingOfItLater) {
   EXPECT_TRUE(TimelessFiles(folder_ / "runs") == before);
   EXPECT_EQ(Run(Call("runs") + " --resume").err, "") << "nothing to do";
 
-  // Another camera makes another result.
+  // Another camera changes the hash of the inputs, so these runs are repeated.
   folder_.Write("data/xyz/camera.yaml", Read("data/xyz/camera.yaml") + "\n");
   EXPECT_EQ(CountLines(Run(Call("runs") + " --resume").err), 4);
 }
@@ -249,7 +249,7 @@ TEST_F(BatchProgramTest, OneThatFailsDoesNotStopTheOthers) {
       Read("runs/broken/bidirectional_point-tukey-patch-hybrid-r1/run.log"),
       HasSubstr(".png"));
 
-  // Those that failed are tried again.
+  // Failed runs are repeated.
   EXPECT_EQ(Run(call + " --resume").exit_code, 4);
   fs::remove(folder_ / "data/slow");
   fs::remove(folder_ / "data/crash");
@@ -280,8 +280,8 @@ TEST_F(BatchProgramTest, OnlyOneWorksOnAFolder) {
   const std::string slow = Call("runs", "slow.txt") + FakeProgram();
   const std::string other = Call("runs") + " --resume";
   const std::string errors = folder_ / "second";
-  // The second call comes while runs of the first go on; a third gets the
-  // folder at once when the first is killed, so its runs have ended with it.
+  // The second call comes while the first one's runs go on. The third gets the
+  // folder as soon as the first is killed, hence its runs have ended, too.
   const RunResult run =
       Run("(" + slow + " & pid=$!; for i in $(seq 500); do [ -e " +
           (folder_ / "runs/slow/*-r1.partial/run.log") +

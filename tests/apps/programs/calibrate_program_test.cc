@@ -52,7 +52,7 @@ class CalibrateProgramTest : public testing::Test {
 };
 
 TEST_F(CalibrateProgramTest, FindsAWrongCameraAndKeepsARightOne) {
-  // A damaged image costs its frame alone.
+  // A damaged image costs only its own frame.
   fs::resize_file(Sequence() + "/depth/1000.666667.png", 1000);
   const RunResult wrong =
       Run(kCalibrateProgram, "wrong", "--max_views=5000 " + Wrong());
@@ -68,7 +68,7 @@ TEST_F(CalibrateProgramTest, FindsAWrongCameraAndKeepsARightOne) {
   EXPECT_EQ(metrics["damaged_frames"], 1);
   EXPECT_THAT(wrong.err, HasSubstr("1000.666667.png"));
 
-  // With what was found there is nothing left to find.
+  // Calibrating once more with the camera found changes nothing.
   const RunResult right =
       Run(kCalibrateProgram, "right",
           "--noreport --max_views=5000 --camera=" +
@@ -92,7 +92,7 @@ TEST_F(CalibrateProgramTest, SlamGoesOnWithTheCameraFound) {
       nlohmann::json::parse(ReadTextFile(folder_ / "both/metrics.json"));
   EXPECT_TRUE(metrics["calibration"]["accepted"]);
   EXPECT_TRUE(metrics.contains("slam"));
-  // The run's settings are those of a run with that camera.
+  // The settings written are those of a run with the new camera.
   const std::string flags = ReadTextFile(folder_ / "both/config.flags");
   EXPECT_THAT(flags, HasSubstr("--camera=" + (folder_ / "both/camera.yaml")));
   const RunResult again = RunCommand(
@@ -104,7 +104,7 @@ TEST_F(CalibrateProgramTest, SlamGoesOnWithTheCameraFound) {
   const Trajectory second = ReadTrajectory(folder_ / "again/trajectory.txt");
   ASSERT_EQ(first.size(), second.size());
   for (size_t i = 0; i < first.size(); ++i) {
-    // Numbers of the file are rounded.
+    // Numbers in the file are rounded.
     const Rigid3d moved =
         first[i].world_from_cam.Inverse() * second[i].world_from_cam;
     EXPECT_LT(moved.translation.norm(), 1e-5) << i;

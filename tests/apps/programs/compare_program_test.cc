@@ -1,4 +1,4 @@
-// rgbd_compare from end to end on few frames and seeds.
+// rgbd_compare from end to end with few frames and seeds.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class CompareProgramTest : public testing::Test {
     return ReadTextFile(folder_ / ("results/" + file));
   }
 
-  // A camera small enough to be rendered in no time.
+  // A camera small enough to be rendered very quickly.
   std::string Camera() const {
     return " --camera=" +
            folder_.Write(
@@ -66,10 +66,10 @@ TEST_F(CompareProgramTest, PanTiltGivesTablesAndFigure) {
   ASSERT_EQ(run.exit_code, 0) << run.err;
   EXPECT_THAT(run.out, StartsWith(Result("report.md")));
   EXPECT_THAT(run.out, HasSubstr("| truth | 0 | 0 | 0 |"));
-  EXPECT_EQ(Count(run.out, "\n| none |"), 2);  // of each table one row
+  EXPECT_EQ(Count(run.out, "\n| none |"), 2);  // one row per table
   EXPECT_EQ(Count(run.out, "\n| tukey |"), 2);
   EXPECT_EQ(Count(Result("tables.csv"), "\n"), 3);  // with the header
-  // Its page, or why there is none.
+  // Either the page is written or the output says why not.
   const bool has_page =
       std::filesystem::exists(folder_ / "results/report.html");
   EXPECT_EQ(Count(run.out, "\nreport in   "), 1);
@@ -131,7 +131,7 @@ TEST_F(CompareFolderTest, Freiburg2ComesAtBothDepthScales) {
 }
 
 TEST_F(CompareFolderTest, AllFramesLost) {
-  // Depths that are next to nothing.
+  // A depth factor that makes all depths almost 0.
   const std::string camera = folder_.Write(
       "camera.yaml",
       "Camera.fx: 525\nCamera.fy: 525\nCamera.cx: 319.5\nCamera.cy: 239.5\n"

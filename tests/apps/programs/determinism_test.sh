@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# determinism_test.sh RGBD_SIMULATE RGBD_ODOMETRY...: every one of the given
+# determinism_test.sh RGBD_SIMULATE RGBD_ODOMETRY...: each of the given
 # programs, with one thread and with two, twice each, writes the same bytes for
-# the same 60 frames, columns of times apart.
+# the same 60 frames, except for timing columns.
 set -euo pipefail
 simulate=$1
 shift
@@ -13,7 +13,7 @@ cd "$folder"
 frames=$(grep -vc '^#' sequence/rgb.txt)
 [ "$frames" -ge 60 ] || { echo "only $frames frames" >&2; exit 1; }
 
-# The last six columns of frames.csv are times (_ms), those of threads apart.
+# Removes the last six columns of frames.csv, which are times (_ms).
 results() {
   sha256sum <"$1/trajectory.txt"
   sha256sum <"$1/errors.csv"

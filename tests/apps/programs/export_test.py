@@ -1,10 +1,10 @@
-"""Exports of a simulated run, read by other means than they are written by.
+"""Exports of a simulated run, read with code other than the exporters'.
 
 usage: export_test.py BIN_FOLDER [--colmap]
 
-What is seen has to be where depth images say, by each format's own conventions;
-files of meshes have to hold what their formats ask for. With --colmap the model
-is read by colmap; 77, for a skipped test, where there is none.
+Points must be where the depth images show them, by each format's conventions.
+Mesh files must contain what their formats require. With --colmap the model is
+read by colmap; the exit code is 77 (test skipped) where colmap is missing.
 """
 
 import json
@@ -45,7 +45,7 @@ def data_lines(*path):
     return [line for line in read_lines(*path) if not line.startswith('#')]
 
 
-# Poses as rows of a 3 x 4 matrix.
+# Poses are converted to the rows of a 3 x 4 matrix.
 
 
 def matrix_of(qw, qx, qy, qz, tx, ty, tz):
@@ -171,7 +171,7 @@ def read_glb(path):
 
 
 def check_views(points, views, project):
-    """Points of the world have the depth and colour of pixels that they fall on.
+    """World points must have the depth and colour of the pixels that show them.
 
     `views`: camera_from_world and the files of the depth image, in millimetres,
     and the colour image.
@@ -185,7 +185,7 @@ def check_views(points, views, project):
             if z <= 0:
                 continue
             u, v = project(x / z, y / z)
-            # The pixel whose square it is in: its upper left corner counts.
+            # The pixel whose area contains it: coordinates start at its corner.
             row, column = math.floor(v), math.floor(u)
             if not (0 <= row < len(depth) and 0 <= column < len(depth[0])):
                 continue
@@ -244,7 +244,7 @@ def check_nerfstudio(folder, poses):
     for frame in scene['frames']:
         matrix = frame['transform_matrix']
         check(matrix[3] == [0, 0, 0, 1], matrix)
-        # OpenGL's axes: y up, z back.
+        # OpenGL's axes: y up, z backwards.
         world_from_cam = [[row[0], -row[1], -row[2], row[3]] for row in matrix[:3]]
         number = int(os.path.basename(frame['file_path']).split('.')[0])
         check(same(world_from_cam, poses[number]), 'pose of', frame['file_path'])
@@ -291,7 +291,7 @@ def check_g2o(path, poses):
 
 
 def check_lenses(program, work):
-    """Each lens by the name and in the order that others have for it."""
+    """Each lens has the name and parameter order that other programs use."""
     lenses = {
         'OPENCV_FISHEYE': ('Camera.type: KannalaBrandt8\n', (0.01, 0.02, 0.03, 0.04),
                            ('k1', 'k2', 'k3', 'k4')),
@@ -378,7 +378,7 @@ def main(bin_folder, work, colmap):
         check(same([numbers(line)[4 * i:4 * i + 4] for i in range(3)], pose), line)
     check(len(read_lines(kitti, 'times.txt')) == FRAMES, 'times')
     tum = export('tum', 'tum.txt')
-    # A quaternion is scaled to 1 where it is read: its last digit may change.
+    # Quaternions are normalised when read: the last digit may change.
     for line, of_run in zip(data_lines(tum), data_lines(result, 'trajectory.txt')):
         check(max(abs(a - b) for a, b in zip(numbers(line), numbers(of_run))) < 2e-9,
               f'TUM: {line}')

@@ -84,10 +84,10 @@ TEST_F(OdometryProgramTest, WritesARowPerFrameAndAllFiles) {
   EXPECT_GT(metrics.at("run").at("decode_ms_median"), 0.0);
   const double seconds = metrics.at("run").at("wall_seconds");
   EXPECT_GT(seconds, 0.0);
-  // Both are written with all their digits.
+  // Both numbers are written with all their digits.
   EXPECT_NEAR(metrics.at("run").at("frames_per_second"), kShortRun / seconds,
               1e-6);
-  // One frame in memory is 1.5 MB with its pyramid; six hundred make a leak.
+  // A frame with its pyramid takes 1.5 MB; leaking six hundred would be seen.
   EXPECT_GT(metrics.at("peak_rss_mb"), 1.0);
   EXPECT_LT(metrics.at("peak_rss_mb"), 500.0);
   EXPECT_LT(metrics.at("evaluation").at("ate").at("position_m").at("rmse"),
@@ -144,8 +144,8 @@ TEST_F(OdometryProgramTest, SavesACloudOfTheRoom) {
   const size_t first = bytes.find(kHeaderEnd) + kHeaderEnd.size();
   constexpr size_t kPointBytes = 15;
   ASSERT_EQ(bytes.size(), first + kPointBytes * points);
-  // A view into a furnished room of 5 x 4 x 2.6 m is some square metres, and a
-  // square metre 2500 cubes, or a few times that where noise spreads it.
+  // A view into a furnished room of 5 x 4 x 2.6 m shows some square metres,
+  // with 2500 voxels each, or a few times as many where noise spreads them.
   EXPECT_GT(points, 10000u);
   EXPECT_LT(points, 300000u);
   float nearest = 100.0F, furthest = 0.0F;
@@ -155,7 +155,7 @@ TEST_F(OdometryProgramTest, SavesACloudOfTheRoom) {
     nearest = std::min(nearest, z);
     furthest = std::max(furthest, z);
   }
-  EXPECT_GT(nearest, 0.25F);  // sensors see nothing nearer
+  EXPECT_GT(nearest, 0.25F);  // the minimum range of sensors
   EXPECT_GT(furthest, 1.5F);
   EXPECT_LT(furthest, 6.4F);  // the room's diagonal
 }
@@ -170,7 +170,7 @@ TEST_F(OdometryProgramTest, ValidatesWithoutTracking) {
               HasSubstr(std::to_string(kShortRun) + ", all readable"));
   EXPECT_THAT(good.out, HasSubstr("frames/s"));
 
-  // The first of two broken images is the one that is named.
+  // The first of two damaged images is reported.
   const std::string images[] = {"depth/1000.066667.png", "rgb/1000.100000.png"};
   for (const std::string& image : images) {
     ASSERT_TRUE(std::filesystem::exists(Sequence() + "/" + image)) << image;

@@ -1,4 +1,4 @@
-// Runs the built programs: their exit codes and what they say where.
+// Runs the built programs and checks their exit codes and output streams.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,12 +22,12 @@ const std::string kEvaluate = RGBD_EVALUATE;
 
 constexpr char kTruth[] =
     "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 1 1 0 0 0 0 1\n3 1 1 1 0 0 0 1\n";
-// The truth from a world that is turned by 90 degrees about z.
+// The same path in a world that is rotated by 90 degrees about z.
 constexpr char kTurned[] =
     "0 0 0 0 0 0 .70710678 .70710678\n1 0 1 0 0 0 .70710678 .70710678\n"
     "2 -1 1 0 0 0 .70710678 .70710678\n3 -1 1 1 0 0 .70710678 .70710678\n";
 
-// Files for the programs to read, as {truth} and {turned}.
+// The files are available to the programs as {truth} and {turned}.
 class ProgramsTest : public testing::Test {
  protected:
   ProgramsTest() {

@@ -17,9 +17,9 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-// What a page may weigh so that it can be mailed.
+// Limit for a page that can still be sent by e-mail.
 constexpr size_t kMaxPageBytes = 3'000'000;
-// A blank window of this size is a tenth of it as PNG.
+// A PNG of a blank window of this size has a tenth of this.
 constexpr size_t kMinScreenshotBytes = 40'000;
 
 int Occurrences(const std::string& text, const std::string& word) {
@@ -33,7 +33,7 @@ int Occurrences(const std::string& text, const std::string& word) {
 class ReportTest : public testing::Test {
  protected:
   void SetUp() override {
-    // Ends with the reason, whatever the folder, if it cannot write pages.
+    // Without plotly.js the program reports that first, whatever the folder.
     const RunResult probe = Run(RGBD_REPORT " --run=" + (folder_ / "none"));
     if (probe.err.find("built without plotly.js") != std::string::npos) {
       GTEST_SKIP() << "built without plotly.js";
@@ -64,7 +64,7 @@ class ReportTest : public testing::Test {
     return std::system("command -v chromium >/dev/null") == 0;
   }
 
-  // Opens the page of the run; what the browser does with it is in `action`.
+  // Opens the page of the run in the browser; `action` is a list of its flags.
   RunResult Browse(const std::string& action) const {
     return Run(
         "timeout 60 chromium --headless --no-sandbox --disable-gpu "
@@ -74,7 +74,7 @@ class ReportTest : public testing::Test {
         (folder_ / "browser") + " " + action + " file://" + Page());
   }
 
-  // What the browser says of the page, without its advice on speed.
+  // The browser's messages about the page, without its advice on speed.
   static std::string Console(const RunResult& browser) {
     std::istringstream lines(browser.err);
     std::string line, result;
@@ -178,7 +178,7 @@ TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
   const std::string page = ReadTextFile(Page());
   EXPECT_LT(page.size(), kMaxPageBytes);
   EXPECT_THAT(page, HasSubstr("\"colors\":\""));
-  std::filesystem::remove(folder_ / "run/cloud.ply");  // it may be elsewhere
+  std::filesystem::remove(folder_ / "run/cloud.ply");  // may be elsewhere
   ASSERT_EQ(Run(RGBD_REPORT " --run=" + (folder_ / "run")).exit_code, 0);
   EXPECT_TRUE(ReadTextFile(Page()) == page) << "not the page of the run";
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
@@ -187,7 +187,7 @@ TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
   EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 8);
   EXPECT_THAT(browser.out, HasSubstr("What was seen: "));
-  EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));  // its legend
+  EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));  // the legend
 }
 
 TEST_F(ReportTest, TheMeshIsShownBesideThePathUntilTheNextRun) {
@@ -203,7 +203,7 @@ TEST_F(ReportTest, TheMeshIsShownBesideThePathUntilTheNextRun) {
     EXPECT_THAT(browser.out, HasSubstr(" triangles of the mesh "));
     EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));
   }
-  // Added later it is the same.
+  // Adding the mesh later gives the same page.
   const RunResult later =
       Run(RGBD_EXPORT " --to=mesh --voxel=0.03 --run=" + (folder_ / "run") +
           " --output=" + (folder_ / "run/mesh.glb"));
@@ -214,7 +214,7 @@ TEST_F(ReportTest, TheMeshIsShownBesideThePathUntilTheNextRun) {
   EXPECT_THAT(ReadTextFile(Page()), Not(HasSubstr("\"corners\":\"")));
 }
 
-// A map as rgbd_slam writes it: three keyframes, one more removed.
+// A map as rgbd_slam writes it: three keyframes and a removed one.
 TEST_F(ReportTest, TheMapOfARunIsShown) {
   Simulate();
   Track();
@@ -247,7 +247,7 @@ TEST_F(ReportTest, TheMapOfARunIsShown) {
     EXPECT_EQ(Occurrences(browser.out, ">" + name + "</text>"), 1) << name;
   }
   EXPECT_EQ(Occurrences(browser.out, "further pairs"),
-            1);  // in the script alone
+            1);  // only in the script
   EXPECT_THAT(browser.out, HasSubstr("up to 0 mm from that of the odometry"));
   EXPECT_THAT(browser.out, HasSubstr("rgbd_slam --flagfile=config.flags"));
 
@@ -257,7 +257,7 @@ TEST_F(ReportTest, TheMapOfARunIsShown) {
   EXPECT_EQ(Occurrences(empty.out, "<div id=\"map\""), 0);
 }
 
-// Of a comparison: what rgbd_compare writes, rgbd_report writes again.
+// rgbd_report writes the page of a comparison again from rgbd_compare's files.
 class ComparisonReportTest : public ReportTest {
  protected:
   void Compare(const std::string& arguments) {
@@ -315,7 +315,7 @@ TEST_F(ComparisonReportTest, OfASweep) {
   if (!HasBrowser()) GTEST_SKIP() << "no chromium";
   ExpectPlots({"sweep-translation", "sweep-rotation"});
 
-  // Another treatment of the losses, as if chosen by hand.
+  // Selects another variant of the losses, as a user would.
   const auto table = [](const RunResult& browser) {
     const size_t begin = browser.out.find("<tbody>");
     return browser.out.substr(begin, browser.out.find("</tbody>") - begin);

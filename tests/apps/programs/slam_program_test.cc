@@ -24,7 +24,7 @@ constexpr size_t kSlamFrames = 40;
 class SlamProgramTest : public testing::Test {
  protected:
   SlamProgramTest() {
-    // Small images are rendered in a quarter of the time.
+    // Small images take a quarter of the time to render.
     WriteFileAtomically(folder_ / "half.yaml",
                         "Camera.fx: 262.5\nCamera.fy: 262.5\n"
                         "Camera.cx: 159.5\nCamera.cy: 119.5\n"
@@ -78,7 +78,7 @@ TEST_F(SlamProgramTest, LeavesItsFilesAndKeepsAMapToTrackIn) {
   ASSERT_EQ(again.exit_code, 0) << again.err;
   EXPECT_EQ(ReadTextFile(map + "/map.txt"), before);
   EXPECT_THAT(again.out, HasSubstr("1 segments joined"));
-  // Poses before the map was met are of another world.
+  // Poses from before the localisation in the map are in another world.
   const int from = nlohmann::json::parse(Read("again/metrics.json"))
                        .at("slam")
                        .at("localised_from_frame");

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# slurm_test.sh FOLDER_OF_PROGRAMS: a job array of four on a Slurm of its own
-# (controller and one node, started here) gives the bytes of a local batch.
-# Exit 77, which ctest shows as skipped, where Slurm cannot be started.
+# slurm_test.sh FOLDER_OF_PROGRAMS: a job array of four on a separate Slurm
+# (controller and one node, started here) gives the same bytes as a local batch.
+# Exit code 77 (ctest: skipped) where Slurm cannot be started.
 set -euo pipefail
 programs=$1
 slots=4
@@ -16,8 +16,8 @@ for program in munged slurmctld slurmd sbatch sinfo; do
 done
 
 folder=$(mktemp -d)
-# A daemon writes its state as it ends: the folder goes once all have ended.
-# Slurm, which asks munged until its end, ends before it.
+# Daemons write their state when they end: the folder is removed after all have
+# ended. Slurm uses munged until its end, so it is ended first.
 stop() {
   for name in slurmd slurmctld munged; do
     local file=$folder/run/$name.pid pid
@@ -31,7 +31,7 @@ trap stop EXIT
 cd "$folder"
 mkdir run state spool
 
-# Daemons with files and ports of their own, besides any other Slurm.
+# Daemons with their own files and ports, separate from any other Slurm.
 host=$(hostname -s)
 port=$((20000 + $$ % 20000))
 head -c 1024 /dev/urandom >munge.key

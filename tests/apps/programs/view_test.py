@@ -2,11 +2,11 @@
 
 usage: view_test.py BIN_FOLDER [IMAGE]
 
-A camera goes round a table: the path grows on two pages, a pause holds, a page
-that is loaded again knows the whole run, a loop is shown, the end is said, and
-the results have the same bytes as without --view. Then the stop button. IMAGE: a
-file for a picture of the page. 77, for a skipped test, without chromium or
-where the programs have no --view.
+A camera moves around a table: the path grows on two pages, a pause works, a
+reloaded page shows the whole run, a loop and the end are shown, and the results
+have the same bytes as without --view. Then the stop button is tested. IMAGE: a
+file for a picture of the page. The exit code is 77 (test skipped) without
+chromium or where the programs have no --view.
 """
 
 import base64
@@ -22,7 +22,7 @@ BIN = sys.argv[1]
 PATIENCE = 120  # s
 CAMERA = ('Camera.fx: 262.5\nCamera.fy: 262.5\nCamera.cx: 159.5\n'
           'Camera.cy: 119.5\nCamera.width: 320\nCamera.height: 240\n')
-# Once round the table in 60 s.
+# Once around the table in 60 s.
 FRAMES = 300
 RATE = 5
 
@@ -37,13 +37,13 @@ def check(condition, *what):
 
 
 class Browser:
-    """A headless chromium that is told what to do by a pipe (DevTools)."""
+    """A headless chromium that is controlled through a pipe (DevTools)."""
 
     def __init__(self, folder):
         to_browser, self.commands = os.pipe()
         self.answers, from_browser = os.pipe()
 
-        def connect():  # it reads from 3 and writes to 4
+        def connect():  # chromium reads from 3 and writes to 4
             os.dup2(os.dup(to_browser), 3)
             os.dup2(os.dup(from_browser), 4)
 
@@ -163,13 +163,13 @@ def watch_a_run(folder, browser, picture):
     seen = page.frames()
     page.wait_for('a longer path', lambda: page.frames() > seen)
     check(page.ask('map.path().filter(step => step.p).length') > 20, 'no path')
-    page.call('Page.bringToFront')  # only what is in front is drawn
+    page.call('Page.bringToFront')  # only the page in front is drawn
     page.wait_for('points', lambda: page.ask('new Set(scene.pixels).size') > 50)
 
     page.press('pause')
     for each in (page, other):
         each.wait_for('a pause', lambda each=each: each.data('paused') == 'true')
-    time.sleep(0.5)  # what was under way
+    time.sleep(0.5)  # lets pending frames arrive
     held = page.frames()
     time.sleep(0.5)
     check(page.frames() == held, 'a pause does not hold')
@@ -206,7 +206,7 @@ def stop_a_run(folder, browser):
     run = slam(folder, 'stopped', '--view', '--view_speed=1')
     page = Page(browser, address_of(run))
     page.wait_for('frames', lambda: page.frames() > 3)
-    page.press('pause')  # a stop ends that, too
+    page.press('pause')  # a stop also ends a pause
     page.wait_for('a pause', lambda: page.data('paused') == 'true')
     page.press('stop')
     page.wait_for('the end', lambda: page.data('ended') == 'true')

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# without_simulator_test.sh FOLDER LIBRARY...: of the programs there, only those
-# that simulate hold the simulator or load its library; no LIBRARY does.
+# without_simulator_test.sh FOLDER LIBRARY...: only programs that simulate
+# contain or load the simulator, and none of the libraries does.
 set -euo pipefail
 
 simulates() {

@@ -19,7 +19,7 @@ constexpr char kPathsHeader[] =
     "sequence,loss,timestamp,x,y,z,qx,qy,qz,qw,distance_m,angle_deg,"
     "rpe_seconds_m,rpe_seconds_deg\n";
 
-// A sequence with its truth and one loss, which loses every frame but the last.
+// A sequence with its truth and one loss, which loses all frames but the last.
 void WriteComparison(const TempFolder& folder, int frames) {
   folder.Write("config.flags", "# Experiment\n--experiment=xyz\n");
   folder.Write("tables.csv", std::string(kTablesHeader) +
@@ -27,7 +27,7 @@ void WriteComparison(const TempFolder& folder, int frames) {
   std::string truth, tukey;
   for (int i = 0; i < frames; ++i) {
     const std::string time = std::to_string(100.0 + i / 32.0);
-    // Turned by 180 degrees about x: the camera's y axis points along -y.
+    // Rotated by 180 degrees about x: the camera's y axis points along -y.
     truth += "\"a, b\",truth," + time + "," + std::to_string(i) +
              ",0,0,1,0,0,0,,,,\n";
     tukey += "\"a, b\",tukey," + time +
@@ -58,7 +58,7 @@ TEST(CompareReportDataTest, PathsAreColumnsWithGaps) {
 
 TEST(CompareReportDataTest, LongPathsAreThinnedTogether) {
   const TempFolder folder;
-  WriteComparison(folder, kMaxComparedPoints);  // and as many of the truth
+  WriteComparison(folder, kMaxComparedPoints);  // the truth has as many poses
   const json data = CompareReportData(folder.path());
   const json& sequence = data.at("sequences")[0];
   EXPECT_EQ(sequence.at("every"), 2);
@@ -79,7 +79,7 @@ TEST(CompareReportDataTest, FilesThatDoNotFitAreRefused) {
                                 "s,tukey,1,,,,,,,,,,,\n");
   ExpectInputError([&] { CompareReportData(folder.path()); },
                    {"paths.csv: tukey has not as many rows"});
-  // A sweep does not need them.
+  // A sweep does not need these files.
   folder.Write("config.flags", "# Experiment\n--experiment=sweep\n");
   ExpectInputError([&] { CompareReportData(folder.path()); }, {"sweep.csv"});
 }

@@ -16,7 +16,7 @@ using nlohmann::json;
 using testing::HasSubstr;
 using testing::Not;
 
-// A run of so many frames; every seventh is lost and one takes 50 ms.
+// Writes a run with `frames` frames; every seventh is lost and one takes 50 ms.
 void WriteRun(const TempFolder& folder, int frames) {
   std::string csv =
       "timestamp,status,reason,segment,reference,is_reference,relocalised,"
@@ -46,7 +46,7 @@ TEST(RunReportData, LostFramesAreGaps) {
   WriteRun(folder, 15);
   const json data = RunReportData(folder.path());
   EXPECT_EQ(data.at("every"), 1);
-  EXPECT_EQ(data.at("frames").at("t")[1], 0.0313);  // 1/32 s in short
+  EXPECT_EQ(data.at("frames").at("t")[1], 0.0313);  // 1/32 s, rounded
   EXPECT_EQ(data.at("frames").at("status")[5], 0);
   EXPECT_EQ(data.at("frames").at("status")[6], 2);
   EXPECT_EQ(data.at("frames").at("by_pixels")[4], 0);
@@ -74,7 +74,7 @@ TEST(RunReportData, TheLossIsThatOfTheRun) {
   EXPECT_EQ(weights[0], 1.0);
   const double x = step * (weights.size() - 1);
   ASSERT_GT(x, width);
-  EXPECT_NEAR(weights.back(), width / x, 1e-4);  // of four decimals
+  EXPECT_NEAR(weights.back(), width / x, 1e-4);  // four decimals
 }
 
 TEST(RunReportData, LongRunsAreThinnedWithoutLosingPeaks) {
@@ -88,7 +88,7 @@ TEST(RunReportData, LongRunsAreThinnedWithoutLosingPeaks) {
   EXPECT_EQ(data.at("frames").at("status")[2], 2);
 }
 
-// One that an earlier run has left in the folder does not count.
+// A preview left by an earlier run is ignored.
 TEST(RunReportData, TheCloudIsThatOfTheRun) {
   const TempFolder folder;
   WriteRun(folder, 3);

@@ -26,7 +26,7 @@ std::vector<uint8_t> FromBase64(const std::string& text) {
   return bytes;
 }
 
-// Reads a preview as the page does.
+// Decodes a preview as the page does.
 std::vector<ColoredPoint> Decode(const nlohmann::json& preview) {
   const std::vector<uint8_t> steps = FromBase64(preview.at("positions"));
   const std::vector<uint8_t> colors = FromBase64(preview.at("colors"));
@@ -48,7 +48,7 @@ std::vector<ColoredPoint> Decode(const nlohmann::json& preview) {
 }
 
 TEST(CloudPreviewTest, KeepsPlacesAndColoursOfAnyNumberOfPoints) {
-  // So many that each length of the last group of base64 comes up.
+  // Covers each length of the last group of base64.
   for (int count = 0; count <= 7; ++count) {
     std::vector<ColoredPoint> points;
     for (int i = 0; i < count; ++i) {
@@ -63,7 +63,7 @@ TEST(CloudPreviewTest, KeepsPlacesAndColoursOfAnyNumberOfPoints) {
         Decode(CloudPreview(points, Rigid3d()));
     ASSERT_EQ(decoded.size(), points.size());
     for (size_t i = 0; i < points.size(); ++i) {
-      // Half a step of 12 m over 16 bits.
+      // Half a step of 12 m in 16 bits.
       EXPECT_LT((decoded[i].position - points[i].position).norm(), 2e-4F);
       EXPECT_EQ(decoded[i].red, points[i].red);
       EXPECT_EQ(decoded[i].green, points[i].green);
@@ -86,7 +86,7 @@ TEST(CloudPreviewTest, PointsAreMovedIntoTheShownWorld) {
 
 TEST(CloudPreviewTest, AMeshKeepsItsCorners) {
   TriangleMesh mesh;
-  mesh.vertices.resize(300);  // more than 8 bits count
+  mesh.vertices.resize(300);  // indices need more than 8 bits
   mesh.vertices[299].position = {1.0F, 2.0F, 3.0F};
   mesh.triangles = {{0, 1, 299}, {299, 258, 2}};
   const nlohmann::json preview = MeshPreview(mesh, Rigid3d());

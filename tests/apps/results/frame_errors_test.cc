@@ -16,8 +16,8 @@ namespace {
 using testing::ElementsAre;
 using testing::IsNan;
 
-// A camera that moves along x, 0.5 m a frame and twice a second; the truth has
-// no pose for the last frame, and the second frame is lost.
+// A camera that moves along x, 0.5 m per frame, at two frames per second. The
+// truth has no pose for the last frame, and the second frame is lost.
 TEST(FrameErrors, OneRowAFrameWithGapsWhereNothingIsKnown) {
   Trajectory truth, estimate;
   std::vector<TrackedFrame> frames(5);

@@ -25,7 +25,7 @@ std::vector<std::string> Cells(const std::string& line) {
   return cells;
 }
 
-// A lost frame, too: its pose is what the policy for lost frames says.
+// A lost frame has a pose as well, given by the policy for lost frames.
 TEST(FrameTablesTest, EveryFrameHasAPose) {
   TrackedFrame frame;
   frame.status = TrackingStatus::kLost;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFrames = 120;
 
-// A hand that swings by 0.3 m within a second: up to 10 m/s^2.
+// A handheld camera that swings by 0.3 m within a second, at up to 10 m/s^2.
 std::vector<TrackedFrame> Swing() {
   std::vector<TrackedFrame> frames(kFrames);
   for (int i = 0; i < kFrames; ++i) {
@@ -37,7 +37,7 @@ TEST(MotionJumpsTest, AllPosesFromOneFrameOnAreElsewhere) {
   const std::vector<MotionJump> jumps = FindJumps(frames);
   ASSERT_EQ(jumps.size(), 1u);
   EXPECT_EQ(jumps[0].frame, 50);
-  EXPECT_NEAR(jumps[0].translation, 0.03, 1e-3);  // the swing has a share
+  EXPECT_NEAR(jumps[0].translation, 0.03, 1e-3);  // plus a part of the swing
   EXPECT_THAT(FormatJumps(jumps, frames),
               testing::HasSubstr("frame 50 by 30 mm (18 of 200 matches agree); "
                                  "--debug_images=50"));

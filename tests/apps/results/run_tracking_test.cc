@@ -17,9 +17,9 @@ namespace {
 using testing::HasSubstr;
 
 constexpr int kSourceFrames = 20;
-constexpr int kEventAt = 5;  // something happens as this frame is asked for
+constexpr int kEventAt = 5;  // the event happens when this frame is read
 
-// Frames of a wall that stands still.
+// Frames of a wall, seen by a static camera.
 class EventfulSource final : public FrameSource {
  public:
   EventfulSource(bool is_recording, double fy, std::function<void()> event)
@@ -55,7 +55,7 @@ class EventfulSource final : public FrameSource {
 
 class RunTrackingTest : public testing::Test {
  protected:
-  // Why the run ended early.
+  // Returns the reason for the early end of the run.
   std::string Track(bool is_recording, std::function<void()> event) {
     EventfulSource source(is_recording, fy_, std::move(event));
     const OdometrySettings settings;
@@ -73,7 +73,7 @@ class RunTrackingTest : public testing::Test {
   int frames_ = 0;
 };
 
-// Gathers what is logged.
+// Collects log messages.
 class LogLines final : public google::LogSink {
  public:
   LogLines() { google::AddLogSink(this); }

@@ -22,14 +22,14 @@
 namespace rgbd_pose {
 namespace {
 
-// What g2o keeps of a graph, read and solved without anything of ours.
+// g2o's representation of a graph, read and solved without our code.
 struct G2oPose {
   Eigen::Vector3d t = Eigen::Vector3d::Zero();
   Eigen::Quaterniond q = Eigen::Quaterniond::Identity();
 };
 
-// The error of EDGE_SE3:QUAT: [t, vec q] of measured^-1 * (X_i^-1 * X_j), the
-// quaternion of positive q_w.
+// The error of EDGE_SE3:QUAT: [t, vec q] of measured^-1 * (X_i^-1 * X_j), with
+// the quaternion's sign chosen for q_w >= 0.
 struct G2oError {
   template <typename T>
   Eigen::Matrix<T, 6, 1> Of(const Eigen::Matrix<T, 3, 1>& t_i,
@@ -113,7 +113,7 @@ G2oGraph ReadG2o(const std::string& text) {
   return graph;
 }
 
-// Moves the poses to the least cost; returns the costs before and after.
+// Minimises the cost over the poses; returns the costs before and after.
 std::pair<double, double> Optimise(G2oGraph* graph) {
   ceres::Problem problem;
   for (auto& [id, pose] : graph->poses) {
@@ -144,7 +144,7 @@ std::pair<double, double> Optimise(G2oGraph* graph) {
   return {summary.initial_cost, summary.final_cost};
 }
 
-// A covariance all of whose parts are correlated, and differ.
+// A covariance with correlations between all components, which all differ.
 MotionMatrix AnyCovariance(RandomWorld* world) {
   MotionMatrix root = MotionMatrix::Identity();
   for (double& value : root.reshaped()) value += world->Uniform(-0.5, 0.5);
@@ -155,7 +155,7 @@ MotionMatrix AnyCovariance(RandomWorld* world) {
 
 // A map in two segments: a tour with chords across it, and a short one.
 KeyframeMap SolvedMap() {
-  constexpr int kPoses = 40, kSecond = 35;  // where the second segment begins
+  constexpr int kPoses = 40, kSecond = 35;  // first pose of the second segment
   RandomWorld world(4);
   const std::vector<Rigid3d> truth = CircleOfPoses(kPoses, 3.0);
   KeyframeMap map;
@@ -186,8 +186,8 @@ KeyframeMap SolvedMap() {
   return map;
 }
 
-// Ceres' own example pose_graph_3d, which reads the format, is in no package;
-// this is the same problem.
+// Solves the same problem as Ceres' example pose_graph_3d, which reads this
+// format but is in no package.
 TEST(G2oTest, OthersFindNothingToImprove) {
   const KeyframeMap map = SolvedMap();
   G2oGraph graph = ReadG2o(FormatG2o(map));
@@ -195,7 +195,7 @@ TEST(G2oTest, OthersFindNothingToImprove) {
   ASSERT_EQ(graph.edges.size(), map.edges.size());
   EXPECT_EQ(graph.fixed, std::vector<int>({7, 7 + 3 * 35}));
   const auto [before, after] = Optimise(&graph);
-  // Chi^2 / 2 of what these edges disagree by.
+  // Half the chi^2 of the remaining disagreement between these edges.
   EXPECT_GT(after, 50.0);
   EXPECT_LT(before, (1.0 + 1e-6) * after);
   for (const Keyframe& keyframe : map.keyframes) {
@@ -207,7 +207,7 @@ TEST(G2oTest, OthersFindNothingToImprove) {
   }
 }
 
-// The cost is ours, not only to second order, of edges that are far off, too.
+// The cost equals ours, not only to second order, for large errors as well.
 TEST(G2oTest, CostOfAnEdgeIsOurs) {
   RandomWorld world(6);
   for (int trial = 0; trial < 50; ++trial) {
@@ -250,7 +250,7 @@ TEST(SlamWarningTest, SaysHowOftenPosesWereNotSolvedForAndWhy) {
             "is not finite");
 }
 
-// docs/runs.md: errors of other conventions from ours, by a matrix each. The
+// Matrices in docs/runs.md that convert our errors to other conventions. The
 // true motion is off the measured one by [w C], R_true = Exp(w) R.
 TEST(EdgeConventionsTest, MatricesOfThePageAreTheDerivatives) {
   RandomWorld world(8);
@@ -277,15 +277,15 @@ TEST(EdgeConventionsTest, MatricesOfThePageAreTheDerivatives) {
       const Eigen::Quaterniond turn =
           Eigen::AngleAxisd(w.norm(), w.normalized()) * measured.rotation;
       const Eigen::Vector3d C = measured.Inverse().translation + e.tail<3>();
-      // The edge of a pose graph, measured and true: ref_from_cur.
+      // The measured and the true edge of a pose graph: ref_from_cur.
       const Rigid3d Z = measured.Inverse();
       const Rigid3d X(turn.conjugate(), C);
       const Rigid3d E = Z.Inverse() * X;
       MotionVector* const out = step > 0.0 ? plus : minus;
-      // Position in the axes of the reference, rotation about those of cur.
+      // ROS: position in reference axes, rotation about current axes.
       out[0] << X.translation - Z.translation, log(E.rotation);
-      out[1] << log(E.rotation), E.translation;   // GTSAM's Logmap, to first
-      out[2] << E.translation, E.rotation.vec();  // order; g2o's
+      out[1] << log(E.rotation), E.translation;   // GTSAM's Logmap to
+      out[2] << E.translation, E.rotation.vec();  // first order; g2o
     }
     found_ros.col(k) = (plus[0] - minus[0]) / (2.0 * kStep);
     found_gtsam.col(k) = (plus[1] - minus[1]) / (2.0 * kStep);

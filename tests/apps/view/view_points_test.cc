@@ -10,7 +10,7 @@ TEST(ViewPointsTest, PointsLieWhereTheCameraSeesThem) {
   Frame frame;
   frame.gray = cv::Mat(120, 160, CV_8UC1, cv::Scalar(77));
   frame.depth = cv::Mat(120, 160, CV_16UC1, cv::Scalar(0));
-  EXPECT_EQ(SamplePoints(frame, camera), "");  // nothing is measured
+  EXPECT_EQ(SamplePoints(frame, camera), "");  // no depth is measured
   frame.depth.setTo(10000);                    // 2 m
   const std::string bytes = SamplePoints(frame, camera);
   ASSERT_GT(bytes.size(), 1000 * kViewPointBytes);
@@ -25,14 +25,14 @@ TEST(ViewPointsTest, PointsLieWhereTheCameraSeesThem) {
       return static_cast<int16_t>(b[0] | b[1] << 8);
     };
     EXPECT_EQ(number(4), 2000);
-    EXPECT_LE(std::abs(number(0)), 1600);  // 80 px of 100 at 2 m
+    EXPECT_LE(std::abs(number(0)), 1600);  // 80 px at f = 100 px and 2 m
     EXPECT_LE(std::abs(number(2)), 1200);
     EXPECT_EQ(bytes[i * kViewPointBytes + 6], 77);
     sum += number(0);
     if (i < points / 8) left += number(0) < 0;
   }
   EXPECT_NEAR(sum / static_cast<double>(points), 0.0, 20.0);
-  // The first of them are from all over the image.
+  // The first points are spread over the whole image.
   EXPECT_NEAR(left / (points / 8.0), 0.5, 0.15);
 }
 

@@ -19,11 +19,11 @@ using std::chrono::steady_clock;
 using testing::HasSubstr;
 using testing::Not;
 
-// Longer than any answer takes on a busy machine.
+// Longer than any response takes on a busy machine.
 constexpr std::chrono::seconds kPatience(10);
 
-// Who waited for a reader would wait for 2 s, until that is let go; a busy
-// machine may take away a part of a second.
+// If Add() waited for a reader, it would wait for the timeout of 2 s. A busy
+// machine may delay it by a part of a second.
 constexpr milliseconds kMaxAdd(1000);
 
 ViewNews OneFrame(int index) {
@@ -56,8 +56,8 @@ class ViewServerTest : public testing::Test {
     return std::stoi(address.substr(address.rfind(':') + 1));
   }
 
-  // Reads events until all `words` have come (each once, in order) or patience
-  // ends; returns what was read.
+  // Reads events until all `words` have come (each once, in order) or kPatience
+  // has passed; returns the text read.
   static std::string ReadUntil(int port,
                                const std::vector<std::string>& words) {
     httplib::Client client("127.0.0.1", port);
@@ -106,7 +106,8 @@ TEST_F(ViewServerTest, ServesThePageAloneAndToItsOwnHostAlone) {
     EXPECT_EQ(client.Get(path)->status, 404) << path;
   }
 
-  // A name that someone else points at this machine, and another site's page.
+  // Another host name that resolves to this machine, and a page of another
+  // site.
   const httplib::Headers kRefused[] = {
       {{"Host", "evil.example"}},
       {{"Host", "127.0.0.1"}},
@@ -177,7 +178,7 @@ TEST_F(ViewServerTest, ButtonsPauseAndStop) {
   EXPECT_TRUE(state_.is_stopped());
 }
 
-// It fills its socket and is let go; whoever adds frames never waits for it.
+// The reader's socket fills up and the reader is dropped; Add() never waits.
 TEST_F(ViewServerTest, AReaderThatNeverReadsSlowsNobody) {
   const ViewServer server("run", 0, &state_);
   const int socket = ::socket(AF_INET, SOCK_STREAM, 0);
@@ -209,7 +210,7 @@ TEST_F(ViewServerTest, AReaderThatNeverReadsSlowsNobody) {
   };
   EXPECT_TRUE(Eventually(add)) << "is never let go";
   EXPECT_LT(longest, kMaxAdd);
-  // Others are served meanwhile and after.
+  // Other readers are served during and after this.
   EXPECT_THAT(ReadUntil(PortOf(server), {"event: news"}),
               HasSubstr("event: news"));
   close(socket);

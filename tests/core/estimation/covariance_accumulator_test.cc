@@ -1,5 +1,5 @@
-// What noise feigns is taken off a cost's information: with numbers that a cost
-// makes up.
+// Subtracting spurious information from a cost's information, tested with a
+// cost whose numbers are given.
 
 #include "core/estimation/covariance_accumulator.h"
 
@@ -17,8 +17,8 @@ namespace rgbd_pose {
 namespace {
 
 constexpr int kBlocks = 60;
-constexpr double kSquaredNorm = 0.8;  // of each
-// By how much what is feigned may exceed its model.
+constexpr double kSquaredNorm = 0.8;  // of each block
+// Safety factor on the modelled spurious information.
 constexpr double kMargin = 6.0;
 
 struct MadeUp {
@@ -30,8 +30,8 @@ struct MadeUp {
   int rows = 1;
 };
 
-// A cost whose sums are given. Of three rows, the last has residuals five times
-// as large.
+// A cost whose sums are given. With three rows per block, the residual of the
+// last row is five times as large.
 class MadeUpCost final : public MotionCost {
  public:
   explicit MadeUpCost(const MadeUp& given)
@@ -92,7 +92,7 @@ struct Judged {
   MotionMatrix covariance;
 };
 
-// `is_doubled`: the residuals' spread is found to be 2.
+// `is_doubled`: the scale estimate of the residuals is 2.
 Judged JudgedOf(const std::vector<MadeUp>& costs, bool is_doubled = false) {
   std::vector<RobustCost> robust;
   for (const MadeUp& cost : costs) {
@@ -122,10 +122,10 @@ MotionMatrix SomeMatrix(double seed, double size) {
   return size * root.transpose() * root;
 }
 
-// Mean psi^2 over mean weight, corrected for six parameters of `blocks`.
+// Mean psi^2 over mean weight, corrected for six parameters fitted to `blocks`.
 double Spread(int blocks) { return kSquaredNorm * blocks / (blocks - 6.0); }
 
-// However many there are: all rows of a block are asked, or none.
+// The scale uses all rows of a block or none, for any number of blocks.
 TEST(RobustProblemTest, ScalesDoNotDependOnTheNumberOfResiduals) {
   const auto scale_of = [](int blocks) {
     MadeUp cost;
@@ -153,7 +153,7 @@ TEST(RobustProblemTest, ScalesDoNotDependOnTheNumberOfResiduals) {
 TEST(CovarianceAccumulatorTest, TakesOffWhatIsFeigned) {
   MadeUp cost;
   cost.hessian = SomeMatrix(1.0, 1000.0);
-  cost.hessian.topRows<3>() *= 30.0;  // radians and metres
+  cost.hessian.topRows<3>() *= 30.0;  // the units differ
   cost.hessian.leftCols<3>() *= 30.0;
   cost.feigned = SomeMatrix(2.0, 5.0);
   const Judged judged = JudgedOf({cost});
@@ -165,8 +165,8 @@ TEST(CovarianceAccumulatorTest, TakesOffWhatIsFeigned) {
       judged.covariance.isApprox(Spread(kBlocks) * left.inverse(), 1e-6));
 }
 
-// Blocks that tell the same count less; and residuals that are larger than
-// their noise do not make slopes noisier.
+// The information factor scales both terms. A larger scale of the residuals
+// does not increase the noise of slopes.
 TEST(CovarianceAccumulatorTest, FeignsByTheFactorAndTheScale) {
   MadeUp cost;
   cost.hessian = SomeMatrix(1.0, 1000.0);
@@ -179,8 +179,8 @@ TEST(CovarianceAccumulatorTest, FeignsByTheFactorAndTheScale) {
       JudgedOf({cost}, /*is_doubled=*/true).sum.hessian.isApprox(left, 1e-9));
 }
 
-// Of an image that shows nothing there is not even noise to take off: none of
-// the six keeps less than nothing, the rest is in proportion.
+// Limit for an image without texture: no direction keeps negative information.
+// All directions are scaled by the same factor.
 TEST(CovarianceAccumulatorTest, TakesOffNoMoreThanThereIs) {
   MadeUp cost;
   cost.feigned = 0.01 * MotionMatrix::Identity();
@@ -189,11 +189,11 @@ TEST(CovarianceAccumulatorTest, TakesOffNoMoreThanThereIs) {
   EXPECT_TRUE(JudgedOf({cost}).sum.hessian.isApprox(left, 1e-12));
 }
 
-// Where all is feigned across the axes, another cost has to know.
+// A direction with only spurious information (6.84 of 4) needs another cost.
 TEST(CovarianceAccumulatorTest, WhatIsAllFeignedIsNoneAndNotLess) {
   MadeUp feigned, right;
   feigned.hessian(1, 1) = feigned.hessian(2, 2) = 4.0;
-  feigned.feigned.block<2, 2>(1, 1) << 3.6, 3.24, 3.24, 3.6;  // 0.36 to 6.84
+  feigned.feigned.block<2, 2>(1, 1) << 3.6, 3.24, 3.24, 3.6;  // 0.36 and 6.84
   feigned.feigned /= kMargin;
   right.hessian = 100.0 * MotionMatrix::Identity();
   const Judged judged = JudgedOf({feigned, right});
@@ -202,10 +202,10 @@ TEST(CovarianceAccumulatorTest, WhatIsAllFeignedIsNoneAndNotLess) {
   const Eigen::Vector2d all(std::sqrt(0.5), std::sqrt(0.5));
   const Eigen::Vector2d little(std::sqrt(0.5), -std::sqrt(0.5));
   MotionMatrix left = feigned.hessian + right.hessian;
-  left.block<2, 2>(1, 1) -= 4.0 * all * all.transpose();  // and not 6.84
+  left.block<2, 2>(1, 1) -= 4.0 * all * all.transpose();  // 4.0 instead of 6.84
   left.block<2, 2>(1, 1) -= 0.36 * little * little.transpose();
-  // Both count alike, and know all six: the trace of what is left of both in
-  // the whole is six.
+  // Both costs have the same weight and together determine all six parameters:
+  // the trace of their remaining share of the sum is six.
   const MotionMatrix inverse = judged.sum.hessian.inverse();
   const double parameters = (inverse * left).trace();
   const double n = 2.0 * kBlocks;

@@ -1,4 +1,4 @@
-// Monte Carlo: does the covariance of an estimate say how far off it is?
+// Monte Carlo test: does an estimate's covariance match its actual error?
 
 #include <gtest/gtest.h>
 
@@ -19,14 +19,14 @@ namespace {
 
 constexpr int kTrials = 500;
 constexpr int kCovarianceMatches = 250;
-constexpr double kPriorSigma = 0.002;  // rad, m: about what matches tell
+constexpr double kPriorSigma = 0.002;  // rad, m: about that of the matches
 
 struct Scene {
   const char* costs;
   const char* losses;
   double missing_depth_share;
   double outlier_share;
-  double tolerance;  // of the mean of six; its own sigma is 0.15
+  double tolerance;  // of the mean, which is 6; the mean has a sigma of 0.15
 };
 
 std::ostream& operator<<(std::ostream& out, const Scene& scene) {
@@ -34,7 +34,7 @@ std::ostream& operator<<(std::ostream& out, const Scene& scene) {
              << ", missing depths " << scene.missing_depth_share;
 }
 
-// R_true = Exp(omega) R, and C (MotionEstimate::covariance).
+// The error [omega, C] with R_true = Exp(omega) R (MotionEstimate::covariance).
 MotionVector ErrorVector(const Rigid3d& estimate, const Rigid3d& truth) {
   const Eigen::AngleAxisd omega(truth.rotation * estimate.rotation.inverse());
   MotionVector error;
@@ -45,9 +45,9 @@ MotionVector ErrorVector(const Rigid3d& estimate, const Rigid3d& truth) {
 
 class CovarianceTest : public ::testing::TestWithParam<Scene> {};
 
-// Normalised estimation error squared: d^T covariance^-1 d has a mean of 6 if
-// the covariance says the truth. Costs that tell a measurement twice are a trap
-// here: taken naively they count it twice.
+// The normalised estimation error squared, d^T covariance^-1 d, has a mean of 6
+// if the covariance is correct. Costs that use a measurement twice would count
+// it twice if this were not corrected.
 TEST_P(CovarianceTest, IsHonest) {
   const Scene& scene = GetParam();
   Estimator estimator({}, MakeRobustCosts(scene.costs, scene.losses));
@@ -69,8 +69,8 @@ TEST_P(CovarianceTest, IsHonest) {
   EXPECT_NEAR(nees / kTrials, 6.0, scene.tolerance);
 }
 
-// The same matches as told by a noise model of other sigmas: their noise is
-// `noise` times that.
+// The same matches with other sigmas: the actual noise is `noise` times the
+// model's.
 Correspondences WithNoise(const Correspondences& matches, double noise) {
   Correspondences result(matches.camera());
   for (Match match : matches) {
@@ -83,8 +83,8 @@ Correspondences WithNoise(const Correspondences& matches, double noise) {
   return result;
 }
 
-// Where a prior tells nearly all its covariance is that of the estimate,
-// however far the matches scatter.
+// If the prior provides nearly all information, the estimate has the prior's
+// covariance, whatever the scatter of the matches.
 TEST(CovarianceOfAPriorTest, DoesNotDependOnTheNoiseOfMatches) {
   RandomWorld world(5);
   const Rigid3d truth = world.Motion(0.05, 0.05);
@@ -104,8 +104,9 @@ TEST(CovarianceOfAPriorTest, DoesNotDependOnTheNoiseOfMatches) {
   }
 }
 
-// Matches and prior tell about the same. The noise model is off, and a scale
-// estimator sees it: both have their due in the motion and in its covariance.
+// Matches and prior provide about the same information. The noise model is
+// wrong and the scale is estimated: both must have their correct weight in the
+// motion and in its covariance.
 TEST(CovarianceOfAPriorTest, IsHonestWhereTheScaleIsEstimated) {
   EstimatorOptions options;
   options.scale = FindScaleEstimator("mad")->estimate;
@@ -140,7 +141,7 @@ std::string SceneName(const ::testing::TestParamInfo<Scene>& info) {
          percent(info.param.missing_depth_share);
 }
 
-constexpr double kDefault = 0.6;  // 10 %: of the cost that is the default
+constexpr double kDefault = 0.6;  // 10 %, for the default cost
 constexpr double kOther = 1.5;    // 25 %
 
 INSTANTIATE_TEST_SUITE_P(
@@ -162,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(
         Scene{"reprojection", "tukey", 0.25, 0.2, kOther},
         Scene{"reprojection_depth", "tukey", 0.0, 0.0, kOther},
         Scene{"reprojection_depth", "tukey", 0.0, 0.2, kOther},
-        // Epipolar matches fill in where a depth is missing.
+        // Epipolar matches are used where a depth is missing.
         Scene{"reprojection_depth+epipolar", "tukey", 0.25, 0.0, kOther},
         Scene{"reprojection_depth+epipolar", "tukey", 0.25, 0.2, kOther},
         Scene{"bidirectional_point+epipolar", "tukey", 0.25, 0.2, kOther},
@@ -172,12 +173,12 @@ INSTANTIATE_TEST_SUITE_P(
               kOther}),
     SceneName);
 
-// Matches, all of them right, on which the noise of the two frames differs: in
-// size, or in the direction in which it reaches over from one to the other.
+// Matches, all inliers, whose noise differs between the two frames: in size or,
+// through a wide baseline, in direction.
 struct UnequalNoise {
   const char* cost;
-  const char* scene;    // of kPixelNoise or kBaseline
-  double nees;          // as above, expected mean
+  const char* scene;    // kPixelNoise or kBaseline
+  double nees;          // expected mean, as above
   double inlier_share;  // expected
 };
 constexpr char kPixelNoise[] = "pixel_noise";  // 2 px against 0.5 px
@@ -189,7 +190,7 @@ Correspondences MatchesOf(const UnequalNoise& scene, int seed, Rigid3d* truth) {
   const bool is_wide = std::string(scene.scene) == kBaseline;
   *truth = world.Motion(0.05, 0.05);
   if (is_wide) {
-    // Round a point 2.6 m ahead, which stays where it is in the image.
+    // Rotates about a point 2.6 m ahead, which stays at its place in the image.
     const Eigen::Vector3d ahead(0.0, 0.0, 2.6);
     truth->rotation = Eigen::AngleAxisd(M_PI / 4.0, Eigen::Vector3d::UnitY());
     truth->translation = ahead - truth->rotation * ahead;
@@ -209,7 +210,7 @@ Correspondences MatchesOf(const UnequalNoise& scene, int seed, Rigid3d* truth) {
 
 class UnequalNoiseTest : public ::testing::TestWithParam<UnequalNoise> {};
 
-// What each cost makes of it (docs/costs.md), from the truth.
+// Checks the results given in docs/costs.md, starting from the truth.
 TEST_P(UnequalNoiseTest, IsAsDocumented) {
   const UnequalNoise& scene = GetParam();
   constexpr int kSeeds = 300;
@@ -233,7 +234,7 @@ TEST_P(UnequalNoiseTest, IsAsDocumented) {
 INSTANTIATE_TEST_SUITE_P(
     Costs, UnequalNoiseTest,
     ::testing::Values(
-        // It takes both frames for equally noisy.
+        // This cost assumes that both frames are equally noisy.
         UnequalNoise{"bidirectional_point", kPixelNoise, 9.2, 0.68},
         UnequalNoise{"bidirectional_point", kBaseline, 6.0, 0.785},
         UnequalNoise{"bidirectional_image", kPixelNoise, 6.0, 0.99},

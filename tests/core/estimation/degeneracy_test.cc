@@ -1,4 +1,4 @@
-// What a Hessian leaves open, and under which name.
+// Which directions a Hessian leaves undetermined, and how they are named.
 
 #include "core/estimation/degeneracy.h"
 
@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kMaxDeviation = 0.1;  // rad and m
 
-// Of distances to planes: `normals` seen at 3 x 3 points around (0, 0, 2).
+// Rows of planes with these `normals`, each at 3 x 3 points around (0, 0, 2).
 MotionMatrix HessianOfPlanes(const std::vector<Eigen::Vector3d>& normals) {
   MotionMatrix hessian = MotionMatrix::Zero();
   for (const Eigen::Vector3d& normal : normals) {
@@ -40,9 +40,9 @@ TEST(DegeneracyTest, AWellKnownMotionHasTheInverseHessian) {
   EXPECT_TRUE((result.inverse * hessian).isIdentity(1e-9));
 }
 
-// A wall straight ahead tells of its distance and of turns about x and y. That
-// its normal is a little off, by rounding or by noise, does not make these the
-// open ones.
+// A wall straight ahead determines its distance and rotations about x and y.
+// Small errors of its normal, by rounding or noise, must not change the
+// undetermined directions that are reported.
 TEST(DegeneracyTest, TiltDoesNotHideWhatIsOpen) {
   for (const double tilt :
        {0.0, 1e-17, 1e-16, 1e-14, 1e-12, 1e-8, 1e-4, 0.01}) {
@@ -63,7 +63,7 @@ TEST(DegeneracyTest, TiltDoesNotHideWhatIsOpen) {
 
 TEST(DegeneracyTest, ADirectionThatIsKnownTooLittleIsNamed) {
   MotionMatrix hessian = 1e6 * MotionMatrix::Identity();
-  hessian(4, 4) = 25.0;  // 0.2 m
+  hessian(4, 4) = 25.0;  // standard deviation 0.2 m
   const Degeneracy result = FindDegeneracy(hessian, 0.0, kMaxDeviation);
   EXPECT_TRUE(result.is_degenerate);
   EXPECT_EQ(result.reason,
@@ -71,7 +71,7 @@ TEST(DegeneracyTest, ADirectionThatIsKnownTooLittleIsNamed) {
   EXPECT_FALSE(FindDegeneracy(hessian, 0.0, 0.21).is_degenerate);
 }
 
-// A rotation must be known three times as well as noise feigns.
+// A rotation needs about three times the spurious information of noise.
 TEST(DegeneracyTest, ARotationThatNoiseFeignsIsNotKnown) {
   MotionMatrix hessian = 1e6 * MotionMatrix::Identity();
   hessian(1, 1) = 1e4;
@@ -91,9 +91,9 @@ TEST(DegeneracyTest, NothingIsKnownOfNothing) {
       "the Hessian is not finite");
 }
 
-// What stands out beside the strongest is named, too; what is little is not.
+// The reason also names a large second component, but not a small one.
 TEST(DegeneracyTest, NamesWhatStandsOut) {
-  // Known in all directions across one, which is made of x, y and z.
+  // All translations are known except for one, which has x, y and z parts.
   const Eigen::Vector3d open = Eigen::Vector3d(1.0, -0.6, 0.1).normalized();
   MotionMatrix hessian = 1e6 * MotionMatrix::Identity();
   hessian.bottomRightCorner<3, 3>() -= (1e6 - 1.0) * open * open.transpose();
@@ -102,7 +102,7 @@ TEST(DegeneracyTest, NamesWhatStandsOut) {
             "(standard deviation 1 m)");
 }
 
-// 2 m away: 3 mm along the ray, 0.7 px of 500 across it, which is 2.8 mm.
+// At 2 m: 3 mm along the ray; 0.7 px of f = 500 px across, which is 2.8 mm.
 TEST(SpuriousInformationTest, IsTheLeverOfNoise) {
   Camera camera;
   camera.fx = camera.fy = 500.0;
@@ -118,7 +118,7 @@ TEST(SpuriousInformationTest, IsTheLeverOfNoise) {
   const double feigned = (q + 1.0 / q) / 2.0;
   EXPECT_NEAR(SpuriousInformation(matches, {}), feigned, 1e-12);
 
-  // Of a depth that is missing the other one serves; of both, there is none.
+  // A missing depth is replaced by the other one; without both, the value is 1.
   Observation blind = seen;
   blind.depth = 0.0;
   matches.Add(blind, seen);

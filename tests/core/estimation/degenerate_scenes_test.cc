@@ -1,5 +1,5 @@
-// Scenes and costs that leave directions of motion open: a status that names
-// one of them, never a number that is none.
+// Scenes and costs that leave directions of motion undetermined: the status
+// names one of them, and all numbers are finite.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 using ::testing::Values;
 
-// Of 150 matches with the noise of a Kinect; six sigmas.
+// Six sigmas for 150 matches with the noise of a Kinect.
 constexpr double kMaxAngle = 0.006;        // rad
 constexpr double kMaxTranslation = 0.012;  // m
 
@@ -31,7 +31,7 @@ void ExpectSane(const MotionEstimate& estimate) {
   EXPECT_EQ(estimate.reason.empty(), estimate.ok());
 }
 
-// Matches on the plane z = `depth` of the previous frame, with its normal, seen
+// Matches on the plane z = `depth` of the previous frame, with its normal,
 // before and after a motion.
 Correspondences MatchesOnAPlane(int count, double depth, const Rigid3d& truth,
                                 bool noise) {
@@ -58,8 +58,8 @@ Correspondences MatchesOnAPlane(int count, double depth, const Rigid3d& truth,
   return matches;
 }
 
-// Matches on the walls of a corridor 3 m wide and high, its end so far away
-// that it covers `end_share` of the pixels; with exact normals.
+// Matches with exact normals on the walls of a corridor 3 m wide and high. Its
+// end is so far away that it covers `end_share` of the pixels.
 Correspondences MatchesInACorridor(int count, double end_share) {
   RandomWorld world(27);
   const Camera camera;
@@ -89,7 +89,7 @@ Correspondences MatchesInACorridor(int count, double end_share) {
   return matches;
 }
 
-// Matches on a strip across the image at a depth, `height` px high, with noise.
+// Noisy matches on a strip across the image, at one depth and `height` px high.
 Correspondences MatchesOnAStrip(int count, double depth, double height) {
   RandomWorld world(28 + count);
   const Camera camera;
@@ -130,8 +130,7 @@ INSTANTIATE_TEST_SUITE_P(Costs, EveryCostTest, ::testing::ValuesIn(CostNames()),
 
 class OneDepthTest : public ::testing::TestWithParam<std::string> {};
 
-// A wall straight ahead is no trouble where a match is more than a distance
-// from it.
+// A wall straight ahead suffices if matches constrain more than a distance.
 TEST_P(OneDepthTest, IsEnough) {
   const Rigid3d truth = RandomWorld(22).Motion(0.05, 0.05);
   const MotionEstimate estimate =
@@ -150,8 +149,8 @@ INSTANTIATE_TEST_SUITE_P(Costs, OneDepthTest,
                                 "reprojection", "reprojection_depth"),
                          [](const auto& info) { return info.param; });
 
-// Of a plane its distance is all that counts: gliding along it and turning
-// about its normal stay open, noise or not.
+// A plane only constrains the distance from it. Translation along the plane and
+// rotation about its normal are undetermined, with and without noise.
 TEST(DegenerateScenesTest, PointToPlaneOnOnePlane) {
   for (const bool noise : {false, true}) {
     const MotionEstimate estimate =
@@ -166,8 +165,8 @@ TEST(DegenerateScenesTest, PointToPlaneOnOnePlane) {
   }
 }
 
-// A direction that few matches tell of is known by many: what counts is how
-// well, not how little each tells.
+// Of 30000 matches, even a few percent determine a direction well enough. The
+// total information counts, not the information per match.
 TEST(DegenerateScenesTest, TheEndOfACorridorIsEnough) {
   for (const double end_share : {0.12, 0.03}) {
     const MotionEstimate estimate =
@@ -183,8 +182,9 @@ TEST(DegenerateScenesTest, TheEndOfACorridorIsEnough) {
   }
 }
 
-// What noise feigns of the rotation about a line grows with the number of
-// matches, and with the distance, as a depth errs more than an image does.
+// Spurious information about the rotation about a line grows with the number of
+// matches, and with the distance, because depth is noisier than image
+// positions.
 TEST(DegenerateScenesTest, NoiseIsNoLeverAboutALine) {
   for (const char* cost : {"bidirectional_point", "mahalanobis_point",
                            "reprojection_depth", "bidirectional_image"}) {
@@ -212,7 +212,7 @@ TEST(DegenerateScenesTest, AStripOfFourSigmasIsALever) {
   }
 }
 
-// Wrong matches must not be levers about a line of right ones.
+// Wrong matches must not determine the rotation about a line of right matches.
 TEST(DegenerateScenesTest, WrongMatchesDoNotDetermineARotation) {
   for (const char* loss : {"huber", "tukey", "cauchy"}) {
     Estimator estimator({}, MakeRobustCosts("bidirectional_point", loss));
@@ -229,7 +229,7 @@ TEST(DegenerateScenesTest, WrongMatchesDoNotDetermineARotation) {
   }
 }
 
-// What one cost leaves open another one may know.
+// Another cost may determine the directions that one cost leaves open.
 TEST(DegenerateScenesTest, APriorHelpsOnOnePlane) {
   RandomWorld world(23);
   const Rigid3d truth = world.Motion(0.05, 0.05);
@@ -242,7 +242,7 @@ TEST(DegenerateScenesTest, APriorHelpsOnOnePlane) {
   ExpectSane(estimate);
 }
 
-// Without any depth the length of C is open: the weak direction is its own.
+// Without any depth, the length of C is undetermined: the weak direction is C.
 TEST(DegenerateScenesTest, EpipolarAloneHasNoScale) {
   const char* names[] = {"translation along x", "translation along y",
                          "translation along z"};
@@ -263,7 +263,7 @@ TEST(DegenerateScenesTest, EpipolarAloneHasNoScale) {
   }
 }
 
-// From a guess without a baseline the epipolar cost can use nothing.
+// With a guess without baseline, the epipolar cost can use no match.
 TEST(DegenerateScenesTest, EpipolarAloneNeedsAGuess) {
   RandomWorld world(25);
   const Rigid3d truth = world.Motion(0.05, 0.3);
@@ -275,8 +275,8 @@ TEST(DegenerateScenesTest, EpipolarAloneNeedsAGuess) {
   ExpectSane(estimate);
 }
 
-// All matches may drop out between stages: here the guess has a baseline and
-// the matches know that there is none.
+// All matches may drop out between stages: here the guess has a baseline, but
+// the true motion has none.
 TEST(DegenerateScenesTest, EpipolarMatchesMayAllDropOut) {
   RandomWorld world(26);
   const Rigid3d guess(Eigen::Quaterniond::Identity(),

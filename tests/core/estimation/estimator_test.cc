@@ -57,8 +57,8 @@ TEST(EstimatorTest, TheThreeAssembliesAgree) {
   }
 }
 
-// 30 % of the matches are grossly wrong: Tukey stays within three times the
-// error that is left without any wrong match.
+// 30 % of the matches are outliers: with Tukey's loss the error stays below
+// three times the error without outliers.
 TEST(EstimatorTest, TukeySurvivesThirtyPercentOutliers) {
   double clean = 0.0, dirty = 0.0, clean_angle = 0.0, dirty_angle = 0.0;
   Estimator estimator = MakeEstimator("tukey");
@@ -74,7 +74,7 @@ TEST(EstimatorTest, TukeySurvivesThirtyPercentOutliers) {
       (outliers > 0 ? dirty : clean) += error.translation;
       (outliers > 0 ? dirty_angle : clean_angle) += error.angle;
       if (outliers > 0) {
-        // No single trial may be far off either: half the inlier share.
+        // Limit for each single trial: half the inlier share.
         EXPECT_LE(error.translation, 0.01);
         EXPECT_NEAR(estimate.num_inliers, 208, 25);  // 99 % of 210
       }
@@ -93,8 +93,9 @@ TEST(EstimatorTest, LeastSquaresIsRuinedByTheSameOutliers) {
       << "the outliers of the other tests are no challenge";
 }
 
-// The norms are what the loss weighed: Huber gives 1 up to its width and the
-// width over the norm beyond. They are those of the noise, too.
+// Weights must follow from the reported norms: Huber's weight is 1 up to its
+// width and width / norm beyond. The norms also follow the distribution of the
+// noise.
 TEST(EstimatorTest, ResidualNormsExplainTheWeights) {
   RandomWorld world(13);
   const MotionEstimate estimate = MakeEstimator("huber").Estimate(
@@ -109,12 +110,12 @@ TEST(EstimatorTest, ResidualNormsExplainTheWeights) {
     EXPECT_NEAR(estimate.weights[i], norm <= width ? 1.0 : width / norm, 1e-12);
     sum_of_squares += norm * norm;
   }
-  // The mean of chi^2 of 3 degrees over 2000 matches scatters by 0.055.
+  // Over 2000 matches, the mean of chi^2 with 3 degrees has a sigma of 0.055.
   EXPECT_NEAR(sum_of_squares / 2000, 3.0, 0.3);
 }
 
-// 99 % of right matches are inliers, whatever the cost: 20 000 matches leave
-// 0.0007 of doubt.
+// 99 % of right matches are inliers, for every cost. With 20 000 matches the
+// share has a sigma of 0.0007.
 class InlierShareTest : public ::testing::TestWithParam<std::string> {};
 
 TEST_P(InlierShareTest, Is99Percent) {
@@ -160,7 +161,7 @@ TEST(EstimatorTest, CountsWhatWasRejectedAsNotFinite) {
   EXPECT_NE(estimate.reason.find("5 rejected"), std::string::npos);
 }
 
-// However they become residual blocks.
+// Holds for both ways to build residual blocks.
 TEST(EstimatorTest, FiniteNumbersThatNoCameraMeasuresAreRejected) {
   RandomWorld world(15);
   const Rigid3d truth = world.Motion(0.05, 0.05);
@@ -178,7 +179,7 @@ TEST(EstimatorTest, FiniteNumbersThatNoCameraMeasuresAreRejected) {
   }
 }
 
-// A frame against itself: what is measured is still rounded.
+// A frame against itself: the measurements are still rounded.
 TEST(EstimatorTest, EqualFramesAreNotCertain) {
   RandomWorld world(16);
   const Correspondences noisy = world.Matches(200, 0.0, Rigid3d());
@@ -201,7 +202,7 @@ TEST(EstimatorTest, EqualFramesAreNotCertain) {
   }
 }
 
-// Points on a line leave the rotation about it open, noise or not.
+// Points on a line leave the rotation about it open, with or without noise.
 TEST(EstimatorTest, ALineIsDegenerate) {
   for (const bool noise : {false, true}) {
     RandomWorld world(14);
@@ -238,7 +239,7 @@ TEST(EstimatorTest, DoesTheSameEachTime) {
   const Correspondences matches =
       world.Matches(300, 0.3, world.Motion(0.1, 0.1));
   const MotionEstimate first = estimator.Estimate(matches);
-  estimator.Estimate(world.Matches(17, 0.0, Rigid3d()));  // leaves no trace
+  estimator.Estimate(world.Matches(17, 0.0, Rigid3d()));  // has no effect
   const MotionEstimate second = estimator.Estimate(matches);
   EXPECT_EQ(first.cur_from_prev.translation, second.cur_from_prev.translation);
   EXPECT_EQ(first.weights, second.weights);
@@ -278,7 +279,7 @@ TEST(EstimatorTest, AGuessThatIsNoneTakesNoIterations) {
   EXPECT_EQ(estimate.iterations, 0);
 }
 
-// Odometry goes on from such a motion, and the edge needs its covariance.
+// Odometry continues from such a motion, and its edge needs the covariance.
 TEST(EstimatorTest, OneThatWasStoppedHasACovariance) {
   RandomWorld world(18);
   const Correspondences matches =
@@ -291,8 +292,8 @@ TEST(EstimatorTest, OneThatWasStoppedHasACovariance) {
   EXPECT_GT(estimate.covariance.diagonal().minCoeff(), 0.0);
 }
 
-// Noise four times the model's: at the widths that go with it, and so with as
-// much of it in both.
+// The noise is four times the model's. Initial and final cost are both
+// evaluated with the estimated scale.
 TEST(EstimatorTest, BothCostsCountTheScale) {
   RandomWorld world(19);
   const Camera camera;

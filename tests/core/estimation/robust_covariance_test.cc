@@ -1,4 +1,4 @@
-// The sandwich A^-1 B A^-1, number by number.
+// The sandwich A^-1 B A^-1, compared with numbers worked out by hand.
 
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ MotionMatrix SomeHessian(double seed) {
 CovarianceTerm Whitened(double seed) {
   CovarianceTerm term;
   term.hessian = SomeHessian(seed);
-  term.scatter.setConstant(1e9);  // not looked at
+  term.scatter.setConstant(1e9);  // not used
   term.is_whitened = true;
   term.scale_group = kGroup;
   term.sums = {270.0, 240.0, 180.0, 100};
@@ -47,7 +47,7 @@ TEST(RobustCovarianceTest, OfAWhitenedCost) {
              fitted * psi2 / (slope * slope) * term.hessian.inverse());
 }
 
-// A slope that vanishes must not make the covariance infinite.
+// A vanishing slope must not make the covariance infinite.
 TEST(RobustCovarianceTest, TheSlopeIsAFifthOfTheWeightAtLeast) {
   CovarianceTerm term = Whitened(1.0);
   term.sums.slope_p = -10.0;
@@ -56,7 +56,7 @@ TEST(RobustCovarianceTest, TheSlopeIsAFifthOfTheWeightAtLeast) {
              fitted * 270.0 / 240.0 / (0.2 * 0.2) * term.hessian.inverse());
 }
 
-// Few rows for six parameters: not more than twice as large.
+// With few rows for six parameters, the correction factor is at most two.
 TEST(RobustCovarianceTest, FewRowsAreNotCorrectedWithoutBound) {
   CovarianceTerm term = Whitened(1.0);
   for (const double rows : {5.0, 8.0, 12.0}) {
@@ -75,7 +75,7 @@ TEST(RobustCovarianceTest, OfACostThatIsNotWhitenedByItsScatter) {
   const MotionMatrix inverse = term.hessian.inverse();
   ExpectNear(Covariance({term}),
              fitted / (slope * slope) * inverse * term.scatter * inverse);
-  // Fewer than 30 blocks scatter too little to tell.
+  // The scatter of fewer than 30 blocks is too uncertain to be used.
   term.sums.blocks = 30;
   ExpectNear(Covariance({term}),
              fitted / (slope * slope) * inverse * term.scatter * inverse);
@@ -84,8 +84,9 @@ TEST(RobustCovarianceTest, OfACostThatIsNotWhitenedByItsScatter) {
              fitted * 270.0 / 240.0 / (slope * slope) * inverse);
 }
 
-// Its information is known: no loss and no fit changes it, and what it
-// determines is not fitted to the rest.
+// The information of a prior is known: it is changed neither by losses nor by
+// the fit. The parameters it determines are not counted as fitted to the
+// matches.
 TEST(RobustCovarianceTest, APriorCountsAsItIs) {
   const CovarianceTerm term = Whitened(1.0);
   CovarianceTerm prior = Whitened(2.0);
@@ -100,8 +101,7 @@ TEST(RobustCovarianceTest, APriorCountsAsItIs) {
   ExpectNear(Covariance({term, prior}), A.inverse() * B * A.inverse());
 }
 
-// Two costs of one group are judged by the sums of both; another group by its
-// own.
+// Two costs of one group use the sums of both; another group uses its own.
 TEST(RobustCovarianceTest, GroupsAreJudgedApart) {
   CovarianceTerm first = Whitened(1.0), second = Whitened(2.0);
   CovarianceTerm other = Whitened(3.0);

@@ -1,4 +1,4 @@
-// The estimator with every loss, scale estimator and schedule by name.
+// The estimator with every loss, scale estimator and schedule.
 
 #include <gtest/gtest.h>
 
@@ -27,8 +27,7 @@ Estimator EstimatorOfScale(const std::string& loss, const std::string& scale,
   return Estimator(options, MakeRobustCosts(kCost, loss));
 }
 
-// The same matches as told by a noise model whose sigmas are `factor` times as
-// large.
+// The same matches with all sigmas of the noise model multiplied by `factor`.
 Correspondences WithSigmas(const Correspondences& matches, double factor) {
   Correspondences result(matches.camera());
   for (size_t i = 0; i < matches.size(); ++i) {
@@ -45,7 +44,7 @@ Correspondences WithSigmas(const Correspondences& matches, double factor) {
 
 class EveryLossTest : public ::testing::TestWithParam<std::string> {};
 
-// 300 matches tell the motion to about 0.3 mrad and 0.6 mm.
+// 300 matches determine the motion to about 0.3 mrad and 0.6 mm.
 TEST_P(EveryLossTest, EstimatesACleanMotion) {
   Estimator estimator = EstimatorOfScale(GetParam(), "fixed");
   for (int seed = 0; seed < 10; ++seed) {
@@ -57,7 +56,7 @@ TEST_P(EveryLossTest, EstimatesACleanMotion) {
     const MotionError error = ErrorOf(estimate.cur_from_prev, truth);
     EXPECT_LE(error.angle, 0.001);
     EXPECT_LE(error.translation, 0.002);
-    EXPECT_NEAR(estimate.sigma, 1.0, 0.15);         // of 300 norms: 3 sigmas
+    EXPECT_NEAR(estimate.sigma, 1.0, 0.15);         // 300 norms: 3 sigmas
     EXPECT_NEAR(estimate.num_inliers, 297, 3 * 2);  // 99 %, binomial
     EXPECT_TRUE(estimate.covariance.allFinite());
   }
@@ -71,7 +70,7 @@ TEST_P(EveryLossTest, FindsANoiselessMotionExactly) {
           .Estimate(world.Matches(300, 0.0, truth, /*noise=*/false));
   ASSERT_TRUE(estimate.ok()) << estimate.reason;
   const MotionError error = ErrorOf(estimate.cur_from_prev, truth);
-  constexpr double kSolver = 1e-8;  // its tolerances stop it there
+  constexpr double kSolver = 1e-8;  // limited by the solver's tolerances
   EXPECT_LE(error.angle, kSolver);
   EXPECT_LE(error.translation, kSolver);
 }
@@ -86,8 +85,8 @@ INSTANTIATE_TEST_SUITE_P(Scales, EveryScaleTest,
                          ::testing::Values("mad", "sn", "qn"),
                          [](const auto& info) { return info.param; });
 
-// The noise is three times what the model says. With the scale estimated, the
-// estimate is what it is with the right model.
+// The noise is three times the model's. With the scale estimated, the result is
+// as good as with the right model.
 TEST_P(EveryScaleTest, MakesUpForAWrongNoiseModel) {
   constexpr double kFactor = 3.0;
   constexpr int kTrials = 40;
@@ -121,11 +120,11 @@ TEST_P(EveryScaleTest, MakesUpForAWrongNoiseModel) {
     add(estimate, &found, &found_share);
     sigma += estimate.sigma / kTrials;
   }
-  EXPECT_NEAR(sigma, kFactor, 0.05 * kFactor);  // of 12,000 matches: 1 %
-  // Widths that are off by a few percent change the error by far less.
+  EXPECT_NEAR(sigma, kFactor, 0.05 * kFactor);  // 12,000 matches: 1 %
+  // Widths that are wrong by a few percent change the error by far less.
   EXPECT_LE(found, 1.02 * right);
   EXPECT_NEAR(found_share, right_share, 0.01);
-  // Which is no matter of course.
+  // With the fixed scale the errors are larger, and few matches are inliers.
   EXPECT_GT(wrong, 1.3 * right);
   EXPECT_LT(wrong_share, 0.5);
 }
@@ -144,11 +143,11 @@ TEST_P(EveryScaleTest, LeavesARightNoiseModelAndOutliersAlone) {
     expected +=
         ErrorOf(unscaled.Estimate(matches).cur_from_prev, truth).translation;
   }
-  // Outliers widen the scale by up to a half, Tukey's width with it.
+  // Outliers increase the scale, and with it Tukey's width, by up to a half.
   EXPECT_LE(actual, 1.15 * expected);
 }
 
-// Over half of the residuals are zero: there is no scale to match widths to.
+// Over half of the residuals are zero, so the scale estimate is zero.
 TEST_P(EveryScaleTest, NoiselessMatchesHaveADefinedEstimate) {
   for (const double outliers : {0.0, 0.2}) {
     RandomWorld world(32);
@@ -187,8 +186,8 @@ TEST_P(EveryScaleTest, AHandfulOfMatchesHasADefinedEstimate) {
   }
 }
 
-// 70 % of the matches are wrong and the guess is far beyond Tukey's width, for
-// 100 motions of 0.1 rad and 0.1 m: graduated, nearly all are found.
+// 70 % of the matches are outliers, and the guess is far outside Tukey's width.
+// With graduation, nearly all of 100 motions of 0.1 rad and 0.1 m are found.
 TEST(ScheduleTest, GraduationSurvivesSeventyPercentOutliers) {
   constexpr int kTrials = 100;
   constexpr int kMatches = 300;
@@ -223,8 +222,8 @@ TEST(ScheduleTest, GraduationSurvivesSeventyPercentOutliers) {
   EXPECT_LE(success(RobustSchedule::kDirect), 0.5);
 }
 
-// Where over half of the matches are right, few stages are needed: without
-// outliers the iterations of two stages, with many outliers more.
+// Where over half of the matches are inliers, few stages are needed: without
+// outliers as many iterations as two stages take, with many outliers more.
 TEST(ScheduleTest, StagesAreSavedWhereMatchesAgree) {
   Estimator estimator = EstimatorOfScale("tukey", "fixed");
   RandomWorld world(34);
@@ -237,7 +236,7 @@ TEST(ScheduleTest, StagesAreSavedWhereMatchesAgree) {
   EXPECT_GE(dirty, 12);
 }
 
-// Nine residuals, less six that the motion takes, say nothing of their spread.
+// Nine residuals minus six parameters are too few to estimate a scale.
 TEST(ScaleTest, OfThreeMatchesTheNoiseModelIsTaken) {
   RandomWorld world(73);
   const Correspondences matches = world.Matches(3, 0.0, world.Motion(0.1, 0.1));
@@ -251,7 +250,7 @@ TEST(ScaleTest, OfThreeMatchesTheNoiseModelIsTaken) {
   EXPECT_EQ(scaled.covariance, fixed.covariance);
 }
 
-// Three quarters of the matches agree: too few for who wants four fifths.
+// Three quarters of the matches agree: enough for a minimum of 0.6, not 0.85.
 TEST(InlierShareTest, IsJudged) {
   RandomWorld world(72);
   const Correspondences matches =
@@ -268,8 +267,8 @@ TEST(InlierShareTest, IsJudged) {
   }
 }
 
-// Least squares among wrong matches leaves huge residuals; a scale that fits
-// them would call all of them right.
+// Least squares with outliers leaves huge residuals. A scale fitted to them
+// would make all matches inliers.
 TEST(ScaleTest, AScaleThatOnlyFitsWrongMatchesIsNoSuccess) {
   RandomWorld world(71);
   for (const std::string scale : {"mad", "sn", "qn"}) {

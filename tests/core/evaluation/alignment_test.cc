@@ -11,14 +11,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Alignments that positions determine are exact but for rounding and for the
-// share that the first orientation has (1e-9 of a radian or less).
+// Alignments that positions determine are exact up to rounding and the
+// influence of the first orientation (1e-9 of a radian or less).
 constexpr double kTolerance = 1e-8;
-// What only the first orientation determines is good to rounding (1e-16) over
-// its share (1e-9), with room for the size of the numbers.
+// Components that only the first orientation determines: rounding (1e-16) over
+// its weight (1e-9), with a margin for the size of the numbers.
 constexpr double kOpenTolerance = 1e-5;
 
-// Pairs of which the estimates are `world` times the truth.
+// Pairs whose estimates are `world` times the truth.
 std::vector<PosePair> MakePairs(const std::vector<Vector3d>& positions,
                                 const Rigid3d& world, RandomWorld* random) {
   std::vector<PosePair> pairs;
@@ -57,8 +57,8 @@ TEST(AlignmentTest, IgnoresOrientationsWherePositionsDecide) {
   ExpectNear(AlignRigidly(pairs), world.Inverse(), kTolerance);
 }
 
-// The mirror image x -> -x would fit, but is no rigid motion. Of those, the
-// half turn about y fits best: it gets but the shortest axis, z, wrong.
+// The mirror image x -> -x would fit, but is no rigid motion. The best rigid
+// fit is the half turn about y, which is wrong only along z, the shortest axis.
 TEST(AlignmentTest, NeverMirrors) {
   RandomWorld random(4);
   const std::vector<Vector3d> positions = {{3, 0, 0},  {-3, 0, 0}, {0, 2, 0},

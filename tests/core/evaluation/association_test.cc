@@ -28,7 +28,7 @@ Pairs AssociateToPairs(const std::vector<double>& first,
   return pairs;
 }
 
-// The definition, spelt out: all pairs, the best first.
+// A direct implementation of the definition: all pairs, the best first.
 Pairs AssociateByDefinition(const std::vector<double>& first,
                             const std::vector<double>& second,
                             double max_difference) {
@@ -70,7 +70,7 @@ TEST(AssociationTest, TakesAPairExactlyAsFarApartAsAllowed) {
               ElementsAre(std::pair(0, 0)));
 }
 
-// Entry 1 is nearer to 1.012 than entry 0 is, and takes it from it.
+// Entry 1 is nearer to 1.012 than entry 0 is, and therefore gets it.
 TEST(AssociationTest, UsesEachEntryOnceTheBestPairFirst) {
   EXPECT_THAT(AssociateToPairs({1.000, 1.015}, {1.012}),
               ElementsAre(std::pair(1, 0)));
@@ -78,7 +78,7 @@ TEST(AssociationTest, UsesEachEntryOnceTheBestPairFirst) {
               ElementsAre(std::pair(0, 1)));
 }
 
-// Once 1.006 and 1.007 are a pair, the entries around them may be one.
+// Once 1.006 and 1.007 are paired, the entries around them may still be paired.
 TEST(AssociationTest, PairsWhatIsLeftAroundAPair) {
   EXPECT_THAT(AssociateToPairs({1.000, 1.007}, {1.006, 1.012}),
               ElementsAre(std::pair(0, 1), std::pair(1, 0)));
@@ -97,7 +97,7 @@ TEST(AssociationTest, EmptyListsGiveNoPairs) {
   EXPECT_THAT(AssociateToPairs({}, {1.0}), IsEmpty());
 }
 
-// Stamps on a coarse grid, so that equal times and differences are common.
+// Times on a coarse grid, which makes equal times and differences common.
 TEST(AssociationTest, DoesAsTheDefinitionForRandomLists) {
   std::mt19937 random(7);
   const auto make_list = [&random] {
@@ -119,10 +119,10 @@ TEST(AssociationTest, DoesAsTheDefinitionForRandomLists) {
   }
 }
 
-// All entries lie within the allowed difference of all others: 10^10 pairs.
+// Each entry is within the allowed difference of all others: 10^10 pairs.
 TEST(AssociationTest, IsFastForEntriesThatAreAllClose) {
   constexpr int kCount = 100000;
-  constexpr double kTimeLimit = 10.0;  // s; takes 0.1 s, all pairs take minutes
+  constexpr double kTimeLimit = 10.0;  // s; takes 0.1 s, all pairs minutes
   std::vector<double> times(kCount);
   for (int i = 0; i < kCount; ++i) times[i] = i * 1e-7;
   const auto start = std::chrono::steady_clock::now();

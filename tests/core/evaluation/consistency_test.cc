@@ -19,7 +19,7 @@ Rigid3d Pose(double angle, const Vector3d& place) {
                  place);
 }
 
-// A motion whose error is exactly this, by the definition of MotionEstimate.
+// A motion with exactly this error, as MotionEstimate defines it.
 RelativePose WithError(const Rigid3d& truth, const MotionVector& error) {
   const Vector3d turn = error.head<3>();
   RelativePose edge;
@@ -54,7 +54,7 @@ TEST(ConsistencyTest, CountsWhatIsBeyondFiveSigmas) {
   const Trajectory truth = {{0.0, Pose(0.1, {0, 0, 0})},
                             {0.03, Pose(0.2, {0, 0.1, 0})},
                             {1.0, Pose(0.3, {0, 0.2, 0})}};
-  // The last is in a gap of the truth.
+  // The last time is in a gap of the truth.
   const std::vector<double> times = {0.0, 0.015, 0.03, 0.5};
   const Rigid3d motion =
       truth[1].world_from_cam.Inverse() * truth[0].world_from_cam;
@@ -68,7 +68,7 @@ TEST(ConsistencyTest, CountsWhatIsBeyondFiveSigmas) {
     edges.back().covariance = 1e-6 * MotionMatrix::Identity();
   }
   edges.push_back(edges.front());
-  edges.back().covariance.setZero();  // nobody judged it
+  edges.back().covariance.setZero();  // covariance unknown
   edges.push_back(edges.front());
   edges.back().cur = 3;
   const Consistency all = Judge(edges, times, truth, {});
@@ -77,7 +77,7 @@ TEST(ConsistencyTest, CountsWhatIsBeyondFiveSigmas) {
   EXPECT_NEAR(all.nees, (6.0 + 40.0 + 42.0) / 18.0, 1e-6);
   EXPECT_NEAR(all.median, 40.0 / 6.0, 1e-6);
 
-  // Half way, by interpolation.
+  // Half-way between two poses of the truth, by interpolation.
   edges.resize(1);
   edges[0].cur = 1;
   EXPECT_EQ(Judge(edges, times, truth, {}).wrong, 1);

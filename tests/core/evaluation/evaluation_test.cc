@@ -15,11 +15,11 @@ using Eigen::AngleAxisd;
 using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
-// Closed forms hold but for rounding: some 1e-16 of numbers up to about 10,
-// through products of a few rotations.
+// Rounding of numbers up to about 10 (some 1e-16), through products of a few
+// rotations.
 constexpr double kErrorTolerance = 1e-12;
 
-// Poses that do not turn, at places a tenth of a second apart.
+// Poses without rotation at the given positions, 0.1 s apart.
 Trajectory Unturned(const std::vector<Vector3d>& positions) {
   Trajectory trajectory;
   for (const Vector3d& position : positions) {
@@ -29,13 +29,13 @@ Trajectory Unturned(const std::vector<Vector3d>& positions) {
   return trajectory;
 }
 
-// A pose that moves along z and turns about it.
+// A pose translated along z and rotated about z.
 Rigid3d Screw(double angle, double distance) {
   return {Quaterniond(AngleAxisd(angle, Vector3d::UnitZ())),
           Vector3d(0, 0, distance)};
 }
 
-// A walk with noise in all six directions.
+// A random walk in all six degrees of freedom.
 Trajectory Walk(unsigned seed, int count) {
   RandomWorld random(seed);
   Trajectory trajectory = {{10.0, Rigid3d()}};
@@ -65,7 +65,7 @@ TEST(EvaluationTest, FindsNoErrorInTheTruth) {
   }
 }
 
-// Of poses in one world already, its own place counts.
+// Without alignment, poses are compared in one common world.
 TEST(EvaluationTest, WithoutAlignmentAShiftIsAnError) {
   const Trajectory truth = Walk(1, 20);
   Trajectory shifted = truth;
@@ -78,8 +78,9 @@ TEST(EvaluationTest, WithoutAlignmentAShiftIsAnError) {
   EXPECT_LE(report.sim3.residual_rmse, kErrorTolerance);
 }
 
-// Places 0, 1, 2, 3, 4 m seen as 0, 1.1, 2.2, 3.3, 4.4 m are off by 0.2, 0.1,
-// 0, 0.1, 0.2 m once their means agree: without scale, no more can be had.
+// Positions 0, 1, 2, 3, 4 m estimated as 0, 1.1, 2.2, 3.3, 4.4 m are wrong by
+// 0.2, 0.1, 0, 0.1, 0.2 m with equal means. Without scale, no alignment is
+// better.
 TEST(EvaluationTest, AteOfAWrongScaleOnALine) {
   std::vector<Vector3d> truth, estimate;
   for (int i = 0; i < 5; ++i) {
@@ -106,7 +107,7 @@ TEST(EvaluationTest, AteOfABentSquare) {
   EXPECT_NEAR(ate.max, 0.1, kErrorTolerance);
 }
 
-// An estimate that does not move is off by the spread of the truth.
+// The error of a static estimate is the spread of the truth.
 TEST(EvaluationTest, AteOfAnEstimateThatStandsStill) {
   const Trajectory truth =
       Unturned({{0, 0, 0}, {2, 0, 0}, {0, 0, 0}, {2, 0, 0}});
@@ -115,7 +116,7 @@ TEST(EvaluationTest, AteOfAnEstimateThatStandsStill) {
   EXPECT_NEAR(Evaluate(estimate, truth).ate.rmse, 1.0, kErrorTolerance);
 }
 
-// Steps of 1, 2 and 3 m where there should be none.
+// Steps of 1, 2 and 3 m, while the truth is static.
 TEST(EvaluationTest, RpeByHand) {
   const Trajectory truth = Unturned(std::vector<Vector3d>(4, {5, 5, 5}));
   const Trajectory estimate =
@@ -136,15 +137,13 @@ TEST(EvaluationTest, RpeByHand) {
   EXPECT_NEAR(seconds.rmse, std::sqrt((5.0 + 13.0) / 2.0), kErrorTolerance);
   EXPECT_NEAR(seconds.median, (std::sqrt(5.0) + std::sqrt(13.0)) / 2.0,
               kErrorTolerance);
-  // The truth has no path to count along.
+  // The truth has no path along which metres could be counted.
   EXPECT_EQ(report.path_length, 0.0);
   EXPECT_EQ(report.rpe_metres.translation.count, 0);
   EXPECT_EQ(report.rpe_metres.translation.rmse, 0.0);
 }
 
-// The truth runs along z at 0.5 m/s; the estimate gains 0.03 m and 0.02 rad of
-// yaw a second on it. So every error is the drift times its interval.
-// The errors of single poses are those that the statistics sum up.
+// The statistics summarise the errors of the single poses.
 TEST(EvaluationTest, PosesHaveErrorsOfTheirOwn) {
   const EvaluationReport report = Evaluate(Walk(2, 100), Walk(3, 100));
   ASSERT_EQ(report.poses.size(), 100u);
@@ -160,10 +159,12 @@ TEST(EvaluationTest, PosesHaveErrorsOfTheirOwn) {
   }
   EXPECT_EQ(largest, report.ate.max);
   EXPECT_EQ(largest_turn, report.rpe_seconds.rotation.max);
-  EXPECT_EQ(intervals, 70);  // of 1 s at 30 Hz
+  EXPECT_EQ(intervals, 70);  // 1 s each, at 30 Hz
   EXPECT_TRUE(report.poses[69].rpe_translation.has_value());
 }
 
+// The truth moves along z at 0.5 m/s; the estimate gains 0.03 m and 0.02 rad of
+// yaw per second. Hence every error is the drift times its interval.
 TEST(EvaluationTest, RpeOfAConstantDrift) {
   constexpr double kSpeed = 0.5, kDrift = 0.03, kYawDrift = 0.02;
   Trajectory truth, estimate;
@@ -202,7 +203,7 @@ TEST(EvaluationTest, RpeOfAConstantDrift) {
   EXPECT_NEAR(report.path_length, kSpeed * 10.0, kErrorTolerance);
 }
 
-// A turn too many where the camera arrives does not move the place.
+// A wrong rotation at the end of the motion is no position error.
 TEST(EvaluationTest, RpeKeepsTurnsAndPlacesApart) {
   const Rigid3d step(Quaterniond::Identity(), {1, 0, 0});
   const Rigid3d turn(Quaterniond(AngleAxisd(0.3, Vector3d::UnitY())),
@@ -214,15 +215,15 @@ TEST(EvaluationTest, RpeKeepsTurnsAndPlacesApart) {
   EXPECT_NEAR(rpe.rotation.rmse, 0.3, kErrorTolerance);
 }
 
-// From 0 s, the pose at 1.01 s is near enough to 1 s; from 0.5 s and on there
-// is a gap.
+// From 0 s, the pose at 1.01 s is near enough to 1 s. From 0.5 s on, there is
+// no pose near enough.
 TEST(EvaluationTest, SecondsAreNotCountedAcrossGaps) {
   Trajectory truth;
   for (const double t : {0.0, 0.5, 1.01, 1.6}) truth.push_back({t, Rigid3d()});
   EXPECT_EQ(Evaluate(truth, truth).rpe_seconds.translation.count, 1);
 }
 
-// Steps of 0.1 m: 1 m is reached after ten, from the first pose alone.
+// Steps of 0.1 m: 1 m is reached after ten steps, only from the first pose.
 TEST(EvaluationTest, MetresEndAtTheFirstPoseFarEnough) {
   std::vector<Vector3d> positions, scaled;
   for (int i = 0; i <= 10; ++i) {
@@ -246,7 +247,7 @@ TEST(EvaluationTest, MetresEndAtTheFirstPoseFarEnough) {
 void ExpectSame(const ErrorStatistics& a, const ErrorStatistics& b) {
   constexpr double kSameTolerance = 1e-10;  // positions of 100 m
   EXPECT_EQ(a.count, b.count);
-  EXPECT_GT(a.rmse, 1e-3);  // so that there is something to compare
+  EXPECT_GT(a.rmse, 1e-3);  // the errors compared must not be zero
   EXPECT_NEAR(a.rmse, b.rmse, kSameTolerance);
   EXPECT_NEAR(a.mean, b.mean, kSameTolerance);
   EXPECT_NEAR(a.median, b.median, kSameTolerance);
@@ -281,8 +282,8 @@ TEST(EvaluationTest, TheWorldOfTheEstimateDoesNotMatter) {
   }
 }
 
-// The estimate ends 3, 4 and 12 cm and a tenth of a radian away from where it
-// should, as seen from its own start.
+// Seen from its own start, the estimate ends 3, 4 and 12 cm and 0.1 rad away
+// from the true final pose.
 TEST(EvaluationTest, FinalPoseIsJudgedFromTheFirst) {
   RandomWorld random(3);
   const Rigid3d start = random.Motion(2.0, 5.0);

@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Central differences over 1 ms of a path whose third derivatives are about 1.
+// Error of central differences over 1 ms, with third derivatives of about 1.
 constexpr double kRateTolerance = 1e-5;
 
 Rigid3d Wave(double t) {
@@ -25,8 +25,8 @@ MovingPose MovingAt(double t) {
                       {Wave(t - kStep), Wave(t), Wave(t + kStep)})[1];
 }
 
-// What is turned by dt times the rate of a rotation vector, to first order,
-// is turned by the difference of the rotations.
+// To first order, the rotations before and after differ by the rotation rate
+// times the time between them.
 TEST(MovingPosesTest, RateIsHowTheMotionChanges) {
   constexpr double kStep = 1e-3;
   const PoseChange before(MovingAt(1.0 - kStep), MovingAt(1.2 - kStep));
@@ -48,7 +48,7 @@ TEST(MovingPosesTest, NoVelocityWithoutNeighbours) {
   const auto moving = MovingPoses(times, poses);
   EXPECT_FALSE(moving[0].has_value());
   EXPECT_TRUE(moving[1].has_value());
-  EXPECT_FALSE(moving[3].has_value());  // 0.4 s from 0.2 to 0.6
+  EXPECT_FALSE(moving[3].has_value());  // gap of 0.4 s, from 0.2 to 0.6
   EXPECT_FALSE(moving[5].has_value());
   poses[1].reset();
   for (const auto& pose : MovingPoses(times, poses)) {

@@ -11,7 +11,7 @@ using testing::ElementsAre;
 
 constexpr double kMaxTimeDifference = 0.02;
 
-// Poses whose x says when they were taken, so that pairs can be told.
+// Poses whose x is their time, which identifies them in pairs.
 Trajectory At(const std::vector<double>& times) {
   Trajectory trajectory;
   for (const double time : times) {
@@ -21,7 +21,7 @@ Trajectory At(const std::vector<double>& times) {
   return trajectory;
 }
 
-// The time stamps of the paired estimates and of their ground truth.
+// Time stamps of the paired estimates and of their ground truth.
 using TimePair = std::pair<double, double>;
 std::vector<TimePair> PairTimes(const std::vector<double>& estimate,
                                 const std::vector<double>& truth) {

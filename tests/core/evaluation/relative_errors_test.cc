@@ -5,10 +5,10 @@
 namespace rgbd_pose {
 namespace {
 
-// Quantiles of 0, 0.01, ... 1.00 but for rounding.
+// Rounding of quantiles of 0, 0.01, ... 1.00.
 constexpr double kQuantileTolerance = 1e-12;
 
-// Steps of the estimate grow from 0 to 1 m by 1 cm, those of the truth are 0.
+// Steps of the estimate grow from 0 to 1 m by 1 cm; steps of the truth are 0.
 std::vector<PosePair> GrowingSteps() {
   std::vector<PosePair> pairs(102);
   for (size_t i = 1; i < pairs.size(); ++i) {
@@ -33,7 +33,7 @@ TEST(RelativeErrorsTest, QuantilesOverOneFrame) {
   EXPECT_EQ(error.rotation.p99, 0.0);
 }
 
-// From the i-th pose, two steps of 1 cm times i and i + 1.
+// From the i-th pose, two steps of i and i + 1 cm.
 TEST(RelativeErrorsTest, QuantilesOverMoreFrames) {
   const RelativePoseError error = SummariseFrames(GrowingSteps(), 2);
   EXPECT_EQ(error.translation.count, 100);

@@ -11,8 +11,8 @@ namespace {
 
 using testing::HasSubstr;
 
-// A path of some metres, and the same in another world, larger by `scale` and
-// off by `error` (m).
+// Evaluates a path of some metres against the same path in another world,
+// scaled by `scale` and with errors of `error` (m).
 EvaluationReport Judge(double scale, double error, double spread = 1.0) {
   const Rigid3d other(Eigen::Quaterniond(Eigen::AngleAxisd(
                           0.7, Eigen::Vector3d(1.0, -2.0, 0.5).normalized())),
@@ -58,9 +58,9 @@ TEST(Sim3AlignmentTest, WarnsFromTenPercentOn) {
 
 TEST(Sim3AlignmentTest, WarnsOfAnotherPath) {
   EXPECT_THAT(WarningOf(Judge(0.02, 1.5)), HasSubstr("little in common"));
-  // A poor estimate of the same path.
+  // A poor estimate of the same path gives no warning.
   EXPECT_EQ(WarningOf(Judge(1.0, 0.2)), "");
-  // A camera that hardly moves has no path to speak of.
+  // Neither does a camera that hardly moves: its path is too short to compare.
   EXPECT_EQ(WarningOf(Judge(1.0, 0.05, 0.01)), "");
 }
 

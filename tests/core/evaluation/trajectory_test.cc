@@ -23,7 +23,7 @@ TEST(TrajectoryTest, FormatsTumText) {
 }
 
 TEST(TrajectoryTest, ReadsWhatItWrites) {
-  // Half of the last decimal, of a quaternion's four numbers a little more.
+  // Half of the last decimal; slightly more for a quaternion's four numbers.
   constexpr double kTimeTolerance = 0.51e-6;
   constexpr double kPositionTolerance = 0.51e-9;
   constexpr double kAngleTolerance = 2.1e-9;

@@ -19,7 +19,7 @@ using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::StartsWith;
 
-// Where a body is at a time (s): place (m) and rotation vector (rad).
+// The pose of a body at a time (s): position (m) and rotation vector (rad).
 using BodyPath = std::function<Rigid3d(double)>;
 
 Rigid3d PoseOf(const Vector3d& place, const Vector3d& turn) {
@@ -27,7 +27,7 @@ Rigid3d PoseOf(const Vector3d& place, const Vector3d& turn) {
                  place);
 }
 
-// A hand: 0.3 m/s and half a radian a second, in all directions.
+// A handheld camera: 0.3 m/s and 0.5 rad/s, in all directions.
 Rigid3d Hand(double t) {
   return PoseOf(
       0.15 * Vector3d(std::sin(2.0 * t), std::sin(1.6 * t), std::cos(2.3 * t)),
@@ -38,7 +38,7 @@ Rigid3d HandWithoutTurns(double t) {
   return PoseOf(Hand(t).translation, {0.1, 0.2, 0.3});
 }
 
-// In the plane z = 0, about z.
+// Planar motion in z = 0, with rotation about z.
 Rigid3d Wheels(double t) {
   return PoseOf({0.5 * std::sin(0.9 * t), 0.4 * std::sin(1.4 * t), 0.0},
                 {0.0, 0.0, 0.6 * std::sin(1.1 * t)});
@@ -54,11 +54,11 @@ struct Recording {
   double seconds = 20.0;
   double truth_rate = 100.0;   // Hz
   double place_noise = 0.001;  // m, of the estimate
-  double turn_noise = 0.001;   // rad, the same
-  double truth_share = 0.1;    // of that noise in the truth
+  double turn_noise = 0.001;   // rad, of the estimate
+  double truth_share = 0.1;    // noise of the truth / noise of the estimate
   double frame_rate = 30.0;    // Hz
   double jitter = 0.003;       // s, of the frames' times
-  double jump_every = 1e9;     // s; by 5 cm and 3 degrees
+  double jump_every = 1e9;     // s; jumps of 5 cm and 3 degrees
   unsigned seed = 1;
 };
 
@@ -118,8 +118,8 @@ FixingVector AsVector(const TruthFixing& fixing) {
   return vector;
 }
 
-// Of 7 x 40 normal deviates, none is expected beyond this, and their mean
-// square, were they told exactly, would be within 1 +- 0.3.
+// None of 7 x 40 normal deviates is expected beyond this. Their mean square
+// would be within 1 +- 0.3 if the sigmas were known exactly.
 constexpr double kMaxDeviation = 4.5;
 
 TEST(TruthAlignmentTest, FindsClockAndFixingWithHonestErrorBars) {
@@ -136,7 +136,7 @@ TEST(TruthAlignmentTest, FindsClockAndFixingWithHonestErrorBars) {
     EXPECT_LT(deviation.cwiseAbs().maxCoeff(), kMaxDeviation)
         << deviation.transpose();
     sum += deviation.squaredNorm() / 7.0 / 40.0;
-    // To tenths of a millisecond, hundredths of a degree and millimetres.
+    // Determined to better than 0.5 ms, 0.1 degrees and 2 mm.
     EXPECT_LT(found.sigma[0], 0.0005);
     EXPECT_LT(found.sigma.segment<3>(1).maxCoeff(), 0.1 * kRadiansPerDegree);
     EXPECT_LT(found.sigma.tail<3>().maxCoeff(), 0.002);
@@ -145,7 +145,7 @@ TEST(TruthAlignmentTest, FindsClockAndFixingWithHonestErrorBars) {
   EXPECT_LT(sum, 1.6);
 }
 
-// What is left there is the noise that was put in.
+// After the alignment, the remaining errors are the simulated noise.
 TEST(TruthAlignmentTest, ErrorsThereAreThoseOfTheEstimate) {
   Recording recording;
   recording.fixing = SomeFixing();
@@ -167,7 +167,7 @@ TEST(TruthAlignmentTest, FindsNothingWhereNothingIs) {
       kMaxDeviation);
 }
 
-// The truth as its own estimate, which has no error to learn a spread from.
+// The truth as its own estimate: no errors from which to estimate a spread.
 TEST(TruthAlignmentTest, TheTruthAgreesWithItself) {
   const Trajectory truth = Record({}).truth;
   const TruthAlignment found = AlignTruth(truth, truth, 1.0, 0.02);
@@ -191,8 +191,8 @@ TEST(TruthAlignmentTest, FindsLargeOnesAndBearsJumps) {
             kMaxDeviation);
 }
 
-// What is not determined is named and stays 0, but for the part that noise
-// gives it in directions that are (in m; 1e-6 s).
+// Undetermined components are named and remain 0, except for a small leak from
+// the determined directions because of noise (in m; 1e-6 s).
 constexpr double kOpenTolerance = 1e-4;
 
 TEST(TruthAlignmentTest, WithoutTurnsTheLeverIsOpen) {
@@ -225,8 +225,8 @@ TEST(TruthAlignmentTest, OnAPlaneTheLeverAlongItsNormalIsOpen) {
   }
 }
 
-// At constant velocity, a later truth is the same truth, and only the direction
-// of the line says how the body is turned.
+// At constant velocity, a time shift does not change the path of the truth, and
+// only the direction of the line constrains the body's rotation.
 TEST(TruthAlignmentTest, OnALineAllButTwoTurnsAreOpen) {
   Recording recording;
   recording.path = Line;

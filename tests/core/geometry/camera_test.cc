@@ -29,7 +29,7 @@ TEST(CameraTest, ProjectsRightAndDown) {
   EXPECT_DOUBLE_EQ(pixel.y(), 239.5 + 26.25);
 }
 
-// By hand from OpenCV's model: x = 0.3, y = -0.2, r^2 = 0.13.
+// OpenCV's model worked out by hand: x = 0.3, y = -0.2, r^2 = 0.13.
 TEST(CameraTest, DistortsAsOpenCvDocuments) {
   Camera camera{640, 480, 500, 400, 320, 240, 0.1, -0.2, 0.01, -0.02, 0.3};
   const double radial =
@@ -95,7 +95,7 @@ TEST(CameraTest, DoubtsExchangedNumbers) {
   camera.fy = 480.0;
   EXPECT_THAT(camera.SanityWarning(),
               testing::HasSubstr("fx 525 and fy 480 differ by more than 5 %"));
-  // Numbers of 640 x 480 for images of half that size.
+  // The principal point is valid for 640 x 480, but images are half that size.
   camera = Camera{};
   camera.width = 320;
   camera.height = 240;

@@ -14,10 +14,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Numbers of a few metres have 16 digits; sums of a hundred lose some.
+// Numbers of a few metres have 16 digits; sums of a hundred numbers lose some.
 constexpr double kRounding = 1e-13;
 
-// As weights of 1 mm: all but lines are far more than noise.
+// Weight of 1 mm: except for lines, extents are far larger than this noise.
 constexpr double kWeight = 1e6;
 
 PairMoments MomentsOf(const std::vector<Vector3d>& sources,
@@ -43,7 +43,7 @@ TEST(ClosedFormTest, IsExactWithoutNoise) {
       const auto fit =
           UmeyamaAlignment(MomentsOf(RandomPoints(count, &world), truth));
       ASSERT_TRUE(fit.has_value());
-      // Three points can be near a line: ten times the rounding.
+      // Three points can be nearly collinear: ten times the rounding.
       EXPECT_LE(ErrorOf(*fit, truth).angle, 10 * kRounding);
       EXPECT_LE(ErrorOf(*fit, truth).translation, 100 * kRounding);
     }
@@ -57,12 +57,12 @@ TEST(ClosedFormTest, KeepsItsDigitsFarFromTheOrigin) {
   for (Vector3d& point : points) point += Vector3d(1e6, -1e6, 1e6);
   const auto fit = UmeyamaAlignment(MomentsOf(points, truth));
   ASSERT_TRUE(fit.has_value());
-  // The points themselves are rounded to 1e-10 m; their sums of squares about
-  // the origin would be to 1e-4 m^2.
+  // The points themselves are rounded to 1e-10 m. Their sums of squares about
+  // the origin would be rounded to 1e-4 m^2.
   EXPECT_LE(ErrorOf(*fit, truth).angle, 1e-10);
 }
 
-// Weights do what repeated pairs do.
+// A weight has the effect of repeating the pair.
 TEST(ClosedFormTest, WeightsCountPairs) {
   RandomWorld world(3);
   PairMoments weighted, repeated;
@@ -80,7 +80,7 @@ TEST(ClosedFormTest, WeightsCountPairs) {
   EXPECT_NEAR(weighted.spread, repeated.spread, kRounding * weighted.spread);
 }
 
-// Neither a further rotation nor a shift makes the squared distances smaller.
+// No further rotation or translation reduces the squared distances.
 TEST(ClosedFormTest, MinimisesWeightedSquares) {
   RandomWorld world(4);
   const Rigid3d truth = world.Motion(1.0, 1.0);
@@ -131,7 +131,7 @@ TEST(ClosedFormTest, WhatIsNotFiniteDeterminesNoRotation) {
   }
 }
 
-// What lies one sigma off a line is noise; what lies ten off is a shape.
+// A distance from the line of one sigma is noise; of ten sigmas, a shape.
 TEST(ClosedFormTest, NoiseIsNoShape) {
   RandomWorld world(6);
   const double sigma = 1.0 / std::sqrt(kWeight);
@@ -156,7 +156,7 @@ TEST(ClosedFormTest, NeverReflects) {
     if (trial % 2 == 0) m.col(2) = m.col(0) + m.col(1);  // a plane
     const NearestRotation nearest(m);
     EXPECT_NEAR(nearest.rotation.determinant(), 1.0, kRounding);
-    // No other rotation has a greater trace.
+    // No other rotation has a larger trace.
     const double most = (nearest.rotation.transpose() * m).trace();
     for (int i = 0; i < 100; ++i) {
       const Matrix3d other =
@@ -173,14 +173,14 @@ TEST(ClosedFormTest, StiffnessIsTheLeastCurvature) {
   m << world.Vector(1.0), world.Vector(1.0), world.Vector(1.0);
   const NearestRotation nearest(m);
   const double most = (nearest.rotation.transpose() * m).trace();
-  constexpr double kAngle = 1e-3;  // cos has its next term at 1e-6 of this
+  constexpr double kAngle = 1e-3;  // the next term of cos is 1e-6 of this
   double least_fall = 1e9;
   for (int i = 0; i < 20000; ++i) {
     const Eigen::AngleAxisd turn(kAngle, world.Vector(1.0).normalized());
     const Matrix3d turned = turn * nearest.rotation;
     least_fall = std::min(least_fall, most - (turned.transpose() * m).trace());
   }
-  // 20000 axes come within some 2 degrees of the weakest.
+  // The nearest of 20000 axes is within about 2 degrees of the weakest.
   EXPECT_NEAR(least_fall / (0.5 * kAngle * kAngle), nearest.stiffness,
               0.01 * m.norm());
 }

@@ -19,10 +19,10 @@ using Jet = ceres::Jet<double, 6>;
 struct NamedCamera {
   const char* name;
   Camera camera;
-  double largest_tangent;  // of points to look at
+  double largest_tangent;  // of the points tested
 };
 
-// Figures of the order of an Azure Kinect's and of a fisheye of 150 degrees.
+// Values similar to an Azure Kinect's and to a fisheye's with 150 degrees.
 std::vector<NamedCamera> Cameras() {
   Camera plain = {640, 480, 300, 301, 319, 240};
   Camera plumb_bob = plain, rational = plain, fisheye = plain;
@@ -56,7 +56,7 @@ TEST(LensTest, DerivativesAreThoseOfTheOracle) {
     oracle.k1 = Jet(c.camera.k1, 2);
     oracle.k2 = Jet(c.camera.k2, 3);
     oracle.k3 = Jet(c.camera.k3, 4);
-    // Of other lenses it is no coefficient of the numerator.
+    // For other lens models, k4 is not a coefficient of the numerator.
     const bool has_k4 = c.camera.lens_model == LensModel::kEquidistant;
     if (has_k4) oracle.k4 = Jet(c.camera.k4, 5);
     for (const Vector2d& at : Places(c.largest_tangent)) {
@@ -113,7 +113,7 @@ TEST(LensTest, UndistortInvertsEveryLens) {
   }
 }
 
-// A corner that a fisheye does not reach, a plumb bob that turns back.
+// An image corner outside a fisheye's circle; a plumb bob that turns over.
 TEST(LensTest, WhatNoRayReachesIsNotANumber) {
   Camera fisheye = Cameras()[3].camera;
   fisheye.fx = fisheye.fy = 150.0;
@@ -131,7 +131,7 @@ TEST(LensTest, CoefficientsComeInTheOrderOfOpenCv) {
   EXPECT_EQ(camera.p2, 4.0);
   EXPECT_EQ(camera.k6, 8.0);
   EXPECT_EQ(camera.Distortion(), eight);
-  // Of fourteen the prism and the tilt.
+  // OpenCV's other coefficients, thin prism and tilt, are not supported.
   EXPECT_FALSE(camera.SetDistortion(LensModel::kRational,
                                     {1, 2, 3, 4, 5, 6, 7, 8, 0, 1, 0, 0}));
   EXPECT_TRUE(camera.SetDistortion(LensModel::kRational,

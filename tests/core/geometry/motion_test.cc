@@ -34,8 +34,8 @@ TEST(MotionTest, MapsPointsAsTheThesisDoes) {
   EXPECT_LE((RigidFromMotion(x) * prev - expected).norm(), kMotionRounding);
 }
 
-// The centre of the current camera, seen from the current camera, is its
-// origin: the direction of the pose.
+// C is the centre of the current camera in the previous camera; the motion maps
+// it to the origin of the current camera.
 TEST(MotionTest, CIsTheCurrentCentreInThePreviousFrame) {
   MotionVector x;
   x << 0.1, 0.2, -0.3, 0.5, -0.6, 0.7;
@@ -60,7 +60,7 @@ TEST(MotionTest, GimbalLockGivesTheMotionBack) {
     x << 0.4, beta, -0.7, 1.0, 2.0, 3.0;
     const Rigid3d motion = RigidFromMotion(x);
     const Rigid3d back = RigidFromMotion(MotionFromRigid(motion));
-    // The lost half of the digits: sqrt(eps) of an angle at the pole.
+    // Half of the digits are lost: sqrt(eps) for an angle at the pole.
     EXPECT_LE((back.Inverse() * motion).Angle(), 1e-7);
   }
 }
@@ -118,14 +118,14 @@ TEST(Rigid3Test, AngleIsExactForTinyRotations) {
   EXPECT_NEAR(tiny.Angle(), 1e-9, 1e-15);
 }
 
-// Against finite differences of the composed motion.
+// Compares with finite differences of the composed motion.
 TEST(MotionTest, CovariancesOfComposedMotionsAddUp) {
   const auto rotation = [](const Eigen::Vector3d& omega) {
     return Eigen::Quaterniond(Eigen::AngleAxisd(
         omega.norm(), omega.norm() > 0.0 ? omega.normalized().eval()
                                          : Eigen::Vector3d::UnitX().eval()));
   };
-  // The motion with an error [omega C] of its own.
+  // The motion changed by an error [omega C].
   const auto with_error = [&](const Rigid3d& motion, const MotionVector& e) {
     const Eigen::Vector3d centre = motion.Inverse().translation + e.tail<3>();
     const Eigen::Quaterniond turned = rotation(e.head<3>()) * motion.rotation;
@@ -149,7 +149,7 @@ TEST(MotionTest, CovariancesOfComposedMotionsAddUp) {
     by_cb.col(i) = error_of(with_error(c_from_b, step) * b_from_a);
     by_ba.col(i) = error_of(c_from_b * with_error(b_from_a, step));
   }
-  MotionMatrix cb, ba;  // any two covariances
+  MotionMatrix cb, ba;  // two arbitrary covariances
   for (int i = 0; i < 36; ++i) {
     cb(i) = std::sin(1.0 + i);
     ba(i) = std::cos(2.0 * i);
@@ -180,7 +180,7 @@ TEST(MotionTest, MahalanobisDistanceCountsSigmasOfRotationAndCentre) {
   const Rigid3d other(Eigen::Quaterniond(0.5, 0.1, -0.7, 0.4),
                       {0.3, -0.2, 0.5});
   const Eigen::Vector3d turn(0.01, 0.0, 0.0), shift(0.0, 0.02, 0.0);
-  // Turned about the axes of the current camera, its centre moved.
+  // Rotated about the axes of the current camera, with its centre moved.
   const Rigid3d turned =
       Rigid3d::FromRotationVector(turn, Eigen::Vector3d::Zero()) * other;
   const Eigen::Vector3d centre = other.Inverse().translation + shift;

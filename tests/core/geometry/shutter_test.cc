@@ -22,8 +22,8 @@ TEST(ShutterTest, AllRowsOfAGlobalOneAreAtTheStamp) {
   EXPECT_FALSE((Shutter{0.0, -0.01}).IsGlobal());
 }
 
-// The edges of the image are a readout apart, half a row beyond the middles of
-// its first and last row.
+// The upper and lower edge of the image are one readout apart. They are half a
+// row outside the centres of the first and last row.
 TEST(ShutterTest, RowsFollowOneAnother) {
   const Shutter shutter = {-0.004, 0.024};
   EXPECT_NEAR(shutter.RowTime(-0.5, 480), -0.016, kShutterRounding);

@@ -14,14 +14,14 @@ using Eigen::Vector3d;
 
 constexpr double kTwistRounding = 1e-12;
 
-// As fast as a hand is.
+// Typical speeds of a handheld camera.
 Twist RandomTwist(RandomWorld* world) {
   const Vector3d angular = world->Vector(1.5);
   return {angular, world->Vector(1.0)};
 }
 
-// The motion at a constant twist, put together from many short ones, whose
-// translations lack what is of second order.
+// The motion at a constant twist, composed of many short motions, whose
+// translations lack second-order terms.
 Rigid3d ConstantTwist(const Twist& twist, double seconds) {
   constexpr int kSteps = 2000;
   Rigid3d motion;
@@ -43,8 +43,8 @@ TEST(TwistTest, MotionAndTwistAreInverse) {
   }
 }
 
-// A camera that goes forward sees things come nearer; one that turns to the
-// right sees them go to the left.
+// For a camera that moves forward, points come nearer; for a camera that turns
+// to the right, points move to the left.
 TEST(TwistTest, PointsMoveAgainstTheCamera) {
   const Twist forward = {Vector3d::Zero(), {0.0, 0.0, 2.0}};
   EXPECT_LT((forward.MotionDuring(0.25) * Vector3d(0.0, 0.0, 3.0) -
@@ -92,7 +92,7 @@ TEST(TwistTest, PointsMoveToSecondOrder) {
           .norm();
     };
     for (const double seconds : {0.04, -0.04}) {
-      // What is of third order, and of the second in each short motion.
+      // Third-order terms, plus the second-order terms of each short motion.
       const double turn = twist.angular.norm() * std::abs(seconds);
       const double shift = twist.linear.norm() * std::abs(seconds);
       const double third = turn * turn * (turn * point.norm() + shift) / 6.0;
@@ -102,7 +102,7 @@ TEST(TwistTest, PointsMoveToSecondOrder) {
   }
 }
 
-// Where a motion has no translation it is exact, too.
+// Without translation, MotionDuring() is exact as well.
 TEST(TwistTest, PointsMoveAsTheyAreTurned) {
   const Twist twist = {{0.8, -1.2, 0.5}, Vector3d::Zero()};
   const Vector3d point(0.4, -0.3, 2.0);
@@ -130,7 +130,7 @@ TEST(TwistTest, VectorsOfDoublesAgreeWithScalars) {
   for (int lane = 0; lane < 4; ++lane) {
     const Vector3d expected = twist.MovedPoint(points[lane], seconds[lane]);
     for (int k = 0; k < 3; ++k) {
-      // Compilers may fuse a product and a sum in one of them.
+      // Compilers may fuse a product and a sum in one of the two.
       EXPECT_NEAR(moved[k][lane], expected[k], kTwistRounding);
     }
   }

@@ -7,10 +7,10 @@
 namespace rgbd_pose {
 namespace {
 
-// What all searches have in common is in consensus_test.cc.
+// Tests that apply to all searches are in consensus_test.cc.
 
-// Two rigid bodies, each of which is a clique: the larger one is found, in
-// whatever order they come.
+// Two rigid bodies, each of which is a clique: the larger one is found,
+// whichever comes first.
 TEST(CliqueTest, FindsTheLargerOfTwoBodies) {
   for (const bool larger_first : {true, false}) {
     RandomWorld world(51);
@@ -36,7 +36,7 @@ TEST(CliqueTest, FindsTheLargerOfTwoBodies) {
   }
 }
 
-// Far more matches than it looks at.
+// Far more matches than the search uses.
 TEST(CliqueTest, LooksAtTheMostItMay) {
   RandomWorld world(52);
   const Rigid3d truth = world.Motion(0.6, 0.5);

@@ -1,4 +1,4 @@
-// What every search for a consensus has to do, whichever way it searches.
+// Tests for every consensus search, whichever method it uses.
 
 #include "core/initial_guess/consensus.h"
 
@@ -29,8 +29,8 @@ class ConsensusTest : public ::testing::TestWithParam<Search> {
 
 Rigid3d FarMotion(RandomWorld* world) { return world->Motion(0.6, 0.5); }
 
-// Where the only noise is that of 64-bit numbers: 1e-16 of 4 m, some ten
-// operations long.
+// Without noise, only rounding of 64-bit numbers remains: 1e-16 of 4 m over
+// about ten operations.
 TEST_P(ConsensusTest, IsExactWithoutNoise) {
   constexpr double kRounding = 1e-12;
   for (const double outliers : {0.0, 0.5}) {
@@ -46,10 +46,10 @@ TEST_P(ConsensusTest, IsExactWithoutNoise) {
   }
 }
 
-// The unit of error is the mean of the trials without a wrong match, times
-// 1 / sqrt(share of right matches): fewer matches are not averaged as well.
-// Measured over 200 trials are 1.07 units on average and 3.2 at most; a mean
-// over 40 trials, and so the unit, is good to a tenth.
+// The unit of error is the mean error of the trials without outliers, divided
+// by sqrt(inlier share), because fewer matches average less noise. Measured
+// over 200 trials: 1.07 units on average, 3.2 at most. A mean over 40 trials,
+// and hence the unit, is accurate to 10 %.
 TEST_P(ConsensusTest, SurvivesOutliers) {
   constexpr int kTrials = 40;
   constexpr int kMatches = 300;
@@ -68,7 +68,7 @@ TEST_P(ConsensusTest, SurvivesOutliers) {
       const MotionError error = ErrorOf(found->cur_from_prev, truth);
       angle += error.angle / kTrials;
       translation += error.translation / kTrials;
-      // 99 % of the right ones at best; a tenth more may be lost.
+      // 99 % of the right matches at best; another 10 % may be lost.
       EXPECT_GE(found->inliers.size(), 0.89 * right * kMatches);
       EXPECT_LE(found->inliers.size(), right * kMatches + 3);
       if (outliers == 0.0) continue;
@@ -79,7 +79,7 @@ TEST_P(ConsensusTest, SurvivesOutliers) {
     if (outliers == 0.0) {
       clean_angle = angle;
       clean_translation = translation;
-      // One match is good to some 5 mm and 5 mrad, 300 to much less.
+      // One match is accurate to about 5 mm and 5 mrad, 300 to far less.
       EXPECT_LE(angle, 1e-3);
       EXPECT_LE(translation, 2e-3);
     }
@@ -110,7 +110,7 @@ TEST_P(ConsensusTest, FindsNothingInTooFewMatches) {
   }
 }
 
-// All points on a line: along the image, or on one ray; or all in one spot.
+// All points on a line (along the image or on one ray), or all at one point.
 TEST_P(ConsensusTest, FindsNothingOnALine) {
   const Camera camera;
   for (const bool noise : {false, true}) {
@@ -145,7 +145,7 @@ TEST_P(ConsensusTest, FindsNothingInOutliersOnly) {
   }
 }
 
-// A mirrored scene keeps all its distances, but no motion of a camera makes it.
+// A mirrored scene keeps all distances, but no camera motion produces it.
 TEST_P(ConsensusTest, FindsNoMirrorImage) {
   RandomWorld world(25);
   const Camera camera;
@@ -159,8 +159,8 @@ TEST_P(ConsensusTest, FindsNoMirrorImage) {
   EXPECT_FALSE(Find(matches).has_value());
 }
 
-// Matches without a depth, however wrong their pixels, change nothing but the
-// places of the others.
+// Matches without depth, however wrong their pixels, only change the indices of
+// the other matches.
 TEST_P(ConsensusTest, IgnoresMatchesWithoutDepth) {
   RandomWorld world(26);
   const Correspondences matches = world.Matches(100, 0.3, FarMotion(&world));

@@ -13,15 +13,15 @@
 namespace rgbd_pose {
 namespace {
 
-// An estimator that has to be started near: a redescending loss at its final
-// width from the first iteration.
+// An estimator that needs a good initial guess: a redescending loss at its
+// final width from the first iteration.
 Estimator MakeDirectTukey() {
   EstimatorOptions options;
   options.schedule = RobustSchedule::kDirect;
   return Estimator(options, MakeRobustCosts("bidirectional_point", "tukey"));
 }
 
-// How many of 30 far motions the estimator gets right among 40 % outliers.
+// The number of 30 large motions estimated correctly with 40 % outliers.
 int CountRight(const std::string& guess_name) {
   const InitialGuess* guess = FindInitialGuess(guess_name);
   Estimator estimator = MakeDirectTukey();

@@ -42,10 +42,10 @@ TEST(PointMatchTest, SpreadsTheMostItTakesOverTheList) {
   EXPECT_TRUE(PointMatches(Correspondences(), 10).empty());
 }
 
-// The covariance of points computed from disturbed measurements.
+// Compares with the covariance of points computed from noisy measurements.
 TEST(PointMatchTest, KnowsTheNoiseOfAPoint) {
   RandomWorld world(33);
-  constexpr int kSamples = 20000;  // a variance is then good to 1 %
+  constexpr int kSamples = 20000;  // the variance is then accurate to 1 %
   const Camera camera;
   for (int trial = 0; trial < 3; ++trial) {
     Observation prev, cur;
@@ -67,7 +67,7 @@ TEST(PointMatchTest, KnowsTheNoiseOfAPoint) {
   }
 }
 
-// Shares of 2000 right matches within the quantiles of chi^2.
+// Shares of 2000 right matches below the quantiles of chi^2.
 struct Shares {
   double below_99;
   double below_median;
@@ -86,7 +86,7 @@ Shares MeasureShares(const Rigid3d& truth, RandomWorld* world) {
   return shares;
 }
 
-// The shares are good to 0.002 and 0.011 at one sigma.
+// One sigma of the shares is 0.002 and 0.011.
 TEST(PointMatchTest, DistancesFollowChiSquared) {
   for (int seed = 0; seed < 10; ++seed) {
     RandomWorld world(400 + seed);
@@ -96,7 +96,7 @@ TEST(PointMatchTest, DistancesFollowChiSquared) {
   }
 }
 
-// Parallax, which the whitening leaves out, costs some: 7 % at most.
+// Parallax, which the whitening ignores, loses 7 % of the matches at most.
 TEST(PointMatchTest, DistancesBearParallax) {
   for (int seed = 0; seed < 10; ++seed) {
     RandomWorld world(400 + seed);
@@ -118,7 +118,7 @@ TEST(PointMatchTest, RightPairsPreserveTheirDistance) {
       ++pairs;
     }
   }
-  // Pairs share points: 400 independent ones, so +-1 % at one sigma.
+  // Pairs share points: 400 independent ones, hence 1 % at one sigma.
   EXPECT_NEAR(static_cast<double>(preserved) / pairs, 0.954, 0.02);
 }
 
@@ -133,7 +133,7 @@ TEST(PointMatchTest, WrongPairsSeldomPreserveTheirDistance) {
       ++pairs;
     }
   }
-  // Differences spread over metres, 3 sigma are some 5 cm.
+  // Differences are spread over metres; 3 sigma are about 5 cm.
   EXPECT_LE(preserved, 0.1 * pairs);
 }
 

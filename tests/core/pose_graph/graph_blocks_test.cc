@@ -1,4 +1,4 @@
-// What a graph hands to Ceres, far from where poses begin.
+// The residual blocks that a graph passes to Ceres, far from the initial poses.
 
 #include <gtest/gtest.h>
 
@@ -54,8 +54,8 @@ Evaluated At(const ceres::CostFunction& block, const MotionVector& x_ref,
   return out;
 }
 
-// An edge that is off by anything below a half turn: 2 sin(angle / 2) about the
-// axis, not its opposite.
+// For any edge error below a half turn, the residual is 2 sin(angle / 2) along
+// the axis, not along the opposite axis.
 TEST(EdgeBlockTest, GrowsUpToAHalfTurn) {
   Randoms random(2);
   for (const double angle : {0.01, 1.0, 2.0, 2.6, 3.1}) {

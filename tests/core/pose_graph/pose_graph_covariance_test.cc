@@ -1,4 +1,4 @@
-// Monte Carlo: do the covariances of a graph's poses say how far off they are?
+// Monte Carlo test: do the covariances of a graph's poses match their errors?
 
 #include <gtest/gtest.h>
 
@@ -30,7 +30,7 @@ double Nees(const PoseGraph& graph, const std::vector<Rigid3d>& truth, int pose,
   return error.dot(covariance.ldlt().solve(error));
 }
 
-// A loop of edges that are independent.
+// A loop of independent edges.
 TEST(PoseGraphCovarianceTest, IndependentEdgesAreHonest) {
   constexpr int kTrials = 300;
   const std::vector<Rigid3d> truth = CircleOfPoses(12, 2.0);
@@ -47,11 +47,11 @@ TEST(PoseGraphCovarianceTest, IndependentEdgesAreHonest) {
     nees += Nees(graph, truth, 6, 1.0);
   }
   RecordProperty("nees", std::to_string(nees / kTrials));
-  EXPECT_NEAR(nees / kTrials, 6.0, 0.6);  // its own sigma is 0.2
+  EXPECT_NEAR(nees / kTrials, 6.0, 0.6);  // its sigma is 0.2
 }
 
-// Five frames that see the same 60 points, all matched with all: each frame's
-// noise is in four edges.
+// Five frames that see the same 60 points, each matched with all others: the
+// noise of each frame enters four edges.
 TEST(PoseGraphCovarianceTest, EdgesThatShareFeaturesAreHonestByRedundancy) {
   constexpr int kTrials = 200, kFrames = 5, kPoints = 60;
   Estimator estimator({}, MakeRobustCosts("mahalanobis_point", "none"));

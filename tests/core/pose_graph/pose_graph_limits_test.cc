@@ -1,5 +1,5 @@
-// Where a graph draws its lines, on two poses whose solution can be told by
-// hand: what counts as determined, and how wide losses are in the end.
+// Limits of a graph, tested with two poses whose solution is known by hand:
+// which poses are determined, and the final widths of losses.
 
 #include <gtest/gtest.h>
 
@@ -12,8 +12,7 @@
 namespace rgbd_pose {
 namespace {
 
-// One that is fixed and one that is not; an edge from the one to the other,
-// still to be filled.
+// Adds a fixed and a free pose; returns an edge between them, to be completed.
 RelativePose AddTwoPoses(PoseGraph* graph) {
   RelativePose edge;
   edge.ref = graph->AddPose(Rigid3d(), /*is_fixed=*/true);
@@ -21,8 +20,8 @@ RelativePose AddTwoPoses(PoseGraph* graph) {
   return edge;
 }
 
-// A pose whose weakest direction has a standard deviation just below the limit
-// is determined, one just above is not.
+// A pose is determined if the standard deviation of its weakest direction is
+// below the limit, here just below or just above.
 TEST(PoseGraphTest, TheLimitIsAStandardDeviation) {
   for (const double ratio : {0.9, 1.1}) {
     PoseGraphOptions options;
@@ -38,9 +37,9 @@ TEST(PoseGraphTest, TheLimitIsAStandardDeviation) {
   }
 }
 
-// Two edges put a pose at 0 m and one puts it at 10 m, each +- 1 m, under
-// Huber's loss: all pull, the one with all its might. So the pose is at half
-// the width of the loss.
+// Two edges put a pose at 0 m and one at 10 m, each +- 1 m, under Huber's loss.
+// All of them pull; the far one with the loss's maximum force. Hence the pose
+// is at half the width of the loss.
 TEST(PoseGraphTest, LossesHaveTheirOwnWidthsInTheEnd) {
   const auto huber = FindMEstimator("huber")->MakeLoss(6);
   double rho[3];
@@ -66,7 +65,7 @@ TEST(PoseGraphTest, LossesHaveTheirOwnWidthsInTheEnd) {
     EXPECT_GT(solution.iterations, 0);
     EXPECT_GT(solution.rounds, 0);
     EXPECT_EQ(graph.OvercountingFactor(), 3.0);
-    // Across the line a far edge counts by its weight.
+    // Across the line, a far edge counts with its weight.
     const std::vector<MotionMatrix> covariances =
         graph.MarginalCovariances({1});
     ASSERT_EQ(covariances.size(), 1U);

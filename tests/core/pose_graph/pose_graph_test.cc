@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// The circle as odometry has it: from pose to pose, so that errors add up.
+// The circle as measured by odometry: from pose to pose, with growing drift.
 struct Circle {
   explicit Circle(int poses, unsigned seed = 1)
       : world(seed), truth(CircleOfPoses(poses, 3.0)) {
@@ -113,8 +113,8 @@ TEST(PoseGraphTest, ALoopTakesDriftBack) {
   EXPECT_LT(RmsDistance(graph, circle.truth), 0.6 * drift);
 }
 
-// 30 of 43 loops are right. Losses narrow step by step, since right ones are
-// many sigmas off as well before the graph is solved.
+// 30 of 43 loops are right. Losses are narrowed step by step, since right loops
+// are many sigmas off, too, before the graph is solved.
 TEST(PoseGraphTest, PlantedFalseLoopsDoNoHarm) {
   const auto loss = FindMEstimator("tukey")->MakeLoss(6);
   for (unsigned seed = 1; seed <= 10; ++seed) {

@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 namespace {
 
-// The same numbers on every platform.
+// The numbers are the same on every platform.
 TEST(CounterRandomTest, KnowsItsNumbers) {
   CounterRandom random(0);
   // SplitMix64 of seed 0, as published with the generator.
@@ -30,7 +30,7 @@ TEST(CounterRandomTest, DrawsEvenlyBelowTheEnd) {
   for (const int c : count) EXPECT_NEAR(c, 10000, 500);
 }
 
-// All 60 ways to draw three of five, evenly.
+// All 60 ordered triples out of five numbers, equally often.
 TEST(CounterRandomTest, DrawsThreeDifferentNumbers) {
   constexpr int kDraws = 60000;
   std::map<std::array<uint32_t, 3>, int> count;
@@ -41,7 +41,7 @@ TEST(CounterRandomTest, DrawsThreeDifferentNumbers) {
     EXPECT_LT(*std::max_element(three.begin(), three.end()), 5U);
     EXPECT_TRUE(three[0] != three[1] && three[0] != three[2] &&
                 three[1] != three[2]);
-    EXPECT_NEAR(c, 1000, 160);  // a standard deviation of 32
+    EXPECT_NEAR(c, 1000, 160);  // the standard deviation is 32
   }
 }
 

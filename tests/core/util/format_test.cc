@@ -11,7 +11,7 @@ TEST(FormatTest, ANumberHasTheDigitsThatItsErrorLeaves) {
   EXPECT_EQ(NumberTo(7.3e-05, 7.3e-05), "0.000073");
   EXPECT_EQ(NumberTo(1234.567, 25.0), "1235");
   EXPECT_EQ(NumberTo(3.2, 1.0), "3.2");
-  EXPECT_EQ(NumberTo(0.123456789, 0.0), "0.123457");  // no error is known
+  EXPECT_EQ(NumberTo(0.123456789, 0.0), "0.123457");  // unknown error
 }
 
 }  // namespace

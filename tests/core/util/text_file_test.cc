@@ -81,7 +81,7 @@ TEST(TextFileTest, TimeStampsAreInSeconds) {
   }
 }
 
-// A file that cannot be read to its end must not pass for a short one.
+// A file that cannot be read to its end must not be taken for a short file.
 TEST(TextFileTest, TellsOfAnErrorOnTheWay) {
   const std::string unreadable = "/proc/self/mem";  // nothing at address 0
   if (!std::filesystem::exists(unreadable)) GTEST_SKIP() << "no /proc";
@@ -99,7 +99,7 @@ TEST(TextFileTest, ReplacesAFileAsAWhole) {
   EXPECT_EQ(std::distance(begin(files), end(files)), 1);
 }
 
-// That it is on the disk cannot be seen from here; that it is written can.
+// Checks that the file is written; it cannot check that it is on the disk.
 TEST(TextFileTest, WritesToTheDisk) {
   const TempFolder folder;
   WriteFileAtomically(folder / "a.txt", "new", Durability::kPowerLoss);
@@ -113,7 +113,7 @@ TEST(TextFileTest, NamesTheFileItCannotWrite) {
   const TempFolder folder;
   ExpectInputError([&] { WriteFileAtomically(folder / "none/a.txt", "x"); },
                    {folder / "none/a.txt"});
-  // A folder in the way: the renaming fails and leaves nothing behind.
+  // A folder of that name: renaming fails and leaves nothing behind.
   folder.Write("b.txt/inside", "x");
   ExpectInputError([&] { WriteFileAtomically(folder / "b.txt", "x"); },
                    {folder / "b.txt"});

@@ -15,7 +15,7 @@ std::string HashOf(const std::vector<std::string>& texts) {
 }
 
 TEST(TextHashTest, IsFnv1a) {
-  EXPECT_EQ(TextHash().Hex(), "cbf29ce484222325");  // its offset basis
+  EXPECT_EQ(TextHash().Hex(), "cbf29ce484222325");  // FNV's offset basis
   // "a" and the bytes 1 0 0 0 0 0 0 0, by another implementation.
   EXPECT_EQ(HashOf({"a"}), "dedf9f982e43402d");
 }

@@ -37,7 +37,7 @@ TEST(WorkerTest, ReturnsAndThrowsByTheFutureAndGoesOn) {
 }
 
 TEST(WorkerTest, LeavesWhatItHasNotBegunWhenItEnds) {
-  constexpr int kTasks = 1000;  // five seconds of them
+  constexpr int kTasks = 1000;  // they take five seconds
   int begun = 0, done = 0;
   std::future<void> last;
   {
@@ -52,7 +52,7 @@ TEST(WorkerTest, LeavesWhatItHasNotBegunWhenItEnds) {
   }
   EXPECT_LT(begun, kTasks);
   EXPECT_EQ(done, begun);
-  EXPECT_THROW(last.get(), std::future_error);  // a broken promise
+  EXPECT_THROW(last.get(), std::future_error);  // broken promise
 }
 
 #ifdef __linux__

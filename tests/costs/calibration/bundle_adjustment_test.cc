@@ -1,5 +1,5 @@
-// A bundle adjustment with the camera: what it begins with, what it holds and
-// where it ends, on views that are exact but for what is planted.
+// Bundle adjustment including the camera: initial state, fixed parameters and
+// result, on views that are exact except for planted errors.
 
 #include "costs/calibration/bundle_adjustment.h"
 
@@ -16,12 +16,12 @@ namespace {
 constexpr double kSigmaPx = 0.5;
 constexpr double kInverseSigmaDepth = 200.0;  // m
 constexpr double kFocalOff = 4.0;             // px
-// Median of |x| to standard deviation, of a normal distribution.
+// Ratio of standard deviation to median |x| of a normal distribution.
 constexpr double kSigmaOfMedian = 1.4826;
 
 using Free = std::array<bool, kCalibrationSize>;
 
-// Three keyframes and what they see through a camera whose fx is not `start`'s.
+// Three keyframes and their views through a camera whose fx is not `start`'s.
 struct World {
   CalibrationViews views;
   CalibrationVector start, prior;
@@ -65,7 +65,7 @@ struct World {
     SeeExactly();
   }
 
-  // What a residual of a measurement of zero says was to be measured.
+  // Measurements are set from the residuals of measurements of zero.
   void SeeExactly() {
     const auto poses = PosesOf(truth);
     double r[2];
@@ -92,7 +92,7 @@ struct World {
     return {views, {start, prior}, /*training_only=*/false, max_iterations};
   }
 
-  // The cost of a state, which stays as it is.
+  // The cost of a state; the state itself is not changed.
   double CostOf(CalibrationState state) const {
     return Problem(/*max_iterations=*/0).Solve(FreeFocal(), &state);
   }
@@ -110,7 +110,7 @@ TEST(BundleAdjustmentTest, TheTruthCostsWhatThePriorSays) {
   EXPECT_NEAR(world.CostOf(world.truth), 0.5 * off * off, 1e-9);
 }
 
-// With a prior that pulls about as hard as the views do.
+// With a prior that constrains fx about as strongly as the views do.
 TEST(BundleAdjustmentTest, EndsWhereItCostsLeast) {
   World world;
   world.prior[kFx] = 5.0;
@@ -123,7 +123,7 @@ TEST(BundleAdjustmentTest, EndsWhereItCostsLeast) {
   for (const double side : {-1.0, 1.0}) {
     CalibrationState beside = state;
     beside.theta[kFx] += side * 0.01 * kFocalOff;
-    // The rest settles as it likes.
+    // All other unknowns are optimised.
     Free none = {};
     const CalibrationPrior prior = {beside.theta, world.prior};
     BundleAdjustment held(world.views, prior, false, {});
@@ -152,7 +152,7 @@ TEST(BundleAdjustmentTest, TheFirstPoseStays) {
                before.world_from_cam[k].translation)
                   .norm(),
               1e-3);
-    // The motion between the two is the true one.
+    // The relative motion is the true one.
     const Rigid3d error =
         (state.world_from_cam[0].Inverse() * state.world_from_cam[k])
             .Inverse() *
@@ -163,11 +163,11 @@ TEST(BundleAdjustmentTest, TheFirstPoseStays) {
   }
 }
 
-// A first keyframe that nothing is seen from, or by, is no part of the problem.
+// A first keyframe without landmarks and views is not part of the problem.
 TEST(BundleAdjustmentTest, TheFirstKeyframeMaySeeNothing) {
   World world;
   for (Landmark& landmark : world.views.landmarks) {
-    // Of its two views the earlier one is the first keyframe's.
+    // Of the two views, the earlier one is in the first keyframe.
     landmark.first_view += 1;
     landmark.num_views = landmark.anchor == 0 ? 0 : 1;
   }
@@ -175,8 +175,8 @@ TEST(BundleAdjustmentTest, TheFirstKeyframeMaySeeNothing) {
   EXPECT_TRUE(std::isfinite(world.Problem().Solve(World::FreeFocal(), &state)));
 }
 
-// By medians: of what is off by 0.6 px in u and by 0.4 px in v, and in depth by
-// half a sigma - the anchors' own are those in the middle.
+// Scales are medians of residuals: 0.6 px in u and 0.4 px in v; 0.5 sigma in
+// depth, where the depths of the anchors are the middle ones.
 TEST(BundleAdjustmentTest, MeasuresTheScalesOfResiduals) {
   World world;
   for (size_t i = 0; i < world.views.views.size(); ++i) {
@@ -195,7 +195,7 @@ TEST(BundleAdjustmentTest, MeasuresTheScalesOfResiduals) {
   EXPECT_NEAR(state.pixel_scale, kSigmaOfMedian * 0.6 / kSigmaPx, 1e-6);
   EXPECT_NEAR(state.depth_scale, kSigmaOfMedian * 0.5, 1e-6);
 
-  // Of no views there is no scale.
+  // Without views the scale is 1.
   world.views.views.clear();
   for (Landmark& landmark : world.views.landmarks) landmark.num_views = 0;
   world.Problem().MeasureScales(&state);

@@ -1,4 +1,4 @@
-// A known distance between two places: its value, and its hand-written Jacobian
+// A known distance between two points: its value, and its hand-written Jacobian
 // against ceres::Jet.
 
 #include <ceres/autodiff_cost_function.h>
@@ -74,7 +74,7 @@ TEST(KnownDistanceTest, EqualsTheOracle) {
   }
 }
 
-// Ceres asks for no derivatives by what is held.
+// Ceres asks for no derivatives with respect to fixed parameters.
 TEST(KnownDistanceTest, GivesTheDerivativesThatAreAskedFor) {
   RandomWorld world(6);
   const LinearizationPoint a(world.Motion(1.0, 2.0)), b(world.Motion(1.0, 2.0));
@@ -99,7 +99,7 @@ TEST(KnownDistanceTest, GivesTheDerivativesThatAreAskedFor) {
   }
 }
 
-// Two places that are one: no direction is better than another.
+// Two equal points: the distance has no direction, hence no derivative.
 TEST(KnownDistanceTest, OfNothingHasNoSlope) {
   const LinearizationPoint here;
   const MotionDerivatives pose =

@@ -1,4 +1,4 @@
-// Every hand-written Jacobian of a calibration against ceres::Jet.
+// Compares every hand-written Jacobian of a calibration with ceres::Jet.
 
 #include <gtest/gtest.h>
 
@@ -15,12 +15,12 @@
 namespace rgbd_pose {
 namespace {
 
-// Rounding, relative to the largest entry of a block: Newton's method for the
+// Rounding, relative to the largest entry of a block. Newton's method for the
 // lens stops at 1e-13.
 constexpr double kTolerance = 1e-10;
 constexpr int kSamples = 500;
 
-// A landmark before two cameras with a lens, all of it a little off.
+// A landmark seen by two cameras with a lens, all with small errors.
 struct LandmarkSample {
   Camera rest;
   LinearizationPoint anchor, view;

@@ -1,6 +1,6 @@
-// The normal equations of a bundle adjustment, landmark by landmark, against
-// dense ones by ceres::Jet from which all depths are eliminated at once; and
-// the covariance of the camera that follows from them.
+// Compares the normal equations of a bundle adjustment, built landmark by
+// landmark, with dense ones by ceres::Jet from which all depths are eliminated
+// at once. Also tests the covariance of the camera that follows from them.
 
 #include <gtest/gtest.h>
 
@@ -33,14 +33,13 @@ MeasuredInverseDepth SomeDepth(RandomWorld* world) {
   return depth;
 }
 
-// Keyframes around a wall and what they see of it, not quite in agreement.
+// Keyframes around a wall and their views of it, with small inconsistencies.
 struct Problem {
   CalibrationViews views;
   CalibrationState state;
   CalibrationOrigin origin;
 
-  // By default each keyframe is the anchor of some landmarks, or `anchor` of
-  // all.
+  // Each keyframe is the anchor of some landmarks, or `anchor` is of all.
   explicit Problem(std::optional<int> anchor = std::nullopt) {
     RandomWorld world(11);
     for (int k = 0; k < kKeyframes; ++k) {
@@ -79,7 +78,7 @@ struct Problem {
   }
 };
 
-// All unknowns: poses but the first, y, and the depths.
+// All unknowns: poses except the first, y, and the depths.
 class DenseEquations {
  public:
   explicit DenseEquations(const Problem& problem) : problem_(problem) {
@@ -114,7 +113,7 @@ class DenseEquations {
     J.col(kept_ + landmark) = by_depth;
     const double weight =
         1.0 / (1.0 + r.squaredNorm() / (kLossWidth * kLossWidth));
-    // By steps along the residual: how much less its pull grows.
+    // Derivative of the loss's influence along the residual, by differences.
     const auto pull = [](double s) {
       return std::sqrt(s) / (1.0 + s / (kLossWidth * kLossWidth));
     };
@@ -127,7 +126,7 @@ class DenseEquations {
     g.col(anchor) += weight * J.transpose() * r;
   }
 
-  // Depths that nothing was added of stay out.
+  // Depths without residuals are left out.
   void EliminateDepths() {
     for (int i = kLandmarks - 1; i >= 0; --i) {
       const int last = kept_ + i;
@@ -191,9 +190,9 @@ TEST(ReducedCameraSystemTest, AreThoseOfAllUnknownsWithoutTheDepths) {
   }
 }
 
-// The inverse of all information, and the sandwich, of the slopes, with what
-// each keyframe's landmarks pull by, `correction` times as much as they are
-// few: by formula, with whole matrices.
+// By formula, with whole matrices: the inverse of all information, and the
+// sandwich with slopes and with the gradient of each keyframe's landmarks.
+// `correction` is the factor for a small number of keyframes.
 void ExpectInverseAndSandwich(Problem problem, double correction) {
   RandomWorld world(12);
   for (const int a : {0, 1, 2}) {
@@ -263,12 +262,12 @@ TEST(LandmarkCovarianceTest, IsTheInverseAndTheSandwich) {
   ExpectInverseAndSandwich(Problem(), kKeyframes / (kKeyframes - 1.0));
 }
 
-// What one keyframe's landmarks scatter by, nothing tells.
+// The landmarks of a single keyframe do not show any scatter between keyframes.
 TEST(LandmarkCovarianceTest, OneGroupIsNotCorrected) {
   ExpectInverseAndSandwich(Problem(/*anchor=*/1), 1.0);
 }
 
-// Sigmas are as the state has them.
+// Sigmas are scaled by the scales in the state.
 TEST(CalibrationStateTest, ScalesSigmas) {
   const Problem problem;
   const Landmark& landmark = problem.views.landmarks[0];

@@ -1,4 +1,4 @@
-// The change of brightness of images that are known to the last gray level.
+// The brightness change between images whose gray levels are known exactly.
 
 #include <gtest/gtest.h>
 
@@ -14,9 +14,9 @@ namespace {
 constexpr int kWidth = 80;
 constexpr int kHeight = 60;
 
-// The gain and bias found for a camera that stands still, where each pixel of
-// the current image is `current(u, v)` and each point, a third of a pixel right
-// and a fifth below one, was `previous(u, v)` gray levels.
+// The gain and bias found for a static camera. Each pixel of the current image
+// is `current(u, v)`. Each point is a third of a pixel to the right of a pixel
+// and a fifth below it, and was `previous(u, v)` gray levels.
 DirectInput Found(const std::function<int(int, int)>& current,
                   const std::function<double(double, double)>& previous) {
   std::vector<uint8_t> gray(kWidth * kHeight);
@@ -61,8 +61,8 @@ TEST(EstimateBrightnessTest, ReadsBetweenThePixels) {
   EXPECT_NEAR(same.bias, 0.0, 1e-2);
 }
 
-// A gain of 1 +- 0.3 and a bias of 0 +- 40 are expected. Where all is of one
-// gray level, each has its share by that alone.
+// The priors are a gain of 1 +- 0.3 and a bias of 0 +- 40. With one gray level,
+// only the priors decide on the shares of gain and bias.
 TEST(EstimateBrightnessTest, OneGrayLevelIsSharedByWhatIsExpected) {
   for (const double gray : {40.0, 100.0, 160.0}) {
     const DirectInput brighter = Found([](int, int) { return 170; },

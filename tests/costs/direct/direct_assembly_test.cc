@@ -1,5 +1,5 @@
-// The three assemblies of direct costs are one problem: equal cost, gradient
-// and J^T J, and the estimator ends at the same motion.
+// The three assemblies of direct costs are the same problem: equal cost,
+// gradient and J^T J, and the estimator finds the same motion.
 
 #include <gtest/gtest.h>
 
@@ -42,7 +42,8 @@ TEST_P(DirectAssemblyTest, CostGradientAndHessianAreEqual) {
   cost->Bind(Pair().data());
   cost->Associate(motion);
   EXPECT_GE(cost->matches().size(), 200u);
-  // Where it is associated: elsewhere the compressed block looks again.
+  // At the motion of the association: elsewhere, the compressed block repeats
+  // it.
   const LinearizationPoint origin(motion);
   const MotionVector x = MotionVector::Zero();
   const NormalEquations expected =
@@ -67,7 +68,7 @@ INSTANTIATE_TEST_SUITE_P(
       return std::get<0>(info.param) + "_" + std::get<1>(info.param);
     });
 
-// To a hundredth of what noise does: all go the same steps.
+// To 1 % of the effect of noise: all assemblies take the same steps.
 TEST(DirectEstimateTest, IsTheSameByAllAssemblies) {
   for (const char* cost : {"photometric", "inverse_depth", "projective_plane",
                            "photometric+projective_plane"}) {

@@ -1,4 +1,4 @@
-// Which points direct costs take, and what they must not depend on.
+// Which points direct costs use, and what their results must not depend on.
 
 #include "costs/direct/direct_cost.h"
 
@@ -98,7 +98,7 @@ TEST_P(DirectCostTest, NoImagesAreTooFewMatches) {
   no_cur.cur = nullptr;
   MotionEstimate estimate;
   for (const FramePair& none : {FramePair(), no_prev, no_cur}) {
-    // After a pair that has them, too.
+    // Must also hold after a pair with both views.
     estimator.Estimate(whole, pair.cur_from_prev, &estimate);
     EXPECT_GT(estimate.num_used, 500);
     estimator.Estimate(none, pair.cur_from_prev, &estimate);
@@ -107,7 +107,7 @@ TEST_P(DirectCostTest, NoImagesAreTooFewMatches) {
   }
 }
 
-// A sum of matches and pixels of a pair that has no images is that of matches.
+// Without images, a sum of match and pixel costs is that of the matches.
 TEST_P(DirectCostTest, NoImagesLeaveOtherCostsAlone) {
   RandomWorld world(1);
   const Rigid3d truth = world.Motion(0.05, 0.05);
@@ -139,18 +139,17 @@ TEST_P(DirectCostTest, PointsAreKeptForFramesOfOneId) {
   const MotionMatrix first = linearised(pair.prev.view, 1);
   const MotionMatrix of_other = linearised(other.prev.view, 2);
   EXPECT_NE(first, of_other);
-  // With the same id it is not looked at.
+  // The same id means the same frame: its points are not computed again.
   EXPECT_EQ(linearised(pair.prev.view, 2), of_other);
   EXPECT_EQ(linearised(pair.prev.view, 3), first);
-  // Without one it always is.
+  // Without an id (0), points are computed each time.
   EXPECT_EQ(linearised(other.prev.view, 0), of_other);
   EXPECT_EQ(linearised(pair.prev.view, 0), first);
-  // A pair without images forgets them.
+  // A pair without images clears the stored points.
   cost->Bind(FramePair());
   EXPECT_EQ(linearised(other.prev.view, 3), of_other);
 }
 
-// Over 8192 rows, so that there are several chunks of sums.
 TEST_P(DirectCostTest, AViewWithoutItsDepthNoiseIsRefused) {
   const DirectPair pair = SmallPair();
   FrameView view = pair.prev.view;
@@ -161,6 +160,7 @@ TEST_P(DirectCostTest, AViewWithoutItsDepthNoiseIsRefused) {
   ExpectInputError([&] { cost->Bind(data); }, {"depth_noise"});
 }
 
+// More than 8192 rows, which gives several chunks of sums.
 TEST_P(DirectCostTest, ThreadsDoNotChangeABit) {
   SyntheticOptions whole = SmallImages();
   whole.camera = RgbdCamera();
@@ -198,7 +198,7 @@ TEST_P(DirectCostTest, InstructionSetsDifferByRounding) {
        {InstructionSet::kAvx2, InstructionSet::kAvx512}) {
     if (set > best) continue;
     const NormalEquations wide = run(set);
-    constexpr double kRounding = 1e-6;  // places within a pixel are floats
+    constexpr double kRounding = 1e-6;  // positions within a pixel are floats
     EXPECT_NEAR(wide.cost, narrow.cost, kRounding * narrow.cost);
     EXPECT_LE((wide.gradient - narrow.gradient).norm(),
               kRounding * narrow.gradient.norm());
@@ -212,7 +212,7 @@ INSTANTIATE_TEST_SUITE_P(All, DirectCostTest,
                          ::testing::ValuesIn(DirectCostNames()),
                          [](const auto& info) { return info.param; });
 
-// Where the rows of a cost are seen, px.
+// Image positions (px) at which the rows of a cost are evaluated.
 template <typename Residual>
 std::vector<Eigen::Vector2d> PlacesOf(const DirectPair& pair) {
   const PackedColumns seen = SeenColumns<Residual>(
@@ -240,7 +240,7 @@ void ExpectNoneIn(const DirectPair& pair, const Eigen::Vector2d& from,
 
 TEST(SurfaceTest, HolesAndEdgesOfTheCurrentFrameTakeNoPart) {
   const cv::Rect block(100, 80, 60, 50);
-  // Depths are read so far around.
+  // Depths are read up to this distance.
   const Eigen::Vector2d from(100.0 - kSurfaceStep + 0.5,
                              80.0 - kSurfaceStep + 0.5);
   const Eigen::Vector2d to(159.0 + kSurfaceStep - 0.5,
@@ -253,8 +253,8 @@ TEST(SurfaceTest, HolesAndEdgesOfTheCurrentFrameTakeNoPart) {
     ExpectNoneIn<ProjectivePlane>(pair, from, to, "a hole");
     ExpectNoneIn<InverseDepth>(pair, from, to, "a hole");
   }
-  // Something in front: its edges are no surface, and it is not the one that
-  // is looked for.
+  // An object in front: its edges are no surface, and its surface is not the
+  // expected one.
   DirectPair pair = SmallPair();
   pair.cur.frame.depth(block).setTo(5000);
   ExpectNoneIn<ProjectivePlane>(pair, from, to, "something in front");
@@ -263,13 +263,13 @@ TEST(SurfaceTest, HolesAndEdgesOfTheCurrentFrameTakeNoPart) {
 
 TEST(SurfaceTest, HolesAndEdgesOfThePreviousFrameGiveNoPoints) {
   DirectPair pair = SmallPair();
-  pair.cur_from_prev = Rigid3d();  // places are those of the previous frame
+  pair.cur_from_prev = Rigid3d();  // positions are in the previous frame
   pair.cur = pair.prev;
   pair.cur.Build();
   pair.prev.frame.depth(cv::Rect(100, 80, 30, 50)).setTo(0);
   pair.prev.frame.depth(cv::Rect(130, 80, 30, 50)).setTo(5000);
   pair.prev.Build();
-  // The left and right edge of what is in front.
+  // The left and right edge of the object in front.
   for (const double u : {130.0, 160.0}) {
     ExpectNoneIn<ProjectivePlane>(pair, {u - kSurfaceStep + 0.5, 80.0},
                                   {u + kSurfaceStep - 1.5, 129.0}, "an edge");
@@ -277,7 +277,7 @@ TEST(SurfaceTest, HolesAndEdgesOfThePreviousFrameGiveNoPoints) {
   ExpectNoneIn<Photometric>(pair, {99.5, 79.5}, {129.5, 129.5}, "a hole");
 }
 
-// As if exposure were the same.
+// Photometric cost that assumes equal exposure.
 struct Unbrightened : Photometric {
   static constexpr bool kSeesBrightness = false;
 };
@@ -298,7 +298,7 @@ TEST(BrightnessTest, GainAndBiasOfTheCurrentImageHardlyMatter) {
   const MotionVector sigma = plain.covariance.diagonal().cwiseSqrt();
   EXPECT_LE(off.translation, 0.5 * sigma.tail<3>().norm());
   EXPECT_LE(off.angle, 0.5 * sigma.head<3>().norm());
-  // Without it the test would show nothing.
+  // Without the brightness estimate the result must be wrong.
   MotionEstimate blind;
   Estimator(DirectEstimatorOptions(),
             std::make_unique<DirectCostOf<Unbrightened>>(DirectOptions()),

@@ -1,5 +1,5 @@
-// Whether direct costs know how wrong they are: pairs of simulated frames, and
-// the covariances of their motions. What kInformation of the costs was set by.
+// Tests the covariances of direct costs on pairs of simulated frames.
+// kInformation of the costs was chosen with this test.
 
 #include <gtest/gtest.h>
 
@@ -16,8 +16,8 @@
 namespace rgbd_pose {
 namespace {
 
-// A sixth of the squared error [omega C] in units of the covariance (NEES / 6):
-// 1 in the mean if that is honest.
+// A sixth of the squared error [omega C] in units of the covariance (NEES / 6).
+// Its mean is 1 if the covariance is correct.
 double Nees(const MotionEstimate& estimate, const Rigid3d& truth) {
   const Eigen::AngleAxisd turn(truth.rotation *
                                estimate.cur_from_prev.rotation.conjugate());
@@ -28,7 +28,7 @@ double Nees(const MotionEstimate& estimate, const Rigid3d& truth) {
   return error.dot(estimate.covariance.ldlt().solve(error)) / 6.0;
 }
 
-// A guess within the basin: 1 cm and 0.3 degrees off, each time another way.
+// A guess that converges: 1 cm and 0.3 degrees off, in varying directions.
 Rigid3d Guess(const Rigid3d& truth, int i) {
   const Eigen::Vector3d way(i % 3 - 1, i % 5 - 2, i % 2 + 0.5);
   const Eigen::Vector3d axis(i % 7 - 3, i % 2 + 0.5, i % 3 - 1);

@@ -1,5 +1,5 @@
-// What noise makes of a place without texture or shape is what the costs say it
-// feigns.
+// The spurious information of noise without texture or shape equals the costs'
+// model of it.
 
 #include <gtest/gtest.h>
 
@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kWall = 1.5;  // m
 
-// A white wall right ahead, in both images and depths nothing but noise; so
-// much of it in gray levels that rounding does not matter.
+// A white wall straight ahead; image and depth contain only noise. Gray noise
+// is large enough to make rounding negligible.
 DirectFrame NoisyWall(uint32_t seed) {
   const Camera camera = SmallImages().camera.camera;
   std::mt19937 random(seed);
@@ -36,13 +36,13 @@ DirectFrame NoisyWall(uint32_t seed) {
   return DirectFrame(frame, camera);
 }
 
-// Fits no change of brightness: it would fit noise to noise.
+// Estimates no brightness change, which would fit noise to noise.
 struct Unlit : Photometric {
   static constexpr bool kSeesBrightness = false;
 };
 
-// For each motion: the root of how much it is determined, by noise alone, over
-// what is said to be feigned.
+// For each motion parameter: the root of the information obtained from noise
+// alone over the modelled spurious information.
 template <typename Residual>
 MotionVector DeterminedOverFeigned(bool is_of_measured_residuals) {
   const DirectFrame prev = NoisyWall(1), cur = NoisyWall(2);
@@ -53,7 +53,7 @@ MotionVector DeterminedOverFeigned(bool is_of_measured_residuals) {
   options.min_gradient = 0.0;
   DirectCostOf<Residual> cost(options);
   cost.Bind(pair);
-  // Turned, so that places are anywhere within the pixels.
+  // Rotated, which spreads positions over the area of a pixel.
   const Rigid3d turn(
       Eigen::Quaterniond(Eigen::AngleAxisd(0.05, Eigen::Vector3d::UnitZ())),
       Eigen::Vector3d::Zero());
@@ -77,7 +77,7 @@ TEST(FeignedByDirectCostsTest, GrayLevelsOfAWhiteWall) {
   for (int k = 0; k < 6; ++k) EXPECT_NEAR(ratio[k], 1.0, 0.2) << k;
 }
 
-// A plane says nothing of motions along it and of turns about its normal.
+// A plane does not determine motions along it and rotations about its normal.
 template <typename Residual>
 void ExpectFeignedByAPlane() {
   const MotionVector ratio = DeterminedOverFeigned<Residual>(false);
@@ -91,7 +91,7 @@ TEST(FeignedByDirectCostsTest, DepthsOfAPlane) {
   ExpectFeignedByAPlane<InverseDepth>();
 }
 
-// A wrong slope turns the plane about the point that is measured.
+// A slope error rotates the plane about the measured point.
 TEST(FeignedByDirectCostsTest, APlaneKeepsItsPoint) {
   const DirectFrame cur = NoisyWall(1);
   DirectInput input;

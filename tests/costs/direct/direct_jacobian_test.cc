@@ -1,5 +1,5 @@
-// The hand-written Jacobians of direct costs against ceres::Jet, exactly, on
-// columns that rendered images give.
+// Compares the hand-written Jacobians of direct costs with ceres::Jet, exactly,
+// on columns from rendered images.
 
 #include <gtest/gtest.h>
 

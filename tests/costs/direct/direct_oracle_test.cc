@@ -1,6 +1,6 @@
-// What direct costs linearise against the image itself: each point moved,
-// projected and interpolated in ceres::Jet, one after the other, as the
-// formulas of the costs are written.
+// Compares the linearised direct costs with the image itself: each point is
+// moved, projected and interpolated with ceres::Jet, following the formulas of
+// the costs.
 
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
@@ -14,7 +14,7 @@
 namespace rgbd_pose {
 namespace {
 
-// By the motion, and by the depth of the point along its ray.
+// Derivatives by the motion and by the depth of the point along its ray.
 using Jet = ceres::Jet<double, 7>;
 
 struct Sums {
@@ -55,7 +55,7 @@ Eigen::Matrix<Jet, 2, 1> Project(const Camera& camera,
   return {camera.fx * xd + camera.cx, camera.fy * yd + camera.cy};
 }
 
-// Where a point is when the row that shows it is exposed.
+// The position of a point when the row that shows it is exposed.
 Eigen::Vector3d InRow(const Camera& camera, const Shutter& shutter,
                       const Twist& twist, const Eigen::Vector3d& q) {
   Eigen::Vector3d moved = q;
@@ -66,7 +66,7 @@ Eigen::Vector3d InRow(const Camera& camera, const Shutter& shutter,
   return moved;
 }
 
-// Where a point is seen in its row, px, as the motion changes it at the stamp.
+// The pixel of a point in its row; derivatives by the motion at the stamp.
 Eigen::Matrix<Jet, 2, 1> ProjectInRow(const Camera& camera,
                                       const FrameTiming& timing,
                                       const Eigen::Matrix<Jet, 3, 1>& q) {
@@ -113,11 +113,11 @@ void AddOf(Photometric, const DirectInput& input, const Rigid3d& motion,
   sums->Add(1.0 / sigma, r);
 }
 
-// The plane N . p = 1 in current axes: as steep as the previous one, as far as
-// nine inverse depths say. False where they are no plane.
+// The plane N . p = 1 in current axes: slope of the previous plane, distance
+// from nine inverse depths. Measure() is false if a depth is missing.
 struct PlaneOracle {
   Eigen::Vector3d N;
-  double chi2 = 0.0;  // of the nine, in units of the 99 % of eight degrees
+  double chi2 = 0.0;  // of the nine; 1 is the 99 % quantile for 8 degrees
 
   bool Measure(const FrameView& cur, const Rigid3d& motion,
                const Eigen::VectorXd& point) {
@@ -165,7 +165,7 @@ void AddOf(ProjectivePlane, const DirectInput& input, const Rigid3d& motion,
   const Jet r = n.x() * q[0] + n.y() * q[1] + n.z() * q[2] - distance;
   const double far = r.a / 0.2;
   if (plane.chi2 + far * far >= 1.0) return;
-  // How much of a depth error lies along n.
+  // The part of a depth error that lies along n.
   const double sigma = kSurfaceSigma * point[6] * distance / q[2].a;
   sums->Add(1.0 / sigma, r);
 }
@@ -184,7 +184,7 @@ void AddOf(InverseDepth, const DirectInput& input, const Rigid3d& motion,
   sums->Add(1.0 / sigma, r);
 }
 
-// A little more and another exposure than in the previous frame.
+// Increases contrast and changes the exposure relative to the previous frame.
 void Brighten(DirectFrame* frame) {
   frame->frame.gray.convertTo(frame->frame.gray, -1, 1.2, -10.0);
   frame->Build();
@@ -193,8 +193,7 @@ void Brighten(DirectFrame* frame) {
 template <typename Residual>
 class DirectOracleTest : public ::testing::Test {
  protected:
-  // `away`: from where the current frame was taken; a little, so that there is
-  // a gradient.
+  // `away`: displacement of the current frame; small, but with a gradient.
   void Compare(bool is_distorted, int level,
                const Eigen::Vector3d& away = {0.003, -0.002, 0.004},
                const FrameTiming& timing = {}) {
@@ -228,7 +227,7 @@ class DirectOracleTest : public ::testing::Test {
     EXPECT_GT(expected.rows, 200);
     EXPECT_LT(expected.rows, points.size) << "all are seen: no test of that";
     EXPECT_EQ(cost.matches().size(), expected.rows);
-    // Places within a pixel are floats.
+    // Positions within a pixel are floats.
     constexpr double kRounding = 1e-6;
     const NormalEquations& normal = expected.normal;
     EXPECT_NEAR(actual.cost, normal.cost, kRounding * normal.cost);
@@ -253,8 +252,8 @@ TYPED_TEST(DirectOracleTest, WithLensDistortion) {
   this->Compare(/*is_distorted=*/true, 1);
 }
 
-// The images are those of one moment: whether they show the same is not asked
-// here, only where they are looked at.
+// The images are rendered at one moment. This tests only where they are read,
+// not whether they match.
 TYPED_TEST(DirectOracleTest, OfRowsExposedOneAfterAnother) {
   const Twist twist = {{0.5, -0.8, 0.4}, {0.4, 0.3, -0.5}};
   for (const FrameTiming& timing :
@@ -269,7 +268,7 @@ TYPED_TEST(DirectOracleTest, OfRowsExposedOneAfterAnother) {
   }
 }
 
-// As far as another surface may be: some points are beyond.
+// At the limit for another surface: some points are beyond it.
 TYPED_TEST(DirectOracleTest, FarFromTheSurface) {
   for (const double z : {-0.22, -0.16, 0.16, 0.22}) {
     this->Compare(/*is_distorted=*/false, 0, {0.02, -0.03, z});

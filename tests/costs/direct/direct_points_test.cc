@@ -1,5 +1,5 @@
-// Which pixels become points, by another way to choose them, and what is known
-// of each.
+// Which pixels become points, checked with another implementation, and the data
+// of each point.
 
 #include "costs/direct/direct_points.h"
 
@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kUnitsPerMetre = 20000.0;
 
-// Images of which a test sets every pixel, with two levels.
+// Images with two levels whose pixels are all set by a test.
 struct PaintedFrame {
   std::vector<uint8_t> gray, half_gray;
   std::vector<uint16_t> depth;
@@ -65,7 +65,7 @@ struct PaintedFrame {
   }
 };
 
-// Noise in patches: some cells steep, some flat, some depths missing or torn.
+// Noise in patches: some cells steep, some flat; some depths missing or torn.
 void PaintAtRandom(PaintedFrame* frame) {
   std::mt19937 random(3);
   const auto draw = [&](int n) { return static_cast<int>(random() % n); };
@@ -95,10 +95,10 @@ std::vector<Eigen::VectorXd> Rows(const PackedColumns& points, int columns) {
   return rows;
 }
 
-// What TexturedPoints says of a pixel, if it may be one, and how steep it is.
+// The expected point at a pixel, if the pixel is a candidate, and its gradient.
 struct Candidate {
   Eigen::VectorXd point;
-  int square = 0;  // of its gradient over two pixels
+  int square = 0;  // squared gradient over two pixels
 };
 
 std::optional<Candidate> CandidateAt(const FrameView& view, int index, int u,
@@ -123,7 +123,7 @@ std::optional<Candidate> CandidateAt(const FrameView& view, int index, int u,
          view.DepthAt(x - 1, y - 1)) /
         4.0;
   }
-  // A cell whose steepest pixel has no good depth has no point.
+  // A cell whose steepest pixel has no valid depth has no point.
   if (low <= 0.0 || high >= 1.02 * low || z < selection.min_depth ||
       z > selection.max_depth) {
     return candidate;
@@ -144,7 +144,7 @@ TEST_P(TexturedPointsTest, AreTheSteepestPixelsOfTheirCells) {
   const PointSelection selection = {level == 0 ? 96 * 80 / 36 : 48 * 40 / 36,
                                     7.0, 1.2, 1.4};
   constexpr int kCell = 6;
-  // What is looked at around a point stays within the image, at any level.
+  // The neighbourhood of a point stays within the image at any level.
   const int border = level == 0 ? 7 : 4;
   const ImageView<uint8_t>& gray = frame.view.levels[level].gray;
   std::vector<Eigen::VectorXd> expected;
@@ -180,7 +180,7 @@ TEST_P(TexturedPointsTest, AreTheSteepestPixelsOfTheirCells) {
 
 INSTANTIATE_TEST_SUITE_P(Levels, TexturedPointsTest, ::testing::Values(0, 1));
 
-// Of one cell, so that there is one point, in the middle.
+// Size of an image with a single cell, with one point in the middle.
 constexpr int kSide = 64;
 constexpr int kMiddle = 7 + kSide / 2;
 
@@ -204,15 +204,15 @@ TEST(SmoothPointsTest, LieOnThePlaneAround) {
   // 1 / z = N . ray, and u = fx x + cx.
   const Eigen::Vector3d N(b * camera.fx, c * camera.fy,
                           a + b * camera.cx + c * camera.cy);
-  // Depths are whole units.
+  // Depths are rounded to whole units.
   EXPECT_LE((points[0].head<3>() - X).norm(), 1e-4);
   EXPECT_LE((points[0].segment<3>(3) - N).norm(), 5e-4);
   EXPECT_NEAR(points[0][6], 0.002 * z * z, 1e-6);
   EXPECT_TRUE(SmoothPointsOf(frame, 0.99 * z).empty());
 }
 
-// How many points there are of a plane 1 m away, as many degrees between the
-// ray to its middle and the plane; the ray lies 50 degrees off the axis.
+// The number of points on a plane 1 m away. `degrees` is the angle between the
+// plane and the ray to its middle; the ray is 50 degrees off the axis.
 size_t CountOfSlanted(double degrees) {
   PaintedFrame frame(kSide, kSide);
   Camera& camera = frame.view.levels[0].camera;
@@ -235,7 +235,7 @@ TEST(SmoothPointsTest, OfASurfaceSeenFromItsSideThereIsNone) {
   EXPECT_EQ(CountOfSlanted(13.0), 0u);
 }
 
-// One of 25 depths moved by so many sigmas, of a wall as far as that.
+// The points of a wall at `z` with one of 25 depths moved by `sigmas`.
 size_t CountWithOneOff(double sigmas, double z) {
   PaintedFrame frame(kSide, kSide);
   frame.PaintPlane(1.0 / z, 0.0, 0.0);
@@ -246,7 +246,7 @@ size_t CountWithOneOff(double sigmas, double z) {
 TEST(SmoothPointsTest, OfAnEdgeThereIsNone) {
   for (const double z : {0.5, 1.5, 3.0}) {
     EXPECT_EQ(CountWithOneOff(0.0, z), 1u) << z;
-    // The plane goes a little with it.
+    // The fitted plane partly follows the moved depth.
     EXPECT_EQ(CountWithOneOff(4.2, z), 1u) << z;
     EXPECT_EQ(CountWithOneOff(5.2, z), 0u) << z;
     EXPECT_EQ(CountWithOneOff(-5.2, z), 0u) << z;

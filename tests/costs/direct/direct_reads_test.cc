@@ -1,4 +1,4 @@
-// Direct costs read neither beyond the image nor less of it than there is.
+// Direct costs read the whole image, but nothing outside it.
 
 #include <gtest/gtest.h>
 
@@ -10,7 +10,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Whether a residual type reads at a place of an image of 40 x 30.
+// Whether a residual type can be read at a position of a 40 x 30 image.
 template <typename Residual>
 bool IsRead(double u, double v) {
   constexpr int kWidth = 40, kHeight = 30;
@@ -25,7 +25,7 @@ bool IsRead(double u, double v) {
   return Residual::Read(input, u, v, 1, samples);
 }
 
-// So far from the first and from the last pixels.
+// The image can be read up to `border` from its first and last pixels.
 template <typename Residual>
 void ExpectBorders(double border) {
   constexpr double kLittle = 0.01;
@@ -39,9 +39,9 @@ void ExpectBorders(double border) {
 }
 
 TEST(DirectReadsTest, EndAtTheBorders) {
-  // Between two pixels.
+  // Interpolates between two pixels.
   ExpectBorders<Photometric>(1.0);
-  // Of nine depths.
+  // Reads nine depths.
   ExpectBorders<ProjectivePlane>(kSurfaceStep + 1.0);
   ExpectBorders<InverseDepth>(kSurfaceStep + 1.0);
 }

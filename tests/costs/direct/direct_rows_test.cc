@@ -1,4 +1,4 @@
-// Direct costs on frames whose rows were exposed one after another.
+// Direct costs on frames with rolling shutters.
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ SyntheticOptions Rolling(bool is_distorted) {
   return options;
 }
 
-// As the path has it at the stamp.
+// The path's velocity at the time stamp.
 Twist TrueTwist() {
   constexpr double kStep = 1e-3;  // s
   const SyntheticOptions options = SmallImages();
@@ -36,7 +36,7 @@ Twist TrueTwist() {
       2.0 * kStep);
 }
 
-// The previous frame is of one moment, as references are.
+// The previous frame is exposed at one moment, as references are.
 DirectPair RollingPair(bool is_distorted, bool knows_twist) {
   const SyntheticDataset global(SmallImages(is_distorted));
   DirectPair pair(global, kPrev, kCur);
@@ -50,7 +50,7 @@ template <typename Residual>
 class DirectRowsTest : public ::testing::Test {
  protected:
   struct Fit {
-    double squares = 0.0;   // mean of a residual
+    double squares = 0.0;   // mean squared residual
     double gradient = 0.0;  // of the mean, by the motion
     int count = 0;
   };
@@ -76,8 +76,8 @@ TYPED_TEST(DirectRowsTest, FitTheTrueMotionAsThoseOfOneMomentDo) {
     const auto expected = this->FitOf(DirectPair(global, kPrev, kCur));
     const auto known = this->FitOf(RollingPair(is_distorted, true));
     const auto unknown = this->FitOf(RollingPair(is_distorted, false));
-    // The noise is another, some points leave the image, and the velocity
-    // changes within the readout.
+    // The noise differs, some points leave the image, and the velocity changes
+    // within the readout.
     EXPECT_LT(known.squares, 1.5 * expected.squares);
     EXPECT_GT(known.count, 0.8 * expected.count);
     const bool sees_more = unknown.squares > 3.0 * known.squares ||
@@ -87,7 +87,7 @@ TYPED_TEST(DirectRowsTest, FitTheTrueMotionAsThoseOfOneMomentDo) {
   }
 }
 
-// Whatever the machine has, lanes say what scalars say.
+// On any machine, lanes give the same values as scalars.
 TYPED_TEST(DirectRowsTest, LanesAreScalars) {
   constexpr int kPoints = 500;
   for (const bool is_distorted : {false, true}) {
@@ -116,7 +116,7 @@ TYPED_TEST(DirectRowsTest, LanesAreScalars) {
       if (rejection >= 1.0) continue;
       ASSERT_LT(count, seen.size);
       for (int k = 0; k < TypeParam::kColumns; ++k) {
-        // Places within a pixel are floats.
+        // Positions within a pixel are floats.
         const double size = std::max(1.0, std::abs(columns[k]));
         EXPECT_NEAR(seen.values[k * seen.stride + count], columns[k],
                     1e-5 * size);

@@ -50,8 +50,8 @@ std::vector<Vector3d> Points(const Camera& camera) {
   return points;
 }
 
-// The time to first order in how fast the point moves down the image: that
-// changes over the image by a part of itself, by which 10 px are off again.
+// MoveToRow() takes the point's vertical image speed as constant. The speed
+// varies over the image, which causes small errors for motions of 10 px.
 constexpr double kPixelTolerance = 0.05;
 
 TEST(MoveToRowTest, IsWhereIterationEnds) {
@@ -81,7 +81,7 @@ TEST(MoveToRowTest, IsWhereIterationEnds) {
   }
 }
 
-// Rows of a level that is half as high are exposed for twice as long.
+// A level of half the height takes twice as long for each row.
 TEST(MoveToRowTest, TimesAreTheSameAtEveryLevel) {
   const Camera camera = TestCamera(TestLens::kNone);
   Camera half = camera;
@@ -121,7 +121,7 @@ TEST(MoveToRowTest, LanesAreScalars) {
   }
 }
 
-// Costs look for points where features are seen.
+// Costs read the image where ImagePoint() finds the features.
 TEST(MoveToRowTest, CostsLookWhereImagePointSays) {
   const Rigid3d motion(Eigen::Quaterniond(Eigen::AngleAxisd(
                            0.02, Vector3d(1, 2, -1).normalized())),

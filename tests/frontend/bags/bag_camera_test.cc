@@ -9,7 +9,7 @@ namespace rgbd_pose {
 namespace {
 
 TEST_F(Ros1BagTest, RegistersDepthOfAnotherFrame) {
-  // Depth from 2 pixels (at 1 m) further left.
+  // The depth camera is further left by 2 pixels (at 1 m).
   Camera camera = SmallCamera().camera;
   const Rigid3d color_from_depth({1, 0, 0, 0}, {-2.0 / camera.fx, 0, 0});
   for (const bool says_where : {true, false}) {
@@ -68,7 +68,7 @@ TEST_F(Ros1BagTest, ReadsWhatTheRealSenseViewerRecords) {
   EXPECT_EQ(frame.DepthAt(kWidth - 1, 5), 0.0) << "not seen";
 }
 
-// As an Azure Kinect and the fisheyes of RealSense say theirs.
+// Distortion models as an Azure Kinect and RealSense fisheyes report them.
 TEST_F(Ros1BagTest, TakesLensesOfEveryModel) {
   const std::vector<double> eight = {0.4, -2.5, 1e-3, -3e-4,
                                      1.5, 0.3,  -2.3, 1.4};
@@ -93,7 +93,7 @@ TEST_F(Ros1BagTest, TakesLensesOfEveryModel) {
   }
 }
 
-// A driver that sends a part of the image, two by two pixels in one.
+// A driver that sends a part of the image, with binning of two by two pixels.
 TEST_F(Ros1BagTest, PartsAndBinsOfTheImageHaveTheirCamera) {
   Open();
   const Camera small = SmallCamera().camera;

@@ -40,7 +40,7 @@ TEST_F(Ros2BagTest, ReadsAFolderOfFiles) {
   folder_.Write("bag/metadata.yaml", "rosbag2_bagfile_information:\n");
   for (int k = 0; k < kFrames; ++k) {
     Ros2Database part(folder_ / ("bag/bag_" + std::to_string(k) + ".db3"));
-    // Other ids in each of them.
+    // Each part has different topic ids.
     if (k % 2 == 0) part.Write("/chatter", "std_msgs/msg/String", kStart, "");
     part.WriteFrames(k, k + 1);
   }
@@ -54,7 +54,7 @@ TEST_F(Ros2BagTest, ReadsWithoutAnIndexOfTimes) {
   ExpectFrames(OpenSource("rosbag2", Options("a.db3")).get(), kFrames);
 }
 
-// A database with a log next to it is opened without leaving anything there.
+// Opening a database that has a write-ahead log leaves no files there.
 TEST_F(Ros2BagTest, ReadsOneWithALogAndLeavesNoFiles) {
   std::filesystem::create_directories(folder_ / "log");
   std::filesystem::create_directories(folder_ / "left");
@@ -62,7 +62,7 @@ TEST_F(Ros2BagTest, ReadsOneWithALogAndLeavesNoFiles) {
     Ros2Database database(folder_ / "log/a#1.db3");
     database.Execute("PRAGMA journal_mode=WAL; PRAGMA wal_autocheckpoint=0");
     database.WriteFrames(0, kFrames);
-    // As they are when a recorder is killed.
+    // The files that a killed recorder leaves.
     for (const std::string end : {"", "-wal"}) {
       std::filesystem::copy_file(folder_ / ("log/a#1.db3" + end),
                                  folder_ / ("left/a.db3" + end));

@@ -14,8 +14,8 @@
 
 namespace rgbd_pose {
 
-// What tests of bags expect of them, whoever wrote them: 30 frames a second,
-// depth 4 ms after colour.
+// Expectations for bags of any writer: 30 frames a second, depth 4 ms after
+// colour.
 class BagTest : public testing::Test {
  public:
   static constexpr double kStart = 1000.0;  // s
@@ -23,8 +23,8 @@ class BagTest : public testing::Test {
   static double StampOf(int k) { return kStart + k / 30.0; }
 
  protected:
-  // The first `count` frames of a source and no more, as they were written.
-  // Colours of a JPEG are less exact.
+  // Expects that the source gives exactly the `count` frames that were written.
+  // Colours from a JPEG are less exact.
   static void ExpectFrames(FrameSource* source, int count,
                            double depth_scale = 1000.0,
                            double gray_tolerance = 1.0) {
@@ -44,7 +44,7 @@ class BagTest : public testing::Test {
     EXPECT_FALSE(source->Next().has_value());
   }
 
-  // When it is opened or read; the message has all `parts`.
+  // Expects an error with all `parts` when the source is opened or read.
   static void ExpectRefusedSource(const SourceOptions& options,
                                   const std::vector<std::string>& parts) {
     ExpectInputError(

@@ -1,5 +1,5 @@
-// Recordings that the format's own library has written
-// (mcap/make_fixtures.mjs), and what may have happened to them.
+// Recordings written by the format's own library (mcap/make_fixtures.mjs),
+// intact and damaged.
 
 #include <filesystem>
 #include <random>
@@ -78,7 +78,7 @@ TEST_F(McapFileTest, FirstMessagesDoNotDisturbTheOrder) {
   EXPECT_EQ(bag->First(0, 5).size(), 1u);
 }
 
-// What is whole is read; then it says so.
+// Everything before the damage is read; then the error is reported.
 TEST_F(McapFileTest, KeepsWhatCameBeforeACut) {
   for (const std::string& name : kFiles) {
     const std::string bytes = Bytes(name);
@@ -109,7 +109,7 @@ TEST_F(McapFileTest, SaysWhatItDoesNotRead) {
 }
 
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
-// Pixels that are stored as they are look as good when they are damaged.
+// Pixels that are stored uncompressed can be damaged without looking wrong.
 TEST_F(McapFileTest, ADamagedChunkIsNotRead) {
   constexpr size_t kBegin = 1160, kEnd = 1640;  // in its second chunk
   const std::string whole = Bytes("ros1_lz4");
@@ -121,7 +121,7 @@ TEST_F(McapFileTest, ADamagedChunkIsNotRead) {
     const auto source = OpenSource("auto", options);
     try {
       while (source->Next().has_value()) continue;
-      // What was damaged makes no difference once it is unpacked.
+      // The damaged byte has no effect on the decompressed data.
       ExpectFrames(OpenSource("auto", options).get(), kFrames);
     } catch (const InputError& error) {
       const std::string what = error.what();
@@ -133,8 +133,7 @@ TEST_F(McapFileTest, ADamagedChunkIsNotRead) {
 }
 #endif
 
-// Whatever becomes of a byte, there are frames or a line that says what is
-// wrong.
+// Whichever byte is changed, the result is frames or an error of one line.
 TEST_F(McapFileTest, NoByteBringsItDown) {
   std::mt19937 random(1);
   int refused = 0;

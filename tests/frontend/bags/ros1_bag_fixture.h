@@ -17,7 +17,7 @@
 
 namespace rgbd_pose {
 
-// Written by ROS' own library.
+// Bags written by ROS' own library.
 class Ros1BagTest : public BagTest {
  protected:
   static constexpr int kFrames = 20;
@@ -46,7 +46,7 @@ class Ros1BagTest : public BagTest {
     message.height = image.rows;
     message.width = image.cols;
     message.encoding = encoding;
-    // Rows that are longer than their pixels.
+    // Rows with padding after their pixels.
     message.step = image.cols * image.elemSize() + 4;
     message.data.resize(message.step * message.height);
     for (int y = 0; y < image.rows; ++y) {

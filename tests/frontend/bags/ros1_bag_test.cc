@@ -12,7 +12,7 @@ int unpacked_chunks = 0;
 
 }  // namespace
 
-// In place of libbz2's own, which it does the work of.
+// Replaces libbz2's function, with the same behaviour, and counts the calls.
 extern "C" int BZ2_bzBuffToBuffDecompress(char* to, unsigned* size, char* from,
                                           unsigned from_size, int small,
                                           int verbosity) {
@@ -51,8 +51,8 @@ TEST_F(Ros1BagTest, ReadsPackedOnes) {
   }
 }
 
-// As a recorder leaves them whose messages arrive in another order than that
-// of the times by which they are written.
+// Chunks of a recorder whose messages arrive in an order different from their
+// time stamps.
 TEST_F(Ros1BagTest, UnpacksAChunkOnceWhereTheirTimesOverlap) {
   Open(rosbag::compression::BZ2);
   bag_.setChunkThreshold(3000);
@@ -74,7 +74,7 @@ TEST_F(Ros1BagTest, UnpacksAChunkOnceWhereTheirTimesOverlap) {
   EXPECT_LE(unpacked_chunks, chunks);
 }
 
-// As `rosbag record --split` leaves them: part 10 is after part 9.
+// Named as by `rosbag record --split`: part 10 comes after part 9.
 TEST_F(Ros1BagTest, ReadsAFolderOfParts) {
   const std::string folder = folder_ / "walk";
   std::filesystem::create_directories(folder);
@@ -102,7 +102,7 @@ TEST_F(Ros1BagTest, ReadsAFolderOfParts) {
                           folder + "/walk_20.bag.active");
   ExpectRefused({"walk_20.bag.active: its recorder was not ended"});
 
-  // Two recordings.
+  // Two recordings in one folder.
   std::filesystem::rename(folder + "/walk_20.bag.active",
                           folder + "/sit_1.bag");
   ExpectRefused({"walk: ", "one at a time"});
@@ -117,7 +117,7 @@ TEST_F(Ros1BagTest, RefusesDamagedBags) {
     folder_.Write("a.bag", whole.substr(0, share * whole.size()));
     ExpectRefused({"a.bag: "});
   }
-  // When the last chunk begins, and of which topics it has messages.
+  // The time of the last chunk and its list of topics.
   for (const int place : {60, 8}) {
     std::string damaged = whole;
     damaged.replace(whole.size() - place, 8, std::string(8, '\xff'));
@@ -128,7 +128,7 @@ TEST_F(Ros1BagTest, RefusesDamagedBags) {
   folder_.Write("a.bag", "no bag at all, but a text of some length");
   ExpectRefused({"a.bag: ", "ROS 1 bag"});
 
-  // Its recorder was killed: nothing says where the index is.
+  // A killed recorder leaves no position of the index.
   std::string unindexed = whole;
   const std::string name = "index_pos=";
   const size_t place = unindexed.find(name);

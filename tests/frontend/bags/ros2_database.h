@@ -13,7 +13,7 @@
 
 namespace rgbd_pose {
 
-// A database with the tables that rosbag2 makes, by sqlite3 itself.
+// A database with the tables of rosbag2, written with sqlite3.
 class Ros2Database {
  public:
   static constexpr char kColor[] = "/camera/color/image_raw";
@@ -36,7 +36,7 @@ class Ros2Database {
   Ros2Database(const Ros2Database&) = delete;
   Ros2Database& operator=(const Ros2Database&) = delete;
 
-  // What each message is packed by; empty: nothing.
+  // Compresses each message; empty: no compression.
   std::function<std::string(const std::string&)> pack;
 
   void Execute(const std::string& query) {
@@ -45,7 +45,7 @@ class Ros2Database {
         << sqlite3_errmsg(database_);
   }
 
-  // One that is there already is not made again.
+  // Writes a message; creates its topic if it does not exist yet.
   void Write(const std::string& topic, const std::string& type, double received,
              const std::string& said) {
     const std::string message = pack ? pack(said) : said;

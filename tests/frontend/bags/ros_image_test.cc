@@ -77,7 +77,7 @@ TEST_F(Ros1BagTest, ReadsCompressedImages) {
       cv::imencode(k % 2 == 0 ? ".jpg" : ".png", ColorImage(k), bytes);
       Write(std::string(kColor) + "/compressed", StampOf(k),
             MakeCompressed("bgr8; jpeg compressed bgr8", bytes, StampOf(k)));
-      // What compressed_depth_image_transport writes: depth as A / z + B.
+      // compressed_depth_image_transport writes depth as A / z + B.
       const float a = 10100.0F;
       const float b = -100.0F;
       cv::Mat depth = DepthImage(k);
@@ -103,7 +103,7 @@ TEST_F(Ros1BagTest, ReadsCompressedImages) {
       continue;
     }
     const Frame frame = Source()->Next()->read();
-    EXPECT_NEAR(frame.DepthAt(5, 5), 1.0, 2e-4);  // as fine as it is packed
+    EXPECT_NEAR(frame.DepthAt(5, 5), 1.0, 2e-4);  // precision of the packing
     EXPECT_EQ(frame.DepthAt(0, 0), 0.0);
   }
 }

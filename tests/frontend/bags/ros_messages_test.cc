@@ -7,8 +7,8 @@
 namespace rgbd_pose {
 namespace {
 
-// A CompressedImage, byte by byte: CDR puts a number where its size divides the
-// place, and a 0 at the end of a text.
+// A CompressedImage, byte by byte. CDR aligns each number to its size and ends
+// each text with a 0.
 constexpr char kCdr[] =
     "\x00\x01\x00\x00"  // little-endian CDR
     "\x02\x00\x00\x00"  // 2 s

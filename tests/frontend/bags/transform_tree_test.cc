@@ -28,7 +28,7 @@ TEST(TransformTreeTest, FindsWhatIsFixedThroughACommonFrame) {
 
 TEST(TransformTreeTest, PathGoesThroughAllThatMoves) {
   TransformTree tree;
-  // The table moves slowly, the camera on it often; told in any order.
+  // The table moves rarely, the camera often; transforms come in any order.
   for (const double stamp : {4.0, 0.0, 2.0}) {
     tree.Add("world", "table", stamp, Step(stamp));
   }

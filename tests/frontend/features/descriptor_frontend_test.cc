@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kMedianPx = 1.0;
 
-// A match further than this from the truth shows another place: five times the
-// noise of the coarsest keypoints.
+// A match with a larger error is an outlier: five times the noise of the
+// coarsest keypoints.
 constexpr double kWrongPx = 8.0;
 
 class DescriptorFrontendTest : public ::testing::TestWithParam<const char*>,
@@ -27,7 +27,7 @@ class DescriptorFrontendTest : public ::testing::TestWithParam<const char*>,
  protected:
   DescriptorFrontendTest() : MatchedViews(GetParam()) {}
 
-  // Enough matches for a good pose: more than twice what odometry calls ok.
+  // Enough for a good pose: more than twice the odometry's limit for ok.
   void ExpectMostlyRight(const FeatureMatches& found) const {
     MatchedViews::ExpectMostlyRight(found, 100, kMedianPx, kWrongPx);
   }
@@ -39,7 +39,7 @@ TEST_P(DescriptorFrontendTest, MatchesAreWhereTheTruthHasThem) {
   const FeatureMatches found = MatchFrom(prev, cur, Rigid3d());
   ExpectMostlyRight(found);
   EXPECT_EQ(found.features.size(), found.matches.size());
-  // The same feature in the frame it comes from: where it was, to the bit.
+  // Matching the frame with itself returns the same features, to the bit.
   const std::unique_ptr<FeatureSet> reference = Detect(prev);
   const FeatureMatches itself = MatchFrom(*reference, prev, Rigid3d());
   for (size_t i = 0; i < itself.matches.size(); ++i) {
@@ -59,7 +59,7 @@ TEST_P(DescriptorFrontendTest, FeaturesAreSpreadOverTheImage) {
   }
   for (const auto& row : quadrants) {
     for (const int count : row) {
-      // 40 % of an even share.
+      // 40 % of an equal share.
       EXPECT_GE(count, static_cast<int>(features->observations.size()) / 10);
     }
   }
@@ -82,7 +82,7 @@ TEST_P(DescriptorFrontendTest, TheSameFramesGiveTheSameMatches) {
   const Frame prev = dataset_.Read(kPrev);
   const Frame cur = dataset_.Read(kCur);
   const FeatureMatches once = MatchFrom(prev, cur, Rigid3d());
-  // From a copy nothing is known ahead.
+  // A copy has no precomputed data.
   Frame copy = cur;
   copy.gray = cur.gray.clone();
   const FeatureMatches twice = MatchFrom(prev, copy, Rigid3d());

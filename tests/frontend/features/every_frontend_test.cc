@@ -1,5 +1,5 @@
-// What is asked of every frontend, whatever it finds features by. A new one
-// joins by its row in frontend/features/frontend.cc.
+// Requirements for every frontend, whatever its features. A new frontend is
+// tested as soon as it has a row in frontend/features/frontend.cc.
 
 #include <gtest/gtest.h>
 
@@ -34,8 +34,8 @@ TEST_P(EveryFrontendTest, FindsFeaturesAgain) {
   ExpectMostlyRight(found, 100, 1.0, 4.0);
 }
 
-// Whatever camera the matches are made for: the frontend's own tells where to
-// look.
+// The frontend predicts positions with its own camera, not with the camera of
+// the matches.
 TEST_P(EveryFrontendTest, LooksWhereItsOwnCameraSees) {
   const auto reference = Detect(dataset_.Read(kPrev));
   Camera other = dataset_.camera().camera;
@@ -51,7 +51,7 @@ TEST_P(EveryFrontendTest, TracksAlongItsAxes) {
   ExpectTracksAlongItsAxes(0.01);  // the noise of a pose is about 2 mm
 }
 
-// As the loop of a camera that writes every image where the last one was.
+// Like a camera loop that writes every image to the same memory.
 TEST_P(EveryFrontendTest, KeepsNothingOfTheCallersImages) {
   SyntheticOptions options;
   options.path = "pan_tilt";
@@ -60,7 +60,7 @@ TEST_P(EveryFrontendTest, KeepsNothingOfTheCallersImages) {
   const SyntheticDataset camera(options);
   FrontendOptions frontend;
   frontend.camera = camera.camera().camera;
-  std::vector<Odometry> odometries;  // of new frames, of reused ones
+  std::vector<Odometry> odometries;  // one gets new frames, one reused ones
   for (int i = 0; i < 2; ++i) {
     odometries.emplace_back(OdometryOptions(),
                             MakeFrontend(GetParam(), frontend),

@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Bright, so that it shows whether the image is dimmed.
+// Bright enough to show whether the image is dimmed.
 constexpr int kGray = 200;
 
 Frame GrayFrame(const Camera& camera) {
@@ -46,8 +46,8 @@ cv::Vec3b At(const cv::Mat& picture, int x, int y) {
   return picture.at<cv::Vec3b>(y, x);
 }
 
-// By hue, so that it holds for any map of the kind: yellow for good matches,
-// magenta for outliers.
+// Checked by hue, which holds for any colour map of this kind: yellow for good
+// matches, magenta for outliers.
 bool IsYellow(const cv::Vec3b& c) {
   return c[0] < 100 && c[1] > 200 && c[2] > 200;
 }
@@ -56,7 +56,7 @@ bool IsMagenta(const cv::Vec3b& c) {
 }
 bool IsGray(const cv::Vec3b& c) { return c[0] == c[1] && c[1] == c[2]; }
 
-// Whether the pictures differ in the rows from `first` up to before `last`.
+// Whether the pictures differ in the rows first <= y < last.
 bool Differ(const cv::Mat& a, const cv::Mat& b, int first, int last) {
   return cv::norm(a.rowRange(first, last), b.rowRange(first, last),
                   cv::NORM_INF) > 0.0;
@@ -72,7 +72,7 @@ TEST(MatchOverlayTest, DrawsLinesAndDotsInTheColourOfTheWeight) {
   EXPECT_TRUE(IsYellow(At(picture, 102, 50)));
   EXPECT_TRUE(IsYellow(At(picture, 120, 50)));
   EXPECT_TRUE(IsMagenta(At(picture, 300, 398)));
-  // The dot is at cur: wider than the line there, and only there.
+  // The dot is at cur: wider than the line, and only there.
   EXPECT_TRUE(IsYellow(At(picture, 140, 52)));
   EXPECT_TRUE(IsGray(At(picture, 100, 52)));
   EXPECT_TRUE(IsMagenta(At(picture, 302, 350)));
@@ -154,7 +154,7 @@ TEST(MatchOverlayTest, TheCaptionAndTheLegendAreBelowTheImage) {
     EXPECT_FALSE(Differ(titled, plain, 0, camera.height));
     EXPECT_TRUE(Differ(titled, plain, camera.height, plain.rows));
 
-    // Both ends of the colours are in the strip, and not in the image.
+    // Both ends of the colour scale are in the strip, and not in the image.
     int yellow = 0;
     int magenta = 0;
     for (int y = camera.height; y < plain.rows; ++y) {
@@ -168,9 +168,9 @@ TEST(MatchOverlayTest, TheCaptionAndTheLegendAreBelowTheImage) {
   }
 }
 
-// At 320 px a caption of usual length takes two rows instead of running out of
-// the picture: nothing is drawn on the right margin, and the caption's end
-// makes a difference.
+// At 320 px, a caption of usual length is wrapped into two rows instead of
+// being cut off: the right margin stays empty, and the caption's end is
+// visible.
 TEST(MatchOverlayTest, LongCaptionsAreWrapped) {
   Camera camera;
   camera.width = 320;

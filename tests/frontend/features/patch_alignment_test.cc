@@ -14,12 +14,12 @@ namespace {
 constexpr int kSide = 64;
 const Eigen::Vector2d kCentre(31.0, 33.0);
 
-// Bilinear interpolation of the texture below, whose waves are 9 px and more
-// long, is off by 2 % of its contrast, and grey levels are rounded to 1 of
-// about 60: over 64 pixels that leaves a few hundredths of a pixel.
+// Bilinear interpolation of the texture below, with wavelengths of 9 px and
+// more, has an error of 2 % of the contrast. Grey levels are rounded to 1 of
+// about 60. Over 64 pixels, this leaves a few hundredths of a pixel.
 constexpr double kExactPx = 0.05;
 
-// A texture in all directions.
+// A texture with gradients in all directions.
 double Texture(const Eigen::Vector2d& x) {
   return 120.0 + 25.0 * std::sin(0.45 * x.x() + 0.2 * x.y()) +
          25.0 * std::sin(0.15 * x.x() - 0.52 * x.y() + 1.0) +
@@ -50,7 +50,7 @@ AlignedPatch Align(const Patch& patch, const cv::Mat& image,
                     static_cast<float>(start.y()), PatchAlignmentOptions());
 }
 
-// Where the patch is found must be `expected`.
+// Expects that the patch is found at `expected`.
 void ExpectAt(const AlignedPatch& found, const Eigen::Vector2d& expected) {
   ASSERT_TRUE(found.found);
   EXPECT_NEAR(found.u, expected.x(), kExactPx);
@@ -87,7 +87,7 @@ TEST(PatchAlignmentTest, GainAndBiasDoNotMatter) {
   for (const double gain : {0.5, 0.8, 1.4, 2.0}) {
     for (const double bias : {-20.0, 0.0, 15.0}) {
       const cv::Mat image = Render([&](const Eigen::Vector2d& x) {
-        // About the middle, so that no grey level is cut off.
+        // Scaled about the middle, which avoids saturation.
         return 125.0 + gain * 0.8 * (Texture(x - shift) - 120.0) + bias;
       });
       SCOPED_TRACE(testing::Message() << gain << " " << bias);
@@ -109,7 +109,7 @@ TEST(PatchAlignmentTest, FollowsAnAffineWarp) {
   });
   ExpectAt(Align(PatchOf(ref, ref_from_cur.cast<float>()), cur),
            kCentre + shift);
-  // Without the warp it is off: the test above is not vacuous.
+  // Without the warp it fails, which shows that the test above is meaningful.
   const AlignedPatch plain = Align(PatchOf(ref), cur);
   EXPECT_TRUE(!plain.found || plain.correlation < 0.97F);
 }
@@ -121,7 +121,7 @@ TEST(PatchAlignmentTest, TellsAnotherPlace) {
   });
   const AlignedPatch found = Align(patch, other);
   EXPECT_TRUE(!found.found || found.correlation < 0.8F);
-  // The negative of an image is another place, too.
+  // The negative of the image must not match either.
   const cv::Mat negative =
       Render([](const Eigen::Vector2d& x) { return 240.0 - Texture(x); });
   const AlignedPatch inverted = Align(patch, negative);
@@ -148,11 +148,11 @@ TEST(PatchAlignmentTest, NeverLeavesTheImage) {
     EXPECT_FALSE(Align(patch, image, {edge, 30.0}).found) << edge;
     EXPECT_FALSE(Align(patch, image, {30.0, edge}).found) << edge;
   }
-  // A patch may be made at the border, whose pixels it repeats.
+  // A patch may be at the border; border pixels are repeated.
   Patch corner;
   MakePatch(image, {0.0F, 63.0F}, Eigen::Matrix2f::Identity(), &corner);
   Align(corner, image);
-  // Up to the last pixel there is something to align with.
+  // Patches can be aligned up to the last pixel.
   Patch last;
   MakePatch(image, {59.0F, 59.0F}, Eigen::Matrix2f::Identity(), &last);
   const AlignedPatch found = Align(last, image, {59.4, 59.4});
@@ -163,7 +163,7 @@ TEST(PatchAlignmentTest, NeverLeavesTheImage) {
 TEST(PatchAlignmentTest, NoiseMovesItAsMuchAsThePatchSays) {
   const Patch patch = PatchOf(Render(Texture));
   constexpr int kTrials = 200;
-  constexpr double kNoise = 8.0;  // grey levels, half range of a uniform one
+  constexpr double kNoise = 8.0;  // grey levels, half range of uniform noise
   uint32_t state = 1;
   double squares = 0.0;
   for (int i = 0; i < kTrials; ++i) {
@@ -177,7 +177,7 @@ TEST(PatchAlignmentTest, NoiseMovesItAsMuchAsThePatchSays) {
         std::pow(found.u - kCentre.x(), 2) + std::pow(found.v - kCentre.y(), 2);
   }
   const double rms = std::sqrt(squares / kTrials);
-  // Worst direction twice, the best one at least: between one and sqrt(2).
+  // The rms is at least the worst direction's and at most sqrt(2) times that.
   const double worst = kNoise / std::sqrt(3.0 * patch.min_eigenvalue);
   EXPECT_LT(rms, 1.1 * std::sqrt(2.0) * worst);
   EXPECT_GT(rms, 0.5 * worst);

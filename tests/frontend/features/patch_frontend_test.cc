@@ -14,10 +14,10 @@
 namespace rgbd_pose {
 namespace {
 
-// Noise of depth moves a point by up to half a pixel at this baseline.
+// Depth noise moves a point by up to half a pixel at this baseline.
 constexpr double kPatchMedianPx = 0.5;
 
-// A match further than this from the truth shows another place.
+// A match with a larger error is an outlier.
 constexpr double kPatchWrongPx = 3.0;
 
 class PatchFrontendTest : public ::testing::Test, protected MatchedViews {
@@ -55,7 +55,7 @@ TEST_F(PatchFrontendTest, MatchesAreWhereTheTruthHasThem) {
   ExpectMostlyRight(MatchFrom(prev, cur, cur_from_prev_));
 }
 
-// By as much as a start is off that coarse images tell, and more.
+// Errors as large as those of a start from coarse images, and larger.
 TEST_F(PatchFrontendTest, WrongGuessesStillGiveMatches) {
   const Frame prev = dataset_.Read(kPrev);
   const Frame cur = dataset_.Read(kCur);
@@ -84,7 +84,7 @@ TEST_F(PatchFrontendTest, ExposureDoesNotMatter) {
   }
 }
 
-// Whatever was matched in between, too: the patches are kept.
+// Matches with other frames in between, which share the patches, do not matter.
 TEST_F(PatchFrontendTest, TheSameFramesGiveTheSameMatches) {
   const std::unique_ptr<FeatureSet> reference = Detect(dataset_.Read(kPrev));
   const Frame cur = dataset_.Read(kCur);
@@ -152,7 +152,7 @@ TEST_F(PatchFrontendTest, LessCertainMatchesSaySo) {
 }
 
 TEST_F(PatchFrontendTest, TracksAlongItsAxes) {
-  // Several times the noise of a pose, well below a millimetre.
+  // Several times the noise of a pose, which is well below a millimetre.
   ExpectTracksAlongItsAxes(0.003);
 }
 

@@ -7,7 +7,7 @@
 namespace rgbd_pose {
 namespace {
 
-// The warp is the derivative of where the points of the plane are seen.
+// The warp is the derivative of the projection of the plane's points.
 TEST(PlaneWarpTest, IsTheDerivativeOfTheMapOfThePlane) {
   const Camera camera;
   const Rigid3d motion(Eigen::Quaterniond(Eigen::AngleAxisd(
@@ -21,7 +21,7 @@ TEST(PlaneWarpTest, IsTheDerivativeOfTheMapOfThePlane) {
        {Eigen::Vector3d(0.4, -0.3, -0.8), Eigen::Vector3d(0.0, 0.0, -1.0),
         Eigen::Vector3d(0.0, 0.0, 0.0)}) {
     ref.normal = normal.normalized();
-    // Without a normal the plane is parallel to the image.
+    // Without a normal, the plane is parallel to the image.
     const Eigen::Vector3d n =
         normal.isZero() ? -Eigen::Vector3d::UnitZ() : ref.normal;
     const Eigen::Vector3d centre =
@@ -35,7 +35,7 @@ TEST(PlaneWarpTest, IsTheDerivativeOfTheMapOfThePlane) {
     Eigen::Matrix2d expected;
     expected.col(0) = (map(h, 0.0) - map(-h, 0.0)) / (2.0 * h);
     expected.col(1) = (map(0.0, h) - map(0.0, -h)) / (2.0 * h);
-    // The result is of single precision.
+    // The result has single precision.
     EXPECT_LT((PlaneWarp(camera, ref, motion).cast<double>() - expected)
                   .lpNorm<Eigen::Infinity>(),
               1e-6);

@@ -1,4 +1,4 @@
-// Frontends of one's own that only follow points.
+// User-defined frontends that only follow points.
 
 #include "frontend/features/point_frontend.h"
 
@@ -9,14 +9,14 @@
 namespace rgbd_pose {
 namespace {
 
-// Finds points with and without a depth and
-// says that each is where the guess has it.
+// Finds points with and without depth and returns each where the guess predicts
+// it.
 class Fake final : public PointFrontend {
  public:
   using PointFrontend::PointFrontend;
 
   bool forgets_one = false;
-  int missing = -1;  // this one is not found
+  int missing = -1;  // index of the point that is not found
 
  private:
   void Find(const Frame& /*frame*/, Points* points) override {

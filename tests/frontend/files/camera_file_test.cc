@@ -116,7 +116,7 @@ INSTANTIATE_TEST_SUITE_P(
 struct BadFile {
   const char* name;
   std::string text;
-  std::vector<std::string> message_parts;  // line and key among them
+  std::vector<std::string> message_parts;  // including line and key
 };
 
 class BadCameraFileTest : public testing::TestWithParam<BadFile> {};
@@ -256,7 +256,7 @@ TEST_P(AnyLayoutTest, SaysWhenRowsAreExposed) {
 INSTANTIATE_TEST_SUITE_P(CameraFile, AnyLayoutTest,
                          testing::Values(kOrbSlam2, kOrbSlam3, kRos, kKalibr));
 
-// Keys that all layouts may have.
+// Keys that are valid in all layouts.
 TEST(CameraFileTest, TimesAndDepthErrorsAreNoLargerThanTheyCanBe) {
   const struct {
     const char* line;
@@ -280,8 +280,8 @@ TEST(CameraFileTest, TimesAndDepthErrorsAreNoLargerThanTheyCanBe) {
   }
 }
 
-// As Kalibr writes its result: cam1 a quarter turn around z and 0.1 m along the
-// new x away from cam0, cam2 0.2 m along z from cam1.
+// A result of Kalibr: cam1 is rotated by a quarter turn around z and is 0.1 m
+// along the new x away from cam0; cam2 is 0.2 m along z from cam1.
 constexpr char kRig[] = R"(
 cam0:
   camera_model: pinhole
@@ -322,7 +322,7 @@ TEST(DepthCameraTest, IsReadFromARig) {
   EXPECT_EQ(setup.depth_camera->camera.fy, 401.0);
   EXPECT_EQ(setup.depth_camera->camera.k1, 0.1);
   EXPECT_EQ(setup.depth_camera->camera.width, 640);
-  // cam1_from_cam0 takes cam0's (0, 0, 1) to (0.1, 0, 1), and so on.
+  // cam1_from_cam0 maps cam0's (0, 0, 1) to (0.1, 0, 1), and so on.
   const Rigid3d& of_cam1 = setup.depth_camera->color_from_depth;
   EXPECT_LT((of_cam1 * Eigen::Vector3d(0.1, 0.0, 1.0) -
              Eigen::Vector3d(0.0, 0.0, 1.0))

@@ -12,7 +12,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Another camera of the same size; what a layout does not hold stays 0.
+// Another camera of the same size; parameters missing in a layout stay 0.
 RgbdCamera Changed(const RgbdCamera& first) {
   RgbdCamera camera = first;
   camera.camera.fx = 510.125;
@@ -63,7 +63,7 @@ TEST_P(EveryLayoutTest, IsWrittenAsItIsRead) {
   const std::string second =
       folder.Write("second.yaml", FormatCameraFile(camera, first));
   ExpectEqual(ResolveCamera(second), camera);
-  // A file that has the keys of depth and time already, and back to none.
+  // A file that already has the keys of depth and time, and without them again.
   camera.depth_correction.inverse_depth_offset = 0.25;
   camera.color_shutter = {0.0, -0.1};
   camera.depth_shutter = {};
@@ -73,8 +73,8 @@ TEST_P(EveryLayoutTest, IsWrittenAsItIsRead) {
   ExpectEqual(ResolveCamera(third), camera);
 }
 
-// A file becomes one of another lens, in its own layout or, where that has
-// none, in another one.
+// A file is rewritten for another lens, in its own layout or, if that layout
+// does not support the lens, in another one.
 TEST_P(EveryLayoutTest, TakesEveryLens) {
   const TempFolder folder;
   const std::string first = folder.Write("camera.yaml", GetParam());
@@ -103,7 +103,7 @@ TEST_P(EveryLayoutTest, TakesEveryLens) {
 INSTANTIATE_TEST_SUITE_P(CameraFileWriter, EveryLayoutTest,
                          testing::Values(kOrbSlam2, kOrbSlam3, kRos, kKalibr));
 
-// All that YAML allows, though nobody would write it.
+// Unusual, but valid YAML.
 constexpr char kOnOneLine[] =
     "{Camera.fx: 517.3, Camera.fy: 516.5, Camera.cx: 318.6, Camera.cy: 255.3,\n"
     " Camera.width: 640, Camera.height: 480}\n";
@@ -216,7 +216,7 @@ TEST(CameraFileWriterTest, WhatALayoutDoesNotHoldGoesIntoAnother) {
   EXPECT_NE(text.find("# In another layout"), std::string::npos);
 }
 
-// yaml-cpp cannot read what it writes of a list that is a key.
+// yaml-cpp cannot read its own output for a key that is a list.
 TEST(CameraFileWriterTest, WhatCannotBeWrittenAgainIsLeftOut) {
   const TempFolder folder;
   const std::string odd =

@@ -31,7 +31,7 @@ class ImageFileTest : public testing::Test {
                      message_parts);
   }
 
-  // Expects that no beginning of a file passes for the whole image.
+  // Expects that no truncated file is accepted as the whole image.
   void ExpectAnyCutRefused(const std::string& name, const cv::Mat& image) {
     const std::string path = Write(name, image);
     EXPECT_NO_THROW(ReadImageFile(path, cv::IMREAD_GRAYSCALE));
@@ -63,7 +63,7 @@ TEST_F(ImageFileTest, RefusesCutOffPng) {
   ExpectAnyCutRefused("depth.png", Noise(CV_16UC1));
 }
 
-// OpenCV itself takes these, with grey for what is missing.
+// OpenCV itself accepts these and fills the missing part with grey.
 TEST_F(ImageFileTest, RefusesCutOffJpeg) {
   ExpectAnyCutRefused("color.jpg", Noise(CV_8UC3));
 }
@@ -104,7 +104,7 @@ TEST_F(ImageFileTest, ReadsTheKindsThatRecordingsComeIn) {
   }
 }
 
-// A decoder that OpenCV has for it would end the program.
+// One of OpenCV's decoders would terminate the program for this file.
 TEST_F(ImageFileTest, WhatLooksLikeDicomIsRefused) {
   const std::string bytes = std::string(128, '\x42') + "DICMB`\x82";
   ExpectRefused(folder_.Write("a.png", bytes), {"a.png", "no image"});
@@ -140,7 +140,7 @@ TEST_F(ImageFileTest, WritesPngFilesAsAWhole) {
                    {folder_ / "none/a.png", "cannot be written"});
 }
 
-// A JPEG turned by its EXIF header (orientation 6) stays as its camera saw it.
+// A JPEG with a rotation in its EXIF header (orientation 6) is not rotated.
 TEST_F(ImageFileTest, LeavesTheOrientationAlone) {
   const std::string path = Write("color.jpg", Noise(CV_8UC3));
   const std::string content = ReadTextFile(path);

@@ -16,8 +16,8 @@ namespace {
 constexpr int kPngWidth = 31;
 constexpr int kPngHeight = 23;
 
-// Random bytes, which are an image under every filter. The filters take turns
-// unless one is given.
+// Random bytes, which are an image under every filter. Filters alternate unless
+// one is given.
 std::string RandomRows(int row_bytes, int filter = -1) {
   cv::RNG rng(7);
   std::string rows;
@@ -65,14 +65,14 @@ cv::Mat AsDepth(const std::string& file) {
   return DecodePng(file, PngUse::kDepth).image;
 }
 
-// Whether any use of the file shows that it is damaged.
+// Whether damage of the file is found in any use.
 bool IsDamaged(const std::string& file) {
   return DecodePng(file, PngUse::kGray).is_damaged ||
          DecodePng(file, PngUse::kDepth).is_damaged ||
          DecodePng(file, PngUse::kOther).is_damaged;
 }
 
-// Expects exactly what OpenCV makes of a file.
+// Expects exactly OpenCV's result for a file.
 void ExpectAsOpenCv(const cv::Mat& decoded, const std::string& file,
                     int flags) {
   const cv::Mat expected = DecodeByOpenCv(file, flags);
@@ -82,7 +82,7 @@ void ExpectAsOpenCv(const cv::Mat& decoded, const std::string& file,
   EXPECT_EQ(cv::norm(decoded, expected, cv::NORM_INF), 0.0);
 }
 
-// What OpenCV makes of the colours: its decoder does not round.
+// Expects OpenCV's conversion of the colours; its PNG decoder does not round.
 void ExpectGray(const cv::Mat& decoded, const std::string& file) {
   cv::Mat expected;
   cv::cvtColor(DecodeByOpenCv(file, cv::IMREAD_COLOR), expected,
@@ -169,14 +169,14 @@ TEST(PngDecoderTest, LeavesOtherKindsToOpenCv) {
   ExpectLeft(deep.File());
 }
 
-// Their rows are decompressed once, by OpenCV: here nobody looks at them.
+// Only OpenCV decompresses these rows; this decoder does not check them.
 TEST(PngDecoderTest, DoesNotDecompressWhatIsLeftToOpenCv) {
   PngParts palette = Gray();
   palette.kind[1] = 3;
   PngParts gamma = Color();
   gamma.before_image = Chunk("gAMA", BigEndian(45455));
   for (PngParts parts : {palette, gamma}) {
-    parts.rows.resize(kPngWidth);  // the others are missing
+    parts.rows.resize(kPngWidth);  // the other rows are missing
     EXPECT_FALSE(IsDamaged(parts.File()));
   }
 }
@@ -215,7 +215,7 @@ TEST(PngDecoderTest, KnowsADamagedFile) {
   }
 }
 
-// As libpng: what is not needed may be broken.
+// As in libpng, chunks that are not needed may be damaged.
 TEST(PngDecoderTest, ADamagedCommentIsNoDamage) {
   PngParts parts = Color();
   parts.before_image = Chunk("tEXt", std::string("Comment\0kitchen", 15));
@@ -224,14 +224,14 @@ TEST(PngDecoderTest, ADamagedCommentIsNoDamage) {
   ExpectLeft(parts.File());
 }
 
-// Files whose checksums are right, but not what they say.
+// Files with valid checksums and invalid content.
 TEST(PngDecoderTest, LeavesContradictoryFilesToOpenCv) {
   PngParts parts = Color();
   parts.rows.pop_back();
   ExpectLeft(parts.File());
-  parts.rows += "ab";  // one too many
+  parts.rows += "ab";  // one byte too many
   ExpectLeft(parts.File());
-  ExpectLeft(Color(5).File());  // no such filter
+  ExpectLeft(Color(5).File());  // an unknown filter
 
   parts = Color();
   for (const uint32_t width : {0u, kPngWidth - 1u, 1u << 30, 0xFFFFFFFFu}) {
@@ -249,7 +249,7 @@ TEST(PngDecoderTest, LeavesContradictoryFilesToOpenCv) {
   ExpectLeft(signature + header + good.substr(8));
 }
 
-// What libpng would tell stderr about.
+// Damage that libpng would report on stderr.
 TEST(PngDecoderTest, FindsDamageWithoutWrongChecksums) {
   PngParts parts = Depth();
   EXPECT_FALSE(IsDamaged(parts.File()));
@@ -262,7 +262,7 @@ TEST(PngDecoderTest, FindsDamageWithoutWrongChecksums) {
   parts.kind[1] = 5;
   EXPECT_TRUE(IsDamaged(parts.File())) << "no such kind of colour";
   parts = Depth();
-  parts.width = parts.height = 16384;  // not to be taken memory for
+  parts.width = parts.height = 16384;  // memory for this must not be allocated
   EXPECT_TRUE(IsDamaged(parts.File()));
   parts.width = 16385;
   EXPECT_TRUE(IsDamaged(parts.File()));

@@ -8,7 +8,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Noise in part, and the widest steps between neighbours.
+// Partly noise, with the largest steps between neighbours.
 cv::Mat Image(int type, cv::Size size) {
   cv::Mat image(size, type);
   cv::RNG(1).fill(image, cv::RNG::UNIFORM, 0, 65536);
@@ -35,7 +35,7 @@ TEST(PngEncoderTest, IsDecodedByOpenCvAndByOurselves) {
   }
 }
 
-// A part of an image, whose rows do not follow each other in memory.
+// A part of an image, whose rows are not contiguous in memory.
 TEST(PngEncoderTest, TakesAPartOfAnImage) {
   const cv::Mat whole = Image(CV_16UC1, {40, 30});
   const cv::Mat part = whole(cv::Rect(15, 5, 20, 20));

@@ -29,7 +29,7 @@ TEST(DepthLookupTest, ReadsAFlatWall) {
   EXPECT_DOUBLE_EQ(sample.sigma, 1.425e-3 * 4.0);
 }
 
-// Inverse depth is linear over the image of a plane: sub-pixel exact.
+// Inverse depth is linear over the image of a plane: exact between pixels.
 TEST(DepthLookupTest, ReadsASlantedWallBetweenPixels) {
   Frame frame = FlatFrame(2.0);
   for (int row = 0; row < 480; ++row) {

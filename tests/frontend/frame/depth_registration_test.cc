@@ -37,9 +37,8 @@ TEST(DepthRegistrationTest, OfTheSameCameraChangesNothing) {
   EXPECT_EQ(cv::norm(depth, registered, cv::NORM_INF), 0.0);
 }
 
-// A camera with other lens, size and place that looks at the simulated room,
-// against the colour camera's own rendering of its depth.
-// A lens each of colour and depth.
+// A depth camera with another lens, size and position views the simulated room.
+// The result is compared with depth rendered for the colour camera.
 struct TwoLenses {
   const char* name;
   LensModel color_model, depth_model;
@@ -74,7 +73,7 @@ TEST_P(RegistrationOfLensesTest, IsWhatTheColourCameraWouldHaveSeen) {
         registration.Register(depth.Read(k).depth, truth.depth_scale);
     int both = 0;
     int close = 0;
-    int behind = 0;  // what should be hidden
+    int behind = 0;  // points that should be hidden
     int pinholes = 0;
     for (int row = 0; row < truth.depth.rows; ++row) {
       for (int column = 0; column < truth.depth.cols; ++column) {
@@ -95,10 +94,10 @@ TEST_P(RegistrationOfLensesTest, IsWhatTheColourCameraWouldHaveSeen) {
         behind += got > 1.1 * seen;
       }
     }
-    // All but what the depth camera does not see from its place.
+    // All pixels except those that the depth camera does not see.
     EXPECT_GT(both, 0.98 * truth.depth.total());
     EXPECT_LT(pinholes, 0.001 * both);
-    // And it is right but at edges.
+    // Depth is correct except at edges.
     EXPECT_GT(close, 0.97 * both);
     EXPECT_LT(behind, 0.004 * both);
   }
@@ -111,7 +110,7 @@ INSTANTIATE_TEST_SUITE_P(
                               LensModel::kRational,
                               {0.1, -0.2, 0.002, 0.0},
                               {-0.05, 0.0, 0.0, 0.0}},
-                    // As an Azure Kinect's.
+                    // Similar to an Azure Kinect's.
                     TwoLenses{
                         "Rationals",
                         LensModel::kRational,
@@ -127,7 +126,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(DepthRegistrationTest, WhatIsNearHidesWhatIsBehind) {
   const Camera camera = CameraOfSize(64, 48, 50.0);
-  // A near half that moves over the far one when seen from the side.
+  // A near half that covers a part of the far half when seen from the side.
   cv::Mat depth(48, 64, CV_16UC1, cv::Scalar(4.0 * kUnits));
   depth.colRange(0, 32).setTo(1.0 * kUnits);
   const Rigid3d color_from_depth(Eigen::Quaterniond::Identity(),
@@ -152,7 +151,7 @@ TEST(DepthRegistrationTest, KeepsHolesAndFillsNone) {
   depth(cv::Rect(10, 10, 3, 3)).setTo(0);
   const cv::Mat registered = DepthRegistration({depth_camera, {}}, color_camera)
                                  .Register(depth, kUnits);
-  // Four times the size: sixteen pixels of each.
+  // Four times the size: sixteen pixels for each.
   EXPECT_EQ(cv::countNonZero(registered), 16 * (32 * 24 - 9));
   EXPECT_EQ(cv::countNonZero(registered(cv::Rect(40, 40, 12, 12))), 0);
 }

@@ -9,7 +9,7 @@ namespace {
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-// A third of the pixels has no depth, the others lie around the median.
+// A third of the pixels have no depth; the others are around the median.
 Frame FrameWithMedian(uint16_t raw, double depth_scale) {
   Frame frame;
   frame.index = 12;

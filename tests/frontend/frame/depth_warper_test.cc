@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-// No multiple of the blocks that it works in.
+// The size is not a multiple of the warper's blocks.
 Camera MovedCamera() { return {164, 122, 131.25, 131.25, 79.5, 59.5, 0, 0, 0}; }
 
 Frame FrameOf(const cv::Mat& depth_m) {
@@ -29,7 +29,7 @@ Rigid3d Shift(double x, double y, double z) {
   return Rigid3d(Eigen::Quaterniond::Identity(), {x, y, z});
 }
 
-// A wall 2 m away and in front of it, 1 m away, a board over some columns.
+// A wall 2 m away, and a board over some columns in front of it, 1 m away.
 Frame BoardAndWall(int from, int to) {
   const Camera camera = MovedCamera();
   cv::Mat depth(camera.height, camera.width, CV_32FC1, cv::Scalar(2.0));
@@ -47,7 +47,7 @@ TEST(DepthWarperTest, StandingStillChangesNothing) {
   frame.depth.at<uint16_t>(20, 30) = Frame::kNoDepth;
   const cv::Mat& moved = mover.Move(frame, Rigid3d());
   EXPECT_EQ(moved.at<uint16_t>(20, 30), 0);
-  EXPECT_EQ(moved.data, memory);  // is used again
+  EXPECT_EQ(moved.data, memory);  // memory is reused
 }
 
 TEST(DepthWarperTest, GoingAheadBringsAllNearer) {
@@ -81,7 +81,7 @@ TEST(DepthWarperTest, TheNearSurfaceHidesTheFarOneAndUncoversTheUnknown) {
   }
 }
 
-// A room from a place nearby, as by rendering it from there.
+// Compares with a rendering from the other pose.
 TEST(DepthWarperTest, AgreesWithWhatIsSeenFromThere) {
   Camera distorted = MovedCamera();
   distorted.k1 = 0.2;

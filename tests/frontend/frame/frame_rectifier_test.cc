@@ -1,4 +1,4 @@
-// Rolling images, resampled, against what a global shutter has rendered.
+// Compares rectified rolling-shutter images with global-shutter renderings.
 
 #include "frontend/frame/frame_rectifier.h"
 
@@ -25,7 +25,7 @@ SyntheticOptions HandheldOptions() {
   return options;
 }
 
-// As the path has it at the stamp.
+// The path's velocity at the time stamp.
 Twist TwistOfPath() {
   constexpr double kStep = 1e-3;  // s
   const SyntheticPath path = FindSyntheticPath("handheld");
@@ -46,7 +46,7 @@ Frame Seen(const Shutter& color, const Shutter& depth) {
   return frame;
 }
 
-// Of pixels that are in view in both: not near to the border.
+// Only pixels away from the border, which are in view in both images.
 constexpr int kBorder = 20;
 
 std::vector<double> GrayDifferences(const cv::Mat& a, const cv::Mat& b) {
@@ -60,7 +60,7 @@ std::vector<double> GrayDifferences(const cv::Mat& a, const cv::Mat& b) {
   return errors;
 }
 
-// Relative ones; 1 where one of them is unknown.
+// Relative differences; 1 if one of the depths is unknown.
 std::vector<double> DepthDifferences(const Frame& a, const Frame& b) {
   std::vector<double> errors;
   for (int v = kBorder; v < a.depth.rows - kBorder; ++v) {
@@ -82,14 +82,14 @@ void ExpectLike(const Frame& rectified, const Frame& expected,
         GrayDifferences(rectified.*image, expected.*image);
     const std::vector<double> before =
         GrayDifferences(rolling.*image, expected.*image);
-    // Interpolation, and what the velocity has changed by within the readout.
+    // Interpolation, and the change of velocity within the readout.
     EXPECT_LE(Median(errors), 2.0);
     EXPECT_LT(Quantile(errors, 0.9), 14.0);
     EXPECT_GT(Quantile(before, 0.9), 4.0 * Quantile(errors, 0.9));
   }
   const std::vector<double> errors = DepthDifferences(rectified, expected);
   EXPECT_LT(Median(errors), 0.001);
-  EXPECT_LT(Quantile(errors, 0.9), 0.003);  // edges are beyond
+  EXPECT_LT(Quantile(errors, 0.9), 0.003);  // except at edges
   EXPECT_GT(Quantile(DepthDifferences(rolling, expected), 0.9), 0.015);
 }
 
@@ -100,14 +100,14 @@ TEST(FrameRectifierTest, MakesWhatAGlobalShutterSees) {
     const Frame rolling = Seen({-0.0075, sign * 0.028}, {-0.018, sign * 0.028});
     const Frame rectified = rectifier.Rectify(rolling);
     ExpectLike(rectified, expected, rolling);
-    // The measured images are still there.
+    // The measured images are not overwritten.
     EXPECT_NE(rectified.gray.data, rolling.gray.data);
     EXPECT_NE(rectified.depth.data, rolling.depth.data);
     EXPECT_NE(rectified.color.data, rolling.color.data);
   }
 }
 
-// 4 ms after the stamp.
+// Rectifies to 4 ms after the time stamp.
 TEST(FrameRectifierTest, MakesWhatIsSeenFromAPlaceNearby) {
   constexpr double kLater = 0.004;
   constexpr double kMiddle = -0.0075;

@@ -38,7 +38,7 @@ TEST(FrameTest, IsOfOneMomentIfNothingIsExposedAtAnotherTime) {
   EXPECT_FALSE(frame.IsOneMoment());
 }
 
-// Without a velocity nothing can be undone.
+// Without a velocity, shutters cannot be compensated.
 TEST(FrameTest, TimingTakesAVelocity) {
   Frame frame;
   frame.color_shutter = {0.001, 0.02};

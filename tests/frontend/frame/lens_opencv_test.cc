@@ -1,4 +1,4 @@
-// Lenses against OpenCV's own.
+// Compares the lens models with OpenCV's.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// A wall, seen row after row by a camera that moves on meanwhile.
+// A wall seen with a rolling shutter by a moving camera.
 
 #include "frontend/frame/observe.h"
 
@@ -39,7 +39,7 @@ Vector3d WallPoint(const Camera& camera, const Vector2d& ideal) {
 
 Frame FrameOfWall(const Camera& camera, const FrameTiming& timing) {
   Frame frame;
-  frame.depth_scale = 20000.0;  // 0.05 mm: no noise
+  frame.depth_scale = 20000.0;  // 0.05 mm steps, no noise
   frame.gray = cv::Mat(camera.height, camera.width, CV_8UC1, cv::Scalar(0));
   frame.depth = cv::Mat(camera.height, camera.width, CV_16UC1);
   frame.color_shutter = timing.color;
@@ -63,7 +63,7 @@ const Twist kTurning = {{0.7, -0.6, 0.5}, {0.0, 0.0, 0.0}};
 const Twist kSliding = {{0.0, 0.0, 0.0}, {0.4, -0.5, 0.6}};
 const Twist kMoving = kTurning + kSliding;
 
-// Colour and depth each by itself, together, and the last row first.
+// Colour shutter only, depth shutter only, both, and last row first.
 std::vector<FrameTiming> Timings() {
   std::vector<FrameTiming> timings;
   for (const Twist& twist : {kTurning, kSliding, kMoving}) {
@@ -79,7 +79,7 @@ std::vector<FrameTiming> Timings() {
   return timings;
 }
 
-// Ideal pixels, far enough from the border to be in view whenever it is.
+// Ideal pixels, far enough from the border to be in view at any row's time.
 std::vector<Vector2d> Grid() {
   std::vector<Vector2d> grid;
   for (int v = 30; v <= 210; v += 36) {
@@ -88,9 +88,8 @@ std::vector<Vector2d> Grid() {
   return grid;
 }
 
-// A row is told by a place that is itself off by a hundredth of what the camera
-// moves meanwhile, 10 px; beyond second order a turn of 1 rad/s moves points by
-// 0.002 px.
+// The row is read at a position with an error of 1 % of the motion of 10 px.
+// Terms beyond second order move points by 0.002 px at a rotation of 1 rad/s.
 constexpr double kPixelTolerance = 0.03;
 
 TEST(ObserveTest, SeesAllAsAtTheStamp) {
@@ -109,7 +108,7 @@ TEST(ObserveTest, SeesAllAsAtTheStamp) {
             Observe(frame, camera, seen.x(), seen.y(), 0.5, {});
         EXPECT_NEAR(o.u, ideal.x(), kPixelTolerance);
         EXPECT_NEAR(o.v, ideal.y(), kPixelTolerance);
-        // Half of a unit, and a slope of 0.3 over some hundredths of a pixel.
+        // Half of a unit, plus a slope of 0.3 over some hundredths of a pixel.
         EXPECT_NEAR(o.depth, point.z(), 0.0005);
         EXPECT_GT(o.sigma_depth, 0.0);
         const Observation as_it_is =
@@ -124,8 +123,8 @@ TEST(ObserveTest, SeesAllAsAtTheStamp) {
   }
 }
 
-// Rows of different times show a wall that is bent by what it moves from one to
-// the next, which the normal has: so the readout is short here.
+// The wall's motion from row to row bends it, which affects the normal. Hence
+// the readout is short here.
 TEST(ObserveTest, TurnsNormals) {
   const Camera camera = SmallCamera(false);
   const FrameTiming timing = {{0.0, 0.0}, {0.06, 0.001}, kTurning};
@@ -138,9 +137,9 @@ TEST(ObserveTest, TurnsNormals) {
           Observe(seen, camera, ideal.x(), ideal.y(), 0.5, {});
       return std::acos(std::min(1.0, o.normal.dot(kNormal)));
     };
-    // The square of the angle that it turns by, and depths that are rounded.
+    // The square of the angle of rotation, and the rounding of depths.
     EXPECT_LT(off(frame), 0.006);
-    // But for the turn about itself.
+    // The full angle, except for the rotation about the normal itself.
     EXPECT_GT(off(ignored), 0.04);
   }
 }
@@ -195,7 +194,7 @@ TEST(ObserveTest, WhereNothingIsKnownOrToBeDoneAllIsAsItIs) {
   }
 }
 
-// Nothing is invented where depth was not measured.
+// No depth or normal is made up where depth is missing.
 TEST(ObserveTest, WithoutDepthThePixelIsMovedAsThatOfARoom) {
   const Camera camera = SmallCamera(false);
   const FrameTiming timing = {{0.02, 0.0}, {0.02, 0.0}, kTurning};

@@ -59,7 +59,7 @@ TEST(PreparedFrameTest, BothPyramidsShareTheImage) {
   const PreparedFrame frame = Gray(7);
   const auto& sharp = frame.Derived<ImagePyramid>().levels;
   const auto& smooth = frame.Derived<SmoothPyramid>().levels;
-  ASSERT_EQ(sharp.size(), 3u);  // of 32 rows
+  ASSERT_EQ(sharp.size(), 3u);  // for 32 rows
   ASSERT_EQ(smooth.size(), sharp.size());
   EXPECT_EQ(sharp[0].data, frame.gray.data);
   EXPECT_EQ(smooth[0].data, frame.gray.data);

@@ -7,7 +7,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Of a camera without distortion.
+// For a camera without distortion.
 Eigen::Vector3d NormalAt(const Frame& frame, const Camera& camera, double u,
                          double v) {
   return LookUpNormal(frame, camera, u, v, camera.Ray(u, v).head<2>());
@@ -15,7 +15,7 @@ Eigen::Vector3d NormalAt(const Frame& frame, const Camera& camera, double u,
 
 using Eigen::Vector3d;
 
-// The depth image of the plane normal . X = -distance (normal towards us).
+// The depth image of the plane normal . X = -distance (normal towards camera).
 Frame PlaneFrame(const Camera& camera, const Vector3d& normal,
                  double distance) {
   Frame frame;
@@ -42,7 +42,7 @@ TEST(SurfaceNormalTest, FindsSlantedPlanes) {
     const Frame frame = PlaneFrame(camera, normal, 1.5);
     for (const double u : {200.0, 320.0, 430.0}) {
       const Vector3d found = NormalAt(frame, camera, u, 240.0);
-      // 0.2 mm steps of the image over 10 px of about 3 mm.
+      // 0.2 mm depth steps over 10 px of about 3 mm.
       EXPECT_LE((found - normal).norm(), 0.02) << direction.transpose();
     }
   }

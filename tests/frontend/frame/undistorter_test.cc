@@ -7,7 +7,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Each pixel holds its own place.
+// Each pixel contains its own position.
 Frame Places(const Camera& camera) {
   Frame frame;
   frame.depth.create(camera.height, camera.width, CV_16UC1);

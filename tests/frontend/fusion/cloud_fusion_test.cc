@@ -16,13 +16,13 @@ FusionOptions Options(const Camera& camera) {
   return options;
 }
 
-// A wall 2 m ahead with, before its left half, a plate at 1 m.
+// A wall 2 m ahead, with a plate at 1 m in front of its left part.
 Frame WallAndPlate(const Camera& camera, int between_px) {
   Frame frame;
   frame.depth.create(camera.height, camera.width, CV_16UC1);
   frame.depth.setTo(10000);
   frame.depth.colRange(0, 200).setTo(5000);
-  // What sensors make of the edge: depths in between.
+  // Sensors measure depths in between at the edge.
   frame.depth.colRange(200, 200 + between_px).setTo(7500);
   frame.color.create(frame.depth.size(), CV_8UC3);
   frame.color.setTo(cv::Scalar(10, 20, 30));
@@ -57,7 +57,7 @@ TEST(CloudFusionTest, LeavesOutWhatIsTooNearTooFarOrMissing) {
   }
 }
 
-// The walls of a room seen through a lens that bends them are where they are.
+// Seen through a distorting lens, the walls of a room are at the right place.
 TEST(CloudFusionTest, PutsDistortedViewsTogetherToTheRoom) {
   SyntheticOptions options;
   options.path = "pan_tilt";
@@ -70,7 +70,7 @@ TEST(CloudFusionTest, PutsDistortedViewsTogetherToTheRoom) {
     fusion.Add(dataset.Read(i), dataset.WorldFromCam(i));
   }
   // The room is 5 x 4 x 2.6 m around the world's z axis.
-  constexpr float kTolerance = 0.005F;  // a step of depth, 0.2 mm, and slant
+  constexpr float kTolerance = 0.005F;  // a depth step, 0.2 mm, and slant
   float deepest = 0.0F;
   for (const ColoredPoint& point : fusion.cloud().Points()) {
     deepest = std::max({deepest, std::abs(point.position.x()) - 2.5F,
@@ -102,8 +102,8 @@ TEST(CloudFusionTest, WantsGoodFramesThatMoved) {
   EXPECT_FALSE(fusion.ShouldIntegrate(tracked));
 }
 
-// Rows of pixels in turns 1 m and 1.03 m away: noise of one model, not of the
-// other.
+// Rows of pixels alternate between 1 m and 1.03 m: this is noise for one model,
+// but not for the other.
 TEST(CloudFusionTest, NoiseIsWhatTheDepthNoiseModelSays) {
   const Camera camera;
   Frame frame = WallAndPlate(camera, 0);

@@ -59,12 +59,12 @@ TEST(MeshFusionTest, ANoisyRoomIsWhereItIsFromAllSides) {
   for (const ColoredPoint& vertex : mesh.vertices) {
     sum += DistanceTo(scene, vertex.position.cast<double>());
   }
-  // What is asked for at 1 cm voxels; here of six views, whose depth is twice
-  // as noisy as that of images twice as large.
+  // The accuracy required for 1 cm voxels. Here only six views are used, with
+  // depth twice as noisy as in images of twice the size.
   EXPECT_LT(sum / static_cast<double>(mesh.vertices.size()), 0.005);
 
-  // Faces look at the cameras, which have moved little; noise may turn those
-  // that are seen at a slant, or end.
+  // Triangles face the cameras, which have moved little. Noise may flip
+  // triangles at the border or on slanted surfaces.
   const Eigen::Vector3f eye = dataset.WorldFromCam(0).translation.cast<float>();
   size_t seen = 0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
@@ -73,7 +73,7 @@ TEST(MeshFusionTest, ANoisyRoomIsWhereItIsFromAllSides) {
   }
   EXPECT_GT(seen, mesh.triangles.size() * 9 / 10);
 
-  // And have the colours of an image.
+  // Vertices have the colours of the image.
   const Frame frame = dataset.Read(0);
   const Rigid3d cam_from_world = dataset.WorldFromCam(0).Inverse();
   std::vector<int> differences;
@@ -118,7 +118,7 @@ TEST(MeshFusionTest, ThinIsTheSameSurface) {
   EXPECT_LT(sum / static_cast<double>(thin.vertices.size()), 0.01);
 }
 
-// A wall seen through a lens that bends it is even.
+// A wall seen through a distorting lens is flat.
 TEST(MeshFusionTest, DistortionIsTakenOut) {
   SyntheticOptions options = MeshRoom();
   options.frames = 2;

@@ -10,7 +10,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Byte by byte: this is what other programs read.
+// Checks every byte, because other programs read this format.
 TEST(PlyWriterTest, WritesTheBytesOfTheFormat) {
   const std::string header =
       "ply\nformat binary_little_endian 1.0\nelement vertex 2\n"

@@ -15,9 +15,9 @@ namespace {
 
 constexpr double kVoxel = 0.02;                      // m
 constexpr double kRadius = 0.3;                      // m
-const Eigen::Vector3d kBallCentre(0.01, -0.2, 0.1);  // below and above 0
+const Eigen::Vector3d kBallCentre(0.01, -0.2, 0.1);  // both signs
 
-// A ball, known where `is_known` says so. What is inside it is behind.
+// A ball, known where `is_known` is true. Its inside is behind the surface.
 template <typename IsKnown>
 TsdfVolume Ball(const IsKnown& is_known) {
   constexpr int kSide = TsdfVolume::kSide;
@@ -42,7 +42,7 @@ TsdfVolume Ball(const IsKnown& is_known) {
 TEST(SurfaceMeshTest, ABallIsClosedAndItsFrontOutside) {
   const TriangleMesh mesh = SurfaceMesh(
       Ball([](const Eigen::Vector3d&) { return true; }), kVoxel, 1.0F);
-  std::map<std::pair<int, int>, int> edges;  // of each direction
+  std::map<std::pair<int, int>, int> edges;  // counts by direction
   double volume = 0.0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
     for (int i = 0; i < 3; ++i) ++edges[{t[i], t[(i + 1) % 3]}];
@@ -55,8 +55,8 @@ TEST(SurfaceMeshTest, ABallIsClosedAndItsFrontOutside) {
     ASSERT_EQ(count, 1);
     ASSERT_EQ(edges.count({edge.second, edge.first}), 1);
   }
-  // > 0: corners are counter-clockwise as seen from outside. Chords cut a
-  // little off.
+  // Positive: corners are counter-clockwise seen from outside. Chords reduce
+  // the volume a little.
   EXPECT_NEAR(volume / (4.0 / 3.0 * M_PI * std::pow(kRadius, 3)), 1.0, 0.01);
   for (const ColoredPoint& vertex : mesh.vertices) {
     // The sagitta of a voxel's diagonal.

@@ -22,7 +22,7 @@ ColoredPoint Point(float x, float y, float z, int gray = 0) {
 // A float of a few metres is exact to 2e-7 m; sums of a few points to this.
 constexpr float kTolerance = 2e-6F;
 
-// Points of a square plate, 4 m wide and slanted, some of them in one cube.
+// Points of a slanted square plate, 4 m wide; some share a voxel.
 std::vector<ColoredPoint> Plate(int side) {
   std::vector<ColoredPoint> points;
   for (int i = 0; i < side; ++i) {
@@ -43,7 +43,7 @@ TEST(VoxelCloudTest, MergesPointsOfACubeToTheirMean) {
   blue.blue = 101;
   cloud.Add(red);
   cloud.Add(blue);
-  cloud.Add(Point(1.11F, -0.02F, 2.03F, 50));  // the next cube
+  cloud.Add(Point(1.11F, -0.02F, 2.03F, 50));  // the next voxel
   const std::vector<ColoredPoint> points = cloud.Points();
   ASSERT_EQ(points.size(), 2u);
   EXPECT_LT((points[0].position - Vector3f(1.03F, -0.04F, 2.06F)).norm(),
@@ -66,7 +66,7 @@ TEST(VoxelCloudTest, ZeroIsABorderLikeAnyOther) {
   EXPECT_EQ(cloud.size(), 8);
 }
 
-// Against a map of the standard library, over many growths of the table.
+// Compares with a std::map while the hash table grows many times.
 TEST(VoxelCloudTest, CountsTheCubesThatAMapCounts) {
   constexpr int kPoints = 200000;
   constexpr float kSize = 0.0625F;  // no rounding in x / kSize
@@ -105,7 +105,7 @@ TEST(VoxelCloudTest, MemoryIsThatOfTheCubesAndNotOfThePoints) {
   }
   EXPECT_EQ(cloud.size(), size);
   EXPECT_EQ(cloud.MemoryBytes(), bytes);
-  // 40 bytes a cube, twice that just after growing, and 8 to 16 in the table.
+  // 40 bytes a voxel, twice that just after growing, plus 8 to 16 in the table.
   EXPECT_LT(bytes, 100u * size + 10000u);
 }
 
@@ -120,7 +120,7 @@ TEST(VoxelCloudTest, LeavesOutWhatIsNoPlace) {
   EXPECT_TRUE(cloud.empty());
   EXPECT_TRUE(cloud.Points().empty());
   EXPECT_TRUE(cloud.Thin(10).empty());
-  cloud.Add(Point(10000.0F, -10000.0F, 0.0F));  // 10^6 cubes away
+  cloud.Add(Point(10000.0F, -10000.0F, 0.0F));  // 10^6 voxels away
   EXPECT_EQ(cloud.size(), 1);
 }
 
@@ -132,13 +132,13 @@ TEST(VoxelCloudTest, ThinsEvenlyToAtMostWhatIsAskedFor) {
     SCOPED_TRACE(max_points);
     const std::vector<ColoredPoint> thin = cloud.Thin(max_points);
     EXPECT_LE(thin.size(), static_cast<size_t>(max_points));
-    // Cubes grow until the points are few enough, and no further: what a last
-    // step may take off too much.
+    // Voxels grow only until there are few enough points; the last step may
+    // remove more than needed.
     EXPECT_GE(thin.size(), static_cast<size_t>(max_points) / 4);
     int left = 0;
     for (const ColoredPoint& point : thin) {
       left += point.position.x() < 0.0F;
-      // Means of points of a plane lie on it.
+      // Means of points on a plane are on the plane.
       EXPECT_NEAR(point.position.z(), 0.3F * point.position.x() + 2.0F, 1e-5F);
     }
     if (max_points >= 1000) {

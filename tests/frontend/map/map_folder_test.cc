@@ -31,7 +31,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::UnorderedElementsAreArray;
 
-// The names of the files of a folder.
+// File names in a folder.
 std::vector<std::string> Names(const std::string& folder) {
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder)) {
@@ -40,7 +40,7 @@ std::vector<std::string> Names(const std::string& folder) {
   return names;
 }
 
-// The names that a map's files should have.
+// The names of the files that a map should have.
 std::vector<std::string> NamesOf(const KeyframeMap& map) {
   std::vector<std::string> names = {"map.txt"};
   for (const Keyframe& keyframe : map.keyframes) {
@@ -50,7 +50,7 @@ std::vector<std::string> NamesOf(const KeyframeMap& map) {
   return names;
 }
 
-// When a file was made: another one if it was written again.
+// Identifies a file and its writing: changes if the file is written again.
 std::pair<ino_t, fs::file_time_type> Identity(const std::string& file) {
   struct stat status = {};
   stat(file.c_str(), &status);
@@ -137,7 +137,7 @@ TEST_F(MapFolderTest, RemovesWhatNoMapNeeds) {
   EXPECT_THAT(Names(map_), UnorderedElementsAreArray(expected));
 }
 
-// A file of another size than its name promises is not taken for the image.
+// A file whose size differs from the expected size is written again.
 TEST_F(MapFolderTest, MendsACutImage) {
   const KeyframeMap map = NoiseMap(2, 0);
   SaveMap(map_, map);
@@ -258,7 +258,7 @@ TEST_F(MapFolderTest, RefusesFoldersOfOtherThings) {
   expect_refused("/proc/none/map", "no map can be saved here (");
   RequireMapFolder(map_);
   EXPECT_TRUE(fs::is_empty(map_));
-  // What a program leaves that is killed before its first map is whole.
+  // Files left by a program killed before its first map is complete.
   folder_.Write("maps/kitchen/0123456789abcdef.png", "x");
   folder_.Write("maps/kitchen/fedcba9876543210.png.partial", "x");
   folder_.Write("maps/kitchen/map.txt.partial", "x");
@@ -283,7 +283,7 @@ TEST_F(MapFolderTest, OneAtATimeSaves) {
   SaveMap(map_, NoiseMap(2, 1));
 }
 
-// The reader that docs/maps.md names.
+// The reader in docs/maps.md.
 TEST_F(MapFolderTest, IsReadByAFewLinesOfPython) {
   if (std::system("command -v python3 >/dev/null") != 0) {
     GTEST_SKIP() << "no python3";
@@ -307,8 +307,8 @@ TEST_F(MapFolderTest, IsReadByAFewLinesOfPython) {
   EXPECT_NE(RunCommand(command, folder_).exit_code, 0);
 }
 
-// An image that keeps its reader waiting: meanwhile another map is saved, which
-// removes all images of the one that is being loaded.
+// A FIFO blocks the reader of an image. Meanwhile another map is saved, which
+// removes all images of the map being loaded.
 TEST_F(MapFolderTest, LoadsWhileAnotherSaves) {
   const KeyframeMap first = NoiseMap(2, 1);
   const KeyframeMap second = NoiseMap(2, 2);
@@ -324,7 +324,7 @@ TEST_F(MapFolderTest, LoadsWhileAnotherSaves) {
   EXPECT_TRUE(IsSameMap(LoadMap(map_), second));
 }
 
-// A process that saves two maps in turn until it is killed.
+// A process that alternately saves two maps until it is killed.
 class Saver {
  public:
   Saver(const std::string& folder, const KeyframeMap (&maps)[2], int first)
@@ -347,7 +347,7 @@ class Saver {
   const pid_t process_;
 };
 
-// The maps have no image in common, so that each takes all from the other.
+// The maps share no image, so each replaces all images of the other.
 TEST_F(MapFolderTest, SurvivesKills) {
   const KeyframeMap maps[] = {NoiseMap(4, 1), NoiseMap(3, 2)};
   SaveMap(map_, maps[0]);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kPoses = 40;
 
-// Once round a circle, as odometry has it.
+// One round on a circle, as measured by odometry.
 struct Circle {
   explicit Circle(unsigned seed = 1)
       : world(seed), truth(CircleOfPoses(kPoses, 3.0)), graph(10, 0.01) {
@@ -61,7 +61,7 @@ TEST(KeyframeGraphTest, AllThatTheNewestIsPairedWithAreFreedNearIt) {
   }
 }
 
-// Some that hang on nothing, and some on a motion that nobody knows.
+// Some poses have no edge, others only an edge with an unknown motion.
 TEST(KeyframeGraphTest, WhatHangsLooselyDoesNotKeepOthersFromBeingSolvedFor) {
   for (const bool is_linked : {false, true}) {
     Circle circle;
@@ -89,13 +89,13 @@ TEST(KeyframeGraphTest, WhatHangsLooselyDoesNotKeepOthersFromBeingSolvedFor) {
   }
 }
 
-// A place that looks the same, 5 m from where the path has come to.
+// A place with the same appearance, 5 m from the current pose.
 TEST(KeyframeGraphTest, ALoopThatThePathForbidsIsNotPlausible) {
   Circle circle;
   RelativePose twin = circle.Measured(0, kPoses - 1);
   twin.cur_from_ref.translation.x() += 5.0;
   EXPECT_FALSE(circle.graph.PassesMahalanobisGate(twin));
-  // Nearby it is enough to be some centimetres off.
+  // For near keyframes, an error of some centimetres is too much.
   RelativePose near = circle.Measured(0, 2);
   EXPECT_TRUE(circle.graph.PassesMahalanobisGate(near));
   near.cur_from_ref.translation.x() += 0.1;
@@ -132,7 +132,7 @@ TEST(KeyframeGraphTest, ASegmentMovesAsAWholeWhereItIsJoined) {
             1e-12);
 }
 
-// Whichever of the two the edge leads to.
+// Holds for both directions of the edge.
 TEST(KeyframeGraphTest, ASegmentThatIsHeldIsNeverMovedToAnother) {
   for (const bool to_held : {false, true}) {
     RandomWorld world(3);
@@ -151,7 +151,7 @@ TEST(KeyframeGraphTest, ASegmentThatIsHeldIsNeverMovedToAnother) {
     EXPECT_EQ(graph.segment(own), 0);
     const Rigid3d between = graph.pose(met.cur).Inverse() * graph.pose(met.ref);
     EXPECT_LT(ErrorOf(between, met.cur_from_ref).translation, 1e-12);
-    // Of two that are held neither can.
+    // Of two held segments, neither can be moved.
     met.ref = other;
     met.cur = own;
     EXPECT_FALSE(graph.Join(met));
@@ -162,8 +162,8 @@ TEST(KeyframeGraphTest, ASegmentThatIsHeldIsNeverMovedToAnother) {
 
 TEST(KeyframeGraphTest, WhatIsDroppedStaysWhereItWasToItsAnchor) {
   Circle circle;
-  EXPECT_FALSE(circle.graph.IsRedundant(0));   // the first stays
-  EXPECT_FALSE(circle.graph.IsRedundant(10));  // it holds the chain together
+  EXPECT_FALSE(circle.graph.IsRedundant(0));   // the first one is kept
+  EXPECT_FALSE(circle.graph.IsRedundant(10));  // it connects the chain
   circle.graph.AddPair(circle.Measured(9, 11), /*is_tracked=*/false);
   ASSERT_TRUE(circle.graph.IsRedundant(10));
   const Rigid3d before = circle.graph.pose(9).Inverse() * circle.graph.pose(10);
@@ -177,7 +177,7 @@ TEST(KeyframeGraphTest, WhatIsDroppedStaysWhereItWasToItsAnchor) {
   const Rigid3d after = circle.graph.pose(9).Inverse() * circle.graph.pose(10);
   EXPECT_LT(ErrorOf(before, after).translation, 1e-9);
 
-  // A motion measured to it holds for its anchor.
+  // A motion measured to a removed keyframe is converted to its anchor.
   const RelativePose edge = circle.Measured(10, 12);
   const RelativePose anchored = circle.graph.Reanchor(edge);
   EXPECT_EQ(anchored.ref, 9);
@@ -205,7 +205,7 @@ TEST(KeyframeGraphTest, WhatIsHeldNeverMoves) {
   EXPECT_LT(ErrorOf(graph.pose(newest), circle.truth[3]).translation, 0.02);
 }
 
-// With wrong pairs among them: least squares without losses must find the same.
+// Includes wrong pairs: least squares without losses must find the same poses.
 TEST(KeyframeGraphTest, CovariancesAsSolvedLetOthersFindTheSame) {
   Circle circle;
   for (int i = 0; i + 7 < kPoses; ++i) {
@@ -238,7 +238,7 @@ TEST(KeyframeGraphTest, CovariancesAsSolvedLetOthersFindTheSame) {
   EXPECT_GT(moved_as_measured, 1e-3);
 }
 
-// Turns that are off by 5 % of themselves, far beyond their covariances.
+// Rotations are wrong by 5 %, far more than their covariances allow.
 TEST(KeyframeGraphTest, SlackIsTheShareThatMotionsAreOffBy) {
   for (const double wrong : {1e-9, 0.05}) {
     Circle circle;
@@ -258,7 +258,7 @@ TEST(KeyframeGraphTest, SlackIsTheShareThatMotionsAreOffBy) {
       EXPECT_LT(graph.proportional_error(), 0.003);
     } else {
       EXPECT_GT(graph.proportional_error(),
-                0.004);  // one of six directions is off
+                0.004);  // one of six directions is wrong
       EXPECT_LT(graph.proportional_error(), 0.1);
     }
   }

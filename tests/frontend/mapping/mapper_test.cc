@@ -19,7 +19,7 @@ Keyframe Noise(int id) {
   return keyframe;
 }
 
-// An hour has thousands of keyframes: each update has those that moved alone.
+// With the thousands of keyframes of an hour, updates contain only moved ones.
 TEST(MapperTest, TellsOfEachKeyframeOnce) {
   const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
   Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), camera));
@@ -33,7 +33,7 @@ TEST(MapperTest, TellsOfEachKeyframeOnce) {
   EXPECT_TRUE(mapper.Finish().moved.empty());
 }
 
-// Tracked against two segments: a map that was loaded and what came before.
+// Tracked against two segments: a loaded map and the segment before.
 TEST(MapperTest, TrackedEdgesJoinSegments) {
   const Camera camera = {kMapWidth, kMapHeight, 50.0, 50.0, 20.0, 15.0};
   Mapper mapper(MappingOptions(), MakeTracker(OdometrySettings(), camera));

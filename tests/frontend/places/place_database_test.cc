@@ -24,8 +24,8 @@ cv::Mat RandomDescriptors(int rows, std::mt19937* rng) {
   return descriptors;
 }
 
-// The same from another view: of each, `bits` bits drawn again (half of them
-// stay as they were).
+// The same descriptors from another view: in each, `bits` bits are drawn again
+// (half of them keep their value).
 cv::Mat SeenAgain(const cv::Mat& descriptors, int bits, std::mt19937* rng) {
   cv::Mat again = descriptors.clone();
   for (int i = 0; i < again.rows; ++i) {
@@ -82,8 +82,7 @@ TEST(PlaceDatabaseTest, UnknownPlacesScoreNothing) {
   EXPECT_TRUE(PlaceDatabase().Query(RandomDescriptors(kRows, &rng), 3).empty());
 }
 
-// Ten keyframes of wallpaper that all keyframes have, one with something of its
-// own beside it.
+// Ten keyframes show only a common wallpaper; one also shows something unique.
 TEST(PlaceDatabaseTest, WhatIsEverywhereDoesNotWin) {
   std::mt19937 rng(3);
   const cv::Mat wallpaper = RandomDescriptors(250, &rng);
@@ -114,7 +113,7 @@ TEST(PlaceDatabaseTest, AsksWhichMayBe) {
   EXPECT_LT(found[0].keyframe + found[1].keyframe, 2);
 }
 
-// Of a keyframe with more than are taken, all of the image counts.
+// If a keyframe has too many features, those used are from the whole image.
 TEST(PlaceDatabaseTest, TakesFromAllRows) {
   std::mt19937 rng(9);
   PlaceDatabase index;
@@ -133,8 +132,8 @@ TEST(PlaceDatabaseTest, TakesFromAllRows) {
   }
 }
 
-// A camera that stands still: buckets are full, and the place is still found,
-// where it was first.
+// A static camera: buckets are full, and the place is still found, in its first
+// keyframes.
 TEST(PlaceDatabaseTest, OnePlaceManyTimesIsFoundWhereItWasFirst) {
   std::mt19937 rng(5);
   PlaceDatabase index;
@@ -152,14 +151,14 @@ TEST(PlaceDatabaseTest, ForgetsWhatIsRemoved) {
   for (int k = 0; k < 60; ++k) {
     if (k % 3 != 0) index.Remove(k);
   }
-  index.Remove(1000);  // is not there
+  index.Remove(1000);  // does not exist
   EXPECT_EQ(index.size(), 20);
   for (const int k : {1, 30}) {
     const std::vector<PlaceCandidate> found =
         index.Query(SeenAgain(all[k], 40, &rng), 1);
     EXPECT_EQ(!found.empty() && found[0].score > 0.1, k % 3 == 0) << k;
   }
-  // What is free is used again.
+  // Free slots are reused.
   for (int k = 100; k < 140; ++k) {
     index.Add(k, RandomDescriptors(kRows, &rng));
   }
@@ -190,7 +189,7 @@ TEST(PlaceDatabaseTest, RefusesWhatIsNoOrb) {
   std::mt19937 rng(8);
   PlaceDatabase index;
   index.Add(1, RandomDescriptors(10, &rng));
-  index.Add(2, cv::Mat());  // a black image has none
+  index.Add(2, cv::Mat());  // a black image has no features
   ExpectInputError([&] { index.Add(1, cv::Mat()); }, {"keyframe 1"});
   const cv::Mat sift(10, 128, CV_8U, cv::Scalar(0));
   ExpectInputError([&] { index.Add(3, sift); }, {"128"});

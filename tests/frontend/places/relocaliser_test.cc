@@ -18,11 +18,11 @@
 namespace rgbd_pose {
 namespace {
 
-// Good enough to track from: a fraction of the depth's and of a view's width.
+// Good enough to start tracking: a fraction of the depth and of a view's width.
 constexpr double kMaxTranslationError = 0.03;
 constexpr double kMaxRotationError = 1.0 * kRadiansPerDegree;
 
-// Frames of the simulated room from wherever the camera stands.
+// Frames of the simulated room from any camera pose.
 class FurnishedRoom {
  public:
   explicit FurnishedRoom(uint32_t seed)
@@ -30,7 +30,7 @@ class FurnishedRoom {
 
   const Camera& camera() const { return camera_.camera; }
 
-  // Seen from `start_from_cam` relative to the start of the paths.
+  // The view from `start_from_cam`, relative to the start of the paths.
   Frame See(const Rigid3d& start_from_cam) {
     const Rigid3d world_from_start = FindSyntheticPath("still")(0.0, 1.0);
     Rendering rendering = renderer_.Render(world_from_start * start_from_cam);
@@ -65,7 +65,7 @@ Rigid3d Moved(double x, double y, double z) {
   return Rigid3d(Eigen::Quaterniond::Identity(), Eigen::Vector3d(x, y, z));
 }
 
-// A relocaliser with the keyframes to look among.
+// A relocaliser with the keyframes to search.
 class Search {
  public:
   explicit Search(const Camera& camera) : relocaliser_(camera, {}) {}
@@ -122,7 +122,7 @@ TEST(RelocaliserTest, FindsOldKeyframesAfterSomeSearches) {
   EXPECT_EQ(found->keyframe, 7);
 }
 
-// Views all around, of which the index picks the few to look at.
+// Views in all directions, of which the index selects a few candidates.
 TEST(RelocaliserTest, FindsAFrameInTheWholeMap) {
   FurnishedRoom room(1);
   const Relocaliser relocaliser(room.camera(), {});
@@ -179,8 +179,8 @@ TEST(RelocaliserTest, FindsNothingWhereNothingIsSeen) {
   EXPECT_TRUE(relocaliser.Find(good));
 }
 
-// Same shapes, other textures: only the pictures tell them apart. And one
-// room's other sides, of which all but neighbours share nothing.
+// Rooms with the same shape and other textures differ only in their images. In
+// one room, only neighbouring views have anything in common.
 TEST(RelocaliserTest, DoesNotTakeAnotherSceneForThePlace) {
   FurnishedRoom room(1);
   Search relocaliser(room.camera());

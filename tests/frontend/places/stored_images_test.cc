@@ -22,7 +22,7 @@ TEST(StoredImagesTest, RestoresTheFrame) {
   EXPECT_EQ(restored.depth.type(), CV_16UC1);
 }
 
-// A map has hundreds.
+// A map has hundreds of these, which must not waste memory.
 TEST(StoredImagesTest, HaveNoRoomToSpare) {
   const StoredImages images(NoiseFrame(1));
   EXPECT_EQ(images.gray->bytes.capacity(), images.gray->bytes.size());

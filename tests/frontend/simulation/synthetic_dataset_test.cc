@@ -89,8 +89,8 @@ TEST(SyntheticDatasetTest, GroundTruthHasTheStampsOfTheFrames) {
   EXPECT_EQ(dataset.Read(7).timestamp, truth[7].timestamp);
 }
 
-// A world point seen in one frame appears in the other at the pixel, with the
-// depth and (texture sticks to surfaces) with the gray that the poses tell.
+// A world point seen in one frame appears in the other frame at the pixel,
+// depth and (textures stick to surfaces) gray level predicted by the poses.
 TEST(SyntheticDatasetTest, FramesAgreeThroughTheGroundTruth) {
   SyntheticOptions options = PathOptions("pan_tilt");
   options.noise = false;
@@ -102,7 +102,7 @@ TEST(SyntheticDatasetTest, FramesAgreeThroughTheGroundTruth) {
   const Frame cur = dataset.Read(kCur);
   const Rigid3d cur_from_prev =
       dataset.WorldFromCam(kCur).Inverse() * dataset.WorldFromCam(kPrev);
-  // Raw units of 0.2 mm on both sides and half a pixel of a slanted surface.
+  // Raw units of 0.2 mm on both sides, and half a pixel on a slanted surface.
   constexpr double kDepthTolerance = 0.01;  // m
   int seen = 0;
   int agree = 0;
@@ -130,9 +130,9 @@ TEST(SyntheticDatasetTest, FramesAgreeThroughTheGroundTruth) {
     }
   }
   ASSERT_GT(seen, 2500);
-  EXPECT_GT(agree, 0.95 * seen);  // the rest lies at depth edges
-  // Interpolation smooths about two levels away; textures that did not stick
-  // would differ by their contrast, more than ten.
+  EXPECT_GT(agree, 0.95 * seen);  // the others are at depth edges
+  // Interpolation smooths away about two levels. Textures that do not stick
+  // would differ by their contrast, more than ten levels.
   EXPECT_LT(gray_difference / agree, 4.0);
 }
 
@@ -174,7 +174,7 @@ INSTANTIATE_TEST_SUITE_P(Paths, SyntheticPathImages,
                          testing::Values("xyz", "pan_tilt", "circle",
                                          "handheld"));
 
-// The path repeats after 100 s, far beyond the frames looked at above.
+// The path repeats after 100 s, far beyond the frames tested above.
 TEST(SyntheticDatasetTest, HandheldAlwaysSeesTextureAndDepth) {
   SyntheticOptions options = PathOptions("handheld");
   options.frames = 3000;
@@ -227,7 +227,7 @@ TEST(SyntheticDatasetTest, ExposureChangesColourAlone) {
   EXPECT_EQ(Difference(before.depth, after.depth), 0.0);
   EXPECT_EQ(plain.WorldFromCam(kBrightest).translation,
             exposed.WorldFromCam(kBrightest).translation);
-  // exp(0.3) = 1.35, less what saturates.
+  // exp(0.3) = 1.35, reduced by saturation.
   const double gain = cv::mean(after.color)[1] / cv::mean(before.color)[1];
   EXPECT_GT(gain, 1.25);
   EXPECT_LT(gain, 1.36);
@@ -262,7 +262,7 @@ TEST(SyntheticDatasetTest, RegistrationErrorMovesPoints) {
     }
   }
   ASSERT_GT(seen, 2500);
-  EXPECT_GT(agree, 0.95 * seen);  // the rest lies at depth edges
+  EXPECT_GT(agree, 0.95 * seen);  // the others are at depth edges
 }
 
 TEST(SyntheticDatasetTest, RefusesOptionsWithoutSense) {

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kFocal = 131.25;
 
-// A smaller image of the same view, so that tests are quick.
+// A smaller image with the same field of view, for speed.
 Renderer RoomRenderer() {
   return Renderer(MakeScene("room", 1),
                   {160, 120, kFocal, kFocal, 79.5, 59.5, 0, 0, 0});
@@ -28,7 +28,7 @@ double MeanDifference(const cv::Mat& a, const cv::Mat& b) {
   return (mean[0] + mean[1] + mean[2]) / 3.0;
 }
 
-// Colour while the shutter is open, by many more renderings than needed.
+// Mean colour while the shutter is open, with more renderings than needed.
 cv::Mat MeanColor(const Renderer& renderer, double opening, double closing) {
   constexpr int kRenderings = 40;
   cv::Mat sum = cv::Mat::zeros(120, 160, CV_32FC3);
@@ -52,7 +52,7 @@ TEST(SyntheticExposureTest, AnInstantIsARendering) {
 
 TEST(SyntheticExposureTest, BlurIsTheMeanAroundTheMiddle) {
   const Renderer renderer = RoomRenderer();
-  constexpr double kMiddle = 1.0;    // s; fast there
+  constexpr double kMiddle = 1.0;    // s; the camera is fast there
   constexpr double kShutter = 0.03;  // s
   const Rendering blurred =
       Expose(renderer, kFocal, Handheld, kMiddle, {kShutter, 1.0});
@@ -64,7 +64,7 @@ TEST(SyntheticExposureTest, BlurIsTheMeanAroundTheMiddle) {
                           MeanColor(renderer, opening, opening + kShutter));
   };
   const double centred = difference(kMiddle - kShutter / 2.0);
-  // Steps of 2 px leave traces of fine print: about a gray level.
+  // Steps of 2 px leave traces of fine print: about one gray level.
   EXPECT_LT(centred, 1.5);
   EXPECT_GT(MeanDifference(blurred.color, sharp.color), 3.0 * centred);
   EXPECT_GT(difference(kMiddle), 3.0 * centred);
@@ -75,7 +75,7 @@ class ReadoutTest : public testing::TestWithParam<double> {};
 
 TEST_P(ReadoutTest, ShowsEachBandAtItsTime) {
   const Renderer renderer = RoomRenderer();
-  constexpr double kMiddle = 1.0;  // s; fast there
+  constexpr double kMiddle = 1.0;  // s; the camera is fast there
   const Rendering rolled =
       Expose(renderer, kFocal, Handheld, kMiddle, {0.0, 1.0, GetParam()});
   const Rendering instant = renderer.Render(Handheld(kMiddle));
@@ -86,7 +86,7 @@ TEST_P(ReadoutTest, ShowsEachBandAtItsTime) {
                          (band + 1) * Renderer::kBandRows);
     const double time = kMiddle + ((band + 0.5) / bands - 0.5) * GetParam();
     const cv::Mat then = renderer.Render(Handheld(time)).depth.rowRange(rows);
-    // A pixel or two at edges, where faces overlap.
+    // A pixel or two differ at edges, where faces overlap.
     EXPECT_LE(cv::countNonZero(then != rolled.depth.rowRange(rows)), 2) << band;
     const int moved = cv::countNonZero(instant.depth.rowRange(rows) !=
                                        rolled.depth.rowRange(rows));
@@ -100,7 +100,7 @@ TEST_P(ReadoutTest, ShowsEachBandAtItsTime) {
 
 INSTANTIATE_TEST_SUITE_P(Readouts, ReadoutTest, testing::Values(0.03, -0.03));
 
-// The last band of an image may be a part of one.
+// The last band of an image may be incomplete.
 TEST(SyntheticExposureTest, ReadoutIsThatOfRows) {
   const Renderer renderer(MakeScene("room", 1),
                           {160, 100, kFocal, kFocal, 79.5, 49.5, 0, 0, 0});

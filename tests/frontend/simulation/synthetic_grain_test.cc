@@ -1,5 +1,5 @@
-// The grain of simulated surfaces: eight octaves at once are the octaves one
-// after the other.
+// The grain of simulated surfaces: eight octaves computed together equal
+// octaves computed one by one.
 
 #include <gtest/gtest.h>
 

@@ -39,7 +39,7 @@ TEST(SyntheticMoversTest, APatchCoversItsShareAndMovesByItself) {
       const cv::Rect now = cv::boundingRect(covered);
       if (i > 40) {
         const double step = std::hypot(now.x - before.x, now.y - before.y);
-        EXPECT_GE(step, 5.0 - 1.5) << i;  // in whole pixels
+        EXPECT_GE(step, 5.0 - 1.5) << i;  // rounded to whole pixels
         EXPECT_LE(step, 8.0 + 1.5) << i;
       }
       before = now;
@@ -60,7 +60,7 @@ TEST(SyntheticMoversTest, BoxesWalkBeforeTheRoom) {
     most = std::max(most, cv::countNonZero(frame.depth < bare.depth));
   }
   EXPECT_GT(most, 0.2 * bare.depth.total());
-  // Seen row by row, each where it is at the time of the row.
+  // With a rolling shutter, movers are drawn at the time of each row.
   options.color_shutter.readout = 0.03;
   const Frame rolled = SyntheticDataset(options).Read(50);
   EXPECT_GT(LargestChange(rolled.color, dataset.Read(50).color), 0.0);

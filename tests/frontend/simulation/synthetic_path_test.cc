@@ -20,8 +20,8 @@ struct Extent {
   double max_speed = 0.0;                         // m/s
   double max_turn_rate = 0.0;                     // rad/s
   double max_angle = 0.0;                         // rad, from the start
-  Eigen::Vector3d min = Eigen::Vector3d::Zero();  // of the camera's centre, in
-  Eigen::Vector3d max = Eigen::Vector3d::Zero();  // axes of the first camera
+  Eigen::Vector3d min = Eigen::Vector3d::Zero();  // of the camera's centre,
+  Eigen::Vector3d max = Eigen::Vector3d::Zero();  // in axes of the first camera
 };
 
 Extent Measure(const std::string& name, int frames) {
@@ -115,7 +115,7 @@ double Distance(const SceneFace& face, const Eigen::Vector3d& point) {
                     face.normal.dot(from_origin));
 }
 
-// By differences over a tenth of a millisecond, every 5 ms unless told.
+// By differences over 0.1 ms, by default every 5 ms.
 Peaks FindPeaks(const std::string& name, double seconds,
                 const std::string& scene = "room", double every = 0.005) {
   const SyntheticPath path = FindSyntheticPath(name);
@@ -143,11 +143,11 @@ Peaks FindPeaks(const std::string& name, double seconds,
 }
 
 TEST(SyntheticPathTest, HandheldIsFastButKeepsItsLimits) {
-  const Peaks always = FindPeaks("handheld", 100.0);  // then it repeats
+  const Peaks always = FindPeaks("handheld", 100.0);  // then the path repeats
   EXPECT_LE(always.speed, 1.0);
   EXPECT_LE(always.turn_rate, 90.0 * kRadiansPerDegree);
   EXPECT_GE(always.clearance, 0.6);
-  EXPECT_LE(always.change_of_speed, 10.0);  // as an arm can; no jerks
+  EXPECT_LE(always.change_of_speed, 10.0);  // as an arm can move
   const Peaks default_length = FindPeaks("handheld", 149 / kRate);
   EXPECT_GE(default_length.speed, 0.95);
   EXPECT_GE(default_length.turn_rate, 85.0 * kRadiansPerDegree);
@@ -172,12 +172,12 @@ TEST(SyntheticPathTest, WhipPansTurnHalfRoundAndBack) {
               kTolerance);
   const Peaks peaks = FindPeaks("whip_pan", 10.0);
   EXPECT_NEAR(peaks.turn_rate, 300.0 * kRadiansPerDegree, 0.1);
-  EXPECT_LT(peaks.speed, 0.4);  // its centre goes as along xyz
+  EXPECT_LT(peaks.speed, 0.4);  // its centre moves like path xyz
 }
 
 struct Tour {
   const char* name;
-  double seconds;  // until the camera is where it was
+  double seconds;  // until the camera is back at its start
   double length;   // m
   double speed;    // m/s at most
 };
@@ -198,7 +198,7 @@ TEST_P(SyntheticTours, AreCarriedByHandAndReturn) {
     way += (path(t + 0.5, 1.0).translation - path(t, 1.0).translation).norm();
   }
   EXPECT_NEAR(way, tour.length, 1.0);
-  // Back, but for the sway of the hand.
+  // Back at the start, except for the sway of the hand.
   const Rigid3d back = path(0.0, 1.0).Inverse() * path(tour.seconds, 1.0);
   EXPECT_LT(back.translation.norm(), 0.06);
   EXPECT_LT(back.Angle(), 5.0 * kRadiansPerDegree);

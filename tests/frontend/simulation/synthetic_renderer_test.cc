@@ -15,17 +15,17 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Single precision, 1e-7 a step, over the few steps to a depth.
+// Single precision (1e-7 per operation) over the few operations for a depth.
 constexpr double kRelativeTolerance = 5e-6;
 
-// A smaller image of the same view, so that tests are quick.
+// A smaller image with the same field of view, for speed.
 Camera RenderCamera() {
   return {160, 120, 131.25, 131.25, 79.5, 59.5, 0, 0, 0};
 }
 
-// The same distances by the textbook, in double precision: the nearest of all
-// rectangles that the ray meets from their front, each of them `wider` (m) at
-// every side.
+// The same depths by the textbook method, in double precision: the nearest of
+// all rectangles hit from the front, each enlarged by `wider` (m) on every
+// side.
 double NearestDepth(const Scene& scene, const Rigid3d& world_from_cam,
                     const Vector3d& ray_in_cam, double wider) {
   const Vector3d ray = world_from_cam.rotation * ray_in_cam;
@@ -49,8 +49,8 @@ double NearestDepth(const Scene& scene, const Rigid3d& world_from_cam,
 TEST(SyntheticRendererTest, DepthIsThatOfTheNearestFace) {
   const Scene scene = MakeScene("room", 1);
   const Camera distorted = CameraPreset("tum_fr1")->camera;
-  // The renderer lets faces overlap by 0.1 mm, so leave out rays that pass an
-  // edge nearer than that (m).
+  // Faces overlap by 0.1 mm in the renderer. Rays that pass an edge at a
+  // smaller distance than this (m) are left out.
   constexpr double kEdge = 3e-4;
   for (const Camera& camera : {RenderCamera(), distorted}) {
     const Renderer renderer(scene, camera);

@@ -80,7 +80,7 @@ TEST(SyntheticSceneTest, CorridorLooksTheSameFromFurtherOn) {
   there.translation.x() += 1.5;
   const Rendering a = Look("corridor", here);
   const Rendering b = Look("corridor", there);
-  const cv::Mat near = a.depth < 8.0;  // what a sensor would see of it
+  const cv::Mat near = a.depth < 8.0;  // range of a sensor
   EXPECT_GT(cv::countNonZero(near), 0.8 * near.total());
   EXPECT_LT(cv::norm(a.depth, b.depth, cv::NORM_INF, near), 1e-3);  // m
   EXPECT_LE(cv::norm(a.color, b.color, cv::NORM_INF, near), 1.0);
@@ -148,8 +148,8 @@ TEST(SyntheticSceneTest, ToursSeeTextureWithinReach) {
   }
 }
 
-// Paint sticks to surfaces, highlights do not: what is bright from here is less
-// so from there.
+// Paint sticks to surfaces, highlights do not: bright spots are darker when
+// seen from another position.
 TEST(SyntheticSceneTest, HighlightsOfTheGlossyRoomFollowTheCamera) {
   const Camera camera = SceneCamera();
   const Rigid3d here = PoseOf("xyz", 0.0);
@@ -179,7 +179,7 @@ TEST(SyntheticSceneTest, HighlightsOfTheGlossyRoomFollowTheCamera) {
           std::abs(light_there.at<uint8_t>(at) - light.at<uint8_t>(v, u)) > 10;
     }
   }
-  // A patch, not all of the view.
+  // A patch, not the whole view.
   EXPECT_GT(bright, 0.005 * light.total());
   EXPECT_LT(bright, 0.3 * light.total());
   EXPECT_GT(changed, 0.5 * bright);

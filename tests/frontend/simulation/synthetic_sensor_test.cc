@@ -47,14 +47,14 @@ TEST(SyntheticSensorTest, DepthNoiseOfAWallFollowsTheModel) {
   for (const double z : {0.7, 1.5, 3.0, 5.0}) {
     const cv::Mat wall(300, 400, CV_32FC1, cv::Scalar(z));
     const Moments measured = MomentsOf(MeasureDepth(wall, kSensorFocal, kKey));
-    // Khoshelham & Elberink's noise and the variance of rounding to a step of
-    // twice that sigma: 1/12 of its square.
+    // Khoshelham & Elberink's noise, plus the variance of rounding to a step of
+    // twice that sigma: 1/12 of the squared step.
     const double noise = 1.425e-3 * z * z;
     const double step = 2.85e-3 * z * z;
     const double sigma = std::sqrt(noise * noise + step * step / 12.0);
-    // A step as wide as 2 sigma leaves the spread a few percent off that sum.
+    // With a step of 2 sigma, the spread is a few percent off this sum.
     EXPECT_NEAR(measured.sigma, sigma, 0.05 * sigma) << z;
-    // It may move the mean, too, but less than a twentieth of a step.
+    // The mean may be shifted as well, by less than a twentieth of a step.
     EXPECT_NEAR(measured.mean, z, 0.05 * step) << z;
   }
 }
@@ -81,7 +81,7 @@ TEST(SyntheticSensorTest, NoDepthAtEdgesAndInTheShadowToTheLeft) {
   cv::Mat depth(20, 400, CV_32FC1, cv::Scalar(kFar));
   depth.colRange(200, 300) = kNear;
   const cv::Mat measured = MeasureDepth(depth, kSensorFocal, kKey);
-  // The difference of disparities, 1 / (8 kInverseDepthStep) = 43.9 px m.
+  // The difference of disparities, with 1 / (8 kInverseDepthStep) = 43.9 px m.
   const int shadow = static_cast<int>(43.9 * (1.0 / kNear - 1.0 / kFar));
   const cv::Mat row = measured.row(10);
   EXPECT_EQ(cv::countNonZero(row.colRange(0, 197 - shadow)), 197 - shadow);
@@ -91,8 +91,8 @@ TEST(SyntheticSensorTest, NoDepthAtEdgesAndInTheShadowToTheLeft) {
   EXPECT_EQ(cv::countNonZero(row.colRange(301, 400)), 99);
 }
 
-// Depth of a plane through the optical axis at 2 m that leans away to the
-// right by `slant_deg` against the ray.
+// Depth of a plane through the optical axis at 2 m, tilted away to the right by
+// `slant_deg` relative to the ray.
 cv::Mat SlantedPlane(double slant_deg) {
   cv::Mat depth(20, 41, CV_32FC1);
   const double slope = std::tan(slant_deg * M_PI / 180.0);

@@ -1,4 +1,4 @@
-// Delays and shutters of synthetic sequences.
+// Depth delays and shutters of synthetic sequences.
 
 #include <gtest/gtest.h>
 
@@ -50,7 +50,7 @@ TEST(SyntheticShutterTest, DelayedDepthIsThatOfAnotherTime) {
   }
 }
 
-// Rows of both images, each at the time of its own stamp and shutter.
+// Rows of both images, each rendered at the time given by stamp and shutter.
 TEST(SyntheticShutterTest, RowsAreExposedAtTheirOwnTimes) {
   SyntheticOptions options = WithoutNoise("handheld");
   options.camera.camera = {160, 120, 131.25, 131.25, 79.5, 59.5, 0, 0, 0};
@@ -62,7 +62,7 @@ TEST(SyntheticShutterTest, RowsAreExposedAtTheirOwnTimes) {
   const Frame frame = dataset.Read(kIndex);
   EXPECT_EQ(frame.depth_delay, 0.003);
 
-  const double stamp = kIndex / options.rate_hz;  // from the first frame's
+  const double stamp = kIndex / options.rate_hz;  // relative to the first frame
   const Renderer renderer(MakeScene(options.scene, options.seed),
                           options.camera.camera);
   const SyntheticPath path = FindSyntheticPath("handheld");
@@ -90,8 +90,8 @@ TEST(SyntheticShutterTest, RowsAreExposedAtTheirOwnTimes) {
   }
 }
 
-// What was seen row after row, moved to the stamp by the camera's velocity, is
-// what is seen at the stamp.
+// Points seen by a rolling shutter, moved to the time stamp with the camera's
+// velocity, match the image rendered at the time stamp.
 TEST(SyntheticShutterTest, RolledRowsAgreeThroughTheTwist) {
   SyntheticOptions options = WithoutNoise("pan_tilt");
   const SyntheticDataset plain(options);
@@ -152,7 +152,7 @@ TEST(SyntheticShutterTest, EachImageHasItsOwnShutter) {
   }
 }
 
-// Not those of a camera that was given.
+// The shutters come from the options, not from the given camera.
 TEST(SyntheticShutterTest, TheCameraSaysTheShuttersSimulated) {
   SyntheticOptions options = WithoutNoise("handheld");
   options.camera = *CameraPreset("tum_fr1");
@@ -205,7 +205,7 @@ TEST(SyntheticShutterTest, ShuttersAreNoSlowerThanFrames) {
     for (const double good : {-0.033, 0.033}) {
       EXPECT_NO_THROW(SyntheticDataset{options_with(parameter, good)}) << name;
     }
-    // Camera files have to hold them.
+    // Camera files must be able to store the values.
     SyntheticOptions slow = options_with(parameter, 0.51);
     slow.rate_hz = 1.0;
     ExpectInputError([&] { SyntheticDataset{slow}; },

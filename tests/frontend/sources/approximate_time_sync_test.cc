@@ -15,7 +15,7 @@ constexpr std::chrono::milliseconds kPatience(50);
 StreamImage Color(double stamp) { return {true, stamp, cv::Mat()}; }
 StreamImage Depth(double stamp) { return {false, stamp, cv::Mat()}; }
 
-// Gives the images of a list, then the last one again and again.
+// Returns the images of a list, then repeats the last one.
 class Images {
  public:
   explicit Images(std::vector<StreamImage> images)

@@ -12,7 +12,7 @@ TEST_F(Ros1BagTest, SortsWhatIsSlightlyOutOfOrder) {
   Open();
   WriteInfo();
   for (int k = 0; k < kFrames; ++k) {
-    const int other = k ^ 1;  // pairs of neighbours change places
+    const int other = k ^ 1;  // neighbours are exchanged in pairs
     Write(kColor, StampOf(k),
           MakeImage(ColorImage(other), "bgr8", StampOf(other)));
     Write(kDepth, StampOf(k) + 0.2,  // recorded much later
@@ -88,7 +88,7 @@ TEST_F(Ros1BagTest, ADamagedMessageCostsItsFrame) {
   Open();
   WriteInfo();
   for (int k = 0; k < kFrames; ++k) {
-    if (k == 7) {  // is no image of so many bytes
+    if (k == 7) {  // too few bytes for an image
       sensor_msgs::Image cut = MakeImage(ColorImage(k), "bgr8", StampOf(k));
       cut.data.resize(10);
       Write(kColor, StampOf(k) + 0.01, cut);
@@ -107,7 +107,7 @@ TEST_F(Ros1BagTest, ADamagedMessageCostsItsFrame) {
   EXPECT_NE(written.damaged[0].find(kColor), std::string::npos);
 }
 
-// Images wait for their other halves: those are frames nevertheless.
+// Images that still wait for their counterpart become frames nevertheless.
 TEST_F(Ros1BagTest, FramesBeforeDamageAreKept) {
   Open(rosbag::compression::LZ4);
   bag_.setChunkThreshold(10 * 1024);
@@ -116,7 +116,7 @@ TEST_F(Ros1BagTest, FramesBeforeDamageAreKept) {
   std::string bytes = ReadTextFile(path_);
   const size_t place = bytes.rfind("op=\x05", 3 * bytes.size() / 4);
   ASSERT_NE(place, std::string::npos);
-  // Within what the chunk holds, which packs to some 400 bytes.
+  // Within the content of the chunk, which is compressed to about 400 bytes.
   bytes.replace(place + 100, 200, std::string(200, '\x55'));
   folder_.Write("a.bag", bytes);
   const auto source = Source();

@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 namespace {
 
-// A wall at a depth (m), everywhere.
+// A wall with the same depth (m) at all pixels.
 Frame Wall(double depth) {
   Frame frame;
   frame.gray = cv::Mat::zeros(480, 640, CV_8UC1);
@@ -29,7 +29,7 @@ TEST(CorrectDepthTest, InverseDepthMovesByItsOffset) {
   EXPECT_EQ(frame.DepthAt(20, 10), 0.0);
 }
 
-// Stamps stay; when rows were exposed comes along, from the camera alone.
+// Time stamps are unchanged; shutters are taken from the camera only.
 TEST(CorrectDepthTest, FramesHaveTheShuttersOfTheCamera) {
   RgbdCamera camera;
   camera.color_shutter = {-0.007, 0.028};
@@ -47,7 +47,7 @@ TEST(CorrectDepthTest, FramesHaveTheShuttersOfTheCamera) {
   EXPECT_EQ(frame.depth.data, wall.depth.data);
 }
 
-// Depth that is too far ahead comes back.
+// A depth offset of the registration is removed.
 TEST(CorrectDepthTest, RegistrationIsUndone) {
   RgbdCamera camera;
   camera.depth_correction.depth_from_color.translation.z() = 0.02;

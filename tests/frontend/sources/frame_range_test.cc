@@ -8,8 +8,8 @@
 namespace rgbd_pose {
 namespace {
 
-// Ten frames, half a second apart, the first at 100 s; each may be asked for
-// once it is read only.
+// Ten frames, half a second apart, the first at 100 s. Each can be requested
+// only after it has been read.
 class TenFrames : public Dataset {
  public:
   int size() const override { return 10; }
@@ -29,7 +29,7 @@ class TenFrames : public Dataset {
   RgbdCamera camera_;
 };
 
-// The whole recording's numbers of the frames in a part of it.
+// The frame numbers, in the whole recording, of a part of it.
 std::vector<int> NumbersIn(const std::string& text) {
   auto whole = std::make_unique<TenFrames>();
   const TenFrames& frames = *whole;

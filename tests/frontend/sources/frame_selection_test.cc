@@ -10,7 +10,7 @@
 namespace rgbd_pose {
 namespace {
 
-// The frames chosen among those from -1 to 30.
+// The selected frames between -1 and 30.
 std::vector<int> Chosen(const std::string& text) {
   const FrameSelection selection("pictures", text);
   std::vector<int> chosen;
@@ -51,7 +51,7 @@ TEST(FrameSelectionTest, AllHasEveryFrame) {
 TEST(FrameSelectionTest, RejectsOtherText) {
   struct {
     std::string text;
-    std::string named;  // in the message, as what is wrong
+    std::string named;  // the wrong part that the message must contain
   } const cases[] = {
       {"x", "'x'"},           {" ", "' '"},
       {"-1", "'-1'"},         {"+1", "'+1'"},

@@ -23,14 +23,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// How long something that must happen may take on a busy machine.
+// Limit for events that must happen, even on a busy machine.
 constexpr std::chrono::seconds kPatience(20);
 
-// How long something that must not happen is waited for.
+// Waiting time for events that must not happen.
 constexpr milliseconds kPause(20);
 
-// Frames of one pixel, the frame's index. `on_read` hears of every read, in
-// its thread.
+// Frames of one pixel with the frame's index. `on_read` is called for every
+// read, in the reading thread.
 class FakeSource : public FrameSource {
  public:
   explicit FakeSource(int size) : size_(size) {}
@@ -66,7 +66,7 @@ class FakeSource : public FrameSource {
   std::function<void(int)> on_read = [](int) {};
   std::function<void(int)> on_ask = [](int) {};
   std::set<int> unreadable;
-  std::set<int> missing;  // frames that the source fails to give
+  std::set<int> missing;  // frames that the source fails to return
   std::atomic<int> reads = 0;
   std::atomic<bool> is_asked = false;
 
@@ -95,7 +95,7 @@ class FrameStreamTest : public testing::TestWithParam<int> {};  // threads
 
 TEST_P(FrameStreamTest, GivesEachFrameOnceAndInOrder) {
   FakeSource source(60);
-  // Later frames of a group of five are read quicker than its first ones.
+  // In a group of five frames, later frames are read faster.
   source.on_read = [](int index) {
     std::this_thread::sleep_for(milliseconds(4 - index % 5));
   };
@@ -201,7 +201,7 @@ TEST_P(FrameStreamTest, WithoutAnyFrameTheFirstErrorIsThrown) {
   ExpectInputError([&none] { none.Next(); }, {"the cable is loose"});
 }
 
-// As a full disk does: it is not the frame's fault.
+// Like a full disk: this is not damage of the frame.
 TEST_P(FrameStreamTest, WhatPreparingThrowsIsNoDamage) {
   FakeSource source(4);
   FrameStream stream(
@@ -288,7 +288,7 @@ TEST(FrameStreamThreadsTest, ReadingAheadGivesWayToTheCallingThread) {
 }
 #endif
 
-// A camera's next frame is not there yet: the one before it is, nevertheless.
+// While a camera's next frame is not there yet, the previous one is returned.
 TEST(FrameStreamThreadsTest, GivesAFrameWhileTheSourceWaitsForTheNext) {
   FakeSource source(2);
   std::promise<void> taken;
@@ -305,7 +305,7 @@ TEST(FrameStreamThreadsTest, GivesAFrameWhileTheSourceWaitsForTheNext) {
   ExpectFrame(&stream, 1);
 }
 
-// Two reads that wait for each other need two threads that read.
+// Two reads that wait for each other need two reading threads.
 TEST(FrameStreamThreadsTest, TheCallingThreadReadsInsteadOfSleeping) {
   FakeSource source(2);
   std::promise<void> begun[2];

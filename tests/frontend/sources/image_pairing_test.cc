@@ -46,8 +46,8 @@ std::vector<Stamps> PairAll(const std::vector<Arrival>& events,
 
 TEST(ImagePairingTest, PairsAsListsThatAreKnownAsAWhole) {
   for (int trial = 0; trial < 50; ++trial) {
-    // Two cameras of almost the same rate, whose stamps jitter and of which
-    // some images are missing.
+    // Two cameras with almost the same rate, jitter in their stamps, and some
+    // missing images.
     std::vector<double> colors;
     std::vector<double> depths;
     std::vector<Arrival> events;
@@ -78,7 +78,7 @@ TEST(ImagePairingTest, PairsAsListsThatAreKnownAsAWhole) {
   }
 }
 
-// What waits is bounded by time, and by memory.
+// The waiting images are limited by time and by memory.
 TEST(ImagePairingTest, WaitsForSomeImagesOnly) {
   constexpr double kInterval = 1.0 / 32;  // s
   constexpr size_t kLarge = size_t{4} << 20;
@@ -97,7 +97,7 @@ TEST(ImagePairingTest, WaitsForSomeImagesOnly) {
     EXPECT_FALSE(large.Take().has_value());
     EXPECT_EQ(large.unmatched_color(), std::max(0, k + 1 - kMaxLarge));
   }
-  // Of depth alone nothing can be said; the oldest are let go.
+  // Depth images alone cannot be paired; the oldest are discarded.
   ImagePairing depth_alone(kMaxDifference);
   std::vector<std::weak_ptr<std::string>> kept;
   for (int k = 0; k < 1500; ++k) {

@@ -7,7 +7,7 @@
 namespace rgbd_pose {
 namespace {
 
-// A camera whose frames come when the test says so.
+// A camera whose frames arrive when the test allows it.
 class FakeCamera final : public FrameSource {
  public:
   std::optional<RgbdFrame> Next() override {
@@ -26,14 +26,14 @@ class FakeCamera final : public FrameSource {
   }
   const RgbdCamera& camera() const override { return camera_; }
 
-  // Lets frames up to this one come, and waits until they have.
+  // Allows frames up to this one, and waits until they have arrived.
   void Allow(int number) {
     std::unique_lock<std::mutex> lock(mutex_);
     num_allowed_ = number;
     changed_.notify_all();
     changed_.wait(lock, [this] { return num_asked_ > num_allowed_; });
   }
-  // Lets all frames come: `last` is the last one.
+  // Allows all frames; `last` is the last one.
   void AllowAll(int last) {
     const std::lock_guard<std::mutex> lock(mutex_);
     num_allowed_ = last + 1;
@@ -67,7 +67,7 @@ class LatestFrameTest : public testing::Test {
     EXPECT_EQ(next->read().timestamp, number / 30.0);
   }
 
-  FakeCamera* camera_ = new FakeCamera;  // of frames_
+  FakeCamera* camera_ = new FakeCamera;  // owned by frames_
   LatestFrame frames_{std::unique_ptr<FrameSource>(camera_)};
 };
 
@@ -75,7 +75,7 @@ TEST_F(LatestFrameTest, DropsAllButTheNewest) {
   camera_->Allow(1);
   ExpectNext(1, 0);
   EXPECT_EQ(frames_.dropped(), 0);
-  camera_->Allow(5);  // 2, 3 and 4 are asked for by nobody
+  camera_->Allow(5);  // nobody asks for 2, 3 and 4
   ExpectNext(5, 1);
   EXPECT_EQ(frames_.dropped(), 3);
   camera_->Allow(6);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr int kFrames = 3;
 
-// Half a turn around y and a step to the right a frame.
+// Half a turn around y, and a step to the right for each frame.
 std::string PoseText(int k, const char* end_of_row) {
   const std::string end = end_of_row;
   return "-1 0 0 " + std::to_string(k) + end + "0 1 0 0.5" + end + "0 0 -1 2" +
@@ -60,7 +60,7 @@ class NumberedDatasetTest : public testing::Test {
     return options;
   }
 
-  // Reads what has been written and compares it with how it was written.
+  // Reads the sequence and compares it with what was written.
   std::unique_ptr<FrameSource> ExpectRead(const std::string& name,
                                           const SourceOptions& options,
                                           double depth_scale) {
@@ -127,7 +127,7 @@ TEST_F(NumberedDatasetTest, ReadsScanNet) {
   EXPECT_EQ(source->camera().camera.cy, 11.5);
   ExpectPoses(*source);
 
-  // The last frame was lost.
+  // The last frame is lost.
   WriteText("pose/2.txt",
             "-inf -inf -inf -inf\n-inf -inf -inf -inf\n"
             "-inf -inf -inf -inf\n-inf -inf -inf -inf\n");
@@ -193,11 +193,11 @@ TEST_F(NumberedDatasetTest, ReadsOpen3d) {
   EXPECT_EQ(source->camera().camera.fy, 31.0);
   EXPECT_EQ(source->camera().camera.cx, 15.5);
   ExpectPoses(*source);
-  // As Open3D's recorder calls it.
+  // The file name used by Open3D's recorder.
   std::filesystem::rename(Options().path + "/intrinsic.json",
                           Options().path + "/camera_intrinsic.json");
   EXPECT_EQ(OpenSource("auto", Options())->camera().camera.fy, 31.0);
-  // No camera at all.
+  // Files that contain no valid camera.
   for (const char* wrong : {"-30, 0, 0, 0, 31, 0, 15.5, 11.5, 1]}",
                             "30, 0, 0, 0, 31, 0, 15.5, 11.5, 1], "
                             "\"depth_scale\": 0}"}) {
@@ -217,7 +217,7 @@ TEST_F(NumberedDatasetTest, MirrorsIclNuim) {
     Write("rgb/" + number + ".png", ColorImage(k));
     Write("depth/" + number + ".png", DepthImage(k));
   }
-  // A quarter turn around x in the mirrored world is one the other way round.
+  // A quarter turn around x in the mirrored world has the opposite direction.
   WriteText("livingRoom0.gt.freiburg",
             "1 0.1 0.2 0.3 0.70710678 0 0 0.70710678\n"
             "2 0 1 0 0 0 0 1\n");
@@ -274,7 +274,7 @@ TEST_F(NumberedDatasetTest, RefusesWhatCannotBeUsed) {
   }
   ExpectInputError([this] { OpenSource("auto", WithCamera()); },
                    {folder_.path(), "none of its 3 colour images"});
-  // An image that is cut off.
+  // A truncated image.
   WriteText("frame-000010.color.png", "");
   const auto source = OpenSource("auto", WithCamera());
   ExpectInputError([&] { source->Next()->read(); }, {"frame-000010.color.png"});

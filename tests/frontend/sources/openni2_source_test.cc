@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 namespace {
 
-// The device of OpenNI's own dummy driver: depth and colour at 30 Hz.
+// The device of OpenNI's dummy driver: depth and colour at 30 Hz.
 constexpr char kDummy[] = "Dummy";
 constexpr int kDummyWidth = 320;
 constexpr int kDummyHeight = 240;
@@ -19,7 +19,7 @@ SourceOptions Options(const std::string& path) {
   options.path = path;
   options.camera = CameraSetup(
       Camera{kDummyWidth, kDummyHeight, 285.0, 285.0, 159.5, 119.5});
-  options.max_time_difference = 0.1;  // its streams start one after the other
+  options.max_time_difference = 0.1;  // its streams do not start together
   return options;
 }
 

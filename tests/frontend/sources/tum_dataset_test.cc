@@ -15,7 +15,7 @@ namespace {
 
 using TumDatasetTest = TumSequenceTest;
 
-// Expects the three frames of the fixture, in full.
+// Expects all three frames of the fixture.
 void ExpectFrames(const TumDataset& dataset) {
   ASSERT_EQ(dataset.size(), 3);
   const int images[] = {0, 1, 3};
@@ -50,7 +50,7 @@ TEST_F(TumDatasetTest, TakesTheTimeDifferenceFromItsOptions) {
 TEST_F(TumDatasetTest, ReadsGrayAndColor) {
   options_.keep_color = true;
   const TumDataset dataset(options_);
-  // 0.299 red + 0.587 green + 0.114 blue, rounded; JPEG may be 2 levels off.
+  // 0.299 red + 0.587 green + 0.114 blue, rounded; JPEG may be off by 2 levels.
   EXPECT_NEAR(dataset.Read(0).gray.at<uint8_t>(5, 5), 69, 1);
   EXPECT_NEAR(dataset.Read(1).gray.at<uint8_t>(5, 5), 70, 2);
   const cv::Mat color = dataset.Read(2).color;
@@ -58,7 +58,7 @@ TEST_F(TumDatasetTest, ReadsGrayAndColor) {
   EXPECT_EQ(color.at<cv::Vec3b>(5, 5), cv::Vec3b(13, 63, 113));
 }
 
-// That somebody wants a cloud must not move the camera.
+// Keeping colours, e.g. for a cloud, must not change the trajectory.
 TEST_F(TumDatasetTest, KeepsColourWithTheSameGray) {
   const TumDataset gray_alone(options_);
   options_.keep_color = true;
@@ -174,8 +174,8 @@ TEST_F(TumDatasetTest, RefusesDepthThatIsNoDepth) {
   ExpectReadRefused({"depth/0.png", "16 bits", "CV_8UC3"});
 }
 
-// Real sequences, which are not part of the project: RGBD_POSE_TEST_DATA names
-// the folder that holds them.
+// Real sequences, which are not part of the project, in the folder
+// RGBD_POSE_TEST_DATA.
 class RealTumDatasetTest : public testing::TestWithParam<const char*> {};
 
 TEST_P(RealTumDatasetTest, IsReadInFull) {
@@ -193,7 +193,7 @@ TEST_P(RealTumDatasetTest, IsReadInFull) {
     EXPECT_EQ(frame.gray.size(), frame.depth.size());
     EXPECT_GT(cv::countNonZero(frame.depth), 0);
   }
-  // The association file that came with the sequence, if any, says the same.
+  // The sequence's association file, if there is one, gives the same result.
   options.associations_file = options.path + "/associations.txt";
   if (!std::filesystem::exists(options.associations_file)) return;
   const TumDataset associated(options);

@@ -12,7 +12,7 @@ using TumListsTest = TumSequenceTest;
 
 struct BadList {
   const char* name;
-  const char* file;  // the list that is replaced
+  const char* file;  // the list to replace
   const char* text;
   std::vector<std::string> message_parts;
 };
@@ -81,7 +81,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"associations.txt:1:", "colour", "depth", "rgb/3.png"}}),
     [](const auto& info) { return info.param.name; });
 
-// Which images cannot be read turns out as they are.
+// Unreadable images are detected later, when they are read.
 TEST_F(TumListsTest, TakesOneImageOfATimeStamp) {
   folder_.Write("depth.txt",
                 "1.005 depth/0.png\n1.005 depth/9.png\n1.04 depth/1.png\n");

@@ -72,7 +72,7 @@ TEST_F(TumWriterTest, ReadsBackAsWritten) {
   const Trajectory truth =
       ReadTrajectory((folder_ / "groundtruth.txt").string());
   ASSERT_EQ(truth.size(), 4u);
-  constexpr double kTolerance = 1e-9;  // of the text
+  constexpr double kTolerance = 1e-9;  // rounding of the text
   for (int i = 0; i < dataset.size(); ++i) {
     const Rigid3d off =
         truth[i].world_from_cam.Inverse() * dataset.WorldFromCam(i);
@@ -82,7 +82,7 @@ TEST_F(TumWriterTest, ReadsBackAsWritten) {
   }
 }
 
-// As where they come from a JPEG: trajectories must not change.
+// As with gray levels from a JPEG: trajectories must not change.
 TEST_F(TumWriterTest, KeepsGrayLevelsThatAreNotThoseOfTheColours) {
   class Unrelated final : public Dataset {
    public:
@@ -122,7 +122,7 @@ TEST_F(TumWriterTest, DepthHasItsOwnTime) {
   ASSERT_EQ(read.size(), 4);
   for (int i = 0; i < read.size(); ++i) {
     EXPECT_EQ(read.timestamp(i), SyntheticDataset(options_).timestamp(i));
-    EXPECT_NEAR(read.Read(i).depth_delay, -0.0125, 1e-6);  // the text's digits
+    EXPECT_NEAR(read.Read(i).depth_delay, -0.0125, 1e-6);  // digits of the text
   }
 }
 

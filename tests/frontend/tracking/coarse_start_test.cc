@@ -1,4 +1,4 @@
-// Where trackers begin: the motion that coarse images tell.
+// The start of trackers: a motion estimated from coarse images.
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@
 namespace rgbd_pose {
 namespace {
 
-// A fifth of a pixel of the finest level, 80 x 60, as of the full image.
+// A fifth of a pixel of the finest level (80 x 60), in full-size pixels.
 constexpr double kGoodPx = 1.6;
 constexpr double kRounding = 1e-9;
 
@@ -40,7 +40,7 @@ class CoarseStartTest : public ::testing::Test {
     return tracker_.FindStart(*reference, PreparedFrame(cur), about);
   }
 
-  // How far (px, RMS over a grid) points are from where the truth has them.
+  // RMS distance (px, over a grid) of points from their true positions.
   double ErrorPx(const Rigid3d& motion) const {
     double squares = 0.0;
     int count = 0;
@@ -92,7 +92,7 @@ TEST_F(CoarseStartTest, DoesNotMindTheExposure) {
   }
 }
 
-// And no depth, which would tell as well.
+// Depth is missing as well, since it could determine the motion, too.
 TEST_F(CoarseStartTest, IsTheGuessWhereThereIsNothingToSee) {
   const Rigid3d guess = OffBy(7.0, Eigen::Vector3d::UnitY());
   Frame blind = cur_;
@@ -103,7 +103,7 @@ TEST_F(CoarseStartTest, IsTheGuessWhereThereIsNothingToSee) {
   EXPECT_LT((start.translation - guess.translation).norm(), kRounding);
 }
 
-// Of another place: what fits best is no start.
+// For an image of another place, even the best fit is no start.
 TEST_F(CoarseStartTest, IsTheGuessWhereTooFewAgree) {
   const Rigid3d guess = OffBy(7.0, Eigen::Vector3d::UnitY());
   Frame other = cur_;
@@ -114,7 +114,7 @@ TEST_F(CoarseStartTest, IsTheGuessWhereTooFewAgree) {
   EXPECT_EQ(start.rotation.coeffs(), guess.rotation.coeffs());
 }
 
-// As far as its covariance says so.
+// A guess with a small covariance is kept.
 TEST_F(CoarseStartTest, StaysWithACertainGuess) {
   const Rigid3d guess = OffBy(40.0, Eigen::Vector3d::UnitY());
   const MotionMatrix certain = 1e-12 * MotionMatrix::Identity();

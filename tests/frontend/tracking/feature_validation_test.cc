@@ -13,8 +13,8 @@ constexpr double kDepth = 2.0;
 
 Observation At(double u, double v) { return {u, v, kDepth, 0.5, 0.01}; }
 
-// Features of a camera that does not move: those in the left half agree, those
-// in the right half do not or are not found.
+// Features of a static camera: those in the left half agree, those in the right
+// half do not or are not found.
 class FeatureValidationTest : public testing::Test {
  protected:
   FeatureValidationTest()
@@ -41,7 +41,7 @@ class FeatureValidationTest : public testing::Test {
                              missing_failed, fresh_, min_trusted);
   }
 
-  // Splits matches of all fresh features; those on probation.
+  // Splits matches of all fresh features; returns those on probation.
   std::vector<int> OnProbation(const FeatureValidation& validation) const {
     FeatureMatches all{Correspondences(kKinect), {}};
     FeatureMatches on_probation = all;
@@ -82,8 +82,8 @@ TEST_F(FeatureValidationTest, WhatWasNotFoundCountsOnlyIfAsked) {
   EXPECT_EQ(Validation(/*missing_failed=*/false).num_trusted(), 4u);
 }
 
-// Features of the last reference that were on probation, but agree by now,
-// speak for those around them; others on probation do not.
+// Features on probation at the last reference that now agree validate the
+// features around them. Other features on probation do not.
 TEST_F(FeatureValidationTest, FeaturesOnProbationThatAgreeSpeakForTheirPlace) {
   FeatureMatches left{Correspondences(kKinect), {}};
   estimate_.is_inlier.clear();
@@ -101,8 +101,8 @@ TEST_F(FeatureValidationTest, FeaturesOnProbationThatAgreeSpeakForTheirPlace) {
             (std::vector<int>{3}));
 }
 
-// Matches of another reference are a mistake of the caller's: it must not write
-// beyond the features there are.
+// Matches of another reference are an error of the caller, which must not cause
+// writes beyond the features.
 TEST_F(FeatureValidationTest, MatchesOfAnotherReferenceAreRefused) {
   FeatureSet larger = last_;
   larger.observations.push_back(At(100, 100));
@@ -125,7 +125,7 @@ TEST_F(FeatureValidationTest, TrustIsEarnedByAgreeingSomeTimesInARow) {
   off.Add(fresh_, 2, At(505, 100));
   validation.Learn(agreeing, Rigid3d());
   validation.Learn(agreeing, Rigid3d());
-  validation.Learn(off, Rigid3d());  // begins again
+  validation.Learn(off, Rigid3d());  // restarts the count
   validation.Learn(agreeing, Rigid3d());
   validation.Learn(agreeing, Rigid3d());
   EXPECT_EQ(OnProbation(validation), (std::vector<int>{2, 3}));
@@ -135,7 +135,7 @@ TEST_F(FeatureValidationTest, TrustIsEarnedByAgreeingSomeTimesInARow) {
 
 TEST_F(FeatureValidationTest, AgreementIsWithTheMotion) {
   FeatureValidation validation = Validation(true);
-  // 2 cm to the left of 2 m: 5.25 px.
+  // 2 cm to the left at 2 m: 5.25 px.
   const Rigid3d cur_from_ref(Eigen::Quaterniond::Identity(), {-0.02, 0.0, 0.0});
   FeatureMatches moved{Correspondences(kKinect), {}};
   moved.Add(fresh_, 3, At(550 - 5.25, 300));

@@ -10,7 +10,7 @@
 namespace rgbd_pose {
 namespace {
 
-// A wall at 2 m, of which a camera on the x axis loses half a view a metre.
+// A wall at 2 m; a camera moving along x loses half a view per metre.
 struct WallReference final : Reference {
   Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
     const double moved = std::abs(cur_from_ref.translation.x());
@@ -21,7 +21,7 @@ struct WallReference final : Reference {
 constexpr double kMinShare = 0.7;
 constexpr double kMaxFlowPx = 30.0;
 
-// A camera that looks along z from a place on the x axis (m).
+// A camera that looks along z from a position on the x axis (m).
 Rigid3d CameraAt(double x) {
   return Rigid3d(Eigen::Quaterniond::Identity(), {x, 0.0, 0.0});
 }
@@ -53,7 +53,7 @@ TEST(KeyframesTest, ThoseOfEarlierSegmentsComeTheLatestFirst) {
   }
   expected.resize(Keyframes::kMaxKeyframes);
   EXPECT_EQ(keyframes.Before(3), expected);
-  expected.erase(expected.begin(), expected.begin() + 3);  // of segment 2
+  expected.erase(expected.begin(), expected.begin() + 3);  // those of segment 2
   EXPECT_EQ(keyframes.Before(2), expected);
 }
 

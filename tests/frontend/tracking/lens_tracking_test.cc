@@ -1,5 +1,5 @@
-// Every lens is tracked through as a pinhole is, rows exposed one after another
-// included.
+// Every lens is tracked as accurately as a pinhole, with rolling shutters as
+// well.
 
 #include <gtest/gtest.h>
 
@@ -17,7 +17,7 @@ struct TrackedLens {
   const char* name;
   LensModel model;
   std::vector<double> coefficients;
-  double focal;  // px, of 320 x 240
+  double focal;  // px, for 320 x 240
 };
 
 class LensTrackingTest : public testing::TestWithParam<TrackedLens> {};

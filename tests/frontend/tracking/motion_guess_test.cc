@@ -21,8 +21,8 @@ const MotionGuess kGuess(Trajectory{{10.0, Pose(0.0, 0.0)},
 TEST(MotionGuessTest, IsTheMotionFromPreviousToCurrent) {
   const auto motion = kGuess.CurFromPrev(10.0, 10.1);
   ASSERT_TRUE(motion.has_value());
-  // The current camera's z axis is the world's x axis, so the camera before is
-  // 1 m behind it.
+  // The current camera's z axis is the world's x axis; hence the previous
+  // camera is 1 m behind it.
   const Rigid3d expected = Pose(M_PI / 2, 1.0).Inverse();
   EXPECT_LE((motion->translation - expected.translation).norm(), 1e-12);
   EXPECT_NEAR(motion->translation.z(), -1.0, 1e-12);

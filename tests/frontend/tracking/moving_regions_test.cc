@@ -7,8 +7,8 @@ namespace {
 
 const Camera kPinhole = {640, 480, 525, 525, 319.5, 239.5, 0, 0, 0};
 
-// Features of a camera that does not move: those in the left half agree, those
-// in the right half do not or are not found.
+// Features of a static camera: those in the left half agree, those in the right
+// half do not or are not found.
 class MovingRegionsTest : public testing::Test {
  protected:
   MovingRegionsTest()
@@ -69,8 +69,8 @@ TEST_F(MovingRegionsTest, InliersCoverTheirPartOfTheImage) {
   EXPECT_NEAR(CellsOfInliers(found_, estimate_), 2 * left, 8);
 }
 
-// A barrel lens draws the image's sides inwards: what is marked has to be where
-// the pixels are, not where a pinhole would see them.
+// A barrel lens draws the image's sides inwards. Regions must be marked at the
+// distorted pixels, not where a pinhole would see them.
 TEST_F(MovingRegionsTest, AreWhereTheLensSeesThem) {
   Camera barrel = kPinhole;
   barrel.k1 = -0.5;

@@ -1,5 +1,5 @@
-// What moves by itself in a view: it does not take the motion along, or the
-// frame does not pass for ok.
+// A moving object in the view must not affect the motion, or the frame must not
+// be reported as ok.
 
 #include <gtest/gtest.h>
 
@@ -16,11 +16,11 @@ namespace {
 
 struct PatchRun {
   int ok = 0;
-  int wrong = 0;        // of these
+  int wrong = 0;        // of the ok frames
   double median = 0.0;  // error of the motion since the reference, m
 };
 
-// A wall of a poster moves through a share of the view by 5 to 8 px a frame.
+// A poster moves through a share of the view by 5 to 8 px per frame.
 PatchRun TrackWithPatch(const std::string& tracker, double share, int frames,
                         double max_error) {
   SyntheticOptions options;

@@ -1,6 +1,5 @@
-// What becomes of the odometry when the camera is covered, knocked, or looks
-// at something that moves: it says so, is never sure of a wrong pose, and
-// finds its way back.
+// Odometry with a camera that is covered, knocked or looks at a moving object:
+// it must report this, must not be certain of a wrong pose, and must recover.
 
 #include <gtest/gtest.h>
 
@@ -26,16 +25,16 @@
 namespace rgbd_pose {
 namespace {
 
-// How wrong a pose may be that is called ok: the drift of a few seconds
-// (less than half of it in the worst of the sequences without faults), far
-// below what a pose is off by that follows a box or a false match.
+// Limits for the error of poses with status ok: the drift of a few seconds
+// (less than half of this in the worst sequence without faults), far below the
+// error of a pose that follows the box or a false match.
 constexpr double kMaxShift = 0.020;      // m
-constexpr double kMaxShiftShare = 0.01;  // of the way so far
+constexpr double kMaxShiftShare = 0.01;  // of the path so far
 constexpr double kMaxTurnDeg = 0.5;
 constexpr int kRecoveryFrames = 5;
 
-// One frame, and how far its pose is off the truth; both are relative to the
-// first frame.
+// A frame and the error of its pose; both poses are relative to the first
+// frame.
 struct Outcome {
   TrackedFrame tracked;
   double shift = 0.0;      // m
@@ -56,7 +55,7 @@ std::ostream& operator<<(std::ostream& out, const Outcome& outcome) {
              << " matches";
 }
 
-// How one tracker fares along a sequence.
+// The results of one tracker along a sequence.
 class Run {
  public:
   Run(const std::string& tracker, const Dataset& dataset)
@@ -64,7 +63,7 @@ class Run {
         odometry_(OdometryOptions(),
                   MakeTracker(tracker, PartsFor(dataset.camera().camera))) {}
 
-  // `expected` is where the truth says it is.
+  // `expected` is the true pose.
   void Track(const Frame& frame, const Rigid3d& expected, double way) {
     Outcome outcome;
     outcome.tracked = odometry_.Track(frame);
@@ -87,7 +86,7 @@ class Run {
 using Check = std::function<void(const std::string& tracker,
                                  const std::vector<Outcome>& outcomes)>;
 
-// Every tracker along a sequence, whose frames are rendered once for all.
+// Runs every tracker along a sequence whose frames are rendered only once.
 void ForEveryTracker(const Dataset& dataset, const Trajectory& truth,
                      const Check& check) {
   std::deque<Run> runs;
@@ -139,7 +138,7 @@ void ExpectLost(const std::vector<Outcome>& outcomes, int first, int end) {
     EXPECT_TRUE(outcomes[i].lost()) << outcomes[i];
 }
 
-// From one of the first frames after the fault on.
+// Expects ok poses from one of the first frames after the fault on.
 void ExpectRecovery(const std::vector<Outcome>& outcomes, int end) {
   const auto after = outcomes.begin() + end;
   const auto ok = std::find_if(after, after + kRecoveryFrames,
@@ -157,7 +156,7 @@ TEST(OdometryFaultsTest, BlackFramesAreLeftBehind) {
   ForEveryTracker(
       "circle", 50, {{FaultKind::kBlack, 15, 35}},
       [](const std::string& tracker, const std::vector<Outcome>& outcomes) {
-        // Trackers that look at depths need not be lost.
+        // Trackers that use depth need not be lost.
         if (tracker == "features") ExpectLost(outcomes, 15, 35);
         ExpectNoWrongOk(outcomes);
         ExpectRecovery(outcomes, 35);
@@ -168,7 +167,7 @@ TEST(OdometryFaultsTest, CoveredDepthIsLeftBehind) {
   ForEveryTracker(
       "circle", 60, {{FaultKind::kCovered, 15, 45}},  // 1 s
       [](const std::string& tracker, const std::vector<Outcome>& outcomes) {
-        // Pixels have the depths of their reference.
+        // Pixel costs use the depth of the reference.
         if (tracker == "features") {
           ExpectLost(outcomes, 15, 45);
         } else {
@@ -179,7 +178,7 @@ TEST(OdometryFaultsTest, CoveredDepthIsLeftBehind) {
       });
 }
 
-// Neither gray levels nor depths tell anything.
+// Neither gray levels nor depths give information.
 TEST(OdometryFaultsTest, ACoveredLensIsNotFollowed) {
   ForEveryTracker("circle", 50,
                   {{FaultKind::kBlack, 15, 35}, {FaultKind::kCovered, 15, 35}},
@@ -249,8 +248,8 @@ TEST(OdometryFaultsTest, TracksAFastHandWithBlurAndDriftingExposure) {
                   });
 }
 
-// One view with new noise in every frame: what SyntheticDataset makes of the
-// path "still", without rendering the same again and again.
+// One view with new noise in every frame: equal to SyntheticDataset with path
+// "still", but rendered only once.
 class NoisyView : public Dataset {
  public:
   explicit NoisyView(int frames) : frames_(frames) {
@@ -289,8 +288,8 @@ TEST(OdometryFaultsTest, NoiseAloneDoesNotMoveAStillCamera) {
   for (int i = 0; i < kFrames; ++i) {
     truth.push_back({dataset.timestamp(i), Rigid3d()});
   }
-  // A frame's own noise, from hundreds of corners of 0.5 px, is a quarter of
-  // this; more would be drift.
+  // The noise of a frame, with hundreds of corners of 0.5 px, is a quarter of
+  // this limit. A larger error would be drift.
   ForEveryTracker(dataset, truth,
                   [](const std::string&, const std::vector<Outcome>& outcomes) {
                     for (const Outcome& outcome : outcomes) {

@@ -1,4 +1,4 @@
-// What becomes of frames that are not found, and of those after them.
+// Handling of lost frames and of the frames after them.
 
 #include <gtest/gtest.h>
 
@@ -13,8 +13,8 @@
 namespace rgbd_pose {
 namespace {
 
-// Two views of the room that have nothing in common, each a moment long, with
-// darkness between: what each policy makes of it.
+// Two views of the room with nothing in common, each for a moment, with
+// darkness between them; tested with each policy.
 class LostPolicyTest : public ::testing::Test {
  protected:
   LostPolicyTest() {
@@ -99,12 +99,12 @@ TEST_F(LostPolicyTest, ANewSegmentStartsWhereTheOldOneEnded) {
   EXPECT_NE(frames[11].reason.find("segment before"), std::string::npos);
   EXPECT_EQ(frames[11].segment, 1);
   EXPECT_EQ(frames[11].reference, 10);
-  // The segment before is searched for during a second.
+  // The previous segment is searched for during one second.
   EXPECT_EQ(frames[13].status, TrackingStatus::kOk) << frames[13].reason;
   EXPECT_EQ(frames[13].segment, 1);
 }
 
-// What the camera sees that has turned on the spot.
+// The view of a camera rotated on the spot.
 Frame Turned(double deg) {
   SyntheticOptions options;
   options.path = "still";
@@ -129,8 +129,7 @@ TEST(OdometryTest, AFrameIsLostIfNoMotionTiesItToTheOneBefore) {
   }
 }
 
-// The camera jumps to where it has not been and turns back from there, frame by
-// frame.
+// The camera jumps to a new place and turns back from there, frame by frame.
 TEST(OdometryTest, TheWayBackToASegmentIsTrackedAndJoinsBoth) {
   const Camera camera = Room("still", 1).camera().camera;
   Odometry odometry = MakeOdometry(camera, "tukey");
@@ -147,7 +146,7 @@ TEST(OdometryTest, TheWayBackToASegmentIsTrackedAndJoinsBoth) {
     EXPECT_EQ(result.status == TrackingStatus::kOk, result.segment == 0);
     EXPECT_TRUE(deg != first_turn || result.segment == 1);
     if (result.segment == 1) continue;
-    // The motions since a frame of either segment.
+    // The motions since one frame of each segment.
     EXPECT_TRUE(result.relocalised);
     ASSERT_EQ(result.edges.size(), 2u);
     EXPECT_EQ(result.edges[0].ref, 0);
@@ -182,13 +181,13 @@ TEST_F(LostPolicyTest, TheOldSegmentIsTakenUpAgainIfTheViewReturns) {
             0.003);
 }
 
-// Half a second of darkness, with wheels that go on counting.
+// Half a second of darkness, with wheel odometry that continues.
 class DarknessTest : public ::testing::TestWithParam<LostPolicy> {
  protected:
   static constexpr int kFrames = 40;
   static constexpr int kDark = 15, kLight = 30;
 
-  // `told(i)`: whether the motion up to frame i is.
+  // `told(i)`: whether the motion up to frame i is known.
   std::vector<TrackedFrame> Run(const std::function<bool(int)>& told) {
     OdometryOptions options;
     options.on_lost = GetParam();
@@ -226,7 +225,7 @@ TEST_P(DarknessTest, AMotionGuessIsFollowedAndSaidToBe) {
     EXPECT_EQ(frame.status == TrackingStatus::kLost, dark) << frame.reason;
     EXPECT_EQ(frame.is_predicted, dark);
     if (!dark) continue;
-    // The way of the darkness is as uncertain as its steps together.
+    // The covariance in the dark is the sum of the steps' covariances.
     ASSERT_EQ(frame.edges.size(), 1u);
     const RelativePose& edge = frame.edges[0];
     const int steps = frame.index - kDark + 1;
@@ -253,8 +252,8 @@ INSTANTIATE_TEST_SUITE_P(Policies, DarknessTest,
                                            LostPolicy::kPredict,
                                            LostPolicy::kNewSegment));
 
-// A room ten times as large, beyond the depths that are used by default, left
-// and entered again with the camera turned.
+// A room ten times as large, beyond the default depth range, left and entered
+// again with the camera rotated.
 TEST(OdometryTest, WhatIsSaidOfDepthsReachesTheRelocaliser) {
   SyntheticOptions options;
   options.path = "still";

@@ -1,4 +1,4 @@
-// Real sequences, where there are any.
+// Real sequences, if they are available.
 
 #include <gtest/gtest.h>
 
@@ -56,8 +56,8 @@ TEST_F(RealSequenceTest, FastRotationIsTracked) {
 }
 
 TEST_F(RealSequenceTest, Freiburg1IsWithinAFewMillimetres) {
-  // The depth stamps are partly guessed (SOURCE.txt), the third one wrongly: as
-  // it stands its frame fits worse than with none, one image later better.
+  // The depth stamps are partly guessed (SOURCE.txt), the third one wrongly:
+  // its frame fits worse than without stamps, and better one image later.
   OdometryOptions options;
   options.shutter = ShutterUse::kNone;
   const TrackedSequence run = TrackAll(Open("tum_fr1_xyz_3"), "tukey", options);

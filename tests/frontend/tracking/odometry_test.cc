@@ -1,4 +1,4 @@
-// The whole chain in memory: images in, poses out.
+// The whole chain in memory, from images to poses.
 
 #include "frontend/tracking/odometry.h"
 
@@ -39,10 +39,10 @@ TEST(OdometryTest, FollowsTheCameraAlongItsAxes) {
   EXPECT_EQ(run.Count(TrackingStatus::kOk), 30);
   const EvaluationReport report =
       Evaluate(run.trajectory, dataset.ground_truth(), {});
-  // Ten times below the path's length would already be a failure to track;
-  // 5 mm is what the whole sequence is held to.
+  // An error of a tenth of the path's length would already be a tracking
+  // failure; the limit for the whole sequence is 5 mm.
   EXPECT_LE(report.ate.rmse, 0.005);
-  // Directions: the pose itself, not its inverse, to within the drift.
+  // Direction: the pose itself, not its inverse, to within the drift.
   const Rigid3d first = dataset.WorldFromCam(0);
   const Rigid3d expected = first.Inverse() * dataset.WorldFromCam(29);
   const Rigid3d actual = run.trajectory.back().world_from_cam;
@@ -101,7 +101,7 @@ TEST(OdometryTest, ABlackStartIsLostUntilThereAreFeatures) {
   EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
 }
 
-// The second frame is far from the first: only who is told finds it at once.
+// The second frame is far from the first; only the guess makes it easy to find.
 TEST(OdometryTest, AMotionGuessIsTriedFirst) {
   const SyntheticDataset dataset = Room("pan_tilt", 40);
   const Frame first = dataset.Read(0);
@@ -121,8 +121,8 @@ TEST(OdometryTest, AMotionGuessIsTriedFirst) {
   }
 }
 
-// A camera that has passed its way before: references change, also to earlier
-// ones. Nobody numbers the frames.
+// A camera that returns along its path: references change, also to earlier
+// ones. Frames have no numbers.
 TEST(OdometryTest, EveryTrackedFrameCarriesItsEdges) {
   const SyntheticDataset dataset = Room("pan_tilt", 60);
   Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");

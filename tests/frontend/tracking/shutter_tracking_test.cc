@@ -1,4 +1,4 @@
-// Cameras whose rows are exposed one after another, tracked.
+// Tracking of cameras with rolling shutters.
 
 #include "frontend/tracking/shutter_tracking.h"
 
@@ -25,7 +25,7 @@ struct Shutters {
   double depth_delay = 0.0;
 };
 
-// Of a handheld sensor; `sign`: -1 where the last row comes first.
+// Shutters of a handheld sensor; `sign` is -1 if the last row is first.
 Shutters RollingShutters(double sign) {
   return {{-0.0075, sign * 0.028}, {-0.018, sign * 0.028}};
 }
@@ -67,7 +67,7 @@ Odometry OdometryFor(const ShutterSequence& sequence,
       MakeTracker(tracker, PartsFor(sequence.dataset.camera().camera)));
 }
 
-// RMSE of positions at the stamps, m.
+// RMSE of positions at the time stamps, m.
 double PositionError(const ShutterSequence& sequence,
                      const std::string& tracker,
                      ShutterUse use = ShutterUse::kCamera) {
@@ -80,9 +80,9 @@ double PositionError(const ShutterSequence& sequence,
   return Evaluate(path, sequence.dataset.ground_truth(), {}).ate.rmse;
 }
 
-// How much worse than without shutters it may be, and how much worse it has to
-// be if they are ignored. Pixels alone know velocities from motions only, half
-// a frame late.
+// Largest error allowed relative to global shutters, and smallest error if
+// shutters are ignored. Pixel costs know velocities only from motions, half a
+// frame late.
 struct ShutterTrust {
   const char* tracker;
   double at_most, ignored_at_least;
@@ -107,7 +107,7 @@ TEST_P(ShutterTrackersTest, FromTheBottom) {
   ExpectUndone(RollingShutters(-1.0));
 }
 
-// Depth of 15 ms earlier or later is at the wrong place by up to 10 px here.
+// Depth 15 ms earlier or later is displaced by up to 10 px here.
 TEST_P(ShutterTrackersTest, LaterDepth) { ExpectUndone({{}, {}, 0.015}); }
 TEST_P(ShutterTrackersTest, EarlierDepth) { ExpectUndone({{}, {}, -0.015}); }
 
@@ -119,8 +119,9 @@ INSTANTIATE_TEST_SUITE_P(All, ShutterTrackersTest,
                            return std::string(info.param.tracker);
                          });
 
-// Of a slow camera, the frame that tells a new reference's velocity is tracked
-// once, against the one before; its pose counts from the new one.
+// The frame that provides a new reference's velocity is tracked once if the
+// camera is slow, against the previous reference; its pose is relative to the
+// new one.
 TEST(ShutterTrackingTest, GoesOnFromANewReference) {
   const ShutterSequence sequence("pan_tilt", RollingShutters(1.0), 60);
   Odometry odometry = OdometryFor(sequence, "features", ShutterUse::kCamera);
@@ -133,7 +134,7 @@ TEST(ShutterTrackingTest, GoesOnFromANewReference) {
     if (!cur.previous_is_reference) continue;
     const TrackedFrame& prev = frames[frames.size() - 2];
     EXPECT_EQ(cur.reference, prev.index);
-    if (cur.edges.front().ref == cur.reference) continue;  // it was fast
+    if (cur.edges.front().ref == cur.reference) continue;  // was fast
     ++new_references;
     EXPECT_EQ(cur.edges.front().ref, prev.reference);
     const Rigid3d along = cur.cur_from_reference * prev.cur_from_reference;
@@ -146,8 +147,9 @@ TEST(ShutterTrackingTest, GoesOnFromANewReference) {
   EXPECT_GE(new_references, 1);
 }
 
-// Turning (up to 38 degrees/s, almost in place) and going along the axes. In
-// one of the two directions, going along them hides most of what rows do.
+// Rotation (up to 38 degrees/s, almost in place) and translation along the
+// axes. In one of two directions, translation hides most of the shutter's
+// effect.
 TEST(ShutterTrackingTest, OfPureMotions) {
   constexpr int kCount = 24;
   for (const std::string path : {"pan_tilt", "xyz"}) {
@@ -165,8 +167,8 @@ TEST(ShutterTrackingTest, OfPureMotions) {
   }
 }
 
-// The first two depths are 63 ms apart, their colours 33 ms: taken as it is,
-// the first motion swings around the true one.
+// The first two depth images are 63 ms apart, their colour images 33 ms.
+// Without correction, the first motion has an alternating error.
 TEST(ShutterTrackingTest, OffsetsThatAlternate) {
   const auto first_error = [](ShutterUse use) {
     SyntheticOptions options;
@@ -203,7 +205,7 @@ std::string TextOf(const std::vector<TrackedFrame>& frames,
   return FormatTrajectory(path);
 }
 
-// All but the covariances, which allow for a shutter that is not undone.
+// Except for covariances, which include the error of an ignored shutter.
 TEST(ShutterTrackingTest, GlobalShuttersGiveTheSameBytesEitherWay) {
   const ShutterSequence sequence("handheld", {}, 15);
   for (const std::string& tracker : TrackerNames()) {
@@ -236,8 +238,8 @@ TEST(ShutterTrackingTest, RollingShuttersGiveTheSameBytesTwice) {
   EXPECT_EQ(texts[0], texts[1]);
 }
 
-// After a gap, the first frame is told nothing, the second by the first. After
-// a loss its rows and the last velocity tell the first one.
+// After a gap, the first frame has no velocity; the second has the first one's.
+// After a loss, the first frame uses its rows and the last velocity.
 TEST(ShutterTrackingTest, AGapForgetsTheVelocityALossDoesNot) {
   const ShutterSequence sequence("xyz", RollingShutters(1.0), 12);
   for (const bool is_loss : {false, true}) {
@@ -259,8 +261,8 @@ TEST(ShutterTrackingTest, AGapForgetsTheVelocityALossDoesNot) {
   }
 }
 
-// A reference between frames with shutters that has none itself stays what it
-// is: nothing of the last one that had is left.
+// A reference without shutter between frames with shutters is not changed by
+// data of the last reference with a shutter.
 TEST(ShutterTrackingTest, ReferencesOfOneMomentAreNotMended) {
   const SyntheticDataset global(OptionsOf("handheld", {}));
   const SyntheticDataset rolling(OptionsOf("handheld", RollingShutters(1.0)));
@@ -279,10 +281,10 @@ TEST(ShutterTrackingTest, ReferencesOfOneMomentAreNotMended) {
   EXPECT_LT(ErrorOf(tracked.cur_from_reference, truth).translation, 0.005);
 }
 
-// How edges of frames that are ok are off, beside their covariances.
+// Errors of edges of ok frames compared with their covariances.
 struct Honesty {
-  double nees = 0.0;  // mean chi^2 (of 6 degrees)
-  int wrong = 0;      // by more than five sigmas
+  double nees = 0.0;  // mean chi^2 (6 degrees of freedom)
+  int wrong = 0;      // errors of more than five sigmas
   int edges = 0;
 };
 
@@ -307,8 +309,8 @@ Honesty HonestyOf(const Shutters& shutters, const std::string& tracker,
   return honesty;
 }
 
-// Of frames whose middle row is exposed at the stamp: else references are those
-// of a time that is known only as well as their velocity.
+// Only if the middle row is exposed at the stamp: otherwise the references'
+// time is known only as well as their velocity.
 TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {
   const auto nees_with = [](const Shutters& shutters) {
     return HonestyOf(shutters, "features", ShutterUse::kCamera).nees;
@@ -322,8 +324,8 @@ TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {
   }
 }
 
-// What nobody knows is in the covariance: for a hand as fast as this one in
-// part, for real ones (see odometry.cc) as a whole.
+// The covariance includes the error of unknown shutters: partly for a hand as
+// fast as this one, fully for real ones (see odometry.cc).
 TEST(ShutterTrackingTest, ShuttersThatNobodyKnowsAreAllowedFor) {
   for (const std::string tracker : {"features", "hybrid"}) {
     const Honesty honesty =
@@ -333,7 +335,7 @@ TEST(ShutterTrackingTest, ShuttersThatNobodyKnowsAreAllowedFor) {
   }
 }
 
-// Cameras that say nothing of their shutters count as those that are ignored.
+// Cameras with unspecified shutters are treated like ignored shutters.
 TEST(ShutterTrackingTest, OnlyWhoSaysSoHasAGlobalShutter) {
   const ShutterSequence sequence("handheld", {}, 4);
   Odometry said = OdometryFor(sequence, "features", ShutterUse::kCamera);

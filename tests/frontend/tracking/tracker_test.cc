@@ -39,15 +39,15 @@ TEST(FeatureReferenceTest, SaysWhatAnotherCameraSeesOfIt) {
       wall.SeenFrom(Rigid3d(Eigen::Quaterniond::Identity(), {-1.0, 0.0, 0.0}));
   EXPECT_NEAR(aside.share, 9.0 / 15.0, 1e-12);
   EXPECT_NEAR(aside.flow_px, 262.5, 1e-9);
-  // Behind the camera nothing is in view.
+  // Nothing is in view behind the camera.
   const Rigid3d turned(
       Eigen::Quaterniond(Eigen::AngleAxisd(M_PI, Eigen::Vector3d::UnitY())),
       Eigen::Vector3d::Zero());
   EXPECT_EQ(wall.SeenFrom(turned).share, 0.0);
 }
 
-// Matches in pairs, one of two where it should be and one far from it: as many
-// agree as are asked for, but the spread is that of the others.
+// Nearly half of the matches are right, the others wrong: enough matches agree,
+// but the spread is determined by the wrong ones.
 class HalfWrongFrontend final : public Frontend {
  public:
   explicit HalfWrongFrontend(double error_px)
@@ -105,7 +105,7 @@ class TrackerTest : public ::testing::TestWithParam<std::string> {
   SyntheticDataset room_{SyntheticOptions()};
 };
 
-// What the odometry relies on, whatever the tracker works by.
+// The odometry relies on this for every tracker.
 TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
   const auto tracker = Make();
   std::string why_not;
@@ -128,14 +128,14 @@ TEST_P(TrackerTest, FindsTheMotionAndSaysHowMuchIsShared) {
     EXPECT_GT(tracked.overlap.flow_px, flow);
     share = tracked.overlap.share;
     flow = tracked.overlap.flow_px;
-    // What is measured is near to what depth and motion let expect.
+    // The measured flow is close to the one predicted from depth and motion.
     EXPECT_NEAR(reference->SeenFrom(truth).flow_px, flow, 0.1 * flow + 1.0);
   }
   EXPECT_GT(share, 0.5);
   EXPECT_FALSE(tracked.needs_new_keyframe);
 }
 
-// The covariance of a guess is the prior of the costs that have one.
+// The covariance of a guess is used by costs with a prior.
 TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
   TrackerParts parts = PartsFor(room_.camera().camera);
   parts.estimator = Estimator(
@@ -171,7 +171,7 @@ TEST_P(TrackerTest, TrustsAGuessAsFarAsItsCovarianceGoes) {
 TEST_P(TrackerTest, SaysWhyAFrameIsNoReferenceOrNotTracked) {
   const auto tracker = Make();
   const Frame good = room_.Read(0);
-  // Depth alone may do for trackers that look at it.
+  // Depth alone may be enough for trackers that use it.
   Frame black = good;
   black.gray = cv::Mat(good.gray.size(), CV_8UC1, cv::Scalar(0));
   black.depth = cv::Mat(good.depth.size(), CV_16UC1, cv::Scalar(0));
@@ -214,12 +214,12 @@ TEST(TrackerFactoryTest, PixelsNeedAnEstimatorOfTheirOwn) {
   }
 }
 
-// Of a path in a scene, the status of all frames and how far the last is off.
+// For a path in a scene: the status of all frames and the last frame's error.
 struct Tracks {
   int lost = 0;
   int by_pixels_alone = 0;
   double off = 0.0;    // m
-  std::string reason;  // of the last frame that is lost
+  std::string reason;  // of the last lost frame
 };
 
 Tracks Follow(const char* tracker, const char* scene, const char* path,
@@ -261,8 +261,8 @@ TEST(DirectTrackerTest, IsNotLostWithoutTexture) {
   EXPECT_LE(hybrid.off, 0.003);
 }
 
-// Nothing tells how far the camera is along a bare corridor: noise of slopes
-// must not be taken for it.
+// A bare corridor gives no information along its axis; noise of slopes must not
+// be used as such.
 TEST(DirectTrackerTest, SaysWhichDirectionACorridorHides) {
   OdometryOptions hold;
   hold.on_lost = LostPolicy::kHold;
@@ -272,7 +272,7 @@ TEST(DirectTrackerTest, SaysWhichDirectionACorridorHides) {
       << tracks.reason;
 }
 
-// One that shows the same but for its noise, and no depth.
+// A frame that is the same except for noise, without depth.
 TEST(DirectTrackerTest, AFrameHasToLookLikeItsReference) {
   SyntheticOptions options;
   options.frames = 2;

@@ -17,16 +17,16 @@ namespace {
 
 const Twist kTwist = {{0.8, -0.5, 0.6}, {-0.3, 0.5, 0.4}};
 
-// Colour and depth of a handheld sensor.
+// Shutters of colour and depth of a handheld sensor.
 FrameTiming TimingOf(const Twist& twist) {
   return {{-0.0075, 0.028}, {-0.018, 0.028}, twist};
 }
 
-// Matches with a frame whose rows were exposed one after another, which can be
-// moved by any velocity. Each is on a surface of its own, steep or not.
+// Matches with a rolling-shutter frame, which can be moved by any velocity.
+// Each is on a surface of its own, steep or not.
 class RollingMatches {
  public:
-  // `timing`: as it was.
+  // `timing`: the true one.
   RollingMatches(const FrameTiming& timing, const Rigid3d& cur_from_ref,
                  double noise, unsigned seed)
       : timing_(timing) {
@@ -41,7 +41,7 @@ class RollingMatches {
       normal.normalize();
       const Eigen::Vector2d seen = ImagePoint(camera_, timing, point);
       m.taken = timing.depth.RowTime(seen.y(), camera_.height);
-      // The surface when depth was taken.
+      // The surface at the time of the depth exposure.
       const Rigid3d moved = timing.twist.MotionDuring(m.taken);
       m.normal = moved.rotation * normal;
       const Eigen::Vector3d then = timing.twist.MovedPoint(point, m.taken);
@@ -57,7 +57,7 @@ class RollingMatches {
     }
   }
 
-  // Every tenth is somewhere else.
+  // Every tenth match becomes an outlier.
   void AddOutliers() {
     RandomWorld world(7);
     for (size_t i = 0; i < measured_.size(); i += 10) {
@@ -66,14 +66,14 @@ class RollingMatches {
     }
   }
 
-  // As Observe sees them.
+  // The matches as computed by Observe().
   Correspondences MovedBy(const Twist& twist) const {
     Correspondences moved(camera_);
     for (const Measured& m : measured_) {
       Observation cur = m.match.cur;
       const Eigen::Vector3d ray = camera_.Ray(cur.u, cur.v);
       const double seen = timing_.color.RowTime(cur.v, camera_.height);
-      // How far the surface is along the ray, whose points move in proportion.
+      // Distance to the surface along the ray; points move in proportion to z.
       const auto behind = [&](double z) {
         const Eigen::Vector3d at_stamp = twist.MovedPoint(ray * z, -seen);
         return m.normal.dot(twist.MovedPoint(at_stamp, m.taken)) - m.distance;
@@ -91,11 +91,11 @@ class RollingMatches {
 
  private:
   struct Measured {
-    Match match;  // cur: as seen by its row
-    // The surface normal . X = distance, when its depth was taken.
+    Match match;  // cur: as seen in its row
+    // The surface normal . X = distance at the time of the depth exposure.
     Eigen::Vector3d normal;
     double distance = 0.0;
-    double taken = 0.0;  // s after the stamp
+    double taken = 0.0;  // s after the time stamp
   };
 
   Camera camera_;
@@ -114,7 +114,7 @@ const Rigid3d kMotion(Eigen::Quaterniond(Eigen::AngleAxisd(
                           0.03, Eigen::Vector3d(1, -1, 2).normalized())),
                       {0.03, -0.02, 0.04});
 
-// Each velocity moves the matches, which tell a better one.
+// Iterates: each velocity moves the matches, which give a better velocity.
 Twist FoundTwist(const RollingMatches& matches, const VelocityPrior& prior,
                  const Twist& prior_mean) {
   Twist twist = prior_mean;
@@ -135,7 +135,7 @@ double TwistError(const Twist& found, const Twist& truth) {
 TEST(TwistEstimationTest, RowsTellTheVelocity) {
   const RollingMatches exact(TimingOf(kTwist), kMotion, 0.0, 1);
   const VelocityPrior anything = PriorWith(100.0, 100.0);
-  // Rows are those of where points are moved to, ten pixels off.
+  // Rows are those of the moved points, ten pixels off.
   EXPECT_LT(TwistError(FoundTwist(exact, anything, Twist()), kTwist), 0.02);
   RollingMatches with_outliers = exact;
   with_outliers.AddOutliers();
@@ -143,15 +143,15 @@ TEST(TwistEstimationTest, RowsTellTheVelocity) {
             0.1);
 }
 
-// With nothing but depth at another time, on surfaces that are not seen
-// straight on: their slopes are half of what depths say.
+// Only the depth delay gives information, on slanted surfaces: half of the
+// effect on depth comes from their slopes.
 TEST(TwistEstimationTest, DepthOfAnotherTimeTellsTheVelocity) {
   for (const double delay : {0.015, -0.015}) {
     const FrameTiming timing = {{}, {delay, 0.0}, kTwist};
     const RollingMatches exact(timing, kMotion, 0.0, 6);
     FrameTiming moved_by = timing;
     moved_by.twist = Twist();
-    // One step: what is linear in the velocity is right.
+    // In one step, the linear part of the velocity is correct.
     const Correspondences matches = exact.MovedBy(moved_by.twist);
     const Twist found =
         EstimateTwist(matches, std::vector<bool>(matches.size(), true), 1.0,
@@ -193,7 +193,7 @@ TEST(TwistEstimationTest, OutliersAndMatchesWithoutDepthCountNothing) {
       0.0);
 }
 
-// A global shutter tells nothing of the velocity, nor is it told wrongly.
+// A global shutter neither gives a velocity nor is disturbed by a wrong one.
 TEST(TwistEstimationTest, WithoutRowsTheMeanComesBack) {
   const FrameTiming global = {{}, {}, {{0.3, 0.2, 0.1}, {0.1, 0.2, 0.3}}};
   const RollingMatches seen(global, kMotion, 1.0, 3);
@@ -205,7 +205,7 @@ TEST(TwistEstimationTest, WithoutRowsTheMeanComesBack) {
   EXPECT_LT(estimate.motion_covariance.norm(), 1e-20);
 }
 
-// Between what the rows say and the mean, by how certain that is.
+// The result is between the rows' velocity and the mean, by their certainty.
 TEST(TwistEstimationTest, ACertainMeanIsKept) {
   const RollingMatches matches(TimingOf(kTwist), kMotion, 1.0, 4);
   const Twist mean = {{0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
@@ -228,15 +228,15 @@ TEST(TwistEstimationTest, TheLessIsKnownTheWiderTheMotion) {
     EXPECT_GT(covariance.trace(), last) << sigma;
     EXPECT_LT((covariance - covariance.transpose()).norm(),
               1e-9 * covariance.norm());
-    // Its velocities are seen for as long as the middle of the rows is off:
-    // 7.5 and 18 ms.
+    // A velocity acts for as long as the middle row differs from the stamp: 7.5
+    // and 18 ms.
     EXPECT_LT(covariance.diagonal().maxCoeff(), 0.018 * 0.018 * sigma * sigma);
     last = covariance.trace();
   }
 }
 
-// As the tracker does it: the velocity from the mean on, the motion from the
-// matches that it moves. Velocities are as far from the mean as the prior says.
+// As in the tracker: the velocity starts from the mean, the motion uses the
+// moved matches. The velocities' spread around the mean follows the prior.
 TEST(TwistEstimationTest, TheCovarianceIsHonest) {
   constexpr int kTrials = 60;
   constexpr double kAngular = 0.3, kLinear = 0.2;
@@ -273,8 +273,8 @@ TEST(TwistEstimationTest, TheCovarianceIsHonest) {
     without += error.dot(known.ldlt().solve(error)) / kTrials;
   }
   RecordProperty("nees", std::to_string(with));
-  // A mean of six; over so many trials its own sigma is 0.45. Loss and velocity
-  // are not those of least squares to the last.
+  // The mean is six; its sigma over so many trials is 0.45. With a loss and a
+  // velocity, the result is not exactly that of least squares.
   EXPECT_NEAR(with, 6.0, 2.0);
   EXPECT_GT(without, 1.5 * with);
 }

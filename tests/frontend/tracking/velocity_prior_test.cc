@@ -29,7 +29,7 @@ TEST(VelocityPriorTest, BetweenIsTheVelocityFromFrameToFrame) {
              kPriorTwist);
 }
 
-// Whatever a frame was moved by, it was seen where it was seen.
+// The velocity used for a correction does not change where points were seen.
 TEST(VelocityPriorTest, MotionsAreToldByTheMiddleRow) {
   constexpr double kMiddle = -0.008;
   const Twist wrong = {{-1.0, 0.3, 0.6}, {0.5, 0.5, -0.5}};
@@ -66,7 +66,7 @@ TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
   ExpectNear(mean(), kPriorTwist);
 }
 
-// Half of how much velocities change from frame to frame, of late.
+// The sigma is half of the recent changes of velocity from frame to frame.
 TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   VelocityModel model;
   const auto prior = [&] { return model.Prior(kPrevFromRef, kInterval, 0.0); };
@@ -75,13 +75,13 @@ TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   const VelocityPrior steady = prior();
   EXPECT_LT(steady.sigma_angular, 0.1 * at_first.sigma_angular);
   EXPECT_LT(steady.sigma_linear, 0.1 * at_first.sigma_linear);
-  EXPECT_GT(steady.sigma_angular, 0.0);  // of a tripod, too
+  EXPECT_GT(steady.sigma_angular, 0.0);  // also for a tripod
   EXPECT_GT(steady.sigma_linear, 0.0);
   const Twist change = {{0.4, -0.4, 0.4}, {0.3, 0.3, -0.3}};
   for (int i = 0; i < 100; ++i) {
     model.Add(kPriorTwist + (i % 2) * change, 0.0);
   }
-  // What began a hundred frames ago is forgotten, all but e^-10 of it.
+  // Values from a hundred frames ago count only e^-10.
   constexpr double kForgotten = 1e-4;
   EXPECT_NEAR(prior().sigma_angular, 0.5 * 0.4, kForgotten);
   EXPECT_NEAR(prior().sigma_linear, 0.5 * 0.3, kForgotten);

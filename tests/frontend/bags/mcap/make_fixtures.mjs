@@ -1,4 +1,4 @@
-// Writes the recordings of mcap_file_test.cc by the format's own library:
+// Writes the recordings of mcap_file_test.cc with the format's own library:
 //   npm i @mcap/core @foxglove/rosmsg @foxglove/rosmsg-msgs-common \
 //     @foxglove/rosmsg-serialization @foxglove/rosmsg2-serialization \
 //     lz4js zstd-codec
@@ -26,8 +26,8 @@ const codecs = {
 const width = 32, height = 24, frames = 12, start = 1000;
 const optical = 'camera_color_optical_frame';
 
-// The definition of a type with all that it is made of, in the versions' own
-// spelling.
+// The definition of a type and all types that it contains, in the spelling of
+// the ROS version.
 function definitions(types, names, root) {
   const all = [];
   const add = (name) => {
