@@ -1,6 +1,6 @@
-// What each cost and loss leaves of the same noise and the same wrong matches:
-// medians of rotation and translation errors over many seeds, as Markdown,
-// compared with RANSAC with closed form and OpenCV's PnP on the same matches.
+// Compares costs and losses on the same noise and the same wrong matches:
+// medians of rotation and translation errors over many seeds, as Markdown, next
+// to closed-form RANSAC and OpenCV's PnP on the same matches.
 
 #include <gflags/gflags.h>
 
@@ -32,7 +32,7 @@ constexpr double kOutlierShares[] = {0.0, 0.4, 0.7};
 // A motion as between a reference and a frame some tenths of a second later.
 constexpr double kMaxAngle = 0.1;        // rad
 constexpr double kMaxTranslation = 0.1;  // m, along each axis
-// Matches without a depth, for costs that can use them.
+// Share of depths that are missing, for costs that allow it.
 constexpr double kMissingDepthShare = 0.2;
 
 struct Trial {
@@ -49,7 +49,7 @@ Trial MakeTrial(int seed, double outliers, double missing_depth) {
   return trial;
 }
 
-// A way to get a motion from matches.
+// A method that computes a motion from matches.
 struct Method {
   std::string name;
   double missing_depth = 0.0;
@@ -59,7 +59,7 @@ struct Method {
 std::vector<Method> OurMethods() {
   std::vector<std::pair<std::string, double>> costs;
   for (const std::string& name : CostNames()) {
-    // Neither determines a motion: one knows no scale, the other no matches.
+    // Neither alone determines a motion: one lacks scale, the other matches.
     if (name == "epipolar" || name == "motion_prior") continue;
     costs.emplace_back(name, 0.0);
   }
@@ -123,8 +123,8 @@ Cell Measure(const Method& method, double outliers) {
   return cell;
 }
 
-// The Cramer-Rao bound without outliers, as root mean squares: for normal noise
-// in (u, v, depth) of both frames the Fisher information of the motion is the
+// The Cramer-Rao bound without outliers, as root mean squares. For normal noise
+// in (u, v, depth) of both frames, the Fisher information of the motion is the
 // Hessian of the fully whitened 3D cost at the truth, from noiseless matches.
 struct Bound {
   double deg = 0.0;

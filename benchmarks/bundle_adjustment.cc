@@ -11,8 +11,8 @@
 namespace rgbd_pose {
 namespace {
 
-// One sighting: r = [(u - u_m) / s_u, (v - v_m) / s_u, (1/z - 1/z_m) / s_d] of
-// X_cam = R (X - C), the pose in the parameters of core/geometry/motion.h.
+// One observation: r = [(u - u_m) / s_u, (v - v_m) / s_u, (1/z - 1/z_m) / s_d]
+// of X_cam = R (X - C), the pose in the parameters of core/geometry/motion.h.
 class SightingBlock final : public ceres::SizedCostFunction<3, 6, 3> {
  public:
   SightingBlock(const Camera& camera, const Observation& seen,

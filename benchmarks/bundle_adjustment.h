@@ -8,18 +8,18 @@
 
 namespace rgbd_pose {
 
-// What a bundle adjustment did.
+// The result of a bundle adjustment.
 struct BundleSolution {
   std::vector<Rigid3d> poses;
   int iterations = 0;
   int residuals = 0;
 };
 
-// The yardstick of graphs: all poses but the first and all landmarks that at
-// least two keyframes see, adjusted at once by Ceres (SPARSE_SCHUR): residuals
-// in u, v and inverse depth with hand-written Jacobians, poses shared by all
-// blocks of a keyframe. `loss` (or null) sees the 3 whitened rows of a
-// sighting.
+// The reference method for graphs. Ceres (SPARSE_SCHUR) adjusts all poses but
+// the first and all landmarks observed by at least two keyframes at once:
+// residuals in u, v and inverse depth with hand-written Jacobians, one
+// parameter block for the pose of each keyframe. `loss` (or null) applies to
+// the 3 whitened rows of an observation.
 BundleSolution AdjustBundle(const SimulatedGraph& graph,
                             const std::vector<Rigid3d>& start,
                             ceres::LossFunction* loss);

@@ -1,6 +1,6 @@
-// Direct costs on rendered images: rows linearised, compared with the same by
-// hand; points looked up; one row in Ceres, by hand against automatic
-// differentiation.
+// Direct costs on rendered images: linearising rows, compared with a
+// hand-written loop; looking up points; one row in Ceres, with hand-written and
+// with automatic derivatives.
 //
 // Names: direct/linearise/<cost or bare_loop>/<rows>, direct/look_up/<cost>/
 // <points>, jacobian/alone/<cost>/<analytic or autodiff>.
@@ -26,7 +26,7 @@ namespace {
 constexpr int kRows = 10000;
 constexpr int kBlocks = 256;  // as in jacobian_benchmark.cc
 
-// Two frames of 640 x 480, one after the other.
+// Two consecutive frames of 640 x 480.
 const DirectPair& Pair() {
   static const DirectPair pair = [] {
     SyntheticOptions options;
@@ -36,7 +36,7 @@ const DirectPair& Pair() {
   return pair;
 }
 
-// More points than rows are wanted: all textures count.
+// More points than the rows need: every texture is used.
 template <typename Residual>
 PackedColumns ManyPoints() {
   PackedColumns points;
@@ -80,8 +80,8 @@ void Linearise(benchmark::State& state) {
   }
 }
 
-// The limit: one loop over Photometric's rows that does nothing else, with the
-// same instructions, Huber's weight in it.
+// The upper limit: a single loop over Photometric's rows, with the same
+// instruction set and Huber's weight inlined.
 struct BareLoop {
   template <int W>
   [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
@@ -147,7 +147,7 @@ void LineariseByHand(benchmark::State& state) {
     RunVectorised<BareLoop>(motion, rows, width, out);
     benchmark::DoNotOptimize(sum);
   }
-  // It is the same sum.
+  // Both sums must be equal.
   const auto huber = Huber();
   const ceres::LossFunction* const loss = huber.get();
   NormalEquations expected;
@@ -161,7 +161,7 @@ void LineariseByHand(benchmark::State& state) {
   }
 }
 
-// With the points and rows that LineariseByHand has.
+// With as many points as LineariseByHand has rows.
 template <typename Residual>
 void LookUp(benchmark::State& state) {
   PackedColumns points = ManyPoints<Residual>();
@@ -208,7 +208,7 @@ void Alone(benchmark::State& state, bool by_hand) {
       benchmark::DoNotOptimize(J);
     }
   }
-  state.counters["calls"] = kBlocks;  // an iteration
+  state.counters["calls"] = kBlocks;  // per iteration
 }
 
 void Register(const std::string& name, void (*run)(benchmark::State&)) {

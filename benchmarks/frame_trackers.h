@@ -12,13 +12,13 @@
 
 namespace rgbd_pose {
 
-// A frame and what OpenCV's odometries want of it, made before the clock
+// A frame and the input of OpenCV's odometries, prepared before the clock
 // starts.
 struct BenchmarkFrame {
   explicit BenchmarkFrame(const Frame& images);
 
   Frame frame;
-  cv::Mat depth_m;  // CV_32FC1, m, NaN = none
+  cv::Mat depth_m;  // CV_32FC1, m; NaN: none
 };
 
 // Tracks a camera frame by frame.
@@ -26,8 +26,8 @@ class FrameTracker {
  public:
   virtual ~FrameTracker() = default;
 
-  // Takes the next frame; world_from_cam, where the world is the camera of the
-  // first frame. Nothing if the frame could not be tracked.
+  // Tracks the next frame. Returns world_from_cam, where the world is the
+  // camera of the first frame, or nothing if tracking failed.
   virtual std::optional<Rigid3d> Track(const BenchmarkFrame& frame) = 0;
 };
 
@@ -36,13 +36,13 @@ struct FrameTrackerType {
   std::unique_ptr<FrameTracker> (*make)(const Camera& camera);
 };
 
-// This project's odometry by features, by pixels and by both, otherwise with
-// default settings; then, where OpenCV has
-// its rgbd module, cv::rgbd's RgbdOdometry, ICPOdometry and RgbdICPOdometry,
-// all with default settings and from frame to frame as in OpenCV's own sample:
-// each frame is tracked against the one before, which keeps what was computed
-// of it (pyramids, normals), and a frame that fails is taken as no motion;
-// then, where it is installed, Open3D's (open3d_tracker.h).
+// This project's odometry on features, on pixels and on both, otherwise with
+// default settings. If OpenCV has its rgbd module, also cv::rgbd's
+// RgbdOdometry, ICPOdometry and RgbdICPOdometry with default settings, from
+// frame to frame as in OpenCV's own sample: each frame is tracked against the
+// previous one, whose computed data (pyramids, normals) are kept, and a failed
+// frame counts as no motion. If Open3D is installed, also its odometry
+// (open3d_tracker.h).
 std::vector<FrameTrackerType> FrameTrackerTypes();
 
 }  // namespace rgbd_pose

@@ -1,6 +1,6 @@
-// Whole frames, images in and pose out, by this project, OpenCV and Open3D:
-// time on one core and errors against the ground truth. Writes JSON as Google
-// Benchmark does, one entry a round and method; times are medians over the
+// Whole frames, from images to pose, by this project, OpenCV and Open3D: time
+// on one core and errors against the ground truth. Writes JSON as Google
+// Benchmark does, one entry per round and method; times are medians over the
 // frames.
 //
 // Names: frames/<sequence>/<method>.
@@ -50,7 +50,7 @@ struct Sequence {
   Trajectory truth;
 };
 
-// Read, or rendered, before any clock starts.
+// Reads or renders all frames before any clock starts.
 Sequence Load(const std::string& name, const Dataset& dataset,
               const Trajectory& truth) {
   Sequence sequence = {name, dataset.camera().camera, {}, truth};
@@ -64,7 +64,7 @@ Sequence Load(const std::string& name, const Dataset& dataset,
 Sequence LoadRoom() {
   SyntheticOptions options;
   options.path = FLAGS_path;
-  options.frames = std::max(FLAGS_frames, 150);  // one whole round of the path
+  options.frames = std::max(FLAGS_frames, 150);  // one full round of the path
   const SyntheticDataset dataset(options);
   return Load("room_" + FLAGS_path, dataset, dataset.ground_truth());
 }
@@ -83,7 +83,7 @@ Sequence LoadFolder() {
               ReadTrajectory((folder / "groundtruth.txt").string()));
 }
 
-// Milliseconds: of all threads of the process, and on the wall.
+// Milliseconds: CPU time of all threads of the process, and wall time.
 struct Clock {
   std::clock_t cpu = std::clock();
   std::chrono::steady_clock::time_point wall = std::chrono::steady_clock::now();
@@ -96,7 +96,7 @@ struct Clock {
   }
 };
 
-// The first frame has nothing to be tracked against and does not count.
+// The first frame is not timed: there is nothing to track it against.
 nlohmann::json RunRound(const Sequence& sequence, const FrameTrackerType& type,
                         int round) {
   const std::unique_ptr<FrameTracker> tracker = type.make(sequence.camera);

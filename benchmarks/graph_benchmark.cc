@@ -1,5 +1,5 @@
-// A graph of keyframes solved by edges and by a bundle adjustment of landmarks:
-// time and what each leaves of the error.
+// A graph of keyframes, solved by edges and by a bundle adjustment of
+// landmarks: time and remaining error.
 //
 // Names: graph/<way>/<keyframes>.
 
@@ -22,8 +22,8 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kWorlds = 5;                // errors are of so many
-constexpr double kWrongFocal = 1.02;      // and with a camera so far off
+constexpr int kWorlds = 5;                // number of worlds for the errors
+constexpr double kWrongFocal = 1.02;      // focal factor of a wrong camera
 constexpr int kMostWithWrongFocal = 100;  // keyframes
 
 struct World {
@@ -37,7 +37,7 @@ struct World {
   const std::vector<Rigid3d> start;
 };
 
-// What is timed; made once.
+// The world for timing, made once.
 const World& TimedWorld(int keyframes) {
   static std::map<int, World> made;
   return made.try_emplace(keyframes, keyframes, 1, 1.0).first->second;
@@ -76,7 +76,7 @@ Solved ByBundle(const World& world) {
   return {std::move(solution.poses), solution.iterations};
 }
 
-// As a map solves it: losses, noise and stages of its own.
+// With the losses, noise and stages of a map.
 std::unique_ptr<KeyframeGraph> KeyframeGraphOf(const World& world) {
   auto graph = std::make_unique<KeyframeGraph>(10, 0.01);
   for (const Rigid3d& pose : world.start) graph->Add(pose, 0);
@@ -96,10 +96,10 @@ Solved ByMap(const World& world) {
   return solved;
 }
 
-// Odometry alone: where all others start.
+// Odometry alone, the initial guess of all other ways.
 Solved ByOdometry(const World& world) { return {world.start, 0}; }
 
-// Root mean square over worlds, mm; NaN where a solve failed.
+// Root mean square over worlds, mm; NaN if a solve failed.
 double MeanError(const Way& way, int keyframes, double focal_factor) {
   double sum = 0.0;
   for (int seed = 1; seed <= kWorlds; ++seed) {
@@ -117,7 +117,7 @@ void Run(benchmark::State& state, const std::string& name, const Way& way,
   Solved solved;
   for (auto _ : state) solved = way(world);
   if (solved.poses.empty()) return state.SkipWithError("was not solved");
-  // A benchmark is run several times.
+  // Stored, because each benchmark runs several times.
   static std::map<std::string, std::pair<double, double>> errors;
   const auto [error, is_new] = errors.try_emplace(name);
   if (is_new) {
@@ -134,14 +134,14 @@ void Run(benchmark::State& state, const std::string& name, const Way& way,
   }
 }
 
-// What all but bundle adjustment need once: the motions of the pairs.
+// The motions of the pairs; all ways but bundle adjustment need them once.
 void EstimatePairs(benchmark::State& state, int keyframes) {
   const World& world = TimedWorld(keyframes);
   for (auto _ : state) benchmark::DoNotOptimize(world.graph.Edges());
   state.counters["pairs"] = static_cast<double>(world.edges.size());
 }
 
-// What a map does at each new keyframe.
+// The solve of a map at each new keyframe.
 void SolveWindow(benchmark::State& state, int keyframes) {
   const World& world = TimedWorld(keyframes);
   const auto graph = KeyframeGraphOf(world);

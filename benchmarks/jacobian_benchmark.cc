@@ -1,8 +1,8 @@
-// Residual and Jacobian of one match: by hand against automatic
-// differentiation, for every cost of the list; alone (the cost functions one
-// after the other) and through ceres::Problem::Evaluate. The motion and its
-// derivatives are computed for each match, as in any problem of one block
-// a match.
+// Residual and Jacobian of one match, with hand-written and with automatic
+// derivatives, for every cost of the list: alone (the cost functions one after
+// the other) and through ceres::Problem::Evaluate. The motion and its
+// derivatives are computed for each match, as in any problem with one block per
+// match.
 //
 // Names: jacobian/<alone or in_ceres>/<cost>/<analytic or autodiff>.
 
@@ -22,7 +22,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kBlocks = 256;  // fits the cache: arithmetic is what is measured
+constexpr int kBlocks = 256;  // fits the cache, so arithmetic is measured
 
 template <typename Residual>
 struct Blocks {
@@ -60,7 +60,7 @@ void Alone(benchmark::State& state, bool by_hand) {
       benchmark::DoNotOptimize(J);
     }
   }
-  state.counters["calls"] = kBlocks;  // an iteration
+  state.counters["calls"] = kBlocks;  // per iteration
 }
 
 template <typename Residual>
@@ -82,7 +82,7 @@ void InCeres(benchmark::State& state, bool by_hand) {
     problem.Evaluate({}, &cost, &residuals, &gradient, &jacobian);
     benchmark::DoNotOptimize(cost);
   }
-  state.counters["calls"] = kBlocks;  // an iteration
+  state.counters["calls"] = kBlocks;  // per iteration
 }
 
 template <typename... Residuals>

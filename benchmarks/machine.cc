@@ -13,8 +13,8 @@
 namespace rgbd_pose {
 namespace {
 
-// The value after `key` and the separator in a file of such lines; "unknown" if
-// there is none.
+// The value after `key` and the separator in a file with one pair per line;
+// "unknown" if there is none.
 std::string ValueIn(const std::string& path, const std::string& key,
                     char separator) {
   std::ifstream file(path);

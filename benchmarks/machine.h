@@ -4,11 +4,11 @@
 
 namespace rgbd_pose {
 
-// This machine, its name as given, and what the benchmarks were built with, as
-// rows "| what | value |" of a table.
+// Describes this machine, under the given name, and the build of the benchmarks
+// as table rows "| what | value |".
 std::string DescribeMachine(const std::string& name);
 
-// The instruction set that sums over matches use here.
+// The instruction set that sums over matches use on this machine.
 std::string InstructionSetName();
 
 }  // namespace rgbd_pose

@@ -1,7 +1,6 @@
-// Meshes of simulated scenes, whose true surfaces are known: how far off and
-// how complete they are, how long they take and how much memory, for the tables
-// of docs/exports.md. A row a process: memory is that of the process at its
-// largest.
+// Meshes of simulated scenes with known surfaces: accuracy, completeness, time
+// and memory, for the tables of docs/exports.md. One process per table row,
+// because memory is the peak of the process.
 
 #include <gflags/gflags.h>
 #include <sys/resource.h>
@@ -97,9 +96,9 @@ double DistanceToScene(const Scene& scene, const Eigen::Vector3d& point) {
   return nearest;
 }
 
-// The middles of all triangles and how large these are.
+// Errors of the centres of all triangles, weighted by area.
 void PrintErrors(const TriangleMesh& mesh, const Scene& scene) {
-  std::vector<std::pair<double, double>> errors;  // and area
+  std::vector<std::pair<double, double>> errors;  // with the area
   double area = 0.0, sum = 0.0;
   for (const Eigen::Vector3i& t : mesh.triangles) {
     const Eigen::Vector3d a = mesh.vertices[t[0]].position.cast<double>();
@@ -124,8 +123,8 @@ void PrintErrors(const TriangleMesh& mesh, const Scene& scene) {
       area, mesh.triangles.size(), 1e3 * sum / area, 1e3 * median, 1e3 * p95);
 }
 
-// Of all true points that any frame has depth for, nearer than the limit, how
-// many have a point of the mesh near.
+// Prints how many of the true points, at which a frame has depth up to the
+// limit, have a vertex of the mesh nearby.
 void PrintCompleteness(const TriangleMesh& mesh, SyntheticOptions options) {
   options.noise = false;
   const SyntheticDataset exact(options);

@@ -9,7 +9,7 @@
 
 namespace rgbd_pose {
 
-// Makes a mesh of frames with known poses.
+// Makes a mesh from frames with known poses.
 class MeshMaker {
  public:
   virtual ~MeshMaker() = default;
@@ -22,12 +22,12 @@ struct MeshMakerType {
   std::unique_ptr<MeshMaker> (*make)(const MeshFusionOptions& options);
 };
 
-// This project's; then, where it is installed, Open3D's ScalableTSDFVolume with
-// the same voxels and depths. Its truncation is the same everywhere, and each
-// depth counts alike.
+// This project's; then, if Open3D is installed, its ScalableTSDFVolume with the
+// same voxels and depths. Open3D's truncation is constant, and all depths have
+// the same weight.
 std::vector<MeshMakerType> MeshMakerTypes();
 
-// Where Open3D is installed (open3d_mesh.cc).
+// Defined if Open3D is installed (open3d_mesh.cc).
 std::unique_ptr<MeshMaker> MakeOpen3dMesh(const MeshFusionOptions& options);
 
 }  // namespace rgbd_pose

@@ -7,7 +7,7 @@
 namespace rgbd_pose {
 
 // Open3D's ComputeRGBDOdometry with its hybrid term (Park, Zhou & Koltun, ICCV
-// 2017) and default settings, from frame to frame, from no motion.
+// 2017) and default settings, from frame to frame; the guess is no motion.
 std::unique_ptr<FrameTracker> MakeOpen3dHybrid(const Camera& camera);
 
 }  // namespace rgbd_pose

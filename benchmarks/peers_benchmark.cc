@@ -1,5 +1,5 @@
-// The motion from the same matches by us and by what else there is: time and
-// error. What a method needs as its input is made before the clock starts.
+// The motion from the same matches, by this project and by other methods: time
+// and error. Inputs are prepared before the clock starts.
 //
 // Names: peers/<method>; an iteration solves every trial once.
 
@@ -80,12 +80,12 @@ std::optional<Rigid3d> Ransac(const Trial& trial) {
   return consensus->cur_from_prev;
 }
 
-// The textbook: samples of three, Euclidean distances, a last fit to all
-// inliers; as many samples and as much confidence as the others have.
+// Textbook RANSAC: samples of three, Euclidean distances, a final fit to all
+// inliers, with the same number of samples and confidence as the others.
 std::optional<Rigid3d> UmeyamaRansac(const Trial& trial) {
   constexpr int kMaxSamples = 500;
   constexpr double kConfidence = 0.999;
-  // From 0.02 to 0.1 m the errors change by no more than a fifth.
+  // From 0.02 to 0.1 m the errors change by at most a fifth.
   constexpr double kMaxDistance = 0.05;
   const int size = static_cast<int>(trial.prev.cols());
   std::mt19937 generator(1);
@@ -148,7 +148,7 @@ void Measure(benchmark::State& state, Method method) {
     angles.push_back(error.angle * 180.0 / M_PI);
     translations.push_back(error.translation * 1e3);
   }
-  state.counters["calls"] = kTrials;  // an iteration
+  state.counters["calls"] = kTrials;  // per iteration
   state.counters["solved"] = static_cast<double>(angles.size());
   state.counters["rotation_deg"] = Median(angles);
   state.counters["translation_mm"] = Median(translations);

@@ -1,4 +1,4 @@
-// How the index of places grows with the map: one query, one addition.
+// Cost of the index of places as the map grows: one query, one addition.
 //
 // Names: places/<query or add>/<keyframes>/iterations:<how many>.
 
@@ -17,11 +17,11 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kRows = 800;  // descriptors of a keyframe
+constexpr int kRows = 800;  // descriptors per keyframe
 constexpr int kViews = 60;
 
-// All descriptors of views along the simulated depot: how bits of ORB are
-// spread, and which go together, is no chance.
+// All descriptors of views along the simulated depot. Real ORB bits are neither
+// uniform nor independent.
 const cv::Mat& Seen() {
   static const cv::Mat seen = [] {
     SyntheticOptions options;
@@ -41,9 +41,9 @@ const cv::Mat& Seen() {
   return seen;
 }
 
-// A keyframe of a place of its own: words of descriptors that were seen, put
-// together again, so that buckets fill as unevenly as with real ones; two bits
-// of each word drawn again.
+// A keyframe of a distinct place: it combines words of real descriptors, so
+// that buckets fill as unevenly as with real keyframes, and redraws two bits of
+// each word.
 cv::Mat Keyframe(int seed) {
   std::mt19937 rng(seed);
   cv::Mat rows(kRows, 32, CV_8U);
@@ -58,7 +58,7 @@ cv::Mat Keyframe(int seed) {
   return rows;
 }
 
-// Grows only: benchmarks run in order.
+// The index only grows: benchmarks run in order.
 PlaceDatabase& IndexOf(int keyframes) {
   static PlaceDatabase index;
   while (index.size() < keyframes) {
@@ -73,7 +73,7 @@ void Query(benchmark::State& state) {
   constexpr int kFrames = 20;
   std::vector<cv::Mat> frames;
   for (int i = 0; i < kFrames; ++i) {
-    frames.push_back(Keyframe(i * (keyframes / kFrames)));  // seen again
+    frames.push_back(Keyframe(i * (keyframes / kFrames)));  // revisited
   }
   int found = 0;
   int asked = 0;

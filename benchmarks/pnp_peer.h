@@ -10,11 +10,11 @@
 #include "core/estimation/correspondences.h"
 #include "core/geometry/rigid3.h"
 
-// OpenCV's PnP on our matches: what most people would use instead.
+// OpenCV's PnP on our matches, the method most people would use instead.
 
 namespace rgbd_pose {
 
-// Previous points (m) and where they are seen in the current image (px).
+// Previous points (m) and their pixels in the current image.
 struct PnpInput {
   std::vector<cv::Point3d> points;
   std::vector<cv::Point2d> pixels;
@@ -32,8 +32,8 @@ struct PnpInput {
 };
 
 // cur_from_prev by cv::solvePnPRansac with at most 500 samples, 3 px and a
-// confidence of 0.999, refined on the inliers by cv::solvePnPRefineLM if asked
-// for. Nothing if OpenCV finds none.
+// confidence of 0.999, optionally refined on the inliers by
+// cv::solvePnPRefineLM. Nothing if OpenCV finds no pose.
 inline std::optional<Rigid3d> SolvePnp(const PnpInput& input, bool refine) {
   cv::Mat rotation, translation;
   std::vector<int> inliers;

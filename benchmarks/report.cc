@@ -1,5 +1,5 @@
-// Turns the outputs of the benchmark programs into docs/benchmarks.md for
-// people and benchmarks.json for programs.
+// Converts the outputs of the benchmark programs into docs/benchmarks.md for
+// readers and benchmarks.json for programs.
 
 #include <gflags/gflags.h>
 
@@ -27,7 +27,7 @@ DEFINE_string(speedups, "", "JSON file of speed-up ratios to write");
 namespace rgbd_pose {
 namespace {
 
-// Rows of tables end in a line break that the template has as well.
+// Table rows end in a line break that the template has as well.
 std::string WithoutLastBreak(std::string text) {
   if (!text.empty() && text.back() == '\n') text.pop_back();
   return text;

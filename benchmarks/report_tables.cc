@@ -30,7 +30,7 @@ std::string Row(const std::vector<std::string>& cells) {
   return row + "\n";
 }
 
-// A time in the unit that suits.
+// The unit in which a time is shown.
 struct TimeUnit {
   const char* name = "ns";
   double ns = 1.0;
@@ -43,7 +43,7 @@ struct TimeUnit {
       : name(unit_name), ns(unit_ns) {}
 };
 
-// "28.2 us", or nothing.
+// "28.2 us", or empty.
 std::string Time(const BenchmarkResult* result) {
   if (result == nullptr) return "";
   const double median = SpreadOf(result->cpu_ns).median;
@@ -64,7 +64,7 @@ std::string Ratio(const BenchmarkResult* ours, const BenchmarkResult* theirs) {
   return Number(SpeedupOf(*ours, *theirs));
 }
 
-// The median of a counter, or nothing.
+// The median of a counter with three significant digits, or empty.
 std::string Counter(const BenchmarkResult& result, const std::string& name,
                     double factor = 1.0) {
   const auto found = result.counters.find(name);
@@ -72,7 +72,7 @@ std::string Counter(const BenchmarkResult& result, const std::string& name,
   return Number(factor * SpreadOf(found->second).median);
 }
 
-// That of whole things.
+// The median of a counter as an integer, or empty.
 std::string Count(const BenchmarkResult& result, const std::string& name) {
   const auto found = result.counters.find(name);
   if (found == result.counters.end()) return "";
@@ -115,7 +115,7 @@ std::string SizeRows(const BenchmarkResults& results) {
   return text;
 }
 
-// The extremes over all costs, in a sentence.
+// A sentence with the smallest and largest values over all costs.
 std::string Jacobians(const BenchmarkResults& results) {
   std::vector<std::string> costs = CostNames();
   for (const std::string& cost : DirectCostNames()) costs.push_back(cost);
@@ -188,7 +188,7 @@ std::string FrameRows(const BenchmarkResults& results) {
   return text;
 }
 
-// Which of the aims were missed.
+// The aims that were missed.
 std::string Aims(const std::vector<SpeedupRow>& speedups) {
   int aims = 0, missed = 0;
   std::string names;

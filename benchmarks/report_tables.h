@@ -9,9 +9,9 @@
 
 namespace rgbd_pose {
 
-// What stands for the @NAMES@ of benchmarks.md.in: rows of tables and single
-// figures. Benchmarks that were not run have no row. `load_after` is the
-// system's load when all was done.
+// The replacements of the @NAMES@ in benchmarks.md.in: rows of tables and
+// single figures. Benchmarks that were not run have no row. `load_after` is the
+// system's load after all benchmarks.
 std::map<std::string, std::string> ReportTables(
     const BenchmarkResults& results, const std::vector<SpeedupRow>& speedups,
     double load_after);

@@ -8,41 +8,41 @@ namespace rgbd_pose {
 
 // Repetitions of one benchmark.
 struct BenchmarkResult {
-  // Nanoseconds a call, one a repetition: of the processor, and on the wall.
+  // CPU and wall time in nanoseconds per call, one value per repetition.
   std::vector<double> cpu_ns;
   std::vector<double> real_ns;
-  // Whatever else a repetition gave in numbers, by name.
+  // All other numbers of a repetition, by name.
   std::map<std::string, std::vector<double>> counters;
 };
 
-// What benchmark programs have measured, by the names of the benchmarks.
+// The measurements of the benchmark programs, by benchmark name.
 struct BenchmarkResults {
   std::map<std::string, BenchmarkResult> benchmarks;
-  // The system's load (mean of a minute) at the start of each program.
+  // The system's load (mean of one minute) at the start of each program.
   std::vector<double> load;
 
-  // Adds the JSON output of a Google Benchmark program (or one like it). Times
-  // are divided by the counter "calls" where there is one; aggregates are left
-  // out. Throws InputError if the file is of no use.
+  // Adds the JSON output of a Google Benchmark program (or of one with the same
+  // format). Times are divided by the counter "calls" if there is one;
+  // aggregates are skipped. Throws InputError if the file cannot be used.
   void Read(const std::string& path);
 
-  // Null if it was not measured.
+  // Null if the benchmark was not measured.
   const BenchmarkResult* Find(const std::string& name) const;
 
-  // Of the names that were measured, the one with the smallest median CPU time;
-  // null if none was.
+  // The one of these benchmarks with the smallest median CPU time; null if none
+  // was measured.
   const BenchmarkResult* FindFastest(
       const std::vector<std::string>& names) const;
 };
 
-// Quantiles of some values (not none); between two of them, interpolated.
+// Quantiles of values (at least one), with linear interpolation.
 struct Spread {
   double min, lower_quartile, median, upper_quartile, max;
 };
 Spread SpreadOf(const std::vector<double>& values);
 
-// How many times faster `ours` is than `theirs`, by the medians of CPU times of
-// one run.
+// How many times faster `ours` is than `theirs`, from the median CPU times of a
+// run.
 double SpeedupOf(const BenchmarkResult& ours, const BenchmarkResult& theirs);
 
 }  // namespace rgbd_pose

@@ -12,10 +12,10 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kStep = 0.44;             // m of wall a keyframe
+constexpr double kStep = 0.44;             // m along the wall per keyframe
 constexpr double kMeanDistance = 2.3;      // m from the wall
-constexpr int kLandmarksPerKeyframe = 40;  // new ones, in the first round
-constexpr int kMinCommon = 40;             // landmarks of a pair
+constexpr int kLandmarksPerKeyframe = 40;  // in the first round
+constexpr int kMinCommon = 40;             // common landmarks of a pair
 constexpr int kMaxPairs = 10;              // with older keyframes
 
 using Sightings = std::vector<SimulatedGraph::Sighting>;
@@ -83,12 +83,12 @@ SimulatedGraph::SimulatedGraph(int keyframes, unsigned seed,
         {cur - 1, cur, MatchesOf(camera, sightings[cur - 1], sightings[cur])});
   }
   for (int cur = 2; cur < keyframes; ++cur) {
-    std::vector<Pair> found;  // the oldest first
+    std::vector<Pair> found;  // oldest first
     for (int ref = 0; ref < cur - 1; ++ref) {
       Pair pair{ref, cur, MatchesOf(camera, sightings[ref], sightings[cur])};
       if (pair.matches.size() >= kMinCommon) found.push_back(std::move(pair));
     }
-    // Half of them the oldest, the others those next to it.
+    // Keeps the oldest half and the most recent ones.
     while (found.size() > kMaxPairs - 1) {
       found.erase(found.begin() + kMaxPairs / 2);
     }

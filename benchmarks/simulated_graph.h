@@ -8,11 +8,11 @@
 
 namespace rgbd_pose {
 
-// Keyframes of a camera that goes round the inside of a ring-shaped wall twice
-// and looks at it: what an odometry, a graph of poses and a bundle adjustment
-// each take of it. Every keyframe sees about 200 landmarks, each measured once,
-// with the noise of a Kinect: pairs that share a keyframe share its noise, and
-// no match is wrong, as is best for bundle adjustment.
+// Keyframes of a camera that moves twice around the inside of a ring-shaped
+// wall and looks at the wall: the input of an odometry, a pose graph and a
+// bundle adjustment. Every keyframe observes about 200 landmarks, each once,
+// with the noise of a Kinect. Pairs that share a keyframe share its noise, and
+// no match is wrong, which suits bundle adjustment best.
 struct SimulatedGraph {
   struct Sighting {
     int landmark = 0;
@@ -23,31 +23,29 @@ struct SimulatedGraph {
     Correspondences matches;
   };
 
-  // What is measured is believed to be of a camera whose focal lengths are so
-  // many times those it has.
+  // focal_factor: assumed focal length, relative to the true one.
   SimulatedGraph(int keyframes, unsigned seed, double focal_factor = 1.0);
 
-  // The motions of all pairs by the estimator; the first ones lead from each
-  // keyframe to the next.
+  // The estimated motions of all pairs. The first ones connect each keyframe
+  // with the next.
   std::vector<RelativePose> Edges() const;
 
-  Camera camera;  // as believed
+  Camera camera;  // as assumed
   std::vector<Rigid3d> truth;
   std::vector<std::vector<Sighting>>
-      sightings;  // by landmark, of each keyframe
+      sightings;  // of each keyframe, by landmark
   int landmarks = 0;
 
-  // Each keyframe with the one before and up to 9 others that see at least 40
-  // of the same landmarks: the oldest and the nearest.
+  // Each keyframe with the previous one and up to 9 others that share at least
+  // 40 landmarks: the oldest and the most recent.
   std::vector<Pair> pairs;
 };
 
-// Poses by the pairs of neighbours alone: they drift.
+// Poses from consecutive pairs alone, with drift.
 std::vector<Rigid3d> OdometryOf(const SimulatedGraph& graph,
                                 const std::vector<RelativePose>& edges);
 
-// Root mean square distance (m) of positions from the truth after the best
-// rigid alignment.
+// Root mean square error (m) of the positions after the best rigid alignment.
 double RmsError(const std::vector<Rigid3d>& poses,
                 const std::vector<Rigid3d>& truth);
 

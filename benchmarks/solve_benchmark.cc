@@ -1,4 +1,4 @@
-// One pose solve from matches, building the problem and solving it: by every
+// One pose solve from matches, including building the problem, with every
 // assembly and linear solver, compared with the same steps without Ceres.
 //
 // Names: solve/<assembly or plain>/<linear solver>/<loss>/<matches>,
@@ -35,7 +35,7 @@ constexpr double kOutlierShare = 0.2;
 constexpr int kMaxIterations = 50;
 constexpr double kTolerance = 1e-6;  // Ceres' default
 
-// Made once a size and motion.
+// Made once for each count and motion.
 const Correspondences& Matches(int count, double max_motion) {
   static std::map<std::pair<int, double>, Correspondences> made;
   const auto [place, is_new] = made.try_emplace({count, max_motion});
@@ -47,8 +47,8 @@ const Correspondences& Matches(int count, double max_motion) {
   return place->second;
 }
 
-// Matches whose motion is small, as from frame to frame, so that one stage
-// finds it: what is compared is the solve, not the graduation.
+// Matches with a small motion, as from frame to frame, so one stage finds the
+// motion: this compares the solves, not the graduation.
 struct World {
   const Correspondences& matches;
   std::unique_ptr<MotionCost> cost;
@@ -68,8 +68,8 @@ ceres::Problem::Options ProblemOptions(Assembly assembly) {
   return options;
 }
 
-// The yardstick of `autodiff`: BidirectionalPoint as one would write it for
-// ceres::AutoDiffCostFunction without this project, from a first motion of 0.
+// The reference for `autodiff`: BidirectionalPoint as a user would write it for
+// ceres::AutoDiffCostFunction without this project, starting at motion 0.
 struct PlainResidual {
   explicit PlainResidual(const Camera& camera, const Observation& o_prev,
                          const Observation& o_cur)
@@ -131,7 +131,7 @@ void AddPlainBlocks(const World& world, double* x, ceres::Problem* problem) {
   }
 }
 
-// By an assembly or, without one, by the plain blocks.
+// With an assembly or, without one, with the plain blocks.
 void SolveWithCeres(benchmark::State& state, std::optional<Assembly> assembly,
                     ceres::LinearSolverType linear, const std::string& loss) {
   World world(static_cast<int>(state.range(0)), loss);
@@ -158,12 +158,12 @@ void SolveWithCeres(benchmark::State& state, std::optional<Assembly> assembly,
     ceres::Solve(options, &problem, &summary);
     benchmark::DoNotOptimize(x);
   }
-  // Ceres counts the starting point's as a Jacobian's.
+  // Ceres counts the evaluation at the start as a Jacobian evaluation.
   state.counters["evaluations"] = summary.num_residual_evaluations + 1;
 }
 
 #if defined(__x86_64__)
-// What the block gains without wide vectors.
+// The compressed block without wide vectors.
 void SolveBySse2(benchmark::State& state, const std::string& loss) {
   packed::InstructionSet& chosen = packed::ChosenInstructionSet();
   const packed::InstructionSet best =
@@ -174,7 +174,7 @@ void SolveBySse2(benchmark::State& state, const std::string& loss) {
 }
 #endif
 
-// The limit: Gauss-Newton on the same sums without Ceres.
+// The upper limit: Gauss-Newton on the same sums without Ceres.
 void BareLoop(benchmark::State& state, const std::string& loss) {
   World world(static_cast<int>(state.range(0)), loss);
   const LinearizationPoint origin;
@@ -200,7 +200,7 @@ void BareLoop(benchmark::State& state, const std::string& loss) {
   state.counters["evaluations"] = evaluations;
 }
 
-// The compressed block as ceres::TinySolver calls functions.
+// The compressed block with the interface of ceres::TinySolver.
 struct TinyFunction {
   using Scalar = double;
   enum { NUM_RESIDUALS = 7, NUM_PARAMETERS = 6 };
@@ -241,7 +241,7 @@ void SolveWithTinySolver(benchmark::State& state, const std::string& loss) {
   }
 }
 
-// The whole estimate with default options: graduation, covariance, inliers.
+// A whole estimate with default options: graduation, covariance, inliers.
 void Estimate(benchmark::State& state, Assembly assembly,
               const std::string& loss) {
   const Correspondences& matches =

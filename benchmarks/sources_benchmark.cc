@@ -1,4 +1,4 @@
-// What a source does to a frame besides decoding it.
+// The work of a source on a frame, apart from decoding.
 
 #include <benchmark/benchmark.h>
 
@@ -8,8 +8,8 @@
 namespace rgbd_pose {
 namespace {
 
-// Depth of 640 x 480 pixels into a colour camera of the same size, 25 mm
-// beside; distorted lenses cost the same.
+// Registers a depth image of 640 x 480 pixels to a colour camera of the same
+// size, 25 mm away; distorted lenses take the same time.
 void RegisterDepth(benchmark::State& state) {
   SyntheticOptions options;
   options.frames = 1;

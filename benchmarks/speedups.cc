@@ -32,7 +32,7 @@ class Collector {
   std::vector<SpeedupRow> rows_;
 };
 
-// Aims of 0: none.
+// Aims of a solve; 0: none.
 struct SolveAims {
   double autodiff, per_match, bare_loop;
 };
@@ -49,7 +49,7 @@ void AddSolves(const std::string& key, const std::string& loss, int matches,
                  aims.per_match);
   collector->Add(key + "_compressed_over_bare_loop", ours,
                  {"solve/bare_loop/" + loss + "/" + size}, aims.bare_loop);
-  const char* solvers[] = {"qr", "cholesky"};  // the order of SolveNames
+  const char* solvers[] = {"qr", "cholesky"};  // in the order of SolveNames
   for (int i = 0; i < 2; ++i) {
     const std::string same = key + "_" + solvers[i];
     collector->Add(same + "_compressed_over_autodiff", {ours[i]},

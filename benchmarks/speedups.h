@@ -7,24 +7,24 @@
 
 namespace rgbd_pose {
 
-// A speed-up that benchmarks are made to tell.
+// A speed-up that the benchmarks measure.
 struct SpeedupRow {
   std::string key;  // in benchmarks.json: <what>_<ours>_over_<theirs>
   double speedup;
-  double aim;  // what was hoped for; 0: nothing in particular
+  double aim;  // the goal; 0: none
 };
 
-// All speed-ups for which both sides were measured. Where several linear
-// solvers were tried, the fastest of each side (best against best); keys that
-// name one (qr, cholesky) have it on both sides.
+// All speed-ups with both sides measured. If several linear solvers were
+// measured, the fastest one of each side is used (best against best); keys that
+// name one (qr, cholesky) use it on both sides.
 std::vector<SpeedupRow> FindSpeedups(const BenchmarkResults& results);
 
-// The benchmarks of one solve by an assembly, one for each linear solver;
-// `autodiff` has those of the plain Ceres blocks after its own.
+// The benchmarks of one solve with an assembly, one for each linear solver; for
+// `autodiff` followed by the benchmarks of the plain Ceres blocks.
 std::vector<std::string> SolveNames(const std::string& assembly,
                                     const std::string& loss, int matches);
 
-// The sequences that were tracked.
+// The tracked sequences.
 std::vector<std::string> TrackedSequences(const BenchmarkResults& results);
 
 }  // namespace rgbd_pose

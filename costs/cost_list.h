@@ -12,9 +12,9 @@
 
 namespace rgbd_pose {
 
-// All residual types. One header and one entry here make a cost: its Jacobian
-// test, its benchmark, its name for programs and its place in the assemblies
-// follow from this list.
+// All residual types. A new cost needs one header and one entry here; its
+// Jacobian test, its benchmark, its name in programs and its place in the
+// assemblies follow from this list.
 using ResidualTypes =
     TypeList<BidirectionalPoint, BidirectionalImage, PointToPoint,
              MahalanobisPoint, PointToPlane, Reprojection, ReprojectionDepth,

@@ -48,10 +48,10 @@ std::string DirectOptions::Check() const {
 
 EstimatorOptions DirectEstimatorOptions() {
   EstimatorOptions options;
-  // The pyramid widens the basin, and a scale that starts wide.
+  // The pyramid and a wide initial scale widen the basin.
   options.schedule = RobustSchedule::kDirect;
   options.scale = FindScaleEstimator("mad")->estimate;
-  // More rounds do not tell scale and motion more exactly.
+  // More rounds do not make scale and motion more accurate.
   options.max_scale_rounds = 1;
   options.max_iterations = 8;
   // 0.02 px of a half-size image with a focal length of 260 px.
@@ -64,15 +64,15 @@ EstimatorOptions DirectEstimatorOptions() {
 Estimator MakeCoarseEstimator(const DirectOptions& options) {
   DirectOptions points = options;
   points.max_points = 300;
-  points.finest_level = 3;  // 80 x 60 of 640 x 480
+  points.finest_level = 3;  // 80 x 60 for 640 x 480
   points.num_levels = 3;
   EstimatorOptions estimator = DirectEstimatorOptions();
   estimator.scale = nullptr;
-  // 0.025 px of the finest of these images with its focal length of 66 px.
+  // 0.025 px of the finest of these images with a focal length of 66 px.
   estimator.step_tolerance = 4e-4;
-  // Where fewer agree it has led astray (docs/direct.md): of simulated pairs
-  // all right ones had 0.90 and more, all wrong ones 0.63 and less; of real
-  // ones 99 % of the right ones 0.69 and more.
+  // If fewer points agree, the estimate is wrong (docs/direct.md). Simulated
+  // pairs: all right estimates had at least 0.90, all wrong ones at most 0.63.
+  // Real pairs: 99 % of the right estimates had at least 0.69.
   estimator.min_inlier_share = 0.7;
   return Estimator(estimator,
                    MakeDirectCosts("photometric+inverse_depth+motion_prior",

@@ -7,8 +7,8 @@
 
 namespace rgbd_pose {
 
-// All direct residual types. One header and one entry here make a direct cost,
-// as in cost_list.h.
+// All direct residual types. A new direct cost needs one header and one entry
+// here, as in cost_list.h.
 using DirectResidualTypes =
     TypeList<Photometric, InverseDepth, ProjectivePlane>;
 

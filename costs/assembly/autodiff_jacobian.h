@@ -8,12 +8,13 @@
 
 namespace rgbd_pose {
 
-// Where a residual type (costs/assembly/cost_of.h) has a Jacobian by hand.
+// Detects a hand-written Jacobian of a residual type (cost_of.h).
 template <typename Type>
 using JacobianOf = decltype(&Type::template Jacobian<double>);
 
-// A residual type without one, given one by automatic differentiation: match by
-// match, so several times slower than by hand, but right at once.
+// Adds an automatic Jacobian to a residual type without one. It works match by
+// match: several times slower than a hand-written one, but correct from the
+// start.
 template <typename Type>
 struct WithAutodiffJacobian : Type {
   template <typename D>

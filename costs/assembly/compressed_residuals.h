@@ -6,31 +6,31 @@
 
 #include "costs/assembly/compressed_block.h"
 
-// Many residuals of one type as one Ceres block: compressed_block.h for those
-// who have a residual and its Jacobian and do not want to write the sums. Needs
-// nothing else of the project; docs/compressed_block.md has an example.
+// Many residuals of one type as one Ceres block, for users of
+// compressed_block.h who have a residual and its Jacobian and do not want to
+// write the sums. Needs nothing else of the project; docs/compressed_block.md
+// has an example.
 //
-// A residual type says its sizes and evaluates itself:
+// A residual type defines its sizes and evaluates itself:
 //
 //   static constexpr int kRows, kParameters;            (kParameters <= 12)
 //   bool operator()(const double* x, double* r, double* J) const;
 //
-// with x[kParameters], r[kRows] and J[kRows * kParameters], a row after the
-// other; J is null where only residuals are asked for. Returning false, or a
-// number that is not finite, rejects the step, as in Ceres.
+// with x[kParameters], r[kRows] and J[kRows * kParameters], row by row; J is
+// null if only residuals are needed. Returning false or a non-finite number
+// rejects the step, as in Ceres.
 
 namespace rgbd_pose {
 
-// The sums over all residuals under one loss (null: none): exactly what Ceres
-// makes of one block a residual, whatever the sign of rho''. Time and memory
-// are linear in the number of residuals; nothing is allocated.
+// The sums over all residuals under one loss (null: none). They equal the sums
+// that Ceres forms with one block per residual, whatever the sign of rho''.
+// Time and memory are linear in the number of residuals; nothing is allocated.
 template <typename Residual>
 class CompressedResiduals {
  public:
-  // The number of parameters.
   static constexpr int K = Residual::kParameters;
 
-  // Both must outlive this.
+  // Both must outlive this object.
   CompressedResiduals(const std::vector<Residual>* residuals,
                       const ceres::LossFunction* loss)
       : residuals_(residuals), loss_(loss) {}
@@ -39,12 +39,12 @@ class CompressedResiduals {
                   CompressedSums<K>* sums) const {
     constexpr int kRows = Residual::kRows;
     Eigen::Matrix<double, kRows, 1> r;
-    // Eigen stores a single column only column by column.
+    // Eigen stores a single column only in column-major order.
     Eigen::Matrix<double, kRows, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor>
         J;
     double* const derivatives = with_derivatives ? J.data() : nullptr;
     for (const Residual& residual : *residuals_) {
-      // A loss may take what is not finite for an outlier.
+      // A loss may treat a non-finite residual as an outlier.
       if (!residual(x, r.data(), derivatives) || !r.allFinite()) return false;
       double rho[3] = {r.squaredNorm(), 1.0, 0.0};
       if (loss_ != nullptr) loss_->Evaluate(r.squaredNorm(), rho);
@@ -63,8 +63,8 @@ class CompressedResiduals {
   const ceres::LossFunction* loss_;
 };
 
-// The block itself, for a ceres::Problem to own. Add it without a loss: that is
-// inside already.
+// The block itself, to be owned by a ceres::Problem. Add it without a loss: the
+// loss is already inside.
 template <typename Residual>
 ceres::CostFunction* MakeCompressedBlock(
     const std::vector<Residual>* residuals,

@@ -13,9 +13,9 @@
 
 namespace rgbd_pose {
 
-// One match as a Ceres cost function with its hand-written Jacobian. What does
-// not depend on the match is computed once per motion, which is half of the
-// point of a Jacobian by hand; so one problem serves one thread.
+// One match as a Ceres cost function with its hand-written Jacobian. Whatever
+// does not depend on the match is computed once per motion, half the benefit of
+// a hand-written Jacobian. So a problem may use only one thread.
 template <typename Residual>
 class AnalyticBlock final
     : public ceres::SizedCostFunction<Residual::kRows, 6> {
@@ -47,8 +47,8 @@ class OracleFunctor {
   OracleFunctor(const LinearizationPoint& origin, const double* columns)
       : origin_(origin), columns_(columns) {}
 
-  // flatten: a translation unit of many costs exhausts the compiler's budget
-  // for inlining, and the oracle would be three times slower than it can be.
+  // flatten: a translation unit with many costs exhausts the compiler's
+  // inlining budget, and the oracle would be three times slower than necessary.
   template <typename T>
   [[gnu::flatten]] bool operator()(const T* x, T* residuals) const {
     Residual::Residual(origin_.PoseAt(x), columns_, residuals);
@@ -64,13 +64,13 @@ template <typename Residual>
 using OracleBlock =
     ceres::AutoDiffCostFunction<OracleFunctor<Residual>, Residual::kRows, 6>;
 
-// The sums of a MotionCost, as its compressed block asks for them. Ceres asks
-// for the cost of a trial step first and for its derivatives once it has
-// accepted it: the sums of the last x are kept, so both take one evaluation.
-// Nothing but x changes while the block lives (see MotionCost::AddTo).
+// The sums of a MotionCost, as its compressed block needs them. Ceres first
+// asks for the cost of a trial step and, once it has accepted the step, for the
+// derivatives. The sums of the last x are stored, so both take one evaluation.
+// Only x may change while the block lives (see MotionCost::AddTo).
 class MotionSums {
  public:
-  // All must outlive this; a null loss is least squares.
+  // All must outlive this object; a null loss is least squares.
   MotionSums(const MotionCost* cost, const LinearizationPoint* origin,
              const ceres::LossFunction* loss)
       : cost_(cost), origin_(origin), loss_(loss) {}
@@ -85,8 +85,8 @@ class MotionSums {
       kept_x_ = at;
     }
     *sums = kept_;
-    // Also where only the cost is asked for: a loss may take a residual that is
-    // not finite for an outlier, with a cost that is.
+    // Checked even if only the cost is needed: a loss may treat a non-finite
+    // residual as an outlier with a finite cost.
     return sums->gradient.allFinite() && sums->hessian.allFinite();
   }
 
@@ -102,7 +102,7 @@ class MotionSums {
 // A whole MotionCost as one Ceres block of 7 rows.
 using MotionBlock = CompressedBlock<6, MotionSums>;
 
-// Compiled once, in cost_factory.cc: Eigen's factorisations take seconds.
+// Instantiated once, in cost_factory.cc: compiling it takes seconds.
 extern template bool FactorSums<6>(const CompressedSums<6>& sums,
                                    double* residuals, double* jacobian);
 

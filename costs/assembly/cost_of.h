@@ -8,40 +8,39 @@
 
 namespace rgbd_pose {
 
-// Whether a residual type says that it is a prior.
+// Detects whether a residual type is a prior.
 template <typename Residual>
 using IsPriorOf = decltype(Residual::kIsPrior);
-// Whether it says when residuals are chosen again.
+// Detects an association policy of a residual type.
 template <typename Residual>
 using AssociationOf = decltype(Residual::kAssociation);
 
 // The MotionCost of a residual type over matches: binding, sums and the three
-// assemblies. A residual type is stateless and says
+// assemblies. A residual type is stateless and defines
 //
 //   kName, kRows, kDegreesOfFreedom, kColumns
 //   kIsWhitened                                   see MotionCost::is_whitened
-//   Pack(input, i, columns) -> usable             of match i
+//   Pack(input, i, columns) -> usable             for match i
 //   Residual(motion pose, columns, r)             for any scalars
 //
-// and, where it has to be fast (costs/assembly/autodiff_jacobian.h does it
-// otherwise),
+// and, if it has to be fast (the default is autodiff_jacobian.h),
 //
-//   Jacobian(motion derivatives, columns, r, J)   by hand
+//   Jacobian(motion derivatives, columns, r, J)   hand-written
 //
-// A type whose weights or choice of matches depend on the motion that Pack is
-// given says when to pack again by
+// A type whose weights or choice of matches depend on the motion given to Pack
+// defines when to pack again:
 //
 //   kAssociation                                  see MotionCost::association
 //
-// A type whose matches may lack measurements says how many there are by
+// A type whose matches may lack measurements defines how many they have:
 //
 //   Degrees(columns)                              see MotionCost::degrees
 //
-// and one that is not whitened may tell how long right residuals get by
+// A type that is not whitened may define a limit for the residuals of inliers:
 //
 //   InlierLimit(columns)                          see MotionCost::InlierLimit
 //
-// A type that packs the prior instead of matches says so by kIsPrior; it is
+// A type that packs the prior instead of matches defines kIsPrior; its Pack is
 // called with i = 0 if there is a prior.
 template <typename Type>
 class CostOf final : public PackedCost<Type> {
@@ -57,7 +56,7 @@ class CostOf final : public PackedCost<Type> {
     return AssociationPolicy::kOnce;
   }
 
-  // Keeps matches only where they have to be packed again.
+  // Stores the matches only if they have to be packed again.
   void Bind(const FramePair& pair) override {
     this->SetThreads(pair.threads);
     if (association() != AssociationPolicy::kOnce) {
@@ -100,7 +99,7 @@ class CostOf final : public PackedCost<Type> {
   Correspondences kept_;  // see Bind
 };
 
-// The cost of a residual type of your own; costs/cost_factory.h makes those of
+// The cost of your own residual type; costs/cost_factory.h makes the costs of
 // this project by name.
 template <typename Residual>
 std::unique_ptr<MotionCost> MakeCost() {

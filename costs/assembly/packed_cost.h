@@ -15,20 +15,20 @@
 
 namespace rgbd_pose {
 
-// Whether a residual type says how many degrees of freedom a match has.
+// Detects a residual type's degrees of freedom per match.
 template <typename Residual>
 using DegreesOf = decltype(&Residual::Degrees);
-// Whether it says what an inlier is.
+// Detects a residual type's limit for inliers.
 template <typename Residual>
 using InlierLimitOf = decltype(&Residual::InlierLimit);
 
-// What the costs of all residual types share, whatever their blocks come from:
-// the blocks as columns, the sums over them and the three assemblies. A derived
-// class fills the columns by BeginBlocks, AddBlock, EndBlocks.
+// Common part of all costs, whatever their blocks are made from: the blocks as
+// columns, the sums over them and the three assemblies. A derived class fills
+// the columns with BeginBlocks, AddBlock, EndBlocks.
 template <typename Type>
 class PackedCost : public MotionCost {
  protected:
-  // With a Jacobian, if the type has none of its own.
+  // Gets an automatic Jacobian if the type has none of its own.
   using Residual = std::conditional_t<kHas<JacobianOf, Type>, Type,
                                       WithAutodiffJacobian<Type>>;
 
@@ -127,10 +127,10 @@ class PackedCost : public MotionCost {
   // See FramePair::threads.
   void SetThreads(int threads) { threads_ = threads; }
 
-  // Takes all blocks out and makes room for so many. Blocks without a match may
-  // be written to the columns, and their number said, by the caller.
+  // Removes all blocks and reserves memory for max_blocks. The caller may write
+  // blocks without a match, and their number, directly to the returned columns.
   PackedColumns* BeginBlocks(size_t max_blocks) {
-    // And one more lane, to be written in vain.
+    // At least one lane more than max_blocks.
     packed_.stride = static_cast<ptrdiff_t>((max_blocks + kMaxLanes) /
                                             kMaxLanes * kMaxLanes);
     packed_.values.resize(packed_.stride * kColumns);
@@ -140,15 +140,16 @@ class PackedCost : public MotionCost {
     return &packed_;
   }
 
-  // `match` as MotionCost::matches.
+  // `match` as in MotionCost::matches.
   void AddBlock(const double* columns, int match) {
     Store(packed_.size++, columns);
     matches_.push_back(match);
     degrees_.push_back(Degrees(columns));
   }
 
-  // Adds the Hessian of every step-th block, as often as it stands for others,
-  // each in `variants` that change(variant, columns) makes of its columns.
+  // Adds `step` times the Hessian of every step-th block, summed over
+  // `variants` variants of the block; change(variant, columns) makes each from
+  // its columns.
   template <typename Change>
   void AddSample(const MotionDerivatives& motion, int step, int variants,
                  const Change& change, MotionMatrix* hessian) const {
@@ -179,7 +180,7 @@ class PackedCost : public MotionCost {
     *hessian += step * sum.hessian;
   }
 
-  // After the last block.
+  // To be called after the last block.
   void EndBlocks() {
     matches_.resize(packed_.size, -1);
     degrees_.resize(packed_.size, Residual::kDegreesOfFreedom);
@@ -199,7 +200,7 @@ class PackedCost : public MotionCost {
     }
   }
 
-  // A match after the other, for the assemblies that go match by match.
+  // Stores the columns match by match, for the assemblies that need them so.
   void Unpack() {
     rows_.resize(matches_.size() * kColumns);
     for (size_t i = 0; i < matches_.size(); ++i) {

@@ -14,12 +14,12 @@
 #include "core/util/vector_lanes.h"
 #include "costs/parts/point_sums.h"
 
-// Sums over matches, several at a time: the residual types' own templates run
-// on vectors of doubles, one lane a match.
+// Sums over matches, several at a time: the templates of the residual types run
+// on vectors of doubles, one lane per match.
 
 namespace rgbd_pose {
 
-// The columns of all bound matches as a structure of arrays; padded by copies
+// The columns of all bound matches as a structure of arrays, padded with copies
 // of the last match to a multiple of kMaxLanes.
 struct PackedColumns {
   std::vector<double> values;  // column k starts at k * stride
@@ -27,8 +27,7 @@ struct PackedColumns {
   int size = 0;
 };
 
-// Fills the last lanes by copies of the last match: no numbers that could
-// overflow there.
+// Pads with copies of the last match, whose numbers cannot overflow.
 inline void PadColumns(PackedColumns* columns) {
   if (columns->size == 0) return;
   for (size_t k = 0; k < columns->values.size(); k += columns->stride) {
@@ -41,7 +40,7 @@ inline void PadColumns(PackedColumns* columns) {
 
 namespace packed {
 
-// W matches starting at i: their columns and how many of them are real.
+// W matches starting at i: their columns and the number of real matches.
 template <typename Residual, int W>
 struct Pack {
   using D = typename Lanes<W>::Type;
@@ -53,7 +52,7 @@ struct Pack {
     }
   }
 
-  // By pointer: how vectors are returned depends on the instruction set.
+  // Result by pointer: how vectors are returned depends on the instruction set.
   static void SquaredNorm(const D* r, D* s) {
     *s = r[0] * r[0];
     for (int row = 1; row < Residual::kRows; ++row) *s += r[row] * r[row];
@@ -64,8 +63,8 @@ struct Pack {
 };
 
 // Matches are weighted tile by tile: first all squared norms, then all losses
-// (virtual calls, scalar), then all sums; mixing them would spill the vector
-// registers at every call.
+// (scalar virtual calls), then all sums. Mixing these steps would spill the
+// vector registers at every call.
 constexpr int kTile = 256;
 
 template <typename Residual, int W>
@@ -83,7 +82,7 @@ template <typename Residual, int W>
   }
 }
 
-// Weights rho' of a tile, 0 for the padding; returns the sum of rho.
+// Fills in the weights rho' of a tile, 0 for padding; returns the sum of rho.
 template <typename Residual, int W>
 [[gnu::always_inline]] inline double WeighTile(const MotionDerivatives& motion,
                                                const PackedColumns& columns,
@@ -97,8 +96,8 @@ template <typename Residual, int W>
   return cost;
 }
 
-// Sums are taken over chunks of so many matches, and then over chunks, whatever
-// the number of threads: it does not change a bit of the result.
+// Number of matches per chunk. Sums are taken over each chunk and then over the
+// chunks, so the number of threads does not change a bit of the result.
 constexpr int kChunk = 32 * kTile;
 
 // A symmetric 6 x 6 sum, lane by lane: the upper triangle, row by row.
@@ -141,7 +140,7 @@ struct ResidualsKernel {
   }
 };
 
-// The squared norm of each match's residual. The output has room for the
+// The squared norm of each match's residual. The output must have room for the
 // padding.
 template <typename Residual>
 struct SquaredNormsKernel {
@@ -191,7 +190,7 @@ struct RowSums {
   D gradient[6] = {};
 };
 
-// The same by the short cut of point_sums.h.
+// The same with the shortcut of point_sums.h.
 template <typename Residual, typename D>
 struct TermSums {
   void Add(const MotionDerivatives& motion, const D* m, const D& weight) {
@@ -215,7 +214,7 @@ struct TermSums {
 };
 
 // The robustified normal equations, weighted by rho', of the matches from
-// `first` (a multiple of kMaxLanes) to `last`.
+// `first` (a multiple of kMaxLanes) up to, not including, `last`.
 template <typename Residual>
 struct LineariseKernel {
   template <int W>

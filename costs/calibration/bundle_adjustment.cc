@@ -18,7 +18,7 @@ namespace {
 
 using FreeParts = std::array<bool, kCalibrationSize>;
 
-// The prior of y: as it is counted in its standard deviations.
+// The prior of y. y is in standard deviations, so the residual is y itself.
 class PriorBlock final
     : public ceres::SizedCostFunction<kCalibrationSize, kCalibrationSize> {
  public:
@@ -126,7 +126,7 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
         is_free[k] ? (state->theta[k] - prior_.mean[k]) / prior_.sigma[k] : 0.0;
   }
   const size_t num_landmarks = views_.landmarks.size();
-  std::vector<LandmarkData> data;  // stays where it is
+  std::vector<LandmarkData> data;  // reserved: must not move
   data.reserve(num_landmarks + views_.views.size());
 
   ceres::Problem::Options ownership;
@@ -139,7 +139,7 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
     const Landmark& landmark = views_.landmarks[i];
     double* const anchor = x[landmark.anchor].data();
     double* const d = &state->inverse_depths[i];
-    // Any pose will do: its own depth does not depend on it.
+    // The view's pose is a dummy: an anchor's depth does not depend on it.
     data.push_back(DataOf(views_, landmark, *state));
     int used = 0;
     for (int k = 0; k < landmark.num_views; ++k) {

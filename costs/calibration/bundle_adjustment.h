@@ -8,29 +8,29 @@
 
 namespace rgbd_pose {
 
-// What is known of theta before, of each parameter by itself.
+// The prior of theta, independent for each parameter.
 struct CalibrationPrior {
   CalibrationVector mean, sigma;
 };
 
-// A bundle adjustment of keyframes, landmarks and the camera itself. What of
-// the camera is free has a normal prior. On one thread: several would add up in
-// an order of their own, with other last digits each time.
+// A bundle adjustment of keyframes, landmarks and the camera. The free
+// parameters of the camera have a normal prior. It runs on one thread: several
+// threads would add up in varying order, and the last digits would vary.
 class BundleAdjustment {
  public:
-  // `views` must outlive it. Views that are held out take no part if
-  // `training_only`.
+  // `views` must outlive this object. With `training_only`, views that are held
+  // out are not used.
   BundleAdjustment(const CalibrationViews& views, const CalibrationPrior& prior,
                    bool training_only, int max_iterations = 20);
 
-  // Where all begins: poses of the views, depths as measured.
+  // The initial state: the poses of the views, the depths as measured.
   CalibrationState Begin(const CalibrationVector& theta) const;
 
   // Measures the scales of a state's residuals.
   void MeasureScales(CalibrationState* state) const;
 
-  // Solves for all but the scales; `is_free` says which of theta. Returns the
-  // cost, NaN where there is no solution.
+  // Solves for everything but the scales; `is_free` selects parameters of
+  // theta. Returns the cost, NaN if there is no solution.
   double Solve(const std::array<bool, kCalibrationSize>& is_free,
                CalibrationState* state) const;
 
@@ -41,7 +41,7 @@ class BundleAdjustment {
                   CalibrationMatrix* sandwich_covariance) const;
 
  private:
-  // What is free begins at its mean, the rest stays where it is.
+  // Free parameters count from their prior mean, the others keep their value.
   CalibrationOrigin OriginOf(const std::array<bool, kCalibrationSize>& is_free,
                              const CalibrationVector& theta) const;
 

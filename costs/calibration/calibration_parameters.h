@@ -7,7 +7,7 @@
 
 namespace rgbd_pose {
 
-// What may be wrong with an RGB-D camera, by its place in a CalibrationVector.
+// The calibration parameters of an RGB-D camera.
 enum CalibrationIndex {
   kFx,  // focal lengths and principal point, px
   kFy,
@@ -16,45 +16,44 @@ enum CalibrationIndex {
   kK1,  // radial distortion
   kK2,
   kK3,
-  kK4,  // of an equidistant lens alone
-  kP1,  // tangential distortion, of all others
+  kK4,  // equidistant lenses only
+  kP1,  // tangential distortion, all other lenses
   kP2,
   kInverseDepth,  // 1 / z = 1 / measured z + this, 1/m
-  kDepthTime,     // depth is so much later than its stamp says, s
-  kColorReadout,  // from the first row to the last, longer than what has been
-  kDepthReadout,  // undone, s
-  kRotationX,     // where a point X is in the axes of colour, the registered
-  kRotationY,     // depth image has Exp(rotation) X + translation: rad
+  kDepthTime,     // delay of depth after its stamp, s
+  kColorReadout,  // time from the first row to the last, beyond what has been
+  kDepthReadout,  // corrected already, s
+  kRotationX,     // in the registered depth image a point X of the colour axes
+  kRotationY,     // is at Exp(rotation) X + translation: rad
   kRotationZ,
   kTranslationX,  // m
   kTranslationY,
   kTranslationZ,
-  kDepthFactor,  // z = this * measured z, without the offset of 1 / z
+  kDepthFactor,  // z = this * measured z, not counting the offset of 1 / z
   kCalibrationSize
 };
 
-// Those of the lens are the first.
+// The parameters of the lens are the first.
 inline constexpr int kLensSize = kInverseDepth;
 inline constexpr int kDistortionSize = kLensSize - kK1;
 
-// The numbers, and what is quadratic in them.
 using CalibrationVector = Eigen::Matrix<double, kCalibrationSize, 1>;
 using CalibrationMatrix =
     Eigen::Matrix<double, kCalibrationSize, kCalibrationSize>;
 
-// A row of the table of what may be wrong.
+// One row of the table of parameters.
 struct CalibrationParameter {
   const char* name;  // in files and reports
-  const char* what;  // it is, in words
-  const char* unit;  // of it
+  const char* what;  // description
+  const char* unit;
 
-  // Standard deviation of what is known before: of focal lengths as a share of
-  // themselves.
+  // Standard deviation of the prior; for focal lengths, relative to the focal
+  // length.
   double prior;
 
-  // What residuals do not tell of: features are located wrongly alike, by some
-  // hundredths of a pixel, wherever they are seen, and surfaces are no planes.
-  // From simulated recordings of several scenes; no error bar is below.
+  // Lower limit of every error bar, for errors that residuals do not show:
+  // features share a bias of some hundredths of a pixel in all views, and
+  // surfaces are not exact planes. From simulated recordings of several scenes.
   double floor;
 };
 
@@ -88,8 +87,8 @@ inline constexpr std::array<CalibrationParameter, kCalibrationSize>
         {"depth_factor", "metres per measured metre", "", 0.05, 0.0},
     }};
 
-// The floor of a recording of so many keyframes. Errors that are alike average
-// over views; the table is of recordings with many.
+// The floor for a recording with this many keyframes. Shared errors average out
+// over views; the table is for recordings with many keyframes.
 inline double CalibrationFloor(int parameter, int keyframes) {
   constexpr double kMany = 150.0;
   return kCalibrationParameters[parameter].floor *

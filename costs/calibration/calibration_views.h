@@ -10,21 +10,21 @@
 
 namespace rgbd_pose {
 
-// A landmark as another keyframe than its anchor sees it.
+// An observation of a landmark in a keyframe other than its anchor.
 struct LandmarkView {
   int keyframe = 0;
   double u = 0.0, v = 0.0;     // px, as seen (distorted)
   double sigma_px = 0.5;       // of u and v
-  MeasuredInverseDepth depth;  // there, if any
-  bool is_held_out = false;    // kept to judge by
+  MeasuredInverseDepth depth;  // there, if measured
+  bool is_held_out = false;    // kept for validation
 
-  // In a solution of what is not held out, or of all.
+  // Whether the view is used; with training_only, held-out views are not.
   bool TakesPart(bool training_only) const {
     return !(training_only && is_held_out);
   }
 };
 
-// A point on the ray of a pixel of a keyframe.
+// A point on the viewing ray of a pixel of a keyframe.
 struct Landmark {
   int anchor = 0;              // its keyframe
   double u = 0.0, v = 0.0;     // px, as seen (distorted)
@@ -33,9 +33,9 @@ struct Landmark {
   int num_views = 0;
 };
 
-// How far apart two places of the camera are, as something else gives it: what
-// gives images a scale. The places are at `in_a` and `in_b` in the axes of two
-// keyframes, as measured (times kDepthFactor).
+// The distance between two positions of the camera, known from another source;
+// it gives the images a scale. in_a and in_b are the positions in the axes of
+// keyframes a and b, as measured (kDepthFactor scales them to metres).
 struct KnownDistance {
   int a = 0, b = 0;  // keyframes
   Eigen::Vector3d in_a = Eigen::Vector3d::Zero();
@@ -44,18 +44,18 @@ struct KnownDistance {
   double sigma = 0.01;  // m
 };
 
-// All that a camera is calibrated from.
+// The input of a calibration.
 struct CalibrationViews {
-  Camera camera;                        // to begin with
-  std::vector<Rigid3d> world_from_cam;  // of keyframes, as far as known
-  std::vector<Twist> twists;            // of each of them
+  Camera camera;                        // initial guess
+  std::vector<Rigid3d> world_from_cam;  // of keyframes, initial guess
+  std::vector<Twist> twists;            // of keyframes
   std::vector<Landmark> landmarks;
-  std::vector<LandmarkView> views;       // of each landmark in a row
-  std::vector<KnownDistance> distances;  // may be empty: then there is no scale
+  std::vector<LandmarkView> views;       // grouped by landmark
+  std::vector<KnownDistance> distances;  // if empty, the scale is unknown
 };
 
-// What is solved for, and how much a residual of each kind spreads in the
-// sigmas that it came with.
+// The unknowns, and the scale of each kind of residual: its spread relative to
+// the sigmas of the measurements.
 struct CalibrationState {
   std::vector<Rigid3d> world_from_cam;  // of keyframes
   std::vector<double> inverse_depths;   // of landmarks at their anchors
@@ -64,14 +64,14 @@ struct CalibrationState {
   double depth_scale = 1.0;
 };
 
-// The poses of a state's keyframes (cam from world) and their derivatives by a
-// motion that is added to them, where it is zero.
+// The poses of a state's keyframes (cam from world), with their derivatives by
+// an additional motion, at zero motion.
 std::vector<MotionDerivatives> PosesOf(const CalibrationState& state);
 
-// When a row (px) of a keyframe was exposed.
+// When a row (px) of a keyframe is exposed, and the keyframe's velocity.
 RowMotion MotionAt(const CalibrationViews& views, int keyframe, double row);
 
-// What is measured of a landmark in one view, its sigmas as a state has them.
+// The measurements of a landmark in one view, with sigmas scaled by the state.
 LandmarkData DataOf(const CalibrationViews& views, const Landmark& landmark,
                     const LandmarkView& view, const CalibrationState& state);
 

@@ -13,9 +13,9 @@ namespace rgbd_pose {
 // Width of Cauchy's loss on landmarks, in standard deviations.
 inline constexpr double kLandmarkLossWidth = 2.5;
 
-// The solver's calibration parameters y: theta = start + width . y, where what
-// is not free has a width of 0. Counted in standard deviations of what is known
-// before, they are of one size.
+// The solver's calibration parameters y: theta = start + width . y. Fixed
+// parameters have width 0. y counts in standard deviations of the prior, so all
+// of its entries have a similar size.
 struct CalibrationOrigin {
   CalibrationVector start;
   CalibrationVector width;
@@ -30,8 +30,8 @@ struct CalibrationOrigin {
   }
 };
 
-// One residual of a landmark as a Ceres cost function with its hand-written
-// Jacobian, in [pose of the anchor, pose of the view, inverse depth, y].
+// One residual of a landmark as a Ceres cost function with a hand-written
+// Jacobian, by [pose of the anchor, pose of the view, inverse depth, y].
 template <typename Residual>
 class LandmarkBlock final
     : public ceres::SizedCostFunction<Residual::kRows, 6, 6, 1,
@@ -77,7 +77,7 @@ class LandmarkBlock final
   const LandmarkData& data_;
 };
 
-// The error of a KnownDistance, whitened, and its derivatives by both poses and
+// The whitened error of a KnownDistance and its derivatives by both poses and
 // theta: |P_a - P_b| with P = C + R^T (factor * in).
 struct KnownDistanceError {
   double r = 0.0;
@@ -110,7 +110,7 @@ struct KnownDistanceError {
   }
 };
 
-// The same as a Ceres cost function in [pose of a, pose of b, y].
+// The same as a Ceres cost function of [pose of a, pose of b, y].
 class KnownDistanceBlock final
     : public ceres::SizedCostFunction<1, 6, 6, kCalibrationSize> {
  public:

@@ -8,7 +8,7 @@
 namespace rgbd_pose {
 namespace {
 
-// As RobustCovariance has it.
+// As in core/estimation/covariance_accumulator.cc.
 constexpr double kMinSlope = 0.2;
 
 // rho' of Cauchy's loss.
@@ -16,7 +16,7 @@ double Weight(double squared) {
   return 1.0 / (1.0 + squared / (kLandmarkLossWidth * kLandmarkLossWidth));
 }
 
-// The equations of one landmark at a time.
+// The normal equations of one landmark at a time.
 class OneLandmark {
  public:
   OneLandmark(const CalibrationOrigin& origin, ReducedCameraSystem* equations)
@@ -32,11 +32,11 @@ class OneLandmark {
     keyframes_.clear();
   }
 
-  // What is added from now on is of this view.
+  // Everything added after this call belongs to this view.
   void BeginView(int keyframe) { keyframes_.push_back(keyframe); }
   int num_views() const { return static_cast<int>(keyframes_.size()); }
 
-  // A residual at the anchor, which no pose has a part in.
+  // Adds a residual at the anchor, which depends on no pose.
   template <typename Derivatives, typename Residual>
   void AddOfAnchor(const Derivatives& J, const Residual& r) {
     AddFixed(J, r, WeightOf(r));
@@ -56,8 +56,8 @@ class OneLandmark {
     gradient_.segment<6>(place) += weight * J.view.transpose() * r;
   }
 
-  // Eliminates the depth, which is at its best whatever the rest is, and adds
-  // what is left.
+  // Eliminates the depth, which is optimal for any values of the other
+  // unknowns, and adds the remaining equations.
   void MoveToEquations() {
     if (!(hessian_d_ > 0.0)) return;
     const int length = kFixed + 6 * num_views();
@@ -91,10 +91,10 @@ class OneLandmark {
   }
 
  private:
-  static constexpr int kFixed = 6 + kCalibrationSize;  // of the anchor and y
+  static constexpr int kFixed = 6 + kCalibrationSize;  // anchor and y
 
-  // The unknowns of the anchor, y or a view: where they are here, how many, and
-  // where they are among all.
+  // The unknowns of the anchor, y or a view: their place and number here, and
+  // their place among all unknowns.
   struct Block {
     int from;
     int size;
@@ -135,9 +135,9 @@ class OneLandmark {
   int anchor_ = 0;
   std::vector<int> keyframes_;  // of the views
   Eigen::MatrixXd local_;       // [anchor, y, views], the lower triangle
-  Eigen::VectorXd by_depth_;    // with the landmark's own depth
+  Eigen::VectorXd by_depth_;    // against the landmark's depth
   Eigen::VectorXd gradient_;
-  double hessian_d_ = 0.0, gradient_d_ = 0.0;  // of the depth itself
+  double hessian_d_ = 0.0, gradient_d_ = 0.0;  // of the depth
 };
 
 }  // namespace
@@ -212,7 +212,7 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
     known_before.noalias() += row * row.transpose();
   }
   known_before.diagonal().tail<kCalibrationSize>().array() += 1.0;
-  // Poses that nothing sees.
+  // For poses that no landmark determines.
   known_before.diagonal().head(y_at).array() += 1e-9;
 
   // The last columns of the inverse.
@@ -231,9 +231,9 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
   const double slope =
       equations.weight_p > 0.0 ? equations.slope_p / equations.weight_p : 1.0;
   if (!invert(std::max(slope, kMinSlope))) return false;
-  // What each keyframe's landmarks move y by.
+  // The shift of y due to the landmarks of each anchor keyframe.
   Eigen::MatrixXd moves = last.transpose() * equations.gradients;
-  // Distances and the prior have the noise that they say.
+  // The noise of distances and of the prior is taken as stated.
   CalibrationMatrix exact = last.bottomRows<kCalibrationSize>().transpose() *
                             last.bottomRows<kCalibrationSize>();
   for (const KnownDistance& known : views.distances) {

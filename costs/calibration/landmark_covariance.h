@@ -10,39 +10,39 @@
 
 namespace rgbd_pose {
 
-// The covariance of theta at a solution of a BundleAdjustment, all else being
-// free too: once as the residuals' noise has it, and once as their scatter over
-// the keyframes has it, whatever their noise. Both know the prior. Zero for
-// what `origin` says is not free; false if they cannot be computed.
+// The covariance of theta at a solution of a BundleAdjustment, with all else
+// free: from the noise of the residuals (model) and from their scatter over the
+// keyframes, whatever their noise (sandwich). Both include the prior. Zero for
+// parameters that `origin` fixes. Returns false if they cannot be computed.
 bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
                         const CalibrationOrigin& origin,
                         const CalibrationState& state,
                         CalibrationMatrix* model_covariance,
                         CalibrationMatrix* sandwich_covariance);
 
-// The normal equations of a bundle adjustment at a state. Unknowns are all
+// The normal equations of a bundle adjustment at a state. The unknowns are all
 // poses but the first, six numbers each, then y of CalibrationOrigin; the
-// depths of landmarks have been eliminated. Of landmarks alone: neither known
-// distances nor the prior are in them.
+// depths of landmarks are eliminated. Only landmarks are included, neither
+// known distances nor the prior.
 struct ReducedCameraSystem {
-  Eigen::MatrixXd hessian;  // only its lower triangle
+  Eigen::MatrixXd hessian;  // lower triangle only
 
-  // Of the landmarks of each anchor: a column a keyframe.
+  // One column per keyframe: the gradient of the landmarks anchored there.
   Eigen::MatrixXd gradients;
 
-  // By how much less than `hessian` the gradients change with the unknowns, as
-  // residuals lose weight where they grow: sums of rho' p + 2 s rho'' and of
-  // rho' p over residuals of p rows and s = |r|^2.
+  // Residuals lose weight as they grow, so the gradients change less with the
+  // unknowns than `hessian`, by slope_p / weight_p: sums of rho' p + 2 s rho''
+  // and of rho' p over residuals with p rows and s = |r|^2.
   double slope_p = 0.0, weight_p = 0.0;
 
-  // Where a pose is among the unknowns; negative: the first, which is none.
+  // Index of a pose among the unknowns; negative for the first, a constant.
   static int PlaceOfPose(int keyframe) { return 6 * (keyframe - 1); }
   int PlaceOfY() const {
     return static_cast<int>(hessian.rows()) - kCalibrationSize;
   }
 };
 
-// `poses` are those of `state`. Residuals have Cauchy's loss.
+// `poses` must be the poses of `state`. Residuals have Cauchy's loss.
 ReducedCameraSystem MakeReducedCameraSystem(
     const CalibrationViews& views, bool training_only,
     const CalibrationOrigin& origin, const CalibrationState& state,

@@ -10,52 +10,52 @@
 #include "costs/calibration/lens.h"
 #include "costs/parts/cost_input.h"
 
-// Residuals of a landmark: a point on the ray of a pixel of one keyframe, its
-// anchor, whose inverse depth d there is a parameter. It is seen in others. All
-// depend on the poses of both (X_cam = R (X_world - C)), on d and on a
-// CalibrationVector theta. What was measured is a pixel and an inverse depth as
-// the sensor gave it: the model says what it should have measured.
+// Residuals of a landmark: a point on the viewing ray of a pixel of one
+// keyframe, its anchor. Its inverse depth d there is a parameter. Other
+// keyframes (views) see it. All residuals depend on the poses of both
+// (X_cam = R (X_world - C)), on d and on a CalibrationVector theta. The model
+// predicts the measurements: a pixel and an inverse depth as the sensor gives.
 
 namespace rgbd_pose {
 
-// An inverse depth that was measured at a pixel of a frame.
+// An inverse depth measured at a pixel of a frame.
 struct MeasuredInverseDepth {
   double value = 0.0;          // 1/m
-  double inverse_sigma = 0.0;  // m; 0: none was measured
+  double inverse_sigma = 0.0;  // m; 0: not measured
 
-  // The surface there: m with m . X / z = 1 for its points X at this depth's z,
-  // where the ray of the pixel is (a, b, 1).
+  // The surface there: the plane m . X = z through its points X, where z is the
+  // depth at this pixel and (a, b, 1) is the pixel's ray.
   Eigen::Vector3d plane = Eigen::Vector3d::Zero();
   Eigen::Vector3d ray = Eigen::Vector3d::UnitZ();
 
-  // The same of the nearest pixel alone, on the ray of its middle: to measure
-  // noise by. 0: none.
+  // The value of the nearest pixel alone and the ray of that pixel's centre, to
+  // measure noise. 0: none.
   double pixel_value = 0.0;  // 1/m
   Eigen::Vector3d pixel_ray = Eigen::Vector3d::UnitZ();
 
-  // What of the depth camera's displacement has been undone in the image.
+  // The displacement of the depth camera that the image was corrected for.
   Eigen::Vector3d undone_rotation = Eigen::Vector3d::Zero();     // rad
   Eigen::Vector3d undone_translation = Eigen::Vector3d::Zero();  // m
 };
 
-// When a pixel of a keyframe was exposed, and how the camera moved then.
+// When a pixel of a keyframe is exposed, and the velocity of the camera.
 struct RowMotion {
   Twist twist;
-  double row = 0.0;  // as a share of the readout: -1/2 the first, 1/2 the last
+  double row = 0.0;  // as a share of the readout: -1/2 first, 1/2 last
 };
 
-// How long after colour the depth of a pixel was taken, beyond what has been
-// undone: s.
+// Time from the colour to the depth exposure of a pixel, beyond what has been
+// corrected already, s.
 template <typename T>
 T DepthLag(const T* theta, double row) {
   return theta[kDepthTime] +
          row * (theta[kDepthReadout] - theta[kColorReadout]);
 }
 
-// What is measured of an inverse depth w that is seen at a pixel when its row
-// of colour is exposed, and how that changes. The depth camera is displaced by
-// omega, v (registration less what the camera moves until depth is taken); it
-// sees the plane m of the same surface, w m . X = 1, at the same pixel at
+// Predicts the measured inverse depth for an inverse depth w, seen at a pixel
+// when its colour row is exposed. The depth camera is displaced by omega, v
+// (the registration minus the camera's motion until depth is exposed). It sees
+// the plane m of the same surface, w m . X = 1, at the same pixel at
 //
 //   w' = w (1 + omega . (m x r) - w (m . v))
 //
@@ -78,7 +78,7 @@ T MeasuredFrom(const T& w, const T* theta, const RowMotion& motion,
          (w * (1.0 + turned - w * shifted) - theta[kInverseDepth]);
 }
 
-// The same with its derivatives: by w, the result; by theta, in J.
+// The same with derivatives: returns the one by w; J gets those by theta.
 inline double MeasuredFrom(double w, const double* theta,
                            const RowMotion& motion,
                            const MeasuredInverseDepth& at, double* value,
@@ -109,7 +109,7 @@ inline double MeasuredFrom(double w, const double* theta,
   return factor * (1.0 + turned - 2.0 * w * shifted);
 }
 
-// The derivatives of a residual of so many rows.
+// The derivatives of a residual with kRows rows.
 template <int kRows>
 struct LandmarkDerivatives {
   // By the six parameters of each pose, see LinearizationPoint.
@@ -118,15 +118,15 @@ struct LandmarkDerivatives {
   Eigen::Matrix<double, kRows, kCalibrationSize, Eigen::RowMajor> theta;
 };
 
-// What was measured of a landmark: at its anchor and in one view.
+// The measurements of a landmark at its anchor and in one view.
 struct LandmarkData {
   const Camera* rest = nullptr;           // of the lens, see CalibratedLens
   double anchor_u = 0.0, anchor_v = 0.0;  // px, as seen (distorted)
   RowMotion anchor_motion;                // of that pixel
   double u = 0.0, v = 0.0;                // px, in the view
-  RowMotion motion;                       // of u, v; or of the anchor's own
+  RowMotion motion;                       // of u, v; or the anchor's
   double inverse_sigma_px = 0.0;          // of u and v
-  MeasuredInverseDepth depth;             // of the view, or of the anchor's own
+  MeasuredInverseDepth depth;             // of the view, or the anchor's
 };
 
 // A landmark in the axes of a view when its row is exposed, times d. On the ray
@@ -158,8 +158,7 @@ Eigen::Matrix<T, 3, 1> InView(const RotationAndCenter<T>& anchor,
   return moved(data.motion, view.R * in_world, -1.0);
 }
 
-// The same with its derivatives, which leave out all of theta but lens and
-// readout.
+// The same with derivatives; by theta only for the lens and the colour readout.
 struct InViewDerivatives {
   Eigen::Vector3d Y;
   Eigen::Matrix<double, 3, 6> anchor, view;
@@ -196,7 +195,7 @@ struct InViewDerivatives {
       anchor.col(3 + k) = R.col(k) * d;
       view.col(3 + k) = -R.col(k) * d;
     }
-    // Of the ray by the lens: Distort(ray; k) = seen(f, c).
+    // The ray by the lens: Distort(ray; k) = seen(f, c).
     Eigen::Matrix<double, 2, kLensSize> moved;
     moved.leftCols<4>() << -seen[0] / theta[kFx], 0.0, -1.0 / theta[kFx], 0.0,
         0.0, -seen[1] / theta[kFy], 0.0, -1.0 / theta[kFy];
@@ -220,7 +219,7 @@ struct InViewDerivatives {
   };
 };
 
-// Where a view sees the landmark: u and v.
+// The pixel (u, v) at which a view sees the landmark.
 struct LandmarkPixel {
   static constexpr char kName[] = "landmark_pixel";
   static constexpr int kRows = 2;
@@ -271,7 +270,7 @@ struct LandmarkPixel {
   }
 };
 
-// The inverse depth that a view measures where it sees the landmark.
+// The inverse depth measured in a view at the landmark.
 struct LandmarkDepth {
   static constexpr char kName[] = "landmark_depth";
   static constexpr int kRows = 1;
@@ -308,7 +307,7 @@ struct LandmarkDepth {
   }
 };
 
-// The inverse depth that the anchor itself measured.
+// The inverse depth measured at the anchor.
 struct AnchorDepth {
   static constexpr char kName[] = "anchor_depth";
   static constexpr int kRows = 1;
@@ -338,7 +337,7 @@ struct AnchorDepth {
   }
 };
 
-// All of them; their Jacobian tests follow from this list.
+// All residuals; their Jacobian tests follow from this list.
 using CalibrationResiduals =
     TypeList<LandmarkPixel, LandmarkDepth, AnchorDepth>;
 

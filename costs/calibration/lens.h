@@ -9,9 +9,9 @@
 
 namespace rgbd_pose {
 
-// The lens of a camera whose parameters are those of a CalibrationVector, for
-// any scalar (double or ceres::Jet); its model, and what that has beyond them
-// (a rational lens: k4 k5 k6), are those of `rest`.
+// The lens of a camera with the parameters of a CalibrationVector, for any
+// scalar (double or ceres::Jet). `rest` gives its model and the parameters that
+// the vector lacks (k4 k5 k6 of a rational lens).
 template <typename T>
 struct CalibratedLens {
   using Pair = Eigen::Matrix<T, 2, 1>;
@@ -36,20 +36,20 @@ struct CalibratedLens {
     }
   }
 
-  // Where a point (x, y, 1) is seen, on the plane z = 1.
+  // The distorted position of a point (x, y, 1), on the plane z = 1.
   Pair Distort(const T& x, const T& y) const {
     Pair distorted;
     lens.Distort(x, y, &distorted[0], &distorted[1]);
     return distorted;
   }
 
-  // The pixel of it.
+  // The pixel of a distorted position.
   Pair ToPixel(const Pair& distorted) const {
     return {theta[kFx] * distorted[0] + theta[kCx],
             theta[kFy] * distorted[1] + theta[kCy]};
   }
 
-  // The place on the plane z = 1 that a pixel is of, distorted.
+  // The distorted position of a pixel, on the plane z = 1.
   Pair FromPixel(double u, double v) const {
     return {(u - theta[kCx]) / theta[kFx], (v - theta[kCy]) / theta[kFy]};
   }
@@ -85,7 +85,7 @@ inline Eigen::Matrix<double, 2, kDistortionSize> DistortByCoefficients(
   return D;
 }
 
-// The place (x, y, 1) that is seen at a pixel, by Newton's method.
+// The point (x, y, 1) that is seen at a pixel, by Newton's method.
 inline Eigen::Vector2d Undistorted(const CalibratedLens<double>& lens, double u,
                                    double v) {
   constexpr int kMaxSteps = 10;
@@ -102,8 +102,8 @@ inline Eigen::Vector2d Undistorted(const CalibratedLens<double>& lens, double u,
   return place;
 }
 
-// The same with derivatives: one more step from where the values lead has them
-// exactly.
+// The same with derivatives: one more Newton step from the converged values
+// yields the exact derivatives.
 template <typename T>
 Eigen::Matrix<T, 2, 1> Undistorted(const CalibratedLens<T>& lens, double u,
                                    double v) {

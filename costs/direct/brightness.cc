@@ -13,10 +13,10 @@ namespace {
 
 constexpr double kSigmaGain = 0.3;
 constexpr double kSigmaBias = 40.0;
-// Enough points to tell two numbers.
+// Two unknowns need no more points than this.
 constexpr int kMaxPoints = 2000;
 constexpr int kRounds = 3;
-// Cauchy's weight; an edge off by a pixel differs by some ten gray levels.
+// Width of Cauchy's weight: an edge off by a pixel differs by about 10 levels.
 constexpr double kWidth = 10.0;
 
 // Gray levels of the same points in both frames.
@@ -31,7 +31,7 @@ struct SampleKernel {
                                          const PackedColumns& points,
                                          GrayPairs* pairs) {
     using D = typename Lanes<W>::Type;
-    // Groups of kMaxLanes points, whatever W: the same on all machines.
+    // Groups of kMaxLanes points, whatever W: the same points on all machines.
     const int step = (points.size / kMaxPoints + 1) * kMaxLanes;
     for (int group = 0; group < points.size; group += step) {
       for (int i = group; i < group + kMaxLanes && i < points.size; i += W) {
@@ -70,7 +70,7 @@ void EstimateBrightness(const PackedColumns& points, DirectInput* input) {
     Eigen::Matrix2d H = Eigen::Vector2d(kNoise2 / (kSigmaGain * kSigmaGain),
                                         kNoise2 / (kSigmaBias * kSigmaBias))
                             .asDiagonal();
-    Eigen::Vector2d b(H(0, 0), 0.0);  // of gain 1 and bias 0
+    Eigen::Vector2d b(H(0, 0), 0.0);  // for gain 1 and bias 0
     for (int i = 0; i < pairs.size; ++i) {
       const double x = pairs.prev[i], y = pairs.cur[i];
       const double r = y - input->gain * x - input->bias;

@@ -15,35 +15,35 @@
 
 namespace rgbd_pose {
 
-// How a direct cost takes its points.
+// How a direct cost selects its points.
 struct DirectOptions {
-  // At the finest level; 0: as many as are good for the kind (kMaxPoints).
+  // Number of points at the finest level; 0: kMaxPoints of the cost.
   int max_points = 0;
-  // At the others, which only lead there.
+  // The same at the coarser levels, which only lead to the finest one.
   int max_coarse_points = 1000;
 
-  // Which pixels count: gray levels a pixel, and depths in m.
+  // Which pixels are used: limits in gray levels per pixel and in m.
   double min_gradient = 3.0;
   double min_depth = 0.3;
   double max_depth = 8.0;
 
-  // How many levels; fewer where the images are small.
+  // Number of pyramid levels; if the images have fewer, the coarsest repeats.
   int num_levels = 4;
-  // The finest level is so much coarser than the image: 1 is half of its size,
-  // where interpolation does no harm to gray levels. Depths are always those of
-  // the whole image.
+  // Pyramid level of the image used as the finest one. At 1, half the image
+  // size, interpolation does no harm to gray levels. Depths are always read at
+  // full resolution.
   int finest_level = 1;
 
-  // See MotionCost::information_factor; 0: that of the kind (kInformation).
+  // See MotionCost::information_factor; 0: kInformation of the cost.
   double information_factor = 0.0;
 
-  // One line that says what is wrong with the options, or empty.
+  // One line that describes the first invalid option, or empty.
   std::string Check() const;
 };
 
-// Columns of all points that are seen. Arithmetic takes several points at a
-// time, what reads an image or decides goes one by one: in passes over some
-// hundred points, so that neither has to wait for the other.
+// Fills the columns of all visible points. Arithmetic handles several points at
+// a time, reading images and rejecting points goes one by one. Separate passes
+// over tiles of points keep the two from waiting for each other.
 template <typename Residual>
 struct LookUpKernel {
   template <int W>
@@ -67,7 +67,7 @@ struct LookUpKernel {
  private:
   static constexpr int kTile = 256;
 
-  // A tile of points on its way.
+  // A tile of points between the passes.
   struct Tile {
     alignas(64) double u[kTile], v[kTile], z[kTile];
     alignas(64) float samples[Residual::kSamples][kTile];
@@ -98,7 +98,7 @@ struct LookUpKernel {
     std::memcpy(&tile->z[i], &place.z, sizeof(D));
   }
 
-  // What is not read keeps what another point has read: numbers at least.
+  // Points that are not read keep valid numbers from an earlier point.
   [[gnu::always_inline]] static void Read(const DirectInput& input, int size,
                                           Tile* tile) {
     for (int i = 0; i < size; ++i) {
@@ -149,38 +149,37 @@ struct LookUpKernel {
   }
 };
 
-// Where a direct residual type says what noise of slopes would look like.
+// Detects a residual type's optional NoiseRow.
 template <typename Residual>
 using NoiseRowOf = decltype(&Residual::NoiseRow);
 
-// The MotionCost of a direct residual type (photometric.h): its points are made
-// once of each previous frame, and looked up in the current one after
-// every step. A residual type says
+// The MotionCost of a direct residual type (photometric.h). Its points are
+// selected once per previous frame and looked up in the current frame after
+// every step. A residual type derives from DirectResidual, which has defaults
+// for other constants, and defines
 //
-//   kName, kPointColumns, kSamples, kColumns; the rest as DirectResidual, which
-//                                            it derives from
-//   Points(frame, level, selection, points)  of the previous frame
-//   Locate(input, point, place)              of vectors of doubles: where it is
-//   Read(input, u, v, stride, samples)       kSamples numbers read there
+//   kName, kPointColumns, kSamples, kColumns
+//   Points(frame, level, selection, points)  selects points of a previous frame
+//   Locate(input, point, place)              projects; on vectors of doubles
+//   Read(input, u, v, stride, samples)       reads kSamples numbers there
 //   LookUp(input, point, samples, columns, rejection)
-//                                            of vectors of doubles; points are
-//                                            kept with a rejection below 1
+//                                            on vectors of doubles; a point is
+//                                            kept if its rejection is below 1
 //   Residual(motion pose, columns, r)        for any scalars
 //   Jacobian(motion derivatives, columns, r, J)
-//                                            may be missing: by Ceres' Jets
-//   NoiseRow(input, axis, columns)           may be missing: makes a row one
-//                                            that is the noise of slopes alone,
-//                                            along an axis of the image (0: u,
-//                                            1: v)
+//                                            optional; default: Ceres' Jets
+//   NoiseRow(input, axis, columns)           optional: turns a row into one of
+//                                            pure slope noise along an image
+//                                            axis (0: u, 1: v)
 //
-// One on surfaces has all but kName, kColumns, LookUp and Residual from Surface
-// (surface.h).
+// A residual type on surfaces inherits all of these but kName, kColumns, LookUp
+// and Residual from Surface (surface.h).
 template <typename Type>
 class DirectCostOf final : public PackedCost<Type> {
   using Residual = typename PackedCost<Type>::Residual;
 
  public:
-  // The options must be sound (see Check).
+  // The options must be valid (see Check).
   explicit DirectCostOf(const DirectOptions& options)
       : options_(options), points_(options.num_levels) {}
 
@@ -196,8 +195,8 @@ class DirectCostOf final : public PackedCost<Type> {
   int num_levels() const override { return options_.num_levels; }
   void SetLevel(int level) override { level_ = level; }
 
-  // Points of a previous frame with an id are kept as long as the frames bound
-  // have the same.
+  // The points of a previous frame are kept while the bound pairs have the same
+  // nonzero id of the previous frame.
   void Bind(const FramePair& pair) override {
     this->SetThreads(pair.threads);
     level_ = 0;
@@ -253,7 +252,7 @@ class DirectCostOf final : public PackedCost<Type> {
   }
 
  private:
-  // Of so many points, one stands for all in what noise feigns.
+  // One in this many points represents all of them in the spurious information.
   static constexpr int kSpuriousStep = 8;
 
   PointSelection Selection(int level) const {
@@ -263,13 +262,13 @@ class DirectCostOf final : public PackedCost<Type> {
             options_.min_gradient, options_.min_depth, options_.max_depth};
   }
 
-  // Small images have fewer levels.
+  // Images with fewer levels repeat their coarsest one.
   int ImageLevel(const FrameView& frame, int level) const {
     return std::min(options_.finest_level + level,
                     static_cast<int>(frame.levels.size()) - 1);
   }
 
-  // False if that is where it is, but for rounding.
+  // Returns false if the level and, up to rounding, the motion are unchanged.
   bool MoveTo(const Rigid3d& cur_from_prev) {
     constexpr double kRounding = 1e-12;
     const Eigen::Matrix3d R = cur_from_prev.rotation.toRotationMatrix();
@@ -294,7 +293,7 @@ class DirectCostOf final : public PackedCost<Type> {
 
   DirectOptions options_;
   std::vector<PackedColumns> points_;  // by level
-  uint64_t points_of_ = 0;             // the id of their frame
+  uint64_t points_of_ = 0;             // id of the frame of points_
   DirectInput input_;
   int level_ = 0;
 };

@@ -6,11 +6,11 @@
 
 namespace rgbd_pose {
 
-// Where direct costs look their points up: in the current frame, at one level
-// of it, as seen after one motion. Around the place where a point is seen the
-// image counts as a plane (its value and derivatives there), so that what the
-// residuals are made of are columns of numbers, no longer an image; the columns
-// are made again wherever the solver tries a motion.
+// Where direct costs look their points up: in the current frame, at one pyramid
+// level, as seen after one motion. Around a point's pixel the image is
+// approximated by a plane (its value and derivatives there). So the residuals
+// need only columns of numbers and no image; the columns are computed again for
+// each motion that the solver tries.
 struct DirectInput {
   const FrameView* cur = nullptr;
   int level = 0;
@@ -19,40 +19,39 @@ struct DirectInput {
 
   Lens<double> lens;  // of the current camera
 
-  // Whether rows of the current images were exposed at other times than the
-  // motion is of (FrameView::timing).
+  // Whether rows of the current images were exposed at times other than the
+  // time to which the motion refers (FrameView::timing).
   bool moves_color = false;
   bool moves_depth = false;
 
-  // What is not looked at (FrameView::moving), and its pixels for one of the
-  // image that is read.
+  // The cells to skip (FrameView::moving), and the factor from pixels of the
+  // image that is read to pixels of the full resolution.
   const CellMask* moving = nullptr;
   double px_to_full = 1.0;
 
-  // The change of brightness from the previous frame to the current one: gray
-  // levels there are gain * gray + bias.
+  // The change of brightness between the frames: a gray level of the previous
+  // frame becomes gain * gray + bias in the current one.
   double gain = 1.0;
   double bias = 0.0;
 
-  static constexpr double kMinDepth = 0.1;  // m; what is nearer is not seen
+  static constexpr double kMinDepth = 0.1;  // m; nearer points are not used
 };
 
-// Where a point is seen, in px of the image that is read there, and its depth
-// (m).
+// Where a point is seen (px of the image that is read) and its depth (m).
 template <typename D>
 struct ProjectedPoint {
   D u, v, z;
 };
 
-// What a direct cost need not say: it is so of most (see DirectCostOf).
+// Defaults of the constants of a direct residual type (see DirectCostOf).
 struct DirectResidual {
   static constexpr int kRows = 1;
   static constexpr int kDegreesOfFreedom = 1;
   static constexpr bool kIsWhitened = true;
   static constexpr int kScaleGroup = 0;        // see MotionCost::scale_group
   static constexpr int kMaxPoints = 3000;      // see DirectOptions
-  static constexpr double kInformation = 1.0;  // likewise
-  // Whether it reads gray levels, whose brightness may have changed.
+  static constexpr double kInformation = 1.0;  // see DirectCostOf
+  // Whether the cost reads gray levels, whose brightness may have changed.
   static constexpr bool kSeesBrightness = false;
 };
 

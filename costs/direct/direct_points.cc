@@ -11,17 +11,17 @@
 namespace rgbd_pose {
 namespace {
 
-// Pixels around a point that its neighbours reach.
+// Image border without points, px: neighbours of a point reach that far.
 constexpr int kBorder = 7;
 
 int CellSize(double pixels, int max_points) {
   return std::max(1, static_cast<int>(std::sqrt(pixels / max_points)));
 }
 
-// Depths that a slope is computed from are so far apart, px.
+// Distance between the depths that a slope is computed from, px.
 constexpr int kSlopeStep = 3;
 
-// Appends to columns that have no padding yet.
+// Appends points to columns; Finish pads them.
 class ColumnWriter {
  public:
   ColumnWriter(PackedColumns* points, int columns, size_t max_points)
@@ -46,8 +46,8 @@ class ColumnWriter {
   PackedColumns* points_;
 };
 
-// Whether the 3 x 3 pixels around have depths of one surface, as steep as 75
-// degrees or so.
+// Whether the depths of the 3 x 3 pixels around a pixel belong to one surface,
+// with a slope of up to about 75 degrees.
 bool IsOneSurface(const FrameView& frame, int column, int row) {
   constexpr double kMaxRelativeStep = 0.02;
   double low = std::numeric_limits<double>::infinity(), high = 0.0;
@@ -61,8 +61,8 @@ bool IsOneSurface(const FrameView& frame, int column, int row) {
   return low > 0.0 && high - low < kMaxRelativeStep * low;
 }
 
-// The depth in the middle of a level's pixel, of which (column, row) is the
-// lower right one of the four pixels there; at level 0 the pixel itself.
+// The depth at the centre of a level's pixel. (column, row) is the lower right
+// of the four full-resolution pixels there; at level 0, the pixel itself.
 double DepthBefore(const FrameView& frame, int column, int row, int scale) {
   if (scale == 1) return frame.DepthAt(column, row);
   return 0.25 *
@@ -71,16 +71,16 @@ double DepthBefore(const FrameView& frame, int column, int row, int scale) {
 }
 
 // The plane through 5 x 5 inverse depths around a pixel of the full resolution:
-// 1 / z = inverse_depth + slope . (pixel - here).
+// 1 / z = inverse_depth + slope . (pixel - this pixel).
 struct InverseDepthPlane {
   double inverse_depth = 0.0;                       // 1 / m
-  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  // 1 / m a pixel
+  Eigen::Vector2d slope = Eigen::Vector2d::Zero();  // 1 / m per pixel
 };
 
-// False at holes, and where the depths are no plane: an edge.
+// Returns false at holes and where the depths form no plane, as at an edge.
 bool FitInverseDepthPlane(const FrameView& frame, int column, int row,
                           InverseDepthPlane* plane) {
-  // Neighbours further from it are another surface.
+  // Neighbours farther from the plane belong to another surface.
   constexpr double kMaxSigmas = 4.0;
   constexpr int kSide = 5;
   constexpr double kSquares = 50.0;  // sum of i^2 over the 25 places
@@ -110,8 +110,8 @@ bool FitInverseDepthPlane(const FrameView& frame, int column, int row,
   return true;
 }
 
-// The steepest pixel of a cell, (-1, -1) if all are flatter than the limit
-// (gray levels between the neighbours, squared).
+// The pixel of a cell with the largest gradient; (-1, -1) if no pixel exceeds
+// the limit (squared difference of the gray levels of opposite neighbours).
 Eigen::Vector2i SteepestPixel(const ImageView<uint8_t>& gray, int left, int top,
                               int right, int bottom, int limit) {
   Eigen::Vector2i steepest(-1, -1);
@@ -151,7 +151,7 @@ void TexturedPoints(const FrameView& frame, int level_index,
       const Eigen::Vector2i at =
           SteepestPixel(gray, left, top, right, bottom, flat);
       if (at.x() < 0) continue;
-      // The middle of the level's pixel, in the full resolution.
+      // The centre of the level's pixel, at full resolution.
       const int u = at.x() * scale + scale / 2;
       const int v = at.y() * scale + scale / 2;
       if (!IsOneSurface(frame, u, v)) continue;
@@ -169,7 +169,7 @@ void TexturedPoints(const FrameView& frame, int level_index,
 
 void SmoothPoints(const FrameView& frame, const PointSelection& selection,
                   PackedColumns* points) {
-  // A ray and a surface closer than that (15 degrees) tell little.
+  // At angles between ray and surface below 15 degrees, points hardly help.
   constexpr double kMinCosine = 0.25;
   const Camera& camera = frame.levels[0].camera;
   const int width = frame.depth.width, height = frame.depth.height;

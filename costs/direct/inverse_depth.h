@@ -8,13 +8,13 @@
 
 namespace rgbd_pose {
 
-// The difference in inverse depth between the surface that the current frame
-// measures and a point of the previous frame, moved there:
+// The difference in inverse depth between the surface measured in the current
+// frame and a point of the previous frame, moved into the current one:
 //
 //   r = (1 / Z_cur - 1 / q_z) / sigma,   q = R (X_prev - C)
 //
-// in the unit in which the noise of a structured-light camera is constant. With
-// the plane N of the surface (surface.h), 1 / Z_cur = N . q / q_z:
+// The noise of a structured-light camera is constant in inverse depth. With the
+// plane N of the surface (surface.h), 1 / Z_cur = N . q / q_z:
 //
 //   r = (N . q - 1) / (sigma q_z)
 struct InverseDepth : Surface {
@@ -25,7 +25,7 @@ struct InverseDepth : Surface {
   [[gnu::always_inline]] static void LookUp(const DirectInput& input,
                                             const D* point, const D* samples,
                                             D* columns, D* rejection) {
-    // Beyond, another surface hides the point, or is hidden by it.
+    // Above this, another surface hides the point or lies behind it.
     constexpr double kMaxRelativeStep = 0.1;
     MeasuredSurface<D> surface;
     Measure(input, point, samples, &surface);
@@ -39,12 +39,12 @@ struct InverseDepth : Surface {
     *rejection = surface.rejection + step * step;
   }
 
-  // A row that is the noise of the plane's slope along an axis of the image.
+  // Turns a row into pure noise of the plane's slope along an image axis.
   static void NoiseRow(const DirectInput& input, int axis, double* columns) {
     const Camera& camera = input.cur->levels[0].camera;
     columns[3] = axis == 0 ? kSlopeNoise * camera.fx : 0.0;
     columns[4] = axis == 1 ? kSlopeNoise * camera.fy : 0.0;
-    columns[5] = columns[6] = 0.0;  // no part in the derivative
+    columns[5] = columns[6] = 0.0;  // neither adds noise to the derivative
   }
 
   template <typename M, typename D, typename T>

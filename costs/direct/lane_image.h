@@ -6,20 +6,20 @@
 #include "core/geometry/twist.h"
 #include "core/util/lane_math.h"
 
-// What direct costs do with images, for double and for vectors of doubles (one
-// lane a point, core/util/vector_lanes.h).
+// Image operations of the direct costs, for double and for vectors of doubles
+// (one lane per point, core/util/vector_lanes.h).
 
 namespace rgbd_pose {
 
-// Where a point (current axes) is seen, px, and how that place changes with
-// x / z and y / z, its normalised image coordinates; both with distortion.
+// Where a point (current axes) is seen, px, and the derivatives of that pixel
+// by the normalised image coordinates x / z and y / z; with distortion.
 template <typename D>
 struct ProjectedPixel {
   D u, v;
   D u_x, u_y, v_x, v_y;  // du / d(x / z), ...
 };
 
-// Of x / z and y / z. `lens`: the camera's.
+// x and y are x / z and y / z of the point; `lens` is the lens of the camera.
 template <typename D>
 [[gnu::always_inline]] inline void ProjectWithJacobian(const Camera& camera,
                                                        const Lens<double>& lens,
@@ -44,9 +44,9 @@ template <typename D>
   p->v_y = camera.fy * seen.y_y;
 }
 
-// Where a point (axes of the stamp, m) is when its row is exposed: the row
-// decides the time, and that the row, which to first order is a division.
-// `level_camera`: of the pixels of the image.
+// Moves a point (m, camera axes at the stamp) to where it is when its row is
+// exposed. The row depends on the time and the time on the row; to first order
+// a division solves this. `level_camera`: camera of the level's pixels.
 template <typename D>
 [[gnu::always_inline]] inline void MoveToRow(const Camera& level_camera,
                                              const Lens<double>& lens,
@@ -57,7 +57,7 @@ template <typename D>
   const D x = point[0] * inverse, y = point[1] * inverse;
   ProjectedPixel<D> pixel;
   ProjectWithJacobian(level_camera, lens, x, y, &pixel);
-  // Rows a second.
+  // Motion in the image, rows per second.
   D velocity[3];
   twist.PointVelocity(point, velocity);
   const D flow = (pixel.v_x * (velocity[0] - x * velocity[2]) +
@@ -70,15 +70,15 @@ template <typename D>
   twist.MovePoint(point, seconds, moved);
 }
 
-// An image between its pixels, by bilinear interpolation: the value at a place
-// and its exact derivatives there, per pixel.
+// An image between its pixels, by bilinear interpolation: the value and its
+// exact derivatives per pixel.
 template <typename D>
 struct ImageSample {
   D value, du, dv;
 };
 
-// At (s, t) within a pixel, of its own gray level, that of its right, lower and
-// lower right neighbour.
+// (s, t): position within the pixel. gray: the gray levels of the pixel and of
+// its right, lower and lower right neighbours.
 template <typename D>
 [[gnu::always_inline]] inline void Interpolate(const D& s, const D& t,
                                                const D* gray,

@@ -9,40 +9,40 @@
 
 namespace rgbd_pose {
 
-// The difference in gray level between a point of the previous frame and where
-// it is seen in the current image (Kerl, Sturm & Cremers, ICRA 2013; Engel,
-// Koltun & Cremers, PAMI 2018):
+// The difference in gray level between a point of the previous frame and the
+// pixel where it is seen in the current image (Kerl, Sturm & Cremers, ICRA
+// 2013; Engel, Koltun & Cremers, PAMI 2018):
 //
 //   r = (I_cur(u(q)) - gain I_prev - bias) / sigma,   q = R (X_prev - C)
 //
-// With the image as a plane around u (direct_input.h), in the normalised image
-// coordinates x = q_x / q_z, y = q_y / q_z:
+// The image is approximated by a plane around u (direct_input.h). In the
+// normalised image coordinates x = q_x / q_z, y = q_y / q_z:
 //
 //   r = k_0 + k_x x + k_y y
 //
-// Where rows are exposed one after another (FrameView::timing), u is where q is
-// seen in its row; how u changes with q is as if it were not moved, which is
-// wrong by what the camera turns meanwhile, 3 % at 1 rad/s.
+// With a rolling shutter (FrameView::timing), u is where q is seen when its row
+// is exposed. The derivative of u by q neglects that motion; the error is the
+// camera's rotation in the meantime, 3 % at 1 rad/s.
 //
 // sigma^2 = sigma_gray^2 (1 + gain^2) + (dI / d depth)^2 sigma_depth^2: the
-// noise of both images, and the wrong place that a wrong depth leads to.
+// noise of both images, and the shift of u due to the depth error.
 struct Photometric : DirectResidual {
   static constexpr char kName[] = "photometric";
   static constexpr int kScaleGroup = 1;  // gray levels
   static constexpr bool kSeesBrightness = true;
   static constexpr int kColumns = 6;  // X_prev, k_0, k_x, k_y
 
-  // The noise of a gray level, with that of its interpolation.
+  // Noise of a gray level, including interpolation errors.
   static constexpr double kSigmaGray = 2.0;
 
   static constexpr int kMaxPoints = 4000;
 
-  // Interpolation and blur err alike in neighbouring pixels: the share of its
-  // information by which the covariance is honest in simulated sequences
-  // (docs/direct.md).
+  // Errors of interpolation and blur are correlated between neighbouring
+  // pixels. With this share of the information the covariance is consistent in
+  // simulated sequences (docs/direct.md).
   static constexpr double kInformation = 0.17;
 
-  // X_prev (m), the sigma of its depth (m), its gray level.
+  // X_prev (m), sigma of its depth (m), its gray level.
   static constexpr int kPointColumns = 5;
 
   static void Points(const FrameView& frame, int level,
@@ -59,8 +59,8 @@ struct Photometric : DirectResidual {
     *place = {seen.pixel.u, seen.pixel.v, seen.z};
   }
 
-  // Where in the pixel the place is (0 to 1, to the right and down) and the
-  // four gray levels around.
+  // The position within the pixel (0 to 1, to the right and down) and the four
+  // gray levels around it.
   static constexpr int kSamples = 6;
   [[gnu::always_inline]] static bool Read(const DirectInput& input, double u,
                                           double v, ptrdiff_t stride,
@@ -108,11 +108,11 @@ struct Photometric : DirectResidual {
     *rejection = D{};
   }
 
-  // A row that is the noise of a slope along an axis of the image (0: u, 1: v),
-  // at the sigma of a residual per pixel.
+  // Turns a row into pure noise of the slope along an image axis (0: u, 1: v),
+  // in residual sigmas per pixel.
   static void NoiseRow(const DirectInput& input, int axis, double* columns) {
-    // Of a smooth pyramid's differences between neighbours, against those
-    // between two images.
+    // Noise of differences between neighbours in the smooth pyramid, relative
+    // to differences between two images.
     constexpr double kSlopeNoise = 0.55;
     const Camera& camera = input.cur->levels[input.level].camera;
     columns[3] = 0.0;
@@ -146,7 +146,7 @@ struct Photometric : DirectResidual {
   struct Seen {
     D turned[3];  // R X, m
     D x, y, z;    // normalised image coordinates; depth, m; at the stamp
-    ProjectedPixel<D> pixel;  // in its row
+    ProjectedPixel<D> pixel;  // when its row is exposed
   };
 
   template <typename D>

@@ -8,8 +8,8 @@
 
 namespace rgbd_pose {
 
-// The distance of a point of the previous frame, moved, from the plane of the
-// surface that the current frame measures there (Chen & Medioni 1992; Newcombe
+// The distance of a point of the previous frame, moved into the current one,
+// from the plane of the surface measured there (Chen & Medioni 1992; Newcombe
 // et al., ISMAR 2011):
 //
 //   r = n . (q - p) / sigma,   q = R (X_prev - C)
@@ -18,8 +18,8 @@ namespace rgbd_pose {
 //
 //   r = (N . q - 1) / (|N| sigma)
 //
-// sigma: that of the depths, as far as it lies along n. A depth error moves a
-// point along its ray (x, y, 1), of which N . ray / |N| = 1 / (z |N|) does.
+// sigma is the part of the depth noise along n: a depth error moves a point
+// along its ray (x, y, 1), of which N . ray / |N| = 1 / (z |N|) lies along n.
 struct ProjectivePlane : Surface {
   static constexpr char kName[] = "projective_plane";
   static constexpr int kColumns = 7;  // X_prev, w N, w with w = 1 / (|N| sigma)
@@ -28,7 +28,7 @@ struct ProjectivePlane : Surface {
   [[gnu::always_inline]] static void LookUp(const DirectInput& input,
                                             const D* point, const D* samples,
                                             D* columns, D* rejection) {
-    constexpr double kMaxDistance = 0.2;  // m; beyond is another surface
+    constexpr double kMaxDistance = 0.2;  // m; if farther, another surface
     MeasuredSurface<D> surface;
     Measure(input, point, samples, &surface);
     const D* const N = surface.plane;
@@ -44,8 +44,8 @@ struct ProjectivePlane : Surface {
                  surface.excess * surface.excess / (kMaxDistance2 * length2);
   }
 
-  // A row that is the noise of the plane's slope along an axis of the image:
-  // N + noise (1, 0, -x), where |N| is about 1 / z.
+  // Turns a row into pure noise of the plane's slope along an image axis:
+  // N + noise (1, 0, -x) or (0, 1, -y), where |N| is about 1 / z.
   static void NoiseRow(const DirectInput& input, int axis, double* columns) {
     const Camera& camera = input.cur->levels[0].camera;
     const double focal = axis == 0 ? camera.fx : camera.fy;

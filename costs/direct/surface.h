@@ -8,41 +8,40 @@
 
 namespace rgbd_pose {
 
-// Depths of a plane are so many pixels apart: next to each other they share
-// their noise, and slopes are too noisy.
+// Distance between the depths of a surface, px. Adjacent depths share their
+// noise, and slopes from them are too noisy.
 constexpr int kSurfaceStep = 4;
 
-// A point of the previous frame's surface as it is seen in the current frame,
-// and the plane N . p = 1 (p in current axes, m; N in 1 / m) of the surface
-// that is measured there. Its slope is that of the previous surface, moved; how
-// far it is away is the mean of nine measured inverse depths. In normalised
-// image coordinates the inverse depth of a plane is linear: 1 / z = N . (x, y,
-// 1).
+// A point of the previous frame's surface as seen in the current frame, and the
+// plane N . p = 1 (p in current axes, m; N in 1 / m) of the surface measured
+// there. The slope of the plane is the slope of the previous surface, moved;
+// its distance is the mean of nine measured inverse depths. In normalised image
+// coordinates the inverse depth of a plane is linear: 1 / z = N . (x, y, 1).
 template <typename D>
 struct MeasuredSurface {
   D q[3];       // m
   D x, y;       // normalised image coordinates
   D plane[3];   // N, 1 / m
   D excess;     // N . q - 1: 0 on the surface, about (q_z - z) / z
-  D rejection;  // 1 or more: an edge, no surface
+  D rejection;  // 1 or more: an edge, not a surface
 };
 
-// The noise of a surface's slope a pixel, in sigmas of a residual: of a plane
-// through 5 x 5 depths, 3 px apart.
+// Noise of a surface's slope per pixel, in residual sigmas, for a plane through
+// 5 x 5 depths, 3 px apart.
 constexpr double kSlopeNoise = 0.0667;
 
-// The sigma of a surface point in that of one depth, as simulated pairs have
-// it: the means of nine depths here and 25 there, whose noise is correlated,
-// leave half of it each.
+// Sigma of a surface point relative to the sigma of one depth, from simulated
+// pairs: averaging nine depths here and 25 there leaves half the sigma each,
+// because their noise is correlated.
 constexpr double kSurfaceSigma = 0.707;
 
-// What the costs on surfaces share. Columns of a point (see SmoothPoints):
+// Common part of the costs on surfaces. Columns of a point (see SmoothPoints):
 // X_prev (m), the plane N . X_prev = 1 (1 / m), the sigma of its depth (m).
 struct Surface : DirectResidual {
   static constexpr int kScaleGroup = 2;  // depths
   static constexpr int kPointColumns = 7;
 
-  // As Photometric's: noise of depths reaches over some pixels.
+  // As in Photometric: depth noise is correlated over several pixels.
   static constexpr double kInformation = 0.75;
 
   static void Points(const FrameView& frame, int /*level*/,
@@ -63,8 +62,8 @@ struct Surface : DirectResidual {
     *place = {pixel.u, pixel.v, in_row[2]};
   }
 
-  // A point in current axes, m: at the stamp, and when its row of the depth
-  // image is taken.
+  // A point in current axes, m: at the stamp (q), and when its row of the depth
+  // image is exposed (in_row).
   template <typename D>
   [[gnu::always_inline]] static void Move(const DirectInput& input,
                                           const D* point, D* q, D* in_row) {
@@ -76,8 +75,8 @@ struct Surface : DirectResidual {
               timing.twist, q, in_row);
   }
 
-  // From the nearest whole pixel to the place (px, to the right and down), and
-  // 3 x 3 raw depths around that pixel.
+  // The offset of the point from the nearest whole pixel (px, to the right and
+  // down), and 3 x 3 raw depths around that pixel.
   static constexpr int kSamples = 11;
   [[gnu::always_inline]] static bool Read(const DirectInput& input, double u,
                                           double v, ptrdiff_t stride,
@@ -93,7 +92,7 @@ struct Surface : DirectResidual {
     const uint16_t* at = depth.data + row * depth.stride + column;
     samples[0] = static_cast<float>(u - column);
     samples[stride] = static_cast<float>(v - row);
-    // Two values mean no depth; both become 0 by adding 1.
+    // The raw values 0 and 65535 mean no depth; adding 1 makes them 1 and 0.
     bool is_measured = true;
     for (int k = 0; k < 9; ++k) {
       const uint16_t raw = at[(k / 3 - 1) * kSurfaceStep * depth.stride +
@@ -108,17 +107,17 @@ struct Surface : DirectResidual {
   [[gnu::always_inline]] static void Measure(const DirectInput& input,
                                              const D* point, const D* samples,
                                              MeasuredSurface<D>* s) {
-    // 99 % of chi^2 of eight degrees.
+    // The 99 % quantile of chi^2 with eight degrees of freedom.
     constexpr double kMaxSquares = 20.1;
     const Camera& camera = input.cur->levels[0].camera;
     const double per_u = 1.0 / camera.fx, per_v = 1.0 / camera.fy;
     D in_row[3];
     Move(input, point, s->q, in_row);
-    // What is measured differs from the point by as much then as at the stamp.
+    // The surface's offset from the point is taken to be equal at the stamp.
     const D inverse_z = 1.0 / s->q[2], inverse_measured_z = 1.0 / in_row[2];
     s->x = s->q[0] * inverse_z;
     s->y = s->q[1] * inverse_z;
-    // The moved plane n . p = 1 + n . t; near q only its slope counts.
+    // The moved plane is n . p = 1 + n . t; near q only its slope matters.
     D n[3];
     Multiply(input.R, point + 3, n);
     const D scale = 1.0 / (n[0] * s->q[0] + n[1] * s->q[1] + n[2] * s->q[2]);
@@ -133,8 +132,8 @@ struct Surface : DirectResidual {
       squares += off * off;
     }
     const D mean = sum * (1.0 / 9.0);
-    // From the nearest pixel to the place. Over half a pixel distortion does
-    // not matter.
+    // From the nearest pixel to the point's position. Over half a pixel,
+    // distortion does not matter.
     const D measured = inverse_z + mean + n[0] * (samples[0] * per_u) +
                        n[1] * (samples[1] * per_v);
     s->plane[0] = n[0];

@@ -8,21 +8,21 @@
 
 namespace rgbd_pose {
 
-// Re-projection both ways (Howard 2008; Huang 2013): the previous point in the
-// current image and the current point in the previous image, each with u, v and
-// inverse depth:
+// Reprojection in both directions (Howard 2008; Huang 2013): the previous point
+// in the current image and the current point in the previous image, each with
+// u, v and inverse depth:
 //
 //   rows 0-2  L_c^T (m_cur  - project(R (X_prev - C)))
 //   rows 3-5  L_p^T (m_prev - project(R^T X_cur + C))
 //
-// L L^T is the inverse of the noise of the measurement plus that of the
-// projected point, frozen at the motion that was bound. Both directions tell
-// the same three measurements, each with the noise of both frames: so each
-// covariance counts twice (the rows are divided by sqrt 2).
+// L L^T is the inverse covariance of the measurement plus the projected point,
+// frozen at the bound motion. Both directions contain the same three
+// measurements, each with the noise of both frames. So each covariance is
+// doubled (the rows are divided by sqrt 2).
 //
-// If only one frame has depth, only its points can be projected and only their
-// u and v compared: two rows, given once; the other four are zero. Points
-// behind a camera: projection.h.
+// If only one frame has depth, only its points can be projected, and only u and
+// v can be compared: two rows, not divided; the other four are zero. Points
+// behind a camera: see projection.h.
 struct BidirectionalImage {
   static constexpr char kName[] = "bidirectional_image";
   static constexpr int kRows = 6;
@@ -54,7 +54,7 @@ struct BidirectionalImage {
     return forward || backward;
   }
 
-  // Two where inverse depth is missing: u and v of one direction.
+  // 2 if an inverse depth is missing: u and v of one direction.
   static int Degrees(const double* columns) {
     return columns[kForwardColumns - 1] > 0.0 ? 3 : 2;
   }

@@ -15,12 +15,12 @@ namespace rgbd_pose {
 //   e_p = X_prev - (R^T X_cur + C)     previous error  (Tables 2.6, 2.7, 2.8)
 //
 // Rows 0-2 are e_c whitened by the noise of the current frame, rows 3-5 are e_p
-// whitened by that of the previous frame, each along the measurement's own axes
-// (u, v, depth; ray_whitening.h). e_p = -R^T e_c: the six rows hold three
-// independent measurements, each given twice, and each error carries the noise
-// of both frames. So one sigma of a row is twice that of one frame's
-// measurement: (1/4) e^T (S_cur^-1 + S_prev^-1) e equals the Mahalanobis
-// distance e^T (S_cur + S_prev)^-1 e where both frames are equally noisy.
+// whitened by the noise of the previous frame, each along the measurement's
+// axes (u, v, depth; ray_whitening.h). As e_p = -R^T e_c, the six rows contain
+// three independent measurements, each twice, and each error has the noise of
+// both frames. So a row's sigma is twice the sigma of one frame's measurement:
+// (1/4) e^T (S_cur^-1 + S_prev^-1) e equals the Mahalanobis distance
+// e^T (S_cur + S_prev)^-1 e if both frames are equally noisy.
 struct BidirectionalPoint {
   static constexpr char kName[] = "bidirectional_point";
   static constexpr int kRows = 6;
@@ -28,7 +28,7 @@ struct BidirectionalPoint {
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = 2 * RayWhitening<double>::kColumns;
 
-  // Writes what the residual needs of match i; false if a depth is missing.
+  // Writes the columns of match i; returns false if a depth is missing.
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     const Correspondences& matches = input.matches;
     const Observation& prev = matches[i].prev;
@@ -41,8 +41,7 @@ struct BidirectionalPoint {
     return true;
   }
 
-  // The six residuals, for any mix of scalars: this is what the oracle
-  // differentiates.
+  // The six residuals, for any mix of scalars; the oracle differentiates this.
   template <typename M, typename D, typename T>
   static void Residual(const RotationAndCenter<M>& motion, const D* columns,
                        T* r) {
@@ -59,8 +58,8 @@ struct BidirectionalPoint {
     prev.Whiten(e_p, r + 3);
   }
 
-  // The residuals and their derivatives J[row][alpha beta gamma Cx Cy Cz],
-  // by hand (docs/jacobian_tables.md).
+  // The residuals and their hand-written derivatives
+  // J[row][alpha beta gamma Cx Cy Cz] (docs/jacobian_tables.md).
   template <typename D>
   static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
                        D (*J)[6]) {
@@ -90,8 +89,8 @@ struct BidirectionalPoint {
   }
 
   // The same for the compressed sums (point_sums.h): e_c depends on the motion
-  // through q = R (X_prev - C), e_p through q = R^T X_cur + C, and both fall by
-  // as much as q rises: A = -W.
+  // through q = R (X_prev - C), e_p through q = R^T X_cur + C. Both decrease by
+  // as much as q increases: A = -W.
   static constexpr int kPointTerms = 2;
 
   template <typename D>
@@ -102,7 +101,7 @@ struct BidirectionalPoint {
     const RayWhitening<D> prev(columns);
     const RayWhitening<D> cur(columns + RayWhitening<D>::kColumns);
     Forward::TransformPoint(motion, prev.point, forward->q);
-    // The backward point less C: turning it about C is turning R^T X_cur.
+    // The backward point minus C: rotating it about C rotates R^T X_cur.
     MultiplyTransposed(motion.R, cur.point, backward->q);
     D e_c[3], e_p[3];
     for (int i = 0; i < 3; ++i) {

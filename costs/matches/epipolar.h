@@ -12,26 +12,26 @@
 namespace rgbd_pose {
 
 // The epipolar constraint as Sampson's distance (Nister 2004; Hartley &
-// Zisserman 2004, 11.4.3), for matches without depth on one side at least. With
-// rays x = ((u - cx) / fx, (v - cy) / fy, 1) and E = R [C]x,
+// Zisserman 2004, 11.4.3), for matches that lack at least one depth. With rays
+// x = ((u - cx) / fx, (v - cy) / fy, 1) and E = R [C]x,
 //
 //   x_cur^T E x_prev = 0,   r = N / D,   N = x_cur^T E x_prev,
 //   D^2 = su_cur^2 (E x_prev)_0^2 + sv_cur^2 (E x_prev)_1^2
 //       + su_prev^2 (E^T x_cur)_0^2 + sv_prev^2 (E^T x_cur)_1^2 + eps^2
 //
 // where su = sigma_px / fx, sv = sigma_px / fy: D^2 - eps^2 is the variance of
-// N to first order. N and D are both proportional to |C|: r says nothing of the
-// scale, which has to come from other costs, and would be 0 / 0 at C = 0. eps
-// is what D would be at a baseline of kRestBaseline; it keeps r finite and
+// N to first order. N and D are both proportional to |C|. So r contains no
+// scale, which must come from other costs, and would be 0 / 0 at C = 0. eps is
+// the value of D at a baseline of kRestBaseline; it keeps r finite and
 // differentiable there.
 //
-// That makes C = 0 a trap: all residuals vanish there, whatever the rotation.
-// And a wrong match that happens to lie on its epipolar line outweighs tens of
-// right ones, since it passes for a point right before the camera. So a match
-// is used only if, at the motion that was bound, its rays see the baseline at
-// kMinBaseline or more and meet before the cameras (Nister's cheirality) and
-// not nearer than kNearest, both within the noise. Solvers bind again as they
-// go: from a guess without a baseline other costs have to lead.
+// Two problems follow. C = 0 is a trap: all residuals vanish there, whatever
+// the rotation. And a wrong match that happens to lie on its epipolar line
+// outweighs tens of right ones, because it looks like a point just in front of
+// the camera. So a match is used only if, at the bound motion, its rays see a
+// baseline of at least kMinBaseline and meet in front of the cameras (Nister's
+// cheirality), no nearer than kNearest, both within the noise. Solvers bind
+// again as they proceed: without a baseline in the guess, other costs lead.
 struct Epipolar {
   static constexpr char kName[] = "epipolar";
   static constexpr int kRows = 1;
@@ -46,7 +46,7 @@ struct Epipolar {
   static constexpr double kRestBaseline = 1e-3;  // m
   static constexpr double kMinBaseline = 0.01;   // m
   static constexpr double kNearest = 0.2;        // m
-  static constexpr double kSigmas = 3.0;  // by which noise may move a depth
+  static constexpr double kSigmas = 3.0;         // of noise in the parallax
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     const Camera& camera = input.matches.camera();
@@ -104,9 +104,9 @@ struct Epipolar {
   }
 
  private:
-  // The point lies at w^-1 x_prev = C + (..) y with y = R^T x_cur, therefore
-  // x_prev x y = w C x y: the parallax is the inverse depth w times the part of
-  // the baseline across the ray.
+  // The point lies at w^-1 x_prev = C + (..) y with y = R^T x_cur, so
+  // x_prev x y = w C x y: the parallax is the inverse depth w times the
+  // component of the baseline across the ray.
   static bool SeesBaseline(const Camera& camera, const Rigid3d& cur_from_prev,
                            const Observation& prev, const Observation& cur) {
     const Eigen::Vector3d x_prev = camera.Ray(prev.u, prev.v),
@@ -122,7 +122,7 @@ struct Epipolar {
     return parallax >= -noise && parallax <= baseline / kNearest + noise;
   }
 
-  // The residual and what leads to it.
+  // The residual and its intermediate results.
   template <typename D, typename T>
   struct Terms {
     template <typename M>
@@ -143,7 +143,7 @@ struct Epipolar {
     }
 
     D x_prev[3], x_cur[3];  // rays
-    T normal[3];            // C x x_prev: of the epipolar plane
+    T normal[3];            // C x x_prev: normal of the epipolar plane
     T turned[3];            // R^T x_cur
     T line_cur[3];          // E x_prev
     T line_prev[3];         // E^T x_cur

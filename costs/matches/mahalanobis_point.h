@@ -14,8 +14,8 @@ namespace rgbd_pose {
 //
 //   r = L^T e,  e = X_cur - R (X_prev - C),  L L^T = (S_cur + R S_prev R^T)^-1
 //
-// with the covariances S of PointCovariance. L is frozen at the motion that was
-// bound: it changes little with it, and a weight that follows the motion would
+// with the covariances S of PointCovariance. L is frozen at the bound motion: L
+// changes little with the motion, and a weight that follows the motion would
 // reward motions that make the noise look large.
 struct MahalanobisPoint {
   static constexpr char kName[] = "mahalanobis_point";
@@ -53,8 +53,8 @@ struct MahalanobisPoint {
     }
   }
 
-  // The same for the compressed sums (point_sums.h): r = W e falls by W q, so
-  // A = -W with the lower triangle W = L^T.
+  // The same for the compressed sums (point_sums.h): r = W e decreases by W dq,
+  // so A = -W with the lower triangle W = L^T.
   static constexpr int kPointTerms = 1;
 
   template <typename D>

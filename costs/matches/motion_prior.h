@@ -9,15 +9,15 @@
 
 namespace rgbd_pose {
 
-// A prior factor: a motion that was predicted (Kerl, Sturm & Cremers 2013,
-// there a motion model for dense odometry): one block of six rows,
+// A prior factor on a predicted motion (in Kerl, Sturm & Cremers 2013 a motion
+// model for dense odometry): one block of six rows,
 //
 //   r = L^T [ 1/2 vee(R R_p^T - R_p R^T) ; C - C_p ]
 //
-// with L L^T = MotionPrior::information. The upper half is axis
-// times sine of the rotation Exp(omega) = R R_p^T, about the current axes. It
-// shrinks again beyond 90 degrees: the prediction has to be nearer than that. A
-// prior without information is not used.
+// with L L^T = MotionPrior::information. The upper half is the axis times the
+// sine of the angle of the rotation Exp(omega) = R R_p^T, about the current
+// axes. It shrinks again beyond 90 degrees, so the prediction has to be nearer.
+// A prior without information is not used.
 struct MotionPriorCost {
   static constexpr char kName[] = "motion_prior";
   static constexpr int kRows = 6;

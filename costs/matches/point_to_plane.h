@@ -15,9 +15,9 @@ namespace rgbd_pose {
 //   sigma^2 = n^T (S_cur + R S_prev R^T) n
 //
 // with the normal n of the current observation, whose length and sign do not
-// matter. sigma is frozen at the motion that was bound. Matches whose normal or
-// depth is not known are not used. One plane leaves three directions of motion
-// open: the matches have to lie on surfaces that face different ways.
+// matter. sigma is frozen at the bound motion. Matches without a normal or a
+// depth are not used. A single plane leaves three directions of motion
+// undetermined: the matches must lie on surfaces with different orientations.
 struct PointToPlane {
   static constexpr char kName[] = "point_to_plane";
   static constexpr int kRows = 1;

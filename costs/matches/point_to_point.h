@@ -10,14 +10,14 @@ namespace rgbd_pose {
 
 // The plain 3D error of a match, as in closed-form alignment (Horn 1987; Arun,
 // Huang & Blostein 1987): e = X_cur - R (X_prev - C), divided by one sigma for
-// all directions. That sigma^2 is the mean of the variances of e along the
-// axes, trace(S_cur + R S_prev R^T) / 3, and does not depend on the motion.
+// all directions. sigma^2 is the mean of the variances of e along the axes,
+// trace(S_cur + R S_prev R^T) / 3, and does not depend on the motion.
 //
-// A depth camera errs many times more along the ray than across it. One sigma
-// for both wastes what the image knows, and the rows are not of unit variance:
-// not whitened, so the covariance comes from their scatter, and their squared
-// norm has longer tails than chi^2 of three degrees: how long depends on the
-// motion that was bound.
+// The errors of a depth camera are many times larger along the ray than across
+// it. One sigma for all directions wastes information of the image, and the
+// rows do not have unit variance. They are not whitened, so the covariance
+// comes from their scatter. Their squared norm has longer tails than chi^2 of
+// three degrees; how long depends on the bound motion.
 struct PointToPoint {
   static constexpr char kName[] = "point_to_point";
   static constexpr int kRows = 3;
@@ -35,9 +35,9 @@ struct PointToPoint {
     return true;
   }
 
-  // The squared norm is a sum of squares of unequal variances. It has mean 3
+  // The squared norm is a sum of squares with unequal variances. It has mean 3
   // and the variance of 3 / h times chi^2 of h degrees, 1 <= h <= 3
-  // (Satterthwaite 1946), whose quantile is that of Wilson & Hilferty 1931.
+  // (Satterthwaite 1946); the quantile is from Wilson & Hilferty 1931.
   static double InlierLimit(const double* columns) {
     constexpr double kNormal99 = 2.3263;
     const double v = 2.0 / (9.0 * columns[7]);

@@ -6,7 +6,7 @@
 
 namespace rgbd_pose {
 
-// What re-projections of N rows share: u and v, and inverse depth.
+// Common part of the reprojections: u, v and, if N = 3, inverse depth.
 template <int N>
 struct ReprojectionOf {
   static constexpr int kRows = N;
@@ -37,27 +37,27 @@ struct ReprojectionOf {
   }
 };
 
-// The previous point in the current image, as a perspective-n-point pose is
-// refined (Lepetit, Moreno-Noguer & Fua 2009):
+// The previous point in the current image, as in the refinement of a
+// perspective-n-point pose (Lepetit, Moreno-Noguer & Fua 2009):
 //
 //   r = L^T (m_cur - project(R (X_prev - C))),  m = (u, v)
 //
-// L L^T is the inverse of the noise of m_cur plus that of the projected point,
-// frozen at the motion that was bound. Needs the depth of the previous frame
-// only and uses no other. Points behind the camera: projection.h.
+// L L^T is the inverse covariance of m_cur plus the projected point, frozen at
+// the bound motion. Needs only the depth of the previous frame and uses no
+// other. Points behind the camera: see projection.h.
 struct Reprojection : ReprojectionOf<2> {
   static constexpr char kName[] = "reprojection";
 };
 
-// The previous point in the current image and its inverse depth there, in the
-// manner of ORB-SLAM2 (Mur-Artal & Tardos 2017), which takes the depth for the
-// column of a virtual right camera, f b / z:
+// The previous point in the current image and its inverse depth there, as in
+// ORB-SLAM2 (Mur-Artal & Tardos 2017), which expresses depth as the column in a
+// virtual right camera, f b / z:
 //
 //   r = L^T (m_cur - project(R (X_prev - C))),  m = (u, v, 1 / z)
 //
-// L L^T is the inverse of the noise of m_cur plus that of the projected point,
-// frozen at the motion that was bound. Needs both depths. Points behind the
-// camera: projection.h.
+// L L^T is the inverse covariance of m_cur plus the projected point, frozen at
+// the bound motion. Needs both depths. Points behind the camera: see
+// projection.h.
 struct ReprojectionDepth : ReprojectionOf<3> {
   static constexpr char kName[] = "reprojection_depth";
 };

@@ -6,14 +6,14 @@
 
 namespace rgbd_pose {
 
-// Of residual types: see the lists of costs.
+// A list of residual types (cost_list.h).
 template <typename... Types>
 struct TypeList {};
 
 // What a residual type over matches packs its columns from.
 struct CostInput {
   const Correspondences& matches;
-  Rigid3d cur_from_prev;  // where weights that depend on the motion are frozen
+  Rigid3d cur_from_prev;               // weights are frozen at this motion
   const MotionPrior* prior = nullptr;  // null: nothing is known
 };
 

@@ -9,12 +9,12 @@
 
 namespace rgbd_pose {
 
-// The 3D error of a match in current axes, e = X_cur - R (X_prev - C), metres,
-// before any whitening.
+// The 3D error of a match in current axes, e = X_cur - R (X_prev - C), in
+// metres, before whitening.
 struct ForwardError {
   static constexpr int kColumns = 6;  // X_prev, X_cur
 
-  // Writes the columns of match i; false if a depth is missing.
+  // Writes the columns of match i; returns false if a depth is missing.
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     const Correspondences& matches = input.matches;
     const Observation& prev = matches[i].prev;
@@ -26,7 +26,7 @@ struct ForwardError {
     return true;
   }
 
-  // Its covariance (m^2) at the bound motion: S_cur + R S_prev R^T.
+  // Covariance of e (m^2) at the bound motion: S_cur + R S_prev R^T.
   static Eigen::Matrix3d Covariance(const CostInput& input, size_t i) {
     const Camera& camera = input.matches.camera();
     const Eigen::Matrix3d R = input.cur_from_prev.rotation.toRotationMatrix();

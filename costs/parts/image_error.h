@@ -12,11 +12,11 @@
 
 namespace rgbd_pose {
 
-// The error of a point of one frame, moved and projected into the other, where
-// it was measured: u and v (N = 2) or u, v and inverse depth (N = 3), whitened.
-// Pixels count in units of the focal length (projection.h); after whitening
-// units do not matter. Direction is Forward or Backward (moved_point.h); D is
-// double or a pack of doubles.
+// The whitened error of a point of one frame, moved and projected into the
+// other frame, against its measurement there: u and v (N = 2) or u, v and
+// inverse depth (N = 3). Pixels are in units of the focal length
+// (projection.h); after whitening, units do not matter. Direction is Forward or
+// Backward (moved_point.h); D is double or a vector of doubles.
 template <int N, typename Direction, typename D>
 struct ImageError {
   static constexpr int kPoint = 3;
@@ -62,8 +62,8 @@ struct ImageError {
   Whitening<N, D> whitening;
 };
 
-// Covariance of the projection of a point of `source` into the target frame, by
-// the noise of that point alone.
+// Covariance of the projection of a point of `source` into the target frame,
+// from the noise of that point alone.
 inline Eigen::Matrix3d ProjectedCovariance(const Camera& camera,
                                            const Observation& source,
                                            const Eigen::Matrix3d& R,
@@ -76,11 +76,11 @@ inline Eigen::Matrix3d ProjectedCovariance(const Camera& camera,
   return P * PointCovariance(camera, source) * P.transpose();
 }
 
-// Writes the columns of an ImageError of a point of `source`, which has depth,
-// measured as `target`. The covariance is that of the measurement plus that of
-// the projected point at `target_from_source`, times `repeats`. Without depth
-// of the target the row of inverse depth weighs nothing. False if the noise
-// allows no whitening.
+// Writes the columns of an ImageError: a point of `source`, which must have
+// depth, against its measurement `target`. The covariance is the sum of the
+// covariances of the measurement and of the projected point at
+// `target_from_source`, times `repeats`. If the target has no depth, the row of
+// inverse depth gets weight 0. Returns false if the noise cannot be whitened.
 template <int N>
 bool PackImageError(const Correspondences& matches,
                     const Rigid3d& target_from_source,

@@ -3,8 +3,8 @@
 #include "core/geometry/motion.h"
 #include "core/util/lane_math.h"
 
-// A point of one frame in the axes of the other, and its derivatives. Every
-// cost on points is a function of these.
+// A point of one frame in the axes of the other frame, and its derivatives. All
+// costs on points are functions of these.
 
 namespace rgbd_pose {
 
@@ -32,8 +32,8 @@ struct Forward {
   }
 };
 
-// A row of a Jacobian: that of a residual with the derivatives `gradient` by
-// its moved point q.
+// One row of a Jacobian, for a residual whose derivatives by the moved point q
+// are `gradient`.
 template <typename D>
 [[gnu::always_inline]] inline void RowOfPoint(const MotionDerivatives& motion,
                                               const D* point,

@@ -6,26 +6,26 @@
 #include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
 
-// A short cut for residuals that depend on the motion through one moved point:
-// r = f(q), A = dr/dq. A small turn omega and a shift c of q give
+// A shortcut for residuals that depend on the motion through one moved point:
+// r = f(q), A = dr/dq. A small rotation omega and a shift c of q give
 //
-//   dq = omega x q + c,   so with N = A^T A and n = A^T r (3 numbers wide)
+//   dq = omega x q + c.
 //
-// the normal equations in (omega, c) are sums of N, N [q]x, [q]x^T N [q]x, n
-// and n x q: 27 sums for any number of rows, instead of 27 for each row. What
-// omega and c are in the six parameters is the same for all matches and is
-// applied once, at the end.
+// With N = A^T A and n = A^T r (3 numbers) the normal equations in (omega, c)
+// are sums of N, N [q]x, [q]x^T N [q]x, n and n x q: 27 sums for any number of
+// rows instead of 27 for each row. The relation of omega and c to the six
+// parameters is the same for all matches and is applied once, at the end.
 
 namespace rgbd_pose {
 
-// Whether a type has what an alias template, Member<Type>, asks of it: what a
-// residual type may leave out.
+// Whether Type has the optional member that the alias template Member<Type>
+// names.
 template <template <typename> typename Member, typename Type, typename = void>
 constexpr bool kHas = false;
 template <template <typename> typename Member, typename Type>
 constexpr bool kHas<Member, Type, std::void_t<Member<Type>>> = true;
 
-// One match's share.
+// The contribution of one match.
 template <typename D>
 struct PointTerm {
   D q[3];    // the moved point
@@ -116,7 +116,7 @@ class PointSums {
   D shift_[3] = {};
 };
 
-// The turns omega of the current axes per change of each angle: column k is
+// The rotations omega of the current axes per change of each angle: column k is
 // the axis of (dR/d angle_k) R^T.
 inline Eigen::Matrix3d EulerRateJacobian(const MotionDerivatives& motion) {
   Eigen::Matrix3d turn;
@@ -127,8 +127,8 @@ inline Eigen::Matrix3d EulerRateJacobian(const MotionDerivatives& motion) {
   return turn;
 }
 
-// Whether a residual type says its terms, kPointTerms of them: that of the
-// forward point R (X_prev - C) and, if 2, that of R^T X_cur + C after it, by
+// Detects a residual type's optional point terms: kPointTerms = 1 for the
+// forward point R (X_prev - C), 2 to add the backward point R^T X_cur + C, and
 //   PointTerms(motion, columns, terms).
 template <typename Residual>
 using PointTermsOf = decltype(Residual::kPointTerms);

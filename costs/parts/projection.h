@@ -4,18 +4,18 @@
 
 namespace rgbd_pose {
 
-// Nearer than any depth camera measures (m).
+// Nearer than any depth camera measures, m.
 constexpr double kNearestDepth = 0.1;
 
-// Where a camera sees a point q: m = (a, b, w) with
+// The projection of a point q into a camera: m = (a, b, w) with
 //
 //   a = q_x w = (u - cx) / fx,  b = q_y w = (v - cy) / fy,  w = 1 / q_z.
 //
-// Closer than z0 = kNearestDepth, and behind the camera, the inverse depth goes
-// on along its tangent, w = (2 z0 - q_z) / z0^2: finite, continuous with its
-// derivative, and growing the further a point lies behind. So no motion gains
-// by moving points there, where q_z -> -q_z would give the same image. T is
-// double, ceres::Jet or a pack of doubles.
+// Nearer than z0 = kNearestDepth and behind the camera, the inverse depth
+// continues along its tangent, w = (2 z0 - q_z) / z0^2. It is finite, has a
+// continuous derivative and grows the farther a point lies behind. So no motion
+// gains by moving points behind the camera, where -q would give the same image.
+// T is double, ceres::Jet or a vector of doubles.
 template <typename T>
 class Projection {
  public:
@@ -32,7 +32,7 @@ class Projection {
 
   const T* m() const { return m_; }
 
-  // dm of a small dq.
+  // dm for a small dq.
   void Derivative(const T* dq, T* dm) const {
     dm[2] = slope_ * dq[2];
     dm[0] = m_[2] * dq[0] + q_[0] * dm[2];

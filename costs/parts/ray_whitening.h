@@ -5,9 +5,9 @@
 
 namespace rgbd_pose {
 
-// The point of an observation and the whitening of a 3D error e at it along
-// the measurement's own axes. With x = a z and y = b z on the ray (a, b, 1), an
-// error of (u, v, z) moves the point by
+// The point of an observation, and the whitening of a 3D error e at that point
+// along the axes of the measurement. With x = a z and y = b z on the ray
+// (a, b, 1), an error of (u, v, z) moves the point by
 //
 //   dx = (z / fx) du + a dz,  dy = (z / fy) dv + b dz,
 //
@@ -16,13 +16,13 @@ namespace rgbd_pose {
 //   r = [ w_u (e_x - a e_z), w_v (e_y - b e_z), w_z e_z ],
 //   w_u = fx / (z sigma_px), w_v = fy / (z sigma_px), w_z = 1 / sigma_depth:
 //
-// r = L^T e with L L^T the inverse of the point's 3 x 3 covariance
-// (Khoshelham & Elberink 2012). D is double or a pack of doubles.
+// r = L^T e with L L^T the inverse of the point's 3 x 3 covariance (Khoshelham
+// & Elberink 2012). D is double or a vector of doubles.
 template <typename D>
 struct RayWhitening {
   static constexpr int kColumns = 6;
 
-  // From six columns: a, b, z, w_u, w_v, w_z.
+  // Takes six columns: a, b, z, w_u, w_v, w_z.
   explicit RayWhitening(const D* columns)
       : a(columns[0]),
         b(columns[1]),
@@ -47,8 +47,8 @@ struct RayWhitening {
     J[2][column] = w_z * e[2];
   }
 
-  // The same for the three columns of -I, from `column` on: written out, since
-  // a compiler must not leave out products with 0.
+  // The same for the three columns of -I, starting at `column`. Written out,
+  // because a compiler must not leave out products with 0.
   void WhitenNegativeIdentity(D (*J)[6], int column) const {
     for (int row = 0; row < 3; ++row) {
       for (int k = 0; k < 3; ++k) J[row][column + k] = D{};
@@ -83,10 +83,10 @@ struct RayWhitening {
   D w_u, w_v, w_z;  // 1 / m
 };
 
-// The six columns of an observation with depth; its sigmas times a factor.
+// The columns of an observation with depth; its sigmas are scaled.
 inline void PackRay(const Camera& camera, const Observation& o,
                     double sigma_factor, double* columns) {
-  // One division for three: this is done for every match of every estimate.
+  // One division instead of three: this runs for every match of every estimate.
   const double sigma = o.depth * o.sigma_px;
   const double inverse = 1.0 / (sigma_factor * sigma * o.sigma_depth);
   const double image = inverse * o.sigma_depth;

@@ -8,13 +8,13 @@
 
 namespace rgbd_pose {
 
-// Covariance (m^2) of the point of an observation with depth, from the noise
-// of u, v and depth to first order (Khoshelham & Elberink 2012). With the ray
+// Covariance (m^2) of the point of an observation with depth, from the noise of
+// u, v and depth to first order (Khoshelham & Elberink 2012). With the ray
 // (a, b, 1):
 //
 //   S = z^2 sigma_px^2 diag(1/fx^2, 1/fy^2, 0) + sigma_depth^2 ray ray^T
 //
-// ray_whitening.h is its inverse square root.
+// ray_whitening.h has its inverse square root.
 inline Eigen::Matrix3d PointCovariance(const Camera& camera,
                                        const Observation& o) {
   const Eigen::Vector3d ray = camera.Ray(o.u, o.v);
@@ -25,10 +25,10 @@ inline Eigen::Matrix3d PointCovariance(const Camera& camera,
   return S;
 }
 
-// r = L^T e with L L^T the inverse of the covariance of e, so that r has unit
-// covariance. With the covariance K K^T (Cholesky) L^T = K^-1, a lower
-// triangle: it is kept row by row, and that of the first n components is its
-// own first part. D is double or a pack of doubles.
+// r = L^T e has unit covariance: L L^T is the inverse of the covariance of e.
+// With the covariance K K^T (Cholesky), L^T = K^-1 is a lower triangle, stored
+// row by row; its first part whitens the first n components alone. D is double
+// or a vector of doubles.
 template <int N, typename D>
 class Whitening {
  public:
@@ -52,7 +52,7 @@ class Whitening {
     for (int row = 0; row < N; ++row) J[row][column] = r[row];
   }
 
-  // The same for a column that is zero from `size` on: of a vector e[size].
+  // The same for a column that is zero from `size` on; e has `size` entries.
   template <int size>
   void WhitenHead(const D* e, D (*J)[6], int column) const {
     const D* w = w_;
@@ -63,7 +63,7 @@ class Whitening {
     }
   }
 
-  // The same for column `k` of I.
+  // The same for column `k` of the identity.
   void WhitenUnit(int k, D (*J)[6], int column) const {
     const D* w = w_;
     for (int row = 0; row < N; w += ++row) {
@@ -75,9 +75,9 @@ class Whitening {
   const D* w_;
 };
 
-// The columns of the whitening by a covariance; false if that is not positive
-// definite. Written out, since some costs do this for every match at every
-// motion they are bound to.
+// Writes the columns of the whitening by a covariance; returns false if it is
+// not positive definite. Written out, because some costs do this for every
+// match at every motion they are bound to.
 template <int N>
 bool PackWhitening(const Eigen::Matrix<double, N, N>& covariance,
                    double* columns) {
@@ -103,9 +103,9 @@ bool PackWhitening(const Eigen::Matrix<double, N, N>& covariance,
                      [](double w) { return std::isfinite(w); });
 }
 
-// The same by an information matrix, which may be singular: rows w of a lower
-// triangle with w^T w = information, from the last one on. False if it is zero
-// or not positive semidefinite.
+// The same for an information matrix, which may be singular: a lower triangle w
+// with w^T w = information, computed from the last row upwards. Returns false
+// if the matrix is zero or not positive semidefinite.
 template <int N>
 bool PackInformation(const Eigen::Matrix<double, N, N>& information,
                      double* columns) {

@@ -11,7 +11,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Where the message of an image topic lies in frames, and how it is encoded.
+// The coordinate frame of an image topic and what its images hold.
 struct ImageTraits {
   std::string frame_id;
   RosImageUse use = RosImageUse::kOther;
@@ -38,7 +38,7 @@ std::optional<Camera> ReadCamera(BagReader* bag, int info_topic,
                       bag->path() + ": " + bag->topics()[info_topic].name);
 }
 
-// The RealSense viewer's /device_0/sensor_0/Depth_0/image/data.
+// A topic of the RealSense viewer like /device_0/sensor_0/Depth_0/image/data.
 struct ViewerTopic {
   std::string stream;  // /device_0/sensor_0/Depth_0
   std::string sensor;  // /device_0/sensor_0
@@ -56,7 +56,7 @@ std::optional<ViewerTopic> ViewerTopicOf(const std::string& name) {
   return topic;
 }
 
-// Metres of a raw unit, as the viewer records an option of the sensor.
+// Raw units per metre, from the inverse that the viewer records as an option.
 std::optional<double> ViewerDepthScale(BagReader* bag, int depth) {
   const auto viewer = ViewerTopicOf(bag->topics()[depth].name);
   if (!viewer.has_value()) return std::nullopt;
@@ -71,11 +71,11 @@ std::optional<double> ViewerDepthScale(BagReader* bag, int depth) {
     return reader.Number<float>();
   });
   if (!(metres > 1e-6 && metres < 1.0)) return std::nullopt;
-  // The float that 0.001 is becomes 1000 again.
+  // Rounding turns the float nearest to 0.001 into exactly 1000.
   return std::round(1e3 / metres) / 1e3;
 }
 
-// stream_from_reference of the viewer's .../tf/REFERENCE, by reference.
+// stream_from_reference of the viewer's topics .../tf/REFERENCE, by reference.
 std::map<std::string, Rigid3d> ViewerTransforms(BagReader* bag, int topic) {
   std::map<std::string, Rigid3d> transforms;
   const auto viewer = ViewerTopicOf(bag->topics()[topic].name);
@@ -99,11 +99,11 @@ std::map<std::string, Rigid3d> ViewerTransforms(BagReader* bag, int topic) {
   return transforms;
 }
 
-// By the transforms at the beginning of the bag.
+// target_from_source by the transforms at the beginning of the bag.
 std::optional<Rigid3d> FixedTransform(BagReader* bag, const BagTopics& topics,
                                       const std::string& target,
                                       const std::string& source) {
-  constexpr int kManyMessages = 500;  // seconds of them
+  constexpr int kManyMessages = 500;  // several seconds
   TransformTree tree;
   for (const int topic : topics.transforms) {
     for (const BagMessage& message : bag->First(topic, kManyMessages)) {
@@ -118,8 +118,8 @@ std::optional<Rigid3d> FixedTransform(BagReader* bag, const BagTopics& topics,
   return tree.Fixed(target, source);
 }
 
-// The camera of the images, which are a part of the full image and have so many
-// of its pixels in one: their centre is the middle of these.
+// Turns the camera of the full image into the camera of the cropped and binned
+// image. The centre of a binned pixel is the middle of the merged pixels.
 void CropAndBin(const RosCameraInfo& info, Camera* camera) {
   const uint32_t bin_x = std::max(info.binning_x, 1u);
   const uint32_t bin_y = std::max(info.binning_y, 1u);
@@ -136,7 +136,7 @@ void CropAndBin(const RosCameraInfo& info, Camera* camera) {
   camera->cy = (camera->cy - info.y_offset + 0.5) / bin_y - 0.5;
 }
 
-// Nothing: depth is registered to colour.
+// color_from_depth; nothing if depth is registered to colour.
 std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
                                       const ImageTraits& color,
                                       const ImageTraits& depth,
@@ -179,7 +179,7 @@ Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
   camera.cy = by_p ? info.p[6] : info.k[5];
   CropAndBin(info, &camera);
   const std::string model(info.distortion_model);
-  // The last is what librealsense calls it.
+  // librealsense uses the last name.
   const bool is_equidistant = model == "equidistant" || model == "fisheye" ||
                               model == "Kannala Brandt4";
   const bool is_distorted =
@@ -191,7 +191,7 @@ Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
     const bool is_known = is_equidistant || model.empty() ||
                           model == "plumb_bob" || model == "Brown Conrady" ||
                           model == "rational_polynomial";
-    // Of a fisheye RealSense has a fifth coefficient, which is 0.
+    // For fisheye lenses RealSense adds a fifth coefficient, which is 0.
     std::vector<double> coefficients(info.d.begin(), info.d.end());
     if (is_equidistant && coefficients.size() == 5 && coefficients[4] == 0.0) {
       coefficients.pop_back();
@@ -232,7 +232,7 @@ std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
           others += (others.empty() ? "" : ", ") + topic.name;
         }
       }
-      if (others.empty()) return std::nullopt;  // nobody says it
+      if (others.empty()) return std::nullopt;  // no CameraInfo
       throw InputError(bag->path() + ": has no CameraInfo next to " +
                        bag->topics()[topics.color].name + ", but " + others +
                        "; name it (topics=COLOUR,DEPTH,CAMERA_INFO), or give a "

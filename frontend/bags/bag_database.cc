@@ -15,7 +15,7 @@ namespace rgbd_pose {
 
 namespace {
 
-// A query that gives rows one after the other.
+// A query whose rows are read one after the other.
 class Rows {
  public:
   Rows(const std::string& path, sqlite3* database, const std::string& query)
@@ -28,7 +28,7 @@ class Rows {
   Rows(const Rows&) = delete;
   Rows& operator=(const Rows&) = delete;
 
-  // Whether there is another row.
+  // Goes to the next row; false if there is none.
   bool Next() {
     const int status = sqlite3_step(statement_);
     if (status == SQLITE_ROW) return true;
@@ -39,7 +39,7 @@ class Rows {
     return sqlite3_column_int64(statement_, column);
   }
   std::string Bytes(int column) {
-    // In this order, as sqlite3 asks for.
+    // sqlite3 requires this order of the two calls.
     const void* bytes = sqlite3_column_blob(statement_, column);
     const int size = sqlite3_column_bytes(statement_, column);
     if (bytes == nullptr) {
@@ -69,9 +69,9 @@ class Rows {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-// Opened so that nothing is written next to it, which sqlite3 otherwise does,
-// and cannot where that is forbidden. Not where a recorder left messages in the
-// log next to it: only sqlite3 can put them into their places.
+// The URI by which a database is opened. It is marked immutable: otherwise
+// sqlite3 writes files next to it, which fails in a read-only folder. A log
+// that a recorder left next to it is an exception: only sqlite3 can merge it.
 std::string UriOf(const std::string& path) {
   std::string uri = path.front() == '/' ? "file://" : "file:";
   for (const char c : path) {
@@ -105,7 +105,7 @@ class BagDatabase final : public BagReader {
           path + ": cannot be opened: " + sqlite3_errmsg(database_.get()));
     }
     ReadTopics();
-    // Without it rows would be sorted with all their bytes.
+    // Sorting by time without an index would sort whole rows with their data.
     Rows index(path_, database_.get(), "PRAGMA index_list(messages)");
     order_ = index.Next() ? " ORDER BY timestamp, id" : " ORDER BY id";
   }
@@ -142,7 +142,7 @@ class BagDatabase final : public BagReader {
               "ORDER BY id");
     while (rows.Next()) {
       const std::string format = rows.Bytes(3);
-      if (format != "cdr") continue;  // nobody knows what it holds
+      if (format != "cdr") continue;  // unknown format
       places_[rows.Number(0)] = static_cast<int>(topics_.size());
       ids_.push_back(rows.Number(0));
       topics_.push_back({rows.Bytes(1), Ros1Type(rows.Bytes(2))});
@@ -154,7 +154,7 @@ class BagDatabase final : public BagReader {
     for (const int topic : topics) {
       ids += (ids.empty() ? "" : ",") + std::to_string(ids_[topic]);
     }
-    // The plus keeps sqlite3 from anything but going along the time.
+    // The plus makes sqlite3 go through the messages by time, not by topic.
     return std::make_unique<Rows>(
         path_, database_.get(),
         "SELECT topic_id, timestamp, data FROM messages WHERE +topic_id IN (" +
@@ -178,8 +178,8 @@ class BagDatabase final : public BagReader {
   }
 
   std::unique_ptr<sqlite3, Close> database_;
-  std::vector<int64_t> ids_;       // of the topics, in the database
-  std::map<int64_t, int> places_;  // of topics by their ids
+  std::vector<int64_t> ids_;       // of topics_ in the database
+  std::map<int64_t, int> places_;  // indices into topics_ by id
   std::string order_;
   std::unique_ptr<Rows> selected_;
 };

@@ -29,7 +29,7 @@ bool IsPartOfBag(const fs::path& path, BagKind kind) {
                  : ending == kSqlite || ending == kMcap;
 }
 
-// NAME_2.db3 comes before NAME_10.db3.
+// Natural order of file names: NAME_2.db3 comes before NAME_10.db3.
 bool ComesBefore(const fs::path& a, const fs::path& b) {
   const std::string first = a.string();
   const std::string second = b.string();
@@ -37,8 +37,8 @@ bool ComesBefore(const fs::path& a, const fs::path& b) {
                                        : first < second;
 }
 
-// A file that its recorder has packed as a whole, unpacked in a folder of its
-// own for as long as this lives.
+// A decompressed copy of a file that its recorder compressed as a whole. The
+// copy is in a temporary folder and is removed with this object.
 class UnpackedFile {
  public:
   explicit UnpackedFile(const fs::path& packed) {
@@ -61,7 +61,7 @@ class UnpackedFile {
   UnpackedFile(const UnpackedFile&) = delete;
   UnpackedFile& operator=(const UnpackedFile&) = delete;
 
-  // Of what was in `packed`.
+  // Path of the decompressed copy of `packed`.
   fs::path path(const fs::path& packed) const {
     return folder_ / packed.stem();
   }
@@ -75,8 +75,8 @@ class UnpackedFile {
   fs::path folder_;
 };
 
-// Whether files are the parts of one recording: NAME_0.bag, NAME_1.bag, ...,
-// where NAME may have another date in each.
+// Whether files are the parts of one recording: NAME_0.bag, NAME_1.bag, ...
+// NAME may differ between the parts, as it may contain a date.
 bool AreNumbered(const std::vector<fs::path>& files) {
   std::set<std::string> numbers;
   for (const fs::path& file : files) {
@@ -91,7 +91,7 @@ bool AreNumbered(const std::vector<fs::path>& files) {
   return true;
 }
 
-// The files of a bag in their order.
+// The files of a bag in order. None if .bag files are not of one recording.
 std::vector<fs::path> FilesOf(const std::string& path, BagKind kind) {
   std::error_code error;
   if (!fs::is_directory(path, error)) return {path};
@@ -117,7 +117,7 @@ std::unique_ptr<BagReader> OpenFile(const fs::path& file, BagKind kind) {
   return OpenRos1Bag(file.string());
 }
 
-// The files of a recording, one after the other.
+// Reads the files of a recording one after the other.
 class BagFiles final : public BagReader {
  public:
   BagFiles(const std::string& path, const std::vector<fs::path>& files,
@@ -181,7 +181,7 @@ class BagFiles final : public BagReader {
     return static_cast<int>(topics_.size() - 1);
   }
 
-  // That those of a file are the ones of the files before.
+  // Checks that the cameras of a file are the same as in the files before.
   void CheckCameras(BagReader* file, const std::vector<int>& places) {
     for (size_t i = 0; i < places.size(); ++i) {
       if (file->topics()[i].type != "sensor_msgs/CameraInfo") continue;
@@ -201,7 +201,7 @@ class BagFiles final : public BagReader {
     }
   }
 
-  // Of the topics, among those of a file.
+  // The indices of `topics` within the topics of one file.
   std::vector<int> InnerPlaces(size_t file,
                                const std::vector<int>& topics) const {
     std::vector<int> inner;
@@ -216,9 +216,9 @@ class BagFiles final : public BagReader {
 
   std::vector<std::unique_ptr<UnpackedFile>> unpacked_;
   std::vector<std::unique_ptr<BagReader>> files_;
-  std::vector<std::vector<int>> places_;  // of each one's topics in topics_
-  std::map<int, std::vector<double>> cameras_;  // of CameraInfo among them
-  size_t at_ = 0;                               // the file that is read
+  std::vector<std::vector<int>> places_;  // per file: indices into topics_
+  std::map<int, std::vector<double>> cameras_;  // by CameraInfo topic
+  size_t at_ = 0;                               // index of the current file
 };
 
 }  // namespace

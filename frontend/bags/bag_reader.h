@@ -13,11 +13,11 @@ namespace rgbd_pose {
 
 // A topic of a bag.
 struct BagTopic {
-  std::string name;  // with its slash
-  std::string type;  // as in ROS 1: sensor_msgs/Image
+  std::string name;  // with the leading slash
+  std::string type;  // in the form of ROS 1: sensor_msgs/Image
 };
 
-// The name of a type in ROS 1: of sensor_msgs/msg/Image, sensor_msgs/Image.
+// The ROS 1 name of a type: sensor_msgs/Image for sensor_msgs/msg/Image.
 inline std::string Ros1Type(std::string type) {
   constexpr std::string_view kPart = "/msg/";
   const size_t place = type.find(kPart);
@@ -25,29 +25,28 @@ inline std::string Ros1Type(std::string type) {
   return type;
 }
 
-// A message as it is in the bag.
+// A message as stored in the bag, not yet parsed.
 struct BagMessage {
-  int topic = 0;                             // its place among the topics
-  double received = 0.0;                     // by the recorder, s
+  int topic = 0;                             // index into the topics
+  double received = 0.0;                     // time of the recorder, s
   std::shared_ptr<const std::string> bytes;  // never null
 };
 
-// A file of messages, of whatever kind. One thread at a time. All calls throw
-// InputError where the file is damaged.
+// Reads the messages of a bag of any kind. Not thread-safe. All calls throw
+// InputError if the file is damaged.
 class BagReader {
  public:
   virtual ~BagReader() = default;
 
-  // What to call it in messages.
+  // For error messages.
   const std::string& path() const { return path_; }
 
-  // Of its messages.
   WireFormat format() const { return format_; }
 
-  // Those it has, each once.
+  // All topics of the bag, each once.
   const std::vector<BagTopic>& topics() const { return topics_; }
 
-  // The place of the topic of that name among them; -1: there is none.
+  // Index of the topic of this name in topics(), or -1.
   int FindTopic(const std::string& name) const {
     for (size_t i = 0; i < topics_.size(); ++i) {
       if (topics_[i].name == name) return static_cast<int>(i);
@@ -55,14 +54,13 @@ class BagReader {
     return -1;
   }
 
-  // The first messages of a topic, at most so many; does not disturb Next.
+  // The first messages of a topic, at most `count`. Does not affect Next.
   virtual std::vector<BagMessage> First(int topic, int count) = 0;
 
-  // From now on Next gives messages of these topics, from the first one.
+  // Makes Next return the messages of these topics, starting at the first one.
   virtual void Select(const std::vector<int>& topics) = 0;
 
-  // The next message in the order in which they were received; nothing after
-  // the last one.
+  // The next message in the order of reception; nothing after the last one.
   virtual std::optional<BagMessage> Next() = 0;
 
  protected:
@@ -71,11 +69,11 @@ class BagReader {
 
   const std::string path_;
   WireFormat format_;
-  std::vector<BagTopic> topics_;  // for the reader to fill in
+  std::vector<BagTopic> topics_;  // filled in by the derived class
 };
 
-// Has a message read by `read`, which takes a WireReader. What that throws
-// says which message it is of.
+// Parses a message by `read`, which takes a WireReader. Adds the names of the
+// bag and the topic to an InputError.
 template <typename Read>
 auto ReadMessage(const BagReader& bag, const BagMessage& message, Read read) {
   try {
@@ -86,23 +84,23 @@ auto ReadMessage(const BagReader& bag, const BagMessage& message, Read read) {
   }
 }
 
-// By the recorder: .bag files; or .db3 (sqlite3) and .mcap files, of which an
-// .mcap may be of ROS 1.
+// kRos1: .bag files. kRos2: .db3 (sqlite3) and .mcap files; an .mcap file may
+// also hold messages of ROS 1.
 enum class BagKind { kRos1, kRos2 };
 
-// Whether a path is a bag of this kind, one that can be read or not: a file, or
-// a folder of the files of one recording.
+// Whether a path is a bag of this kind, judged by file names: a file, or a
+// folder with the files of one recording. The bag need not be readable.
 bool IsBag(const std::string& path, BagKind kind);
 
-// Opens it. Throws InputError for what is no bag, for files that are not closed
-// or packed as a whole by something else than zstd, for files of several
-// recordings or cameras, and for .db3 in a build without sqlite3.
+// Opens a bag. Throws InputError if the path is not a bag, if a file was not
+// closed or is compressed as a whole by anything but zstd, if the files are of
+// several recordings or cameras, and for .db3 in a build without sqlite3.
 std::unique_ptr<BagReader> OpenBag(const std::string& path, BagKind kind);
 
-// Open one file of a kind. Throw InputError if it is not one. A bag of ROS 1
-// (also what the RealSense viewer records) must have been closed; each of its
-// chunks is unpacked once, also where their times overlap. Of an mcap file only
-// messages of ROS 2 (cdr) or ROS 1 are read.
+// Open one file of a given kind. Throw InputError if it is not of this kind. A
+// ROS 1 bag (the RealSense viewer records them as well) must have been closed;
+// each of its chunks is decompressed once, even if the times of chunks overlap.
+// In an mcap file only messages of ROS 2 (cdr) or ROS 1 are read.
 std::unique_ptr<BagReader> OpenRos1Bag(const std::string& path);
 std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path);
 std::unique_ptr<BagReader> OpenMcapFile(const std::string& path);

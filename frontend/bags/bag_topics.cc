@@ -28,7 +28,7 @@ std::string Parent(const std::string& topic) {
   return topic.substr(0, topic.rfind('/'));
 }
 
-// The topics as a message says them.
+// The list of topics for an error message.
 std::string ListOf(const std::vector<BagTopic>& topics) {
   constexpr size_t kMaxNames = 12;
   std::vector<std::string> names;
@@ -46,7 +46,7 @@ std::string ListOf(const std::vector<BagTopic>& topics) {
   return Join(names) + (is_long ? ", ..." : "");
 }
 
-// How well a topic will do as colour or depth; 0: not at all.
+// How suitable a topic is as colour or depth; 0: unsuitable.
 struct Fitness {
   int color = 0;
   int depth = 0;
@@ -65,7 +65,7 @@ Fitness FitnessOf(BagReader* bag, int index) {
   if (use == RosImageUse::kGrayOrDepth && is_called_depth) {
     use = RosImageUse::kDepth;
   }
-  // A PNG file of depth says nothing of it.
+  // The format of a compressed PNG image does not say that it is depth.
   if (use == RosImageUse::kColor && !is_raw && is_called_depth) {
     use = RosImageUse::kDepth;
   }
@@ -133,12 +133,12 @@ int Best(const BagReader& bag, const std::vector<Fitness>& fitness,
   return best;
 }
 
-// The CameraInfo that belongs to an image topic: next to it, or as the
-// RealSense viewer has it.
+// The CameraInfo topic of an image topic: next to it, or where the RealSense
+// viewer records it. -1 if there is none.
 int InfoOf(const BagReader& bag, int image) {
   const std::vector<BagTopic>& topics = bag.topics();
   std::string name = topics[image].name;
-  // A compressed topic is one below that of the raw images.
+  // A compressed topic is one level below the topic of the raw images.
   if (topics[image].type == kCompressedImage) {
     const int info = bag.FindTopic(Parent(name) + "/camera_info");
     if (info >= 0) return info;

@@ -11,45 +11,44 @@
 
 namespace rgbd_pose {
 
-// What of a bag makes an RGB-D recording: places among BagReader::topics.
+// The topics of an RGB-D recording in a bag: indices into BagReader::topics.
 struct BagTopics {
   int color = -1;
   int depth = -1;
-  int color_info = -1;  // CameraInfo; -1: there is none
+  int color_info = -1;  // CameraInfo; -1: none
   int depth_info = -1;
-  std::vector<int> transforms;  // of /tf and /tf_static
-  bool had_choice = false;      // other topics would have done, too
+  std::vector<int> transforms;  // /tf and /tf_static
+  bool had_choice = false;      // whether other topics were suitable as well
 };
 
-// Those that `names` says (colour, depth and, if it is not the one beside
-// colour, CameraInfo), or else those that types, encodings and names tell:
-// depth that is registered to colour before such that is not, raw images before
-// compressed ones. Throws InputError with the topics there are if there is none
-// or several will do.
+// Chooses the topics given by `names` (colour, depth and, unless it is next to
+// colour, CameraInfo). If `names` is empty, chooses by types, encodings and
+// topic names; depth that is registered to colour is preferred, and raw images
+// are preferred to compressed ones. Throws InputError, which lists the topics,
+// if no topic is suitable or several are equally suitable.
 BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names);
 
-// Whether a topic's name has that part.
+// Whether the name of a topic contains `part`.
 inline bool Contains(const std::string& name, const char* part) {
   return name.find(part) != std::string::npos;
 }
 
-// A message of an image topic, compressed or not.
+// Parses a message of an image topic, compressed or not.
 RosImage ReadImageOf(const BagReader& bag, const BagMessage& message);
 
-// Whether by its name a topic of depth is registered to colour.
+// Whether the name of a depth topic says that it is registered to colour.
 bool IsCalledRegistered(const std::string& topic);
 
-// The camera of the images of a CameraInfo: of the raw image or the rectified
-// one. Throws InputError, which begins with `name`, for one that Camera does
-// not have.
+// The camera that a CameraInfo describes, for the raw or the rectified images.
+// Throws InputError, which begins with `name`, if Camera cannot represent it.
 Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
                     const std::string& name);
 
-// What a bag says of its camera: that of colour, how depth counts, and that of
-// depth if it is another one, whose place is then said by transforms that do
-// not change. Throws InputError for what makes no sense or is said by nobody;
-// not where `has_camera`: then nothing is taken but the depth scale and, if it
-// is there, the depth camera.
+// The camera that a bag describes: the colour camera, the depth scale and, if
+// depth is of another camera, that one with its pose from fixed transforms.
+// Nothing if the bag has no CameraInfo. Throws InputError if the description is
+// invalid or incomplete. With `has_camera` only the depth scale and, if
+// described, the depth camera are read; missing parts are then no error.
 std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
                                        bool has_camera);
 

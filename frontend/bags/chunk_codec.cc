@@ -15,7 +15,8 @@
 namespace rgbd_pose {
 namespace {
 
-// No recorder makes chunks of more, and a damaged number is most likely larger.
+// Maximum size of a chunk, bytes. No recorder makes larger chunks, and a
+// damaged size is most likely larger.
 constexpr uint64_t kMaxSize = uint64_t{1} << 28;
 
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
@@ -48,7 +49,7 @@ bool UnpackLz4(std::string_view packed, std::string* unpacked) {
 
 bool UnpackBz2(std::string_view packed, std::string* unpacked) {
   auto size = static_cast<unsigned>(unpacked->size());
-  // It changes nothing of what is packed.
+  // The library does not change its input despite the non-const pointer.
   return BZ2_bzBuffToBuffDecompress(
              unpacked->data(), &size, const_cast<char*>(packed.data()),
              static_cast<unsigned>(packed.size()), 0, 0) == BZ_OK &&
@@ -57,7 +58,6 @@ bool UnpackBz2(std::string_view packed, std::string* unpacked) {
 
 #else
 
-// In a build without the libraries.
 [[noreturn]] void FailWithout(std::string_view codec) {
   throw InputError("is packed by " + std::string(codec) +
                    ", which this build does not read; install libzstd-dev, "
@@ -99,7 +99,7 @@ bool IsZstd(std::string_view bytes) {
 
 std::string UnpackZstdMessage(std::string_view packed) {
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
-  // Unknown sizes and errors are more than any chunk has.
+  // The codes for an unknown size and for errors are larger than any chunk.
   const uint64_t size = ZSTD_getFrameContentSize(packed.data(), packed.size());
 #else
   const uint64_t size = 0;
@@ -114,7 +114,7 @@ void UnpackZstdFile(const std::string& packed, const std::string& unpacked) {
   const ZstdStream stream(ZSTD_createDStream(), ZSTD_freeDStream);
   std::vector<char> read(ZSTD_DStreamInSize());
   std::vector<char> written(ZSTD_DStreamOutSize());
-  size_t left = 1;  // of a frame: 0 at its end
+  size_t left = 1;  // 0 at the end of a frame
   while (from.read(read.data(), static_cast<std::streamsize>(read.size())),
          from.gcount() > 0) {
     ZSTD_inBuffer in = {read.data(), static_cast<size_t>(from.gcount()), 0};

@@ -6,22 +6,22 @@
 
 namespace rgbd_pose {
 
-// Unpacks what a recorder has packed: by "zstd", "lz4" (as a frame) or "bz2",
-// or not at all (""). `size`: of what comes out. Throws InputError where that
-// is something else, where the bytes are damaged, for other codecs, and in a
-// build without these libraries.
+// Decompresses data compressed by "zstd", "lz4" (frame format) or "bz2"; ""
+// means uncompressed. `size` is the size of the result in bytes. Throws
+// InputError if the result has another size, if the bytes are damaged, for
+// other codecs, and in a build without these libraries.
 std::string Unpack(std::string_view packed, std::string_view codec,
                    uint64_t size);
 
-// Whether bytes are those of zstd, as a whole file or message is packed: a
-// message of ROS, a database or an mcap file begins otherwise.
+// Whether bytes are zstd data, as of a file or message compressed as a whole.
+// Uncompressed ROS messages, databases and mcap files begin differently.
 bool IsZstd(std::string_view bytes);
 
-// A message that is packed by zstd as a whole; as Unpack.
+// Decompresses a message compressed by zstd as a whole. Throws as Unpack does.
 std::string UnpackZstdMessage(std::string_view packed);
 
-// Writes what a file packed by zstd holds into another, piece by piece. Throws
-// InputError as Unpack does, and where it cannot be written.
+// Decompresses a zstd file into another file, piece by piece. Throws InputError
+// as Unpack does, and if the output cannot be written.
 void UnpackZstdFile(const std::string& packed, const std::string& unpacked);
 
 }  // namespace rgbd_pose

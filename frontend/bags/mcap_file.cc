@@ -1,4 +1,4 @@
-// Reads mcap files (mcap.dev/spec), as far as messages take them.
+// Reads mcap files (mcap.dev/spec), only the records needed for messages.
 
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
 #include <libdeflate.h>
@@ -18,7 +18,7 @@ namespace rgbd_pose {
 namespace {
 
 constexpr std::string_view kMagic = "\x89MCAP0\r\n";
-constexpr uint64_t kRecordHead = 9;  // bytes: opcode and length
+constexpr uint64_t kRecordHead = 9;  // opcode and length, bytes
 constexpr uint64_t kFooterSize = 20;
 
 enum Opcode : uint8_t {
@@ -30,7 +30,8 @@ enum Opcode : uint8_t {
   kDataEnd = 0x0f,
 };
 
-// CRC-32; 0: the recorder made none. Without libdeflate all pass.
+// Whether the CRC-32 of `bytes` is `checksum`. Always true for 0, which means
+// that the recorder wrote none, and in a build without libdeflate.
 bool IsChecksumOf([[maybe_unused]] std::string_view bytes,
                   [[maybe_unused]] uint32_t checksum) {
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
@@ -41,25 +42,24 @@ bool IsChecksumOf([[maybe_unused]] std::string_view bytes,
 #endif
 }
 
-// Where the messages of a channel belong.
 struct McapChannel {
   std::string topic;
-  std::string encoding;  // of its messages: cdr, ros1, ...
-  std::string type;      // of them, as in its schema
+  std::string encoding;  // of the messages: cdr, ros1, ...
+  std::string type;      // name of the schema
 };
 
-// Channels by their number.
+// Channels by id.
 using McapChannels = std::map<uint16_t, McapChannel>;
 
 struct McapMessage {
   uint16_t channel = 0;
   uint64_t log_time = 0;   // ns
-  std::string_view bytes;  // of the reader's chunk: good until its next call
+  std::string_view bytes;  // valid until the next call of the reader
 };
 
-// Reads the messages of a file from its beginning: chunk by chunk, in each by
-// time. Needs neither index nor summary. Calls throw InputError where the file
-// is damaged or cut off, once what came before has been given.
+// Reads the messages of a file from its beginning, chunk by chunk, within a
+// chunk in order of time. Needs neither index nor summary. In a damaged or cut
+// off file, InputError is thrown after the messages before the damage.
 class McapRecords {
  public:
   explicit McapRecords(const std::string& path)
@@ -75,7 +75,7 @@ class McapRecords {
     }
   }
 
-  // Those of the summary at the file's end; nothing: there is none.
+  // The channels of the summary at the end of the file; nothing without one.
   std::optional<McapChannels> ReadSummary() {
     const uint64_t tail = kRecordHead + kFooterSize + kMagic.size();
     if (size_ < kMagic.size() + tail) return std::nullopt;
@@ -135,10 +135,10 @@ class McapRecords {
     return messages_[next_++];
   }
 
-  // Whether the file ends before its end mark, as Next has said.
+  // Whether Next found that the file ends without its end record.
   bool is_cut_off() const { return is_cut_off_; }
 
-  // Those met so far.
+  // The channels read so far.
   const McapChannels& channels() const { return channels_; }
 
  private:
@@ -152,7 +152,7 @@ class McapRecords {
     throw InputError(path_ + ": " + what);
   }
 
-  // The next record of the file; nothing: it ends in the middle of one.
+  // The next record of the file; nothing if the file ends within the record.
   std::optional<Record> ReadRecord() {
     const auto at = static_cast<uint64_t>(file_.tellg());
     char head[kRecordHead];
@@ -170,7 +170,7 @@ class McapRecords {
     return record;
   }
 
-  // Takes schemas and channels in, and messages into messages_.
+  // Parses a schema, channel or message record and stores the result.
   void Take(uint8_t opcode, std::string_view content) {
     WireReader fields(content, WireFormat::kRos1);
     if (opcode == kSchema) {
@@ -186,9 +186,9 @@ class McapRecords {
     } else if (opcode == kMessage) {
       McapMessage message;
       message.channel = fields.Number<uint16_t>();
-      fields.Number<uint32_t>();  // its place in the channel
+      fields.Number<uint32_t>();  // sequence number
       message.log_time = fields.Number<uint64_t>();
-      fields.Number<uint64_t>();  // when it was published
+      fields.Number<uint64_t>();  // publish time
       message.bytes = fields.rest();
       if (channels_.count(message.channel) == 0) {
         throw Damaged("a message is of no channel");
@@ -199,7 +199,7 @@ class McapRecords {
 
   void TakeChunk(std::string_view content) {
     WireReader chunk(content, WireFormat::kRos1);
-    chunk.Take(2 * sizeof(uint64_t));  // times of its first and last message
+    chunk.Take(2 * sizeof(uint64_t));  // times of the first and last message
     const auto size = chunk.Number<uint64_t>();
     const auto checksum = chunk.Number<uint32_t>();
     const std::string_view codec = chunk.Text();
@@ -224,10 +224,10 @@ class McapRecords {
   uint64_t size_ = 0;
   bool has_ended_ = false;
   bool is_cut_off_ = false;
-  std::map<uint16_t, std::string> schemas_;  // their types
+  std::map<uint16_t, std::string> schemas_;  // type names by schema id
   McapChannels channels_;
-  std::string chunk_;                  // what messages_ lie in
-  std::vector<McapMessage> messages_;  // of it, by time
+  std::string chunk_;                  // the memory that messages_ point into
+  std::vector<McapMessage> messages_;  // of chunk_, in order of time
   size_t next_ = 0;
 };
 
@@ -248,7 +248,7 @@ class McapFile final : public BagReader {
         encodings += (encodings.empty() ? "" : ", ") + channel.encoding;
         continue;
       }
-      // A topic has a channel for each that published it.
+      // A topic has one channel per publisher.
       const auto [place, is_new] =
           places.emplace(channel.topic, static_cast<int>(topics_.size()));
       if (is_new) topics_.push_back({channel.topic, Ros1Type(channel.type)});
@@ -268,7 +268,7 @@ class McapFile final : public BagReader {
       try {
         message = NextOf(&records, {topic});
       } catch (const InputError&) {
-        // Where there are some Next will say so as it comes to it.
+        // Unless rethrown here, Next reports the error when it reaches it.
         if (first.empty() && !records.is_cut_off()) throw;
         break;
       }
@@ -289,7 +289,7 @@ class McapFile final : public BagReader {
   }
 
  private:
-  // Of the summary; where there is none the whole file is read once.
+  // The channels of the summary. Without one the whole file is read once.
   static McapChannels FindChannels(const std::string& path) {
     McapRecords records(path);
     if (auto summary = records.ReadSummary()) return *std::move(summary);
@@ -314,9 +314,9 @@ class McapFile final : public BagReader {
   }
 
   McapChannels channels_;
-  std::map<uint16_t, int> places_;  // of channels, among the topics
+  std::map<uint16_t, int> places_;  // indices into topics_ by channel id
   std::set<int> selected_;
-  std::unique_ptr<McapRecords> records_;  // of Next
+  std::unique_ptr<McapRecords> records_;  // used by Next
 };
 
 }  // namespace

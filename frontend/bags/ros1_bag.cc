@@ -8,8 +8,8 @@
 #include "frontend/bags/bag_reader.h"
 #include "frontend/bags/chunk_codec.h"
 
-// http://wiki.ros.org/Bags/Format/2.0: records of a header, which has fields
-// NAME=VALUE, and data, each after its length.
+// http://wiki.ros.org/Bags/Format/2.0: a record has a header, which consists of
+// fields NAME=VALUE, and data. Each of them follows its length.
 
 namespace rgbd_pose {
 namespace {
@@ -26,7 +26,7 @@ WireReader Reading(std::string_view bytes) {
   return {bytes, WireFormat::kRos1};
 }
 
-// Of a header; empty where it has none of this name.
+// The value of a header field; empty if the header has no such field.
 std::string_view Field(std::string_view header, std::string_view name) {
   WireReader fields = Reading(header);
   while (!fields.rest().empty()) {
@@ -44,7 +44,7 @@ T NumberField(std::string_view header, std::string_view name) {
   return Reading(Field(header, name)).Number<T>();
 }
 
-// In nanoseconds.
+// The value of a time field, ns.
 uint64_t TimeField(std::string_view header, std::string_view name) {
   WireReader time = Reading(Field(header, name));
   const uint64_t seconds = time.Number<uint32_t>();
@@ -104,19 +104,19 @@ class Ros1Bag final : public BagReader {
 
  private:
   struct Chunk {
-    uint64_t place = 0;  // in the file
-    uint64_t start = 0;  // time of its first message, ns
+    uint64_t place = 0;  // offset in the file, bytes
+    uint64_t start = 0;  // time of the first message, ns
     std::vector<uint32_t> connections;
   };
 
-  // Where one is among the messages of some topics.
+  // The state of reading the messages of some topics.
   struct Reader {
     std::set<int> topics;
-    size_t chunk = 0;                             // that comes next
-    std::multimap<uint64_t, BagMessage> waiting;  // of those before, by time
+    size_t chunk = 0;                             // the next chunk to read
+    std::multimap<uint64_t, BagMessage> waiting;  // of chunks read, by time
   };
 
-  // Has bytes of the file read: they are damaged where that fails.
+  // Runs `call`, which parses parts of the file, and adds advice to its errors.
   template <typename Call>
   void Guarded(Call call) const {
     try {
@@ -127,7 +127,7 @@ class Ros1Bag final : public BagReader {
     }
   }
 
-  // A header or data, at the file's place.
+  // Reads a header or data at the current position of the file.
   std::string ReadBlock() {
     char head[sizeof(uint32_t)];
     file_.read(head, sizeof(head));
@@ -142,14 +142,14 @@ class Ros1Bag final : public BagReader {
   }
 
   void ReadIndex(uint64_t index) {
-    std::map<std::string, size_t, std::less<>> places;  // of topics by name
+    std::map<std::string, size_t, std::less<>> places;  // by topic
     file_.seekg(static_cast<std::streamoff>(std::min(index, size_)));
     while (static_cast<uint64_t>(file_.tellg()) < size_) {
       const std::string header = ReadBlock();
       const std::string data = ReadBlock();
       const auto op = NumberField<uint8_t>(header, "op");
       if (op == kConnection) {
-        // A topic has a connection for each that published it.
+        // A topic has one connection per publisher.
         const auto [place, is_new] =
             places.emplace(Field(header, "topic"), topics_.size());
         if (is_new) {
@@ -182,8 +182,8 @@ class Ros1Bag final : public BagReader {
     return topic != topics_of_.end() && reader.topics.count(topic->second) > 0;
   }
 
-  // Opens a chunk as the time of its first message comes, and then has all of
-  // its messages waiting.
+  // The next message of the reader. A chunk is loaded when the time of its
+  // first message is reached; its messages are then kept in `waiting`.
   std::optional<BagMessage> NextOf(Reader* reader) {
     auto& waiting = reader->waiting;
     while (reader->chunk < chunks_.size() &&
@@ -220,7 +220,7 @@ class Ros1Bag final : public BagReader {
     loaded_ = &chunk;
   }
 
-  // Of the chunk that is loaded.
+  // Puts the messages of the loaded chunk into `waiting`.
   void TakeMessages(Reader* reader) const {
     WireReader records = Reading(records_);
     while (!records.rest().empty()) {
@@ -238,10 +238,10 @@ class Ros1Bag final : public BagReader {
 
   std::ifstream file_;
   uint64_t size_ = 0;
-  std::map<uint32_t, int> topics_of_;  // connections
-  std::vector<Chunk> chunks_;          // by time
+  std::map<uint32_t, int> topics_of_;  // by connection
+  std::vector<Chunk> chunks_;          // in order of time
   const Chunk* loaded_ = nullptr;
-  std::string records_;  // of it
+  std::string records_;  // of the loaded chunk
   Reader selected_;
 };
 

@@ -17,8 +17,8 @@ namespace {
 struct Encoding {
   const char* name;
   RosImageUse use;
-  int type;     // as OpenCV calls it
-  int to_gray;  // codes of cv::cvtColor; -1: is that
+  int type;     // of OpenCV
+  int to_gray;  // code for cv::cvtColor; -1: no conversion
   int to_color;
 };
 
@@ -44,8 +44,8 @@ const Encoding* FindEncoding(std::string_view name) {
 
 bool IsCompressed(const RosImage& image) { return image.width == 0; }
 
-// compressedDepth: "16UC1; compressedDepth png". Others: "jpeg" or "rgb8; jpeg
-// compressed bgr8".
+// An example of compressed depth is "16UC1; compressedDepth png". Other images
+// have formats such as "jpeg" or "rgb8; jpeg compressed bgr8".
 bool IsCompressedDepth(std::string_view format) {
   return format.find("compressedDepth") != std::string_view::npos;
 }
@@ -58,15 +58,15 @@ InputError Unreadable(const std::string& name, std::string_view encoding,
                     " and, compressed, jpeg and png");
 }
 
-// Turns the bytes of each number of `size` bytes round.
+// Reverses the byte order of each number of `size` bytes.
 void SwapBytes(uint8_t* row, size_t row_bytes, size_t size) {
   for (uint8_t* number = row; number < row + row_bytes; number += size) {
     std::reverse(number, number + size);
   }
 }
 
-// The rows as they are; those of bytes are shared with the message, as numbers
-// they need not lie where a processor likes them.
+// The pixels without conversion. Rows of bytes share the memory of the message;
+// wider numbers are copied, as they may not be aligned in the message.
 cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
                   const std::string& name) {
   const size_t row_bytes = size_t{image.width} * CV_ELEM_SIZE(encoding.type);
@@ -83,7 +83,7 @@ cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
   }
   const auto width = static_cast<int>(image.width);
   const auto height = static_cast<int>(image.height);
-  if (CV_ELEM_SIZE1(encoding.type) == 1) {  // they are only read from
+  if (CV_ELEM_SIZE1(encoding.type) == 1) {  // callers only read the pixels
     return cv::Mat(height, width, encoding.type,
                    const_cast<char*>(image.data.data()), image.step);
   }
@@ -98,8 +98,8 @@ cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
   return rows;
 }
 
-// The file of a compressed image. Others than those that ROS packs with are
-// left to nobody's parser.
+// The image file in a compressed message. Only JPEG and PNG, which ROS uses,
+// are accepted; untrusted bytes of other formats are passed to no parser.
 std::string FileIn(std::string_view bytes, const std::string& name) {
   constexpr std::string_view kJpeg = "\xFF\xD8\xFF";
   constexpr std::string_view kPng = "\x89PNG";
@@ -115,8 +115,8 @@ uint16_t RawDepth(double metres, double depth_scale) {
   return raw > 0.0 && raw < Frame::kNoDepth ? static_cast<uint16_t>(raw) : 0;
 }
 
-// A PNG file behind 12 bytes: 4 of no use and two numbers, A and B, for depth
-// in metres, which is packed as A / depth + B.
+// A PNG file after 12 bytes: 4 unused bytes and two floats, A and B. Depth in
+// metres is stored as A / depth + B.
 cv::Mat DecodeCompressedDepth(const RosImage& image, const std::string& name,
                               double depth_scale) {
   constexpr size_t kHeader = 12;

@@ -6,7 +6,7 @@
 namespace rgbd_pose {
 namespace {
 
-// ROS 1 had frames with and without a slash, which are the same.
+// In ROS 1 a frame name means the same with and without a leading slash.
 std::string_view ReadFrameId(WireReader* reader) {
   std::string_view name = reader->Text();
   if (!name.empty() && name.front() == '/') name.remove_prefix(1);
@@ -58,7 +58,7 @@ RosCameraInfo ReadRosCameraInfo(WireReader reader) {
   info.d.resize(reader.Count(sizeof(double)));
   ReadNumbers(&reader, &info.d);
   ReadNumbers(&reader, &info.k);
-  std::array<double, 9> rectification;  // of a stereo pair
+  std::array<double, 9> rectification;  // for stereo pairs
   ReadNumbers(&reader, &rectification);
   ReadNumbers(&reader, &info.p);
   for (uint32_t* number : {&info.binning_x, &info.binning_y, &info.x_offset,
@@ -80,7 +80,7 @@ Rigid3d ReadRosTransform(WireReader* reader) {
 }
 
 std::vector<RosTransform> ReadRosTransforms(WireReader reader) {
-  constexpr size_t kLeastBytes = 72;  // no names
+  constexpr size_t kLeastBytes = 72;  // with empty names
   constexpr double kMaxNormError = 0.01;
   std::vector<RosTransform> transforms(reader.Count(kLeastBytes));
   size_t used = 0;

@@ -11,24 +11,24 @@
 
 namespace rgbd_pose {
 
-// The messages of ROS that recordings of RGB-D cameras are made of, as far as
-// they are used here. Texts and bytes stay in the message they were read from.
+// The ROS messages used in recordings of RGB-D cameras, with the fields needed
+// here. String views point into the message that they were read from.
 
 // std_msgs/Header.
 struct RosHeader {
   double stamp = 0.0;         // s
-  std::string_view frame_id;  // without a slash before it
+  std::string_view frame_id;  // without a leading slash
 };
 
-// sensor_msgs/Image or, with a format instead of a size, CompressedImage.
+// sensor_msgs/Image, or CompressedImage, which has a format instead of a size.
 struct RosImage {
   RosHeader header;
   uint32_t height = 0;
   uint32_t width = 0;
-  std::string_view encoding;  // of a compressed one: its format
+  std::string_view encoding;  // of a compressed image: its format
   bool is_bigendian = false;
-  uint32_t step = 0;      // bytes a row
-  std::string_view data;  // rows, or the bytes of a file
+  uint32_t step = 0;      // bytes per row
+  std::string_view data;  // rows, or the bytes of an image file
 };
 
 // sensor_msgs/CameraInfo.
@@ -37,12 +37,12 @@ struct RosCameraInfo {
   uint32_t height = 0;
   uint32_t width = 0;
   std::string_view distortion_model;
-  std::vector<double> d;       // its coefficients
+  std::vector<double> d;       // distortion coefficients
   std::array<double, 9> k{};   // of the raw image, row by row
-  std::array<double, 12> p{};  // of the rectified one
+  std::array<double, 12> p{};  // of the rectified image, row by row
 
-  // What of the full image, whose size, K and P these are, the images are: a
-  // part of it (of no size: all), in which so many pixels became one (0: 1).
+  // The size, K and P are of the full image. The images show a part of it (size
+  // 0: all) with binning_x x binning_y pixels merged into one (0 means 1).
   uint32_t binning_x = 0;
   uint32_t binning_y = 0;
   uint32_t x_offset = 0;
@@ -54,17 +54,17 @@ struct RosCameraInfo {
 // geometry_msgs/TransformStamped.
 struct RosTransform {
   RosHeader header;
-  std::string_view child_frame_id;  // without a slash before it
-  Rigid3d parent_from_child;        // parent: the header's frame
+  std::string_view child_frame_id;  // without a leading slash
+  Rigid3d parent_from_child;        // parent: the frame of the header
 };
 
-// These throw InputError for a message that ends too early.
+// These throw InputError if the message ends too early.
 RosImage ReadRosImage(WireReader reader);
 RosImage ReadRosCompressedImage(WireReader reader);
 RosCameraInfo ReadRosCameraInfo(WireReader reader);
 
-// tf2_msgs/TFMessage, or tf/tfMessage of old. Leaves out what is no rigid
-// motion.
+// tf2_msgs/TFMessage or the older tf/tfMessage. Transforms that are not rigid
+// motions are left out.
 std::vector<RosTransform> ReadRosTransforms(WireReader reader);
 
 // geometry_msgs/Transform.

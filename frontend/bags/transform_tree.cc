@@ -8,7 +8,7 @@
 namespace rgbd_pose {
 namespace {
 
-// s, between two samples.
+// Allowed gap between two samples, s.
 constexpr double kAnyGap = std::numeric_limits<double>::infinity();
 
 bool IsEarlier(const StampedPose& pose, double stamp) {
@@ -20,7 +20,7 @@ bool IsEarlier(const StampedPose& pose, double stamp) {
 void TransformTree::Add(const std::string& parent, const std::string& child,
                         double stamp, const Rigid3d& parent_from_child) {
   Edge& edge = edges_[child];
-  if (edge.parent != parent) edge = Edge{parent, false, {}};  // moved house
+  if (edge.parent != parent) edge = Edge{parent, false, {}};
   Trajectory& samples = edge.samples;
   if (!edge.moves && !samples.empty() &&
       samples.front().world_from_cam == parent_from_child) {
@@ -38,7 +38,7 @@ void TransformTree::Add(const std::string& parent, const std::string& child,
 
 std::vector<std::string> TransformTree::Above(const std::string& frame) const {
   std::vector<std::string> above = {frame};
-  // Not longer than all of them, should they go in a circle.
+  // The limit ends the loop if the frames form a cycle.
   while (above.size() <= edges_.size()) {
     const auto edge = edges_.find(above.back());
     if (edge == edges_.end()) break;

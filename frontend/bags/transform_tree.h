@@ -10,40 +10,39 @@
 
 namespace rgbd_pose {
 
-// Frames of reference and how they lie in each other, as ROS publishes them
-// (/tf): each frame has one parent. What does not move is kept once, however
-// often it is said.
+// The tree of coordinate frames published by ROS (/tf): each frame has one
+// parent. Repetitions of a transform that does not change are not stored.
 class TransformTree {
  public:
-  // A frame in its parent at a time (s). In any order.
+  // Adds the pose of a frame in its parent at a time (s), in any order of time.
   void Add(const std::string& parent, const std::string& child, double stamp,
            const Rigid3d& parent_from_child);
 
-  // target_from_source, if they are known not to move against each other.
+  // target_from_source, if it is known and does not change.
   std::optional<Rigid3d> Fixed(const std::string& target,
                                const std::string& source) const;
 
-  // How a frame moved in one above it (world_from_frame): a pose each time that
-  // what moves most often was received; empty if nothing between them moves.
+  // The trajectory world_from_frame of a frame in a frame above it, with a pose
+  // for each sample of the edge that has most samples. Empty if no edge moves.
   Trajectory PathOf(const std::string& world, const std::string& frame) const;
 
  private:
   struct Edge {
     std::string parent;
     bool moves = false;
-    // In order of time; of one that does not move, the first and the last.
-    Trajectory samples;  // parent_from_child
+    // parent_from_child by time; only the first and the last if it never moves.
+    Trajectory samples;
   };
 
-  // The edges from a frame up to another, that of the frame first; nothing if
-  // that is not above it.
+  // The edges from a frame up to `top`, starting with the edge of the frame.
+  // Nothing if `top` is not above the frame.
   std::optional<std::vector<const Edge*>> Up(const std::string& frame,
                                              const std::string& top) const;
 
-  // The frame and all those above it.
+  // The frame and all frames above it.
   std::vector<std::string> Above(const std::string& frame) const;
 
-  std::map<std::string, Edge> edges_;  // by child
+  std::map<std::string, Edge> edges_;  // by child frame
 };
 
 }  // namespace rgbd_pose

@@ -16,8 +16,8 @@ WireReader::WireReader(std::string_view message, WireFormat format)
     swaps_ = kHostIsBigEndian;
     return;
   }
-  // Two bytes say which kind of CDR: 0 0 big-endian, 0 1 little-endian; two
-  // are of no use.
+  // The first two bytes give the kind of CDR: 0 0 is big-endian, 0 1 is
+  // little-endian. The next two bytes are unused.
   const std::string_view kind = Take(4);
   if (kind[0] != 0 || (kind[1] != 0 && kind[1] != 1)) {
     throw InputError("a message of an unknown encoding (CDR of kind " +
@@ -49,7 +49,7 @@ void WireReader::ReadNumber(void* value, size_t size) {
 
 std::string_view WireReader::Text() {
   std::string_view text = Bytes();
-  // CDR counts the 0 at its end.
+  // The length in CDR includes the terminating 0.
   if (format_ == WireFormat::kCdr && !text.empty()) text.remove_suffix(1);
   return text;
 }

@@ -9,35 +9,34 @@
 
 namespace rgbd_pose {
 
-// Of a file, or a part of it, that is not as it was written.
+// The error for a file, or a part of a file, that is not as it was written.
 inline InputError Damaged(const std::string& what) {
   return InputError(what + "; it is damaged: copy it again");
 }
 
-// How the messages of a bag are laid out: the same fields in the same order,
-// but for padding, the ends of texts and the header's counter.
+// Binary layout of the messages of a bag. Both have the same fields in the same
+// order, but differ in padding, string terminators and the header's counter.
 enum class WireFormat {
-  kRos1,  // numbers one after the other
-  kCdr,   // ROS 2: each at a multiple of its size
+  kRos1,  // numbers without padding
+  kCdr,   // ROS 2: each number is aligned to a multiple of its size
 };
 
-// Takes values off the bytes of a message, one after the other. All throw
-// InputError where the message ends before the value does; what is text or
-// bytes stays where it is: the message must outlive it.
+// Reads values from the bytes of a message, one after the other. All calls
+// throw InputError if the message ends before the value does. Returned views
+// point into the message, which must outlive them.
 class WireReader {
  public:
-  // Throws InputError for CDR of a kind that ROS 2 does not write.
+  // Throws InputError for a kind of CDR that ROS 2 does not write.
   WireReader(std::string_view message, WireFormat format);
 
   WireFormat format() const { return format_; }
 
-  // What has not been taken.
+  // The bytes not read yet.
   std::string_view rest() const { return rest_; }
 
-  // So many bytes.
   std::string_view Take(size_t size);
 
-  // A whole or floating-point number of 1, 2, 4 or 8 bytes.
+  // An integer or floating-point number of 1, 2, 4 or 8 bytes.
   template <typename T>
   T Number() {
     T value;
@@ -45,23 +44,23 @@ class WireReader {
     return value;
   }
 
-  // A text without its end mark.
+  // A string without its terminator.
   std::string_view Text();
 
-  // A list of bytes.
+  // A byte array.
   std::string_view Bytes();
 
-  // How many there are in the list that follows. Throws, too, for more than
-  // can be if each takes `least_bytes` at least.
+  // The length of the list that follows. Also throws if the rest of the message
+  // is too short for that many elements of at least `least_bytes` each.
   uint32_t Count(size_t least_bytes);
 
  private:
   void ReadNumber(void* value, size_t size);
 
   std::string_view rest_;
-  size_t place_ = 0;  // of rest_, where CDR counts from
+  size_t place_ = 0;  // offset of rest_ after any CDR header, bytes
   WireFormat format_;
-  bool swaps_ = false;  // the bytes of a number
+  bool swaps_ = false;  // whether the bytes of numbers must be swapped
 };
 
 }  // namespace rgbd_pose

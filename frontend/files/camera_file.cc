@@ -16,7 +16,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Of what depth is registered to, in all layouts.
+// Name of the camera that depth is registered to, in all layouts.
 constexpr char kColorCamera[] = "cam0";
 
 bool IsOfColor(const std::string& depth_camera) {
@@ -41,7 +41,7 @@ Camera ReadOrbSlam(const YamlSection& file) {
   return camera;
 }
 
-// The coefficients at a key, of that many.
+// Reads the coefficients at a key; `counts` are the allowed numbers of them.
 void ReadDistortion(const YamlSection& file, const std::string& key,
                     const std::vector<size_t>& counts, bool is_equidistant,
                     Camera* camera) {
@@ -93,7 +93,7 @@ Camera ReadKalibr(const YamlSection& file, const std::string& name) {
   return camera;
 }
 
-// `camera_from_before` of a camera that is not the first, 4 x 4 row by row.
+// camera_from_previous of a camera other than the first, from a 4 x 4 matrix.
 Rigid3d ReadKalibrMotion(const YamlSection& file, const std::string& name) {
   const YamlSection cam = file.Child(name);
   const std::vector<double> m = cam.Matrix("T_cn_cnm1", 4, 4);
@@ -157,14 +157,14 @@ Eigen::Vector3d VectorOr0(const YamlSection& file, const std::string& key) {
   return {numbers[0], numbers[1], numbers[2]};
 }
 
-// Beyond these a file is wrong, in units perhaps.
+// Larger values are errors in the file, perhaps of units.
 void CheckSize(const YamlSection& file, const std::string& key, double size,
                double most, const std::string& unit) {
   if (size <= most) return;
   file.Fail(key, Format("must be at most %g ", most) + unit);
 }
 
-// When the rows of colour and of depth are exposed.
+// Exposure times of the rows of colour and depth.
 void ReadShutters(const YamlSection& file, CameraSetup* setup) {
   RgbdCamera read;
   for (const ShutterParameter& parameter : kShutterParameters) {
@@ -177,7 +177,7 @@ void ReadShutters(const YamlSection& file, CameraSetup* setup) {
   setup->depth_shutter = read.depth_shutter;
 }
 
-// What rgbd_calibrate found wrong with depth.
+// The errors of depth found by rgbd_calibrate.
 DepthCorrection ReadDepthCorrection(const YamlSection& file) {
   DepthCorrection errors;
   errors.inverse_depth_offset = file.NumberOr("inverse_depth_offset", 0.0);
@@ -231,8 +231,8 @@ CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
   if (!preset && std::filesystem::exists(file_or_preset, error)) {
     return ReadCameraFile(file_or_preset, depth_camera);
   }
-  // Presets are of registered depth. Their scale is the benchmark's: what a
-  // recording says of its own comes before it.
+  // Presets have registered depth. Their depth scale, which comes from the
+  // benchmark, is dropped: the scale of a recording takes precedence.
   if (preset && IsOfColor(depth_camera)) {
     CameraSetup setup(*preset);
     setup.depth_scale.reset();

@@ -22,7 +22,7 @@ namespace {
 using YamlLines =
     std::vector<std::pair<std::string, std::string>>;  // key, value
 
-// Where a key of the file stands, if that is within the lines.
+// The index of the line of a key, if it is within `lines`.
 std::optional<size_t> LineOf(const YAML::Node& file, const std::string& key,
                              const std::vector<std::string>& lines) {
   for (const auto& entry : file) {
@@ -33,11 +33,11 @@ std::optional<size_t> LineOf(const YAML::Node& file, const std::string& key,
   return std::nullopt;
 }
 
-// The text of a file with other values, its other lines as they are. `file` is
-// what it was parsed to. Keys of `values` that it lacks are added where they
-// are not 0, lines of `left_out` go, those of `more` come. Right only where
-// each of these keys has a line of its own: many may share one, a value may
-// have several, or a name by which others refer to it.
+// Replaces values in the text of a file and keeps all other lines. `file` is
+// the parsed text. Missing keys of `values` are added unless they are 0, the
+// lines of `left_out` are removed and those of `more` are added. The result is
+// correct only if each of these keys has a line of its own. In general keys may
+// share a line, and a value may span lines or have an anchor used by others.
 std::string EditLines(const std::string& text, const YAML::Node& file,
                       const YamlLines& values,
                       const std::vector<std::string>& left_out,
@@ -53,7 +53,7 @@ std::string EditLines(const std::string& text, const YAML::Node& file,
     const std::optional<size_t> line = LineOf(file, key, lines);
     if (line.has_value()) is_left_out[*line] = true;
   }
-  size_t last = 0;  // of those that change
+  size_t last = 0;  // the last changed line
   std::string added;
   for (const auto& [key, value] : values) {
     const std::optional<size_t> line = LineOf(file, key, lines);
@@ -76,17 +76,17 @@ std::string EditLines(const std::string& text, const YAML::Node& file,
   return result;
 }
 
-// Maps are made again: what a map had is left as it is, as other keys may refer
-// to it.
+// These functions build a new map and leave the old one unchanged, as other
+// keys may refer to it.
 
-// The map has another value of one key.
+// Sets the value of one key.
 void Set(YAML::Node* map, const std::string& key, const YAML::Node& value) {
   YAML::Node result(YAML::NodeType::Map);
   result.SetStyle(map->Style());
   bool is_there = false;
   for (const auto& entry : *map) {
     const bool is_it = entry.first.Scalar() == key;
-    if (is_it && is_there) continue;  // it counts the first time only
+    if (is_it && is_there) continue;  // only the first one counts
     result.force_insert(entry.first, is_it ? value : entry.second);
     is_there |= is_it;
   }
@@ -94,7 +94,7 @@ void Set(YAML::Node* map, const std::string& key, const YAML::Node& value) {
   map->reset(result);
 }
 
-// The map has none of these keys.
+// Removes these keys.
 void Remove(YAML::Node* map, const std::vector<std::string>& keys) {
   YAML::Node result(YAML::NodeType::Map);
   result.SetStyle(map->Style());
@@ -106,7 +106,7 @@ void Remove(YAML::Node* map, const std::vector<std::string>& keys) {
   map->reset(result);
 }
 
-// With all digits that make a difference.
+// Formats a number with all significant digits.
 std::string Digits(double value) { return Format("%.10g", value); }
 
 std::string List(const std::vector<double>& values) {
@@ -121,7 +121,7 @@ std::vector<double> ToList(const Eigen::Vector3d& v) {
   return {v.x(), v.y(), v.z()};
 }
 
-// The keys that all layouts share.
+// The lines that are the same in all layouts.
 YamlLines RgbdLines(const RgbdCamera& camera) {
   YamlLines lines;
   const auto add = [&lines](const char* key, double value, bool is_said) {
@@ -157,7 +157,7 @@ YamlLines OrbSlamLines(const RgbdCamera& rgbd, const std::string& prefix) {
   return lines;
 }
 
-// Their names.
+// The keys of RgbdLines.
 const std::vector<std::string>& RgbdKeys() {
   static const std::vector<std::string> keys = {
       "color_time_offset", "color_readout",        "depth_time_offset",
@@ -173,8 +173,8 @@ YAML::Node ToNode(const std::vector<double>& values) {
   return node;
 }
 
-// The file written again with the values of some keys, and in ROS' or Kalibr's
-// layout with those of the camera below theirs; its comments are lost.
+// Writes the parsed file with new `values` and, in the layouts of ROS and
+// Kalibr, with the camera in their nested keys. Comments are lost.
 std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
                       const YamlLines& values, bool is_of_orb_slam,
                       YAML::Node file) {
@@ -186,7 +186,7 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
   };
   for (const auto& [key, value] : values) Set(&file, key, YAML::Node(value));
   if (is_of_orb_slam) {
-    // These keys have none below.
+    // This layout has no nested keys.
   } else if (file["camera_matrix"].IsDefined()) {
     set(&file, "image_width", c.width);
     set(&file, "image_height", c.height);
@@ -204,12 +204,12 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
         is_equidistant             ? "equidistant"
         : coefficients.size() == 5 ? "plumb_bob"
                                    : "rational_polynomial");
-    // What a rectified image would be seen with is of the old camera.
+    // The projection matrix of rectified images is of the old camera.
     Remove(&file, {"projection_matrix"});
   } else {
     YAML::Node cam0 = file["cam0"];
     Set(&cam0, "intrinsics", ToNode({c.fx, c.fy, c.cx, c.cy}));
-    // What a radtan cannot hold is missed by Says.
+    // If radtan cannot hold all coefficients, Says returns false later.
     Set(&cam0, "distortion_coeffs",
         ToNode({coefficients.begin(), coefficients.begin() + 4}));
     set(&cam0, "distortion_model", is_equidistant ? "equidistant" : "radtan");
@@ -219,7 +219,7 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
   }
   Remove(&file, RgbdKeys());
   file.SetStyle(YAML::EmitterStyle::Block);
-  // OpenCV's first line, which is no YAML.
+  // The first line of OpenCV's files, which is not valid YAML.
   const bool is_of_opencv = text.rfind("%YAML", 0) == 0;
   std::string result = is_of_opencv ? "%YAML:1.0\n---\n" : "";
   result += YAML::Dump(file) + "\n";
@@ -229,7 +229,7 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
   return result;
 }
 
-// Whether a text reads as that camera.
+// Whether reading a text gives this camera.
 bool Says(const std::string& text, const RgbdCamera& camera) {
   RgbdCamera read;
   try {
@@ -268,16 +268,16 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
          is_same(between.translation.norm(), 0.0);
 }
 
-// The file `like` with the values of a camera; nothing if that cannot be said
-// in this file.
+// The file `like` with the values of a camera; nothing if its layout cannot
+// hold the camera.
 std::optional<std::string> Edited(const RgbdCamera& camera,
                                   const std::string& like) {
-  ResolveCamera(like);  // complains of what is wrong with it
+  ResolveCamera(like);  // throws if the file has errors
   const std::string text = ReadTextFile(like);
   const YamlSection file = YamlSection::FromText(text, like);
   const std::string prefix =
       file.HasKeyStartingWith("Camera1.") ? "Camera1." : "Camera.";
-  // The reader's order, where both are there.
+  // If both keys exist, the reader uses DepthMapFactor.
   const char* const scale =
       file.Has("RGBD.DepthMapFactor") && !file.Has("DepthMapFactor")
           ? "RGBD.DepthMapFactor"

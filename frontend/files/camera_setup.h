@@ -7,12 +7,12 @@
 
 namespace rgbd_pose {
 
-// What is known of an RGB-D camera, by a calibration file or by a recording.
+// An RGB-D camera as described by a calibration file or a recording.
 struct CameraSetup {
   CameraSetup() = default;
   explicit CameraSetup(const Camera& color) : camera(color) {}
 
-  // With its depth scale as it is there.
+  // Keeps the depth scale.
   CameraSetup(const RgbdCamera& rgbd)  // NOLINT(*-explicit-*): says the same
       : camera(rgbd.camera),
         depth_scale(rgbd.depth_scale),
@@ -22,20 +22,20 @@ struct CameraSetup {
 
   Camera camera;  // of the colour image
 
-  // Raw units of the depth image per metre; nothing: not said.
+  // Raw units of the depth image per metre; nothing if unknown.
   std::optional<double> depth_scale;
 
   DepthCorrection depth_correction;  // of the depth images, once registered
 
   // See RgbdCamera.
   Shutter color_shutter;
-  Shutter depth_shutter;  // likewise
+  Shutter depth_shutter;
 
-  // Nothing: the depth images are registered to colour.
+  // Nothing if the depth images are registered to colour.
   std::optional<DepthCamera> depth_camera;
 };
 
-// As it is once depth is registered. Without a depth scale it is the one of
+// The camera after depth is registered. The default depth scale is that of
 // RgbdCamera, 5000.
 RgbdCamera RegisteredCamera(const CameraSetup& setup);
 

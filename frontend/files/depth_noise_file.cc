@@ -30,7 +30,7 @@ DepthNoiseModel ReadDepthNoiseFile(const std::string& path) {
   model.centre = file.NumberOr("centre", model.centre);
   model.mean_share = file.NumberOr("mean_share", model.mean_share);
   RequireSound(model.Check(), path + ": ");
-  // In millimetres, or of something else.
+  // A larger model is in millimetres or describes something else.
   constexpr double kMost = 1.0;  // m, at 1 m
   if (model.sigma(1.0) > kMost) {
     throw InputError(path + Format(": a depth of 1 m is uncertain by %.3g m; "

@@ -6,16 +6,16 @@
 
 namespace rgbd_pose {
 
-// The text of a file with a depth noise model: the keys constant (m), quadratic
-// (1/m), centre (m) and mean_share of DepthNoiseModel, in YAML.
+// The text of a YAML file for a depth noise model, with the fields constant
+// (m), quadratic (1/m), centre (m) and mean_share of DepthNoiseModel as keys.
 std::string FormatDepthNoiseFile(const DepthNoiseModel& model);
 
-// A model of such a file, named as the file is; centre and mean_share may be
-// missing (0, 1). Throws InputError naming file, line and key.
+// Reads such a file; the path becomes the name of the model. centre and
+// mean_share default to 0 and 1. Errors (InputError) name file, line and key.
 DepthNoiseModel ReadDepthNoiseFile(const std::string& path);
 
-// The model of that name, or that of the file there. Throws InputError listing
-// the names there are.
+// The model of this name, or the model of this file. Throws InputError, which
+// lists the known names, if there is neither.
 DepthNoiseModel ResolveDepthNoise(const std::string& name_or_file);
 
 }  // namespace rgbd_pose

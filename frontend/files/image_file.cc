@@ -19,8 +19,8 @@ bool IsJpeg(std::string_view bytes) {
   return bytes.substr(0, kJpegStart.size()) == kJpegStart;
 }
 
-// OpenCV fills the missing rest of a JPEG with grey and calls it a success, so
-// look for the end marker behind the last scan. Neither marker can occur
+// OpenCV fills the missing rest of a JPEG with grey and reports success, so
+// this looks for the end marker after the last scan. Neither marker can occur
 // inside the compressed data.
 bool IsCutOffJpeg(std::string_view bytes) {
   constexpr std::string_view kScanStart = "\xFF\xDA";
@@ -31,8 +31,8 @@ bool IsCutOffJpeg(std::string_view bytes) {
          bytes.find(kJpegEnd, last_scan) == std::string_view::npos;
 }
 
-// The kinds that recordings come in. OpenCV tries others, too, whose decoders
-// may end the program: DICOM's by an assertion, on bytes that are damaged.
+// Whether recordings use the format. Decoders of OpenCV for other formats may
+// abort the program: on damaged bytes the DICOM decoder fails an assertion.
 bool IsOfKnownKind(std::string_view bytes) {
   using std::string_view_literals::operator""sv;
   for (const std::string_view start : {"\x89PNG\r\n\x1A\n"sv, "\xFF\xD8\xFF"sv,
@@ -51,7 +51,7 @@ cv::Mat DecodeByOpenCv(const std::string& bytes, const std::string& path,
                        int flags) {
   cv::Mat image;
   try {
-    // It is only read from.
+    // OpenCV only reads the buffer.
     const cv::Mat buffer(1, static_cast<int>(bytes.size()), CV_8UC1,
                          const_cast<char*>(bytes.data()));
     image = cv::imdecode(buffer, flags | cv::IMREAD_IGNORE_ORIENTATION);
@@ -93,15 +93,14 @@ cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
                      "read: PNG, JPEG, TIFF, BMP, PGM, PPM, WebP");
   }
   const bool is_gray = (flags & ~cv::IMREAD_ANYDEPTH) == cv::IMREAD_GRAYSCALE;
-  // JPEG has grey levels of its own, by the same formula, and packed with fewer
-  // losses than colours are.
+  // JPEG stores grey levels by the same formula, with less loss than colours.
   if (!is_gray || IsJpeg(bytes)) {
     if (color != nullptr) {
       *color = DecodeByOpenCv(bytes, path, cv::IMREAD_COLOR);
     }
     return DecodeByOpenCv(bytes, path, flags);
   }
-  // What decoders make grey differs from one kind to another.
+  // The conversion to grey differs between OpenCV's decoders.
   cv::Mat image = DecodeByOpenCv(bytes, path, flags | cv::IMREAD_COLOR);
   if (color != nullptr) *color = image.clone();
   if (image.depth() == CV_8U) {
@@ -161,7 +160,7 @@ std::string EncodePng(const cv::Mat& image, const std::vector<int>& settings) {
   return {bytes.begin(), bytes.end()};
 }
 
-// OpenCV does not notice a disk that gets full at the end of a file.
+// OpenCV does not detect a disk that becomes full at the end of a file.
 void WritePngFile(const std::string& path, const cv::Mat& image,
                   const std::vector<int>& settings) {
   WriteFileAtomically(path, EncodePng(image, settings));

@@ -8,40 +8,40 @@
 namespace rgbd_pose {
 
 // Reads a whole image file. `flags` as for cv::imread, but an EXIF orientation
-// is never applied: it would turn the image away from its camera model.
-// Throws InputError naming the file where it cannot be read, is no image or is
-// cut off. (Bytes changed inside a JPEG go unnoticed: it has no checksum.)
-// May be called from several threads at once.
+// is never applied, as the rotated image would not match its camera model.
+// Throws InputError, which names the file, if it cannot be read, is no image or
+// is cut off. (Changed bytes inside a JPEG are not detected: it has no
+// checksum.) Thread-safe.
 cv::Mat ReadImageFile(const std::string& path, int flags);
 
-// Reads a colour or gray image as gray values (CV_8UC1) and, unless null, in
-// colour (CV_8UC3 in the order blue, green, red; most PNG files need no second
-// decoding). Throws InputError for one of other than 8 bits a channel, too: it
-// would be a depth image.
+// Reads a colour or gray image as gray values (CV_8UC1) and, unless `color` is
+// null, in colour (CV_8UC3 in the order blue, green, red; most PNG files are
+// decoded only once for both). Also throws InputError for other than 8 bits per
+// channel: such an image would be a depth image.
 cv::Mat ReadGrayImageFile(const std::string& path, cv::Mat* color = nullptr);
 
-// Reads a depth image: 16 bits, one channel (CV_16UC1). Throws InputError for
-// any other, too.
+// Reads a depth image of 16 bits and one channel (CV_16UC1). Also throws
+// InputError for any other type of image.
 cv::Mat ReadDepthImageFile(const std::string& path);
 
-// The same of the bytes of a file; `path` is for messages.
+// The same for the bytes of a file; `path` is used in error messages.
 cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
                         cv::Mat* color = nullptr);
 cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path);
 
-// The bytes of an image as a PNG file; `settings` as for cv::imwrite. Without
-// any, what takes least time: by libdeflate, if it is one of grey or depth.
+// Encodes an image as a PNG file; `settings` as for cv::imwrite. Without any it
+// takes the fastest way: for grey and depth libdeflate, if the build has it.
 std::string EncodePng(const cv::Mat& image,
                       const std::vector<int>& settings = {});
 
-// Writes these, as a whole or not at all. Throws InputError if it cannot.
+// Writes a PNG file completely or not at all. Throws InputError on failure.
 void WritePngFile(const std::string& path, const cv::Mat& image,
                   const std::vector<int>& settings = {});
 
-// The grey level of a colour, 0.299 R + 0.587 G + 0.114 B rounded, as OpenCV's
-// cvtColor has it: the same wherever an image comes from.
+// The grey level of a colour: 0.299 R + 0.587 G + 0.114 B, rounded. OpenCV's
+// cvtColor gives the same values, so the source of an image does not matter.
 inline uint8_t GrayLevel(int red, int green, int blue) {
-  // In 15 bits; they add up to 1.
+  // Weights in fixed point with 15 bits; they add up to 1.
   return static_cast<uint8_t>(
       (9798 * red + 19235 * green + 3735 * blue + (1 << 14)) >> 15);
 }

@@ -7,7 +7,7 @@
 
 namespace rgbd_pose {
 
-// Four bytes, the highest first, as numbers stand in a PNG file.
+// Big-endian bytes of a number, as used in PNG files.
 inline std::string PngNumber(uint32_t value) {
   std::string bytes;
   for (int shift = 24; shift >= 0; shift -= 8) {
@@ -16,9 +16,8 @@ inline std::string PngNumber(uint32_t value) {
   return bytes;
 }
 
-// How a PNG file of one channel begins, up to the checksum of its header: of so
-// many pixels with so many bits, not interlaced (PNG Specification, sections
-// 5.2 and 11.2.2).
+// The start of a PNG file with one channel of `bits` bits, not interlaced, up
+// to the checksum of its header (PNG Specification, sections 5.2 and 11.2.2).
 inline std::string PngStart(int width, int height, int bits) {
   constexpr uint32_t kHeaderSize = 13;
   return "\x89PNG\r\n\x1A\n" + PngNumber(kHeaderSize) + "IHDR" +
@@ -26,36 +25,35 @@ inline std::string PngStart(int width, int height, int bits) {
          std::string(4, '\0');
 }
 
-// How the image of a PNG file is wanted.
+// What a PNG file is decoded to.
 enum class PngUse {
   kGray,          // CV_8UC1
-  kGrayAndColor,  // that, and CV_8UC3 in the order blue, green, red
+  kGrayAndColor,  // also CV_8UC3 in the order blue, green, red
   kDepth,         // CV_16UC1
-  kOther,         // anything else: OpenCV's work
+  kOther,         // anything else; left to OpenCV
 };
 
-// What became of a PNG file.
+// Result of DecodePng.
 struct DecodedPng {
-  cv::Mat image;            // gray or depth; empty: see below
-  cv::Mat color;            // empty unless asked for
-  bool is_damaged = false;  // there is no point in asking OpenCV
+  cv::Mat image;            // gray or depth; empty: not decoded
+  cv::Mat color;            // empty unless requested
+  bool is_damaged = false;  // OpenCV need not be tried
 };
 
-// Decodes the kinds of PNG that RGB-D recordings consist of, by libdeflate in
-// about half the time that OpenCV takes, to the very values that it gives:
-// three channels of 8 bits or one to gray, one channel of 16 bits to depth. The
-// header says which kind it is. Other kinds are left to OpenCV, which has the
-// sole work of decompressing them.
+// Decodes the kinds of PNG used in RGB-D recordings by libdeflate. This takes
+// about half the time of OpenCV and gives identical values. Three channels or
+// one of 8 bits are decoded to gray, one channel of 16 bits to depth. The
+// header gives the kind. Other kinds are left to OpenCV to decompress.
 //
-// A file is damaged that begins as a PNG and is cut off, has another checksum
-// than it says in what is needed of it, more than 16384 x 16384 pixels or, of
-// the kinds above, other than the rows of an image. (libpng would tell stderr
-// about it.) May be called from several threads at once.
+// A file that begins as a PNG is damaged if it is cut off, if a checksum of a
+// needed chunk is wrong, if a side has more than 16384 pixels or, for the kinds
+// above, if bytes of the rows are missing or invalid. (libpng would write to
+// stderr.) Thread-safe.
 DecodedPng DecodePng(std::string_view bytes, PngUse use);
 
-// The bytes of a grey (CV_8UC1) or depth image (CV_16UC1), which is not empty,
-// as a PNG file: by libdeflate in about half the time that OpenCV takes for as
-// many bytes. May be called from several threads at once.
+// Encodes a non-empty grey (CV_8UC1) or depth image (CV_16UC1) as a PNG file by
+// libdeflate. This takes about half the time of OpenCV for a file of the same
+// size. Thread-safe.
 std::string EncodePngByLibdeflate(const cv::Mat& image);
 
 }  // namespace rgbd_pose

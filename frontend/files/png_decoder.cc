@@ -16,7 +16,7 @@ namespace {
 constexpr int kPngGray = 0;
 constexpr int kPngRgb = 2;
 
-// What the chunks of a PNG file say.
+// The contents of the chunks of a PNG file.
 struct PngImage {
   int width = 0;
   int height = 0;
@@ -25,21 +25,21 @@ struct PngImage {
   bool is_interlaced = false;
   std::string compressed;
 
-  // Bytes from row to row: a filter goes ahead.
+  // Bytes per row, with the filter type before the pixels.
   size_t Stride(int pixel_bytes) const {
     return 1 + static_cast<size_t>(pixel_bytes) * width;
   }
 };
 
-// What a file is, as far as its chunks tell.
+// What a file contains according to its chunks.
 enum class PngContent {
   kNoPng,
   kDamaged,
-  kOther,  // an image of another kind than the use is of
+  kOther,  // an image that is not decoded here for the given use
   kOurs,
 };
 
-// Far beyond any depth camera: a few wrong bytes must not claim all memory.
+// More than any camera has; keeps a few wrong bytes from allocating all memory.
 constexpr uint32_t kMaxSide = 1 << 14;
 
 uint32_t BigEndian(const uint8_t* bytes) {
@@ -50,7 +50,7 @@ uint32_t BigEndian(const uint8_t* bytes) {
 struct Chunk {
   std::string_view type;
   std::string_view data;
-  bool is_intact = false;  // the checksum is right
+  bool is_intact = false;  // whether the checksum is correct
 };
 
 bool SkipSignature(std::string_view* bytes) {
@@ -60,7 +60,7 @@ bool SkipSignature(std::string_view* bytes) {
   return true;
 }
 
-// Takes the next chunk off `bytes`. False if not all of it is there.
+// Removes the next chunk from `bytes`. False if it is incomplete.
 bool NextChunk(std::string_view* bytes, Chunk* chunk) {
   constexpr size_t kAround = 12;  // length, type and checksum
   if (bytes->size() < kAround) return false;
@@ -88,15 +88,15 @@ bool ReadHeader(std::string_view header, PngImage* png) {
   png->bit_depth = data[8];
   png->color_type = data[9];
   png->is_interlaced = data[12] == 1;
-  // There are five kinds of colour, one of compression, one of filtering, two
-  // of interlacing.
+  // There are five colour types, one compression method, one filter method and
+  // two interlace methods.
   const bool is_color =
       std::string_view("\0\2\3\4\6", 5).find(static_cast<char>(data[9])) !=
       std::string_view::npos;
   return is_color && data[10] == 0 && data[11] == 0 && data[12] <= 1;
 }
 
-// Whether it is a kind that is decoded here, as far as the header says.
+// Whether by its header an image is of a kind that is decoded here.
 bool IsOurs(const PngImage& png, PngUse use) {
   if (png.is_interlaced) return false;
   if (use == PngUse::kDepth) {
@@ -106,15 +106,15 @@ bool IsOurs(const PngImage& png, PngUse use) {
          (png.color_type == kPngRgb || png.color_type == kPngGray);
 }
 
-// Chunks without which nothing can be shown are marked by a capital letter.
+// Chunks needed to decode the image begin with a capital letter.
 bool IsCritical(const Chunk& chunk) { return (chunk.type[0] & 0x20) == 0; }
 
-// Others that leave the values of the pixels alone, unlike a colour space.
+// Other chunks that do not affect pixel values, unlike a colour space.
 bool IsComment(const Chunk& chunk) {
   return chunk.type == "pHYs" || chunk.type == "tIME" || chunk.type == "tEXt";
 }
 
-// Reads all chunks; of kOurs, `png` has the compressed bytes.
+// Reads all chunks. If the result is kOurs, `png` has the compressed bytes.
 PngContent ReadPngChunks(std::string_view bytes, PngUse use, PngImage* png) {
   if (!SkipSignature(&bytes)) return PngContent::kNoPng;
   Chunk chunk;
@@ -138,8 +138,8 @@ PngContent ReadPngChunks(std::string_view bytes, PngUse use, PngImage* png) {
   return PngContent::kDamaged;
 }
 
-// The neighbour nearest to left + up - up_left. Chosen without branches: what
-// they would depend on is noise.
+// The neighbour nearest to left + up - up_left. Computed without branches, as
+// their conditions would depend on noise.
 int PaethPredictor(int left, int up, int up_left) {
   const int left_distance = std::abs(up - up_left);
   const int up_distance = std::abs(left - up_left);
@@ -150,7 +150,7 @@ int PaethPredictor(int left, int up, int up_left) {
   return is_left ? left : nearer;
 }
 
-// Adds to each byte of a row what its neighbours predict, all channels abreast.
+// Adds its prediction to each byte of a row, with all channels in parallel.
 template <int kPixelBytes, typename Predict>
 void AddPrediction(const uint8_t* up_row, uint8_t* row, int size,
                    Predict predict) {
@@ -167,7 +167,7 @@ void AddPrediction(const uint8_t* up_row, uint8_t* row, int size,
   }
 }
 
-// Undoes a filter of section 9. False for one that does not exist.
+// Reverses a filter of section 9. False if the filter does not exist.
 template <int kPixelBytes>
 bool Unfilter(int filter, const uint8_t* up_row, uint8_t* row, int size) {
   switch (filter) {
@@ -200,11 +200,12 @@ struct FreeDecompressor {
   }
 };
 
-// Decompresses an image of `size` bytes; null if there are fewer or they are
-// damaged. `has_more` says whether there are more.
+// Decompresses an image of `size` bytes. Null if there are fewer or they are
+// damaged. `has_more`: whether there are more.
 std::unique_ptr<uint8_t[]> Decompress(const PngImage& png, size_t size,
                                       bool* has_more) {
-  // The format packs no tighter; the memory for a claim is not taken unseen.
+  // Maximum compression ratio of the format. The check avoids allocating memory
+  // for an impossible size.
   constexpr size_t kMaxRatio = 1032;
   if (size / kMaxRatio > png.compressed.size()) return nullptr;
   std::unique_ptr<uint8_t[]> rows(new uint8_t[size]);
@@ -219,8 +220,8 @@ std::unique_ptr<uint8_t[]> Decompress(const PngImage& png, size_t size,
   return rows;
 }
 
-// Undoes the filters of `rows` and hands each to `convert(row, y)`. False if a
-// filter does not exist.
+// Reverses the filters of `rows` and calls `convert(row, y)` for each row.
+// False if a filter does not exist.
 template <int kPixelBytes, typename Convert>
 bool ReadRows(const PngImage& png, uint8_t* rows, Convert convert) {
   const int size = kPixelBytes * png.width;
@@ -235,7 +236,7 @@ bool ReadRows(const PngImage& png, uint8_t* rows, Convert convert) {
   return true;
 }
 
-// Gray values, and colours unless `color` is empty.
+// Reads gray values and, unless `color` is empty, colours.
 template <int kChannels>
 bool ReadGray(const PngImage& png, uint8_t* rows, cv::Mat* gray,
               cv::Mat* color) {

@@ -22,14 +22,14 @@ std::string EncodedChunk(const std::string& type, const std::string& data) {
          Checksum(type + data);
 }
 
-// The rows, each byte less that of the pixel to its left (section 9, filter
-// Sub).
+// The rows of an image, with the byte of the pixel to the left subtracted from
+// each byte (section 9, filter Sub).
 std::string FilteredRows(const cv::Mat& image) {
   constexpr char kSub = 1;
   const size_t pixel_bytes = image.elemSize();
   const size_t row_bytes = pixel_bytes * image.cols;
   std::string rows((1 + row_bytes) * image.rows, kSub);
-  // The row with a pixel of zeros before it.
+  // A row with a pixel of zeros before it.
   std::vector<uint8_t> row(pixel_bytes + row_bytes, 0);
   char* to = rows.data();
   for (int y = 0; y < image.rows; ++y) {
@@ -44,7 +44,7 @@ std::string FilteredRows(const cv::Mat& image) {
         bytes[2 * x + 1] = static_cast<uint8_t>(values[x]);
       }
     }
-    ++to;  // the filter is there
+    ++to;  // skip the filter type
     for (size_t i = 0; i < row_bytes; ++i) {
       *to++ = static_cast<char>(bytes[i] - row[i]);
     }
@@ -59,7 +59,7 @@ struct FreeCompressor {
 };
 
 std::string Compress(const std::string& bytes) {
-  // The next ones take half as long again for a few percent.
+  // The next levels take 50 % more time to save a few percent of size.
   constexpr int kFastest = 1;
   const std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor(
       libdeflate_alloc_compressor(kFastest));

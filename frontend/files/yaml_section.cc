@@ -8,8 +8,8 @@
 namespace rgbd_pose {
 namespace {
 
-// OpenCV's first line, %YAML:1.0, is no YAML. Its line end stays, so that line
-// numbers do not change.
+// The first line of OpenCV's files, %YAML:1.0, is not valid YAML. Its line end
+// is kept, which leaves the line numbers unchanged.
 std::string WithoutDirective(std::string_view content) {
   std::string text(WithoutByteOrderMark(content));
   if (text.rfind("%YAML", 0) == 0) text.erase(0, text.find_first_of("\r\n"));

@@ -7,16 +7,15 @@
 
 namespace rgbd_pose {
 
-// A map of a YAML file, read with checks. Whatever is wrong (a key missing, a
-// word that is no finite number, ...) is an InputError naming file, line and
-// key. YAML files written by OpenCV can be read too.
+// A map of a YAML file, read with checks. Any error (a missing key, a word that
+// is no finite number, ...) is an InputError that names file, line and key.
+// YAML files written by OpenCV can be read as well.
 class YamlSection {
  public:
-  // The top level of a file; empty if the file holds something else than keys.
+  // The top level of a file; empty if the top level is not a map.
   static YamlSection FromFile(const std::string& path);
   static YamlSection FromText(const std::string& text, const std::string& path);
 
-  // As it was parsed.
   const YAML::Node& node() const { return node_; }
 
   bool Has(const std::string& key) const;
@@ -28,12 +27,12 @@ class YamlSection {
   double Number(const std::string& key) const;
   double NumberOr(const std::string& key, double fallback) const;
 
-  // A list of numbers whose length is one of those given.
+  // A list of numbers whose length is one of `lengths`.
   std::vector<double> Numbers(const std::string& key,
                               const std::vector<size_t>& lengths) const;
 
-  // A matrix: a list of `rows` lists of `columns` numbers each, or all of them
-  // in one list. Row by row.
+  // A matrix, row by row: a list of `rows` lists of `columns` numbers each, or
+  // one list of all numbers.
   std::vector<double> Matrix(const std::string& key, size_t rows,
                              size_t columns) const;
 
@@ -42,12 +41,12 @@ class YamlSection {
   int Pixels(const std::string& key) const;
   int Pixels(const std::string& key, double number) const;
 
-  // The word of a key, one of those that are known; the first of them where the
-  // key is missing.
+  // The value of a key, which must be one of `known`. If the key is missing,
+  // the first of `known`.
   std::string Word(const std::string& key,
                    const std::vector<std::string>& known) const;
 
-  // Throws about a key that is there: "<file>:<line>: <key> <message>".
+  // Throws an error for an existing key: "<file>:<line>: <key> <message>".
   [[noreturn]] void Fail(const std::string& key,
                          const std::string& message) const;
 
@@ -60,8 +59,8 @@ class YamlSection {
   double ToNumber(const std::string& key, const YAML::Node& node) const;
 
   std::string path_;
-  std::string prefix_;     // goes before keys in messages
-  const YAML::Node node_;  // const: looking a key up must not add it
+  std::string prefix_;     // of keys in error messages
+  const YAML::Node node_;  // const: a lookup must not add the key
 };
 
 }  // namespace rgbd_pose

@@ -9,16 +9,16 @@
 
 namespace rgbd_pose {
 
-// Raw depths between pixels, one by one and eight at once.
+// Interpolation of raw depths between pixels, for one and for eight pixels.
 
 constexpr int kEight = 8;
 
-// Neighbours that differ by more than this part of the nearer one lie on two
-// surfaces: 1.6 % is 4 sigmas of a Kinect at 3 m, and the step from pixel to
-// pixel on a surface seen at 83 degrees.
+// Neighbours that differ by more than this fraction of the nearest depth are on
+// different surfaces. 1.6 % is 4 sigmas of a Kinect at 3 m, and the step
+// between neighbouring pixels on a surface seen at 83 degrees.
 constexpr int kMaxStepShift = 6;  // 2^-6
 
-// None of them may be 0, unless all are.
+// Either none of the depths is 0, or all depths are 0.
 inline bool IsOneSurface(uint16_t a, uint16_t b, uint16_t c, uint16_t d) {
   const uint16_t low = std::min(std::min(a, b), std::min(c, d));
   const uint16_t high = std::max(std::max(a, b), std::max(c, d));
@@ -33,14 +33,14 @@ inline float Between(uint16_t a, uint16_t b, uint16_t c, uint16_t d,
   return top + down * (bottom - top);
 }
 
-// How eight neighbours move alike: where between the pixels they were, and what
-// has to be done to their depths.
+// The common motion of eight neighbours: the position between pixels where they
+// are sampled, and the scale and offset to apply to their raw depths.
 struct EightMoves {
   float right, down, scale, offset;
 };
 
-// DepthWarper::Sample and EncodeDepth for eight pixels at once, of the upper
-// and the lower row and of the one of them and the column that are nearer.
+// DepthWarper::Sample and EncodeDepth for eight pixels at once. `top` and
+// `bottom` are the two rows around the samples, `nearest` the nearest pixels.
 inline void MoveEight(const uint16_t* top, const uint16_t* bottom,
                       const uint16_t* nearest, const EightMoves& by,
                       uint16_t* to) {
@@ -83,7 +83,7 @@ inline void MoveEight(const uint16_t* top, const uint16_t* bottom,
   cv::v_store(to, cv::v_min(moved, most) & ~none);
 }
 
-// In raw units; what does not fit is unknown.
+// Rounds a depth in raw units; a depth that does not fit becomes 0 (unknown).
 inline uint16_t EncodeDepth(float raw) {
   return raw > 0.0F && raw < static_cast<float>(Frame::kNoDepth)
              ? static_cast<uint16_t>(raw + 0.5F)

@@ -12,26 +12,26 @@
 namespace rgbd_pose {
 namespace {
 
-// Neighbours further apart than this many sigmas of a depth lie on two
-// surfaces: 4 standard deviations of a difference, which has sqrt(2) times that
-// of a depth. Slanted ones get the slack of kMaxSlope per pixel.
+// Neighbours that differ by more than this many sigmas of a depth are on two
+// surfaces: 4 sigmas of a difference, whose sigma is sqrt(2) times the sigma of
+// a depth. For slanted surfaces kMaxSlope per pixel is added.
 constexpr double kMaxNoiseStep = 4.0 * M_SQRT2;
 
-// Relative change of depth from a pixel to the next on the steepest surface
-// that is still used: at f = 525 px this is a surface seen at 80 degrees.
+// Relative change of depth from one pixel to the next on the steepest surface
+// used. With f = 525 px this is a surface seen at 80 degrees.
 constexpr double kMaxSlope = 0.011;
 
 // Fewer valid neighbours (of 9) mean the edge of an object or of a hole.
 constexpr int kMinValid = 6;
 
-// Of the pixels that a normal is made of.
+// Distance of the pixels used for a normal.
 constexpr int kStridePx = 5;
 
-// Deviations from the plane, relative to depth, beyond this are another
-// surface: 1.5 % is 5 sigma of a Kinect at 2 m (Khoshelham & Elberink 2012).
+// A point with a larger relative deviation from the plane is on another
+// surface. 1.5 % is 5 sigma of a Kinect at 2 m (Khoshelham & Elberink 2012).
 constexpr double kMaxDeviation = 0.015;
 
-// A pixel with fewer neighbours (of 4) hangs in the air.
+// A pixel with fewer valid neighbours (of 4) is not on a surface.
 constexpr int kMinNeighbours = 2;
 
 }  // namespace

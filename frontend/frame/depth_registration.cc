@@ -12,30 +12,29 @@ namespace {
 
 constexpr int kBlock = 64;  // pixels projected together
 
-// Distances nearer than this (m) are behind the colour camera's glass.
+// Smaller depths (m) are behind the glass of the colour camera.
 constexpr float kMinDepth = 0.01F;
 
-// Depth pixels count as this much wider than they are: turned, stretched by a
-// lens or on a slope, they would leave gaps of single pixels between them.
+// Depth pixels are enlarged by this factor. Otherwise rotation, lens distortion
+// and slanted surfaces would leave gaps of single pixels between them.
 constexpr double kOverlap = 1.1;
 
-// Beyond this square of its tangent a ray is outside every lens that radial
-// distortion describes: its polynomial may fold such rays back into the image.
+// A ray with a larger squared tangent is outside every lens that radial
+// distortion describes. Its polynomial may fold such rays back into the image.
 constexpr float kMaxTangentSquared = 4.0F;
 constexpr float kMaxTangentSquaredOfFisheye = 100.0F;
 
-// Values of up to kBlock pixels; the library makes vectors of what is done with
-// them.
+// Values of up to kBlock pixels. Eigen vectorises operations on them.
 using Block = Eigen::Array<float, Eigen::Dynamic, 1, 0, kBlock, 1>;
 using Places = Eigen::Array<int, Eigen::Dynamic, 1, 0, kBlock, 1>;
 
-// The first whole numbers beyond x, between 0 and `end`.
+// The first integers greater than x, clamped to 0 and `end`.
 Places FirstBeyond(const Block& x, float end) {
   return (x + 1.0F).max(0.0F).min(end).cast<int>();
 }
 
-// How large a depth pixel (ideal; NaN: none) is in the colour image at the same
-// distance, px: lenses make some larger than others.
+// The size of a depth pixel (undistorted; NaN: none) in the colour image at the
+// same depth, px. Lens distortion makes some pixels larger than others.
 Eigen::Vector2d PixelSize(const Camera& depth, const Eigen::Vector2d& pixel,
                           const Camera& color) {
   const Eigen::Vector2d place = depth.Ray(pixel.x(), pixel.y()).head<2>();
@@ -74,7 +73,7 @@ DepthRegistration::DepthRegistration(const DepthCamera& depth,
   const Eigen::Matrix3d rotation =
       depth.color_from_depth.rotation.toRotationMatrix();
   for (const Eigen::Vector2d& pixel : pixels) {
-    // What the lens does not tell is behind the camera.
+    // A pixel for which the lens gives no ray is put behind the camera.
     const Eigen::Vector3d ray =
         pixel.allFinite() ? rotation * depth.camera.Ray(pixel.x(), pixel.y())
                           : Eigen::Vector3d(0.0, 0.0, -1e3);
@@ -129,8 +128,8 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
     const auto is_seen = raw > 0.0F && raw < Frame::kNoDepth &&
                          there_z > kMinDepth && ray_r2 < max_tangent_squared &&
                          there < Frame::kNoDepth;
-    // Half-open rectangles: those of neighbours do not overlap. What is not
-    // seen has none.
+    // Rectangles are half-open: adjacent ones do not overlap. An unseen pixel
+    // has an empty rectangle.
     const Block right = is_seen.select(u + half_width, -1.0F);
     const Places u0 = FirstBeyond(u - half_width, columns);
     const Places u1 = FirstBeyond(right, columns);
@@ -138,7 +137,7 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
     const Places v1 = FirstBeyond(v + half_height, rows);
     for (int i = 0; i < n; ++i) {
       if (u0[i] >= u1[i]) continue;
-      // One less, so that none (0) is farther than all others.
+      // Subtracting one wraps no depth (0) around to the largest depth.
       const auto value = static_cast<uint16_t>(static_cast<int>(there[i]) - 1);
       for (int at_v = v0[i]; at_v < v1[i]; ++at_v) {
         auto* out = registered->ptr<uint16_t>(at_v);

@@ -8,23 +8,23 @@
 
 namespace rgbd_pose {
 
-// The camera that took the depth images, where it is not the colour camera.
+// The camera of the depth images, if it is not the colour camera.
 struct DepthCamera {
   Camera camera;             // of the depth image
-  Rigid3d color_from_depth;  // from its axes into those of the colour camera
+  Rigid3d color_from_depth;  // pose of the depth camera in the colour camera
 };
 
-// Depth images as the colour camera would have taken them. Each depth pixel
-// becomes the rectangle that it covers there, at its new distance; where
-// several fall on one pixel, the nearest hides the others. What the depth
-// camera does not see stays without depth.
+// Registers depth images to the colour camera. Each depth pixel becomes the
+// rectangle that it covers in the colour image, with its new depth. If several
+// fall on one pixel, the nearest hides the others. Surfaces that the depth
+// camera does not see have no depth.
 class DepthRegistration {
  public:
-  // Throws InputError for cameras that make no sense.
+  // Throws InputError for invalid cameras.
   DepthRegistration(const DepthCamera& depth, const Camera& color);
 
   // `depth`: CV_16UC1 of the depth camera's size; 0 and Frame::kNoDepth: none.
-  // Returns one of the colour camera's size in the same units. From any thread.
+  // The result has the colour camera's size and the same units. Thread-safe.
   cv::Mat Register(const cv::Mat& depth, double units_per_metre) const;
 
  private:
@@ -35,9 +35,9 @@ class DepthRegistration {
   Eigen::Vector3f translation_;  // of color_from_depth, m
   int width_;
   int height_;
-  // The rays of all depth pixels in the colour camera's axes, row by row.
+  // Rays of all depth pixels in the axes of the colour camera, row by row.
   std::vector<float> ray_x_, ray_y_, ray_z_;
-  // Half their sizes in the colour image at the same distance, px.
+  // Half the sizes of the depth pixels in the colour image at equal depth, px.
   std::vector<float> half_width_, half_height_;
 };
 

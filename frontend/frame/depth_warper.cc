@@ -9,10 +9,10 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kFlowBlock = kEight;  // px; the flow is the same all over a block
+constexpr int kFlowBlock = kEight;  // px; the flow is constant in a block
 
-// Within a block, and from one try to the next, this much (px) is the same
-// place.
+// Smaller differences of displacement (px) within a block, and between two
+// iterations, do not matter.
 constexpr float kSamePlacePx = 0.5F;
 
 }  // namespace
@@ -27,7 +27,7 @@ DepthWarper::DepthWarper(const Camera& camera)
     for (int column = 0; column < columns_; ++column) {
       const Eigen::Vector3d ray = camera.Unproject(
           {column * kFlowBlock + kMiddle, row * kFlowBlock + kMiddle}, 1.0);
-      // Of what the lens does not tell nothing is asked.
+      // If the lens gives no ray, any ray will do.
       rays_.push_back(ray.allFinite() ? ray : Eigen::Vector3d::UnitZ());
       middles_.push_back(camera.Project(rays_.back()));
     }
@@ -51,8 +51,8 @@ const cv::Mat& DepthWarper::Move(const Frame& frame,
     measured_from_moved_.push_back(moved_from_measured(row).Inverse());
   }
   for (int row = 0; row < rows_; ++row) {
-    // Where a block was measured decides its motion: about as far off as the
-    // one to the left.
+    // The motion of a block depends on the row where it was measured. Its
+    // displacement is about the same as for the block to the left.
     double down = 0.0;
     for (int column = 0; column < columns_; ++column) {
       const cv::Rect block = BlockAt(column, row);
@@ -90,10 +90,10 @@ cv::Rect DepthWarper::BlockAt(int column, int row) const {
          cv::Rect(0, 0, camera_.width, camera_.height);
 }
 
-// Of columns first: the compiler makes vectors of that.
+// Columns first, because the compiler can vectorise this loop.
 void DepthWarper::FindRanges() {
   for (int row = 0; row < rows_; ++row) {
-    // One less and wrapped around: no depth is the largest number.
+    // Subtracting one wraps no depth (0) around to the largest number.
     column_min_.assign(measured_.cols, Frame::kNoDepth);
     column_max_.assign(measured_.cols, 0);
     const int end = std::min((row + 1) * kFlowBlock, measured_.rows);
@@ -137,7 +137,7 @@ DepthWarper::Flow DepthWarper::FlowAt(
       static_cast<float>(measured_from_moved.translation.z() * depth_scale_)};
 }
 
-// Of all blocks that pixels of a block may come from, at any depth.
+// The range of all blocks that the pixels of a block may come from.
 DepthWarper::Range DepthWarper::RangeAround(int column, int row,
                                             const Flow& flow) const {
   constexpr float kMaxInverseDepth = 2.0F;  // 1/m
@@ -196,9 +196,9 @@ void DepthWarper::MoveTogether(const cv::Rect& block, const Flow& flow, float u,
   }
 }
 
-// Which surface a pixel sees decides where it was, and where it was which
-// surface that is: looked for from the nearest depth around, so that what is
-// hidden is found only if nothing hides it.
+// The source position of a pixel depends on the surface that it sees, and vice
+// versa. The search iterates from the nearest depth around first: a hidden
+// surface is found only if nothing hides it.
 void DepthWarper::MoveEach(const cv::Rect& block, const Flow& flow, Range range,
                            cv::Mat* out) const {
   constexpr int kMaxSteps = 3;

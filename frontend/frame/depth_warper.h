@@ -11,32 +11,30 @@
 
 namespace rgbd_pose {
 
-// Of a thing in a room (1/m): where a pixel's own depth is not at hand.
+// Typical inverse depth in a room (1/m), used if a pixel's depth is not known.
 inline constexpr double kRoomInverseDepth = 0.5;
 
-// Makes depth images as a camera sees them after a small motion (some
-// centimetres and degrees): what has to be done to depth that was measured at
-// another time than colour. One object serves one thread; its memory is used
-// again.
+// Warps depth images to the view of a camera after a small motion (some
+// centimetres and degrees). This aligns depth that was measured at another time
+// than colour. Not thread-safe; the object reuses its memory.
 class DepthWarper {
  public:
   // The camera of all frames.
   explicit DepthWarper(const Camera& camera);
 
-  // The depth image (CV_16UC1, in the frame's units, 0: unknown) of a frame
-  // from where the motion leads. Each depth is that of one surface: what comes
-  // into view from behind another one is unknown. Good until the next call.
+  // The depth image of a frame (CV_16UC1, in its units, 0: unknown) seen after
+  // the motion. Each depth is of one surface; surfaces that come into view from
+  // behind other ones are unknown. Valid until the next call.
   const cv::Mat& Move(const Frame& frame, const Rigid3d& moved_from_measured);
 
-  // The same where every row (px, of the measured image) has a motion of its
-  // own.
+  // The same with a separate motion for each row (px) of the measured image.
   using RowMotion = std::function<Rigid3d(double row)>;
   const cv::Mat& Move(const Frame& frame, const RowMotion& moved_from_measured);
 
  private:
-  // How a block of pixels moves. A moved pixel p at depth z was measured at
-  // p + turn + shift / z, to first order in the translation, where its depth
-  // was stretch * z + advance.
+  // The motion of a block of pixels. A moved pixel p at depth z was measured at
+  // p + turn + shift / z (to first order in the translation) with the depth
+  // stretch * z + advance.
   struct Flow {
     float turn_u, turn_v;    // px
     float shift_u, shift_v;  // px m
@@ -44,29 +42,29 @@ class DepthWarper {
     float advance;  // raw units
   };
   struct Range {
-    uint16_t min, max;  // of raw depths; min > max: there are none
+    uint16_t min, max;  // raw depths; min > max: none
   };
 
   cv::Rect BlockAt(int column, int row) const;
   void FindRanges();
   Flow FlowAt(size_t block, const Rigid3d& measured_from_moved) const;
   Range RangeAround(int column, int row, const Flow& flow) const;
-  // All of the block at one depth, as far as its place is concerned.
+  // Moves all pixels of a block by the same displacement.
   void MoveTogether(const cv::Rect& block, const Flow& flow, float u, float v,
                     cv::Mat* out) const;
-  // Each pixel by itself: which surface it sees has to be found out.
+  // Moves each pixel separately and searches for the surface that it sees.
   void MoveEach(const cv::Rect& block, const Flow& flow, Range range,
                 cv::Mat* out) const;
-  // The raw depth between pixels of one surface, or the nearest pixel's.
+  // Raw depth between pixels of one surface, otherwise of the nearest pixel.
   float Sample(float u, float v) const;
 
   Camera camera_;
-  int columns_, rows_;                    // of blocks
-  std::vector<Eigen::Vector3d> rays_;     // of their middles
-  std::vector<Eigen::Vector2d> middles_;  // where these are, px
-  std::vector<Range> ranges_;             // of their depths
+  int columns_, rows_;                    // number of blocks
+  std::vector<Eigen::Vector3d> rays_;     // of the centres of blocks
+  std::vector<Eigen::Vector2d> middles_;  // centres of blocks, px
+  std::vector<Range> ranges_;             // of blocks
   std::vector<uint16_t> column_min_, column_max_;
-  cv::Mat measured_;  // the depth image, 0: none
+  cv::Mat measured_;  // the depth image; 0: none
   cv::Mat moved_;
   std::vector<Rigid3d> measured_from_moved_;  // by row of the measured image
   double depth_scale_ = 1.0;

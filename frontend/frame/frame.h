@@ -11,45 +11,45 @@ namespace rgbd_pose {
 
 // One RGB-D image pair of a sequence.
 struct Frame {
-  int index = 0;                // place in its source, from 0
-  double timestamp = 0.0;       // of the colour image, seconds
-  double depth_delay = 0.0;     // of depth's own stamp, seconds after it
+  int index = 0;                // index in the source, from 0
+  double timestamp = 0.0;       // of the colour image, s
+  double depth_delay = 0.0;     // stamp of depth minus stamp of colour, s
   cv::Mat gray;                 // CV_8UC1
   cv::Mat depth;                // CV_16UC1, registered to gray, the same size
   double depth_scale = 5000.0;  // raw depth units per metre
 
-  // When rows were exposed, from the stamp of each image.
+  // Exposure times of the rows, relative to the stamp of each image.
   Shutter color_shutter = {};
   Shutter depth_shutter = {};
 
-  // The camera's velocity at the time stamp; nothing: not known.
+  // Velocity of the camera at the time stamp; nothing if unknown.
   std::optional<Twist> twist = {};
 
-  // Of gray's size, CV_8UC3 in the order blue, green, red; empty unless its
-  // source was asked to keep it.
+  // Of the size of gray, CV_8UC3 in the order blue, green, red. Empty unless
+  // the source was asked to keep colours.
   cv::Mat color;
 
-  // Depth in metres at a whole pixel; 0 where there is none.
+  // Depth at a pixel, m; 0 if there is none.
   double DepthAt(int column, int row) const {
     const uint16_t raw = depth.at<uint16_t>(row, column);
     return raw == kNoDepth ? 0.0 : raw / depth_scale;
   }
 
-  // Whether both images were taken at the time stamp. Stamps that differ by
-  // less than 0.1 ms do not count: not even a turn of 360 degrees a second
-  // moves anything by half a pixel meanwhile. Beyond 50 ms they are of clocks
-  // that disagree.
+  // Whether all rows of both images were exposed at the time stamp. Stamps that
+  // differ by less than 0.1 ms count as equal: in this time even a rotation of
+  // 360 degrees per second moves no pixel by half a pixel. A difference of more
+  // than 50 ms is ignored, as it comes from clocks that disagree.
   bool IsOneMoment() const {
     return color_shutter.IsGlobal() && DepthShutter().IsGlobal();
   }
 
-  // Whether somebody says when its rows were exposed.
+  // Whether the exposure times of the rows are known.
   bool HasKnownTimes() const {
     return color_shutter.is_known || !color_shutter.IsGlobal() ||
            !depth_shutter.IsGlobal();
   }
 
-  // When depth was taken, from the stamp of colour.
+  // Exposure times of the rows of depth, relative to the stamp of colour.
   Shutter DepthShutter() const {
     const double delay = std::abs(depth_delay);
     const bool counts = delay > 1e-4 && delay < 0.05;
@@ -57,16 +57,15 @@ struct Frame {
             depth_shutter.readout};
   }
 
-  // What has to be undone; nothing where the velocity is not known.
+  // The timing to correct for; no effect if the velocity is not known.
   FrameTiming Timing() const {
     return twist.has_value() ? Timing(*twist) : FrameTiming();
   }
-  // The same with a velocity.
   FrameTiming Timing(const Twist& velocity) const {
     return {color_shutter, DepthShutter(), velocity};
   }
 
-  // The same with images of its own, but no colours.
+  // A copy with its own images, but without colours.
   Frame Clone() const {
     Frame clone = *this;
     clone.gray = gray.clone();
@@ -75,7 +74,7 @@ struct Frame {
     return clone;
   }
 
-  // Some sensors mark "no measurement" by the largest value instead of 0.
+  // Some sensors mark missing measurements by the largest value instead of 0.
   static constexpr uint16_t kNoDepth = 65535;
 };
 

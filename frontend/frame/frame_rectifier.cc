@@ -6,8 +6,8 @@
 namespace rgbd_pose {
 namespace {
 
-// Pixels from a node to the next, in both directions. From left to right eight
-// pixels move alike.
+// Distance of nodes in both directions, px. Horizontally eight pixels have the
+// same motion.
 constexpr int kStep = 8;
 constexpr double kFirstColumn = (kStep - 1) / 2.0;
 
@@ -22,7 +22,7 @@ FrameRectifier::FrameRectifier(const Camera& camera)
     for (int column = 0; column < columns_; ++column) {
       const Eigen::Vector3d ray = camera.Unproject(
           Eigen::Vector2d(column * kStep + kFirstColumn, row * kStep), 1.0);
-      // Of what the lens does not tell nothing is asked.
+      // If the lens gives no ray, any ray will do.
       rays_.push_back(ray.allFinite() ? ray : Eigen::Vector3d::UnitZ());
       nodes_.push_back(camera.Project(rays_.back()));
     }
@@ -72,8 +72,8 @@ void FrameRectifier::MakeFlows(const Frame& frame,
   const FrameTiming timing = frame.Timing();
   const Rigid3d middle_from_target = target_from_middle.Inverse();
   const Eigen::Matrix3d turned = middle_from_target.rotation.toRotationMatrix();
-  // Where a ray of the target, at an inverse depth, is seen that long after the
-  // middle row.
+  // The image point of a target ray at an inverse depth, seen `seconds` after
+  // the exposure of the middle row.
   const auto see = [&](const Eigen::Vector3d& ray, double inverse_depth,
                        double seconds) {
     const Twist twist = {timing.twist.angular,
@@ -84,7 +84,7 @@ void FrameRectifier::MakeFlows(const Frame& frame,
   };
   flows_.resize(rays_.size());
   for (size_t i = 0; i < rays_.size(); ++i) {
-    // The row decides the time, and that the row.
+    // The time depends on the row, and the row on the time: iterate.
     Eigen::Vector2d near = nodes_[i];
     double time = 0.0;
     for (int step = 0; step < 2; ++step) {
@@ -101,8 +101,8 @@ void FrameRectifier::MakeFlows(const Frame& frame,
   }
 }
 
-// What moves alike has the mean depth there: at an edge, part of what is behind
-// goes along with what is in front, as in a patch around a corner.
+// Pixels with the same motion use their mean depth. At an edge, part of the
+// background moves with the foreground, as in a patch around a corner.
 void FrameRectifier::MakeMaps(const cv::Mat& depth, double depth_scale) {
   map_u_.create(depth.size(), CV_32F);
   map_v_.create(depth.size(), CV_32F);
@@ -114,7 +114,7 @@ void FrameRectifier::MakeMaps(const cv::Mat& depth, double depth_scale) {
     const auto* const raw = depth.ptr<uint16_t>(v);
     float* const to_u = map_u_.ptr<float>(v);
     float* const to_v = map_v_.ptr<float>(v);
-    float inverse_depth = kRoomInverseDepth;  // of the last depth to the left
+    float inverse_depth = kRoomInverseDepth;  // of the last valid depth
     for (int column = 0; column < columns_; ++column) {
       const int first = column * kStep;
       const int end = std::min(first + kStep, depth.cols);

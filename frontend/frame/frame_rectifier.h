@@ -12,41 +12,40 @@
 
 namespace rgbd_pose {
 
-// Resamples frames whose rows were exposed one after another to images of one
-// moment, as the same camera with a global shutter would have taken them. For
-// frames that others are tracked against: whatever is made of them needs to
-// know nothing of shutters. One object serves one thread; its memory is used
-// again.
+// Rectifies rolling-shutter frames: resamples them to the images that the same
+// camera with a global shutter would have taken. Used for frames that others
+// are tracked against; code that uses rectified frames needs no shutter model.
+// Not thread-safe; the object reuses its memory.
 class FrameRectifier {
  public:
   // The camera of all frames.
   explicit FrameRectifier(const Camera& camera);
 
-  // The frame at its stamp, its images its own. As it is (and its images
-  // shared) where the velocity is not known or there is nothing to undo.
+  // The frame at its stamp, with its own images. If the velocity is not known
+  // or nothing has to be corrected, the frame is returned with shared images.
   Frame Rectify(const Frame& frame);
 
-  // The same as seen from elsewhere nearby: `target_from_middle` of the camera
-  // when the middle row of colour was exposed.
+  // The same, seen from a pose nearby. `target_from_middle` is relative to the
+  // camera at the exposure of the middle row of colour.
   Frame Rectify(const Frame& frame, const Rigid3d& target_from_middle);
 
  private:
-  // How an image point at a node of a grid moves: by turn + shift / z px.
+  // The motion of an image point at a grid node: turn + shift / z, px.
   struct Flow {
     std::array<float, 2> turn, shift;
   };
 
   void MakeFlows(const Frame& frame, const Rigid3d& target_from_middle);
-  // Fills the maps. `depth`: as moved.
+  // Fills the maps. `depth`: the warped depth image.
   void MakeMaps(const cv::Mat& depth, double depth_scale);
 
   Camera camera_;
   DepthWarper mover_;
-  int columns_, rows_;                  // of nodes
+  int columns_, rows_;                  // number of nodes
   std::vector<Eigen::Vector3d> rays_;   // of nodes
-  std::vector<Eigen::Vector2d> nodes_;  // where they are, px
+  std::vector<Eigen::Vector2d> nodes_;  // image points of nodes, px
   std::vector<Flow> flows_;             // at nodes
-  cv::Mat map_u_, map_v_;               // where each pixel is read, px
+  cv::Mat map_u_, map_v_;               // source position of each pixel, px
 };
 
 }  // namespace rgbd_pose

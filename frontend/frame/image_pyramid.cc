@@ -39,7 +39,7 @@ void BuildImagePyramid(const cv::Mat& gray, int levels,
       pyramid->resize(level);
       return;
     }
-    // Of an odd side the last pixel is left out, so that the scale is 2.
+    // The last pixel of an odd side is dropped to keep the scale at exactly 2.
     const cv::Mat even = finer(cv::Rect(0, 0, 2 * half.width, 2 * half.height));
     cv::resize(even, (*pyramid)[level], half, 0.0, 0.0, cv::INTER_AREA);
   }

@@ -9,14 +9,15 @@
 namespace rgbd_pose {
 namespace {
 
-// Where depth is not known, what is seen is taken to be so far away (m).
+// Depth assumed for a point without a known depth, m.
 constexpr double kUsualDepth = 1.0 / kRoomInverseDepth;
 
-// The row decides when a point was seen, and that decides the row: one step
-// more leaves a hundredth of what the first leaves.
+// The time depends on the row where a point is seen, and the row on the time.
+// The second iteration reduces the remaining error to a hundredth.
 constexpr int kRowSteps = 2;
 
-// Where a point (at the stamp) is seen by rows exposed at such times.
+// The image point of a point (at the stamp) with this shutter. `moved` is the
+// point in camera axes at the exposure time of its row.
 Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
                            const Twist& twist, const Eigen::Vector3d& point,
                            Eigen::Vector3d* moved) {
@@ -30,14 +31,14 @@ Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
   return pixel;
 }
 
-// What is seen along a ray (a, b, 1) so long after the stamp. Depth is looked
-// up where and when it was taken: where that is depends on the depth itself, of
-// which `depth` is a first guess.
+// The observation along a ray (a, b, 1) that was seen `seconds` after the
+// stamp. Depth is looked up at the position and time of its exposure. This
+// position depends on the depth itself: it is iterated from the guess `depth`.
 Observation ObserveMoving(const Frame& frame, const Camera& camera,
                           const FrameTiming& timing, const Eigen::Vector3d& ray,
                           double seconds, double depth, double sigma_px,
                           const DepthLookupOptions& depth_options) {
-  constexpr double kSmallChange = 0.01;  // of the depth: a tenth of a pixel
+  constexpr double kSmallChange = 0.01;  // relative depth: a tenth of a pixel
   constexpr int kDepthSteps = 3;
   const Twist& twist = timing.twist;
   DepthSample sample;
@@ -78,7 +79,7 @@ Observation Observe(const Frame& frame, const Camera& camera, double u,
                     const DepthLookupOptions& depth_options) {
   const FrameTiming timing = frame.Timing();
   const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
-  // Where the lens tells no ray nothing is known: not even a depth.
+  // If the lens gives no ray, nothing is known, not even a depth.
   if (!ideal.allFinite()) {
     return {ideal.x(), ideal.y(), 0.0, sigma_px, 0.0, Eigen::Vector3d::Zero()};
   }

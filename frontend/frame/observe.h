@@ -11,26 +11,26 @@
 namespace rgbd_pose {
 
 // The observation of an image point (px, distorted) with a localisation noise
-// of sigma_px: undistorted, with the depth and the normal of what is seen
-// there, as far as they are known. All as from the camera at the frame's stamp
-// (Frame::Timing), whenever row and depth were taken.
+// of sigma_px: undistorted, with the depth and normal of the surface if known.
+// All values are converted from the exposure times of the row and of depth to
+// the camera at the stamp of the frame (Frame::Timing).
 Observation Observe(const Frame& frame, const Camera& camera, double u,
                     double v, double sigma_px,
                     const DepthLookupOptions& depth_options);
 
-// The same image point as `before`, which had been moved by another velocity
-// (`moved_by`), of a frame whose rows were exposed at different times.
+// The observation of the same image point as `before`, which was made with
+// another velocity (`moved_by`), for a frame with a rolling shutter.
 Observation ObserveAgain(const Frame& frame, const Camera& camera,
                          const FrameTiming& moved_by, const Observation& before,
                          const DepthLookupOptions& depth_options);
 
-// The other way round: where a point (m, camera axes at the stamp, z > 0) is
-// seen in the image of a frame with such a timing, px, distorted.
+// The inverse: the image point (px, distorted) of a 3D point (m, camera axes at
+// the stamp, z > 0) in a frame with this timing.
 Eigen::Vector2d ImagePoint(const Camera& camera, const FrameTiming& timing,
                            const Eigen::Vector3d& point);
 
-// How far (px, about) a velocity moves the most distant row of a frame, of
-// something 2 m away: what is lost if nothing is undone.
+// The approximate motion (px) that a velocity causes in the row farthest from
+// the stamp, for a point 2 m away: the error if nothing is corrected.
 double LargestFlow(const Camera& camera, const FrameTiming& timing,
                    const Twist& twist);
 

@@ -10,27 +10,26 @@
 
 namespace rgbd_pose {
 
-// A frame with what is made of its gray levels (pyramids, descriptors): each
-// once, by whoever asks first, and shared by all copies. It shares the images,
-// which must stay as they are for as long as it is in use. Nothing that depends
-// on depth is kept: when that was taken, only the motion tells. May be asked
-// from several threads.
+// A frame with data derived from its gray levels (pyramids, descriptors). Each
+// item is computed once, at the first request, and shared by all copies. The
+// images are shared too and must not change. Nothing that depends on depth is
+// cached: its correction for the capture time depends on the velocity, which
+// may change. Thread-safe.
 class PreparedFrame : public Frame {
  public:
-  // With nothing made yet.
   PreparedFrame() : PreparedFrame(Frame()) {}
   explicit PreparedFrame(const Frame& frame)
       : Frame(frame), derived_(std::make_shared<DerivedData>()) {}
 
-  // The same with another velocity.
+  // A copy with another velocity, which shares the derived data.
   PreparedFrame WithTwist(const std::optional<Twist>& velocity) const {
     PreparedFrame copy = *this;
     copy.twist = velocity;
     return copy;
   }
 
-  // The T of its gray levels, T(*this, arguments...): the same object for equal
-  // arguments, as long as a copy of the frame lives.
+  // The derived data T(*this, arguments...). The same object for equal
+  // arguments, which lives as long as any copy of the frame.
   template <typename T, typename... Arguments>
   const T& Derived(const Arguments&... arguments) const {
     using Made = DerivedOf<T, Arguments...>;
@@ -58,7 +57,7 @@ class PreparedFrame : public Frame {
     T value;
   };
   struct DerivedData {
-    std::recursive_mutex mutex;  // making one may ask for another
+    std::recursive_mutex mutex;  // computing one item may request another
     std::vector<std::unique_ptr<AnyDerived>> all;
   };
 

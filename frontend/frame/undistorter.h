@@ -7,24 +7,24 @@
 
 namespace rgbd_pose {
 
-// Makes images as a camera without distortion sees them: of the same size,
-// focal lengths and principal point. What it sees beyond the image is black,
-// without depth.
+// Resamples images to a camera without distortion that has the same size, focal
+// lengths and principal point. Pixels outside the input are black, without
+// depth.
 class Undistorter {
  public:
   explicit Undistorter(const Camera& camera);
 
-  // Colour, grey and depth of a frame; each depth is that of one pixel, never
-  // between two surfaces.
+  // Undistorts colour, grey and depth of a frame. Depth is taken from the
+  // nearest pixel, never interpolated between two surfaces.
   Frame Undistort(const Frame& frame) const;
 
-  // The camera of these frames.
+  // The camera of the undistorted frames.
   const Camera& camera() const { return ideal_; }
 
  private:
   bool has_distortion_;
   Camera ideal_;
-  cv::Mat map_x_, map_y_;  // CV_32FC1: where each pixel is in the image
+  cv::Mat map_x_, map_y_;  // CV_32FC1: source position of each pixel, px
 };
 
 }  // namespace rgbd_pose

@@ -10,8 +10,8 @@
 
 namespace rgbd_pose {
 
-// A frame as direct costs see it. All images are shared and must stay.
-// `pyramid`: of frame.gray, see image_pyramid.h; `camera`: of level 0.
+// A view of a frame for direct costs. All images are shared and must outlive
+// it. `pyramid`: of frame.gray, see image_pyramid.h; `camera`: of level 0.
 FrameView ViewFrame(const Frame& frame, const std::vector<cv::Mat>& pyramid,
                     const Camera& camera, const DepthNoiseModel& depth_noise);
 

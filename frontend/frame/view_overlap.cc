@@ -6,10 +6,10 @@
 namespace rgbd_pose {
 namespace {
 
-// Of the angle between two lines of sight to one point.
+// Minimum cosine of the angle between the two lines of sight to a point.
 constexpr double kMinCosine = 0.5;
 
-// Of its depth: more than the noise of any sensor within some metres.
+// Relative to depth; more than the noise of any sensor within some metres.
 constexpr double kMaxDepthDifference = 0.05;
 
 }  // namespace
@@ -57,7 +57,7 @@ ViewLikeness ViewOverlap::LikenessTo(const Frame& cur, const cv::Mat& view,
   ViewLikeness likeness;
   if (seen == 0) return likeness;
   likeness.depth = static_cast<double>(agree) / seen;
-  // Noise of one gray level is no contrast.
+  // `+ seen` is the variance of noise of one gray level, which is no contrast.
   const double contrast_a = aa - a * a / seen + seen;
   const double contrast_b = bb - b * b / seen + seen;
   likeness.gray = (ab - a * b / seen) / std::sqrt(contrast_a * contrast_b);

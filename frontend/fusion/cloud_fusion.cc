@@ -6,8 +6,8 @@
 namespace rgbd_pose {
 namespace {
 
-// Below, there are more cubes than any sensor has noise-free points for;
-// above, rooms are no longer recognised.
+// Smaller cubes are more than any sensor has noise-free points for. With larger
+// cubes, rooms are no longer recognisable.
 constexpr double kMinVoxelSize = 0.001;  // m
 constexpr double kMaxVoxelSize = 1.0;    // m
 
@@ -44,7 +44,7 @@ bool CloudFusion::ShouldIntegrate(const TrackedFrame& tracked) const {
     return false;
   }
   if (!last_world_from_cam_.has_value()) return true;
-  // Nearer frames would cost time and bring the same again.
+  // Closer frames would cost time and add nothing new.
   return MotionFilter().IsReached(last_world_from_cam_->Inverse() *
                                   tracked.world_from_cam);
 }

@@ -12,21 +12,21 @@
 
 namespace rgbd_pose {
 
-// Puts the depth images of tracked frames together to a coloured point cloud
-// in the world of their poses.
+// Fuses the depth images of tracked frames into a coloured point cloud in the
+// world frame of their poses.
 class CloudFusion {
  public:
-  // The options must be sound, see Check.
+  // The options must pass FusionOptions::Check.
   explicit CloudFusion(const FusionOptions& options);
 
-  // Whether Add would bring anything new: the status is ok, the camera has
-  // moved, and how the frame lies to the first one is known (its segment).
+  // Whether Add would contribute anything new: the status is ok, the camera has
+  // moved, and the pose relative to the first frame is known (segment 0).
   bool ShouldIntegrate(const TrackedFrame& tracked) const;
 
-  // The frame must have its colour.
+  // The frame must have colours.
   void Add(const Frame& frame, const Rigid3d& world_from_cam);
 
-  // What has come together, and of how many frames.
+  // The points so far, and the number of fused frames.
   const VoxelCloud& cloud() const { return cloud_; }
   int frames() const { return frames_; }
 

@@ -9,31 +9,30 @@
 
 namespace rgbd_pose {
 
-// What depth images are put together by.
 struct FusionOptions {
   Camera camera;  // of all frames
 
-  // Side of the cubes that points are merged in, or at whose corners distances
-  // to the surface are kept (m): details of this size are left. Finer than the
-  // noise of the sensor, more noise is held, not more detail.
+  // Side of the cubes in which points are merged, or at whose corners distances
+  // to the surface are stored (m). It is the size of the smallest details. If
+  // it is finer than the noise of the sensor, the result has more noise, not
+  // more detail.
   double voxel_size = 0.01;
 
-  // Which depths are used, how far noise puts neighbours apart, and how much
-  // each counts: by 1 / sigma^2.
+  // Limits of depth and the noise model. The latter gives the allowed
+  // difference of neighbours and the weight of a depth, 1 / sigma^2.
   DepthLookupOptions depth;
 
-  // One line that says what is wrong with the options, or empty.
+  // A one-line description of an error in the options, or empty.
   std::string Check() const;
 };
 
-// How far a camera has to get from one view to the next that is worth its time.
-// Of a view 57 degrees wide, 3 degrees bring 5 % that were not seen before, and
-// so do 5 cm at a distance of 1 m.
+// The motion of a camera after which the next view is worth processing. With a
+// field of view of 57 degrees, 5 % of the view is new after a rotation of 3
+// degrees, or after 5 cm at a distance of 1 m.
 struct MotionFilter {
   double min_distance = 0.05;  // m
-  double min_angle_deg = 3.0;  // whichever is reached first
+  double min_angle_deg = 3.0;  // either limit is sufficient
 
-  // Whether it got so far.
   bool IsReached(const Rigid3d& last_from_cur) const {
     return last_from_cur.translation.norm() >= min_distance ||
            last_from_cur.Angle() * kDegreesPerRadian >= min_angle_deg;

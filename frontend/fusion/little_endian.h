@@ -7,7 +7,7 @@
 
 namespace rgbd_pose {
 
-// Appends a number's bytes, the lowest first, whatever the machine's order.
+// Appends the bytes of a number in little-endian order on any machine.
 template <typename T>
 void AppendLittleEndian(T value, std::string* bytes) {
   static_assert(sizeof(T) == 2 || sizeof(T) == 4 || sizeof(T) == 8);

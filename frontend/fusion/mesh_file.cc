@@ -17,7 +17,7 @@ namespace {
 
 using Formatter = std::string (*)(const TriangleMesh& mesh);
 
-// By the endings of files.
+// By file extension.
 constexpr Named<Formatter> kFormats[] = {{".ply", FormatMeshPly},
                                          {".glb", FormatGlb}};
 
@@ -37,8 +37,8 @@ constexpr size_t kChunkHeaderBytes = 8;
 constexpr size_t kPositionBytes = 3 * sizeof(float);
 constexpr size_t kColorBytes = 4 * sizeof(uint16_t);
 
-// Vertices of glTF have linear colours, images those of sRGB (IEC 61966-2-1).
-// 16 bits, as 8 would leave few dark ones.
+// Converts the sRGB colours of images (IEC 61966-2-1) to the linear colours of
+// glTF vertices. 16 bits, because 8 bits would leave few dark colours.
 std::array<uint16_t, 256> LinearColors() {
   std::array<uint16_t, 256> linear;
   for (size_t i = 0; i < linear.size(); ++i) {
@@ -81,8 +81,7 @@ std::string Binary(const TriangleMesh& mesh) {
 std::string Json(const TriangleMesh& mesh, size_t binary_bytes) {
   constexpr const char* kAsset =
       "{\"asset\":{\"version\":\"2.0\",\"generator\":\"rgbd_pose\"}";
-  // A file without a surface is one without a scene: accessors of nothing are
-  // not allowed.
+  // An empty mesh gives a file without a scene: glTF forbids empty accessors.
   if (mesh.triangles.empty()) return std::string(kAsset) + "}";
   Eigen::Vector3f low = mesh.vertices[0].position, high = low;
   for (const ColoredPoint& point : mesh.vertices) {
@@ -172,7 +171,7 @@ std::string FormatMeshPly(const TriangleMesh& mesh) {
       "property uchar red\n"
       "property uchar green\n"
       "property uchar blue\n";
-  // A cloud has no such element at all.
+  // A point cloud does not have this element.
   if (!mesh.triangles.empty()) {
     bytes += "element face " + std::to_string(mesh.triangles.size()) +
              "\n"

@@ -7,17 +7,17 @@
 
 namespace rgbd_pose {
 
-// Writes a mesh as the file's ending says, .ply or .glb, as a whole or not at
-// all. Throws InputError if it cannot, or for another ending.
+// Writes a mesh completely or not at all, in the format given by the extension,
+// .ply or .glb. Throws InputError on failure and for another extension.
 void WriteMesh(const std::string& path, const TriangleMesh& mesh);
 
-// Throws InputError if WriteMesh could not write the file: to be said before
-// the work rather than after it.
+// Throws InputError if WriteMesh could not write the file. To be called before
+// a long computation.
 void RequireMeshFile(const std::string& path);
 
-// A mesh as a binary glTF 2.0 file (.glb), coloured and not lit: what was seen
-// has its light already. glTF has y up and z towards who looks at it; the world
-// of a trajectory, whose first camera has y down, is turned around x.
+// A mesh as a binary glTF 2.0 file (.glb) with unlit colours, as images contain
+// the light already. In glTF y points up and z towards the viewer. The world,
+// in which y of the first camera points down, is therefore rotated around x.
 std::string FormatGlb(const TriangleMesh& mesh);
 
 // A mesh as a PLY file: binary little-endian, per vertex x y z (float, metres)
@@ -25,10 +25,10 @@ std::string FormatGlb(const TriangleMesh& mesh);
 // The PLY Polygon File Format, 1994.)
 std::string FormatMeshPly(const TriangleMesh& mesh);
 
-// A point cloud: the same without faces.
+// A point cloud as such a PLY file without faces.
 std::string FormatPly(const std::vector<ColoredPoint>& points);
 
-// Writes it as a whole or not at all. Throws InputError if it cannot.
+// Writes a PLY file completely or not at all. Throws InputError on failure.
 void WritePly(const std::string& path, const std::vector<ColoredPoint>& points);
 
 }  // namespace rgbd_pose

@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kBlockSide = TsdfVolume::kSide;
 
-// Of the fixed point that colours are kept in.
+// Fixed-point scale of stored colours.
 constexpr float kColorSteps = 256.0F;
 
 void AverageColor(const cv::Vec3b& bgr, float share, DistanceVoxel* voxel) {
@@ -35,7 +35,7 @@ std::string MeshFusionOptions::Check() const {
   }
   if (!(max_sigma >= 0.0)) return "max_sigma must not be negative";
   if (threads < 1) return "at least one thread is needed";
-  constexpr double kFar = 1000.0;  // m, beyond all sensors
+  constexpr double kFar = 1000.0;  // beyond the range of all sensors, m
   const double farthest = std::min(depth.max_depth, max_depth);
   if (!(depth.min_depth > 0.0) || !(farthest > depth.min_depth) ||
       !(farthest <= kFar)) {
@@ -112,9 +112,9 @@ void MeshFusion::KeepSurfacePixels(const Frame& frame) {
   }
 }
 
-// All that rays pass within the truncation of where they end. Blocks are much
-// larger than what is between neighbouring rays. Only those within a few voxels
-// are worth making: where noise is larger than that, ends are spread by it.
+// All blocks that rays pass within the truncation distance of their end points.
+// Blocks are much larger than the gaps between rays. Only blocks within a few
+// voxels of an end point need creating: larger noise spreads the end points.
 std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
     const Rigid3d& world_from_cam) const {
   constexpr int kStride = 4;  // px
@@ -129,7 +129,7 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
       step,
       static_cast<float>(options_.truncation_voxels * options_.voxel_size));
   std::vector<SeenBlock> seen;
-  std::vector<SeenBlock> last;  // of the ray before, step by step
+  std::vector<SeenBlock> last;  // of the previous ray, by step
   for (int y = 0; y < depth_.rows; y += kStride) {
     last.clear();
     for (int x = 0; x < depth_.cols; x += kStride) {
@@ -159,7 +159,7 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
       }
     }
   }
-  // The near ones of each first.
+  // For each key a near block comes first.
   std::sort(seen.begin(), seen.end(),
             [](const SeenBlock& a, const SeenBlock& b) {
               return a.key != b.key ? a.key < b.key : a.is_near > b.is_near;
@@ -172,7 +172,7 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
   return seen;
 }
 
-// Looks each point of its grid up in the depth image.
+// Projects each grid point of the block into the depth image.
 void MeshFusion::AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
                             TsdfVolume::Block* block) const {
   const Camera& camera = undistorter_.camera();
@@ -193,7 +193,7 @@ void MeshFusion::AddToBlock(uint64_t key, const Rigid3d& cam_from_world,
       const Eigen::Vector3f start = origin +
                                     static_cast<float>(i) * steps.col(0) +
                                     static_cast<float>(j) * steps.col(1);
-      // Apart from what follows, for the sake of vectors.
+      // A separate loop, which the compiler can vectorise.
       std::array<float, kBlockSide> us, vs, zs;
       for (int k = 0; k < kBlockSide; ++k) {
         const auto along = static_cast<float>(k);

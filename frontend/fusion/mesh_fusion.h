@@ -15,59 +15,57 @@
 
 namespace rgbd_pose {
 
-// How depth images become one surface.
 struct MeshFusionOptions : FusionOptions {
-  // Depths beyond (m) are left out, too: noise spreads each over so many voxels
-  // that they take most of the time and memory and bring little.
+  // Larger depths (m) are not used either. Noise spreads each over many voxels:
+  // they would take most of the time and memory for little benefit.
   double max_depth = 4.0;
 
-  // How far around the surface distances are kept: so many voxels, and where
-  // the sensor is noisier so many of its standard deviations.
+  // Truncation distance around the surface: this number of voxels or this
+  // number of standard deviations of depth, whichever is larger.
   double truncation_voxels = 3.0;
   double truncation_sigmas = 3.0;
 
-  // What is known of the surface no better than this (m), when all that was
-  // seen of it has been taken together, is left out; 0: as good as a voxel is
-  // wide.
+  // Maximum standard deviation (m) of the surface from all its measurements
+  // together. Less certain parts are left out. 0: the voxel size.
   double max_sigma = 0.0;
 
-  // Threads that Add works on; the mesh does not depend on it.
+  // Number of threads used by Add; the mesh does not depend on it.
   int threads = 1;
 
-  // One line that says what is wrong with the options, or empty.
+  // A one-line description of an error in the options, or empty.
   std::string Check() const;
 };
 
-// Puts the depth images of frames with known poses together to a mesh in the
-// world of their poses: the zero of a truncated signed distance, averaged over
-// all frames (B. Curless & M. Levoy, A Volumetric Method for Building Complex
-// Models from Range Images, SIGGRAPH 1996). The same frames in the same order
-// give the same mesh.
+// Fuses the depth images of frames with known poses into a mesh in the world
+// frame of their poses. The mesh is the zero level of a truncated signed
+// distance averaged over all frames (B. Curless & M. Levoy, A Volumetric Method
+// for Building Complex Models from Range Images, SIGGRAPH 1996). Deterministic
+// for the same frames in the same order.
 class MeshFusion {
  public:
-  // The options must be sound, see Check.
+  // The options must pass MeshFusionOptions::Check.
   explicit MeshFusion(const MeshFusionOptions& options);
 
-  // The frame must have its colour.
+  // The frame must have colours.
   void Add(const Frame& frame, const Rigid3d& world_from_cam);
 
   // The surface so far.
   TriangleMesh Mesh() const;
 
-  // What is kept of the frames, in bytes.
+  // Memory used by the volume, bytes.
   size_t MemoryBytes() const { return volume_.MemoryBytes(); }
 
  private:
-  // What is done with a depth.
+  // Parameters that depend on a depth.
   struct DepthUse {
     float truncation;  // m
     float weight;      // 1 / m^2
   };
 
-  // A block that a frame sees.
+  // A block seen by a frame.
   struct SeenBlock {
     uint64_t key;
-    bool is_near;  // the surface may be in it
+    bool is_near;  // whether the surface may be in the block
 
     bool operator==(const SeenBlock& other) const {
       return key == other.key && is_near == other.is_near;
@@ -87,11 +85,11 @@ class MeshFusion {
 
   MeshFusionOptions options_;
   Undistorter undistorter_;
-  // By steps of depth: few, so that the table stays near the processor.
+  // By steps of depth. Few steps keep the table in the processor's cache.
   std::vector<DepthUse> uses_;
   double depth_scale_ = 0.0;
   std::vector<int> max_steps_;  // to neighbours, by raw depth; -1: no depth
-  cv::Mat depth_;  // of the frame at hand: CV_32FC1, m, 0 off surfaces
+  cv::Mat depth_;  // of the current frame: CV_32FC1, m; 0: not on a surface
   cv::Mat color_;
   TsdfVolume volume_;
 };

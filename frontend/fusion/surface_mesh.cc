@@ -17,7 +17,7 @@ namespace {
 constexpr int kSide = TsdfVolume::kSide;
 constexpr int kNone = -1;
 
-// The eight corners of a voxel, x in the highest bit.
+// The eight corners of a voxel; the highest bit of the index is x.
 using Corners = std::array<DistanceVoxel, 8>;
 
 int Bit(int corner, int axis) { return corner >> (2 - axis) & 1; }
@@ -40,8 +40,8 @@ class Mesher {
  private:
   using VertexOfVoxel = std::array<int, TsdfVolume::kBlockSize>;
 
-  // The blocks around one, itself first: towards higher (sign 1) or lower (-1)
-  // coordinates. kNone where there is none.
+  // A block and its neighbours towards higher (sign 1) or lower (-1)
+  // coordinates; kNone for missing blocks.
   std::array<int, 8> Neighbours(int index, int sign) const {
     const Eigen::Vector3i here = VoxelOfKey(volume_.key(index));
     std::array<int, 8> neighbours;
@@ -109,7 +109,7 @@ class Mesher {
     return point;
   }
 
-  // That of the corners, by weight and nearness.
+  // The mean colour of the corners, weighted by their weight and proximity.
   static void SetColor(const Eigen::Vector3f& at, const Corners& corners,
                        ColoredPoint* point) {
     std::array<float, 3> sum = {};
@@ -132,7 +132,7 @@ class Mesher {
     point->blue = mean(2);
   }
 
-  // Around each edge from a point of the grid along an axis are four voxels.
+  // Each grid edge is shared by four voxels, whose vertices form a quad.
   void AddTriangles(int index) {
     if (vertices_[index] == nullptr) return;
     const std::array<int, 8> below = Neighbours(index, -1);
@@ -160,7 +160,7 @@ class Mesher {
         ++end[axis];
         const bool is_beyond = end[axis] == kSide;
         if (is_beyond) end[axis] = 0;
-        // It is there: the voxel has a vertex, so all its corners are known.
+        // The block exists: the voxel has a vertex, so all corners are known.
         const float there =
             volume_
                 .block(beyond[is_beyond ? 4 >> axis : 0])[TsdfVolume::PlaceOf(
@@ -178,7 +178,8 @@ class Mesher {
     }
   }
 
-  // Those at the surface's ends, around whose edges not all voxels are known.
+  // At the ends of the surface, some voxels around a vertex's edges are
+  // unknown.
   void DropUnusedVertices() {
     std::vector<int> places(mesh_.vertices.size(), kNone);
     for (const Eigen::Vector3i& triangle : mesh_.triangles) {
@@ -200,7 +201,7 @@ class Mesher {
     if (*std::min_element(corners.begin(), corners.end()) == kNone) return;
     if (!is_seen_from_end) std::swap(corners[1], corners[3]);
     const auto at = [&](int i) { return mesh_.vertices[corners[i]].position; };
-    // Along the shorter diagonal.
+    // Split the quad along the shorter diagonal.
     const int from =
         (at(0) - at(2)).squaredNorm() <= (at(1) - at(3)).squaredNorm() ? 0 : 1;
     for (const int to : {from + 1, from + 2}) {
@@ -212,11 +213,11 @@ class Mesher {
   const TsdfVolume& volume_;
   const double voxel_size_;
   const float min_weight_;
-  std::vector<std::unique_ptr<VertexOfVoxel>> vertices_;  // of each block
+  std::vector<std::unique_ptr<VertexOfVoxel>> vertices_;  // by block
   TriangleMesh mesh_;
 };
 
-// Sums of what a cube holds.
+// Sums over the vertices in a cube.
 struct Cube {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   Eigen::Vector3d color = Eigen::Vector3d::Zero();
@@ -230,7 +231,7 @@ uint64_t KeyOf(const Eigen::Vector3f& position, float size) {
 uint8_t Round(double value) { return static_cast<uint8_t>(std::lround(value)); }
 
 TriangleMesh Coarser(const TriangleMesh& mesh, float size) {
-  std::unordered_map<uint64_t, int> index;  // for looking up alone
+  std::unordered_map<uint64_t, int> index;  // only for lookup
   std::vector<Cube> cubes;
   std::vector<int> cube_of;
   for (const ColoredPoint& vertex : mesh.vertices) {
@@ -256,7 +257,7 @@ TriangleMesh Coarser(const TriangleMesh& mesh, float size) {
     std::array<int, 3> t = {cube_of[triangle[0]], cube_of[triangle[1]],
                             cube_of[triangle[2]]};
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
-    // The same triangle always begins with the same vertex.
+    // Identical triangles must begin with the same vertex.
     std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
     triangles.push_back(t);
   }
@@ -280,8 +281,8 @@ TriangleMesh SimplifyMesh(const TriangleMesh& mesh, float voxel_size,
   TriangleMesh thin = mesh;
   float size = voxel_size;
   while (thin.triangles.size() > max_triangles) {
-    // The number of triangles falls with the square of their size. A little
-    // more, so that it ends where that is not quite so.
+    // The number of triangles falls with the square of their size. kMore makes
+    // the loop end even if this is not exactly true.
     constexpr float kMore = 1.05F;
     size *= kMore * std::sqrt(static_cast<float>(thin.triangles.size()) /
                               static_cast<float>(max_triangles));

@@ -6,11 +6,10 @@
 
 namespace rgbd_pose {
 
-// A point of a map: metres, and its colour.
+// A point of a map with its colour.
 struct ColoredPoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();  // m
 
-  // Its colour.
   uint8_t red = 0;
   uint8_t green = 0;
   uint8_t blue = 0;
@@ -20,7 +19,7 @@ struct ColoredPoint {
 struct TriangleMesh {
   std::vector<ColoredPoint> vertices;
 
-  // Places in `vertices`, counter-clockwise as seen from where the camera was.
+  // Indices into `vertices`, counter-clockwise as seen from the camera.
   std::vector<Eigen::Vector3i> triangles;
 };
 

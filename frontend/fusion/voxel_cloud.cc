@@ -26,7 +26,7 @@ void VoxelCloud::Add(const ColoredPoint& point) {
   Eigen::Vector3i cell;
   for (int i = 0; i < 3; ++i) {
     const float x = point.position[i] * voxels_per_metre_;
-    // Written so that it holds for no NaN.
+    // The negated condition also rejects NaN.
     if (!(x >= -kVoxelKeyRange && x < kVoxelKeyRange)) return;
     cell[i] = FloorToInt(x);
   }
@@ -65,8 +65,8 @@ std::vector<ColoredPoint> VoxelCloud::Thin(int max_points) const {
   std::vector<ColoredPoint> points = Points();
   float size = voxel_size_;
   while (points.size() > static_cast<size_t>(max_points)) {
-    // What is seen are surfaces: the number of cubes falls with the square of
-    // their side. A little more, so that it ends where that is not quite so.
+    // As points are on surfaces, the number of cubes falls with the square of
+    // their side. kMore makes the loop end even if this is not exactly true.
     constexpr float kMore = 1.02F;
     size *= kMore * std::sqrt(static_cast<float>(points.size()) /
                               static_cast<float>(max_points));
@@ -94,15 +94,15 @@ VoxelCloud::Voxel* VoxelCloud::FindOrInsert(uint64_t key) {
   last_ = voxels_.size();
   voxels_.push_back({key, {}, {}, 0});
   slots_[slot] = static_cast<uint32_t>(voxels_.size());
-  // Half full at most: a search takes 1.5 looks on average.
+  // At most half full: a search takes 1.5 probes on average.
   if (2 * voxels_.size() > slots_.size()) Grow();
   return &voxels_[last_];
 }
 
 size_t VoxelCloud::FirstSlot(uint64_t key) const {
-  // Knuth's multiplicative hashing: 2^64 over the golden ratio. Of a block of
-  // 2 x 2 x 4 cubes as a whole, whose slots share a line of the cache: what is
-  // looked up next is mostly next to what was looked up last.
+  // Knuth's multiplicative hashing: 2^64 over the golden ratio. It hashes
+  // blocks of 2 x 2 x 4 cubes, whose slots share a cache line, because most
+  // lookups are next to the previous one.
   constexpr uint64_t kInBlock =
       (1ULL << 2 * kVoxelKeyBits) | (1ULL << kVoxelKeyBits) | 3;
   const uint64_t in_block = (key >> (2 * kVoxelKeyBits) & 1) << 3 |

@@ -8,38 +8,37 @@
 
 namespace rgbd_pose {
 
-// Points merged in cubes of one size: what is kept is the mean position and
-// colour of each cube that holds any, so memory grows with the surface seen and
-// not with the number of points. The same points in the same order give the
-// same cloud.
+// Merges points in cubes of one size. Only the mean position and colour of each
+// non-empty cube are stored: memory grows with the area of the surface, not the
+// number of points. Deterministic for the same points in the same order.
 class VoxelCloud {
  public:
   // The side of a cube in metres; must be > 0.
   explicit VoxelCloud(float voxel_size);
 
-  // Points further than 2^20 cubes from the origin, or not finite, are left
-  // out.
+  // Ignores points that are farther than 2^20 cubes from the origin or not
+  // finite.
   void Add(const ColoredPoint& point);
 
-  // The number of cubes that hold a point.
+  // The number of non-empty cubes.
   int size() const { return static_cast<int>(voxels_.size()); }
   bool empty() const { return voxels_.empty(); }
 
-  // What Add takes, in bytes.
+  // Memory used by the cubes, bytes.
   size_t MemoryBytes() const;
 
-  // One point a cube, in the order in which they were first met.
+  // One point per cube, in the order of the first points in the cubes.
   std::vector<ColoredPoint> Points() const;
 
-  // The same surfaces in at most `max_points` points, spread evenly: the cloud
-  // with larger cubes. At least 8: so many meet at the origin, of any size.
+  // The cloud with larger cubes: at most `max_points` points, spread evenly.
+  // `max_points` must be at least 8, as 8 cubes of any size meet at the origin.
   std::vector<ColoredPoint> Thin(int max_points) const;
 
  private:
   struct Voxel {
     uint64_t key;
-    // Sums; positions from the cube's centre, where floats are exact enough
-    // for any number of points.
+    // Sums. Positions are relative to the centre of the cube, for which floats
+    // are accurate enough for any number of points.
     float offset[3];
     uint32_t color[3];
     uint32_t count;
@@ -53,10 +52,10 @@ class VoxelCloud {
   float voxel_size_;
   float voxels_per_metre_;
   std::vector<Voxel> voxels_;
-  // Open addressing: 1 + index into voxels_, 0 for none; a power of two long.
+  // Open addressing: 1 + index into voxels_, 0 if empty. Size: a power of two.
   std::vector<uint32_t> slots_;
   int hash_shift_;
-  size_t last_ = 0;  // the voxel met last: neighbouring pixels share it
+  size_t last_ = 0;  // the last voxel, often shared by the next pixel
 };
 
 }  // namespace rgbd_pose

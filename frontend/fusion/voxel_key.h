@@ -5,8 +5,8 @@
 
 namespace rgbd_pose {
 
-// A cell of a grid, up to 2^20 cells from the origin, as one number that can be
-// compared, sorted and hashed: 21 bits a coordinate, x in the highest ones.
+// A grid cell, up to 2^20 cells from the origin, as one number that can be
+// compared, sorted and hashed: 21 bits per coordinate, x in the highest bits.
 constexpr int kVoxelKeyBits = 21;
 constexpr int kVoxelKeyRange = 1 << (kVoxelKeyBits - 1);
 constexpr uint64_t kVoxelKeyMask = (uint64_t{1} << kVoxelKeyBits) - 1;

@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Of rounding, but far below what anybody would call a wrong quaternion.
+// Covers rounding, but is far smaller than the error of a wrong quaternion.
 constexpr double kMaxLengthError = 1e-6;
 
 bool IsMotion(const Rigid3d& motion) {
@@ -20,7 +20,7 @@ bool IsMotion(const Rigid3d& motion) {
 bool IsCovariance(const MotionMatrix& matrix) {
   if (!matrix.allFinite() || !matrix.isApprox(matrix.transpose())) return false;
   const Eigen::LLT<MotionMatrix> cholesky(matrix);
-  // A product that is too large for a double leaves a NaN, but no complaint.
+  // An overflow gives NaN in the decomposition, but no error status.
   return cholesky.info() == Eigen::Success &&
          cholesky.matrixLLT().diagonal().minCoeff() > 0.0 &&
          cholesky.matrixLLT().allFinite();

@@ -9,21 +9,21 @@
 
 namespace rgbd_pose {
 
-// A place as it was seen: keyframes, and the motions measured between them. All
-// that is needed to find a camera in it, to go on with it, to correct it.
+// A map of a place: keyframes and the motions measured between them. Contains
+// everything needed for relocalisation, to extend the map and to correct it.
 struct KeyframeMap {
-  Camera camera;                    // that took all keyframes
-  std::vector<Keyframe> keyframes;  // packed, in any order
-  std::vector<RelativePose> edges;  // ref and cur: ids of keyframes
+  Camera camera;                    // of all keyframes
+  std::vector<Keyframe> keyframes;  // compressed, in any order
+  std::vector<RelativePose> edges;  // ref and cur are keyframe ids
 
-  // One line that says what is wrong, or empty: two keyframes with one id,
-  // images of another size than the camera's, edges to keyframes that are not
-  // there, numbers that are not finite, covariances that are not symmetric and
+  // A one-line description of an error, or empty. Errors are duplicate keyframe
+  // ids, images of another size than the camera's, edges to missing keyframes,
+  // values that are not finite, and covariances that are not symmetric and
   // positive definite.
   std::string Check() const;
 
-  // One line that says where another camera differs from the map's, or empty.
-  // Frames of another camera do not fit the map.
+  // A one-line description of a difference between `other` and the camera of
+  // the map, or empty. Frames of another camera cannot be used with the map.
   std::string CheckCamera(const Camera& other) const;
 };
 

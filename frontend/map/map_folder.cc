@@ -21,12 +21,12 @@ namespace fs = std::filesystem;
 constexpr char kIndex[] = "map.txt";
 constexpr char kImageType[] = ".png";
 
-// Keeps a folder for this process until it ends, however it ends.
+// Locks a folder for this process. The lock ends with the process in any case.
 class FolderLock {
  public:
   explicit FolderLock(const fs::path& folder)
       : file_(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
-    // File systems without locks have to do without.
+    // On file systems without locks, this continues without one.
     if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       close(file_);
       throw InputError(folder.string() +
@@ -42,7 +42,7 @@ class FolderLock {
   const int file_;
 };
 
-// Whether a file is an image of a map, whole or still being written.
+// Whether a file is an image of a map, complete or still being written.
 bool IsImage(const fs::path& file) {
   const std::string name = file.filename().string();
   const std::string checksum = name.substr(0, name.find('.'));
@@ -51,7 +51,7 @@ bool IsImage(const fs::path& file) {
          (name == whole || name == TemporaryPath(whole));
 }
 
-// Makes a folder and those above it, all of them on the disk.
+// Creates a folder and its missing parents and syncs them to disk.
 void MakeFolder(const fs::path& folder) {
   std::vector<fs::path> above;
   for (fs::path path = fs::absolute(folder); !fs::exists(path);) {
@@ -62,11 +62,11 @@ void MakeFolder(const fs::path& folder) {
   for (const fs::path& path : above) SyncFolder(path.string());
 }
 
-// Refuses to write into a non-empty folder that is no map.
+// Throws InputError if a folder without a map contains other files.
 void RequireNoOtherThings(const fs::path& folder) {
   if (fs::exists(folder / kIndex)) return;
   for (const auto& entry : fs::directory_iterator(folder)) {
-    // Of a program that was killed before its first map was whole.
+    // Left by a program that was killed before its first map was complete.
     if (IsImage(entry.path()) ||
         entry.path().filename() == TemporaryPath(kIndex)) {
       continue;
@@ -77,11 +77,11 @@ void RequireNoOtherThings(const fs::path& folder) {
   }
 }
 
-// Returns the name of the image's file.
+// Writes an image unless it is there. Returns the name of its file.
 std::string SaveImage(const fs::path& folder, const PngBytes& image) {
   std::string name = image.checksum + kImageType;
   std::error_code error;
-  // A size of -1, if there is none.
+  // The size is -1 if the file does not exist.
   if (fs::file_size(folder / name, error) != image.bytes.size()) {
     WriteFileAtomically((folder / name).string(), image.bytes,
                         Durability::kPowerLoss);
@@ -98,8 +98,8 @@ void Save(const fs::path& folder, const KeyframeMap& map) {
     used.insert(SaveImage(folder, *images.depth));
     index.images.push_back({images.gray->checksum, images.depth->checksum});
   }
-  // What the index names has to be there before it, and what the old one names
-  // until the new one has taken its place.
+  // The images must be on disk before the index that names them. Images of the
+  // old index must stay until the new index has replaced it.
   SyncFolder(folder.string());
   WriteFileAtomically((folder / kIndex).string(), FormatMapIndex(index),
                       Durability::kPowerLoss);
@@ -143,7 +143,7 @@ KeyframeMap LoadIndexed(const fs::path& folder, const std::string& text) {
   return std::move(index.map);
 }
 
-// Runs a call on a folder; what the file system says becomes an InputError.
+// Runs `call` and converts file system errors to InputError.
 template <typename Call>
 void InFolder(const std::string& folder, Call call) {
   try {
@@ -187,7 +187,7 @@ KeyframeMap LoadMap(const std::string& folder) {
     try {
       return LoadIndexed(folder, text);
     } catch (const InputError&) {
-      // Images that a program which saves meanwhile has just removed?
+      // If the index changed, another program may have removed old images.
       if (ReadTextFile(path) == text) throw;
     }
   }

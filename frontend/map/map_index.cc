@@ -20,11 +20,11 @@ constexpr char kColumns[] =
     "qz qw gray depth\n"
     "# edge ref cur tx ty tz qx qy qz qw covariance (6 x 6)\n";
 
-// Names of lenses.
+// Names of lens models.
 constexpr char kRational[] = "rational";
 constexpr char kEquidistant[] = "equidistant";
 
-// Appends the words of a line.
+// Writes the words of a line.
 class LineWriter {
  public:
   LineWriter(const char* kind, std::string* text) : text_(*text) {
@@ -46,7 +46,7 @@ class LineWriter {
   std::string& text_;
 };
 
-// Takes the words of a line one after the other.
+// Reads the words of a line one after the other.
 class LineReader {
  public:
   LineReader(const TextLine& line, const std::string& path)
@@ -74,7 +74,7 @@ class LineReader {
     }
     return static_cast<int>(value);
   }
-  // As it was written: Rigid3d's constructor might change the last digit.
+  // Avoids the constructor of Rigid3d, which might change the last digit.
   Rigid3d Motion() {
     Rigid3d motion;
     for (int i = 0; i < 3; ++i) motion.translation[i] = Number();
@@ -135,7 +135,7 @@ void ReadEdge(LineReader* line, std::vector<RelativePose>* edges) {
   edges->push_back(edge);
 }
 
-// Takes the first line and the last off the text.
+// Checks the first and the last line of a text and returns it without the last.
 std::string_view Unseal(std::string_view text, const std::string& path) {
   if (text.substr(0, kMagic.size()) != kMagic) {
     throw InputError(path + ": is no map of rgbd_slam");
@@ -144,7 +144,7 @@ std::string_view Unseal(std::string_view text, const std::string& path) {
   const std::string_view version =
       text.substr(kMagic.size(), line_end - kMagic.size());
   if (version != kVersion) {
-    constexpr size_t kShown = 20;  // if it is damaged, the line has no end
+    constexpr size_t kShown = 20;  // the line of a damaged file may not end
     throw InputError(path + ": has format version " +
                      std::string(version.substr(0, kShown)) +
                      ", this program reads version " + std::string(kVersion) +
@@ -181,7 +181,7 @@ std::string FormatMapIndex(const MapIndex& index) {
     LineWriter line("camera", &text);
     line.Integer(camera.width);
     line.Integer(camera.height);
-    // The longer line where the shorter one does not say it.
+    // The long form is used if the short one cannot express the lens.
     const bool is_equidistant = camera.lens_model == LensModel::kEquidistant;
     const bool is_usual =
         !is_equidistant &&

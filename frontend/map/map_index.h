@@ -8,31 +8,30 @@
 
 namespace rgbd_pose {
 
-// What the text file of a map holds (docs/maps.md): all but the images, which
-// it names by their checksums.
+// The contents of the text file of a map (docs/maps.md): everything but the
+// images, which are named by their checksums.
 struct MapIndex {
-  // The names of a keyframe's images.
   struct ImageNames {
     std::string gray;
     std::string depth;
   };
 
-  KeyframeMap map;                 // with keyframes without images
-  std::vector<ImageNames> images;  // of each keyframe
+  KeyframeMap map;                 // its keyframes have no images
+  std::vector<ImageNames> images;  // by keyframe
 };
 
-// The text; the same index always gives the same.
+// The text of an index; equal indices give equal text.
 std::string FormatMapIndex(const MapIndex& index);
 
-// The index that a text is of; the very numbers that were written. Throws
-// InputError naming `path` for a text that is no map, of a newer version,
-// damaged or edited. The map is not checked.
+// Parses the text of an index; numbers are exactly those that were written.
+// Throws InputError, which names `path`, for a text that is no map, of another
+// version, damaged or edited. Does not check the map (KeyframeMap::Check).
 MapIndex ParseMapIndex(std::string_view text, const std::string& path);
 
-// The last line of an index: the checksum of what is above.
+// The last line of an index: the checksum of the text above it.
 std::string ChecksumLine(std::string_view above);
 
-// Whether a word can be the name of an image: a checksum.
+// Whether a word has the form of an image name, a checksum.
 bool IsImageName(std::string_view word);
 
 }  // namespace rgbd_pose

@@ -5,7 +5,7 @@
 namespace rgbd_pose {
 namespace {
 
-// What is so near to each other stays near when one between them goes.
+// Neighbours of a keyframe are near each other within this many links.
 constexpr int kHopsAround = 3;
 
 }  // namespace

@@ -4,39 +4,38 @@
 
 namespace rgbd_pose {
 
-// Which keyframes are joined to which by a pair, whatever it says. Keyframes
-// have numbers 0, 1, 2, ...
+// Which keyframes are linked by pairs, regardless of the measured motions.
+// Keyframes have numbers 0, 1, 2, ...
 class CovisibilityGraph {
  public:
-  // Makes room for one more, joined to none.
+  // Adds a keyframe without links.
   void Add() { neighbors_.emplace_back(); }
   void Join(int a, int b);
-  // Takes all links of one away.
+  // Removes all links of a keyframe.
   void Separate(int at);
 
-  // Those that one is joined to.
+  // The keyframes that a keyframe is linked to.
   const std::vector<int>& Neighbors(int at) const { return neighbors_[at]; }
   bool AreJoined(int a, int b) const;
 
-  // Whether each keyframe is within so many links of one.
+  // For each keyframe whether it is within `hops` links of `from`.
   std::vector<bool> Within(int from, int hops) const;
 
-  // The number of links on the shortest way between two, at most `most`.
+  // The number of links on the shortest path, or `most` if there are more.
   int Hops(int from, int to, int most) const;
 
-  // A way with the fewest links, both ends among them, from `from` on; empty if
-  // there is none.
+  // A path with the fewest links, including both ends; empty if there is none.
   std::vector<int> ShortestPath(int from, int to) const;
 
-  // Of each keyframe the smallest number among all that hang together with it.
+  // For each keyframe the smallest number in its connected component.
   std::vector<int> FirstOfParts() const;
 
-  // Whether the neighbours of one would still be near to each other without it.
+  // Whether the neighbours of a keyframe are near each other without it.
   bool StaysConnectedWithout(int at) const;
 
  private:
-  // Of each keyframe the number of links on the shortest way from one that does
-  // not lead through `without`; -1: there are more than `most`.
+  // For each keyframe the number of links on the shortest path from `from` that
+  // avoids `without`; -1 for more than `most` links.
   std::vector<int> Distances(int from, int most, int without = -1) const;
 
   std::vector<std::vector<int>> neighbors_;

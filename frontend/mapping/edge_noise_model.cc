@@ -9,25 +9,25 @@
 namespace rgbd_pose {
 namespace {
 
-// Losses of pairs, in sigmas. The odometry's own are hardly ever wrong. Of the
-// others most agree within a sigma or two, but some of those between views from
-// far off are up to ten sigmas too short: together they would shrink the map.
+// Widths of the loss functions, in sigmas. Pairs of the odometry are hardly
+// ever wrong. Most others agree within one or two sigmas, but some motions
+// between distant views are up to ten sigmas too short and would shrink the
+// map.
 constexpr double kTrackedWidth = 5.0;
 constexpr double kPairWidth = 2.0;
 
-// A wrong rotation displaces what is seen at this distance (m).
+// Depth at which a wrong rotation is converted to a displacement, m.
 constexpr double kTypicalDepth = 2.0;
 
-// What noise models do not know (calibration, stamps): at least so much is a
-// pair off.
+// Noise floor of a pair by effects not in noise models (calibration, stamps).
 constexpr double kMinSigmaRotation = 1e-4;       // rad
 constexpr double kMinSigmaTranslation = 2.5e-4;  // m
 
-// The median of chi^2 of six degrees, and its 99.9 % quantile.
+// Median and 99.9 % quantile of chi^2 with six degrees of freedom.
 constexpr double kMedianSquare = 5.35;
 constexpr double kLargestSquare = 22.46;
 
-// Slack is measured by so many pairs at least.
+// Minimum number of pairs to fit the proportional error, and its maximum.
 constexpr int kMinPairsForSlack = 20;
 constexpr double kMaxSlack = 0.1;
 
@@ -96,8 +96,7 @@ void EdgeNoiseModel::FitProportionalError(
   proportional_error_ = high;
 }
 
-// Along a way errors add up, and an error of the rotation swings all that
-// follows.
+// Errors add up along a path, and a wrong rotation displaces all that follows.
 bool EdgeNoiseModel::PassesMahalanobisGate(
     const RelativePose& edge, const std::vector<Rigid3d>& map_from_cam) const {
   double way = 0.0, turns = 0.0;

@@ -12,43 +12,43 @@ namespace rgbd_pose {
 
 // A measured motion between two keyframes.
 struct KeyframePair {
-  RelativePose edge;        // between numbers
-  bool is_tracked = false;  // by the odometry; hardly ever wrong
-  bool is_loop = false;     // joins what was far apart
+  RelativePose edge;        // ref and cur are keyframe numbers
+  bool is_tracked = false;  // by the odometry, which is hardly ever wrong
+  bool is_loop = false;     // links keyframes that were far apart in the graph
 };
 
-// How far a measured motion may be off: what its covariance says, a floor, and
-// what a camera that is not quite as its calibration says makes of a motion, an
-// error in proportion to it (the proportional error).
+// Uncertainty of measured motions: their covariance, a noise floor, and an
+// error proportional to the motion (the proportional error), which is caused by
+// an inaccurate calibration.
 class EdgeNoiseModel {
  public:
   // See MappingOptions.
   explicit EdgeNoiseModel(double drift);
 
-  // By what share of itself a motion is off beyond its covariance, as the pairs
-  // disagree: 0 where the camera is as its calibration says.
+  // The error relative to the motion that explains the disagreement of pairs
+  // beyond their covariances. 0 if the calibration is accurate.
   double proportional_error() const { return proportional_error_; }
 
-  // Finds the proportional error with which half of the pairs agree with the
-  // motions that poses have, one for each, as well as their covariances say.
-  // Pairs that were tracked do not count: poses follow them too closely.
+  // Finds the proportional error with which the median disagreement between the
+  // pairs and the motions by the current poses (`cur_from_ref`, one per pair)
+  // is as expected from the covariances. Tracked pairs are ignored, as the
+  // poses follow them too closely.
   void FitProportionalError(const std::vector<KeyframePair>& pairs,
                             const std::vector<Rigid3d>& cur_from_ref);
 
-  // With floor and proportional error.
+  // The covariance with noise floor and proportional error.
   MotionMatrix CovarianceOf(const RelativePose& edge) const;
 
-  // Under which a pair takes part.
+  // The loss function of a pair.
   const ceres::LossFunction* LossOf(const KeyframePair& pair) const;
 
-  // The covariance with which a pair counts where poses have this motion: the
-  // larger the less its loss lets it count.
+  // The effective covariance of a pair if the motion by the poses is
+  // `cur_from_ref`: larger if the loss function reduces the pair's weight.
   MotionMatrix CovarianceAsSolved(const KeyframePair& pair,
                                   const Rigid3d& cur_from_ref) const;
 
-  // Whether a motion may be right, as far as a way between the two, as poses
-  // from its `ref` to its `cur`, says: chi^2 of 6 degrees below its 99.9 %
-  // quantile.
+  // Whether a motion is consistent with the poses of a path from its `ref` to
+  // its `cur`: chi^2 with 6 degrees of freedom is below its 99.9 % quantile.
   bool PassesMahalanobisGate(const RelativePose& edge,
                              const std::vector<Rigid3d>& map_from_cam) const;
 

@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Slack is measured in turns with the poses.
+// The proportional error is fitted alternately with the poses.
 constexpr int kMaxFitRounds = 4;
 
 }  // namespace
@@ -115,10 +115,10 @@ void KeyframeGraph::FitProportionalError() {
   noise_.FitProportionalError(pairs_, motions);
 }
 
-// A graph, and which of its poses are keyframes.
+// A pose graph and the poses of keyframes in it.
 struct KeyframeGraph::Problem {
   PoseGraph graph;
-  std::vector<int> pose_of;  // of each keyframe; -1: none
+  std::vector<int> pose_of;  // by keyframe; -1: none
 };
 
 KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
@@ -127,8 +127,7 @@ KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
   options.graduated = graduated;
   options.max_rounds = 3;
   options.step_tolerance = 1e-5;
-  // What hangs on a doubtful motion alone must not keep all others from being
-  // solved for.
+  // Poses connected only by an uncertain motion must not make the solver fail.
   options.max_standard_deviation = 1e3;
   Problem problem{PoseGraph(options), std::vector<int>(nodes_.size(), -1)};
   const auto add = [&](int at, bool is_fixed) {
@@ -136,7 +135,7 @@ KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
       problem.pose_of[at] = problem.graph.AddPose(pose(at), is_fixed);
     }
   };
-  // Nor must a part that hangs on nothing: its first keyframe stays, too.
+  // Nor must a component without a fixed pose: its first keyframe is fixed too.
   const std::vector<int> first = links_.FirstOfParts();
   std::vector<bool> is_held(nodes_.size(), false);
   for (int at = 0; at < size(); ++at) {
@@ -172,7 +171,7 @@ std::string KeyframeGraph::Solve(const std::vector<int>& free, bool graduated) {
 }
 
 void KeyframeGraph::FollowAnchors() {
-  // An anchor may have been dropped later, but it is older.
+  // An anchor may be removed as well, but it is older and updated first.
   for (Node& node : nodes_) {
     if (node.anchor < 0) continue;
     node.map_from_cam =

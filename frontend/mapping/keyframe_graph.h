@@ -13,62 +13,60 @@
 namespace rgbd_pose {
 
 // Poses of keyframes and the motions measured between them. Keyframes have
-// numbers 0, 1, 2, ... Poses of one segment hang together; each segment has a
-// world of its own until it is joined to another. The first keyframe of a
-// segment stays where it is.
+// numbers 0, 1, 2, ... The poses of a segment are connected; each segment has
+// its own world frame until it is joined to another one. The first keyframe of
+// a segment is fixed.
 class KeyframeGraph {
  public:
   // See MappingOptions.
   KeyframeGraph(int window, double drift) : window_(window), noise_(drift) {}
 
-  // How many there are, those that were dropped among them.
+  // Number of keyframes, including removed ones.
   int size() const { return static_cast<int>(nodes_.size()); }
-  // Of one: map_from_cam, its segment.
+  // map_from_cam and the segment of a keyframe.
   const Rigid3d& pose(int at) const { return nodes_[at].map_from_cam; }
   int segment(int at) const { return nodes_[at].segment; }
-  // All pairs, and who is joined to whom by them.
+  // All pairs, and the links that they form.
   const std::vector<KeyframePair>& pairs() const { return pairs_; }
   const CovisibilityGraph& links() const { return links_; }
 
-  // Returns its number. `is_held`: it never moves (a map that is only read).
+  // Adds a keyframe and returns its number. With `is_held` it never moves (for
+  // a read-only map).
   int Add(const Rigid3d& map_from_cam, int segment, bool is_held = false);
 
-  // Within a segment.
+  // Adds a pair within a segment.
   void AddPair(const RelativePose& edge, bool is_tracked, bool is_loop = false);
 
-  // Whether a motion may be right, as far as the way between the two by other
-  // pairs says: chi^2 of 6 degrees below its 99.9 % quantile.
+  // Whether a motion is consistent with a path of other pairs: chi^2 with 6
+  // degrees of freedom is below its 99.9 % quantile. False without a path.
   bool PassesMahalanobisGate(const RelativePose& edge) const;
 
-  // Moves a whole segment to where an edge between it and another one says;
-  // from then on both are the other one. Of the two the one with `edge.cur`
-  // moves, but never one that is held. False, and nothing is done, if both are.
+  // Merges two segments by an edge between them: one is moved and becomes part
+  // of the other. The segment of `edge.cur` moves, unless it is held; then the
+  // other one moves. Returns false and changes nothing if both are held.
   bool Join(const RelativePose& edge);
 
-  // Whether all others would still hang together without it.
+  // Whether a keyframe is not fixed and the others stay connected without it.
   bool IsRedundant(int at) const;
-  // Takes a keyframe and its pairs out: from now on it stands where it stood to
-  // `anchor`.
+  // Removes a keyframe and its pairs. Its pose relative to `anchor` is constant
+  // from now on.
   void Remove(int at, int anchor);
   bool IsRemoved(int at) const { return nodes_[at].anchor >= 0; }
-  // For a motion measured to a keyframe that was dropped: the same to its
-  // anchor; others are given back as they are.
+  // Converts a motion from a removed keyframe to one from its anchor. Other
+  // motions are returned unchanged.
   RelativePose Reanchor(RelativePose edge) const;
 
-  // Solves for the poses around the newest keyframe, or for all, wherever they
-  // are. Why it could not, or empty.
+  // Optimise the poses around the newest keyframe, or all poses. Return the
+  // reason of a failure, or an empty string.
   std::string SolveNear(int newest);
   std::string SolveAll();
 
-  // Covariances of all poses after SolveAll, as PoseGraph has them, times its
-  // redundancy: zero for those that do not move, empty if they cannot be
-  // computed.
+  // Covariances of all poses after SolveAll: those of PoseGraph times its
+  // OvercountingFactor. Zero for fixed poses; empty if they cannot be computed.
   std::vector<MotionMatrix> Covariances() const;
 
-  // The covariance with which a pair counts at the present poses: with its
-  // floor and the proportional error, and larger the less its loss lets it
-  // count. Whoever solves for the poses by least squares with these finds what
-  // is here.
+  // The effective covariance of a pair at the current poses (EdgeNoiseModel).
+  // Least squares with these covariances gives the same poses.
   MotionMatrix CovarianceAsSolved(const KeyframePair& pair) const;
 
   // See EdgeNoiseModel.
@@ -79,14 +77,14 @@ class KeyframeGraph {
     Rigid3d map_from_cam;
     int segment = 0;
     bool is_held = false;
-    int anchor = -1;  // if it was dropped
+    int anchor = -1;  // of a removed keyframe
     RelativePose from_anchor;
   };
   struct Problem;
 
   bool IsFixed(int at) const;
   bool IsHeld(int segment) const;
-  // cur_from_ref as the poses have it.
+  // cur_from_ref by the current poses.
   Rigid3d MotionOf(const RelativePose& edge) const;
   void FitProportionalError();
   Problem Build(const std::vector<int>& free, bool graduated) const;
@@ -99,7 +97,7 @@ class KeyframeGraph {
   std::vector<Node> nodes_;
   CovisibilityGraph links_;
   std::vector<KeyframePair> pairs_;
-  std::map<int, int> first_of_;  // of each segment
+  std::map<int, int> first_of_;  // first keyframe by segment
 };
 
 }  // namespace rgbd_pose

@@ -9,22 +9,20 @@
 namespace rgbd_pose {
 namespace {
 
-// How much less like the best a keyframe may look and still be asked.
+// Minimum score of a candidate, relative to the best one.
 constexpr double kMinScoreShare = 0.5;
 
-// Two see the same if neither shows things so much larger than the other: what
-// one sees from near by the other sees from far away, where depth is not to be
-// trusted.
+// Maximum ratio of scales between the views of a pair. With a larger ratio one
+// of the cameras is far away, where depth is not reliable.
 constexpr double kMaxPairZoom = 1.5;
 
-// A pair closes a loop if it joins keyframes that were more than so many pairs
-// apart.
+// A pair closes a loop if it links keyframes more than this many links apart.
 constexpr int kLoopHops = 4;
 
-// A pair found by looks alone needs such a share of inliers.
+// Minimum share of inliers of a pair found only by appearance.
 constexpr double kMinLookalikeInliers = 0.5;
 
-// Two pairs between the same segments agree within this.
+// Two pairs between the same segments agree if they differ by less than this.
 constexpr double kMeetingRotation = 0.05;    // rad
 constexpr double kMeetingTranslation = 0.1;  // m
 
@@ -64,7 +62,7 @@ std::vector<int> KeyframePairing::SeeingTheSame(int newest) const {
   return result;
 }
 
-// See PairTracker.
+// PairTracker's pair with the covariance increased by timing errors.
 std::optional<RelativePose> KeyframePairing::MakePair(
     int ref, int cur, const PreparedFrame& frame,
     const Rigid3d& cur_from_ref_guess, double min_inlier_share) {
@@ -92,8 +90,8 @@ void KeyframePairing::PairByPose(int newest, const PreparedFrame& frame,
   }
 }
 
-// What looks alike is believed where the way there by other pairs allows it,
-// or, if there is none, where more than one pair says the same.
+// A similar keyframe is accepted if the path by other pairs is consistent with
+// it or, without a path, if more than one pair supports it.
 void KeyframePairing::CloseLoopsByAppearance(int newest,
                                              const PreparedFrame& frame,
                                              MapUpdate* update) {
@@ -128,8 +126,7 @@ void KeyframePairing::CloseLoopsByAppearance(int newest,
   }
 }
 
-// Whether a neighbour of edge.ref, as its segment has it, makes a pair that
-// says the same.
+// Whether a pair with a neighbour of edge.ref gives the same motion.
 bool KeyframePairing::AgreesWithOthers(const RelativePose& edge,
                                        const PreparedFrame& frame) {
   const std::vector<int> neighbors = graph_.links().Neighbors(edge.ref);
@@ -147,7 +144,8 @@ bool KeyframePairing::AgreesWithOthers(const RelativePose& edge,
   return false;
 }
 
-// Whether an earlier keyframe of the segment said the same.
+// Whether an earlier pair between the two segments gave the same motion.
+// Otherwise this one is remembered.
 bool KeyframePairing::AreConnected(const RelativePose& edge) {
   const Meeting meeting = {graph_.segment(edge.ref), graph_.segment(edge.cur),
                            graph_.pose(edge.ref) * edge.cur_from_ref.Inverse() *

@@ -14,11 +14,11 @@
 
 namespace rgbd_pose {
 
-// Finds which keyframes see the same as a new one and adds their pairs to a
-// graph. Keyframes are named by their numbers in the graph.
+// Finds keyframes that see the same place as a new one and adds pairs with them
+// to a graph. Keyframes are identified by their numbers in the graph.
 class KeyframePairing {
  public:
-  // All must outlive it.
+  // All arguments must outlive this object.
   KeyframePairing(const MappingOptions& options,
                   const std::deque<MappedKeyframe>& keyframes,
                   const PlaceDatabase& index, PairTracker* tracker,
@@ -29,22 +29,23 @@ class KeyframePairing {
         tracker_(*tracker),
         graph_(*graph) {}
 
-  // With those of its segment that see the same by their poses.
+  // Pairs the newest keyframe with those of its segment that, by their poses,
+  // see the same.
   void PairByPose(int newest, const PreparedFrame& frame, MapUpdate* update);
 
-  // With those that look alike, of any segment; segments that meet are joined.
+  // Pairs it with similar ones of any segment. Segments that meet are joined.
   void CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
                               MapUpdate* update);
 
  private:
-  // A motion between two segments that one pair alone speaks for.
+  // A motion between two segments that only one pair supports so far.
   struct Meeting {
     int ref_segment = 0, cur_segment = 0;
-    Rigid3d ref_from_cur;  // between their worlds
+    Rigid3d ref_from_cur;  // between their world frames
   };
 
-  // How much of each of the two the other one sees, the less of both; 0 if one
-  // sees it too much larger.
+  // The share of each view that the other one sees, the smaller of both. 0 if
+  // their scales differ too much.
   double SharedView(int ref, int cur, const Rigid3d& cur_from_ref) const;
   std::vector<int> SeeingTheSame(int newest) const;
   std::optional<RelativePose> MakePair(int ref, int cur,

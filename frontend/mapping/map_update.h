@@ -11,38 +11,37 @@
 
 namespace rgbd_pose {
 
-// Where a keyframe is.
 struct KeyframePlace {
-  Rigid3d map_from_cam;  // as now known
-  int segment = 0;       // whose world `map` is
+  Rigid3d map_from_cam;  // current estimate
+  int segment = 0;       // `map` is the world frame of this segment
 };
 
-// Two keyframes that a measured motion joins, by id.
+// Two keyframes linked by a measured motion, by id.
 struct MapLink {
   int ref = 0;           // the earlier one
   int cur = 0;           // the later one
-  bool is_loop = false;  // joins what was far apart
+  bool is_loop = false;  // links keyframes that were far apart in the graph
 };
 
-// What became of the map.
+// Changes of the map.
 struct MapUpdate {
   std::map<int, KeyframePlace> moved;  // by id, since the last update
-  std::vector<MapLink> links;          // new, those by tracking among them
-  int pairs = 0;                       // that were added
-  int loops = 0;                       // of these
-  int joined = 0;                      // segments that became one
-  std::string error;  // why poses were not solved for; empty: they were
-  double ms = 0.0;    // of work
+  std::vector<MapLink> links;          // new ones, including tracked ones
+  int pairs = 0;                       // number of pairs added
+  int loops = 0;                       // number of these that are loops
+  int joined = 0;                      // number of segments merged
+  std::string error;  // why optimising the poses failed, or empty
+  double ms = 0.0;    // computing time
 
-  // An old keyframe that the view has come back to.
+  // An old keyframe to whose view the camera has returned.
   std::optional<Keyframe> returned_to;
 };
 
-// A keyframe of a Mapper, packed; of those that were removed neither images nor
-// what was made of them. Its pose and segment: see KeyframeGraph.
+// A keyframe of a Mapper with compressed images. Removed keyframes have neither
+// images nor derived data. Pose and segment are in KeyframeGraph.
 struct MappedKeyframe : Keyframe {
-  std::optional<KeyframePlace> published;  // as the last MapUpdate had it
-  ViewOverlap samples;                     // what it sees, to compare views by
+  std::optional<KeyframePlace> published;  // in the last MapUpdate
+  ViewOverlap samples;                     // to compare views
 };
 
 }  // namespace rgbd_pose

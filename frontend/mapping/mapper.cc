@@ -9,10 +9,10 @@
 namespace rgbd_pose {
 namespace {
 
-// Views are compared by pixels so far apart: 192 of 640 x 480.
+// Distance of the pixels used to compare views: 192 pixels of 640 x 480.
 constexpr int kSampleStepPx = 40;
 
-// How near a view must be to one that it makes redundant.
+// Maximum flow between a redundant view and the view that replaces it.
 constexpr double kRedundantFlowPx = 30.0;
 
 }  // namespace
@@ -136,7 +136,8 @@ std::optional<Keyframe> Mapper::Find(const Frame& lost) {
   return WithImages(found->keyframe);
 }
 
-// The one whose view is nearest, but for those that the odometry has itself.
+// Finds the keyframe with the nearest view, without those that the odometry
+// itself has.
 void Mapper::FindReturn(int newest, MapUpdate* update) const {
   double least = 2.0 * kRedundantFlowPx;
   int nearest = -1;
@@ -155,7 +156,7 @@ void Mapper::FindReturn(int newest, MapUpdate* update) const {
   if (nearest >= 0) update->returned_to = WithImages(nearest);
 }
 
-// Looks at the keyframe that leaves the window.
+// Removes the keyframe that leaves the window if it is redundant.
 void Mapper::CullKeyframes(int newest) {
   const int at = newest - options_.window;
   if (at < 0 || graph_.IsRemoved(at) || !graph_.IsRedundant(at)) return;

@@ -19,42 +19,43 @@
 
 namespace rgbd_pose {
 
-// Joins keyframes to a map: pairs them with those that see the same (Tracker),
-// found by their poses or by their looks (PlaceDatabase), and keeps all poses
-// in agreement (KeyframeGraph). For one thread.
+// Builds a map of keyframes. Finds keyframes that see the same place by their
+// poses or appearance (PlaceDatabase), measures the motions between them
+// (Tracker), and keeps all poses consistent (KeyframeGraph). Not thread-safe.
 class Mapper {
  public:
-  // `tracker` makes pairs. Throws InputError for options that are not sound.
+  // `tracker` measures pairs. Throws InputError for invalid options.
   Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker);
 
-  // Begins with a map. `is_held`: its poses never move, and none is removed. To
-  // be called first; several maps are segments that are joined where they meet.
-  // Throws InputError for a map of another camera or one that is not sound.
+  // Starts with an existing map; to be called before Add. With `is_held` its
+  // poses never move, and no keyframe is removed. Several maps are segments
+  // that are joined where they meet. Throws InputError for a map that is
+  // invalid or of another camera.
   void Load(const KeyframeMap& map, bool is_held);
 
-  // Takes a keyframe in, where its edges to earlier ones (by id; it is `cur`)
-  // lead, or, without any, where its pose is.
+  // Adds a keyframe. `edges` to earlier keyframes (by id; the new one is `cur`)
+  // give its pose; without edges its own pose is used.
   MapUpdate Add(Keyframe keyframe, const std::vector<RelativePose>& edges);
 
-  // Looks for a lost frame in the whole map.
+  // Relocalises a lost frame in the whole map; returns a keyframe of the place.
   std::optional<Keyframe> Find(const Frame& lost);
 
-  // Solves for all poses.
+  // Optimises all poses.
   MapUpdate Finish();
 
-  // All keyframes that were not removed, and their pairs: as they were
-  // measured, or `as_solved`, see KeyframeGraph::CovarianceAsSolved.
+  // All keyframes that were not removed, and their pairs. Covariances are as
+  // measured, or `as_solved` by KeyframeGraph::CovarianceAsSolved.
   KeyframeMap Map(bool as_solved = false) const;
 
-  // By the places of its keyframes in Map(): see KeyframeGraph.
+  // Covariances in the order of keyframes in Map(), see KeyframeGraph.
   std::vector<MotionMatrix> Covariances() const;
   const KeyframeGraph& graph() const { return graph_; }
 
  private:
-  // Packs its images; returns its number in graph_.
+  // Compresses the images of a keyframe; returns its number in graph_.
   int AddKeyframe(Keyframe keyframe, const PreparedFrame& frame, bool is_held);
   void Index(int at);
-  // A keyframe, unpacked.
+  // A keyframe with decompressed images.
   Keyframe WithImages(int at) const;
   void FindReturn(int newest, MapUpdate* update) const;
   void CullKeyframes(int newest);
@@ -63,8 +64,8 @@ class Mapper {
   const MappingOptions options_;
   PairTracker tracker_;
   KeyframeGraph graph_;
-  std::deque<MappedKeyframe> keyframes_;  // by their numbers in graph_
-  std::map<int, int> numbers_;            // of keyframes, by id
+  std::deque<MappedKeyframe> keyframes_;  // by number in graph_
+  std::map<int, int> numbers_;            // by keyframe id
   PlaceDatabase index_;
   KeyframePairing pairing_;
 };

@@ -4,33 +4,32 @@
 
 namespace rgbd_pose {
 
-// Which keyframes are joined to which.
 struct MappingOptions {
-  // A new keyframe is paired with at most so many older ones that see the same:
-  // half of them those that see most of it, half the oldest, which hold the
-  // drift.
+  // Maximum number of older keyframes that a new one is paired with by its
+  // pose. Half of them are those that see most of its view; the others are the
+  // oldest ones, which limit the drift.
   int max_pairs = 8;
 
-  // Two see the same if each shows such a share of the other.
+  // Two keyframes see the same if each shows this share of the other's view.
   double min_pair_share = 0.4;
 
-  // So many keyframes that look alike are asked whether they show the same
-  // place; 0: loops are found by pose alone, and segments are not joined.
+  // Number of similar keyframes that are checked for showing the same place. 0:
+  // loops are found only by pose, and segments are not joined.
   int max_loop_candidates = 4;
 
-  // A keyframe is removed if an older one sees such a share of it from near by:
-  // a map grows with the place, not with time.
+  // A keyframe is removed if an older one nearby sees this share of its view. A
+  // map thus grows with the size of the place, not with time.
   double redundant_share = 0.85;
 
-  // Poses of the latest keyframes, and of those that the newest is paired with,
-  // are solved for at each keyframe; after a loop all are.
+  // Number of latest keyframes whose poses are optimised at each keyframe,
+  // together with those paired with the newest one. After a loop all are.
   int window = 10;
 
-  // By what share of the way and of the turns a path drifts at most, as one
-  // standard deviation: what a loop may correct.
+  // Maximum drift of a path relative to its length and rotation, as one
+  // standard deviation. It limits the correction by a loop.
   double drift = 0.01;
 
-  // One line that says what is wrong with the options, or empty.
+  // A one-line description of an error in the options, or empty.
   std::string Check() const;
 };
 

@@ -6,16 +6,16 @@
 namespace rgbd_pose {
 namespace {
 
-// References kept made, some 3 MB each.
+// Number of references kept, about 3 MB each.
 constexpr size_t kMaxReferences = 24;
 
-// Of a good pair the tracker sees at least such a share, and its residuals
-// spread by no more sigmas.
+// Limits of a good pair: the share of the view that is visible, and the spread
+// of the residuals in sigmas.
 constexpr double kMinSeenShare = 0.1;
 constexpr double kMaxPairSigma = 3.0;
 
-// A pair is wrong if it differs from what the poses or the descriptors say by
-// more than this.
+// A pair that differs from its initial guess, by poses or descriptors, by more
+// than this is wrong.
 constexpr double kMaxPairRotation = 0.2;     // rad
 constexpr double kMaxPairTranslation = 0.3;  // m
 

@@ -13,61 +13,61 @@
 
 namespace rgbd_pose {
 
-// The bytes of a PNG file and their checksum. Never changed, so that copies of
-// what holds it can share it.
+// The bytes of a PNG file and their checksum. Immutable: copies of a
+// StoredImages share one object.
 struct PngBytes {
-  // The checksum follows.
+  // Computes the checksum.
   explicit PngBytes(std::string file);
 
   const std::string bytes;     // the whole file
-  const std::string checksum;  // of the bytes: TextHash, 16 hexadecimal digits
+  const std::string checksum;  // TextHash of `bytes`, 16 hexadecimal digits
 };
 
-// What a map keeps of a frame: its grey and depth image, compressed without
-// loss (VGA: about 0.3 MB instead of 0.9; 5 ms to store, 2 ms to restore), its
-// time and its depth scale. Copies share the images.
+// The images of a frame as a map stores them: grey and depth, compressed
+// without loss (VGA: about 0.3 MB instead of 0.9; 5 ms to store, 2 ms to
+// restore), with the time stamp and the depth scale. Copies share the images.
 struct StoredImages {
-  // None.
+  // Holds no images.
   StoredImages() = default;
 
-  // Of a frame with both images.
+  // Compresses the images of a frame, which must have both.
   explicit StoredImages(const Frame& frame);
 
-  // The frame, as it was but for its index (0) and colours (none). Throws
-  // InputError if the images cannot be decoded.
+  // Restores the members below. All others (index, colour, shutters, velocity)
+  // have their defaults. Throws InputError if the images cannot be decoded.
   Frame Restore() const;
 
-  // One line that says what is wrong, or empty: there are both images, as PNG
-  // files of that size (px), with 8 bits of grey and 16 of depth.
+  // One line that says what is wrong, or empty. Both images must be PNG files
+  // of this size (px), grey with 8 bits and depth with 16.
   std::string Check(int width, int height) const;
 
-  double timestamp = 0.0;                 // as Frame has it: s
-  double depth_delay = 0.0;               // s
+  double timestamp = 0.0;                 // s, as in Frame
+  double depth_delay = 0.0;               // s, as in Frame
   double depth_scale = 5000.0;            // raw units per metre
   std::shared_ptr<const PngBytes> gray;   // 8 bits
   std::shared_ptr<const PngBytes> depth;  // 16 bits
 };
 
-// A frame that others are tracked against, or that a map keeps, and where it
-// was taken. Copies share its images and what is made of them.
+// A frame that others are tracked against or that a map keeps, with its pose.
+// Copies share its images and what is derived from them.
 struct Keyframe {
-  int id = 0;              // its name: what edges refer to
-  int segment = 0;         // poses of one segment share one world
-  Rigid3d world_from_cam;  // of its segment; in a map, of its part of the map
+  int id = 0;              // referred to by the edges of the graph
+  int segment = 0;         // poses of one segment share one world frame
+  Rigid3d world_from_cam;  // world of its segment or of its part of the map
 
-  // Its images, grey and depth: as they are, and packed. One may be empty.
+  // The decoded and the compressed images. One of the two may be empty.
   PreparedFrame frame = {};
   StoredImages images = {};
 
-  // What the uncertainty of its velocity, and of when it was seen, adds to that
-  // of motions from it.
+  // What the uncertainty of the frame's velocity and capture time adds to the
+  // covariance of motions from this frame.
   MotionMatrix timing_covariance = MotionMatrix::Zero();
 
-  // What it looks like; null: not described yet.
+  // Features for place recognition; null: not computed yet.
   std::shared_ptr<const PlaceFeatures> features = nullptr;
 
-  // Its images, unpacked where they have to be. Throws InputError if they are
-  // damaged.
+  // The frame with decoded images. Throws InputError if the compressed images
+  // have to be decoded and are damaged.
   PreparedFrame Unpacked() const {
     return frame.gray.empty() ? PreparedFrame(images.Restore()) : frame;
   }

@@ -11,19 +11,19 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr int kBytes = 32;  // of a descriptor
+constexpr int kBytes = 32;  // per descriptor
 
-// Of 256 bits, so many may differ between two views of one thing; 128 do by
-// chance.
+// Two views of the same feature may differ in this many of the 256 bits.
+// Unrelated descriptors differ in 128 on average.
 constexpr int kMaxDistance = 50;
 
-// Entries a bucket, on average and at most: what is seen everywhere is of no
-// use, and the oldest keyframes with it are those that a graph gains most by.
+// Entries per bucket, mean and maximum. A full bucket keeps the oldest
+// keyframes, as they help a graph most. Features seen everywhere are useless.
 constexpr size_t kMeanLoad = 2;
 constexpr int kMaxLoad = 32;
 
-constexpr int kEnd = -1;    // of a bucket
-constexpr int kIsOut = -2;  // of it: it was full
+constexpr int kEnd = -1;    // of a bucket's list
+constexpr int kIsOut = -2;  // not in the bucket, which was full
 
 void Require(const cv::Mat& descriptors) {
   if (!descriptors.empty() &&
@@ -49,7 +49,7 @@ size_t PlaceDatabase::Table::Number(uint32_t word) const {
   return bucket < split ? word & ((2u << bits) - 1u) : bucket;
 }
 
-// Moves about half of the next bucket's entries to a new one.
+// Moves about half of the entries of the next bucket to a new bucket.
 void PlaceDatabase::Split(int word) {
   Table& table = tables_[word];
   table.buckets.emplace_back();
@@ -134,7 +134,7 @@ void PlaceDatabase::FindAlike(const Descriptor& descriptor, int mark,
   for (int word = 0; word < kWords; ++word) {
     next[word] = tables_[word].Of(descriptor[word]).first;
   }
-  // All buckets at once: while one entry is looked at, others come from memory.
+  // All buckets in turn: while one entry is compared, others are prefetched.
   for (bool is_done = false; !is_done;) {
     is_done = true;
     for (int word = 0; word < kWords; ++word) {
@@ -160,8 +160,8 @@ std::vector<PlaceCandidate> PlaceDatabase::Query(
   std::vector<double> scores(blocks_.size(), 0.0);
   std::vector<int> marks(blocks_.size(), -1);
   std::vector<int> alike;
-  // A feature in n of N keyframes counts log((N + 1) / n), one in none of them
-  // as much as one in one.
+  // A feature in n of N keyframes has the weight log((N + 1) / n); n = 0 counts
+  // as n = 1.
   const double all = size() + 1.0;
   double total = 0.0;
   for (int row = 0; row < descriptors.rows; ++row) {

@@ -9,67 +9,67 @@
 
 namespace rgbd_pose {
 
-// A keyframe that may show what a frame shows.
+// A keyframe that may show the same place as a frame.
 struct PlaceCandidate {
-  int keyframe = 0;    // as it was added
-  double score = 0.0;  // 0 to 1: the share of what the frame's features tell
-                       // that the keyframe has as well
+  int keyframe = 0;    // number passed to Add
+  double score = 0.0;  // 0 to 1: share of the weight of all the frame's
+                       // features that the keyframe has as well
 };
 
-// Finds keyframes that look like a frame, by its ORB descriptors alone: nothing
-// is trained or loaded. Descriptors are hashed by each of their eight words of
-// 32 bits (locality-sensitive hashing, Indyk & Motwani 1998), so that one whose
-// bits are nearly the same shares a bucket with it in most cases. A feature
-// counts the more, the fewer keyframes have it (inverse document frequency,
-// Sparck Jones 1972), and one that is everywhere does not count at all.
+// Finds the keyframes that look like a frame, by ORB descriptors alone: nothing
+// is trained or loaded. Each of the eight 32-bit words of a descriptor is a
+// hash key (locality-sensitive hashing, Indyk & Motwani 1998): descriptors that
+// differ in few bits share a bucket in most cases. A feature has a higher
+// weight, the fewer keyframes have it (inverse document frequency, Sparck Jones
+// 1972); a feature that is everywhere has no weight.
 //
-// Buckets multiply as keyframes come, one by one (linear hashing, Litwin 1980):
-// neither the time of a query nor that of an addition grows with the number of
-// keyframes but by misses of the cache. The same calls give the same results.
-// Queries may be made from several threads at once.
+// Buckets are split one by one as keyframes are added (linear hashing, Litwin
+// 1980). The time to look up or to add descriptors does not grow with the
+// number of keyframes, except through cache misses. The same calls give the
+// same results. Several threads may call Query at once.
 class PlaceDatabase {
  public:
-  // Of a keyframe, at most so many descriptors are taken, evenly spread over
+  // At most this many descriptors of a keyframe are stored, evenly spread over
   // the rows.
   static constexpr int kMaxDescriptors = 400;
 
-  // `descriptors`: CV_8U, n x 32, a row each. Throws InputError for others, or
-  // for a keyframe that is there already.
+  // `descriptors`: CV_8U, n x 32, one per row. Throws InputError for another
+  // format or if the keyframe has been added already.
   void Add(int keyframe, const cv::Mat& descriptors);
 
-  // What it took serves the next one. Nothing happens if it is not there.
+  // Does nothing if the keyframe is unknown. The next one reuses its memory.
   void Remove(int keyframe);
 
-  // The keyframes most alike, the best first; at most so many, of those that
-  // `filter` takes (null: all). Throws InputError for other descriptors.
+  // The most similar keyframes, best first: at most `most` of those that
+  // `filter` accepts (null: all). Throws InputError for another format.
   std::vector<PlaceCandidate> Query(
       const cv::Mat& descriptors, int most,
       const std::function<bool(int keyframe)>& filter = nullptr) const;
 
-  // How many keyframes are there.
+  // Number of keyframes.
   int size() const { return static_cast<int>(blocks_of_.size()); }
 
  private:
   static constexpr int kWords = 8;
   using Descriptor = std::array<uint32_t, kWords>;
 
-  // One descriptor and, for each of its words, the next of the bucket: a line
-  // of the cache.
+  // A descriptor and, for each of its words, the next entry in the bucket: as
+  // large as a cache line.
   struct Entry {
     Descriptor words;
     std::array<int, kWords> next;
   };
-  // Those of a keyframe. Entry i of block b is number b * kMaxDescriptors + i.
+  // The entries of a keyframe: b * kMaxDescriptors + i is entry i of block b.
   struct Block {
     int keyframe = 0;
     std::vector<Entry> entries;
   };
   struct Bucket {
-    int first = -1;  // entry; -1: none
+    int first = -1;  // number of the first entry; -1: none
     int size = 0;
   };
-  // The buckets of one word. Those before `split` have been split since there
-  // were 2^bits of them.
+  // The hash table of one word, with 2^bits + split buckets: in this round
+  // those before `split` have been split.
   struct Table {
     std::vector<Bucket> buckets = {Bucket()};
     uint32_t split = 0;
@@ -87,8 +87,8 @@ class PlaceDatabase {
     return blocks_[entry / kMaxDescriptors].entries[entry % kMaxDescriptors];
   }
   void Split(int word);
-  // Appends the blocks that have a descriptor like this one, each once:
-  // `marks` holds `mark` for those that are in.
+  // Appends each block that has a similar descriptor once; the blocks that are
+  // already in have `mark` in `marks`.
   void FindAlike(const Descriptor& descriptor, int mark,
                  std::vector<int>* marks, std::vector<int>* blocks) const;
 

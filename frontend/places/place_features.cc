@@ -8,15 +8,15 @@
 namespace rgbd_pose {
 namespace {
 
-// Detected in a frame; of them, kept. With half as many half as many pairs of
-// real keyframes are found to show the same place (docs/places.md).
+// Keypoints detected, and kept. With half as many, half as many pairs of real
+// keyframes are found to show the same place (docs/places.md).
 constexpr int kMaxKeypoints = 2000;
 constexpr int kMaxFeatures = 800;
 
-// A motion is believed with so many inliers, in number and as a share of the
-// matches. Of the matches between different places fewer than 6 agree on a
-// motion, as three points fix it and a fourth agrees by chance once in some
-// thousand; the rest is a margin for texture that repeats itself.
+// A motion is accepted with this many inliers and this share of the matches.
+// Between different places fewer than 6 matches agree on a motion: three points
+// determine it, and a fourth agrees by chance once in some thousand cases. The
+// rest is a margin for repetitive texture.
 constexpr int kMinInliers = 10;
 constexpr double kMinInlierShare = 0.1;
 

@@ -12,24 +12,24 @@
 
 namespace rgbd_pose {
 
-// What a frame is recognised by: ORB features (Rublee et al. 2011).
+// The ORB features (Rublee et al. 2011) by which a frame is recognised.
 struct PlaceFeatures {
-  DescribedKeypoints described;           // where, and what they look like
-  std::vector<Observation> observations;  // of each keypoint
+  DescribedKeypoints described;
+  std::vector<Observation> observations;  // one per keypoint
 };
 
-// Up to about 800, spread over the image and with a depth. Takes about 8 ms.
+// Up to about 800 features with depth, all over the image. Takes about 8 ms.
 PlaceFeatures DescribeKeyframe(const Frame& frame, const Camera& camera,
                                const DepthLookupOptions& depth_options);
 
-// What two frames share by their descriptors alone.
+// Matches two frames by their descriptors alone.
 Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,
                             const Camera& camera);
 
-// The motion between two frames without a guess, by random samples
-// (core/initial_guess/consensus.h) of such matches: nothing unless more agree
-// than chance brings about. Good enough to track from, not more. The same input
-// gives the same bytes.
+// The motion between two frames from such matches, by RANSAC
+// (core/initial_guess/consensus.h) without an initial guess. Nothing unless
+// more matches agree than by chance. Accurate enough only as an initial guess
+// for tracking. The same input gives the same bytes.
 std::optional<Consensus> VerifyGeometrically(const Correspondences& matches);
 
 }  // namespace rgbd_pose

@@ -6,7 +6,7 @@
 namespace rgbd_pose {
 namespace {
 
-// What one search may do: describing an image takes about 8 ms, looking at a
+// Limits of one search: describing an image takes about 8 ms, comparing with a
 // described one 3 ms.
 constexpr size_t kMaxLooks = 5;
 constexpr size_t kMaxDescriptions = 2;
@@ -23,7 +23,7 @@ std::optional<Relocalisation> Relocaliser::Find(
       DescribeKeyframe(frame, camera_, depth_options_);
   size_t descriptions = 0;
   for (size_t look = 0; look < std::min(kMaxLooks, count); ++look) {
-    // The latest, and those whose turn it is.
+    // The latest keyframe, then those whose turn it is.
     const size_t at = look == 0 ? 0 : next_;
     Keyframe& keyframe = *keyframes[at];
     if (keyframe.features == nullptr) {

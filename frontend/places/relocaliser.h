@@ -15,32 +15,32 @@
 
 namespace rgbd_pose {
 
-// Where a lost frame was found again.
+// Where a lost frame has been relocalised.
 struct Relocalisation {
-  int keyframe = 0;  // its id; of FindInMap: as the index has it
+  int keyframe = 0;  // its id; from FindInMap: its number in the index
   Rigid3d cur_from_keyframe;
   int inliers = 0;  // matches that agree with the motion
 };
 
-// Finds a frame again among keyframes, without a guess: see
+// Relocalises a frame among keyframes without an initial guess; see
 // VerifyGeometrically.
 //
-// Keyframes are described as they are first looked at, a few in each search, so
-// that a search takes some tens of milliseconds at most. The same calls give
-// the same results. One object serves one thread.
+// A keyframe is described when it is first compared, a few in each search: a
+// search takes some tens of milliseconds at most. The same calls give the same
+// results. One object serves one thread.
 class Relocaliser {
  public:
   explicit Relocaliser(const Camera& camera,
                        const DepthLookupOptions& depth_options)
       : camera_(camera), depth_options_(depth_options) {}
 
-  // Looks for the frame among keyframes (the latest first): in the latest and
-  // in some more, others in each call. Nothing if it is not found among them.
+  // Searches the latest keyframe (first in `keyframes`) and a few others,
+  // different ones in each call. Nothing if the frame is not found in these.
   std::optional<Relocalisation> Find(const Frame& frame,
                                      const std::vector<Keyframe*>& keyframes);
 
-  // Looks for the frame in a whole map: of the keyframes of the index that are
-  // most like it, whose features the caller has, the one most matches agree to.
+  // Searches a whole map: of the keyframes most similar according to the index,
+  // the one with the most inliers. `features_of`: the features of a keyframe.
   std::optional<Relocalisation> FindInMap(
       const Frame& frame, const PlaceDatabase& index,
       const std::function<const PlaceFeatures&(int keyframe)>& features_of)
@@ -49,8 +49,8 @@ class Relocaliser {
  private:
   Camera camera_;
   DepthLookupOptions depth_options_;
-  int latest_id_ = -1;  // of the keyframes of the last Find
-  size_t next_ = 1;     // of them, for the next Find
+  int latest_id_ = -1;  // latest keyframe in the last Find
+  size_t next_ = 1;     // where the next Find continues
 };
 
 }  // namespace rgbd_pose

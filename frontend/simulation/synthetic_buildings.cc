@@ -45,11 +45,11 @@ void PutRoom(const Vector2d& middle, const Vector2d& size, uint32_t seed,
   PutWall(middle - x + y, middle - x - y, 0.0, seed, scene);
 }
 
-// Places furniture by where it is along a row, how far it stands from the wall
-// behind it, and how high; turned about the vertical against the row.
+// Places furniture by its position along a row, its distance from the wall
+// behind it and its height, rotated about the vertical relative to the row.
 class Row {
  public:
-  // The wall is to the right of the way from one end to the other.
+  // The wall is to the right when walking from `from` to `to`.
   Row(const Vector2d& from, const Vector2d& to, uint32_t seed, Scene* scene)
       : from_(from),
         along_((to - from).normalized()),
@@ -100,8 +100,7 @@ void PutCartons(double at, double share, Row* row) {
   row->Put(at + 0.1 * share, 0.0, 1.1, {0.9, 0.015, 0.65}, 0.0, kPoster);
 }
 
-// A row of furniture, another mix for each `kind`. `seed` is of the textures
-// only.
+// A row of furniture. `kind` selects the mix, `seed` only the textures.
 void Furnish(const Vector2d& from, const Vector2d& to, int kind, uint32_t seed,
              Scene* scene) {
   constexpr void (*kPieces[])(double, double, Row*) = {PutShelf, PutChest,
@@ -116,7 +115,7 @@ void Furnish(const Vector2d& from, const Vector2d& to, int kind, uint32_t seed,
   }
 }
 
-// Along all four walls of a rectangle, away from its corners.
+// Furniture along all four walls of a rectangle, away from its corners.
 void FurnishRoom(const Vector2d& middle, const Vector2d& size, int kind,
                  uint32_t seed, Scene* scene) {
   constexpr double kCorner = 0.5;  // m
@@ -134,7 +133,7 @@ void FurnishRoom(const Vector2d& middle, const Vector2d& size, int kind,
   }
 }
 
-// A desk with what one works with, turned about its middle.
+// A desk with typical equipment, rotated about its middle.
 void PutDesk(const Vector2d& middle, double yaw_deg, uint32_t seed,
              Scene* scene) {
   struct Piece {
@@ -184,7 +183,7 @@ Scene MakeTwoRooms(uint32_t seed) {
   constexpr double kDoor = 1.2;
   constexpr double kDoorHeight = 2.1;
   Scene scene;
-  scene.lamp = {0.0, 0.0, 4.0};  // the same in both
+  scene.lamp = {0.0, 0.0, 4.0};  // equal light in both rooms
   PutFloorAndCeiling({0, 0}, {2 * kSide, kSide}, seed, &scene);
   const double half = kSide / 2.0;
   PutWall({-kSide, -half}, {kSide, -half}, 0.0, seed, &scene);
@@ -194,7 +193,7 @@ Scene MakeTwoRooms(uint32_t seed) {
   PutWall({0, -half}, {0, -kDoor / 2}, 0.0, seed, &scene);
   PutWall({0, kDoor / 2}, {0, half}, 0.0, seed, &scene);
   PutWall({0, -kDoor / 2}, {0, kDoor / 2}, kDoorHeight, seed, &scene);
-  // Along the long walls and those at both ends; pictures next to the door.
+  // Furniture along the long and the end walls; pictures next to the door.
   const double inner = half - kWall / 2.0;
   Furnish({-kSide + 0.6, -inner}, {-0.3, -inner}, 1, seed, &scene);
   Furnish({0.3, -inner}, {kSide - 0.6, -inner}, 2, seed, &scene);
@@ -220,7 +219,7 @@ Scene MakeTwinCorridors(uint32_t seed) {
   constexpr double kHall = kTwinShift - kLength;
   constexpr double kHallHalf = 3.0;
   Scene scene;
-  // So high that its light is the same in both.
+  // The lamp is so high that its light is the same in both corridors.
   scene.lamp = {0.0, 0.0, 1000.0};
   PutFloorAndCeiling({kLength / 2, 0}, {kLength, 2 * kHalfWidth}, seed, &scene);
   for (const double side : {-1.0, 1.0}) {
@@ -233,7 +232,7 @@ Scene MakeTwinCorridors(uint32_t seed) {
     face.origin.x() += kTwinShift;
     scene.faces.push_back(face);
   }
-  // The hall between, the ends.
+  // The hall between the corridors, and the end walls.
   PutFloorAndCeiling({kLength + kHall / 2, 0}, {kHall, 2 * kHallHalf}, seed,
                      &scene);
   for (const double x : {kLength, kTwinShift}) {
@@ -256,7 +255,7 @@ Scene MakeTwinCorridors(uint32_t seed) {
 
 Scene MakeDepot(uint32_t seed) {
   constexpr double kReach = 7.5;   // half of a row's length
-  constexpr double kThick = 0.34;  // of a row's back
+  constexpr double kThick = 0.34;  // thickness of a row's back
   Scene scene;
   scene.lamp = {0.0, 0.0, 1000.0};
   PutRoom({0, 0}, {kDepotPitch * kDepotAisles, 22.0}, seed, &scene);

@@ -35,7 +35,7 @@ void CheckShutters(const RgbdCamera& camera, double frame_s) {
   }
 }
 
-// Whether every pixel has a ray: a lens is worst in a corner.
+// Whether every pixel has a ray: the distortion is worst in the corners.
 bool SeesEverywhere(const Camera& camera) {
   for (const double u : {0.0, camera.width - 1.0}) {
     for (const double v : {0.0, camera.height - 1.0}) {
@@ -45,7 +45,7 @@ bool SeesEverywhere(const Camera& camera) {
   return true;
 }
 
-// With its shutters in the camera.
+// Checks the options and stores the shutters in the camera as well.
 SyntheticOptions Checked(SyntheticOptions options) {
   const auto require = [](bool holds, const std::string& problem) {
     if (!holds) throw InputError(problem);
@@ -146,7 +146,8 @@ Rigid3d SyntheticDataset::WorldFromCam(int index) const {
   return world_from_cam_(Time(index));
 }
 
-// What is seen from world_from_cam * E^-1 lies at E * X in those axes.
+// With the registration error E, depth is rendered from world_from_cam * E^-1:
+// a point X of the camera axes is at E * X there.
 Rendering SyntheticDataset::Render(double t) const {
   const double focal_px = options_.camera.camera.fx;
   const Shutter& color = options_.color_shutter;
@@ -182,7 +183,7 @@ Frame SyntheticDataset::Read(int index) const {
     rendering.color.setTo(0);
   }
   if (options_.noise) {
-    // One key an image; images take less than 2^40 numbers after theirs.
+    // One key per image. An image uses fewer than 2^40 numbers from its key on.
     const uint64_t sequence = HashCounter(options_.seed);
     const uint64_t frame = static_cast<uint64_t>(index) << 41;
     AddColorNoise(sequence + frame, &rendering.color);

@@ -14,71 +14,71 @@
 
 namespace rgbd_pose {
 
-// What to render.
+// The options of a synthetic sequence.
 struct SyntheticOptions {
   std::string scene = "room";  // see MakeScene
   std::string path = "xyz";    // see FindSyntheticPath
-  int frames = 150;            // how many
-  int laps = 1;                // the path is gone so often, see below
-  uint32_t seed = 1;           // of textures and noise
-  double rate_hz = 30.0;       // frames a second
-  bool noise = true;           // of a real sensor, see synthetic_sensor.h
-  RgbdCamera camera = {};      // may have distortion
+  int frames = 150;
+  int laps = 1;            // rounds of the path, see below
+  uint32_t seed = 1;       // of textures and noise
+  double rate_hz = 30.0;   // frames per second
+  bool noise = true;       // simulate a real sensor, see synthetic_sensor.h
+  RgbdCamera camera = {};  // may have distortion
 
-  // How long the shutter is open (s), from half of it before the time of a row
-  // to half of it after; at most the time from frame to frame.
+  // Exposure time of a row (s), half of it before and half of it after the time
+  // of the row; at most the frame interval.
   double exposure_s = 0.0;
 
-  // When rows are exposed, from the stamp of each image; the pose of a frame is
-  // that of the stamp of colour. Each number is at most the time from frame to
-  // frame, and what camera files may hold. Those of `camera` do not count.
+  // When rows are exposed, relative to the stamp of each image; a frame's pose
+  // is the one at the colour stamp. At most the frame interval and the limits
+  // of camera files. The shutters of `camera` are ignored.
   Shutter color_shutter = {};
   Shutter depth_shutter = {};
 
   // How much later than colour depth is exposed and stamped (s; negative:
-  // earlier); less than half the time from frame to frame.
+  // earlier); less than half the frame interval.
   double depth_delay_s = 0.0;
 
-  // An error of the calibration between both cameras: depth images have a point
-  // X (in camera axes, m) where they should have registration_error * X.
+  // A calibration error between both cameras: a point that should be at X
+  // (camera axes, m) is at registration_error * X in the depth images.
   Rigid3d registration_error = {};
 
-  // Takes the depth images, which are not registered to colour then and may
-  // have another size: a raw recording. Nothing: they are.
+  // The camera of the depth images. They are not registered to colour then and
+  // may have another size, as in a raw recording. Nothing: they are registered.
   std::optional<DepthCamera> depth_camera = {};
 
-  // Swing of the automatic exposure, 0..1: see DriftingGain.
+  // Amplitude of the automatic exposure's gain, 0..1: see DriftingGain.
   double exposure_drift = 0.0;
 
-  // What moves by itself (see MovingPatch): a patch on this share of the
-  // view, 0 to kMaxPatchShare, and boxes, 0 to kMaxWalkingBoxes.
+  // Independently moving objects: a patch on this share of the view (see
+  // MovingPatch), 0 to kMaxPatchShare, and boxes, 0 to kMaxWalkingBoxes.
   double moving_patch = 0.0;
   int walking_boxes = 0;
 
-  // Colour sees nothing for so long (s), in the middle of the sequence.
+  // How long colour is black (s), in the middle of the sequence.
   double black_s = 0.0;
 
-  // How the camera is mounted on what moves along the path, if not straight.
+  // The pose of the camera in the axes that follow the path, if not identity.
   std::optional<Rigid3d> path_from_cam = {};
 };
 
-// The path lasts as long as all frames. With several laps each lasts an equal
-// part of that, and they go to and fro in turn, starting and stopping softly:
-// at up to pi/2 times the path's own pace.
+// The path lasts as long as the sequence. Several laps share this time equally.
+// They go forward and backward in turn and start and stop smoothly, at up to
+// pi/2 times the path's own speed.
 
-// An RGB-D sequence rendered as it is read, with exact poses. The same options
-// give the same bytes, whatever the order or the number of threads. Time
-// stamps start at 1000 s and are whole microseconds, as TUM files hold them.
+// An RGB-D sequence with exact poses, rendered when it is read. The same
+// options give the same bytes, in any order and with any number of threads.
+// Time stamps start at 1000 s and are whole microseconds, as in TUM files.
 class SyntheticDataset : public Dataset {
  public:
-  // Throws InputError if the options make no sense.
+  // Throws InputError for invalid options.
   explicit SyntheticDataset(const SyntheticOptions& options);
 
   int size() const override { return options_.frames; }
   double timestamp(int index) const override;
-  // With its colour and both shutters.
+  // Includes colour and both shutters.
   Frame Read(int index) const override;
-  // With the shutters simulated.
+  // Includes the simulated shutters.
   const RgbdCamera& camera() const override { return options_.camera; }
 
   // The pose at the time stamp.
@@ -90,8 +90,8 @@ class SyntheticDataset : public Dataset {
  private:
   // Seconds since the first frame.
   double Time(int index) const { return index / options_.rate_hz; }
-  // What a frame with its stamp at time t has: colour as exposed, and depth,
-  // exact, as exposed and registered.
+  // The images of a frame with stamp t: colour as exposed, and exact depth at
+  // its own exposure time and registration.
   Rendering Render(double t) const;
 
   SyntheticOptions options_;

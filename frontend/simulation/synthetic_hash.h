@@ -6,15 +6,15 @@
 
 namespace rgbd_pose {
 
-// Hashes in place of random generators: the value at a place (lattice cell,
-// pixel, frame) depends on that place only, so threads and order do not matter.
+// Hashes instead of random generators: the value at a place (lattice cell,
+// pixel, frame) depends on this place only, not on threads or on order.
 
-// What the numbers of a lattice cell are multiplied by.
+// Factors of the coordinates of a lattice cell.
 constexpr uint32_t kHashX = 0x9e3779b1u;
 constexpr uint32_t kHashY = 0x7feb352du;
 
-// Mixes 32 bits, or several numbers of 32 bits side by side, well. Finalizer of
-// MurmurHash3 (Appleby).
+// Mixes 32 bits, or each element of a vector of 32-bit words, well. Finalizer
+// of MurmurHash3 (Appleby).
 template <typename Word>
 [[gnu::always_inline]] inline void MixHash(Word* h) {
   *h ^= *h >> 16;
@@ -37,8 +37,8 @@ inline uint64_t HashCounter(uint64_t counter) {
   return CounterRandom::Mix(counter * CounterRandom::kStep);
 }
 
-// A number of mean 0 and variance 1 from 64 random bits: the sum of their
-// eight bytes, normal to the eye (kurtosis 2.85, never beyond 4.9 sigma).
+// A number with mean 0 and variance 1 from 64 random bits: the sum of their
+// eight bytes, nearly normal (kurtosis 2.85, never beyond 4.9 sigma).
 inline float GaussianFromBits(uint64_t bits) {
   constexpr uint64_t kEvenBytes = 0x00ff00ff00ff00ffu;
   uint64_t sum = (bits & kEvenBytes) + ((bits >> 8) & kEvenBytes);

@@ -13,21 +13,20 @@
 
 namespace rgbd_pose {
 
-// Random motions and matches with the noise of a Kinect, wrong matches and
-// missing depths; for tests, benchmarks and experiments. The same for one seed
-// on every platform with the same standard library.
+// Random motions and matches with Kinect noise, outliers and missing depths,
+// for tests, benchmarks and experiments. A seed gives the same numbers on every
+// platform with the same standard library.
 class RandomWorld {
  public:
-  // Another world for each seed.
   explicit RandomWorld(unsigned seed)
       : generator_(seed), extra_generator_(~seed) {}
 
-  // A number between the two.
+  // A number in [low, high), uniformly distributed.
   double Uniform(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(generator_);
   }
 
-  // A number of mean 0 and this standard deviation.
+  // A number with mean 0 and this standard deviation, normally distributed.
   double Normal(double sigma) {
     return std::normal_distribution<double>(0.0, sigma)(generator_);
   }
@@ -37,10 +36,10 @@ class RandomWorld {
     return {Uniform(-size, size), Uniform(-size, size), Uniform(-size, size)};
   }
 
-  // About any axis by up to `max_angle` (rad), and up to `max_translation` (m)
-  // along each axis.
+  // Rotation about a random axis by up to `max_angle` (rad), translation by up
+  // to `max_translation` (m) along each axis.
   Rigid3d Motion(double max_angle, double max_translation) {
-    // One statement a draw: compilers differ in the order of arguments.
+    // One statement per draw: the evaluation order of arguments is open.
     const Eigen::Vector3d axis = Vector(1.0).normalized();
     const Eigen::Vector3d translation = Vector(max_translation);
     const Eigen::AngleAxisd rotation(Uniform(0.0, max_angle), axis);
@@ -48,7 +47,7 @@ class RandomWorld {
   }
 
   // A noiseless match of a random point at 1-4 m, with Kinect sigmas and a
-  // tracking noise of 0.5 px in each frame.
+  // tracking sigma of 0.5 px in each frame.
   void Match(const Camera& camera, const Rigid3d& cur_from_prev,
              Observation* prev, Observation* cur) {
     while (true) {
@@ -69,16 +68,16 @@ class RandomWorld {
     }
   }
 
-  // Disturbs an observation by its own sigmas.
+  // Adds noise with the observation's own sigmas.
   void AddNoise(Observation* o) {
     o->u += Normal(o->sigma_px);
     o->v += Normal(o->sigma_px);
     o->depth += Normal(o->sigma_depth);
   }
 
-  // Matches with noise, of which a share points to a random place and depth.
-  // All current points have a normal of any direction that faces the camera. On
-  // each side a share of the depths, by chance, is missing.
+  // Matches with noise, a share of them at a random place and depth in the
+  // current frame. All current points have a random normal that faces the
+  // camera. In each frame a share of the depths is missing at random.
   Correspondences Matches(int count, double outlier_share,
                           const Rigid3d& cur_from_prev, bool noise = true,
                           double missing_depth_share = 0.0) {
@@ -105,8 +104,8 @@ class RandomWorld {
     return matches;
   }
 
-  // A motion predicted with an error drawn from a covariance, itself random:
-  // all six parts correlated, each of about `sigma` (rad, m).
+  // A predicted motion whose error is drawn from its covariance. The covariance
+  // is random: all six parts are correlated, each of about `sigma` (rad, m).
   MotionPrior Prior(const Rigid3d& truth, double sigma) {
     MotionMatrix spread = MotionMatrix::Identity();
     for (double& value : spread.reshaped()) value += Extra(-0.5, 0.5);
@@ -141,19 +140,19 @@ class RandomWorld {
   }
 
   std::mt19937 generator_;
-  std::mt19937 extra_generator_;  // its own: normals change no other numbers
+  std::mt19937 extra_generator_;  // separate: other numbers stay the same
 };
 
-// A random motion and a match (or prior) that a residual type can use, to
-// evaluate it at: what tests, benchmarks and rgbd_jacobians look at.
+// A random motion and a match (or prior) at which a residual type can be
+// evaluated, for tests, benchmarks and rgbd_jacobians.
 template <typename Residual>
 struct ResidualSample {
-  LinearizationPoint origin;           // the motion it is near to
-  MotionVector x;                      // from there
-  double columns[Residual::kColumns];  // the match, as the type reads it
+  LinearizationPoint origin;           // linearisation point
+  MotionVector x;                      // the motion relative to `origin`
+  double columns[Residual::kColumns];  // the match as packed by the type
 
   explicit ResidualSample(RandomWorld* world) {
-    // Enough lack a depth on one side for costs that use those matches.
+    // Enough matches without depth on one side, for residuals that use them.
     constexpr double kMissingDepthShare = 0.25;
     origin = LinearizationPoint(world->Motion(1.0, 1.0));
     x << world->Vector(0.7), world->Vector(0.7);

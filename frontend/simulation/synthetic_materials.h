@@ -4,8 +4,8 @@
 
 namespace rgbd_pose {
 
-// What furniture and walls are made of: colour and grain, then tiles, their
-// contrast and tint, then glyphs and their density.
+// Materials of furniture and walls. The values are: colour, grain, tile size,
+// tile contrast, tile tint, glyph size, glyph density.
 
 inline const Material kPlaster = {{0.62f, 0.68f, 0.70f}, 0.16f};
 inline const Material kWallpaper = {

@@ -11,13 +11,13 @@ using Eigen::Quaterniond;
 using Eigen::Vector3d;
 
 struct WalkingBox {
-  SceneBox box;   // at the middle of its way
+  SceneBox box;   // in the middle of its way
   Vector3d half;  // from there to either end (m)
   double rate;    // of its phase (rad/s)
   double phase;   // at time 0 (rad)
 };
 
-// Before the desk, behind it, and towards the camera and away from it.
+// In front of the desk, behind it, and towards and away from the camera.
 const WalkingBox kWalkingBoxes[kMaxWalkingBoxes] = {
     {{{-0.05, 0.0, 0.0}, {0.30, 0.40, 1.25}, 10}, {0.0, 1.1, 0.0}, 0.8, 4.0},
     {{{1.50, 0.1, 0.0}, {0.40, 0.50, 1.50}, -20}, {0.0, 1.2, 0.0}, 0.7, 0.5},
@@ -29,7 +29,7 @@ SyntheticMover MovingPatch(double share, const Camera& camera,
                            const std::function<Rigid3d(double t)>& path,
                            uint32_t seed) {
   constexpr double kDepth = 1.0;  // m
-  // Half axes of the ellipse, as shares of the image, and the rate on it
+  // Semi-axes of the ellipse, as shares of the image, and its angular rate
   // (rad/s): 150 to 240 px/s.
   constexpr double kHalfWidth = 100.0 / 640.0;
   constexpr double kHalfHeight = 62.5 / 480.0;

@@ -32,7 +32,7 @@ Rigid3d Xyz(double t, double /*duration*/) {
   const int index = static_cast<int>(leg);
   const double side = index % 6 < 3 ? 1.0 : -1.0;
   Vector3d shift = Vector3d::Zero();
-  // A raised cosine starts and stops softly.
+  // A raised cosine starts and stops smoothly.
   shift[index % 3] =
       side * kReach * 0.5 * (1.0 - std::cos(2.0 * M_PI * (leg - index)));
   const Rigid3d sway = Turn(kSway * std::sin(1.9 * t), Vector3d::UnitX()) *
@@ -41,8 +41,9 @@ Rigid3d Xyz(double t, double /*duration*/) {
   return LookAt({-1.10, -0.35, 1.35}, {0.6, 0.2, 0.80}) * Shift(shift) * sway;
 }
 
-// Where a device is that goes through stops, each leg lasting as long as its
-// angle is wide: cubic ease in and out, `share` in 0..1 of the whole way.
+// The angle of a device that moves through stops after `share` (0..1) of the
+// time. A leg takes time in proportion to its angle, with cubic ease in and
+// out.
 template <size_t N>
 double ThroughStops(const double (&stops)[N], double share) {
   double way = 0.0;
@@ -99,11 +100,11 @@ double Sum(const Wave (&waves)[N], double t) {
   return sum;
 }
 
-// Frequencies are whole hundredths, so that it repeats after 100 s and its
-// peaks over that time are its peaks for ever; phases are such that the first
-// five seconds come close to them.
+// Frequencies are multiples of 0.01 Hz: the path repeats after 100 s, and its
+// peaks in this time are its overall peaks. The phases are chosen for the first
+// five seconds to come close to them.
 Rigid3d Handheld(double t, double /*duration*/) {
-  // The arm, the hand, its tremor; m, then degrees.
+  // Arm, hand and tremor, in m, then in degrees.
   constexpr Wave kX[] = {
       {0.35, 0.19, 4.3}, {0.044, 0.61, 1.6}, {0.0035, 2.3, 1.0}};
   constexpr Wave kY[] = {
@@ -139,12 +140,12 @@ Rigid3d Walk(double t, double /*duration*/) {
                  Vector3d(0, 0, x));
 }
 
-// Along Xyz, turning to and fro about the vertical.
+// Along Xyz, with turns to the left and back about the vertical.
 Rigid3d WhipPan(double t, double duration) {
   constexpr double kRate = 300.0 * kRadiansPerDegree;  // rad/s
-  constexpr double kSpinUp = 0.1;                      // s, and as long down
+  constexpr double kSpinUp = 0.1;                      // s, the same to stop
   constexpr double kPan = 0.5 + 2.0 * kSpinUp;         // s
-  constexpr double kPeriod = 3.0;                      // s, from pan to pan
+  constexpr double kPeriod = 3.0;                      // s, start to start
   const double pan = std::floor(t / kPeriod);
   const bool is_back = std::fmod(pan, 2.0) != 0.0;
   const double s =

@@ -19,18 +19,18 @@ using Eigen::Vector3d;
 using Eigen::Vector3f;
 
 constexpr int kTileSize = 32;
-// Faces reach this much beyond their edges, so that rounding tears no cracks
-// where two of them meet (m).
+// Faces extend this far (m) beyond their edges to avoid cracks from rounding
+// where two faces meet.
 constexpr float kOverlap = 1e-4f;
-// Blur of a lens and of the mosaic of colour filters (sigma, px).
+// Blur of the lens and of the colour filter mosaic (sigma, px).
 constexpr double kLensBlur = 0.6;
 
-// Where the ray (x, y, 1) meets a face, at depth z (m), and what of it a pixel
-// covers. No expressions of Eigen: clang does not inline them under its address
-// sanitizer, where they took half of the time of all tests.
+// Where the ray (x, y, 1) meets a face at depth z (m), and the extent of a
+// pixel there. Without Eigen expressions: clang does not inline them with its
+// address sanitizer, where they took half the time of all tests.
 SurfacePoint Meet(const Matrix3f& face_from_ray, float x, float y, float z,
                   const Vector2f& pixel) {
-  const float* const h = face_from_ray.data();  // column after column
+  const float* const h = face_from_ray.data();  // column by column
   SurfacePoint at;
   at.u = (h[0] * x + (h[3] * y + h[6])) * z;
   at.v = (h[1] * x + (h[4] * y + h[7])) * z;
@@ -44,7 +44,7 @@ SurfacePoint Meet(const Matrix3f& face_from_ray, float x, float y, float z,
   return at;
 }
 
-// How much of the lamp's light, and of that of the room, a surface sends back.
+// The brightness of a surface in the light of the lamp and of the room.
 float Brightness(const Vector3f& to_lamp) {
   constexpr float kAmbient = 0.60f;
   constexpr float kLamp = 0.85f;
@@ -54,15 +54,15 @@ float Brightness(const Vector3f& to_lamp) {
   return kAmbient + kLamp * cosine / (1.0f + distance2 / kHalfDistance2);
 }
 
-// The lamp's mirror image on a glossy surface (Blinn 1977): it moves with the
-// camera, which no surface does.
+// The lamp's reflection on a glossy surface (Blinn 1977). It moves with the
+// camera, unlike any surface.
 float Highlight(const Vector3f& to_lamp, const Vector3f& to_camera) {
   constexpr float kSharpness = 40.0f;
   const Vector3f half = to_lamp.normalized() + to_camera.normalized();
   return std::pow(std::max(0.0f, half.normalized().z()), kSharpness);
 }
 
-// Range of an image of one channel.
+// The least and the greatest value of an image with one channel.
 void FindRange(const cv::Mat& image, float* min, float* max) {
   double low = 0.0;
   double high = 0.0;
@@ -74,7 +74,7 @@ void FindRange(const cv::Mat& image, float* min, float* max) {
 constexpr double kNearPlane = 0.01;  // m
 constexpr float kEndless = std::numeric_limits<float>::max();
 
-// Fills min and max; false if the face is behind the camera.
+// Fills min and max. Returns false if the face is behind the camera.
 bool FindRange(const SceneFace& face, const Vector3d& camera,
                const Matrix3d& cam_from_world_rotation, VisibleFace* visible) {
   visible->min.setConstant(kEndless);
@@ -139,8 +139,8 @@ std::vector<VisibleFace> FindVisibleFaces(const Scene& scene,
   return faces;
 }
 
-// By pixel of a tile, row after row: the inverse depth of the nearest face, 0
-// if there is none, and its index.
+// For each pixel of a tile, row by row: the inverse depth of the nearest face,
+// 0 if there is none, and its index.
 struct Renderer::NearestFaces {
   std::array<float, kTileSize* kTileSize> inverse_depth = {};
   std::array<int, kTileSize* kTileSize> index = {};
@@ -196,7 +196,7 @@ Renderer::NearestFaces Renderer::FindNearest(
       const float* y = rays_y_.ptr<float>(tile.pixels.y + row) + tile.pixels.x;
       float* best = nearest.inverse_depth.data() + row * kTileSize;
       int* index = nearest.index.data() + row * kTileSize;
-      // No branches and no divisions: the compiler turns it into vectors.
+      // Without branches and divisions, the compiler vectorises this loop.
       for (int column = 0; column < tile.pixels.width; ++column) {
         const float u = h(0, 0) * x[column] + h(0, 1) * y[column] + h(0, 2);
         const float v = h(1, 0) * x[column] + h(1, 1) * y[column] + h(1, 2);

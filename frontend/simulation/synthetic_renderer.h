@@ -14,43 +14,43 @@
 
 namespace rgbd_pose {
 
-// A face as a camera sees it. For the ray (x, y, 1) of a pixel in camera axes
-// face_from_ray * ray = (u, v, 1) / z: where it meets the face's plane, and the
-// inverse of the depth there. All of it is linear in the ray, which makes the
-// search for the nearest face a matter of multiplying and comparing.
+// A face as seen by a camera. For the ray (x, y, 1) of a pixel in camera axes,
+// face_from_ray * ray = (u, v, 1) / z: (u, v) is where the ray meets the plane
+// of the face, z the depth there. This is linear in the ray, and the search for
+// the nearest face takes only multiplications and comparisons.
 struct VisibleFace {
   const SceneFace* face = nullptr;
   Eigen::Matrix3f face_from_ray;
-  Eigen::Vector3f lamp;    // along u, along v, above the face (m)
-  Eigen::Vector3f camera;  // likewise
-  Eigen::Vector2f min;     // range of the face on the plane z = 1; without end
-  Eigen::Vector2f max;     // where it reaches behind the camera
+  Eigen::Vector3f lamp;    // position along u, along v, above the face (m)
+  Eigen::Vector3f camera;  // in the same axes
+  Eigen::Vector2f min;     // range of the face on the plane z = 1;
+  Eigen::Vector2f max;     // infinite if it reaches behind the camera
 };
 
 // The faces of a scene whose front is turned to the camera and which are not
-// wholly behind it. They point into `scene`.
+// entirely behind it. The result points into `scene`.
 std::vector<VisibleFace> FindVisibleFaces(const Scene& scene,
                                           const Rigid3d& world_from_cam);
 
-// Something that moves by itself: what it looks like, in axes and under a lamp
-// of its own, and where it is at time t (s).
+// An independently moving object: its look, in axes and under a lamp of its
+// own, and its pose at time t (s).
 struct SyntheticMover {
   Scene scene;
   std::function<Rigid3d(double t)> world_from_mover;
 };
 
-// A printed sheet that floats 1 m before a camera on a path, wherever that
-// goes, square to it and with the image's shape. It covers this share of the
-// view, above 0 and at most kMaxPatchShare, and goes round an ellipse at 5 to
-// 8 px a frame (of 640 x 480 at 30 Hz; image sizes scale it).
-constexpr double kMaxPatchShare = 0.45;  // more would leave the image
+// A printed sheet that moves with a camera on a path, 1 m in front of it,
+// perpendicular to the optical axis and with the image's aspect ratio. It
+// covers the share `share` of the view, above 0 and at most kMaxPatchShare, and
+// moves on an ellipse at 5 to 8 px per frame (640 x 480 at 30 Hz; scales with
+// the image size).
+constexpr double kMaxPatchShare = 0.45;  // a larger one would leave the image
 SyntheticMover MovingPatch(double share, const Camera& camera,
                            const std::function<Rigid3d(double t)>& path,
                            uint32_t seed);
 
-// The first so many of three printed boxes, as tall as children, that walk to
-// and fro through the scene "room", at up to 0.9 m/s, and through what stands
-// there.
+// The first `count` of three printed boxes, as tall as children, that walk back
+// and forth in the scene "room" at up to 0.9 m/s, through its furniture.
 constexpr int kMaxWalkingBoxes = 3;
 std::vector<SyntheticMover> WalkingBoxes(int count, uint32_t seed);
 
@@ -60,20 +60,20 @@ struct Rendering {
   cv::Mat depth;  // CV_32FC1, z along the optical axis in metres; 0 = nothing
 };
 
-// Casts one ray a pixel into a scene. Depth is that of the pixel's centre, to
-// single precision; colour is averaged over the pixel and slightly blurred, as
-// by a lens. Render may be called from several threads at once; the result
+// Casts one ray per pixel into a scene. Depth is sampled at the pixel's centre
+// in single precision. Colour is averaged over the pixel and slightly blurred,
+// as by a lens. Render may be called from several threads at once; the result
 // does not depend on the number of threads.
 class Renderer {
  public:
   Renderer(Scene scene, const Camera& camera,
            std::vector<SyntheticMover> movers = {});
 
-  // At a time (s) that matters only to what moves.
+  // The time t (s) matters only to moving objects.
   Rendering Render(const Rigid3d& world_from_cam, double t = 0.0) const;
 
-  // With a pose and its time for each band of kBandRows rows, top down,
-  // num_bands() in all: what a rolling shutter sees.
+  // With a pose and a time for each band of kBandRows rows, from the top,
+  // num_bands() in all, as a rolling shutter sees the scene.
   static constexpr int kBandRows = 8;
   int height() const { return rays_x_.rows; }  // of the image, px
   int num_bands() const { return (height() + kBandRows - 1) / kBandRows; }
@@ -103,11 +103,11 @@ class Renderer {
 
   Scene scene_;
   std::vector<SyntheticMover> movers_;
-  cv::Mat rays_x_;  // CV_32FC1, where each pixel's ray meets the plane z = 1
+  cv::Mat rays_x_;  // CV_32FC1: where each pixel's ray meets the plane z = 1
   cv::Mat rays_y_;
   Eigen::Vector2f pixel_;  // size of a pixel on that plane
   std::vector<Tile> tiles_;
-  std::vector<Tile> band_tiles_;  // none reaches into two bands
+  std::vector<Tile> band_tiles_;  // each within one band
 };
 
 }  // namespace rgbd_pose

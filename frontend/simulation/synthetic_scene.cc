@@ -11,8 +11,8 @@
 namespace rgbd_pose {
 namespace {
 
-// Scenes that lack what one or the other method lives on. All suit the paths
-// of the room.
+// Scenes without the texture or the shape that some methods depend on. All suit
+// the paths of the room.
 
 Material Painted(const cv::Vec3f& color) { return {color, 0.0f}; }
 
@@ -21,7 +21,7 @@ struct PaintedBox {
   float brightness;
 };
 
-// Low things near the camera, high ones along the walls.
+// Low boxes near the camera, high ones along the walls.
 const PaintedBox kBoxes[] = {
     {{{0.60, 0.25, 0.0}, {0.75, 1.50, 0.74}, -18}, 0.62f},
     {{{0.74, 0.42, 0.74}, {0.20, 0.54, 0.40}, -10}, 0.70f},
@@ -37,8 +37,8 @@ const PaintedBox kBoxes[] = {
     {{{-0.90, 1.70, 0.0}, {0.90, 0.42, 0.75}, 0}, 0.61f},
 };
 
-// A room of 5 x 4 x 2.6 m with a dozen boxes, all painted in one colour each:
-// shapes, but no texture.
+// A room of 5 x 4 x 2.6 m with a dozen boxes, each in one colour: shapes, but
+// no texture.
 Scene MakePlainRoom(uint32_t seed) {
   Scene scene;
   scene.lamp = {-0.4, 0.2, 2.2};
@@ -52,11 +52,11 @@ Scene MakePlainRoom(uint32_t seed) {
   return scene;
 }
 
-// A corridor, 2 x 2.5 m and 40 m long, along the world's x axis, painted in one
-// colour a wall: nothing shows how far along it a camera is.
+// A corridor, 2 x 2.5 m and 40 m long, along the world's x axis, each wall in
+// one colour: the position along this axis cannot be observed.
 Scene MakeCorridor(uint32_t seed) {
   Scene scene;
-  // So high that its light is the same all along.
+  // The lamp is so high that its light is the same everywhere.
   scene.lamp = {-0.4, -0.35, 1000.0};
   AddBox({{0.0, -0.35, 0.0}, {40.0, 2.0, 2.5}, 0}, true,
          {Painted({0.80f, 0.82f, 0.83f}), Painted({0.80f, 0.82f, 0.83f}),

@@ -10,8 +10,8 @@
 
 namespace rgbd_pose {
 
-// One rectangle of a scene, seen from the side its normal points to. The
-// surface point (u, v), 0 <= u <= width, 0 <= v <= height, lies at
+// A rectangle of a scene, visible from the side its normal points to.
+// The surface point (u, v), 0 <= u <= width, 0 <= v <= height, lies at
 // origin + u * u_axis + v * v_axis. World axes, metres.
 struct SceneFace {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();
@@ -24,44 +24,44 @@ struct SceneFace {
   uint32_t seed = 0;  // of the texture
 };
 
-// A world to look at: z up, the floor at z = 0, metres.
+// A scene, in metres: z up, the floor at z = 0.
 struct Scene {
   std::vector<SceneFace> faces;
   Eigen::Vector3d lamp = Eigen::Vector3d::Zero();  // point light
 };
 
-// An upright box, turned about the vertical.
+// An upright box, rotated about the vertical.
 struct SceneBox {
   Eigen::Vector3d foot;  // centre of its bottom face (m)
   Eigen::Vector3d size;  // along its own axes (m)
   double yaw_deg = 0.0;
 };
 
-// Adds the faces of a box, seen from outside or, as a room, from within. The
-// materials are those of the sides -x, +x, -y, +y, -z, +z of its own axes.
+// Adds the faces of a box, visible from outside or, for a room, from inside.
+// The materials are those of the sides -x, +x, -y, +y, -z, +z of its own axes.
 void AddBox(const SceneBox& box, bool from_within,
             const std::array<Material, 6>& materials, uint32_t seed,
             Scene* scene);
 
-// The same of one material, seen from outside.
+// The same with one material, visible from outside.
 inline void AddBox(const SceneBox& box, const Material& m, uint32_t seed,
                    Scene* scene) {
   AddBox(box, false, {m, m, m, m, m, m}, seed, scene);
 }
 
-// A scene known by name. Throws InputError that lists the names for another
-// one. `seed` picks the textures, never the geometry.
+// The scene with this name. Throws InputError that lists the names if there is
+// none. `seed` changes the textures, never the geometry.
 //   room         furnished and textured everywhere
-//   plain_room   furnished, of one colour each: edges and shading alone
+//   plain_room   furnished, each piece in one colour: edges and shading only
 //   glossy_room  room with highlights that move with the camera
-//   corridor     40 m along the world's x axis, without texture: nothing shows
-//                how far along it one is
-//   poster_wall  one textured plane: depth shows nothing that it does not
-// and to walk through, with paths of the same name (below):
+//   corridor     40 m along the world's x axis, without texture: the position
+//                along this axis cannot be observed
+//   poster_wall  one textured plane: texture, but no shape
+// Scenes for tours, with paths of the same name (below):
 //   table           a room with two desks in its middle
 //   two_rooms       with a door between them
-//   twin_corridors  that look exactly alike, a hall between them
-//   depot           shelves along 313 m of way
+//   twin_corridors  that look exactly alike, with a hall between them
+//   depot           shelves along a path of 313 m
 Scene MakeScene(const std::string& name, uint32_t seed);
 
 // The names of all scenes.
@@ -70,11 +70,11 @@ std::vector<std::string> SceneNames();
 // A furnished room of 5 x 4 x 2.6 m (x, y, z) around the world's z axis.
 Scene MakeRoom(uint32_t seed);
 
-// The same with the lamp's highlights on desk, screens, floor and pictures.
+// The same room with highlights on desk, screens, floor and pictures.
 Scene MakeGlossyRoom(uint32_t seed);
 
-// Scenes to walk through, for paths that return (synthetic_path.h). Walls are
-// solid boxes 0.1 m thick, furniture stands along them in rows.
+// Scenes for tours, whose paths return (synthetic_path.h). Walls are solid
+// boxes 0.1 m thick; furniture stands along them in rows.
 
 // A room of 9.4 x 7 m with two desks, end to end, as an island in the middle.
 Scene MakeTableRoom(uint32_t seed);
@@ -82,14 +82,14 @@ Scene MakeTableRoom(uint32_t seed);
 // Two rooms of 5.4 x 5.4 m side by side, a door of 1.2 m between them.
 Scene MakeTwoRooms(uint32_t seed);
 
-// A corridor, 2.4 m wide and 8 m long, a hall, and the same corridor again,
-// kTwinShift further along x: the same to the last texture and light.
+// A corridor, 2.4 m wide and 8 m long, a hall, and a copy of the corridor,
+// kTwinShift further along x, with identical texture and light.
 constexpr double kTwinShift = 14.0;  // m
 Scene MakeTwinCorridors(uint32_t seed);
 
-// A depot of 42 x 22 m, rows of shelves along y and aisles between them.
+// A depot of 42 x 22 m with rows of shelves along y and aisles between them.
 constexpr int kDepotAisles = 14;
-constexpr double kDepotPitch = 3.0;  // m, from aisle to aisle
+constexpr double kDepotPitch = 3.0;  // m, between two aisles
 Scene MakeDepot(uint32_t seed);
 
 }  // namespace rgbd_pose

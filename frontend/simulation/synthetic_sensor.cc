@@ -12,15 +12,15 @@
 namespace rgbd_pose {
 namespace {
 
-// Whether the surface between two neighbouring pixels leans too far away, or
-// is no surface at all but the edge of one.
+// Whether the surface between two neighbouring pixels is too steep, or there is
+// a depth edge between them.
 bool TooSteep(float z, float neighbour, float max_step) {
   return std::abs(z - neighbour) > max_step * std::min(z, neighbour);
 }
 
-// Turns the pixels of a row to 0 that the projector, to the right of the
-// camera, does not reach: a point appears `disparity` pixels further left to
-// it, and what is further left on a row must stay so unless it is hidden.
+// Sets those pixels of a row to 0 that the projector, right of the camera, does
+// not reach. It sees a point kDisparity / depth pixels further left, where the
+// points of a row keep their order unless they are hidden.
 void DropShadow(int columns, float* row) {
   constexpr auto kDisparity =
       static_cast<float>(1.0 / (8.0 * kInverseDepthStep));  // px m
@@ -39,7 +39,7 @@ void DropShadow(int columns, float* row) {
 
 constexpr double kInvisibleBlur = 0.1;  // px
 
-// About how far (px) the nearest thing moves through the image.
+// Approximate distance (px) that the nearest object moves in the image.
 double BlurLength(const Rigid3d& motion, const cv::Mat& depth,
                   double focal_px) {
   double nearest = 0.0;
@@ -50,8 +50,8 @@ double BlurLength(const Rigid3d& motion, const cv::Mat& depth,
   return focal_px * (motion.Angle() + shift);
 }
 
-// What the camera sees in an instant, or row after row with time t in the
-// middle of the readout.
+// What the camera sees in an instant or, with a rolling shutter, row by row
+// with time t in the middle of the readout.
 Rendering RenderAt(const Renderer& renderer,
                    const std::function<Rigid3d(double t)>& world_from_cam,
                    double t, double readout_s) {

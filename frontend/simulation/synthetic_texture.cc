@@ -13,15 +13,15 @@ namespace {
 constexpr int kOctaves = 8;
 constexpr float kCoarsestCell = 0.24f;
 constexpr float kCellRatio = 0.524f;
-// Natural images lose amplitude in proportion to the wavelength; a little less
-// is lost here, since corners live on the fine octaves.
+// In natural images the amplitude is proportional to the wavelength. Here it
+// decreases less, since corners come from the fine octaves.
 constexpr float kAmplitudeRatio = 0.8f;
-// Each octave is turned against the last to hide the lattice (cos, sin).
+// Each octave is rotated relative to the last to hide the lattice (cos, sin).
 constexpr float kTurnCos = 0.8f;
 constexpr float kTurnSin = 0.6f;
 
-// All octaves of the grain at once, in the compiler's own vectors. Sums,
-// products and conversions alone, so the bits are the same with every
+// All octaves of the grain at once, in the compiler's own vectors. Only basic
+// arithmetic and conversions are used: the bits are the same with every
 // instruction set.
 typedef float Floats __attribute__((vector_size(kOctaves * sizeof(float))));
 typedef int32_t Ints __attribute__((vector_size(kOctaves * sizeof(float))));
@@ -46,7 +46,7 @@ OctaveTable MakeOctaves() {
   return table;
 }
 
-// The lowest byte of the hash of lattice cells as -1..1.
+// The lowest byte of the hash of each lattice cell, as -1..1.
 [[gnu::always_inline]] inline void Corner(const Words& cell, Floats* value) {
   Words hash = cell;
   MixHash(&hash);
@@ -54,12 +54,12 @@ OctaveTable MakeOctaves() {
       __builtin_convertvector((Ints)(hash & 0xffu), Floats) / 127.5f - 1.0f;
 }
 
-// Value noise with cells of size 1: by place in the lattice, in -1..1.
+// Value noise in -1..1 at a place in a lattice with cells of size 1.
 [[gnu::always_inline]] inline void SmoothNoise(const Floats& x, const Floats& y,
                                                const Words& seed, Floats* sum) {
   Ints i = __builtin_convertvector(x, Ints);
   Ints j = __builtin_convertvector(y, Ints);
-  i += x < __builtin_convertvector(i, Floats);  // down; true is -1
+  i += x < __builtin_convertvector(i, Floats);  // rounds down; true is -1
   j += y < __builtin_convertvector(j, Floats);
   const Floats fx = x - __builtin_convertvector(i, Floats);
   const Floats fy = y - __builtin_convertvector(j, Floats);
@@ -93,8 +93,8 @@ OctaveTable MakeOctaves() {
   Floats noise;
   SmoothNoise(x / octaves.cell, y / octaves.cell, seed + octaves.number,
               &noise);
-  // Nothing of an octave is left once its shortest wavelength, two cells, is
-  // under two pixels.
+  // An octave vanishes when its shortest wavelength, two cells, is below two
+  // pixels.
   Floats visible = octaves.cell / footprint - 1.0f;
   visible = visible < 0.0f ? Floats{} : visible;
   visible = visible > 1.0f ? Floats{} + 1.0f : visible;
@@ -105,14 +105,14 @@ OctaveTable MakeOctaves() {
 }
 
 #if defined(__x86_64__)
-// Without fma, which rounds once where others round twice.
+// Without FMA, which rounds once instead of twice.
 [[gnu::target("avx2")]] float SumOfOctavesAvx2(float u, float v,
                                                float footprint, uint32_t seed) {
   return SumOfOctaves(u, v, footprint, seed);
 }
 #endif
 
-// A word is a row of glyphs, a line of words has a gap to the next.
+// A word is a row of glyphs; there are gaps between lines of words.
 constexpr float kWordLength = 11.0f;  // in blocks
 constexpr float kLineHeight = 5.0f;
 constexpr float kGlyphHeight = 3.0f;
@@ -124,14 +124,14 @@ float Signed(uint32_t hash, int byte) {
   return static_cast<float>((hash >> (8 * byte)) & 0xffu) / 127.5f - 1.0f;
 }
 
-// How much of a pattern of this cell size survives the pixel's extent: nothing
-// once the shortest wavelength, two cells, is under two pixels.
+// The share of a pattern with this cell size that is visible at this pixel
+// extent: 0 when the shortest wavelength, two cells, is below two pixels.
 float Visible(float cell, float footprint) {
   return Clamp01(cell / footprint - 1.0f);
 }
 
-// Calls use(hash, weight) for the cells, of size 1, under a pixel of extent
-// (footprint_x, footprint_y): one inside a cell, up to four at its corners.
+// Calls use(hash, weight) for each cell, of size 1, under a pixel of extent
+// (footprint_x, footprint_y): one within a cell, up to four at its corners.
 template <typename Use>
 void ForCellsUnderPixel(float x, float y, float footprint_x, float footprint_y,
                         uint32_t seed, Use use) {
@@ -164,7 +164,7 @@ cv::Vec3f Tiles(const Material& material, const SurfacePoint& p,
   return shift;
 }
 
-// How much ink of words lies under the pixel, 0..1.
+// The share of the pixel that is covered by ink of words, 0..1.
 float Ink(const Material& material, const SurfacePoint& p, uint32_t seed) {
   const float block = material.glyph;
   const float visible = Visible(block, std::max(p.footprint_u, p.footprint_v));

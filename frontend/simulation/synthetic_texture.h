@@ -5,9 +5,9 @@
 
 namespace rgbd_pose {
 
-// The grain of a surface at (u, v) (m), seen by a pixel of extent `footprint`
-// (m): a sum of octaves of value noise in about -3..3. The same bits with every
-// instruction set.
+// The grain of a surface at (u, v) (m) for a pixel of extent `footprint` (m): a
+// sum of octaves of value noise in about -3..3. The bits are the same with
+// every instruction set.
 float Grain(float u, float v, float footprint, uint32_t seed);
 
 // A procedural surface: colour, grain (several octaves of noise), tiles
@@ -20,8 +20,8 @@ struct Material {
   float tile_contrast = 0.0f;            // spread of their brightness
   float tile_tint = 0.0f;                // spread of their colour
   float glyph = 0.01f;                   // size of one block of a glyph
-  float glyph_density = 0.0f;            // share of the surface under words
-  float gloss = 0.0f;                    // height of the lamp's highlight
+  float glyph_density = 0.0f;            // share covered by words
+  float gloss = 0.0f;                    // strength of the lamp's highlight
 };
 
 // Where a pixel meets a surface, in the surface's own axes (m).
@@ -32,9 +32,9 @@ struct SurfacePoint {
   float footprint_v = 0.0f;
 };
 
-// Colour (blue, green, red, about 0..1) of a surface averaged over the pixel:
-// steps are box-filtered and octaves finer than the pixel fade out, so that a
-// surface looks the same from near and far without aliasing.
+// The colour (blue, green, red, about 0..1) of a surface, averaged over a
+// pixel. Steps are box-filtered and octaves finer than the pixel fade out: a
+// surface looks the same from near and far, without aliasing.
 cv::Vec3f Paint(const Material& material, uint32_t seed,
                 const SurfacePoint& point);
 

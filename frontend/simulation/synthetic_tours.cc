@@ -14,15 +14,15 @@ using Eigen::Quaterniond;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-// A way on the floor along a polygon, closed or to and fro, whose corners are
-// rounded: a uniform cubic B-spline with control points every kStep along the
-// polygon. Its second derivative is continuous, and on straight lines its
+// A way on the floor along a polygon with rounded corners, closed or back and
+// forth: a uniform cubic B-spline with control points every kStep along the
+// polygon. Its second derivative is continuous. On straight lines its
 // parameter, in m, is the length.
 class Way {
  public:
   Way(const std::vector<Vector2d>& corners, bool is_closed) {
     const size_t lines = corners.size() - (is_closed ? 0 : 1);
-    double at = 0.0;  // of the next point along this line
+    double at = 0.0;  // position of the next point on this line
     for (size_t i = 0; i < lines; ++i) {
       const Vector2d& from = corners[i];
       const Vector2d line = corners[(i + 1) % corners.size()] - from;
@@ -38,7 +38,7 @@ class Way {
     }
   }
 
-  // Once round, or there and back.
+  // Length of one round, or of the way there and back, m.
   double length() const { return kStep * static_cast<double>(points_.size()); }
 
   Vector2d At(double s) const {
@@ -67,7 +67,7 @@ Vector3d Lift(const Vector2d& place, double height) {
   return {place.x(), place.y(), height};
 }
 
-// What a hand adds: some cm up and down, some degrees.
+// Motion of the hand: about 1 cm and 1 degree on each axis.
 Rigid3d Sway(double t) {
   const Vector3d shift(0.010 * std::sin(2.0 * M_PI * 0.53 * t),
                        0.015 * std::sin(2.0 * M_PI * 0.83 * t + 1.0),
@@ -85,8 +85,8 @@ Rigid3d Sway(double t) {
   return Rigid3d(turn, shift);
 }
 
-// Looks where the way will be in `ahead` m, turned by `yaw` (rad, to the left),
-// `drop` below.
+// Looks in the direction of the way's point `ahead` m further on, turned by
+// `yaw` (rad, to the left), with a descent of `drop` per metre.
 Rigid3d LookAhead(const Way& way, double s, double ahead, double yaw,
                   double height, double drop) {
   const Vector2d place = way.At(s);
@@ -102,7 +102,7 @@ Rigid3d TableTour(double t, double /*duration*/) {
                        true);
   constexpr double kRound = 56.0;  // s
   const Vector2d place = way.At(way.length() * t / kRound);
-  // At the desks, from one end to the other, and to both sides of them.
+  // Looks at the desks, from one end to the other, and to both sides of them.
   const double look = 12.0 * kRadiansPerDegree * std::sin(2.0 * M_PI * t / 7.0);
   return LookAt(Lift(place, 1.45), Lift(0.25 * place, 0.85)) *
          Rigid3d(Quaterniond(AngleAxisd(look, Vector3d::UnitY())),
@@ -130,8 +130,8 @@ Rigid3d TwoRoomsTour(double t, double /*duration*/) {
          Sway(t);
 }
 
-// To the left, at the furniture, all the way: only the wall is seen, and not
-// where the corridor ends.
+// Looks left at the furniture all the way: only the wall is visible, not the
+// end of the corridor.
 Rigid3d TwinCorridorsTour(double t, double /*duration*/) {
   static const Way way({{1.6, -0.6}, {20.4, -0.6}}, false);
   constexpr double kThere = 55.0;  // s

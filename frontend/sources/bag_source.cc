@@ -104,14 +104,14 @@ class BagSource final : public FrameSource {
   }
 
  private:
-  // Reads on: whether there was anything more.
+  // Reads the next message. Returns false if the bag has ended before.
   bool ReadOn() {
     if (is_read_) return false;
     std::optional<BagMessage> message;
     try {
       message = bag_->Next();
     } catch (const InputError&) {
-      error_ = std::current_exception();  // after the frames before it
+      error_ = std::current_exception();  // rethrown after the frames before it
     }
     if (!message.has_value()) {
       is_read_ = true;
@@ -138,7 +138,7 @@ class BagSource final : public FrameSource {
       return;
     }
     const RosHeader header = ReadImageOf(*bag_, message).header;
-    // Who does not say when an image was taken leaves it to the recorder.
+    // Without a stamp in the header, the time of recording is used.
     const double stamp = header.stamp > 0.0 ? header.stamp : message.received;
     if (!is_color) {
       if (num_depth_++ == 0) {
@@ -193,7 +193,7 @@ class BagSource final : public FrameSource {
   std::unique_ptr<BagReader> bag_;
   BagTopics topics_;
   double max_time_difference_;
-  std::string color_frame_;  // of reference
+  std::string color_frame_;  // frame_id of the first image
   std::string depth_frame_;
   FrameAssembly assembly_;
   ImagePairing pairing_;
@@ -203,9 +203,9 @@ class BagSource final : public FrameSource {
   int num_frames_ = 0;
   double first_color_ = 0.0;  // stamps, s
   double first_depth_ = 0.0;
-  double last_stamp_ = 0.0;    // of a frame
-  std::exception_ptr damage_;  // of the last message
-  std::exception_ptr error_;   // of the bag
+  double last_stamp_ = 0.0;    // of the last frame
+  std::exception_ptr damage_;  // error of the last message
+  std::exception_ptr error_;   // error of the bag
   bool is_read_ = false;       // to its end
   bool is_over_ = false;
 };

@@ -4,20 +4,20 @@
 
 namespace rgbd_pose {
 
-// A source that can be read in any order, as files and simulations can.
+// A source whose frames can be read in any order: files or a simulation.
 class Dataset : public FrameSource {
  public:
   // The number of frames, known before any image is read.
   virtual int size() const = 0;
 
-  // The time stamp of frame `index` in seconds.
+  // The time stamp of frame `index`, s.
   virtual double timestamp(int index) const = 0;
 
-  // Reads (or makes) frame `index`, 0 <= index < size(). May be called from
-  // several threads at once. Throws as RgbdFrame::read.
+  // Reads (or renders) frame `index`, 0 <= index < size(). May be called from
+  // several threads at once. Throws what RgbdFrame::read throws.
   virtual Frame Read(int index) const = 0;
 
-  // As a source, which Read does not disturb.
+  // The interface of FrameSource. Calls of Read do not affect it.
   std::optional<RgbdFrame> Next() final {
     if (next_ == size()) return std::nullopt;
     const int index = next_++;

@@ -20,7 +20,7 @@ void CheckSize(const FrameAssembly::Named& named, int width, int height,
                    "; is it the right camera file or preset?");
 }
 
-// Raw depths with their inverse moved by an offset (1/m).
+// Raw depths after an offset (1/m) is added to their inverse.
 cv::Mat Offset(const cv::Mat& depth, double scale, double offset) {
   cv::Mat moved(depth.size(), CV_16UC1);
   const double per_unit = offset / scale;

@@ -11,36 +11,36 @@
 
 namespace rgbd_pose {
 
-// A frame without the errors of depth that a camera is known to have
-// (RgbdCamera): the offset of its inverse depth, of its registration; and with
-// the camera's shutters.
+// Corrects the known depth errors of a camera (RgbdCamera) in a frame: the
+// offset of the inverse depth and the error of the registration. Also sets the
+// frame's shutters to those of the camera.
 Frame CorrectDepth(const RgbdCamera& camera, Frame frame);
 
-// Makes frames of a recording's images, the same way for all sources: their
-// sizes checked, depth registered to colour where it is not, and corrected.
+// Makes frames from the images of a recording, in the same way for all sources:
+// checks image sizes, registers depth to colour if needed, corrects depth.
 class FrameAssembly {
  public:
-  // Throws InputError for cameras that make no sense.
+  // Throws InputError for invalid cameras.
   FrameAssembly(const CameraSetup& setup, bool keep_color);
 
-  // Of the frames.
+  // The camera of the finished frames.
   const RgbdCamera& camera() const { return camera_; }
 
-  // Whether sources are to decode colours for Make.
+  // Whether sources must decode colours for Make.
   bool keep_color() const { return keep_color_; }
 
-  // An image and what to call it in messages.
+  // An image and its name in messages.
   struct Named {
     cv::Mat image;     // decoded
-    std::string name;  // its path, say
+    std::string name;  // for example its path
   };
 
-  // A frame of decoded images: gray CV_8UC1 (with the colours, if they are
-  // kept) and depth CV_16UC1, with no time stamps yet. Throws InputError if
-  // they do not fit their cameras. From any thread.
+  // Makes a frame from decoded images: gray CV_8UC1, the colours if they are
+  // kept, and depth CV_16UC1. Time stamps are not set. Throws InputError if the
+  // images do not fit their cameras. May be called from any thread.
   Frame Make(const Named& gray, const cv::Mat& color, const Named& depth) const;
 
-  // The same of two files.
+  // The same from two files.
   Frame Read(const std::string& color_path,
              const std::string& depth_path) const;
 

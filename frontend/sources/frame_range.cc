@@ -19,9 +19,9 @@ struct End {
   double value = 0.0;
 };
 
-// Takes an end off the front of the text; false if it is wrong.
+// Removes an end from the front of the text. Returns false if it is invalid.
 bool TakeEnd(std::string_view* text, End* end) {
-  if (text->empty() || text->front() == '-') return true;  // none is there
+  if (text->empty() || text->front() == '-') return true;  // no end is given
   const char* begin = text->data();
   const auto [rest, error] = std::from_chars(
       begin, begin + text->size(), end->value, std::chars_format::fixed);
@@ -69,7 +69,7 @@ bool Parse(std::string_view text, FrameRange* range) {
   return true;
 }
 
-// Asks the whole source for frames until one is in the range.
+// The frames of another source that are in a range.
 class PartialSource final : public FrameSource {
  public:
   PartialSource(std::unique_ptr<FrameSource> whole, const FrameRange& range)
@@ -104,7 +104,7 @@ class PartialSource final : public FrameSource {
 
   Trajectory ground_truth() const override { return whole_->ground_truth(); }
 
-  // Of the whole recording.
+  // These refer to the whole recording.
   int unmatched_color() const override { return whole_->unmatched_color(); }
   int dropped() const override { return whole_->dropped(); }
   std::vector<std::string> remarks() const override {
@@ -112,11 +112,11 @@ class PartialSource final : public FrameSource {
   }
 
  private:
-  // Goes through the frames in order.
+  // Decides for one frame after the other whether it is in the range.
   struct Picker {
     explicit Picker(const FrameRange& of_range) : range(of_range) {}
 
-    // The next frame's turn.
+    // Whether the next frame is selected.
     bool Takes(double timestamp) {
       if (number++ == 0) start = timestamp;
       after_s = timestamp - start;
@@ -143,7 +143,7 @@ FrameRange ParseItem(const std::string& item) {
   const bool is_number = item.find('-') == std::string::npos;
   const FrameRange range =
       ParseFrameRange(is_number ? item + "-" + item : item);
-  // Without an end, as parts of recordings may be, and of times.
+  // Open ranges and times are valid for parts of recordings only.
   if (item[0] == '-' || range.last == FrameRange().last) {
     throw InputError("open");
   }

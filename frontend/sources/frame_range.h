@@ -9,29 +9,29 @@
 
 namespace rgbd_pose {
 
-// Part of a recording: frames by number or by time, all or every n-th.
+// A part of a recording, by frame numbers or times: all frames or every n-th.
 struct FrameRange {
-  // Numbers count from 0. Both ends belong to it.
+  // Frame numbers, from 0; both ends are included.
   int first = 0;
   int last = std::numeric_limits<int>::max();
 
-  // Seconds after the first frame of the recording. Both ends belong to it.
+  // Seconds after the first frame of the recording; both ends are included.
   double begin_s = 0.0;
   double end_s = std::numeric_limits<double>::infinity();
 
-  int step = 1;  // every n-th of them, the first one included
+  int step = 1;  // every n-th frame of the range, first included
 
-  // Whether it is all of it.
+  // Whether the range is the whole recording.
   bool IsWhole() const;
 };
 
-// Of a text: "100-400", "100-400:2" (every second), "100-" (to the end), or
-// "2.5s-10s" by time; empty: the whole recording. Throws InputError for any
-// other.
+// Parses "100-400", "100-400:2" (every second frame), "100-" (to the end) or
+// "2.5s-10s" (times). The empty text means the whole recording. Throws
+// InputError for any other text.
 FrameRange ParseFrameRange(const std::string& text);
 
 // That part of a source, as a source whose frames are numbered from 0. Frames
-// that are left out are not decoded, those after the part not even asked for.
+// that are left out are not decoded; those after the part are not requested.
 std::unique_ptr<FrameSource> PartOf(std::unique_ptr<FrameSource> whole,
                                     const FrameRange& range);
 
@@ -40,11 +40,11 @@ std::unique_ptr<FrameSource> PartOf(std::unique_ptr<FrameSource> whole,
 // included). The empty text chooses none.
 class FrameSelection {
  public:
-  // Throws InputError, naming the flag (without dashes) and its text, for any
-  // other text.
+  // Throws InputError, which names the flag (given without dashes) and its
+  // text, for any other text.
   FrameSelection(const std::string& flag, const std::string& text);
 
-  // Whether the frame with this place in its dataset (from 0) is chosen.
+  // Whether the frame at this place in its dataset (from 0) is selected.
   bool Contains(int index) const;
 
  private:

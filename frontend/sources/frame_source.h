@@ -11,47 +11,47 @@
 
 namespace rgbd_pose {
 
-// A frame as it comes from a source: most of the work is yet to be done.
+// A frame of a source, not decoded yet.
 struct RgbdFrame {
   double timestamp = 0.0;  // of the colour image, seconds
 
-  // Decodes it; in any thread, at the same time as other frames, as long as the
-  // source is there. Throws InputError if an image is unreadable or does not
-  // fit the camera.
+  // Decodes the frame. May be called in any thread, at the same time as for
+  // other frames, while the source exists. Throws InputError if an image is
+  // unreadable or does not fit the camera.
   std::function<Frame()> read;
 };
 
-// Where RGB-D frames come from, in the order of their time stamps, which
-// strictly increase: a recording, a simulation, a camera.
+// A source of RGB-D frames: a recording, a simulation or a camera. The time
+// stamps of its frames strictly increase.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
 
-  // The next frame, waiting for it if need be; nothing after the last one. From
-  // one thread at a time. Should be quick, as it cannot be shared out:
-  // RgbdFrame::read can.
+  // The next frame; waits for it if necessary. Nothing after the last one. Must
+  // be called from one thread at a time. It should be quick because it cannot
+  // run in parallel, as RgbdFrame::read can.
   virtual std::optional<RgbdFrame> Next() = 0;
 
-  // Camera that all frames share.
+  // The camera of all frames.
   virtual const RgbdCamera& camera() const = 0;
 
-  // The time stamps of all frames (s) if they are known ahead, as those of a
-  // recording are; empty otherwise.
+  // The time stamps of all frames (s) if they are known in advance, as in a
+  // Dataset; empty otherwise.
   virtual std::vector<double> timestamps() const { return {}; }
 
-  // The true path (world from camera) that came with the frames so far; empty
-  // if there is none. Throws InputError if it cannot be read.
+  // The ground-truth path (world from camera) of the frames so far; empty if
+  // there is none. Throws InputError if it cannot be read.
   virtual Trajectory ground_truth() const { return {}; }
 
-  // How many colour images make no frame since they have no depth image.
+  // Number of colour images left out because they have no depth image.
   virtual int unmatched_color() const { return 0; }
 
-  // How many frames of a camera came faster than they were asked for, and were
-  // left out.
+  // Number of camera frames that were left out because they arrived faster than
+  // they were requested.
   virtual int dropped() const { return 0; }
 
-  // What else was left out or chosen so far that users should know, a line
-  // each.
+  // What else users should know about images left out or choices made so far,
+  // one line each.
   virtual std::vector<std::string> remarks() const { return {}; }
 };
 

@@ -10,12 +10,11 @@
 namespace rgbd_pose {
 namespace {
 
-// How many frames may lie ready beyond those being read: enough for a few
-// frames that take long to track. A frame of 640 x 480 with its pyramid is
-// 1.5 MB.
+// Frames that may be ready in addition to those being read: enough for a few
+// frames that take long to track. A frame of 640 x 480 with pyramid is 1.5 MB.
 constexpr int kMaxReady = 8;
 
-// A share of damaged frames says little of fewer frames than this.
+// Below these numbers, a share of damaged frames says little.
 constexpr size_t kLeastFrames = 60;
 constexpr size_t kLeastDamaged = 3;
 
@@ -81,8 +80,8 @@ void FrameStream::LeaveOut(const Result& result, const InputError& error) {
 
 std::optional<FrameStream::Result> FrameStream::Take() {
   Lock lock(mutex_);
-  // Frames are begun in order: if this one is not ready, it is being read by
-  // another thread, or it is the next to begin.
+  // Frames are started in order: if this one is not ready, either another
+  // thread is reading it or it is the next to start.
   while (num_taken_ < size_ && ready_.count(num_taken_) == 0) {
     if (CanBegin()) {
       ReadOne(&lock);
@@ -111,7 +110,7 @@ void FrameStream::ReadOne(Lock* lock) {
   Result result;
   try {
     next = source_->Next();
-  } catch (...) {  // is the error of this frame
+  } catch (...) {  // counts as the error of this frame
     result.error = std::current_exception();
   }
   lock->lock();
@@ -143,7 +142,7 @@ void FrameStream::ReadOne(Lock* lock) {
 }
 
 void FrameStream::Work() {
-  // To the thread that tracks, which reads for itself where frames run short.
+  // The tracking thread goes first: it reads frames itself if they run short.
   LowerThreadPriority();
   Lock lock(mutex_);
   while (true) {

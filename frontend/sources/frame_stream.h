@@ -17,45 +17,45 @@
 
 namespace rgbd_pose {
 
-// A frame, and how long reading and preparing it took, in whichever thread.
+// A frame, read and prepared.
 struct StreamedFrame {
   PreparedFrame frame;
-  double decode_ms = 0.0;  // to read and to prepare it
+  double decode_ms = 0.0;  // duration of both, in whichever thread
 };
 
 // The frames of a source in order, read and prepared ahead by several threads.
-// The thread that calls Next is one of them: where its frame is not ready yet,
-// it reads one itself instead of sleeping, so that all threads are always busy.
-// The frames are the same whatever the number of threads.
+// The thread that calls Next is one of them: if its frame is not ready, it
+// reads one itself instead of sleeping, which keeps all threads busy. The
+// frames do not depend on the number of threads.
 class FrameStream {
  public:
-  // Works on a frame in the thread that has read it (Frontend::Prepare, say).
+  // Processes a frame in the thread that has read it (e.g. Frontend::Prepare).
   using Prepare = std::function<void(const PreparedFrame& frame)>;
 
-  // `threads` >= 1 counts the calling one: 1 reads each frame when it is asked
-  // for. `prepare` may be empty. The source must outlive the stream, and nobody
-  // else may ask it for frames. `max_damaged`: the share of frames that are
-  // left out if they cannot be read; nothing: each is an error.
+  // `threads` >= 1 includes the calling one: with 1, each frame is read on
+  // request. `prepare` may be empty. The source must outlive the stream and
+  // must not be used otherwise. `max_damaged`: the share of unreadable frames
+  // that may be left out; nothing: every unreadable frame is an error.
   FrameStream(FrameSource* source, Prepare prepare, int threads,
               std::optional<double> max_damaged = std::nullopt);
 
-  // Gives up the frames that were not asked for; waits for those being read.
+  // Discards the frames that were not requested; waits for those being read.
   ~FrameStream();
   FrameStream(const FrameStream&) = delete;
   FrameStream& operator=(const FrameStream&) = delete;
 
-  // The next frame; nothing after the last one. Always to be called from the
-  // same thread. Rethrows what reading this frame threw; the one after can be
-  // asked for nevertheless. With `max_damaged` only what preparing it threw: a
-  // frame that cannot be read is left out, and where the source fails or too
-  // many are damaged (three, at least) the frames end there. If there was none
-  // at all, it throws what the first one did.
+  // The next frame; nothing after the last one. Must always be called from the
+  // same thread. Rethrows the error of reading this frame; the frame after it
+  // can be requested nevertheless. With `max_damaged` only errors of `prepare`
+  // are rethrown. Unreadable frames are left out; if the source fails or too
+  // many are damaged (at least three; one for a share of 0), the frames end
+  // there. If no frame was read at all, throws the first error.
   std::optional<StreamedFrame> Next();
 
-  // The frames left out so far: which image of each, and why.
+  // The frames left out so far: which image is damaged, and why.
   const std::vector<std::string>& damaged() const { return damaged_; }
 
-  // Why the frames ended before the last one; empty: they did not.
+  // Why the frames ended early; empty if they did not.
   const std::string& stopped() const { return stopped_; }
 
  private:
@@ -66,15 +66,14 @@ class FrameStream {
   };
   using Lock = std::unique_lock<std::mutex>;
 
-  // Of the next frame; nothing after the last one.
+  // The result for the next frame; nothing after the last one.
   std::optional<Result> Take();
-  // Leaves the frame out or ends here.
+  // Leaves the frame out or ends the stream.
   void LeaveOut(const Result& result, const InputError& error);
 
-  // Whether a frame may be begun: not more than a few ahead, for the memory.
+  // Whether a frame may be started. Few are read ahead, to save memory.
   bool CanBegin() const;
-  // Begins the next frame and sees it through, with the lock given up
-  // meanwhile.
+  // Reads and prepares the next frame; the lock is released meanwhile.
   void ReadOne(Lock* lock);
   void Work();
 
@@ -82,17 +81,17 @@ class FrameStream {
   const Prepare prepare_;
   const int max_ahead_;
   const std::optional<double> max_damaged_;
-  const size_t num_expected_;  // as far as the source knows
-  size_t num_good_ = 0;        // frames given
+  const size_t num_expected_;  // of the source; 0: not known
+  size_t num_good_ = 0;        // frames returned
   std::vector<std::string> damaged_;
   std::string stopped_;
-  std::mutex mutex_;  // of all that follows
+  std::mutex mutex_;  // guards all members below
   std::condition_variable changed_;
-  bool is_asking_ = false;       // somebody is asking the source
-  std::map<int, Result> ready_;  // by frame
+  bool is_asking_ = false;       // a thread is in source_->Next()
+  std::map<int, Result> ready_;  // by frame number
   int num_begun_ = 0;
   int num_taken_ = 0;
-  int size_ = std::numeric_limits<int>::max();  // until the source has ended
+  int size_ = std::numeric_limits<int>::max();  // set when the source has ended
   bool stop_ = false;
   std::vector<std::thread> workers_;
 };

@@ -66,7 +66,7 @@ void ImagePairing::AddDepth(StampedImage image) {
     return;
   }
   if (!depths_.Insert(std::move(image))) ++same_stamp_;
-  // Nothing of colour for long: the oldest ones are left out.
+  // Without colour images for long, the oldest depth images are left out.
   while (colors_.empty() && depths_.IsFull()) depths_.Remove(0);
 }
 
@@ -89,7 +89,7 @@ std::optional<StampedPair> ImagePairing::Take() {
     } else {
       ++unmatched_color_;
     }
-    // Too old for any colour image that is to come.
+    // These depth images are too old for all later colour images.
     while (!depths_.empty() &&
            depths_.images.front().stamp < *last_color_ - max_difference_) {
       depths_.Remove(0);
@@ -115,7 +115,7 @@ StreamPair ApproximateTimeSync::Next(const std::string& name,
         ++unmatched_color_;
         color.reset();
       } else if (delay < -max_time_difference_ ||
-                 color->stamp <= last_stamp_) {  // the camera began again
+                 color->stamp <= last_stamp_) {  // the camera restarted
         depth.reset();
       } else {
         last_stamp_ = color->stamp;

@@ -11,62 +11,62 @@
 
 namespace rgbd_pose {
 
-// An image that waits for its other half.
+// An image that waits for its counterpart.
 struct StampedImage {
   double stamp = 0.0;                          // s
-  std::shared_ptr<const std::string> message;  // its bytes
+  std::shared_ptr<const std::string> message;  // serialised
 };
 
 // A colour image and its depth image.
 struct StampedPair {
-  StampedImage color;  // its stamp is that of the frame
+  StampedImage color;  // its stamp becomes the frame's
   StampedImage depth;  // near it in time
 };
 
-// A line for users on images that have another one's time stamp.
+// A remark for users: images were left out because of duplicate stamps.
 std::string SameStampRemark(const std::string& recording, int images);
 
-// Pairs a stream of colour images with one of depth images by nearest time, as
-// Associate does for lists that are known as a whole. Keeps a few images of
-// each: as many may be out of order, and so much does it look ahead. Where one
-// stream lags behind the other, it waits for kMaxSeconds or kMaxBytes of that.
+// Pairs a stream of colour images with a stream of depth images by nearest
+// time, as Associate does for complete lists. It looks at a window of kWindow
+// images of each stream; images may be out of order within it. If one stream
+// lags behind, up to kMaxSeconds or kMaxBytes of the other one are kept.
 class ImagePairing {
  public:
-  // `max_difference`: s between the two images of a pair, at most.
+  // `max_difference`: largest time between the two images of a pair, s.
   explicit ImagePairing(double max_difference)
       : max_difference_(max_difference) {}
 
-  // The next image of a stream; one whose stamp was there already is left out.
-  // Returns false for a colour image that comes too late: a later one has gone
-  // by already. Such a depth image is left out.
+  // Adds the next image of a stream. Images with a known stamp are left out.
+  // AddColor returns false for an image that is too late, because a later one
+  // has been processed; AddDepth leaves such an image out.
   bool AddColor(StampedImage image);
   void AddDepth(StampedImage image);
 
-  // No more images will come.
+  // To be called after the last image.
   void Finish() { is_finished_ = true; }
 
-  // The next pair by time, once enough is known; nothing: add more, or all is
-  // done if it is finished.
+  // The next pair by time, once it is certain. Nothing: add more images; after
+  // Finish: there are no more pairs.
   std::optional<StampedPair> Take();
 
-  // Colour images that have gone by without a depth image.
+  // Colour images processed without finding a depth image.
   int unmatched_color() const { return unmatched_color_; }
 
-  // Images left out since another of their stream has the same stamp.
+  // Images left out because another one of their stream has the same stamp.
   int same_stamp() const { return same_stamp_; }
 
-  // Images that came after those of their time had gone by.
+  // Depth images that came too late: later colour images were processed.
   int late() const { return late_; }
 
-  // How many images of a stream are looked at together.
+  // How many images of a stream are considered together.
   static constexpr int kWindow = 8;
-  // Of one stream that wait for the other, at most: by their stamps (s), and
-  // by the memory they take.
+  // Limits for one stream that waits for the other: by its stamps (s) and by
+  // memory.
   static constexpr double kMaxSeconds = 30.0;
   static constexpr size_t kMaxBytes = size_t{256} << 20;
 
  private:
-  // Whether it is known which depth image belongs to the first colour image.
+  // Whether the depth image of the first colour image is certain.
   bool CanDecide() const;
 
   // Images of a stream, in order of time.
@@ -74,7 +74,7 @@ class ImagePairing {
     std::deque<StampedImage> images;
     size_t bytes = 0;
 
-    // False if there is one of that stamp.
+    // Returns false if there is an image with this stamp.
     bool Insert(StampedImage image);
     StampedImage Remove(size_t index);
     bool IsFull() const;
@@ -85,43 +85,43 @@ class ImagePairing {
   const double max_difference_;
   Waiting colors_;
   Waiting depths_;
-  std::optional<double> last_color_;  // stamp of the last one that went by
+  std::optional<double> last_color_;  // stamp of the last one processed
   bool is_finished_ = false;
   int unmatched_color_ = 0;
   int same_stamp_ = 0;
   int late_ = 0;
 };
 
-// One image of a camera that runs.
+// One image of a live camera.
 struct StreamImage {
   bool is_color = false;  // otherwise depth
   double stamp = 0.0;     // s
-  cv::Mat pixels;         // its own
+  cv::Mat pixels;         // not shared
 };
 
-// Images of one moment.
+// A colour and a depth image of the same moment.
 struct StreamPair {
   StreamImage color;
   StreamImage depth;
 };
 
-// Pairs colour and depth images of a camera that runs, which come in whatever
+// Pairs the colour and depth images of a live camera, which arrive in any
 // order, by their stamps.
 class ApproximateTimeSync {
  public:
-  // Images of a pair are at most `max_time_difference` (s) apart; after
-  // `patience` without a pair, the camera is taken for broken.
+  // Images of a pair are at most `max_time_difference` (s) apart. After
+  // `patience` without a pair, the camera is considered broken.
   ApproximateTimeSync(double max_time_difference,
                       std::chrono::milliseconds patience)
       : max_time_difference_(max_time_difference), patience_(patience) {}
 
-  // The next pair of what `read`, which waits for an image, gives. Pairs come
-  // in order of time. Throws what `read` does, and InputError, with `name` (of
-  // the camera) before it, if images come but no pair.
+  // The next pair, in order of time. `read` waits for an image and returns it.
+  // Rethrows what `read` throws. Throws InputError, which begins with `name`
+  // (of the camera), if images come but no pair.
   StreamPair Next(const std::string& name,
                   const std::function<StreamImage()>& read);
 
-  // Colour images so far without depth. May be asked for by another thread.
+  // Colour images without depth so far. May be called from another thread.
   int unmatched_color() const { return unmatched_color_; }
 
  private:

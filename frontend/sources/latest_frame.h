@@ -11,20 +11,20 @@
 
 namespace rgbd_pose {
 
-// The frames of a camera that does not wait: one is kept, the newest. Who asks
-// more slowly than frames come gets every second or third one, never an old
-// one; the others are dropped and counted. A thread of its own asks the camera.
+// The frames of a live camera, of which only the newest is kept. A caller that
+// is slower than the camera gets every second or third frame, never an old one;
+// the others are dropped and counted. A separate thread reads the camera.
 class LatestFrame final : public FrameSource {
  public:
-  // Begins to ask at once.
+  // Starts to read the camera at once.
   explicit LatestFrame(std::unique_ptr<FrameSource> camera);
 
-  // Waits until the camera has given its next frame.
+  // Waits until the camera has delivered its next frame.
   ~LatestFrame() override;
   LatestFrame(const LatestFrame&) = delete;
   LatestFrame& operator=(const LatestFrame&) = delete;
 
-  // The newest frame that was not given yet. Rethrows what the camera threw.
+  // Waits for a frame that was not returned yet. Rethrows the camera's error.
   std::optional<RgbdFrame> Next() override;
 
   const RgbdCamera& camera() const override { return camera_->camera(); }
@@ -36,12 +36,12 @@ class LatestFrame final : public FrameSource {
   void Run();
 
   std::unique_ptr<FrameSource> camera_;
-  mutable std::mutex mutex_;  // of all that follows
+  mutable std::mutex mutex_;  // guards all members below
   std::condition_variable changed_;
   std::optional<RgbdFrame> newest_;
   std::exception_ptr error_;
-  bool is_over_ = false;     // the camera gives no more
-  bool is_closing_ = false;  // nobody asks any more
+  bool is_over_ = false;     // the camera gives no more frames
+  bool is_closing_ = false;  // the destructor has been called
   int dropped_ = 0;
   int taken_ = 0;
   std::thread thread_;

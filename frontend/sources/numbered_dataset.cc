@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The number between prefix and suffix; nothing for another name.
+// The number between prefix and suffix; nothing if the name does not match.
 std::optional<int> NumberIn(const std::string& name,
                             const NumberedFiles& files) {
   const size_t around = files.prefix.size() + files.suffix.size();
@@ -33,7 +33,7 @@ std::optional<int> NumberIn(const std::string& name,
   return number;
 }
 
-// The images of the first alternative that has any, by their numbers.
+// Paths by number, of the first alternative with any images.
 std::map<int, std::string> List(const std::string& folder,
                                 const std::vector<NumberedFiles>& choices) {
   std::map<int, std::string> found;

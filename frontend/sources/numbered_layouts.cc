@@ -20,7 +20,7 @@ std::optional<CameraSetup> NoCamera(const std::string&, const std::string&,
   return std::nullopt;
 }
 
-// The camera of ICL-NUIM's renderer, the y axis of its images down.
+// The camera of ICL-NUIM's renderer, with the y axis of its images down.
 std::optional<CameraSetup> IclCamera(const std::string&, const std::string&,
                                      const std::string&) {
   Camera camera;
@@ -29,8 +29,8 @@ std::optional<CameraSetup> IclCamera(const std::string&, const std::string&,
   return CameraSetup(camera);
 }
 
-// intrinsic.json, or as Open3D's recorder calls it: width, height,
-// intrinsic_matrix column by column. JSON is YAML, too.
+// intrinsic.json, or the file name of Open3D's recorder: width, height and
+// intrinsic_matrix, column by column. JSON is valid YAML.
 std::optional<CameraSetup> Open3dCamera(const std::string& folder,
                                         const std::string&,
                                         const std::string&) {
@@ -46,7 +46,7 @@ std::optional<CameraSetup> Open3dCamera(const std::string& folder,
   return setup;
 }
 
-// ../cam_params.json, one for all rooms.
+// cam_params.json of the folder, or of its parent for all rooms.
 std::optional<CameraSetup> ReplicaCamera(const std::string& folder,
                                          const std::string&,
                                          const std::string&) {
@@ -64,7 +64,7 @@ std::optional<CameraSetup> ReplicaCamera(const std::string& folder,
   return std::nullopt;
 }
 
-// A 4 x 4 matrix of a camera; its size is that of an image.
+// Reads a 4 x 4 camera matrix; takes the image size from an image.
 Camera ReadIntrinsicText(const fs::path& file, const std::string& image_path) {
   const std::string path = file.string();
   const std::vector<TextLine> lines = ReadTextTable(path);
@@ -83,8 +83,8 @@ Camera ReadIntrinsicText(const fs::path& file, const std::string& image_path) {
   return camera;
 }
 
-// The exporter writes the identity. Anything else was written by somebody who
-// knows where the cameras are, in a convention that nobody wrote down.
+// ScanNet's exporter writes the identity. Any other matrix contains real
+// extrinsics, but in an undocumented convention, and is refused.
 void RequireIdentity(const fs::path& file) {
   if (!PathExists(file)) return;
   const std::string path = file.string();
@@ -103,7 +103,7 @@ void RequireIdentity(const fs::path& file) {
   }
 }
 
-// Two cameras of different sizes, as if they were at the same place.
+// Two cameras of different image sizes, assumed to be at the same place.
 std::optional<CameraSetup> ScanNetCamera(const std::string& folder,
                                          const std::string& first_color,
                                          const std::string& first_depth) {

@@ -13,7 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A matrix word by word; a lost frame's are infinite, which is no bad input.
+// A matrix, word by word. In a lost frame its values are infinite or NaN.
 class MatrixWords {
  public:
   void Add(const std::string& word, const std::string& path, int line) {
@@ -24,14 +24,14 @@ class MatrixWords {
   }
   bool IsWhole() const { return count_ == 16; }
 
-  // Adds the pose unless the frame is lost, and begins again.
+  // Stores the pose unless the frame is lost, and starts the next matrix.
   void Finish(int number, const std::string& path, int line,
               NumberedPoses* poses) {
     const auto& m = values_;
     if (!is_lost_) {
       Eigen::Matrix3d rotation;
       rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
-      // As written with few digits.
+      // Tolerates values with few digits.
       const double error =
           (rotation * rotation.transpose() - Eigen::Matrix3d::Identity())
               .norm();
@@ -51,7 +51,7 @@ class MatrixWords {
   bool is_lost_ = false;
 };
 
-// 16 numbers, however they are spread over the lines.
+// Reads 16 numbers, in any distribution over the lines.
 void ReadMatrixFile(const std::string& path, int number, NumberedPoses* poses) {
   MatrixWords matrix;
   for (const TextLine& line : ReadTextTable(path)) {
@@ -98,7 +98,7 @@ NumberedPoses ReadPoseLines(const std::string& folder,
   const std::string path = file.string();
   size_t i = 0;
   for (const TextLine& line : ReadTextTable(path)) {
-    if (i == numbers.size()) break;  // poses of frames that are not there
+    if (i == numbers.size()) break;  // the rest are poses of missing frames
     if (line.words.size() != 16) {
       throw InputError(path, line.number,
                        "needs the 16 numbers of a 4 x 4 matrix, has " +
@@ -154,7 +154,7 @@ NumberedPoses ReadMirroredPoses(const std::string& folder,
       continue;
     }
     for (const StampedPose& pose : ReadTrajectory(path)) {
-      // M T M with M = diag(1, -1, 1): a rotation again.
+      // M T M with M = diag(1, -1, 1) has a proper rotation again.
       const Eigen::Quaterniond& q = pose.world_from_cam.rotation;
       const Eigen::Vector3d& t = pose.world_from_cam.translation;
       const auto place = static_cast<size_t>(std::lround(pose.timestamp)) - 1;

@@ -20,7 +20,7 @@ constexpr char kAuto[] = "auto";
 
 struct SourceType {
   std::string name;
-  std::string what;  // it is, in words
+  std::string what;  // description for messages
   std::function<bool(const SourceOptions& options)> recognises;
   std::function<std::unique_ptr<FrameSource>(const SourceOptions& options)>
       open;
@@ -40,7 +40,7 @@ SourceType BagType(BagKind kind, const char* name, const char* what) {
           }};
 }
 
-// The first that recognises a path has it.
+// A path is opened with the first type that recognises it.
 const std::vector<SourceType>& Types() {
   static const std::vector<SourceType> types = [] {
     std::vector<SourceType> all = {
@@ -57,7 +57,7 @@ const std::vector<SourceType>& Types() {
                 "NAME_0.bag, NAME_1.bag, ...)"),
         BagType(BagKind::kRos2, "rosbag2",
                 "ROS 2 bag (.db3 or .mcap, or a folder of such)"),
-        // It looks like no path.
+        // Never detected from a path.
         {"openni2", "camera by OpenNI 2 (source=openni2, dataset=any)",
          [](const SourceOptions&) { return false; }, OpenOpenNi2},
     };
@@ -75,7 +75,7 @@ const std::vector<SourceType>& Types() {
   return types;
 }
 
-// What a folder holds, in a few words for a message.
+// The first few names in a folder, for a message.
 std::string Content(const std::string& folder) {
   constexpr size_t kMaxNames = 6;
   std::set<std::string> names;

@@ -9,14 +9,14 @@
 
 namespace rgbd_pose {
 
-// The kinds of recording that OpenSource takes; first auto: whatever it is. To
-// add one, write a FrameSource and give it a row of the table in
-// open_source.cc.
+// The kinds of recording that OpenSource accepts. The first is auto, which
+// detects the kind. To add a kind, write a FrameSource and add it to the table
+// in open_source.cc.
 std::vector<std::string> SourceNames();
 
-// Opens a recording; what its camera says is wrong with depth is undone in its
-// frames. Throws InputError for an unknown name, for what is no
-// recording of a known kind, and as the source does.
+// Opens a recording. Known depth errors of its camera are corrected in its
+// frames. Throws InputError for an unknown name, for a path that is no
+// recording of a known kind, and if the source cannot be opened.
 std::unique_ptr<FrameSource> OpenSource(const std::string& name,
                                         const SourceOptions& options);
 

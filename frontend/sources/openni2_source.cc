@@ -26,7 +26,7 @@ constexpr char kAny[] = "any";
 constexpr int kPatienceMs = 3000;
 constexpr std::chrono::milliseconds kFewFrames(150);
 
-// What OpenNI says of its last failure, as part of a line.
+// OpenNI's message on its last error, without surrounding white space.
 std::string Reason() {
   std::string reason = openni::OpenNI::getExtendedError();
   while (!reason.empty() &&
@@ -40,8 +40,8 @@ std::string Reason() {
   return reason;
 }
 
-// Starts the library, once. It is never shut down: it would unload drivers,
-// some of which have threads that still run.
+// Initialises the library once. It is never shut down, as this would unload
+// drivers, some of which have threads that still run.
 void RequireLibrary() {
   static const openni::Status status = openni::OpenNI::initialize();
   if (status != openni::STATUS_OK) {
@@ -49,7 +49,7 @@ void RequireLibrary() {
   }
 }
 
-// One that has as many pixels as TUM's recordings, or the next best.
+// The mode with the image size of TUM's recordings, or the next best one.
 openni::VideoMode ChooseMode(const openni::SensorInfo& sensor,
                              const std::vector<openni::PixelFormat>& formats,
                              const std::string& name) {
@@ -100,7 +100,7 @@ class OpenNi2Source final : public FrameSource {
   ~OpenNi2Source() override {
     color_.stop();
     depth_.stop();
-    // Not every driver waits for its threads: they end after their next frame.
+    // Some drivers do not wait for their threads, which end one frame later.
     std::this_thread::sleep_for(kFewFrames);
     color_.destroy();
     depth_.destroy();
@@ -141,7 +141,7 @@ class OpenNi2Source final : public FrameSource {
                 openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR),
             "does not register depth to colour");
     }
-    // Not every camera can; stamps are looked at anyway.
+    // Not every camera supports this; stamps are compared anyway.
     device_.setDepthColorSyncEnabled(true);
   }
 
@@ -154,7 +154,7 @@ class OpenNi2Source final : public FrameSource {
     }
     Check(stream->create(device_, type), "gives no images");
     const openni::VideoMode mode = ChooseMode(*sensor, formats, name_);
-    // Who has one only need not take orders.
+    // A camera with only one mode need not accept settings.
     if (sensor->getSupportedVideoModes().getSize() > 1) {
       Check(stream->setVideoMode(mode), "does not take a size that it offers");
     }
@@ -165,7 +165,7 @@ class OpenNi2Source final : public FrameSource {
     Check(stream->start(), "does not start");
   }
 
-  // With `has_camera` only how depth counts.
+  // With `has_camera` only the depth scale is set.
   std::optional<CameraSetup> OwnCamera(bool has_camera) const {
     CameraSetup setup;
     setup.depth_scale = depth_.getVideoMode().getPixelFormat() ==
@@ -189,7 +189,7 @@ class OpenNi2Source final : public FrameSource {
     return setup;
   }
 
-  // The next image, waiting for it; the frame that holds it belongs to the
+  // Waits for the next image. It is copied, because its frame belongs to the
   // driver, which has few.
   StreamImage Read() {
     openni::VideoStream* streams[] = {&color_, &depth_};

@@ -8,36 +8,36 @@
 
 namespace rgbd_pose {
 
-// Where a recording is, and how to read it.
+// The path of a recording, and how to read it.
 struct SourceOptions {
-  std::string path;  // of its folder or file
+  std::string path;  // folder or file
 
-  // Lines `time colour_image time depth_image`, or depth first; taken as they
-  // are. Empty: the recording says itself which images belong together.
+  // A file of lines `time colour_image time depth_image`, or depth first, whose
+  // pairs are used as they are. Empty: the recording specifies its pairs.
   std::string associations_file;
 
-  // Of a bag: colour, depth and, if it is not the one that belongs to colour,
-  // camera_info. Empty: found by their types.
+  // Topics of a bag: colour, depth and, unless it is the one that belongs to
+  // colour, camera_info. Empty: chosen by their types.
   std::vector<std::string> topics;
 
-  // What it says comes before what the recording says; nothing: the recording
-  // must say all.
+  // What it specifies overrides the recording. Nothing: the recording must
+  // specify its camera.
   std::optional<CameraSetup> camera;
 
-  // Raw units per metre, before all others; 0: as the camera, the recording or,
-  // if they do not, the TUM benchmark says (5000).
+  // Raw units per metre; overrides all others. 0: from the camera, the
+  // recording or, if neither specifies it, the TUM benchmark (5000).
   double depth_scale = 0.0;
 
-  // Seconds between a colour image and its depth image, at most.
+  // Largest time between a colour image and its depth image, s.
   double max_time_difference = 0.02;
-  bool keep_color = false;  // in Frame::color
+  bool keep_color = false;  // store colours in Frame::color
 
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
 
-// What to read a recording with, by what is asked for and what it says itself.
-// Throws InputError if nobody says what camera it was.
+// The camera of a recording, from the options and from the recording itself.
+// Throws InputError if neither specifies a camera.
 CameraSetup ChooseCamera(const SourceOptions& options,
                          const std::optional<CameraSetup>& of_recording = {});
 

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 struct ListedImage {
   double timestamp;
   std::string path;
-  int line;  // in its list
+  int line;  // line number in its list
 };
 
 std::string Quote(const TextLine& line) {
@@ -103,8 +103,8 @@ bool IsDepthImage(const ListedImage& image) {
   return ReadImageFile(image.path, cv::IMREAD_UNCHANGED).type() == CV_16UC1;
 }
 
-// Whether an associations file has the depth images in its left columns: by
-// the paths as written in its first line or else by the images themselves.
+// Whether an associations file has the depth images in its left columns: by the
+// paths in its first line, or else by the images themselves.
 bool IsDepthLeft(const std::string& list, const TextLine& line,
                  const ListedImage& left, const ListedImage& right) {
   const bool left_named = MentionsDepth(line.words[1]);
@@ -132,7 +132,7 @@ TumLists ReadLists(const SourceOptions& options) {
              : ReadTumAssociations(options.path, options.associations_file);
 }
 
-// The size is that of the first image: the file does not say it.
+// The image size is taken from an image, since the file does not contain it.
 CameraSetup ReadCalibrationText(const std::string& path,
                                 const std::string& first_image) {
   const std::vector<TextLine> lines = ReadTextTable(path);
@@ -153,7 +153,7 @@ CameraSetup ReadCalibrationText(const std::string& path,
 
 std::optional<CameraSetup> OwnCamera(const SourceOptions& options,
                                      const TumLists& lists) {
-  if (options.camera.has_value()) return std::nullopt;  // nobody asks for it
+  if (options.camera.has_value()) return std::nullopt;  // not needed
   const fs::path folder = options.path;
   if (PathExists(folder / "camera.yaml")) {
     return ReadCameraFile((folder / "camera.yaml").string());

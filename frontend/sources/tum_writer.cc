@@ -29,21 +29,21 @@ std::string ImagePath(const std::string& kind, double timestamp) {
 }
 
 void WritePng(const fs::path& path, const cv::Mat& image) {
-  // Sensor noise leaves no repetitions worth a search.
+  // Sensor noise contains no repetitions worth a search.
   WritePngFile(path.string(), image,
                {cv::IMWRITE_PNG_COMPRESSION, 1, cv::IMWRITE_PNG_STRATEGY,
                 cv::IMWRITE_PNG_STRATEGY_HUFFMAN_ONLY});
 }
 
-// Colours whose grey levels, as they are read back, are those of the frame: a
-// JPEG's own are up to a few levels from those of its colours.
+// Changes the colours to have the frame's grey levels when they are read back:
+// a JPEG's grey levels differ from those of its colours by up to a few levels.
 cv::Mat WithGrayOf(const Frame& frame) {
   cv::Mat color = frame.color.clone();
   for (int y = 0; y < color.rows; ++y) {
     uint8_t* bgr = color.ptr<uint8_t>(y);
     const uint8_t* wanted = frame.gray.ptr<uint8_t>(y);
     for (int x = 0; x < color.cols; ++x, bgr += 3) {
-      // All channels together first; where they are at an end, the others.
+      // First all channels by the difference; if some saturate, in steps of 1.
       for (int turn = 0;; ++turn) {
         const int lack = wanted[x] - GrayLevel(bgr[2], bgr[1], bgr[0]);
         if (lack == 0) break;
@@ -58,7 +58,7 @@ cv::Mat WithGrayOf(const Frame& frame) {
   return color;
 }
 
-// Images are written by the threads that read them, the lists afterwards.
+// The images are written by the threads that read them, the lists at the end.
 WrittenSequence WriteFrames(FrameSource* source, const fs::path& folder,
                             const TumWriterOptions& options) {
   FrameStream stream(
