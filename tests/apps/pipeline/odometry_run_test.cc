@@ -1,9 +1,9 @@
+#include "apps/pipeline/odometry_run.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <numeric>
-
-#include "apps/pipeline/odometry_run.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,9 +1,10 @@
+#include "apps/pipeline/settings.h"
+
 #include <gtest/gtest.h>
 
 #include <set>
 #include <string>
 
-#include "apps/pipeline/settings.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {

@@ -1,9 +1,9 @@
+#include "apps/results/run_summary.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-
-#include "apps/results/run_summary.h"
 
 namespace rgbd_pose {
 namespace {

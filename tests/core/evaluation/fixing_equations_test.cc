@@ -1,9 +1,10 @@
+#include "core/evaluation/fixing_equations.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "core/evaluation/fixing_equations.h"
 #include "core/util/units.h"
 
 namespace rgbd_pose {

@@ -1,12 +1,13 @@
 // The residual blocks that a graph passes to Ceres, far from the initial poses.
 
+#include "core/pose_graph/graph_problem.h"
+
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <random>
 
-#include "core/pose_graph/graph_problem.h"
 #include "tests/support/edge_oracle.h"
 
 namespace rgbd_pose {

@@ -2,6 +2,8 @@
 // landmark, with dense ones by ceres::Jet from which all depths are eliminated
 // at once. Also tests the covariance of the camera that follows from them.
 
+#include "costs/calibration/landmark_covariance.h"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -11,7 +13,6 @@
 #include <vector>
 
 #include "costs/calibration/landmark_block.h"
-#include "costs/calibration/landmark_covariance.h"
 #include "costs/calibration/landmark_residuals.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/landmark_oracle.h"

@@ -1,5 +1,7 @@
 // Compares every hand-written Jacobian of a calibration with ceres::Jet.
 
+#include "costs/calibration/landmark_residuals.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,7 +9,6 @@
 #include <vector>
 
 #include "costs/calibration/landmark_block.h"
-#include "costs/calibration/landmark_residuals.h"
 #include "frontend/simulation/synthetic_matches.h"
 #include "tests/support/both_jacobians.h"
 #include "tests/support/landmark_oracle.h"

@@ -1,9 +1,10 @@
+#include "frontend/fusion/mesh_file.h"
+
 #include <gtest/gtest.h>
 
 #include <filesystem>
 
 #include "core/util/text_file.h"
-#include "frontend/fusion/mesh_file.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

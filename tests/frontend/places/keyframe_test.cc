@@ -1,6 +1,7 @@
+#include "frontend/places/keyframe.h"
+
 #include <gtest/gtest.h>
 
-#include "frontend/places/keyframe.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/map_parts.h"
 

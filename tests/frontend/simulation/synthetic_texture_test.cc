@@ -1,6 +1,8 @@
 // The grain of simulated surfaces: eight octaves computed together equal
 // octaves computed one by one.
 
+#include "frontend/simulation/synthetic_texture.h"
+
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +11,6 @@
 
 #include "core/util/vector_lanes.h"
 #include "frontend/simulation/synthetic_hash.h"
-#include "frontend/simulation/synthetic_texture.h"
 
 namespace rgbd_pose {
 namespace {
