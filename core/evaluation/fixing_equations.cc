@@ -109,6 +109,8 @@ TruthFixing FixingAt(const FixingVector& x) {
 std::vector<std::string> NameFixingDirections(
     const Eigen::Matrix<double, 7, Eigen::Dynamic>& directions) {
   std::vector<std::string> names;
+  // A block of a matrix without memory is undefined behaviour.
+  if (directions.cols() == 0) return names;
   if (directions.row(0).squaredNorm() > kNamedShare) {
     names.emplace_back("time shift");
   }

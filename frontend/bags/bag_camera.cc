@@ -165,10 +165,6 @@ std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
 
 }  // namespace
 
-bool IsCalledRegistered(const std::string& topic) {
-  return Contains(topic, "regist") || Contains(topic, "align");
-}
-
 Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
                     const std::string& name) {
   Camera camera;

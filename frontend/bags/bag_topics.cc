@@ -81,10 +81,7 @@ Fitness FitnessOf(BagReader* bag, int index) {
       break;
     case RosImageUse::kDepth:
     case RosImageUse::kMetricDepth: {
-      const bool is_registered =
-          Contains(name, "regist") || Contains(name, "align") ||
-          Contains(name, "depth_to_color") || Contains(name, "depth_to_rgb");
-      fitness.depth = is_registered ? 40 : 20;
+      fitness.depth = IsCalledRegistered(topic.name) ? 40 : 20;
       break;
     }
     case RosImageUse::kGrayOrDepth:
@@ -167,6 +164,12 @@ int TopicNamed(const BagReader& bag, const std::string& name, bool is_image) {
 }
 
 }  // namespace
+
+bool IsCalledRegistered(const std::string& topic) {
+  const std::string name = LowerCase(topic);
+  return Contains(name, "regist") || Contains(name, "align") ||
+         Contains(name, "depth_to_color") || Contains(name, "depth_to_rgb");
+}
 
 RosImage ReadImageOf(const BagReader& bag, const BagMessage& message) {
   const bool is_raw = bag.topics()[message.topic].type == kImage;

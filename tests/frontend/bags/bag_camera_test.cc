@@ -43,6 +43,18 @@ TEST_F(Ros1BagTest, RegistersDepthOfAnotherFrame) {
   }
 }
 
+// As the driver of an Azure Kinect names it.
+TEST_F(Ros1BagTest, DepthOfATopicThatIsCalledRegisteredStaysAsItIs) {
+  Open();
+  WriteInfo();
+  cv::Mat depth(kHeight, kWidth, CV_16UC1, cv::Scalar(1000));
+  depth.at<uint16_t>(10, 20) = 500;
+  Write(kColor, kStart, MakeImage(ColorImage(0), "bgr8", kStart));
+  Write("/Depth_To_RGB/image_raw", kStart,
+        MakeImage(depth, "16UC1", kStart, "depth_optical"));
+  EXPECT_EQ(Source()->Next()->read().depth.at<uint16_t>(10, 20), 500);
+}
+
 TEST_F(Ros1BagTest, ReadsWhatTheRealSenseViewerRecords) {
   const Camera camera = SmallCamera().camera;
   const Rigid3d color_from_depth({1, 0, 0, 0}, {-2.0 / camera.fx, 0, 0});
