@@ -11,18 +11,16 @@
 
 namespace rgbd_pose {
 
-// Huber's loss, w(x) = 1 if x <= c, c / x beyond:
+// Huber's loss, w(x) = 1 if x <= c, c / x beyond, as ceres::HuberLoss:
 //
-//   R(s) = s if s <= c^2, 2 c sqrt(s) - c^2 beyond,
-//
-// as ceres::HuberLoss.
+//   R(s) = s if s <= c^2, 2 c sqrt(s) - c^2 beyond.
 class HuberFormula {
  public:
   explicit HuberFormula(double width) : c_(width), c2_(width * width) {}
 
   template <typename T>
   void Weigh(const T& s, T* rho, T* weight) const {
-    // sqrt of at least c^2: where it does not count it must not divide by 0.
+    // The root of at least c^2, to avoid a division by 0 in the unused case.
     T limited;
     Max(s, c2_, &limited);
     const T root = sqrt(limited);
@@ -45,7 +43,7 @@ using HuberLoss = BatchLossOf<HuberFormula>;
 //
 //   R(s) = c^2/3 (1 - (1 - s/c^2)^3) if s <= c^2, c^2/3 beyond,
 //
-// as ceres::TukeyLoss of 2.0 and later (before, it was half of that).
+// as ceres::TukeyLoss since Ceres 2.0 (half of that before).
 class TukeyFormula {
  public:
   explicit TukeyFormula(double width) : c2_(width * width) {}
@@ -72,8 +70,8 @@ using TukeyLoss = BatchLossOf<TukeyFormula>;
 //
 //   R(s) = 2 c^2 (|x|/c - ln(1 + |x|/c)),  |x| = sqrt s.
 //
-// R''(0) is minus infinity; what is given there is huge, but finite, so that
-// s R''(s) is 0.
+// R''(0) is minus infinity. A huge but finite value is returned instead; with
+// it, s R''(s) is 0 at s = 0.
 class FairLoss final : public ceres::LossFunction {
  public:
   explicit FairLoss(double width) : width_(width) {}
@@ -95,7 +93,7 @@ class FairLoss final : public ceres::LossFunction {
 //
 //   R(s) = s / (1 + s/c^2).
 //
-// It is bounded by c^2. Zhang's has c = 1.
+// It is bounded by c^2. Zhang's version has c = 1.
 class GemanMcClureLoss final : public ceres::LossFunction {
  public:
   explicit GemanMcClureLoss(double width) : inverse_(1.0 / (width * width)) {}
@@ -133,10 +131,10 @@ class WelschLoss final : public ceres::LossFunction {
 //
 //   R(s) = (2/v) c^2 (s / c^2)^(v/2).
 //
-// The width c only scales it; c = 1 is Zhang's. As its slope at 0 is infinite,
-// s is replaced by s + (kEpsilon c)^2, less the value at 0: nearer than
-// kEpsilon widths it turns into least squares of weight kEpsilon^(v-2). So its
-// weights exceed 1 for residuals below the width.
+// The width c only scales it; Zhang's versions have c = 1. As the slope at 0 is
+// infinite, s is replaced by s + (kEpsilon c)^2, and the value at 0 is
+// subtracted: below kEpsilon widths the loss becomes least squares with weight
+// kEpsilon^(v-2). Its weights exceed 1 for residuals below the width.
 class PowerLoss final : public ceres::LossFunction {
  public:
   static constexpr double kEpsilon = 0.01;
@@ -165,10 +163,10 @@ class PowerLoss final : public ceres::LossFunction {
 //
 //   R(s) = 2 c^2 (2-a)/a ((1 + s / (c^2 (2-a)))^(a/2) - 1).
 //
-// The shape a <= 2 leads from least squares (2) by L1-L2 (1), Cauchy (0) and
-// Geman-McClure (-2) towards Welsch (minus infinity): the lower, the less far
-// residuals count. Below 1 it is redescending. (The R'' of shapes above 2 is
-// positive, which the compressed block does not support.)
+// The shape a <= 2 ranges from least squares (2) through L1-L2 (1), Cauchy (0)
+// and Geman-McClure (-2) to Welsch (minus infinity): the lower a, the less
+// large residuals count. Below 1 it is redescending. (Shapes above 2 have a
+// positive R'', which the compressed block does not support.)
 class BarronLoss final : public ceres::LossFunction {
  public:
   // Half-way between Cauchy and Geman-McClure.

@@ -32,9 +32,9 @@ LossPointer MakeL1L2(double width) {
   return std::make_unique<ceres::SoftLOneLoss>(std::sqrt(2.0) * width);
 }
 
-// -2 ln of the density of the t distribution with nu degrees of freedom and
-// scale c, p components: (nu + p) ln(1 + s / (nu c^2)). Scaled to R'(0) = 1, p
-// drops out and Cauchy's loss of another width remains.
+// -2 ln of the density of the t distribution with nu degrees of freedom, scale
+// c and p components: (nu + p) ln(1 + s / (nu c^2)). Scaling to R'(0) = 1
+// cancels p; the result is Cauchy's loss of another width.
 LossPointer MakeStudentT(double width) {
   constexpr double kDegreesOfFreedom = 5.0;  // as DVO (Kerl et al., ICRA 2013)
   return std::make_unique<ceres::CauchyLoss>(std::sqrt(kDegreesOfFreedom) *
@@ -50,10 +50,10 @@ double MEstimator::Width95(int dimension) const {
   return width95[std::clamp(dimension, 1, kMaxDimension) - 1];
 }
 
-// Widths: found by quadrature over the chi distribution; a test finds them
-// again (tests/robust/m_estimator_width_test.cc). Student's t keeps the sigma
-// as its scale, at an efficiency of 92 to 94 %: at 95 % it would be Cauchy's
-// loss.
+// The widths were computed by quadrature over the chi distribution;
+// tests/robust/m_estimator_width_test.cc recomputes them. Student's t keeps the
+// sigma as its scale, at an efficiency of 92 to 94 %: at 95 % it would be
+// Cauchy's loss.
 const std::vector<MEstimator>& MEstimators() {
   static const std::vector<MEstimator>& rows = *new std::vector<MEstimator>{
       {"none", "1", nullptr, false, kUntuned},

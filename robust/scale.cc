@@ -10,8 +10,8 @@
 namespace rgbd_pose {
 namespace {
 
-// The pairs i < j of sorted values with x_j - x_i <= limit: for each j all i
-// from some first one on, which only moves up.
+// Counts the pairs i < j of sorted values with x_j - x_i <= limit. For each j
+// these are all i from a first one on, which only increases with j.
 int64_t CountUpTo(const std::vector<double>& x, double limit) {
   int64_t count = 0;
   size_t first = 0;
@@ -36,7 +36,7 @@ std::vector<double> DifferencesWithin(const std::vector<double>& x, double low,
   return differences;
 }
 
-// The shortest interval with h of the sorted values.
+// The length of the shortest interval that contains h of the sorted values.
 double ShortestInterval(const std::vector<double>& x, size_t h) {
   double shortest = x.back() - x.front();
   for (size_t i = 0; i + h <= x.size(); ++i) {
@@ -45,10 +45,10 @@ double ShortestInterval(const std::vector<double>& x, size_t h) {
   return shortest;
 }
 
-// The k-th smallest difference (k >= 1) of sorted values, which is known not to
-// exceed `high`. There are too many differences to list, but counting those up
-// to a limit is quick: the interval (low, high] that holds the wanted one is
-// halved until no more than n differences are in it.
+// The k-th smallest difference (k >= 1) of sorted values, known not to exceed
+// `high`. There are too many differences to list, but those up to a limit are
+// counted quickly: the interval (low, high] that contains the wanted difference
+// is halved until it has at most n differences.
 double KthDifference(const std::vector<double>& x, int64_t k, double high) {
   double low = 0.0;
   int64_t below = CountUpTo(x, low);
@@ -56,7 +56,7 @@ double KthDifference(const std::vector<double>& x, int64_t k, double high) {
   int64_t up_to = CountUpTo(x, high);
   while (up_to - below > static_cast<int64_t>(x.size())) {
     const double middle = low + 0.5 * (high - low);
-    if (middle <= low || middle >= high) return high;  // all in it are equal
+    if (middle <= low || middle >= high) return high;  // all are equal
     const int64_t count = CountUpTo(x, middle);
     if (count >= k) {
       high = middle;
@@ -84,10 +84,10 @@ double SnScale(std::vector<double>* values) {
   std::sort(x.begin(), x.end());
 
   // The inner high median is the distance of x_i to its h-th nearest value,
-  // itself included. In sorted order these h values lie side by side: some
-  // window from x_l to x_(l+h-1), the one whose farther end is nearest to x_i.
-  // As l grows the lower end comes nearer to x_i and the upper end moves away,
-  // so the best window is where both distances are equal; it moves up with i.
+  // itself included. These h values are contiguous in sorted order: they form
+  // the window from x_l to x_(l+h-1) whose farther end is nearest to x_i. As l
+  // grows the lower end approaches x_i and the upper end moves away, so the
+  // best window is where both distances are equal; it moves up with i.
   const size_t h = n / 2 + 1;
   std::vector<double> medians(n);
   size_t l = 0;

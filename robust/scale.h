@@ -8,16 +8,16 @@
 
 namespace rgbd_pose {
 
-// The factors that make a scale estimator unbiased for few values: one for each
+// Factors that make a scale estimator unbiased for small samples: one for each
 // n from 2 to 9, and n / (n + shift) above, with one shift for even and one for
 // odd n. From Croux and Rousseeuw, Time-Efficient Algorithms for Two Highly
 // Robust Estimators of Scale (COMPSTAT 1992); tests/robust/scale_test.cc
 // confirms them by simulation.
 struct SmallSample {
   std::array<double, 8> factors;  // for n = 2 ... 9
-  double shift_even;              // for even n above
-  double shift_odd;               // for odd n above
-  // Of so many values.
+  double shift_even;              // for even n above 9
+  double shift_odd;               // for odd n above 9
+  // The factor for n >= 2 values.
   double Factor(size_t n) const {
     if (n < 10) return factors[n - 2];
     const double size = static_cast<double>(n);
@@ -26,10 +26,10 @@ struct SmallSample {
 };
 
 // Robust estimators of the standard deviation of normally distributed values,
-// of which up to half may be outliers. In: finite values; they may be
-// reordered. Out: sigma >= 0 in their unit, consistent for large n and about
-// unbiased for small; 0 for fewer than two values or if more than half of them
-// are equal. All three take O(n log n).
+// up to half of which may be outliers. Input: finite values, which may be
+// reordered. Output: sigma >= 0 in their unit, consistent for large n and
+// nearly unbiased for small n; 0 for fewer than two values or if more than half
+// of them are equal. All three take O(n log n).
 
 // Median absolute deviation from the median. Efficiency 37 %.
 double MadScale(std::vector<double>* values);
@@ -38,23 +38,21 @@ double MadScale(std::vector<double>* values);
 // of |x_i - x_j|; needs no centre and no symmetry. Efficiency 58 %.
 double SnScale(std::vector<double>* values);
 
-// By the same authors: about the lower quartile of all |x_i - x_j|, i < j.
+// By the same authors: roughly the lower quartile of all |x_i - x_j|, i < j.
 // Efficiency 82 %.
 double QnScale(std::vector<double>* values);
 
 // A row of the table of scale estimators.
 struct ScaleEstimator {
-  std::string_view name;                            // as programs take it
+  std::string_view name;                            // as given to programs
   double (*estimate)(std::vector<double>* values);  // null: sigma is 1
 };
 
-// All scale estimators.
 const std::vector<ScaleEstimator>& ScaleEstimators();
 
-// The row of that name, or null.
+// The row with this name, or null.
 const ScaleEstimator* FindScaleEstimator(std::string_view name);
 
-// The names of all rows.
 std::vector<std::string> ScaleEstimatorNames();
 
 }  // namespace rgbd_pose

@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 
 // A loss that can weigh many residuals in one call: for compressed sums, where
-// a virtual call a match would cost as much as the arithmetic.
+// a virtual call per match would cost as much as the arithmetic.
 class BatchLoss : public ceres::LossFunction {
  public:
   // weights[i] = rho'(s[i]) for n squared norms; returns the sum of rho(s[i]).
@@ -17,7 +17,7 @@ class BatchLoss : public ceres::LossFunction {
   virtual double Weigh(const double* s, int n, double* weights) const = 0;
 };
 
-// The same for any loss; null is least squares.
+// The same for any loss; null means least squares.
 inline double Weigh(const ceres::LossFunction* loss, const double* s, int n,
                     double* weights) {
   if (const auto* batch = dynamic_cast<const BatchLoss*>(loss)) {
@@ -68,8 +68,8 @@ struct WeighKernel {
 
 }  // namespace packed
 
-// The loss of a formula that works lane by lane. It says, for T double or a
-// vector of doubles (core/util/vector_lanes.h),
+// The loss of a formula that works lane by lane. For T double or a vector of
+// doubles (core/util/vector_lanes.h), the formula implements
 //
 //   Weigh(const T& s, T* rho, T* weight)   rho(s) and rho'(s), rho(0) = 0
 //   Curvature(double s)                    rho''(s)
@@ -94,12 +94,12 @@ class BatchLossOf final : public BatchLoss {
   Formula formula_;
 };
 
-// A loss as seen by residuals whose sigma is `scale` times the nominal one:
-// rho(s) = factor scale^2 base(s / scale^2). For every M-estimator with a width
-// this is the same M-estimator with `scale` times the width.
+// A loss for residuals whose sigma is `scale` times the nominal one: rho(s) =
+// factor scale^2 base(s / scale^2). For every M-estimator with a width this is
+// the same M-estimator with `scale` times the width.
 class ScaledLoss final : public BatchLoss {
  public:
-  // `base` must outlive this; null is least squares.
+  // `base` must outlive this object; null means least squares.
   ScaledLoss(const ceres::LossFunction* base, double scale, double factor = 1.0)
       : base_(base), scale2_(scale * scale), factor_(factor) {}
 

@@ -5,8 +5,8 @@
 namespace rgbd_pose {
 namespace {
 
-// No camera measures numbers (px, m) beyond these, and squares of residuals
-// stay finite within them. NaN is not within.
+// No camera measures values (px, m) outside these limits, and squared residuals
+// stay finite within them. NaN is outside.
 constexpr double kHuge = 1e6;
 constexpr double kTiny = 1e-9;
 

@@ -7,50 +7,50 @@
 
 namespace rgbd_pose {
 
-// One match seen from one of its two frames.
+// The observation of a match in one of its two frames.
 struct Observation {
   double u = 0.0;            // ideal (undistorted) pixel, px
   double v = 0.0;            // ideal (undistorted) pixel, px
   double depth = 0.0;        // along the optical axis, m; 0 = not measured
   double sigma_px = 0.5;     // standard deviation of u and of v, px
   double sigma_depth = 0.0;  // standard deviation of depth, m
-  // Unit normal of the surface in camera axes; zero = not known.
+  // Unit normal of the surface in camera axes; zero if unknown.
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
 };
 
-// One scene point (or so it is believed) in both frames.
+// One scene point, presumably, seen in both frames.
 struct Match {
-  Observation prev;  // of the previous frame
-  Observation cur;   // of the current one
+  Observation prev;  // in the previous frame
+  Observation cur;   // in the current frame
 };
 
 // Matches between a previous and a current frame of one pinhole camera.
 class Correspondences {
  public:
   Correspondences() = default;
-  // Only fx, fy, cx, cy of the camera count: pixels are undistorted.
+  // Only fx, fy, cx, cy of the camera are used: pixels are undistorted.
   explicit Correspondences(const Camera& camera) : camera_(camera) {}
 
-  // Adds a match if all of its numbers are finite and below a million, its
-  // sigmas are positive (that of a depth only where there is a depth) and its
-  // depths not negative, none of these below 1e-9; counts it as rejected
-  // otherwise. Returns whether it was added.
+  // Adds a match if all its numbers are finite and below a million, its sigmas
+  // are positive (the sigma of a depth only if there is a depth) and its depths
+  // are not negative; sigmas and nonzero depths below 1e-9 are invalid.
+  // Otherwise counts it as rejected. Returns whether it was added.
   bool Add(const Observation& prev, const Observation& cur);
 
-  // Takes all matches out; keeps the memory and the camera.
+  // Removes all matches; keeps the memory and the camera.
   void Clear();
   void Reserve(size_t n) { matches_.reserve(n); }
 
-  // The matches, as those of a std::vector.
+  // The matches, with the interface of a std::vector.
   size_t size() const { return matches_.size(); }
   const Match& operator[](size_t i) const { return matches_[i]; }
   std::vector<Match>::const_iterator begin() const { return matches_.begin(); }
   std::vector<Match>::const_iterator end() const { return matches_.end(); }
 
-  // How many matches Add has refused.
+  // The number of matches rejected by Add.
   size_t rejected() const { return rejected_; }
 
-  // Of both frames.
+  // The camera of both frames.
   const Camera& camera() const { return camera_; }
 
   // Point in camera axes (m) of an observation with a depth.

@@ -10,23 +10,24 @@
 namespace rgbd_pose {
 namespace {
 
-// With fewer blocks their scatter is too uncertain to take for a covariance.
+// With fewer blocks their scatter is too uncertain to be used as a covariance.
 constexpr int kMinBlocksForScatter = 30;
 
-// The slope can vanish for redescending losses among many outliers; a fifth of
-// the weight keeps the covariance finite and pessimistic.
+// With redescending losses and many outliers the slope can vanish; this minimum
+// share of the weight keeps the covariance finite and pessimistic.
 constexpr double kMinSlope = 0.2;
 
-// By how much what noise feigns may exceed its model: depths come in steps, so
-// that slopes of surfaces seen at an angle are noisier.
+// Factor by which the spurious information may exceed its model: depths are
+// quantised, and slopes of surfaces seen at an angle are noisier.
 constexpr double kSpuriousCostMargin = 6.0;
 
-// What is measured is rounded: depth of 1 to 4 m to 0.2 or 1 mm and corners to
-// a fiftieth of a pixel, some twentieth of a sigma.
+// Measurements are rounded: depths of 1 to 4 m to 0.2 or 1 mm and corners to a
+// fiftieth of a pixel, which is about a twentieth of a sigma.
 constexpr double kRounding = 0.05;
 
-// Information less what of it is feigned: none, not less, in directions where
-// all is: a covariance is made of it.
+// Subtracts the spurious part from the information. Directions in which all of
+// it is spurious get zero, not negative, information, since a covariance is
+// computed from the result.
 MotionMatrix LessSpurious(const MotionMatrix& hessian,
                           const MotionMatrix& feigned) {
   if (feigned.isZero() || !feigned.allFinite()) return hessian;
@@ -49,8 +50,8 @@ MotionMatrix LessSpurious(const MotionMatrix& hessian,
   return root * root.transpose();
 }
 
-// Fits a match's weight and agreement into an estimate. One that several costs
-// use (`again`) is an inlier if all of them agree.
+// Writes a match's weight and agreement to an estimate. A match that several
+// costs use (`again`) is an inlier if it agrees with all of them.
 void JudgeMatch(int match, bool again, double weight, bool agrees,
                 MotionEstimate* estimate) {
   estimate->is_inlier[match] = agrees && (!again || estimate->is_inlier[match]);
@@ -85,7 +86,7 @@ MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
     measured += term.hessian;
     weight_p += term.sums.weight_p;
   }
-  // Six less what a prior determines.
+  // Six minus the parameters determined by a prior.
   const double parameters = (inverse * measured).trace();
   const double fitted =
       weight_p > 2.0 * parameters ? weight_p / (weight_p - parameters) : 2.0;
@@ -118,8 +119,7 @@ void CovarianceAccumulator::JudgeMatches(const RobustProblem& terms,
       ++sums.blocks;
       const double limit =
           term.cost.is_whitened() ? ChiSquared99(p) : term.cost.InlierLimit(k);
-      // A sigma, squared, in the unit of the residuals, is limit /
-      // ChiSquared99.
+      // The squared sigma in the unit of the residuals is limit / ChiSquared99.
       sums.least_psi2 += information * weight * p * limit / ChiSquared99(p) *
                          kRounding * kRounding / scale2;
       const bool agrees = s <= limit * scale2;
@@ -128,7 +128,7 @@ void CovarianceAccumulator::JudgeMatches(const RobustProblem& terms,
         if (agrees && term.has_scale) ++estimate->num_inliers;
         continue;
       }
-      // Losses that are steeper than least squares near 0 weigh above 1.
+      // Losses steeper than least squares near 0 have weights above 1.
       JudgeMatch(match, counted_[match], std::min(weight, 1.0), agrees,
                  estimate);
       counted_[match] = true;
@@ -153,17 +153,17 @@ NormalEquations CovarianceAccumulator::Linearise(
     term.cost.Linearise(motion, term.loss_or_null(), &share);
     MotionMatrix feigned = MotionMatrix::Zero();
     term.cost.AddSpuriousInformation(motion, &feigned);
-    // Residuals that are larger than their noise do not make slopes noisier.
+    // Residuals larger than their noise do not make slopes noisier.
     const double excess = std::max(1.0, term.scale);
     double times = kSpuriousCostMargin * term.cost.information_factor() /
                    (excess * excess);
-    // Of an image that shows nothing there is not even noise to take off.
+    // An image without content does not even have noise to subtract.
     for (int k = 0; k < 6; ++k) {
       if (times * feigned(k, k) > share.hessian(k, k)) {
         times = share.hessian(k, k) / feigned(k, k);
       }
     }
-    // The sum may well be indefinite: then some direction is not determined.
+    // The sum may be indefinite: then some direction is not determined.
     shares_[i].hessian = LessSpurious(share.hessian, times * feigned);
     share.hessian -= times * feigned;
     sum.hessian += share.hessian;
@@ -184,7 +184,7 @@ MotionMatrix CovarianceAccumulator::Covariance(const RobustProblem& terms,
     if (term.cost.is_whitened()) continue;
     term.cost.AddScoreOuterProduct(motion, term.loss_or_null(),
                                    &shares_[i].scatter);
-    // Blocks that tell the same scatter together.
+    // Blocks that are not independent scatter together.
     shares_[i].scatter /= term.cost.information_factor();
   }
   return RobustCovariance(shares_, inverse);

@@ -9,15 +9,15 @@
 
 namespace rgbd_pose {
 
-// What the covariance of an M-estimate needs of the losses: sums over residual
-// blocks of s = |r|^2 (r whitened, by the estimated scale too), p independent
-// rows and the loss' rho' and rho'' at s.
+// Sums over residual blocks that the covariance of an M-estimate needs: s =
+// |r|^2 (r whitened, also by the estimated scale), p independent rows, and rho'
+// and rho'' of the loss at s.
 struct LossSums {
   double psi2 = 0.0;      // rho'^2 s
   double weight_p = 0.0;  // rho' p
   double slope_p = 0.0;   // rho' p + 2 s rho''
   int blocks = 0;
-  double least_psi2 = 0.0;  // psi2 of residuals that are as small as rounding
+  double least_psi2 = 0.0;  // psi2 of residuals of the size of rounding errors
 
   LossSums& operator+=(const LossSums& other) {
     psi2 += other.psi2;
@@ -29,42 +29,42 @@ struct LossSums {
   }
 };
 
-// A cost's share in the covariance.
+// The contribution of a cost to the covariance.
 struct CovarianceTerm {
   MotionMatrix hessian;  // weighted by rho'
   MotionMatrix scatter;  // sum rho'^2 J^T r r^T J, unless `is_whitened`
   bool is_whitened;
-  int scale_group;  // as MotionCost's
+  int scale_group;  // as in MotionCost
   LossSums sums;
 };
 
 // Sandwich A^-1 B A^-1 of an M-estimate (Huber, Robust Statistics, 6.3) over
-// all costs. A sums up the weighted Hessians, times the mean slope of psi
-// against its mean weight; B sums up the same times the mean of psi^2 against
-// the mean weight or, for costs that do not whiten fully, the scatter of their
-// blocks, with the usual correction for fitted parameters. Means are those of a
-// scale group. Residuals that are all but zero (a frame against itself) are no
-// proof of a measurement better than what it is rounded to. The Hessian of
-// exact sigmas (a prior) is in both as it is. `inverse` is that of the sum of
-// all Hessians.
+// all costs. A is the sum of the weighted Hessians, each times the ratio of the
+// mean slope of psi to the mean weight. B is the sum of the same Hessians, each
+// times the ratio of the mean of psi^2 to the mean weight, or, for costs that
+// do not whiten fully, of the scatter of their blocks, with the usual
+// correction for fitted parameters. Means are over a scale group. Residuals
+// that are almost zero (a frame against itself) do not prove a measurement to
+// be better than its rounding. The Hessian of exact sigmas (a prior) is added
+// to A and B unchanged. `inverse` is the inverse of the sum of all Hessians.
 MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
                               const MotionMatrix& inverse);
 
-// What each term of a sum says of the motion it was minimised at: which matches
-// agree, and its share of the covariance. Keeps its memory between calls, which
-// are made in the order below.
+// Evaluates the terms of a sum at its minimum: which matches agree with the
+// motion, and each term's contribution to the covariance. Functions must be
+// called in the order below. Memory is reused between calls.
 class CovarianceAccumulator {
  public:
-  // Fills weights, inliers and residual norms of the estimate, whose lists are
-  // as long as the matches, by the norms that the terms have.
+  // Fills weights, inliers and residual norms of the estimate from the norms of
+  // the terms. The lists of the estimate must have one entry per match.
   void JudgeMatches(const RobustProblem& terms, MotionEstimate* estimate);
 
-  // RobustProblem::Linearise, less what noise feigns
+  // RobustProblem::Linearise, minus the spurious information from noise
   // (MotionCost::AddSpuriousInformation).
   NormalEquations Linearise(const RobustProblem& terms,
                             const MotionDerivatives& motion);
 
-  // `inverse` is that of the whole Hessian.
+  // `inverse` is the inverse of the whole Hessian.
   MotionMatrix Covariance(const RobustProblem& terms,
                           const MotionDerivatives& motion,
                           const MotionMatrix& inverse);

@@ -12,20 +12,20 @@
 namespace rgbd_pose {
 namespace {
 
-// How many times over a rotation must be known better than noise feigns it.
+// The information on a rotation must exceed the spurious one by this factor.
 constexpr double kSpuriousMargin = 3.0;
 
-// Of a Hessian scaled to a diagonal of ones: below this it is singular.
+// A Hessian scaled to a diagonal of ones is singular below this eigenvalue.
 constexpr double kSingular = 1e-12;
 
 constexpr std::array<const char*, 6> kDirections = {
     "rotation about x",    "rotation about y",    "rotation about z",
     "translation along x", "translation along y", "translation along z"};
 
-// Units in which rotations and translations compare: what is known of each,
-// averaged over its axes. Not of each axis for itself: to glide along a wall
-// that is a little tilted changes its distance by little, but by many of its
-// small deviations, and would be named after it.
+// Units that make rotations and translations comparable: the information on
+// each, averaged over its axes. Units of each axis would give wrong names:
+// gliding along a slightly tilted wall changes the distance to it by little,
+// but by many of its small standard deviations, and would be named after it.
 MotionVector MeanUnits(const MotionMatrix& hessian) {
   MotionVector units;
   for (const int first : {0, 3}) {
@@ -36,7 +36,7 @@ MotionVector MeanUnits(const MotionMatrix& hessian) {
   return units;
 }
 
-// The directions that stand out, the strongest first.
+// The dominant directions, the strongest first.
 std::string Describe(const MotionVector& direction, double deviation) {
   std::array<int, 6> order = {0, 1, 2, 3, 4, 5};
   std::stable_sort(order.begin(), order.end(), [&](int a, int b) {
@@ -52,8 +52,8 @@ std::string Describe(const MotionVector& direction, double deviation) {
                        deviation, order[0] < 3 ? "rad" : "m");
 }
 
-// The largest standard deviation within three rows of a covariance, and how all
-// six change along with it.
+// The largest standard deviation within three rows of a covariance, and the
+// correlated change of all six parameters.
 struct WeakDirection {
   double deviation;
   MotionVector direction;
@@ -78,7 +78,7 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
     return result;
   }
   const MotionVector means = MeanUnits(hessian);
-  // Judged in units of what each parameter alone would be known to.
+  // Scaled by what each parameter would be known to if it were the only one.
   MotionVector unit;
   for (int i = 0; i < 6; ++i) {
     unit[i] = hessian(i, i) > 0.0 ? 1.0 / std::sqrt(hessian(i, i)) : 1.0;

@@ -13,45 +13,46 @@ namespace rgbd_pose {
 struct Degeneracy {
   bool is_degenerate = false;
   std::string reason;                           // names the weak direction
-  MotionMatrix inverse = MotionMatrix::Zero();  // of the hessian, if it can be
+  MotionMatrix inverse = MotionMatrix::Zero();  // of the Hessian, or zero
 
-  // How the motion changes with the rotation that is known least, by 1 rad, and
-  // what is known of it, rad^-2.
+  // The change of the motion with the least determined rotation, per 1 rad, and
+  // the information on this rotation, rad^-2.
   MotionVector weakest_rotation = MotionVector::Zero();
   double known_rotation = 0.0;
 };
 
-// Judges a Gauss-Newton Hessian of [omega (rad), C (m)] by the standard
-// deviations it leaves: of the rotation in rad and of the translation in m,
-// each in its own unit. Weak is
-//  - what exceeds `max_standard_deviation` (rad or m), and
-//  - a rotation known no better than `feigned_information` (rad^-2) makes it:
-//    noisy points on a line, say, "determine" the rotation about it.
+// Judges a Gauss-Newton Hessian of [omega (rad), C (m)] by the resulting
+// standard deviations of the rotation in rad and of the translation in m, each
+// in its own unit. The motion is degenerate if
+//  - a standard deviation exceeds `max_standard_deviation` (rad or m), or
+//  - the information on a rotation is below 3 times `feigned_information`
+//    (rad^-2): noisy points on a line, say, "determine" the rotation about it.
 Degeneracy FindDegeneracy(const MotionMatrix& hessian,
                           double feigned_information,
                           double max_standard_deviation);
 
-// The same if of what is known of the weakest rotation only a share is.
+// The same if only a share of the information on the weakest rotation counts.
 void JudgeWeakestRotation(double share, double feigned_information,
                           double max_standard_deviation, Degeneracy* result);
 
-// What the noise of the matches alone feigns to tell of a rotation, rad^-2.
-// Noise moves points off a line in any direction and so gives them a lever
-// about it. A lever that is itself noise counts 1 a match if the point's noise
-// is equal in both directions across the axis, and
+// The information on a rotation that the noise of the matches alone would
+// produce, rad^-2. Noise moves points off a line in any direction and thus
+// gives them a lever about the line. A lever that is pure noise contributes 1
+// per match if the point's noise is equal in both directions across the axis,
+// and
 //
 //   (q + 1 / q) / 2,   q = sigma_depth^2 / (depth sigma_px / fx)^2
 //
-// if it is along the ray and across it: the lever is long where the error is
-// large, and the error is measured where it is small. `weights` of matches in
-// their order; empty: 1 each.
+// if these directions are along the ray and across it: the lever is long where
+// the error is large, and the error is measured where it is small. `weights` of
+// the matches in their order; empty: 1 each.
 double SpuriousInformation(const Correspondences& matches,
                            const std::vector<double>& weights);
 
-// The share of what matches tell of a change of the motion that comes from
-// those that agree with it, less the three that tell most: where right matches
-// leave a rotation open it turns to where a wrong one agrees by chance, and
-// that is a long lever.
+// The share of the matches' information on a change of the motion that comes
+// from inliers, without the three that contribute most. If the right matches
+// leave a rotation open, the estimate turns until a wrong match agrees by
+// chance, and such a match has a long lever.
 double SupportedShare(const Correspondences& matches,
                       const MotionEstimate& estimate,
                       const MotionVector& change);

@@ -12,7 +12,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Where more matches agree, those that do not are few or but large noise.
+// Above this share of inliers, the outliers are few or just large noise.
 constexpr double kHardlyWrong = 0.95;
 
 std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
@@ -23,7 +23,7 @@ std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
   return terms;
 }
 
-// Whether most points are beyond what any RGB-D camera measures.
+// Whether most points are beyond the range of any RGB-D camera.
 bool AreFarAway(const Correspondences& matches) {
   constexpr double kFarthest = 100.0;  // m
   size_t far = 0;
@@ -36,7 +36,7 @@ bool AreFarAway(const Correspondences& matches) {
 }  // namespace
 
 std::string EstimatorOptions::Check() const {
-  // Written so that a NaN fails each of them.
+  // Each condition is written to reject NaN.
   if (!(gnc_factor >= 1.01)) return "gnc_factor must be at least 1.01";
   if (max_iterations < 1) return "max_iterations must be at least 1";
   if (!(min_inlier_share >= 0.0 && min_inlier_share <= 1.0)) {
@@ -55,7 +55,7 @@ std::string EstimatorOptions::Check() const {
   return "";
 }
 
-// The work of Estimate and its memory.
+// The implementation of Estimate and its memory.
 class Estimator::Impl {
  public:
   Impl(const EstimatorOptions& options, std::vector<RobustCost> costs)
@@ -118,8 +118,8 @@ class Estimator::Impl {
     minimiser_.Begin(guess, pair.num_levels);
   }
 
-  // After the solver found no step, or one that leaves all matches behind: the
-  // matches at the guess, taken as right, may tell why.
+  // Called if the solver found no usable step or too few matches remained: the
+  // matches at the guess, all taken as inliers, may show why.
   void JudgeGuess(const Rigid3d& guess) {
     terms_.SetLevel(0, guess);
     const NormalEquations sum =
@@ -158,7 +158,7 @@ class Estimator::Impl {
     JudgeMotion();
   }
 
-  // One that all directions are known of.
+  // For a motion with all directions determined.
   void JudgeMotion() {
     const int used = terms_.num_used();
     const double share = static_cast<double>(out_->num_inliers) / used;
@@ -183,7 +183,7 @@ class Estimator::Impl {
   Minimiser minimiser_;
   CovarianceAccumulator shares_;
 
-  // Of the call at hand.
+  // State of the current call.
   const Correspondences* matches_ = nullptr;
   MotionEstimate* out_ = nullptr;
 };

@@ -14,28 +14,27 @@
 namespace rgbd_pose {
 
 // Estimates the motion between two frames: minimises the sum of all costs under
-// their losses with Ceres, coarse to fine where costs have levels. Keeps its
-// memory between calls; one object serves one thread at a time.
+// their losses with Ceres, coarse to fine for costs with levels. Memory is
+// reused between calls; one object serves one thread at a time.
 class Estimator {
  public:
-  // Minimises the sum of these costs. Throws InputError for options that are
-  // not sound (see Check).
+  // Minimises the sum of these costs. Throws InputError for invalid options.
   Estimator(const EstimatorOptions& options, std::vector<RobustCost> costs);
-  // Of one cost; a null loss is least squares. Throws InputError without cost.
+  // One cost; a null loss means least squares. A null cost throws InputError.
   Estimator(const EstimatorOptions& options, std::unique_ptr<MotionCost> cost,
             std::unique_ptr<ceres::LossFunction> loss);
   ~Estimator();
   Estimator(Estimator&&) noexcept;
   Estimator& operator=(Estimator&&) noexcept;
 
-  // `guess` is where the solver starts; `prior` is that of costs
-  // that use one. Bad data is a status, never an abort.
+  // `guess` is the solver's starting point; `prior` is for costs that use one.
+  // Invalid data gives a status, never an abort.
   MotionEstimate Estimate(const Correspondences& matches,
                           const Rigid3d& guess = Rigid3d(),
                           const MotionPrior* prior = nullptr);
 
-  // The same of whatever the two frames share, into an estimate whose memory is
-  // used again. The options say how many threads, not the pair.
+  // The same for any data the two frames share; reuses the memory of the
+  // estimate. The options, not the pair, set the number of threads.
   void Estimate(const FramePair& pair, const Rigid3d& guess,
                 MotionEstimate* estimate);
 

@@ -10,27 +10,27 @@
 
 namespace rgbd_pose {
 
-// An image that somebody else owns, row by row.
+// An image in row-major order owned by someone else.
 template <typename Pixel>
 struct ImageView {
-  const Pixel* data = nullptr;  // null: none
+  const Pixel* data = nullptr;  // null: no image
   int width = 0;
   int height = 0;
   ptrdiff_t stride = 0;  // pixels from one row to the next
 
-  // Neither is checked.
+  // The arguments are not checked.
   Pixel At(int column, int row) const { return data[row * stride + column]; }
 };
 
-// Parts of an image, in square cells.
+// A mask of an image in square cells.
 struct CellMask {
   static constexpr int kCellPx = 16;  // side of a cell, px
 
-  int columns = 0;  // of cells
-  // Whether each is in the mask, row by row; empty: none is.
+  int columns = 0;  // number of cells per row
+  // Whether each cell is in the mask, row by row. Empty: no cell is.
   std::vector<bool> cells;
 
-  // Of a pixel within the image.
+  // For a pixel within the image.
   bool Contains(double u, double v) const {
     const size_t at =
         static_cast<int>(v / kCellPx) * columns + static_cast<int>(u / kCellPx);
@@ -38,11 +38,10 @@ struct CellMask {
   }
 };
 
-// What a cost may see of an RGB-D frame, without OpenCV. The images must stay
-// as they are for as long as a cost is bound to them.
+// The part of an RGB-D frame that costs use, without OpenCV. The images must
+// stay unchanged while a cost is bound to them.
 struct FrameView {
-  // Frames with the same id are the same, so that a cost may keep what it has
-  // made of one; 0: not known.
+  // Frames with the same id are identical: costs may cache data. 0: unknown.
   uint64_t id = 0;
 
   // A gray image and the camera of its pixels.
@@ -51,24 +50,23 @@ struct FrameView {
     Camera camera;
   };
 
-  // From the full resolution on, each about half as large as the one before.
+  // Full resolution first; each level is about half as large as the last.
   std::vector<Level> levels;
 
-  // Registered to levels[0] and of its size.
+  // Registered to levels[0] and of the same size.
   ImageView<uint16_t> depth;
   double depth_scale = 5000.0;  // raw units per metre
-  DepthNoiseModel depth_noise;  // has to be filled in
+  DepthNoiseModel depth_noise;  // must be filled in
 
-  // When rows were exposed. Direct costs move the look-ups in a current frame
-  // by it; a previous one has to be of one moment (FrameRectifier).
+  // Exposure times of rows. Direct costs correct look-ups in a current frame by
+  // them. A previous frame must be of one moment (FrameRectifier).
   FrameTiming timing;
 
-  // What moves by itself in levels[0]: direct costs do not look there. Null:
-  // nothing is known to.
+  // Moving objects in levels[0], ignored by direct costs; null: none known.
   const CellMask* moving = nullptr;
 
-  // Metres at a whole pixel of levels[0]; 0 where there is none: sensors mark
-  // that by 0 or by the largest value.
+  // Depth (m) at an integer pixel of levels[0]; 0 if there is none. Sensors
+  // mark missing depths by 0 or by the largest value.
   double DepthAt(int column, int row) const {
     const uint16_t raw = depth.At(column, row);
     return raw == UINT16_MAX ? 0.0 : raw / depth_scale;

@@ -10,9 +10,9 @@ namespace {
 
 constexpr int kIterationsPerEarlyStage = 2;
 
-// Frozen weights are taken as right within this (rad and m): a turn by it adds
-// 1 % of the variance along the ray to that across it, where noise is ten times
-// larger along the ray.
+// Frozen weights stay valid within this motion (rad and m): if noise is ten
+// times larger along the ray than across it, a rotation by this angle adds 1 %
+// to the variance across the ray.
 constexpr double kFrozenWithin = 1e-2;
 
 bool IsWithin(const Rigid3d& a, const Rigid3d& b, double limit) {
@@ -64,14 +64,15 @@ bool Minimiser::MinimiseWithScale(int level) {
   return true;
 }
 
-// Where residuals are chosen at every step, coarse levels only lead on.
+// If residuals are chosen at every step, coarse levels only improve the guess.
 int Minimiser::MaxScaleRounds(int level) const {
   return level > 0 && terms_.AsksFor(AssociationPolicy::kEveryStep)
              ? 0
              : options_.max_scale_rounds;
 }
 
-// All stages at one scale. False if the solver found no finite step.
+// All stages at one scale. Returns false if the solver found no finite step or
+// too few matches remain.
 bool Minimiser::Minimise() {
   double width = 1.0;
   if (terms_.has_losses() && options_.schedule == RobustSchedule::kGnc) {
@@ -82,8 +83,7 @@ bool Minimiser::Minimise() {
     if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
     Associate(AssociationPolicy::kWhenMoved);
     if (terms_.num_used() < kMinMatches) return false;
-    // Where over half of the matches are right they soon agree, and most
-    // stages are saved.
+    // If over half of the matches are right, this soon skips most stages.
     width = std::min(width / options_.gnc_factor,
                      terms_.UpdateNorms(DerivativesAt(motion_)));
   }
@@ -91,8 +91,8 @@ bool Minimiser::Minimise() {
   return MinimiseLastStage();
 }
 
-// At the motion so far. False if no cost asks for it so often, or if what is
-// frozen was so near enough.
+// Associates at the current motion. Returns false if no cost needs it that
+// often, or if the weights were frozen at a motion close enough.
 bool Minimiser::Associate(AssociationPolicy least) {
   if (least != AssociationPolicy::kEveryStep) {
     if (IsWithin(associated_at_, motion_, kFrozenWithin)) return false;
@@ -101,7 +101,7 @@ bool Minimiser::Associate(AssociationPolicy least) {
   return terms_.Associate(least, motion_);
 }
 
-// Weights that were frozen at a motion too far away ask for another round.
+// Weights that were frozen too far away need another round.
 bool Minimiser::MinimiseLastStage() {
   for (int round = 1;; ++round) {
     if (!MinimiseStage(options_.max_iterations)) return false;
@@ -117,8 +117,8 @@ bool Minimiser::MinimiseStage(int max_iterations) {
   if (!terms_.AsksFor(AssociationPolicy::kEveryStep)) {
     return SolveOnce(max_iterations);
   }
-  // Step by step, each of the residuals as they are: were they chosen again
-  // within a step's trial, the solver would compare costs of other residuals.
+  // Step by step, each with fixed residuals: if they were chosen again within a
+  // trial step, the solver would compare the costs of different residuals.
   converged_ = false;
   for (int i = 0; i < max_iterations && !converged_; ++i) {
     const Rigid3d before = motion_;
@@ -130,13 +130,13 @@ bool Minimiser::MinimiseStage(int max_iterations) {
   return true;
 }
 
-// Pixels of each level are twice as large as those of the next finer one, and
-// need be hit half as well: that goes on from there.
+// Each coarser level has pixels twice as large and needs only half the
+// precision in pixels, since the next level continues from there.
 double Minimiser::SettledWithin() const {
   return options_.step_tolerance * (1 << 2 * level_);
 }
 
-// Of the residuals as they are associated.
+// Solves with the currently associated residuals.
 bool Minimiser::SolveOnce(int max_iterations) {
   const LinearizationPoint origin(motion_);
   MotionVector x = MotionVector::Zero();
@@ -147,8 +147,8 @@ bool Minimiser::SolveOnce(int max_iterations) {
   ceres::Problem problem(problem_options);
   terms_.AddTo(options_.assembly, origin, x.data(), &problem);
   ceres::Solver::Options solver;
-  // The fastest on the compressed block (docs/benchmarks.md); its 7 x 6
-  // Jacobian is triangular, so squaring it only gives the Hessian back.
+  // The fastest solver on the compressed block (docs/benchmarks.md). Its 7 x 6
+  // Jacobian is triangular; squaring it just restores the Hessian.
   solver.linear_solver_type = ceres::DENSE_NORMAL_CHOLESKY;
   solver.logging_type = ceres::SILENT;
   solver.num_threads = 1;
@@ -157,7 +157,7 @@ bool Minimiser::SolveOnce(int max_iterations) {
   solver.parameter_tolerance = 1e-9;
   ceres::Solver::Summary summary;
   ceres::Solve(solver, &problem, &summary);
-  // There are none if the cost at the start is not finite.
+  // There are no iterations if the initial cost is not finite.
   iterations_ += std::max(static_cast<int>(summary.iterations.size()) - 1, 0);
   converged_ = summary.termination_type == ceres::CONVERGENCE;
   if (!summary.IsSolutionUsable() || !x.allFinite()) return false;

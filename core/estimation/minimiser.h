@@ -10,25 +10,24 @@ namespace rgbd_pose {
 // Minimum number of matches for six degrees of freedom.
 constexpr int kMinMatches = 3;
 
-// Of a motion by its own small changes.
+// R, C and the derivatives of a motion with respect to small changes of it.
 MotionDerivatives DerivativesAt(const Rigid3d& cur_from_prev);
 
-// Moves a guess to the least sum of terms, by Ceres: coarse to fine, losses
-// from wide to narrow, scale and motion in turn.
+// Minimises the sum of terms with Ceres, starting at a guess: coarse to fine,
+// losses from wide to narrow, scale and motion alternately.
 class Minimiser {
  public:
-  // Both must outlive it.
+  // Both arguments must outlive this object.
   Minimiser(const EstimatorOptions& options, RobustProblem* terms)
       : options_(options), terms_(*terms) {}
 
-  // The terms are bound to a pair at a guess. `max_levels` as in FramePair.
+  // Terms must be bound to a pair at the guess; `max_levels` as in FramePair.
   void Begin(const Rigid3d& guess, int max_levels);
 
-  // False if the solver finds no finite step, or leaves too few matches.
+  // Returns false if the solver finds no finite step or too few matches remain.
   bool Run();
 
-  // Where it is, by how many steps of the solver, and whether the last ones
-  // came to rest.
+  // The motion, the number of solver steps, whether the last solve converged.
   const Rigid3d& motion() const { return motion_; }
   int iterations() const { return iterations_; }
   bool converged() const { return converged_; }
@@ -47,9 +46,9 @@ class Minimiser {
   const EstimatorOptions& options_;
   RobustProblem& terms_;
 
-  // Of the run at hand.
+  // State of the current run.
   Rigid3d motion_;
-  Rigid3d associated_at_;  // the motion at which weights are frozen
+  Rigid3d associated_at_;  // the motion at which the weights were chosen
   int level_ = 0;
   int max_levels_ = 0;
   int iterations_ = 0;

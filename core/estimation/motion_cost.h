@@ -20,13 +20,13 @@ namespace rgbd_pose {
 // How matches become residual blocks of Ceres. All three describe the same
 // problem: equal cost, gradient and J^T J (tests/costs/assembly_test.cc).
 enum class Assembly {
-  kPerMatch,    // one analytic cost function and one loss a match: textbook
-  kAutodiff,    // the same with automatic differentiation: the oracle
+  kPerMatch,    // one analytic cost function and loss per match: textbook
+  kAutodiff,    // the same with automatic differentiation: for checks
   kCompressed,  // one block of 7 rows for all matches: fast, the default
 };
 
-// Who has to own the residual blocks of an assembly: the compressed block is
-// part of its cost and used again, the others are made for a problem.
+// Ownership of the residual blocks of an assembly: the compressed block is part
+// of its cost and reused; the others are created for each problem.
 constexpr ceres::Ownership BlockOwnership(Assembly assembly) {
   return assembly == Assembly::kCompressed ? ceres::DO_NOT_TAKE_OWNERSHIP
                                            : ceres::TAKE_OWNERSHIP;
@@ -40,131 +40,132 @@ struct NormalEquations {
   double cost = 0.0;                             // 1/2 sum rho
 };
 
-// What a cost may look at: the two frames of a pair and what is known of the
+// The data a cost may use: the two frames of a pair and prior knowledge of the
 // motion between them.
 struct FramePair {
   const Correspondences* matches = nullptr;  // null: none
-  const MotionPrior* prior = nullptr;        // null: nothing is known
+  const MotionPrior* prior = nullptr;        // null: no prior
   const FrameView* prev = nullptr;           // null: no images
-  const FrameView* cur = nullptr;            // likewise
-  // From a guess that is near only the finest levels need to be gone through;
-  // 0: all that costs have.
+  const FrameView* cur = nullptr;            // null: no images
+  // Number of finest levels to use, for a good guess; 0: all.
   int num_levels = 0;
 
   int threads = 1;  // for sums over many residuals; results do not depend on it
 };
 
-// When the solver has a cost decide again which residuals take part, and with
-// which weights, since both may depend on the motion. In order: what asks for
-// more comes later.
+// When the solver lets a cost choose its residuals and their weights again, as
+// both may depend on the motion. In order of increasing frequency.
 enum class AssociationPolicy {
   kOnce,       // at the guess
-  kWhenMoved,  // when the motion has changed a good deal since
+  kWhenMoved,  // when the motion has changed considerably since then
   kEveryStep,  // after every step
 };
 
-// All that the estimator sees of a cost: whitened residual blocks over whatever
-// two frames share (matches, pixels, surfaces) as a function of the motion
-// between them. One object is one cost bound to one pair at a time. Used as
+// The interface of a cost to the estimator: whitened residual blocks over any
+// data that two frames share (matches, pixels, surfaces) as a function of the
+// motion between them. One object is one cost bound to one pair at a time. Call
+// order:
 //
 //   Bind(pair), [SetLevel(level)], Associate(motion), then everything below.
 class MotionCost {
  public:
-  // The scale group of a cost whose sigmas are exact (a prior): see
-  // scale_group().
+  // The scale group of a cost with exact sigmas (a prior): see scale_group().
   static constexpr int kFixedScale = -1;
 
   virtual ~MotionCost() = default;
 
-  // As programs take it.
+  // As given to programs.
   virtual std::string_view name() const = 0;
 
-  // The number of residuals of a block: of a match, say, or a pixel.
+  // The number of residuals of a block, e.g. of a match or a pixel.
   virtual int num_residuals() const = 0;
 
-  // The number of independent measurements a block brings. Whitened residuals
-  // of right matches have a squared norm of about chi^2 of so many degrees.
+  // The number of independent measurements per block. The squared norm of the
+  // whitened residuals of an inlier approximately follows a chi^2 distribution
+  // with this number of degrees of freedom.
   virtual int degrees_of_freedom() const = 0;
 
-  // Whether the whitened residuals of right matches are independent, of unit
-  // variance, so that the Hessian gives the covariance; if not (a formulation
-  // that knows no directions, say) their scatter has to be measured.
+  // Whether the whitened residuals of inliers are independent with unit
+  // variance, so the Hessian gives the covariance. Otherwise (e.g. for a
+  // formulation without directions) their scatter is measured.
   virtual bool is_whitened() const = 0;
 
-  // Below which 99 % of the squared norms of right matches lie, for the k-th
-  // block. Asked of costs that are not whitened only: of others it is this
-  // quantile of chi^2.
+  // The limit below which 99 % of the squared norms of inliers lie, for the
+  // k-th block. Only called for costs that are not whitened: for others the
+  // limit is this quantile of chi^2.
   virtual double InlierLimit(int k) const { return ChiSquared99(degrees()[k]); }
 
-  // Costs of one group share the scale by which their sigmas are off, which is
+  // Costs of one group share the factor by which their sigmas are wrong. It is
   // estimated (EstimatorOptions::scale) or measured by the scatter of their
-  // residuals: gray levels and metres have scales of their own. kFixedScale:
-  // the sigmas hold, and the cost takes no part in either.
+  // residuals. Gray levels and metres have different scales. kFixedScale: the
+  // sigmas are exact, and the cost takes part in neither.
   virtual int scale_group() const { return 0; }
 
-  // The share of its information that a cost's blocks bring: below 1 where they
-  // are not independent of each other (neighbouring pixels, say). Multiplies
-  // the cost, and so the inverse of the covariance.
+  // The share of independent information in the blocks: below 1 if the blocks
+  // are not independent of each other (e.g. neighbouring pixels). Multiplies
+  // the cost and thus the inverse of the covariance.
   virtual double information_factor() const { return 1.0; }
 
-  // When Associate is to be called.
+  // When Associate has to be called.
   virtual AssociationPolicy association() const = 0;
 
-  // Coarse to fine: how many levels there are, and the one that is in force
-  // from the next Associate on; 0, the finest, after Bind.
+  // Coarse to fine: the number of levels, and the level to use from the next
+  // Associate on. After Bind it is 0, the finest.
   virtual int num_levels() const { return 1; }
   virtual void SetLevel(int /*level*/) {}
 
-  // Takes a pair in; keeps nothing of an earlier one but memory. Matches and
-  // prior need to stay for this call alone, images for as long as it is bound.
+  // Binds the cost to a pair; only memory is kept from an earlier pair. Matches
+  // and prior must exist during this call, images while it is bound.
   virtual void Bind(const FramePair& pair) = 0;
 
-  // Decides which residuals take part, and freezes their weights, at a motion.
+  // Chooses the residuals and freezes their weights at a motion.
   virtual void Associate(const Rigid3d& cur_from_prev) = 0;
 
-  // The same within a solve, for costs that are associated at every step: what
-  // has to be one number for a whole solve (a change of brightness, say) stays.
+  // The same within a solve, for costs that are associated at every step:
+  // values that must be constant in a solve (e.g. a brightness change) are
+  // kept.
   virtual void Reassociate(const Rigid3d& cur_from_prev) {
     Associate(cur_from_prev);
   }
 
-  // For each block its match's place within the Correspondences, increasing; -1
-  // for a block that belongs to no match (a pixel, a prior).
+  // The index of each block's match within the Correspondences, increasing; -1
+  // for a block without a match (a pixel, a prior).
   virtual const std::vector<int>& matches() const = 0;
 
-  // The number of independent measurements that each block brought:
-  // degrees_of_freedom(), or fewer where it lacks some; rows of those are zero.
+  // The number of independent measurements of each block: degrees_of_freedom(),
+  // or fewer if some are missing; rows of missing ones are zero.
   virtual const std::vector<int>& degrees() const = 0;
 
   // Whitened residuals, num_residuals() for each block.
   virtual void Residuals(const MotionDerivatives& motion,
                          std::vector<double>* residuals) const = 0;
 
-  // Squared norm of each block's whitened residual.
+  // Squared norm of the whitened residual of each block.
   virtual void SquaredNorms(const MotionDerivatives& motion,
                             std::vector<double>* squared_norms) const = 0;
 
-  // Adds this cost's share of the normal equations under a loss (null: none),
-  // weighted as Ceres' corrector does where rho'' <= 0: by rho'.
+  // Adds the contribution of this cost to the normal equations under a loss
+  // (null: none), weighted by rho', as Ceres' corrector does if rho'' <= 0.
   virtual void Linearise(const MotionDerivatives& motion,
                          const ceres::LossFunction* loss,
                          NormalEquations* sum) const = 0;
 
-  // Adds sum rho'^2 J^T r r^T J over blocks: with the Hessian, the covariance
-  // of an M-estimate whatever the residuals' true distribution (sandwich).
+  // Adds sum rho'^2 J^T r r^T J over blocks. Together with the Hessian it gives
+  // the (sandwich) covariance of an M-estimate for any true distribution of
+  // residuals.
   virtual void AddScoreOuterProduct(const MotionDerivatives& motion,
                                     const ceres::LossFunction* loss,
                                     MotionMatrix* scatter) const = 0;
 
-  // Adds what noise of the derivatives themselves (of an image, of a surface's
-  // slope) feigns to tell: the Hessian of rows that are nothing but this noise,
-  // in units of the estimated scale. Exact derivatives have none.
+  // Adds the spurious information caused by noise of the derivatives themselves
+  // (of an image, of a surface's slope): the Hessian of rows of pure noise, in
+  // units of the estimated scale. Exact derivatives have none.
   virtual void AddSpuriousInformation(const MotionDerivatives& /*motion*/,
                                       MotionMatrix* /*hessian*/) const {}
 
-  // Adds the blocks to a problem in the parameters x[6] that count from
-  // `origin`. The problem must own its cost functions as BlockOwnership says
-  // and no losses; origin, loss and this cost must outlive it, unchanged.
+  // Adds the blocks to a problem in the parameters x[6] relative to `origin`.
+  // The problem must own its cost functions according to BlockOwnership, and no
+  // losses. Origin, loss and this cost must outlive it, unchanged.
   virtual void AddTo(Assembly assembly, const LinearizationPoint& origin,
                      ceres::LossFunction* loss, double* x,
                      ceres::Problem* problem) = 0;

@@ -8,7 +8,7 @@
 
 namespace rgbd_pose {
 
-// How far an estimate can be believed.
+// Whether an estimate can be trusted.
 enum class EstimateStatus {
   kOk,
   kTooFewMatches,  // fewer than three usable matches
@@ -17,7 +17,7 @@ enum class EstimateStatus {
   kInconsistent,   // too few matches agree with one motion
 };
 
-// As programs print it.
+// The name printed by programs.
 inline const char* ToString(EstimateStatus status) {
   constexpr const char* kNames[] = {"ok", "too_few_matches", "degenerate",
                                     "not_converged", "inconsistent"};
@@ -26,18 +26,16 @@ inline const char* ToString(EstimateStatus status) {
 
 // The result of one motion estimation.
 struct MotionEstimate {
-  // Whether to believe the rest.
   EstimateStatus status = EstimateStatus::kTooFewMatches;
   std::string reason;  // in words; empty if ok
 
-  Rigid3d cur_from_prev;  // the guess, if the motion was not judged
+  Rigid3d cur_from_prev;  // the guess if the motion was not judged
 
   // Covariance of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a small
   // rotation about the axes of the current camera, R_true = Exp(omega) R; C (m)
   // is the centre of the current camera in the axes of the previous one. Zero
-  // where the motion was not judged: too few matches, degenerate, or no usable
-  // step; a solver that was stopped early has the covariance of where it
-  // stands.
+  // if the motion was not judged: too few matches, degenerate, or no usable
+  // step. If the solver stopped early, it is for the last motion.
   MotionMatrix covariance = MotionMatrix::Zero();
 
   // Per match, in the order of the Correspondences: robust weight in [0, 1]
@@ -46,25 +44,24 @@ struct MotionEstimate {
   std::vector<double> weights;
   std::vector<bool> is_inlier;
 
-  // Per match as well: norm of its whitened residual at this motion, in sigmas
-  // of the noise model, and how many independent measurements it holds: for
-  // right matches the norm follows a chi distribution of so many degrees. Of a
-  // match that several costs use, the largest norm. Both are 0 for matches that
-  // no cost could use, and all are where the motion was not judged.
+  // Also per match: the norm of its whitened residual at this motion, in sigmas
+  // of the noise model, and its number of independent measurements. For inliers
+  // the norm follows a chi distribution with this number of degrees of freedom.
+  // If several costs use a match, the largest norm counts. Both are 0 for
+  // matches that no cost could use, and for all if the motion was not judged.
   std::vector<double> residual_norms;
   std::vector<int> residual_degrees;
 
   int num_used = 0;     // matches that some cost could use
-  int num_inliers = 0;  // of these, in agreement
+  int num_inliers = 0;  // of these, matches that agree
 
   double sigma = 0.0;  // robust spread of the whitened residuals; ideally 1
-  double initial_cost = 0.0;  // robust cost at the guess, as the last stage
-                              // has it: at final loss widths, scale, weights
+  double initial_cost = 0.0;  // robust cost at the guess in the last stage: at
+                              // final loss widths, scale and weights
   double final_cost = 0.0;    // the same at the estimate
-  int iterations = 0;         // of the solver, all stages together
+  int iterations = 0;         // of the solver, in all stages
   double solve_ms = 0.0;      // time of the whole estimation
 
-  // Whether there is nothing to say against it.
   bool ok() const { return status == EstimateStatus::kOk; }
 };
 

@@ -5,16 +5,16 @@
 
 namespace rgbd_pose {
 
-// What is known of a motion apart from the two frames (wheels, an inertial
-// sensor, a motion model). A factor of the estimate, not where its solver
-// starts, and taken at its word: what the matches scatter by changes nothing
-// about it.
+// Knowledge of a motion from a source other than the two frames (wheels, an
+// inertial sensor, a motion model). It is a factor of the estimate, not the
+// starting point of the solver. Its covariance is taken as exact: the scatter
+// of the matches does not change it.
 struct MotionPrior {
   Rigid3d mean;  // cur_from_prev
 
-  // Inverse of the covariance of [omega (rad), C (m)], as MotionEstimate's. May
-  // be singular: an inertial sensor knows rotation alone. Zero, or anything
-  // that is no information matrix, means that nothing is known.
+  // Inverse of the covariance of [omega (rad), C (m)] as in MotionEstimate. May
+  // be singular: an inertial sensor measures rotation only. Zero, or an invalid
+  // information matrix, means that nothing is known.
   MotionMatrix information = MotionMatrix::Zero();
 };
 

@@ -11,18 +11,18 @@
 namespace rgbd_pose {
 namespace {
 
-// Fewer residuals say nothing about their spread.
+// Fewer residuals do not determine their spread.
 constexpr size_t kMinResidualsForScale = 10;
-// So many tell it to 2 %: of more (pixels), one block of every two, three, ...
-// is asked, by chance, since any step may keep time with something (the rows of
-// a block, the columns of an image).
+// This many determine it to 2 %. If there are more (pixels), one block out of
+// every two, three, ... is drawn at random, since a fixed step could coincide
+// with a pattern (the rows of a block, the columns of an image).
 constexpr size_t kMaxResidualsForScale = 2000;
 
-// What a scale may come to: a spread of zero (over half of the residuals
-// equal) or a huge one (over half of the matches wrong) has no use.
+// Limits of a scale: a spread of zero (over half of the residuals equal) or a
+// huge one (over half of the matches wrong) is useless.
 constexpr double kMinScale = 0.05;
 constexpr double kMaxScale = 20.0;
-// Scale and motion are estimated in turn until no scale moves by more.
+// Scale and motion are estimated alternately until no scale changes by more.
 constexpr double kScaleTolerance = 0.01;
 
 }  // namespace
@@ -173,7 +173,7 @@ double RobustProblem::EstimateScale(
   for (const RobustCost& term : costs_) {
     if (term.cost->scale_group() != group) continue;
     term.cost->Residuals(motion, &residuals_);
-    // Rows that repeat each other are smaller by the root of how often.
+    // Redundant rows are smaller by the root of their redundancy.
     const int rows = term.cost->num_residuals();
     const int degrees = term.cost->degrees_of_freedom();
     const double unit = std::sqrt(static_cast<double>(rows) / degrees);
@@ -183,7 +183,7 @@ double RobustProblem::EstimateScale(
     for (size_t k = 0; k < asked; ++k) {
       const size_t first = k * blocks / asked, end = (k + 1) * blocks / asked;
       const size_t i = first + random.Below(static_cast<uint32_t>(end - first));
-      // What a match did not measure leaves rows of zeros.
+      // Missing measurements of a match leave rows of zeros.
       if (term.cost->degrees()[i] < degrees) continue;
       for (int row = 0; row < rows; ++row) {
         values_.push_back(unit * residuals_[i * rows + row]);

@@ -10,19 +10,19 @@
 namespace rgbd_pose {
 namespace {
 
-// How much the orientation of the first pair counts against the spread of the
-// positions: enough to outweigh their rounding errors, too little to change a
-// rotation that they determine by more than about 1e-9 rad.
+// Weight of the first pair's orientation relative to the spread of the
+// positions: large enough to outweigh their rounding errors, too small to
+// change a rotation that they determine by more than about 1e-9 rad.
 constexpr double kShareOfSpread = 1e-9;
-constexpr double kLeastSpread = 1e-18;  // m^2 a pair: a spread of 1 nm
+constexpr double kLeastSpread = 1e-18;  // m^2 per pair: a spread of 1 nm
 
 constexpr double kMaxScaleError = 0.1;
 
-// A scale that explains less of the error than this is one of chance.
+// A scale that explains a smaller share of the error is due to chance.
 constexpr double kExplained = 0.5;
 
-// Paths that agree less than this, as a share of the true spread, are of
-// different motions; below this spread (m) noise is all there is to compare.
+// Paths whose residual exceeds this share of the true spread belong to
+// different motions. Below the minimum spread (m) there is only noise.
 constexpr double kMaxRest = 0.7;
 constexpr double kMinSpread = 0.05;
 
@@ -69,7 +69,7 @@ Sim3Alignment Compare(const std::vector<PosePair>& pairs,
     of_estimate += estimate.squaredNorm();
   }
   Sim3Alignment sim3;
-  // Of rounding errors alone there is no scale.
+  // Rounding errors alone do not determine a scale.
   if (of_estimate > kMinShare * of_truth && both > 0.0) {
     sim3.truth_per_estimate = both / of_estimate;
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kNone = -1;
 
-// An entry of either list, chained to what is left before and after it.
+// An entry of either list, linked to the remaining entries before and after it.
 struct Entry {
   double time;
   int index;  // in its own list
@@ -24,7 +24,7 @@ struct Entry {
   bool used = false;
 };
 
-// Both lists as one, in time order.
+// Merges both lists in time order.
 std::vector<Entry> MergeLists(const std::vector<double>& first,
                               const std::vector<double>& second) {
   std::vector<Entry> entries;
@@ -51,14 +51,14 @@ std::string TimeRange(const std::vector<double>& times) {
 
 }  // namespace
 
-// Whatever lies between the two entries of a pair is nearer to one of them, so
-// the nearest pair is always a pair of neighbours in time. Taking it out makes
-// the entries around it neighbours.
+// Any entry between the two entries of a pair is closer to one of them; hence
+// the closest pair always consists of neighbours in time. After removing it,
+// the entries around it are neighbours.
 std::vector<IndexPair> Associate(const std::vector<double>& first,
                                  const std::vector<double>& second,
                                  double max_difference) {
   std::vector<Entry> entries = MergeLists(first, second);
-  using Candidate = std::tuple<double, int, int>;  // difference, two places
+  using Candidate = std::tuple<double, int, int>;  // difference, two indices
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>>
       nearest_first;
   const auto add_candidate = [&](int left, int right) {

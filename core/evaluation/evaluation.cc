@@ -11,7 +11,7 @@
 namespace rgbd_pose {
 namespace {
 
-// The length (m) of the ground truth's path from the first pose to each.
+// The path length (m) of the ground truth from the first pose to each pose.
 std::vector<double> PathLengths(const std::vector<PosePair>& pairs) {
   std::vector<double> path = {0.0};
   for (size_t i = 1; i < pairs.size(); ++i) {
@@ -55,7 +55,7 @@ std::string EvaluationOptions::Check() const {
   if (!(max_time_difference >= 0.0)) {
     return "the largest time difference must not be negative";
   }
-  // An interval shorter than its tolerance could end where it starts.
+  // An interval shorter than its tolerance could end at its start.
   if (!(rpe_delta_seconds > max_time_difference)) {
     return "the interval of the relative error in seconds must be longer than "
            "the largest time difference";

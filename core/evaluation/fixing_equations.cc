@@ -17,11 +17,11 @@ constexpr double kShiftUnit = 0.02;                        // s
 constexpr double kRotationUnit = 2.0 * kRadiansPerDegree;  // rad
 constexpr double kLeverUnit = 0.05;                        // m
 
-// A direction is of time, rotation or lever if so much of its square is. One
-// of all three has a third in one of them at least.
+// A direction is named after time, rotation or lever if their share of its
+// squared norm exceeds this; the largest of three shares is at least a third.
 constexpr double kNamedShare = 0.3;
 
-// Axes that the directions have in three of the parameters.
+// Names the axes that the directions span in three of the parameters.
 void NameAxes(const Eigen::Matrix<double, 3, Eigen::Dynamic>& part,
               const std::string& name, const char* relation,
               std::vector<std::string>* names) {
@@ -46,19 +46,19 @@ using FixingJacobian = Eigen::Matrix<double, 6, 7>;
 using MotionResidual = Eigen::Matrix<double, 6, 1>;
 
 constexpr double kSigmaPerMedian = 1.4826;  // of absolute Gaussian errors
-constexpr double kMinTurnSigma = 1e-5;      // rad, and m: no camera is better
-constexpr double kMinPlaceSigma = 1e-5;
+constexpr double kMinTurnSigma = 1e-5;      // rad; no camera is better
+constexpr double kMinPlaceSigma = 1e-5;     // m
 
-// Tukey's width for the norm of six whitened differences, which is sqrt(6)
-// where they are Gaussian.
+// Tukey's width for the norm of six whitened differences, which is about
+// sqrt(6) for Gaussian ones.
 constexpr double kTukeyWidth = 7.0;
 
-// Correlations in time reach over so many motions, and so much of all.
+// Maximum reach of correlations, in motions and as a share of the duration.
 constexpr double kMaxReachMotions = 5.0;
 constexpr double kMaxReachShare = 0.1;
 
-// How the motion of a camera changes with the fixing from which it follows.
-// With another rotation of the body, its lever stays in the camera's axes.
+// Derivative of the camera's motion with respect to the fixing. If the rotation
+// of the body changes, its lever stays constant in the camera's axes.
 FixingJacobian MotionByFixing(const PoseChange& motion,
                               const Eigen::Vector3d& lever) {
   const Eigen::Matrix3d& R = motion.rotation;
@@ -152,7 +152,7 @@ FixingEquations::FixingEquations(const std::vector<ComparedMotion>& motions,
 
 FixingDirections FixingEquations::Determined(double limit, double min_agreement,
                                              FixingDirections* rest) const {
-  double overlapping = 0.0;  // motions that start within the time of one
+  double overlapping = 0.0;  // number of motions that start during one motion
   size_t end = 0;
   for (const Row& row : rows_) {
     while (end < rows_.size() && rows_[end].start < row.start + overlap_) ++end;
@@ -179,10 +179,10 @@ FixingDirections FixingEquations::Determined(double limit, double min_agreement,
   return directions.leftCols(determined);
 }
 
-// Correlations fade with time: Newey and West (Econometrica 55, 1987). They
-// have to reach further than a motion takes, since an error of the pose between
-// two motions has opposite signs in them, but not so far that few spans are
-// left.
+// Correlations decrease with time: Newey and West (Econometrica 55, 1987). They
+// must cover more than the duration of a motion, since an error of the pose
+// between two motions has opposite signs in them, but not so much that only few
+// independent spans are left.
 FixingMatrix FixingEquations::GradientCovariance() const {
   const double seconds = rows_.back().start - rows_.front().start;
   const double reach = std::clamp(kMaxReachShare * seconds, 2.0 * overlap_,

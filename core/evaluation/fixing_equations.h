@@ -9,35 +9,34 @@
 
 namespace rgbd_pose {
 
-// How the truth belongs to the estimate: what the clocks differ by, and how the
-// body that the truth follows is fixed to the camera.
+// Relation between truth and estimate: the difference of the clocks, and the
+// pose of the body that the truth tracks relative to the camera.
 struct TruthFixing {
-  // s: what the estimate has at t, the truth has at t + shift.
+  // s; time t of the estimate is time t + shift of the truth.
   double shift = 0.0;
 
-  // Its translation is the place of the body in the axes of the camera, m.
+  // Its translation is the position of the body in the axes of the camera, m.
   Rigid3d camera_from_body;
 };
 
-// As parameters, in the order [shift, rotation vector, lever], each in the unit
-// in which 1 is a great deal: 20 ms, 2 degrees, 5 cm. What is known no better
-// than that is not worth a correction.
+// The fixing as parameters, in the order [shift, rotation vector, lever], in
+// units in which 1 is a large value: 20 ms, 2 degrees, 5 cm. A parameter that
+// is not known better than that is not worth correcting.
 using FixingVector = Eigen::Matrix<double, 7, 1>;
 using FixingMatrix = Eigen::Matrix<double, 7, 7>;
 
 // The units, in s, rad and m.
 FixingVector FixingUnits();
 
-// What the parameters say, in s, rad and m.
+// Converts parameters to a fixing in s, rad and m.
 TruthFixing FixingAt(const FixingVector& x);
 
-// Names directions of the parameters, the columns of a matrix of orthonormal
-// ones: "time shift", "rotation about (0.00, 0.00, 1.00)", "lever", ...
+// Names directions of the parameters, given as orthonormal columns: "time
+// shift", "rotation about (0.00, 0.00, 1.00)", "lever", ...
 std::vector<std::string> NameFixingDirections(
     const Eigen::Matrix<double, 7, Eigen::Dynamic>& directions);
 
-// The same motion by the estimate and by the truth, as it is with some fixing
-// to the camera.
+// The same camera motion by the estimate and by the truth with some fixing.
 struct ComparedMotion {
   double start = 0.0;  // s
   PoseChange estimate;
@@ -48,34 +47,34 @@ struct ComparedMotion {
 // estimated and true motions, whitened by their own spread and robust (Tukey).
 class FixingEquations {
  public:
-  // `lever` (m) is that of the fixing. Motions are in time order and take
-  // `overlap` seconds, so that those that start within it are not independent.
+  // `lever` (m) is the lever of the fixing. Motions must be in time order and
+  // last `overlap` seconds: motions that overlap in time are not independent.
   FixingEquations(const std::vector<ComparedMotion>& motions,
                   const Eigen::Vector3d& lever, double overlap);
 
-  // Of the motions that count: those that are not far off.
+  // Number of motions that count, i.e. that are not far off.
   int used() const { return static_cast<int>(rows_.size()); }
 
   const FixingMatrix& hessian() const { return hessian_; }
 
-  // By which a small step towards the minimum is hessian^-1 gradient.
+  // Its sign: a small step towards the minimum is hessian^-1 gradient.
   const FixingVector& gradient() const { return gradient_; }
 
-  // The directions that the motions determine to better than `limit` (in units
-  // of FixingVector), as orthonormal columns, and, in `rest`, the others. Noise
-  // of either trajectory feigns motion, but not the same one: what counts is
-  // the motion that both have, and it has to be at least `min_agreement` (0 to
-  // 1, as a coefficient of correlation) of what they have one by one.
+  // Returns the directions that the motions determine to better than `limit`
+  // (in units of FixingVector) as orthonormal columns, and the others in
+  // `rest`. Noise of either trajectory looks like motion, but differs between
+  // the two. Only motion present in both counts, and it must be at least
+  // `min_agreement` (0 to 1, like a correlation) of the motion in each of them.
   Eigen::Matrix<double, 7, Eigen::Dynamic> Determined(
       double limit, double min_agreement,
       Eigen::Matrix<double, 7, Eigen::Dynamic>* rest) const;
 
-  // The covariance that the differences themselves show: they are correlated
-  // over time, and are not as large as each other.
+  // The covariance according to the differences themselves, which are
+  // correlated over time and vary in size.
   FixingMatrix GradientCovariance() const;
 
  private:
-  // A motion's share of the gradient.
+  // A motion's contribution to the gradient.
   struct Row {
     double start;
     FixingVector gradient;
@@ -84,8 +83,8 @@ class FixingEquations {
   std::vector<Row> rows_;
   double overlap_;  // s
   FixingMatrix hessian_ = FixingMatrix::Zero();
-  FixingMatrix by_estimate_ = FixingMatrix::Zero();  // hessian by the estimate
-  FixingMatrix agreed_ = FixingMatrix::Zero();       // by both, of either one
+  FixingMatrix by_estimate_ = FixingMatrix::Zero();  // J_estimate^T J_estimate
+  FixingMatrix agreed_ = FixingMatrix::Zero();       // J_truth^T J_estimate
   FixingVector gradient_ = FixingVector::Zero();
 };
 

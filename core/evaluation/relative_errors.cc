@@ -55,7 +55,7 @@ std::vector<PoseInterval> TimeIntervals(const std::vector<double>& times,
 
 std::vector<PoseInterval> PathIntervals(const std::vector<double>& path,
                                         double delta) {
-  // Ten steps of 0.1 m make 1 m, whatever rounding says.
+  // Ten steps of 0.1 m count as 1 m despite rounding.
   constexpr double kRounding = 1e-9;
   std::vector<PoseInterval> intervals;
   size_t j = 0;

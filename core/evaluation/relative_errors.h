@@ -14,10 +14,10 @@ struct ErrorStatistics {
   int count = 0;
   double rmse = 0.0;
   double mean = 0.0;
-  double median = 0.0;  // of an even number, the mean of the two in the middle
+  double median = 0.0;  // mean of the two middle values if count is even
   double max = 0.0;
-  double p90 = 0.0;  // what 90 % of them stay below
-  double p99 = 0.0;  // and 99 %
+  double p90 = 0.0;  // 90 % of the errors are below it
+  double p99 = 0.0;  // 99 % of the errors are below it
 };
 
 // In the unit of the errors.
@@ -30,26 +30,25 @@ struct RelativePoseError {
   ErrorStatistics rotation;     // angle of E, rad
 };
 
-// From the place of one pose in a list to that of a later one.
+// Index of a pose in a list and of a later one.
 using PoseInterval = std::pair<size_t, size_t>;
 
 // E of RelativePoseError.
 Rigid3d RelativeError(const PosePair& i, const PosePair& j);
 
-// Those from every pose to the one so many, at least 1, after it.
+// Intervals from every pose to the one `frames` (at least 1) after it.
 std::vector<PoseInterval> FrameIntervals(size_t poses, size_t frames);
 
-// Those from every pose to the one nearest to `delta` (s) after it, if that is
-// off by at most `max_difference` (s). `times` (s) are sorted.
+// Intervals from every pose to the one nearest to `delta` (s) later, if its
+// time is off by at most `max_difference` (s). `times` (s) must be sorted.
 std::vector<PoseInterval> TimeIntervals(const std::vector<double>& times,
                                         double delta, double max_difference);
 
-// Those from every pose to the first that is `delta` (m) or more further on.
-// `path`: of every pose, the length (m) of the path that leads to it.
+// Intervals from every pose to the first that is `delta` (m) or more further
+// along. `path` is the length (m) of the path to each pose.
 std::vector<PoseInterval> PathIntervals(const std::vector<double>& path,
                                         double delta);
 
-// Errors over these intervals.
 RelativePoseError SummariseIntervals(
     const std::vector<PosePair>& pairs,
     const std::vector<PoseInterval>& intervals);

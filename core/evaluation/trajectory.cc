@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::array<std::string_view, 8> kColumns = {
     "timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
-constexpr double kMaxQuaternionError = 0.01;  // of its length, from 1
+constexpr double kMaxQuaternionError = 0.01;  // deviation of its length from 1
 constexpr double kMaxCoordinate = 1e9;        // m; squares stay finite
 constexpr int kTimeDecimals = 6;
 constexpr int kPoseDecimals = 9;
@@ -51,7 +51,7 @@ Trajectory ReadTrajectory(const std::string& path,
                           std::vector<std::string>* remarks) {
   Trajectory trajectory;
   int doubled = 0;
-  int first_line = 0;  // of them
+  int first_line = 0;  // line number of the first duplicate
   for (const TextLine& line : ReadTextTable(path)) {
     const StampedPose pose = ParsePose(line, path);
     if (!trajectory.empty() && pose.timestamp == trajectory.back().timestamp) {

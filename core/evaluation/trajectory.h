@@ -7,26 +7,25 @@
 
 namespace rgbd_pose {
 
-// One pose of a trajectory. The time stamp is in seconds.
 struct StampedPose {
   double timestamp = 0.0;  // s
   Rigid3d world_from_cam;  // m
 };
 
-// Poses with strictly increasing time stamps.
+// Poses with strictly increasing timestamps.
 using Trajectory = std::vector<StampedPose>;
 
-// Reads TUM text, `timestamp tx ty tz qx qy qz qw` a line (world from camera,
-// metres), '#' comments and empty lines skipped, CRLF and a byte order mark
-// taken. Quaternions within 1 % of unit length are normalised. Of poses of the
-// same time stamp the first is taken, and a line for users is added to
-// `remarks` unless that is null. Throws InputError (file:line) for anything
-// else: missing columns, words that are no numbers, NaN, time stamps out of
-// order, an empty list.
+// Reads TUM text with one `timestamp tx ty tz qx qy qz qw` per line (world from
+// camera, metres). '#' comments and empty lines are skipped; CRLF and a byte
+// order mark are accepted. Quaternions within 1 % of unit length are
+// normalised. If poses have the same timestamp, the first is kept, and a line
+// for users is added to `remarks` unless that is null. Throws InputError
+// (file:line) for anything else: missing columns, invalid numbers, NaN,
+// timestamps out of order, an empty list.
 Trajectory ReadTrajectory(const std::string& path,
                           std::vector<std::string>* remarks = nullptr);
 
-// The same as TUM text: 6 decimals in time stamps, 9 in poses.
+// Formats a trajectory as TUM text: timestamps with 6 decimals, poses with 9.
 std::string FormatTrajectory(const Trajectory& trajectory);
 
 }  // namespace rgbd_pose

@@ -19,25 +19,25 @@
 namespace rgbd_pose {
 namespace {
 
-// An estimate and the truth, interpolated, with any clock and fixing. Both
-// trajectories have to outlive it.
+// Compares an estimate with the interpolated truth under any clock shift and
+// fixing. Both trajectories must outlive it.
 class TruthComparison {
  public:
-  // What the compared motions take: long enough for motion to outweigh noise,
+  // Duration of the compared motions: long enough for motion to outweigh noise,
   // short enough for drift not to count.
   static constexpr double kMotionSeconds = 0.2;
 
   TruthComparison(const Trajectory& estimate, const Trajectory& ground_truth);
 
-  // Motions of the estimate that the truth has, too, in time order; of very
-  // many, some.
+  // Motions of the estimate for which the truth is known, in time order; a
+  // subset if there are too many.
   std::vector<ComparedMotion> Motions(const TruthFixing& fixing) const;
 
-  // Poses of the estimate and those that the camera had by the truth.
+  // Poses of the estimate and of the camera according to the truth.
   std::vector<PosePair> Pairs(const TruthFixing& fixing) const;
 
  private:
-  // Of the camera, at the times of the estimate.
+  // Poses of the camera according to the truth, at the times of the estimate.
   std::vector<std::optional<Rigid3d>> Truth(const TruthFixing& fixing) const;
 
   const Trajectory& estimate_;
@@ -102,25 +102,25 @@ using FixingColumns = Eigen::Matrix<double, 7, Eigen::Dynamic>;
 constexpr int kMinMotions = 30;
 
 constexpr double kMaxShift = 0.5;       // s
-constexpr double kMaxShiftStep = 0.05;  // s; a hand's motion changes that fast
+constexpr double kMaxShiftStep = 0.05;  // s; hand motion changes this fast
 
-// While the fixing is far off, so are the motions, and seem to tell little: in
-// the first of these rounds that is enough. After the open ones, what is
-// determined stays so.
+// While the fixing is far off, the motions seem to contain little information.
+// The first rounds therefore use kFirstLimit and no minimum agreement. After
+// the open rounds the determined directions are frozen.
 constexpr int kRounds = 40;
 constexpr int kOpenRounds = 20;
 constexpr int kFirstRounds = 10;
 constexpr double kFirstLimit = 10.0;  // of FixingUnits
 
-// Noise alone correlates by about 0.2 in ten seconds.
+// Noise alone has a correlation of about 0.2 in ten seconds.
 constexpr double kMinAgreement = 0.5;
 constexpr double kConverged = 1e-4;  // of FixingUnits
 
-// A parameter of which more than this share is not determined is not itself.
+// A parameter counts as open if more than this share of it is undetermined.
 constexpr double kMaxOpenShare = 0.1;
 
-// The standard deviations that `directions` have, in FixingUnits; infinite for
-// what `rest` has a share of.
+// The standard deviations along `directions`, in FixingUnits; infinite for
+// parameters with a share in `rest`.
 FixingVector SigmaOf(const FixingEquations& equations,
                      const FixingColumns& directions,
                      const FixingColumns& rest) {
@@ -141,8 +141,8 @@ FixingVector SigmaOf(const FixingEquations& equations,
   return sigma;
 }
 
-// Gauss-Newton within the directions that are determined: nothing but zero in
-// the others. Counts motions; returns why it has failed, or nothing.
+// Gauss-Newton within the determined directions; the parameters are zero in the
+// others. Counts motions. Returns the reason of a failure, or empty.
 std::string FindFixing(const TruthComparison& comparison,
                        TruthAlignment* result) {
   FixingVector x = FixingVector::Zero();

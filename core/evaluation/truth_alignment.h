@@ -9,30 +9,30 @@
 
 namespace rgbd_pose {
 
-// Two clocks need not agree, and what a motion capture system follows is not
-// the camera but markers, whose fixing to it is known to a degree or so. This
-// is the clock and the fixing at which an estimate and the truth agree best,
-// found from motions of 0.2 s, and the errors that are left there. Part of an
-// error of the estimate that looks like one of these is taken away, too: the
-// plain errors stay the ones to be shown first.
+// The clocks may differ, and a motion capture system tracks markers, not the
+// camera; the pose of the markers relative to the camera is only known to about
+// a degree. This is the clock shift and fixing at which estimate and truth
+// agree best, found from motions of 0.2 s, and the remaining errors. Errors of
+// the estimate that look like one of these effects are removed, too; therefore
+// the plain errors should be shown first.
 struct TruthAlignment {
-  // Why there is none, one line; empty: there is one.
+  // Why the alignment is missing, as one line; empty if it exists.
   std::string skipped;
 
-  int motions = 0;     // that it was found from
+  int motions = 0;     // number of motions used
   TruthFixing fixing;  // 0 in directions that the motion does not determine
 
   // Standard deviations of shift (s), rotation (rad) and lever (m; both about
-  // and along the camera's axes), with motions' correlations over time taken
-  // into account; infinite where the motion does not determine one.
+  // and along the camera's axes), including the motions' correlations over
+  // time; infinite for parameters that the motion does not determine.
   FixingVector sigma = FixingVector::Zero();
 
-  // Names of what the motion does not determine to 20 ms, 2 degrees and 5 cm,
-  // or on which estimate and truth have too little in common.
+  // Names of parameters that the motion does not determine to 20 ms, 2 degrees
+  // and 5 cm, or for which estimate and truth have too little in common.
   std::vector<std::string> undetermined;
 
-  // Errors with the truth interpolated there, over as many poses as `ate`
-  // counts: distances (m) after a rigid alignment, and of motions that take
+  // Errors with the truth interpolated at the aligned times, over ate.count
+  // poses: distances (m) after a rigid alignment, and relative errors over
   // rpe_delta_seconds.
   ErrorStatistics ate;
   RelativePoseError rpe_seconds;

@@ -15,7 +15,7 @@ using Eigen::Vector2d;
 
 constexpr int kMaxIterations = 100;
 constexpr double kTolerance = 1e-13;  // well below 1e-10 px for f < 1000
-// What is left is of pixels that have no place.
+// Pixels with a larger remaining error have no undistorted position.
 constexpr double kLargestError = 1e-8;
 
 // Applies the distortion to a point on the plane z = 1.
@@ -25,8 +25,8 @@ Vector2d Distort(const Lens<double>& lens, const Vector2d& point) {
   return distorted;
 }
 
-// The inverse of Distort, or something else where there is none. Divides by the
-// radial factor instead of subtracting the shift, since that contracts faster
+// The inverse of Distort; the result is arbitrary if there is none. Divides by
+// the radial factor instead of subtracting the shift, which contracts faster
 // for large k1.
 Vector2d InvertRational(const Lens<double>& lens, const Vector2d& distorted) {
   Vector2d point = distorted;
@@ -47,7 +47,7 @@ Vector2d InvertRational(const Lens<double>& lens, const Vector2d& distorted) {
   return point;
 }
 
-// The same of an equidistant lens: Newton's method for the angle.
+// The same for an equidistant lens: Newton's method for the angle.
 Vector2d InvertEquidistant(const Lens<double>& lens,
                            const Vector2d& distorted) {
   const double wanted = distorted.norm();
@@ -66,12 +66,12 @@ Vector2d InvertEquidistant(const Lens<double>& lens,
     t += change;
     if (!(std::abs(change) > kTolerance)) break;
   }
-  // tan folds what is beyond 90 degrees back.
+  // tan would map angles beyond 90 degrees to valid positions.
   if (!(t > 0.0 && t < 0.5 * M_PI)) t = std::nan("");
   return distorted * (std::tan(t) / wanted);
 }
 
-// Of the larger side of the image: views of 157 and of 0.6 degrees.
+// Relative to the larger image side: views of 157 and of 0.6 degrees.
 constexpr double kMinFocal = 0.1;
 constexpr double kMaxFocal = 100.0;
 
@@ -80,14 +80,14 @@ struct Preset {
   RgbdCamera camera;
 };
 
-// TUM RGB-D benchmark, "intrinsic camera calibration" table. The per-camera
-// depth factors are already applied in the released images.
+// TUM RGB-D benchmark, "intrinsic camera calibration" table. The depth factors
+// of each camera are already applied in the released images.
 constexpr double kTumDepthScale = 5000.0;
 
-// Both sensors of a Kinect and of an Xtion are read row by row, in some 28 ms
-// (Kerl et al., ICCV 2015). How early depth is depends on the recording's
-// driver: 15 to 20 ms on freiburg1, 0 to 5 on freiburg3, not known of
-// freiburg2.
+// Both sensors of a Kinect and of an Xtion are read row by row in about 28 ms
+// (Kerl et al., ICCV 2015). How much earlier depth is exposed than colour
+// depends on the driver of the recording: 15 to 20 ms for freiburg1, 0 to 5 ms
+// for freiburg3, unknown for freiburg2.
 constexpr Shutter kTumColor = {-0.0075, 0.028, true};
 constexpr double kTumDepthReadout = 0.027;
 const std::array<Preset, 4> kPresets = {{

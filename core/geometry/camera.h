@@ -13,11 +13,11 @@
 
 namespace rgbd_pose {
 
-// A pinhole camera with a lens (core/geometry/lens.h has the equations).
+// A pinhole camera with lens distortion (equations in core/geometry/lens.h).
 // Optical axes: x right, y down, z forward. Pixel (0, 0) is the centre of the
-// upper left pixel. Lengths in pixels.
+// upper left pixel. Lengths are in pixels.
 struct Camera {
-  // Size of the image.
+  // Image size.
   int width = 640;
   int height = 480;
 
@@ -27,7 +27,7 @@ struct Camera {
   double cx = 319.5;
   double cy = 239.5;
 
-  // Distortion: radial k, tangential p; of an equidistant lens k1 to k4.
+  // Distortion: radial k, tangential p. An equidistant lens uses k1 to k4.
   double k1 = 0.0;
   double k2 = 0.0;
   double p1 = 0.0;
@@ -37,51 +37,50 @@ struct Camera {
   double k5 = 0.0;
   double k6 = 0.0;
 
-  // What the coefficients mean.
+  // The model that the coefficients belong to.
   LensModel lens_model = LensModel::kRational;
 
   // One line that says what is wrong with the parameters, or empty.
   std::string Check() const;
 
   // One line that says what is unusual for an RGB-D camera, or empty: fx and fy
-  // that differ by 5 %, a principal point that is a tenth of the image off its
-  // middle. Both can be meant; more often numbers were exchanged or are those
-  // of another size of image.
+  // that differ by more than 5 %, or a principal point off the image centre by
+  // more than a tenth of the image size. Both can be intended, but usually
+  // numbers were swapped or belong to another image size.
   std::string SanityWarning() const;
 
-  // What the lens does, for coefficients of that type.
+  // The distortion functions, with coefficients of type S.
   template <typename S = double>
   Lens<S> MakeLens() const;
 
-  // Whether the lens does anything: an equidistant one does without
-  // coefficients, too.
+  // Whether the lens distorts; an equidistant lens always does.
   bool HasDistortion() const;
 
-  // The coefficients in the order of OpenCV and ROS: k1 k2 p1 p2 k3, and k4 k5
-  // k6 where one of them is not 0; of an equidistant lens k1 k2 k3 k4.
+  // The coefficients in the order of OpenCV and ROS: k1 k2 p1 p2 k3, followed
+  // by k4 k5 k6 if one of these is not 0; k1 k2 k3 k4 for an equidistant lens.
   std::vector<double> Distortion() const;
 
-  // Takes 4, 5 or 8 of them, or more where those are 0; of an equidistant lens
-  // 4. False, and nothing has changed, for another number.
+  // Takes 4, 5 or 8 coefficients, or more if those after the eighth are 0; 4
+  // for an equidistant lens. Otherwise returns false and changes nothing.
   bool SetDistortion(LensModel model, const std::vector<double>& coefficients);
 
   // Image point (distorted px) of a point in camera axes; z must be > 0.
   Eigen::Vector2d Project(const Eigen::Vector3d& point) const;
 
-  // How the image point of a place on the plane z = 1 moves with that place,
+  // Derivative of the image point with respect to `place` on the plane z = 1,
   // px.
   Eigen::Matrix2d ProjectDerivative(const Eigen::Vector2d& place) const;
 
-  // Ideal pixel (the same fx, fy, cx, cy, no distortion) of an image pixel, to
-  // 1e-10 px. NaN where there is none: beyond 90 degrees, or where the lens'
-  // polynomial turns back.
+  // Ideal pixel (same fx, fy, cx, cy, no distortion) of an image pixel, to
+  // 1e-10 px. NaN if there is none: beyond 90 degrees, or where the lens
+  // polynomial is not invertible.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
 
   // Undistorts many image points at once, in place.
   void UndistortPoints(std::vector<Eigen::Vector2d>* pixels) const;
 
-  // The ray (a, b, 1) in camera axes of an ideal pixel: its point is depth
-  // times as far.
+  // The ray (a, b, 1) of an ideal pixel in camera axes. Multiplied by the
+  // depth, it gives the point.
   Eigen::Vector3d Ray(double u, double v) const {
     return {(u - cx) / fx, (v - cy) / fy, 1.0};
   }
@@ -89,7 +88,7 @@ struct Camera {
   // Point in camera axes (m) of an image pixel (distorted) at a depth z (m).
   Eigen::Vector3d Unproject(const Eigen::Vector2d& pixel, double depth) const;
 
-  // Whether an image point is in the image, so far from its border.
+  // Whether a point is in the image and at least `border_px` from its border.
   bool Contains(const Eigen::Vector2d& pixel, double border_px = 0.0) const {
     return pixel.x() >= border_px && pixel.y() >= border_px &&
            pixel.x() <= width - 1 - border_px &&
@@ -97,13 +96,13 @@ struct Camera {
   }
 };
 
-// A number of a camera by its name: all but the size of the image.
+// A camera parameter with its name: all except the image size.
 struct CameraParameter {
   const char* name;       // as in Camera
-  double Camera::*value;  // where it is
+  double Camera::*value;  // member of Camera
 };
 
-// In the order in which Camera has them.
+// In the order of the members of Camera.
 inline constexpr std::array<CameraParameter, 12> kCameraParameters = {
     {{"fx", &Camera::fx},
      {"fy", &Camera::fy},
@@ -118,8 +117,8 @@ inline constexpr std::array<CameraParameter, 12> kCameraParameters = {
      {"k5", &Camera::k5},
      {"k6", &Camera::k6}}};
 
-// Those of them that every file of a camera has; the others where they are not
-// 0.
+// The number of parameters in every camera file, from the first one on. The
+// others are written only if they are not 0.
 inline constexpr size_t kNumUsualParameters = 9;
 
 template <typename S>
@@ -144,42 +143,40 @@ Lens<S> Camera::MakeLens() const {
   return lens;
 }
 
-// What is wrong with the depth images of a camera, to be undone as they are
+// Errors of a camera's depth images. They are corrected when the images are
 // read (frontend/sources/frame_assembly.h).
 struct DepthCorrection {
   // 1 / z = 1 / measured z + this, 1/m.
   double inverse_depth_offset = 0.0;
 
-  // Where the depth image, as it was registered to colour, has a point X of the
-  // axes of colour: this * X.
+  // Maps a point X in the axes of the colour camera to its position according
+  // to the depth image as registered to colour.
   Rigid3d depth_from_color = {};
 };
 
-// A camera together with how its depth images count, and when both images are
-// taken.
+// A camera with the unit and errors of its depth images and exposure times.
 struct RgbdCamera {
   Camera camera;                // of the colour image
   double depth_scale = 5000.0;  // raw units of the depth image per metre
-  DepthCorrection depth_correction = {};  // what sources undo as they read
-  Shutter color_shutter = {};             // from the stamp of colour
-  Shutter depth_shutter = {};             // from the stamp of depth
+  DepthCorrection depth_correction = {};  // corrected by sources
+  Shutter color_shutter = {};             // relative to the colour timestamp
+  Shutter depth_shutter = {};             // relative to the depth timestamp
 };
 
-// A camera known by name: tum_fr1, tum_fr2, tum_fr3, ros_default. Figures from
-// the TUM RGB-D benchmark's calibration page. Empty if the name is unknown.
+// A camera by name: tum_fr1, tum_fr2, tum_fr3, ros_default. Values from the
+// calibration page of the TUM RGB-D benchmark. Empty if the name is unknown.
 std::optional<RgbdCamera> CameraPreset(std::string_view name);
 
 // The names that CameraPreset knows.
 std::vector<std::string> CameraPresetNames();
 
-// A number of a camera's shutters by its name.
+// A parameter of the camera's shutters with its name.
 struct ShutterParameter {
-  const char* name;            // as camera files have it
-  Shutter RgbdCamera::*image;  // whose it is
-  double Shutter::*value;      // where it is
-  double most;                 // no camera has more, either way, s
+  const char* name;            // as in camera files
+  Shutter RgbdCamera::*image;  // the shutter
+  double Shutter::*value;      // member of Shutter
+  double most;                 // limit of the absolute value for any camera, s
 };
-// All of them.
 inline constexpr std::array<ShutterParameter, 4> kShutterParameters = {
     {{"color_time_offset", &RgbdCamera::color_shutter, &Shutter::offset, 0.5},
      {"color_readout", &RgbdCamera::color_shutter, &Shutter::readout, 0.1},

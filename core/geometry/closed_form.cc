@@ -9,8 +9,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Noise of one sigma feigns a stiffness of about 1 a pair. So points have to
-// lie some three sigmas off a line to tell the rotation about it.
+// Noise of one sigma alone produces a stiffness of about 1 per pair. Points
+// about three sigmas off a line are needed to determine the rotation about it.
 constexpr double kMinStiffnessPerPair = 10.0;
 
 }  // namespace
@@ -32,7 +32,7 @@ void PairMoments::Add(const Vector3d& target, const Vector3d& source,
 
 NearestRotation::NearestRotation(const Matrix3d& m)
     : rotation(Matrix3d::Identity()), stiffness(0.0) {
-  if (!m.allFinite()) return;  // of which the SVD would leave its results unset
+  if (!m.allFinite()) return;  // the SVD would leave its results unset
   const Eigen::JacobiSVD<Matrix3d> svd(
       m, Eigen::ComputeFullU | Eigen::ComputeFullV);
   const double sign =
@@ -45,7 +45,7 @@ NearestRotation::NearestRotation(const Matrix3d& m)
 std::optional<Rigid3d> UmeyamaAlignment(const PairMoments& moments) {
   if (moments.count < 3) return std::nullopt;
   const NearestRotation nearest(moments.covariance);
-  // Written so that what is not a number, as of sums that overflow, fails too.
+  // Written to reject NaN as well, which results from sums that overflow.
   if (!(nearest.stiffness > kMinStiffnessPerPair * moments.count)) {
     return std::nullopt;
   }

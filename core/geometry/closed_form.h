@@ -7,8 +7,8 @@
 
 namespace rgbd_pose {
 
-// Weighted sums over pairs of points, kept up to date pair by pair without loss
-// of digits far from the origin (West, Communications of the ACM 22, 1979).
+// Weighted sums over pairs of points, updated pair by pair without loss of
+// precision far from the origin (West, Communications of the ACM 22, 1979).
 struct PairMoments {
   int count = 0;
   double weight = 0.0;
@@ -25,14 +25,14 @@ struct PairMoments {
            double pair_weight = 1.0);
 };
 
-// The rotation R (never a reflection) that maximises trace(R^T m). Of an m that
-// is not finite: the identity, of stiffness 0.
+// The rotation R (never a reflection) that maximises trace(R^T m). If m is not
+// finite: the identity with stiffness 0.
 struct NearestRotation {
   explicit NearestRotation(const Eigen::Matrix3d& m);
 
   Eigen::Matrix3d rotation;
-  // How much R is determined: the trace falls by stiffness / 2 * angle^2 for
-  // small further rotations about the axis that matters least.
+  // How well R is determined: a small further rotation about the least
+  // determined axis reduces the trace by stiffness / 2 * angle^2.
   double stiffness;
 };
 
@@ -41,9 +41,8 @@ struct NearestRotation {
 // (Horn 1987; Umeyama 1991). Weights are inverse variances of one component of
 // that difference (1 / m^2).
 //
-// Nothing if the motion is not determined: fewer than three pairs, points on
-// one spot or line, or so near to one that noise alone could be what turns
-// them.
+// Empty if the motion is not determined: fewer than three pairs, or points on
+// one spot or line, or so close to one that noise alone could determine it.
 std::optional<Rigid3d> UmeyamaAlignment(const PairMoments& moments);
 
 }  // namespace rgbd_pose

@@ -14,7 +14,7 @@ std::string DepthNoiseModel::Check() const {
   if (!(mean_share > 0.0 && mean_share <= 1.0)) {
     return "mean_share must be above 0 and at most 1";
   }
-  // Depths are above 0.
+  // Only depths above 0 count.
   const bool is_somewhere_certain =
       constant == 0.0 && (quadratic == 0.0 || centre > 0.0);
   return is_somewhere_certain ? "no depth may be certain: sigma(z) = constant "

@@ -6,21 +6,21 @@
 
 namespace rgbd_pose {
 
-// How uncertain one measured depth is: its standard deviation is
+// Noise of one measured depth. Its standard deviation is
 //
 //   sigma(z) = constant + quadratic (z - centre)^2
 //
-// Of a structured-light or stereo camera the quadratic part is the larger one:
-// an error of disparity is one of inverse depth.
+// For a structured-light or stereo camera the quadratic part dominates: an
+// error of disparity is an error of inverse depth.
 struct DepthNoiseModel {
-  std::string name;        // as programs take it: of the table, or a file's
+  std::string name;        // as given to programs: of the table, or of a file
   double constant = 0.0;   // m
   double quadratic = 0.0;  // 1/m
   double centre = 0.0;     // m
 
-  // The standard deviation of the mean of 3 x 3 neighbours, as a share of one
-  // pixel's: 1/3 if they err independently, 1 if they err alike, as it is taken
-  // to be where nothing is known.
+  // Standard deviation of the mean of 3 x 3 neighbours, relative to the one of
+  // a single pixel: 1/3 if their errors are independent, 1 if they are equal. 1
+  // is assumed where nothing is known.
   double mean_share = 1.0;
 
   // The standard deviation (m) at a depth (m).
@@ -29,8 +29,8 @@ struct DepthNoiseModel {
     return constant + quadratic * beyond * beyond;
   }
 
-  // One line that says what is wrong with the numbers, or empty. Those of a
-  // model that nobody has filled in are wrong: no depth is certain.
+  // One line that says what is wrong with the numbers, or empty. The default
+  // values are invalid: sigma must be above 0 at every depth.
   std::string Check() const;
 };
 
@@ -38,13 +38,12 @@ struct DepthNoiseModel {
 //   khoshelham  1.425e-3 z^2, Kinect v1 (Khoshelham & Elberink 2012)
 //   nguyen      0.0012 + 0.0019 (z - 0.4)^2, Kinect v1, head on (Nguyen, Izadi
 //               & Lovell 2012)
-//   constant    5 mm, for sensors nothing is known of
+//   constant    5 mm, for unknown sensors
 const std::vector<DepthNoiseModel>& DepthNoiseModels();
 
-// The model of that name, or null.
+// The model with this name, or null.
 const DepthNoiseModel* FindDepthNoiseModel(std::string_view name);
 
-// The names of all models.
 std::vector<std::string> DepthNoiseModelNames();
 
 }  // namespace rgbd_pose

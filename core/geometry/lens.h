@@ -4,21 +4,21 @@
 
 namespace rgbd_pose {
 
-// How coefficients are meant, by the names that ROS has for them.
+// Meaning of the coefficients, with the names used by ROS.
 enum class LensModel {
-  kRational,     // plumb_bob, and rational_polynomial, which has k4 k5 k6, too
+  kRational,     // plumb_bob, and rational_polynomial, which adds k4 k5 k6
   kEquidistant,  // fisheye: k1 k2 k3 k4 (Kannala & Brandt, PAMI 2006)
 };
 
-// Normalised image coordinates (x / z, y / z) with the lens' distortion, and
-// how they change with those without.
+// Distorted normalised image coordinates (x / z, y / z) and their derivatives
+// with respect to the undistorted ones.
 template <typename D>
 struct DistortedPoint {
   D x, y;
   D x_x, x_y, y_y;  // dx / dx, dx / dy = dy / dx, dy / dy
 };
 
-// What a lens does to normalised image coordinates,
+// Distortion of normalised image coordinates,
 //
 //   x' = x f + 2 p1 x y + p2 (r^2 + 2 x^2)     r^2 = x^2 + y^2
 //   y' = y f + p1 (r^2 + 2 y^2) + 2 p2 x y
@@ -26,11 +26,11 @@ struct DistortedPoint {
 //                    (1 + k4 r^2 + k5 r^4 + k6 r^6)
 //   equidistant: f = t (1 + k1 t^2 + k2 t^4 + k3 t^6 + k4 t^8) / r, t = atan r
 //
-// as OpenCV has it. S: of the coefficients, double, float or ceres::Jet; what
-// is distorted may be vectors of them (one lane a point) or arrays.
+// as in OpenCV. S is the type of the coefficients: double, float or ceres::Jet.
+// The coordinates may be vectors (one lane per point) or arrays of S.
 template <typename S>
 struct Lens {
-  // Which of the factors has to be computed.
+  // Which radial factor has to be computed.
   enum class Factor { kNone, kPolynomial, kRational, kEquidistant };
 
   Factor factor = Factor::kNone;
@@ -57,7 +57,7 @@ struct Lens {
     }
   }
 
-  // df / d(r^2), where f is what Radial says.
+  // df / d(r^2); f is the result of Radial.
   template <typename D>
   [[gnu::always_inline]] inline void RadialSlope(const D& r2, const D& f,
                                                  D* slope) const {
@@ -83,7 +83,7 @@ struct Lens {
     }
   }
 
-  // df / dk1 .. dk4: the fourth is of an equidistant lens.
+  // df / dk1 .. dk4. The fourth applies to an equidistant lens only.
   template <typename D>
   [[gnu::always_inline]] inline void RadialByCoefficients(const D& r2,
                                                           D (&by)[4]) const {
@@ -100,7 +100,7 @@ struct Lens {
     for (int k = 1; k < 4; ++k) by[k] = by[k - 1] * step;
   }
 
-  // The place alone.
+  // The distorted coordinates only.
   template <typename D>
   [[gnu::always_inline]] inline void Distort(const D& x, const D& y, D* xd,
                                              D* yd) const {
@@ -111,7 +111,7 @@ struct Lens {
     *yd = y * f + p1 * (r2 + S(2) * y * y) + S(2) * p2 * x * y;
   }
 
-  // With derivatives.
+  // The distorted coordinates and their derivatives.
   template <typename D>
   [[gnu::always_inline]] inline void Distort(const D& x, const D& y,
                                              DistortedPoint<D>* p) const {
@@ -127,8 +127,8 @@ struct Lens {
   }
 
  private:
-  // Added to r^2, so that nothing is divided by 0 in the middle: far below what
-  // a place or a derivative would show.
+  // Added to r^2 to avoid a division by 0 at the centre; too small to affect a
+  // coordinate or a derivative.
   static constexpr double kSmall = 1e-12;
 };
 

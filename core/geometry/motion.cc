@@ -84,7 +84,7 @@ MotionVector MotionFromRigid(const Rigid3d& cur_from_prev) {
   MotionVector x;
   const double cos_beta = std::hypot(R(0, 0), R(1, 0));
   x[1] = std::atan2(-R(2, 0), cos_beta);
-  // Where cos(beta) vanishes only alpha -+ gamma is fixed: take gamma = 0.
+  // If cos(beta) vanishes, only alpha -+ gamma is determined: use gamma = 0.
   constexpr double kGimbalLock = 1e-12;
   if (cos_beta > kGimbalLock) {
     x[0] = std::atan2(R(2, 1), R(2, 2));

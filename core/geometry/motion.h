@@ -7,8 +7,8 @@
 #include "core/geometry/rigid3.h"
 #include "core/util/lane_math.h"
 
-// The motion between two frames in the six parameters of Lu (Tamkang 2016), as
-// far as the public record fixes them (docs/jacobian_tables.md):
+// The motion between two frames in the six parameters of Lu (Tamkang 2016), to
+// the extent that published sources define them (docs/jacobian_tables.md):
 //
 //   x = [alpha beta gamma Cx Cy Cz]   (rad, m)
 //   X_cur = R (X_prev - C),  R = Rz(gamma) Ry(beta) Rx(alpha)
@@ -18,7 +18,7 @@
 
 namespace rgbd_pose {
 
-// The six parameters, and what is quadratic in them.
+// The six parameters, and 6 x 6 matrices over them.
 using MotionVector = Eigen::Matrix<double, 6, 1>;
 using MotionMatrix = Eigen::Matrix<double, 6, 6>;
 
@@ -29,9 +29,8 @@ struct RotationAndCenter {
   Eigen::Matrix<T, 3, 1> C;  // current centre in the previous frame, m
 };
 
-// R, C and the three matrices dR/d(alpha, beta, gamma) (Table 2.1). What a
-// hand-written Jacobian needs, computed once per motion. dR/dC = 0 and
-// dC/dC = I are not stored.
+// R, C and dR/d(alpha, beta, gamma) (Table 2.1) for hand-written Jacobians,
+// computed once per motion. dR/dC = 0 and dC/dC = I are not stored.
 struct MotionDerivatives : RotationAndCenter<double> {
   std::array<Eigen::Matrix3d, 3> dR;  // by alpha, beta, gamma
 };
@@ -51,16 +50,16 @@ Eigen::Matrix<T, 3, 3> RotationFromAngles(const T* angles) {
   return R;
 }
 
-// The solver's parameters count from an origin, the initial guess, so that
-// they stay small: no gimbal lock occurs and no manifold is needed.
+// The solver's parameters are relative to an origin, the initial guess, and
+// thus stay small: no gimbal lock occurs and no manifold is needed.
 //
 //   R(x) = Rz Ry Rx(angles) R_origin,   C(x) = C_origin + [Cx Cy Cz]
 //
-// So dR/d(angle) is that of Table 2.1 times R_origin, and dC/dC stays I: the
-// tables hold as they are. The identity as the origin gives the thesis' x.
+// So dR/d(angle) is its Table 2.1 value times R_origin, and dC/dC stays I: the
+// tables hold unchanged. The identity as the origin gives the thesis' x.
 class LinearizationPoint {
  public:
-  // The motion at x = 0; by default none.
+  // The motion at x = 0; the identity by default.
   LinearizationPoint() : LinearizationPoint(Rigid3d()) {}
   explicit LinearizationPoint(const Rigid3d& cur_from_prev);
 
@@ -80,8 +79,8 @@ class LinearizationPoint {
   // R, C and dR/d(alpha, beta, gamma) at x[6].
   MotionDerivatives DerivativesAt(const double* x) const;
 
-  // The same, kept until another x is asked for: what many residual blocks of
-  // one problem share (Table 2.1). For one thread at a time.
+  // As DerivativesAt, but cached until another x is requested: shared by many
+  // residual blocks of one problem (Table 2.1). Not thread-safe.
   const MotionDerivatives& CachedDerivativesAt(const double* x) const {
     const Eigen::Map<const MotionVector> at(x);
     if (at != shared_x_) Share(x);
@@ -96,29 +95,31 @@ class LinearizationPoint {
 
   Eigen::Matrix3d R_;
   Eigen::Vector3d C_;
-  mutable MotionVector shared_x_;  // of shared_; NaN: of none
+  mutable MotionVector shared_x_;  // x of shared_; NaN if there is none
   mutable MotionDerivatives shared_;
 };
 
-// Covariance of c_from_b * b_from_a, from those of the two independent motions;
-// all of [omega C] as MotionEstimate has them, to first order:
+// Covariance of c_from_b * b_from_a from the covariances of both motions, which
+// are independent; all are of [omega C] as in MotionEstimate. To first order:
 //
 //   omega = omega_cb + R_cb omega_ba
-//   C     = C_ba + R_ba^T (C_cb + [C_cb]x omega_ba)     (errors; C_cb a place)
+//   C     = C_ba + R_ba^T (C_cb + [C_cb]x omega_ba)
+//
+// where these are errors, except for the position C_cb in [C_cb]x.
 MotionMatrix ComposedCovariance(const Rigid3d& c_from_b,
                                 const MotionMatrix& covariance_cb,
                                 const Rigid3d& b_from_a,
                                 const MotionMatrix& covariance_ba);
 
-// How far a motion is from another one, squared, in sigmas of a covariance of
-// [omega C] as MotionEstimate has it, which is positive definite.
+// Squared distance between two motions in sigmas of a covariance of [omega C]
+// as in MotionEstimate, which must be positive definite.
 double SquaredMahalanobisDistance(const Rigid3d& cur_from_prev,
                                   const Rigid3d& other,
                                   const MotionMatrix& covariance);
 
-// The thesis' six parameters of a motion and back (origin: the identity).
-// |beta| <= pi/2; at beta = +-pi/2 alpha and gamma are not unique, and the
-// vector returned is one that gives the motion back.
+// Converts a motion to the six parameters of the thesis (origin: the identity)
+// and back. |beta| <= pi/2; at beta = +-pi/2 alpha and gamma are not unique,
+// and one vector that reproduces the motion is returned.
 MotionVector MotionFromRigid(const Rigid3d& cur_from_prev);
 Rigid3d RigidFromMotion(const MotionVector& x);
 

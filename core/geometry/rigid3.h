@@ -4,11 +4,11 @@
 #include <Eigen/Geometry>
 #include <cmath>
 
-// Eigen aligns its vectors, and the memory that it asks for, by the instruction
-// set of the compiler's flags: -march=native or -mavx2 of one part of a program
-// and not of another leave it with two sorts of vectors, and it crashes.
-// RGBD_POSE_EIGEN_ALIGN is what the libraries were built with (bytes), a usage
-// requirement of rgbd_pose::core.
+// Eigen chooses the alignment of its vectors and of its memory by the compiler
+// flags for the instruction set. If only parts of a program are compiled with
+// -march=native or -mavx2, two incompatible alignments meet and the program
+// crashes. RGBD_POSE_EIGEN_ALIGN is the alignment that the libraries were built
+// with (bytes), a usage requirement of rgbd_pose::core.
 #ifdef RGBD_POSE_EIGEN_ALIGN
 static_assert(EIGEN_MAX_ALIGN_BYTES == RGBD_POSE_EIGEN_ALIGN &&
                   EIGEN_MAX_STATIC_ALIGN_BYTES == RGBD_POSE_EIGEN_ALIGN,
@@ -20,7 +20,7 @@ static_assert(EIGEN_MAX_ALIGN_BYTES == RGBD_POSE_EIGEN_ALIGN &&
 
 namespace rgbd_pose {
 
-// The shortest vector that a rotation turns about, by its length (rad).
+// The shortest rotation vector of a rotation, rad.
 inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
   const Eigen::AngleAxisd turn(rotation);
   return turn.angle() * turn.axis();
@@ -30,7 +30,7 @@ inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
 // target_from_source * point_in_source. Inner names cancel in products:
 // a_from_c = a_from_b * b_from_c. Translation in metres.
 struct Rigid3d {
-  // Of source axes into target axes, and the source's origin in the target.
+  // Rotates source axes into target axes; the source's origin in the target.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 
@@ -42,7 +42,7 @@ struct Rigid3d {
       : rotation(target_from_source_rotation.normalized()),
         translation(source_origin_in_target) {}
 
-  // The same of a rotation vector (rad).
+  // The same from a rotation vector (rad).
   static Rigid3d FromRotationVector(
       const Eigen::Vector3d& rotation,
       const Eigen::Vector3d& source_origin_in_target) {
@@ -53,39 +53,37 @@ struct Rigid3d {
                    source_origin_in_target);
   }
 
-  // The point in the target.
+  // Transforms a point from source to target.
   Eigen::Vector3d operator*(const Eigen::Vector3d& point_in_source) const {
     return rotation * point_in_source + translation;
   }
 
-  // target_from_other.
+  // Returns target_from_other.
   Rigid3d operator*(const Rigid3d& source_from_other) const {
     return Rigid3d(rotation * source_from_other.rotation,
                    rotation * source_from_other.translation + translation);
   }
 
-  // source_from_target.
+  // Returns source_from_target.
   Rigid3d Inverse() const {
     const Eigen::Quaterniond inverse = rotation.conjugate();
     return Rigid3d(inverse, -(inverse * translation));
   }
 
-  // The rotation angle in radians, in [0, pi]; exact near 0, where
-  // acos(w) would lose half of the digits.
+  // The rotation angle in [0, pi], rad. Accurate near 0, where acos(w) would
+  // lose half of the digits.
   double Angle() const {
     return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
   }
 
-  // Neither turns nor moves anything.
   bool IsIdentity() const { return Angle() == 0.0 && translation.isZero(0.0); }
 
-  // To the last bit.
+  // Exact comparison.
   bool operator==(const Rigid3d& other) const {
     return rotation.coeffs() == other.rotation.coeffs() &&
            translation == other.translation;
   }
 
-  // No NaN and no infinity.
   bool IsFinite() const {
     return rotation.coeffs().allFinite() && translation.allFinite();
   }

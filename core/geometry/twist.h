@@ -7,19 +7,19 @@
 
 namespace rgbd_pose {
 
-// The velocity of a camera, in its own axes.
+// The velocity of a camera in its own axes.
 struct Twist {
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();  // rad/s
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();   // m/s
 
-  // later_from_earlier over so many seconds (negative: earlier), for fractions
-  // of a second: the translation is to first order.
+  // later_from_earlier over a time span in seconds (negative: backwards), for
+  // fractions of a second: the translation is exact to first order.
   Rigid3d MotionDuring(double seconds) const {
     return Rigid3d::FromRotationVector(-seconds * angular, -seconds * linear);
   }
 
-  // Where a point that stands still (camera axes, m) is seen from the camera so
-  // many seconds later, to second order. For double and for vectors of doubles.
+  // Position of a static point (camera axes, m) in the axes of the camera after
+  // `seconds`, to second order. For double and for vectors of doubles.
   template <typename T>
   void MovePoint(const T* point, const T& seconds, T* moved) const {
     const Eigen::Vector3d& w = angular;
@@ -31,7 +31,7 @@ struct Twist {
     moved[2] = point[2] + seconds * (a[2] - half * (w[0] * a[1] - w[1] * a[0]));
   }
 
-  // The velocity (m/s) of such a point in the camera's axes.
+  // The velocity (m/s) of a static point in the camera's axes.
   template <typename T>
   void PointVelocity(const T* point, T* velocity) const {
     const Eigen::Vector3d& w = angular;
@@ -40,7 +40,7 @@ struct Twist {
     velocity[2] = w[1] * point[0] - w[0] * point[1] - linear[2];
   }
 
-  // The same for one point.
+  // MovePoint for one point.
   Eigen::Vector3d MovedPoint(const Eigen::Vector3d& point,
                              double seconds) const {
     Eigen::Vector3d moved;
@@ -49,7 +49,7 @@ struct Twist {
   }
 };
 
-// Weighted sums of twists.
+// Operators for weighted sums of twists.
 inline Twist operator+(const Twist& a, const Twist& b) {
   return {a.angular + b.angular, a.linear + b.linear};
 }
@@ -60,20 +60,20 @@ inline Twist operator*(double factor, const Twist& twist) {
   return {factor * twist.angular, factor * twist.linear};
 }
 
-// The twist at which a motion takes so many seconds, not 0.
+// The constant twist that makes a motion in `seconds`, which must not be 0.
 inline Twist TwistOf(const Rigid3d& later_from_earlier, double seconds) {
   return {-RotationVector(later_from_earlier.rotation) / seconds,
           -later_from_earlier.translation / seconds};
 }
 
-// When the images of an RGB-D frame were taken, and how the camera moved
-// meanwhile: what it takes to say where things were seen at the frame's stamp.
+// Exposure times of the images of an RGB-D frame and the motion of the camera
+// meanwhile, needed to compute where points were at the frame's timestamp.
 struct FrameTiming {
-  Shutter color;  // from the frame's stamp
-  Shutter depth;  // from the frame's stamp, too
-  Twist twist;    // at the stamp
+  Shutter color;  // relative to the frame's timestamp
+  Shutter depth;  // also relative to the frame's timestamp
+  Twist twist;    // at the timestamp
 
-  // Whether all was seen at the stamp.
+  // Whether everything was exposed at the timestamp.
   bool IsOneMoment() const { return color.IsGlobal() && depth.IsGlobal(); }
 };
 

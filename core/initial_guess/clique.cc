@@ -8,11 +8,11 @@
 namespace rgbd_pose {
 namespace {
 
-// Of more matches, this many are used, evenly spread over the list: time and
-// memory grow with the square.
+// Maximum number of matches, evenly spread: time and memory grow with its
+// square.
 constexpr int kMaxMatches = 500;
 
-// Which matches are consistent with which, a row of bits each.
+// Consistency of all pairs of matches, one row of bits per match.
 class ConsistencyGraph {
  public:
   explicit ConsistencyGraph(const std::vector<PointMatch>& matches)
@@ -30,8 +30,8 @@ class ConsistencyGraph {
     }
   }
 
-  // Howard's greedy clique: the order in which matches join is that of their
-  // degrees, so one pass through that order is enough.
+  // Howard's greedy clique. Matches join in the order of their degrees; hence
+  // one pass in that order is enough.
   std::vector<int> GreedyClique() const {
     std::vector<int> order(size_);
     std::iota(order.begin(), order.end(), 0);
@@ -57,7 +57,7 @@ class ConsistencyGraph {
   }
 
   size_t size_;
-  size_t words_;  // of 64 bits, a row
+  size_t words_;  // of 64 bits, per row
   std::vector<uint64_t> bits_;
   std::vector<int> degrees_;
 };

@@ -8,7 +8,7 @@
 namespace rgbd_pose {
 namespace {
 
-// How often a motion is fitted again to the matches that agree with it.
+// How often a motion is refitted to the matches that agree with it.
 constexpr int kRefits = 2;
 
 }  // namespace

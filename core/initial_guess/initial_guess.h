@@ -9,23 +9,23 @@
 
 namespace rgbd_pose {
 
-// A way to guess the motion from the matches alone, without a place to start.
+// A method that guesses the motion from the matches alone.
 struct InitialGuess {
-  std::string_view name;  // as programs take it
-  // cur_from_prev, or nothing if the matches do not determine it; the caller
-  // then uses a guess of its own, such as the last motion.
+  std::string_view name;  // as given to programs
+  // Returns cur_from_prev, or nothing if the matches do not determine it; the
+  // caller then uses its own guess, such as the last motion.
   std::optional<Rigid3d> (*find)(const Correspondences& matches);
 };
 
 // All initial guesses:
-//   identity  no motion, whatever the matches say
-//   ransac    what random samples of three find most agreement with
-//   clique    that of the matches that preserve all their distances
+//   identity  no motion, whatever the matches are
+//   ransac    the motion with most agreement among random samples of three
+//   clique    the motion of matches that preserve all their distances
 //
 // The last two are FindByRansac and FindByClique (consensus.h).
 const std::vector<InitialGuess>& InitialGuesses();
 
-// The initial guess of that name, or null.
+// The initial guess with this name, or null.
 const InitialGuess* FindInitialGuess(std::string_view name);
 
 }  // namespace rgbd_pose

@@ -54,7 +54,7 @@ std::vector<PointMatch> PointMatches(const Correspondences& matches,
 
   std::vector<PointMatch> points;
   points.reserve(wanted);
-  size_t place = 0;  // among those with depths
+  size_t place = 0;  // among matches with depths
   for (size_t i = 0; i < matches.size(); ++i) {
     if (!HasDepths(matches, i)) continue;
     ++place;

@@ -15,7 +15,7 @@ struct NoisyPoint {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();
   double variance_u = 0.0;    // m^2
   double variance_v = 0.0;    // m^2
-  double variance_ray = 0.0;  // of the depth's relative error
+  double variance_ray = 0.0;  // of the relative error of the depth
 
   // direction^T covariance direction, for a direction of any length.
   double VarianceAlong(const Eigen::Vector3d& direction) const {
@@ -33,23 +33,22 @@ struct NoisyPoint {
 
 // A match with a depth on both sides.
 struct PointMatch {
-  int index = 0;  // within the Correspondences
+  int index = 0;  // index within the Correspondences
   NoisyPoint prev;
   NoisyPoint cur;
 
-  // What whitens cur - cur_from_prev * prev along u, v and z of the current
-  // frame (1 / m) and the ray (x / z, y / z) there. The noise of the previous
-  // frame is taken along the same axes: exact but for the angle (parallax)
-  // under which the point sees the two cameras, which keeps it apart from the
-  // motion.
+  // Whitens cur - cur_from_prev * prev: inverse sigmas along u, v and z of the
+  // current frame (1 / m), and the ray (x / z, y / z) there. The noise of the
+  // previous frame is taken along the same axes, which makes it independent of
+  // the motion. This is exact except for the parallax between the two rays.
   Eigen::Vector3d inverse_sigma = Eigen::Vector3d::Zero();
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
 
-  // Inverse variance of one component of that difference on average, 1 / m^2.
+  // Mean inverse variance of one component of that difference, 1 / m^2.
   double weight = 0.0;
 
-  // Squared norm of the whitened difference: chi^2 of three degrees of freedom
-  // for right matches.
+  // Squared norm of the whitened difference: chi^2 with three degrees of
+  // freedom for right matches.
   double SquaredDistance(const Eigen::Matrix3d& rotation,
                          const Eigen::Vector3d& translation) const {
     const Eigen::Vector3d e =
@@ -61,13 +60,13 @@ struct PointMatch {
   }
 };
 
-// The matches with a depth on both sides: all, or `max_count` of them evenly
+// The matches with a depth on both sides: all of them, or `max_count` evenly
 // spread over the list.
 std::vector<PointMatch> PointMatches(const Correspondences& matches,
                                      size_t max_count);
 
-// Whether a motion can be right about both matches: it preserves the distance
-// between their points, here up to `max_sigmas` standard deviations of the
+// Whether one motion can explain both matches: it must preserve the distance
+// between their points, here within `max_sigmas` standard deviations of the
 // difference (Hirschmueller, Innocent & Garibaldi 2002; Howard 2008).
 bool AreDistanceConsistent(const PointMatch& a, const PointMatch& b,
                            double max_sigmas = 3.0);

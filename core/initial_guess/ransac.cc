@@ -13,18 +13,18 @@ namespace {
 
 constexpr int kMaxSamples = 500;  // of three matches
 
-// Sampling ends early when, at the share of inliers seen so far, a sample of
-// right matches only has been drawn with this probability.
+// Sampling stops when, at the largest share of inliers so far, a sample of
+// inliers only has been drawn with this probability.
 constexpr double kConfidence = 0.999;
 
-// Of more matches, this many are used, evenly spread over the list.
+// Maximum number of matches, evenly spread over the list.
 constexpr int kMaxMatches = 1000;
 
 constexpr uint64_t kSeed = 1;
 
 using Sample = std::array<uint32_t, 3>;
 
-// The work of FindByRansac and its memory.
+// The implementation of FindByRansac and its memory.
 class Search {
  public:
   explicit Search(const std::vector<PointMatch>& matches) : matches_(matches) {
@@ -64,8 +64,8 @@ class Search {
   }
 
   // Takes a motion if it is better than the best one so far, by the sum of
-  // squared distances, each at most the greatest of an inlier (MSAC; Torr &
-  // Zisserman 2000). Returns whether it was.
+  // squared distances, each limited to the maximum of an inlier (MSAC; Torr &
+  // Zisserman 2000). Returns whether it was better.
   bool Improve(const std::optional<Rigid3d>& motion) {
     if (!motion) return false;
     const Eigen::Matrix3d rotation = motion->rotation.toRotationMatrix();

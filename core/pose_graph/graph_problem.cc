@@ -16,7 +16,7 @@ namespace {
 
 std::string NameOf(int pose) { return "pose " + std::to_string(pose); }
 
-// The two halves of a Jacobian, as far as Ceres asks for them.
+// Copies the halves of a Jacobian that Ceres requests.
 template <typename Jacobian>
 void Split(const Jacobian& both, double** jacobians) {
   if (jacobians == nullptr) return;
@@ -34,14 +34,14 @@ MotionMatrix SqrtInformation(const MotionMatrix& information) {
   MotionMatrix none =
       MotionMatrix::Constant(std::numeric_limits<double>::quiet_NaN());
   if (!information.allFinite()) return none;
-  // Rotation and translation differ by orders of magnitude: to equal size.
+  // Scaled first: rotation and translation differ by orders of magnitude.
   const MotionVector size =
       information.diagonal().cwiseMax(0.0).cwiseSqrt().unaryExpr(
           [](double value) { return value > 0.0 ? value : 1.0; });
   const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
       size.cwiseInverse().asDiagonal() * information *
       size.cwiseInverse().asDiagonal());
-  // Rounding leaves what is zero at some 1e-16.
+  // Rounding changes zero eigenvalues by about 1e-16.
   if (eigen.eigenvalues().minCoeff() < -1e-9) return none;
   return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
          eigen.eigenvectors().transpose() * size.asDiagonal();
@@ -144,7 +144,7 @@ ceres::CRSMatrix GraphProblem::Jacobian(const std::vector<int>& poses) {
   return jacobian;
 }
 
-// A pose that is fixed and that nothing is known of is no parameter at all.
+// A fixed pose without edges to free poses is not a parameter of the problem.
 bool GraphProblem::IsConstant(int pose) const {
   const double* x = x_[pose].data();
   return !problem_->HasParameterBlock(x) ||
@@ -195,8 +195,8 @@ std::string FindBadInput(const GraphTerms& graph) {
   return "";
 }
 
-// Poses that hang together, by the smallest number among them (union-find); all
-// that are fixed hang together.
+// Groups connected poses by the smallest number among them (union-find). All
+// fixed poses count as connected.
 std::string FindUnanchoredPose(const GraphTerms& graph) {
   std::vector<int> root(graph.poses.size());
   std::iota(root.begin(), root.end(), 0);
@@ -224,9 +224,9 @@ std::string FindUnanchoredPose(const GraphTerms& graph) {
   return "";
 }
 
-// The pivots of a Cholesky decomposition are the information of one parameter,
-// those eliminated before it taken as unknown and those after as known: an
-// upper limit of what is known of it, reached by the last.
+// The pivots of a Cholesky decomposition are the information on one parameter
+// if those eliminated before it are unknown and those after it known: an upper
+// bound of the actual information, exact for the last pivot.
 std::string FindUndetermined(const GraphTerms& graph,
                              double max_standard_deviation,
                              GraphProblem* problem) {

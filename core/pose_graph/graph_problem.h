@@ -17,16 +17,16 @@
 
 namespace rgbd_pose {
 
-// S with S^T S = information, a positive semi-definite matrix; nothing (all
-// NaN) if it is invalid.
+// S with S^T S = information, a positive semi-definite matrix. All elements are
+// NaN if the matrix is invalid.
 MotionMatrix SqrtInformation(const MotionMatrix& information);
 
 // A measured motion between two poses as six rows,
 //
 //   r = S [ 2 vec q ; C - C_m ],   q the quaternion of R R_m^T,  q_w >= 0,
 //
-// S^T S = covariance^-1. 2 vec q is the rotation Exp(omega) = R R_m^T to first
-// order, and grows up to a half turn, where omega does.
+// with S^T S = covariance^-1. To first order, 2 vec q is omega in Exp(omega) =
+// R R_m^T; it increases up to half a turn, as omega does.
 struct RelativePoseErrorTerm {
   RotationAndCenter<double> measured;
   MotionMatrix root;  // S
@@ -34,7 +34,7 @@ struct RelativePoseErrorTerm {
   static RelativePoseErrorTerm Of(const Rigid3d& cur_from_ref,
                                   const MotionMatrix& root);
 
-  // r and, unless null, d r / d[x_ref x_cur].
+  // Returns r and writes d r / d[x_ref x_cur] to `jacobian` unless null.
   MotionVector ResidualAt(const RelativeMotion& pair,
                           PosePairJacobian* jacobian) const;
 };
@@ -55,29 +55,29 @@ class EdgeBlock final : public ceres::SizedCostFunction<6, 6, 6> {
   const LinearizationPoint* const cur_;
 };
 
-// A graph as one Ceres problem: six parameters a pose, about where it is now,
-// of which those of fixed poses are constant.
+// A graph as one Ceres problem: six parameters per pose, relative to its
+// current value. The parameters of fixed poses are constant.
 class GraphProblem {
  public:
-  // Losses on edges are `width` times as wide as they are.
+  // The losses on edges are widened by the factor `width`.
   GraphProblem(const GraphTerms& graph, double width);
 
-  // Whether nothing is known that could move a pose.
+  // Whether no measurement could move a pose.
   bool is_empty() const { return problem_->NumResidualBlocks() == 0; }
 
-  // Half the sum of squares under the losses, at the parameters' values.
+  // Half the sum of squares under the losses, at the current parameters.
   double Cost();
 
-  // Moves the parameters to where it is least.
+  // Minimises the cost over the parameters.
   void Solve(const ceres::Solver::Options& options,
              ceres::Solver::Summary* summary);
 
-  // The value of a pose's parameters, and where that puts it.
+  // The parameters of a pose, and the pose they describe.
   const MotionVector& parameters(int pose) const { return x_[pose]; }
   Rigid3d WorldFromCam(int pose) const;
 
-  // The rows of all residuals under their losses in the parameters of these
-  // poses, six columns each, none of them fixed.
+  // The Jacobian of all residuals under their losses for the parameters of
+  // these poses, six columns each. None of the poses may be fixed.
   ceres::CRSMatrix Jacobian(const std::vector<int>& poses);
 
   // See PoseGraph::MarginalCovariances.
@@ -94,16 +94,16 @@ class GraphProblem {
   std::unique_ptr<ceres::Problem> problem_;
 };
 
-// Why the graph cannot be solved, as one line; empty: it can.
-// Poses are named by the numbers that users know them by.
-// Numbers that are not finite, and edges that are not between two poses.
+// The functions below return why a graph cannot be solved as one line that
+// names poses by their numbers, or empty. Here: values that are not finite, or
+// an edge that does not connect two poses of the graph.
 std::string FindBadInput(const GraphTerms& graph);
 
-// A pose that nothing joins to a fixed one or to the world.
+// A pose with no connection to a fixed pose.
 std::string FindUnanchoredPose(const GraphTerms& graph);
 
-// A pose of which some direction has a larger standard deviation (rad or m),
-// all others held where they are or known no better.
+// A pose with a direction whose standard deviation exceeds the limit (rad or
+// m), with the other parameters held or estimated with it.
 std::string FindUndetermined(const GraphTerms& graph,
                              double max_standard_deviation,
                              GraphProblem* problem);

@@ -12,20 +12,21 @@
 namespace rgbd_pose {
 namespace {
 
-// Each stage of a graduation narrows losses by this factor. They start no wider
-// than so many times their widths: beyond that even least squares is no help.
+// Each graduation stage narrows the losses by this factor, starting from at
+// most kWidest times their widths: beyond that even least squares does not
+// help.
 constexpr double kNarrowing = 2.0;
 constexpr double kWidest = 1024.0;
 
-// A stage before the last one need not settle.
+// Stages before the last one need not converge.
 constexpr int kGraphIterationsPerEarlyStage = 3;
 
-// The least width of the losses, in theirs, at which all edges count.
+// The smallest factor on the widths of the losses at which all edges count.
 double FirstWidth(const GraphTerms& graph) {
   double largest = 0.0;
   for (const GraphTerms::Edge& edge : graph.edges) {
     if (edge.loss == nullptr || graph.IsIdle(edge.ref, edge.cur)) continue;
-    // By how many sigmas, squared, it disagrees with the poses.
+    // The squared residual of the edge in sigmas.
     const Rigid3d motion = graph.Between(edge.ref, edge.cur);
     RelativeMotion pair;
     pair.motion = {motion.rotation.toRotationMatrix(),
@@ -65,7 +66,7 @@ double PoseGraph::Round(double width, int max_iterations,
   options.num_threads = options_.threads;
   options.logging_type = ceres::SILENT;
   options.function_tolerance = 1e-9;
-  // An origin is near by: steps need no damping to begin with.
+  // The origin is close to the solution: no damping is needed at the start.
   options.initial_trust_region_radius = 1e8;
   ceres::Solver::Summary summary;
   problem.Solve(options, &summary);
@@ -124,7 +125,7 @@ GraphSolution PoseGraph::Solve() {
 
 int PoseGraph::AddEdge(const RelativePose& edge,
                        const ceres::LossFunction* loss) {
-  // A covariance without an inverse has no finite root either.
+  // A covariance that is not invertible has no finite root either.
   graph_.edges.push_back({edge.ref, edge.cur, edge.cur_from_ref,
                           SqrtInformation(edge.covariance.inverse()), loss});
   return static_cast<int>(graph_.edges.size()) - 1;

@@ -11,36 +11,35 @@
 
 namespace rgbd_pose {
 
-// What a PoseGraph holds, as its parts see it: poses, by their numbers, and
-// what is known of them.
+// The content of a PoseGraph: poses, referred to by their numbers, and the
+// motions measured between them.
 struct GraphTerms {
-  // A pose and whether it is held.
   struct Pose {
-    Rigid3d world_from_cam;  // as it is estimated now
-    bool is_fixed = false;   // it stays where it is
+    Rigid3d world_from_cam;  // current estimate
+    bool is_fixed = false;   // stays where it is
   };
-  // A motion that was measured.
+  // A measured motion.
   struct Edge {
-    int ref = 0;                                // the pose it is seen from
-    int cur = 0;                                // the pose it leads to
+    int ref = 0;                                // number of the reference pose
+    int cur = 0;                                // number of the other pose
     Rigid3d cur_from_ref;                       // as it was measured
     MotionMatrix root;                          // see SqrtInformation
-    const ceres::LossFunction* loss = nullptr;  // null: squares
+    const ceres::LossFunction* loss = nullptr;  // null: least squares
   };
-  std::vector<Pose> poses;  // by their numbers
-  std::vector<Edge> edges;  // in the order they were added
+  std::vector<Pose> poses;  // index = number
+  std::vector<Edge> edges;  // in the order of addition
 
-  // cur_from_ref as the poses have it.
+  // cur_from_ref according to the poses.
   Rigid3d Between(int ref, int cur) const {
     return poses[cur].world_from_cam.Inverse() * poses[ref].world_from_cam;
   }
 
-  // Whether there is such a pose.
+  // Whether a pose has this number.
   bool Has(int pose) const {
     return pose >= 0 && pose < static_cast<int>(poses.size());
   }
 
-  // Whether what is between the two changes nothing.
+  // Whether an edge between the two poses has no effect.
   bool IsIdle(int ref, int cur) const {
     return poses[ref].is_fixed && poses[cur].is_fixed;
   }
@@ -48,119 +47,118 @@ struct GraphTerms {
 
 // How a graph is solved.
 struct PoseGraphOptions {
-  // Losses on edges are so wide at first that all edges count, then narrower
-  // step by step: for poses that may be far off. Else at once.
+  // Starts with losses so wide that all edges count, then narrows them step by
+  // step: for poses that may be far off. False: final widths at once.
   bool graduated = false;
 
-  // At most so often poses become the origins of another solve.
+  // Maximum number of solves, each with the poses of the last one as origins.
   int max_rounds = 10;
 
-  // Where no pose moves by more (rad and m), nothing further is gained.
+  // Stops when no pose moves by more than this (rad and m).
   double step_tolerance = 1e-6;
 
-  // Of the solver in each round.
+  // Maximum number of solver iterations per round.
   int max_iterations = 30;
 
-  // A pose is not determined if, all others held where they are or known no
-  // better, some direction of it has a larger standard deviation (rad or m).
+  // A pose is not determined if some direction of it has a larger standard
+  // deviation (rad or m), with the other parameters held or estimated with it.
   double max_standard_deviation = 0.5;
 
-  // Of the solver. The result is the same for one number, not for all.
+  // Threads of the solver. Results are reproducible for a given number of
+  // threads, but may differ between numbers.
   int threads = 1;
 
   // One line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
 
-// How far a solved graph can be believed.
+// Whether the result of a solve can be trusted.
 enum class GraphStatus {
   kOk,
   kBadInput,      // a pose or edge is invalid
-  kNotAnchored,   // some poses hang on nothing that is fixed
+  kNotAnchored,   // some poses are not connected to a fixed pose
   kSingular,      // some pose is not determined
-  kNotConverged,  // the solver gave up; the poses are those before
+  kNotConverged,  // the solver gave up; the poses are unchanged
 };
 
-// As programs print it.
+// The name printed by programs.
 inline const char* ToString(GraphStatus status) {
   constexpr const char* kNames[] = {"ok", "bad_input", "not_anchored",
                                     "singular", "not_converged"};
   return kNames[static_cast<int>(status)];
 }
 
-// What came of a solve.
+// The result of a solve.
 struct GraphSolution {
-  // Whether the poses may be used.
   GraphStatus status = GraphStatus::kOk;
   std::string reason;  // in words; empty if ok
 
-  double initial_cost = 0.0;  // with the losses at their own widths
-  double final_cost = 0.0;    // likewise, at the new poses
-  int iterations = 0;         // of the solver, all rounds together
+  double initial_cost = 0.0;  // with the final widths of the losses
+  double final_cost = 0.0;    // the same at the new poses
+  int iterations = 0;         // of the solver, in all rounds
   int rounds = 0;             // see PoseGraphOptions::max_rounds
 
-  // Whether the poses are those that agree best.
+  // Whether the poses are the ones that agree best with the edges.
   bool ok() const { return status == GraphStatus::kOk; }
 };
 
-// Poses that are moved together until they agree best with the motions measured
-// between them, edges with their covariances: a Ceres problem without
-// landmarks. Each edge under a loss or, null, none. Bad data is a status of
-// Solve, never an abort.
+// Poses that are optimised together until they agree best with the motions
+// measured between them (edges with covariances): a Ceres problem without
+// landmarks. Each edge has a loss, or null for least squares. Invalid data
+// gives a status of Solve, never an abort.
 class PoseGraph {
  public:
-  // Throws InputError for options that are not sound (see Check).
+  // Throws InputError for invalid options (see Check).
   explicit PoseGraph(const PoseGraphOptions& options = {});
 
-  // Returns its number: 0, 1, 2, ... A fixed pose stays where it is.
+  // Returns the number of the pose: 0, 1, 2, ... A fixed pose is not moved.
   int AddPose(const Rigid3d& world_from_cam, bool is_fixed = false) {
     graph_.poses.push_back({world_from_cam, is_fixed});
     return num_poses() - 1;
   }
 
   // `edge.ref` and `edge.cur` are numbers of poses. The loss must outlive the
-  // graph and sees the whole edge: 6 whitened rows.
+  // graph and applies to the whole edge: 6 whitened rows.
   int AddEdge(const RelativePose& edge,
               const ceres::LossFunction* loss = nullptr);
 
-  // Where the next Solve begins, or stays if it is fixed.
+  // Sets the start of the next Solve, or the final value if the pose is fixed.
   void SetPose(int pose, const Rigid3d& world_from_cam) {
     graph_.poses[pose].world_from_cam = world_from_cam;
   }
-  // Whether it is, from now on.
+  // Fixes or frees a pose.
   void SetFixed(int pose, bool is_fixed) {
     graph_.poses[pose].is_fixed = is_fixed;
   }
 
-  // Moves the poses that are not fixed. What lies between fixed poses alone is
-  // left out.
+  // Optimises the poses that are not fixed. Ignores edges between fixed poses.
   GraphSolution Solve();
 
-  // How many there are.
   int num_poses() const { return static_cast<int>(graph_.poses.size()); }
-  // world_from_cam.
+  // Returns world_from_cam.
   const Rigid3d& pose(int pose) const {
     return graph_.poses[pose].world_from_cam;
   }
 
   // Covariances of poses, [omega (rad), C (m)] with omega about the axes of the
-  // camera and C its centre in the world, after a Solve that was ok; zero for
-  // fixed poses. They count each edge as independent of others: see
-  // OvercountingFactor. Empty where they cannot be computed.
+  // camera and C its centre in the world, after a successful Solve; zero for
+  // fixed poses. Each edge counts as independent of the others: see
+  // OvercountingFactor. Empty if they cannot be computed.
   std::vector<MotionMatrix> MarginalCovariances(
       const std::vector<int>& poses) const;
 
-  // Overcounting of the information: the number of edges by the number of
-  // motions that poses have (a tree: 1). Edges between frames that see the same
-  // features share those features' noise, so that k frames matched each with
-  // each know no more than k - 1 edges do, though they have k (k - 1) / 2:
-  // their covariances are too small by this factor. An upper bound: for edges
-  // that are independent (wheels, other features) it is 1.
+  // The factor by which information is counted too often: the number of edges
+  // divided by the number of motions between the poses (1 for a tree). Edges
+  // between frames that see the same features share the noise of these
+  // features. If all pairs of k frames are matched, the k (k - 1) / 2 edges
+  // contain no more information than k - 1 edges: the covariances are too small
+  // by this factor. It is an upper bound: for independent edges (wheels, other
+  // features) the factor is 1.
   double OvercountingFactor() const;
 
  private:
-  // One round at a width of the losses; by how much a pose moved at most (rad
-  // and m), or NaN if the solver gave up.
+  // One solve with losses widened by `width`. Returns the largest change of a
+  // pose (rad and m), or NaN if the solver gave up.
   double Round(double width, int max_iterations, GraphSolution* solution);
 
   PoseGraphOptions options_;

@@ -10,14 +10,14 @@
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
 
-// The motion between two poses that both move. A pose is itself a motion, from
-// the world to the camera, in the parameters of core/geometry/motion.h about an
-// origin of its own:
+// The motion between two poses that are both estimated. A pose is itself a
+// motion, from the world to the camera, in the parameters of
+// core/geometry/motion.h about its own origin:
 //
 //   x = [alpha beta gamma Cx Cy Cz],  X_cam = R (X_world - C)
 //
-// so C is the camera's centre in the world. Between a camera `ref` and another,
-// `cur`:
+// Hence C is the centre of the camera in the world. Between the cameras `ref`
+// and `cur`:
 //
 //   R = R_cur R_ref^T,   C = R_ref (C_cur - C_ref)
 
@@ -25,14 +25,14 @@ namespace rgbd_pose {
 
 using PosePairJacobian = Eigen::Matrix<double, 6, 12, Eigen::RowMajor>;
 
-// [v]x, so that [v]x w = v x w.
+// [v]x, with [v]x w = v x w.
 inline Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
   Eigen::Matrix3d m;
   m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
   return m;
 }
 
-// For any scalar: the oracle of RelativeMotionAt.
+// For any scalar type: tests differentiate it to check RelativeMotionAt.
 template <typename T>
 RotationAndCenter<T> MotionBetween(const RotationAndCenter<T>& ref,
                                    const RotationAndCenter<T>& cur) {
@@ -43,8 +43,8 @@ RotationAndCenter<T> MotionBetween(const RotationAndCenter<T>& ref,
   return motion;
 }
 
-// The rotation about the axes of the camera (rad) that small changes of the
-// angles (rad) at x make: the columns of d omega / d[alpha beta gamma].
+// The rotation about the axes of the camera (rad) caused by small changes of
+// the angles (rad) at x: the columns of d omega / d[alpha beta gamma].
 inline Eigen::Matrix3d EulerRateJacobian(const double* x) {
   const double sb = std::sin(x[1]), cb = std::cos(x[1]);
   const double sg = std::sin(x[2]), cg = std::cos(x[2]);
@@ -56,8 +56,8 @@ inline Eigen::Matrix3d EulerRateJacobian(const double* x) {
 // The motion between two poses and its derivatives.
 struct RelativeMotion {
   RotationAndCenter<double> motion;
-  // d[omega C] / d[x_ref x_cur], omega (rad) a small rotation about the axes of
-  // `cur`, as MotionEstimate's covariance has it.
+  // d[omega C] / d[x_ref x_cur]; omega (rad) is a small rotation about the axes
+  // of `cur`, as in the covariance of MotionEstimate.
   PosePairJacobian jacobian;
 };
 

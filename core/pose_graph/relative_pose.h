@@ -5,13 +5,12 @@
 
 namespace rgbd_pose {
 
-// A measured motion between two frames of a sequence: what poses can be
-// corrected by later.
+// A measured motion between two frames, used to correct their poses later.
 struct RelativePose {
-  int ref = 0;                                     // the one frame
-  int cur = 0;                                     // the other
+  int ref = 0;                                     // the reference frame
+  int cur = 0;                                     // the other frame
   Rigid3d cur_from_ref;                            // as measured
-  MotionMatrix covariance = MotionMatrix::Zero();  // as MotionEstimate's
+  MotionMatrix covariance = MotionMatrix::Zero();  // as in MotionEstimate
 };
 
 }  // namespace rgbd_pose

@@ -4,8 +4,8 @@
 
 namespace rgbd_pose {
 
-// Quantiles of the chi-squared distribution with 1 <= degrees <= 6 degrees of
-// freedom: what the squared norm of a right match's whitened residual follows.
+// Quantiles of the chi-squared distribution with 1 to 6 degrees of freedom. The
+// squared norm of the whitened residual of an inlier follows this distribution.
 inline double ChiSquaredMedian(int degrees) {
   constexpr double kMedian[] = {0.454936, 1.386294, 2.365974,
                                 3.356694, 4.351460, 5.348121};

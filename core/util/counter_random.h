@@ -6,11 +6,11 @@
 
 namespace rgbd_pose {
 
-// Random numbers that are the same on every platform: mixed counters
-// (SplitMix64; Steele, Lea & Flood 2014).
+// Random numbers that are the same on every platform, made by mixing the bits
+// of a counter (SplitMix64; Steele, Lea & Flood 2014).
 class CounterRandom {
  public:
-  // The step of the counter, and the 64 well-mixed bits of one count.
+  // The increment of the counter, and the hash of one count to 64 bits.
   static constexpr uint64_t kStep = 0x9e3779b97f4a7c15u;
   static uint64_t Mix(uint64_t x) {
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -33,7 +33,7 @@ class CounterRandom {
     const uint32_t a = Below(end);
     uint32_t b = Below(end - 1);
     uint32_t c = Below(end - 2);
-    // Each skips those taken before it, in increasing order.
+    // Each number skips those drawn before it, in increasing order.
     if (b >= a) ++b;
     if (c >= std::min(a, b)) ++c;
     if (c >= std::max(a, b)) ++c;

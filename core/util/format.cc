@@ -16,7 +16,7 @@ std::string Format(const char* format, ...) {
   const int length = std::vsnprintf(nullptr, 0, format, arguments);
   va_end(arguments);
   std::string text(length > 0 ? length : 0, '\0');
-  // Writes a zero byte where the string has its own.
+  // The terminating zero is written where the string has its own.
   std::vsnprintf(text.data(), text.size() + 1, format, again);
   va_end(again);
   return text;

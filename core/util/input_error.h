@@ -5,13 +5,13 @@
 
 namespace rgbd_pose {
 
-// Thrown for bad input from outside (files, images, settings). The message is
-// one line that says what is wrong, where (file:line if there is one) and what
-// to do about it. Programs print it and exit with code 2. Control
-// characters of quoted input become spaces, so that it stays one line.
+// Thrown for invalid input from outside (files, images, settings). The message
+// is one line that says what is wrong, where (file:line if known) and how to
+// fix it. Programs print it and exit with code 2. Control characters in quoted
+// input are replaced by spaces to keep the message on one line.
 class InputError : public std::runtime_error {
  public:
-  // The message; the second form puts the place (file:line) before it.
+  // The second constructor puts the place (file:line) before the message.
   explicit InputError(const std::string& message)
       : std::runtime_error(OneLine(message)) {}
   InputError(const std::string& file, int line, const std::string& message)
@@ -26,7 +26,7 @@ class InputError : public std::runtime_error {
   }
 };
 
-// Throws what a Check() says, with `before` before it, unless it is empty.
+// Throws InputError(before + problem) unless `problem` (of a Check()) is empty.
 inline void RequireSound(const std::string& problem,
                          const std::string& before = "") {
   if (!problem.empty()) throw InputError(before + problem);

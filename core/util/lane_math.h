@@ -4,22 +4,22 @@
 #include <cmath>
 #include <type_traits>
 
-// Arithmetic that residuals share, for double, ceres::Jet and vectors of
+// Arithmetic shared by the residuals, for double, ceres::Jet, vectors of
 // doubles (core/util/vector_lanes.h) and mixes of them. Always inlined: GCC's
-// budget for it ends within costs/cost_factory.cc, and a call here makes a
-// whole solve slower by half. What else is called gives results by pointer: how
-// vectors are returned depends on the instruction set.
+// inlining budget runs out within costs/cost_factory.cc, and a call here makes
+// a whole solve slower by half. Other functions return results through
+// pointers: how vectors are returned depends on the instruction set.
 
 namespace rgbd_pose {
 
-// They return vectors, but are always inlined, so that no rule of how to return
-// one applies. Not restored below: what calls them is warned of, too.
+// The functions below return vectors. As they are always inlined, no calling
+// convention applies. The warning stays off: their callers would get it, too.
 #pragma GCC diagnostic ignored "-Wpsabi"
 
-// The usual functions for all scalars. A residual outside this namespace says
-// `using rgbd_pose::log;` as others say `using std::log;`: a vector of doubles
-// belongs to no namespace in which a compiler would look by itself (a Jet
-// does).
+// The standard functions for all scalar types. A residual outside this
+// namespace writes `using rgbd_pose::log;` instead of `using std::log;`:
+// argument-dependent lookup does not find functions for a vector of doubles,
+// which belongs to no namespace (it does for a Jet).
 template <typename T>
 constexpr bool kIsLanes = !std::is_arithmetic_v<T> && !std::is_class_v<T>;
 
@@ -47,8 +47,8 @@ RGBD_POSE_LANE_FUNCTION(atan)
 RGBD_POSE_LANE_FUNCTION(tanh)
 #undef RGBD_POSE_LANE_FUNCTION
 
-// Of two arguments, of which one may be a number for all lanes (or for a Jet,
-// where Ceres leaves that out). NOLINTBEGIN(bugprone-macro-parentheses)
+// Functions of two arguments, one of which may be a number for all lanes (or
+// for a Jet, where Ceres lacks this). NOLINTBEGIN(bugprone-macro-parentheses)
 #define RGBD_POSE_LANE_FUNCTION(f, mixes)                       \
   using std::f;                                                 \
   template <typename T, std::enable_if_t<kIsLanes<T>, int> = 0> \
@@ -74,7 +74,7 @@ RGBD_POSE_LANE_FUNCTION(atan2, kIsNoNumber)
 RGBD_POSE_LANE_FUNCTION(hypot, kIsNoNumber)
 #undef RGBD_POSE_LANE_FUNCTION  // NOLINTEND(bugprone-macro-parentheses)
 
-// x where it exceeds `lowest`, else `lowest`, lane by lane.
+// The larger of x and `lowest`, lane by lane.
 template <typename T>
 [[gnu::always_inline]] inline void Max(const T& x, double lowest, T* result) {
   const T limit = T{} + lowest;

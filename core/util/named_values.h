@@ -11,7 +11,7 @@
 
 namespace rgbd_pose {
 
-// A row of a table that gives values names.
+// A row of a table that assigns names to values.
 template <typename Value>
 struct Named {
   const char* name;
@@ -31,7 +31,7 @@ inline InputError UnknownName(const std::string& what, const std::string& name,
                     Join(names));
 }
 
-// The row of that name; null: there is none.
+// Returns the row with this name, or null if there is none.
 template <typename Rows>
 auto FindNamed(const Rows& rows, std::string_view name) {
   const auto row = std::find_if(std::begin(rows), std::end(rows),
@@ -39,7 +39,7 @@ auto FindNamed(const Rows& rows, std::string_view name) {
   return row == std::end(rows) ? nullptr : &*row;
 }
 
-// The row of that name. Throws InputError listing the names there are.
+// Returns the row with this name. Throws InputError with all known names.
 template <typename Rows>
 const auto& RowOf(const Rows& rows, const std::string& what,
                   std::string_view name) {
@@ -47,7 +47,7 @@ const auto& RowOf(const Rows& rows, const std::string& what,
   throw UnknownName(what, std::string(name), NamesOf(rows));
 }
 
-// The same, of one of Named.
+// As RowOf, but returns the value of a Named row.
 template <typename Rows>
 auto ValueOf(const Rows& rows, const std::string& what, std::string_view name) {
   return RowOf(rows, what, name).value;

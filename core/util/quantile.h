@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 
 // The value below which `share` (0 to 1) of the values lie, interpolated
-// between two of them; NaN of none. Changes their order.
+// between two values; NaN if there are none. Reorders the values.
 inline double QuantileInPlace(std::vector<double>* values, double share) {
   if (values->empty()) return std::numeric_limits<double>::quiet_NaN();
   const double place = share * static_cast<double>(values->size() - 1);
@@ -28,8 +28,8 @@ inline double Median(const std::vector<double>& values) {
   return Quantile(values, 0.5);
 }
 
-// One of the values: the upper of the two in the middle if their number is
-// even; there must be one. Changes their order.
+// The median without interpolation: the upper of the two middle values if their
+// number is even. Requires at least one value. Reorders the values.
 inline double UpperMedian(std::vector<double>* values) {
   const auto middle = values->begin() + values->size() / 2;
   std::nth_element(values->begin(), middle, values->end());

@@ -4,7 +4,7 @@
 
 namespace rgbd_pose {
 
-// Adds the time it lives (ms) to a sum.
+// Adds the lifetime of this object (ms) to a sum.
 class StageTimer {
  public:
   explicit StageTimer(double* sum_ms) : sum_ms_(sum_ms) {}

@@ -37,7 +37,7 @@ std::vector<std::string> SplitWords(std::string_view line) {
   return words;
 }
 
-// "(No space left on device)"; of the last call that failed.
+// Reason of the last failed call, as "(No space left on device)".
 std::string Reason() {
   return "(" + std::generic_category().message(errno) + ")";
 }
@@ -173,7 +173,7 @@ void WriteFileAtomically(const std::string& path, std::string_view content,
 
 void SyncFolder(const std::string& path) {
   const int folder = open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  // Some network file systems keep names by themselves, and say EINVAL.
+  // Some network file systems persist names by themselves and return EINVAL.
   const bool is_done = folder >= 0 && (fsync(folder) == 0 || errno == EINVAL);
   const std::string reason = is_done ? "" : Reason();
   if (folder >= 0) close(folder);

@@ -7,65 +7,65 @@
 
 namespace rgbd_pose {
 
-// One data line of a text table: what is left after comments are taken out.
+// One data line of a text table, without comments.
 struct TextLine {
   int number = 0;  // 1-based, for messages
   std::vector<std::string> words;
 };
 
-// The data lines of a text file with columns set apart by white space or
-// commas: comments ('#' to the end of the line), empty lines, carriage returns
-// and a byte order mark are taken out. Throws InputError if it cannot be read.
+// The data lines of a text file with columns separated by white space or
+// commas. Comments ('#' to the end of the line), empty lines, carriage returns
+// and a byte order mark are skipped. Throws InputError if it cannot be read.
 std::vector<TextLine> ReadTextTable(const std::string& path);
 
-// The same of a file's content.
+// The same for the content of a file.
 std::vector<TextLine> SplitTextTable(std::string_view content);
 
-// A text without the byte order mark that some editors put before it.
+// The text without the byte order mark that some editors put before it.
 std::string_view WithoutByteOrderMark(std::string_view text);
 
-// The parts of a text between separators; one at least, which may be empty.
+// The parts of a text between separators: at least one, possibly empty.
 std::vector<std::string> SplitText(std::string_view text, char separator);
 
 // Names as a list for a message: "a, b, c".
 std::string Join(const std::vector<std::string>& names);
 
-// A finite number, the whole word, independent of the locale; throws
-// InputError naming file, line and `what` otherwise.
+// A finite number that takes up the whole word, independent of the locale.
+// Otherwise throws InputError with the file, the line and `what`.
 double ParseNumber(std::string_view word, const std::string& path, int line,
                    std::string_view what);
 
-// A time stamp in seconds: as ParseNumber, and no number of milli- or
+// A timestamp in seconds. As ParseNumber, but also rejects times in milli- or
 // nanoseconds since 1970.
 double ParseTimestamp(std::string_view word, const std::string& path, int line);
 
-// Whether there is a file or folder of that name; no, too, if that cannot be
-// found out.
+// Whether the file or folder exists; false, too, if this cannot be determined.
 bool PathExists(const std::filesystem::path& path);
 
 // The whole content of a file. Throws InputError if it cannot be read.
 std::string ReadTextFile(const std::string& path);
 
-// What a file that is being written survives: the old one or the new is there.
+// What a file survives while it is being written: afterwards either the old or
+// the new content is there.
 enum class Durability {
-  kCrash,      // of the program
-  kPowerLoss,  // too: its bytes are on the disk before it takes its name
+  kCrash,      // a crash of the program
+  kPowerLoss,  // also a power loss: data are on disk before the renaming
 };
 
-// Writes a file as a whole or not at all: first to TemporaryPath, then renamed.
-// Throws InputError if it cannot (folder missing, disk full).
+// Writes a file completely or not at all: first to TemporaryPath, then renamed.
+// Throws InputError on failure (folder missing, disk full).
 void WriteFileAtomically(const std::string& path, std::string_view content,
                          Durability durability = Durability::kCrash);
 
-// Where WriteFileAtomically writes a file until it is whole.
+// The path WriteFileAtomically writes to before it renames the file.
 std::string TemporaryPath(const std::string& path);
 
-// Has the names in a folder on the disk, new, changed and removed ones. Throws
-// InputError if it cannot.
+// Flushes new, changed and removed names in a folder to disk. Throws InputError
+// on failure.
 void SyncFolder(const std::string& path);
 
-// Throws InputError if WriteFileAtomically could not write the file: to be said
-// before the work rather than after it. Leaves everything as it was.
+// Throws InputError if WriteFileAtomically could not write the file, to report
+// this before a long computation and not after it. Changes nothing.
 void RequireWritable(const std::string& path);
 
 }  // namespace rgbd_pose

@@ -9,11 +9,11 @@
 namespace rgbd_pose {
 
 // A 64-bit hash of texts or bytes, the same on every platform: FNV-1a (Fowler,
-// Noll & Vo). It distinguishes what differs by accident, not by malice; one
-// changed byte always changes it.
+// Noll & Vo). It detects accidental, not malicious, differences; changing one
+// byte always changes the hash.
 class TextHash {
  public:
-  // Adds a text and that it ends here: "a" and "bc" are not "ab" and "c".
+  // Adds a text and its length: "a", "bc" differ from "ab", "c".
   void Add(std::string_view text) {
     uint64_t state = state_;
     for (const char c : text) state = AddByte(state, static_cast<uint8_t>(c));

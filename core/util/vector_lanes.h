@@ -1,8 +1,8 @@
 #pragma once
 
-// Vectors of doubles by the compiler's own types (GCC, Clang) and the choice of
-// the instruction set at run time, so that a build for any x86-64 uses AVX-512
-// or AVX2 where the machine has it.
+// Vectors of doubles as compiler extensions (GCC, Clang), with the instruction
+// set chosen at run time: a build for any x86-64 uses AVX-512 or AVX2 if
+// available.
 
 namespace rgbd_pose {
 
@@ -18,9 +18,9 @@ struct Lanes {
 
 namespace packed {
 
-// flatten: everything below is compiled for the instruction set here and only
-// here, so no function that the rest of the program shares is. With GCC's
-// sanitizers that takes many minutes: there only the kernel itself is.
+// flatten inlines all calls. Only these copies are compiled for the instruction
+// set, and no function shared with the rest of the program is. With GCC's
+// sanitizers this takes many minutes; there it is limited to the kernel itself.
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
 #define RGBD_POSE_TARGET(set) [[gnu::target(set)]]
 #else
@@ -48,8 +48,8 @@ void RunBaseline(Args... args) {
 
 enum class InstructionSet { kBaseline, kAvx2, kAvx512 };
 
-// What kernels are run with: the best the machine has, unless a benchmark or a
-// test sets less while none runs.
+// The instruction set kernels run with: the best one the machine has. A
+// benchmark or a test may set a lower one while no kernel runs.
 inline InstructionSet& ChosenInstructionSet() {
   static InstructionSet chosen = [] {
     if (__builtin_cpu_supports("avx512f") &&
@@ -68,7 +68,7 @@ inline InstructionSet& ChosenInstructionSet() {
 
 #endif
 
-// Calls Kernel::Run<W>(args...) with the widest W the machine has.
+// Calls Kernel::Run<W>(args...) with the widest W the machine supports.
 template <typename Kernel, typename... Args>
 void RunVectorised(const Args&... args) {
 #if defined(__x86_64__)

@@ -15,23 +15,22 @@
 
 namespace rgbd_pose {
 
-// Has the calling thread, and those it starts, go after the other threads of
-// the program where cores are short: for work that nobody waits for yet. Does
-// nothing but on Linux, where threads have priorities of their own.
+// Lowers the priority of the calling thread, and of the threads it starts,
+// below the other threads of the program: for work that nobody waits for yet.
+// Has an effect only on Linux, where each thread has its own priority.
 inline void LowerThreadPriority() {
 #ifdef __linux__
-  constexpr int kSteps = 5;  // a third of the time of an equal
+  constexpr int kSteps = 5;  // a third of the time of an equal thread
   setpriority(PRIO_PROCESS, 0, getpriority(PRIO_PROCESS, 0) + kSteps);
 #endif
 }
 
-// One thread that does what it is given, in that order, and gives way to those
-// that give it.
+// A thread of low priority that executes tasks in the order of submission.
 class Worker {
  public:
   Worker() : thread_([this] { Work(); }) {}
 
-  // Finishes the task at hand and leaves the others.
+  // Finishes the running task and discards the others.
   ~Worker() {
     {
       const std::lock_guard<std::mutex> lock(mutex_);
@@ -43,7 +42,7 @@ class Worker {
   Worker(const Worker&) = delete;
   Worker& operator=(const Worker&) = delete;
 
-  // What the task returns, or throws, by the future.
+  // The future returns the result of the task or throws its exception.
   template <typename Task>
   auto Submit(Task task) -> std::future<decltype(task())> {
     auto packaged = std::make_shared<std::packaged_task<decltype(task())()>>(
@@ -73,7 +72,7 @@ class Worker {
     }
   }
 
-  std::mutex mutex_;  // of all that follows
+  std::mutex mutex_;  // guards all members below
   std::condition_variable changed_;
   std::deque<std::function<void()>> tasks_;
   bool is_over_ = false;
