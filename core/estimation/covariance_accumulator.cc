@@ -18,7 +18,7 @@ constexpr int kMinBlocksForScatter = 30;
 constexpr double kMinSlope = 0.2;
 
 // Factor by which the spurious information may exceed its model: depths are
-// quantised, and slopes of surfaces seen at an angle are noisier.
+// quantised, which makes slopes of surfaces seen at an angle noisier.
 constexpr double kSpuriousCostMargin = 6.0;
 
 // Measurements are rounded: depths of 1 to 4 m to 0.2 or 1 mm and corners to a

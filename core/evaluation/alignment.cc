@@ -18,7 +18,8 @@ constexpr double kLeastSpread = 1e-18;  // m^2 per pair: a spread of 1 nm
 
 constexpr double kMaxScaleError = 0.1;
 
-// A scale that explains a smaller share of the error is due to chance.
+// A scale is reported only if the residual with it is at most this share of the
+// error without it. Otherwise the scale may be due to chance.
 constexpr double kExplained = 0.5;
 
 // Paths whose residual exceeds this share of the true spread belong to

@@ -14,11 +14,12 @@ namespace rgbd_pose {
 //
 // If the positions in one of the two lists coincide or lie on one line,
 // rotations remain free. Among these, the one that best aligns the orientations
-// of the first pair is chosen; the least squares stay the same.
+// of the first pair is chosen; the sum of squares stays the same.
 Rigid3d AlignRigidly(const std::vector<PosePair>& pairs);
 
-// Similarity of a path to the truth, apart from its size: a wrong depth scale
-// or focal length changes the size but not the shape, a wrong file both.
+// Similarity of a path to the truth, apart from its size. A wrong depth scale
+// or focal length changes the size but not the shape; a wrong file changes
+// both.
 struct Sim3Alignment {
   // The scale factor that fits the estimate best to the truth; 1 if the
   // estimate does not move.

@@ -51,8 +51,8 @@ std::string TimeRange(const std::vector<double>& times) {
 
 }  // namespace
 
-// Any entry between the two entries of a pair is closer to one of them; hence
-// the closest pair always consists of neighbours in time. After removing it,
+// Any entry between the two entries of a pair is nearer to one of them; hence
+// the nearest pair always consists of neighbours in time. After removing it,
 // the entries around it are neighbours.
 std::vector<IndexPair> Associate(const std::vector<double>& first,
                                  const std::vector<double>& second,

@@ -8,7 +8,7 @@
 
 namespace rgbd_pose {
 
-// Two matching entries of two lists with timestamps.
+// A pair of entries, one from each of two lists with timestamps.
 struct IndexPair {
   int first = 0;   // index in the first list
   int second = 0;  // index in the second list
@@ -32,7 +32,7 @@ struct PosePair {
   Rigid3d estimate;        // estimate_world_from_cam
 };
 
-// The timestamps of a list.
+// The timestamps of the entries of a list.
 template <typename Stamped>
 std::vector<double> TimesOf(const std::vector<Stamped>& list) {
   std::vector<double> times;

@@ -32,12 +32,12 @@ Consistency Judge(const std::vector<RelativePose>& edges,
   Consistency result;
   std::vector<double> shares;
   for (const RelativePose& edge : edges) {
-    if (edge.covariance.isZero(0.0)) continue;  // not judged
+    if (edge.covariance.isZero(0.0)) continue;  // no covariance
     const std::optional<Rigid3d> ref = path.At(times[edge.ref]);
     const std::optional<Rigid3d> cur = path.At(times[edge.cur]);
     if (!ref.has_value() || !cur.has_value()) continue;
     const double chi_square = ChiSquare(edge, cur->Inverse() * *ref, noise);
-    // Written to count invalid covariances (NaN) as wrong, too.
+    // Negated to count invalid covariances (NaN) as wrong, too.
     result.wrong += !(chi_square >= 0.0 && chi_square <= kWrongChiSquare);
     shares.push_back(chi_square / kDegreesOfFreedom);
     result.nees += shares.back();

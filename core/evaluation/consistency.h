@@ -14,9 +14,9 @@ struct TruthNoise {
 };
 
 // Squared error of an edge, [omega C] as in MotionEstimate, in units of its
-// covariance plus `noise`. Follows chi^2 with 6 degrees of freedom if the
-// covariance is correct: the mean is 6, and 0.3 of a million edges exceed
-// kWrongChiSquare, which is equivalent to five sigmas of one degree of freedom.
+// covariance plus `noise`. If the covariance is correct, the result follows
+// chi^2 with 6 degrees of freedom: the mean is 6, and 0.3 in a million edges
+// exceed kWrongChiSquare, as many as exceed five sigmas in one dimension.
 double ChiSquare(const RelativePose& edge, const Rigid3d& true_cur_from_ref,
                  const TruthNoise& noise);
 
@@ -39,8 +39,8 @@ struct RunConsistency {
   Consistency edges;       // all motions, also of other frames
 };
 
-// For edges with covariances between frames at `times` (s, by index). Edges
-// without interpolated truth at both frames are skipped.
+// Judges edges by the truth, interpolated at the `times` (s, by index) of their
+// frames. Edges without a covariance or without the truth are skipped.
 Consistency Judge(const std::vector<RelativePose>& edges,
                   const std::vector<double>& times, const Trajectory& truth,
                   const TruthNoise& noise);

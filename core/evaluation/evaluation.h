@@ -16,7 +16,7 @@ namespace rgbd_pose {
 // How a trajectory is compared with the ground truth.
 struct EvaluationOptions {
   // Poses are paired if their timestamps differ by at most this (s). The
-  // interval of a relative error may deviate by the same amount.
+  // interval of a relative error in time may be off by the same amount.
   double max_time_difference = 0.02;
 
   // The intervals of the relative pose errors: in time (s) and along the path
@@ -71,15 +71,15 @@ struct EvaluationReport {
   // that has a counterpart j is a start:
   RelativePoseError rpe_frame;    // j is the next paired pose
   RelativePoseError rpe_seconds;  // j is nearest to rpe_delta_seconds later
-  RelativePoseError rpe_metres;   // j is the first rpe_delta_metres or more on
+  RelativePoseError rpe_metres;   // j: first pose at least rpe_delta_metres on
 
   // Errors over options.rpe_frames, in this order.
   std::vector<RelativePoseError> rpe_frames;
 
-  // E from the first to the last paired pose; empty if there is only one.
+  // Error of the last pose relative to the first; empty if there is only one.
   std::optional<FinalPoseError> final_pose;
 
-  // ATE and RPE with the best-fitting clock and body fixing of the truth.
+  // ATE and RPE with the best-fitting time shift and fixing of the truth.
   TruthAlignment truth_alignment;
 
   // Consistency of a run's motions with their covariances, if it has any.

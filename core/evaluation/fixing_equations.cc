@@ -53,7 +53,8 @@ constexpr double kMinPlaceSigma = 1e-5;     // m
 // sqrt(6) for Gaussian ones.
 constexpr double kTukeyWidth = 7.0;
 
-// Maximum reach of correlations, in motions and as a share of the duration.
+// Maximum reach of correlations over time, in durations of a motion and as a
+// share of the whole time.
 constexpr double kMaxReachMotions = 5.0;
 constexpr double kMaxReachShare = 0.1;
 
@@ -109,7 +110,6 @@ TruthFixing FixingAt(const FixingVector& x) {
 std::vector<std::string> NameFixingDirections(
     const Eigen::Matrix<double, 7, Eigen::Dynamic>& directions) {
   std::vector<std::string> names;
-  // A block of a matrix without memory is undefined behaviour.
   if (directions.cols() == 0) return names;
   if (directions.row(0).squaredNorm() > kNamedShare) {
     names.emplace_back("time shift");
@@ -179,9 +179,9 @@ FixingDirections FixingEquations::Determined(double limit, double min_agreement,
   return directions.leftCols(determined);
 }
 
-// Correlations decrease with time: Newey and West (Econometrica 55, 1987). They
-// must cover more than the duration of a motion, since an error of the pose
-// between two motions has opposite signs in them, but not so much that only few
+// Weights correlations down with time (Newey and West, Econometrica 55, 1987).
+// The reach must exceed the duration of a motion, since an error of the pose
+// between two motions has opposite signs in them, but not so far that only few
 // independent spans are left.
 FixingMatrix FixingEquations::GradientCovariance() const {
   const double seconds = rows_.back().start - rows_.front().start;

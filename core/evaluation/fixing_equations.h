@@ -9,8 +9,8 @@
 
 namespace rgbd_pose {
 
-// Relation between truth and estimate: the difference of the clocks, and the
-// pose of the body that the truth tracks relative to the camera.
+// How the truth relates to the estimate: the time shift between the clocks, and
+// the pose of the tracked body relative to the camera.
 struct TruthFixing {
   // s; time t of the estimate is time t + shift of the truth.
   double shift = 0.0;
@@ -36,7 +36,8 @@ TruthFixing FixingAt(const FixingVector& x);
 std::vector<std::string> NameFixingDirections(
     const Eigen::Matrix<double, 7, Eigen::Dynamic>& directions);
 
-// The same camera motion by the estimate and by the truth with some fixing.
+// The same camera motion according to the estimate and to the truth, the latter
+// for some fixing.
 struct ComparedMotion {
   double start = 0.0;  // s
   PoseChange estimate;
@@ -52,12 +53,12 @@ class FixingEquations {
   FixingEquations(const std::vector<ComparedMotion>& motions,
                   const Eigen::Vector3d& lever, double overlap);
 
-  // Number of motions that count, i.e. that are not far off.
+  // Number of motions used: all except outliers.
   int used() const { return static_cast<int>(rows_.size()); }
 
   const FixingMatrix& hessian() const { return hessian_; }
 
-  // Its sign: a small step towards the minimum is hessian^-1 gradient.
+  // A small step towards the minimum is hessian^-1 gradient.
   const FixingVector& gradient() const { return gradient_; }
 
   // Returns the directions that the motions determine to better than `limit`
@@ -69,8 +70,8 @@ class FixingEquations {
       double limit, double min_agreement,
       Eigen::Matrix<double, 7, Eigen::Dynamic>* rest) const;
 
-  // The covariance according to the differences themselves, which are
-  // correlated over time and vary in size.
+  // The covariance of the gradient, estimated from the differences themselves,
+  // which are correlated over time and vary in size.
   FixingMatrix GradientCovariance() const;
 
  private:

@@ -20,7 +20,7 @@ struct ErrorStatistics {
   double p99 = 0.0;  // 99 % of the errors are below it
 };
 
-// In the unit of the errors.
+// The statistics have the unit of the errors.
 ErrorStatistics Summarise(std::vector<double> errors);
 
 // Errors of motions between two poses i and j of the camera (Sturm 2012):
@@ -30,7 +30,7 @@ struct RelativePoseError {
   ErrorStatistics rotation;     // angle of E, rad
 };
 
-// Index of a pose in a list and of a later one.
+// Indices of a pose in a list and of a later one.
 using PoseInterval = std::pair<size_t, size_t>;
 
 // E of RelativePoseError.

@@ -26,8 +26,8 @@ Vector2d Distort(const Lens<double>& lens, const Vector2d& point) {
 }
 
 // The inverse of Distort; the result is arbitrary if there is none. Divides by
-// the radial factor instead of subtracting the shift, which contracts faster
-// for large k1.
+// the radial factor instead of subtracting the shift, since this contracts
+// faster for large k1.
 Vector2d InvertRational(const Lens<double>& lens, const Vector2d& distorted) {
   Vector2d point = distorted;
   for (int i = 0; i < kMaxIterations; ++i) {

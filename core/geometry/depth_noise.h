@@ -18,9 +18,9 @@ struct DepthNoiseModel {
   double quadratic = 0.0;  // 1/m
   double centre = 0.0;     // m
 
-  // Standard deviation of the mean of 3 x 3 neighbours, relative to the one of
-  // a single pixel: 1/3 if their errors are independent, 1 if they are equal. 1
-  // is assumed where nothing is known.
+  // Standard deviation of the mean of 3 x 3 neighbours, as a fraction of a
+  // single pixel's: 1/3 if their errors are independent, 1 if they are equal
+  // (assumed where nothing is known).
   double mean_share = 1.0;
 
   // The standard deviation (m) at a depth (m).

@@ -55,8 +55,9 @@ Eigen::Matrix<T, 3, 3> RotationFromAngles(const T* angles) {
 //
 //   R(x) = Rz Ry Rx(angles) R_origin,   C(x) = C_origin + [Cx Cy Cz]
 //
-// So dR/d(angle) is its Table 2.1 value times R_origin, and dC/dC stays I: the
-// tables hold unchanged. The identity as the origin gives the thesis' x.
+// So dR/d(angle) is the matrix of Table 2.1 times R_origin, and dC/dC stays I:
+// the tables hold unchanged. With the identity as the origin, x is as in the
+// thesis.
 class LinearizationPoint {
  public:
   // The motion at x = 0; the identity by default.

@@ -30,7 +30,8 @@ inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
 // target_from_source * point_in_source. Inner names cancel in products:
 // a_from_c = a_from_b * b_from_c. Translation in metres.
 struct Rigid3d {
-  // Rotates source axes into target axes; the source's origin in the target.
+  // Rotation of source axes into target axes, and the origin of the source in
+  // the target.
   Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
   Eigen::Vector3d translation = Eigen::Vector3d::Zero();
 

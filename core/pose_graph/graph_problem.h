@@ -94,16 +94,16 @@ class GraphProblem {
   std::unique_ptr<ceres::Problem> problem_;
 };
 
-// The functions below return why a graph cannot be solved as one line that
-// names poses by their numbers, or empty. Here: values that are not finite, or
-// an edge that does not connect two poses of the graph.
+// The functions below return one line on why a graph cannot be solved, which
+// names poses by their numbers, or an empty text. Here: values that are not
+// finite, or an edge that does not connect two poses of the graph.
 std::string FindBadInput(const GraphTerms& graph);
 
 // A pose with no connection to a fixed pose.
 std::string FindUnanchoredPose(const GraphTerms& graph);
 
 // A pose with a direction whose standard deviation exceeds the limit (rad or
-// m), with the other parameters held or estimated with it.
+// m), with the others held fixed or estimated with it.
 std::string FindUndetermined(const GraphTerms& graph,
                              double max_standard_deviation,
                              GraphProblem* problem);

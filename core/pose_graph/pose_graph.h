@@ -61,7 +61,7 @@ struct PoseGraphOptions {
   int max_iterations = 30;
 
   // A pose is not determined if some direction of it has a larger standard
-  // deviation (rad or m), with the other parameters held or estimated with it.
+  // deviation (rad or m). Other parameters are held fixed or estimated with it.
   double max_standard_deviation = 0.5;
 
   // Threads of the solver. Results are reproducible for a given number of
