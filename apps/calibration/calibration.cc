@@ -98,10 +98,9 @@ constexpr Group kGroups[] = {
 // compensate each other, or something other than the camera, do not improve the
 // fit of these pairs. `spread` is the factor by which errors may exceed the
 // scatter of the pairs.
-void TakeBackNeedless(const CalibrationViews& views,
-                      const CalibrationPrior& prior,
-                      const CalibrationVector& start, double spread,
-                      FreeParts* is_free, CalibrationState* state) {
+void ResetUnneeded(const CalibrationViews& views, const CalibrationPrior& prior,
+                   const CalibrationVector& start, double spread,
+                   FreeParts* is_free, CalibrationState* state) {
   constexpr int kNearby = 5;  // iterations; few, as the start is a solution
   const BundleAdjustment training(views, prior, true, kNearby);
   CalibrationState best = *state;
@@ -166,8 +165,8 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   CalibrationVector undone = CalibrationVector::Zero();
   const auto look_up = [&](const CalibrationVector& theta) {
     undone = theta;
-    LookUpDepthsAnew(map, ApplyCalibration(first, theta).camera, odometry,
-                     theta, threads, &data);
+    LookUpDepthsAgain(map, ApplyCalibration(first, theta).camera, odometry,
+                      theta, threads, &data);
   };
 
   // Solve for the training pairs (not held out) with both cameras.
@@ -192,9 +191,8 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   constexpr double kMaxSpread = 4.0;
   const double spread_of_all =
       SpreadOfHalves(SplitHalfConsistency(data.views, after, is_free, prior));
-  TakeBackNeedless(data.views, prior, start,
-                   std::clamp(spread_of_all, 1.0, kMaxSpread), &is_free,
-                   &after);
+  ResetUnneeded(data.views, prior, start,
+                std::clamp(spread_of_all, 1.0, kMaxSpread), &is_free, &after);
   if (IsDisplaced(after.theta - undone)) {
     look_up(after.theta);
     SolveWithScales(training, is_free, kRounds, &after);

@@ -64,14 +64,14 @@ Part PartOf(const CalibrationViews& all, const CalibrationState& found,
 }
 
 // The estimate of the parameters from one part.
-struct Told {
+struct PartEstimate {
   CalibrationVector theta;
   CalibrationVector variance;
 };
 
 // Returns nothing if the part does not determine the parameters.
-std::optional<Told> Calibrated(Part part, const FreeParts& is_free,
-                               const CalibrationPrior& prior) {
+std::optional<PartEstimate> Calibrated(Part part, const FreeParts& is_free,
+                                       const CalibrationPrior& prior) {
   if (part.views.views.size() < static_cast<size_t>(kMinViews)) return {};
   const BundleAdjustment problem(part.views, prior, false);
   if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
@@ -81,8 +81,8 @@ std::optional<Told> Calibrated(Part part, const FreeParts& is_free,
                           &sandwich_covariance)) {
     return {};
   }
-  return Told{part.state.theta, model_covariance.diagonal().cwiseMax(
-                                    sandwich_covariance.diagonal())};
+  return PartEstimate{part.state.theta, model_covariance.diagonal().cwiseMax(
+                                            sandwich_covariance.diagonal())};
 }
 
 }  // namespace
@@ -104,7 +104,7 @@ std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
     const FreeParts& is_free, const CalibrationPrior& prior) {
   const int all = static_cast<int>(views.world_from_cam.size());
-  std::array<std::optional<Told>, 2> halves;
+  std::array<std::optional<PartEstimate>, 2> halves;
   // One half after the other: in parallel, the order of additions would change.
   for (int half = 0; half < 2; ++half) {
     const int begin = half * (all / 2), end = half == 0 ? all / 2 : all;

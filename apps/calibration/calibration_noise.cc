@@ -117,15 +117,16 @@ void FitSigmas(const std::vector<DepthScatter>& scatter, double relative_error,
   }
   const Eigen::Matrix2d covariance = information.inverse();
   const Eigen::Vector2d both = covariance * right;
-  constexpr double kTold = 2.0;
-  const bool is_told[2] = {both[0] > kTold * std::sqrt(covariance(0, 0)),
-                           both[1] > kTold * std::sqrt(covariance(1, 1))};
-  if (is_told[0] && is_told[1]) {
+  constexpr double kMinSignificance = 2.0;
+  const bool is_significant[2] = {
+      both[0] > kMinSignificance * std::sqrt(covariance(0, 0)),
+      both[1] > kMinSignificance * std::sqrt(covariance(1, 1))};
+  if (is_significant[0] && is_significant[1]) {
     fit->model.constant = both[0];
     fit->model.quadratic = both[1];
     fit->constant_sigma = std::sqrt(covariance(0, 0));
     fit->quadratic_sigma = std::sqrt(covariance(1, 1));
-  } else if (is_told[0]) {
+  } else if (is_significant[0]) {
     fit->model.constant = right[0] / information(0, 0);
     fit->constant_sigma = 1.0 / std::sqrt(information(0, 0));
   } else {

@@ -89,8 +89,8 @@ std::vector<KnownDistance> Between(const CalibrationData& data,
       farthest.metres = *metres;
       farthest.sigma = std::hypot(sigma, share * *metres);
     }
-    constexpr double kTellsNothing = 0.05;  // m
-    if (farthest.metres > kTellsNothing) distances.push_back(farthest);
+    constexpr double kMinDistance = 0.05;  // m
+    if (farthest.metres > kMinDistance) distances.push_back(farthest);
   }
   return distances;
 }

@@ -37,9 +37,9 @@ struct Displacement {
 };
 
 // Looks up a depth again in an image in which a displacement has been undone.
-void LookUpAnew(const Frame& frame, const Camera& camera,
-                const DepthLookupOptions& options, double u, double v,
-                const Displacement& undone, MeasuredInverseDepth* depth) {
+void LookUpAgain(const Frame& frame, const Camera& camera,
+                 const DepthLookupOptions& options, double u, double v,
+                 const Displacement& undone, MeasuredInverseDepth* depth) {
   const Observation o = Observe(frame, camera, u, v, 1.0, options);
   MeasuredInverseDepth updated =
       MeasuredAt(frame, camera, o, {u, v}, options.noise);
@@ -150,10 +150,10 @@ double DisplacementPx(const CalibrationViews& views,
   return all.empty() ? 0.0 : Median(all);
 }
 
-void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
-                      const OdometrySettings& settings,
-                      const CalibrationVector& theta, int threads,
-                      CalibrationData* data) {
+void LookUpDepthsAgain(const KeyframeMap& map, const Camera& camera,
+                       const OdometrySettings& settings,
+                       const CalibrationVector& theta, int threads,
+                       CalibrationData* data) {
   FrontendOptions features = settings.features;
   features.camera = camera;
   const DepthLookupOptions options = features.DepthLookup();
@@ -183,12 +183,12 @@ void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
                             })
                       .clone();
     for (Landmark* landmark : landmarks[k]) {
-      LookUpAnew(frame, camera, options, landmark->u, landmark->v,
-                 moved_at(landmark->v), &landmark->depth);
+      LookUpAgain(frame, camera, options, landmark->u, landmark->v,
+                  moved_at(landmark->v), &landmark->depth);
     }
     for (LandmarkView* view : views[k]) {
-      LookUpAnew(frame, camera, options, view->u, view->v, moved_at(view->v),
-                 &view->depth);
+      LookUpAgain(frame, camera, options, view->u, view->v, moved_at(view->v),
+                  &view->depth);
     }
   });
 }

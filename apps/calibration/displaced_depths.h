@@ -26,10 +26,10 @@ double DisplacementPx(const CalibrationViews& views,
 // in the images of the keyframes and looks up all depths again. This corrects
 // large, non-linear displacements. `camera` is the current estimate of the
 // lens.
-void LookUpDepthsAnew(const KeyframeMap& map, const Camera& camera,
-                      const OdometrySettings& settings,
-                      const CalibrationVector& theta, int threads,
-                      CalibrationData* data);
+void LookUpDepthsAgain(const KeyframeMap& map, const Camera& camera,
+                       const OdometrySettings& settings,
+                       const CalibrationVector& theta, int threads,
+                       CalibrationData* data);
 
 // Returns the depth measurement for an observation at `pixel` (distorted). It
 // is invalid (inverse_sigma is 0) where the surface is not a plane.

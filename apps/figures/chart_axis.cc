@@ -17,31 +17,31 @@ AxisRange AxisRangeFinder::Found() const {
   return {low_ - room, high_ + room};
 }
 
-std::vector<AxisTic> LinearTics(const AxisRange& range) {
+std::vector<AxisTick> LinearTicks(const AxisRange& range) {
   const double power = std::pow(10.0, std::floor(std::log10(range.span())));
   const double step = range.span() < 1.5 * power   ? 0.2 * power
                       : range.span() < 3.5 * power ? 0.5 * power
                       : range.span() < 7.0 * power ? power
                                                    : 2.0 * power;
-  std::vector<AxisTic> tics;
+  std::vector<AxisTick> ticks;
   for (double i = std::ceil(range.low / step); i * step <= range.high; ++i) {
-    tics.push_back({i * step, i * step + 0.0});  // no -0
+    ticks.push_back({i * step, i * step + 0.0});  // no -0
   }
-  return tics;
+  return ticks;
 }
 
-std::vector<AxisTic> LogTics(const AxisRange& range) {
+std::vector<AxisTick> LogTicks(const AxisRange& range) {
   constexpr double kFewPowers = 2.5;
-  std::vector<AxisTic> tics;
+  std::vector<AxisTick> ticks;
   for (double power = std::floor(range.low); power <= range.high; ++power) {
     for (const double digit : {1.0, 2.0, 5.0}) {
       const double place = power + std::log10(digit);
       if (place < range.low || place > range.high) continue;
       if (digit > 1.0 && range.span() >= kFewPowers) continue;
-      tics.push_back({place, digit * std::pow(10.0, power)});
+      ticks.push_back({place, digit * std::pow(10.0, power)});
     }
   }
-  return tics;
+  return ticks;
 }
 
 std::vector<double> SpreadOut(const std::vector<double>& places,

@@ -26,16 +26,16 @@ class AxisRangeFinder {
 };
 
 // A tick. On a logarithmic axis, `place` is the decimal logarithm of `value`.
-struct AxisTic {
+struct AxisTick {
   double place = 0.0;
   double value = 0.0;
 };
 
 // Ticks at multiples of 1, 2 or 5 times a power of ten, about four to eight.
-std::vector<AxisTic> LinearTics(const AxisRange& range);
+std::vector<AxisTick> LinearTicks(const AxisRange& range);
 
 // Ticks at powers of ten, also at 2 and 5 times them if there are few.
-std::vector<AxisTic> LogTics(const AxisRange& range);
+std::vector<AxisTick> LogTicks(const AxisRange& range);
 
 // Moves sorted places apart to at least `distance`, with least-squares
 // displacements. Used for labels that would overlap.

@@ -175,20 +175,20 @@ class Drawing {
     FindRanges(panel);
     const int right = left_ + chart_.panel_width_px;
     const int lower = upper_ + chart_.panel_height_px;
-    for (const AxisTic& tic : LinearTics(ranges_.x)) {
-      const double x = PixelX(tic.place);
+    for (const AxisTick& tick : LinearTicks(ranges_.x)) {
+      const double x = PixelX(tick.place);
       text_ += Format("<path d=\"M%.1f %dV%d\" stroke=\"#ddd\"/>\n", x, upper_,
                       lower);
       text_ += Text(x, lower + 17, "text-anchor=\"middle\"",
-                    Format("%.4g", tic.value));
+                    Format("%.4g", tick.value));
     }
-    for (const AxisTic& tic :
-         panel.log_y ? LogTics(ranges_.y) : LinearTics(ranges_.y)) {
-      const double y = PixelY(tic.place);
+    for (const AxisTick& tick :
+         panel.log_y ? LogTicks(ranges_.y) : LinearTicks(ranges_.y)) {
+      const double y = PixelY(tick.place);
       text_ += Format("<path d=\"M%d %.1fH%d\" stroke=\"#ddd\"/>\n", left_, y,
                       right);
       text_ += Text(left_ - 6, y + 4, "text-anchor=\"end\"",
-                    Format("%.4g", tic.value));
+                    Format("%.4g", tick.value));
     }
     for (const ChartSeries& series : panel.series) DrawBand(panel, series);
     for (const ChartSeries& series : panel.series) DrawLine(panel, series);

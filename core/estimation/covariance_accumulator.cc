@@ -29,8 +29,8 @@ constexpr double kRounding = 0.05;
 // it is spurious get zero, not negative, information, since a covariance is
 // computed from the result.
 MotionMatrix LessSpurious(const MotionMatrix& hessian,
-                          const MotionMatrix& feigned) {
-  if (feigned.isZero() || !feigned.allFinite()) return hessian;
+                          const MotionMatrix& spurious) {
+  if (spurious.isZero() || !spurious.allFinite()) return hessian;
   MotionVector unit = hessian.diagonal();
   for (double& value : unit) value = value > 0.0 ? 1.0 / std::sqrt(value) : 1.0;
   constexpr double kSingular = 1e-12;
@@ -40,7 +40,7 @@ MotionMatrix LessSpurious(const MotionMatrix& hessian,
   if (llt.info() != Eigen::Success) return MotionMatrix::Zero();
   const MotionMatrix L = llt.matrixL();
   const MotionMatrix half =
-      llt.matrixL().solve(unit.asDiagonal() * feigned * unit.asDiagonal());
+      llt.matrixL().solve(unit.asDiagonal() * spurious * unit.asDiagonal());
   const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
       llt.matrixL().solve(half.transpose()));
   const MotionVector left =
@@ -151,21 +151,21 @@ NormalEquations CovarianceAccumulator::Linearise(
     const RobustTerm term = terms[i];
     NormalEquations share;
     term.cost.Linearise(motion, term.loss_or_null(), &share);
-    MotionMatrix feigned = MotionMatrix::Zero();
-    term.cost.AddSpuriousInformation(motion, &feigned);
+    MotionMatrix spurious = MotionMatrix::Zero();
+    term.cost.AddSpuriousInformation(motion, &spurious);
     // Residuals larger than their noise do not make slopes noisier.
     const double excess = std::max(1.0, term.scale);
     double times = kSpuriousCostMargin * term.cost.information_factor() /
                    (excess * excess);
     // An image without content does not even have noise to subtract.
     for (int k = 0; k < 6; ++k) {
-      if (times * feigned(k, k) > share.hessian(k, k)) {
-        times = share.hessian(k, k) / feigned(k, k);
+      if (times * spurious(k, k) > share.hessian(k, k)) {
+        times = share.hessian(k, k) / spurious(k, k);
       }
     }
     // The sum may be indefinite: then some direction is not determined.
-    shares_[i].hessian = LessSpurious(share.hessian, times * feigned);
-    share.hessian -= times * feigned;
+    shares_[i].hessian = LessSpurious(share.hessian, times * spurious);
+    share.hessian -= times * spurious;
     sum.hessian += share.hessian;
     sum.gradient += share.gradient;
     sum.cost += share.cost;

@@ -69,7 +69,7 @@ WeakDirection WeakestOf(const MotionMatrix& covariance, int first) {
 }  // namespace
 
 Degeneracy FindDegeneracy(const MotionMatrix& hessian,
-                          double feigned_information,
+                          double spurious_information,
                           double max_standard_deviation) {
   Degeneracy result;
   if (!hessian.allFinite()) {
@@ -100,7 +100,7 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   const WeakDirection translation = WeakestOf(covariance, 3);
   const double known = 1.0 / (rotation.deviation * rotation.deviation);
   const bool is_rotation = rotation.deviation > max_standard_deviation ||
-                           known < kSpuriousMargin * feigned_information;
+                           known < kSpuriousMargin * spurious_information;
   if (is_rotation || translation.deviation > max_standard_deviation) {
     const WeakDirection& weak = is_rotation ? rotation : translation;
     result.is_degenerate = true;
@@ -114,11 +114,11 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   return result;
 }
 
-void JudgeWeakestRotation(double share, double feigned_information,
+void JudgeWeakestRotation(double share, double spurious_information,
                           double max_standard_deviation, Degeneracy* result) {
   const double known = share * result->known_rotation;
   const double least = 1.0 / (max_standard_deviation * max_standard_deviation);
-  if (known >= std::max(least, kSpuriousMargin * feigned_information)) return;
+  if (known >= std::max(least, kSpuriousMargin * spurious_information)) return;
   result->is_degenerate = true;
   MotionVector rotation = result->weakest_rotation;
   rotation.tail<3>().setZero();  // in another unit
@@ -168,13 +168,13 @@ double SpuriousInformation(const Correspondences& matches,
   for (size_t i = 0; i < matches.size(); ++i) {
     const auto& [prev, cur] = matches[i];
     const Observation& o = prev.depth > 0.0 ? prev : cur;
-    double feigned = 1.0;  // without a depth there are only directions
+    double spurious = 1.0;  // without a depth there are only directions
     if (o.depth > 0.0) {
       const double along = o.sigma_depth * focal, across = o.depth * o.sigma_px;
       const double a = along * along, b = across * across;
-      feigned = (a * a + b * b) / (2.0 * a * b);
+      spurious = (a * a + b * b) / (2.0 * a * b);
     }
-    sum += weights.empty() ? feigned : weights[i] * feigned;
+    sum += weights.empty() ? spurious : weights[i] * spurious;
   }
   return sum;
 }

@@ -25,14 +25,14 @@ struct Degeneracy {
 // standard deviations of the rotation in rad and of the translation in m, each
 // in its own unit. The motion is degenerate if
 //  - a standard deviation exceeds `max_standard_deviation` (rad or m), or
-//  - the information on a rotation is below 3 times `feigned_information`
+//  - the information on a rotation is below 3 times `spurious_information`
 //    (rad^-2): noisy points on a line, say, "determine" the rotation about it.
 Degeneracy FindDegeneracy(const MotionMatrix& hessian,
-                          double feigned_information,
+                          double spurious_information,
                           double max_standard_deviation);
 
 // The same if only a share of the information on the weakest rotation counts.
-void JudgeWeakestRotation(double share, double feigned_information,
+void JudgeWeakestRotation(double share, double spurious_information,
                           double max_standard_deviation, Degeneracy* result);
 
 // The information on a rotation that the noise of the matches alone would

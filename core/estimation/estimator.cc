@@ -140,14 +140,14 @@ class Estimator::Impl {
     const NormalEquations sum = shares_.Linearise(terms_, motion);
     out_->initial_cost = terms_.Linearise(DerivativesAt(guess)).cost;
     out_->final_cost = sum.cost;
-    const double feigned = SpuriousInformation(*matches_, out_->weights);
+    const double spurious = SpuriousInformation(*matches_, out_->weights);
     Degeneracy degeneracy =
-        FindDegeneracy(sum.hessian, feigned, options_.max_standard_deviation);
+        FindDegeneracy(sum.hessian, spurious, options_.max_standard_deviation);
     if (!degeneracy.is_degenerate &&
         out_->num_inliers < kHardlyWrong * terms_.num_used()) {
       JudgeWeakestRotation(
           SupportedShare(*matches_, *out_, degeneracy.weakest_rotation),
-          feigned, options_.max_standard_deviation, &degeneracy);
+          spurious, options_.max_standard_deviation, &degeneracy);
     }
     if (degeneracy.is_degenerate) {
       out_->status = EstimateStatus::kDegenerate;

@@ -28,8 +28,8 @@ constexpr double kMedianSquare = 5.35;
 constexpr double kLargestSquare = 22.46;
 
 // Minimum number of pairs to fit the proportional error, and its maximum.
-constexpr int kMinPairsForSlack = 20;
-constexpr double kMaxSlack = 0.1;
+constexpr int kMinPairsForProportionalError = 20;
+constexpr double kMaxProportionalError = 0.1;
 
 }  // namespace
 
@@ -87,8 +87,9 @@ void EdgeNoiseModel::FitProportionalError(
   proportional_error_ = 0.0;
   const auto found = std::count_if(pairs.begin(), pairs.end(),
                                    [](const auto& p) { return !p.is_tracked; });
-  if (found < kMinPairsForSlack || median(0.0) <= kMedianSquare) return;
-  double low = 0.0, high = kMaxSlack;
+  if (found < kMinPairsForProportionalError || median(0.0) <= kMedianSquare)
+    return;
+  double low = 0.0, high = kMaxProportionalError;
   for (int step = 0; step < 12; ++step) {
     const double middle = 0.5 * (low + high);
     (median(middle) > kMedianSquare ? low : high) = middle;

@@ -22,8 +22,8 @@ constexpr int kMaxDistance = 50;
 constexpr size_t kMeanLoad = 2;
 constexpr int kMaxLoad = 32;
 
-constexpr int kEnd = -1;    // of a bucket's list
-constexpr int kIsOut = -2;  // not in the bucket, which was full
+constexpr int kEnd = -1;          // of a bucket's list
+constexpr int kNotInBucket = -2;  // not in the bucket, which was full
 
 void Require(const cv::Mat& descriptors) {
   if (!descriptors.empty() &&
@@ -94,7 +94,7 @@ void PlaceDatabase::Add(int keyframe, const cv::Mat& descriptors) {
       Table& table = tables_[word];
       Bucket& bucket = table.Of(entries[i].words[word]);
       const bool is_full = bucket.size >= kMaxLoad;
-      entries[i].next[word] = is_full ? kIsOut : bucket.first;
+      entries[i].next[word] = is_full ? kNotInBucket : bucket.first;
       if (!is_full) {
         bucket.first = block * kMaxDescriptors + static_cast<int>(i);
         ++bucket.size;
@@ -112,7 +112,7 @@ void PlaceDatabase::Remove(int keyframe) {
   for (size_t i = 0; i < entries.size(); ++i) {
     const int entry = block * kMaxDescriptors + static_cast<int>(i);
     for (int word = 0; word < kWords; ++word) {
-      if (entries[i].next[word] == kIsOut) continue;
+      if (entries[i].next[word] == kNotInBucket) continue;
       Bucket& bucket = tables_[word].Of(entries[i].words[word]);
       int* link = &bucket.first;
       while (*link != entry) link = &At(*link).next[word];

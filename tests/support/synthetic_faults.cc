@@ -61,7 +61,7 @@ Rigid3d FirstCamFromBox(double t) {
   return Rigid3d(Quaterniond(upright), centre);
 }
 
-bool Befalls(const Fault& fault, int source_index) {
+bool Affects(const Fault& fault, int source_index) {
   return source_index >= fault.first && source_index < fault.end;
 }
 
@@ -90,7 +90,7 @@ FaultyDataset::FaultyDataset(const SyntheticOptions& options,
   for (int i = 0; i < sound_.size(); ++i) {
     const bool arrives =
         std::none_of(faults_.begin(), faults_.end(), [i](const Fault& fault) {
-          return fault.kind == FaultKind::kThinned && Befalls(fault, i) &&
+          return fault.kind == FaultKind::kThinned && Affects(fault, i) &&
                  (i - fault.first) % kThinning != 0;
         });
     if (arrives) source_.push_back(i);
@@ -104,7 +104,7 @@ double FaultyDataset::timestamp(int index) const {
 const SyntheticDataset& FaultyDataset::Source(int source_index) const {
   const bool is_turned = std::any_of(
       faults_.begin(), faults_.end(), [source_index](const Fault& fault) {
-        return fault.kind == FaultKind::kTurned && Befalls(fault, source_index);
+        return fault.kind == FaultKind::kTurned && Affects(fault, source_index);
       });
   return is_turned ? turned_ : sound_;
 }
@@ -119,7 +119,7 @@ Frame FaultyDataset::Read(int index) const {
   frame.index = index;
   frame.color.release();  // faults are of gray and depth
   for (const Fault& fault : faults_) {
-    if (!Befalls(fault, source_index)) continue;
+    if (!Affects(fault, source_index)) continue;
     switch (fault.kind) {
       case FaultKind::kBlack:
         frame.gray.setTo(0);

@@ -68,7 +68,7 @@ TEST(BatchPlanTest, AShardHasWholeSequences) {
   EXPECT_TRUE(MakePlan(kSequences, grid, {4, 5}, "").empty());
 }
 
-TEST(BatchPlanTest, TheHashTellsAllButRepeats) {
+TEST(BatchPlanTest, TheHashDependsOnAllButRepeats) {
   const BatchGrid grid = ParseGrid({"epipolar", "huber,tukey", "klt,orb"}, 2);
   const auto plan = MakePlan(kSequences, grid, {}, "");
   const auto again = MakePlan(kSequences, grid, {}, "");

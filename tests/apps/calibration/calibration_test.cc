@@ -248,7 +248,7 @@ TEST(CalibrationTest, HalvesOfOneCameraAgree) {
   }
 }
 
-TEST(CalibrationTest, HalvesTellHowWideErrorBarsAre) {
+TEST(CalibrationTest, HalvesWidenErrorBars) {
   EXPECT_EQ(SpreadOfHalves({}), 0.0);
   EXPECT_DOUBLE_EQ(
       SpreadOfHalves({{kCx, 320.0, 321.0, 1.0}, {kFx, 520.0, 534.0, 2.0}}),

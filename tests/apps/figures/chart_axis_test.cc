@@ -14,9 +14,9 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 using testing::Pointwise;
 
-std::vector<double> ValuesOf(const std::vector<AxisTic>& tics) {
+std::vector<double> ValuesOf(const std::vector<AxisTick>& ticks) {
   std::vector<double> values;
-  for (const AxisTic& tic : tics) values.push_back(tic.value);
+  for (const AxisTick& tick : ticks) values.push_back(tick.value);
   return values;
 }
 
@@ -38,20 +38,20 @@ TEST(ChartAxisTest, ARangeOfOneOrNoValueIsWide) {
 }
 
 TEST(ChartAxisTest, LinearTicsAreRoundNumbers) {
-  EXPECT_THAT(ValuesOf(LinearTics({-0.1, 1.01})),
+  EXPECT_THAT(ValuesOf(LinearTicks({-0.1, 1.01})),
               Pointwise(DoubleNear(1e-12), {0.0, 0.2, 0.4, 0.6, 0.8, 1.0}));
   EXPECT_THAT(
-      ValuesOf(LinearTics({-21.0, 39.0})),
+      ValuesOf(LinearTicks({-21.0, 39.0})),
       Pointwise(DoubleNear(1e-12), {-20.0, -10.0, 0.0, 10.0, 20.0, 30.0}));
 }
 
 TEST(ChartAxisTest, LogTicsGetFewerOnALongAxis) {
-  EXPECT_THAT(ValuesOf(LogTics({-0.5, 1.2})),
+  EXPECT_THAT(ValuesOf(LogTicks({-0.5, 1.2})),
               Pointwise(DoubleNear(1e-12), {0.5, 1.0, 2.0, 5.0, 10.0}));
-  EXPECT_THAT(ValuesOf(LogTics({-0.5, 3.2})),
+  EXPECT_THAT(ValuesOf(LogTicks({-0.5, 3.2})),
               Pointwise(DoubleNear(1e-12), {1.0, 10.0, 100.0, 1000.0}));
-  for (const AxisTic& tic : LogTics({-0.5, 1.2})) {
-    EXPECT_DOUBLE_EQ(tic.place, std::log10(tic.value));
+  for (const AxisTick& tick : LogTicks({-0.5, 1.2})) {
+    EXPECT_DOUBLE_EQ(tick.place, std::log10(tick.value));
   }
 }
 

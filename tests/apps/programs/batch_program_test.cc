@@ -212,7 +212,7 @@ TEST_F(BatchProgramTest, RunsThePlanAndWhatIsMissingOfItLater) {
   EXPECT_EQ(CountLines(Run(Call("runs") + " --resume").err), 4);
 }
 
-TEST_F(BatchProgramTest, AChangedProgramMakesItsRunsAnew) {
+TEST_F(BatchProgramTest, AChangedProgramRepeatsItsRuns) {
   const std::string call = kBatch + " --sequences=" + (folder_ / "list.txt") +
                            " --output=" + (folder_ / "runs") + FakeProgram();
   ASSERT_EQ(Run(call).exit_code, 0);

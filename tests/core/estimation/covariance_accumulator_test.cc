@@ -23,7 +23,7 @@ constexpr double kMargin = 6.0;
 
 struct MadeUp {
   MotionMatrix hessian = MotionMatrix::Identity();
-  MotionMatrix feigned = MotionMatrix::Zero();
+  MotionMatrix spurious = MotionMatrix::Zero();
   double information = 1.0;
   int group = 0;
   int blocks = kBlocks;
@@ -77,7 +77,7 @@ class MadeUpCost final : public MotionCost {
                             MotionMatrix*) const override {}
   void AddSpuriousInformation(const MotionDerivatives&,
                               MotionMatrix* hessian) const override {
-    *hessian += given_.feigned;
+    *hessian += given_.spurious;
   }
   void AddTo(Assembly, const LinearizationPoint&, ceres::LossFunction*, double*,
              ceres::Problem*) override {}
@@ -150,14 +150,14 @@ TEST(RobustProblemTest, ScalesDoNotDependOnTheNumberOfResiduals) {
   }
 }
 
-TEST(CovarianceAccumulatorTest, TakesOffWhatIsFeigned) {
+TEST(CovarianceAccumulatorTest, SubtractsSpuriousInformation) {
   MadeUp cost;
   cost.hessian = SomeMatrix(1.0, 1000.0);
   cost.hessian.topRows<3>() *= 30.0;  // the units differ
   cost.hessian.leftCols<3>() *= 30.0;
-  cost.feigned = SomeMatrix(2.0, 5.0);
+  cost.spurious = SomeMatrix(2.0, 5.0);
   const Judged judged = JudgedOf({cost});
-  const MotionMatrix left = cost.hessian - kMargin * cost.feigned;
+  const MotionMatrix left = cost.hessian - kMargin * cost.spurious;
   EXPECT_TRUE(judged.sum.hessian.isApprox(left, 1e-9));
   EXPECT_TRUE(judged.sum.gradient.isApprox(MotionVector::LinSpaced(1.0, 6.0)));
   EXPECT_EQ(judged.sum.cost, 7.0);
@@ -167,14 +167,14 @@ TEST(CovarianceAccumulatorTest, TakesOffWhatIsFeigned) {
 
 // The information factor scales both terms. A larger scale of the residuals
 // does not increase the noise of slopes.
-TEST(CovarianceAccumulatorTest, FeignsByTheFactorAndTheScale) {
+TEST(CovarianceAccumulatorTest, SpuriousInformationFollowsFactorAndScale) {
   MadeUp cost;
   cost.hessian = SomeMatrix(1.0, 1000.0);
-  cost.feigned = SomeMatrix(2.0, 5.0);
+  cost.spurious = SomeMatrix(2.0, 5.0);
   cost.information = 0.5;
-  MotionMatrix left = 0.5 * (cost.hessian - kMargin * cost.feigned);
+  MotionMatrix left = 0.5 * (cost.hessian - kMargin * cost.spurious);
   EXPECT_TRUE(JudgedOf({cost}).sum.hessian.isApprox(left, 1e-9));
-  left = 0.5 / 4.0 * (cost.hessian - kMargin * cost.feigned);
+  left = 0.5 / 4.0 * (cost.hessian - kMargin * cost.spurious);
   EXPECT_TRUE(
       JudgedOf({cost}, /*is_doubled=*/true).sum.hessian.isApprox(left, 1e-9));
 }
@@ -183,25 +183,25 @@ TEST(CovarianceAccumulatorTest, FeignsByTheFactorAndTheScale) {
 // All directions are scaled by the same factor.
 TEST(CovarianceAccumulatorTest, TakesOffNoMoreThanThereIs) {
   MadeUp cost;
-  cost.feigned = 0.01 * MotionMatrix::Identity();
-  cost.feigned(4, 4) = 2.0;
-  const MotionMatrix left = cost.hessian - 0.5 * cost.feigned;
+  cost.spurious = 0.01 * MotionMatrix::Identity();
+  cost.spurious(4, 4) = 2.0;
+  const MotionMatrix left = cost.hessian - 0.5 * cost.spurious;
   EXPECT_TRUE(JudgedOf({cost}).sum.hessian.isApprox(left, 1e-12));
 }
 
 // A direction with only spurious information (6.84 of 4) needs another cost.
-TEST(CovarianceAccumulatorTest, WhatIsAllFeignedIsNoneAndNotLess) {
-  MadeUp feigned, right;
-  feigned.hessian(1, 1) = feigned.hessian(2, 2) = 4.0;
-  feigned.feigned.block<2, 2>(1, 1) << 3.6, 3.24, 3.24, 3.6;  // 0.36 and 6.84
-  feigned.feigned /= kMargin;
+TEST(CovarianceAccumulatorTest, InformationThatIsAllSpuriousIsZero) {
+  MadeUp spurious, right;
+  spurious.hessian(1, 1) = spurious.hessian(2, 2) = 4.0;
+  spurious.spurious.block<2, 2>(1, 1) << 3.6, 3.24, 3.24, 3.6;  // 0.36 and 6.84
+  spurious.spurious /= kMargin;
   right.hessian = 100.0 * MotionMatrix::Identity();
-  const Judged judged = JudgedOf({feigned, right});
+  const Judged judged = JudgedOf({spurious, right});
   EXPECT_TRUE(judged.sum.hessian.isApprox(
-      feigned.hessian + right.hessian - kMargin * feigned.feigned, 1e-9));
+      spurious.hessian + right.hessian - kMargin * spurious.spurious, 1e-9));
   const Eigen::Vector2d all(std::sqrt(0.5), std::sqrt(0.5));
   const Eigen::Vector2d little(std::sqrt(0.5), -std::sqrt(0.5));
-  MotionMatrix left = feigned.hessian + right.hessian;
+  MotionMatrix left = spurious.hessian + right.hessian;
   left.block<2, 2>(1, 1) -= 4.0 * all * all.transpose();  // 4.0 instead of 6.84
   left.block<2, 2>(1, 1) -= 0.36 * little * little.transpose();
   // Both costs have the same weight and together determine all six parameters:

@@ -72,7 +72,7 @@ TEST(DegeneracyTest, ADirectionThatIsKnownTooLittleIsNamed) {
 }
 
 // A rotation needs about three times the spurious information of noise.
-TEST(DegeneracyTest, ARotationThatNoiseFeignsIsNotKnown) {
+TEST(DegeneracyTest, ARotationFromNoiseIsNotKnown) {
   MotionMatrix hessian = 1e6 * MotionMatrix::Identity();
   hessian(1, 1) = 1e4;
   EXPECT_FALSE(FindDegeneracy(hessian, 0.3e4, kMaxDeviation).is_degenerate);
@@ -115,18 +115,18 @@ TEST(SpuriousInformationTest, IsTheLeverOfNoise) {
   seen.sigma_depth = 0.003;
   matches.Add(seen, seen);
   const double q = 0.003 * 0.003 / (0.0028 * 0.0028);
-  const double feigned = (q + 1.0 / q) / 2.0;
-  EXPECT_NEAR(SpuriousInformation(matches, {}), feigned, 1e-12);
+  const double spurious = (q + 1.0 / q) / 2.0;
+  EXPECT_NEAR(SpuriousInformation(matches, {}), spurious, 1e-12);
 
   // A missing depth is replaced by the other one; without both, the value is 1.
   Observation blind = seen;
   blind.depth = 0.0;
   matches.Add(blind, seen);
-  EXPECT_NEAR(SpuriousInformation(matches, {}), 2.0 * feigned, 1e-12);
+  EXPECT_NEAR(SpuriousInformation(matches, {}), 2.0 * spurious, 1e-12);
   matches.Add(blind, blind);
-  EXPECT_NEAR(SpuriousInformation(matches, {}), 2.0 * feigned + 1.0, 1e-12);
+  EXPECT_NEAR(SpuriousInformation(matches, {}), 2.0 * spurious + 1.0, 1e-12);
   EXPECT_NEAR(SpuriousInformation(matches, {0.5, 0.25, 0.125}),
-              0.75 * feigned + 0.125, 1e-12);
+              0.75 * spurious + 0.125, 1e-12);
 }
 
 }  // namespace

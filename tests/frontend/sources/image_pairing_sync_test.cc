@@ -58,7 +58,7 @@ TEST(ApproximateTimeSyncTest, SaysThatAStreamStalls) {
                    {"it: depth images came for 0.05 s"});
 }
 
-TEST(ApproximateTimeSyncTest, SaysThatAClockBeganAnew) {
+TEST(ApproximateTimeSyncTest, SaysThatAClockRestarted) {
   ApproximateTimeSync pairing(kMaxDifference, kPatience);
   Images images({Color(9.0), Depth(9.0), Color(0.0), Depth(0.0)});
   const auto read = [&] { return images(); };

@@ -44,7 +44,7 @@ struct Unlit : Photometric {
 // For each motion parameter: the root of the information obtained from noise
 // alone over the modelled spurious information.
 template <typename Residual>
-MotionVector DeterminedOverFeigned(bool is_of_measured_residuals) {
+MotionVector DeterminedOverSpurious(bool is_of_measured_residuals) {
   const DirectFrame prev = NoisyWall(1), cur = NoisyWall(2);
   FramePair pair;
   pair.prev = &prev.view;
@@ -63,36 +63,36 @@ MotionVector DeterminedOverFeigned(bool is_of_measured_residuals) {
       LinearizationPoint(turn).DerivativesAt(zero.data());
   NormalEquations sum;
   cost.Linearise(motion, nullptr, &sum);
-  MotionMatrix feigned = MotionMatrix::Zero();
-  cost.AddSpuriousInformation(motion, &feigned);
+  MotionMatrix spurious = MotionMatrix::Zero();
+  cost.AddSpuriousInformation(motion, &spurious);
   EXPECT_GT(cost.matches().size(), 1000u);
   const double variance =
       is_of_measured_residuals ? 2.0 * sum.cost / cost.matches().size() : 1.0;
-  return (sum.hessian.diagonal().cwiseQuotient(feigned.diagonal()) / variance)
+  return (sum.hessian.diagonal().cwiseQuotient(spurious.diagonal()) / variance)
       .cwiseSqrt();
 }
 
-TEST(FeignedByDirectCostsTest, GrayLevelsOfAWhiteWall) {
-  const MotionVector ratio = DeterminedOverFeigned<Unlit>(true);
+TEST(SpuriousInformationTest, GrayLevelsOfAWhiteWall) {
+  const MotionVector ratio = DeterminedOverSpurious<Unlit>(true);
   for (int k = 0; k < 6; ++k) EXPECT_NEAR(ratio[k], 1.0, 0.2) << k;
 }
 
 // A plane does not determine motions along it and rotations about its normal.
 template <typename Residual>
-void ExpectFeignedByAPlane() {
-  const MotionVector ratio = DeterminedOverFeigned<Residual>(false);
+void ExpectSpuriousOfAPlane() {
+  const MotionVector ratio = DeterminedOverSpurious<Residual>(false);
   for (const int k : {2, 3, 4}) {
     EXPECT_NEAR(ratio[k], 1.0, 0.1) << Residual::kName << " " << k;
   }
 }
 
-TEST(FeignedByDirectCostsTest, DepthsOfAPlane) {
-  ExpectFeignedByAPlane<ProjectivePlane>();
-  ExpectFeignedByAPlane<InverseDepth>();
+TEST(SpuriousInformationTest, DepthsOfAPlane) {
+  ExpectSpuriousOfAPlane<ProjectivePlane>();
+  ExpectSpuriousOfAPlane<InverseDepth>();
 }
 
 // A slope error rotates the plane about the measured point.
-TEST(FeignedByDirectCostsTest, APlaneKeepsItsPoint) {
+TEST(SpuriousInformationTest, APlaneKeepsItsPoint) {
   const DirectFrame cur = NoisyWall(1);
   DirectInput input;
   input.cur = &cur.view;
