@@ -24,40 +24,39 @@
 #include "robust/m_estimator.h"
 
 DEFINE_string(sequences, "",
-              "list of sequences, one a line: folder (or pattern) and maybe "
-              "camera (preset or YAML file; without: camera.yaml in it)");
+              "file with one sequence per line: a folder (or pattern), "
+              "optionally followed by a camera (preset or YAML file; default: "
+              "camera.yaml in the folder)");
 DEFINE_string(costs, rgbd_pose::kDefaultCost,
-              "costs, set apart by commas; a+b is one that adds up");
+              "costs, separated by commas; a+b adds costs");
 DEFINE_string(
     losses, "tukey",
-    "M-estimators, also with widths as huber(1.5), set apart by commas");
-DEFINE_string(frontends, "patch", "frontends, set apart by commas");
-DEFINE_string(trackers, "hybrid", "trackers, set apart by commas");
-DEFINE_string(parts, "",
-              "parts of each sequence, as --frames of the program takes them, "
-              "set apart by commas: 0-,3-,7- (other starts) or "
-              "0-299,300-599; each is a run, the table has their median and "
-              "range; empty: the whole sequence");
+    "M-estimators, separated by commas, optionally with widths: huber(1.5)");
+DEFINE_string(frontends, "patch", "frontends, separated by commas");
+DEFINE_string(trackers, "hybrid", "trackers, separated by commas");
+DEFINE_string(
+    parts, "",
+    "parts of each sequence in the format of --frames, separated by commas: "
+    "0-,3-,7- (different starts) or 0-299,300-599; each is a run, and the "
+    "table has their median and range; empty: the whole sequence");
 DEFINE_int32(repeats, 1,
-             "how often each combination is run: for times, all else is the "
-             "same");
+             "runs of each combination; only times differ between them");
 DEFINE_string(settings, "",
-              "flag file of the program for all runs; paths in it must be "
-              "absolute; empty: its defaults");
-DEFINE_string(output, "", "folder for the results, made if missing");
-DEFINE_bool(resume, false,
-            "run only what is missing, has failed or was made with other "
-            "settings or inputs");
-DEFINE_bool(merge, false,
-            "run nothing, only write the summary of what all shards have done");
+              "flag file for all runs of the program; paths in it must be "
+              "absolute; empty: default settings");
+DEFINE_string(output, "", "folder for the results, created if missing");
+DEFINE_bool(
+    resume, false,
+    "run only what is missing, failed, or had other settings or inputs");
+DEFINE_bool(merge, false, "run nothing, only write the summary of all shards");
 DEFINE_bool(dry_run, false, "run nothing, only print the plan");
-DEFINE_int32(jobs, 0, "runs at a time; 0: one for each core");
+DEFINE_int32(jobs, 0, "number of parallel runs; 0: one for each core");
 DEFINE_double(timeout, 0.0, "seconds after which a run is killed; 0: never");
 DEFINE_string(shard, "",
-              "i/n: only every n-th sequence, beginning with number i (from "
-              "0); empty: as the Slurm job array says, or all");
+              "i/n: only every n-th sequence, starting with sequence i (from "
+              "0); empty: from the Slurm job array, if any, else all");
 DEFINE_string(program, "",
-              "program to run for each item: name of one next to this one "
+              "program for each run: the name of one in the same folder "
               "(rgbd_slam) or a path; empty: rgbd_odometry");
 
 namespace rgbd_pose {
@@ -68,9 +67,9 @@ namespace fs = std::filesystem;
 ProgramInfo Info() {
   return {
       "rgbd_batch",
-      "runs rgbd_odometry, or rgbd_slam, on many sequences with many "
-      "settings, each run in a process and a folder of its own, and makes "
-      "one table of it.",
+      "runs rgbd_odometry or rgbd_slam on many sequences with many settings, "
+      "each run in its own process and folder, and writes one table of the "
+      "results.",
       "rgbd_batch --sequences=list.txt --losses=huber,tukey "
       "--parts=0-,3-,7- --output=runs",
       {{"Plan",

@@ -14,8 +14,8 @@
 #include "apps/shell/program.h"
 
 DEFINE_int32(threads, 0, "threads; 0: one for each core");
-DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
-DEFINE_string(output, "", "folder to make for the results");
+DEFINE_bool(report, true, "write OUTPUT/report.html");
+DEFINE_string(output, "", "folder to create for the results");
 
 namespace rgbd_pose {
 namespace {

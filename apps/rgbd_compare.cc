@@ -14,8 +14,8 @@
 #include "core/geometry/camera.h"
 #include "robust/m_estimator.h"
 
-DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
-DEFINE_string(output, "", "folder for the results, made if missing");
+DEFINE_bool(report, true, "write OUTPUT/report.html");
+DEFINE_string(output, "", "folder for the results, created if missing");
 
 namespace rgbd_pose {
 namespace {

@@ -11,7 +11,7 @@
 #include "apps/shell/progress_bar.h"
 #include "frontend/sources/tum_writer.h"
 
-DEFINE_string(output, "", "folder to make, in TUM RGB-D layout");
+DEFINE_string(output, "", "folder to create, in TUM RGB-D layout");
 DEFINE_int32(
     threads, 0,
     "threads that read and write images; 0: one for each core; the result "

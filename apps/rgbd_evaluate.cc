@@ -23,17 +23,16 @@
 
 DEFINE_string(estimate, "", "the estimated trajectory, as TUM text");
 DEFINE_string(run, "",
-              "folder of a run of rgbd_odometry or rgbd_slam, in place of "
-              "--estimate: its motions are compared with their covariances, "
-              "too");
+              "results folder of rgbd_odometry or rgbd_slam, instead of "
+              "--estimate: motions are also checked against their covariances");
 DEFINE_string(groundtruth, "", "the true trajectory, as TUM text");
 DEFINE_string(align, "rigid",
-              "what is done to the estimate before positions are compared: "
-              "rigid: turned and shifted to fit best; none: its world is that "
-              "of the ground truth, such as of poses in a map");
+              "alignment of the estimate before positions are compared: rigid: "
+              "best rotation and translation; none: it is already in the world "
+              "frame of the ground truth, such as poses in a map");
 DEFINE_double(max_time_difference,
               rgbd_pose::EvaluationOptions().max_time_difference,
-              "pair poses at most this far apart in time, in seconds");
+              "maximum time difference (s) of paired poses");
 DEFINE_double(rpe_delta_seconds,
               rgbd_pose::EvaluationOptions().rpe_delta_seconds,
               "interval of the relative pose error in time, in seconds");
@@ -52,15 +51,15 @@ DEFINE_double(
     "be off itself, when covariances are judged");
 DEFINE_bool(json, false, "print JSON instead of a table");
 DEFINE_string(aligned, "",
-              "write the estimate, moved by the alignment into the world of "
-              "the ground truth, to this file (TUM text; for plots)");
+              "write the estimate, aligned to the ground truth, to this file "
+              "(TUM text; for plots)");
 
 namespace rgbd_pose {
 namespace {
 
 ProgramInfo Info() {
   return {"rgbd_evaluate",
-          "judges an estimated trajectory against the ground truth.",
+          "evaluates an estimated trajectory against the ground truth.",
           "rgbd_evaluate --estimate=trajectory.txt "
           "--groundtruth=groundtruth.txt",
           {{"Input", {"estimate", "run", "groundtruth"}},

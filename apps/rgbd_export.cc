@@ -24,20 +24,18 @@ std::vector<Setting> Table(ExportSettings* settings) {
   ExportOptions* options = &settings->options;
   options->threads = 0;
   return {
-      {"run", kInput,
-       "folder that rgbd_odometry or rgbd_slam has written its results to",
+      {"run", kInput, "results folder of rgbd_odometry or rgbd_slam",
        Text(&settings->run)},
-      {"dataset", kInput,
-       "where the recording of the run is, if not where it was",
+      {"dataset", kInput, "recording of the run, if it was moved",
        Text(&settings->dataset)},
-      {"camera", kInput,
-       "where the camera file of the run is, if not where it was",
+      {"camera", kInput, "camera file of the run, if it was moved",
        Text(&settings->camera)},
       {"to", kOutput, "format", Text(&settings->to), ExportFormatNames()},
       {"output", kOutput,
-       "file or folder to write; empty: one in the folder of the run",
+       "file or folder to write; empty: a default name in the folder of the "
+       "run",
        Text(&options->output)},
-      {"overwrite", kOutput, "replace a folder that an export has written",
+      {"overwrite", kOutput, "replace a folder written by an earlier export",
        &options->overwrite},
       {"min_distance", kPart,
        "in formats with images a frame takes part if the camera has moved so "
@@ -69,7 +67,7 @@ std::vector<Setting> Table(ExportSettings* settings) {
 
 ProgramInfo Info(ExportSettings* settings) {
   return {"rgbd_export",
-          "writes what a run has found in the form that another tool takes.",
+          "exports the results of a run to the formats of other tools.",
           "rgbd_export --run=runs/fr1_room --to=mesh --output=room.glb",
           {},
           /*choices=*/{},

@@ -27,9 +27,8 @@ DEFINE_int32(
     "threads that read images ahead and track; 0: one for each core; the "
     "result does not depend on it");
 DEFINE_bool(validate_only, false,
-            "only read every image and say how fast that goes; needs no "
-            "--output");
-DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
+            "only read every image and print the speed; needs no --output");
+DEFINE_bool(report, true, "write OUTPUT/report.html");
 
 namespace rgbd_pose {
 namespace {

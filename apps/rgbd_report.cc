@@ -9,20 +9,20 @@
 #include "apps/shell/program.h"
 #include "core/util/input_error.h"
 
-DEFINE_string(run, "", "folder that rgbd_odometry has written its results to");
-DEFINE_string(batch, "",
-              "folder that rgbd_batch has written its summary.csv to; instead "
-              "of --run");
+DEFINE_string(run, "", "results folder of rgbd_odometry");
+DEFINE_string(
+    batch, "",
+    "results folder of rgbd_batch (with summary.csv); instead of --run");
 DEFINE_string(comparison, "",
-              "folder that rgbd_compare has written its results to; instead "
-              "of --run");
+              "results folder of rgbd_compare; instead of --run");
 
 namespace rgbd_pose {
 namespace {
 
 ProgramInfo Info() {
   return {"rgbd_report",
-          "writes report.html, a page to look at in a browser.",
+          "writes report.html, a page with the plots of a run, a batch or a "
+          "comparison.",
           "rgbd_report --run=runs/fr1_xyz",
           {{"Input", {"run", "batch", "comparison"}}}};
 }

@@ -61,7 +61,7 @@ DEFINE_string(
     depth_camera, "",
     "which camera of a Kalibr file (--camera) takes the depth images, "
     "which are not registered to colour then; empty: the same one");
-DEFINE_string(output, "", "folder to make, in TUM RGB-D layout");
+DEFINE_string(output, "", "folder to create, in TUM RGB-D layout");
 
 namespace rgbd_pose {
 namespace {

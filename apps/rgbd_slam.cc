@@ -34,10 +34,10 @@ DEFINE_int32(
     threads, 0,
     "threads that read images ahead and track; 0: one for each core; the "
     "result does not depend on it");
-DEFINE_bool(report, true, "write OUTPUT/report.html, to look at in a browser");
+DEFINE_bool(report, true, "write OUTPUT/report.html");
 DEFINE_bool(calibrate, false,
-            "calibrate the camera first (as rgbd_calibrate does) and go on "
-            "with the camera found, OUTPUT/camera.yaml, if it is better");
+            "first calibrate the camera as rgbd_calibrate does, and use the "
+            "result (OUTPUT/camera.yaml) if it is better");
 
 namespace rgbd_pose {
 namespace {
@@ -52,7 +52,8 @@ struct ProgramSettings {
 
 ProgramInfo Info(ProgramSettings* settings) {
   return {"rgbd_slam",
-          "maps what an RGB-D camera sees, and finds its path in the map.",
+          "estimates the path of an RGB-D camera and builds a map with loop "
+          "closures.",
           "rgbd_slam --dataset=rgbd_dataset_freiburg1_room --camera=tum_fr1 "
           "--output=runs/fr1_room --save_map=maps/room",
           {{"Run", {"calibrate", "report", "finish_on_signal", "threads"}},

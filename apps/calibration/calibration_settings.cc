@@ -55,37 +55,36 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
   constexpr std::string_view kGroup = "Calibration";
   return {
       {"fix", kGroup,
-       "what is to stay as it is, separated by commas: focal, centre, "
-       "distortion, readouts, registration, or a parameter's name",
+       "parameters to keep, separated by commas: focal, centre, distortion, "
+       "readouts, registration, or single parameter names",
        Text(&settings->fix)},
       {"known_length", kGroup,
-       "gives depth a scale: T0,T1,METRES, two time stamps (s) and how far "
-       "apart the camera was then",
+       "known length that gives depth its scale: T0,T1,METRES, two time stamps "
+       "(s) and the distance between the camera positions at these times",
        Text(&settings->known_length)},
       {"determined_share", kGroup,
        "a parameter is determined if the recording reduces its standard "
        "deviation to this share of the prior's",
        &settings->determined_share},
       {"min_gain", kGroup,
-       "share of their cost that held-out pairs must gain for another camera "
-       "to be taken",
+       "minimum relative decrease of the cost of held-out pairs for a new "
+       "camera to be accepted",
        &settings->min_gain},
       {"max_halves_sigmas", kGroup,
-       "what both halves of a recording say by themselves may differ by so "
-       "many "
-       "standard deviations",
+       "maximum difference between separate calibrations of the two halves of "
+       "a recording, in standard deviations",
        &settings->max_halves_sigmas},
       {"max_rate", kGroup,
-       "of a recording with more frames a second every second one is left out, "
-       "or more, unless --frames says which; 0: none",
+       "frames per second that are used at most; from faster recordings frames "
+       "are skipped, unless --frames is given; 0: no limit",
        &settings->max_rate},
       {"max_passes", kGroup,
-       "a recording whose depth or rows turn out to be displaced by pixels is "
-       "mapped again with the camera found, so many times at most",
+       "maximum number of passes: the recording is mapped again with the "
+       "camera found if depth or rows turn out to be displaced by pixels",
        &settings->max_passes},
       {"max_views", kGroup,
-       "views of landmarks that are solved for, about: the time it takes grows "
-       "with it",
+       "approximate number of landmark views to solve for; the time grows with "
+       "it",
        &settings->max_views},
   };
 }

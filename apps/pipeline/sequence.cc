@@ -77,31 +77,32 @@ std::vector<Setting> SettingTable(SequenceSettings* settings) {
        "rgb.txt and depth.txt are paired by time",
        Text(&settings->associations)},
       {"topics", kGroup,
-       "of a bag: COLOUR,DEPTH or COLOUR,DEPTH,CAMERA_INFO; empty: found by "
-       "their types",
+       "topics of a bag: COLOUR,DEPTH or COLOUR,DEPTH,CAMERA_INFO; empty: "
+       "chosen by type and name",
        Text(&settings->topics)},
       {"camera", kGroup,
        "YAML file (ORB-SLAM2/3, ROS camera_info or Kalibr layout) or preset; "
-       "empty: what the recording says itself",
+       "empty: the camera stored in the recording",
        Text(&settings->camera), CameraPresetNames()},
       {"depth_camera", kGroup,
-       "which camera of a Kalibr file of several took the depth images: cam1, "
-       "say, and they are registered to colour; cam0: they are already",
+       "camera of a multi-camera Kalibr file that took the depth images: with "
+       "cam1, for example, they are registered to colour; cam0: they are "
+       "already registered",
        Text(&settings->depth_camera)},
       {"depth_scale", kGroup,
-       "raw depth units per metre; 0: as the camera or the recording says",
+       "raw depth units per metre; 0: from the camera or the recording",
        &settings->depth_scale},
       {"motion_guess", kGroup,
-       "trajectory (TUM text) that says roughly how the camera moved between "
-       "frames: wheels, an inertial sensor; empty: none",
+       "trajectory (TUM text) with a rough motion between frames, from wheels "
+       "or an IMU for example; empty: none",
        Text(&settings->motion_guess)},
       {"groundtruth", kGroup,
-       "trajectory to compare with (TUM text); empty: that of the recording, "
-       "if it has one; none: compare with nothing",
+       "ground-truth trajectory (TUM text); empty: the one in the recording, "
+       "if any; none: no comparison",
        Text(&settings->groundtruth)},
       {"max_damaged", kGroup,
-       "share of frames that may be damaged or missing: they are left out; "
-       "from so many on (three at least) the run ends with what it has",
+       "largest share of damaged or missing frames, which are skipped; with "
+       "more (at least three) the run stops early and keeps its results",
        &settings->max_damaged},
   };
 }

@@ -148,87 +148,91 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
   OdometryOptions* odometry = &settings->odometry;
   DirectSettings* direct = &settings->direct;
   return {
-      {"cost", kEstimationGroup, "cost of a match; several added up: a+b",
+      {"cost", kEstimationGroup, "cost of a match; a+b adds costs",
        Text(&estimator->cost), CostNames()},
       {"loss", kEstimationGroup,
-       "M-estimator, or with its width in sigmas: huber(1.5); one for each of "
-       "several costs: a,b",
+       "M-estimator, optionally with its width in sigmas: huber(1.5); with "
+       "several costs one for each: a,b",
        Text(&estimator->loss), MEstimatorNames()},
       {"scale", kEstimationGroup,
-       "spread of the residuals: as the noise model says or estimated (units "
-       "of depth images: --depth_scale)",
+       "scale of the residuals: from the noise model (fixed) or estimated; for "
+       "the units of depth images see --depth_scale",
        ScaleByName(&options->scale), ScaleEstimatorNames()},
       {"robust_schedule", kEstimationGroup,
-       "losses at their widths at once, or wide at first and narrowed step by "
-       "step",
+       "direct: losses have their final width from the start; gnc: they start "
+       "wide and are narrowed step by step",
        ByName(kRobustSchedules, "robust schedule", &options->schedule),
        NamesOf(kRobustSchedules)},
       {"gnc_factor", kEstimationGroup,
        "factor by which each step of --robust_schedule=gnc narrows the losses",
        &options->gnc_factor},
       {"max_iterations", kEstimationGroup,
-       "iterations of the solver, at most, in its last stage",
+       "maximum number of solver iterations in the last stage",
        &options->max_iterations},
       {"min_inlier_share", kEstimationGroup,
-       "a motion that a smaller share of matches agrees with is inconsistent",
+       "a motion with a smaller share of inliers is inconsistent",
        &options->min_inlier_share},
       {"max_scale", kEstimationGroup,
-       "a motion whose residuals spread wider than this is inconsistent",
+       "a motion whose residuals spread wider than this (in sigmas) is "
+       "inconsistent",
        &options->max_scale},
       {"max_standard_deviation", kEstimationGroup,
        "a motion with a direction less certain than this (rad or m) is "
        "degenerate",
        &options->max_standard_deviation},
       {"depth_noise", kEstimationGroup,
-       "how uncertain a depth is: a model, or a file that rgbd_calibrate wrote",
+       "depth noise: a model, or a file written by rgbd_calibrate",
        DepthNoiseByName(&features->depth_noise), DepthNoiseModelNames()},
       {"assembly", kEstimationGroup, "how matches become Ceres residual blocks",
        ByName(kAssemblies, "assembly", &options->assembly),
        NamesOf(kAssemblies)},
-      {"frontend", kFeatures, "how features are found again",
+      {"frontend", kFeatures, "how features are matched",
        Text(&settings->frontend), FrontendNames()},
       {"max_features", kFeatures, "features wanted in a reference frame",
        &features->max_features},
-      {"min_depth", kFeatures, "nearer depths (m) are not used",
+      {"min_depth", kFeatures, "smaller depths (m) are ignored",
        &features->min_depth},
-      {"max_depth", kFeatures, "farther depths (m) are not used",
+      {"max_depth", kFeatures, "larger depths (m) are ignored",
        &features->max_depth},
       {"tracker", kTracking,
        "how a frame is tracked: by features, pixels or both",
        Text(&settings->tracker), TrackerNames()},
-      {"direct_cost", kTracking, "cost of a pixel; several added up: a+b",
+      {"direct_cost", kTracking, "cost of a pixel; a+b adds costs",
        Text(&direct->cost), DirectCostNames()},
       {"direct_loss", kTracking,
-       "M-estimator of pixels in the last step, one for each cost",
+       "M-estimator of pixels in the last step; with several costs one for "
+       "each",
        Text(&direct->loss), MEstimatorNames()},
       {"direct_points", kTracking,
-       "pixels compared for each cost; 0: what is good for it",
+       "pixels compared for each cost; 0: the cost's default",
        &direct->points.max_points},
       {"direct_levels", kTracking,
-       "sizes of the image, halved each time, at which pixels are compared",
+       "number of pyramid levels at which pixels are compared",
        &direct->points.num_levels},
       {"direct_information", kTracking,
-       "share of its information that a pixel brings; 0: the cost's own, for "
-       "which covariances are right",
+       "weight of a pixel's information, from 0 to 1; 0: the cost's default, "
+       "which gives correct covariances",
        &direct->points.information_factor},
       {"min_seen_share", kTracking,
-       "a frame tracked by pixels that shows less of its reference is lost",
+       "a frame tracked by pixels is lost if a smaller share of its reference "
+       "frame is visible",
        &settings->direct_tracking.min_seen_share},
       {"initial_guess", kTracking, "where the solver starts in a frame",
        GuessByName(tracking, odometry), GuessNames()},
       {"on_lost", kTracking,
-       "what to do with frames whose motion is not found; they are searched "
-       "for among earlier references in any case but stop",
+       "what to do with lost frames; except with stop, they are also searched "
+       "for among earlier reference frames",
        ByName(kLostPolicies, "policy", &odometry->on_lost),
        NamesOf(kLostPolicies)},
       {"shutter", kTracking,
-       "what is done about rows that are exposed one after another, and depth "
-       "at another time than colour: undo what camera and time stamps say of "
-       "them, or nothing",
+       "rolling shutters, and depth taken at another time than colour: camera: "
+       "compensate them as the camera and the time stamps specify; none: "
+       "ignore them",
        ByName(kShutterUses, "shutter", &odometry->shutter),
        NamesOf(kShutterUses)},
       {"new_segment_after", kTracking,
-       "how long (s) the segment before is searched for when a new one starts",
+       "how long (s) the previous segment is searched for after a new one has "
+       "started",
        &odometry->new_segment_after},
       {"guess_sigma_rotation", kTracking,
        "standard deviation (rad) of the rotation of --motion_guess between two "
@@ -238,23 +242,23 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        "standard deviation (m) of the translation of --motion_guess between "
        "two frames",
        &odometry->guess_sigma_translation},
-      {"min_inliers", kTracking, "a frame in which fewer matches agree is lost",
+      {"min_inliers", kTracking, "a frame with fewer inliers is lost",
        &tracking->min_inliers},
-      {"min_inliers_ok", kTracking,
-       "a frame in which fewer matches agree is degraded",
+      {"min_inliers_ok", kTracking, "a frame with fewer inliers is degraded",
        &tracking->min_inliers_ok},
       {"min_inlier_share_ok", kTracking,
-       "a frame in which a smaller share of the matches agrees is degraded",
+       "a frame with a smaller share of inliers is degraded",
        &tracking->min_inlier_share_ok},
       {"max_sigma_ok", kTracking,
        "a frame whose residuals spread wider than this (in sigmas) is degraded",
        &tracking->max_sigma_ok},
       {"min_reference_share", kTracking,
-       "a new reference is taken if a smaller share of the features agrees",
+       "a new reference frame is chosen if a smaller share of its features are "
+       "inliers",
        &odometry->min_reference_share},
       {"max_flow_px", kTracking,
-       "a new reference is taken if the matches that agree have moved farther "
-       "than this on average (px)",
+       "a new reference frame is chosen if the inliers have moved farther than "
+       "this on average (px)",
        &odometry->max_flow_px},
       {"prior_sigma_rotation", kTracking,
        "standard deviation (rad) of the rotation between two frames, for "

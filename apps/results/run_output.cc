@@ -89,25 +89,22 @@ double PeakMemoryMb() {
 std::vector<Setting> SettingTable(RunOutputSettings* settings) {
   constexpr std::string_view kGroup = "Output";
   return {
-      {"output", kGroup, "folder for the results, made if missing",
+      {"output", kGroup, "folder for the results, created if missing",
        Text(&settings->output)},
       {"debug_images", kGroup,
-       "frames whose matches are drawn into OUTPUT/debug, coloured by robust "
-       "weight, and what pixels differ by: all, or numbers and ranges such as "
-       "10,20-40:5",
+       "frames for which OUTPUT/debug gets images of the matches, coloured by "
+       "robust weight, and of pixel residuals: all, or numbers and ranges such "
+       "as 10,20-40:5",
        Text(&settings->debug_images)},
       {"save_cloud", kGroup,
-       "file for a coloured point cloud of what was seen (PLY), in the world "
-       "of the trajectory; empty: none",
+       "file for a coloured point cloud (PLY) in the world frame of the "
+       "trajectory; empty: none",
        Text(&settings->save_cloud)},
       {"save_mesh", kGroup,
-       "file for a coloured mesh of what was seen (.ply or .glb), made of the "
-       "final poses after the run, for which the frames are read again; empty: "
-       "none",
+       "file for a coloured mesh (.ply or .glb), fused with the final poses "
+       "after the run, which reads the frames again; empty: none",
        Text(&settings->save_mesh)},
-      {"voxel", kGroup,
-       "side of the cubes (m) that the cloud's points are merged in, and of "
-       "those of the mesh",
+      {"voxel", kGroup, "voxel size (m) of the cloud and the mesh",
        &settings->voxel},
   };
 }

@@ -12,8 +12,8 @@
 #include "frontend/frame/depth_scale.h"
 
 DEFINE_bool(finish_on_signal, true,
-            "at SIGINT (Ctrl-C) or SIGTERM keep the results so far; a second "
-            "one ends the program at once");
+            "on SIGINT (Ctrl-C) or SIGTERM stop early and keep the results; a "
+            "second signal ends the program at once");
 
 namespace rgbd_pose {
 namespace {

@@ -10,12 +10,12 @@
 #include "core/util/input_error.h"
 
 DEFINE_bool(view, false,
-            "show the run in a browser on this machine while it goes on: the "
-            "path, the map, images and figures; prints the page's address");
-DEFINE_int32(view_port, 0, "port of that page; 0: one that is free");
+            "show the run live in a browser on this machine: path, map, images "
+            "and figures; prints the address of the page");
+DEFINE_int32(view_port, 0, "port of the live page; 0: any free port");
 DEFINE_double(view_speed, 0.0,
-              "with --view: plays a recording at so many times its own rate at "
-              "most; 0: as fast as frames are tracked");
+              "with --view: maximum playback speed as a multiple of the "
+              "recording's own rate; 0: no limit");
 
 namespace rgbd_pose {
 namespace {
