@@ -10,25 +10,25 @@
 namespace rgbd_pose {
 namespace {
 
-// So many keypoints are detected for each feature wanted: textured places take
-// most of them, and those of a reference have to be among them again.
+// Number of keypoints detected per feature wanted. Textured places take most of
+// the keypoints, and the ones of a reference have to be found again.
 constexpr int kKeypointsPerFeature = 5;
 
-// How far (rad) a keypoint may be from where it is expected: turns of 200
-// degrees a second at 30 frames a second, without any prediction.
+// Search radius around the expected place of a keypoint, rad: turns of 200
+// degrees per second at 30 frames per second without any prediction.
 constexpr double kSearchAngle = 0.12;
 
 // The guess was wrong if a smaller share of the features is found around it.
 constexpr double kMinGuidedShare = 0.2;
 
 struct DescribedFeatures : FeatureSet {
-  DescribedKeypoints described;  // of each observation
+  DescribedKeypoints described;  // one row per observation
 };
 
 struct AllKeypoints {
   AllKeypoints(const PreparedFrame& frame, const DescriptorMethod* method,
                int max_keypoints) {
-    // OpenCV does not say that a detector may serve several threads.
+    // OpenCV does not state that a detector may be used by several threads.
     method->make(max_keypoints)
         ->detectAndCompute(frame.gray, cv::noArray(), described.keypoints,
                            described.descriptors);

@@ -8,10 +8,10 @@
 
 namespace rgbd_pose {
 
-// Keypoints detected in every frame and matched by their descriptors, around
-// where the guess expects them first, anywhere if too few are there. Slower
-// than tracking corners, but it needs no good guess and bears larger changes of
-// scale and view.
+// Detects keypoints in every frame and matches them by their descriptors: first
+// near the places predicted by the guess, anywhere if too few are found there.
+// This is slower than tracking corners, but it needs no good guess and
+// tolerates larger changes of scale and view.
 class DescriptorFrontend final : public Frontend {
  public:
   // `method` must outlive the frontend.

@@ -42,27 +42,27 @@ cv::Ptr<cv::Feature2D> MakeSift(int max_keypoints) {
                           CV_8U);
 }
 
-// Has no limit on the number of keypoints.
+// AKAZE has no limit on the number of keypoints.
 cv::Ptr<cv::Feature2D> MakeAkaze(int /*max_keypoints*/) {
   constexpr int kFullSize = 0;
   constexpr int kChannels = 3;
-  // Half of OpenCV's, for dark or blurred frames.
+  // Half the default of OpenCV, for dark or blurred frames.
   constexpr float kThreshold = 0.0005F;
-  // One fewer each than OpenCV's: two thirds of the time, as good a path.
+  // One fewer each than OpenCV's: 2/3 of the time, an equally good trajectory.
   constexpr int kOctaves = 3;
   constexpr int kLayers = 3;
   return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB, kFullSize, kChannels,
                            kThreshold, kOctaves, kLayers);
 }
 
-// A second best must be so much worse (Lowe 2004).
+// Maximum ratio of the best to the second-best distance (Lowe 2004).
 constexpr double kMaxRatio = 0.8;
 
-// Keypoints this near to each other are one place seen at several scales: no
-// rivals in the ratio test.
+// Keypoints closer together than this are one place seen at several scales.
+// They do not compete in the ratio test.
 constexpr float kSameFeaturePx = 4.0F;
 
-// The keypoints of an image by their place, for searches within a radius.
+// The keypoints of an image in a grid, for searches within a radius.
 class KeypointGrid {
  public:
   KeypointGrid(const std::vector<cv::KeyPoint>& keypoints, float cell_px)
@@ -78,10 +78,10 @@ class KeypointGrid {
     }
   }
 
-  // Those within one cell's width of a point.
+  // Finds the keypoints within one cell width of a point.
   void Near(const cv::Point2f& p, std::vector<int>* near) const {
     near->clear();
-    // Written so that what is not a number finds nothing.
+    // Written to find nothing for NaN.
     if (!(p.x >= -cell_px_ && p.x <= (columns_ + 1) * cell_px_ &&
           p.y >= -cell_px_ && p.y <= (rows_ + 1) * cell_px_)) {
       return;
@@ -114,7 +114,7 @@ struct Nearest {
   double distance = std::numeric_limits<double>::infinity();
 };
 
-// The nearest of the candidates if it passes the ratio test.
+// Returns the nearest candidate if it passes the ratio test.
 Nearest FindDistinct(const std::vector<cv::KeyPoint>& keypoints,
                      const std::vector<int>& candidates,
                      const std::vector<double>& distances,
@@ -140,13 +140,13 @@ double DescriptorMethod::SigmaPx(const cv::KeyPoint& keypoint) const {
   return base_sigma_px * std::max(1.0, keypoint.size / base_size_px);
 }
 
-// Of 256 bits 128 differ by chance; places are whole pixels.
+// Unrelated descriptors differ in 128 of 256 bits; places are whole pixels.
 constexpr DescriptorMethod kOrb = {"orb", MakeOrb, HammingDistance,
                                    64.0,  31.0,    0.7};
-// Vectors of length 512.
+// Descriptors are vectors of norm 512.
 constexpr DescriptorMethod kSift = {"sift", MakeSift, EuclideanDistance,
                                     250.0,  1.8,      0.5};
-// Of 486 bits 243 differ by chance.
+// Unrelated descriptors differ in 243 of 486 bits.
 constexpr DescriptorMethod kAkaze = {"akaze", MakeAkaze, HammingDistance,
                                      121.0,   4.8,       0.5};
 

@@ -7,23 +7,23 @@
 
 namespace rgbd_pose {
 
-// A way to detect keypoints and to describe what is around them.
+// A method to detect keypoints and to describe their surroundings.
 struct DescriptorMethod {
   std::string_view name;
 
-  // Detects up to max_keypoints; descriptors are rows of bytes.
+  // Makes a detector of up to max_keypoints; descriptors are rows of bytes.
   cv::Ptr<cv::Feature2D> (*make)(int max_keypoints);
 
   // The distance between two descriptors of `size` bytes.
   double (*distance)(const uchar* a, const uchar* b, int size);
 
-  // Descriptors further apart show different things. Unrelated ones are about
-  // twice as far apart on average.
+  // Descriptors with a larger distance show different places. The mean distance
+  // of unrelated descriptors is about twice as large.
   double max_distance;
 
-  // The size (px) of the smallest keypoints it finds, and how exactly it
-  // places them (standard deviation, px). Greater ones come from an image that
-  // is as much smaller, and are as much less exact.
+  // The size (px) of the smallest keypoints that the method finds, and the
+  // standard deviation of their place (px). Larger keypoints come from a
+  // correspondingly smaller image and are correspondingly less accurate.
   double base_size_px;
   double base_sigma_px;
 
@@ -40,7 +40,7 @@ extern const DescriptorMethod kSift;
 // Nuevo & Bartoli, BMVC 2013).
 extern const DescriptorMethod kAkaze;
 
-// Keypoints of an image with their descriptors, a row each.
+// The keypoints of an image and their descriptors, one row each.
 struct DescribedKeypoints {
   std::vector<cv::KeyPoint> keypoints;
   cv::Mat descriptors;  // CV_8U
@@ -48,7 +48,7 @@ struct DescribedKeypoints {
   const uchar* descriptor(size_t i) const {
     return descriptors.ptr(static_cast<int>(i));
   }
-  // Those at the given places only.
+  // Returns only the keypoints at the given indices.
   DescribedKeypoints Select(const std::vector<int>& places) const;
 };
 
@@ -57,15 +57,15 @@ struct KeypointMatch {
   int current = 0;
 };
 
-// Where to look for each reference keypoint (px). NaN: nowhere.
+// Where to search for each reference keypoint (px). NaN: nowhere.
 struct SearchGuide {
   std::vector<cv::Point2f> expected;
   float radius_px = 0.0F;
 };
 
-// Keypoints that are each other's nearest in both directions, with a clearly
-// worse second best (Lowe's ratio test) at any other place, in the order of the
-// reference. A guide leaves only what lies within its radius; null: everything.
+// Matches keypoints that are each other's nearest and clearly better than the
+// second best at any other place (Lowe's ratio test), in the order of the
+// reference. Only keypoints within the radius of the guide are used; null: all.
 std::vector<KeypointMatch> MatchKeypoints(const DescriptorMethod& method,
                                           const DescribedKeypoints& reference,
                                           const DescribedKeypoints& current,

@@ -32,7 +32,7 @@ FrontendEntry EntryOf() {
           }};
 }
 
-// One header and one row here make a frontend.
+// A new frontend needs one header and one row here.
 const FrontendEntry kFrontends[] = {
     EntryOf<KltFrontend>(), EntryOf<PatchFrontend>(), EntryOf<kOrb>(),
     EntryOf<kSift>(),       EntryOf<kAkaze>(),

@@ -8,11 +8,11 @@ namespace rgbd_pose {
 namespace {
 
 constexpr int kCellPx = 32;
-constexpr int kBorderPx = 8;  // no patch around it otherwise
+constexpr int kBorderPx = 8;  // a patch needs this border
 
 bool IsStronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
   if (a.response != b.response) return a.response > b.response;
-  // Ties by place keep the order independent of the sort's implementation.
+  // Ties are broken by place, independently of the sort's implementation.
   return std::make_pair(a.pt.y, a.pt.x) < std::make_pair(b.pt.y, b.pt.x);
 }
 
@@ -36,8 +36,8 @@ std::vector<int> SelectOverGrid(
                      static_cast<int>(pixel.x) / kCellPx;
     cells[cell].push_back(static_cast<int>(i));
   }
-  // Every second cell is often empty (no texture, no depth): let the others
-  // give twice their fair share.
+  // Every second cell is often empty (no texture, no depth). The other cells
+  // may therefore provide twice their equal share.
   const size_t share = std::max<size_t>(1, 2 * max_count / cells.size());
   std::vector<int> selected;
   for (std::vector<int>& cell : cells) {

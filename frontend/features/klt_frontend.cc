@@ -7,12 +7,12 @@ namespace rgbd_pose {
 namespace {
 
 const cv::Size kWindow(15, 15);
-constexpr int kMaxLevel = 3;  // coarsest pyramid level, 80 x 60 of 640 x 480
+constexpr int kMaxLevel = 3;  // coarsest pyramid level: 80 x 60 for 640 x 480
 const cv::TermCriteria kTermination(cv::TermCriteria::COUNT +
                                         cv::TermCriteria::EPS,
                                     10, 0.03);
 
-// A mean grey difference over the window beyond this is another place.
+// A larger mean grey difference over the window means another place.
 constexpr float kMaxMeanDifference = 25.0F;
 
 struct KltPyramid {

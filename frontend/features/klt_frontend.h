@@ -6,10 +6,9 @@
 
 namespace rgbd_pose {
 
-// Corners of the reference frame, tracked straight into each new frame by
-// pyramidal Lucas-Kanade (Bouguet 2001), seeded by projecting their 3D points
-// with the guess. Tracking always from the reference keeps tracks from
-// drifting.
+// Tracks corners of the reference frame directly into each new frame with
+// pyramidal Lucas-Kanade (Bouguet 2001), starting at their 3D points projected
+// with the guess. Tracking always from the reference prevents drift.
 class KltFrontend final : public PointFrontend {
  public:
   static constexpr char kName[] = "klt";

@@ -9,17 +9,17 @@
 namespace rgbd_pose {
 namespace {
 
-// Dark enough for every colour of the map to stand out, light enough to see
-// what the features sit on.
+// Dark enough for every colour of the map to stand out, light enough to show
+// the image at the features.
 constexpr double kDimming = 0.45;
 
 const cv::Scalar kNoWeightColor = cv::Scalar::all(200);
 const cv::Scalar kStripColor = cv::Scalar::all(24);
 const cv::Scalar kTextColor = cv::Scalar::all(235);
 
-// One row: the colours of the weights from 0 to 1. Readers with any colour
-// vision see their order, as it is one of lightness, too. The map's darkest
-// part is left out: it would not be seen on the image.
+// Returns the colours of the weights from 0 to 1, in one row. Their lightness
+// also increases, which shows the order to readers with any colour vision. The
+// darkest part of the map is left out: it would be invisible on the image.
 cv::Mat WeightColors() {
   constexpr int kFirst = 88;
   cv::Mat steps(1, 256 - kFirst, CV_8UC1);
@@ -36,18 +36,18 @@ cv::Scalar ColorAt(const cv::Mat& colors, double weight) {
   return colors.at<cv::Vec3b>(cvRound(place));
 }
 
-// Lengths (px) for an image of some width.
+// Lengths (px) for an image of a given width.
 struct Layout {
   explicit Layout(int image_width) {
-    constexpr int kPlainWidth = 640;  // all grows with images wider than this
+    constexpr int kPlainWidth = 640;  // everything grows with wider images
     unit = std::max(1, image_width / kPlainWidth);
     dot_radius = std::max(1.5, 2.5 * image_width / kPlainWidth);
     margin = 6 * unit;
     row_height = 18 * unit;
     row_width = std::max(1, image_width - 2 * margin);
-    font_scale = 0.42 * unit;  // the smallest that is read with ease
+    font_scale = 0.42 * unit;  // the smallest that is easy to read
 
-    // 80 average characters are 600 wide in this font.
+    // 80 average characters have a width of 600 in this font.
     caption_rows = (600 * unit + row_width - 1) / row_width;
     height = (caption_rows + 1) * row_height + margin;
   }
@@ -62,7 +62,7 @@ struct Layout {
   int height;
 };
 
-// The rows of text below the image: the caption, and the legend in the last.
+// The rows of text below the image: the caption, then the legend.
 class Strip {
  public:
   Strip(const Layout& layout, int width)
@@ -76,7 +76,7 @@ class Strip {
     }
   }
 
-  // `colors`: one row, those of the weights from 0 to 1.
+  // `colors`: one row, for the weights from 0 to 1.
   void DrawLegend(const cv::Mat& colors) {
     const int row = layout_.caption_rows;
     const std::string low = "robust weight  0";
@@ -96,7 +96,7 @@ class Strip {
   }
 
  private:
-  // Where the letters of a row stand.
+  // The y coordinate of the baseline of a row.
   int Baseline(int row) const {
     return (row + 1) * layout_.row_height - layout_.margin / 2;
   }
@@ -112,7 +112,7 @@ class Strip {
                 layout_.font_scale, kTextColor, layout_.unit, cv::LINE_AA);
   }
 
-  // Takes off as many words as fit into a row: at least a character.
+  // Removes and returns the words that fit into a row: at least a character.
   std::string TakeRow(std::string* text) const {
     size_t end = text->size();
     while (end > 1 && TextWidth(text->substr(0, end)) > layout_.row_width) {
@@ -131,20 +131,20 @@ class Strip {
   cv::Mat image_;
 };
 
-// OpenCV draws to fractions of a pixel in fixed point: here, 1/16 px.
+// OpenCV draws to fractions of a pixel in fixed point: here 1/16 px.
 constexpr int kShift = 4;
 int Fixed(double px) { return cvRound(px * (1 << kShift)); }
 
-// Where an observation is in the image as taken, in fixed point.
+// Returns the place of an observation in the distorted image, in fixed point.
 cv::Point ImagePoint(const Camera& camera, const Observation& o) {
   const Eigen::Vector2d pixel = camera.Project(camera.Ray(o.u, o.v));
-  // Far outside is far enough; the rest would not fit into an int.
+  // Limits points far outside, which would not fit into an int.
   constexpr double kFarPx = 1e5;
   const Eigen::Vector2d near = pixel.cwiseMax(-kFarPx).cwiseMin(kFarPx);
   return {Fixed(near.x()), Fixed(near.y())};
 }
 
-// The places of the weights, the smallest first.
+// Returns the indices of the weights, the smallest weight first.
 std::vector<size_t> Ascending(const std::vector<double>& weights) {
   std::vector<size_t> order(weights.size());
   std::iota(order.begin(), order.end(), 0);

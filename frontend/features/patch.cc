@@ -12,8 +12,8 @@
 namespace rgbd_pose {
 namespace {
 
-// The grey level of an image (CV_8UC1) at a point between pixels, bilinear. It
-// must lie inside: 0 <= u < cols - 1, 0 <= v < rows - 1.
+// Returns the grey level of an image (CV_8UC1) between pixels, bilinear. The
+// point must lie inside: 0 <= u < cols - 1, 0 <= v < rows - 1.
 inline float SampleImage(const cv::Mat& image, float u, float v) {
   const int column = static_cast<int>(u);
   const int row = static_cast<int>(v);
@@ -26,25 +26,25 @@ inline float SampleImage(const cv::Mat& image, float u, float v) {
   return above + t * (below - above);
 }
 
-// A contrast or gradient whose RMS over the patch is below this (grey levels,
-// grey levels per px) is the noise of the image.
+// A contrast or gradient with a smaller RMS over the patch (grey levels, grey
+// levels per px) is image noise.
 constexpr float kMinGrey = 0.5F;
 
-// One more on each side than the patch, for its derivatives.
+// The patch and one more pixel on each side for its derivatives.
 constexpr int kSourceSide = kPatchSize + 2;
 
 using Pixels = Eigen::Array<float, kPatchSize, kPatchSize, Eigen::RowMajor>;
 using Seen = Eigen::Array<float, kSourceSide, kSourceSide, Eigen::RowMajor>;
 
-// A surface seen at less than this to its plane (sine of 15 degrees) has a
+// A surface seen at a smaller angle to its plane (sine of 15 degrees) has a
 // normal too uncertain to be used.
 constexpr double kMinIncidence = 0.26;
 
-// Below this share of the patch's contrast there is nothing like it.
+// With a smaller share of its contrast, the image does not show the patch.
 constexpr float kMinGain = 0.1F;
 
-// A row of a patch. The same width on every machine: the compiler splits it
-// where the registers are narrower.
+// A row of a patch. It has the same width on every machine; the compiler splits
+// it if registers are narrower.
 typedef float Row __attribute__((vector_size(kPatchSize * sizeof(float))));
 typedef int32_t IntRow
     __attribute__((vector_size(kPatchSize * sizeof(int32_t))));
@@ -54,7 +54,7 @@ typedef uint8_t ByteRow __attribute__((vector_size(kPatchSize)));
 
 void Load(const float* from, Row* row) { std::memcpy(row, from, sizeof(*row)); }
 
-// Width by width: straight from bytes to floats compilers go pixel by pixel.
+// Widens step by step: compilers convert bytes directly to floats one by one.
 void Load(const uint8_t* from, Row* row) {
   ByteRow bytes;
   std::memcpy(&bytes, from, sizeof(bytes));
@@ -69,15 +69,15 @@ float Total(const Row& row) {
 }
 static_assert(kPatchSize == 8, "Total adds up 8");
 
-// The sums over an image patch that a step takes.
+// The sums over an image patch that an iteration needs.
 struct Sums {
   float x, y;           // with the patch's steps
   float contrast;       // with the patch's contrast
   float grey, squares;  // of the grey levels
 };
 
-// Of the image patch whose upper left pixel is `corner`, moved by s and t
-// (0..1) to the right and down.
+// Sums over the image patch whose upper left pixel is `corner`, shifted by s
+// and t (0..1) to the right and down.
 void SumUp(const Patch& patch, const uint8_t* corner, size_t stride, float s,
            float t, Sums* sums) {
   Row x{}, y{}, contrast{}, grey{}, squares{};
@@ -154,7 +154,7 @@ struct AlignKernel {
 void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
                const Eigen::Matrix2f& image_from_patch, Patch* patch) {
   constexpr float kMinEnergy = kMinGrey * kMinGrey * Patch::kPixels;
-  // Just inside, as SampleImage wants it.
+  // Just inside, as required by SampleImage.
   const float max_u = static_cast<float>(image.cols) - 1.001F;
   const float max_v = static_cast<float>(image.rows) - 1.001F;
   const Eigen::Matrix2f& warp = image_from_patch;
@@ -196,9 +196,9 @@ void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
   Eigen::Map<Pixels>(patch->steps_y) = (xx * y - xy * x) / determinant;
 }
 
-// Along the plane n . X = const the depth changes so that the point X = z r of
-// the ray r = [(u - cx) / fx, (v - cy) / fy, 1] moves by
-//   dX/du = z / fx (e_x - n_x / (n . r) r), and v likewise.
+// Along the plane n . X = const the depth changes, and the point X = z r of the
+// ray r = [(u - cx) / fx, (v - cy) / fy, 1] moves by
+//   dX/du = z / fx (e_x - n_x / (n . r) r), and similarly for v.
 Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
                           const Rigid3d& cur_from_ref) {
   const Eigen::Vector3d ray = camera.Ray(ref.u, ref.v);
@@ -222,7 +222,7 @@ Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
     warp.row(i) = f * (moved.row(i) - point[i] / point.z() * moved.row(2));
   }
   if (camera.HasDistortion()) {
-    // Of ideal pixels so far.
+    // So far the warp is between ideal pixels.
     const Eigen::Vector2d focal(camera.fx, camera.fy);
     warp = camera.ProjectDerivative(point.head<2>() / point.z()) *
            focal.cwiseInverse().asDiagonal() * warp * focal.asDiagonal() *

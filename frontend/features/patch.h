@@ -9,17 +9,17 @@
 
 namespace rgbd_pose {
 
-// Side of a patch. Larger ones (16) scatter less from frame to frame, but reach
-// over the edges of their surface: in simulation they drift half as much again,
-// and they take longer.
+// Side of a patch, px. Larger patches (16) scatter less from frame to frame,
+// but extend beyond the edges of their surface: in simulation they drift 50 %
+// more, and they take longer.
 constexpr int kPatchSize = 8;
 
 // What inverse-compositional Lucas-Kanade (Baker & Matthews 2004) needs to know
-// of a patch T, rows after each other. An image patch I that shows it brighter
-// and moved by d px, I(x) = gain T(x + d) + bias, has
-//   gain = <contrast, I>,   d = (<steps_x, I>, <steps_y, I>) / gain
-// to first order. The steps are orthogonal to 1 and to T, so that gain and bias
-// need no iteration of their own.
+// about a patch T, stored row by row. For an image patch I with another
+// brightness and a shift of d px, I(x) = gain T(x + d) + bias, to first order
+//   gain = <contrast, I>,   d = (<steps_x, I>, <steps_y, I>) / gain.
+// The steps are orthogonal to 1 and to T: gain and bias need no iteration of
+// their own.
 struct Patch {
   static constexpr int kPixels = kPatchSize * kPatchSize;
 
@@ -31,54 +31,54 @@ struct Patch {
   float energy = 0.0F;
 
   // The smaller eigenvalue of the Hessian of d (grey^2 / px^2): noise of s grey
-  // levels moves the result by s / sqrt(min_eigenvalue) px. 0: there is too
-  // little to hold on to, and nothing else is set.
+  // levels moves the result by s / sqrt(min_eigenvalue) px. 0: the patch has
+  // too little contrast, and no other member is valid.
   float min_eigenvalue = 0.0F;
 };
 
-// The patch around a point (px of `image`, CV_8UC1), seen through an affine
-// map: its pixel (i, j), -4 <= i, j < 4, shows image(centre + image_from_patch
-// * (i, j)). Beyond its border the image goes on as it is there.
+// Makes the patch around a point (px of `image`, CV_8UC1), seen through an
+// affine map: its pixel (i, j), -4 <= i, j < 4, shows image(centre +
+// image_from_patch * (i, j)). The image is continued with its border values.
 void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
                const Eigen::Matrix2f& image_from_patch, Patch* patch);
 
-// How the image around an observation (with a depth) is stretched and turned
-// by a motion: d(pixel in cur) / d(pixel in ref) over the plane of its depth
-// and normal, or parallel to the image if there is no normal or it is seen
-// edge-on. The point must lie before both cameras.
+// Returns how a motion stretches and turns the image around an observation with
+// depth: d(pixel in cur) / d(pixel in ref) over the plane of its depth and
+// normal. Without a normal, or if the plane is seen edge-on, the plane is
+// parallel to the image. The point must lie in front of both cameras.
 Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
                           const Rigid3d& cur_from_ref);
 
 struct PatchAlignmentOptions {
   int max_iterations = 8;
 
-  // A step shorter than this (px) is the last.
+  // Iterations stop after a step shorter than this (px).
   float min_step_px = 0.02F;
 
-  // The result lies at most this far (px, along each axis) from the start:
-  // beyond it the patch and its start have too little in common.
+  // The maximum distance (px, along each axis) of the result from the start.
+  // Beyond it the patch and the image at the start have too little in common.
   float max_shift_px = 3.0F;
 };
 
 // Where a patch was found in an image.
 struct AlignedPatch {
-  // False, and nothing else is set: the patch has too little contrast, it left
-  // the image or the allowed shift, or there is nothing like it.
+  // False if the patch has too little contrast, left the image or the allowed
+  // shift, or does not match the image. The other members are then not set.
   bool found = false;
 
   float u = 0.0F;     // px
   float v = 0.0F;     // px
   float gain = 0.0F;  // contrast of the image over that of the patch
 
-  // Of patch and image, whatever the gain and bias: 1 = the same.
+  // Of patch and image, for any gain and bias: 1 = the same.
   float correlation = 0.0F;
 
-  // RMS of what the patch does not explain, in its own grey levels.
+  // RMS of what the patch does not explain, in grey levels of the patch.
   float residual = 0.0F;
 };
 
-// Moves a patch over an image (CV_8UC1), from a start (px), to where it fits
-// best with any gain and bias.
+// Moves a patch over an image (CV_8UC1) from a start (px) to the place where it
+// fits best with any gain and bias.
 AlignedPatch AlignPatch(const Patch& patch, const cv::Mat& image, float start_u,
                         float start_v, const PatchAlignmentOptions& options);
 

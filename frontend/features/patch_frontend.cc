@@ -13,30 +13,30 @@
 namespace rgbd_pose {
 namespace {
 
-// Localisation noise of a corner per image, as of other frontends: what is
-// systematic (warp, interpolation, calibration) is most of it.
+// Localisation noise of a corner per image, as in other frontends. Most of it
+// is systematic (warp, interpolation, calibration).
 constexpr double kPatchSigmaPx = 0.5;
 
-// What a patch does not explain is no white noise: neighbouring pixels err
-// alike, so it moves the result this much further than white noise would.
+// Residuals of a patch are not white: errors of neighbouring pixels are
+// correlated. They move the result this much further than white noise does.
 constexpr double kNoiseFactor = 5.0;
 
-// Less alike is another place. Low, since what is unlike already has a large
-// sigma.
+// A patch with a lower correlation shows another place. The limit is low, since
+// patches with a low correlation already have a large sigma.
 constexpr float kMinCorrelation = 0.7F;
 
-// 640 x 480 to 160 x 120.
+// Pyramid of 640 x 480 to 160 x 120.
 constexpr int kPatchLevels = 3;
 
-// Patches are made again when their shape has changed by this: an error of up
-// to a quarter of a pixel at their corners.
+// Patches are rebuilt when their shape has changed by this, which allows an
+// error of up to a quarter of a pixel at their corners.
 constexpr float kWarpStep = 0.125F;
 
-// A surface that has become larger or smaller than this (in area), or is seen
-// from behind, does not look like its patch any more.
+// A surface that has grown or shrunk by more than this factor (in area), or
+// that is seen from behind, no longer looks like its patch.
 constexpr float kMaxScale = 4.0F;
 
-// The patches of a feature, one a level, as a motion makes them look.
+// The patches of a feature, one per level, as warped by a motion.
 struct PatchStack {
   Eigen::Matrix2f ref_from_patch = Eigen::Matrix2f::Zero();  // none yet
   std::array<Patch, kPatchLevels> levels;
@@ -49,8 +49,8 @@ struct PatchFeatures : FeatureSet {
     pyramid[0] = pyramid[0].clone();
   }
 
-  // The patches of a feature for a warp near to `ref_from_patch`: a function
-  // of that alone, whatever was asked for before.
+  // Returns the patches of a feature for a warp close to `ref_from_patch`. They
+  // depend on this argument only, not on earlier calls.
   const PatchStack& Patches(size_t i,
                             const Eigen::Matrix2f& ref_from_patch) const {
     const Eigen::Matrix2f rounded =
@@ -71,8 +71,8 @@ struct PatchFeatures : FeatureSet {
   mutable std::vector<PatchStack> patches;  // see Patches
 };
 
-// Coarse to fine from a start (px): a level that fails is left out, but for
-// the last.
+// Aligns a patch coarse to fine from a start (px). A level that fails is
+// skipped, except for the last.
 AlignedPatch FindPatch(const PatchStack& patch, int num_levels,
                        const std::vector<cv::Mat>& pyramid,
                        const Eigen::Vector2d& start) {
@@ -81,7 +81,7 @@ AlignedPatch FindPatch(const PatchStack& patch, int num_levels,
   AlignedPatch found;
   for (int level = num_levels - 1; level >= 0; --level) {
     PatchAlignmentOptions options;
-    // A coarse level need not be better than the start of the next.
+    // A coarse level only has to provide the start of the next level.
     if (level > 0) options.min_step_px *= 4.0F;
     found = AlignPatch(patch.levels[level], pyramid[level], ToLevel(u, level),
                        ToLevel(v, level), options);

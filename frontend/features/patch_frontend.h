@@ -4,10 +4,10 @@
 
 namespace rgbd_pose {
 
-// Corners of the reference frame, each found again by aligning small patches
-// coarse to fine (patch.h), whatever the exposure, from within some
-// pixels (see DirectTracker::FindStart). Patches are stretched and turned as
-// depth, surface normal and motion have it.
+// Finds each corner of the reference frame by aligning small patches coarse to
+// fine (patch.h), independently of the exposure, from a start within some
+// pixels (see DirectTracker::FindStart). Patches are warped according to depth,
+// surface normal and motion.
 class PatchFrontend final : public Frontend {
  public:
   static constexpr char kName[] = "patch";

@@ -9,7 +9,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Localisation noise of a point per image: together 0.7 px.
+// Localisation noise of a point per image: 0.7 px for both images together.
 constexpr double kPointSigmaPx = 0.5;
 
 struct PointFeatures : FeatureSet {

@@ -8,9 +8,9 @@
 
 namespace rgbd_pose {
 
-// A frontend whose features are image points. What remains to be said is where
-// they have moved to, and perhaps which they are; depth, its noise and
-// distortion are seen to here.
+// A frontend whose features are image points. A subclass has to say where the
+// points have moved to, and optionally which points to use. This class handles
+// depth, its noise and distortion.
 class PointFrontend : public Frontend {
  public:
   using Frontend::Frontend;
@@ -23,14 +23,14 @@ class PointFrontend : public Frontend {
   using Points = std::vector<cv::Point2f>;  // px, distorted
   using Found = std::vector<uchar>;         // 0: no, else yes
 
-  // The points of a frame to be found again; those without a depth will be left
-  // out. Unless overridden, corners with a depth, spread over a grid.
+  // Finds the points of a frame that are to be tracked. Points without a depth
+  // will be left out. By default: corners with a depth, spread over a grid.
   virtual void Find(const Frame& frame, Points* points);
 
-  // Where `points` of the frame `from`, which has no depth any more, are in the
-  // frame `to`. On entry `moved`
-  // holds where the guess has them, and all are found. Neither may change its
-  // size: Match would throw InputError.
+  // Finds `points` of the frame `from`, which has no depth any more, in the
+  // frame `to`. On entry `moved` holds the places predicted by the guess, and
+  // all points count as found. If `moved` or `found` changes its size, Match
+  // throws InputError.
   virtual void Follow(const PreparedFrame& from, const Points& points,
                       const PreparedFrame& to, Points* moved, Found* found) = 0;
 

@@ -8,8 +8,7 @@
 
 namespace rgbd_pose {
 
-// Counts of features in square cells of an image; pixels outside of it count
-// nowhere.
+// Counts features in square cells of an image; pixels outside are ignored.
 class CellCounts {
  public:
   explicit CellCounts(const Camera& camera)
@@ -18,7 +17,7 @@ class CellCounts {
         counts_(columns_ * rows_, 0),
         outside_(0) {}
 
-  // Cells with any.
+  // Number of cells with at least one feature.
   int num_covered() const {
     return counts_.size() - std::count(counts_.begin(), counts_.end(), 0);
   }
@@ -32,7 +31,7 @@ class CellCounts {
   }
 
  private:
-  // Side of a cell: some six features of a well textured view.
+  // Side of a cell. A cell of a well textured view has about six features.
   static constexpr double kCellPx = 64.0;
 
   int columns_, rows_;

@@ -15,26 +15,26 @@
 namespace rgbd_pose {
 namespace {
 
-// Overlaps are told by pixels so far apart.
+// Distance between the samples that determine the overlap.
 constexpr int kSampleStepPx = 20;
-// Looks are compared where noise is small, as are errors of a pixel or two.
+// Level at which views are compared: noise and errors of 1 or 2 px are small.
 constexpr size_t kLikenessLevel = 3;
-// A reference with fewer of them (of 768) tells little.
+// A reference needs at least this many samples (of 768).
 constexpr size_t kMinSamples = 40;
 
 // A frame is lost with fewer pixels, degraded if less of its reference is seen.
 constexpr int kMinPixels = 200;
 constexpr double kMinSeenShareOk = 0.3;
 
-// It is degraded where a direction is known no better than this.
+// It is degraded if any direction has a larger standard deviation.
 constexpr double kMaxSigmaRotation = 0.005;    // rad
 constexpr double kMaxSigmaTranslation = 0.01;  // m
 
-// By pixels alone it is degraded if its residuals spread wider than this, in
+// With pixels alone it is degraded if its residuals have a larger spread, in
 // sigmas. Measured: right motions have 0.8, with blur 1.9; wrong ones 2 to 5.
 constexpr double kMaxSigmaOk = 2.0;
 
-// The largest standard deviation of three directions of a covariance.
+// Returns the largest standard deviation in any direction of a covariance.
 double LargestSigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(
       covariance, Eigen::EigenvaluesOnly);
@@ -115,8 +115,8 @@ void DirectTracker::Track(const Reference& reference,
   }
   if (guess.velocity != nullptr) FindTwist(reference, frame, guess, tracked);
   Judge(reference, frame, tracked);
-  // Where features have led there is something to compare with; pixels alone
-  // have to fit.
+  // If features have led the way, the result can be compared with them. Pixels
+  // alone have to fit.
   const double sigma = tracked->estimate.sigma;
   if (tracked->status == TrackingStatus::kOk && sigma > kMaxSigmaOk) {
     tracked->status = TrackingStatus::kDegraded;
@@ -236,7 +236,7 @@ void DirectTracker::JudgeMotion(const ViewLikeness& likeness,
   const double share = tracked->overlap.share;
   tracked->status = TrackingStatus::kLost;
   tracked->reason = estimate.reason;
-  // A last step of some hundredths of a pixel is no reason to doubt.
+  // kNotConverged is accepted: its last step is some hundredths of a pixel.
   if (!estimate.ok() && estimate.status != EstimateStatus::kNotConverged) {
     return;
   }

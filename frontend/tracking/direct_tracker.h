@@ -14,25 +14,25 @@
 
 namespace rgbd_pose {
 
-// What is believed of a motion that is estimated from pixels.
+// When to believe a motion estimated from pixels.
 struct DirectTrackerOptions {
-  // A frame is lost if less of its reference is seen where it should be.
+  // A frame is lost if a smaller share of its reference is seen as predicted.
   double min_seen_share = 0.15;
 
-  // It is lost if neither gray levels nor depths of more than this agree with
-  // those of its reference, as where something covers the lens. Measured: right
-  // motions have 0.4 (half of the image covered) to 0.99 of one of the two,
-  // wrong ones -0.4 to 0.1 of both.
+  // A frame is lost if neither grey levels nor depths agree with the reference
+  // by this much, for example if something covers the lens. Measured: right
+  // motions have 0.4 (half of the image covered) to 0.99 in one of the two,
+  // wrong ones -0.4 to 0.1 in both.
   double min_likeness = 0.25;
 
-  // One line that says what is wrong with the options, or empty.
+  // Returns one line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
 
-// The images of a frame that direct costs look at, kept.
+// A reference that keeps the images of its frame for the direct costs.
 class DirectReference final : public Reference {
  public:
-  // `id`: another one for each reference.
+  // `id`: unique for each reference.
   DirectReference(const PreparedFrame& frame, const FrontendOptions& images,
                   uint64_t id);
 
@@ -40,12 +40,12 @@ class DirectReference final : public Reference {
     return samples_.SeenFrom(cur_from_ref);
   }
 
-  // How alike it and a frame look.
+  // How similar the reference and a frame look.
   ViewLikeness LikenessTo(const PreparedFrame& cur,
                           const Rigid3d& cur_from_ref) const;
 
   const FrameView* images() const override { return &view_; }
-  // Pixels with depth, of a grid over the image.
+  // Number of samples: pixels with depth on a grid over the image.
   size_t num_samples() const { return samples_.size(); }
 
  private:
@@ -55,24 +55,24 @@ class DirectReference final : public Reference {
   ViewOverlap samples_;
 };
 
-// What makes motions of pixels.
+// The estimators of motions from pixels.
 struct DirectEstimators {
-  // From a guess: of direct costs whose losses have a wide basin.
+  // Starts from a guess, with direct costs whose losses have a wide basin.
   Estimator leading;
-  // From where these or matches have led: of direct costs whose losses reject
-  // what moves by itself, and of matches where there are some.
+  // Starts from the result of `leading` or of matches, with direct costs whose
+  // losses reject moving objects, and with matches if there are any.
   Estimator refining;
   // Finds a start in coarse images; nothing: the guess is the start.
   std::optional<Estimator> coarse = std::nullopt;
 };
 
-// Finds the motion by direct costs alone: no features, so nothing to be lost in
-// a room without texture, but a basin of some pixels of the coarsest level.
+// Finds the motion by direct costs alone. It works in rooms without texture,
+// but its basin of convergence is some pixels of the coarsest level.
 class DirectTracker final : public Tracker {
  public:
-  static constexpr char kName[] = "direct";  // as programs take it
+  static constexpr char kName[] = "direct";  // name in the programs' options
 
-  // Throws InputError for options that are not sound (see Check).
+  // Throws InputError for invalid options (see Check).
   DirectTracker(const FrontendOptions& images, DirectEstimators estimators,
                 const TrackerOptions& common = {},
                 const DirectTrackerOptions& options = {});
@@ -84,13 +84,14 @@ class DirectTracker final : public Tracker {
                                            std::string* why_not) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
              const TrackingGuess& guess, TrackingResult* tracked) override;
-  // Matches and pixels together, but for those where features contradict them,
-  // from the motion of the matches, which is good enough for the finest level.
+  // Estimates the motion from matches and pixels together, without pixels where
+  // features contradict the motion. Starts from the motion of the matches,
+  // which is accurate enough for the finest level.
   void Refine(const Reference& reference, const PreparedFrame& frame,
               const TrackingGuess& guess, const TrackingResult& by_features,
               TrackingResult* tracked);
-  // The motion that shows the coarse images of the reference in those of the
-  // frame: where to begin. The guess itself if they do not tell one.
+  // Returns the motion that aligns the coarse images of reference and frame, as
+  // a start for tracking; the guess if they do not determine one.
   Rigid3d FindStart(const Reference& reference, const PreparedFrame& frame,
                     const TrackingGuess& guess);
   const FrontendOptions& images() const override { return images_; }
@@ -101,13 +102,13 @@ class DirectTracker final : public Tracker {
                 const FrameTiming& timing, const Rigid3d& start,
                 const TrackingGuess& guess, int num_levels,
                 Estimator* estimator, MotionEstimate* estimate) const;
-  // Estimates the motion with the velocity that it says itself.
+  // Estimates the velocity from the motion, then the motion again with it.
   void FindTwist(const Reference& reference, const PreparedFrame& frame,
                  const TrackingGuess& guess, TrackingResult* tracked);
   static void Begin(TrackingResult* tracked);
   FrameView ViewOf(const PreparedFrame& frame, const FrameTiming& timing,
                    const CellMask* moving) const;
-  // Sets all that follows from the estimate.
+  // Sets everything that follows from the estimate.
   void Judge(const Reference& reference, const PreparedFrame& frame,
              TrackingResult* tracked) const;
   void JudgeMotion(const ViewLikeness& likeness, TrackingResult* tracked) const;

@@ -14,25 +14,25 @@
 namespace rgbd_pose {
 namespace {
 
-// A smaller share of the features is worth a second look.
+// If a smaller share of the features is found, they are searched for again.
 constexpr double kFewFound = 0.6;
 
-// Matches that agree on a motion of their own, for each that agrees with the
-// first one: fewer are chance.
+// Minimum number of matches that agree on a second motion, as a share of the
+// inliers of the first one. Fewer may be chance.
 constexpr double kMinRival = 0.25;
-// Which of them is the scene is not known if the part of the image that one is
-// seen in is a larger share of that of the other.
+// It is unknown which of two motions is the motion of the scene if the ratio of
+// the image areas of their inliers (smaller to larger) exceeds this.
 constexpr double kMaxRivalCells = 0.7;
-// Where features agree in a smaller part of the view they are likely to be of
-// something that moves by itself. Measured: with such a thing on 40 % of the
-// view mostly 0.5 to 0.6, on 10 % 0.8; of real frames 95 % have more than 0.64.
+// Features that agree in a smaller share of the view are likely to lie on a
+// moving object. Measured: with such an object on 40 % of the view mostly 0.5
+// to 0.6, on 10 % 0.8; 95 % of real frames have more than 0.64.
 constexpr double kMinAgreeingViewOk = 0.45;
 
 std::string OnlyInliers(int inliers) {
   return "only " + std::to_string(inliers) + " inliers";
 }
 
-// The same image points of a frame, moved by its velocity instead.
+// Corrects image points by the frame's velocity instead of by `moved_by`.
 void MoveAgain(const FeatureSet& features, const Frame& frame,
                const FrameTiming& moved_by, const FrontendOptions& images,
                FeatureMatches* found) {
@@ -106,8 +106,8 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
     const TrackingResult* tracked, std::string* why_not) {
   std::unique_ptr<FeatureSet> features = frontend_->Detect(frame);
   const size_t count = features->observations.size();
-  // What failed is passed on from reference to reference as long as they are
-  // tracked; where hardly any feature would be trusted all are.
+  // Failures are passed on from reference to reference while tracking succeeds.
+  // If hardly any feature would be trusted, all are.
   FeatureValidation validation(count);
   if (last != nullptr) {
     validation = FeatureValidation(
@@ -140,8 +140,7 @@ void FeatureTracker::Track(const Reference& reference,
   ChooseMotion(prior, tracked);
   if (guess.velocity != nullptr) {
     FindTwist(ours.features(), frame, guess, tracked);
-    // Where the velocity was far off, few features were where they had been
-    // looked for.
+    // With a wrong velocity, few features were where they were searched for.
     if (tracked->estimate.ok() && ShareOf(ours, *tracked) < kFewFound) {
       const PreparedFrame moved = frame.WithTwist(tracked->twist);
       const Rigid3d found = tracked->estimate.cur_from_prev;
@@ -227,9 +226,9 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
   const MotionPrior prior = PriorOf(options_, guess);
   Frame seen = frame;
   seen.twist = frame.twist.value_or(Twist());
-  // Where it was not known, nothing has been moved yet.
+  // If the velocity is unknown, nothing has been moved yet.
   FrameTiming moved_by = frame.Timing();
-  // Of a motion that is too doubtful for more.
+  // The covariance if the motion is too doubtful to estimate the velocity.
   tracked->twist_covariance =
       MotionCovarianceOfTwist(seen.Timing(), guess.velocity->sigma_angular,
                               guess.velocity->sigma_linear);

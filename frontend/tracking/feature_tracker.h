@@ -10,32 +10,32 @@
 
 namespace rgbd_pose {
 
-// The features of a frame, and which of them have a say.
+// The features of a frame, and which of them may affect the motion.
 class FeatureReference final : public Reference {
  public:
-  // One trust for each feature.
+  // `validation` must be made for these features.
   FeatureReference(const Camera& camera, std::unique_ptr<FeatureSet> features,
                    FeatureValidation validation);
 
   Overlap SeenFrom(const Rigid3d& cur_from_ref) const override;
 
-  // Those it was made with.
+  // The features of the reference.
   const FeatureSet& features() const { return *features_; }
 
-  FeatureValidation validation;  // in each of them
+  FeatureValidation validation;  // of the features
 
  private:
   Camera camera_;
   std::unique_ptr<FeatureSet> features_;
 };
 
-// Finds the features of the reference again (Frontend) and estimates the motion
-// from the matches.
+// Finds the features of the reference in the frame (see Frontend) and estimates
+// the motion from the matches.
 class FeatureTracker final : public Tracker {
  public:
-  static constexpr char kName[] = "features";  // as programs take it
+  static constexpr char kName[] = "features";  // name in the programs' options
 
-  // Throws InputError for options that are not sound (see Check).
+  // Throws InputError for invalid options (see Check).
   FeatureTracker(std::unique_ptr<Frontend> frontend, Estimator estimator,
                  const TrackerOptions& options = {});
 
@@ -50,7 +50,7 @@ class FeatureTracker final : public Tracker {
              const TrackingGuess& guess, TrackingResult* tracked) override {
     Track(reference, frame, guess.cur_from_ref, guess, tracked);
   }
-  // From a better start than the guess, which only is what the prior is about.
+  // Starts from a better motion; the guess is only the mean of the prior.
   void Track(const Reference& reference, const PreparedFrame& frame,
              const Rigid3d& cur_from_ref_start, const TrackingGuess& guess,
              TrackingResult* tracked);
@@ -64,12 +64,11 @@ class FeatureTracker final : public Tracker {
              const Rigid3d& cur_from_ref_start, TrackingResult* tracked);
   void Estimate(const Rigid3d& cur_from_ref_start, const MotionPrior& prior,
                 TrackingResult* tracked);
-  // Where many matches do not agree with the motion but with each other,
-  // something moves by itself: the motion of those that are seen in more of the
-  // image is taken, and the others are on probation.
+  // Handles many matches that contradict the motion but agree with each other:
+  // something moves by itself. Takes the motion of the matches that cover more
+  // of the image and puts the other matches on probation.
   void ChooseMotion(const MotionPrior& prior, TrackingResult* tracked);
-  // Finds the velocity and estimates the motion again, of the same features as
-  // they are seen with it.
+  // Finds the velocity, and the motion again from features corrected with it.
   void FindTwist(const FeatureSet& features, const Frame& frame,
                  const TrackingGuess& guess, TrackingResult* tracked);
   // Sets status and reason from the estimate.
@@ -78,7 +77,7 @@ class FeatureTracker final : public Tracker {
   std::unique_ptr<Frontend> frontend_;
   Estimator estimator_;
   TrackerOptions options_;
-  TrackingResult other_;  // what the matches that do not agree make of a frame
+  TrackingResult other_;  // motion of the matches that contradict the first one
 };
 
 }  // namespace rgbd_pose

@@ -10,11 +10,11 @@
 namespace rgbd_pose {
 namespace {
 
-// Frames in which a feature on probation has to agree: what moves at a few
-// centimetres a second has moved by several sigmas after as many.
+// Number of frames in which a feature on probation has to agree. Until then, an
+// object with a few centimetres per second has moved by several sigmas.
 constexpr int kAgreements = 3;
 
-// One failed feature in a cell is chance.
+// A single failed feature in a cell may be chance.
 constexpr int kMinFailed = 2;
 
 }  // namespace
@@ -31,7 +31,7 @@ FeatureValidation::FeatureValidation(
     counts.at(found.features[i]) = true;  // throws if of another reference
     if (estimate.is_inlier[i]) agrees[found.features[i]] = true;
   }
-  // Otherwise references in quick succession would never trust them.
+  // Count these too: with frequent new references they would never be trusted.
   for (size_t i = 0; i < on_probation.features.size(); ++i) {
     counts.at(on_probation.features[i]) = true;
     agrees.at(on_probation.features[i]) =

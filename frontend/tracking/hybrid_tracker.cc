@@ -8,8 +8,8 @@ namespace rgbd_pose {
 namespace {
 
 // Features and pixels contradict each other if their motions differ by more
-// than so many sigmas of the features' (in which what both share counts twice,
-// and calibration not at all: a wide limit).
+// than this many sigmas of the summed covariances. The limit is wide, because
+// errors that both share count twice there and calibration errors not at all.
 constexpr double kMaxDifference = 8.0;
 
 // One of the two may be null.
@@ -51,7 +51,7 @@ std::unique_ptr<Reference> HybridTracker::MakeReference(
     const PreparedFrame& frame, const Reference* last,
     const TrackingResult* tracked, std::string* why_not) {
   const auto* before = dynamic_cast<const HybridReference*>(last);
-  // Where pixels alone have carried the frame nothing is known of its features.
+  // If pixels alone tracked the frame, its features were not checked.
   const bool by_features = before != nullptr && before->features != nullptr &&
                            tracked->source != TrackingSource::kDirect;
   auto reference = std::make_unique<HybridReference>();
@@ -92,7 +92,7 @@ void HybridTracker::Track(const Reference& reference,
     return;
   }
   if (tracked->status == TrackingStatus::kLost) {
-    // Few features may lead astray: pixels find the way alone.
+    // A motion from few features may be wrong: use pixels alone.
     direct_->Track(*ours.direct, frame, guess, &pixels_);
     pixels_.match_ms += tracked->match_ms;
     if (pixels_.status == TrackingStatus::kLost) {
@@ -111,7 +111,7 @@ void HybridTracker::Track(const Reference& reference,
   const bool agree = pixels_.status == TrackingStatus::kOk &&
                      Agree(tracked->estimate, pixels_.estimate);
   if (tracked->status != TrackingStatus::kOk && !tracked->is_ambiguous) {
-    // Few features may lead astray: pixels alone have to find the same.
+    // A motion from few features may be wrong: pixels alone must confirm it.
     direct_->Track(*ours.direct, seen, guess, &alone_);
     if (alone_.status == TrackingStatus::kOk) {
       if (Agree(agree ? pixels_.estimate : tracked->estimate,
@@ -136,7 +136,7 @@ void HybridTracker::Track(const Reference& reference,
   tracked->source = TrackingSource::kBoth;
   tracked->estimate.cur_from_prev = pixels_.estimate.cur_from_prev;
   tracked->estimate.covariance = pixels_.estimate.covariance;
-  // A reference is as good as what is seen of it, if its features are few.
+  // A reference with few features is judged by the overlap of its pixels.
   if (tracked->needs_new_keyframe) {
     tracked->needs_new_keyframe = false;
     tracked->overlap = pixels_.overlap;
@@ -150,7 +150,7 @@ void HybridTracker::OnAccepted(Reference* reference, TrackingResult* tracked) {
   }
   const Overlap overlap = tracked->overlap;
   features_->OnAccepted(ours.features.get(), tracked);
-  // What pixels have said of it (see Track) stays.
+  // Keep the overlap of the pixels (see Track) if it is larger.
   if (overlap.share > tracked->overlap.share) tracked->overlap = overlap;
 }
 

@@ -9,15 +9,15 @@
 
 namespace rgbd_pose {
 
-// Features first, from where coarse images lead; from there direct costs
-// against the same reference, for their accuracy. Where features are few or
-// fail, direct costs alone.
+// Tracks features first, starting from the alignment of coarse images. Direct
+// costs against the same reference then refine the motion for accuracy. If
+// there are few features or they fail, direct costs are used alone.
 class HybridTracker final : public Tracker {
  public:
-  static constexpr char kName[] = "hybrid";  // as programs take it
+  static constexpr char kName[] = "hybrid";  // name in the programs' options
 
-  // None may be null; both of the same camera. Unless it `refines`, pixels only
-  // say where to begin, and the motion is that of features.
+  // Neither may be null; both must have the same camera. If `refines` is false,
+  // pixels only provide the start, and features alone provide the motion.
   HybridTracker(std::unique_ptr<FeatureTracker> features,
                 std::unique_ptr<DirectTracker> direct, bool refines);
 
@@ -35,7 +35,7 @@ class HybridTracker final : public Tracker {
   std::unique_ptr<FeatureTracker> features_;
   std::unique_ptr<DirectTracker> direct_;
   bool refines_;
-  TrackingResult pixels_;  // by direct costs, from features' motion
+  TrackingResult pixels_;  // by direct costs, from the motion of the features
   TrackingResult alone_;   // by direct costs, from the guess
 };
 

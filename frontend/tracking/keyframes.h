@@ -9,35 +9,35 @@
 
 namespace rgbd_pose {
 
-// A keyframe that frames are tracked against. Its id: TrackedFrame::index.
+// A keyframe that frames are tracked against. Its id is TrackedFrame::index.
 struct OdometryKeyframe : Keyframe {
-  std::unique_ptr<Reference> reference;  // of the tracker that made it
+  std::unique_ptr<Reference> reference;  // made by the tracker in use
 };
 
-// The latest keyframes, for when the view returns to one of them. Bounded: the
-// oldest makes way.
+// The latest keyframes, in case the view returns; the oldest is removed first.
 class Keyframes {
  public:
-  // So many are kept: some seconds of fast motion; some 3 MB each.
+  // Maximum number of keyframes: some seconds of fast motion, about 3 MB each.
   static constexpr size_t kMaxKeyframes = 20;
 
-  // The keyframe stays where it is as long as it is kept. `in_use` does not
-  // make way; may be null.
+  // Adds a keyframe; the pointer returned is valid as long as the keyframe is
+  // kept. `in_use` (may be null) is never removed here.
   OdometryKeyframe* Add(OdometryKeyframe keyframe,
                         const OdometryKeyframe* in_use = nullptr);
 
   // Makes a kept keyframe the latest.
   void Renew(const OdometryKeyframe* keyframe);
 
-  // The keyframe of that id, or null if it is not kept.
+  // Returns the keyframe with this id, or null if it is not kept.
   OdometryKeyframe* Find(int id) const;
 
-  // Those of segments before that one, the latest first.
+  // Returns the keyframes of earlier segments, the latest first.
   std::vector<Keyframe*> Before(int segment) const;
 
-  // The keyframe of that segment whose view a camera at `world_from_cam` should
-  // see nearest to where it was; null if none has `min_share` of it in view
-  // within `max_flow_px` on average. `except` is left out.
+  // Returns the keyframe of the segment whose view should move least in the
+  // image of a camera at `world_from_cam`, or null. At least `min_share` of the
+  // view must be visible, moved by at most `max_flow_px` on average. `except`
+  // is skipped.
   OdometryKeyframe* FindNearest(const Rigid3d& world_from_cam, int segment,
                                 double min_share, double max_flow_px,
                                 const OdometryKeyframe* except) const;

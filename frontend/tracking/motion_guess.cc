@@ -6,11 +6,11 @@
 namespace rgbd_pose {
 namespace {
 
-// Poses further apart (s) are not interpolated: a hand-held camera may have
-// gone anywhere between.
+// Poses further apart than this (s) are not interpolated: a hand-held camera
+// may have gone anywhere in between.
 constexpr double kMaxGap = 0.2;
 
-// So little beyond the ends (s) is rounding of time stamps, and held.
+// Times beyond an end by at most this (s) are rounded stamps: the end is used.
 constexpr double kMaxBeyond = 0.02;
 
 }  // namespace
@@ -23,7 +23,7 @@ std::optional<Rigid3d> MotionGuess::CurFromPrev(double prev_time,
   return cur->Inverse() * *prev;
 }
 
-// Between two poses: shift and turn at constant rates.
+// Interpolates between two poses with constant linear and angular velocities.
 std::optional<Rigid3d> MotionGuess::WorldFromCam(double time) const {
   const auto after = std::lower_bound(
       trajectory_.begin(), trajectory_.end(), time,

@@ -7,17 +7,17 @@
 
 namespace rgbd_pose {
 
-// The motion between frames as something else tells it (wheel odometry, an
-// inertial sensor, another tracker): a trajectory of the camera, in any world
-// and at any rate.
+// Motion between frames from another source (wheel odometry, an inertial
+// sensor, another tracker), given as a trajectory of the camera in any world
+// frame and at any rate.
 class MotionGuess {
  public:
-  // World from camera, whatever the world.
+  // `trajectory`: world from camera, in any world frame.
   explicit MotionGuess(Trajectory trajectory)
       : trajectory_(std::move(trajectory)) {}
 
-  // cur_from_prev between two times (s); nothing where the trajectory has a gap
-  // or has not begun or has ended.
+  // Returns cur_from_prev between two times (s), or nothing in gaps of the
+  // trajectory, before its start and after its end.
   std::optional<Rigid3d> CurFromPrev(double prev_time, double cur_time) const;
 
  private:

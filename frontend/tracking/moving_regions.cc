@@ -32,8 +32,8 @@ double MarkMoving(const FeatureSet& reference, const FeatureMatches& found,
                   const FeatureMatches& on_probation,
                   const MotionEstimate& estimate, bool missing_contradict,
                   CellMask* moving) {
-  // A feature speaks for what is around it; one that is not found may be
-  // hidden, or is only blurred.
+  // A feature votes for the cells around it. A feature that is not found may be
+  // hidden or only blurred.
   constexpr int kReachCells = 2;
   constexpr int kFound = 3, kMissing = 1, kContradicted = 8;
   const Camera& camera = found.matches.camera();
@@ -41,7 +41,7 @@ double MarkMoving(const FeatureSet& reference, const FeatureMatches& found,
   const int rows = (camera.height - 1) / CellMask::kCellPx + 1;
   std::vector<int> votes(columns * rows, 0);
   std::vector<bool> has_features(votes.size()), agrees(votes.size());
-  // Of an ideal pixel, without the lens.
+  // Takes an ideal pixel, without lens distortion.
   const auto vote = [&](const Eigen::Vector2d& ideal, int count) {
     const Eigen::Vector2d pixel =
         camera.HasDistortion()

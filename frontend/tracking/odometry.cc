@@ -12,26 +12,26 @@
 namespace rgbd_pose {
 namespace {
 
-// An earlier reference is taken up again if so much of it is in view, near to
-// where it was (as a share of max_flow_px): otherwise it would have to be left
-// again soon.
+// An earlier reference is used again if at least this share of it is in view,
+// with at most this displacement (as a share of max_flow_px). Otherwise it
+// would soon have to be replaced again.
 constexpr double kMinReturnShare = 0.7;
 constexpr double kMaxReturnFlow = 0.5;
 
-// So much longer an interval (s) than the one before has frames missing; over
-// the second a hand's velocity tells nothing.
+// If an interval is this many times the previous one, frames are missing. Above
+// the second limit (s), the velocity of a hand-held camera predicts nothing.
 constexpr double kMissingFrames = 1.5;
 constexpr double kMaxMovedOn = 0.2;
 
-// Of a hand's velocity, where nothing is known of it.
+// Standard deviations of an unknown velocity of a hand-held camera.
 constexpr double kSigmaAngular = 0.5;  // rad/s
 constexpr double kSigmaLinear = 0.3;   // m/s
 
-// What is seen is of its time to within this (s). Of known shutters: what blur
-// and stamps leave. Else: what a Kinect's shutter makes of it. Measured on two
+// Uncertainty of the capture time of a pixel, s. Known shutters: the effect of
+// blur and stamps. Others: the effect of a Kinect's shutter. Measured on two
 // real sequences without their shutter and two simulated ones: NEES is 0.6 to
-// 1.5 (1.6 to 6.6 without this), and some 1 % at most of frames that are ok are
-// wrong by more than five sigmas (up to 27 %).
+// 1.5 (1.6 to 6.6 without this); at most about 1 % of the frames with status ok
+// are wrong by more than five sigmas (up to 27 % without this).
 constexpr double kSigmaKnownTime = 3e-5;
 constexpr double kSigmaUnknownTime = 5e-3;
 
@@ -70,7 +70,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   result.timestamp = frame.timestamp;
   const double last_interval = interval_;
   interval_ = result.index > 0 ? frame.timestamp - timestamp_ : 0.0;
-  // Where frames are missing a constant velocity goes further.
+  // Across missing frames, the motion at constant velocity is longer.
   if (last_interval > 0.0 && interval_ > kMissingFrames * last_interval &&
       interval_ < kMaxMovedOn) {
     cur_from_prev_ =
@@ -143,13 +143,14 @@ bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
   const PreparedFrame* frame = Look(measured, prediction, result);
   const bool is_trusted = IsTrusted(frame, *result);
-  // Pixels alone know a velocity half a frame late; a second look mends it.
+  // Pixels alone yield a velocity that is half a frame late. Tracking once more
+  // against the last frame corrects this.
   bool goes_on = wants_reference_ && is_trusted && IsSlow() &&
                  result->source != TrackingSource::kDirect;
   if (!is_lost_ && !goes_on && (wants_reference_ || !is_trusted)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
-  // A doubtful pose is no way back from being lost.
+  // A doubtful pose does not end the lost state.
   if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
     return false;
   }
@@ -172,8 +173,8 @@ bool Odometry::Follow(const PreparedFrame& measured,
   return true;
 }
 
-// First from the last pose. A constant velocity is only a second try: as the
-// first it can lock onto its own false motion.
+// Tracks from the last pose first. A constant velocity is only the second
+// guess: as the first one it can lock onto its own false motion.
 const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
                                     const Prediction* prediction,
                                     TrackedFrame* result) {
@@ -206,8 +207,8 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
                : nullptr;
   };
   if (!has_shutter_) {
-    // Among frames with shutters it tells nothing of velocities, and what they
-    // have told is of a time before it.
+    // A frame without a shutter among frames with one does not determine a
+    // velocity, and the known velocity is older than this frame.
     shutter_tracking_.Forget();
     return track(measured, nullptr, nullptr) != nullptr ? &measured : nullptr;
   }
@@ -261,7 +262,7 @@ void Odometry::ChangeReference(const PreparedFrame& frame,
                world_from_cam.Inverse() * earlier->world_from_cam, result)) {
     return;
   }
-  // The next frame tells how the camera moved in this one.
+  // The next frame determines how the camera moved during this one.
   wants_reference_ = has_shutter_ && twist_.has_value();
   if (!wants_reference_) TakeReference(frame, world_from_cam, result);
 }

@@ -6,8 +6,8 @@
 #include "frontend/frame/depth_warper.h"
 #include "frontend/tracking/odometry.h"
 
-// What is done where the reference does not tell a frame's pose: the frame
-// before becomes one, the place is searched for, a new segment begins.
+// If the reference does not yield the pose of a frame: track against the
+// previous frame, search for the place, or start a new segment.
 
 namespace rgbd_pose {
 
@@ -20,24 +20,23 @@ void Odometry::KeepLast(const PreparedFrame& frame,
                 covariance_, result};
 }
 
-// A frame that is about to become a reference should be certain of its own
-// pose.
+// Whether the pose of the frame is certain enough for it to become a reference.
 bool Odometry::IsTrusted(const PreparedFrame* frame,
                          const TrackedFrame& result) const {
   constexpr double kMaxSigma = 1.7;
   if (frame == nullptr) return false;
   const bool is_certain = result.sigma <= kMaxSigma;
-  // Of a new reference nothing would be known of what moves.
+  // A new reference would not know what moves by itself.
   if (attempts_.kept().is_ambiguous) return is_certain;
   if (result.status != TrackingStatus::kOk) return false;
   return !NeedsNewReference() ||
          (is_certain && !attempts_.kept().needs_new_keyframe);
 }
 
-// Of a fast camera a second look from the last frame is worth its time. By a
-// table over two real sequences from four starts each: with 8 px errors are
-// those of always looking, with 12 to 20 px the errors over a second grow by a
-// tenth.
+// For a fast camera, tracking once more against the last frame pays off.
+// Measured on two real sequences, four starts each: with a limit of 8 px the
+// errors equal those of always doing it; with 12 to 20 px the errors over one
+// second grow by 10 %.
 bool Odometry::IsSlow() const {
   constexpr double kSlowFlowPx = 8.0;  // from frame to frame, in a room
   const Rigid3d moved = last_estimate().cur_from_prev * cur_from_ref_.Inverse();
@@ -156,9 +155,9 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
 
 void Odometry::HandleLost(const PreparedFrame& frame,
                           const Prediction* prediction, TrackedFrame* result) {
-  // One frame that nobody tells of, and the way since is no longer known.
+  // After one lost frame without a guess, the motion since the loss is unknown.
   is_predicted_ = prediction != nullptr && (is_predicted_ || !is_lost_);
-  // A new segment is best put where the camera was on its way to.
+  // A new segment is best placed where the camera was heading.
   const Rigid3d moved_on =
       (is_lost_ ? Rigid3d() : cur_from_prev_) * cur_from_ref_;
   is_lost_ = true;
@@ -202,7 +201,7 @@ bool Odometry::StartSegment(const PreparedFrame& frame,
   latest_segment_ = segment_;
   is_lost_ = false;
   result->reference = -1;
-  // Of two in a row nobody knows how they belong together.
+  // The relation of two segments that start in a row is unknown: stay lost.
   if (!is_unconnected_) {
     result->status = TrackingStatus::kDegraded;
     result->reason =

@@ -10,13 +10,13 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr double kFullColor = 20.0;  // gray levels
-// Gray levels of both images fill the lower half of the scale, so that colours
-// stand out.
+constexpr double kFullColor = 20.0;  // grey levels
+// Grey levels that agree use only the lower half of the scale, which makes
+// colours stand out.
 constexpr double kDimmed = 0.5;
 
-// Where the frame shows each pixel of the reference's level 1: px of the
-// frame's, (-1, -1) where it does not.
+// Returns where the frame sees each pixel of level 1 of the reference: px of
+// level 1 of the frame, or (-1, -1) if it does not see it.
 cv::Mat FindPlaces(const FrameView& reference, const Rigid3d& cur_from_ref) {
   const FrameView::Level& level = reference.levels[1];
   cv::Mat places(level.gray.height, level.gray.width, CV_32FC2,

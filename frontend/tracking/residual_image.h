@@ -8,12 +8,12 @@
 
 namespace rgbd_pose {
 
-// A picture of what pixels say of a motion, half as wide and high as the
-// frame, as the reference's camera sees it: CV_8UC3 (blue, green, red). Gray
-// where the frame shows what the reference showed, red where it is brighter,
-// blue where it is darker (gain and bias of the whole image aside), full colour
-// from 20 gray levels on; black where the reference has no depth or its points
-// are out of the frame's view.
+// Draws how well the pixels of a frame agree with a motion, as seen by the
+// camera of the reference, in half the width and height: CV_8UC3 (blue, green,
+// red). Grey where the frame agrees with the reference, red where it is
+// brighter, blue where it is darker, apart from gain and bias of the whole
+// image; full colour from 20 grey levels on. Black where the reference has no
+// depth or the frame does not see the point.
 cv::Mat DrawResiduals(const FrameView& reference, const Frame& frame,
                       const Rigid3d& cur_from_ref);
 

@@ -8,9 +8,9 @@
 
 namespace rgbd_pose {
 
-// The ideal pixel at which the current camera sees a point that was observed,
-// with its depth, from the reference; nothing without a depth or if the point
-// is not before the camera. It may lie outside the image.
+// Returns the ideal pixel at which the current camera sees a point observed
+// with depth from the reference. The pixel may lie outside the image. Returns
+// nothing if the depth is unknown or the point is behind the camera.
 inline std::optional<Eigen::Vector2d> SeenAt(const Camera& camera,
                                              const Rigid3d& cur_from_ref,
                                              const Observation& o) {

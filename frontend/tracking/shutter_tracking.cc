@@ -8,15 +8,15 @@
 namespace rgbd_pose {
 namespace {
 
-// A reference is made again if that moves something by this; one that was made
-// when the next frame had been tracked already, by more.
+// A reference is rebuilt if the new velocity moves pixels by the first limit,
+// or by the second if it was made after the next frame had been tracked.
 constexpr double kSmallFlowPx = 0.2;
 constexpr double kSmallFlowPxOfLate = 1.0;
 
-// Of the first two frames, of which each tells the velocity of the other.
+// Rounds for the first two frames: each determines the velocity of the other.
 constexpr int kMaxRounds = 3;
 
-// A hand does not move faster; a wrong estimate does.
+// A hand moves more slowly; a wrong estimate may be faster.
 constexpr double kMaxAngular = 6.0;  // rad/s
 constexpr double kMaxLinear = 4.0;   // m/s
 
@@ -24,7 +24,7 @@ bool IsOfAHand(const Twist& twist) {
   return twist.angular.norm() < kMaxAngular && twist.linear.norm() < kMaxLinear;
 }
 
-// Between two intervals with such mean velocities, at constant acceleration.
+// Between two intervals with these mean velocities, at constant acceleration.
 Twist VelocityBetween(const std::optional<Twist>& before, double before_s,
                       const Twist& after, double after_s) {
   if (!before.has_value()) return after;
@@ -32,8 +32,9 @@ Twist VelocityBetween(const std::optional<Twist>& before, double before_s,
   return share * after + (1.0 - share) * *before;
 }
 
-// The camera that a frame is resampled for: where its pose is, which has come
-// with its velocity.
+// Returns the pose of the camera for which a frame is resampled, relative to
+// the camera at the exposure of the middle row. This is the camera at the stamp
+// according to the velocity found with the pose of the frame.
 Rigid3d TargetFromMiddle(const Frame& frame) {
   return frame.twist.value_or(Twist())
       .MotionDuring(frame.color_shutter.offset)
@@ -135,7 +136,7 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
 
 PreparedFrame ShutterTracking::Rectified(Frame frame,
                                          const Rigid3d& target_from_middle) {
-  frame.color.release();  // nobody tracks by colours
+  frame.color.release();  // trackers do not use colours
   return PreparedFrame(rectifier_.Rectify(frame, target_from_middle));
 }
 

@@ -13,96 +13,96 @@
 
 namespace rgbd_pose {
 
-// A reference whose velocity the next frame will tell. Not within
-// ShutterTracking: clang 14 fails there.
+// A reference whose velocity the next frame will determine. It is not nested in
+// ShutterTracking because clang 14 fails there.
 struct EarlyReference {
   Frame frame;                 // as exposed
-  Rigid3d target_from_middle;  // the camera that it is resampled for
-  bool is_free = false;  // its pose came without a velocity: it is the stamp's
-  bool is_late = false;  // the next frame has told its velocity already
-  std::optional<Twist> before;  // the mean velocity into it
-  double interval = 0.0;        // of that, s
+  Rigid3d target_from_middle;  // of the camera for which it is resampled
+  bool is_free = false;  // pose found without velocity: valid at the stamp
+  bool is_late = false;  // the next frame has determined its velocity already
+  std::optional<Twist> before;  // mean velocity in the interval before it
+  double interval = 0.0;        // length of this interval, s
 };
 
 // Tracks frames whose rows were exposed one after another, or whose depth was
-// not taken when colour was: with the velocity that their rows and the frames
-// before tell. A frame becomes a reference as seen at one moment, with a
-// velocity that is known better once the next frame is.
+// exposed at another time than colour, with a velocity determined from the rows
+// and the previous frames. A frame becomes a reference after correction to one
+// moment; the next frame makes the velocity for this more accurate.
 class ShutterTracking {
  public:
-  // Tracks a frame with what is known of its velocity (null: nothing) from
-  // where it was found before (null: it was not yet); null: it is lost.
+  // Tracks a frame. `prior`: of its velocity (null: nothing is known);
+  // `cur_from_ref`: found before (null: not yet). Returns null if it is lost.
   using Track = std::function<const TrackingResult*(
       const PreparedFrame& frame, const VelocityPrior* prior,
       const Rigid3d* cur_from_ref)>;
 
-  // `tracker` must outlive this.
+  // `tracker` must outlive this object.
   explicit ShutterTracking(Tracker* tracker)
       : tracker_(tracker), rectifier_(tracker->images().camera) {}
 
   // Tracks a frame against a reference, `interval` s after the last frame.
-  // `prev_from_ref`: of that, nothing: it was not found; `first_guess`: of the
-  // velocity, nothing: that of the last frame. The frame with the velocity
-  // found, good until the next call; null if it is lost.
+  // `prev_from_ref`: motion of the last frame if it was found; `first_guess`:
+  // of the velocity, by default the last one. Returns the frame with the
+  // velocity found, valid until the next call, or null if it is lost.
   const PreparedFrame* Follow(const PreparedFrame& frame, double interval,
                               const std::optional<Rigid3d>& prev_from_ref,
                               const std::optional<Twist>& first_guess,
                               OdometryKeyframe* reference, const Track& track);
 
-  // The frame of the last Follow has that pose: the next one goes on from it.
+  // Accepts the pose of the last Follow; the next frame continues from it.
   void Accept();
 
-  // A frame that was found elsewhere had that velocity.
+  // Accepts the velocity of a frame that was tracked without Follow.
   void Accept(const Twist& twist, double middle) {
     velocity_.Add(twist, middle);
   }
 
-  // The last frame was not found.
+  // Call this if the last frame was not found.
   void HandleLost();
 
-  // Nothing is known of the velocity any more.
+  // Forgets the velocity.
   void Forget() {
     velocity_.Reset();
     HandleLost();
   }
 
-  // What the last Follow has found, to be put back after another one.
+  // The result of the last Follow. It can be put back after another Follow.
   struct Found {
     std::optional<PreparedFrame> frame;
-    std::optional<Twist> between;  // the mean velocity into it
-    double interval = 0.0;         // of that, s
+    std::optional<Twist> between;  // mean velocity before the frame
+    double interval = 0.0;         // over this interval, s
   };
   Found TakeFound() { return std::move(found_); }
   void PutBack(Found found) { found_ = std::move(found); }
 
-  // What is known of the velocity of a frame whose last ones were not found.
+  // Prior of the velocity of a frame if the previous frames were not found.
   VelocityPrior LostPrior(const Frame& frame, double interval) const {
     return velocity_.Prior(std::nullopt, interval, frame.color_shutter.offset);
   }
 
-  // A frame of Follow, or one whose velocity is not known, as it is to become a
-  // reference: seen at one moment.
+  // Corrects a frame to one moment before it becomes a reference. The frame
+  // comes from Follow or has an unknown velocity.
   PreparedFrame AtOneMoment(const Frame& frame);
 
-  // The same of the frame before that of the last Follow, which has told its
-  // velocity, too, if it was found.
+  // The same for the previous frame, after Follow of the current one. If this
+  // was found, the mean velocity between both is used as well.
   PreparedFrame LastAtOneMoment(const Frame& last);
 
-  // The frame, which AtOneMoment has moved, is a reference now.
+  // Registers a new reference, with its frame corrected to one moment.
   void AddReference(const Frame& frame, const Frame& at_one_moment);
 
  private:
   PreparedFrame Rectified(Frame frame, const Rigid3d& target_from_middle);
-  // Makes the reference again with the mean velocity since; false: there is
-  // nothing to gain.
+  // Rebuilds the reference with the mean velocity since then. Returns false if
+  // this has no advantage.
   bool MendReference(const Twist& since, double interval,
                      OdometryKeyframe* reference);
 
   Tracker* tracker_;
   FrameRectifier rectifier_;
   VelocityModel velocity_;
-  std::optional<Twist> between_;  // mean velocity into the last frame
-  double interval_ = 0.0;         // of that, s
+  std::optional<Twist> between_;  // mean velocity before the last frame
+  double interval_ = 0.0;         // over this interval, s
   std::optional<EarlyReference> early_;
   Found found_;
 };

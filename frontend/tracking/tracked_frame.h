@@ -10,75 +10,75 @@ namespace rgbd_pose {
 
 // Whether to believe the pose of a frame.
 enum class TrackingStatus {
-  kOk,        // a pose that many matches agree on
+  kOk,        // a pose on which many matches agree
   kDegraded,  // a pose, but from few or contradicting matches
-  kLost,      // no pose was found: see LostPolicy for the one reported
+  kLost,      // no pose was found; LostPolicy says which one is reported
 };
 
 // "ok", "degraded", "lost"
 const char* ToString(TrackingStatus status);
 
-// What the motion of a frame comes from.
+// What the motion of a frame was estimated from.
 enum class TrackingSource {
   kNone,      // it was not tracked
   kFeatures,  // matches of features
   kDirect,    // pixels alone
-  kBoth,      // pixels, from where features led
+  kBoth,      // pixels, starting from the motion of the features
 };
 
 // "", "features", "direct", "features+direct"
 const char* ToString(TrackingSource source);
 
-// What became of one input frame.
+// The result for one input frame.
 struct TrackedFrame {
-  int index = 0;           // the odometry's own count of frames, from 0
+  int index = 0;           // number of the frame in this odometry, from 0
   double timestamp = 0.0;  // s
-  TrackingStatus status = TrackingStatus::kLost;  // with its reason:
-  std::string reason;                             // in words; empty if ok
+  TrackingStatus status = TrackingStatus::kLost;  // see `reason`
+  std::string reason;                             // for the status; empty if ok
 
   Rigid3d world_from_cam;  // the world is the camera of the first frame
 
-  // Frames of one segment hang together. A new one starts where tracking was
-  // lost, at constant velocity from the last pose: what happened between is
-  // unknown. As long as the one before is searched for, poses are `degraded`;
-  // where a frame is found in it, its edges join both.
+  // Poses of one segment are connected. A new segment starts where tracking was
+  // lost, at constant velocity from the last pose; the true motion is unknown.
+  // While the previous segment is searched for, poses are `degraded`; if a
+  // frame is found in it, the edges of this frame connect both segments.
   int segment = 0;
 
-  int reference = -1;  // index of the frame its motion counts from; -1: none
-  Rigid3d cur_from_reference;  // the motion since then
-  bool is_reference = false;   // became the reference of the frames that follow
+  int reference = -1;          // index of the reference frame; -1: none
+  Rigid3d cur_from_reference;  // motion since the reference
+  bool is_reference = false;   // became the reference of the next frames
   bool relocalised = false;    // found again among earlier references
 
-  // The frame before has become a reference, from which this one's motion
-  // counts. Its images: see Odometry::FindKeyframe.
+  // The previous frame has become a reference, and the motion of this frame is
+  // relative to it. For its images see Odometry::FindKeyframe.
   bool previous_is_reference = false;
 
-  // Lost, but the pose follows what others say of the motion since it was not
-  // (the motion guess of Odometry::Track).
+  // The frame is lost, but since the loss the pose follows motion guesses from
+  // another source (see Odometry::Track).
   bool is_predicted = false;
 
-  // The motions that it was tracked by, their frames named by their index: the
-  // first leads to what it was tracked against; a second, where the reference
-  // changes to an earlier one, leads to the one that was left. Of a predicted
-  // frame, the prediction, less certain with every frame. None where no motion
-  // is known or not how certain it is.
+  // The motions by which the frame was tracked, between frames named by index.
+  // The first edge leads to its reference. If the reference changes to an
+  // earlier one, a second edge leads to the reference that was left. For a
+  // predicted frame: the prediction, less certain with every frame. No edges if
+  // the motion or its uncertainty is unknown.
   std::vector<RelativePose> edges;
 
-  // What its motion comes from.
+  // What the motion was estimated from.
   TrackingSource source = TrackingSource::kNone;
 
-  int matches = 0;     // with the reference: of features, or pixels
-  int inliers = 0;     // of these, in agreement with the motion
-  int iterations = 0;  // of the solver, all attempts together
+  int matches = 0;     // with the reference: number of features or pixels
+  int inliers = 0;     // of these, number that agree with the motion
+  int iterations = 0;  // of the solver, sum over all attempts
   double sigma = 0.0;  // spread of whitened residuals; ideally 1
 
-  // Where the time went. Decoding may run beside the tracking of others.
+  // Computing times. Decoding may run in parallel with tracking.
   double decode_ms = 0.0;
   double track_ms = 0.0;       // all of Odometry::Track
-  double match_ms = 0.0;       // of it: matching
-  double solve_ms = 0.0;       // of it: motion estimation
-  double reference_ms = 0.0;   // of it: features of a new reference
-  double relocalise_ms = 0.0;  // of it: search for the place when lost
+  double match_ms = 0.0;       // part of track_ms: matching
+  double solve_ms = 0.0;       // part of track_ms: motion estimation
+  double reference_ms = 0.0;   // part of track_ms: features of a new reference
+  double relocalise_ms = 0.0;  // part of track_ms: search for the place
 };
 
 }  // namespace rgbd_pose

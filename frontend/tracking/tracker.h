@@ -16,9 +16,9 @@
 
 namespace rgbd_pose {
 
-// What all trackers share.
+// Options of all trackers.
 struct TrackerOptions {
-  // A frame is lost with fewer inliers, degraded with fewer than the second.
+  // With fewer inliers a frame is lost; below the second limit it is degraded.
   int min_inliers = 15;
   int min_inliers_ok = 40;
 
@@ -26,49 +26,49 @@ struct TrackerOptions {
   double min_inlier_share_ok = 0.35;
 
   // A frame is degraded if its residuals spread wider than this, in sigmas:
-  // then most matches do not agree. Good frames stay below 3.
+  // most of its matches then disagree. Good frames stay below 3.
   double max_sigma_ok = 5.0;
 
-  // Where the solver starts unless null: a motion found in the matches
-  // themselves, instead of the guess.
+  // Finds the start of the solver in the matches themselves; null: the solver
+  // starts from the guess.
   const InitialGuess* initial_guess = nullptr;
 
   // Standard deviations of the motion between two frames around a guess that
-  // comes without a covariance, for costs with a prior.
+  // comes without a covariance. Used by costs with a prior.
   double prior_sigma_rotation = 0.05;     // rad
   double prior_sigma_translation = 0.05;  // m
 
-  // One line that says what is wrong with the options, or empty.
+  // Returns one line that says what is wrong with the options, or empty.
   std::string Check() const;
 };
 
-// What a tracker keeps of a frame that others are tracked against, whose images
-// it shares, and what it has learnt of it since.
+// What a tracker keeps of a frame that others are tracked against, and what it
+// has learnt about this frame since. Shares the images of the frame.
 class Reference {
  public:
   virtual ~Reference() = default;
 
-  // How much of it a camera there should see.
+  // How much of the reference a camera should see after this motion.
   virtual Overlap SeenFrom(const Rigid3d& cur_from_ref) const = 0;
 
-  // Its images, if they are kept; else null.
+  // The images of the reference if they are kept, else null.
   virtual const FrameView* images() const { return nullptr; }
 };
 
-// Where a frame is looked for.
+// Where to search for a frame.
 struct TrackingGuess {
-  // A motion of which no more is known, which is what most say.
+  // A motion about which nothing else is known; the usual case.
   TrackingGuess(const Rigid3d& motion)  // NOLINT(*-explicit-*)
       : cur_from_ref(motion) {}
 
-  // Where the search begins, and what priors are about.
+  // The start of the search and the mean of priors.
   Rigid3d cur_from_ref;
 
-  // Becomes the prior of costs that have one; null: not known.
+  // Becomes the prior of costs that have one; null: unknown.
   const MotionMatrix* covariance = nullptr;
 
-  // Of the frame's velocity, where that has to be found, too; null: it stays
-  // what the frame says.
+  // Prior of the velocity if the velocity of the frame is to be found as well;
+  // null: use the velocity of the frame as it is.
   const VelocityPrior* velocity = nullptr;
 
   // If this guess does not lead to a good pose, another guess is tried next.
@@ -76,84 +76,84 @@ struct TrackingGuess {
   bool is_tentative = false;
 };
 
-// What is known of a motion by a guess: with its covariance, or with the
-// options' standard deviations.
+// Returns what a guess says about a motion, with the covariance of the guess or
+// else the standard deviations of the options.
 MotionPrior PriorOf(const TrackerOptions& options, const TrackingGuess& guess);
 
-// How a frame was tracked against a reference.
+// The result of tracking a frame against a reference.
 struct TrackingResult {
-  // Of that camera.
+  // `camera`: of the frames.
   explicit TrackingResult(const Camera& camera)
       : matches{Correspondences(camera), {}}, on_probation(matches) {}
 
-  // Whether the motion can be gone on from.
+  // Whether tracking can continue from the motion.
   TrackingStatus status = TrackingStatus::kLost;
   std::string reason;  // in words; empty if ok
 
   // The motion with its covariance, counts and time. prev: the reference.
   MotionEstimate estimate;
 
-  // What of the reference was found in the frame and agrees with the motion.
+  // The part of the reference that was found and agrees with the motion.
   Overlap overlap;
 
-  // The velocity of the frame that was found with it; nothing: as it was.
+  // The velocity of the frame, found with the motion; nothing: unchanged.
   std::optional<Twist> twist;
 
-  // What its uncertainty has added to the covariance of the motion.
+  // The part of the motion's covariance due to the uncertainty of `twist`.
   MotionMatrix twist_covariance = MotionMatrix::Zero();
 
-  // That is so little that the next frames need another reference, whatever
-  // share it is.
+  // So little of the reference was found that the next frames need another one,
+  // whatever the share in `overlap`.
   bool needs_new_keyframe = false;
 
-  // Matches agree with another motion nearly as well.
+  // Whether matches agree with another motion nearly as well.
   bool is_ambiguous = false;
 
   // The pose is not good, and slow methods that might have improved it were
   // skipped because the guess was tentative.
   bool is_partial = false;
 
-  // By features: where they contradict the motion.
+  // Regions where features contradict the motion (feature trackers only).
   CellMask moving;
 
-  // What the motion comes from.
+  // What the motion was estimated from.
   TrackingSource source = TrackingSource::kFeatures;
-  int num_found = 0;  // matches, or pixels
+  int num_found = 0;  // number of matches or pixels
 
-  double match_ms = 0.0;  // time of all but the estimation
+  double match_ms = 0.0;  // time of everything except the estimation
 
-  // Of trackers that match features: what the estimate was made of, and what
-  // had no say in it (FeatureValidation).
+  // The matches used by the estimate, and the matches that did not affect it
+  // (see FeatureValidation). Filled by trackers that match features.
   FeatureMatches matches;
   FeatureMatches on_probation;
 };
 
-// Finds the motion between a reference and a frame. References are for trackers
-// of the type that made them. One object serves one thread.
+// Finds the motion between a reference and a frame. A reference works only with
+// trackers of the type that made it. One object serves one thread.
 class Tracker {
  public:
   virtual ~Tracker() = default;
 
-  // Makes what will be asked of the frame alone ahead: see Frontend::Prepare.
+  // Precomputes everything that needs the frame alone: see Frontend::Prepare.
   virtual void Prepare(const PreparedFrame& frame) const = 0;
 
-  // The frame as a reference for others; null, and why, if it shows too little.
-  // Where the frame itself was tracked, `last` and `tracked` say against what
-  // and how; both are null otherwise.
+  // Makes a reference of the frame. Returns null, and why, if it has too few
+  // features or depths. `last` and `tracked`: against what and how the frame
+  // itself was tracked; null if it was not.
   virtual std::unique_ptr<Reference> MakeReference(
       const PreparedFrame& frame, const Reference* last,
       const TrackingResult* tracked, std::string* why_not) = 0;
 
-  // Fills `tracked` (of the camera of images()), whose memory is used again.
+  // Fills `tracked` (made for the camera of images()) and reuses its memory.
   virtual void Track(const Reference& reference, const PreparedFrame& frame,
                      const TrackingGuess& guess, TrackingResult* tracked) = 0;
 
-  // The motion is believed and gone on from: the reference may learn from it,
-  // and `tracked` say what is shared in this light.
+  // Called when the motion is accepted and tracking continues from it. The
+  // reference may learn from it and update the overlap in `tracked`.
   virtual void OnAccepted(Reference* /*reference*/,
                           TrackingResult* /*tracked*/) {}
 
-  // The camera and how its depths are to be taken.
+  // The camera and how to use its depths.
   virtual const FrontendOptions& images() const = 0;
 };
 

@@ -43,7 +43,7 @@ std::unique_ptr<Tracker> MakeHybridTracker(TrackerParts parts) {
                                          /*refines=*/true);
 }
 
-// One header and one row here make a tracker.
+// A new tracker needs one header and one row here.
 constexpr Named<Make> kTrackers[] = {
     {FeatureTracker::kName, MakeFeatureTracker},
     {DirectTracker::kName, MakeDirectTracker},

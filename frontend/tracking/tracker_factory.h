@@ -13,25 +13,25 @@
 
 namespace rgbd_pose {
 
-// What trackers are made of; each takes what it needs.
+// The parts of trackers; each tracker takes the ones it needs.
 struct TrackerParts {
-  TrackerOptions options;          // when to be content
+  TrackerOptions options;          // when to accept a motion
   FrontendOptions images;          // the camera, and which depths to use
-  std::string frontend = "patch";  // where features come from
-  Estimator estimator;             // makes motions of what is matched
+  std::string frontend = "patch";  // provides the features
+  Estimator estimator;             // estimates motions from matches
 
-  // Of trackers that look at the images. A tracker by features goes without,
-  // and then starts from the guess.
+  // Estimators of trackers that use the images. Optional for a tracker by
+  // features, which then starts from the guess.
   std::optional<DirectEstimators> direct_estimators = std::nullopt;
-  // When to be content with them.
+  // When to accept their motions.
   DirectTrackerOptions direct_options = {};
 };
 
-// The names of all trackers.
+// Returns the names of all trackers.
 std::vector<std::string> TrackerNames();
 
-// The tracker of that name. Throws InputError listing the names there are, or
-// saying what is wrong with the options.
+// Returns the tracker with this name. Throws InputError with the list of names
+// if there is no such tracker, or with the reason if options are invalid.
 std::unique_ptr<Tracker> MakeTracker(std::string_view name, TrackerParts parts);
 
 }  // namespace rgbd_pose

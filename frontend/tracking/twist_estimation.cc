@@ -11,20 +11,20 @@ using Matrix12 = Eigen::Matrix<double, 12, 12>;
 using Vector12 = Eigen::Matrix<double, 12, 1>;
 using Row6 = Eigen::Matrix<double, 1, 6>;
 
-// Width of Cauchy's loss, in sigmas.
+// Width of the Cauchy loss, in sigmas.
 constexpr double kLossWidth = 2.0;
 
-// A surface that is seen under less than that (a cosine, about; normals are
-// towards the camera) tells no depth.
+// Depth is not used if a surface is seen at a flatter angle than this (about
+// the cosine between viewing ray and normal, which points to the camera).
 constexpr double kFlattest = -0.2;
 
 // Normal equations of the change of the motion (rotation, then translation, in
-// current axes) and of the velocity (angular, then linear).
+// current axes) and the change of the velocity (angular, then linear).
 struct Equations {
   Matrix12 hessian = Matrix12::Zero();
   Vector12 right = Vector12::Zero();
 
-  // A residual with its derivatives by the two.
+  // Adds a residual with its derivatives by both changes.
   void Add(const Row6& by_motion, const Row6& by_velocity, double residual,
            double weight) {
     Eigen::Matrix<double, 1, 12> both;
@@ -47,7 +47,7 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
                             const Rigid3d& cur_from_ref,
                             const FrameTiming& timing, const Twist& prior_mean,
                             const VelocityPrior& prior) {
-  // What the noise model does not explain is no smaller here.
+  // Errors not covered by the noise model are no smaller here.
   const double spread = std::max(1.0, sigma);
   const Camera& camera = matches.camera();
   Equations equations;
@@ -58,25 +58,25 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
     if (!(point.z() > 0.0)) continue;
     const double inverse = 1.0 / point.z();
     const double x = point.x() * inverse, y = point.y() * inverse;
-    // Of x, y and z by the motion.
+    // Derivatives of x, y and z by the motion.
     Row6 by_x, by_y, by_z;
     by_x << -x * y, 1.0 + x * x, -y, inverse, 0.0, -x * inverse;
     by_y << -1.0 - y * y, x * y, x, 0.0, inverse, -y * inverse;
     by_z << point.y(), -point.x(), 0.0, 0.0, 0.0, 1.0;
-    // The row that it was seen in, but for some pixels.
+    // The row in which the point was seen, up to some pixels.
     const double row = cur.v;
     const double u = camera.fx * x + camera.cx - cur.u;
     const double v = camera.fy * y + camera.cy - cur.v;
     const double weight =
         Weight(u * u + v * v, spread * std::hypot(ref.sigma_px, cur.sigma_px));
-    // A point that is seen so long after the stamp has moved by the velocity
-    // the other way, and so long.
+    // For a point seen `seen` seconds after the stamp, a change of the velocity
+    // acts like a motion in the opposite direction for this time.
     const double seen = timing.color.RowTime(row, camera.height);
     equations.Add(camera.fx * by_x, -seen * camera.fx * by_x, u, weight);
     equations.Add(camera.fy * by_y, -seen * camera.fy * by_y, v, weight);
     if (cur.depth <= 0.0) continue;
-    // Between then and when depth was taken, the surface has moved along the
-    // ray: how far its slope decides.
+    // Between the colour and the depth exposure the surface moves along the
+    // viewing ray; how far depends on its slope.
     const double since = timing.depth.RowTime(row, camera.height) - seen;
     Row6 along_ray = Row6::Zero();
     if (since != 0.0) {
@@ -91,7 +91,7 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
         Weight(z * z, spread * std::hypot(ref.sigma_depth, cur.sigma_depth)));
   }
   equations.hessian = equations.hessian.selfadjointView<Eigen::Lower>();
-  // Of the motion nothing is known before: numbers that keep it solvable.
+  // The motion has no prior; this only keeps the system solvable.
   equations.hessian.diagonal().head<6>().array() += 1e-3;
   const Twist off = prior_mean - timing.twist;
   for (int i = 0; i < 3; ++i) {
@@ -106,7 +106,7 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
   TwistEstimate result;
   result.twist =
       timing.twist + Twist{change.segment<3>(6), change.segment<3>(9)};
-  // The motion follows the velocity by -H_mm^-1 H_mv.
+  // A change of the velocity changes the motion by -H_mm^-1 H_mv.
   const MotionMatrix H_mm = equations.hessian.topLeftCorner<6, 6>();
   const MotionMatrix H_mv = equations.hessian.topRightCorner<6, 6>();
   const MotionMatrix follows = H_mm.ldlt().solve(H_mv);

@@ -9,22 +9,22 @@
 
 namespace rgbd_pose {
 
-// A frame's velocity, as its rows and what came before it tell.
+// The velocity of a frame, determined from its rows and from a prior.
 struct TwistEstimate {
   Twist twist;
 
-  // What the uncertainty of the velocity adds to the covariance of the motion,
-  // as MotionEstimate::covariance has it.
+  // The part of the motion's covariance that is due to the uncertainty of the
+  // velocity, defined as in MotionEstimate::covariance.
   MotionMatrix motion_covariance = MotionMatrix::Zero();
 };
 
-// Linear least squares over the inliers of `matches` (their observations of the
-// current frame as moved by timing.twist; `sigma`: how wide their residuals
-// spread, see MotionEstimate), for a change of the motion and one
-// of the velocity at once: where rows are exposed one after another, velocity
-// shears and stretches the image, which no motion does. Only that change of
-// the velocity is used; the motion is to be estimated again from matches that
-// are moved by it.
+// Estimates a change of the motion and a change of the velocity together, by
+// linear least squares over the inliers of `matches`. Their observations of the
+// current frame are corrected with timing.twist; `sigma` is the spread of their
+// residuals, see MotionEstimate. If rows are exposed one after another, a
+// velocity shears and stretches the image, which no motion does. Only the
+// change of the velocity is used: the motion has to be estimated again from
+// matches corrected with it.
 TwistEstimate EstimateTwist(const Correspondences& matches,
                             const std::vector<bool>& is_inlier, double sigma,
                             const Rigid3d& cur_from_ref,

@@ -6,27 +6,28 @@
 namespace rgbd_pose {
 namespace {
 
-// Changes of velocity from frame to frame (root mean squares) of a tripod are
-// taken to be as large as that.
+// Lower limits of the change of velocity from frame to frame (root mean
+// square), for a camera on a tripod.
 constexpr double kMinChangeAngular = 0.01;
 constexpr double kMinChangeLinear = 0.005;
 
-// Of the mean velocity since the last frame in what is expected at this one;
-// the rest is the last frame's. With 1 errors are larger by a fifth.
+// Weight of the mean velocity since the previous frame in the expected
+// velocity; the rest is the previous one's. With 1 the errors are 20 % larger.
 constexpr double kShareOfBetween = 0.8;
 
-// Of a camera whose last frames were not found: rad/s and m/s.
+// Standard deviations if the previous frames were not found: rad/s and m/s.
 constexpr double kLostSigmaAngular = 1.0;
 constexpr double kLostSigmaLinear = 0.5;
 
-// Of the change of velocity from frame to frame, once the motion is known.
+// Standard deviation of the velocity once the motion is known, as a share of
+// the change of velocity from frame to frame.
 constexpr double kSigmaOfChange = 0.5;
 
-// How fast the mean squares forget: some ten frames.
+// Weight of a new value in the mean squares, which span about ten frames.
 constexpr double kShareOfNew = 0.1;
 
-// Rows of other times than they are taken for make a turn look like a shift, of
-// part of what a thing in a room moves by: m.
+// With wrong exposure times of rows, a turn looks like a translation by this
+// much (m per rad): a part of the displacement of objects in a room.
 constexpr double kShiftOfTurn = 0.5;
 
 MotionMatrix IndependentErrors(double turn, double shift) {
@@ -47,9 +48,9 @@ std::optional<Twist> VelocityPrior::Between(const Rigid3d& cur_from_ref,
   return TwistOf(cur_from_prev, interval);
 }
 
-// What is found feeds back into what it is found from: extrapolated by the last
-// velocities (3/2 of the mean velocity less 1/2 of the last one, as a hand's
-// acceleration would have it) it oscillates until frames are lost.
+// The estimated velocity feeds back into its own prior. With an extrapolation
+// of the last velocities (3/2 of the mean velocity minus 1/2 of the last one,
+// which suits the acceleration of a hand) it oscillates until frames are lost.
 Twist VelocityPrior::Mean(const Rigid3d& cur_from_ref,
                           const Twist& twist) const {
   const std::optional<Twist> between = Between(cur_from_ref, twist);
@@ -77,7 +78,7 @@ MotionMatrix MotionCovarianceOfTiming(const Twist& twist, double sigma_s) {
 
 MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
                                             const VelocityPrior& prior) {
-  // Depth has little say in a motion but along the optical axis.
+  // Depth affects a motion little except along the optical axis.
   constexpr double kShareOfDepth = 0.2;
   const Shutter& color = timing.color;
   const double late = timing.depth.offset - color.offset;
