@@ -16,6 +16,7 @@ constexpr ExportFormat kFormats[] = {
     {"cloud", "cloud.ply", ExportCloud},
     {"colmap", "colmap", ExportColmap},
     {"nerfstudio", "nerfstudio", ExportNerfstudio},
+    {"mcap", "run.mcap", ExportMcap},
     {"kitti", "kitti", ExportKitti},
     {"tum", "trajectory_tum.txt", ExportTum},
     {"g2o", "poses.g2o", ExportG2o},

@@ -50,6 +50,7 @@ std::string ExportG2o(const FinishedRun& run, const ExportOptions& options);
 std::string ExportColmap(const FinishedRun& run, const ExportOptions& options);
 std::string ExportNerfstudio(const FinishedRun& run,
                              const ExportOptions& options);
+std::string ExportMcap(const FinishedRun& run, const ExportOptions& options);
 
 // Surfaces.
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);

@@ -1,0 +1,202 @@
+// A run as Foxglove's viewer shows it: messages of the types of
+// docs.foxglove.dev/docs/sdk/schemas, as JSON in an mcap file.
+
+#include <cmath>
+#include <filesystem>
+#include <limits>
+#include <opencv2/imgcodecs.hpp>
+#include <set>
+#include <utility>
+
+#include "apps/export/export_format.h"
+#include "apps/export/mcap_writer.h"
+#include "apps/shell/csv_table.h"
+#include "core/util/format.h"
+#include "core/util/input_error.h"
+#include "core/util/text_file.h"
+#include "frontend/fusion/cloud_fusion.h"
+#include "frontend/fusion/little_endian.h"
+
+namespace rgbd_pose {
+namespace {
+
+using Json = nlohmann::json;
+
+// Foxglove has z up, and shows a frame "map" unless told otherwise: our world
+// with x forward, y left and z up.
+constexpr char kMap[] = "map", kWorld[] = "world", kCamera[] = "camera";
+
+Json VectorOf(const Eigen::Vector3d& v) {
+  return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}};
+}
+
+Json QuaternionOf(const Eigen::Quaterniond& q) {
+  return {{"x", q.x()}, {"y", q.y()}, {"z", q.z()}, {"w", q.w()}};
+}
+
+Json PoseOf(const Rigid3d& pose) {
+  return {{"position", VectorOf(pose.translation)},
+          {"orientation", QuaternionOf(pose.rotation)}};
+}
+
+Json FrameTransform(const char* parent, const char* child,
+                    const Rigid3d& parent_from_child) {
+  return {{"parent_frame_id", parent},
+          {"child_frame_id", child},
+          {"translation", VectorOf(parent_from_child.translation)},
+          {"rotation", QuaternionOf(parent_from_child.rotation)}};
+}
+
+Json PosesInFrame(const Trajectory& path) {
+  Json poses;
+  for (const StampedPose& pose : path) {
+    poses.push_back(PoseOf(pose.world_from_cam));
+  }
+  return {{"frame_id", kWorld}, {"poses", poses}};
+}
+
+Json CameraCalibration(const Camera& camera) {
+  const std::vector<double> distortion = camera.Distortion();
+  const bool is_fisheye = camera.lens_model == LensModel::kEquidistant;
+  const char* const model = is_fisheye               ? "kannala_brandt"
+                            : distortion.size() == 8 ? "rational_polynomial"
+                                                     : "plumb_bob";
+  const double fx = camera.fx, fy = camera.fy, cx = camera.cx, cy = camera.cy;
+  return {{"frame_id", kCamera},
+          {"width", camera.width},
+          {"height", camera.height},
+          {"distortion_model", model},
+          {"D", distortion},
+          {"K", {fx, 0, cx, 0, fy, cy, 0, 0, 1}},
+          {"R", {1, 0, 0, 0, 1, 0, 0, 0, 1}},
+          {"P", {fx, 0, cx, 0, 0, fy, cy, 0, 0, 0, 1, 0}}};
+}
+
+Json PointCloud(const std::vector<ColoredPoint>& points) {
+  constexpr int kUint8 = 1, kFloat32 = 7;
+  std::string bytes;
+  for (const ColoredPoint& p : points) {
+    for (const float x : p.position) AppendLittleEndian(x, &bytes);
+    for (const int c : {p.red + 0, p.green + 0, p.blue + 0, 255}) {
+      bytes.push_back(static_cast<char>(c));
+    }
+  }
+  Json fields;
+  int offset = 0;
+  for (const char* const name : {"x", "y", "z"}) {
+    fields.push_back({{"name", name}, {"offset", offset}, {"type", kFloat32}});
+    offset += sizeof(float);
+  }
+  for (const char* const name : {"red", "green", "blue", "alpha"}) {
+    fields.push_back({{"name", name}, {"offset", offset++}, {"type", kUint8}});
+  }
+  return {{"frame_id", kWorld},
+          {"pose", PoseOf(Rigid3d())},
+          {"point_stride", offset},
+          {"fields", fields},
+          {"data", Base64(bytes)}};
+}
+
+std::string Jpeg(const cv::Mat& image) {
+  std::vector<uint8_t> bytes;
+  cv::imencode(".jpg", image, bytes, {cv::IMWRITE_JPEG_QUALITY, 90});
+  return {bytes.begin(), bytes.end()};
+}
+
+// Those of the path that the map of the run, if it has one, has kept.
+Trajectory KeyframesOf(const FinishedRun& run, const Trajectory& path) {
+  const std::filesystem::path file =
+      std::filesystem::path(run.folder()) / "keyframes.csv";
+  if (!std::filesystem::exists(file)) return {};
+  const std::vector<double> column = CsvTable::Read(file).Numbers("timestamp");
+  const std::set<double> times(column.begin(), column.end());
+  Trajectory keyframes;
+  for (const StampedPose& pose : path) {
+    if (times.count(pose.timestamp) != 0) keyframes.push_back(pose);
+  }
+  return keyframes;
+}
+
+}  // namespace
+
+std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
+  const std::vector<int>& segments = run.segments();
+  Trajectory path;
+  for (size_t i = 0; i < segments.size(); ++i) {
+    if (segments[i] == segments[0]) path.push_back(run.trajectory()[i]);
+  }
+  if (path[0].timestamp < 0.0 ||
+      path.back().timestamp > std::numeric_limits<uint32_t>::max()) {
+    throw InputError("--run: " + run.folder() +
+                     ": Foxglove has times from 1970 to 2106; export the poses "
+                     "with --to=tum");
+  }
+  RequireWritable(options.output);
+  RunRecording recording(run);
+  const Camera& camera = recording.camera().camera;
+  const Undistorter undistorter(camera);
+  const Camera& shown = options.undistort ? undistorter.camera() : camera;
+  CloudFusion cloud(FusionOf<FusionOptions>(camera, run, options));
+  const std::vector<int> views = run.PickViews(options.step);
+  // Kept meanwhile: messages lie in order of time, and the cloud, which takes
+  // all frames, is to be seen from the start.
+  std::vector<std::string> images;
+  recording.ReadViews(
+      views, options.threads,
+      [&](const Frame& frame, const Rigid3d& world_from_cam) {
+        cloud.Add(frame, world_from_cam);
+        images.push_back(Jpeg(options.undistort
+                                  ? undistorter.Undistort(frame).color
+                                  : frame.color));
+      });
+  const std::vector<ColoredPoint> points =
+      cloud.cloud().Thin(options.max_points);
+
+  McapWriter file;
+  // Trajectories have 6 decimals.
+  constexpr uint64_t kMicro = 1000, kSecond = 1000000000;  // ns
+  const auto write = [&file](const char* topic, const std::string& type,
+                             double seconds, Json message) {
+    const uint64_t time = kMicro * std::llround(1e6 * seconds);
+    message["timestamp"] = {{"sec", time / kSecond}, {"nsec", time % kSecond}};
+    file.Write(topic, "foxglove." + type, time, message);
+  };
+  const Rigid3d map_from_world({0.5, -0.5, 0.5, -0.5}, {0.0, 0.0, 0.0});
+  const double start = path[0].timestamp;
+  write("/tf_static", "FrameTransform", start,
+        FrameTransform(kMap, kWorld, map_from_world));
+  write("/path", "PosesInFrame", start, PosesInFrame(path));
+  const Trajectory keyframes = KeyframesOf(run, path);
+  if (!keyframes.empty()) {
+    write("/keyframes", "PosesInFrame", start, PosesInFrame(keyframes));
+  }
+  write("/cloud", "PointCloud", start, PointCloud(points));
+  size_t next = 0;
+  for (const auto& [time, world_from_cam] : path) {
+    write("/tf", "FrameTransform", time,
+          FrameTransform(kWorld, kCamera, world_from_cam));
+    if (next == views.size() ||
+        run.trajectory()[views[next]].timestamp != time) {
+      continue;
+    }
+    write("/camera/calibration", "CameraCalibration", time,
+          CameraCalibration(shown));
+    write("/camera/image", "CompressedImage", time,
+          {{"frame_id", kCamera},
+           {"format", "jpeg"},
+           {"data", Base64(std::exchange(images[next++], {}))}});
+  }
+  WriteFileAtomically(options.output, file.Finish());
+  std::string text =
+      Format("%zu poses, %zu images, %zu points in %s\n", path.size(),
+             images.size(), points.size(), options.output.c_str());
+  if (path.size() < segments.size()) {
+    text += Format(
+        "%zu poses are left out: how they lie to those of the first segment is "
+        "unknown\n",
+        segments.size() - path.size());
+  }
+  return text;
+}
+
+}  // namespace rgbd_pose

@@ -1,0 +1,163 @@
+#include "apps/export/mcap_writer.h"
+
+#include <array>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+
+#include "frontend/fusion/little_endian.h"
+
+namespace rgbd_pose {
+namespace {
+
+constexpr char kMcapMagic[] = "\x89MCAP0\r\n";
+constexpr size_t kMcapChunkSize = 1
+                                  << 20;  // bytes; the last message exceeds it
+
+constexpr std::string_view kNoText = "";  // no profile, codec or metadata
+constexpr uint32_t kNone = 0;             // attachments and the like
+
+enum McapRecord : char {
+  kHeader = 0x01,
+  kFooter = 0x02,
+  kSchema = 0x03,
+  kChannel = 0x04,
+  kMessage = 0x05,
+  kChunk = 0x06,
+  kMessageIndex = 0x07,
+  kChunkIndex = 0x08,
+  kStatistics = 0x0b,
+  kDataEnd = 0x0f,
+};
+
+// Numbers as they are, and texts, lists and maps after their length.
+template <typename... Fields>
+std::string Pack(const Fields&... fields) {
+  std::string bytes;
+  const auto append = [&bytes](const auto& field) {
+    if constexpr (std::is_arithmetic_v<std::decay_t<decltype(field)>>) {
+      AppendLittleEndian(field, &bytes);
+    } else {
+      const std::string_view text = field;
+      AppendLittleEndian(static_cast<uint32_t>(text.size()), &bytes);
+      bytes += text;
+    }
+  };
+  (append(fields), ...);
+  return bytes;
+}
+
+std::string RecordOf(McapRecord kind, const std::string& content) {
+  return char{kind} + Pack(uint64_t{content.size()}) + content;
+}
+
+// CRC-32, as zlib has it.
+uint32_t Checksum(std::string_view bytes) {
+  static const std::array<uint32_t, 256> kTable = [] {
+    std::array<uint32_t, 256> table;
+    for (uint32_t i = 0; i < table.size(); ++i) {
+      table[i] = i;
+      for (int bit = 0; bit < 8; ++bit) {
+        table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xedb88320u : 0u);
+      }
+    }
+    return table;
+  }();
+  uint32_t crc = ~0u;
+  for (const char c : bytes) {
+    crc = crc >> 8 ^ kTable[(crc ^ static_cast<uint8_t>(c)) & 0xff];
+  }
+  return ~crc;
+}
+
+nlohmann::json SchemaOf(const nlohmann::json& value) {
+  if (value.is_array()) {
+    return {{"type", "array"}, {"items", SchemaOf(value.front())}};
+  }
+  if (!value.is_object()) {
+    return {{"type", value.is_number() ? "number" : "string"}};
+  }
+  nlohmann::json properties;
+  for (const auto& [name, field] : value.items()) {
+    properties[name] = SchemaOf(field);
+    if (name == "data") properties[name]["contentEncoding"] = "base64";
+  }
+  return {{"type", "object"}, {"properties", properties}};
+}
+
+}  // namespace
+
+McapWriter::McapWriter()
+    : file_(kMcapMagic +
+            RecordOf(kHeader, Pack(kNoText, "rgbd_pose " RGBD_POSE_VERSION))) {}
+
+void McapWriter::Write(const std::string& topic, const std::string& type,
+                       uint64_t time, const nlohmann::json& message) {
+  if (messages_++ == 0) first_time_ = time;
+  if (chunk_.empty()) chunk_time_ = time;
+  last_time_ = time;
+  const auto [place, is_new] = channels_.try_emplace(topic);
+  Channel& channel = place->second;
+  if (is_new) {
+    channel.id = static_cast<uint16_t>(channels_.size());
+    const std::string schema = SchemaOf(message).dump();
+    channel.schema =
+        RecordOf(kSchema, Pack(channel.id, type, "jsonschema", schema));
+    channel.record = RecordOf(
+        kChannel, Pack(channel.id, channel.id, topic, "json", kNoText));
+    chunk_ += channel.schema + channel.record;
+  }
+  channel.index += Pack(time, uint64_t{chunk_.size()});
+  // Logged as it was published.
+  chunk_ +=
+      RecordOf(kMessage, Pack(channel.id, channel.messages++, time, time) +
+                             message.dump());
+  if (chunk_.size() >= kMcapChunkSize) CloseChunk();
+}
+
+void McapWriter::CloseChunk() {
+  if (chunk_.empty()) return;
+  const uint64_t start = file_.size(), size = chunk_.size();
+  file_ += RecordOf(kChunk, Pack(chunk_time_, last_time_, size,
+                                 Checksum(chunk_), kNoText, size) +
+                                chunk_);
+  const uint64_t end = file_.size();
+  std::string places;
+  for (auto& [topic, channel] : channels_) {
+    if (channel.index.empty()) continue;
+    places += Pack(channel.id, uint64_t{file_.size()});
+    file_ += RecordOf(kMessageIndex, Pack(channel.id, channel.index));
+    channel.index.clear();
+  }
+  const uint64_t index_size = file_.size() - end;
+  chunk_indexes_ +=
+      RecordOf(kChunkIndex, Pack(chunk_time_, last_time_, start, end - start,
+                                 places, index_size, kNoText, size, size));
+  ++chunks_;
+  chunk_.clear();
+}
+
+std::string McapWriter::Finish() {
+  CloseChunk();
+  file_ += RecordOf(kDataEnd, Pack(Checksum(file_)));
+  const uint64_t summary = file_.size();
+  std::string schemas, channels, counts;
+  for (const auto& [topic, channel] : channels_) {
+    schemas += channel.schema;
+    channels += channel.record;
+    counts += Pack(channel.id, uint64_t{channel.messages});
+  }
+  const auto number = static_cast<uint16_t>(channels_.size());
+  file_ += schemas + channels + chunk_indexes_ +
+           RecordOf(kStatistics,
+                    Pack(messages_, number, uint32_t{number}, kNone, kNone,
+                         chunks_, first_time_, last_time_, counts));
+  // Without offsets in the summary; its checksum is the last field.
+  const std::string footer =
+      RecordOf(kFooter, Pack(summary, uint64_t{0}, uint32_t{0}));
+  file_.append(footer, 0, footer.size() - sizeof(uint32_t));
+  file_ += Pack(Checksum(std::string_view(file_).substr(summary)));
+  return std::move(file_ += kMcapMagic);
+}
+
+}  // namespace rgbd_pose
