@@ -57,6 +57,13 @@ const std::vector<SourceType>& Types() {
                 "NAME_0.bag, NAME_1.bag, ...)"),
         BagType(BagKind::kRos2, "rosbag2",
                 "ROS 2 bag (.db3 or .mcap, or a folder of such)"),
+        {"stray_scanner",
+         "Stray Scanner (rgb.mp4, depth/, camera_matrix.csv, odometry.csv)",
+         [](const SourceOptions& options) {
+           return HasFile(options, "rgb.mp4") ||
+                  HasFile(options, "camera_matrix.csv");
+         },
+         OpenStrayScanner},
         // Never detected from a path.
         {"openni2", "camera by OpenNI 2 (source=openni2, dataset=any)",
          [](const SourceOptions&) { return false; }, OpenOpenNi2},

@@ -33,6 +33,15 @@ bool IsNumbered(const NumberedLayout& layout, const std::string& folder);
 std::unique_ptr<FrameSource> OpenNumbered(const NumberedLayout& layout,
                                           const SourceOptions& options);
 
+// Opens a folder that the app Stray Scanner recorded with a phone with LiDAR.
+// Images of rgb.mp4 are scaled to at most 640 px width, or to the width of the
+// options' camera, and to the focal length of camera_matrix.csv; depth/ and
+// confidence/ are resampled to that size. ARKit's path in odometry.csv is the
+// ground truth. Next decodes all images of the video in order. Throws
+// InputError for missing or inconsistent files, and in a build without video;
+// Next throws it where the video ends too early.
+std::unique_ptr<FrameSource> OpenStrayScanner(const SourceOptions& options);
+
 // Opens a camera with an OpenNI 2 driver (Kinect, Xtion, Astra) by its URI, or
 // `any`. The camera registers depth to colour unless the options specify the
 // depth camera. Frames that arrive faster than requested are dropped

@@ -53,6 +53,26 @@ auto Windows(const std::string& name) {
   };
 }
 
+#ifdef RGBD_POSE_HAS_VIDEOIO
+constexpr char kNoVideo[] = "{seq}/rgb.mp4: missing";
+constexpr char kBadVideo[] = "{seq}/rgb.mp4: cannot be read as a video";
+#else
+constexpr char kNoVideo[] = "{seq}: this build reads no videos; install";
+constexpr const char* kBadVideo = kNoVideo;
+#endif
+
+TEST_F(BadInputTest, Videos) {
+  ExpectEach(Odometry() + "--source=stray_scanner ",
+             {
+                 {"no video", nullptr, "", 2, kNoVideo},
+                 {"garbage", Text("rgb.mp4", "no video"), "", 2, kBadVideo},
+                 // FFmpeg has nothing to say of its own.
+                 {"cut off",
+                  Text("rgb.mp4", std::string("\0\0\0\x18", 4) + "ftypisom"),
+                  "", 2, kBadVideo},
+             });
+}
+
 TEST_F(BadInputTest, Images) {
   // Reading stops at the first damaged image.
   ExpectEach(
