@@ -39,11 +39,13 @@ struct MEstimator {
   }
 };
 
+// The table of all M-estimators.
 const std::vector<MEstimator>& MEstimators();
 
 // The row with this name, or null.
 const MEstimator* FindMEstimator(std::string_view name);
 
+// The names of all M-estimators.
 std::vector<std::string> MEstimatorNames();
 
 // A loss as given to programs: a name, or a name and a width in sigmas from
@@ -52,6 +54,7 @@ struct NamedLoss {
   const MEstimator* row = nullptr;  // never null if made by ParseLoss
   double width = 0.0;               // 0: use Width95
 
+  // The width for residuals of this dimension, in sigmas.
   double Width(int dimension) const {
     return width > 0.0 ? width : row->Width95(dimension);
   }

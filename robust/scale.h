@@ -48,11 +48,13 @@ struct ScaleEstimator {
   double (*estimate)(std::vector<double>* values);  // null: sigma is 1
 };
 
+// The table of all scale estimators.
 const std::vector<ScaleEstimator>& ScaleEstimators();
 
 // The row with this name, or null.
 const ScaleEstimator* FindScaleEstimator(std::string_view name);
 
+// The names of all scale estimators.
 std::vector<std::string> ScaleEstimatorNames();
 
 }  // namespace rgbd_pose

@@ -14,22 +14,23 @@ namespace rgbd_pose {
 
 // The result for one parameter.
 struct CalibratedParameter {
+  // What the recording says about the parameter.
   enum class Status {
     kFixed,         // not asked for, or not observable
     kUndetermined,  // keeps its value: not determined, or no better fit
     kDetermined,
   };
-  Status status = Status::kFixed;
-  double before = 0.0;  // value of the first camera
-  double prior = 0.0;   // standard deviation of the prior
-  double found = 0.0;   // the recording's estimate
-  double sigma = 0.0;   // standard deviation of the estimate
+  Status status = Status::kFixed;  // of this parameter
+  double before = 0.0;             // value of the first camera
+  double prior = 0.0;              // standard deviation of the prior
+  double found = 0.0;              // the recording's estimate
+  double sigma = 0.0;              // standard deviation of the estimate
 };
 
 // The residual of a held-out view, px. Used for plots.
 struct HeldOutResidual {
-  double u = 0.0;  // position in the image
-  double v = 0.0;
+  double u = 0.0;          // column in the image
+  double v = 0.0;          // row in the image
   Eigen::Vector2d before;  // with the first camera
   Eigen::Vector2d after;   // with the camera found
 };

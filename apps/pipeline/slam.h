@@ -26,6 +26,7 @@ struct SlamSettings {
   int update_delay = 10;
 };
 
+// The settings by name, bound to `settings`, which must outlive the table.
 std::vector<Setting> SettingTable(SlamSettings* settings);
 
 // Map files, as users specify them; empty: none.
@@ -35,6 +36,7 @@ struct MapSettings {
   bool localise_only = false;  // do not change the loaded map
 };
 
+// The same for map files.
 std::vector<Setting> SettingTable(MapSettings* settings);
 
 // The result for one frame. map_from_odom * odom_from_cam is its pose in the

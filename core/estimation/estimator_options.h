@@ -14,6 +14,7 @@ enum class RobustSchedule {
             // count, then narrower step by step
 };
 
+// The options of Estimator.
 struct EstimatorOptions {
   // How matches become residual blocks; the result does not depend on it.
   Assembly assembly = Assembly::kCompressed;

@@ -26,6 +26,7 @@ inline const char* ToString(EstimateStatus status) {
 
 // The result of one motion estimation.
 struct MotionEstimate {
+  // Whether an estimate was found, and why not.
   EstimateStatus status = EstimateStatus::kTooFewMatches;
   std::string reason;  // in words; empty if ok
 
@@ -62,6 +63,7 @@ struct MotionEstimate {
   int iterations = 0;         // of the solver, in all stages
   double solve_ms = 0.0;      // time of the whole estimation
 
+  // Whether the motion can be trusted.
   bool ok() const { return status == EstimateStatus::kOk; }
 };
 

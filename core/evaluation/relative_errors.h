@@ -49,6 +49,7 @@ std::vector<PoseInterval> TimeIntervals(const std::vector<double>& times,
 std::vector<PoseInterval> PathIntervals(const std::vector<double>& path,
                                         double delta);
 
+// The relative pose error over the intervals.
 RelativePoseError SummariseIntervals(
     const std::vector<PosePair>& pairs,
     const std::vector<PoseInterval>& intervals);

@@ -7,6 +7,7 @@
 
 namespace rgbd_pose {
 
+// A camera pose and its time.
 struct StampedPose {
   double timestamp = 0.0;  // s
   Rigid3d world_from_cam;  // m

@@ -177,6 +177,7 @@ struct ShutterParameter {
   double Shutter::*value;      // member of Shutter
   double most;                 // limit of the absolute value for any camera, s
 };
+// All of them, in the order of camera files.
 inline constexpr std::array<ShutterParameter, 4> kShutterParameters = {
     {{"color_time_offset", &RgbdCamera::color_shutter, &Shutter::offset, 0.5},
      {"color_readout", &RgbdCamera::color_shutter, &Shutter::readout, 0.1},

@@ -44,6 +44,7 @@ const std::vector<DepthNoiseModel>& DepthNoiseModels();
 // The model with this name, or null.
 const DepthNoiseModel* FindDepthNoiseModel(std::string_view name);
 
+// The names of all models.
 std::vector<std::string> DepthNoiseModelNames();
 
 }  // namespace rgbd_pose

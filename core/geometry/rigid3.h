@@ -77,6 +77,7 @@ struct Rigid3d {
     return 2.0 * std::atan2(rotation.vec().norm(), std::abs(rotation.w()));
   }
 
+  // Whether it moves nothing, exactly.
   bool IsIdentity() const { return Angle() == 0.0 && translation.isZero(0.0); }
 
   // Exact comparison.
@@ -85,6 +86,7 @@ struct Rigid3d {
            translation == other.translation;
   }
 
+  // Whether no component is NaN or infinite.
   bool IsFinite() const {
     return rotation.coeffs().allFinite() && translation.allFinite();
   }

@@ -14,6 +14,7 @@ namespace rgbd_pose {
 // The content of a PoseGraph: poses, referred to by their numbers, and the
 // motions measured between them.
 struct GraphTerms {
+  // A node of the graph.
   struct Pose {
     Rigid3d world_from_cam;  // current estimate
     bool is_fixed = false;   // stays where it is
@@ -90,8 +91,8 @@ inline const char* ToString(GraphStatus status) {
 
 // The result of a solve.
 struct GraphSolution {
-  GraphStatus status = GraphStatus::kOk;
-  std::string reason;  // in words; empty if ok
+  GraphStatus status = GraphStatus::kOk;  // outcome, with its reason:
+  std::string reason;                     // in words; empty if ok
 
   double initial_cost = 0.0;  // with the final widths of the losses
   double final_cost = 0.0;    // the same at the new poses
@@ -134,6 +135,7 @@ class PoseGraph {
   // Optimises the poses that are not fixed. Ignores edges between fixed poses.
   GraphSolution Solve();
 
+  // The number of poses, fixed ones included.
   int num_poses() const { return static_cast<int>(graph_.poses.size()); }
   // Returns world_from_cam.
   const Rigid3d& pose(int pose) const {

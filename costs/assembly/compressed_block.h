@@ -30,9 +30,11 @@ namespace rgbd_pose {
 // The three sums H, g and c at one x[K].
 template <int K>
 struct CompressedSums {
+  // H, a symmetric matrix.
   Eigen::Matrix<double, K, K> hessian = Eigen::Matrix<double, K, K>::Zero();
+  // g.
   Eigen::Matrix<double, K, 1> gradient = Eigen::Matrix<double, K, 1>::Zero();
-  double cost = 0.0;
+  double cost = 0.0;  // c
 };
 
 // Computes residuals r[K + 1] and the Jacobian J[K + 1][K], row by row, that
@@ -56,6 +58,7 @@ class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
   static_assert(K >= 1 && K <= 12, "dense sums suit small problems");
 
  public:
+  // Takes a copy of the evaluator.
   explicit CompressedBlock(Evaluator evaluator)
       : evaluator_(std::move(evaluator)) {}
 

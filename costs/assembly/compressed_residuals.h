@@ -28,6 +28,7 @@ namespace rgbd_pose {
 template <typename Residual>
 class CompressedResiduals {
  public:
+  // The number of parameters.
   static constexpr int K = Residual::kParameters;
 
   // Both must outlive this object.

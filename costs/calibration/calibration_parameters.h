@@ -37,6 +37,8 @@ enum CalibrationIndex {
 inline constexpr int kLensSize = kInverseDepth;
 inline constexpr int kDistortionSize = kLensSize - kK1;
 
+// A value, and a covariance, of all parameters in the order of
+// kCalibrationParameters.
 using CalibrationVector = Eigen::Matrix<double, kCalibrationSize, 1>;
 using CalibrationMatrix =
     Eigen::Matrix<double, kCalibrationSize, kCalibrationSize>;
@@ -45,7 +47,7 @@ using CalibrationMatrix =
 struct CalibrationParameter {
   const char* name;  // in files and reports
   const char* what;  // description
-  const char* unit;
+  const char* unit;  // of the value, as text
 
   // Standard deviation of the prior; for focal lengths, relative to the focal
   // length.

@@ -61,6 +61,7 @@ struct Frame {
   FrameTiming Timing() const {
     return twist.has_value() ? Timing(*twist) : FrameTiming();
   }
+  // The same for a given velocity.
   FrameTiming Timing(const Twist& velocity) const {
     return {color_shutter, DepthShutter(), velocity};
   }

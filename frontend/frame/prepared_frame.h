@@ -18,6 +18,7 @@ namespace rgbd_pose {
 class PreparedFrame : public Frame {
  public:
   PreparedFrame() : PreparedFrame(Frame()) {}
+  // Shares the images of the frame; nothing is derived yet.
   explicit PreparedFrame(const Frame& frame)
       : Frame(frame), derived_(std::make_shared<DerivedData>()) {}
 

@@ -11,6 +11,7 @@
 
 namespace rgbd_pose {
 
+// The pose of a keyframe in the map.
 struct KeyframePlace {
   Rigid3d map_from_cam;  // current estimate
   int segment = 0;       // `map` is the world frame of this segment

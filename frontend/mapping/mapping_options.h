@@ -4,6 +4,7 @@
 
 namespace rgbd_pose {
 
+// The options of Mapper.
 struct MappingOptions {
   // Maximum number of older keyframes that a new one is paired with by its
   // pose. Half of them are those that see most of its view; the others are the

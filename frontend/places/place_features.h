@@ -14,7 +14,7 @@ namespace rgbd_pose {
 
 // The ORB features (Rublee et al. 2011) by which a frame is recognised.
 struct PlaceFeatures {
-  DescribedKeypoints described;
+  DescribedKeypoints described;           // keypoints with descriptors
   std::vector<Observation> observations;  // one per keypoint
 };
 

@@ -18,12 +18,12 @@ namespace rgbd_pose {
 struct SyntheticOptions {
   std::string scene = "room";  // see MakeScene
   std::string path = "xyz";    // see FindSyntheticPath
-  int frames = 150;
-  int laps = 1;            // rounds of the path, see below
-  uint32_t seed = 1;       // of textures and noise
-  double rate_hz = 30.0;   // frames per second
-  bool noise = true;       // simulate a real sensor, see synthetic_sensor.h
-  RgbdCamera camera = {};  // may have distortion
+  int frames = 150;            // number of frames
+  int laps = 1;                // rounds of the path, see below
+  uint32_t seed = 1;           // of textures and noise
+  double rate_hz = 30.0;       // frames per second
+  bool noise = true;           // simulate a real sensor, see synthetic_sensor.h
+  RgbdCamera camera = {};      // may have distortion
 
   // Exposure time of a row (s), half of it before and half of it after the time
   // of the row; at most the frame interval.

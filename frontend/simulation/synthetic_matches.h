@@ -18,6 +18,7 @@ namespace rgbd_pose {
 // platform with the same standard library.
 class RandomWorld {
  public:
+  // The seed determines all numbers.
   explicit RandomWorld(unsigned seed)
       : generator_(seed), extra_generator_(~seed) {}
 

@@ -13,8 +13,8 @@ namespace rgbd_pose {
 struct ImagePair {
   double timestamp = 0.0;    // of the colour image, s
   double depth_delay = 0.0;  // of the depth image, s after it
-  std::string color_path;
-  std::string depth_path;
+  std::string color_path;    // file of the colour image
+  std::string depth_path;    // file of the depth image
 };
 
 // The image lists of a sequence in the layout of the TUM RGB-D benchmark.
