@@ -24,7 +24,7 @@ def run(*command):
     result = subprocess.run(command, capture_output=True, text=True, check=False)
     if result.returncode != 0:
         sys.exit(f'{" ".join(command)}\n{result.stdout}{result.stderr}')
-    return result.stdout
+    return result.stdout + result.stderr
 
 
 def check(condition, *what):
@@ -354,6 +354,7 @@ def main(bin_folder, work, colmap):
 
     if colmap:
         model = os.path.join(export('colmap', 'model'), 'sparse/0')
+        # To stdout, or since version 3.9 to stderr.
         said = run('colmap', 'model_analyzer', '--path', model)
         points = len(data_lines(model, 'points3D.txt'))
         images = len(data_lines(model, 'images.txt')) // 2
