@@ -1,17 +1,28 @@
 #pragma once
 
 #include <Python.h>
+#include <cxxabi.h>
+
+#include <chrono>
+#include <thread>
 
 namespace rgbd_pose {
 
 // Releases the GIL for the lifetime of this object. Unlike pybind11's own
-// class, its destructor may throw: if Python is shutting down, a daemon thread
-// that asks for the GIL is unwound, and a noexcept destructor would call
-// std::terminate().
+// class, it outlives the end of Python: a daemon thread that asks for the GIL
+// after that is unwound, which would free Python objects without the GIL, or
+// call std::terminate() in a noexcept destructor. Such a thread sleeps here
+// until the process ends, as Python itself does it from 3.14 on.
 class ReleasedGil {
  public:
   ReleasedGil() : state_(PyEval_SaveThread()) {}
-  ~ReleasedGil() noexcept(false) { PyEval_RestoreThread(state_); }
+  ~ReleasedGil() {
+    try {
+      PyEval_RestoreThread(state_);
+    } catch (abi::__forced_unwind&) {
+      for (;;) std::this_thread::sleep_for(std::chrono::hours(1));
+    }
+  }
   ReleasedGil(const ReleasedGil&) = delete;
   ReleasedGil& operator=(const ReleasedGil&) = delete;
 
