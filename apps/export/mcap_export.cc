@@ -1,5 +1,5 @@
-// A run as Foxglove's viewer shows it: messages of the types of
-// docs.foxglove.dev/docs/sdk/schemas, as JSON in an mcap file.
+// Exports a run for Foxglove's viewer: JSON messages of the types in
+// docs.foxglove.dev/docs/sdk/schemas, in an mcap file.
 
 #include <cmath>
 #include <filesystem>
@@ -22,8 +22,8 @@ namespace {
 
 using Json = nlohmann::json;
 
-// Foxglove has z up, and shows a frame "map" unless told otherwise: our world
-// with x forward, y left and z up.
+// Foxglove's z axis points up, and it shows the frame "map" by default. That is
+// our world with x forward, y left and z up.
 constexpr char kMap[] = "map", kWorld[] = "world", kCamera[] = "camera";
 
 Json VectorOf(const Eigen::Vector3d& v) {
@@ -103,7 +103,7 @@ std::string Jpeg(const cv::Mat& image) {
   return {bytes.begin(), bytes.end()};
 }
 
-// Those of the path that the map of the run, if it has one, has kept.
+// The poses of the path that are keyframes of the run's map, if it has one.
 Trajectory KeyframesOf(const FinishedRun& run, const Trajectory& path) {
   const std::filesystem::path file =
       std::filesystem::path(run.folder()) / "keyframes.csv";
@@ -138,8 +138,8 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
   const Camera& shown = options.undistort ? undistorter.camera() : camera;
   CloudFusion cloud(FusionOf<FusionOptions>(camera, run, options));
   const std::vector<int> views = run.PickViews(options.step);
-  // Kept meanwhile: messages lie in order of time, and the cloud, which takes
-  // all frames, is to be seen from the start.
+  // Images are kept in memory because messages are written in order of time,
+  // and the cloud, which needs all frames, comes first.
   std::vector<std::string> images;
   recording.ReadViews(
       views, options.threads,
@@ -153,7 +153,7 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
       cloud.cloud().Thin(options.max_points);
 
   McapWriter file;
-  // Trajectories have 6 decimals.
+  // Time stamps of trajectories have 6 decimals.
   constexpr uint64_t kMicro = 1000, kSecond = 1000000000;  // ns
   const auto write = [&file](const char* topic, const std::string& type,
                              double seconds, Json message) {
@@ -192,8 +192,8 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
              images.size(), points.size(), options.output.c_str());
   if (path.size() < segments.size()) {
     text += Format(
-        "%zu poses are left out: how they lie to those of the first segment is "
-        "unknown\n",
+        "%zu poses of other segments are left out: their position relative to "
+        "the first segment is unknown\n",
         segments.size() - path.size());
   }
   return text;

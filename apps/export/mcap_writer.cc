@@ -11,8 +11,8 @@ namespace rgbd_pose {
 namespace {
 
 constexpr char kMcapMagic[] = "\x89MCAP0\r\n";
-constexpr size_t kMcapChunkSize = 1
-                                  << 20;  // bytes; the last message exceeds it
+// Bytes after which a chunk is closed.
+constexpr size_t kMcapChunkSize = 1 << 20;
 
 constexpr std::string_view kNoText = "";  // no profile, codec or metadata
 constexpr uint32_t kNone = 0;             // attachments and the like
@@ -30,7 +30,8 @@ enum McapRecord : char {
   kDataEnd = 0x0f,
 };
 
-// Numbers as they are, and texts, lists and maps after their length.
+// Serialises numbers in little-endian order, and texts (also lists and maps
+// that are serialised already) after their length.
 template <typename... Fields>
 std::string Pack(const Fields&... fields) {
   std::string bytes;
@@ -51,7 +52,7 @@ std::string RecordOf(McapRecord kind, const std::string& content) {
   return char{kind} + Pack(uint64_t{content.size()}) + content;
 }
 
-// CRC-32, as zlib has it.
+// CRC-32 with zlib's polynomial.
 uint32_t Checksum(std::string_view bytes) {
   static const std::array<uint32_t, 256> kTable = [] {
     std::array<uint32_t, 256> table;
@@ -108,7 +109,7 @@ void McapWriter::Write(const std::string& topic, const std::string& type,
     chunk_ += channel.schema + channel.record;
   }
   channel.index += Pack(time, uint64_t{chunk_.size()});
-  // Logged as it was published.
+  // The log time and the publish time are equal.
   chunk_ +=
       RecordOf(kMessage, Pack(channel.id, channel.messages++, time, time) +
                              message.dump());
@@ -152,7 +153,8 @@ std::string McapWriter::Finish() {
            RecordOf(kStatistics,
                     Pack(messages_, number, uint32_t{number}, kNone, kNone,
                          chunks_, first_time_, last_time_, counts));
-  // Without offsets in the summary; its checksum is the last field.
+  // There are no summary offsets. The checksum of the summary is the last
+  // field.
   const std::string footer =
       RecordOf(kFooter, Pack(summary, uint64_t{0}, uint32_t{0}));
   file_.append(footer, 0, footer.size() - sizeof(uint32_t));

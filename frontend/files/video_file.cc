@@ -8,8 +8,8 @@
 namespace rgbd_pose {
 namespace {
 
-// With the images that an edit list hides: an option of FFmpeg, which OpenCV
-// takes from the environment only.
+// Opens a video including the images that an edit list hides. OpenCV takes this
+// option of FFmpeg from the environment only.
 bool OpenWhole(const std::string& path, cv::VideoCapture* video) {
   static std::mutex one_at_a_time;
   const std::lock_guard<std::mutex> lock(one_at_a_time);
@@ -17,7 +17,7 @@ bool OpenWhole(const std::string& path, cv::VideoCapture* video) {
   const char* const set = std::getenv(kOptions);
   const std::string before = set == nullptr ? "" : set;
   setenv(kOptions, "ignore_editlist;1", 1);
-  // Or else it prints of its own what is wrong with a file.
+  // Prevents FFmpeg from printing its own messages about damaged files.
   setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);
   const bool is_open = video->open(path, cv::CAP_FFMPEG);
   if (set == nullptr) {

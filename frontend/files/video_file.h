@@ -7,25 +7,26 @@
 
 namespace rgbd_pose {
 
-// A video that is read image after image, as random access is slow and inexact.
-// What nobody waits for is decoded, since later images build on it, but not
-// made a picture of: that takes half the time.
+// A video that is read image by image, because random access is slow and
+// inexact. Skipped images are decoded, since later images depend on them, but
+// not converted to pictures, which saves half the time.
 class VideoFile {
  public:
-  // All images of the file, also those that its edit list hides from players,
-  // as they were taken, whatever way up a player is to show them. Throws
-  // InputError for a file that is missing or no video.
+  // Opens all images of the file, including those that its edit list hides from
+  // players, without rotating them. Throws InputError if the file is missing or
+  // is no video.
   explicit VideoFile(const std::string& path);
 
   const std::string& path() const { return path_; }
   cv::Size size() const { return size_; }
-  int count() const { return count_; }  // of images, as the file says
+  int count() const { return count_; }  // number of images in the header
 
-  // The place of the next image, not there yet. Who lets go of it before the
-  // next call gives the image up. Throws InputError where it cannot be decoded.
+  // Advances to the next image and returns a handle for At. If the handle is
+  // released before the next call, the image is skipped. Throws InputError if
+  // it cannot be decoded.
   std::shared_ptr<cv::Mat> Next();
 
-  // The image at a place: CV_8UC3, blue, green, red. From any thread. Throws
+  // The image of a handle: CV_8UC3, blue, green, red. Thread-safe. Throws
   // InputError if it is damaged.
   const cv::Mat& At(const std::shared_ptr<cv::Mat>& place);
 
@@ -35,9 +36,9 @@ class VideoFile {
   std::string path_;
   cv::Size size_;
   int count_ = 0;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the members below
   cv::VideoCapture video_;
-  std::weak_ptr<cv::Mat> last_;  // place that Next gave
+  std::weak_ptr<cv::Mat> last_;  // the last handle of Next
   int num_read_ = 0;
 };
 

@@ -4,10 +4,10 @@
 
 namespace rgbd_pose {
 
-// A depth image (CV_16UC1, 0: none) at another resolution: `place` has for each
-// pixel of the new one where in `depth` its centre is, px. Between four depths
-// of one surface, else the nearest one of them, so that edges stay where they
-// were measured. Beyond the border there is none.
+// Resamples a depth image (CV_16UC1, 0: no depth). `place` maps the centre of a
+// pixel of the result to its position in `depth`, px. Interpolates between four
+// depths of one surface; otherwise takes the nearest one, so edges are not
+// smeared. There is no depth beyond the border.
 cv::Mat ResampleDepth(const cv::Mat& depth, const cv::Size& size,
                       const cv::Matx23d& place);
 

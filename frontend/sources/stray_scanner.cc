@@ -27,23 +27,23 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMaxWidth = 640;         // of frames, px
-constexpr double kMillimetres = 1e3;   // a metre
-constexpr uint8_t kMinConfidence = 1;  // of 0, 1 and 2
+constexpr double kMillimetres = 1e3;   // depth units per metre
+constexpr uint8_t kMinConfidence = 1;  // of the levels 0, 1 and 2
 
 constexpr std::array<const char*, 9> kOdometryColumns = {
     "timestamp", "frame", "x", "y", "z", "qx", "qy", "qz", "qw"};
 
-// A row of odometry.csv, as many as the video has images.
+// A row of odometry.csv. The video has one image for each row.
 struct StrayRow {
   double timestamp = 0.0;        // s
-  Rigid3d world_from_cam;        // ARKit's, camera axes turned by the app
-  std::optional<Camera> camera;  // of this image of the video, as it is focused
-  int image = 0;                 // of the video
-  std::string depth_path;        // empty: there is none
+  Rigid3d world_from_cam;        // by ARKit; the app has turned the camera axes
+  std::optional<Camera> camera;  // of this image, whose focus varies
+  int image = 0;                 // number in the video
+  std::string depth_path;        // empty: none
   std::string confidence_path;
 };
 
-// An image by its number, of six digits or as few as it has; empty: none.
+// The path of a numbered image, with or without leading zeros; empty: none.
 std::string NumberedImage(const fs::path& folder, double number) {
   for (const char* name : {"%06.0f.png", "%.0f.png"}) {
     const fs::path path = folder / Format(name, number);
@@ -70,7 +70,7 @@ StrayRow ParseRow(const fs::path& folder, const cv::Size& size,
   StrayRow row;
   row.timestamp = ParseTimestamp(line.words[0], path, line.number);
   row.world_from_cam = Rigid3d(turn, {values[2], values[3], values[4]});
-  // Of newer versions of the app.
+  // Newer versions of the app add these columns.
   if (values.size() >= kOdometryColumns.size() + 4) {
     row.camera = Camera{size.width, size.height, values[9],
                         values[10], values[11],  values[12]};
@@ -82,7 +82,7 @@ StrayRow ParseRow(const fs::path& folder, const cv::Size& size,
   return row;
 }
 
-// For a video of this size.
+// Reads odometry.csv for a video of this size.
 std::vector<StrayRow> ReadStrayRows(const fs::path& folder,
                                     const cv::Size& size) {
   const std::string path = (folder / "odometry.csv").string();
@@ -135,7 +135,8 @@ Camera Scaled(const Camera& camera, const cv::Size& size) {
           (camera.cy + 0.5) * y - 0.5};
 }
 
-// Where `to` has what a pixel of `from` sees, at the same place: affine.
+// The affine map from pixels of `from` to those of `to`, for cameras at the
+// same pose.
 cv::Matx23d PixelMap(const Camera& from, const Camera& to) {
   const double x = to.fx / from.fx;
   const double y = to.fy / from.fy;
@@ -242,11 +243,11 @@ class StrayScanner final : public FrameSource {
   fs::path folder_;
   VideoFile video_;
   std::vector<StrayRow> frames_;  // those with depth
-  Trajectory poses_;              // of all
-  Camera camera_;                 // of all frames, their images focused alike
+  Trajectory poses_;              // of all rows
+  Camera camera_;                 // of all frames, whose focus is made equal
   FrameAssembly assembly_;
   size_t next_ = 0;
-  int num_decoded_ = 0;  // images
+  int num_decoded_ = 0;  // number of images
 };
 
 }  // namespace
