@@ -134,9 +134,10 @@ FixingVector SigmaOf(const FixingEquations& equations,
   }
   FixingVector sigma;
   for (int i = 0; i < sigma.size(); ++i) {
-    sigma[i] = rest.row(i).squaredNorm() > kMaxOpenShare
-                   ? std::numeric_limits<double>::infinity()
-                   : std::sqrt(std::max(0.0, covariance(i, i)));
+    const bool is_open =
+        rest.cols() > 0 && rest.row(i).squaredNorm() > kMaxOpenShare;
+    sigma[i] = is_open ? std::numeric_limits<double>::infinity()
+                       : std::sqrt(std::max(0.0, covariance(i, i)));
   }
   return sigma;
 }
