@@ -1,34 +1,20 @@
 #include "apps/export/mcap_writer.h"
 
-#include <array>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
+#include "frontend/bags/mcap_format.h"
 #include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
 namespace {
 
-constexpr char kMcapMagic[] = "\x89MCAP0\r\n";
 // Bytes after which a chunk is closed.
 constexpr size_t kMcapChunkSize = 1 << 20;
 
 constexpr std::string_view kNoText = "";  // no profile, codec or metadata
 constexpr uint32_t kNone = 0;             // attachments and the like
-
-enum McapRecord : char {
-  kHeader = 0x01,
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kMessageIndex = 0x07,
-  kChunkIndex = 0x08,
-  kStatistics = 0x0b,
-  kDataEnd = 0x0f,
-};
 
 // Serialises numbers in little-endian order, and texts (also lists and maps
 // that are serialised already) after their length.
@@ -48,27 +34,8 @@ std::string Pack(const Fields&... fields) {
   return bytes;
 }
 
-std::string RecordOf(McapRecord kind, const std::string& content) {
-  return char{kind} + Pack(uint64_t{content.size()}) + content;
-}
-
-// CRC-32 with zlib's polynomial.
-uint32_t Checksum(std::string_view bytes) {
-  static const std::array<uint32_t, 256> kTable = [] {
-    std::array<uint32_t, 256> table;
-    for (uint32_t i = 0; i < table.size(); ++i) {
-      table[i] = i;
-      for (int bit = 0; bit < 8; ++bit) {
-        table[i] = table[i] >> 1 ^ (table[i] & 1 ? 0xedb88320u : 0u);
-      }
-    }
-    return table;
-  }();
-  uint32_t crc = ~0u;
-  for (const char c : bytes) {
-    crc = crc >> 8 ^ kTable[(crc ^ static_cast<uint8_t>(c)) & 0xff];
-  }
-  return ~crc;
+std::string RecordOf(McapOpcode opcode, const std::string& content) {
+  return static_cast<char>(opcode) + Pack(uint64_t{content.size()}) + content;
 }
 
 nlohmann::json SchemaOf(const nlohmann::json& value) {
@@ -89,8 +56,9 @@ nlohmann::json SchemaOf(const nlohmann::json& value) {
 }  // namespace
 
 McapWriter::McapWriter()
-    : file_(kMcapMagic +
-            RecordOf(kHeader, Pack(kNoText, "rgbd_pose " RGBD_POSE_VERSION))) {}
+    : file_(std::string(kMcapMagic) +
+            RecordOf(kMcapHeader,
+                     Pack(kNoText, "rgbd_pose " RGBD_POSE_VERSION))) {}
 
 void McapWriter::Write(const std::string& topic, const std::string& type,
                        uint64_t time, const nlohmann::json& message) {
@@ -103,44 +71,44 @@ void McapWriter::Write(const std::string& topic, const std::string& type,
     channel.id = static_cast<uint16_t>(channels_.size());
     const std::string schema = SchemaOf(message).dump();
     channel.schema =
-        RecordOf(kSchema, Pack(channel.id, type, "jsonschema", schema));
+        RecordOf(kMcapSchema, Pack(channel.id, type, "jsonschema", schema));
     channel.record = RecordOf(
-        kChannel, Pack(channel.id, channel.id, topic, "json", kNoText));
+        kMcapChannel, Pack(channel.id, channel.id, topic, "json", kNoText));
     chunk_ += channel.schema + channel.record;
   }
   channel.index += Pack(time, uint64_t{chunk_.size()});
   // The log time and the publish time are equal.
   chunk_ +=
-      RecordOf(kMessage, Pack(channel.id, channel.messages++, time, time) +
-                             message.dump());
+      RecordOf(kMcapMessage, Pack(channel.id, channel.messages++, time, time) +
+                                 message.dump());
   if (chunk_.size() >= kMcapChunkSize) CloseChunk();
 }
 
 void McapWriter::CloseChunk() {
   if (chunk_.empty()) return;
   const uint64_t start = file_.size(), size = chunk_.size();
-  file_ += RecordOf(kChunk, Pack(chunk_time_, last_time_, size,
-                                 Checksum(chunk_), kNoText, size) +
-                                chunk_);
+  file_ += RecordOf(kMcapChunk, Pack(chunk_time_, last_time_, size,
+                                     McapChecksum(chunk_), kNoText, size) +
+                                    chunk_);
   const uint64_t end = file_.size();
   std::string places;
   for (auto& [topic, channel] : channels_) {
     if (channel.index.empty()) continue;
     places += Pack(channel.id, uint64_t{file_.size()});
-    file_ += RecordOf(kMessageIndex, Pack(channel.id, channel.index));
+    file_ += RecordOf(kMcapMessageIndex, Pack(channel.id, channel.index));
     channel.index.clear();
   }
   const uint64_t index_size = file_.size() - end;
-  chunk_indexes_ +=
-      RecordOf(kChunkIndex, Pack(chunk_time_, last_time_, start, end - start,
-                                 places, index_size, kNoText, size, size));
+  chunk_indexes_ += RecordOf(
+      kMcapChunkIndex, Pack(chunk_time_, last_time_, start, end - start, places,
+                            index_size, kNoText, size, size));
   ++chunks_;
   chunk_.clear();
 }
 
 std::string McapWriter::Finish() {
   CloseChunk();
-  file_ += RecordOf(kDataEnd, Pack(Checksum(file_)));
+  file_ += RecordOf(kMcapDataEnd, Pack(McapChecksum(file_)));
   const uint64_t summary = file_.size();
   std::string schemas, channels, counts;
   for (const auto& [topic, channel] : channels_) {
@@ -150,15 +118,15 @@ std::string McapWriter::Finish() {
   }
   const auto number = static_cast<uint16_t>(channels_.size());
   file_ += schemas + channels + chunk_indexes_ +
-           RecordOf(kStatistics,
+           RecordOf(kMcapStatistics,
                     Pack(messages_, number, uint32_t{number}, kNone, kNone,
                          chunks_, first_time_, last_time_, counts));
   // There are no summary offsets. The checksum of the summary is the last
   // field.
   const std::string footer =
-      RecordOf(kFooter, Pack(summary, uint64_t{0}, uint32_t{0}));
+      RecordOf(kMcapFooter, Pack(summary, uint64_t{0}, uint32_t{0}));
   file_.append(footer, 0, footer.size() - sizeof(uint32_t));
-  file_ += Pack(Checksum(std::string_view(file_).substr(summary)));
+  file_ += Pack(McapChecksum(std::string_view(file_).substr(summary)));
   return std::move(file_ += kMcapMagic);
 }
 

@@ -1,9 +1,5 @@
 // Reads mcap files (mcap.dev/spec), only the records needed for messages.
 
-#ifdef RGBD_POSE_HAS_LIBDEFLATE
-#include <libdeflate.h>
-#endif
-
 #include <algorithm>
 #include <fstream>
 #include <map>
@@ -13,34 +9,13 @@
 #include "core/util/input_error.h"
 #include "frontend/bags/bag_reader.h"
 #include "frontend/bags/chunk_codec.h"
+#include "frontend/bags/mcap_format.h"
 
 namespace rgbd_pose {
 namespace {
 
-constexpr std::string_view kMagic = "\x89MCAP0\r\n";
 constexpr uint64_t kRecordHead = 9;  // opcode and length, bytes
 constexpr uint64_t kFooterSize = 20;
-
-enum Opcode : uint8_t {
-  kFooter = 0x02,
-  kSchema = 0x03,
-  kChannel = 0x04,
-  kMessage = 0x05,
-  kChunk = 0x06,
-  kDataEnd = 0x0f,
-};
-
-// Whether the CRC-32 of `bytes` is `checksum`. Always true for 0, which means
-// that the recorder wrote none, and in a build without libdeflate.
-bool IsChecksumOf([[maybe_unused]] std::string_view bytes,
-                  [[maybe_unused]] uint32_t checksum) {
-#ifdef RGBD_POSE_HAS_LIBDEFLATE
-  return checksum == 0 ||
-         libdeflate_crc32(0, bytes.data(), bytes.size()) == checksum;
-#else
-  return true;
-#endif
-}
 
 struct McapChannel {
   std::string topic;
@@ -67,9 +42,9 @@ class McapRecords {
     if (!file_) throw InputError(path + ": cannot be read");
     size_ = static_cast<uint64_t>(file_.tellg());
     file_.seekg(0);
-    std::string magic(kMagic.size(), '\0');
+    std::string magic(kMcapMagic.size(), '\0');
     file_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
-    if (magic != kMagic) {
+    if (magic != kMcapMagic) {
       throw InputError(path + (size_ == 0 ? ": is empty; copy it again"
                                           : ": is no mcap file"));
     }
@@ -77,21 +52,21 @@ class McapRecords {
 
   // The channels of the summary at the end of the file; nothing without one.
   std::optional<McapChannels> ReadSummary() {
-    const uint64_t tail = kRecordHead + kFooterSize + kMagic.size();
-    if (size_ < kMagic.size() + tail) return std::nullopt;
+    const uint64_t tail = kRecordHead + kFooterSize + kMcapMagic.size();
+    if (size_ < kMcapMagic.size() + tail) return std::nullopt;
     const std::streampos before = file_.tellg();
     file_.seekg(static_cast<std::streamoff>(size_ - tail));
     const std::optional<Record> footer = ReadRecord();
     uint64_t start = 0;
-    if (footer && footer->opcode == kFooter &&
+    if (footer && footer->opcode == kMcapFooter &&
         footer->content.size() == kFooterSize) {
       start = WireReader(footer->content, WireFormat::kRos1).Number<uint64_t>();
     }
-    if (start >= kMagic.size() && start < size_ - tail) {
+    if (start >= kMcapMagic.size() && start < size_ - tail) {
       file_.seekg(static_cast<std::streamoff>(start));
       while (const std::optional<Record> record = ReadRecord()) {
-        if (record->opcode == kFooter) break;
-        if (record->opcode == kSchema || record->opcode == kChannel) {
+        if (record->opcode == kMcapFooter) break;
+        if (record->opcode == kMcapSchema || record->opcode == kMcapChannel) {
           Take(record->opcode, record->content);
         }
       }
@@ -115,16 +90,16 @@ class McapRecords {
             "is cut off: its recorder was not ended properly, or it was copied "
             "in part; `mcap recover` makes a whole one of what there is");
       }
-      if (record->opcode == kDataEnd || record->opcode == kFooter) {
+      if (record->opcode == kMcapDataEnd || record->opcode == kMcapFooter) {
         has_ended_ = true;
         return std::nullopt;
       }
       try {
-        if (record->opcode == kChunk) {
+        if (record->opcode == kMcapChunk) {
           TakeChunk(record->content);
-        } else if (record->opcode == kMessage) {
+        } else if (record->opcode == kMcapMessage) {
           chunk_ = std::move(record->content);
-          Take(kMessage, chunk_);
+          Take(kMcapMessage, chunk_);
         } else {
           Take(record->opcode, record->content);
         }
@@ -173,17 +148,17 @@ class McapRecords {
   // Parses a schema, channel or message record and stores the result.
   void Take(uint8_t opcode, std::string_view content) {
     WireReader fields(content, WireFormat::kRos1);
-    if (opcode == kSchema) {
+    if (opcode == kMcapSchema) {
       const auto id = fields.Number<uint16_t>();
       schemas_[id] = fields.Text();
-    } else if (opcode == kChannel) {
+    } else if (opcode == kMcapChannel) {
       const auto id = fields.Number<uint16_t>();
       const auto schema = fields.Number<uint16_t>();
       McapChannel& channel = channels_[id];
       channel.topic = fields.Text();
       channel.encoding = fields.Text();
       channel.type = schemas_[schema];
-    } else if (opcode == kMessage) {
+    } else if (opcode == kMcapMessage) {
       McapMessage message;
       message.channel = fields.Number<uint16_t>();
       fields.Number<uint32_t>();  // sequence number
@@ -205,7 +180,9 @@ class McapRecords {
     const std::string_view codec = chunk.Text();
     const std::string_view packed = chunk.Take(chunk.Number<uint64_t>());
     chunk_ = Unpack(packed, codec, size);
-    if (!IsChecksumOf(chunk_, checksum)) {
+    // 0: the file or this build has no checksums.
+    const uint32_t expected = checksum == 0 ? 0 : McapChecksum(chunk_);
+    if (expected != 0 && expected != checksum) {
       throw Damaged("a chunk is not what its checksum says");
     }
     WireReader records(chunk_, WireFormat::kRos1);

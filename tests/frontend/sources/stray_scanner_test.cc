@@ -1,139 +1,29 @@
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <filesystem>
-#include <functional>
-#include <memory>
 #include <opencv2/imgproc.hpp>
-#include <opencv2/videoio.hpp>
 #include <optional>
 
 #include "core/evaluation/evaluation.h"
-#include "core/util/format.h"
-#include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/frame_stream.h"
-#include "frontend/sources/open_source.h"
+#include "tests/frontend/sources/stray_scanner_fixture.h"
 #include "tests/support/expect_input_error.h"
-#include "tests/support/temp_folder.h"
 #include "tests/support/track_sequence.h"
-#include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kVideoWidth = 1280;
-constexpr int kVideoHeight = 960;
-constexpr int kDepthWidth = 256;  // as ARKit's
-constexpr int kDepthHeight = 192;
-constexpr char kHeader[] = "timestamp, frame, x, y, z, qx, qy, qz, qw";
-
-// A camera of that width that sees what all of them see, x `focus`.
-Camera CameraOfWidth(int width, double focus = 1.0) {
-  const double scale = width / 1280.0;
-  return {width,
-          width * 3 / 4,
-          1066.0 * scale * focus,
-          1066.0 * scale * focus,
-          (638.2 + 0.5) * scale - 0.5,
-          (481.7 + 0.5) * scale - 0.5};
-}
-
-SyntheticOptions Phone(int frames, double focus = 1.0) {
-  SyntheticOptions options;
-  options.path = "handheld";
-  options.frames = frames;
-  options.noise = false;
-  options.camera = {CameraOfWidth(kVideoWidth, focus), 1000.0};
-  options.depth_camera =
-      DepthCamera{CameraOfWidth(kDepthWidth, focus), Rigid3d()};
-  return options;
-}
-
-std::string Row(double timestamp, int number, const Rigid3d& pose) {
-  const Eigen::Vector3d& t = pose.translation;
-  const Eigen::Quaterniond& q = pose.rotation;
-  return Format("%.6f, %06d, %.9f, %.9f, %.9f, %.9f, %.9f, %.9f, %.9f",
-                timestamp, number, t.x(), t.y(), t.z(), q.x(), q.y(), q.z(),
-                q.w());
-}
-
 double MeanDifference(const cv::Mat& a, const cv::Mat& b) {
   return cv::norm(a, b, cv::NORM_L1) / static_cast<double>(a.total());
 }
-
-class StrayScannerTest : public testing::Test {
- protected:
-  StrayScannerTest() {
-    fs::create_directory(folder_ / "depth");
-    fs::create_directory(folder_ / "confidence");
-    const Camera camera = CameraOfWidth(kVideoWidth);
-    folder_.Write("camera_matrix.csv",
-                  Format("%.4f, 0.0, %.4f\n0.0, %.4f, %.4f\n0.0, 0.0, 1.0",
-                         camera.fx, camera.cx, camera.fy, camera.cy));
-  }
-
-  // Writes colour, depth and pose of so many frames as the app does.
-  void Record(int frames, const std::function<Frame(int)>& read,
-              const std::function<Rigid3d(int)>& pose) {
-    cv::VideoWriter video(folder_ / "rgb.mp4", cv::CAP_FFMPEG,
-                          cv::VideoWriter::fourcc('m', 'p', '4', 'v'), 60.0,
-                          {kVideoWidth, kVideoHeight});
-    ASSERT_TRUE(video.isOpened());
-    std::string rows = std::string(kHeader) + "\n";
-    for (int k = 0; k < frames; ++k) {
-      const Frame frame = read(k);
-      video << frame.color;
-      WriteDepth(k, frame.depth);
-      rows += Row(frame.timestamp, k, pose(k)) + "\n";
-    }
-    folder_.Write("odometry.csv", rows);
-  }
-  void Record(const SyntheticDataset& scene) {
-    Record(
-        scene.size(), [&](int k) { return scene.Read(k); },
-        [&](int k) { return scene.WorldFromCam(k); });
-  }
-  // Images of one grey level each, 2 m away.
-  void RecordPlain(int frames) {
-    Record(
-        frames,
-        [](int k) {
-          Frame frame;
-          frame.timestamp = 100.0 + k / 60.0;
-          frame.color = cv::Mat(kVideoHeight, kVideoWidth, CV_8UC3, Level(k));
-          frame.depth = cv::Mat(kDepthHeight, kDepthWidth, CV_16UC1, 2000);
-          return frame;
-        },
-        [](int) { return Rigid3d(); });
-  }
-  static cv::Scalar Level(int k) { return cv::Scalar::all(30 + 10 * k); }
-
-  void WriteDepth(int k, const cv::Mat& depth) {
-    WriteImage(folder_ / Format("depth/%06d.png", k), depth);
-    WriteImage(folder_ / Format("confidence/%06d.png", k),
-               cv::Mat(depth.size(), CV_8UC1, cv::Scalar(2)));
-  }
-
-  std::unique_ptr<FrameSource> Open() const {
-    SourceOptions options;
-    options.path = folder_.path();
-    options.keep_color = true;
-    return OpenSource("auto", options);
-  }
-  Frame First() const { return Open()->Next()->read(); }
-
-  TempFolder folder_;
-};
 
 TEST_F(StrayScannerTest, ReadsARecording) {
   const SyntheticDataset scene(Phone(4));
   Record(scene);
   const auto source = Open();
   const Camera& camera = source->camera().camera;
-  const Camera expected = CameraOfWidth(640);
+  const Camera expected = PhoneCamera(640);
   EXPECT_EQ(camera.width, 640);
   EXPECT_EQ(camera.height, 480);
   EXPECT_NEAR(camera.fx, expected.fx, 1e-4);
@@ -170,7 +60,7 @@ TEST_F(StrayScannerTest, AnotherCameraSaysTheSize) {
   RecordPlain(1);
   SourceOptions options;
   options.path = folder_.path();
-  options.camera = CameraSetup(CameraOfWidth(320));
+  options.camera = CameraSetup(PhoneCamera(320));
   const auto source = OpenSource("stray_scanner", options);
   EXPECT_EQ(source->camera().depth_scale, 1000.0);
   const Frame frame = source->Next()->read();
@@ -186,7 +76,7 @@ TEST_F(StrayScannerTest, AnotherCameraSaysTheSize) {
 TEST_F(StrayScannerTest, DepthIsWhereItWasMeasured) {
   Record(SyntheticDataset(Phone(1)));
   SyntheticOptions same = Phone(1);
-  same.camera.camera = CameraOfWidth(640);
+  same.camera.camera = PhoneCamera(640);
   same.depth_camera.reset();
   const cv::Mat expected = SyntheticDataset(same).Read(0).depth;
   const cv::Mat depth = First().depth;
@@ -203,17 +93,6 @@ TEST_F(StrayScannerTest, DepthIsWhereItWasMeasured) {
   }
   EXPECT_GT(close / (476.0 * 636.0), 0.9);
   EXPECT_LT(between / (476.0 * 636.0), 0.001);
-}
-
-TEST_F(StrayScannerTest, AnEdgeIsNotSmeared) {
-  RecordPlain(1);
-  cv::Mat depth(kDepthHeight, kDepthWidth, CV_16UC1, cv::Scalar(1000));
-  depth.colRange(100, kDepthWidth) = 3000;
-  WriteDepth(0, depth);
-  const cv::Mat read = First().depth;
-  // Its pixels are 2.5 px wide.
-  EXPECT_EQ(cv::countNonZero(read.colRange(0, 250) != 1000), 0);
-  EXPECT_EQ(cv::countNonZero(read.colRange(250, 640) != 3000), 0);
 }
 
 TEST_F(StrayScannerTest, LowConfidenceIsNoDepth) {
@@ -299,7 +178,7 @@ TEST_F(StrayScannerTest, ImagesAreScaledToOneFocus) {
         return frame;
       },
       [](int) { return Rigid3d(); });
-  const Camera far = CameraOfWidth(kVideoWidth, 1.02);
+  const Camera far = PhoneCamera(kVideoWidth, 1.02);
   const auto difference = [&] {
     const auto source = Open();
     const Frame a = source->Next()->read();
@@ -335,93 +214,6 @@ TEST_F(StrayScannerTest, TracksLikeTheTruth) {
   const EvaluationReport report = Evaluate(path, source->ground_truth(), {});
   EXPECT_EQ(report.paired_poses, 16);
   EXPECT_LT(report.ate.rmse, 0.002);
-}
-
-TEST_F(StrayScannerTest, RefusesWhatIsDamaged) {
-  const auto write = [this](const char* name, const std::string& text) {
-    return [this, name, text] { folder_.Write(name, text); };
-  };
-  const std::string header = std::string(kHeader) + "\n";
-  const std::string row = Row(100.0, 0, Rigid3d()) + "\n";
-  struct {
-    std::function<void()> spoil;
-    std::vector<std::string> said;
-  } const cases[] = {
-      {[this] { fs::remove(folder_ / "rgb.mp4"); }, {"rgb.mp4: missing"}},
-      {write("rgb.mp4", "nothing of a video"),
-       {"rgb.mp4: cannot be read as a video"}},
-      {[this] { fs::resize_file(folder_ / "rgb.mp4", 2000); },
-       {"rgb.mp4: cannot be read as a video"}},
-      {[this] { fs::remove(folder_ / "odometry.csv"); }, {"odometry.csv"}},
-      {write("odometry.csv", ""),
-       {"odometry.csv: needs the columns timestamp"}},
-      {write("odometry.csv", row), {"needs the columns timestamp, frame"}},
-      {write("odometry.csv", header + "100.0, 000"),
-       {"odometry.csv:2: needs 9 columns, has 2"}},
-      {write("odometry.csv", header + row + row),
-       {"odometry.csv:3: is no later"}},
-      {write("odometry.csv", header + "100.0, 0, 0, x, 0, 0, 0, 0, 1\n"),
-       {"odometry.csv:2: ", "'x'"}},
-      {write("odometry.csv", header + "100.0, 0, 0, 0, 0, 0, 0, 0, 0\n"),
-       {"odometry.csv:2: its quaternion"}},
-      {write("odometry.csv",
-             header + "100, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1"),
-       {"odometry.csv:2: fx and fy must be in pixels"}},
-      {write("odometry.csv", header + row + Row(101.0, 1, Rigid3d()) + "\n" +
-                                 Row(102.0, 2, Rigid3d()) + "\n" +
-                                 Row(103.0, 3, Rigid3d())),
-       {"rgb.mp4: has 3 images, odometry.csv 4 rows"}},
-      {[this] { fs::remove(folder_ / "camera_matrix.csv"); },
-       {"camera_matrix.csv"}},
-      {write("camera_matrix.csv", "1600, 0, 960\n0, 1600, 720\n"),
-       {"camera_matrix.csv: is no camera matrix"}},
-      {write("camera_matrix.csv", "1600, 0, 0\n0, 1600, 0\n960, 720, 1"),
-       {"camera_matrix.csv: is no camera matrix"}},
-      {write("camera_matrix.csv", "-900, 0, 640\n0, 900, 480\n0, 0, 1"),
-       {"camera_matrix.csv: fx and fy must be positive"}},
-      {[this] { fs::remove_all(folder_ / "depth"); },
-       {"depth: has no image (000000.png)", ".npy"}},
-      {[this] {
-         WriteImage(folder_ / "confidence/000000.png",
-                    cv::Mat::zeros(10, 10, CV_8UC1));
-       },
-       {"confidence/000000.png: has another size than", "depth/000000.png"}},
-  };
-  RecordPlain(3);
-  const fs::path good = folder_ / "good";
-  fs::create_directory(good);
-  for (const char* name : {"rgb.mp4", "odometry.csv", "camera_matrix.csv"}) {
-    fs::copy(folder_ / name, good / name);
-  }
-  fs::copy(folder_ / "depth", good / "depth");
-  fs::copy(folder_ / "confidence", good / "confidence");
-  for (const auto& c : cases) {
-    c.spoil();
-    ExpectInputError([this] { First(); }, c.said);
-    fs::copy(
-        good, folder_.path(),
-        fs::copy_options::recursive | fs::copy_options::overwrite_existing);
-  }
-  First();
-}
-
-TEST_F(StrayScannerTest, EndsWhereTheVideoBreaksOff) {
-  RecordPlain(12);
-  std::string bytes = ReadTextFile(folder_ / "rgb.mp4");
-  const size_t frames = bytes.find("mdat");
-  const size_t end = bytes.find("moov");
-  for (size_t i = frames + (end - frames) / 2; i < end - 4; ++i) bytes[i] = 0;
-  folder_.Write("rgb.mp4", bytes);
-  const auto source = Open();
-  FrameStream stream(source.get(), {}, 2, 0.05);
-  int good = 0;
-  while (stream.Next().has_value()) ++good;
-  EXPECT_GT(good, 3);
-  EXPECT_LT(good, 12);
-  EXPECT_THAT(stream.stopped(),
-              testing::HasSubstr(Format("rgb.mp4: only %d of 12 images can be "
-                                        "decoded",
-                                        good)));
 }
 
 }  // namespace
