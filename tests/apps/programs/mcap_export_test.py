@@ -26,7 +26,7 @@ from export_test import (check, data_lines, matrix_of, moved, numbers, read_line
 MAGIC = b'\x89MCAP0\r\n'
 HEADER, FOOTER, SCHEMA, CHANNEL, MESSAGE, CHUNK, INDEX, CHUNK_INDEX = range(1, 9)
 STATISTICS, DATA_END = 0x0b, 0x0f
-FRAMES = 40
+FRAMES = 30
 LENSES = {
     'plumb_bob': ('', ('k1', 'k2', 'p1', 'p2', 'k3')),
     'rational_polynomial': ('', ('k1', 'k2', 'p1', 'p2', 'k3', 'k4', 'k5', 'k6')),
@@ -241,7 +241,7 @@ def main(bin_folder, work):
 
     def export(name, output, *flags):
         run(program('rgbd_export'), f'--run={result}', f'--to={name}',
-            f'--output={work}/{output}', *flags)
+            f'--output={work}/{output}', '--voxel=0.05', *flags)
         return os.path.join(work, output)
 
     topics = read_mcap(export('mcap', 'run.mcap'))
