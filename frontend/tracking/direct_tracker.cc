@@ -125,12 +125,10 @@ void DirectTracker::Track(const Reference& reference,
 }
 
 void DirectTracker::Refine(const Reference& reference,
-                           const PreparedFrame& frame,
-                           const TrackingGuess& guess,
+                           const PreparedFrame& frame, const MotionPrior& prior,
                            const TrackingResult& by_features,
                            TrackingResult* tracked) {
   Begin(tracked);
-  const MotionPrior prior = PriorOf(common_, guess);
   const FrameView view = ViewOf(frame, frame.Timing(), &by_features.moving);
   FramePair pair;
   pair.matches = &by_features.matches.matches;
@@ -195,7 +193,7 @@ void DirectTracker::Estimate(const Reference& reference,
                              Estimator* estimator,
                              MotionEstimate* estimate) const {
   const FrameView view = ViewOf(frame, timing, nullptr);
-  const MotionPrior prior = PriorOf(common_, guess);
+  const MotionPrior prior = Prior(guess);
   FramePair pair;
   pair.prior = &prior;
   pair.prev = reference.images();
@@ -208,6 +206,7 @@ void DirectTracker::Begin(TrackingResult* tracked) {
   tracked->matches.Clear();
   tracked->on_probation.Clear();
   tracked->is_ambiguous = false;
+  tracked->prior_of_refinement.reset();
   tracked->match_ms = 0.0;
   tracked->source = TrackingSource::kDirect;
   tracked->twist.reset();

@@ -130,6 +130,7 @@ void FeatureTracker::Track(const Reference& reference,
                            const TrackingGuess& guess,
                            TrackingResult* tracked) {
   const auto& ours = dynamic_cast<const FeatureReference&>(reference);
+  tracked->prior_of_refinement.reset();
   tracked->match_ms = 0.0;
   tracked->source = TrackingSource::kFeatures;
   tracked->twist.reset();

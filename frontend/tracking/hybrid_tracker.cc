@@ -12,8 +12,23 @@ namespace {
 // errors that both share count twice there and calibration errors not at all.
 constexpr double kMaxDifference = 8.0;
 
+bool Agree(const MotionEstimate& features, const MotionEstimate& pixels) {
+  return SquaredMahalanobisDistance(pixels.cur_from_prev,
+                                    features.cur_from_prev,
+                                    features.covariance + pixels.covariance) <=
+         6.0 * kMaxDifference * kMaxDifference;  // false for NaN
+}
+
+// The frame with the velocity that was found with its motion.
+PreparedFrame WithVelocity(const PreparedFrame& frame,
+                           const TrackingResult& tracked) {
+  return tracked.twist.has_value() ? frame.WithTwist(tracked.twist) : frame;
+}
+
+}  // namespace
+
 // One of the two may be null.
-struct HybridReference final : Reference {
+struct HybridTracker::HybridReference final : Reference {
   std::unique_ptr<Reference> features, direct;
 
   Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
@@ -23,15 +38,6 @@ struct HybridReference final : Reference {
     return direct != nullptr ? direct->images() : nullptr;
   }
 };
-
-bool Agree(const MotionEstimate& features, const MotionEstimate& pixels) {
-  return SquaredMahalanobisDistance(pixels.cur_from_prev,
-                                    features.cur_from_prev,
-                                    features.covariance + pixels.covariance) <=
-         6.0 * kMaxDifference * kMaxDifference;  // false for NaN
-}
-
-}  // namespace
 
 HybridTracker::HybridTracker(std::unique_ptr<FeatureTracker> features,
                              std::unique_ptr<DirectTracker> direct,
@@ -102,37 +108,41 @@ void HybridTracker::Track(const Reference& reference,
     }
     return;
   }
-  const PreparedFrame seen =
-      tracked->twist.has_value() ? frame.WithTwist(tracked->twist) : frame;
-  direct_->Refine(*ours.direct, seen, guess, *tracked, &pixels_);
+  const MotionPrior prior = direct_->Prior(guess);
+  if (tracked->status == TrackingStatus::kOk || tracked->is_ambiguous) {
+    if (guess.leaves_refinement) {
+      tracked->prior_of_refinement = prior;
+    } else {
+      RefineByPixels(ours, frame, prior, tracked);
+    }
+    return;
+  }
+  const bool agree = RefineByPixels(ours, frame, prior, tracked);
+  Confirm(ours, frame, guess, agree, tracked);
+}
+
+void HybridTracker::Refine(const Reference& reference,
+                           const PreparedFrame& frame,
+                           TrackingResult* tracked) {
+  if (!tracked->prior_of_refinement.has_value()) return;
+  RefineByPixels(dynamic_cast<const HybridReference&>(reference), frame,
+                 *tracked->prior_of_refinement, tracked);
+  tracked->prior_of_refinement.reset();
+}
+
+bool HybridTracker::RefineByPixels(const HybridReference& reference,
+                                   const PreparedFrame& frame,
+                                   const MotionPrior& prior,
+                                   TrackingResult* tracked) {
+  direct_->Refine(*reference.direct, WithVelocity(frame, *tracked), prior,
+                  *tracked, &pixels_);
   pixels_.estimate.covariance += tracked->twist_covariance;
   tracked->estimate.iterations += pixels_.estimate.iterations;
   tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
-  const bool agree = pixels_.status == TrackingStatus::kOk &&
-                     Agree(tracked->estimate, pixels_.estimate);
-  if (tracked->status != TrackingStatus::kOk && !tracked->is_ambiguous) {
-    // A motion from few features may be wrong: pixels alone must confirm it.
-    direct_->Track(*ours.direct, seen, guess, &alone_);
-    if (alone_.status == TrackingStatus::kOk) {
-      if (Agree(agree ? pixels_.estimate : tracked->estimate,
-                alone_.estimate)) {
-        tracked->status = TrackingStatus::kOk;
-        tracked->reason.clear();
-      } else {
-        tracked->reason += "; pixels alone find another motion";
-      }
-      if (!agree || tracked->status != TrackingStatus::kOk) {
-        alone_.status = tracked->status;
-        alone_.reason = tracked->reason;
-        alone_.match_ms += tracked->match_ms;
-        alone_.estimate.iterations += tracked->estimate.iterations;
-        alone_.estimate.solve_ms += tracked->estimate.solve_ms;
-        std::swap(*tracked, alone_);
-        return;
-      }
-    }
+  if (pixels_.status != TrackingStatus::kOk ||
+      !Agree(tracked->estimate, pixels_.estimate)) {
+    return false;
   }
-  if (!agree) return;
   tracked->source = TrackingSource::kBoth;
   tracked->estimate.cur_from_prev = pixels_.estimate.cur_from_prev;
   tracked->estimate.covariance = pixels_.estimate.covariance;
@@ -141,6 +151,29 @@ void HybridTracker::Track(const Reference& reference,
     tracked->needs_new_keyframe = false;
     tracked->overlap = pixels_.overlap;
   }
+  return true;
+}
+
+void HybridTracker::Confirm(const HybridReference& reference,
+                            const PreparedFrame& frame,
+                            const TrackingGuess& guess, bool is_refined,
+                            TrackingResult* tracked) {
+  direct_->Track(*reference.direct, WithVelocity(frame, *tracked), guess,
+                 &alone_);
+  if (alone_.status != TrackingStatus::kOk) return;
+  if (Agree(tracked->estimate, alone_.estimate)) {
+    tracked->status = TrackingStatus::kOk;
+    tracked->reason.clear();
+    if (is_refined) return;
+  } else {
+    tracked->reason += "; pixels alone find another motion";
+  }
+  alone_.status = tracked->status;
+  alone_.reason = tracked->reason;
+  alone_.match_ms += tracked->match_ms;
+  alone_.estimate.iterations += tracked->estimate.iterations;
+  alone_.estimate.solve_ms += tracked->estimate.solve_ms;
+  std::swap(*tracked, alone_);
 }
 
 void HybridTracker::OnAccepted(Reference* reference, TrackingResult* tracked) {

@@ -28,10 +28,25 @@ class HybridTracker final : public Tracker {
                                            std::string* why_not) override;
   void Track(const Reference& reference, const PreparedFrame& frame,
              const TrackingGuess& guess, TrackingResult* tracked) override;
+  void Refine(const Reference& reference, const PreparedFrame& frame,
+              TrackingResult* tracked) override;
   void OnAccepted(Reference* reference, TrackingResult* tracked) override;
   const FrontendOptions& images() const override { return features_->images(); }
 
  private:
+  struct HybridReference;
+
+  // Refines the motion of the features by pixels. Returns false, and changes
+  // only times, if pixels contradict it.
+  bool RefineByPixels(const HybridReference& reference,
+                      const PreparedFrame& frame, const MotionPrior& prior,
+                      TrackingResult* tracked);
+  // Confirms a motion from few features by pixels alone, or else replaces it by
+  // theirs. `is_refined`: result of RefineByPixels.
+  void Confirm(const HybridReference& reference, const PreparedFrame& frame,
+               const TrackingGuess& guess, bool is_refined,
+               TrackingResult* tracked);
+
   std::unique_ptr<FeatureTracker> features_;
   std::unique_ptr<DirectTracker> direct_;
   bool refines_;

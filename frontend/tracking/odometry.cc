@@ -141,7 +141,11 @@ void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
 
 bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
-  const PreparedFrame* frame = Look(measured, prediction, result);
+  // If the last frame is to become the reference, the pose since then probably
+  // replaces this one.
+  const bool is_provisional = wants_reference_ && last_.has_value();
+  const PreparedFrame* frame =
+      Look(measured, prediction, is_provisional, result);
   const bool is_trusted = IsTrusted(frame, *result);
   // Pixels alone yield a velocity that is half a frame late. Tracking once more
   // against the last frame corrects this.
@@ -150,6 +154,7 @@ bool Odometry::Follow(const PreparedFrame& measured,
   if (!is_lost_ && !goes_on && (wants_reference_ || !is_trusted)) {
     frame = LookFromLast(measured, prediction, frame, result);
   }
+  Refine(frame, result);
   // A doubtful pose does not end the lost state.
   if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
     return false;
@@ -177,7 +182,7 @@ bool Odometry::Follow(const PreparedFrame& measured,
 // guess: as the first one it can lock onto its own false motion.
 const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
                                     const Prediction* prediction,
-                                    TrackedFrame* result) {
+                                    bool is_provisional, TrackedFrame* result) {
   const Rigid3d last = cur_from_ref_;
   const Rigid3d predicted = cur_from_prev_ * last;
   const Rigid3d first = options_.predict_velocity ? predicted : last;
@@ -188,6 +193,7 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
     const auto from = [&](const Rigid3d& cur_from_ref) {
       TrackingGuess guess = cur_from_ref;
       guess.velocity = velocity;
+      guess.leaves_refinement = is_provisional;
       return guess;
     };
     if (found != nullptr &&
@@ -220,6 +226,12 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
   if (!is_lost_) prev_from_ref = last;
   return shutter_tracking_.Follow(measured, interval_, prev_from_ref, twist,
                                   reference_, track);
+}
+
+void Odometry::Refine(const PreparedFrame* frame, TrackedFrame* result) {
+  if (frame == nullptr || !attempts_.kept().prior_of_refinement) return;
+  attempts_.Refine(*frame, *reference_, result);
+  shutter_tracking_.Update(attempts_.kept());
 }
 
 void Odometry::TakeMotion(TrackedFrame* result) {

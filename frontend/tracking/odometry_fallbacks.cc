@@ -64,7 +64,7 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   if (prediction != nullptr)
     since = Predict(prediction->cur_from_prev, nullptr);
   const PreparedFrame* const frame =
-      Look(measured, since ? &*since : nullptr, &from_last);
+      Look(measured, since ? &*since : nullptr, false, &from_last);
   result->match_ms = from_last.match_ms;
   result->solve_ms = from_last.solve_ms;
   const bool is_better =

@@ -73,8 +73,8 @@ const PreparedFrame* ShutterTracking::Follow(
     if (tracked->twist.has_value()) {
       found_.frame = frame.WithTwist(tracked->twist);
     }
-    found_.between = prior.Between(tracked->estimate.cur_from_prev,
-                                   found_.frame->twist.value_or(Twist()));
+    found_.prior = prior;
+    Update(*tracked);
   };
   look();
   const int rounds = between_.has_value() ? 1 : kMaxRounds;
@@ -95,6 +95,12 @@ const PreparedFrame* ShutterTracking::Follow(
   }
   found_.interval = interval;
   return &*found_.frame;
+}
+
+void ShutterTracking::Update(const TrackingResult& refined) {
+  if (!found_.prior.has_value()) return;
+  found_.between = found_.prior->Between(refined.estimate.cur_from_prev,
+                                         found_.frame->twist.value_or(Twist()));
 }
 
 void ShutterTracking::Accept() {

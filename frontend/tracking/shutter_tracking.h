@@ -49,6 +49,9 @@ class ShutterTracking {
                               const std::optional<Twist>& first_guess,
                               OdometryKeyframe* reference, const Track& track);
 
+  // Corrects the result of the last Follow after its pose was refined.
+  void Update(const TrackingResult& refined);
+
   // Accepts the pose of the last Follow; the next frame continues from it.
   void Accept();
 
@@ -69,6 +72,7 @@ class ShutterTracking {
   // The result of the last Follow. It can be put back after another Follow.
   struct Found {
     std::optional<PreparedFrame> frame;
+    std::optional<VelocityPrior> prior;
     std::optional<Twist> between;  // mean velocity before the frame
     double interval = 0.0;         // over this interval, s
   };

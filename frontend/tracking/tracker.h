@@ -74,6 +74,10 @@ struct TrackingGuess {
   // If this guess does not lead to a good pose, another guess is tried next.
   // The tracker may skip its slow methods (see TrackingResult::is_partial).
   bool is_tentative = false;
+
+  // If the pose is good, its refinement may be left to Tracker::Refine, since
+  // it may not be needed (see TrackingResult::prior_of_refinement).
+  bool leaves_refinement = false;
 };
 
 // Returns what a guess says about a motion, with the covariance of the guess or
@@ -113,6 +117,10 @@ struct TrackingResult {
   // skipped because the guess was tentative.
   bool is_partial = false;
 
+  // Set if the pose is good but Tracker::Refine has still to refine it, with
+  // this prior.
+  std::optional<MotionPrior> prior_of_refinement;
+
   // Regions where features contradict the motion (feature trackers only).
   CellMask moving;
 
@@ -147,6 +155,12 @@ class Tracker {
   // Fills `tracked` (made for the camera of images()) and reuses its memory.
   virtual void Track(const Reference& reference, const PreparedFrame& frame,
                      const TrackingGuess& guess, TrackingResult* tracked) = 0;
+
+  // Refines a motion if Track has left that (see prior_of_refinement), with the
+  // velocity found with it. The status stays as it is.
+  virtual void Refine(const Reference& /*reference*/,
+                      const PreparedFrame& /*frame*/,
+                      TrackingResult* /*tracked*/) {}
 
   // Called when the motion is accepted and tracking continues from it. The
   // reference may learn from it and update the overlap in `tracked`.

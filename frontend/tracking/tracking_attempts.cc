@@ -23,6 +23,18 @@ bool TrackingAttempts::Try(const PreparedFrame& frame,
   return tracked_.status != TrackingStatus::kLost;
 }
 
+void TrackingAttempts::Refine(const PreparedFrame& frame,
+                              const OdometryKeyframe& keyframe,
+                              TrackedFrame* result) {
+  const MotionEstimate& estimate = tracked_.estimate;
+  result->iterations -= estimate.iterations;
+  result->solve_ms -= estimate.solve_ms;
+  tracker_->Refine(*keyframe.reference, frame, &tracked_);
+  result->source = tracked_.source;
+  result->iterations += estimate.iterations;
+  result->solve_ms += estimate.solve_ms;
+}
+
 bool TrackingAttempts::TryEither(const PreparedFrame& frame,
                                  const OdometryKeyframe& keyframe,
                                  const TrackingGuess& first,

@@ -42,6 +42,10 @@ class TrackingAttempts {
                    const TrackingGuess& guess, TrackedFrame* result,
                    const Accept& accept = nullptr);
 
+  // Refines the pose that counts if its attempt has left that.
+  void Refine(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
+              TrackedFrame* result);
+
   // Stores the result that counts during another attempt, and restores it.
   void Stash() { std::swap(tracked_, stashed_); }
   void RestoreStashed() { std::swap(tracked_, stashed_); }

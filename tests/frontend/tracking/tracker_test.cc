@@ -323,6 +323,31 @@ TEST(HybridTrackerTest, PixelsAloneWaitWhileAGuessIsTentative) {
   EXPECT_TRUE(tracked.is_partial);
 }
 
+TEST(HybridTrackerTest, ARefinementThatIsLeftCanBeMadeLater) {
+  const SyntheticDataset room((SyntheticOptions()));
+  const PreparedFrame before(room.Read(0)), next(room.Read(1));
+  const auto tracker = MakeTracker("hybrid", PartsFor(room.camera().camera));
+  std::string why_not;
+  const auto reference =
+      tracker->MakeReference(before, nullptr, nullptr, &why_not);
+  ASSERT_NE(reference, nullptr) << why_not;
+  TrackingResult at_once(room.camera().camera), later = at_once;
+  TrackingGuess guess = Rigid3d();
+  tracker->Track(*reference, next, guess, &at_once);
+  EXPECT_EQ(at_once.source, TrackingSource::kBoth);
+  EXPECT_FALSE(at_once.prior_of_refinement.has_value());
+  guess.leaves_refinement = true;
+  tracker->Track(*reference, next, guess, &later);
+  EXPECT_EQ(later.source, TrackingSource::kFeatures);
+  EXPECT_TRUE(later.prior_of_refinement.has_value());
+  EXPECT_NE(later.estimate.covariance, at_once.estimate.covariance);
+  tracker->Refine(*reference, next, &later);
+  EXPECT_EQ(later.source, TrackingSource::kBoth);
+  EXPECT_FALSE(later.prior_of_refinement.has_value());
+  EXPECT_EQ(later.estimate.covariance, at_once.estimate.covariance);
+  EXPECT_EQ(later.estimate.iterations, at_once.estimate.iterations);
+}
+
 TEST(HybridTrackerTest, PixelsMakeMotionsMoreAccurate) {
   const Tracks features = Follow("features", "room", "xyz", 12);
   const Tracks hybrid = Follow("hybrid", "room", "xyz", 12);
