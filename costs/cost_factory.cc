@@ -63,8 +63,8 @@ std::vector<RobustCost> MakeRobustCosts(
   for (size_t i = 0; i < costs.size(); ++i) {
     std::unique_ptr<MotionCost> cost = make(costs[i]);
     if (cost == nullptr) {
-      throw InputError("unknown cost '" + costs[i] + "'; there are " +
-                       Join(names));
+      throw InputError("unknown cost '" + costs[i] +
+                       "'; available: " + Join(names));
     }
     const std::string& loss_name = losses[losses.size() == 1 ? 0 : i];
     std::unique_ptr<ceres::LossFunction> loss =

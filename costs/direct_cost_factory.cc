@@ -35,10 +35,10 @@ std::string DirectOptions::Check() const {
   }
   if (!(min_gradient >= 0.0)) return "min_gradient must not be negative";
   if (!(min_depth > 0.0 && min_depth < max_depth)) {
-    return "depths must have 0 < min_depth < max_depth";
+    return "depth limits must satisfy 0 < min_depth < max_depth";
   }
   if (num_levels < 1 || finest_level < 0) {
-    return "at least one level of the pyramid is needed";
+    return "num_levels must be positive and finest_level not negative";
   }
   if (!(information_factor >= 0.0)) {
     return "information_factor must not be negative";

@@ -114,8 +114,8 @@ NamedLoss ParseLoss(const std::string& text) {
   const size_t open = text.find('(');
   const MEstimator* const row = FindMEstimator(text.substr(0, open));
   if (row == nullptr) {
-    throw InputError("unknown loss '" + text + "'; there are " +
-                     Join(MEstimatorNames()));
+    throw InputError("unknown loss '" + text +
+                     "'; available: " + Join(MEstimatorNames()));
   }
   if (open == std::string::npos) return {row, 0.0};
   double width = 0.0;
@@ -124,10 +124,9 @@ NamedLoss ParseLoss(const std::string& text) {
   const bool is_number = read.ec == std::errc() && read.ptr + 1 == end &&
                          *read.ptr == ')' && width >= 1e-3 && width <= 1e3;
   if (!is_number || row->make == nullptr) {
-    throw InputError("loss '" + text + "' has no width that " +
-                     std::string(row->name) +
-                     " can have: a number from 0.001 to 1000, as in "
-                     "huber(1.5); none has none");
+    throw InputError("loss '" + text +
+                     "': the width must be a number from 0.001 to 1000, as in "
+                     "huber(1.5); 'none' has no width");
   }
   return {row, width};
 }

@@ -87,8 +87,7 @@ class Estimator::Impl {
       JudgeGuess(guess);
     }
     if (!out_->ok() && AreFarAway(*matches_)) {
-      out_->reason +=
-          "; depths are of hundreds of metres: are they millimetres?";
+      out_->reason += "; most depths exceed 100 m; are they in millimetres?";
     }
     out_->num_used = terms_.num_used();
   }
@@ -166,7 +165,7 @@ class Estimator::Impl {
     if (terms_.scale() > options_.max_scale) {
       out_->status = EstimateStatus::kInconsistent;
       out_->reason = "residuals are " + std::to_string(terms_.scale()) +
-                     " times what the noise model says";
+                     " times as large as the noise model predicts";
     } else if (share < options_.min_inlier_share) {
       out_->status = EstimateStatus::kInconsistent;
       out_->reason = "only " + std::to_string(out_->num_inliers) + " of " +

@@ -86,9 +86,9 @@ std::string Sim3Warning(const Sim3Alignment& sim3, double ate) {
   if (sim3.spread < kMinSpread) return "";
   if (sim3.residual_rmse > kMaxRest * sim3.spread) {
     return Format(
-        "the path has little in common with the ground truth (%.3g m apart on "
-        "average, of %.3g m that it extends); is it the truth of this "
-        "recording, and its clock?",
+        "the path does not match the ground truth (%.3g m apart on average, "
+        "for an extent of %.3g m); check that the ground truth belongs to this "
+        "recording and uses the same clock",
         sim3.residual_rmse, sim3.spread);
   }
   const double scale = sim3.truth_per_estimate;
@@ -97,9 +97,9 @@ std::string Sim3Warning(const Sim3Alignment& sim3, double ate) {
     return "";
   }
   return Format(
-      "the path fits the ground truth better when it is made %.4g times as "
-      "large; likely causes are the depth scale (%.4g times the one used would "
-      "fit) and the focal length",
+      "the path fits the ground truth better if scaled by %.4g; likely causes "
+      "are the depth scale (%.4g times the one used would fit) and the focal "
+      "length",
       scale, 1.0 / scale);
 }
 

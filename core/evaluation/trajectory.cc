@@ -39,7 +39,7 @@ StampedPose ParsePose(const TextLine& line, const std::string& path) {
   const Rigid3d pose(rotation, {value[1], value[2], value[3]});
   if (pose.translation.lpNorm<Eigen::Infinity>() > kMaxCoordinate) {
     throw InputError(path, line.number,
-                     "a position (columns 2 to 4) further away than 1e9 m; "
+                     "the position (columns 2 to 4) is more than 1e9 m away; "
                      "check the order of the columns");
   }
   return {value[0], pose};
@@ -61,20 +61,20 @@ Trajectory ReadTrajectory(const std::string& path,
     if (!trajectory.empty() && pose.timestamp < trajectory.back().timestamp) {
       throw InputError(path, line.number,
                        "time stamp " + line.words[0] +
-                           " is not after the one before it; sort the poses "
+                           " is earlier than the previous one; sort the poses "
                            "by time");
     }
     trajectory.push_back(pose);
   }
   if (trajectory.empty()) {
     throw InputError(path +
-                     ": holds no poses; a line is timestamp tx ty tz qx qy qz "
-                     "qw");
+                     ": contains no poses; each line must be timestamp tx ty "
+                     "tz qx qy qz qw");
   }
   if (doubled > 0 && remarks != nullptr) {
     remarks->push_back(Format(
-        "%s:%d: has the time stamp of the pose before it; %d such pose%s left "
-        "out",
+        "%s:%d: has the same time stamp as the previous pose; %d such pose%s "
+        "left out",
         path.c_str(), first_line, doubled, doubled == 1 ? " is" : "s are"));
   }
   return trajectory;

@@ -157,8 +157,8 @@ std::string FindFixing(const TruthComparison& comparison,
     result->motions = equations.used();
     if (equations.used() < kMinMotions) {
       return Format(
-          "%d motions of %g s of the estimate have a true one, with poses less "
-          "than 50 ms apart; it takes %d",
+          "only %d motions of %g s have a ground truth with poses less than 50 "
+          "ms apart; at least %d are needed",
           equations.used(), TruthComparison::kMotionSeconds, kMinMotions);
     }
     if (round < kOpenRounds) {

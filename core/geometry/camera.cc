@@ -149,8 +149,8 @@ std::string Camera::SanityWarning() const {
   constexpr double kMaxOffCentre = 0.1;
   const auto line = [](const std::string& what) {
     return "camera: " + what +
-           ", which is unusual; are its numbers in order, and those of images "
-           "of this size?";
+           ", which is unusual; check the order of the values and the image "
+           "size";
   };
   if (std::abs(fx / fy - 1.0) > kMaxAspect) {
     return line("fx " + ShortNumber(fx) + " and fy " + ShortNumber(fy) +

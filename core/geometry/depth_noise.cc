@@ -17,8 +17,8 @@ std::string DepthNoiseModel::Check() const {
   // Only depths above 0 count.
   const bool is_somewhere_certain =
       constant == 0.0 && (quadratic == 0.0 || centre > 0.0);
-  return is_somewhere_certain ? "no depth may be certain: sigma(z) = constant "
-                                "+ quadratic (z - centre)^2 must be above 0"
+  return is_somewhere_certain ? "sigma(z) = constant + quadratic (z - "
+                                "centre)^2 must be above 0 for all depths"
                               : "";
 }
 

@@ -14,8 +14,8 @@ static_assert(EIGEN_MAX_ALIGN_BYTES == RGBD_POSE_EIGEN_ALIGN &&
                   EIGEN_MAX_STATIC_ALIGN_BYTES == RGBD_POSE_EIGEN_ALIGN,
               "rgbd_pose was built with another alignment of Eigen's vectors "
               "(RGBD_POSE_EIGEN_ALIGN): leave out -march=native, -mavx and the "
-              "like, or add -DEIGEN_MAX_ALIGN_BYTES=16 to all that uses Eigen, "
-              "or build rgbd_pose with the same flags");
+              "like, or add -DEIGEN_MAX_ALIGN_BYTES=16 to all code that uses "
+              "Eigen, or build rgbd_pose with the same flags");
 #endif
 
 namespace rgbd_pose {

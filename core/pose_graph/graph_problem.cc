@@ -184,7 +184,7 @@ std::string FindBadInput(const GraphTerms& graph) {
     const std::string name =
         "the edge from " + NameOf(edge.ref) + " to " + NameOf(edge.cur);
     if (!graph.Has(edge.ref) || !graph.Has(edge.cur) || edge.ref == edge.cur) {
-      return name + " is not between two poses of the graph";
+      return name + " does not connect two poses of the graph";
     }
     if (!edge.cur_from_ref.IsFinite()) {
       return name + " has a motion that is not finite";
@@ -219,7 +219,7 @@ std::string FindUnanchoredPose(const GraphTerms& graph) {
   }
   for (int i = 0; i < poses; ++i) {
     if (fixed >= 0 && find(i) == find(fixed)) continue;
-    return NameOf(i) + " and those joined to it hang on nothing that is fixed";
+    return NameOf(i) + " is not connected to any fixed pose";
   }
   return "";
 }

@@ -53,7 +53,7 @@ std::string PoseGraphOptions::Check() const {
 }
 
 PoseGraph::PoseGraph(const PoseGraphOptions& options) : options_(options) {
-  RequireSound(options.Check(), "motion graph: ");
+  RequireSound(options.Check(), "pose graph: ");
 }
 
 double PoseGraph::Round(double width, int max_iterations,
@@ -75,7 +75,7 @@ double PoseGraph::Round(double width, int max_iterations,
   solution->final_cost = summary.final_cost;
   if (!summary.IsSolutionUsable()) {
     solution->status = GraphStatus::kNotConverged;
-    solution->reason = "the solver gave up: " + summary.message;
+    solution->reason = "the solver failed: " + summary.message;
     return std::nan("");
   }
   double moved = 0.0;

@@ -27,8 +27,8 @@ std::vector<std::string> NamesOf(const Rows& rows) {
 
 inline InputError UnknownName(const std::string& what, const std::string& name,
                               const std::vector<std::string>& names) {
-  return InputError("unknown " + what + " '" + name + "'; there are " +
-                    Join(names));
+  return InputError("unknown " + what + " '" + name +
+                    "'; available: " + Join(names));
 }
 
 // Returns the row with this name, or null if there is none.

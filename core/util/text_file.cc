@@ -46,7 +46,7 @@ std::FILE* OpenToWrite(const std::string& path) {
   std::FILE* file = std::fopen(TemporaryPath(path).c_str(), "wb");
   if (file == nullptr) {
     throw InputError(path + ": cannot be written " + Reason() +
-                     "; check that its folder exists and may be written to");
+                     "; check that its folder exists and is writable");
   }
   return file;
 }
@@ -61,12 +61,12 @@ bool PathExists(const std::filesystem::path& path) {
 std::string ReadTextFile(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {
-    throw InputError(path + ": is a folder, a file is needed here");
+    throw InputError(path + ": is a folder, but a file is expected");
   }
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw InputError(path +
-                     ": cannot be opened; check the path and its rights");
+                     ": cannot be opened; check the path and permissions");
   }
   std::string content;
   char buffer[1 << 16];
@@ -133,7 +133,7 @@ double ParseNumber(std::string_view word, const std::string& path, int line,
   if (error != std::errc() || end != digits.data() + digits.size() ||
       !std::isfinite(value)) {
     throw InputError(path, line,
-                     "'" + std::string(word) + "' is no finite number for " +
+                     "'" + std::string(word) + "' is not a finite number for " +
                          std::string(what));
   }
   return value;
@@ -183,7 +183,7 @@ void SyncFolder(const std::string& path) {
 void RequireWritable(const std::string& path) {
   std::error_code ignored;
   if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError(path + ": is a folder, a file is needed here");
+    throw InputError(path + ": is a folder, but a file is expected");
   }
   std::fclose(OpenToWrite(path));
   std::filesystem::remove(TemporaryPath(path), ignored);

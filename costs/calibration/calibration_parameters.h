@@ -73,7 +73,7 @@ inline constexpr std::array<CalibrationParameter, kCalibrationSize>
         {"p1", "tangential distortion, along y", "", 0.005, 8e-5},
         {"p2", "tangential distortion, along x", "", 0.005, 8e-5},
         {"inverse_depth_offset", "offset of inverse depth", "1/m", 0.02, 6e-5},
-        {"depth_time_offset", "time of depth after its stamp", "s", 0.02,
+        {"depth_time_offset", "delay of depth after its time stamp", "s", 0.02,
          1.5e-5},
         {"color_readout", "readout of colour", "s", 0.02, 1e-4},
         {"depth_readout", "readout of depth", "s", 0.02, 1e-4},

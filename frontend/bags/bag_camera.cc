@@ -154,11 +154,11 @@ std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
   std::optional<Rigid3d> fixed =
       FixedTransform(bag, topics, color.frame_id, depth.frame_id);
   if (!fixed.has_value() && !has_camera) {
-    throw InputError(bag->path() + ": depth is seen from '" + depth.frame_id +
-                     "', colour from '" + color.frame_id +
-                     "', and no transform says where one is from the other; "
-                     "give both cameras (a Kalibr file: camera, depth_camera), "
-                     "or camera alone if depth is registered to colour");
+    throw InputError(bag->path() + ": no transform from '" + depth.frame_id +
+                     "' (depth) to '" + color.frame_id +
+                     "' (colour); give both cameras (a Kalibr file: camera, "
+                     "depth_camera), or camera alone if depth is registered to "
+                     "colour");
   }
   return fixed;
 }
@@ -198,13 +198,13 @@ Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
             coefficients)) {
       throw InputError(name + ": distortion '" + model + "' with " +
                        std::to_string(info.d.size()) +
-                       " coefficients is not known, only plumb_bob (4 or 5), "
-                       "rational_polynomial (8) and equidistant (4) are; give "
+                       " coefficients is not supported, only plumb_bob (4 or "
+                       "5), rational_polynomial (8) and equidistant (4); give "
                        "a calibration file (camera)");
     }
   }
   const std::string problem = camera.fx == 0.0
-                                  ? "its camera is not calibrated (K is 0)"
+                                  ? "the camera is not calibrated (K is 0)"
                                   : camera.Check();
   if (!problem.empty()) {
     throw InputError(name + ": " + problem +
@@ -230,9 +230,9 @@ std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
       }
       if (others.empty()) return std::nullopt;  // no CameraInfo
       throw InputError(bag->path() + ": has no CameraInfo next to " +
-                       bag->topics()[topics.color].name + ", but " + others +
-                       "; name it (topics=COLOUR,DEPTH,CAMERA_INFO), or give a "
-                       "calibration file or a preset (camera)");
+                       bag->topics()[topics.color].name + ", only " + others +
+                       "; choose it (topics=COLOUR,DEPTH,CAMERA_INFO), or give "
+                       "a calibration file or a preset (camera)");
     }
     setup.camera = *camera;
   }
@@ -249,8 +249,8 @@ std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
     setup.depth_camera = DepthCamera{*depth_camera, *color_from_depth};
   } else if (!has_camera) {
     throw InputError(bag->path() + ": " + bag->topics()[topics.depth].name +
-                     ": is of another camera than colour, which no CameraInfo "
-                     "describes; give both (a Kalibr file: camera, "
+                     ": is from a different camera than colour and has no "
+                     "CameraInfo; give both cameras (a Kalibr file: camera, "
                      "depth_camera)");
   }
   return setup;

@@ -53,11 +53,9 @@ class Rows {
   [[noreturn]] void Fail() {
     const int code = sqlite3_errcode(database_);
     if (code == SQLITE_CANTOPEN || code == SQLITE_READONLY) {
-      throw InputError(path_ +
-                       ": cannot be read with what its recorder left "
-                       "in " +
-                       path_ + "-wal (" + sqlite3_errmsg(database_) +
-                       "); copy both to a folder that can be written to");
+      throw InputError(path_ + ": cannot be merged with the log " + path_ +
+                       "-wal (" + sqlite3_errmsg(database_) +
+                       "); copy both to a writable folder");
     }
     throw InputError(path_ + ": cannot be read as a ROS 2 bag: " +
                      sqlite3_errmsg(database_) +
@@ -194,8 +192,9 @@ std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path) {
 
 std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path) {
   throw InputError(path +
-                   ": this build reads no ROS 2 bags; install libsqlite3-dev "
-                   "(scripts/install_dependencies formats) and build again");
+                   ": this build cannot read ROS 2 bags; install "
+                   "libsqlite3-dev (scripts/install_dependencies formats) and "
+                   "build again");
 }
 
 #endif

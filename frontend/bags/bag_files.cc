@@ -46,8 +46,8 @@ class UnpackedFile {
     std::string folder =
         (fs::temp_directory_path(error) / "rgbd_pose-XXXXXX").string();
     if (mkdtemp(folder.data()) == nullptr) {
-      throw InputError(packed.string() + ": cannot be unpacked below " +
-                       folder + "; TMPDIR names another folder");
+      throw InputError(packed.string() + ": cannot be decompressed to " +
+                       folder + "; set TMPDIR to a writable folder");
     }
     folder_ = folder;
     try {
@@ -111,8 +111,8 @@ std::unique_ptr<BagReader> OpenFile(const fs::path& file, BagKind kind) {
   }
   if (file.extension() == kUnclosed) {
     throw InputError(file.string() +
-                     ": its recorder was not ended properly; `rosbag reindex` "
-                     "it and give it a name that ends in .bag");
+                     ": the recording was not finished properly; run `rosbag "
+                     "reindex` and rename the file to end in .bag");
   }
   return OpenRos1Bag(file.string());
 }
@@ -132,8 +132,8 @@ class BagFiles final : public BagReader {
       if (files_.size() == 1) format_ = files_.back()->format();
       if (files_.back()->format() != format_) {
         throw InputError(file.string() +
-                         ": has messages of another version of ROS than the "
-                         "files before");
+                         ": has messages of a different ROS version than the "
+                         "previous files");
       }
       std::vector<int>& places = places_.emplace_back();
       for (const BagTopic& topic : files_.back()->topics()) {
@@ -195,8 +195,8 @@ class BagFiles final : public BagReader {
       const auto known = cameras_.emplace(places[i], camera).first;
       if (known->second != camera) {
         throw InputError(file->path() + ": " + file->topics()[i].name +
-                         ": is of another camera than in the files before; "
-                         "move it to a folder of its own");
+                         ": is from a different camera than in the previous "
+                         "files; move this file to a separate folder");
       }
     }
   }
@@ -234,7 +234,7 @@ std::unique_ptr<BagReader> OpenBag(const std::string& path, BagKind kind) {
   if (files.empty()) {
     throw InputError(path + (kind == BagKind::kRos1
                                  ? ": has no .bag file, or several that are "
-                                   "not NAME_0.bag, NAME_1.bag, ...; name one"
+                                   "not NAME_0.bag, NAME_1.bag, ...; give one"
                                  : ": has no .db3 or .mcap file"));
   }
   return std::make_unique<BagFiles>(path, files, kind);

@@ -40,7 +40,7 @@ std::string ListOf(const std::vector<BagTopic>& topics) {
       names.push_back(topic.name + " (" + topic.type + ")");
     }
   }
-  if (names.empty()) return "nothing";
+  if (names.empty()) return "none";
   const bool is_long = names.size() > kMaxNames;
   if (is_long) names.resize(kMaxNames);
   return Join(names) + (is_long ? ", ..." : "");
@@ -117,14 +117,13 @@ int Best(const BagReader& bag, const std::vector<Fitness>& fitness,
                    topics[i].name + " '" + fitness[i].encoding + "'";
     }
     if (!encodings.empty()) encodings += ")";
-    throw InputError(bag.path() + ": has no " + name +
-                     " images that can be read; it has " + ListOf(topics) +
-                     encodings);
+    throw InputError(bag.path() + ": has no readable " + name +
+                     " images; topics: " + ListOf(topics) + encodings);
   }
   if (rival >= 0) {
     throw InputError(bag.path() + ": both " + topics[best].name + " and " +
                      topics[rival].name + " may be the " + name +
-                     " images; say which with topics=COLOUR,DEPTH; there are " +
+                     " images; choose with topics=COLOUR,DEPTH from " +
                      ListOf(topics));
   }
   return best;
@@ -159,8 +158,8 @@ int TopicNamed(const BagReader& bag, const std::string& name, bool is_image) {
   }
   const std::string has =
       index < 0 ? "no topic '" + name + "'"
-                : name + ", which is of the type " + topics[index].type;
-  throw InputError(bag.path() + ": has " + has + "; it has " + ListOf(topics));
+                : name + " of the unsuitable type " + topics[index].type;
+  throw InputError(bag.path() + ": has " + has + "; topics: " + ListOf(topics));
 }
 
 }  // namespace
@@ -195,7 +194,7 @@ BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {
   } else {
     if (names.size() < 2 || names.size() > 3) {
       throw InputError(
-          "topics: takes COLOUR,DEPTH or COLOUR,DEPTH,CAMERA_INFO, not " +
+          "topics: must be COLOUR,DEPTH or COLOUR,DEPTH,CAMERA_INFO, not " +
           std::to_string(names.size()) + " names");
     }
     chosen.color = TopicNamed(*bag, names[0], true);

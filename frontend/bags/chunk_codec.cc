@@ -59,8 +59,8 @@ bool UnpackBz2(std::string_view packed, std::string* unpacked) {
 #else
 
 [[noreturn]] void FailWithout(std::string_view codec) {
-  throw InputError("is packed by " + std::string(codec) +
-                   ", which this build does not read; install libzstd-dev, "
+  throw InputError("is compressed with " + std::string(codec) +
+                   ", which this build does not support; install libzstd-dev, "
                    "liblz4-dev and libbz2-dev (scripts/install_dependencies "
                    "formats) and build again");
 }
@@ -71,14 +71,14 @@ bool UnpackBz2(std::string_view packed, std::string* unpacked) {
 
 std::string Unpack(std::string_view packed, std::string_view codec,
                    uint64_t size) {
-  constexpr char kWhat[] = "a chunk does not unpack";
+  constexpr char kWhat[] = "a chunk cannot be decompressed";
   if (codec.empty()) {
     if (packed.size() != size) throw Damaged(kWhat);
     return std::string(packed);
   }
   if (codec != "zstd" && codec != "lz4" && codec != "bz2") {
-    throw InputError("is packed by '" + std::string(codec) +
-                     "', and only zstd, lz4 and bz2 are known");
+    throw InputError("is compressed with '" + std::string(codec) +
+                     "'; only zstd, lz4 and bz2 are supported");
   }
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
   if (size > kMaxSize) throw Damaged(kWhat);
@@ -131,8 +131,8 @@ void UnpackZstdFile(const std::string& packed, const std::string& unpacked) {
   }
   to.close();
   if (!to) {
-    throw InputError(packed + ": cannot be unpacked to " + unpacked +
-                     "; TMPDIR names a folder with more room");
+    throw InputError(packed + ": cannot be decompressed to " + unpacked +
+                     "; set TMPDIR to a folder with more space");
   }
 #else
   static_cast<void>(unpacked);

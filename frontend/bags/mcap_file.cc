@@ -46,7 +46,7 @@ class McapRecords {
     file_.read(magic.data(), static_cast<std::streamsize>(magic.size()));
     if (magic != kMcapMagic) {
       throw InputError(path + (size_ == 0 ? ": is empty; copy it again"
-                                          : ": is no mcap file"));
+                                          : ": is not an mcap file"));
     }
   }
 
@@ -87,8 +87,8 @@ class McapRecords {
       if (!record.has_value()) {
         is_cut_off_ = true;
         Fail(
-            "is cut off: its recorder was not ended properly, or it was copied "
-            "in part; `mcap recover` makes a whole one of what there is");
+            "is cut off: the recording was not finished properly, or the copy "
+            "is incomplete; run `mcap recover`");
       }
       if (record->opcode == kMcapDataEnd || record->opcode == kMcapFooter) {
         has_ended_ = true;
@@ -166,7 +166,7 @@ class McapRecords {
       fields.Number<uint64_t>();  // publish time
       message.bytes = fields.rest();
       if (channels_.count(message.channel) == 0) {
-        throw Damaged("a message is of no channel");
+        throw Damaged("a message has no channel");
       }
       messages_.push_back(message);
     }
@@ -183,7 +183,7 @@ class McapRecords {
     // 0: the file or this build has no checksums.
     const uint32_t expected = checksum == 0 ? 0 : McapChecksum(chunk_);
     if (expected != 0 && expected != checksum) {
-      throw Damaged("a chunk is not what its checksum says");
+      throw Damaged("a chunk does not match its checksum");
     }
     WireReader records(chunk_, WireFormat::kRos1);
     while (!records.rest().empty()) {
@@ -232,8 +232,8 @@ class McapFile final : public BagReader {
       places_[number] = place->second;
     }
     if (topics_.empty() && !encodings.empty()) {
-      throw InputError(path + ": has messages of " + encodings +
-                       ", and only those of ROS (cdr, ros1) are read");
+      throw InputError(path + ": has messages encoded as " + encodings +
+                       "; only those of ROS (cdr, ros1) are supported");
     }
   }
 

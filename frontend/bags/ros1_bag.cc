@@ -64,7 +64,7 @@ class Ros1Bag final : public BagReader {
     std::string version(kVersion.size(), '\0');
     file_.read(version.data(), static_cast<std::streamsize>(version.size()));
     if (version != kVersion) {
-      throw InputError(path + ": is no ROS 1 bag (of format 2.0)");
+      throw InputError(path + ": is not a ROS 1 bag (of format 2.0)");
     }
     std::string header;
     uint64_t index = 0;
@@ -73,12 +73,12 @@ class Ros1Bag final : public BagReader {
       index = NumberField<uint64_t>(header, "index_pos");
     });
     if (!Field(header, "encryptor").empty()) {
-      throw InputError(path + ": is encrypted; `rosbag decrypt` it");
+      throw InputError(path + ": is encrypted; run `rosbag decrypt`");
     }
     if (index == 0) {
       throw InputError(path +
-                       ": has no index: its recorder was not ended properly; "
-                       "`rosbag reindex` makes one");
+                       ": has no index: the recording was not finished "
+                       "properly; run `rosbag reindex`");
     }
     Guarded([&] { ReadIndex(index); });
   }
@@ -165,7 +165,7 @@ class Ros1Bag final : public BagReader {
         while (!counts.rest().empty()) {
           chunk.connections.push_back(counts.Number<uint32_t>());
           if (topics_of_.count(chunk.connections.back()) == 0) {
-            throw Damaged("a chunk has messages of no topic");
+            throw Damaged("a chunk has messages without a topic");
           }
           counts.Number<uint32_t>();
         }

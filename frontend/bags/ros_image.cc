@@ -52,10 +52,9 @@ bool IsCompressedDepth(std::string_view format) {
 
 InputError Unreadable(const std::string& name, std::string_view encoding,
                       const char* what) {
-  return InputError(name + ": images of encoding '" + std::string(encoding) +
-                    "' are not read as " + what + "; there are " +
-                    Join(NamesOf(kEncodings)) +
-                    " and, compressed, jpeg and png");
+  return InputError(name + ": encoding '" + std::string(encoding) +
+                    "' is not supported for " + what + " images; supported: " +
+                    Join(NamesOf(kEncodings)) + ", compressed jpeg and png");
 }
 
 // Reverses the byte order of each number of `size` bytes.
@@ -124,7 +123,7 @@ cv::Mat DecodeCompressedDepth(const RosImage& image, const std::string& name,
     throw Unreadable(name, image.encoding, "depth");
   }
   if (image.data.size() < kHeader) {
-    throw InputError(name + ": compressed depth without its header");
+    throw InputError(name + ": the compressed depth image has no header");
   }
   float quantisation[2];
   std::memcpy(quantisation, image.data.data() + 4, sizeof(quantisation));

@@ -20,7 +20,7 @@ WireReader::WireReader(std::string_view message, WireFormat format)
   // little-endian. The next two bytes are unused.
   const std::string_view kind = Take(4);
   if (kind[0] != 0 || (kind[1] != 0 && kind[1] != 1)) {
-    throw InputError("a message of an unknown encoding (CDR of kind " +
+    throw InputError("a message has an unknown encoding (CDR kind " +
                      std::to_string(static_cast<uint8_t>(kind[1])) + ")");
   }
   swaps_ = (kind[1] == 0) != kHostIsBigEndian;
@@ -30,8 +30,7 @@ WireReader::WireReader(std::string_view message, WireFormat format)
 std::string_view WireReader::Take(size_t size) {
   if (size > rest_.size()) {
     throw Damaged("a message ends too early: " + std::to_string(size) +
-                  " bytes were to follow, " + std::to_string(rest_.size()) +
-                  " do");
+                  " bytes expected, " + std::to_string(rest_.size()) + " left");
   }
   const std::string_view taken = rest_.substr(0, size);
   rest_.remove_prefix(size);
@@ -60,7 +59,7 @@ uint32_t WireReader::Count(size_t least_bytes) {
   const uint32_t count = Number<uint32_t>();
   if (count > rest_.size() / least_bytes) {
     throw Damaged("a message ends too early: a list of " +
-                  std::to_string(count) + " is longer than the rest of it");
+                  std::to_string(count) + " elements exceeds the rest");
   }
   return count;
 }

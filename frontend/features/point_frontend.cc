@@ -57,9 +57,9 @@ void PointFrontend::Match(const FeatureSet& reference,
   Follow(features.frame, features.points, frame, &moved_, &found_);
   const size_t count = features.points.size();
   if (moved_.size() != count || found_.size() != count) {
-    throw InputError("a frontend followed " + std::to_string(moved_.size()) +
-                     " of " + std::to_string(count) +
-                     " points; it must say of each whether it was found");
+    throw InputError("a frontend returned " + std::to_string(moved_.size()) +
+                     " points and " + std::to_string(found_.size()) +
+                     " flags for " + std::to_string(count) + " points");
   }
   for (size_t i = 0; i < moved_.size(); ++i) {
     if (found_[i] == 0 ||

@@ -103,7 +103,7 @@ Rigid3d ReadKalibrMotion(const YamlSection& file, const std::string& name) {
       (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm() <
           1e-3 &&
       rotation.determinant() > 0.0;
-  if (!is_rigid) cam.Fail("T_cn_cnm1", "holds no rotation");
+  if (!is_rigid) cam.Fail("T_cn_cnm1", "contains no valid rotation");
   return Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
 }
 
@@ -120,8 +120,8 @@ DepthCamera ReadDepthCamera(const std::string& path, const YamlSection& file,
     RequireSound(depth.camera.Check(), path + ": " + name + ": ");
     return depth;
   }
-  throw InputError(path + ": has no camera '" + name +
-                   "' for depth; name cam1 or a later one of a Kalibr file");
+  throw InputError(path + ": has no depth camera '" + name +
+                   "'; give cam1 or a later one of a Kalibr file");
 }
 
 Camera ReadAnyLayout(const std::string& path, const YamlSection& file) {
@@ -132,7 +132,7 @@ Camera ReadAnyLayout(const std::string& path, const YamlSection& file) {
   if (file.Has("camera_matrix")) return ReadCameraInfoFile(file);
   if (file.Has("cam0")) return ReadKalibr(file, "cam0");
   throw InputError(path +
-                   ": no camera in here; known layouts are ORB-SLAM "
+                   ": contains no camera; supported layouts are ORB-SLAM "
                    "(Camera.fx), ROS camera_info (camera_matrix) and Kalibr "
                    "(cam0)");
 }
@@ -214,9 +214,9 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
   RequireSound(result.camera.Check(), path + ": ");
   if (depth_camera.empty() && file.Has("cam0") && file.Has("cam1")) {
     throw InputError(path +
-                     ": has several cameras; say which one depth images are "
-                     "seen from: depth_camera cam1, or cam0 if they are "
-                     "registered to colour");
+                     ": has several cameras; choose that of the depth images: "
+                     "depth_camera cam1, or cam0 if depth is registered to "
+                     "colour");
   }
   if (!IsOfColor(depth_camera)) {
     result.depth_camera = ReadDepthCamera(path, file, depth_camera);
@@ -240,9 +240,8 @@ CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
   }
   if (preset) {
     throw InputError("camera '" + file_or_preset +
-                     "' is a preset, which has "
-                     "no depth camera '" +
-                     depth_camera + "'; give a Kalibr file of both cameras");
+                     "' is a preset and has no depth camera '" + depth_camera +
+                     "'; give a Kalibr file of both cameras");
   }
   throw InputError("camera '" + file_or_preset +
                    "' is neither a file nor one of the presets: " +

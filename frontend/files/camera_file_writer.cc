@@ -305,8 +305,8 @@ std::string FormatCameraFile(const RgbdCamera& camera,
     const std::optional<std::string> edited = Edited(camera, like);
     if (edited.has_value()) return *edited;
     why =
-        "# In another layout than the file before, which could not hold this "
-        "camera:\n# what else was in there is not here.\n";
+        "# The layout of the original file cannot represent this camera.\n"
+        "# Other entries of that file are not included.\n";
   }
   YamlLines values = OrbSlamLines(camera, "Camera.");
   values.emplace_back("DepthMapFactor", Digits(camera.depth_scale));

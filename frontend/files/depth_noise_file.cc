@@ -16,7 +16,7 @@ std::string FormatDepthNoiseFile(const DepthNoiseModel& model) {
       "constant: %.9g\n"
       "quadratic: %.9g\n"
       "centre: %.9g\n"
-      "# That of the mean of 3 x 3 neighbours, as a share of it.\n"
+      "# Standard deviation of the mean of 3 x 3 depths, as a share of sigma.\n"
       "mean_share: %.9g\n",
       model.constant, model.quadratic, model.centre, model.mean_share);
 }
@@ -33,8 +33,8 @@ DepthNoiseModel ReadDepthNoiseFile(const std::string& path) {
   // A larger model is in millimetres or describes something else.
   constexpr double kMost = 1.0;  // m, at 1 m
   if (model.sigma(1.0) > kMost) {
-    throw InputError(path + Format(": a depth of 1 m is uncertain by %.3g m; "
-                                   "are these metres?",
+    throw InputError(path + Format(": sigma is %.3g m at a depth of 1 m; are "
+                                   "the values in metres?",
                                    model.sigma(1.0)));
   }
   return model;
@@ -47,9 +47,9 @@ DepthNoiseModel ResolveDepthNoise(const std::string& name_or_file) {
   if (std::filesystem::is_regular_file(name_or_file, error)) {
     return ReadDepthNoiseFile(name_or_file);
   }
-  throw InputError("unknown depth noise '" + name_or_file +
-                   "': no such file, and the models are " +
-                   Join(DepthNoiseModelNames()));
+  throw InputError(
+      "unknown depth noise '" + name_or_file +
+      "': no such file; available models: " + Join(DepthNoiseModelNames()));
 }
 
 }  // namespace rgbd_pose

@@ -59,8 +59,7 @@ cv::Mat DecodeByOpenCv(const std::string& bytes, const std::string& path,
     throw InputError(path + ": cannot be decoded: " + error.err);
   }
   if (image.empty()) {
-    throw InputError(path +
-                     ": is damaged, cut off or no image that OpenCV can read");
+    throw InputError(path + ": is damaged, cut off or not readable by OpenCV");
   }
   return image;
 }
@@ -89,8 +88,8 @@ cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
   }
   if (!IsOfKnownKind(bytes)) {
     throw InputError(path +
-                     ": is damaged, cut off or no image of a kind that is "
-                     "read: PNG, JPEG, TIFF, BMP, PGM, PPM, WebP");
+                     ": is damaged, cut off or not in a supported format "
+                     "(PNG, JPEG, TIFF, BMP, PGM, PPM, WebP)");
   }
   const bool is_gray = (flags & ~cv::IMREAD_ANYDEPTH) == cv::IMREAD_GRAYSCALE;
   // JPEG stores grey levels by the same formula, with less loss than colours.
@@ -125,7 +124,7 @@ cv::Mat DecodeGrayImage(const std::string& bytes, const std::string& path,
       Decode(bytes, path, cv::IMREAD_GRAYSCALE | cv::IMREAD_ANYDEPTH, color);
   if (gray.type() != CV_8UC1) {
     throw InputError(path +
-                     ": a colour image must have 8 bits a channel, this one "
+                     ": a colour image must have 8 bits per channel, this one "
                      "has more; is it the depth image?");
   }
   return gray;
@@ -142,8 +141,7 @@ cv::Mat DecodeDepthImage(const std::string& bytes, const std::string& path) {
                      ": a depth image must have 16 bits and 1 channel, "
                      "this one is " +
                      cv::typeToString(depth.type()) +
-                     "; is it the colour image, or a depth image made for "
-                     "viewing?");
+                     "; is it the colour image, or a depth image for display?");
   }
   return depth;
 }

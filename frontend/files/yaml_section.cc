@@ -33,8 +33,7 @@ YamlSection YamlSection::FromText(const std::string& text,
     const YAML::Node node = YAML::Load(WithoutDirective(text));
     return {path, "", node.IsMap() ? node : YAML::Node(YAML::NodeType::Map)};
   } catch (const YAML::Exception& error) {
-    throw InputError(path, error.mark.line + 1,
-                     "this is no valid YAML: " + error.msg);
+    throw InputError(path, error.mark.line + 1, "not valid YAML: " + error.msg);
   }
 }
 
@@ -51,7 +50,7 @@ bool YamlSection::HasKeyStartingWith(const std::string& start) const {
 
 YamlSection YamlSection::Child(const std::string& key) const {
   const YAML::Node child = Find(key);
-  if (!child.IsMap()) Fail(key, "needs keys below it");
+  if (!child.IsMap()) Fail(key, "must be a section with keys");
   return {path_, prefix_ + key + ".", child};
 }
 

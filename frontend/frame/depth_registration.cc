@@ -58,7 +58,7 @@ DepthRegistration::DepthRegistration(const DepthCamera& depth,
   RequireSound(depth.camera.Check(), "depth camera: ");
   RequireSound(color.Check(), "colour camera: ");
   if (!depth.color_from_depth.IsFinite()) {
-    throw InputError("depth camera: its place is no finite motion");
+    throw InputError("depth camera: its pose is not finite");
   }
   std::vector<Eigen::Vector2d> pixels;
   pixels.reserve(static_cast<size_t>(width_) * height_);

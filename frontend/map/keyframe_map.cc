@@ -32,9 +32,9 @@ std::string CheckEdge(const RelativePose& edge, const std::set<int>& ids) {
       return "there is no keyframe " + std::to_string(id);
     }
   }
-  if (edge.ref == edge.cur) return "it must join two keyframes";
+  if (edge.ref == edge.cur) return "it must connect two different keyframes";
   if (!IsMotion(edge.cur_from_ref)) {
-    return "the motion must be of finite numbers, the quaternion of length 1";
+    return "the motion must be finite and its quaternion of unit length";
   }
   if (!IsCovariance(edge.covariance)) {
     return "the covariance must be symmetric and positive definite";
@@ -50,10 +50,9 @@ std::string KeyframeMap::Check() const {
   std::set<int> ids;
   for (const Keyframe& keyframe : keyframes) {
     const std::string name = "keyframe " + std::to_string(keyframe.id) + ": ";
-    if (!ids.insert(keyframe.id).second) return name + "is there twice";
+    if (!ids.insert(keyframe.id).second) return name + "appears twice";
     if (!IsMotion(keyframe.world_from_cam)) {
-      return name +
-             "the pose must be of finite numbers, the quaternion of length 1";
+      return name + "the pose must be finite and its quaternion of unit length";
     }
     const std::string wrong_images =
         keyframe.images.Check(camera.width, camera.height);

@@ -30,7 +30,7 @@ class FolderLock {
     if (flock(file_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       close(file_);
       throw InputError(folder.string() +
-                       ": another program saves a map here; wait for it or "
+                       ": another program is saving a map here; wait for it or "
                        "choose another folder");
     }
   }
@@ -72,8 +72,8 @@ void RequireNoOtherThings(const fs::path& folder) {
       continue;
     }
     throw InputError(folder.string() +
-                     ": holds other things than a map; name an empty folder "
-                     "or a new one");
+                     ": contains files that are not part of a map; choose an "
+                     "empty or new folder");
   }
 }
 
@@ -119,14 +119,14 @@ std::shared_ptr<const PngBytes> LoadImage(const fs::path& folder,
   const fs::path file = folder / (checksum + kImageType);
   if (!PathExists(file)) {
     throw InputError(file.string() +
-                     ": is missing, a keyframe of the map needs it; take a "
-                     "copy of the map or map again");
+                     ": image of a keyframe is missing; restore a copy of the "
+                     "map or create it again");
   }
   auto image = std::make_shared<const PngBytes>(ReadTextFile(file.string()));
   if (image->checksum != checksum) {
     throw InputError(file.string() +
-                     ": is damaged, its checksum is not its name; take a copy "
-                     "of the map or map again");
+                     ": is damaged (wrong checksum); restore a copy of the map "
+                     "or create it again");
   }
   return image;
 }
@@ -179,8 +179,8 @@ KeyframeMap LoadMap(const std::string& folder) {
   const std::string path = (fs::path(folder) / kIndex).string();
   if (!PathExists(path)) {
     throw InputError(folder +
-                     ": holds no map (there is no map.txt); name a folder that "
-                     "a map was saved to");
+                     ": contains no map (no map.txt); choose a folder that a "
+                     "map was saved to");
   }
   for (;;) {
     const std::string text = ReadTextFile(path);

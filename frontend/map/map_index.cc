@@ -106,7 +106,7 @@ void ReadCamera(LineReader* line, Camera* camera) {
   if (is_usual) return;
   const std::string& lens = line->Word();
   if (lens != kRational && lens != kEquidistant) {
-    line->Fail("a lens is 'rational' or 'equidistant', not '" + lens + "'");
+    line->Fail("lens '" + lens + "' must be 'rational' or 'equidistant'");
   }
   if (lens == kEquidistant) camera->lens_model = LensModel::kEquidistant;
 }
@@ -138,7 +138,7 @@ void ReadEdge(LineReader* line, std::vector<RelativePose>* edges) {
 // Checks the first and the last line of a text and returns it without the last.
 std::string_view Unseal(std::string_view text, const std::string& path) {
   if (text.substr(0, kMagic.size()) != kMagic) {
-    throw InputError(path + ": is no map of rgbd_slam");
+    throw InputError(path + ": is not a map of rgbd_slam");
   }
   const size_t line_end = std::min(text.find('\n'), text.size());
   const std::string_view version =
@@ -148,13 +148,13 @@ std::string_view Unseal(std::string_view text, const std::string& path) {
     throw InputError(path + ": has format version " +
                      std::string(version.substr(0, kShown)) +
                      ", this program reads version " + std::string(kVersion) +
-                     " only; use a newer one");
+                     " only; use a newer program");
   }
   const size_t last = text.rfind('\n', text.size() - 2) + 1;
   if (text.substr(last) != ChecksumLine(text.substr(0, last))) {
     throw InputError(path +
-                     ": is damaged or edited, its checksum does not fit; take "
-                     "a copy of the map or map again");
+                     ": is damaged or edited (wrong checksum); restore a copy "
+                     "of the map or create it again");
   }
   return text.substr(0, last);
 }
@@ -220,7 +220,7 @@ MapIndex ParseMapIndex(std::string_view text, const std::string& path) {
   for (size_t i = 1; i < lines.size(); ++i) {
     LineReader line(lines[i], path);
     if ((i == 1) != (line.Kind() == "camera")) {
-      line.Fail("the camera must come first, and once");
+      line.Fail("there must be one camera line, before all others");
     }
     if (line.Kind() == "camera") {
       ReadCamera(&line, &index.map.camera);
@@ -229,7 +229,7 @@ MapIndex ParseMapIndex(std::string_view text, const std::string& path) {
     } else if (line.Kind() == "edge") {
       ReadEdge(&line, &index.map.edges);
     } else {
-      line.Fail("'" + line.Kind() + "' is none of camera, keyframe and edge");
+      line.Fail("'" + line.Kind() + "' must be camera, keyframe or edge");
     }
   }
   if (lines.size() < 2) throw InputError(path + ": has no camera");

@@ -50,8 +50,8 @@ std::string StoredImages::Check(int width, int height) const {
   if (!StartsWith(gray, PngStart(width, height, 8)) ||
       !StartsWith(depth, PngStart(width, height, 16))) {
     return Format(
-        "the images must be PNG files of %d x %d pixels with 8 bits "
-        "of grey and 16 of depth",
+        "the images must be PNG files of %d x %d pixels, 8-bit grey and "
+        "16-bit depth",
         width, height);
   }
   if (!std::isfinite(timestamp) || !std::isfinite(depth_delay)) {

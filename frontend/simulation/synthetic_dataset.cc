@@ -29,7 +29,7 @@ void CheckShutters(const RgbdCamera& camera, double frame_s) {
       throw InputError(
           std::string(parameter.name) +
           " of a synthetic sequence must be at most " + Format("%.6g", most) +
-          " s either way, " +
+          " s in magnitude, " +
           (is_short ? "the time from frame to frame" : "as in camera files"));
     }
   }
@@ -66,8 +66,8 @@ SyntheticOptions Checked(SyntheticOptions options) {
   const std::string problem = options.camera.camera.Check();
   require(problem.empty(), "camera of the synthetic sequence: " + problem);
   require(SeesEverywhere(options.camera.camera),
-          "camera of the synthetic sequence: its lens tells no ray for the "
-          "corners of the image");
+          "camera of the synthetic sequence: its distortion cannot be inverted "
+          "in the corners of the image");
   const double frame_s = 1.0 / options.rate_hz;
   require(options.exposure_s >= 0.0 && options.exposure_s <= frame_s,
           "the shutter time of a synthetic sequence must be in 0.." +

@@ -56,12 +56,12 @@ class BagSource final : public FrameSource {
     if (error_ != nullptr) std::rethrow_exception(error_);
     if (num_frames_ > 0) return std::nullopt;
     throw InputError(bag_->path() + ": none of " + std::to_string(num_color_) +
-                     " colour and " + std::to_string(num_depth_) +
-                     " depth images are of the same time (" +
-                     Seconds(max_time_difference_) +
-                     " apart at most); the first ones are " +
+                     " colour images is within " +
+                     Seconds(max_time_difference_) + " of one of " +
+                     std::to_string(num_depth_) +
+                     " depth images; the first ones are " +
                      Seconds(first_depth_ - first_color_) +
-                     " apart; are their clocks the same?");
+                     " apart; do they use the same clock?");
   }
 
   const RgbdCamera& camera() const override { return assembly_.camera(); }
@@ -78,15 +78,15 @@ class BagSource final : public FrameSource {
     const std::string& depth = bag_->topics()[topics_.depth].name;
     if (topics_.had_choice) {
       lines.push_back(bag_->path() + ": colour is " + color + ", depth " +
-                      depth + "; topics=COLOUR,DEPTH takes others");
+                      depth + "; choose others with topics=COLOUR,DEPTH");
     }
     if (IsCalledRegistered(depth) && num_color_ > 0 && num_depth_ > 0 &&
         color_frame_ != depth_frame_) {
       lines.push_back(
           bag_->path() + ": " + depth +
-          " is taken to be registered to colour by its name, but is "
-          "of frame '" +
-          depth_frame_ + "', colour of '" + color_frame_ + "'");
+          " is assumed to be registered to colour because of its name, but its "
+          "frame is '" +
+          depth_frame_ + "', that of colour '" + color_frame_ + "'");
     }
     if (pairing_.same_stamp() > 0) {
       lines.push_back(SameStampRemark(bag_->path(), pairing_.same_stamp()));
@@ -94,10 +94,10 @@ class BagSource final : public FrameSource {
     if (pairing_.late() > 0) {
       lines.push_back(
           bag_->path() + ": " + std::to_string(pairing_.late()) +
-          " depth images come too late in it, more than " +
+          " depth images are more than " +
           std::to_string(static_cast<int>(ImagePairing::kMaxSeconds)) +
           " s or " + std::to_string(ImagePairing::kMaxBytes >> 20) +
-          " MiB after colour images of their time; write it once more in the "
+          " MiB behind colour images of the same time; rewrite the bag in the "
           "order of its header stamps");
     }
     return lines;
@@ -153,11 +153,10 @@ class BagSource final : public FrameSource {
       color_frame_ = header.frame_id;
     }
     if (!pairing_.AddColor({stamp, message.bytes})) {
-      throw InputError(NameOf(message.topic, stamp) +
-                       ": comes after later images, further than " +
+      throw InputError(NameOf(message.topic, stamp) + ": is more than " +
                        std::to_string(ImagePairing::kWindow) +
-                       " images out of order; write the bag once more in the "
-                       "order of its header stamps");
+                       " images out of order; rewrite the bag in the order of "
+                       "its header stamps");
     }
   }
 

@@ -162,9 +162,9 @@ FrameRange ParseFrameRange(const std::string& text) {
   FrameRange range;
   if (text.empty() || Parse(text, &range)) return range;
   throw InputError("frames '" + text +
-                   "': is no part of a recording; give first-last such as "
-                   "0-99, 100-400:2 (every second) or 100-, or seconds from "
-                   "the start such as 2.5s-10s");
+                   "': is not a valid range; give first-last such as 0-99, "
+                   "100-400:2 (every second) or 100-, or seconds from the "
+                   "start such as 2.5s-10s");
 }
 
 std::unique_ptr<FrameSource> PartOf(std::unique_ptr<FrameSource> whole,
@@ -173,9 +173,9 @@ std::unique_ptr<FrameSource> PartOf(std::unique_ptr<FrameSource> whole,
   const size_t frames = whole->timestamps().size();
   auto part = std::make_unique<PartialSource>(std::move(whole), range);
   if (frames > 0 && part->timestamps().empty()) {
-    throw InputError(
-        "frames: the recording has none of those asked for, only " +
-        std::to_string(frames) + " in all");
+    throw InputError("frames: the recording has only " +
+                     std::to_string(frames) +
+                     " frames, none of them in this range");
   }
   return part;
 }
@@ -193,7 +193,7 @@ FrameSelection::FrameSelection(const std::string& flag,
     } catch (const InputError&) {
       throw InputError(
           "--" + flag + "=" + text + ": '" + item +
-          "' is no frame number, first-last or first-last:step (first <= "
+          "' is not a frame number, first-last or first-last:step (first <= "
           "last, step >= 1); give a list such as 10,20-40,100-200:10, or all");
     }
   }

@@ -22,8 +22,8 @@ std::vector<double> StampsOf(const std::deque<StampedImage>& images) {
 std::string SameStampRemark(const std::string& recording, int images) {
   return recording + ": " + std::to_string(images) +
          (images == 1 ? " image has" : " images have") +
-         " the time stamp of another one and " + (images == 1 ? "is" : "are") +
-         " left out; does the recorder say when images were taken?";
+         " the same time stamp as another and " + (images == 1 ? "is" : "are") +
+         " left out; are these the times when the images were taken?";
 }
 
 bool ImagePairing::Waiting::Insert(StampedImage image) {
@@ -125,8 +125,8 @@ StreamPair ApproximateTimeSync::Next(const std::string& name,
     if (Clock::now() - began < patience_) continue;
     const double seconds = std::chrono::duration<double>(patience_).count();
     throw InputError(Format(
-        "%s: %s images came for %.3g s, but no pair of colour and depth %.3g s "
-        "apart or less; does the camera give both?",
+        "%s: sent %s images for %.3g s, but no colour and depth images within "
+        "%.3g s of each other; does the camera send both?",
         name.c_str(), color.has_value() ? "colour" : "depth", seconds,
         max_time_difference_));
   }

@@ -109,9 +109,8 @@ class NumberedDataset final : public Dataset {
     const std::map<int, std::string> color = List(folder_, layout_.color);
     const std::map<int, std::string> depth = List(folder_, layout_.depth);
     if (color.empty()) {
-      throw InputError(folder_ + ": has no colour images " +
-                       Examples(layout_.color) + ", as " + layout_.what +
-                       " has");
+      throw InputError(folder_ + ": has no colour images such as " +
+                       Examples(layout_.color) + "; expected: " + layout_.what);
     }
     std::vector<NumberedFrame> frames;
     for (const auto& [number, path] : color) {

@@ -95,8 +95,8 @@ void RequireIdentity(const fs::path& file) {
                                        lines[row].number, "extrinsics");
       if (std::abs(value - (row == column ? 1.0 : 0.0)) > 1e-6) {
         throw InputError(path + ":" + std::to_string(lines[row].number) +
-                         ": is not the identity, as in ScanNet's exports; say "
-                         "where the cameras are by a Kalibr file (camera, "
+                         ": must be the identity, as in ScanNet's exports; "
+                         "give both cameras as a Kalibr file (camera, "
                          "depth_camera)");
       }
     }

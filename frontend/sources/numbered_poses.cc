@@ -37,7 +37,7 @@ class MatrixWords {
               .norm();
       if (!(error < 0.05) || !(rotation.determinant() > 0.0)) {
         throw InputError(path, line,
-                         "holds no pose: its upper left 3 x 3 is no rotation");
+                         "not a pose: the upper left 3 x 3 is not a rotation");
       }
       (*poses)[number] =
           Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
@@ -124,7 +124,7 @@ NumberedPoses ReadPoseLog(const std::string& folder,
     const TextLine& head = lines[5 * i];
     if (head.words.size() != 3 || 5 * i + 4 >= lines.size()) {
       throw InputError(path, head.number,
-                       "needs three whole numbers and then 4 rows of 4");
+                       "needs three integers and then 4 rows of 4 numbers");
     }
     MatrixWords matrix;
     for (int row = 1; row <= 4; ++row) {

@@ -56,7 +56,7 @@ const std::vector<SourceType>& Types() {
                 "ROS 1 bag (.bag, also the RealSense viewer's, or a folder of "
                 "NAME_0.bag, NAME_1.bag, ...)"),
         BagType(BagKind::kRos2, "rosbag2",
-                "ROS 2 bag (.db3 or .mcap, or a folder of such)"),
+                "ROS 2 bag (.db3 or .mcap, or a folder of these)"),
         {"stray_scanner",
          "Stray Scanner (rgb.mp4, depth/, camera_matrix.csv, odometry.csv)",
          [](const SourceOptions& options) {
@@ -65,7 +65,7 @@ const std::vector<SourceType>& Types() {
          },
          OpenStrayScanner},
         // Never detected from a path.
-        {"openni2", "camera by OpenNI 2 (source=openni2, dataset=any)",
+        {"openni2", "OpenNI 2 camera (source=openni2, dataset=any)",
          [](const SourceOptions&) { return false; }, OpenOpenNi2},
     };
     for (const NumberedLayout& layout : NumberedLayouts()) {
@@ -123,11 +123,11 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
   }
   if (!fs::is_directory(options.path, error)) {
     throw InputError(options.path +
-                     ": is no known kind of recording; known are: " + known);
+                     ": is not a supported recording; supported are: " + known);
   }
-  throw InputError(options.path + ": is no known kind of recording: it holds " +
-                   Content(options.path) + "; known are: " + known +
-                   " (bags of several recordings are read one at a time)");
+  throw InputError(options.path + ": is not a supported recording: contains " +
+                   Content(options.path) + "; supported are: " + known +
+                   " (give bags of different recordings one at a time)");
 }
 
 }  // namespace rgbd_pose

@@ -45,7 +45,7 @@ std::string Reason() {
 void RequireLibrary() {
   static const openni::Status status = openni::OpenNI::initialize();
   if (status != openni::STATUS_OK) {
-    throw InputError("OpenNI 2 does not start: " + Reason());
+    throw InputError("OpenNI 2 cannot be initialised: " + Reason());
   }
 }
 
@@ -78,7 +78,7 @@ openni::VideoMode ChooseMode(const openni::SensorInfo& sensor,
     }
   }
   if (best == nullptr) {
-    throw InputError(name + ": has no images in a format that can be read");
+    throw InputError(name + ": has no images in a supported format");
   }
   return *best;
 }
@@ -126,8 +126,8 @@ class OpenNi2Source final : public FrameSource {
   void Open(const SourceOptions& options) {
     Check(device_.open(name_ == kAny ? openni::ANY_DEVICE : name_.c_str()),
           "cannot be opened",
-          "; is the camera plugged in, and may you use it (OpenNI's udev "
-          "rules)?");
+          "; check that the camera is plugged in and accessible (OpenNI's udev "
+          "rules)");
     Create(openni::SENSOR_COLOR, "colour",
            {openni::PIXEL_FORMAT_RGB888, openni::PIXEL_FORMAT_GRAY8}, &color_);
     Create(openni::SENSOR_DEPTH, "depth",
@@ -139,7 +139,7 @@ class OpenNi2Source final : public FrameSource {
                                  openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR)) {
       Check(device_.setImageRegistrationMode(
                 openni::IMAGE_REGISTRATION_DEPTH_TO_COLOR),
-            "does not register depth to colour");
+            "cannot register depth to colour");
     }
     // Not every camera supports this; stamps are compared anyway.
     device_.setDepthColorSyncEnabled(true);
@@ -152,17 +152,17 @@ class OpenNi2Source final : public FrameSource {
     if (sensor == nullptr) {
       throw InputError(name_ + ": has no " + what + " images");
     }
-    Check(stream->create(device_, type), "gives no images");
+    Check(stream->create(device_, type), "provides no images");
     const openni::VideoMode mode = ChooseMode(*sensor, formats, name_);
     // A camera with only one mode need not accept settings.
     if (sensor->getSupportedVideoModes().getSize() > 1) {
-      Check(stream->setVideoMode(mode), "does not take a size that it offers");
+      Check(stream->setVideoMode(mode), "rejects a video mode that it lists");
     }
     stream->setMirroringEnabled(false);
   }
 
   void Start(openni::VideoStream* stream) {
-    Check(stream->start(), "does not start");
+    Check(stream->start(), "cannot be started");
   }
 
   // With `has_camera` only the depth scale is set.
@@ -195,9 +195,9 @@ class OpenNi2Source final : public FrameSource {
     openni::VideoStream* streams[] = {&color_, &depth_};
     int ready = 0;
     Check(openni::OpenNI::waitForAnyStream(streams, 2, &ready, kPatienceMs),
-          "gives no more images", "; is it unplugged?");
+          "sends no more images", "; is it unplugged?");
     openni::VideoFrameRef frame;
-    Check(streams[ready]->readFrame(&frame), "gives no image");
+    Check(streams[ready]->readFrame(&frame), "provides no image");
     const int type = TypeOf(frame.getVideoMode().getPixelFormat());
     const cv::Mat shared(frame.getHeight(), frame.getWidth(), type,
                          const_cast<void*>(frame.getData()),
@@ -217,7 +217,7 @@ class OpenNi2Source final : public FrameSource {
       case openni::PIXEL_FORMAT_DEPTH_100_UM:
         return CV_16UC1;
       default:
-        throw InputError(name_ + ": has images in a format that is not read");
+        throw InputError(name_ + ": sends images in an unsupported format");
     }
   }
 
@@ -264,8 +264,9 @@ std::unique_ptr<FrameSource> OpenOpenNi2(const SourceOptions& options) {
 
 std::unique_ptr<FrameSource> OpenOpenNi2(const SourceOptions& options) {
   throw InputError(options.path +
-                   ": this build knows no OpenNI 2; install libopenni2-dev "
-                   "(scripts/install_dependencies formats) and build again");
+                   ": this build does not support OpenNI 2; install "
+                   "libopenni2-dev (scripts/install_dependencies formats) and "
+                   "build again");
 }
 
 #endif

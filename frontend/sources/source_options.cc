@@ -37,7 +37,7 @@ CameraSetup ChooseCamera(const SourceOptions& options,
   RequireSound(options.Check());
   if (!options.camera.has_value() && !of_recording.has_value()) {
     throw InputError(options.path +
-                     ": does not say what camera it is of; name a preset or a "
+                     ": contains no camera calibration; give a preset or a "
                      "calibration file (camera)");
   }
   CameraSetup chosen =
@@ -49,8 +49,8 @@ CameraSetup ChooseCamera(const SourceOptions& options,
   if (options.depth_scale > 0.0) chosen.depth_scale = options.depth_scale;
   const std::string problem = ProblemOf(chosen);
   if (!problem.empty()) {
-    throw InputError(options.path + ": what it says of its camera: " + problem +
-                     "; name a preset or a calibration file (camera)");
+    throw InputError(options.path + ": invalid camera: " + problem +
+                     "; give a preset or a calibration file (camera)");
   }
   return chosen;
 }

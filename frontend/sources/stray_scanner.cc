@@ -57,8 +57,8 @@ class StrayScanner final : public FrameSource {
         assembly_(MakeAssembly(options)) {
     if (video_.count() < static_cast<int>(frames_.size())) {
       throw InputError(Format(
-          "%s: has %d images, odometry.csv %zu rows: which belong together is "
-          "not known; copy both from the phone once more",
+          "%s: has %d images, but odometry.csv has %zu rows; copy both from "
+          "the phone again",
           video_.path().c_str(), video_.count(), frames_.size()));
     }
     for (const StrayRow& row : frames_) {
@@ -70,8 +70,8 @@ class StrayScanner final : public FrameSource {
     frames_.erase(end, frames_.end());
     if (frames_.empty()) {
       throw InputError((folder_ / "depth").string() +
-                       ": has no image (000000.png) of a row of odometry.csv; "
-                       "what old versions of the app write (.npy) is not read");
+                       ": has no image (000000.png) of any row of "
+                       "odometry.csv; .npy files (old app) are not supported");
     }
   }
 
@@ -137,7 +137,7 @@ class StrayScanner final : public FrameSource {
     if (row.confidence_path.empty()) return depth;
     const cv::Mat confidence = ReadGrayImageFile(row.confidence_path);
     if (confidence.size() != depth.size()) {
-      throw InputError(row.confidence_path + ": has another size than " +
+      throw InputError(row.confidence_path + ": differs in size from " +
                        row.depth_path);
     }
     depth.setTo(0, confidence < kMinConfidence);
@@ -165,8 +165,8 @@ std::unique_ptr<FrameSource> OpenStrayScanner(const SourceOptions& options) {
 std::unique_ptr<FrameSource> OpenStrayScanner(const SourceOptions& options) {
   throw InputError(
       options.path +
-      ": this build reads no videos; install libopencv-videoio-dev "
-      "(scripts/install_dependencies formats) and build again, with "
+      ": this build cannot read videos; install libopencv-videoio-dev "
+      "(scripts/install_dependencies formats) and build again with "
       "RGBD_POSE_VIDEO=ON");
 }
 

@@ -38,7 +38,7 @@ StrayRow ParseRow(const fs::path& folder, const cv::Size& size,
   }
   const Eigen::Quaterniond turn(values[8], values[5], values[6], values[7]);
   if (std::abs(turn.norm() - 1.0) > 0.01) {
-    throw InputError(path, line.number, "its quaternion has no unit length");
+    throw InputError(path, line.number, "the quaternion is not of unit length");
   }
   StrayRow row;
   row.timestamp = ParseTimestamp(line.words[0], path, line.number);
@@ -74,7 +74,7 @@ std::vector<StrayRow> ReadStrayRows(const fs::path& folder,
     rows.back().image = static_cast<int>(i) - 1;
     if (i > 1 && rows[i - 1].timestamp <= rows[i - 2].timestamp) {
       throw InputError(path, lines[i].number,
-                       "is no later than the row before");
+                       "the time stamp is not after that of the previous row");
     }
   }
   return rows;
@@ -91,7 +91,7 @@ Camera ReadStrayCamera(const fs::path& folder, const cv::Size& size) {
   if (k.size() != 9 || k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 ||
       k[7] != 0.0 || k[8] != 1.0) {
     throw InputError(path +
-                     ": is no camera matrix fx, 0, cx; 0, fy, cy; 0, 0, 1");
+                     ": is not a camera matrix fx, 0, cx; 0, fy, cy; 0, 0, 1");
   }
   const Camera camera = {size.width, size.height, k[0], k[4], k[2], k[5]};
   RequireSound(camera.Check(), path + ": ");

@@ -63,8 +63,8 @@ void CheckTimeOrder(const std::string& list,
   for (size_t i = 1; i < images.size(); ++i) {
     if (images[i].timestamp >= images[i - 1].timestamp) continue;
     throw InputError(list, images[i].line,
-                     "an earlier time stamp than the line before; sort the "
-                     "list");
+                     "the time stamp is earlier than the previous one; sort "
+                     "the list");
   }
 }
 

@@ -145,8 +145,8 @@ WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
     if (fs::exists(target) &&
         (!fs::is_directory(target) || !fs::is_empty(target))) {
       throw InputError(folder +
-                       ": is there already and no empty folder; remove it or "
-                       "name another one");
+                       ": already exists and is not an empty folder; remove it "
+                       "or choose another");
     }
     fs::remove_all(partial);
     try {

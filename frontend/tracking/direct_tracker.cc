@@ -96,7 +96,7 @@ std::unique_ptr<Reference> DirectTracker::MakeReference(
   auto reference =
       std::make_unique<DirectReference>(frame, images_, ++last_id_);
   if (reference->num_samples() < kMinSamples) {
-    *why_not = "too few depths to start from";
+    *why_not = "too few pixels with depth";
     return nullptr;
   }
   return reference;
@@ -120,7 +120,8 @@ void DirectTracker::Track(const Reference& reference,
   const double sigma = tracked->estimate.sigma;
   if (tracked->status == TrackingStatus::kOk && sigma > kMaxSigmaOk) {
     tracked->status = TrackingStatus::kDegraded;
-    tracked->reason = Format("residuals spread by %.1f sigmas", sigma);
+    tracked->reason =
+        Format("residuals are %.1f times as large as expected", sigma);
   }
 }
 
@@ -249,7 +250,7 @@ void DirectTracker::JudgeMotion(const ViewLikeness& likeness,
     return;
   }
   if (std::max(likeness.gray, likeness.depth) < options_.min_likeness) {
-    tracked->reason = "it does not look like its reference";
+    tracked->reason = "the image differs too much from its reference";
     return;
   }
   const double rotation =
@@ -261,10 +262,9 @@ void DirectTracker::JudgeMotion(const ViewLikeness& likeness,
     tracked->reason =
         Format("only %.0f %% of the reference agrees", 100.0 * share);
   } else if (rotation > kMaxSigmaRotation) {
-    tracked->reason = Format("a rotation is only known to %.4f rad", rotation);
+    tracked->reason = Format("rotation is uncertain by %.4f rad", rotation);
   } else if (translation > kMaxSigmaTranslation) {
-    tracked->reason =
-        Format("a direction is only known to %.4f m", translation);
+    tracked->reason = Format("translation is uncertain by %.4f m", translation);
   } else {
     tracked->status = TrackingStatus::kOk;
     tracked->reason.clear();

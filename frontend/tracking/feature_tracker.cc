@@ -116,8 +116,7 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
         frontend_->is_exhaustive(), *features, 2 * options_.min_inliers_ok);
   }
   if (count < static_cast<size_t>(options_.min_inliers)) {
-    *why_not =
-        "only " + std::to_string(count) + " features with depth to start from";
+    *why_not = "only " + std::to_string(count) + " features with depth";
     return nullptr;
   }
   return std::make_unique<FeatureReference>(images().camera,
@@ -301,7 +300,8 @@ void FeatureTracker::Judge(TrackingResult* tracked) const {
                       std::to_string(estimate.num_used) + " matches agree";
   } else if (estimate.sigma > options_.max_sigma_ok) {
     tracked->status = TrackingStatus::kDegraded;
-    tracked->reason = Format("residuals spread by %.1f sigmas", estimate.sigma);
+    tracked->reason =
+        Format("residuals are %.1f times as large as expected", estimate.sigma);
   }
 }
 

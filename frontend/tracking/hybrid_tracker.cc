@@ -102,7 +102,7 @@ void HybridTracker::Track(const Reference& reference,
     direct_->Track(*ours.direct, frame, guess, &pixels_);
     pixels_.match_ms += tracked->match_ms;
     if (pixels_.status == TrackingStatus::kLost) {
-      tracked->reason += "; by pixels: " + pixels_.reason;
+      tracked->reason += "; pixels alone: " + pixels_.reason;
     } else {
       std::swap(*tracked, pixels_);
     }
@@ -166,7 +166,7 @@ void HybridTracker::Confirm(const HybridReference& reference,
     tracked->reason.clear();
     if (is_refined) return;
   } else {
-    tracked->reason += "; pixels alone find another motion";
+    tracked->reason += "; pixels alone give a different motion";
   }
   alone_.status = tracked->status;
   alone_.reason = tracked->reason;

@@ -106,7 +106,7 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
   result.segment = segment_;
   if (earlier_segment_.has_value() && result.status == TrackingStatus::kOk) {
     result.status = TrackingStatus::kDegraded;
-    result.reason = "the segment before has not been found again yet";
+    result.reason = "not yet reconnected to the previous segment";
   }
   KeepLast(frame, result);
   return result;

@@ -205,7 +205,7 @@ bool Odometry::StartSegment(const PreparedFrame& frame,
   if (!is_unconnected_) {
     result->status = TrackingStatus::kDegraded;
     result->reason =
-        std::string("a new segment: the motion since the frame before is ") +
+        std::string("new segment: the motion since the previous frame is ") +
         (is_predicted_ ? "only predicted" : "unknown");
   }
   is_unconnected_ = true;

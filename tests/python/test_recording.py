@@ -82,10 +82,10 @@ def test_finds_out_what_kind_it_is(sequence, camera, whole, tmp_path):
 def test_refuses_what_it_cannot_read(sequence, tmp_path):
     for match, path, settings in [
         ("no such file or folder", tmp_path / "none", {}),
-        ("no known kind", tmp_path, {}),
+        ("not a supported recording", tmp_path, {}),
         ("unknown source 'lidar'", sequence, {"source": "lidar"}),
         ("frames", sequence, {"frames": "all"}),
-        ("none of those", sequence, {"frames": "9999-"}),
+        ("none of them", sequence, {"frames": "9999-"}),
         ("camera 'kinect'", sequence, {"camera": "kinect"}),
     ]:
         with pytest.raises(rgbd_pose.InputError, match=match):

@@ -257,13 +257,13 @@ TEST(ParseLossTest, TakesANameOrANameAndAWidth) {
 
 TEST(ParseLossTest, RefusesWhatIsNone) {
   ExpectInputError([] { ParseLoss("hubert(1)"); },
-                   {"unknown loss 'hubert(1)'; there are none, l1"});
+                   {"unknown loss 'hubert(1)'; available: none, l1"});
   for (const std::string text :
        {"none(1)", "huber(", "huber()", "huber(1", "huber(x)", "huber(0)",
         "huber(-1)", "huber(nan)", "huber(inf)", "huber(1e9)", "huber(1))",
         "huber(1)x", "huber( 1)", "huber(1,2)"}) {
     ExpectInputError([&] { ParseLoss(text); },
-                     {"loss '" + text + "' has no width", "huber(1.5)"});
+                     {"loss '" + text + "': the width", "huber(1.5)"});
   }
 }
 

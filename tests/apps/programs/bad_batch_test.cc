@@ -53,7 +53,7 @@ TEST_F(BadInputTest, BatchFlags) {
            "--costs: unknown name 'magic'; there are"},
           {"loss", list, "--losses=tukey,", 2, "--losses: unknown loss ''"},
           {"no width", list, "'--losses=huber(1),huber()'", 2,
-           "--losses: loss 'huber()' has no width"},
+           "--losses: loss 'huber()': the width must be"},
           {"a loss twice", list, "--losses=tukey,tukey", 2,
            "--losses: 'tukey' comes twice"},
           {"frontend", list, "--frontends=magic", 2, "--frontends: unknown"},

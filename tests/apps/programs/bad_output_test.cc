@@ -41,7 +41,7 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
           {"a mesh of an unknown kind", nullptr, "--save_mesh={dir}/mesh.obj",
            2, "mesh.obj: the name of a mesh must end in one of .ply, .glb"},
           {"the cloud is a folder", nullptr, "--save_cloud={seq}", 2,
-           "{seq}: is a folder, a file is needed here"},
+           "{seq}: is a folder, but a file is expected"},
       });
   ExpectEach(
       "",
@@ -51,7 +51,7 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            "{seq}/file/out: cannot be written: Not a directory"},
           {"simulate: a folder in use", nullptr,
            RGBD_SIMULATE " --frames=2 --output={seq}", 2,
-           "{seq}: is there already and no empty folder"},
+           "{seq}: already exists and is not an empty folder"},
           {"compare: below a file", file, kSweep + "--output={seq}/file/out", 2,
            "--output={seq}/file/out: cannot be made (Not a directory)"},
           {"batch: below a file",

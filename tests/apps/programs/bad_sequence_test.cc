@@ -57,7 +57,7 @@ auto Windows(const std::string& name) {
 constexpr char kNoVideo[] = "{seq}/rgb.mp4: missing";
 constexpr char kBadVideo[] = "{seq}/rgb.mp4: cannot be read as a video";
 #else
-constexpr char kNoVideo[] = "{seq}: this build reads no videos; install";
+constexpr char kNoVideo[] = "{seq}: this build cannot read videos; install";
 constexpr const char* kBadVideo = kNoVideo;
 #endif
 
@@ -83,9 +83,9 @@ TEST_F(BadInputTest, Images) {
           {"colour cut off", [](const Seq& s) { s.Cut(kColor, 1000); }, "", 2,
            "{seq}/" + kColor + ": is damaged or cut off; copy it again"},
           {"depth is garbage", Text(kDepth, "garbage, not a picture"), "", 2,
-           kDepth + ": is damaged, cut off or no image"},
+           kDepth + ": is damaged, cut off or not in a"},
           {"colour is garbage", Text(kColor, "garbage, not a picture"), "", 2,
-           kColor + ": is damaged, cut off or no image"},
+           kColor + ": is damaged, cut off or not in a"},
           {"garbage with right checksums", Corpus(kColor, "no_zlib.png"), "", 2,
            kColor + ": is damaged"},
           {"the same in gray", Corpus(kColor, "no_zlib_gray.png"), "", 2,
@@ -187,13 +187,13 @@ TEST_F(BadInputTest, DoubledTimeStamps) {
     const char* message;
   } kRows[] = {
       {Swap("rgb.txt", kSecond, kSecond + kSecond), "",
-       "{seq}: 1 image has the time stamp of another one and is left out"},
+       "{seq}: 1 image has the same time stamp as another and is left out"},
       {Text("list.txt", kPair + kPair), "--associations={seq}/list.txt",
-       "{seq}: 1 image has the time stamp of another one"},
+       "{seq}: 1 image has the same time stamp as another"},
       {Text("groundtruth.txt", kPose + kPose), "",
-       "{seq}/groundtruth.txt:2: has the time stamp of the pose before it"},
+       "{seq}/groundtruth.txt:2: has the same time stamp as the previous pose"},
       {Text("t.txt", kPose + kPose), "--groundtruth={seq}/t.txt",
-       "{seq}/t.txt:2: has the time stamp of the pose before it; 1 such pose"},
+       "{seq}/t.txt:2: has the same time stamp as the previous pose; 1 such"},
   };
   for (const auto& row : kRows) {
     SCOPED_TRACE(row.message);
@@ -254,9 +254,9 @@ TEST_F(BadInputTest, Lists) {
           {"one column", Swap("rgb.txt", kFirst, "1000.03\n"), "", 2,
            kRgb + ":3: needs 2 columns"},
           {"a word for the time", Swap("rgb.txt", kFirst, "soon a\n"), "", 2,
-           kRgb + ":3: 'soon' is no finite number for the time stamp"},
+           kRgb + ":3: 'soon' is not a finite number for the time stamp"},
           {"nan for the time", Swap("rgb.txt", kFirst, "nan a\n"), "", 2,
-           kRgb + ":3: 'nan' is no finite number"},
+           kRgb + ":3: 'nan' is not a finite number"},
           {"binary", Text("rgb.txt", std::string("\0\x01\xFF\n\x7F", 5)), "", 2,
            kRgb + ":1: needs 2 columns"},
           {"nanoseconds", Swap("rgb.txt", kFirst, "1305031102175304000 a\n"),
@@ -264,7 +264,7 @@ TEST_F(BadInputTest, Lists) {
            kRgb + ":3: time stamp 1305031102175304000 is not in "
                   "seconds"},
           {"time goes backwards", Swap("rgb.txt", "1000.1", "999.1"), "", 2,
-           kRgb + ":5: an earlier time stamp than the line before"},
+           kRgb + ":5: the time stamp is earlier than the previous one"},
           {"no depth image near", Text("depth.txt", "5 depth/x.png\n"), "", 2,
            "no image of rgb.txt is within 0.02"},
           {"one frame", Text("rgb.txt", kFirst), "", 0, ""},
@@ -289,7 +289,7 @@ TEST_F(BadInputTest, Associations) {
           {"empty", list(""), "", 2, "{seq}/list.txt: lists no images"},
           {"three columns", list("1 a 1\n"), "", 2, "list.txt:1: needs 4 col"},
           {"a word for the time", list("1 " + kPair.substr(7, 19) + " x y\n"),
-           "", 2, "list.txt:1: 'x' is no finite number"},
+           "", 2, "list.txt:1: 'x' is not a finite number"},
           {"no such image", list("1000 rgb/x.png 1000 depth/x.png\n"), "", 2,
            "{seq}/rgb/x.png: cannot be opened"},
           {"colour twice",
@@ -313,13 +313,13 @@ TEST_F(BadInputTest, GroundTruth) {
       Odometry(),
       {
           {"nan", truth("1001 nan 0 0 0 0 0 1"), "", 2,
-           kFile + ":2: 'nan' is no finite number for tx"},
+           kFile + ":2: 'nan' is not a finite number for tx"},
           {"infinite", truth("1001 0 0 inf 0 0 0 1"), "", 2,
-           kFile + ":2: 'inf' is no finite number for tz"},
+           kFile + ":2: 'inf' is not a finite number for tz"},
           {"beyond any number", truth("1001 0 0 1e999 0 0 0 1"), "", 2,
-           kFile + ":2: '1e999' is no finite number for tz"},
+           kFile + ":2: '1e999' is not a finite number for tz"},
           {"far away", truth("1001 0 1e200 0 0 0 0 1"), "", 2,
-           kFile + ":2: a position (columns 2 to 4) further away than 1e9 m"},
+           kFile + ":2: the position (columns 2 to 4) is more than 1e9 m away"},
           {"no unit quaternion", truth("1001 0 0 0 0 0 1 1"), "", 2,
            kFile + ":2: the quaternion (columns 5 to 8, qx qy qz qw) is not"},
           {"no quaternion at all", truth("1001 0 0 0 0 0 0 0"), "", 2,
@@ -327,11 +327,11 @@ TEST_F(BadInputTest, GroundTruth) {
           {"seven columns", truth("1001 0 0 0 0 0 1"), "", 2,
            kFile + ":2: 7 columns; a pose needs 8"},
           {"time goes backwards", truth("999 0 0 0 0 0 0 1"), "", 2,
-           kFile + ":2: time stamp 999 is not after the one before it"},
+           kFile + ":2: time stamp 999 is earlier than the previous one"},
           {"nanoseconds", truth("1305031102175304000 0 0 0 0 0 0 1"), "", 2,
            kFile + ":2: time stamp 1305031102175304000 is not in seconds"},
           {"empty", Text("groundtruth.txt", ""), "", 2,
-           kFile + ": holds no poses"},
+           kFile + ": contains no poses"},
           {"of another time", Text("groundtruth.txt", "5 0 0 0 0 0 0 1\n"), "",
            2, "(5.000000 s to 5.000000 s)"},
           {"says how to go without it", truth("1001 0"), "", 2,

@@ -133,7 +133,7 @@ TEST_F(BadInputTest, OfCalibrations) {
              s.Write("noise.yaml", "constant: 0\nquadratic: 0\n");
            },
            "--depth_noise={seq}/noise.yaml", 2,
-           "{seq}/noise.yaml: no depth may be certain"},
+           "{seq}/noise.yaml: sigma(z) = constant"},
       });
 }
 

@@ -276,7 +276,7 @@ def main(bin_folder, work):
 
     # Our own reader takes it for what it is.
     said = fail(program('rgbd_odometry'), f'--dataset={work}/run.mcap', f'--output={work}/no')
-    check('messages of json' in said, said)
+    check('messages encoded as json' in said, said)
 
     # Without a map, and with frames of which nobody knows where they were.
     os.remove(os.path.join(result, 'keyframes.csv'))

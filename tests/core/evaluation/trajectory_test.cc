@@ -74,7 +74,7 @@ TEST(TrajectoryTest, TakesTheFirstPoseOfATimeStamp) {
   ASSERT_EQ(remarks.size(), 1u);
   EXPECT_EQ(remarks[0],
             path +
-                ":3: has the time stamp of the pose before it; 1 such pose "
+                ":3: has the same time stamp as the previous pose; 1 such pose "
                 "is left out");
   EXPECT_EQ(ReadTrajectory(path).size(), 2u);
 }
@@ -98,8 +98,8 @@ TEST(TrajectoryTest, NamesTheLineThatIsWrong) {
       {"zero quaternion", good + "2 0 0 0 0 0 0 0\n", ":3: the quaternion"},
       {"quaternion too long", good + "2 0 0 0 0 0 0 1.011\n", ":3: the qua"},
       {"quaternion too short", good + "2 0 0 0 0 0 0 0.989\n", ":3: the qua"},
-      {"empty", "", ": holds no poses"},
-      {"comments only", "# a\n\n# b\n", ": holds no poses"},
+      {"empty", "", ": contains no poses"},
+      {"comments only", "# a\n\n# b\n", ": contains no poses"},
   };
   const TempFolder folder;
   for (const auto& c : kCases) {

@@ -263,11 +263,10 @@ TEST(TruthAlignmentTest, StandingStillDeterminesNothing) {
 TEST(TruthAlignmentTest, SaysWhyThereIsNone) {
   Recording recording;
   recording.seconds = 1.0;
-  EXPECT_THAT(Align(recording).skipped, HasSubstr("it takes 30"));
+  EXPECT_THAT(Align(recording).skipped, HasSubstr("at least 30 are needed"));
   recording = Recording();
   recording.truth_rate = 15.0;
-  EXPECT_THAT(Align(recording).skipped,
-              HasSubstr("0 motions of 0.2 s of the estimate"));
+  EXPECT_THAT(Align(recording).skipped, HasSubstr("only 0 motions of 0.2 s"));
   recording = Recording();
   recording.frame_rate = 2.0;
   EXPECT_THAT(Align(recording).skipped, HasSubstr("0 motions"));

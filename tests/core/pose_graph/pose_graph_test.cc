@@ -180,10 +180,10 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(
         BadCase{"no_gauge", [](PoseGraph* g) { g->SetFixed(0, false); },
                 GraphStatus::kNotAnchored,
-                "pose 0 and those joined to it hang on nothing that is fixed"},
+                "pose 0 is not connected to any fixed pose"},
         BadCase{"disconnected", [](PoseGraph* g) { g->AddPose(Rigid3d()); },
                 GraphStatus::kNotAnchored,
-                "pose 5 and those joined to it hang on nothing that is fixed"},
+                "pose 5 is not connected to any fixed pose"},
         BadCase{"nan_pose",
                 [](PoseGraph* g) {
                   Rigid3d pose;
@@ -220,7 +220,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "positive definite"},
         BadCase{"unknown_pose", [](PoseGraph* g) { g->AddEdge(AnyEdge(0, 7)); },
                 GraphStatus::kBadInput,
-                "the edge from pose 0 to pose 7 is not between two poses of "
+                "the edge from pose 0 to pose 7 does not connect two poses of "
                 "the graph"}),
     [](const auto& info) { return info.param.name; });
 

@@ -64,7 +64,7 @@ TEST(TextFileTest, ParsesNumbers) {
        {"", "x", "1x", "1,5", "nan", "-NaN", "inf", "1e999", "+", "++1", "-"}) {
     SCOPED_TRACE(word);
     ExpectInputError([&] { parse(word); }, {"file:7: '" + std::string(word) +
-                                            "' is no finite number for tx"});
+                                            "' is not a finite number for tx"});
   }
 }
 

@@ -138,7 +138,7 @@ TEST_F(Ros2BagTest, SaysWhereAlignedDepthIsOfAnotherFrame) {
   const auto source = OpenSource("auto", Options("a.db3"));
   ASSERT_TRUE(source->Next().has_value());
   ASSERT_EQ(source->remarks().size(), 1u);
-  EXPECT_NE(source->remarks()[0].find("'depth_optical', colour of 'color"),
+  EXPECT_NE(source->remarks()[0].find("'depth_optical', that of colour 'color"),
             std::string::npos);
 }
 
@@ -165,7 +165,8 @@ TEST_F(Ros2BagTest, ReadsPackedMessages) {
     return packed.substr(0, packed.size() / 2);
   };
   cut.WriteFrames(0, kFrames);
-  ExpectRefused("cut.db3", {"cut.db3: a message: a chunk does not unpack"});
+  ExpectRefused("cut.db3",
+                {"cut.db3: a message: a chunk cannot be decompressed"});
 }
 
 // --compression-mode file.
@@ -193,10 +194,11 @@ TEST_F(Ros2BagTest, ReadsPackedFilesAndLeavesNothing) {
 
 TEST_F(Ros2BagTest, RefusesWhatIsNoRecording) {
   { Ros2Database empty(folder_ / "a.db3"); }
-  ExpectRefused("a.db3", {"a.db3: has no colour images", "it has nothing"});
+  ExpectRefused("a.db3",
+                {"a.db3: has no readable colour images", "topics: none"});
 
   Ros2Database(folder_ / "a.db3").WriteInfo("/camera_info");
-  ExpectRefused("a.db3", {"has no colour images", "/camera_info"});
+  ExpectRefused("a.db3", {"has no readable colour images", "/camera_info"});
 
   folder_.Write("empty.db3", "");
   ExpectRefused("empty.db3", {"empty.db3: is empty"});

@@ -35,7 +35,7 @@ TEST_F(Ros1BagTest, AsksWhichTopicsWhereSeveralWillDo) {
                    {"no topic '/nothing'", kDepth});
   options.topics[1] = "/camera/rgb/camera_info";
   ExpectInputError([&] { OpenSource("auto", options); },
-                   {"of the type sensor_msgs/CameraInfo"});
+                   {"of the unsuitable type sensor_msgs/CameraInfo"});
   options.topics = {kColor};
   ExpectInputError([&] { OpenSource("auto", options); }, {"COLOUR,DEPTH"});
 }
@@ -43,26 +43,27 @@ TEST_F(Ros1BagTest, AsksWhichTopicsWhereSeveralWillDo) {
 TEST_F(Ros1BagTest, RefusesWhatIsNoRecording) {
   Open();
   WriteInfo();
-  ExpectRefused({"a.bag: has no colour images", "/camera/rgb/camera_info"});
+  ExpectRefused(
+      {"a.bag: has no readable colour images", "/camera/rgb/camera_info"});
 
   Open();
   WriteInfo();
   WriteColor(0);
-  ExpectRefused({"has no depth images", kColor});
+  ExpectRefused({"has no readable depth images", kColor});
 
   Open();
   WriteColor(0);
   WriteDepth(0);
-  ExpectRefused({"does not say what camera"});
+  ExpectRefused({"contains no camera calibration"});
 
   Open();
-  ExpectRefused({"has no colour images", "it has nothing"});
+  ExpectRefused({"has no readable colour images", "topics: none"});
 
   Open();
   Write(kColor, kStart,
         MakeImage(cv::Mat(kHeight, kWidth, CV_8UC1), "bayer_rggb8", kStart));
   WriteDepth(0);
-  ExpectRefused({"has no colour images", "image_color 'bayer_rggb8'"});
+  ExpectRefused({"has no readable colour images", "image_color 'bayer_rggb8'"});
 
   Open();
   WriteColor(0);
@@ -76,11 +77,11 @@ TEST_F(Ros1BagTest, RefusesWhatIsNoRecording) {
   Write("/camera/rgb/camera_info", kStart, MakeInfo(none));
   WriteColor(0);
   WriteDepth(0);
-  ExpectRefused({"camera_info: its camera is not calibrated (K is 0)"});
+  ExpectRefused({"camera_info: the camera is not calibrated (K is 0)"});
 
   folder_.Write("a.bag.active", "x");
   path_ = folder_ / "a.bag.active";
-  ExpectRefused({"a.bag.active: its recorder was not ended", "reindex"});
+  ExpectRefused({"a.bag.active: the recording was not finished", "reindex"});
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ TEST_F(McapFileTest, ReadsAFolderOfRosbag2) {
   options.path = folder_ / "bag";
   ExpectFrames(OpenSource("auto", options).get(), kFrames);
   Write("bag/bag_1.mcap", Bytes("ros1_lz4"));
-  ExpectRefusedSource(options, {"bag_1.mcap", "another version of ROS"});
+  ExpectRefusedSource(options, {"bag_1.mcap", "a different ROS version"});
 }
 
 TEST_F(McapFileTest, FirstMessagesDoNotDisturbTheOrder) {
@@ -98,14 +98,15 @@ TEST_F(McapFileTest, KeepsWhatCameBeforeACut) {
 
 TEST_F(McapFileTest, SaysWhatItDoesNotRead) {
   ExpectRefusedSource(Write("a.mcap", ""), {"a.mcap: is empty"});
-  ExpectRefusedSource(Write("a.mcap", "no messages"), {"is no mcap file"});
+  ExpectRefusedSource(Write("a.mcap", "no messages"), {"is not an mcap file"});
   const std::string text("\x03\0\0\0cdr", 7), other("\x03\0\0\0txt", 7);
   ExpectRefusedSource(
       Write("a.mcap", Replace(Bytes("ros2_no_chunks"), text, other)),
-      {"a.mcap: has messages of txt", "only those of ROS"});
+      {"a.mcap: has messages encoded as txt", "only those of ROS"});
   const std::string lz4("\x03\0\0\0lz4", 7), lz9("\x03\0\0\0lz9", 7);
-  ExpectRefusedSource(Write("a.mcap", Replace(Bytes("ros1_lz4"), lz4, lz9)),
-                      {"a.mcap: is packed by 'lz9'", "zstd, lz4 and bz2"});
+  ExpectRefusedSource(
+      Write("a.mcap", Replace(Bytes("ros1_lz4"), lz4, lz9)),
+      {"a.mcap: is compressed with 'lz9'", "zstd, lz4 and bz2"});
 }
 
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
@@ -126,7 +127,7 @@ TEST_F(McapFileTest, ADamagedChunkIsNotRead) {
     } catch (const InputError& error) {
       const std::string what = error.what();
       EXPECT_NE(what.find("it is damaged: copy it again"), what.npos);
-      seen_by_checksum += what.find("what its checksum says") != what.npos;
+      seen_by_checksum += what.find("does not match its checksum") != what.npos;
     }
   }
   EXPECT_GT(seen_by_checksum, 10);

@@ -96,11 +96,11 @@ TEST_F(Ros1BagTest, ReadsAFolderOfParts) {
   Write("/camera/rgb/camera_info", kStart + 9, MakeInfo(other));
   bag_.close();
   path_ = folder;
-  ExpectRefused({"walk_20.bag: /camera/rgb/camera_info: ", "another camera"});
+  ExpectRefused({"walk_20.bag: /camera/rgb/camera_info: ", "different camera"});
 
   std::filesystem::rename(folder + "/walk_20.bag",
                           folder + "/walk_20.bag.active");
-  ExpectRefused({"walk_20.bag.active: its recorder was not ended"});
+  ExpectRefused({"walk_20.bag.active: the recording was not finished"});
 
   // Two recordings in one folder.
   std::filesystem::rename(folder + "/walk_20.bag.active",

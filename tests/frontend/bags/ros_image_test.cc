@@ -114,7 +114,7 @@ TEST_F(Ros1BagTest, RefusesWrongImages) {
   Write(kColor, kStart,
         MakeImage(cv::Mat(kHeight, kWidth, CV_8UC2), "yuv422", kStart));
   WriteDepth(0);
-  ExpectRefused({"has no colour images that can be read"});
+  ExpectRefused({"has no readable colour images"});
   SourceOptions options = Options();
   options.topics = {kColor, kDepth};
   ExpectInputError([&] { OpenSource("auto", options)->Next()->read(); },

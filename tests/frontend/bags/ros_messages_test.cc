@@ -84,10 +84,10 @@ TEST(RosMessagesTest, RefusesWhatEndsTooEarly) {
         ReadRosTransforms(
             WireReader("\xff\xff\xff\xff nothing", WireFormat::kRos1));
       },
-      {"a list of 4294967295 is longer than the rest"});
+      {"a list of 4294967295 elements exceeds the rest"});
   ExpectInputError(
       [] { WireReader(std::string_view("\0\x03\0\0", 4), WireFormat::kCdr); },
-      {"unknown encoding (CDR of kind 3)"});
+      {"unknown encoding (CDR kind 3)"});
 }
 
 }  // namespace

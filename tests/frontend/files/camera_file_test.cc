@@ -132,10 +132,10 @@ TEST_P(BadCameraFileTest, IsRefusedInOneLineThatSaysWhere) {
 INSTANTIATE_TEST_SUITE_P(
     CameraFile, BadCameraFileTest,
     testing::Values(
-        BadFile{"Empty", "", {"known layouts"}},
-        BadFile{"OnlyText", "just some words\n", {"known layouts"}},
-        BadFile{"AList", "- 1\n- 2\n", {"known layouts"}},
-        BadFile{"OtherKeys", "a: 1\nb: 2\n", {"known layouts"}},
+        BadFile{"Empty", "", {"supported layouts"}},
+        BadFile{"OnlyText", "just some words\n", {"supported layouts"}},
+        BadFile{"AList", "- 1\n- 2\n", {"supported layouts"}},
+        BadFile{"OtherKeys", "a: 1\nb: 2\n", {"supported layouts"}},
         BadFile{"NoYaml", "a: 1\nCamera.fx: [1, 2\n", {"yaml:3:", "YAML"}},
         BadFile{"OrbSlamWithoutFy",
                 Replace(kOrbSlam2, "Camera.fy: 516.5\n", ""),
@@ -314,7 +314,7 @@ TEST(DepthCameraTest, IsReadFromARig) {
   const std::string path = folder.Write("rig.yaml", kRig);
   EXPECT_FALSE(ReadCameraFile(path, "cam0").depth_camera.has_value());
   ExpectInputError([&] { ReadCameraFile(path); },
-                   {"rig.yaml: has several cameras; say which one"});
+                   {"rig.yaml: has several cameras; choose"});
   const CameraSetup setup = ReadCameraFile(path, "cam1");
   EXPECT_EQ(setup.camera.fx, 600.5);
   EXPECT_FALSE(setup.depth_scale.has_value());
@@ -352,7 +352,7 @@ TEST(DepthCameraTest, RefusesWhatIsNoRig) {
   text.replace(text.find("- [0.0, 1.0"), 11, "- [0.0, 1.5");
   const std::string bent = folder.Write("bent.yaml", text);
   ExpectInputError([&] { ReadCameraFile(bent, "cam1"); },
-                   {bent, "cam1.T_cn_cnm1", "no rotation"});
+                   {bent, "cam1.T_cn_cnm1", "no valid rotation"});
   text = kRig;
   text.replace(text.find("  - [0.0, 0.0, 0.0, 1.0]\n"), 25, "");
   const std::string cut = folder.Write("cut.yaml", text);

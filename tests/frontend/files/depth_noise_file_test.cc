@@ -51,8 +51,8 @@ TEST(DepthNoiseFileTest, SaysWhatIsWrongWithAFile) {
         Wrong{"constant: .nan\nquadratic: 0\n", "constant"},
         Wrong{"constant: -0.001\nquadratic: 0.001\n", "must not be negative"},
         Wrong{"constant: 0.001\nquadratic: 0\nmean_share: 2\n", "mean_share"},
-        Wrong{"constant: 0\nquadratic: 0\n", "no depth may be certain"},
-        Wrong{"constant: 1.5\nquadratic: 2.5\n", "are these metres?"},
+        Wrong{"constant: 0\nquadratic: 0\n", "above 0 for all depths"},
+        Wrong{"constant: 1.5\nquadratic: 2.5\n", "are the values in metres?"},
         Wrong{"constant: [\n", "YAML"}}) {
     const std::string path = folder.Write("noise.yaml", wrong.text);
     ExpectInputError([&] { ReadDepthNoiseFile(path); }, {path, wrong.says});

@@ -87,7 +87,8 @@ TEST_F(ImageFileTest, RefusesWhatIsNoImage) {
   ExpectRefused(folder_ / "nowhere.png", {"nowhere.png"});
   ExpectRefused(folder_.path(), {folder_.path()});
   ExpectRefused(folder_.Write("empty.png", ""), {"empty.png", "empty"});
-  ExpectRefused(folder_.Write("text.png", "text"), {"text.png", "no image"});
+  ExpectRefused(folder_.Write("text.png", "text"),
+                {"text.png", "not in a supported format"});
 }
 
 TEST_F(ImageFileTest, ReadsTheKindsThatRecordingsComeIn) {
@@ -107,7 +108,8 @@ TEST_F(ImageFileTest, ReadsTheKindsThatRecordingsComeIn) {
 // One of OpenCV's decoders would terminate the program for this file.
 TEST_F(ImageFileTest, WhatLooksLikeDicomIsRefused) {
   const std::string bytes = std::string(128, '\x42') + "DICMB`\x82";
-  ExpectRefused(folder_.Write("a.png", bytes), {"a.png", "no image"});
+  ExpectRefused(folder_.Write("a.png", bytes),
+                {"a.png", "not in a supported format"});
 }
 
 TEST_F(ImageFileTest, DepthMustHaveSixteenBitsAndOneChannel) {

@@ -25,11 +25,11 @@ TEST(KeyframeMapTest, SaysWhatIsWrong) {
       {[](KeyframeMap* map) { map->camera.fx = NAN; }, "camera: "},
       {[](KeyframeMap* map) { map->camera.height += 1; }, "keyframe -3: the "},
       {[](KeyframeMap* map) { map->keyframes[2].id = 4; },
-       "keyframe 4: is there twice"},
+       "keyframe 4: appears twice"},
       {[](KeyframeMap* map) {
          map->keyframes[1].world_from_cam.translation.x() = NAN;
        },
-       "keyframe 4: the pose must be of finite numbers"},
+       "keyframe 4: the pose must be finite"},
       {[](KeyframeMap* map) {
          map->keyframes[1].world_from_cam.rotation.coeffs() *= 1.1;
        },
@@ -39,7 +39,7 @@ TEST(KeyframeMapTest, SaysWhatIsWrong) {
       {[](KeyframeMap* map) { map->edges[0].cur = 5; },
        "edge from keyframe -3 to 5: there is no keyframe 5"},
       {[](KeyframeMap* map) { map->edges[0].ref = map->edges[0].cur; },
-       "edge from keyframe 4 to 4: it must join two keyframes"},
+       "edge from keyframe 4 to 4: it must connect two different keyframes"},
       {[](KeyframeMap* map) {
          map->edges[1].cur_from_ref.rotation.w() = INFINITY;
        },

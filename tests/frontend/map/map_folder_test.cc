@@ -147,20 +147,20 @@ TEST_F(MapFolderTest, MendsACutImage) {
 }
 
 TEST_F(MapFolderTest, RefusesWhatIsNoMap) {
-  ExpectLoadRefused({map_, "holds no map (there is no map.txt)"});
+  ExpectLoadRefused({map_, "contains no map (no map.txt)"});
   fs::create_directories(map_);
-  ExpectLoadRefused({map_, "holds no map"});
+  ExpectLoadRefused({map_, "contains no map"});
   folder_.Write("maps/kitchen/map.txt", "a map of the kitchen\n");
-  ExpectLoadRefused({map_ + "/map.txt: is no map"});
+  ExpectLoadRefused({map_ + "/map.txt: is not a map"});
   folder_.Write("maps/kitchen/map.txt", "");
-  ExpectLoadRefused({map_ + "/map.txt: is no map"});
+  ExpectLoadRefused({map_ + "/map.txt: is not a map"});
 }
 
 TEST_F(MapFolderTest, RefusesANewerVersion) {
   const std::string text = "rgbd_pose_map 2\nsubmap 1\n";
   folder_.Write("maps/kitchen/map.txt", text + ChecksumLine(text));
   ExpectLoadRefused({map_ + "/map.txt: has format version 2, this program "
-                            "reads version 1 only; use a newer one"});
+                            "reads version 1 only; use a newer program"});
 }
 
 TEST_F(MapFolderTest, RefusesAChangedByteOfTheIndex) {
@@ -192,13 +192,13 @@ TEST_F(MapFolderTest, RefusesAChangedByteOfAnImage) {
       std::string changed = bytes;
       changed[i] ^= 1 << i % 8;
       folder_.Write("maps/kitchen/" + name, changed);
-      ExpectLoadRefused({name + ": is damaged, its checksum is not its name"});
+      ExpectLoadRefused({name + ": is damaged (wrong checksum)"});
     }
     folder_.Write("maps/kitchen/" + name, bytes);
   }
   EXPECT_NO_THROW(LoadMap(map_));
   fs::remove(map_ + "/" + NamesOf(map)[2]);
-  ExpectLoadRefused({NamesOf(map)[2] + ": is missing, a keyframe of the map"});
+  ExpectLoadRefused({NamesOf(map)[2] + ": image of a keyframe is missing"});
 }
 
 TEST_F(MapFolderTest, RefusesWrongLines) {
@@ -211,19 +211,20 @@ TEST_F(MapFolderTest, RefusesWrongLines) {
     std::string message;
   } kCases[] = {
       {"", "map.txt: has no camera"},
-      {"keyframe 0\n", "map.txt:2: the camera must come first, and once"},
-      {kCamera + kCamera, "map.txt:3: the camera must come first, and once"},
+      {"keyframe 0\n", "map.txt:2: there must be one camera line"},
+      {kCamera + kCamera, "map.txt:3: there must be one camera line"},
       {"camera 32\n", "map.txt:2: a line 'camera' must have 12 words"},
       {kCamera.substr(0, kCamera.size() - 1) + " 0 0 0 wide\n",
-       "map.txt:2: a lens is 'rational' or 'equidistant', not 'wide'"},
+       "map.txt:2: lens 'wide' must be 'rational' or 'equidistant'"},
       {"camera 3.5" + kCamera.substr(9), "map.txt:2: '3.5' must be an integer"},
-      {kCamera + "landmark 1\n", "map.txt:3: 'landmark' is none of camera"},
+      {kCamera + "landmark 1\n",
+       "map.txt:3: 'landmark' must be camera, keyframe or edge"},
       {kCamera + "keyframe 0" + kPose + kName + " ../secret\n",
        "map.txt:3: '../secret' must be an image's checksum"},
       {kCamera + "keyframe 9999999999" + kPose + kName + " " + kName + "\n",
        "map.txt:3: '9999999999' must be an integer"},
       {kCamera + "keyframe x" + kPose + kName + " " + kName + "\n",
-       "map.txt:3: 'x' is no finite number for a keyframe"},
+       "map.txt:3: 'x' is not a finite number for a keyframe"},
       {kCamera + "edge 0 1 nan\n", "map.txt:3: a line 'edge' must have 46"},
       {"camera 32 24 0" + kCamera.substr(15), "map.txt: camera: fx and fy"},
   };
@@ -252,7 +253,7 @@ TEST_F(MapFolderTest, RefusesFoldersOfOtherThings) {
   };
   folder_.Write("photos/cat.png", "x");
   expect_refused(folder_ / "photos",
-                 folder_ / "photos: holds other things than a map");
+                 folder_ / "photos: contains files that are not part of a map");
   EXPECT_THAT(Names(folder_ / "photos"), testing::ElementsAre("cat.png"));
   expect_refused(folder_ / "photos/cat.png", "no map can be saved here (");
   expect_refused("/proc/none/map", "no map can be saved here (");
@@ -262,7 +263,7 @@ TEST_F(MapFolderTest, RefusesFoldersOfOtherThings) {
   folder_.Write("maps/kitchen/0123456789abcdef.png", "x");
   folder_.Write("maps/kitchen/fedcba9876543210.png.partial", "x");
   folder_.Write("maps/kitchen/map.txt.partial", "x");
-  ExpectLoadRefused({"holds no map"});
+  ExpectLoadRefused({"contains no map"});
   SaveMap(map_, NoiseMap(1, 0));
   EXPECT_THAT(Names(map_), UnorderedElementsAreArray(NamesOf(NoiseMap(1, 0))));
 }
@@ -274,9 +275,10 @@ TEST_F(MapFolderTest, OneAtATimeSaves) {
   for (const auto& call :
        {+[](const std::string& folder) { SaveMap(folder, NoiseMap(2, 1)); },
         +[](const std::string& folder) { RequireMapFolder(folder); }}) {
-    ExpectInputError([&] { call(map_); },
-                     {map_ + ": another program saves a map here; wait for it "
-                             "or choose another folder"});
+    ExpectInputError(
+        [&] { call(map_); },
+        {map_ + ": another program is saving a map here; wait for it "
+                "or choose another folder"});
   }
   EXPECT_TRUE(IsSameMap(LoadMap(map_), NoiseMap(1, 0)));
   close(other);

@@ -44,8 +44,8 @@ TEST(StoredImagesTest, SaysWhatIsWrong) {
   };
   EXPECT_EQ(check(good), "");
   const std::string kKind =
-      "the images must be PNG files of 32 x 24 pixels with 8 bits of grey and "
-      "16 of depth";
+      "the images must be PNG files of 32 x 24 pixels, 8-bit grey and "
+      "16-bit depth";
   EXPECT_EQ(check(StoredImages()), kKind);
   EXPECT_NE(good.Check(kMapWidth, kMapHeight + 1), "");
   StoredImages swapped = good;

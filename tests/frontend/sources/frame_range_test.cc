@@ -78,7 +78,7 @@ TEST(FrameRangeTest, RefusesWhatIsNoPart) {
   for (const char* text : {"10-20", "4.6s-9s"}) {
     ExpectInputError(
         [&] { PartOf(std::make_unique<TenFrames>(), ParseFrameRange(text)); },
-        {"none of those asked for", "10 in all"});
+        {"only 10 frames", "none of them in this range"});
   }
   for (const char* text :
        {"100", "-", "a-b", "4-2", "2s-1s", "1-2s", "1.5-3", "1-2:0", "1-2:x",

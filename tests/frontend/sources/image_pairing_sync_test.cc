@@ -52,10 +52,10 @@ TEST(ApproximateTimeSyncTest, SaysThatAStreamStalls) {
   const auto read = [&] { return colors(); };
   pairing.Next("it", read);
   ExpectInputError([&] { pairing.Next("it", read); },
-                   {"it: colour images came for 0.05 s", "does the camera"});
+                   {"it: sent colour images for 0.05 s", "does the camera"});
   Images depths({Depth(3.0)});
   ExpectInputError([&] { pairing.Next("it", [&] { return depths(); }); },
-                   {"it: depth images came for 0.05 s"});
+                   {"it: sent depth images for 0.05 s"});
 }
 
 TEST(ApproximateTimeSyncTest, SaysThatAClockRestarted) {
@@ -63,7 +63,8 @@ TEST(ApproximateTimeSyncTest, SaysThatAClockRestarted) {
   Images images({Color(9.0), Depth(9.0), Color(0.0), Depth(0.0)});
   const auto read = [&] { return images(); };
   pairing.Next("it", read);
-  ExpectInputError([&] { pairing.Next("it", read); }, {"no pair"});
+  ExpectInputError([&] { pairing.Next("it", read); },
+                   {"no colour and depth images"});
 }
 
 }  // namespace

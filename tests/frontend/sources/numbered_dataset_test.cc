@@ -142,7 +142,7 @@ TEST_F(NumberedDatasetTest, KnowsNotWhereScanNetsCamerasAre) {
   WriteText("intrinsic/extrinsic_depth.txt",
             "1 0 0 0.04\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
   ExpectInputError([this] { OpenSource("scannet", Options()); },
-                   {"extrinsic_depth.txt:1: is not the identity"});
+                   {"extrinsic_depth.txt:1: must be the identity"});
   OpenSource("scannet", WithCamera());
 }
 
@@ -206,7 +206,7 @@ TEST_F(NumberedDatasetTest, ReadsOpen3d) {
                               "intrinsic_matrix": [)") +
                   wrong);
     ExpectInputError([&] { OpenSource("auto", Options()); },
-                     {"its camera: ", "must be", "positive"});
+                     {"invalid camera: ", "must be", "positive"});
   }
 }
 
@@ -254,7 +254,7 @@ TEST_F(NumberedDatasetTest, RefusesWhatCannotBeUsed) {
   const auto refuses = [this](const std::vector<std::string>& parts) {
     ExpectInputError([this] { OpenSource("auto", Options()); }, parts);
   };
-  refuses({folder_.path(), "does not say what camera", "preset"});
+  refuses({folder_.path(), "contains no camera calibration", "preset"});
   ExpectInputError([this] { OpenSource("scannet", WithCamera()); },
                    {folder_.path(), "no colour images", "color/123.jpg"});
   const auto expect_bad_pose = [this](const std::string& text,
@@ -266,7 +266,7 @@ TEST_F(NumberedDatasetTest, RefusesWhatCannotBeUsed) {
   };
   expect_bad_pose("1 0 0 0\n0 1 0 0\n", "needs 4 rows");
   expect_bad_pose("1 0 0 0\n0 1 0 0\n0 0 1 x\n0 0 0 1", ":3");
-  expect_bad_pose("1 0 0 0\n0 2 0 0\n0 0 1 0\n0 0 0 1", "no rotation");
+  expect_bad_pose("1 0 0 0\n0 2 0 0\n0 0 1 0\n0 0 0 1", "not a rotation");
   expect_bad_pose(PoseText(0, "\n") + "1", "more than");
   for (int k = 0; k < kFrames; ++k) {
     fs::rename(folder_ / ("frame-" + Padded(k) + ".depth.png"),

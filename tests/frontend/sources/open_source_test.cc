@@ -30,15 +30,16 @@ TEST_F(OpenSourceTest, RefusesWhatItDoesNotKnow) {
   ExpectInputError([&] { OpenSource("lidar", options_); },
                    {"unknown source 'lidar'", "auto", "tum"});
   options_.path = folder_ / "rgb/0.png";
-  ExpectInputError([&] { OpenSource("auto", options_); },
-                   {options_.path, "no known kind", "rgb.txt and depth.txt"});
+  ExpectInputError(
+      [&] { OpenSource("auto", options_); },
+      {options_.path, "not a supported recording", "rgb.txt and depth.txt"});
   const TempFolder other;
   std::filesystem::create_directory(other / "images");
   other.Write("notes.txt", "");
   options_.path = other.path();
-  ExpectInputError(
-      [&] { OpenSource("auto", options_); },
-      {options_.path, "it holds images/, notes.txt; known are", "7-Scenes"});
+  ExpectInputError([&] { OpenSource("auto", options_); },
+                   {options_.path, "contains images/, notes.txt; supported are",
+                    "7-Scenes"});
   options_.path = folder_ / "nowhere";
   ExpectInputError([&] { OpenSource("auto", options_); },
                    {options_.path, "no such file or folder"});

@@ -50,7 +50,7 @@ TEST(OpenNi2SourceTest, ReadsADevice) {
   SourceOptions options = Options(kDummy);
   options.camera.reset();
   ExpectInputError([&] { OpenSource("openni2", options); },
-                   {"Dummy: does not say what camera"});
+                   {"Dummy: contains no camera calibration"});
 }
 
 TEST(OpenNi2SourceTest, DropsFramesThatNobodyAsksFor) {

@@ -31,7 +31,7 @@ TEST_F(StrayScannerTest, RefusesWhatIsDamaged) {
       {write("odometry.csv", header + row + StrayRowText(101.0, 1, Rigid3d()) +
                                  "\n" + StrayRowText(102.0, 2, Rigid3d()) +
                                  "\n" + StrayRowText(103.0, 3, Rigid3d())),
-       {"rgb.mp4: has 3 images, odometry.csv 4 rows"}},
+       {"rgb.mp4: has 3 images, but odometry.csv has 4 rows"}},
       {[this] { fs::remove(folder_ / "camera_matrix.csv"); },
        {"camera_matrix.csv"}},
       {[this] { fs::remove_all(folder_ / "depth"); },
@@ -40,7 +40,7 @@ TEST_F(StrayScannerTest, RefusesWhatIsDamaged) {
          WriteImage(folder_ / "confidence/000000.png",
                     cv::Mat::zeros(10, 10, CV_8UC1));
        },
-       {"confidence/000000.png: has another size than", "depth/000000.png"}},
+       {"confidence/000000.png: differs in size from", "depth/000000.png"}},
   };
   RecordPlain(3);
   const fs::path good = folder_ / "good";

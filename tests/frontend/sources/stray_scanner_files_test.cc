@@ -52,11 +52,11 @@ TEST(StrayScannerFilesTest, DamagedOdometryIsRefused) {
       {"", {"odometry.csv: needs the columns timestamp"}},
       {kRow, {"needs the columns timestamp, frame"}},
       {kColumns + "100.0, 000", {"odometry.csv:2: needs 9 columns, has 2"}},
-      {kColumns + kRow + kRow, {"odometry.csv:3: is no later"}},
+      {kColumns + kRow + kRow, {"odometry.csv:3: the time stamp is not after"}},
       {kColumns + "100.0, 0, 0, x, 0, 0, 0, 0, 1\n",
        {"odometry.csv:2: ", "'x'"}},
       {kColumns + "100.0, 0, 0, 0, 0, 0, 0, 0, 0\n",
-       {"odometry.csv:2: its quaternion"}},
+       {"odometry.csv:2: the quaternion"}},
       {kColumns + "100, 0, 0, 0, 0, 0, 0, 0, 1, 1, 1, 1, 1",
        {"odometry.csv:2: fx and fy must be in pixels"}},
   };
@@ -72,8 +72,8 @@ TEST(StrayScannerFilesTest, WhatIsNoCameraMatrixIsRefused) {
     const char* text;
     std::vector<std::string> said;
   } cases[] = {
-      {"1600, 0, 960\n0, 1600, 720\n", {"csv: is no camera matrix"}},
-      {"1600, 0, 0\n0, 1600, 0\n960, 720, 1", {"csv: is no camera matrix"}},
+      {"1600, 0, 960\n0, 1600, 720\n", {"csv: is not a camera matrix"}},
+      {"1600, 0, 0\n0, 1600, 0\n960, 720, 1", {"csv: is not a camera matrix"}},
       {"-900, 0, 640\n0, 900, 480\n0, 0, 1",
        {"camera_matrix.csv: fx and fy must be positive"}},
   };

@@ -96,7 +96,7 @@ TEST_F(LostPolicyTest, ANewSegmentStartsWhereTheOldOneEnded) {
   EXPECT_EQ(frames[10].world_from_cam.translation,
             frames[7].world_from_cam.translation);
   EXPECT_EQ(frames[11].status, TrackingStatus::kDegraded) << frames[11].reason;
-  EXPECT_NE(frames[11].reason.find("segment before"), std::string::npos);
+  EXPECT_NE(frames[11].reason.find("previous segment"), std::string::npos);
   EXPECT_EQ(frames[11].segment, 1);
   EXPECT_EQ(frames[11].reference, 10);
   // The previous segment is searched for during one second.
