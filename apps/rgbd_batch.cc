@@ -95,7 +95,7 @@ std::string ProgramPath() {
       is_beside || FLAGS_program.empty() ? beside : fs::absolute(FLAGS_program);
   if (!fs::is_regular_file(path, error) || access(path.c_str(), X_OK) != 0) {
     throw InputError(path.string() +
-                     ": no program that can be run; give it by --program");
+                     ": not an executable program; give one with --program");
   }
   return path.string();
 }
@@ -109,12 +109,13 @@ std::string SettingsText(const std::string& program) {
 void CheckFlags() {
   RequireFlag("sequences", FLAGS_sequences);
   RequireFlag("output", FLAGS_output);
-  if (FLAGS_jobs < 0) throw InputError("--jobs must be 0 (one a core) or more");
+  if (FLAGS_jobs < 0)
+    throw InputError("--jobs must be 0 (one per core) or more");
   if (!(FLAGS_timeout >= 0.0)) {
     throw InputError("--timeout must be 0 (none) or a number of seconds");
   }
   if (FLAGS_merge && (!FLAGS_shard.empty() || FLAGS_resume)) {
-    throw InputError("--merge runs nothing: no --shard or --resume with it");
+    throw InputError("--merge cannot be combined with --shard or --resume");
   }
 }
 
@@ -148,10 +149,9 @@ void RefuseEarlierRuns(const std::vector<BatchRun>& plan,
     found = folder.FindRun(plan[i].sequence.name);
   }
   if (found.empty()) return;
-  throw InputError("--output=" + FLAGS_output + " already holds runs (" +
+  throw InputError("--output=" + FLAGS_output + " already contains runs (" +
                    found +
-                   "); add --resume to go on with them or choose "
-                   "another folder");
+                   "); add --resume to continue them or choose another folder");
 }
 
 void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
@@ -202,8 +202,8 @@ void WarnOfOtherHashes(const std::vector<BatchRun>& plan,
   }
   if (others == 0) return;
   std::fprintf(stderr,
-               "rgbd_batch: %d run(s) were made with other settings or inputs "
-               "and count as missing; --resume makes them again\n",
+               "rgbd_batch: %d run(s) have other settings or inputs and count "
+               "as missing; --resume repeats them\n",
                others);
 }
 
@@ -240,7 +240,7 @@ int Main() {
   std::error_code error;
   fs::create_directories(folder.output(), error);
   if (error) {
-    throw InputError("--output=" + FLAGS_output + ": cannot be made (" +
+    throw InputError("--output=" + FLAGS_output + ": cannot be created (" +
                      error.message() + ")");
   }
   const BatchLock lock(folder.output(), shard);

@@ -66,7 +66,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
               FormatCalibrationSummary(result).c_str(), seconds,
               FLAGS_output.c_str());
   if (!calibration.stopped.empty()) {
-    std::fprintf(stderr, "%s: stopped early (%s); %s has what came of it\n",
+    std::fprintf(stderr, "%s: stopped early (%s); results so far are in %s\n",
                  info.name.c_str(), calibration.stopped.c_str(),
                  FLAGS_output.c_str());
     return kExitStopped;

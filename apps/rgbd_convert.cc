@@ -54,7 +54,7 @@ int Main(const SequenceSettings& settings, const ProgramInfo& info) {
   std::printf("%s: %d frames%s\n", FLAGS_output.c_str(), written.frames,
               sequence.GroundTruth() == nullptr ? "" : ", with ground truth");
   if (!written.stopped.empty()) {
-    std::fprintf(stderr, "%s: stopped after %d frames (%s); %s has them\n",
+    std::fprintf(stderr, "%s: stopped after %d frames (%s); they are in %s\n",
                  info.name.c_str(), written.frames, written.stopped.c_str(),
                  FLAGS_output.c_str());
     return kExitStopped;

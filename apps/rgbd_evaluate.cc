@@ -79,7 +79,7 @@ std::vector<int> ParseFrames(const std::string& text) {
     const auto [rest, error] = std::from_chars(word.data(), end, number);
     if (error != std::errc() || rest != end || number < 1) {
       throw InputError("--rpe_frames=" + text + ": '" + word +
-                       "' is no number of frames; give a list such as 1,6");
+                       "' is not a number of frames; give a list such as 1,6");
     }
     frames.push_back(number);
   }
@@ -98,10 +98,10 @@ void WriteAligned(const Trajectory& estimate,
 int Main() {
   const std::filesystem::path run = FLAGS_run;
   if (!FLAGS_run.empty() && !FLAGS_estimate.empty()) {
-    throw InputError("--run has its own trajectory: leave out --estimate");
+    throw InputError("--run contains a trajectory; leave out --estimate");
   }
   if (!(FLAGS_truth_sigma_metres >= 0.0 && FLAGS_truth_sigma_degrees >= 0.0)) {
-    throw InputError("sigmas of the truth must not be negative");
+    throw InputError("sigmas of the ground truth must not be negative");
   }
   if (FLAGS_align != "rigid" && FLAGS_align != "none") {
     throw InputError("--align=" + FLAGS_align + " is neither rigid nor none");

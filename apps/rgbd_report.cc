@@ -39,12 +39,12 @@ int Main() {
                     static_cast<int>(!FLAGS_comparison.empty());
   if (given == 0) RequireFlag("run", FLAGS_run);
   if (given > 1) {
-    throw InputError("--run, --batch and --comparison: one at a time");
+    throw InputError("give only one of --run, --batch and --comparison");
   }
   if (!HasReportLibrary()) {
     throw InputError(
-        "built without plotly.js, which pages need; scripts/"
-        "install_dependencies fetches it, then configure and build again");
+        "built without plotly.js, which pages need; run scripts/"
+        "install_dependencies, then configure and build again");
   }
   std::printf("report in   %s\n", WriteReport().c_str());
   return kExitOk;

@@ -78,8 +78,7 @@ void LoadMaps(const MapSettings& maps, SlamRun* run) {
   }
   if (maps.localise_only && !maps.save_map.empty()) {
     throw InputError(
-        "--localise_only leaves the map as it is: there is nothing to save "
-        "for --save_map");
+        "--localise_only does not change the map; leave out --save_map");
   }
   for (const std::string& folder : folders) {
     try {
@@ -133,7 +132,8 @@ class Calibration {
                        CalibrationPage(result, found_->path));
     }
     return FormatCalibrationSummary(result) +
-           (result.is_accepted ? "tracked with it:\n" : "tracked with that:\n");
+           (result.is_accepted ? "tracked with the new camera:\n"
+                               : "tracked with the first camera:\n");
   }
 
   // For metrics.json; null without a calibration.

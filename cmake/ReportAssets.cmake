@@ -10,7 +10,7 @@ find_path(RGBD_POSE_PLOTLY_DIR plotly-gl3d.min.js
 if(NOT EXISTS "${RGBD_POSE_PLOTLY_DIR}/plotly-gl3d.min.js")
   unset(RGBD_POSE_PLOTLY_DIR CACHE)
   message(STATUS "rgbd_pose: no plotly.js, so no report.html "
-                 "(scripts/install_dependencies fetches it)")
+                 "(run scripts/install_dependencies)")
 endif()
 
 # Sets `result` to the lines that make `name` a string of the files' contents.

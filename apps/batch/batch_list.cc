@@ -83,15 +83,15 @@ class ListReader {
     if (!IsUsableName(name)) {
       throw InputError(path_, line.number,
                        "'" + name +
-                           "' cannot name a sequence (a leading dot, comma, "
+                           "' is not a valid name (leading dot, comma, "
                            "quote or backslash); rename the folder or list a "
                            "link to it");
     }
     const auto [entry, is_new] = lines_.emplace(name, line.number);
     if (!is_new) {
       throw InputError(path_, line.number,
-                       "a second sequence with the name '" + name +
-                           "', as of line " + std::to_string(entry->second) +
+                       "sequence name '" + name + "' is already used in line " +
+                           std::to_string(entry->second) +
                            "; rename the folder or list a link to it");
     }
     sequences_.push_back({name, path.string(), CameraOf(line, path)});
@@ -111,8 +111,8 @@ class ListReader {
     if (!fs::is_regular_file(file, error)) {
       throw InputError(path_, line.number,
                        "no camera: " + file +
-                           " is no file; name a camera in the second column, "
-                           "a YAML file or one of " +
+                           " is not a file; give one in the second column, a "
+                           "YAML file or one of " +
                            Join(CameraPresetNames()));
     }
     return file;

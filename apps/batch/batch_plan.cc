@@ -41,7 +41,7 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
 void CheckKnown(const std::string& name,
                 const std::vector<std::string>& known) {
   if (Contains(known, name)) return;
-  throw InputError("unknown name '" + name + "'; there are " + Join(known));
+  throw InputError("unknown name '" + name + "'; available: " + Join(known));
 }
 
 std::vector<std::string> ParseList(const BatchSetting& setting,
@@ -50,7 +50,7 @@ std::vector<std::string> ParseList(const BatchSetting& setting,
   for (const std::string& value : Split(text, ',')) {
     try {
       if (Contains(values, value)) {
-        throw InputError("'" + value + "' comes twice");
+        throw InputError("'" + value + "' appears twice");
       }
       setting.check(value);
     } catch (const InputError& error) {
@@ -107,10 +107,10 @@ BatchShard ShardOfSlurmTask() {
   if (!id || !count) return {};
   const int first = FromEnvironment("SLURM_ARRAY_TASK_MIN").value_or(0);
   if (*id < first || *id - first >= *count) {
-    throw InputError("task " + std::to_string(*id) + " of a Slurm array of " +
-                     std::to_string(*count) + " from " + std::to_string(first) +
-                     " names no shard; use an array without gaps, such as "
-                     "0-9, or give --shard");
+    throw InputError("Slurm array task " + std::to_string(*id) +
+                     " has no shard: the array has " + std::to_string(*count) +
+                     " tasks from " + std::to_string(first) +
+                     "; use an array without gaps (0-9), or give --shard");
   }
   return {*id - first, *count};
 }

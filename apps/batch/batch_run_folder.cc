@@ -27,7 +27,7 @@ constexpr char kPartial[] = ".partial";
 
 void Check(const std::error_code& error, const std::string& folder) {
   if (error) {
-    throw InputError(folder + ": cannot be made or replaced (" +
+    throw InputError(folder + ": cannot be created or replaced (" +
                      error.message() + ")");
   }
 }
@@ -73,7 +73,7 @@ int Lock(const std::string& path, int kind) {
                        ")");
     }
     throw InputError(path +
-                     ": held by another rgbd_batch that works on this folder; "
+                     ": locked by another rgbd_batch that uses this folder; "
                      "wait for it or choose another --output");
   }
   return file;

@@ -138,8 +138,8 @@ std::string TableOfRuns(const BatchSummary& summary,
 std::string TableOfParts(const BatchSummary& summary,
                          const std::vector<std::string>& names) {
   std::vector<std::vector<std::string>> rows = {names};
-  for (const char* figure : {"runs", "tracked % least", "ATE mm", "least",
-                             "most", "RPE over 1 s mm", "least", "most"}) {
+  for (const char* figure : {"runs", "tracked % min", "ATE mm", "min", "max",
+                             "RPE over 1 s mm", "min", "max"}) {
     rows[0].push_back(figure);
   }
   std::vector<std::vector<std::string>> settings;  // in order of appearance

@@ -156,8 +156,8 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   }
   constexpr int kMinViews = 100;
   if (result.views < kMinViews) {
-    result.reason = "the camera hardly moved: there are " +
-                    std::to_string(result.views) + " views of the same from " +
+    result.reason = "the camera hardly moved: only " +
+                    std::to_string(result.views) + " landmark views in " +
                     std::to_string(result.keyframes) + " keyframes";
     return result;
   }
@@ -199,8 +199,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   }
   if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
     result.reason =
-        "nothing is wrong with it: pairs that were held out fit no better with "
-        "any other";
+        "no error found: held-out pairs fit no better with another camera";
     return result;
   }
   result.halves = SplitHalfConsistency(data.views, after, is_free, prior);
@@ -236,7 +235,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     if (is_free[k]) parameter.status = Status::kDetermined;
   }
   if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
-    result.reason = "the recording determines nothing of it";
+    result.reason = "the recording determines none of its parameters";
     return result;
   }
   if (is_free != needed) {

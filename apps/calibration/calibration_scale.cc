@@ -63,7 +63,7 @@ KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
   const Place a = PlaceAt(data, path, t0), b = PlaceAt(data, path, t1);
   if (a.keyframe == b.keyframe) {
     throw InputError(
-        "known_length: the camera has hardly moved between both times");
+        "known_length: the camera hardly moved between the two times");
   }
   return {a.keyframe,    b.keyframe, a.in_keyframe,
           b.in_keyframe, metres,     kLengthSigma};

@@ -37,7 +37,7 @@ std::string CalibrationSettings::Check() const {
     return "determined_share must be above 0 and at most 1";
   }
   if (!(min_gain >= 0.0)) {
-    return "what held-out pairs have to gain must not be negative";
+    return "min_gain must not be negative";
   }
   if (!(max_halves_sigmas > 0.0)) return "max_halves_sigmas must be positive";
   if (!(max_rate >= 0.0)) return "max_rate must not be negative";
@@ -102,8 +102,8 @@ std::array<bool, kCalibrationSize> FreeParameters(const std::string& fix,
   for (std::string word; std::getline(list, word, ',');) {
     const NamedParts* const named = FindNamed(names, word);
     if (named == nullptr) {
-      throw InputError("fix: there is no parameter '" + word + "'; there are " +
-                       Join(NamesOf(names)));
+      throw InputError("fix: unknown parameter '" + word +
+                       "'; available: " + Join(NamesOf(names)));
     }
     for (const int part : named->parts) is_free[part] = false;
   }

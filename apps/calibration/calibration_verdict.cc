@@ -160,8 +160,8 @@ std::string WhatIsLeft(const CalibrationResult& result) {
   constexpr double kOfFeatures = 0.3;  // px, with rendered recordings
   const double px = 0.5 * result.pixel_after;
   return "residuals spread by " + Short(px) + " px, " +
-         (px > 1.5 * kOfFeatures ? "more than features alone: " : "as ") +
-         Short(kOfFeatures) + " px where nothing is wrong";
+         (px > 1.5 * kOfFeatures ? "more than" : "consistent with") + " the " +
+         Short(kOfFeatures) + " px of feature noise";
 }
 
 std::string WhyHalvesDisagree(const CalibrationSettings& settings,
@@ -173,22 +173,23 @@ std::string WhyHalvesDisagree(const CalibrationSettings& settings,
   const CalibrationParameter& row = kCalibrationParameters[worst->part];
   const std::string unit =
       row.unit[0] == '\0' ? "" : " " + std::string(row.unit);
-  return "the halves of the recording contradict each other, so something else "
-         "is wrong than the camera (" +
-         WhatIsLeft(result) + "): their " + std::string(row.name) +
+  return "the halves of the recording disagree: " + std::string(row.name) +
          " differs by " + Short(std::abs(worst->second - worst->first)) + unit +
-         " (" + Short(worst->Sigmas()) + " standard deviations)";
+         " (" + Short(worst->Sigmas()) +
+         " standard deviations), so the error is not in the camera (" +
+         WhatIsLeft(result) + ")";
 }
 
 std::string HalvesInWords(const CalibrationResult& result) {
   const HalvesOfParameter* worst = WorstOfHalves(result);
   return worst == nullptr
-             ? "the halves of the recording see too little to be compared"
-             : "the halves of the recording, each by itself, differ by " +
-                   Short(worst->Sigmas()) + " standard deviations at most" +
+             ? "the halves of the recording have too little data to be compared"
+             : "the halves of the recording, calibrated separately, differ by "
+               "at most " +
+                   Short(worst->Sigmas()) + " standard deviations" +
                    (result.halves_spread > 1.0
-                        ? "; error bars are " + Short(result.halves_spread) +
-                              " times wider than residuals say, for that"
+                        ? "; error bars are therefore widened by a factor of " +
+                              Short(result.halves_spread)
                         : "");
 }
 
@@ -209,11 +210,11 @@ std::string ImplausibilityReason(const RgbdCamera& first,
           kMaxOffCentre * camera.height) {
     return "the camera found is not plausible: its principal point (" +
            Short(camera.cx) + ", " + Short(camera.cy) +
-           ") is not in the middle of the image";
+           ") is too far from the image centre";
   }
   if (HasRaysAllAround(first.camera) && !HasRaysAllAround(camera)) {
-    return "the camera found is not plausible: its lens shows nothing at the "
-           "border of the image; record something there, too";
+    return "the camera found is not plausible: its distortion is not "
+           "invertible at the image border; record objects there, too";
   }
   for (int k = 0; k < kCalibrationSize; ++k) {
     const CalibratedParameter& parameter = result.parameters[k];
@@ -222,7 +223,7 @@ std::string ImplausibilityReason(const RgbdCamera& first,
         std::abs(parameter.found - parameter.before) / parameter.prior;
     if (moved > kMaxPriorSigmas) {
       return "the camera found is not plausible: " +
-             std::string(kCalibrationParameters[k].name) + " moves by " +
+             std::string(kCalibrationParameters[k].name) + " changes by " +
              Short(moved) + " standard deviations of its prior";
     }
   }
@@ -233,23 +234,22 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
                             const CalibrationSettings& settings,
                             const CalibrationResult& result) {
   if (result.held_out_pairs < 2) {
-    return "there are too few pairs to judge it by";
+    return "there are too few pairs to evaluate the new camera";
   }
   if (result.cost_after > result.cost_of_map) {
-    return "the solution fails: pairs that were held out fit worse (cost " +
+    return "the solution fails: held-out pairs fit worse (cost " +
            Short(result.cost_after) + ") than with the poses of the map (" +
            Short(result.cost_of_map) + "), so some matches are wrong";
   }
   const double gain = 1.0 - result.cost_after / result.cost_before;
   if (!(gain >= settings.min_gain) || !(result.gain_sigmas >= kMinSigmas)) {
-    return "pairs that were held out fit no better with the camera found: "
-           "their cost " +
+    return "held-out pairs fit no better with the camera found: their cost " +
            std::string(gain < 0.0 ? "rises by " : "falls by ") +
            Percent(std::abs(gain)) + " (" +
            Short(std::abs(result.gain_sigmas)) + " standard deviations)";
   }
   if (result.truth_after > result.truth_before) {
-    return "the ground truth contradicts it: motions of pairs are off by " +
+    return "the ground truth contradicts it: motions of pairs are wrong by " +
            Short(1e3 * result.truth_after) + " mm instead of " +
            Short(1e3 * result.truth_before) + " mm";
   }
@@ -265,8 +265,8 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
                    kMinSigmas * parameter.sigma;
       });
   if (!has_moved) {
-    return "nothing is wrong with it: what was found is within " +
-           Short(kMinSigmas) + " standard deviations of it";
+    return "no error found: no parameter changes by more than " +
+           Short(kMinSigmas) + " standard deviations";
   }
   return ImplausibilityReason(first, found, result);
 }

@@ -197,11 +197,11 @@ std::string PathFigure(const std::string& title,
   if (HasErrors(paths)) {
     ChartPanel distance =
         ErrorsOverTime(paths, &ComparedPose::distance, kMillimetresPerMetre);
-    distance.title = "Distance from the truth";
+    distance.title = "Distance from the ground truth";
     distance.y_label = "distance (mm)";
     ChartPanel angle =
         ErrorsOverTime(paths, &ComparedPose::angle, kDegreesPerRadian);
-    angle.title = "Angle from the truth";
+    angle.title = "Angle from the ground truth";
     angle.y_label = "angle (deg)";
     chart.panels.push_back(distance);
     chart.panels.push_back(angle);

@@ -91,7 +91,7 @@ std::vector<LossRun> CompareLosses(FrameSource* source,
           return true;
         });
     Warn(DroppedFrames(*source, all[0]->damaged()));
-    if (!stopped.empty()) LOG(WARNING) << "ended early: " << stopped;
+    if (!stopped.empty()) LOG(WARNING) << "stopped early: " << stopped;
   }
   std::vector<LossRun> results;
   for (size_t i = 0; i < losses.size(); ++i) {

@@ -117,7 +117,7 @@ std::string SweepVerdict(const std::vector<SweepCell>& cells) {
   const SweepCell& clean = own.front();
   const SweepCell& worst = own.back();
   std::string text = Format(
-      "Of the graduated losses that start from no motion, %s has the smallest "
+      "Of the graduated losses that start from identity, %s has the smallest "
       "median translation errors (geometric mean over all shares of wrong "
       "matches %.3g mm): %s mm without wrong matches and %s mm with %.0f %% of "
       "them, where nine of ten trials stay below %.3g mm.",
@@ -127,11 +127,11 @@ std::string SweepVerdict(const std::vector<SweepCell>& cells) {
       worst.translation_mm.p90);
   if (!level.empty()) {
     text +=
-        " Level with it at every share (the 95 % bands of the medians "
-        "meet): " +
+        " Equally good at every share (the 95 % bands of the medians "
+        "overlap): " +
         Join(level) + ".";
   } else if (ranking.size() > 1) {
-    text += " No other loss is level with it at every share.";
+    text += " No other loss is equally good at every share.";
   }
   for (const char* rival : {"none", "huber"}) {
     const std::vector<SweepCell> other = CellsOf(cells, {rival, "gnc", false});
@@ -141,7 +141,7 @@ std::string SweepVerdict(const std::vector<SweepCell>& cells) {
              own[share].translation_mm.median;
     };
     text += Format(
-        " The error of %s is %.3g times as great at 0 %%, %.3g times at 30 %% "
+        " The error of %s is %.3g times as large at 0 %%, %.3g times at 30 %% "
         "and %.3g times at 60 %%.",
         rival, ratio(0), ratio(3), ratio(6));
   }
@@ -187,7 +187,7 @@ std::vector<SweepCell> ReadSweepCsv(const std::string& path) {
   for (const SweepMethod& method : SweepMethods(LossesOf(cells))) {
     if (CellsOf(cells, method).size() == kSweepShares) continue;
     throw InputError(
-        path + ": not all shares of " + method.loss + ", " + method.schedule +
+        path + ": missing shares of " + method.loss + ", " + method.schedule +
         ", " + (method.ransac ? "RANSAC" : "no guess") + "; repeat the sweep");
   }
   if (cells.empty()) throw InputError(path + ": no rows; repeat the sweep");
@@ -215,9 +215,9 @@ std::string SweepTable(const std::vector<SweepCell>& cells) {
 std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation) {
   Chart chart;
   chart.title =
-      rotation ? "Median rotation errors with their 95 % bands, from no motion"
-               : "Median translation errors with their 95 % bands, from no "
-                 "motion";
+      rotation ? "Median rotation errors with their 95 % bands, from identity"
+               : "Median translation errors with their 95 % bands, from "
+                 "identity";
   chart.panel_width_px = 330;
   chart.panel_height_px = 420;
   chart.same_ranges = true;
@@ -226,7 +226,7 @@ std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation) {
     ChartPanel panel;
     panel.title = schedule == std::string("gnc")
                       ? "Graduated from wide to narrow (gnc)"
-                      : "At their widths at once (direct)";
+                      : "Final width from the start (direct)";
     panel.x_label = "wrong matches (%)";
     panel.y_label = rotation ? "error (deg)" : "error (mm)";
     panel.log_y = true;

@@ -53,11 +53,11 @@ std::vector<std::string> ParseLosses(const std::string& text) {
       throw InputError(std::string("--losses: ") + error.what());
     }
     if (std::find(losses.begin(), losses.end(), loss) != losses.end()) {
-      throw InputError("--losses: '" + loss + "' is there twice");
+      throw InputError("--losses: '" + loss + "' appears twice");
     }
     losses.push_back(loss);
   }
-  if (losses.empty()) throw InputError("--losses holds no names");
+  if (losses.empty()) throw InputError("--losses contains no names");
   return losses;
 }
 
@@ -67,7 +67,7 @@ void CompareOutput::Prepare() const {
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error) {
-    throw InputError("--output=" + folder_.string() + ": cannot be made (" +
+    throw InputError("--output=" + folder_.string() + ": cannot be created (" +
                      error.message() + ")");
   }
   RequireWritable(folder_ / kReport);

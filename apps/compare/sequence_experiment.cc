@@ -56,7 +56,7 @@ class SequenceExperiment {
     report_ += "## " + title + "\n\n";
     if (returns_to_start) {
       report_ +=
-          "End pose against angle [0 0 0] and translation [0 0 0], as in "
+          "End pose compared with angle [0 0 0] and translation [0 0 0], as in "
           "the thesis' Tables 4.4-4.6:\n\n" +
           EndPoseTable(runs, returns_to_start) + "\n";
     }
@@ -67,8 +67,8 @@ class SequenceExperiment {
           PathErrorTable(runs);
     } else {
       report_ +=
-          "There is no groundtruth.txt, so errors are not known. The last "
-          "pose seen from the first:\n\n" +
+          "There is no groundtruth.txt, so errors are unknown. Last pose "
+          "relative to the first:\n\n" +
           EndPoseTable(runs, returns_to_start) + "\n" + TrackedLine(runs);
     }
     report_ += "\n![Top views of the paths](" + figure + ")\n\n";

@@ -33,8 +33,8 @@ ExperimentResult RunSweepOfMatches(const ExperimentSettings& settings,
           "\n\nMedian translation errors (mm) and their 95 % bands over " +
           std::to_string(options.seeds) + " trials of " +
           std::to_string(options.matches) +
-          " matches with Kinect noise;\ngraduated losses that start from no "
-          "motion:\n\n" +
+          " matches with Kinect noise;\ngraduated losses that start from "
+          "identity:\n\n" +
           SweepTable(cells) +
           "\n![Translation errors](translation.svg)\n"
           "![Rotation errors](rotation.svg)\n"};

@@ -62,9 +62,8 @@ class PickedFrames final : public FrameSource {
       return frame;
     }
     throw InputError(
-        "the recording has no frame of the time " +
-        Format("%.6f", times_[next_]) +
-        " s, but the run has: it is of another recording (--dataset)");
+        "the recording has no frame at " + Format("%.6f", times_[next_]) +
+        " s, but the run has; give the recording of this run (--dataset)");
   }
   const RgbdCamera& camera() const override { return source_->camera(); }
 
@@ -86,8 +85,7 @@ FinishedRun::FinishedRun(const std::string& folder, const std::string& dataset,
   for (const char* file : {"frames.csv", "config.flags"}) {
     if (!fs::exists(path / file)) {
       throw InputError("--run: " + folder + " has no " + file +
-                       ": it is no folder that rgbd_odometry or rgbd_slam has "
-                       "written its results to");
+                       "; give a results folder of rgbd_odometry or rgbd_slam");
     }
   }
   const nlohmann::json flags = ReadReportSettings(path / "config.flags");
@@ -116,7 +114,7 @@ FinishedRun::FinishedRun(const std::string& folder, const std::string& dataset,
     throw InputError("--run: " + folder + ": trajectory.txt has " +
                      std::to_string(trajectory_.size()) + " poses, but " +
                      std::to_string(frames_.size()) +
-                     " frames of frames.csv have one; repeat the run");
+                     " tracked frames in frames.csv; repeat the run");
   }
 }
 
@@ -137,7 +135,7 @@ RunRecording::RunRecording(const FinishedRun& run) : run_(run) {
   SequenceSettings settings = run.sequence();
   if (!fs::exists(settings.dataset)) {
     throw InputError("the recording of the run, " + settings.dataset +
-                     ", is not there; --dataset says where it is");
+                     ", does not exist; give its location with --dataset");
   }
   // Only the frames are needed.
   settings.motion_guess.clear();

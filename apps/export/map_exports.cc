@@ -91,8 +91,8 @@ void RequireMeshFrames(const RunOutputSettings& settings,
                        const std::string& dataset) {
   if (settings.save_mesh.empty() || std::filesystem::exists(dataset)) return;
   throw InputError(
-      "--save_mesh: meshes read the frames a second time, which '" + dataset +
-      "', no file and no folder, does not allow; record it by rgbd_convert");
+      "--save_mesh: the mesh needs the frames a second time, but '" + dataset +
+      "' is not a file or folder; record it with rgbd_convert first");
 }
 
 std::string SaveMesh(const RunOutputSettings& settings, int threads) {

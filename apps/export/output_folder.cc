@@ -11,7 +11,7 @@ namespace fs = std::filesystem;
 
 [[noreturn]] void FailToWrite(const fs::path& path,
                               const std::error_code& error) {
-  throw InputError("--output: " + path.string() + " cannot be made (" +
+  throw InputError("--output: " + path.string() + " cannot be created (" +
                    error.message() + ")");
 }
 
@@ -28,13 +28,13 @@ OutputFolder::OutputFolder(const std::string& path,
   }
   if (!overwrite && fs::is_directory(path_) && !fs::is_empty(path_)) {
     throw InputError("--output: " + path +
-                     " is there and not empty; --overwrite replaces it");
+                     " is not empty; use --overwrite to replace it");
   }
   for (const auto& entry : fs::directory_iterator(path_, error)) {
     const std::string name = entry.path().filename();
     if (entries.count(name) == 0) {
-      throw InputError("--output: " + path + " holds other things, as " + name +
-                       "; choose another folder");
+      throw InputError("--output: " + path + " contains other files, such as " +
+                       name + "; choose another folder");
     }
   }
   fs::remove_all(staging_dir_, error);  // left by a killed export

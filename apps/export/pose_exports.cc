@@ -72,8 +72,8 @@ std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
   std::string text = Said("poses", run.trajectory().size(), options.output);
   if (run.lost() > 0) {
     text += std::to_string(run.lost()) +
-            " frames have no pose and no line: lines are not frames; "
-            "times.txt says which they are\n";
+            " frames have no pose and therefore no line: line numbers are not "
+            "frame numbers; see times.txt\n";
   }
   return text;
 }

@@ -28,7 +28,7 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
     options.camera = ResolveCameraSetup(settings.camera, settings.depth_camera);
   } else if (!settings.depth_camera.empty()) {
     throw InputError("depth_camera '" + settings.depth_camera +
-                     "': needs the Kalibr file that it is of (camera)");
+                     "': needs a Kalibr file with this camera (camera)");
   }
   if (camera != nullptr) {
     const CameraSetup said = options.camera.value_or(CameraSetup());
@@ -53,7 +53,7 @@ void FindTruth(const SequenceSettings& settings, Sequence* sequence) {
     }
   } catch (const InputError& error) {
     throw InputError(std::string(error.what()) +
-                     "; --groundtruth=none goes without it");
+                     "; use --groundtruth=none to run without it");
   }
 }
 
@@ -132,13 +132,13 @@ std::vector<std::string> DroppedFrames(
   }
   if (source.unmatched_color() > 0) {
     lines.push_back(std::to_string(source.unmatched_color()) +
-                    " colour images have no depth image of their time and are "
-                    "left out");
+                    " colour images have no depth image of the same time and "
+                    "are left out");
   }
   if (source.dropped() > 0) {
     lines.push_back(std::to_string(source.dropped()) +
-                    " frames came faster than they were asked for and are left "
-                    "out");
+                    " frames arrived faster than they were processed and are "
+                    "left out");
   }
   for (std::string& line : source.remarks()) lines.push_back(std::move(line));
   return lines;

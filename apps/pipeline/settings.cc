@@ -58,7 +58,7 @@ NamedSetting ScaleByName(decltype(EstimatorOptions::scale)* scale) {
             for (const ScaleEstimator& row : ScaleEstimators()) {
               if (row.estimate == *scale) return std::string(row.name);
             }
-            return std::string("a function of its own");
+            return std::string("a custom function");
           },
           [=](const std::string& name) {
             const ScaleEstimator* row = FindScaleEstimator(name);

@@ -46,8 +46,8 @@ Rigid3d PoseFromRow(const NumberArray& row, size_t i,
   if (!translation.allFinite() ||
       !(std::abs(rotation.norm() - 1.0) <= kMaxQuaternionError)) {
     throw InputError(where +
-                     ": is no pose; it needs tx ty tz qx qy qz qw, finite and "
-                     "with a quaternion of unit length");
+                     ": is not a pose; it needs tx ty tz qx qy qz qw, finite "
+                     "and with a quaternion of unit length");
   }
   return Rigid3d(rotation, translation);
 }
@@ -79,8 +79,8 @@ Trajectory FromArrays(const py::object& stamps, const py::object& poses,
     if (!std::isfinite(times(i)) ||
         (i > 0 && times(i) <= trajectory.back().timestamp)) {
       throw InputError(name + "[0]" + index +
-                       ": is not after the time stamp before it; sort the "
-                       "poses by time and keep one a time stamp");
+                       ": is not after the previous time stamp; sort the poses "
+                       "by time and remove duplicates");
     }
     const std::string where = name + "[1]" + index;
     trajectory.push_back({times(i), are_matrices
@@ -113,7 +113,7 @@ NumberArray::NumberArray(const py::object& object, const std::string& name,
 
 py::array ToArray(const py::object& object, const std::string& name) {
   py::array array = py::array::ensure(object);
-  if (!array) throw InputError(name + ": is no array of numbers");
+  if (!array) throw InputError(name + ": is not an array of numbers");
   return array;
 }
 
@@ -131,7 +131,7 @@ Rigid3d RigidFromMatrix(const Eigen::Matrix4d& matrix,
                         matrix.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
   if (!is_rigid) {
     throw InputError(where +
-                     ": is no rigid motion; it needs a rotation matrix, a "
+                     ": is not a rigid motion; it needs a rotation matrix, a "
                      "translation (m) and a last row 0 0 0 1");
   }
   return Rigid3d(Eigen::Quaterniond(R), matrix.topRightCorner<3, 1>());

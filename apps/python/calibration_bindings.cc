@@ -106,27 +106,28 @@ auto Found(const Calibration& self) {
 
 void BindResult(py::module_* module) {
   py::class_<CalibratedParameter>(*module, "CalibratedParameter",
-                                  "What became of one parameter of a camera.")
+                                  "The result for one parameter of a camera.")
       .def_property_readonly(
           "status",
           [](const CalibratedParameter& self) { return ToString(self.status); },
           "fixed, not determined or determined")
       .def_readonly("before", &CalibratedParameter::before,
-                    "of the first camera")
+                    "value of the first camera")
       .def_readonly("found", &CalibratedParameter::found,
-                    "where the recording would have it")
+                    "value estimated from the recording")
       .def_readonly("sigma", &CalibratedParameter::sigma,
-                    "standard deviation of that")
+                    "standard deviation of the estimate")
       .def(Pickled<CalibratedParameter>());
-  py::class_<Calibration>(*module, "Calibration", "What came of calibrate().")
+  py::class_<Calibration>(*module, "Calibration", "The result of calibrate().")
       .def_property_readonly(
           "accepted", &Found<&CalibrationResult::is_accepted>,
           "whether the camera found is better than the first one")
       .def_property_readonly("reason", &Found<&CalibrationResult::reason>,
-                             "why it is not, in words")
+                             "why it is not; empty if it is")
       .def_property_readonly(
           "camera", &Found<&CalibrationResult::camera>,
-          "to go on with: the camera found, or the first one")
+          "the camera to use: the camera found, or the first one if not "
+          "accepted")
       .def_property_readonly("parameters", &Parameters,
                              "CalibratedParameter by name, such as fx")
       .def_property_readonly(
@@ -136,13 +137,13 @@ void BindResult(py::module_* module) {
             const DepthNoiseModel& model = self.result.noise->model;
             return py::make_tuple(model.constant, model.quadratic);
           },
-          "(a, b) of sigma(z) = a + b z^2, m; None: there are too few depths")
+          "(a, b) of sigma(z) = a + b z^2, m; None: too few depths")
       .def_property_readonly(
           "summary",
           [](const Calibration& self) {
             return FormatCalibrationSummary(self.result);
           },
-          "all of it in words, as rgbd_calibrate prints it")
+          "the result as text, as rgbd_calibrate prints it")
       .def(
           "save_camera",
           [](const Calibration& self, const py::object& path) {
@@ -150,21 +151,19 @@ void BindResult(py::module_* module) {
                 PathFrom(path),
                 FormatCameraFile(self.result.camera, self.like));
           },
-          "Writes the camera to go on with, in the layout of the first one's "
-          "file.",
+          "Writes the camera to use, in the layout of the first one's file.",
           py::arg("path"))
       .def(
           "save_depth_noise",
           [](const Calibration& self, const py::object& path) {
             if (!self.result.noise.has_value()) {
-              throw InputError(
-                  "the recording does not tell the noise of depth");
+              throw InputError("too few depths to estimate the depth noise");
             }
             WriteFileAtomically(PathFrom(path),
                                 FormatDepthNoiseFile(self.result.noise->model));
           },
-          "Writes a file for the argument depth_noise. InputError if there is "
-          "none.",
+          "Writes a file for the argument depth_noise. Raises InputError if "
+          "depth_noise is\nNone.",
           py::arg("path"))
       .def(Pickled<Calibration>());
 }
@@ -174,21 +173,20 @@ void BindResult(py::module_* module) {
 void BindCalibration(py::module_* module) {
   BindResult(module);
   module->def("calibrate", &CalibrateFile, R"(
-Finds what is wrong with a camera from a recording of its own, as rgbd_calibrate
-does: lens, depth, clocks, registration. Takes about as long as the recording;
-the GIL is released.
+Calibrates a camera from its own recording, as rgbd_calibrate does: lens, depth,
+timing, registration. Takes about as long as the recording; the GIL is released.
 
-path, camera, source, frames, associations, depth_camera, depth_scale: as of
+path, camera, source, frames, associations, depth_camera, depth_scale: as in
     Recording; the camera is a preset or a file.
-groundtruth: trajectory (TUM text) that gives depth its scale; "none": not even
-    that of the recording.
-known_length: "T0,T1,METRES", how far apart the camera was at two times (s).
-fix: names of parameters that stay as they are, separated by commas.
-max_passes: so often at most the recording is mapped.
-max_views: of landmarks, about; the time that a solution takes grows with it.
-threads: 0: one a core.
+groundtruth: trajectory (TUM text) that determines the depth scale; "none": do
+    not use that of the recording either.
+known_length: "T0,T1,METRES", distance of the camera positions at two times (s).
+fix: names of parameters to keep, separated by commas.
+max_passes: maximum number of times that the recording is mapped.
+max_views: approximate number of landmark views; the time grows with it.
+threads: 0: one for each core.
 
-InputError for what cannot be read or makes no sense.)",
+Raises InputError for unreadable input and invalid arguments.)",
               py::arg("path"), py::arg("camera") = py::none(), py::kw_only(),
               py::arg("source") = "auto", py::arg("frames") = "",
               py::arg("associations") = py::none(),

@@ -64,8 +64,8 @@ RgbdCamera MakeCamera(double fx, double fy, double cx, double cy, int width,
     throw InputError("Camera: " + std::to_string(distortion.size()) +
                      " distortion coefficients; " +
                      (is_equidistant ? "an equidistant lens has k1 k2 k3 k4"
-                                     : "it needs k1 k2 p1 p2 and maybe k3, or "
-                                       "k3 k4 k5 k6"));
+                                     : "a rational lens has k1 k2 p1 p2, "
+                                       "optionally k3 or k3 k4 k5 k6"));
   }
   return Checked(result);
 }
@@ -128,18 +128,18 @@ void BindShutters(py::class_<RgbdCamera>* camera) {
 
 void BindCamera(py::module_* module) {
   py::class_<RgbdCamera> camera(*module, "Camera", R"(
-A pinhole camera and how its depth images count. It does not change.
+A pinhole camera with the scale and timing of its images. It is immutable.
 
 Axes are optical: x right, y down, z forward. Pixel (0, 0) is the centre of the
-upper left pixel. Focal lengths and centre are in pixels, the distortion is
-OpenCV's (k1 k2 p1 p2 and maybe k3, or k3 k4 k5 k6); of lens='equidistant', a
-fisheye's, k1 k2 k3 k4. depth_scale is raw units of a depth image per metre.
+upper left pixel. Focal lengths and centre are in pixels. The distortion is that
+of OpenCV: k1 k2 p1 p2, optionally k3 or k3 k4 k5 k6; with lens='equidistant'
+(fisheye) k1 k2 k3 k4. depth_scale is raw units of a depth image per metre.
 
 A row r of the colour image is exposed color_time_offset + color_readout *
-((r + 1/2) / height - 1/2) seconds after the image's time stamp; depth likewise,
-after its own.)");
+((r + 1/2) / height - 1/2) seconds after the image's time stamp; likewise for
+depth, after its own time stamp.)");
   camera
-      .def(py::init(&MakeCamera), "InputError if the values make no camera.",
+      .def(py::init(&MakeCamera), "Raises InputError for invalid values.",
            py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
            py::arg("width") = 640, py::arg("height") = 480,
            py::arg_v("distortion", std::vector<double>(), "()"),
@@ -163,7 +163,7 @@ of the preset or file.)",
           [](const RgbdCamera& self) {
             return py::tuple(py::cast(self.camera.Distortion()));
           },
-          "k1 k2 p1 p2 k3, and k4 k5 k6 if not 0; of a fisheye k1 k2 k3 k4")
+          "k1 k2 p1 p2 k3, and k4 k5 k6 if not 0; for a fisheye k1 k2 k3 k4")
       .def_property_readonly(
           "lens",
           [](const RgbdCamera& self) {
@@ -171,7 +171,7 @@ of the preset or file.)",
                        ? "equidistant"
                        : "rational";
           },
-          "'rational' (plumb bob, too) or 'equidistant'")
+          "'rational' (includes plumb bob) or 'equidistant'")
       .def_readonly("depth_scale", &RgbdCamera::depth_scale,
                     "raw units of a depth image per metre")
       .def_property_readonly(

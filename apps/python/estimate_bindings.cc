@@ -238,32 +238,32 @@ void BindEstimate(py::module_* module) {
 Estimates the motion between two frames from matched 3D points.
 
 points_prev, points_cur: (N, 3) x y z in camera axes (m; x right, y down, z
-    forward), row i of both being match i. float64 and float32 of any strides
-    are read without a copy. Rows that are not finite, or whose z is 0 or less,
-    are no match and get the weight 0.
-camera: says, with sigma_px, how noisy points are sideways; None: fx = fy = 525.
+    forward); row i of both is match i. float64 and float32 of any strides are
+    read without a copy. Rows that are not finite or have z <= 0 are ignored and
+    get the weight 0.
+camera: determines, with sigma_px, the lateral noise; None: fx = fy = 525.
 initial_guess: where the solver starts: "identity", "ransac", "clique", or a
     (4, 4) cur_from_prev.
 sigma_px: standard deviation of u and of v in each frame (px).
 normals_cur: (N, 3) unit normals of the surface in the current camera's axes,
-    zeros where not known; for the cost point_to_plane.
+    zeros where unknown; for the cost point_to_plane.
 prior: a pair of a (4, 4) cur_from_prev and its (6, 6) covariance; for the cost
     motion_prior.
-threads: for sums over tens of thousands of matches; the result is the same.
+threads: for tens of thousands of matches; the result does not depend on it.
 
-Bad data is a status of the estimate that is returned, never an exception;
-arguments that make no sense raise InputError. The GIL is released.)");
+Bad data is reported by the status of the estimate, never by an exception;
+invalid arguments raise InputError. The GIL is released.)");
   BindFunction(module, "estimate_motion_pixels", ObservePixel, "pixels_prev",
                "pixels_cur", py::arg("camera").none(false), R"(
 estimate_motion for matches in the images.
 
-pixels_prev, pixels_cur: (N, 3) u v depth: pixel of the image as it is
-    (distorted as the camera says, px) and depth along the optical axis (m), 0
-    where none was measured: costs that need no depth use such rows still. Rows
-    that are not finite, or of a negative depth, are no match.
-camera: that took both images.
+pixels_prev, pixels_cur: (N, 3) u v depth: pixel of the original (distorted)
+    image and depth along the optical axis (m), 0 if none was measured: costs
+    that need no depth still use such rows. Rows that are not finite or have a
+    negative depth are ignored.
+camera: the camera of both images.
 
-All others are those of estimate_motion.)");
+All other arguments are those of estimate_motion.)");
 }
 
 }  // namespace rgbd_pose

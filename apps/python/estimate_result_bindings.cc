@@ -61,13 +61,13 @@ void BindEstimateResult(py::module_* module) {
   module->attr("EstimateError") =
       py::reinterpret_steal<py::object>(PyErr_NewExceptionWithDoc(
           "rgbd_pose.EstimateError",
-          "A motion that could not be estimated: its status and reason. "
-          "`estimate` is the\nMotionEstimate.",
+          "A motion could not be estimated: status and reason. `estimate` is "
+          "the\nMotionEstimate.",
           PyExc_RuntimeError, nullptr));
   py::class_<EstimateResult> result(*module, "MotionEstimate", R"(
-The motion between two frames as estimated, and what speaks for it. Arrays are
-not to be written; those of N entries have one for each row that was given, 0
-or False for rows that no cost could use.)");
+The estimated motion between two frames and its quality. Arrays are read-only;
+those of N entries have one for each input row, 0 or False for rows that no cost
+could use.)");
   result.attr("_error_type") = module->attr("EstimateError");
   result
       .def_property_readonly(
@@ -76,7 +76,7 @@ or False for rows that no cost could use.)");
           "(some\ndirection of motion is not determined), 'not_converged' or\n"
           "'inconsistent' (too few matches agree with one motion)")
       .def_property_readonly("reason", &Field<&MotionEstimate::reason>,
-                             "of the status, in words; empty if ok")
+                             "reason of the status; empty if ok")
       .def_property_readonly(
           "ok", [](const EstimateResult& self) { return self.estimate.ok(); },
           "whether the status is 'ok'")
@@ -87,14 +87,14 @@ or False for rows that no cost could use.)");
       .def_property_readonly(
           "cur_from_prev", &Field<&MotionEstimate::cur_from_prev>,
           "(4, 4): point_in_cur = cur_from_prev @ point_in_prev (m); the "
-          "guess,\nif the status is 'too_few_matches'")
+          "initial guess\nif the status is 'too_few_matches'")
       .def_property_readonly(
           "covariance", &Field<&MotionEstimate::covariance>,
           "(6, 6), of [omega_x omega_y omega_z Cx Cy Cz]: omega (rad) is a "
           "small\nrotation about the axes of the current camera, R_true = "
           "Exp(omega) R; C (m)\nis the centre of the current camera in the "
-          "axes of the previous one. Zero\nwhere the motion was not "
-          "judged: too few matches, degenerate, or no usable\nstep.")
+          "axes of the previous one. Zero\nif it could not be computed: too "
+          "few matches, degenerate, or no usable step.")
       .def_property_readonly("weights", &List<&MotionEstimate::weights>,
                              "(N,) float64: robust weights in [0, 1]")
       .def_property_readonly(
@@ -110,27 +110,27 @@ or False for rows that no cost could use.)");
           "(N,) float64: norm of the whitened residual, in sigmas of the noise")
       .def_property_readonly(
           "residual_degrees", &List<&MotionEstimate::residual_degrees>,
-          "(N,) int32: independent measurements in it; the norm of right\n"
-          "matches follows a chi distribution of so many degrees")
+          "(N,) int32: independent measurements in the residual; the norm for\n"
+          "correct matches has a chi distribution with as many degrees")
       .def_property_readonly("num_used", &Field<&MotionEstimate::num_used>,
-                             "matches that some cost could use")
+                             "matches that at least one cost could use")
       .def_property_readonly("num_inliers",
                              &Field<&MotionEstimate::num_inliers>,
-                             "of these, in agreement")
+                             "number of inliers among these")
       .def_readonly("num_rejected", &EstimateResult::num_rejected,
-                    "rows that are no match: not finite, or a negative depth")
+                    "ignored rows: not finite, or with a negative depth")
       .def_property_readonly("sigma", &Field<&MotionEstimate::sigma>,
                              "robust spread of the whitened residuals, "
                              "ideally 1")
       .def_property_readonly("initial_cost",
                              &Field<&MotionEstimate::initial_cost>,
-                             "robust cost at the guess")
+                             "robust cost at the initial guess")
       .def_property_readonly("final_cost", &Field<&MotionEstimate::final_cost>,
-                             "robust cost at the motion")
+                             "robust cost at the estimated motion")
       .def_property_readonly("iterations", &Field<&MotionEstimate::iterations>,
-                             "of the solver, all stages together")
+                             "solver iterations of all stages")
       .def_property_readonly("solve_ms", &Field<&MotionEstimate::solve_ms>,
-                             "time that the solve took, ms")
+                             "solver time, ms")
       .def("__repr__", &ResultInWords)
       .def(Pickled<EstimateResult>());
 }

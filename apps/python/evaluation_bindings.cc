@@ -99,14 +99,14 @@ py::array List(const py::object& self) {
 
 void BindResults(py::module_* module) {
   py::class_<Errors>(*module, "Errors",
-                     "Errors (m or rad), summed up and one by one; sums are 0 "
-                     "if there are none.")
-      .def_readonly("count", &Errors::count, "how many there are")
-      .def_readonly("rmse", &Errors::rmse, "root of the mean of squares")
-      .def_readonly("mean", &Errors::mean, "of all")
+                     "Errors (m or rad): statistics, which are 0 if there are "
+                     "no errors, and values.")
+      .def_readonly("count", &Errors::count, "number of errors")
+      .def_readonly("rmse", &Errors::rmse, "root mean square")
+      .def_readonly("mean", &Errors::mean, "mean")
       .def_readonly("median", &Errors::median,
-                    "of an even number, the mean of the two in the middle")
-      .def_readonly("max", &Errors::max, "the largest")
+                    "median; for an even count the mean of the two middle ones")
+      .def_readonly("max", &Errors::max, "maximum")
       .def_property_readonly("values", &List<&Errors::values, Errors>,
                              "(count,), in the order of time")
       .def("__repr__",
@@ -124,16 +124,16 @@ void BindResults(py::module_* module) {
                              "(count,), of the estimated poses, s")
       .def_property_readonly("reference_from_estimated",
                              Get(&AteResult::reference_from_estimated),
-                             "(4, 4), the alignment of the worlds")
+                             "(4, 4), the rigid alignment")
       .def(Pickled<AteResult>());
   py::class_<RpeResult>(
       *module, "RpeResult",
-      "Relative pose errors: of every motion over the interval.")
+      "Relative pose errors of all motions over the interval.")
       .def_readonly("translation", &RpeResult::translation, "Errors, m")
       .def_readonly("rotation", &RpeResult::rotation, "Errors, rad")
       .def_property_readonly("timestamps",
                              &List<&RpeResult::timestamps, RpeResult>,
-                             "(count,), of the intervals' first poses, s")
+                             "(count,), of the first pose of each interval, s")
       .def(Pickled<RpeResult>());
 }
 
@@ -148,18 +148,18 @@ Absolute trajectory error of an estimated trajectory.
 estimated, reference: path of a TUM text file, or a pair of time stamps (N,) (s,
     increasing) and poses world_from_cam, (N, 7) tx ty tz qx qy qz qw or
     (N, 4, 4).
-max_time_difference: pair poses at most this far apart (s).
+max_time_difference: maximum time difference of paired poses (s).
 
-InputError if no poses belong together.)",
+Raises InputError if no poses can be paired.)",
               py::arg("estimated"), py::arg("reference"),
               py::arg("max_time_difference") = difference);
   module->def("evaluate_rpe", &EvaluateRpe, R"(
 Relative pose error of an estimated trajectory over a fixed time.
 
-delta_seconds: the interval; every pose that has a counterpart so much later is
-    a start. It must exceed max_time_difference.
+delta_seconds: the interval; one starts at every pose that has a counterpart at
+    its end. It must exceed max_time_difference.
 
-All others are those of evaluate_ate.)",
+All other arguments are those of evaluate_ate.)",
               py::arg("estimated"), py::arg("reference"),
               py::arg("delta_seconds") = EvaluationOptions().rpe_delta_seconds,
               py::arg("max_time_difference") = difference);
@@ -168,7 +168,7 @@ All others are those of evaluate_ate.)",
       [](const py::object& path) {
         return ArraysFromTrajectory(ReadTrajectory(PathFrom(path)));
       },
-      "(timestamps (N,), poses (N, 4, 4)) of a TUM text file.",
+      "Reads (timestamps (N,), poses (N, 4, 4)) from a TUM text file.",
       py::arg("path"));
   module->def(
       "write_trajectory",
@@ -176,7 +176,7 @@ All others are those of evaluate_ate.)",
         WriteFileAtomically(PathFrom(path), FormatTrajectory(TrajectoryFrom(
                                                 trajectory, "trajectory")));
       },
-      "Writes a trajectory, as evaluate_ate takes it, as TUM text.",
+      "Writes a trajectory, given as in evaluate_ate, as TUM text.",
       py::arg("path"), py::arg("trajectory"));
 }
 

@@ -24,7 +24,7 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   m.def("losses", MEstimatorNames, "Names of all M-estimators.");
   m.def("frontends", FrontendNames, "Names of all frontends.");
   m.def("camera_presets", CameraPresetNames,
-        "Names that Camera.load knows besides files.");
+        "Names of the presets for Camera.load.");
   BindCamera(&m);
   BindEstimateResult(&m);
   BindEstimate(&m);

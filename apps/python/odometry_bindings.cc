@@ -53,15 +53,15 @@ void BindTrackedFrame(py::module_* module) {
                              "(6, 6), as that of MotionEstimate")
       .def(Pickled<RelativePose>());
   py::class_<TrackedFrame>(*module, "TrackedFrame",
-                           "What became of one input frame.")
-      .def_readonly("index", &TrackedFrame::index, "of the frame, from 0")
+                           "The tracking result of one frame.")
+      .def_readonly("index", &TrackedFrame::index, "index of the frame, from 0")
       .def_readonly("timestamp", &TrackedFrame::timestamp, "s")
       .def_property_readonly(
           "status", Get(&TrackedFrame::status),
-          "'ok', 'degraded' (a pose, but from few or contradicting matches) "
+          "'ok', 'degraded' (a pose, but from few or contradictory matches) "
           "or\n'lost' (no pose was found: see on_lost for the one reported)")
       .def_readonly("reason", &TrackedFrame::reason,
-                    "of the status, in words; empty if ok")
+                    "reason of the status; empty if ok")
       .def_property_readonly(
           "world_from_cam", Get(&TrackedFrame::world_from_cam),
           "(4, 4): point_in_world = world_from_cam @ point_in_cam (m); the "
@@ -76,42 +76,44 @@ void BindTrackedFrame(py::module_* module) {
           "edge; None if there is none")
       .def_readonly(
           "edges", &TrackedFrame::edges,
-          "list of RelativePose: the motions that it was tracked by; the "
-          "first gives the\npose, a second, where the reference "
-          "changes to an earlier one, leads to\nthe one that was "
-          "left")
+          "list of RelativePose: the measured motions; the first gives the "
+          "pose. If the\nreference changes to an earlier frame, a second one "
+          "connects the frame to the\nprevious reference")
       .def_readonly("segment", &TrackedFrame::segment,
-                    "frames of one segment hang together")
+                    "relative poses are known only within a segment")
       .def_readonly("reference", &TrackedFrame::reference,
-                    "index of the frame its motion counts from; -1: none")
+                    "index of its reference frame; -1: none")
       .def_readonly("is_reference", &TrackedFrame::is_reference,
-                    "whether it became the reference of those that follow")
+                    "whether it became the reference of later frames")
       .def_readonly("previous_is_reference",
                     &TrackedFrame::previous_is_reference,
-                    "whether the frame before became one for this one")
+                    "whether the previous frame became the reference for it")
       .def_readonly("relocalised", &TrackedFrame::relocalised,
-                    "whether it was found again among earlier references")
+                    "whether it was relocalised among earlier references")
       .def_readonly("is_predicted", &TrackedFrame::is_predicted,
                     "whether it is lost, but its pose follows motion_guess")
       .def_property_readonly(
           "tracking_source", Get(&TrackedFrame::source),
-          "what its motion comes from: 'features', 'direct' (pixels),\n"
+          "source of its motion: 'features', 'direct' (pixels),\n"
           "'features+direct', or '' if it has none")
       .def_readonly("matches", &TrackedFrame::matches,
-                    "with the reference: of features, or pixels")
-      .def_readonly("inliers", &TrackedFrame::inliers, "of these, in agreement")
-      .def_readonly("iterations", &TrackedFrame::iterations, "of the solver")
+                    "number of matches (features or pixels) with the reference")
+      .def_readonly("inliers", &TrackedFrame::inliers,
+                    "number of inliers among these")
+      .def_readonly("iterations", &TrackedFrame::iterations,
+                    "solver iterations")
       .def_readonly("sigma", &TrackedFrame::sigma,
                     "spread of the whitened residuals, ideally 1")
       .def_readonly("track_ms", &TrackedFrame::track_ms,
-                    "time of all the tracking, ms")
-      .def_readonly("match_ms", &TrackedFrame::match_ms, "of it: matching")
+                    "total time of tracking, ms")
+      .def_readonly("match_ms", &TrackedFrame::match_ms,
+                    "part of track_ms: matching")
       .def_readonly("solve_ms", &TrackedFrame::solve_ms,
-                    "of it: motion estimation")
+                    "part of track_ms: motion estimation")
       .def_readonly("reference_ms", &TrackedFrame::reference_ms,
-                    "of it: features of a new reference")
+                    "part of track_ms: features of a new reference")
       .def_readonly("relocalise_ms", &TrackedFrame::relocalise_ms,
-                    "of it: search for the place when lost")
+                    "part of track_ms: relocalisation when lost")
       .def("__repr__", &FrameInWords)
       .def(Pickled<TrackedFrame>());
 }
@@ -132,17 +134,16 @@ Tracks the next frame. The GIL is released.
 image: (height, width) uint8 grey, or (height, width, 3) uint8 in the order red,
     green, blue.
 depth: (height, width), registered to the image: uint16 in raw units
-    (camera.depth_scale a metre; 0 and 65535: none), or float32 or float64 in
-    metres (not finite or not positive: none), which are held in steps of
+    (camera.depth_scale per metre; 0 and 65535: none), or float32 or float64 in
+    metres (not finite or not positive: none), which are stored in steps of
     0.2 mm up to 13.1 m.
-timestamp: s, later than that of the frame before; None: 1/30 s after it.
-motion_guess: (4, 4) cur_from_prev since the frame before, if something else
-knows; tried first, believed only as far as the images agree.
-depth_delay: how much later than the image depth was measured, s.
+timestamp: s, later than that of the previous frame; None: 1/30 s after it.
+motion_guess: (4, 4) cur_from_prev since the previous frame, from another
+    sensor; tried first, but used only if the images agree with it.
+depth_delay: time from the image to the depth measurement, s.
 
-Both images are copied: what becomes of the arrays afterwards does not matter.
-A frame that is lost is a status; images of a wrong shape or type raise
-InputError and count as no frame.)",
+Both arrays are copied. A lost frame is reported by its status; images of a
+wrong shape or type raise InputError and are not counted as frames.)",
                "(timestamps (N,), world_from_cam (N, 4, 4)) of frames not "
                "lost");
 }

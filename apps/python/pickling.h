@@ -144,7 +144,7 @@ auto Pickled() {
       [](const py::tuple& state) {
         if (state.size() != 2 ||
             state[0].cast<std::string>() != RGBD_POSE_VERSION) {
-          throw InputError("pickle: is of another version of rgbd_pose");
+          throw InputError("pickle: is from another version of rgbd_pose");
         }
         PickledBytes bytes(state[1].cast<std::string>());
         T object;

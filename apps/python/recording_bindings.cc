@@ -120,7 +120,7 @@ Frame NextFrame(RecordingIterator* self) {
 
 void BindFrame(py::module_* module) {
   py::class_<Frame>(*module, "Frame", "One RGB-D image pair of a sequence.")
-      .def_readonly("index", &Frame::index, "place in its dataset, from 0")
+      .def_readonly("index", &Frame::index, "index in its dataset, from 0")
       .def_readonly("timestamp", &Frame::timestamp, "of the colour image, s")
       .def_readonly("depth_delay", &Frame::depth_delay,
                     "of the depth image, s after the colour image")
@@ -147,9 +147,9 @@ A sequence in the layout of the TUM RGB-D benchmark, as a sequence of Frame.
 folder: with rgb.txt and depth.txt, which are paired by time.
 associations: file that pairs colour and depth images instead.
 
-InputError (file:line) for what cannot be read; the images are read as they are
-asked for, with the GIL released.)")
-      .def(py::init(&OpenTumDataset), "InputError for what cannot be read.",
+Raises InputError (file:line) for unreadable input; images are read when they
+are accessed, with the GIL released.)")
+      .def(py::init(&OpenTumDataset), "Raises InputError for unreadable input.",
            py::arg("folder"), py::arg("camera").none(false),
            py::arg("associations") = py::none())
       .def("__len__", &TumDataset::size)
@@ -161,7 +161,7 @@ asked for, with the GIL released.)")
            })
       .def_property_readonly(
           "camera", [](const TumDataset& self) { return self.camera(); },
-          "that all frames share");
+          "camera of all frames");
 }
 
 void BindAnyRecording(py::module_* module) {
@@ -169,23 +169,22 @@ void BindAnyRecording(py::module_* module) {
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &NextFrame);
   py::class_<Recording>(*module, "Recording", R"(
-A recording of any kind that the programs read: `for frame in recording` gives
-one Frame after the other, decoded as it is asked for with the GIL released.
-Each loop reads it again.
+A recording of any supported kind: `for frame in recording` yields each Frame,
+decoded when it is accessed, with the GIL released. Each loop reads it again.
 
 path: a folder or a file.
-camera: a Camera, a preset or a calibration file; None: what the recording says
-    itself.
+camera: a Camera, a preset or a calibration file; None: the camera stored in the
+    recording.
 source: its kind; "auto": detected.
 frames: part of it, such as "0-99", "100-400:2" or "2.5s-10s"; "": all.
 associations: file that pairs colour and depth images (TUM).
 depth_camera: the camera of a Kalibr file that took the depth images, which are
     registered to colour then.
-depth_scale: raw depth units per metre; 0: as the camera or the recording says.
-topics: of a bag: colour, depth[, camera_info]; empty: found by their types.
+depth_scale: raw depth units per metre; 0: from the camera or the recording.
+topics: of a bag: colour, depth[, camera_info]; empty: chosen by their types.
 
-InputError for what cannot be read.)")
-      .def(py::init(&OpenRecording), "InputError for what cannot be read.",
+Raises InputError for unreadable input.)")
+      .def(py::init(&OpenRecording), "Raises InputError for unreadable input.",
            py::arg("path"), py::arg("camera") = py::none(), py::kw_only(),
            py::arg("source") = "auto", py::arg("frames") = "",
            py::arg("associations") = py::none(), py::arg("depth_camera") = "",
@@ -195,20 +194,20 @@ InputError for what cannot be read.)")
       .def_property_readonly(
           "camera",
           [](const Recording& self) { return self.source().camera(); },
-          "that all frames share")
+          "camera of all frames")
       .def_property_readonly(
           "timestamps",
           [](const Recording& self) {
             return py::array(py::cast(self.source().timestamps()));
           },
-          "(N,) of all frames, s; empty if they are not known ahead")
+          "(N,) of all frames, s; empty if they are not known in advance")
       .def(
           "ground_truth",
           [](const Recording& self) {
             return ArraysFromTrajectory(self.source().ground_truth());
           },
-          "(timestamps (N,), world_from_cam (N, 4, 4)) that the recording "
-          "brings along; of a bag what has been read so far");
+          "(timestamps (N,), world_from_cam (N, 4, 4)) of the recording; for a "
+          "bag what has been read so far");
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ std::string InitSignature(const std::string& class_name,
          ", camera: rgbd_pose.Camera, " +
          ArgumentsOf({*FindNamed(table, "frontend")}) + ", *, " +
          ArgumentsOf(WithoutRow("frontend", table)) +
-         ") -> None\n\nInputError for unknown names and values out of range.";
+         ") -> None\n\nRaises InputError for unknown names and invalid values.";
 }
 
 std::string HelpOf(const std::vector<Setting>& table) {

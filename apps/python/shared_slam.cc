@@ -23,8 +23,8 @@ void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
   }
   if (last != nullptr && frame->timestamp <= last->timestamp) {
     throw InputError("timestamp: " + std::to_string(frame->timestamp) +
-                     " s is not after that of the frame before; frames must "
-                     "come in the order of time");
+                     " s is not after that of the previous frame; frames must "
+                     "be in the order of time");
   }
 }
 
@@ -53,7 +53,7 @@ SharedSlam::SharedSlam(const OdometrySettings& odometry,
 void SharedSlam::LoadMap(const std::string& folder, bool localise_only) {
   const std::lock_guard<std::mutex> lock(mutex_);
   if (last_.has_value() || is_finished_) {
-    throw InputError("load_map: maps are loaded before the first frame");
+    throw InputError("load_map: maps must be loaded before the first frame");
   }
   slam_.Load(rgbd_pose::LoadMap(folder), localise_only);
   is_held_ = is_held_ || localise_only;
@@ -65,7 +65,7 @@ FrameInMap SharedSlam::Track(Frame frame, std::optional<double> timestamp,
   if (is_finished_) {
     throw InputError(
         "track: finish() was called; save the map and load it in "
-        "another Slam to go on");
+        "another Slam to continue");
   }
   StampFrame(timestamp, last_.has_value() ? &*last_ : nullptr, &frame);
   FrameInMap result(slam_.Track(frame, guess.has_value() ? &*guess : nullptr));
@@ -112,17 +112,15 @@ void SharedSlam::SaveMap(const std::string& folder) {
   RequireFinished("save_map");
   if (is_held_) {
     throw InputError(
-        "save_map: localise_only leaves the map as it is: there "
-        "is nothing to save");
+        "save_map: localise_only does not change the map, so there is nothing "
+        "to save");
   }
   rgbd_pose::SaveMap(folder, slam_.Map());
 }
 
 void SharedSlam::RequireFinished(const char* what) const {
   if (is_finished_) return;
-  throw InputError(std::string(what) +
-                   ": the map is known after finish(), which is to be called "
-                   "first");
+  throw InputError(std::string(what) + ": finish() must be called first");
 }
 
 }  // namespace rgbd_pose

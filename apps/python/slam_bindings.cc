@@ -63,11 +63,10 @@ auto InMap(T SlamFrame::*member) {
 void BindFrames(py::module_* module) {
   py::class_<FrameInMap, TrackedFrame>(
       *module, "SlamFrame",
-      "What became of one input frame: all that Odometry says of it, and where "
-      "the\nmap has it.")
+      "The result of one frame: its tracking result and its pose in the map.")
       .def_property_readonly(
           "odom_from_cam", InMap(&SlamFrame::odom_from_cam),
-          "(4, 4), m: never jumps, whatever is corrected; drifts")
+          "(4, 4), m: drifts, but never jumps when the map is corrected")
       .def_property_readonly(
           "map_from_odom", InMap(&SlamFrame::map_from_odom),
           "(4, 4), m: the correction; changes at keyframes and loops")
@@ -76,28 +75,29 @@ void BindFrames(py::module_* module) {
           [](const FrameInMap& self) {
             return ToPython(self.slam.map_from_cam());
           },
-          "(4, 4), m: map_from_odom @ odom_from_cam, the pose in the map as "
-          "known now")
-      .def_property_readonly("segment", InMap(&SlamFrame::segment),
-                             "of the map: frames of one segment hang together")
-      .def_property_readonly("pairs", InMap(&SlamFrame::pairs),
-                             "of keyframes, that the map got since the frame "
-                             "before")
+          "(4, 4), m: map_from_odom @ odom_from_cam, the current pose in the "
+          "map")
+      .def_property_readonly(
+          "segment", InMap(&SlamFrame::segment),
+          "of the map: relative poses are known only within a segment")
+      .def_property_readonly(
+          "pairs", InMap(&SlamFrame::pairs),
+          "keyframe pairs added to the map since the previous frame")
       .def_property_readonly("loops", InMap(&SlamFrame::loops),
-                             "of these pairs: that join what was far apart")
+                             "number of loop closures among these pairs")
       .def_property_readonly("joined", InMap(&SlamFrame::joined),
-                             "segments that became one with another")
+                             "number of segments joined to another one")
       .def_property_readonly("error", InMap(&SlamFrame::error),
                              "why poses were not corrected; empty: they were")
       .def_property_readonly("map_ms", InMap(&SlamFrame::map_ms),
-                             "time of that work, behind the tracking, ms")
+                             "mapping time in the background thread, ms")
       .def_property_readonly("wait_ms", InMap(&SlamFrame::wait_ms),
-                             "for which the tracking waited, ms")
+                             "time that tracking waited for the map, ms")
       .def(Pickled<FrameInMap>());
   py::class_<KeyframePose>(*module, "Keyframe", "A keyframe of the map.")
       .def_readonly("id", &KeyframePose::id,
-                    "its name in the map; without a loaded map the index of "
-                    "its frame")
+                    "id in the map; without a loaded map the index of its "
+                    "frame")
       .def_readonly("segment", &KeyframePose::segment,
                     "poses of one segment share one map")
       .def_readonly("timestamp", &KeyframePose::timestamp, "s")
@@ -118,10 +118,10 @@ void BindFrames(py::module_* module) {
 void BindSlamClass(py::module_* module) {
   Settings settings;
   const std::string doc = R"(
-Tracks a camera as Odometry does and builds a map of its keyframes behind it, in
-a thread of its own: where the view returns, the path is corrected. The same
-frames give the same result, to the last bit. Calls of one object from several
-threads wait for each other; objects do not share anything.
+Tracks a camera as Odometry does and builds a map of its keyframes in a
+background thread; loop closures correct the path. The same frames give the same
+result, to the last bit. Calls of one object from several threads wait for each
+other; objects do not share anything.
 
 )" + HelpOf(settings.Table());
   py::class_<SharedSlam> slam(*module, "Slam", doc.c_str());
@@ -129,19 +129,18 @@ threads wait for each other; objects do not share anything.
              settings.Table());
   BindTracking(&slam,
                "Tracks the next frame; arguments are those of Odometry.track. "
-               "The GIL is\nreleased. InputError after finish().",
+               "The GIL is\nreleased. Raises InputError after finish().",
                "(timestamps (N,), map_from_cam (N, 4, 4)) of frames not lost, "
-               "as corrected by\nnow");
+               "with all\ncorrections so far");
   const py::call_guard<ReleasedGil> no_gil;
   slam.def("finish", &SharedSlam::Finish, no_gil,
-           "Waits for the work behind and corrects all poses once more. No "
-           "frame can be\ntracked afterwards.")
+           "Waits for the background thread and corrects all poses once more. "
+           "No frame can\nbe tracked afterwards.")
       .def("keyframes", &SharedSlam::Keyframes, no_gil,
            "After finish(): list of Keyframe, in the order of the map.")
-      .def(
-          "edges", &SharedSlam::Edges, no_gil,
-          "After finish(): list of RelativePose, the motions that hold the map "
-          "together; ref and\ncur are ids of keyframes.")
+      .def("edges", &SharedSlam::Edges, no_gil,
+           "After finish(): list of RelativePose, the measured motions between "
+           "keyframes; ref\nand cur are ids of keyframes.")
       .def(
           "save_map",
           [](SharedSlam* self, const py::object& folder) {
@@ -149,8 +148,8 @@ threads wait for each other; objects do not share anything.
             const ReleasedGil released;
             self->SaveMap(path);
           },
-          "After finish(): keeps the map in a folder, in place of the one that "
-          "is there.\nInputError if that cannot be.",
+          "After finish(): saves the map to a folder and replaces an existing "
+          "map there.\nRaises InputError if that fails.",
           py::arg("folder"))
       .def(
           "load_map",
@@ -159,11 +158,10 @@ threads wait for each other; objects do not share anything.
             const ReleasedGil released;
             self->LoadMap(path, localise_only);
           },
-          "Before the first frame: begins with a map that was saved, or "
-          "several "
-          "that are\njoined where they meet. localise_only: the map stays as "
-          "it is. InputError for a\nfolder that holds none and for a map of "
-          "another camera.",
+          "Before the first frame: loads a saved map; several maps are joined "
+          "where they\noverlap. localise_only: the map is not changed. Raises "
+          "InputError for a folder\nwithout a map and for a map of another "
+          "camera.",
           py::arg("folder"), py::arg("localise_only") = false);
 }
 

@@ -61,7 +61,7 @@ std::string Bar(const CalibratedParameter& parameter) {
 std::string ParameterTable(const CalibrationResult& result) {
   std::string text =
       "<table><tr><th>parameter</th><th>before</th><th>found</th>"
-      "<th>&plusmn;</th><th></th><th>within 1 prior sigma</th></tr>\n";
+      "<th>&plusmn;</th><th></th><th>change, -1 to 1 prior sigma</th></tr>\n";
   for (int k = 0; k < kCalibrationSize; ++k) {
     const CalibrationParameter& row = kCalibrationParameters[k];
     const CalibratedParameter& parameter = result.parameters[k];
@@ -118,8 +118,8 @@ std::string Picture(const CalibrationResult& result, bool after, double zoom) {
         u, v, u + mean.x() * scale, v + mean.y() * scale, u, v);
   }
   return text + Format(
-                    "</svg><figcaption>%s, %.0f times as long</figcaption>"
-                    "</figure>\n",
+                    "</svg><figcaption>Mean residuals %s, enlarged %.0f times"
+                    "</figcaption></figure>\n",
                     after ? "with the camera found" : "with the first camera",
                     zoom);
 }
@@ -128,26 +128,26 @@ std::string Picture(const CalibrationResult& result, bool after, double zoom) {
 // because of an error that no parameter describes.
 constexpr char kWhatNext[] =
     "<p>What to do next:</p><ul>"
-    "<li>&ldquo;fit no better&rdquo;: the camera there is does as well; go on "
-    "with it.</li>"
-    "<li>&ldquo;halves contradict each other&rdquo;: something is wrong that "
-    "is "
-    "no parameter: rows exposed one after another (give the camera its "
-    "readouts, or move slowly), blur, things that move, a depth unit.</li>"
-    "<li>&ldquo;not plausible&rdquo; or an arrow in the table: what is found "
-    "is an error of something else; --fix= keeps that parameter.</li>"
-    "<li>too few pairs, or nothing determined: record half a minute, turning "
-    "and moving at the same time, near and far things in view.</li></ul>\n";
+    "<li>&ldquo;fit no better&rdquo; or &ldquo;no error found&rdquo;: the "
+    "first camera is as good; continue to use it.</li>"
+    "<li>&ldquo;halves of the recording disagree&rdquo;: there is an error "
+    "that no parameter describes: a rolling shutter (enter the readouts in "
+    "the camera file, or move slowly), blur, moving objects, a wrong depth "
+    "unit.</li>"
+    "<li>&ldquo;not plausible&rdquo; or an arrow in the table: the parameter "
+    "compensates another error; keep it with --fix=.</li>"
+    "<li>too few pairs, or no parameter determined: record half a minute, turn "
+    "and move at the same time, with near and far objects in view.</li></ul>\n";
 
 std::string NoiseInWords(const CalibrationResult& result) {
   if (!result.noise.has_value()) return "";
   const DepthNoiseFit& noise = *result.noise;
   return Format(
-      "<p>Depth scatters by %.3g times what --depth_noise said%s.</p>\n",
+      "<p>Depth scatters by %.3g times the sigma of --depth_noise%s.</p>\n",
       noise.in_old_sigmas,
       noise.in_old_sigmas > kMuchNoise
-          ? ": <b>that is no noise of a sensor</b>; depth is in the "
-            "wrong place, so do not take depth_noise.yaml"
+          ? ": <b>too large for sensor noise</b>; depth is displaced, so do "
+            "not use depth_noise.yaml"
           : "");
 }
 
@@ -194,20 +194,21 @@ std::string CalibrationPage(const CalibrationResult& result,
   if (!result.is_accepted) text += kWhatNext;
   text += NoiseInWords(result);
   text += ParameterTable(result);
-  text += result.scale_from.empty()
-              ? "<p>Nothing gives depth a scale: images alone cannot.</p>\n"
-              : "<p>Depth has its scale from " + result.scale_from + ".</p>\n";
+  text +=
+      result.scale_from.empty()
+          ? "<p>The depth scale is unchanged: images do not contain it; give "
+            "a known length, ground truth or motion guess.</p>\n"
+          : "<p>Depth scale estimated from " + result.scale_from + ".</p>\n";
   if (result.held_out_pairs > 0) {
     const double change =
         100.0 * (result.cost_after / result.cost_before - 1.0);
     text += Format(
-        "<h2>Pairs that were held out</h2><p>%d pairs: the cost of a view %s "
-        "by %.2g %%, from %.4g to %.4g (%.1f standard deviations of the "
-        "difference).</p>\n",
+        "<h2>Held-out pairs</h2><p>%d pairs: the cost per view %s by %.2g %%, "
+        "from %.4g to %.4g (%.1f standard deviations of the difference).</p>\n",
         result.held_out_pairs, change > 0.0 ? "rises" : "falls",
         std::abs(change), result.cost_before, result.cost_after,
         std::abs(result.gain_sigmas));
-    text += "<p>And " + HalvesInWords(result) + ".</p>\n";
+    text += "<p>Check: " + HalvesInWords(result) + ".</p>\n";
     const double spread = std::max(0.5 * result.pixel_before, 1e-3);
     const double zoom = std::clamp(std::round(10.0 / spread), 1.0, 200.0);
     text += Picture(result, false, zoom) + Picture(result, true, zoom);

@@ -129,8 +129,8 @@ json Sequences(const std::string& tables_file, const std::string& paths_file) {
     json& sequence = sequences.back();
     if (rows.end - rows.begin != sequence.at("num_frames")) {
       throw InputError(paths_file + ": " + rows.loss +
-                       " has not as many rows as the path before; repeat the "
-                       "comparison");
+                       " has a different number of rows than the path before; "
+                       "repeat the comparison");
     }
     json path = PathColumns(numbers, rows, thinning);
     if (rows.loss == kTruthName) {

@@ -30,8 +30,8 @@ bool HasReportLibrary();
 
 // Printed instead of the file name if a page cannot be written.
 constexpr char kNoReportLibrary[] =
-    "no file: built without plotly.js, which scripts/install_dependencies "
-    "fetches";
+    "no file: built without plotly.js; run scripts/install_dependencies and "
+    "build again";
 
 // Data as JSON for embedding in a page; it cannot end an HTML element.
 std::string InlineData(const nlohmann::json& data);

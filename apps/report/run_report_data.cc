@@ -89,7 +89,7 @@ Trajectory TrackedPoses(const CsvTable& frames,
     throw InputError(trajectory_file + ": " +
                      std::to_string(trajectory.size()) + " poses, but " +
                      std::to_string(tracked) +
-                     " frames of frames.csv have one; repeat the run");
+                     " tracked frames in frames.csv; repeat the run");
   }
   return trajectory;
 }
@@ -193,7 +193,7 @@ json ParseJson(const std::string& file) {
   json value =
       json::parse(ReadTextFile(file), nullptr, /*allow_exceptions=*/false);
   if (!value.is_object()) {
-    throw InputError(file + ": is no JSON object; repeat the run");
+    throw InputError(file + ": is not a JSON object; repeat the run");
   }
   return value;
 }

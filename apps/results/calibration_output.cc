@@ -88,20 +88,20 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
   }
   if (!undetermined.empty()) {
     text += undetermined +
-            " stay as they are: the recording does not determine them, or "
-            "pairs held out fit no better with others\n";
+            " are unchanged: the recording does not determine them, or "
+            "held-out pairs fit no better with other values\n";
   }
   if (result.scale_from.empty()) {
     text +=
-        "nothing gives depth a scale (images alone cannot): depth_factor is "
-        "left alone\n";
+        "depth_factor is unchanged: images do not contain the depth scale; "
+        "give a known length, ground truth or motion guess to estimate it\n";
   } else {
-    text += "depth has its scale from " + result.scale_from + "\n";
+    text += "depth scale estimated from " + result.scale_from + "\n";
   }
   if (result.held_out_pairs > 0) {
     text += Format(
-        "%d pairs held out: cost of a view %.4g -> %.4g (%.1f standard "
-        "deviations); pixels spread by %.3g -> %.3g px\n",
+        "%d held-out pairs: cost per view %.4g -> %.4g (%.1f standard "
+        "deviations); spread of residuals %.3g -> %.3g px\n",
         result.held_out_pairs, result.cost_before, result.cost_after,
         result.gain_sigmas, 0.5 * result.pixel_before,
         0.5 * result.pixel_after);
@@ -110,18 +110,18 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
   if (result.noise.has_value()) {
     const DepthNoiseFit& noise = *result.noise;
     text += Format(
-        "noise of depth: sigma(z) = %.3g m + %.4g z^2 / m (+- %.2g, %.2g; %d "
-        "depths), %.3g of what --depth_noise said\n",
+        "depth noise: sigma(z) = %.3g m + %.4g z^2 / m (+- %.2g, %.2g; %d "
+        "depths), %.3g times that of --depth_noise\n",
         noise.model.constant, noise.model.quadratic, noise.constant_sigma,
         noise.quadratic_sigma, noise.samples, noise.in_old_sigmas);
     if (noise.in_old_sigmas > kMuchNoise) {
       text +=
-          "that is no noise of a sensor: depth is in the wrong place, so do "
-          "not take depth_noise.yaml\n";
+          "this is too large for sensor noise: depth is displaced; do not use "
+          "depth_noise.yaml\n";
     }
   }
   text += result.is_accepted
-              ? "the new camera is better: take camera.yaml\n"
+              ? "the new camera is better: use camera.yaml\n"
               : "the first camera is kept: " + result.reason + "\n";
   return text;
 }

@@ -123,10 +123,11 @@ std::string FormatLine(const char* what, const Consistency& c) {
 // Formats the wrong motions and the NEES of a run.
 std::string FormatConsistency(const RunConsistency& consistency) {
   const TruthNoise& noise = consistency.truth_noise;
-  return Format("\nAgainst covariances (sigma of the truth %g mm, %g deg)\n",
-                noise.translation * kMillimetresPerMetre,
-                noise.rotation * kDegreesPerRadian) +
-         Format("%-32s%12s%12s%12s%12s\n", "", "judged", "wrong", "NEES",
+  return Format(
+             "\nErrors and covariances (ground truth: sigma %g mm, %g deg)\n",
+             noise.translation * kMillimetresPerMetre,
+             noise.rotation * kDegreesPerRadian) +
+         Format("%-32s%12s%12s%12s%12s\n", "", "evaluated", "wrong", "NEES",
                 "median") +
          FormatLine(Format("frames, of %d ok", consistency.ok).c_str(),
                     consistency.ok_frames) +
@@ -195,7 +196,7 @@ std::string FormatEvaluation(const EvaluationReport& report) {
   text += Format("they span %.3f s and %.3f m of path.\n\n", report.duration,
                  report.path_length);
   text += FormatAte(Format(", %s", AteDefinition(report)), report.ate);
-  text += Format("  %-30s%12.4f  at %.5f times the size\n", "  with scale",
+  text += Format("  %-30s%12.4f  if scaled by %.5f\n", "  with scale",
                  kMillimetresPerMetre * report.sim3.residual_rmse,
                  report.sim3.truth_per_estimate);
   for (const RelativeEntry& entry : RelativeEntries(report)) {
@@ -271,13 +272,12 @@ json EvaluationToJson(const EvaluationReport& report) {
 std::string FormatTruthAlignment(const TruthAlignment& alignment,
                                  double rpe_delta_seconds) {
   const std::string head =
-      "\nTruth shifted in time and fixed to the camera again";
+      "\nBest time shift and camera pose of the ground truth";
   if (!alignment.skipped.empty()) {
     return head + ": not estimated; " + alignment.skipped + "\n";
   }
   const TruthFixing& fixing = alignment.fixing;
-  std::string text =
-      head + Format(", as fits best (%d motions)\n", alignment.motions);
+  std::string text = head + Format(" (%d motions)\n", alignment.motions);
   text +=
       Format("  %-30s  %16s\n", "time shift (ms)",
              FormatEstimate(fixing.shift, alignment.sigma[0], 1e3, 1).c_str());
@@ -290,8 +290,9 @@ std::string FormatTruthAlignment(const TruthAlignment& alignment,
     text += "  not determined by the motion: " + Join(alignment.undetermined) +
             "\n";
   }
-  return text + FormatAte(" there", alignment.ate) +
-         FormatRpe(Format(" there, fixed delta %g s", rpe_delta_seconds),
+  return text + FormatAte(", after this correction", alignment.ate) +
+         FormatRpe(Format(", after this correction, fixed delta %g s",
+                          rpe_delta_seconds),
                    alignment.rpe_seconds);
 }
 

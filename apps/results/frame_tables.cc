@@ -124,7 +124,7 @@ std::vector<TrackedFrame> ReadFrames(const std::filesystem::path& folder) {
       throw InputError((folder / "edges.csv").string() + ": the motion from " +
                        std::to_string(edge.ref) + " to " +
                        std::to_string(edge.cur) +
-                       " is none of the frames of frames.csv; repeat the run");
+                       " is not between frames of frames.csv; repeat the run");
     }
     frames[edge.cur].edges.push_back(edge);
   }

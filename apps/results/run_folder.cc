@@ -38,7 +38,7 @@ constexpr char kImages[] = "debug";
 [[noreturn]] void FailOnFolder(const fs::path& folder,
                                const std::error_code& error) {
   throw InputError("--output: " + folder.string() +
-                   " cannot be made or written to (" + error.message() + ")");
+                   " cannot be created or written (" + error.message() + ")");
 }
 
 // Removes the debug images that runs write, named by frame number (000123.png,
@@ -104,7 +104,7 @@ void RunFolder::Lock() {
     if (flock(lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
       close(lock_);
       throw InputError("--output: " + path_.string() +
-                       ": another rgbd_odometry writes its results here; wait "
+                       ": another program is writing its results here; wait "
                        "for it or choose another folder");
     }
   } while (!IsAt(lock_, staging_dir_));

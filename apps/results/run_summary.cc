@@ -103,16 +103,16 @@ std::string FormatSummary(const nlohmann::json& summary) {
   };
   return Format(
       "frames      %d, %.1f %% tracked (%d ok, %d degraded, %d lost)%s\n"
-      "references  %d, %d segment(s), %d frame(s) found again\n"
+      "references  %d, %d segment(s), %d frame(s) relocalised\n"
       "time        %.2f ms per frame median, %.2f ms 99th percentile, without "
       "decoding\n"
-      "            of it %.2f ms matching, %.3f ms pose solve; %.2f ms for a "
-      "new reference\n"
+      "            of which %.2f ms matching, %.3f ms pose solve; %.2f ms for "
+      "a new reference\n"
       "throughput  %.1f frames/s with decoding (%.2f ms per frame median), %d "
       "thread(s)\n",
       whole("frames"), 100.0 * number("tracked_share"), whole("ok"),
       whole("degraded"), whole("lost"),
-      whole("frames") == 1 ? "; one alone has no motion" : "",
+      whole("frames") == 1 ? "; a single frame has no motion" : "",
       whole("references"), whole("segments"), whole("relocalised"),
       number("track_ms_median"), number("track_ms_p99"),
       number("match_ms_median"), number("solve_ms_median"),

@@ -58,7 +58,7 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
 
 void LogWarnings(const RunResults& results) {
   if (!results.no_evaluation.empty()) {
-    LOG(WARNING) << "no errors: " << results.no_evaluation;
+    LOG(WARNING) << "no evaluation: " << results.no_evaluation;
   }
   const std::string warning = results.Warning();
   if (!warning.empty()) LOG(WARNING) << warning;
@@ -73,14 +73,15 @@ int ExitCodeOf(const std::string& program, const RunResults& results,
   }
   if (results.TrackedShare() < kMinTrackedShare) {
     std::fprintf(stderr,
-                 "%s: only %.1f %% of the frames were tracked; %s/frames.csv "
-                 "says why\n",
+                 "%s: only %.1f %% of the frames were tracked; see the reasons "
+                 "in %s/frames.csv\n",
                  program.c_str(), 100.0 * results.TrackedShare(),
                  folder.c_str());
     return kExitTrackingFailed;
   }
   if (!flaws.stopped.empty()) {
-    std::fprintf(stderr, "%s: stopped after %zu frames (%s); %s has them\n",
+    std::fprintf(stderr,
+                 "%s: stopped after %zu frames (%s); their results are in %s\n",
                  program.c_str(), results.frames.size(), flaws.stopped.c_str(),
                  folder.c_str());
     return kExitStopped;

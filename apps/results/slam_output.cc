@@ -161,7 +161,7 @@ nlohmann::json SlamToJson(const Slam& slam,
 std::string SlamWarning(const nlohmann::json& slam) {
   const int unsolved = slam.at("unsolved").get<int>();
   if (unsolved == 0) return "";
-  return Format("poses of the map were not solved for %d times, at last as: %s",
+  return Format("solving for the map's poses failed %d times; last reason: %s",
                 unsolved, slam.at("error").get<std::string>().c_str());
 }
 
@@ -182,7 +182,7 @@ std::string FormatSlamSummary(const nlohmann::json& slam) {
              slam.at("loops").get<int>(),
              slam.at("segments_joined").get<int>()) +
          Format(
-             "behind      %.2f ms a frame, %.1f ms a keyframe median; "
+             "mapping     %.2f ms per frame, %.1f ms per keyframe median; "
              "tracking waited %.1f ms at most\n",
              slam.at("map_ms_per_frame").get<double>(),
              slam.at("map_ms_per_keyframe").get<double>(),

@@ -39,8 +39,8 @@ CsvTable CsvTable::Read(const std::string& path) {
     if (table.rows_.back().size() == table.columns_.size()) continue;
     throw InputError(path + ":" + std::to_string(number) + ": " +
                      std::to_string(table.rows_.back().size()) +
-                     " cells under " + std::to_string(table.columns_.size()) +
-                     " column names; write the file again");
+                     " cells, but " + std::to_string(table.columns_.size()) +
+                     " column names; create the file again");
   }
   return table;
 }
@@ -52,7 +52,7 @@ bool CsvTable::Has(const std::string& column) const {
 std::vector<std::string> CsvTable::Words(const std::string& column) const {
   if (!Has(column)) {
     throw InputError(path_ + ":1: no column '" + column +
-                     "'; write the file again with this version");
+                     "'; create the file again with this version");
   }
   const size_t place =
       std::find(columns_.begin(), columns_.end(), column) - columns_.begin();

@@ -89,7 +89,7 @@ class FlagReader {
           word->find('\0') != std::string::npos) {
         const bool is_of_list =
             word != words.begin() && (word - 1)->back() == ',';
-        throw InputError(where + "'" + *word + "' is no flag; " +
+        throw InputError(where + "'" + *word + "' is not a flag; " +
                          (is_of_list ? "lists have no space after the comma"
                                      : "flags look like --name=value"));
       }
@@ -130,14 +130,14 @@ class FlagReader {
                   const std::string& where) {
     if (gflags::SetCommandLineOption(flag.name.c_str(), value.c_str())
             .empty()) {
-      throw InputError(where + "'" + value + "' is no " + flag.type +
+      throw InputError(where + "'" + value + "' is not a valid " + flag.type +
                        " for --" + flag.name);
     }
   }
 
   void ReadFile(const std::string& path) {
     if (++depth_ > kMaxDepth) {
-      throw InputError(path + ": flag files name each other in a circle");
+      throw InputError(path + ": flag files include each other in a loop");
     }
     const std::string content = ReadTextFile(path);
     std::string_view rest = WithoutByteOrderMark(content);

@@ -226,7 +226,7 @@ int AvailableCores() {
 
 int NumThreads(int flag) {
   if (flag < 0 || flag > kMaxThreads) {
-    throw InputError("--threads must be 0 (one a core) to " +
+    throw InputError("--threads must be 0 (one per core) to " +
                      std::to_string(kMaxThreads));
   }
   return flag > 0 ? flag : std::min(AvailableCores(), kMaxThreads);

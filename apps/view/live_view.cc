@@ -43,7 +43,7 @@ LiveView::LiveView(const std::string& dataset, const Camera& camera,
     throw InputError("--view_speed must not be negative");
   }
   if (FLAGS_view_port < 0 || FLAGS_view_port > 65535) {
-    throw InputError("--view_port: ports are 1 to 65535, 0 a free one");
+    throw InputError("--view_port must be 0 (any free port) to 65535");
   }
   if (!FLAGS_view) {
     if (FLAGS_view_speed > 0.0 || FLAGS_view_port > 0) {
@@ -70,7 +70,7 @@ std::string LiveView::Add(const Frame& frame, const StopSignal& signal) {
   state_.Add(std::move(news));
   KeepPace(tracked.timestamp, signal);
   WaitWhilePaused(signal);
-  return state_.is_stopped() ? "its page's stop button" : "";
+  return state_.is_stopped() ? "stop button of the live page" : "";
 }
 
 void LiveView::Finish(const std::string& results) {

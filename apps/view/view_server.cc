@@ -80,8 +80,8 @@ class ViewServer::Impl {
                                                 : -1;
     if (port_ <= 0) {
       throw InputError("--view_port=" + std::to_string(port) +
-                       ": cannot listen there; another program may do so "
-                       "(0: a free port)");
+                       ": cannot listen on this port; another program may use "
+                       "it (0: any free port)");
     }
     thread_ = std::thread([this] {
       server_.listen_after_bind();
@@ -113,7 +113,7 @@ class ViewServer::Impl {
           if (IsOurs(request))
             return httplib::Server::HandlerResponse::Unhandled;
           response.status = 403;
-          response.set_content("not for this host\n", "text/plain");
+          response.set_content("unknown host or origin\n", "text/plain");
           return httplib::Server::HandlerResponse::Handled;
         });
     server_.Get("/", [this](const Request&, Response& response) {
@@ -215,8 +215,8 @@ bool HasViewServer() { return false; }
 
 ViewServer::ViewServer(const std::string&, int, ViewState*) {
   throw InputError(
-      "--view: built without cpp-httplib, which serves the page "
-      "(libcpp-httplib-dev; scripts/install_dependencies)");
+      "--view: built without cpp-httplib; install libcpp-httplib-dev "
+      "(scripts/install_dependencies) and build again");
 }
 ViewServer::~ViewServer() = default;
 std::string ViewServer::address() const { return ""; }

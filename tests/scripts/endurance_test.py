@@ -53,7 +53,7 @@ def a_failure_is_said():
     (lost,) = problems(frames(status="lost"))
     assert "1 frames were lost" in lost
     (grown,) = problems(last_mb=116.0)
-    assert "100 MB at half time, then 116 MB, 10 MB of rows" in grown
+    assert "100 MB at half time, then 116 MB, including 10 MB of rows" in grown
     (ended,) = problems(code=3)
     assert "exit code 3" in ended
 

@@ -49,7 +49,7 @@ asked_by check | grep -qx librosbag-storage-dev || fail "bags go unchecked"
 
 ! "$work/scripts/install_dependencies" furniture 2>"$LOG" ||
   fail "took an unknown group"
-grep -q "no group 'furniture'; there are build, run, test" "$LOG" ||
+grep -q "unknown group 'furniture'; available: build, run, test" "$LOG" ||
   fail "does not say which groups there are"
 ! "$work/scripts/install_dependencies" 2>"$LOG" || fail "took no group"
 echo "ok"

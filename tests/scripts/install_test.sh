@@ -96,7 +96,7 @@ check "$work/costs/build/estimate_motion" '^ok'
 # Unknown components and versions are refused with a message.
 project lidar NONE REQUIRED COMPONENTS core lidar
 ! configure "$work/lidar" || fail "took an unknown component"
-says "no component 'lidar'; there are core, robust, costs, frontend," lidar
+says "unknown component 'lidar'; available: core, robust, costs, frontend," lidar
 project newer NONE 0.99 REQUIRED
 ! configure "$work/newer" || fail "took another version"
 says 'compatible with requested version "0.99"' newer

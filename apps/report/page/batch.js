@@ -9,14 +9,14 @@ const BATCH_SETTINGS = ['tracker', 'cost', 'loss', 'frontend'];
 const BATCH_FIGURES = [
   {key: 'ate_rmse_m', id: 'batch-ate', title: 'Position error (ATE, RMSE)',
    label: 'ATE', unit: 'mm', factor: 1000,
-   text: 'Distance of positions from the truth after turning and shifting the ' +
-         'whole path to fit best; its scale is kept.'},
+   text: 'Distance of positions from the ground truth after rigid alignment of the ' +
+         'whole path, without scale.'},
   {key: 'rpe_seconds_translation_m', id: 'batch-rpe',
-   title: 'Motion error over 1 s (RPE, RMSE)', label: 'RPE', unit: 'mm', factor: 1000,
-   text: 'Error of every motion that takes 1 s.'},
+   title: 'Translation error over 1 s (RPE, RMSE)', label: 'RPE', unit: 'mm', factor: 1000,
+   text: 'Translation error of all motions over 1 s.'},
   {key: 'rpe_seconds_rotation_deg', id: 'batch-turn',
-   title: 'Turn error over 1 s (RPE, RMSE)', label: 'RPE', unit: '°', factor: 1,
-   text: 'The same motions: by which angle their turn is off.'},
+   title: 'Rotation error over 1 s (RPE, RMSE)', label: 'RPE', unit: '°', factor: 1,
+   text: 'Rotation error of the same motions.'},
   {key: 'track_ms_median', id: 'batch-time', title: 'Time per frame', label: 'time',
    unit: 'ms', factor: 1,
    text: 'Median tracking time, without decoding.'},
@@ -60,7 +60,7 @@ function batchPlot(data, figure, sequences, settings, varied) {
   const rows = data.rows.filter(row => known(row[figure.key]));
   if (rows.length === 0) return;
   sequences = sequences.filter(name => rows.some(row => row.sequence === name));
-  const element = section(figure.title, figure.text + ' Logarithmic; less is better.');
+  const element = section(figure.title, figure.text + ' Logarithmic; lower is better.');
   const traces = settings.map((setting, k) => {
     const own = rows.filter(row => settingName(row, varied) === setting);
     // Offset within the row, which has a height of 1.
@@ -136,8 +136,8 @@ function partsTable(data, sequences, settings, varied) {
                  range(own, 'rpe_seconds_rotation_deg', 1)]);
     }
   }
-  section('Settings over parts', 'Median (least to most) of the parts of a sequence. ' +
-      'Settings whose ranges overlap cannot be ranked by it.').append(table(
+  section('Settings over parts', 'Median (minimum to maximum) over the parts of a ' +
+      'sequence. Settings whose ranges overlap cannot be ranked.').append(table(
       ['sequence', 'setting', {number: 'runs'}, {number: 'tracked (%)'},
        {number: 'ATE (mm)'}, {number: 'RPE over 1 s (mm)'},
        {number: 'RPE over 1 s (°)'}], rows, 'stack wide'));

@@ -5,8 +5,8 @@
 const COMPARED_ERRORS = [
   {key: 'distance_m', y: 'distance', unit: 'mm', factor: 1000},
   {key: 'angle_deg', y: 'angle', unit: '°', factor: 1},
-  {key: 'rpe_seconds_m', y: 'motion', unit: 'mm', factor: 1000},
-  {key: 'rpe_seconds_deg', y: 'turn', unit: '°', factor: 1},
+  {key: 'rpe_seconds_m', y: 'translation', unit: 'mm', factor: 1000},
+  {key: 'rpe_seconds_deg', y: 'rotation', unit: '°', factor: 1},
 ];
 
 const COMPARED_FIGURES = [
@@ -18,13 +18,12 @@ const COMPARED_FIGURES = [
 ];
 
 const DEFINITIONS = [
-  ['ATE', 'Distances of positions from the true ones after turning and shifting ' +
-      'the whole path to fit best, RMSE; its scale is kept.'],
-  ['RPE over 1 s', 'Error of every motion that takes 1 s, RMSE: how far its end is ' +
-      'off, and by which angle.'],
-  ['end', 'Last pose against the truth, both relative to the first.'],
-  ['distance, angle', 'From the true pose of the same moment, the first poses laid ' +
-      'on each other.'],
+  ['ATE', 'Distances of positions from the true ones after rigid alignment of the ' +
+      'whole path, without scale, RMSE.'],
+  ['RPE over 1 s', 'Translation and rotation errors of all motions over 1 s, RMSE.'],
+  ['end', 'Error of the last pose relative to the first.'],
+  ['distance, angle', 'From the true pose of the same time, with the first poses ' +
+      'aligned.'],
   ['tracked', 'Share of frames with a pose.'],
 ];
 
@@ -62,7 +61,7 @@ function comparisonTiles(sequence) {
         `smallest position error (ATE): loss ${ate[0].name}`));
     if (ate[1] !== ate[0]) {
       tiles.append(figureTile(digits(ate[1].figures.ate_mm, 3) + ' mm',
-          `greatest position error (ATE): loss ${ate[1].name}`));
+          `largest position error (ATE): loss ${ate[1].name}`));
     }
   }
   const tracked = extremes(sequence, 'tracked_share');
@@ -71,7 +70,7 @@ function comparisonTiles(sequence) {
     tiles.append(figureTile(digits(100 * least, 3) + ' %',
         least === tracked[1].figures.tracked_share
             ? 'of frames tracked, with every loss'
-            : `of frames tracked, the fewest: loss ${tracked[0].name}`));
+            : `of frames tracked, the minimum: loss ${tracked[0].name}`));
   }
   return tiles;
 }
@@ -79,10 +78,10 @@ function comparisonTiles(sequence) {
 function comparedPaths(sequence, prefix, parent) {
   const element = block(parent, 'Paths', (sequence.truth
       ? 'Positions of the camera in the world of the ground truth; the first pose ' +
-        'of every path is laid on the true one.'
-      : 'Positions of the camera as seen from the first one: X to its right, Y ' +
-        'down, Z ahead. There is no ground truth.') +
-      ' Equal units on all axes.' + LEGEND_HINT);
+        'of every path is aligned with the true one.'
+      : 'Positions of the camera relative to the first pose: X right, Y down, Z ' +
+        'forward. There is no ground truth.') +
+      ' Equal scales on all axes.' + LEGEND_HINT);
   const paths = sequence.truth ? [sequence.truth, ...sequence.losses]
                                : sequence.losses;
   const positions = {};
@@ -90,7 +89,7 @@ function comparedPaths(sequence, prefix, parent) {
     positions[name] = [].concat(...paths.map(path => path[name]));
   }
   if (!positions.x.some(known)) {
-    element.append(make('p', {}, 'No loss has a pose: every frame is lost.'));
+    element.append(make('p', {}, 'There are no poses: with every loss, all frames are lost.'));
     return;
   }
   const tracesOf = (axes, type, line) => {
@@ -122,10 +121,10 @@ function comparedErrors(sequence, prefix, parent) {
       error => sequence.losses.some(loss => loss[error.key].some(v => v > 0)));
   if (shown.length === 0) return;
   const element = block(parent, 'Errors over time',
-      'Logarithmic. Distance and angle from the truth, the first poses laid on each ' +
-      'other' + (shown.some(error => error.key.startsWith('rpe'))
-          ? '; motion and turn: errors of the motion over the second that starts at ' +
-            'that time, unaffected by earlier drift.' : '.') +
+      'Logarithmic. Distance and angle from the ground truth, with the first poses ' +
+      'aligned' + (shown.some(error => error.key.startsWith('rpe'))
+          ? '; translation and rotation: errors of the motion over the following ' +
+            'second, unaffected by earlier drift.' : '.') +
       (sequence.every > 1 ? ` Every point is the largest of ${sequence.every} frames.`
                           : '') + LEGEND_HINT);
   const end = largest(sequence.t) || 1;
@@ -187,9 +186,9 @@ function comparedTables(data, sequence, prefix, parent) {
       {number: known(value) ? value.toFixed(decimals) : 'n/a'});
   const returns = setting(data, 'experiment') === 'pan_tilt';
   if (returns || !sequence.truth) {
-    block(parent, 'Last pose seen from the first', returns
+    block(parent, 'Last pose relative to the first', returns
         ? 'The path ends where it starts: all should be 0, as in the thesis\' Tables ' +
-          '4.4-4.6.' : 'In the thesis\' parameters.').append(
+          '4.4-4.6.' : 'In the parameters of the thesis.').append(
         table(['loss', ...['alpha (°)', 'beta (°)', 'gamma (°)', 'Cx (mm)', 'Cy (mm)',
                            'Cz (mm)', 'tracked (%)'].map(text => ({number: text}))],
             sequence.losses.map(({name, figures: f}) => [
@@ -199,7 +198,7 @@ function comparedTables(data, sequence, prefix, parent) {
   }
   if (!sequence.truth) return;
   const element = block(parent, 'Errors along the path',
-      'As in the thesis\' Tables 4.7 and 4.8. Logarithmic; less is better.');
+      'As in the thesis\' Tables 4.7 and 4.8. Logarithmic; lower is better.');
   comparedFigures(sequence, prefix, element);
   element.append(table(
       ['loss', {number: 'ATE (mm)'}, {number: 'RPE over 1 s (mm)'}, {number: 'RPE over 1 s (°)'},

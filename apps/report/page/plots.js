@@ -217,7 +217,7 @@ function setting(data, name) {
 }
 
 function settings(data, program) {
-  const element = section('Settings', 'What produced this; to repeat it:');
+  const element = section('Settings', 'All flags of the run. To repeat it:');
   element.append(make('pre', {}, program + ' --flagfile=config.flags'));
   const columns = make('div', {class: 'columns'});
   for (const [title, flags] of data.settings) {

@@ -17,12 +17,12 @@ function shutterInWords(data) {
   if (all.every(ms => ms === 0)) return '';
   const ms = value => digits(value, 2).replace('-', '−');
   return `Times: depth is stamped ${ms(stamps.least)} to ${ms(stamps.most)} ms after ` +
-      `colour (median ${ms(stamps.median)} ms). The camera exposes its middle row ` +
-      `${ms(color.offset_ms)} ms after the stamp in colour and ${ms(depth.offset_ms)} ms ` +
-      `in depth, and all rows within ${ms(color.readout_ms)} and ` +
-      `${ms(depth.readout_ms)} ms. ` +
-      (setting(data, 'shutter') === 'none' ? 'None of it was undone (--shutter=none).'
-          : 'All is moved to the stamp of colour.');
+      `colour (median ${ms(stamps.median)} ms). The middle row is exposed ` +
+      `${ms(color.offset_ms)} ms (colour) and ${ms(depth.offset_ms)} ms (depth) after ` +
+      `the time stamp; the readout takes ${ms(color.readout_ms)} ms (colour) and ` +
+      `${ms(depth.readout_ms)} ms (depth). ` +
+      (setting(data, 'shutter') === 'none' ? 'Nothing was compensated (--shutter=none).'
+          : 'All is compensated to the time stamp of colour.');
 }
 
 function header(data) {
@@ -48,14 +48,14 @@ function header(data) {
   }
   if (evaluation && evaluation.rpe_seconds.translation_m) {
     add(digits(evaluation.rpe_seconds.translation_m.rmse * 1000, 3) + ' mm',
-        'motion error over 1\u00a0s (RPE, RMSE)');
+        'translation error over 1\u00a0s (RPE, RMSE)');
     add(digits(evaluation.rpe_seconds.rotation_deg.rmse, 3) + '°',
-        'turn error over 1\u00a0s (RPE, RMSE)');
+        'rotation error over 1\u00a0s (RPE, RMSE)');
   }
   add(digits(100 * run.tracked_share, 3) + ' %',
       `of frames tracked (${run.ok} ok, ${run.degraded} degraded, ${run.lost} lost)`);
   const segments = mapSegments(data.metrics.slam) || run.segments;
-  if (segments > 1) add(String(segments), 'segments; what joins them is unknown');
+  if (segments > 1) add(String(segments), 'segments; their relative poses are unknown');
   const jumps = data.metrics.jumps || [];
   if (jumps.length > 0) {
     add(digits(1000 * jumps[0].translation_m, 2) + ' mm',
@@ -64,15 +64,15 @@ function header(data) {
   if (evaluation && known(evaluation.with_scale.truth_per_estimate)) {
     const percent = 100 * (1 / evaluation.with_scale.truth_per_estimate - 1);
     add((percent < 0 ? '−' : '+') + digits(Math.abs(percent), 2) + ' %',
-        'size of the path against the truth');
+        'scale error of the path against the ground truth');
   }
-  add(digits(run.track_ms_median, 3) + ' ms', 'tracking a frame, median');
+  add(digits(run.track_ms_median, 3) + ' ms', 'tracking per frame, median');
   add(digits(run.frames_per_second, 3),
       `frames/s with decoding, ${run.threads} thread${run.threads === 1 ? '' : 's'}`);
   for (const [key, text] of [
     ['damaged_frames', 'damaged frames, left out'],
     ['unmatched_color', 'colour images without depth, left out'],
-    ['dropped_frames', 'frames left out: they came faster than they were tracked'],
+    ['dropped_frames', 'frames left out because tracking was too slow'],
   ]) {
     if (data.metrics[key]) add(String(data.metrics[key]), text);
   }
@@ -104,71 +104,70 @@ function metrics(data) {
       definition,
     ];
     const relative = (key, span, words) => (e[key] ? [
-      row(`RPE over ${span}: motion (mm)`, e[key].translation_m, 1000,
-          `Error of every motion ${words}: how far its end is off, seen from its ` +
-          'start.'),
-      row(`RPE over ${span}: turn (°)`, e[key].rotation_deg, 1,
-          `The same motions: by which angle their turn is off.`),
+      row(`RPE over ${span}: translation (mm)`, e[key].translation_m, 1000,
+          `Translation error of all motions ${words}.`),
+      row(`RPE over ${span}: rotation (°)`, e[key].rotation_deg, 1,
+          'Rotation error of the same motions.'),
     ] : []);
     const rows = [
       row('ATE: position (mm)', e.ate.position_m, 1000,
-          'Distance of each estimated position from the true one, after turning ' +
-          'and shifting the whole path to fit best; its scale is kept.'),
+          'Distance of each estimated position from the true one after rigid ' +
+          'alignment of the whole path, without scale.'),
       ...relative('rpe_frame', '1 frame', 'from one frame to the next'),
       ...relative('rpe_seconds', `${e.rpe_seconds.delta} s`,
-          `that takes ${e.rpe_seconds.delta} s`),
+          `over ${e.rpe_seconds.delta} s`),
       ...relative('rpe_metres', `${e.rpe_metres.delta} m`,
-          `along ${e.rpe_metres.delta} m of the true path`),
+          `over ${e.rpe_metres.delta} m of the true path`),
     ];
     element.append(table(['', {number: 'RMSE'}, {number: 'median'}, {number: '90 %'},
                           {number: '99 %'}, {number: 'max'}, 'what it is'], rows, 'stack'));
     element.append(make('p', {},
-        `With another scale the path fits best at ` +
-        `${digits(e.with_scale.truth_per_estimate, 4)} times its size; the ATE is ` +
-        `${digits(e.with_scale.position_rmse_m * 1000, 3)} mm then. More than 1 % off ` +
-        'points to the unit of depth (--depth_scale) or the focal length.'));
+        `With a free scale the path fits best if scaled by ` +
+        `${digits(e.with_scale.truth_per_estimate, 4)}; the ATE is then ` +
+        `${digits(e.with_scale.position_rmse_m * 1000, 3)} mm. A deviation of more than ` +
+        '1 % indicates a wrong depth scale (--depth_scale) or focal length.'));
     if (e.final_pose) {
       element.append(make('p', {},
-          `Last pose against the truth, both relative to the first: ` +
+          `Error of the last pose relative to the first: ` +
           `${digits(e.final_pose.translation_m * 1000, 3)} mm and ` +
           `${digits(e.final_pose.rotation_deg, 3)}°.`));
     }
     if (e.consistency) {
       const frames = e.consistency.ok_frames;
       element.append(make('p', {},
-          `Of ${frames.count} frames that are ok and could be judged ${frames.wrong} ` +
-          'are wrong: off by more than five sigmas of their own covariance. Squared ' +
-          `errors are ${frames.count ? digits(frames.nees, 3) : 'n/a'} times what ` +
-          'covariances say, in the mean (NEES).'));
+          `Of ${frames.count} evaluated frames with status ok, ${frames.wrong} are ` +
+          'wrong: their error exceeds five sigmas of their own covariance. Squared ' +
+          `errors are on average ${frames.count ? digits(frames.nees, 3) : 'n/a'} times ` +
+          'those that the covariances predict (NEES).'));
     }
-    element.append(make('h3', {}, 'Of the run'));
+    element.append(make('h3', {}, 'Run'));
   }
   const rows = [
     ['tracked frames', digits(100 * run.tracked_share, 4) + ' %',
-     'Frames with a pose: ok or degraded. Degraded: from few or contradicting matches.'],
+     'Frames with a pose: ok or degraded. Degraded: from few or contradictory matches.'],
     ['new references', String(run.references),
-     'Frames that others were then tracked against.'],
-    ['found again', String(run.relocalised),
-     'Frames whose place was found among earlier references after being lost.'],
+     'Frames that were used as reference frames for tracking.'],
+    ['relocalised', String(run.relocalised),
+     'Frames found among earlier reference frames after tracking was lost.'],
     ['matches', digits(run.matches_median, 3), 'Median number in a frame.'],
-    ['in agreement', digits(100 * run.inlier_share_median, 3) + ' %',
+    ['inliers', digits(100 * run.inlier_share_median, 3) + ' %',
      'Median share of matches whose residual lies within 99 % of the noise.'],
     ['tracking', digits(run.track_ms_median, 3) + ' ms',
      `Median per frame without decoding; 99 of 100 frames take less than ` +
      `${digits(run.track_ms_p99, 3)} ms.`],
     ['matching', digits(run.match_ms_median, 3) + ' ms',
-     'Part of tracking, median: finding features again, choosing pixels.'],
+     'Part of tracking, median: matching features, selecting pixels.'],
     ['pose solve', digits(run.solve_ms_median, 3) + ' ms',
-     'Part of tracking, median: every solve of the frame, from features and from ' +
-     'pixels, with its steps, weights and covariance.'],
+     'Part of tracking, median: all solves of a frame, from features and from ' +
+     'pixels, with their iterations, weights and covariance.'],
     ['new reference', digits(run.reference_ms_median, 3) + ' ms',
-     'Median of the frames that became one.'],
+     'Median of the frames that became a reference frame.'],
     ['decoding', digits(run.decode_ms_median, 3) + ' ms',
      'Reading the two images of a frame, median.'],
     ['throughput', digits(run.frames_per_second, 3) + ' frames/s',
-     `Of the whole program: ${digits(run.wall_seconds, 3)} s with ${run.threads} ` +
+     `Whole program: ${digits(run.wall_seconds, 3)} s with ${run.threads} ` +
      `thread${run.threads === 1 ? '' : 's'}.`],
-    ['memory', digits(data.metrics.peak_rss_mb, 3) + ' MB', 'The most at any time.'],
+    ['memory', digits(data.metrics.peak_rss_mb, 3) + ' MB', 'Peak memory usage.'],
   ];
   element.append(table(['', {number: ''}, 'what it is'],
       rows.map(([name, value, text]) => [

@@ -29,7 +29,7 @@ function cloudTraces(data) {
   if (!cloud || cloud.points === 0) return [];
   const {x, y, z, colors} = previewPoints(cloud);
   return [{
-    type: 'scatter3d', mode: 'markers', name: 'what was seen', hoverinfo: 'skip',
+    type: 'scatter3d', mode: 'markers', name: 'point cloud', hoverinfo: 'skip',
     x, y, z, marker: {size: 2, color: colors},
   }];
 }
@@ -41,7 +41,7 @@ function meshTraces(data) {
   const corners = wordsOf(mesh.corners);
   const at = k => corners.filter((_, i) => i % 3 === k);
   return [{
-    type: 'mesh3d', name: 'what was seen', hoverinfo: 'skip', showlegend: true,
+    type: 'mesh3d', name: 'mesh', hoverinfo: 'skip', showlegend: true,
     x, y, z, i: at(0), j: at(1), k: at(2), vertexcolor: colors,
     // The vertex colours already include lighting.
     lighting: {ambient: 1, diffuse: 0, specular: 0, fresnel: 0},
@@ -60,15 +60,15 @@ function seenNote(data, element) {
       make('p', {class: 'soft caption screen', id: 'cloud-note'}, text));
   const all = data.metrics.cloud;
   if (data.mesh) {
-    note(`What was seen: ${number(data.mesh.triangles)} triangles of the mesh ` +
-         `${data.mesh.file}, which has ${number(data.mesh.all_triangles)}, from ` +
+    note(`Mesh: ${number(data.mesh.triangles)} of the ` +
+         `${number(data.mesh.all_triangles)} triangles of ${data.mesh.file}, from ` +
          `${frames(data.mesh.frames)}. A click on its name hides it.`);
   } else if (all) {
     note(data.cloud
-        ? `What was seen: ${number(data.cloud.points)} of the ` +
+        ? `Point cloud: ${number(data.cloud.points)} of the ` +
           `${number(all.points)} points of ${setting(data, 'save_cloud')}, from ` +
           `${frames(all.frames)}. A click on its name hides it.`
-        : 'The points of what was seen are not shown: this run has no ' +
-          'cloud_preview.json; repeat it with this version.');
+        : 'The point cloud is not shown: this run has no cloud_preview.json; ' +
+          'repeat it with this version.');
   }
 }

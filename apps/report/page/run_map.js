@@ -54,10 +54,10 @@ function mapTraces(slam, before, after, move, [a, b]) {
   const traces = [];
   if (before) {
     traces.push(Object.assign(put(before), {
-      mode: 'lines', name: 'path of the odometry',
+      mode: 'lines', name: 'odometry path',
       line: {color: COLOR.grey, width: 2, dash: 'dot'}}));
     traces.push(Object.assign(put(after), {
-      mode: 'lines', name: 'path at the end',
+      mode: 'lines', name: 'final path',
       line: {color: COLOR.grey, width: 2}}));
   }
   const keyframes = slam.graph_keyframes;
@@ -95,16 +95,16 @@ function map(data) {
   const joined = slam.segments_joined
       ? `, ${number(slam.segments_joined, 'segment')} joined to others` : '';
   const gone = slam.keyframes_dropped
-      ? ` (${slam.keyframes_dropped} more removed in favour of those that see the same)` : '';
+      ? ` (${slam.keyframes_dropped} more removed because others see the same)` : '';
   const element = section('Map',
       'Keyframes and the motions measured between them, seen from above: ' +
       `${number(slam.keyframes, 'keyframe')}${gone}, ` +
       `${number(slam.tracked_pairs + slam.pairs, 'pair')}, of these ` +
       `${slam.loops} closing loops${joined}. ` +
-      (slam.unsolved ? `Its poses were not solved for ${number(slam.unsolved, 'time')}, ` +
-          `at last as: ${slam.error || 'unknown'}. ` : '') +
-      (mapSegments(slam) > 1 ? 'How segments lie to each other is unknown. ' : '') +
-      'Equal units on both axes; a click on a name hides it.');
+      (slam.unsolved ? `Solving for the poses failed ${number(slam.unsolved, 'time')}; ` +
+          `last reason: ${slam.error || 'unknown'}. ` : '') +
+      (mapSegments(slam) > 1 ? 'The relative poses of the segments are unknown. ' : '') +
+      'Equal scales on both axes; a click on a name hides it.');
   const move = truthFromMap(data), axes = levelAxes(data);
   const before = data.odometry_path && pointsOf(data.odometry_path.before);
   const after = data.odometry_path && pointsOf(data.odometry_path.after);
@@ -119,8 +119,8 @@ function map(data) {
   if (!before) return;
   const unit = lengthUnit(largestDistance(before, after));
   element.append(make('p', {class: 'soft caption'},
-      'What the map has corrected: the path at the end is up to ' +
-      `${digits(largestDistance(before, after) * unit.factor, 3)} ${unit.name} from that ` +
-      'of the odometry, both from the same first pose.' + (data.metrics.run.lost
-          ? ' How the camera moved while it was lost the odometry does not know.' : '')));
+      'Correction by the map: the final path is up to ' +
+      `${digits(largestDistance(before, after) * unit.factor, 3)} ${unit.name} from the ` +
+      'odometry path, which starts at the same pose.' + (data.metrics.run.lost
+          ? ' The odometry does not know how the camera moved while it was lost.' : '')));
 }

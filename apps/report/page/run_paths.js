@@ -130,12 +130,12 @@ function pathViews(element, prefix, sizes, positions, down, tracesOf) {
   element.append(screen);
   if (!hasWebGl()) {
     screen.append(make('p', {class: 'soft'},
-        'The view in 3D needs WebGL, which this browser does not offer.'));
+        'The 3D view needs WebGL, which this browser does not support.'));
     return;
   }
-  screen.append(make('h3', {}, 'In 3D'), make('p', {class: 'soft'},
-      'Drag to turn, scroll or pinch to zoom. In the other plots a mouse zooms by '
-      + 'dragging; a double click goes back.'));
+  screen.append(make('h3', {}, '3D view'), make('p', {class: 'soft'},
+      'Drag to rotate, scroll or pinch to zoom. In the other plots, drag with the mouse '
+      + 'to zoom and double-click to reset.'));
   const traces = tracesOf(['x', 'y', 'z'], 'scatter3d', {width: 4});
   const {ranges, ratio} = sceneBox(traces);
   const axis3 = name => ({
@@ -168,9 +168,9 @@ function pathViews(element, prefix, sizes, positions, down, tracesOf) {
 function paths(data) {
   const element = section('Path', data.path.true_x
       ? 'Positions of the camera in the world of the ground truth, the estimate ' +
-        'after the rigid alignment (no scale). Equal units on all axes.'
-      : 'Positions of the camera as seen from the first one: X to its right, Y ' +
-        'down, Z ahead. There is no ground truth. Equal units on all axes.');
+        'after rigid alignment (no scale). Equal scales on all axes.'
+      : 'Positions of the camera relative to the first pose: X right, Y down, Z ' +
+        'forward. There is no ground truth. Equal scales on all axes.');
   const positions = {};
   for (const name of ['x', 'y', 'z']) {
     positions[name] = data.path[name].concat(data.path['true_' + name] || []);

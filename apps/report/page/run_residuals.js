@@ -17,8 +17,8 @@ function residuals(data) {
   const percent = count => digits(100 * count / r.matches, 2) + ' %';
   const element = section('Residuals and robust weights',
       `The ${r.matches.toLocaleString('en')} matches of all tracked frames, each ` +
-      'at the motion that was found. The norm of a whitened residual counts in ' +
-      'sigmas of the noise model.');
+      'at the estimated motion. The norm of a whitened residual is in sigmas of the ' +
+      'noise model.');
   const density = r.norm_counts.map(c => c / (r.matches * r.norm_bin));
   const end = r.norm_counts.length * r.norm_bin;
   const chi = {x: [], y: []};
@@ -33,7 +33,7 @@ function residuals(data) {
     {type: 'scatter', mode: 'lines', name: 'matches', x: filled.x, y: filled.y,
      fill: 'tozeroy', fillcolor: 'rgba(86,180,233,0.55)', hoverinfo: 'skip',
      line: {color: COLOR.blue, width: 1}},
-    {type: 'scatter', mode: 'lines', name: 'expected of right matches (chi)',
+    {type: 'scatter', mode: 'lines', name: 'expected for correct matches (chi)',
      x: chi.x, y: chi.y, line: {color: COLOR.black, width: 2, dash: 'dash'},
      hoverinfo: 'skip'},
   ];
@@ -55,7 +55,7 @@ function residuals(data) {
                       yref: 'paper', y0: 0, y1: 1,
                       line: {color: COLOR.grey, width: 1, dash: 'dash'}}];
     layout.annotations.push({
-      text: 'in agreement up to here', showarrow: false, x: loss.limit, xref: 'x',
+      text: 'inliers up to here', showarrow: false, x: loss.limit, xref: 'x',
       xanchor: 'left', xshift: 4, y: 1, yref: 'paper', yanchor: 'top',
       font: {color: '#57606a'}});
   }
@@ -64,7 +64,7 @@ function residuals(data) {
   if (loss && loss.width !== null) {
     text += ` The width of ${loss.name} is ${digits(loss.width, 3)} sigmas` +
         (setting(data, 'scale') === 'fixed' ? '.'
-            : ', times the scale that is estimated in each frame.');
+            : ', multiplied by the scale estimated in each frame.');
   }
   element.append(make('p', {class: 'soft caption'}, text));
 
@@ -80,6 +80,6 @@ function residuals(data) {
     yaxis: axis('share of the matches (%)', {rangemode: 'tozero'}),
   });
   element.append(make('p', {class: 'soft caption'},
-      `${percent(r.weights_zero)} of the matches have weight 0: the estimate does ` +
-      'not hear them at all.'));
+      `${percent(r.weights_zero)} of the matches have weight 0: the estimate ` +
+      'ignores them.'));
 }

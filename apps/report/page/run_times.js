@@ -12,15 +12,15 @@ const STAGES = [
   {key: 'match_ms', name: 'matching', color: COLOR.blue},
   {key: 'solve_ms', name: 'pose solve', color: COLOR.orange},
   {key: 'reference_ms', name: 'new reference', color: COLOR.green},
-  {key: 'relocalise_ms', name: 'search when lost', color: COLOR.purple},
+  {key: 'relocalise_ms', name: 'relocalisation', color: COLOR.purple},
   {key: 'other_ms', name: 'other tracking', color: COLOR.grey},
 ];
 
 const TIME_AXIS = 'time since the first frame (s)';
 
 const PER_POINT = data => (data.every > 1
-    ? ` Every point stands for ${data.every} frames: times and errors are the` +
-      ' largest of them.' : '');
+    ? ` Every point stands for ${data.every} frames: times and errors are their` +
+      ' maximum.' : '');
 
 // Grey bands where frames have no pose.
 function lostBands(data) {
@@ -55,12 +55,12 @@ function errors(data) {
   const evaluation = data.metrics.evaluation;
   const lost = data.incidents.some(i => i.status === 'lost');
   const element = section('Error over time',
-      'Above: how far each position is from the truth after the alignment. ' +
-      'Below: the error of the motion over the second that starts at that time, ' +
-      'unaffected by earlier drift. Dashed: root mean square (RMSE).' + PER_POINT(data) +
+      'Top: distance of each position from the ground truth after alignment. ' +
+      'Below: error of the motion over the following second, unaffected by earlier ' +
+      'drift. Dashed: root mean square (RMSE).' + PER_POINT(data) +
       (lost ? ' Grey: lost, no pose.' : '') +
-      ' Where a line is broken there is no truth within ' +
-      `${evaluation.max_time_difference_s} s, at the time or a second later.` +
+      ' Gaps: no ground truth within ' +
+      `${evaluation.max_time_difference_s} s of that time or of a second later.` +
       ((data.metrics.jumps || []).length ? ' Dotted: a jump.' : ''));
   const rmse = (statistics, factor, unit) => (statistics
       ? `, RMSE ${digits(statistics.rmse * factor, 3)} ${unit}` : ': n/a');
@@ -79,13 +79,13 @@ function errors(data) {
       `position (${position.name})`, COLOR.blue, '.3~g')];
   if (relative.translation_m) {
     rows.push(
-        {title: 'Motion over 1 s' + rmse(relative.translation_m, rpe.factor, rpe.name),
+        {title: 'Translation over 1 s' + rmse(relative.translation_m, rpe.factor, rpe.name),
          y: rpe.name},
-        {title: 'Turn over 1 s' + rmse(relative.rotation_deg, 1, '°'), y: 'degrees'});
+        {title: 'Rotation over 1 s' + rmse(relative.rotation_deg, 1, '°'), y: 'degrees'});
     traces.push(
         lineTrace(data, scaled(data.errors.rpe_m, rpe.factor), '2',
-            `motion (${rpe.name})`, COLOR.vermillion, '.3~g'),
-        lineTrace(data, data.errors.rpe_deg, '3', 'turn (°)', COLOR.purple, '.3~g'));
+            `translation (${rpe.name})`, COLOR.vermillion, '.3~g'),
+        lineTrace(data, data.errors.rpe_deg, '3', 'rotation (°)', COLOR.purple, '.3~g'));
     levels.push(level(relative.translation_m.rmse * rpe.factor, '2'),
         level(relative.rotation_deg.rmse, '3'));
   }
@@ -97,17 +97,17 @@ function errors(data) {
 function tracking(data) {
   const frames = data.frames;
   const element = section('Tracking',
-      'Status of every frame; how many matches were found against the reference ' +
-      'frame and how many of them agree with one motion; and sigma, the spread of ' +
-      'whitened residuals: 1 means that the noise model fits. Frames tracked by ' +
-      'pixels alone have points of their own: they count pixels, not features. The ' +
-      'first frame has nothing to be tracked against.' + PER_POINT(data));
+      'Status of every frame; number of matches with the reference frame, and of ' +
+      'inliers, which agree with the estimated motion; sigma, the spread of whitened ' +
+      'residuals: 1 means that the noise model fits. Frames tracked by pixels alone ' +
+      'are shown separately: they count pixels, not features. The first frame has no ' +
+      'reference frame.' + PER_POINT(data));
   const rows = [
-    {title: 'Status, and new references', y: '', weight: 0.8,
+    {title: 'Status and new references', y: '', weight: 0.8,
      axis: {range: [-1.6, 2.6], tickvals: [2, 1, 0, -1], showgrid: false,
             ticktext: [...STATUS.map(s => s.name), 'reference']}},
     {title: key(COLOR.sky) + 'features matched   ' + key(COLOR.blue) +
-         'in agreement', y: 'features'},
+         'inliers', y: 'features'},
     {title: 'Sigma, ideally 1 (dashed)', y: 'sigma', weight: 0.8},
   ];
   const traces = STATUS.map((status, code) => ({
@@ -129,13 +129,13 @@ function tracking(data) {
   const last = pixelRow ? '4' : '3';
   traces.push(
       lineTrace(data, byFeatures(frames.matches), '2', 'features matched', COLOR.sky, 'd'),
-      lineTrace(data, byFeatures(frames.inliers), '2', 'in agreement', COLOR.blue, 'd'));
+      lineTrace(data, byFeatures(frames.inliers), '2', 'inliers', COLOR.blue, 'd'));
   if (pixelRow) {
     rows.splice(2, 0, {title: key(COLOR.orange) + 'pixels compared   ' +
-        key(COLOR.vermillion) + 'in agreement', y: 'pixels', weight: 0.8});
+        key(COLOR.vermillion) + 'inliers', y: 'pixels', weight: 0.8});
     for (const [values, name, color] of [
       [frames.matches, 'pixels compared', COLOR.orange],
-      [frames.inliers, 'in agreement', COLOR.vermillion],
+      [frames.inliers, 'inliers', COLOR.vermillion],
     ]) {
       traces.push(lineTrace(data, byPixels(values), '3', name, color, 'd',
           {mode: 'markers', marker: {color, size: 4}}));
@@ -155,14 +155,14 @@ function jumpTable(data, element) {
   const jumps = data.metrics.jumps || [];
   if (jumps.length === 0) return;
   element.append(make('h3', {}, 'Jumps'), make('p', {class: 'soft'},
-      'Frames whose motion differs most from the mean of the motions before and ' +
-      'after, by more than 10 mm and six times what is usual here. Of few matches or ' +
-      'at a large sigma it is an error; of a camera that was pushed it is not. To see ' +
-      'what the largest of them was tracked by:'),
+      'Frames whose motion differs from the mean of the previous and the next motion ' +
+      'by more than 10 mm and six times the median difference, largest first. With few ' +
+      'matches or a large sigma, a jump is an error; if the camera was pushed, it is ' +
+      'not. To see the matches of the largest jumps:'),
       make('pre', {}, `${data.metrics.program} --flagfile=config.flags ` +
           `--debug_images=${jumps.slice(0, 3).map(jump => jump.frame).join(',')}`),
-      table([{number: 'frame no.'}, {number: 'time (s)'}, {number: 'off by (mm)'},
-             'tracked by', {number: 'in agreement'}, {number: 'sigma'}, 'status'],
+      table([{number: 'frame no.'}, {number: 'time (s)'}, {number: 'difference (mm)'},
+             'tracked by', {number: 'inliers'}, {number: 'sigma'}, 'status'],
           jumps.map(jump => [
             {number: String(jump.frame)}, {number: jump.seconds.toFixed(2)},
             {number: digits(1000 * jump.translation_m, 2)},
@@ -180,7 +180,7 @@ function incidents(data, element) {
   const shown = data.incidents.slice(0, 20);
   element.append(make('h3', {}, 'Frames that are not ok'));
   element.append(table(
-      [{number: 'from (s)'}, {number: 'to (s)'}, {number: 'frame no.'}, 'status', 'why'],
+      [{number: 'from (s)'}, {number: 'to (s)'}, {number: 'frame no.'}, 'status', 'reason'],
       shown.map(i => [
         {number: i.from_s.toFixed(2)}, {number: i.to_s.toFixed(2)},
         {number: i.first === i.last ? String(i.first) : `${i.first}–${i.last}`},
@@ -189,16 +189,16 @@ function incidents(data, element) {
   const rest = data.incidents.length - shown.length;
   if (rest > 0) {
     element.append(make('p', {class: 'soft'},
-        `${rest} further stretch${rest === 1 ? '' : 'es'} in frames.csv.`));
+        `${rest} further interval${rest === 1 ? '' : 's'} in frames.csv.`));
   }
 }
 
 function times(data) {
   const frames = data.frames;
   const element = section('Time per frame',
-      'Above: where the time of tracking goes, stacked; "pose solve" is every solve of ' +
-      'the frame, from features and from pixels, with weights and covariance. Below: ' +
-      'decoding of the images, which may run on other threads meanwhile.' +
+      'Top: tracking time by stage, stacked; "pose solve" is all solves of a frame, ' +
+      'from features and from pixels, with weights and covariance. Bottom: decoding ' +
+      'of the images, which may run in other threads at the same time.' +
       PER_POINT(data));
   const other = frames.track_ms.map((all, i) => Math.max(0, all - STAGES.slice(0, 4)
       .reduce((sum, stage) => sum + (frames[stage.key][i] || 0), 0)));

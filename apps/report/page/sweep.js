@@ -3,12 +3,12 @@
 // The page of a sweep: all M-estimators on matches with a share of wrong ones.
 
 const SWEEP_METHODS = [
-  {schedule: 'gnc', ransac: false, name: 'graduated (gnc), from no motion'},
+  {schedule: 'gnc', ransac: false, name: 'graduated (gnc), from identity'},
   {schedule: 'gnc', ransac: true, name: 'graduated (gnc), from RANSAC'},
   {schedule: 'direct', ransac: false,
-   name: 'at their widths at once (direct), from no motion'},
+   name: 'final width from the start (direct), from identity'},
   {schedule: 'direct', ransac: true,
-   name: 'at their widths at once (direct), from RANSAC'},
+   name: 'final width from the start (direct), from RANSAC'},
 ];
 
 const SWEEP_ERRORS = [
@@ -19,14 +19,14 @@ const SWEEP_ERRORS = [
 ];
 
 const SWEEP_DEFINITIONS = [
-  ['error', 'Of the estimated motion against the true one; the median of all trials at ' +
-      'a share of wrong matches.'],
-  ['band', 'Holds the median of all possible trials in 95 of 100 sweeps, by order ' +
-      'statistics; it assumes nothing on how errors are spread.'],
-  ['wrong matches', 'Point anywhere at random; those that agree with each other are ' +
-      'not tried.'],
+  ['error', 'Of the estimated motion compared with the true one; the median of all ' +
+      'trials at a share of wrong matches.'],
+  ['band', '95 % confidence interval of the median from order statistics; it makes no ' +
+      'assumption about the distribution of errors.'],
+  ['wrong matches', 'Random points; wrong matches that agree with each other are not ' +
+      'tested.'],
   ['graduated (gnc)', 'The loss is wide at first and narrowed step by step.'],
-  ['from RANSAC', 'The solver starts at what RANSAC found, else at no motion.'],
+  ['from', 'Initial guess of the solver: the result of RANSAC or the identity (no motion).'],
 ];
 
 function sweepHeader(data) {
@@ -98,9 +98,9 @@ function sweepTable(data, chosen) {
 function showSweep(data) {
   sweepHeader(data);
   const element = section('Errors over the share of wrong matches',
-      'Medians with their 95 % bands, logarithmic; the losses are' +
-      ' treated as chosen here.' + LEGEND_HINT);
-  const select = make('select', {id: 'method', 'aria-label': 'how losses are treated'},
+      'Medians with their 95 % bands, logarithmic, for the schedule and the initial' +
+      ' guess selected here.' + LEGEND_HINT);
+  const select = make('select', {id: 'method', 'aria-label': 'schedule and initial guess'},
       ...SWEEP_METHODS.map((method, i) => make('option', {value: i}, method.name)));
   element.append(select);
   element.classList.add('long');

@@ -16,7 +16,7 @@ byId('title').textContent = title;
 document.title = `${title} - rgbd_pose live`;
 byId('scene-legend').append(...[
   [SCENE.path[0], 'path'], ['#e6edf3', 'keyframes'], ['#8c98a5', 'pairs'],
-  [SCENE.loop, 'loops'], [`rgb(${SCENE.ghost})`, 'path before a loop closed'],
+  [SCENE.loop, 'loops'], [`rgb(${SCENE.ghost})`, 'path before a loop closure'],
 ].map(([color, text]) => make('span', {},
     make('i', {style: `background:${color}; box-shadow: 0 0 0 1px rgba(27,31,36,.25)`}), text)));
 
@@ -33,7 +33,7 @@ function showStatus() {
       || `${frame.reason}.`;
   if (!ended) say(frame.status, words);
   if (!ended && stopping) say('stopping', 'Results are being written.');
-  if (!ended && paused) say('paused', 'Frames wait. Resume goes on where it was.');
+  if (!ended && paused) say('paused', 'Press Resume to continue with the next frame.');
   const recent = map.frames.slice(-30);
   const median = values => quantileOf(values, 0.5);
   const agree = frame.matches ? Math.round(100 * frame.inliers / frame.matches) : 0;
@@ -42,10 +42,10 @@ function showStatus() {
           `frames, ${(frame.t - map.frames[0].t).toFixed(1)} s of recording`),
       figureTile(`${digits(median(recent.map(f => f.ms)), 2)} ms`,
           'to track a frame, median of the last 30'),
-      figureTile(String(frame.matches), `matches, ${agree} % of them agree`),
+      figureTile(String(frame.matches), `matches, ${agree} % of them inliers`),
       figureTile(digits(frame.sigma, 2), 'sigma of the residuals; ideally 1'),
       figureTile(String(map.keyframes.size), `keyframes, ${map.links.length} pairs`),
-      figureTile(String(map.loops), `pairs that closed loops`));
+      figureTile(String(map.loops), 'loop closures'));
 }
 
 function log(event) {
@@ -113,7 +113,7 @@ source.addEventListener('open', () => {
   byId('log').replaceChildren();
 });
 source.onerror = () => {
-  if (!ended) say('gone', 'The program does not answer: it has ended, or this machine is busy.');
+  if (!ended) say('gone', 'The program does not respond: it has ended or is busy.');
 };
 
 function press(path) {

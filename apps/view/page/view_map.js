@@ -54,7 +54,7 @@ class RunMap {
       const [a, b] = closed[0];
       happened.push({
         kind: 'loop', frame: b, before,
-        text: `A loop closed: keyframe ${b} sees what keyframe ${a} saw`
+        text: `Loop closed: keyframe ${b} sees the same place as keyframe ${a}`
             + `${closed.length > 1 ? ` (${closed.length} pairs)` : ''}. The path moved by `
             + `up to ${digits(moved * lengthUnit(moved).factor, 2)} ${lengthUnit(moved).name}.`,
       });
@@ -73,7 +73,7 @@ class RunMap {
     const was = last ? last.status : 'ok';
     if (frame.status === was) return [];
     const number = this.frames.length - 1;
-    const text = frame.status === 'ok' ? 'Tracked well again.'
+    const text = frame.status === 'ok' ? 'Tracking is ok again.'
         : (frame.status === 'lost' ? 'Lost: ' : 'Degraded: ') + frame.reason + '.';
     return [{kind: frame.status, frame: number, text}];
   }

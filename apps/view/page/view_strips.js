@@ -22,8 +22,8 @@ class Strips {
     const left = 12, right = width - 12;
     const begin = frames[0].t, end = Math.max(frames[frames.length - 1].t, begin + 1);
     this.x = t => left + (right - left) * (t - begin) / (end - begin);
-    this.strip(frames, 24, 74, 'Tracking, ms a frame', frame => frame.ms, COLOR.blue);
-    this.strip(frames, 104, 154, 'Matches that agree, %',
+    this.strip(frames, 24, 74, 'Tracking, ms per frame', frame => frame.ms, COLOR.blue);
+    this.strip(frames, 104, 154, 'Inliers, % of matches',
         frame => (frame.matches ? 100 * frame.inliers / frame.matches : null),
         COLOR.purple, 100);
     // Draw worse statuses last and wider, to keep them visible.

@@ -81,7 +81,7 @@ TEST(ComparePathsTest, WithoutTruthTheWorldIsThatOfTheRuns) {
   EXPECT_FALSE(paths[0].poses[2].distance.has_value());
   const std::string svg = PathFigure("path", paths);
   EXPECT_THAT(svg, Not(HasSubstr("nan")));
-  EXPECT_THAT(svg, Not(HasSubstr("Distance from the truth")));
+  EXPECT_THAT(svg, Not(HasSubstr("Distance from the ground truth")));
 }
 
 TEST(ComparePathsTest, RowsLeaveUnknownCellsEmpty) {

@@ -54,7 +54,7 @@ TEST(SweepVerdictTest, RansacThatChangesNothing) {
                                  "share."));
   EXPECT_THAT(verdict,
               HasSubstr("direct schedule a start from RANSAC changes"));
-  EXPECT_THAT(verdict, HasSubstr("bands of the medians meet): tukey."));
+  EXPECT_THAT(verdict, HasSubstr("bands of the medians overlap): tukey."));
 }
 
 // The verdict names only shares at which RANSAC matters, in either direction.
@@ -77,7 +77,7 @@ TEST(SweepVerdictTest, RansacThatHelpsAtSomeShares) {
                         "and raises the median beyond the bands for welsch (3 "
                         "mm instead of 1 mm at 50 %)."));
   EXPECT_THAT(verdict,
-              HasSubstr("The error of none is 8 times as great at 0 %, "
+              HasSubstr("The error of none is 8 times as large at 0 %, "
                         "8 times at 30 % and 8 times at 60 %."));
 }
 
@@ -88,18 +88,18 @@ TEST(SweepVerdictTest, LevelMeansThatBandsMeetFromEitherSide) {
   for (int i = 0; i < kSweepShares; ++i) {
     SetError({"welsch", "gnc", false}, i, 1.1, &cells);
   }
-  EXPECT_THAT(SweepVerdict(cells), HasSubstr("meet): welsch."));
+  EXPECT_THAT(SweepVerdict(cells), HasSubstr("overlap): welsch."));
   SetError({"welsch", "gnc", false}, 2, 0.6, &cells);
   const std::string verdict = SweepVerdict(cells);
   EXPECT_THAT(verdict, HasSubstr("tukey has the smallest"));
   EXPECT_THAT(verdict,
-              HasSubstr("No other loss is level with it at every share."));
+              HasSubstr("No other loss is equally good at every share."));
 }
 
 TEST(SweepVerdictTest, OneLossHasNoRivals) {
   const std::string verdict = SweepVerdict(LevelCells({"tukey"}));
   EXPECT_THAT(verdict, Not(HasSubstr("other loss")));
-  EXPECT_THAT(verdict, Not(HasSubstr("Level with it")));
+  EXPECT_THAT(verdict, Not(HasSubstr("Equally good")));
 }
 
 TEST(SweepCsvTest, IsReadAsItWasWritten) {
@@ -120,7 +120,7 @@ TEST(SweepCsvTest, AnIncompleteFileIsRefused) {
   cells.pop_back();
   const std::string file = folder.Write("sweep.csv", SweepCsv(cells));
   ExpectInputError([&] { ReadSweepCsv(file); },
-                   {file, "not all shares of none, direct, RANSAC"});
+                   {file, "missing shares of none, direct, RANSAC"});
   folder.Write("sweep.csv", SweepCsv({}));
   ExpectInputError([&] { ReadSweepCsv(file); }, {file, "no rows"});
 }

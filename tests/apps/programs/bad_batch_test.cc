@@ -30,17 +30,17 @@ TEST_F(BadInputTest, BatchLists) {
            kList + ":1: no such folder: {seq}/no*"},
           {"a file", List("rgb.txt\n"), "", 2, kList + ":1: no such folder"},
           {"twice", List("../seq\n../seq\n"), "", 2,
-           kList + ":2: a second sequence with the name 'seq', as of line 1"},
+           kList + ":2: sequence name 'seq' is already used in line 1"},
           {"three columns", List(". tum_fr1 x\n"), "", 2,
            kList + ":1: needs one or two columns (folder camera), has 3"},
           {"no camera", List(". none.yaml\n"), "", 2,
-           kList + ":1: no camera: {seq}/none.yaml is no file"},
+           kList + ":1: no camera: {seq}/none.yaml is not a file"},
           {"a name that begins with a dot",
            [](const Seq& s) {
              fs::create_directory(s / ".hidden");
              s.Write("list.txt", ".hidden tum_fr1\n");
            },
-           "", 2, kList + ":1: '.hidden' cannot name a sequence"},
+           "", 2, kList + ":1: '.hidden' is not a valid name"},
       });
 }
 
@@ -50,12 +50,12 @@ TEST_F(BadInputTest, BatchFlags) {
       kBadBatch,
       {
           {"cost", list, "--costs=magic", 2,
-           "--costs: unknown name 'magic'; there are"},
+           "--costs: unknown name 'magic'; available: "},
           {"loss", list, "--losses=tukey,", 2, "--losses: unknown loss ''"},
           {"no width", list, "'--losses=huber(1),huber()'", 2,
            "--losses: loss 'huber()': the width must be"},
           {"a loss twice", list, "--losses=tukey,tukey", 2,
-           "--losses: 'tukey' comes twice"},
+           "--losses: 'tukey' appears twice"},
           {"frontend", list, "--frontends=magic", 2, "--frontends: unknown"},
           {"no repeats", list, "--repeats=0", 2,
            "--repeats must be 1 to 10000"},
@@ -70,14 +70,14 @@ TEST_F(BadInputTest, BatchFlags) {
           {"negative shard", list, "--shard=-1/2", 2, "--shard=-1/2: must be"},
           {"no shard", list, "--shard=half", 2, "--shard=half: must be i/n"},
           {"merge and resume", list, "--merge --resume", 2,
-           "--merge runs nothing: no --shard or --resume with it"},
-          {"merge and shard", list, "--merge --shard=0/2", 2, "--merge runs"},
+           "--merge cannot be combined with --shard or --resume"},
+          {"merge and shard", list, "--merge --shard=0/2", 2, "--merge cannot"},
           {"no settings", list, "--settings={seq}/none", 2,
            "{seq}/none: cannot be opened"},
           {"no program", list, "--program={seq}/none", 2,
-           "{seq}/none: no program that can be run"},
+           "{seq}/none: not an executable program"},
           {"a program that cannot be run", list, "--program={seq}/rgb.txt", 2,
-           "{seq}/rgb.txt: no program that can be run"},
+           "{seq}/rgb.txt: not an executable program"},
       });
 }
 
@@ -99,7 +99,7 @@ TEST_F(BadInputTest, BatchRuns) {
     folder_.Write(kRun + "done.json", content);
     const RunResult refused = call("");
     EXPECT_EQ(refused.exit_code, 2);
-    EXPECT_THAT(refused.err, testing::HasSubstr("already holds runs"));
+    EXPECT_THAT(refused.err, testing::HasSubstr("already contains runs"));
     EXPECT_EQ(call("--merge").exit_code, 4);
     const RunResult resumed = call("--resume");
     EXPECT_EQ(resumed.exit_code, 0) << resumed.err;

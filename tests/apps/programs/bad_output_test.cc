@@ -30,11 +30,11 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
       Odometry(),
       {
           {"below a file", file, "--output={seq}/file/out", 2,
-           "--output: {seq}/file/out cannot be made"},
+           "--output: {seq}/file/out cannot be created"},
           {"a file", file, "--output={seq}/file", 2,
-           "--output: {seq}/file cannot be made"},
+           "--output: {seq}/file cannot be created"},
           {"where none can be made", nullptr, "--output=/proc/none", 2,
-           "--output: /proc/none cannot be made"},
+           "--output: /proc/none cannot be created"},
           {"the cloud's folder is missing", nullptr,
            "--save_cloud={seq}/none/cloud.ply", 2,
            "{seq}/none/cloud.ply: cannot be written (No such file"},
@@ -53,14 +53,14 @@ TEST_F(BadInputTest, OutputsThatCannotBe) {
            RGBD_SIMULATE " --frames=2 --output={seq}", 2,
            "{seq}: already exists and is not an empty folder"},
           {"compare: below a file", file, kSweep + "--output={seq}/file/out", 2,
-           "--output={seq}/file/out: cannot be made (Not a directory)"},
+           "--output={seq}/file/out: cannot be created (Not a directory)"},
           {"batch: below a file",
            [](const Seq& s) {
              s.Write("file", "mine");
              s.Write("list", ".\n");
            },
            RGBD_BATCH " --sequences={seq}/list --output={seq}/file/out", 2,
-           "--output={seq}/file/out: cannot be made (Not a directory)"},
+           "--output={seq}/file/out: cannot be created (Not a directory)"},
           {"evaluate: below a file", file,
            kBadEvaluation + "--aligned={seq}/file/aligned.txt", 2,
            "{seq}/file/aligned.txt: cannot be written (Not a directory)"},
@@ -175,7 +175,7 @@ TEST_F(BadInputTest, OneRunAtATimeWritesToAFolder) {
   ASSERT_EQ(flock(lock, LOCK_EX), 0);
   const RunResult refused = RunCommand(call, folder_);
   EXPECT_EQ(refused.exit_code, 2);
-  EXPECT_THAT(refused.err, HasSubstr("another rgbd_odometry writes its"));
+  EXPECT_THAT(refused.err, HasSubstr("another program is writing its"));
   EXPECT_TRUE(fs::exists(folder_ / (staging_dir + "metrics.json")));
   close(lock);
   EXPECT_EQ(RunCommand(call, folder_).exit_code, 0);

@@ -335,7 +335,7 @@ TEST_F(BadInputTest, GroundTruth) {
           {"of another time", Text("groundtruth.txt", "5 0 0 0 0 0 0 1\n"), "",
            2, "(5.000000 s to 5.000000 s)"},
           {"says how to go without it", truth("1001 0"), "", 2,
-           "--groundtruth=none goes without it"},
+           "--groundtruth=none to run without it"},
           {"named but missing", nullptr, "--groundtruth={seq}/none.txt", 2,
            "{seq}/none.txt: cannot be opened"},
           {"a guess of motion that is broken", Text("guess.txt", "1 2\n"),

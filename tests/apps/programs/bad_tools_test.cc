@@ -30,19 +30,19 @@ TEST_F(BadInputTest, Evaluate) {
            "--groundtruth is needed"},
           {"unknown flag", same, "--estimates=x", 2, "unknown flag --estimat"},
           {"no flag", same, "{seq}/estimate.txt", 2,
-           "'{seq}/estimate.txt' is no flag"},
+           "'{seq}/estimate.txt' is not a flag"},
           {"no number", same, "--max_time_difference=soon", 2,
-           "'soon' is no double for --max_time_difference"},
+           "'soon' is not a valid double for --max_time_difference"},
           {"no number of frames", same, "--rpe_frames=1,", 2,
-           "--rpe_frames=1,: '' is no number of frames"},
+           "--rpe_frames=1,: '' is not a number of frames"},
           {"no frames", same, "--rpe_frames=0", 2,
-           "'0' is no number of frames"},
+           "'0' is not a number of frames"},
           {"a trajectory and a run", same, "--run={seq}", 2,
-           "--run has its own trajectory"},
+           "--run contains a trajectory"},
           {"no run", same, "--estimate= --run={seq}/none", 2,
            "{seq}/none/trajectory.txt: cannot be opened"},
           {"a truth better than exact", same, "--truth_sigma_degrees=-1", 2,
-           "sigmas of the truth must not be negative"},
+           "sigmas of the ground truth must not be negative"},
           {"missing", nullptr, "", 2, "{seq}/estimate.txt: cannot be opened"},
           {"the truth is missing", same, "--groundtruth={seq}/none.txt", 2,
            "{seq}/none.txt: cannot be opened"},
@@ -84,7 +84,7 @@ TEST_F(BadInputTest, Simulate) {
           {"far too many frames", nullptr, "--frames=2000000000", 2,
            "has 1 to 1000000 frames, not 2000000000"},
           {"negative seed", nullptr, "--seed=-1", 2,
-           "'-1' is no uint32 for --seed"},
+           "'-1' is not a valid uint32 for --seed"},
           {"negative exposure", nullptr, "--exposure=-1", 2,
            "the shutter time of a"},
           {"an exposure that is no number", nullptr, "--exposure=nan", 2,
@@ -144,7 +144,7 @@ TEST_F(BadInputTest, Compare) {
           {"unknown loss", nullptr, "--experiment=xyz --losses=tuckey", 2,
            "--losses: unknown loss 'tuckey'"},
           {"a loss twice", nullptr, "--experiment=xyz --losses=tukey,tukey", 2,
-           "--losses: 'tukey' is there twice"},
+           "--losses: 'tukey' appears twice"},
           {"only a comma", nullptr, "--experiment=xyz --losses=,", 2,
            "--losses: unknown loss ''"},
           {"unknown cost", nullptr, "--experiment=sweep --cost=magic", 2,
@@ -192,7 +192,7 @@ TEST_F(BadInputTest, Report) {
       RGBD_REPORT " ",
       {
           {"nothing named", nullptr, "", 1, "--run is needed"},
-          {"both", nullptr, "--run=a --batch=b", 2, "one at a time"},
+          {"both", nullptr, "--run=a --batch=b", 2, "give only one of --run"},
           {"no folder", nullptr, "--run={seq}/none", 2,
            "{seq}/none/frames.csv: cannot be opened"},
           {"no batch", nullptr, "--batch={seq}", 2,
@@ -201,11 +201,11 @@ TEST_F(BadInputTest, Report) {
            "{seq}/summary.csv:1: no column 'sequence'"},
           {"a table of too few columns",
            TextFile("summary.csv", "sequence,cost\na\n"), "--batch={seq}", 2,
-           "{seq}/summary.csv:2: 1 cells under 2 column names"},
+           "{seq}/summary.csv:2: 1 cells, but 2 column names"},
           {"no metrics", run("metrics.json", "", ""), "--run={seq}", 2,
            "{seq}/metrics.json: cannot be opened"},
           {"metrics that are no JSON", run("metrics.json", "{", ""),
-           "--run={seq}", 2, "{seq}/metrics.json: is no JSON object"},
+           "--run={seq}", 2, "{seq}/metrics.json: is not a JSON object"},
           {"words for figures",
            run("metrics.json", kCounts, kCounts + "\"a\","), "--run={seq}", 2,
            "{seq}/metrics.json: no list of numbers at /residuals/degrees_cou"},
@@ -262,7 +262,7 @@ TEST_F(BadInputTest, Export) {
           {"frames that have no pose", RunAnd([](const Seq& s) {
              s.Write("frames.csv", "timestamp,status,segment\n0,ok,0\n");
            }),
-           "", 2, "4 poses, but 1 frames of frames.csv have one"},
+           "", 2, "4 poses, but 1 tracked frames in frames.csv"},
           {"all lost", RunAnd([](const Seq& s) {
              s.Write("frames.csv", "timestamp,status,segment\n0,lost,0\n");
            }),
@@ -270,7 +270,7 @@ TEST_F(BadInputTest, Export) {
           {"the recording is gone", RunAnd([](const Seq& s) {
              s.Replace("config.flags", s.path, "/nowhere");
            }),
-           "", 2, "/nowhere, is not there; --dataset says where it is"},
+           "", 2, "/nowhere, does not exist; give its location with --dataset"},
           {"images are gone", RunAnd([](const Seq& s) { s.Remove("rgb"); }), "",
            2, "{seq}/rgb"},
           {"of another recording", RunAnd([](const Seq& s) {
@@ -278,7 +278,7 @@ TEST_F(BadInputTest, Export) {
                      "1 0 0 0 0 0 0 1\n2 0 0 0 0 0 0 1\n3 0 0 0 0 0 0 1\n"
                      "4 0 0 0 0 0 0 1\n");
            }),
-           "", 2, "the recording has no frame of the time 1.000000 s"},
+           "", 2, "the recording has no frame at 1.000000 s"},
           {"an image is cut off", RunAnd([](const Seq& s) {
              for (const auto& file :
                   std::filesystem::directory_iterator(s / "rgb")) {
@@ -302,9 +302,9 @@ TEST_F(BadInputTest, Export) {
           {"no points", LeaveRun, "--max_points=1", 2,
            "--max_points must be 8 or more"},
           {"a folder that is not empty", LeaveRun, "--output={seq}", 2,
-           "{seq} is there and not empty; --overwrite replaces it"},
+           "{seq} is not empty; use --overwrite to replace it"},
           {"a folder of others", LeaveRun, "--output={seq} --overwrite", 2,
-           "{seq} holds other things"},
+           "{seq} contains other files"},
           {"a file for a folder", LeaveRun, "--output={seq}/rgb.txt", 2,
            "{seq}/rgb.txt is a file; a folder is needed"},
           {"all is well", LeaveRun, "", 0, ""},

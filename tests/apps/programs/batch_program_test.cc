@@ -158,7 +158,7 @@ TEST_F(BatchProgramTest, ProgramsBesideItHaveNames) {
       Run(kBatch + " --sequences=" + (folder_ / "list.txt") +
           " --program=rgbd_none --output=" + (folder_ / "none"));
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_THAT(none.err, HasSubstr("rgbd_none: no program that can be run"));
+  EXPECT_THAT(none.err, HasSubstr("rgbd_none: not an executable program"));
 }
 
 TEST_F(BatchProgramTest, RunsThePlanAndWhatIsMissingOfItLater) {
@@ -289,7 +289,7 @@ TEST_F(BatchProgramTest, OnlyOneWorksOnAFolder) {
           "; echo exit $?; kill -9 $pid; " + other + " >&2; echo exit $?)");
   EXPECT_EQ(run.out, "exit 2\nexit 0\n") << run.err;
   EXPECT_EQ(CountLines(ReadTextFile(errors)), 1);
-  EXPECT_THAT(ReadTextFile(errors), HasSubstr("held by another rgbd_batch"));
+  EXPECT_THAT(ReadTextFile(errors), HasSubstr("locked by another rgbd_batch"));
 }
 
 TEST_F(BatchProgramTest, ShardsMergeToTheSummaryOfOneBatch) {

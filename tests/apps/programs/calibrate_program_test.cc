@@ -118,7 +118,7 @@ TEST_F(BadInputTest, OfCalibrations) {
           "--output={dir}/out ",
       {
           {"a part that is not there", nullptr, "--fix=size", 2,
-           "fix: there is no parameter 'size'; there are focal, centre"},
+           "fix: unknown parameter 'size'; available: focal, centre"},
           {"a length without times", nullptr, "--known_length=1.5", 2,
            "known_length: must be T0,T1,METRES, not '1.5'"},
           {"a share that is none", nullptr, "--determined_share=2", 2,

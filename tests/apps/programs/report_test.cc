@@ -186,8 +186,8 @@ TEST_F(ReportTest, TheCloudIsShownBesideThePath) {
   EXPECT_EQ(Console(browser), "");
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
   EXPECT_EQ(Occurrences(browser.out, " js-plotly-plot\""), 8);
-  EXPECT_THAT(browser.out, HasSubstr("What was seen: "));
-  EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));  // the legend
+  EXPECT_THAT(browser.out, HasSubstr(">Point cloud: "));
+  EXPECT_THAT(browser.out, HasSubstr(">point cloud</text>"));  // the legend
 }
 
 TEST_F(ReportTest, TheMeshIsShownBesideThePathUntilTheNextRun) {
@@ -200,8 +200,8 @@ TEST_F(ReportTest, TheMeshIsShownBesideThePathUntilTheNextRun) {
     const RunResult browser = Browse("--window-size=1280,4000 --dump-dom");
     EXPECT_EQ(Console(browser), "");
     EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
-    EXPECT_THAT(browser.out, HasSubstr(" triangles of the mesh "));
-    EXPECT_THAT(browser.out, HasSubstr(">what was seen</text>"));
+    EXPECT_THAT(browser.out, HasSubstr(">Mesh: "));
+    EXPECT_THAT(browser.out, HasSubstr(">mesh</text>"));
   }
   // Adding the mesh later gives the same page.
   const RunResult later =
@@ -240,15 +240,15 @@ TEST_F(ReportTest, TheMapOfARunIsShown) {
   EXPECT_THAT(browser.out, HasSubstr("data-done=\"true\""));
   EXPECT_EQ(Occurrences(browser.out, "<div id=\"map\""), 1);
   EXPECT_THAT(browser.out, HasSubstr("3 keyframes (1 more removed"));
-  EXPECT_THAT(browser.out, HasSubstr("2 times, at last as: pose 3 is not"));
+  EXPECT_THAT(browser.out, HasSubstr("2 times; last reason: pose 3 is not"));
   for (const std::string name :
-       {"path of the odometry", "path at the end", "tracked pairs (2)",
-        "loops (1)", "removed (1)", "keyframes (3)"}) {
+       {"odometry path", "final path", "tracked pairs (2)", "loops (1)",
+        "removed (1)", "keyframes (3)"}) {
     EXPECT_EQ(Occurrences(browser.out, ">" + name + "</text>"), 1) << name;
   }
   EXPECT_EQ(Occurrences(browser.out, "further pairs"),
             1);  // only in the script
-  EXPECT_THAT(browser.out, HasSubstr("up to 0 mm from that of the odometry"));
+  EXPECT_THAT(browser.out, HasSubstr("up to 0 mm from the odometry path"));
   EXPECT_THAT(browser.out, HasSubstr("rgbd_slam --flagfile=config.flags"));
 
   write("{}");  // nothing to draw

@@ -182,7 +182,7 @@ def watch_a_run(folder, browser, picture):
     page.wait_for('what follows', lambda: page.frames() > held)
 
     page.wait_for('a loop', lambda: int(page.data('loops') or 0) > 0)
-    page.wait_for('words on it', lambda: 'A loop closed' in page.text('notice'))
+    page.wait_for('words on it', lambda: 'Loop closed' in page.text('notice'))
     if picture:
         time.sleep(0.4)
         page.picture(picture)
@@ -212,7 +212,7 @@ def stop_a_run(folder, browser):
     page.wait_for('the end', lambda: page.data('ended') == 'true')
     said = run.communicate()[1]
     check(run.returncode == 6, 'exit code', run.returncode)
-    check("its page's stop button" in said, said)
+    check('stop button of the live page' in said, said)
     kept = poses(read(folder, 'stopped', 'trajectory.txt'))
     whole = poses(read(folder, 'unseen', 'trajectory_online.txt'))
     check(3 < len(kept) < len(whole), len(kept), 'poses of', len(whole))

@@ -78,7 +78,7 @@ TEST(CompareReportDataTest, FilesThatDoNotFitAreRefused) {
                                 "s,truth,1,,,,,,,,,,,\ns,truth,2,,,,,,,,,,,\n"
                                 "s,tukey,1,,,,,,,,,,,\n");
   ExpectInputError([&] { CompareReportData(folder.path()); },
-                   {"paths.csv: tukey has not as many rows"});
+                   {"paths.csv: tukey has a different number"});
   // A sweep does not need these files.
   folder.Write("config.flags", "# Experiment\n--experiment=sweep\n");
   ExpectInputError([&] { CompareReportData(folder.path()); }, {"sweep.csv"});

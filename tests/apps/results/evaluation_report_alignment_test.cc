@@ -30,8 +30,7 @@ TEST(TruthAlignmentReportTest, TableHasEstimatesWithTheirErrors) {
   EXPECT_EQ(
       FormatTruthAlignment(SomeAlignment(), 1.0),
       "\n"
-      "Truth shifted in time and fixed to the camera again, as fits best (753 "
-      "motions)\n"
+      "Best time shift and camera pose of the ground truth (753 motions)\n"
       "  time shift (ms)                      -7.5 +- 0.4\n"
       "  rotation x, y, z (deg)              1.50 +- 0.12      0.00 +- 0.12    "
       " "
@@ -42,10 +41,10 @@ TEST(TruthAlignmentReportTest, TableHasEstimatesWithTheirErrors) {
       "  not determined by the motion: lever along (0.00, 0.00, 1.00)\n"
       "                                        RMSE      median        mean"
       "         max\n"
-      "ATE there (790 poses)\n"
+      "ATE, after this correction (790 poses)\n"
       "  position (mm)                     250.0000    125.0000    200.0000"
       "   1500.0000\n"
-      "RPE there, fixed delta 1 s (751 pairs)\n"
+      "RPE, after this correction, fixed delta 1 s (751 pairs)\n"
       "  translation (mm)                 1500.0000   1300.0000   1400.0000"
       "   1600.0000\n"
       "  rotation (deg)                         n/a\n");
@@ -72,7 +71,7 @@ TEST(TruthAlignmentReportTest, OneLineWhereThereIsNone) {
   TruthAlignment alignment;
   alignment.skipped = "too short";
   EXPECT_EQ(FormatTruthAlignment(alignment, 1.0),
-            "\nTruth shifted in time and fixed to the camera again: not "
+            "\nBest time shift and camera pose of the ground truth: not "
             "estimated; too short\n");
   const nlohmann::json json = TruthAlignmentToJson(alignment, 1.0);
   EXPECT_EQ(json.at("skipped"), "too short");

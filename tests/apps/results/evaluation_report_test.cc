@@ -45,8 +45,7 @@ TEST(EvaluationReportTest, TableSaysWhatIsMeasuredAndHow) {
       "ATE, rigid alignment, no scale (400 poses)\n"
       "  position (mm)                     250.0000    125.0000    200.0000"
       "   1500.0000\n"
-      "    with scale                      120.0000  at 1.02000 times the "
-      "size\n"
+      "    with scale                      120.0000  if scaled by 1.02000\n"
       "RPE, fixed delta 1 frame, consecutive poses (399 pairs)\n"
       "  translation (mm)                  500.0000    300.0000    400.0000"
       "    600.0000\n"
@@ -75,15 +74,15 @@ TEST(EvaluationReportTest, TableSaysWhatIsMeasuredAndHow) {
       "  translation (mm)                 1300.0000   1450.0000   1550.0000\n"
       "  rotation (deg)                     45.0000      0.0000      0.0000\n"
       "\n"
-      "Against covariances (sigma of the truth 2 mm, 0.2 deg)\n"
-      "                                      judged       wrong        NEES"
+      "Errors and covariances (ground truth: sigma 2 mm, 0.2 deg)\n"
+      "                                   evaluated       wrong        NEES"
       "      median\n"
       "  frames, of 380 ok                      370           2        1.25"
       "        0.88\n"
       "  all motions                            375           3        1.50"
       "        0.75\n"
       "\n"
-      "Truth shifted in time and fixed to the camera again: not estimated; too "
+      "Best time shift and camera pose of the ground truth: not estimated; too "
       "short\n");
 }
 

@@ -246,7 +246,7 @@ TEST(SlamWarningTest, SaysHowOftenPosesWereNotSolvedForAndWhy) {
   frames[0].error = "a";
   frames[1].error = "pose 3 is not finite";
   EXPECT_EQ(SlamWarning(SlamToJson(slam, frames)),
-            "poses of the map were not solved for 2 times, at last as: pose 3 "
+            "solving for the map's poses failed 2 times; last reason: pose 3 "
             "is not finite");
 }
 

@@ -224,7 +224,7 @@ TEST_F(ViewServerTest, APortThatIsTakenIsSaid) {
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(),
                 HasSubstr("--view_port=" + std::to_string(PortOf(server)) +
-                          ": cannot listen there"));
+                          ": cannot listen on this port"));
   }
 }
 
