@@ -9,7 +9,7 @@
 #include "apps/pipeline/sequence.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
-#include "frontend/frame/depth_scale.h"
+#include "frontend/frame/depth_lookup.h"
 
 DEFINE_bool(finish_on_signal, true,
             "on SIGINT (Ctrl-C) or SIGTERM stop early and keep the results; a "

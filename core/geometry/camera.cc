@@ -232,11 +232,6 @@ Vector2d Camera::Undistort(const Vector2d& pixel) const {
   return {fx * plane.x() + cx, fy * plane.y() + cy};
 }
 
-void Camera::UndistortPoints(std::vector<Vector2d>* pixels) const {
-  if (!HasDistortion()) return;
-  for (Vector2d& pixel : *pixels) pixel = Undistort(pixel);
-}
-
 Eigen::Vector3d Camera::Unproject(const Vector2d& pixel, double depth) const {
   const Vector2d ideal = Undistort(pixel);
   return Ray(ideal.x(), ideal.y()) * depth;

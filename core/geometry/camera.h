@@ -76,9 +76,6 @@ struct Camera {
   // polynomial is not invertible.
   Eigen::Vector2d Undistort(const Eigen::Vector2d& pixel) const;
 
-  // Undistorts many image points at once, in place.
-  void UndistortPoints(std::vector<Eigen::Vector2d>* pixels) const;
-
   // The ray (a, b, 1) of an ideal pixel in camera axes. Multiplied by the
   // depth, it gives the point.
   Eigen::Vector3d Ray(double u, double v) const {

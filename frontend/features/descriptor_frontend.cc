@@ -1,9 +1,8 @@
-#include "frontend/features/descriptor_frontend.h"
-
 #include <limits>
 #include <utility>
 
 #include "frontend/features/descriptor_matching.h"
+#include "frontend/features/frontends.h"
 #include "frontend/features/grid_selection.h"
 #include "frontend/frame/observe.h"
 
@@ -25,81 +24,75 @@ struct DescribedFeatures : FeatureSet {
   DescribedKeypoints described;  // one row per observation
 };
 
-struct AllKeypoints {
-  AllKeypoints(const PreparedFrame& frame, const DescriptorMethod* method,
-               int max_keypoints) {
-    // OpenCV does not state that a detector may be used by several threads.
-    method->make(max_keypoints)
-        ->detectAndCompute(frame.gray, cv::noArray(), described.keypoints,
-                           described.descriptors);
+class DescriptorFrontend final : public Frontend {
+ public:
+  DescriptorFrontend(const FrontendOptions& options,
+                     const DescriptorMethod& method)
+      : Frontend(options), method_(method) {}
+
+  bool is_exhaustive() const override { return false; }
+
+  void Prepare(const PreparedFrame& frame) const override { Keypoints(frame); }
+
+  std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override {
+    const DescribedKeypoints& all = Keypoints(frame);
+    auto features = std::make_unique<DescribedFeatures>();
+    features->described = all.Select(SelectOverGrid(
+        all.keypoints, frame, options_.max_features, depth_options_));
+    for (const cv::KeyPoint& keypoint : features->described.keypoints) {
+      features->observations.push_back(ObserveKeypoint(frame, keypoint));
+    }
+    return features;
   }
-  DescribedKeypoints described;
+
+  void Match(const FeatureSet& reference, const PreparedFrame& frame,
+             const Rigid3d& cur_from_ref_guess,
+             FeatureMatches* matches) override {
+    matches->Clear();
+    const auto& features = static_cast<const DescribedFeatures&>(reference);
+    const DescribedKeypoints& current = Keypoints(frame);
+    const FrameTiming timing = frame.Timing();
+    SearchGuide guide;
+    guide.radius_px = static_cast<float>(kSearchAngle * options_.camera.fx);
+    for (const Observation& o : features.observations) {
+      const Eigen::Vector3d point = cur_from_ref_guess * PointOf(o);
+      Eigen::Vector2d pixel =
+          Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
+      if (point.z() > 0.0) pixel = ImagePoint(options_.camera, timing, point);
+      guide.expected.push_back(cv::Point2d(pixel.x(), pixel.y()));
+    }
+    std::vector<KeypointMatch> found =
+        MatchKeypoints(method_, features.described, current, &guide);
+    if (found.size() < kMinGuidedShare * features.observations.size()) {
+      std::vector<KeypointMatch> anywhere =
+          MatchKeypoints(method_, features.described, current, nullptr);
+      if (anywhere.size() > found.size()) found = std::move(anywhere);
+    }
+    for (const KeypointMatch& match : found) {
+      matches->Add(reference, match.reference,
+                   ObserveKeypoint(frame, current.keypoints[match.current]));
+    }
+  }
+
+ private:
+  const DescribedKeypoints& Keypoints(const PreparedFrame& frame) const {
+    const int max_keypoints = kKeypointsPerFeature * options_.max_features;
+    return frame.Derived<DescribedKeypoints>(&method_, max_keypoints);
+  }
+
+  Observation ObserveKeypoint(const Frame& frame,
+                              const cv::KeyPoint& keypoint) const {
+    return ObserveAt(frame, keypoint.pt, method_.SigmaPx(keypoint));
+  }
+
+  const DescriptorMethod& method_;
 };
 
 }  // namespace
 
-void DescriptorFrontend::Prepare(const PreparedFrame& frame) const {
-  Keypoints(frame);
-}
-
-const DescribedKeypoints& DescriptorFrontend::Keypoints(
-    const PreparedFrame& frame) const {
-  return frame
-      .Derived<AllKeypoints>(&method_,
-                             kKeypointsPerFeature * options_.max_features)
-      .described;
-}
-
-Observation DescriptorFrontend::ObserveKeypoint(
-    const Frame& frame, const cv::KeyPoint& keypoint) const {
-  return Observe(frame, options_.camera, keypoint.pt.x, keypoint.pt.y,
-                 method_.SigmaPx(keypoint), depth_options_);
-}
-
-std::unique_ptr<FeatureSet> DescriptorFrontend::Detect(
-    const PreparedFrame& frame) {
-  const DescribedKeypoints& all = Keypoints(frame);
-  auto features = std::make_unique<DescribedFeatures>();
-  features->described = all.Select(SelectOverGrid(
-      all.keypoints, frame.gray.size(), options_.max_features,
-      [&](const cv::Point2f& pixel) {
-        return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
-      }));
-  for (const cv::KeyPoint& keypoint : features->described.keypoints) {
-    features->observations.push_back(ObserveKeypoint(frame, keypoint));
-  }
-  return features;
-}
-
-void DescriptorFrontend::Match(const FeatureSet& reference,
-                               const PreparedFrame& frame,
-                               const Rigid3d& cur_from_ref_guess,
-                               FeatureMatches* matches) {
-  matches->Clear();
-  const auto& features = static_cast<const DescribedFeatures&>(reference);
-  const DescribedKeypoints& current = Keypoints(frame);
-  const FrameTiming timing = frame.Timing();
-  SearchGuide guide;
-  guide.radius_px = static_cast<float>(kSearchAngle * options_.camera.fx);
-  for (const Observation& o : features.observations) {
-    const Eigen::Vector3d point = cur_from_ref_guess * PointOf(o);
-    Eigen::Vector2d pixel =
-        Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-    if (point.z() > 0.0) pixel = ImagePoint(options_.camera, timing, point);
-    guide.expected.emplace_back(static_cast<float>(pixel.x()),
-                                static_cast<float>(pixel.y()));
-  }
-  std::vector<KeypointMatch> found =
-      MatchKeypoints(method_, features.described, current, &guide);
-  if (found.size() < kMinGuidedShare * features.observations.size()) {
-    std::vector<KeypointMatch> anywhere =
-        MatchKeypoints(method_, features.described, current, nullptr);
-    if (anywhere.size() > found.size()) found = std::move(anywhere);
-  }
-  for (const KeypointMatch& match : found) {
-    matches->Add(reference, match.reference,
-                 ObserveKeypoint(frame, current.keypoints[match.current]));
-  }
+std::unique_ptr<Frontend> MakeDescriptorFrontend(
+    const FrontendOptions& options, const DescriptorMethod& method) {
+  return std::make_unique<DescriptorFrontend>(options, method);
 }
 
 }  // namespace rgbd_pose

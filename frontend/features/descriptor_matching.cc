@@ -1,6 +1,5 @@
 #include "frontend/features/descriptor_matching.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -24,43 +23,27 @@ double EuclideanDistance(const uchar* a, const uchar* b, int size) {
 }
 
 cv::Ptr<cv::Feature2D> MakeOrb(int max_keypoints) {
-  constexpr float kScale = 1.2F;
-  constexpr int kLevels = 8;
-  constexpr int kPatchPx = 31;
+  const cv::Ptr<cv::ORB> orb = cv::ORB::create(max_keypoints);
   // Lower than OpenCV's 20, for dark or blurred frames; the strongest are kept.
-  constexpr int kFastThreshold = 10;
-  return cv::ORB::create(max_keypoints, kScale, kLevels, kPatchPx, 0, 2,
-                         cv::ORB::HARRIS_SCORE, kPatchPx, kFastThreshold);
+  orb->setFastThreshold(10);
+  return orb;
 }
 
 cv::Ptr<cv::Feature2D> MakeSift(int max_keypoints) {
-  constexpr int kLayers = 3;
-  constexpr double kContrast = 0.04;
-  constexpr double kEdge = 10.0;
-  constexpr double kSigma = 1.6;
-  return cv::SIFT::create(max_keypoints, kLayers, kContrast, kEdge, kSigma,
-                          CV_8U);
+  return cv::SIFT::create(max_keypoints, /*nOctaveLayers=*/3,
+                          /*contrastThreshold=*/0.04, /*edgeThreshold=*/10.0,
+                          /*sigma=*/1.6, /*descriptorType=*/CV_8U);
 }
 
-// AKAZE has no limit on the number of keypoints.
 cv::Ptr<cv::Feature2D> MakeAkaze(int /*max_keypoints*/) {
-  constexpr int kFullSize = 0;
-  constexpr int kChannels = 3;
+  const cv::Ptr<cv::AKAZE> akaze = cv::AKAZE::create();
   // Half the default of OpenCV, for dark or blurred frames.
-  constexpr float kThreshold = 0.0005F;
+  akaze->setThreshold(0.0005F);
   // One fewer each than OpenCV's: 2/3 of the time, an equally good trajectory.
-  constexpr int kOctaves = 3;
-  constexpr int kLayers = 3;
-  return cv::AKAZE::create(cv::AKAZE::DESCRIPTOR_MLDB, kFullSize, kChannels,
-                           kThreshold, kOctaves, kLayers);
+  akaze->setNOctaves(3);
+  akaze->setNOctaveLayers(3);
+  return akaze;
 }
-
-// Maximum ratio of the best to the second-best distance (Lowe 2004).
-constexpr double kMaxRatio = 0.8;
-
-// Keypoints closer together than this are one place seen at several scales.
-// They do not compete in the ratio test.
-constexpr float kSameFeaturePx = 4.0F;
 
 // The keypoints of an image in a grid, for searches within a radius.
 class KeypointGrid {
@@ -119,6 +102,11 @@ Nearest FindDistinct(const std::vector<cv::KeyPoint>& keypoints,
                      const std::vector<int>& candidates,
                      const std::vector<double>& distances,
                      double max_distance) {
+  // Maximum ratio of the best to the second-best distance (Lowe 2004).
+  constexpr double kMaxRatio = 0.8;
+  // Keypoints closer together than this are one place seen at several scales.
+  // They do not compete in the ratio test.
+  constexpr float kSameFeaturePx = 4.0F;
   Nearest best;
   for (size_t k = 0; k < candidates.size(); ++k) {
     if (distances[k] < best.distance) best = {candidates[k], distances[k]};
@@ -136,29 +124,29 @@ Nearest FindDistinct(const std::vector<cv::KeyPoint>& keypoints,
 
 }  // namespace
 
-double DescriptorMethod::SigmaPx(const cv::KeyPoint& keypoint) const {
-  return base_sigma_px * std::max(1.0, keypoint.size / base_size_px);
-}
-
 // Unrelated descriptors differ in 128 of 256 bits; places are whole pixels.
-constexpr DescriptorMethod kOrb = {"orb", MakeOrb, HammingDistance,
-                                   64.0,  31.0,    0.7};
+constexpr DescriptorMethod kOrb = {MakeOrb, HammingDistance, 64.0, 31.0, 0.7};
 // Descriptors are vectors of norm 512.
-constexpr DescriptorMethod kSift = {"sift", MakeSift, EuclideanDistance,
-                                    250.0,  1.8,      0.5};
+constexpr DescriptorMethod kSift = {MakeSift, EuclideanDistance, 250.0, 1.8,
+                                    0.5};
 // Unrelated descriptors differ in 243 of 486 bits.
-constexpr DescriptorMethod kAkaze = {"akaze", MakeAkaze, HammingDistance,
-                                     121.0,   4.8,       0.5};
+constexpr DescriptorMethod kAkaze = {MakeAkaze, HammingDistance, 121.0, 4.8,
+                                     0.5};
+
+DescribedKeypoints::DescribedKeypoints(const Frame& frame,
+                                       const DescriptorMethod* method,
+                                       int max_keypoints) {
+  // OpenCV does not state that a detector may be used by several threads.
+  method->make(max_keypoints)
+      ->detectAndCompute(frame.gray, cv::noArray(), keypoints, descriptors);
+}
 
 DescribedKeypoints DescribedKeypoints::Select(
     const std::vector<int>& places) const {
   DescribedKeypoints selected;
-  selected.descriptors.create(static_cast<int>(places.size()), descriptors.cols,
-                              descriptors.type());
-  for (size_t k = 0; k < places.size(); ++k) {
-    selected.keypoints.push_back(keypoints[places[k]]);
-    descriptors.row(places[k]).copyTo(
-        selected.descriptors.row(static_cast<int>(k)));
+  for (const int place : places) {
+    selected.keypoints.push_back(keypoints[place]);
+    selected.descriptors.push_back(descriptors.row(place));
   }
   return selected;
 }
@@ -175,20 +163,21 @@ std::vector<KeypointMatch> MatchKeypoints(const DescriptorMethod& method,
   std::vector<double> distances;
   std::vector<Nearest> nearest_reference(current.keypoints.size());
   std::vector<KeypointMatch> matches;
-  for (size_t i = 0; i < reference.keypoints.size(); ++i) {
+  for (int i = 0; i < static_cast<int>(reference.keypoints.size()); ++i) {
     if (grid) grid->Near(guide->expected[i], &candidates);
     distances.resize(candidates.size());
     for (size_t k = 0; k < candidates.size(); ++k) {
-      distances[k] = method.distance(reference.descriptor(i),
-                                     current.descriptor(candidates[k]), size);
+      distances[k] =
+          method.distance(reference.descriptors.ptr(i),
+                          current.descriptors.ptr(candidates[k]), size);
       Nearest& nearest = nearest_reference[candidates[k]];
       if (distances[k] < nearest.distance) {
-        nearest = {static_cast<int>(i), distances[k]};
+        nearest = {i, distances[k]};
       }
     }
     const Nearest best = FindDistinct(current.keypoints, candidates, distances,
                                       method.max_distance);
-    if (best.place >= 0) matches.push_back({static_cast<int>(i), best.place});
+    if (best.place >= 0) matches.push_back({i, best.place});
   }
   matches.erase(
       std::remove_if(matches.begin(), matches.end(),

@@ -1,16 +1,16 @@
 #pragma once
 
+#include <algorithm>
 #include <opencv2/core.hpp>
 #include <opencv2/features2d.hpp>
-#include <string_view>
 #include <vector>
+
+#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 
 // A method to detect keypoints and to describe their surroundings.
 struct DescriptorMethod {
-  std::string_view name;
-
   // Makes a detector of up to max_keypoints; descriptors are rows of bytes.
   cv::Ptr<cv::Feature2D> (*make)(int max_keypoints);
 
@@ -27,7 +27,9 @@ struct DescriptorMethod {
   double base_size_px;
   double base_sigma_px;
 
-  double SigmaPx(const cv::KeyPoint& keypoint) const;
+  double SigmaPx(const cv::KeyPoint& keypoint) const {
+    return base_sigma_px * std::max(1.0, keypoint.size / base_size_px);
+  }
 };
 
 // Oriented FAST corners, rotated binary tests (Rublee et al., ICCV 2011).
@@ -45,9 +47,11 @@ struct DescribedKeypoints {
   std::vector<cv::KeyPoint> keypoints;
   cv::Mat descriptors;  // CV_8U
 
-  const uchar* descriptor(size_t i) const {
-    return descriptors.ptr(static_cast<int>(i));
-  }
+  DescribedKeypoints() = default;
+  // Detects up to max_keypoints. AKAZE has no limit.
+  DescribedKeypoints(const Frame& frame, const DescriptorMethod* method,
+                     int max_keypoints);
+
   // Returns only the keypoints at the given indices.
   DescribedKeypoints Select(const std::vector<int>& places) const;
 };

@@ -10,6 +10,7 @@
 #include "core/geometry/depth_noise.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/depth_lookup.h"
+#include "frontend/frame/observe.h"
 #include "frontend/frame/prepared_frame.h"
 
 namespace rgbd_pose {
@@ -103,6 +104,13 @@ class Frontend {
   // Returns the point (m, camera axes) of an observation with depth.
   Eigen::Vector3d PointOf(const Observation& o) const {
     return options_.camera.Ray(o.u, o.v) * o.depth;
+  }
+
+  // Returns the observation of an image point (px, distorted) of a frame.
+  Observation ObserveAt(const Frame& frame, const cv::Point2f& point,
+                        double sigma_px) const {
+    return Observe(frame, options_.camera, point.x, point.y, sigma_px,
+                   depth_options_);
   }
 
   const FrontendOptions options_;           // as given to the constructor

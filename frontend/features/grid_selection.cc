@@ -2,28 +2,16 @@
 
 #include <algorithm>
 #include <opencv2/features2d.hpp>
-#include <utility>
+#include <tuple>
 
 namespace rgbd_pose {
-namespace {
 
-constexpr int kCellPx = 32;
-constexpr int kBorderPx = 8;  // a patch needs this border
-
-bool IsStronger(const cv::KeyPoint& a, const cv::KeyPoint& b) {
-  if (a.response != b.response) return a.response > b.response;
-  // Ties are broken by place, independently of the sort's implementation.
-  return std::make_pair(a.pt.y, a.pt.x) < std::make_pair(b.pt.y, b.pt.x);
-}
-
-constexpr int kFastThreshold = 12;
-constexpr int kWeakFastThreshold = 6;  // for dark or blurred frames
-
-}  // namespace
-
-std::vector<int> SelectOverGrid(
-    const std::vector<cv::KeyPoint>& keypoints, const cv::Size& image,
-    int max_count, const std::function<bool(const cv::Point2f&)>& accept) {
+std::vector<int> SelectOverGrid(const std::vector<cv::KeyPoint>& keypoints,
+                                const Frame& frame, int max_count,
+                                const DepthLookupOptions& depth_options) {
+  constexpr int kCellPx = 32;
+  constexpr int kBorderPx = 8;  // a patch needs this border
+  const cv::Size image = frame.gray.size();
   const int columns = (image.width + kCellPx - 1) / kCellPx;
   const int rows = (image.height + kCellPx - 1) / kCellPx;
   std::vector<std::vector<int>> cells(columns * rows);
@@ -36,18 +24,26 @@ std::vector<int> SelectOverGrid(
                      static_cast<int>(pixel.x) / kCellPx;
     cells[cell].push_back(static_cast<int>(i));
   }
+  // The strongest first. Ties are broken by place, independently of the sort's
+  // implementation.
+  const auto rank = [&](int i) {
+    const cv::KeyPoint& k = keypoints[i];
+    return std::make_tuple(-k.response, k.pt.y, k.pt.x);
+  };
+  const auto has_depth = [&](const cv::Point2f& pixel) {
+    return LookUpDepth(frame, pixel.x, pixel.y, depth_options).depth > 0.0;
+  };
   // Every second cell is often empty (no texture, no depth). The other cells
   // may therefore provide twice their equal share.
   const size_t share = std::max<size_t>(1, 2 * max_count / cells.size());
   std::vector<int> selected;
   for (std::vector<int>& cell : cells) {
-    std::sort(cell.begin(), cell.end(), [&](int a, int b) {
-      return IsStronger(keypoints[a], keypoints[b]);
-    });
+    std::sort(cell.begin(), cell.end(),
+              [&](int a, int b) { return rank(a) < rank(b); });
     size_t taken = 0;
-    for (size_t i = 0; i < cell.size() && taken < share; ++i) {
-      if (!accept(keypoints[cell[i]].pt)) continue;
-      selected.push_back(cell[i]);
+    for (const int i : cell) {
+      if (taken == share || !has_depth(keypoints[i].pt)) continue;
+      selected.push_back(i);
       ++taken;
     }
   }
@@ -55,15 +51,17 @@ std::vector<int> SelectOverGrid(
 }
 
 std::vector<cv::Point2f> DetectGridCorners(
-    const cv::Mat& gray, int max_corners,
-    const std::function<bool(const cv::Point2f&)>& accept) {
+    const Frame& frame, int max_corners,
+    const DepthLookupOptions& depth_options) {
+  constexpr int kFastThreshold = 12;
+  constexpr int kWeakFastThreshold = 6;  // for dark or blurred frames
   std::vector<cv::KeyPoint> found;
-  cv::FAST(gray, found, kFastThreshold, /*nonmaxSuppression=*/true);
+  cv::FAST(frame.gray, found, kFastThreshold, /*nonmaxSuppression=*/true);
   if (static_cast<int>(found.size()) < 2 * max_corners) {
-    cv::FAST(gray, found, kWeakFastThreshold, /*nonmaxSuppression=*/true);
+    cv::FAST(frame.gray, found, kWeakFastThreshold, /*nonmaxSuppression=*/true);
   }
   std::vector<cv::Point2f> corners;
-  for (const int i : SelectOverGrid(found, gray.size(), max_corners, accept)) {
+  for (const int i : SelectOverGrid(found, frame, max_corners, depth_options)) {
     corners.push_back(found[i].pt);
   }
   return corners;

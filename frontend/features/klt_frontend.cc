@@ -1,7 +1,9 @@
-#include "frontend/features/klt_frontend.h"
-
 #include <opencv2/core.hpp>
 #include <opencv2/video/tracking.hpp>
+#include <vector>
+
+#include "frontend/features/frontends.h"
+#include "frontend/features/point_frontend.h"
 
 namespace rgbd_pose {
 namespace {
@@ -23,22 +25,34 @@ struct KltPyramid {
   std::vector<cv::Mat> levels;
 };
 
+class KltFrontend final : public PointFrontend {
+ public:
+  using PointFrontend::PointFrontend;
+
+  void Prepare(const PreparedFrame& frame) const override {
+    frame.Derived<KltPyramid>(/*with_derivatives=*/false);
+  }
+
+ private:
+  void Follow(const PreparedFrame& from, const Points& points,
+              const PreparedFrame& to, Points* moved, Found* found) override {
+    cv::calcOpticalFlowPyrLK(
+        from.Derived<KltPyramid>(/*with_derivatives=*/true).levels,
+        to.Derived<KltPyramid>(/*with_derivatives=*/false).levels, points,
+        *moved, *found, error_, kWindow, kMaxLevel, kTermination,
+        cv::OPTFLOW_USE_INITIAL_FLOW);
+    for (size_t i = 0; i < found->size(); ++i) {
+      if (error_[i] > kMaxMeanDifference) (*found)[i] = 0;
+    }
+  }
+
+  std::vector<float> error_;
+};
+
 }  // namespace
 
-void KltFrontend::Prepare(const PreparedFrame& frame) const {
-  frame.Derived<KltPyramid>(/*with_derivatives=*/false);
-}
-
-void KltFrontend::Follow(const PreparedFrame& from, const Points& points,
-                         const PreparedFrame& to, Points* moved, Found* found) {
-  cv::calcOpticalFlowPyrLK(
-      from.Derived<KltPyramid>(/*with_derivatives=*/true).levels,
-      to.Derived<KltPyramid>(/*with_derivatives=*/false).levels, points, *moved,
-      *found, error_, kWindow, kMaxLevel, kTermination,
-      cv::OPTFLOW_USE_INITIAL_FLOW);
-  for (size_t i = 0; i < found->size(); ++i) {
-    if (error_[i] > kMaxMeanDifference) (*found)[i] = 0;
-  }
+std::unique_ptr<Frontend> MakeKltFrontend(const FrontendOptions& options) {
+  return std::make_unique<KltFrontend>(options);
 }
 
 }  // namespace rgbd_pose

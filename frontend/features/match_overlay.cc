@@ -23,9 +23,7 @@ const cv::Scalar kTextColor = cv::Scalar::all(235);
 cv::Mat WeightColors() {
   constexpr int kFirst = 88;
   cv::Mat steps(1, 256 - kFirst, CV_8UC1);
-  for (int i = 0; i < steps.cols; ++i) {
-    steps.at<uchar>(i) = cv::saturate_cast<uchar>(kFirst + i);
-  }
+  std::iota(steps.begin<uchar>(), steps.end<uchar>(), uchar{kFirst});
   cv::Mat colors;
   cv::applyColorMap(steps, colors, cv::COLORMAP_PLASMA);
   return colors;
@@ -36,86 +34,66 @@ cv::Scalar ColorAt(const cv::Mat& colors, double weight) {
   return colors.at<cv::Vec3b>(cvRound(place));
 }
 
-// Lengths (px) for an image of a given width.
-struct Layout {
-  explicit Layout(int image_width) {
-    constexpr int kPlainWidth = 640;  // everything grows with wider images
-    unit = std::max(1, image_width / kPlainWidth);
-    dot_radius = std::max(1.5, 2.5 * image_width / kPlainWidth);
-    margin = 6 * unit;
-    row_height = 18 * unit;
-    row_width = std::max(1, image_width - 2 * margin);
-    font_scale = 0.42 * unit;  // the smallest that is easy to read
+// The rows of text below an image: the caption, then the legend.
+struct Strip {
+  int width;  // of the image, px
 
-    // 80 average characters have a width of 600 in this font.
-    caption_rows = (600 * unit + row_width - 1) / row_width;
-    height = (caption_rows + 1) * row_height + margin;
-  }
+  // Thickness of lines and letters, px. Everything grows with images wider than
+  // 640 px.
+  int unit = std::max(1, width / 640);
+  int margin = 6 * unit;
+  int row_height = 18 * unit;
+  int row_width = std::max(1, width - 2 * margin);
+  double font_scale = 0.42 * unit;  // the smallest that is easy to read
 
-  int unit;  // thickness of lines and letters
-  double dot_radius;
-  int margin;
-  int row_height;
-  int row_width;
-  double font_scale;
-  int caption_rows;
-  int height;
-};
-
-// The rows of text below the image: the caption, then the legend.
-class Strip {
- public:
-  Strip(const Layout& layout, int width)
-      : layout_(layout), image_(layout.height, width, CV_8UC3, kStripColor) {}
-
-  const cv::Mat& image() const { return image_; }
+  // 80 average characters have a width of 600 in this font.
+  int caption_rows = (600 * unit + row_width - 1) / row_width;
+  cv::Mat image = cv::Mat((caption_rows + 1) * row_height + margin, width,
+                          CV_8UC3, kStripColor);
 
   void DrawCaption(std::string caption) {
-    for (int row = 0; row < layout_.caption_rows && !caption.empty(); ++row) {
-      PutText(TakeRow(&caption), layout_.margin, row);
+    for (int row = 0; row < caption_rows && !caption.empty(); ++row) {
+      PutText(TakeRow(&caption), margin, row);
     }
   }
 
   // `colors`: one row, for the weights from 0 to 1.
   void DrawLegend(const cv::Mat& colors) {
-    const int row = layout_.caption_rows;
+    const int row = caption_rows;
     const std::string low = "robust weight  0";
-    PutText(low, layout_.margin, row);
-    const int x = 2 * layout_.margin + TextWidth(low);
-    const cv::Size bar(80 * layout_.unit, layout_.row_height / 2);
-    const int right = x + bar.width + layout_.margin;
+    PutText(low, margin, row);
+    const int x = 2 * margin + TextWidth(low);
+    const cv::Size bar(80 * unit, row_height / 2);
+    const int right = x + bar.width + margin;
     const std::string high_and_key =
         "1     dot: feature now, line: from the reference";
-    const bool has_room = right + TextWidth(high_and_key) <= image_.cols;
+    const bool has_room = right + TextWidth(high_and_key) <= width;
     PutText(has_room ? high_and_key : "1", right, row);
     for (int i = 0; i < bar.width; ++i) {
       const double weight = i / (bar.width - 1.0);
-      cv::line(image_, {x + i, Baseline(row) - bar.height},
+      cv::line(image, {x + i, Baseline(row) - bar.height},
                {x + i, Baseline(row)}, ColorAt(colors, weight));
     }
   }
 
- private:
   // The y coordinate of the baseline of a row.
-  int Baseline(int row) const {
-    return (row + 1) * layout_.row_height - layout_.margin / 2;
-  }
+  int Baseline(int row) const { return (row + 1) * row_height - margin / 2; }
 
   int TextWidth(const std::string& text) const {
-    return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, layout_.font_scale,
-                           layout_.unit, nullptr)
+    return cv::getTextSize(text, cv::FONT_HERSHEY_SIMPLEX, font_scale, unit,
+                           nullptr)
         .width;
   }
 
   void PutText(const std::string& text, int x, int row) {
-    cv::putText(image_, text, {x, Baseline(row)}, cv::FONT_HERSHEY_SIMPLEX,
-                layout_.font_scale, kTextColor, layout_.unit, cv::LINE_AA);
+    cv::putText(image, text, {x, Baseline(row)}, cv::FONT_HERSHEY_SIMPLEX,
+                font_scale, kTextColor, unit, cv::LINE_AA);
   }
 
   // Removes and returns the words that fit into a row: at least a character.
   std::string TakeRow(std::string* text) const {
     size_t end = text->size();
-    while (end > 1 && TextWidth(text->substr(0, end)) > layout_.row_width) {
+    while (end > 1 && TextWidth(text->substr(0, end)) > row_width) {
       --end;
     }
     const size_t space = text->rfind(' ', end);
@@ -126,9 +104,6 @@ class Strip {
     text->erase(0, std::min(text->find_first_not_of(' ', end), text->size()));
     return row;
   }
-
-  Layout layout_;
-  cv::Mat image_;
 };
 
 // OpenCV draws to fractions of a pixel in fixed point: here 1/16 px.
@@ -144,22 +119,13 @@ cv::Point ImagePoint(const Camera& camera, const Observation& o) {
   return {Fixed(near.x()), Fixed(near.y())};
 }
 
-// Returns the indices of the weights, the smallest weight first.
-std::vector<size_t> Ascending(const std::vector<double>& weights) {
-  std::vector<size_t> order(weights.size());
-  std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&weights](size_t a, size_t b) {
-    return weights[a] < weights[b];
-  });
-  return order;
-}
-
 }  // namespace
 
 cv::Mat DrawMatches(const Frame& frame, const Camera& camera,
                     const FeatureMatches& found, const MotionEstimate& estimate,
                     const std::string& caption) {
-  const Layout layout(frame.gray.cols);
+  Strip strip{frame.gray.cols};
+  const double dot_radius = std::max(1.5, 2.5 * strip.width / 640);
   const cv::Mat colors = WeightColors();
   cv::Mat image;
   cv::cvtColor(frame.gray * kDimming, image, cv::COLOR_GRAY2BGR);
@@ -168,21 +134,24 @@ cv::Mat DrawMatches(const Frame& frame, const Camera& camera,
   const bool has_weights = estimate.weights.size() == matches.size();
   const std::vector<double> weights =
       has_weights ? estimate.weights : std::vector<double>(matches.size(), 0.0);
-  for (const size_t i : Ascending(weights)) {
+  std::vector<size_t> order(matches.size());  // the smallest weight first
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](size_t a, size_t b) { return weights[a] < weights[b]; });
+  for (const size_t i : order) {
     const cv::Scalar color =
         has_weights ? ColorAt(colors, weights[i]) : kNoWeightColor;
     const cv::Point prev = ImagePoint(camera, matches[i].prev);
     const cv::Point cur = ImagePoint(camera, matches[i].cur);
-    cv::line(image, prev, cur, color, layout.unit, cv::LINE_AA, kShift);
-    cv::circle(image, cur, Fixed(layout.dot_radius), color, cv::FILLED,
-               cv::LINE_AA, kShift);
+    cv::line(image, prev, cur, color, strip.unit, cv::LINE_AA, kShift);
+    cv::circle(image, cur, Fixed(dot_radius), color, cv::FILLED, cv::LINE_AA,
+               kShift);
   }
 
-  Strip strip(layout, image.cols);
   strip.DrawCaption(caption);
   strip.DrawLegend(colors);
   cv::Mat picture;
-  cv::vconcat(image, strip.image(), picture);
+  cv::vconcat(image, strip.image, picture);
   return picture;
 }
 

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
-#include <opencv2/core.hpp>
 
 #include "core/util/vector_lanes.h"
 
@@ -26,22 +25,11 @@ inline float SampleImage(const cv::Mat& image, float u, float v) {
   return above + t * (below - above);
 }
 
-// A contrast or gradient with a smaller RMS over the patch (grey levels, grey
-// levels per px) is image noise.
-constexpr float kMinGrey = 0.5F;
-
 // The patch and one more pixel on each side for its derivatives.
 constexpr int kSourceSide = kPatchSize + 2;
 
 using Pixels = Eigen::Array<float, kPatchSize, kPatchSize, Eigen::RowMajor>;
 using Seen = Eigen::Array<float, kSourceSide, kSourceSide, Eigen::RowMajor>;
-
-// A surface seen at a smaller angle to its plane (sine of 15 degrees) has a
-// normal too uncertain to be used.
-constexpr double kMinIncidence = 0.26;
-
-// With a smaller share of its contrast, the image does not show the patch.
-constexpr float kMinGain = 0.1F;
 
 // A row of a patch. It has the same width on every machine; the compiler splits
 // it if registers are narrower.
@@ -108,15 +96,21 @@ void SumUp(const Patch& patch, const uint8_t* corner, size_t stride, float s,
 struct AlignKernel {
   template <int W>
   static void Run(const Patch& patch, const cv::Mat& image, float start_u,
-                  float start_v, const PatchAlignmentOptions& options,
+                  float start_v, float min_step_px,
                   AlignedPatch* const& result) {
     constexpr int kHalf = kPatchSize / 2;
+    constexpr int kMaxIterations = 8;
+    // Farther (px, along each axis) from the start, the patch and the image
+    // there have too little in common.
+    constexpr float kMaxShiftPx = 3.0F;
+    // With a smaller share of its contrast, the image does not show the patch.
+    constexpr float kMinGain = 0.1F;
     const auto max_column = static_cast<float>(image.cols - kHalf);
     const auto max_row = static_cast<float>(image.rows - kHalf);
     float u = start_u;
     float v = start_v;
     Sums sums = {};
-    for (int i = 0; i < options.max_iterations; ++i) {
+    for (int i = 0; i < kMaxIterations; ++i) {
       if (!(u >= kHalf && v >= kHalf && u < max_column && v < max_row)) return;
       const int column = static_cast<int>(u);
       const int row = static_cast<int>(v);
@@ -128,12 +122,11 @@ struct AlignKernel {
       const float step_v = sums.y / sums.contrast;
       u -= step_u;
       v -= step_v;
-      if (!(std::abs(u - start_u) <= options.max_shift_px &&
-            std::abs(v - start_v) <= options.max_shift_px)) {
+      if (!(std::abs(u - start_u) <= kMaxShiftPx &&
+            std::abs(v - start_v) <= kMaxShiftPx)) {
         return;
       }
-      if (step_u * step_u + step_v * step_v <
-          options.min_step_px * options.min_step_px) {
+      if (step_u * step_u + step_v * step_v < min_step_px * min_step_px) {
         break;
       }
     }
@@ -153,6 +146,9 @@ struct AlignKernel {
 
 void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
                const Eigen::Matrix2f& image_from_patch, Patch* patch) {
+  // A contrast or gradient with a smaller RMS over the patch (grey levels, grey
+  // levels per px) is image noise.
+  constexpr float kMinGrey = 0.5F;
   constexpr float kMinEnergy = kMinGrey * kMinGrey * Patch::kPixels;
   // Just inside, as required by SampleImage.
   const float max_u = static_cast<float>(image.cols) - 1.001F;
@@ -201,6 +197,9 @@ void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
 //   dX/du = z / fx (e_x - n_x / (n . r) r), and similarly for v.
 Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
                           const Rigid3d& cur_from_ref) {
+  // A surface seen at a smaller angle to its plane (sine of 15 degrees) has a
+  // normal too uncertain to be used.
+  constexpr double kMinIncidence = 0.26;
   const Eigen::Vector3d ray = camera.Ray(ref.u, ref.v);
   Eigen::Vector3d normal = ref.normal;
   if (std::abs(normal.dot(ray)) < kMinIncidence * ray.norm()) {
@@ -232,10 +231,10 @@ Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
 }
 
 AlignedPatch AlignPatch(const Patch& patch, const cv::Mat& image, float start_u,
-                        float start_v, const PatchAlignmentOptions& options) {
+                        float start_v, float min_step_px) {
   AlignedPatch result;
   if (patch.min_eigenvalue > 0.0F) {
-    RunVectorised<AlignKernel>(patch, image, start_u, start_v, options,
+    RunVectorised<AlignKernel>(patch, image, start_u, start_v, min_step_px,
                                &result);
   }
   return result;

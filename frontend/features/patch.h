@@ -49,17 +49,6 @@ void MakePatch(const cv::Mat& image, const Eigen::Vector2f& centre,
 Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
                           const Rigid3d& cur_from_ref);
 
-struct PatchAlignmentOptions {
-  int max_iterations = 8;
-
-  // Iterations stop after a step shorter than this (px).
-  float min_step_px = 0.02F;
-
-  // The maximum distance (px, along each axis) of the result from the start.
-  // Beyond it the patch and the image at the start have too little in common.
-  float max_shift_px = 3.0F;
-};
-
 // Where a patch was found in an image.
 struct AlignedPatch {
   // False if the patch has too little contrast, left the image or the allowed
@@ -77,9 +66,10 @@ struct AlignedPatch {
   float residual = 0.0F;
 };
 
-// Moves a patch over an image (CV_8UC1) from a start (px) to the place where it
-// fits best with any gain and bias.
+// Moves a patch over an image (CV_8UC1) from a start (px) to the place within
+// 3 px along each axis where it fits best with any gain and bias. Iterations
+// stop after a step shorter than `min_step_px`.
 AlignedPatch AlignPatch(const Patch& patch, const cv::Mat& image, float start_u,
-                        float start_v, const PatchAlignmentOptions& options);
+                        float start_v, float min_step_px);
 
 }  // namespace rgbd_pose

@@ -1,10 +1,9 @@
-#include "frontend/features/patch_frontend.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
 
+#include "frontend/features/frontends.h"
 #include "frontend/features/grid_selection.h"
 #include "frontend/features/patch.h"
 #include "frontend/frame/image_pyramid.h"
@@ -80,11 +79,10 @@ AlignedPatch FindPatch(const PatchStack& patch, int num_levels,
   auto v = static_cast<float>(start.y());
   AlignedPatch found;
   for (int level = num_levels - 1; level >= 0; --level) {
-    PatchAlignmentOptions options;
     // A coarse level only has to provide the start of the next level.
-    if (level > 0) options.min_step_px *= 4.0F;
+    const float min_step_px = level > 0 ? 0.08F : 0.02F;
     found = AlignPatch(patch.levels[level], pyramid[level], ToLevel(u, level),
-                       ToLevel(v, level), options);
+                       ToLevel(v, level), min_step_px);
     if (!found.found) continue;
     u = FromLevel(found.u, level);
     v = FromLevel(found.v, level);
@@ -92,58 +90,61 @@ AlignedPatch FindPatch(const PatchStack& patch, int num_levels,
   return found;
 }
 
+class PatchFrontend final : public Frontend {
+ public:
+  using Frontend::Frontend;
+
+  void Prepare(const PreparedFrame& frame) const override {
+    frame.Derived<ImagePyramid>();
+  }
+
+  std::unique_ptr<FeatureSet> Detect(const PreparedFrame& frame) override {
+    auto features = std::make_unique<PatchFeatures>(frame);
+    features->corners =
+        DetectGridCorners(frame, options_.max_features, depth_options_);
+    for (const cv::Point2f& corner : features->corners) {
+      features->observations.push_back(ObserveAt(frame, corner, kPatchSigmaPx));
+    }
+    features->patches.resize(features->corners.size());
+    return features;
+  }
+
+  void Match(const FeatureSet& reference, const PreparedFrame& frame,
+             const Rigid3d& cur_from_ref_guess,
+             FeatureMatches* matches) override {
+    matches->Clear();
+    const auto& features = static_cast<const PatchFeatures&>(reference);
+    if (features.corners.empty()) return;
+    const std::vector<cv::Mat>& pyramid = frame.Derived<ImagePyramid>().levels;
+    const int num_levels =
+        static_cast<int>(std::min(features.pyramid.size(), pyramid.size()));
+    const Camera& camera = options_.camera;
+    const FrameTiming timing = frame.Timing();
+    for (size_t i = 0; i < features.corners.size(); ++i) {
+      const Observation& ref = features.observations[i];
+      const Eigen::Vector3d point = cur_from_ref_guess * PointOf(ref);
+      if (!(point.z() >= options_.min_depth)) continue;
+      const Eigen::Vector2d start = ImagePoint(camera, timing, point);
+      if (!camera.Contains(start)) continue;
+      const Eigen::Matrix2f warp = PlaneWarp(camera, ref, cur_from_ref_guess);
+      const float scale = warp.determinant();
+      if (!(scale > 1.0F / kMaxScale && scale < kMaxScale)) continue;
+      const PatchStack& patches = features.Patches(i, warp.inverse());
+      const AlignedPatch found = FindPatch(patches, num_levels, pyramid, start);
+      if (!found.found || found.correlation < kMinCorrelation) continue;
+      const double sigma_px = std::hypot(
+          kPatchSigmaPx, kNoiseFactor * found.residual /
+                             std::sqrt(patches.levels[0].min_eigenvalue));
+      matches->Add(reference, static_cast<int>(i),
+                   ObserveAt(frame, {found.u, found.v}, sigma_px));
+    }
+  }
+};
+
 }  // namespace
 
-void PatchFrontend::Prepare(const PreparedFrame& frame) const {
-  frame.Derived<ImagePyramid>();
-}
-
-std::unique_ptr<FeatureSet> PatchFrontend::Detect(const PreparedFrame& frame) {
-  auto features = std::make_unique<PatchFeatures>(frame);
-  features->corners = DetectGridCorners(
-      frame.gray, options_.max_features, [&](const cv::Point2f& pixel) {
-        return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
-      });
-  for (const cv::Point2f& corner : features->corners) {
-    features->observations.push_back(Observe(frame, options_.camera, corner.x,
-                                             corner.y, kPatchSigmaPx,
-                                             depth_options_));
-  }
-  features->patches.resize(features->corners.size());
-  return features;
-}
-
-void PatchFrontend::Match(const FeatureSet& reference,
-                          const PreparedFrame& frame,
-                          const Rigid3d& cur_from_ref_guess,
-                          FeatureMatches* matches) {
-  matches->Clear();
-  const auto& features = static_cast<const PatchFeatures&>(reference);
-  if (features.corners.empty()) return;
-  const std::vector<cv::Mat>& pyramid = frame.Derived<ImagePyramid>().levels;
-  const int num_levels =
-      static_cast<int>(std::min(features.pyramid.size(), pyramid.size()));
-  const Camera& camera = options_.camera;
-  const FrameTiming timing = frame.Timing();
-  for (size_t i = 0; i < features.corners.size(); ++i) {
-    const Observation& ref = features.observations[i];
-    const Eigen::Vector3d point = cur_from_ref_guess * PointOf(ref);
-    if (!(point.z() >= options_.min_depth)) continue;
-    const Eigen::Vector2d start = ImagePoint(camera, timing, point);
-    if (!camera.Contains(start)) continue;
-    const Eigen::Matrix2f warp = PlaneWarp(camera, ref, cur_from_ref_guess);
-    const float scale = warp.determinant();
-    if (!(scale > 1.0F / kMaxScale && scale < kMaxScale)) continue;
-    const PatchStack& patches = features.Patches(i, warp.inverse());
-    const AlignedPatch found = FindPatch(patches, num_levels, pyramid, start);
-    if (!found.found || found.correlation < kMinCorrelation) continue;
-    const double sigma_px = std::hypot(
-        kPatchSigmaPx, kNoiseFactor * found.residual /
-                           std::sqrt(patches.levels[0].min_eigenvalue));
-    matches->Add(
-        reference, static_cast<int>(i),
-        Observe(frame, camera, found.u, found.v, sigma_px, depth_options_));
-  }
+std::unique_ptr<Frontend> MakePatchFrontend(const FrontendOptions& options) {
+  return std::make_unique<PatchFrontend>(options);
 }
 
 }  // namespace rgbd_pose

@@ -24,7 +24,7 @@ std::unique_ptr<FeatureSet> PointFrontend::Detect(const PreparedFrame& frame) {
   Points points;
   Find(frame, &points);
   for (const cv::Point2f& point : points) {
-    const Observation observation = ObserveAt(frame, point);
+    const Observation observation = ObserveAt(frame, point, kPointSigmaPx);
     if (observation.depth <= 0.0) continue;
     features->points.push_back(point);
     features->observations.push_back(observation);
@@ -50,8 +50,7 @@ void PointFrontend::Match(const FeatureSet& reference,
         cur_from_ref_guess * PointOf(features.observations[i]);
     if (point.z() < options_.min_depth) continue;
     const Eigen::Vector2d pixel = ImagePoint(options_.camera, timing, point);
-    moved_[i] = cv::Point2f(static_cast<float>(pixel.x()),
-                            static_cast<float>(pixel.y()));
+    moved_[i] = cv::Point2d(pixel.x(), pixel.y());
   }
   found_.assign(moved_.size(), 1);
   Follow(features.frame, features.points, frame, &moved_, &found_);
@@ -66,21 +65,13 @@ void PointFrontend::Match(const FeatureSet& reference,
         !options_.camera.Contains({moved_[i].x, moved_[i].y})) {
       continue;
     }
-    matches->Add(reference, static_cast<int>(i), ObserveAt(frame, moved_[i]));
+    matches->Add(reference, static_cast<int>(i),
+                 ObserveAt(frame, moved_[i], kPointSigmaPx));
   }
 }
 
 void PointFrontend::Find(const Frame& frame, Points* points) {
-  *points = DetectGridCorners(
-      frame.gray, options_.max_features, [&](const cv::Point2f& pixel) {
-        return LookUpDepth(frame, pixel.x, pixel.y, depth_options_).depth > 0.0;
-      });
-}
-
-Observation PointFrontend::ObserveAt(const Frame& frame,
-                                     const cv::Point2f& point) const {
-  return Observe(frame, options_.camera, point.x, point.y, kPointSigmaPx,
-                 depth_options_);
+  *points = DetectGridCorners(frame, options_.max_features, depth_options_);
 }
 
 }  // namespace rgbd_pose

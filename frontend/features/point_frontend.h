@@ -35,8 +35,6 @@ class PointFrontend : public Frontend {
                       const PreparedFrame& to, Points* moved, Found* found) = 0;
 
  private:
-  Observation ObserveAt(const Frame& frame, const cv::Point2f& point) const;
-
   Points moved_;
   Found found_;
 };

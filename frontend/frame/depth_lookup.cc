@@ -7,7 +7,6 @@
 
 #include "core/util/format.h"
 #include "core/util/quantile.h"
-#include "frontend/frame/depth_scale.h"
 
 namespace rgbd_pose {
 namespace {
@@ -20,19 +19,6 @@ constexpr double kMaxNoiseStep = 4.0 * M_SQRT2;
 // Relative change of depth from one pixel to the next on the steepest surface
 // used. With f = 525 px this is a surface seen at 80 degrees.
 constexpr double kMaxSlope = 0.011;
-
-// Fewer valid neighbours (of 9) mean the edge of an object or of a hole.
-constexpr int kMinValid = 6;
-
-// Distance of the pixels used for a normal.
-constexpr int kStridePx = 5;
-
-// A point with a larger relative deviation from the plane is on another
-// surface. 1.5 % is 5 sigma of a Kinect at 2 m (Khoshelham & Elberink 2012).
-constexpr double kMaxDeviation = 0.015;
-
-// A pixel with fewer valid neighbours (of 4) is not on a surface.
-constexpr int kMinNeighbours = 2;
 
 }  // namespace
 
@@ -63,7 +49,8 @@ DepthSample LookUpDepth(const Frame& frame, double u, double v,
       ++valid;
     }
   }
-  if (valid < kMinValid) return {};
+  // Fewer valid neighbours mean the edge of an object or of a hole.
+  if (valid < 6) return {};
   if (valid < 9) return {centre, sigma};
   // Least squares on the full 3 x 3 grid: the mean and sum(x y) / sum(x^2).
   const double inverse =
@@ -75,6 +62,10 @@ DepthSample LookUpDepth(const Frame& frame, double u, double v,
 // normalised image x = X / Z, y = Y / Z.
 Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
                              double v, const Eigen::Vector2d& place) {
+  constexpr int kStridePx = 5;  // distance of the pixels used
+  // A point with a larger relative deviation from the plane is on another
+  // surface. 1.5 % is 5 sigma of a Kinect at 2 m (Khoshelham & Elberink 2012).
+  constexpr double kMaxDeviation = 0.015;
   const int column = static_cast<int>(std::lround(u));
   const int row = static_cast<int>(std::lround(v));
   if (column < kStridePx || row < kStridePx ||
@@ -127,7 +118,7 @@ bool IsOnSurface(const cv::Mat& depth, int x, int y, int max_step) {
     if (std::abs(other - raw) > max_step) return false;
     ++neighbours;
   }
-  return neighbours >= kMinNeighbours;
+  return neighbours >= 2;
 }
 
 std::string DepthScaleWarning(const Frame& frame) {

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <opencv2/core.hpp>
+#include <string>
 
 #include "core/geometry/camera.h"
 #include "core/geometry/depth_noise.h"
@@ -47,9 +48,15 @@ Eigen::Vector3d LookUpNormal(const Frame& frame, const Camera& camera, double u,
 double MaxSurfaceStep(double depth, const DepthNoiseModel& noise);
 
 // Whether a pixel of a depth image (CV_16UC1), not at its border, is on a
-// surface with its neighbours, which are at most `max_step` raw units nearer or
-// farther. At the edges of objects sensors report depths between the object and
-// the background.
+// surface with its neighbours: at least two of four have a depth, and all of
+// them are at most `max_step` raw units nearer or farther. At the edges of
+// objects sensors report depths between the object and the background.
 bool IsOnSurface(const cv::Mat& depth, int x, int y, int max_step);
+
+// A warning of one line if the median depth of a frame is implausible for an
+// RGB-D camera (below 0.2 m or above 20 m), as caused by a wrong depth scale.
+// Empty if it is plausible or if the frame has no depth. Small errors are not
+// detected: a scale that is wrong by a factor of 5 still gives plausible rooms.
+std::string DepthScaleWarning(const Frame& frame);
 
 }  // namespace rgbd_pose

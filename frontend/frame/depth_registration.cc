@@ -12,18 +12,6 @@ namespace {
 
 constexpr int kBlock = 64;  // pixels projected together
 
-// Smaller depths (m) are behind the glass of the colour camera.
-constexpr float kMinDepth = 0.01F;
-
-// Depth pixels are enlarged by this factor. Otherwise rotation, lens distortion
-// and slanted surfaces would leave gaps of single pixels between them.
-constexpr double kOverlap = 1.1;
-
-// A ray with a larger squared tangent is outside every lens that radial
-// distortion describes. Its polynomial may fold such rays back into the image.
-constexpr float kMaxTangentSquared = 4.0F;
-constexpr float kMaxTangentSquaredOfFisheye = 100.0F;
-
 // Values of up to kBlock pixels. Eigen vectorises operations on them.
 using Block = Eigen::Array<float, Eigen::Dynamic, 1, 0, kBlock, 1>;
 using Places = Eigen::Array<int, Eigen::Dynamic, 1, 0, kBlock, 1>;
@@ -33,11 +21,11 @@ Places FirstBeyond(const Block& x, float end) {
   return (x + 1.0F).max(0.0F).min(end).cast<int>();
 }
 
-// The size of a depth pixel (undistorted; NaN: none) in the colour image at the
-// same depth, px. Lens distortion makes some pixels larger than others.
-Eigen::Vector2d PixelSize(const Camera& depth, const Eigen::Vector2d& pixel,
+// The size of a depth pixel in the colour image at the same depth, px. Lens
+// distortion makes some pixels larger than others. `place`: its ray on the
+// plane z = 1; NaN: none.
+Eigen::Vector2d PixelSize(const Camera& depth, const Eigen::Vector2d& place,
                           const Camera& color) {
-  const Eigen::Vector2d place = depth.Ray(pixel.x(), pixel.y()).head<2>();
   if ((!depth.HasDistortion() && !color.HasDistortion()) ||
       !place.allFinite()) {
     return {color.fx / depth.fx, color.fy / depth.fy};
@@ -60,30 +48,23 @@ DepthRegistration::DepthRegistration(const DepthCamera& depth,
   if (!depth.color_from_depth.IsFinite()) {
     throw InputError("depth camera: its pose is not finite");
   }
-  std::vector<Eigen::Vector2d> pixels;
-  pixels.reserve(static_cast<size_t>(width_) * height_);
-  for (int v = 0; v < height_; ++v) {
-    for (int u = 0; u < width_; ++u) pixels.emplace_back(u, v);
-  }
-  depth.camera.UndistortPoints(&pixels);
-  for (std::vector<float>* values :
-       {&ray_x_, &ray_y_, &ray_z_, &half_width_, &half_height_}) {
-    values->reserve(pixels.size());
-  }
   const Eigen::Matrix3d rotation =
       depth.color_from_depth.rotation.toRotationMatrix();
-  for (const Eigen::Vector2d& pixel : pixels) {
-    // A pixel for which the lens gives no ray is put behind the camera.
-    const Eigen::Vector3d ray =
-        pixel.allFinite() ? rotation * depth.camera.Ray(pixel.x(), pixel.y())
-                          : Eigen::Vector3d(0.0, 0.0, -1e3);
-    ray_x_.push_back(static_cast<float>(ray.x()));
-    ray_y_.push_back(static_cast<float>(ray.y()));
-    ray_z_.push_back(static_cast<float>(ray.z()));
-    const Eigen::Vector2d size =
-        0.5 * kOverlap * PixelSize(depth.camera, pixel, color);
-    half_width_.push_back(static_cast<float>(size.x()));
-    half_height_.push_back(static_cast<float>(size.y()));
+  // Depth pixels are enlarged by this factor. Otherwise rotation, lens
+  // distortion and slanted surfaces would leave gaps of single pixels.
+  constexpr double kOverlap = 1.1;
+  pixels_.resize(static_cast<Eigen::Index>(width_) * height_, Eigen::NoChange);
+  for (int v = 0, i = 0; v < height_; ++v) {
+    for (int u = 0; u < width_; ++u, ++i) {
+      const Eigen::Vector3d ray = depth.camera.Unproject({u, v}, 1.0);
+      // A pixel for which the lens gives no ray is put behind the camera.
+      const Eigen::Vector3d turned =
+          ray.allFinite() ? rotation * ray : Eigen::Vector3d(0.0, 0.0, -1e3);
+      const Eigen::Vector2d half_size =
+          0.5 * kOverlap * PixelSize(depth.camera, ray.head<2>(), color);
+      pixels_.row(i) << turned.transpose().cast<float>(),
+          half_size.transpose().cast<float>();
+    }
   }
 }
 
@@ -98,22 +79,26 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
   const auto cy = static_cast<float>(color_.cy);
   const auto lens = color_.MakeLens<float>();
   const float p1 = lens.p1, p2 = lens.p2;
-  const float max_tangent_squared = color_.lens_model == LensModel::kEquidistant
-                                        ? kMaxTangentSquaredOfFisheye
-                                        : kMaxTangentSquared;
+  // Smaller depths (m) are behind the glass of the colour camera.
+  constexpr float kMinDepth = 0.01F;
+  // A ray with a larger squared tangent is outside every lens that radial
+  // distortion describes. Its polynomial may fold such rays back into the
+  // image.
+  const float max_tangent_squared =
+      color_.lens_model == LensModel::kEquidistant ? 100.0F : 4.0F;
   const auto columns = static_cast<float>(registered->cols);
   const auto rows = static_cast<float>(registered->rows);
   using Raw = Eigen::Array<uint16_t, Eigen::Dynamic, 1>;
   for (int begin = 0; begin < width_; begin += kBlock) {
     const int n = std::min(kBlock, width_ - begin);
-    const size_t first = static_cast<size_t>(row) * width_ + begin;
-    using Rays = Eigen::Map<const Eigen::ArrayXf>;
+    const auto first = static_cast<Eigen::Index>(row) * width_ + begin;
+    const auto pixels = pixels_.middleRows(first, n);
     const Block raw = Eigen::Map<const Raw>(depth + begin, n).cast<float>();
     const Block z = raw * metres;
-    const Block there_z = z * Rays(&ray_z_[first], n) + translation_.z();
+    const Block there_z = z * pixels.col(2) + translation_.z();
     const Block inverse = there_z.max(kMinDepth).inverse();
-    const Block a = (z * Rays(&ray_x_[first], n) + translation_.x()) * inverse;
-    const Block b = (z * Rays(&ray_y_[first], n) + translation_.y()) * inverse;
+    const Block a = (z * pixels.col(0) + translation_.x()) * inverse;
+    const Block b = (z * pixels.col(1) + translation_.y()) * inverse;
     const Block ray_r2 = a * a + b * b;
     const Block r2 = ray_r2.min(max_tangent_squared);
     Block radial;
@@ -122,8 +107,8 @@ void DepthRegistration::RegisterRow(const uint16_t* depth, int row,
     const Block u = fx * (a * radial + p1 * ab + p2 * (r2 + 2.0F * a * a)) + cx;
     const Block v = fy * (b * radial + p1 * (r2 + 2.0F * b * b) + p2 * ab) + cy;
     const Block nearer = z * inverse;
-    const Block half_width = Rays(&half_width_[first], n) * nearer;
-    const Block half_height = Rays(&half_height_[first], n) * nearer;
+    const Block half_width = pixels.col(3) * nearer;
+    const Block half_height = pixels.col(4) * nearer;
     const Block there = there_z * units + 0.5F;
     const auto is_seen = raw > 0.0F && raw < Frame::kNoDepth &&
                          there_z > kMinDepth && ray_r2 < max_tangent_squared &&

@@ -1,7 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <opencv2/core.hpp>
-#include <vector>
 
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
@@ -35,10 +35,9 @@ class DepthRegistration {
   Eigen::Vector3f translation_;  // of color_from_depth, m
   int width_;
   int height_;
-  // Rays of all depth pixels in the axes of the colour camera, row by row.
-  std::vector<float> ray_x_, ray_y_, ray_z_;
-  // Half the sizes of the depth pixels in the colour image at equal depth, px.
-  std::vector<float> half_width_, half_height_;
+  // Of all depth pixels, row by row: the ray in the axes of the colour camera
+  // (columns 0 to 2) and half the size in the colour image at equal depth, px.
+  Eigen::Array<float, Eigen::Dynamic, 5> pixels_;
 };
 
 }  // namespace rgbd_pose

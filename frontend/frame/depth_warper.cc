@@ -4,12 +4,13 @@
 #include <cmath>
 
 #include "core/util/floor.h"
-#include "frontend/frame/depth_lanes.h"
+#include "frontend/frame/depth_resampling.h"
 
 namespace rgbd_pose {
 namespace {
 
-constexpr int kFlowBlock = kEight;  // px; the flow is constant in a block
+constexpr int kFlowBlock = RayGrid::kStep;  // px; with a constant flow
+static_assert(kFlowBlock == kEight);
 
 // Smaller differences of displacement (px) within a block, and between two
 // iterations, do not matter.
@@ -17,22 +18,24 @@ constexpr float kSamePlacePx = 0.5F;
 
 }  // namespace
 
-DepthWarper::DepthWarper(const Camera& camera)
-    : camera_(camera),
-      columns_((camera.width + kFlowBlock - 1) / kFlowBlock),
-      rows_((camera.height + kFlowBlock - 1) / kFlowBlock),
-      ranges_(static_cast<size_t>(columns_) * rows_) {
-  constexpr double kMiddle = (kFlowBlock - 1) / 2.0;
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
+RayGrid::RayGrid(const Camera& camera, int num_rows, double first_row)
+    : columns((camera.width + kStep - 1) / kStep), rows(num_rows) {
+  for (int row = 0; row < rows; ++row) {
+    for (int column = 0; column < columns; ++column) {
       const Eigen::Vector3d ray = camera.Unproject(
-          {column * kFlowBlock + kMiddle, row * kFlowBlock + kMiddle}, 1.0);
+          {column * kStep + (kStep - 1) / 2.0, row * kStep + first_row}, 1.0);
       // If the lens gives no ray, any ray will do.
-      rays_.push_back(ray.allFinite() ? ray : Eigen::Vector3d::UnitZ());
-      middles_.push_back(camera.Project(rays_.back()));
+      rays.push_back(ray.allFinite() ? ray : Eigen::Vector3d::UnitZ());
+      pixels.push_back(camera.Project(rays.back()));
     }
   }
 }
+
+DepthWarper::DepthWarper(const Camera& camera)
+    : camera_(camera),
+      blocks_(camera, (camera.height + kFlowBlock - 1) / kFlowBlock,
+              (kFlowBlock - 1) / 2.0),
+      ranges_(blocks_.rays.size()) {}
 
 const cv::Mat& DepthWarper::Move(const Frame& frame,
                                  const Rigid3d& moved_from_measured) {
@@ -50,18 +53,22 @@ const cv::Mat& DepthWarper::Move(const Frame& frame,
   for (int row = 0; row < measured_.rows; ++row) {
     measured_from_moved_.push_back(moved_from_measured(row).Inverse());
   }
-  for (int row = 0; row < rows_; ++row) {
+  const cv::Rect image(0, 0, camera_.width, camera_.height);
+  for (int row = 0; row < blocks_.rows; ++row) {
     // The motion of a block depends on the row where it was measured. Its
     // displacement is about the same as for the block to the left.
     double down = 0.0;
-    for (int column = 0; column < columns_; ++column) {
-      const cv::Rect block = BlockAt(column, row);
+    for (int column = 0; column < blocks_.columns; ++column) {
+      const cv::Rect block = cv::Rect(column * kFlowBlock, row * kFlowBlock,
+                                      kFlowBlock, kFlowBlock) &
+                             image;
       const int measured_row = std::clamp(
           static_cast<int>(std::lround(block.y + kFlowBlock / 2 + down)), 0,
           measured_.rows - 1);
-      const Flow flow = FlowAt(static_cast<size_t>(row) * columns_ + column,
-                               measured_from_moved_[measured_row]);
-      down = flow.turn_v + kRoomInverseDepth * flow.shift_v;
+      const Flow flow =
+          FlowAt(static_cast<size_t>(row) * blocks_.columns + column,
+                 measured_from_moved_[measured_row]);
+      down = flow.turn.y() + kRoomInverseDepth * flow.shift.y();
       const Range range = RangeAround(column, row, flow);
       if (range.min > range.max) {
         moved_(block).setTo(0);
@@ -70,29 +77,21 @@ const cv::Mat& DepthWarper::Move(const Frame& frame,
       const auto units = static_cast<float>(depth_scale_);
       const float nearest = units / range.min;
       const float farthest = units / range.max;
-      const float shift =
-          std::max(std::abs(flow.shift_u), std::abs(flow.shift_v));
+      const float shift = flow.shift.lpNorm<Eigen::Infinity>();
       if (shift * (nearest - farthest) > kSamePlacePx) {
-        MoveEach(block, flow, range, &moved_);
-        continue;
+        MoveEach(block, flow, range);
+      } else {
+        const float middle = 0.5F * (nearest + farthest);
+        MoveTogether(block, flow, flow.turn + middle * flow.shift);
       }
-      const float middle = 0.5F * (nearest + farthest);
-      MoveTogether(block, flow, flow.turn_u + middle * flow.shift_u,
-                   flow.turn_v + middle * flow.shift_v, &moved_);
     }
   }
   return moved_;
 }
 
-cv::Rect DepthWarper::BlockAt(int column, int row) const {
-  return cv::Rect(column * kFlowBlock, row * kFlowBlock, kFlowBlock,
-                  kFlowBlock) &
-         cv::Rect(0, 0, camera_.width, camera_.height);
-}
-
 // Columns first, because the compiler can vectorise this loop.
 void DepthWarper::FindRanges() {
-  for (int row = 0; row < rows_; ++row) {
+  for (int row = 0; row < blocks_.rows; ++row) {
     // Subtracting one wraps no depth (0) around to the largest number.
     column_min_.assign(measured_.cols, Frame::kNoDepth);
     column_max_.assign(measured_.cols, 0);
@@ -105,14 +104,14 @@ void DepthWarper::FindRanges() {
         column_max_[u] = std::max(column_max_[u], raw[u]);
       }
     }
-    for (int column = 0; column < columns_; ++column) {
+    for (int column = 0; column < blocks_.columns; ++column) {
       const int u = column * kFlowBlock;
       const int size = std::min(kFlowBlock, measured_.cols - u);
       const auto low = column_min_.begin() + u;
       const auto high = column_max_.begin() + u;
       const int min = *std::min_element(low, low + size) + 1;
       const uint16_t max = *std::max_element(high, high + size);
-      ranges_[static_cast<size_t>(row) * columns_ + column] = {
+      ranges_[static_cast<size_t>(row) * blocks_.columns + column] = {
           static_cast<uint16_t>(max == 0 ? 1 : min), max};
     }
   }
@@ -120,8 +119,9 @@ void DepthWarper::FindRanges() {
 
 DepthWarper::Flow DepthWarper::FlowAt(
     size_t block, const Rigid3d& measured_from_moved) const {
-  const Eigen::Vector2d& pixel = middles_[block];
-  const Eigen::Vector3d turned = measured_from_moved.rotation * rays_[block];
+  const Eigen::Vector2d& pixel = blocks_.pixels[block];
+  const Eigen::Vector3d turned =
+      measured_from_moved.rotation * blocks_.rays[block];
   const Eigen::Vector2d turn = camera_.Project(turned) - pixel;
   const Eigen::Vector2d both =
       camera_.Project(turned +
@@ -129,11 +129,7 @@ DepthWarper::Flow DepthWarper::FlowAt(
       pixel;
   const Eigen::Vector2d shift = (both - turn) / kRoomInverseDepth;
   return {
-      static_cast<float>(turn.x()),
-      static_cast<float>(turn.y()),
-      static_cast<float>(shift.x()),
-      static_cast<float>(shift.y()),
-      static_cast<float>(turned.z()),
+      turn.cast<float>(), shift.cast<float>(), static_cast<float>(turned.z()),
       static_cast<float>(measured_from_moved.translation.z() * depth_scale_)};
 }
 
@@ -141,23 +137,18 @@ DepthWarper::Flow DepthWarper::FlowAt(
 DepthWarper::Range DepthWarper::RangeAround(int column, int row,
                                             const Flow& flow) const {
   constexpr float kMaxInverseDepth = 2.0F;  // 1/m
-  const auto first = [](float turn, float shift) {
-    return static_cast<int>(std::floor(
-        (turn + std::min(0.0F, kMaxInverseDepth * shift)) / kFlowBlock));
-  };
-  const auto last = [](float turn, float shift) {
-    return static_cast<int>(std::ceil(
-        (turn + std::max(0.0F, kMaxInverseDepth * shift)) / kFlowBlock));
-  };
+  const Eigen::Array2f turn = flow.turn;
+  const Eigen::Array2f reach = kMaxInverseDepth * flow.shift;
+  const Eigen::Array2i first =
+      ((turn + reach.min(0.0F)) / kFlowBlock).floor().cast<int>();
+  const Eigen::Array2i last =
+      ((turn + reach.max(0.0F)) / kFlowBlock).ceil().cast<int>();
   Range range = {1, 0};
-  const int end_v = std::min(row + last(flow.turn_v, flow.shift_v), rows_ - 1);
-  const int end_u =
-      std::min(column + last(flow.turn_u, flow.shift_u), columns_ - 1);
-  for (int v = std::max(row + first(flow.turn_v, flow.shift_v), 0); v <= end_v;
-       ++v) {
-    for (int u = std::max(column + first(flow.turn_u, flow.shift_u), 0);
-         u <= end_u; ++u) {
-      const Range& here = ranges_[static_cast<size_t>(v) * columns_ + u];
+  const int end_v = std::min(row + last.y(), blocks_.rows - 1);
+  const int end_u = std::min(column + last.x(), blocks_.columns - 1);
+  for (int v = std::max(row + first.y(), 0); v <= end_v; ++v) {
+    for (int u = std::max(column + first.x(), 0); u <= end_u; ++u) {
+      const Range& here = ranges_[static_cast<size_t>(v) * blocks_.columns + u];
       if (here.max == 0) continue;
       range.min = range.max == 0 ? here.min : std::min(range.min, here.min);
       range.max = std::max(range.max, here.max);
@@ -166,8 +157,10 @@ DepthWarper::Range DepthWarper::RangeAround(int column, int row,
   return range;
 }
 
-void DepthWarper::MoveTogether(const cv::Rect& block, const Flow& flow, float u,
-                               float v, cv::Mat* out) const {
+void DepthWarper::MoveTogether(const cv::Rect& block, const Flow& flow,
+                               const Eigen::Vector2f& displacement) {
+  const float u = displacement.x();
+  const float v = displacement.y();
   const int left = FloorToInt(u);
   const int above = FloorToInt(v);
   const float right = u - static_cast<float>(left);
@@ -179,11 +172,12 @@ void DepthWarper::MoveTogether(const cv::Rect& block, const Flow& flow, float u,
                          source.y >= 0 && source.br().x < measured_.cols &&
                          source.br().y < measured_.rows;
   for (int y = 0; y < block.height; ++y) {
-    auto* to = out->ptr<uint16_t>(block.y + y) + block.x;
+    auto* to = moved_.ptr<uint16_t>(block.y + y) + block.x;
     if (!is_inside) {
       for (int x = 0; x < block.width; ++x) {
-        const float raw = Sample(u + static_cast<float>(block.x + x),
-                                 v + static_cast<float>(block.y + y));
+        const float raw =
+            SampleDepth(measured_, u + static_cast<float>(block.x + x),
+                        v + static_cast<float>(block.y + y));
         to[x] = raw > 0.0F ? EncodeDepth(raw * scale + offset) : 0;
       }
       continue;
@@ -199,21 +193,22 @@ void DepthWarper::MoveTogether(const cv::Rect& block, const Flow& flow, float u,
 // The source position of a pixel depends on the surface that it sees, and vice
 // versa. The search iterates from the nearest depth around first: a hidden
 // surface is found only if nothing hides it.
-void DepthWarper::MoveEach(const cv::Rect& block, const Flow& flow, Range range,
-                           cv::Mat* out) const {
+void DepthWarper::MoveEach(const cv::Rect& block, const Flow& flow,
+                           Range range) {
   constexpr int kMaxSteps = 3;
   const auto units = static_cast<float>(depth_scale_);
-  const float shift = std::max(std::abs(flow.shift_u), std::abs(flow.shift_v));
+  const float shift = flow.shift.lpNorm<Eigen::Infinity>();
   for (int v = block.y; v < block.br().y; ++v) {
-    auto* to = out->ptr<uint16_t>(v);
+    auto* to = moved_.ptr<uint16_t>(v);
     for (int u = block.x; u < block.br().x; ++u) {
       to[u] = 0;
       for (const uint16_t start : {range.min, range.max}) {
         float inverse = units / start;
         for (int step = 0; step < kMaxSteps && to[u] == 0; ++step) {
-          const float raw = Sample(
-              static_cast<float>(u) + flow.turn_u + inverse * flow.shift_u,
-              static_cast<float>(v) + flow.turn_v + inverse * flow.shift_v);
+          const float raw = SampleDepth(
+              measured_,
+              static_cast<float>(u) + flow.turn.x() + inverse * flow.shift.x(),
+              static_cast<float>(v) + flow.turn.y() + inverse * flow.shift.y());
           const float moved = (raw - flow.advance) / flow.stretch;
           if (raw <= 0.0F || moved <= 0.0F) break;
           const float last = inverse;
@@ -226,29 +221,6 @@ void DepthWarper::MoveEach(const cv::Rect& block, const Flow& flow, Range range,
       }
     }
   }
-}
-
-float DepthWarper::Sample(float u, float v) const {
-  const int left = FloorToInt(u);
-  const int above = FloorToInt(v);
-  const float right = u - static_cast<float>(left);
-  const float down = v - static_cast<float>(above);
-  const int column = left + (right >= 0.5F);
-  const int row = above + (down >= 0.5F);
-  if (column < 0 || row < 0 || column >= measured_.cols ||
-      row >= measured_.rows) {
-    return 0.0F;
-  }
-  const uint16_t nearest = measured_.at<uint16_t>(row, column);
-  if (nearest == 0 || left < 0 || above < 0 || left + 1 >= measured_.cols ||
-      above + 1 >= measured_.rows) {
-    return nearest;
-  }
-  const auto* top = measured_.ptr<uint16_t>(above) + left;
-  const auto* bottom = measured_.ptr<uint16_t>(above + 1) + left;
-  return IsOneSurface(top[0], top[1], bottom[0], bottom[1])
-             ? Between(top[0], top[1], bottom[0], bottom[1], right, down)
-             : nearest;
 }
 
 }  // namespace rgbd_pose

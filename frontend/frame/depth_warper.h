@@ -14,6 +14,18 @@ namespace rgbd_pose {
 // Typical inverse depth in a room (1/m), used if a pixel's depth is not known.
 inline constexpr double kRoomInverseDepth = 0.5;
 
+// Points of an image every kStep px in both directions, row by row.
+struct RayGrid {
+  static constexpr int kStep = 8;  // px
+
+  // As many columns as blocks of kStep px, with the points in their middle.
+  RayGrid(const Camera& camera, int num_rows, double first_row);
+
+  int columns, rows;
+  std::vector<Eigen::Vector3d> rays;    // (a, b, 1)
+  std::vector<Eigen::Vector2d> pixels;  // their image points
+};
+
 // Warps depth images to the view of a camera after a small motion (some
 // centimetres and degrees). This aligns depth that was measured at another time
 // than colour. Not thread-safe; the object reuses its memory.
@@ -36,8 +48,8 @@ class DepthWarper {
   // p + turn + shift / z (to first order in the translation) with the depth
   // stretch * z + advance.
   struct Flow {
-    float turn_u, turn_v;    // px
-    float shift_u, shift_v;  // px m
+    Eigen::Vector2f turn;   // px
+    Eigen::Vector2f shift;  // px m
     float stretch;
     float advance;  // raw units
   };
@@ -45,24 +57,18 @@ class DepthWarper {
     uint16_t min, max;  // raw depths; min > max: none
   };
 
-  cv::Rect BlockAt(int column, int row) const;
   void FindRanges();
   Flow FlowAt(size_t block, const Rigid3d& measured_from_moved) const;
   Range RangeAround(int column, int row, const Flow& flow) const;
   // Moves all pixels of a block by the same displacement.
-  void MoveTogether(const cv::Rect& block, const Flow& flow, float u, float v,
-                    cv::Mat* out) const;
+  void MoveTogether(const cv::Rect& block, const Flow& flow,
+                    const Eigen::Vector2f& displacement);
   // Moves each pixel separately and searches for the surface that it sees.
-  void MoveEach(const cv::Rect& block, const Flow& flow, Range range,
-                cv::Mat* out) const;
-  // Raw depth between pixels of one surface, otherwise of the nearest pixel.
-  float Sample(float u, float v) const;
+  void MoveEach(const cv::Rect& block, const Flow& flow, Range range);
 
   Camera camera_;
-  int columns_, rows_;                    // number of blocks
-  std::vector<Eigen::Vector3d> rays_;     // of the centres of blocks
-  std::vector<Eigen::Vector2d> middles_;  // centres of blocks, px
-  std::vector<Range> ranges_;             // of blocks
+  RayGrid blocks_;             // their middles
+  std::vector<Range> ranges_;  // of blocks
   std::vector<uint16_t> column_min_, column_max_;
   cv::Mat measured_;  // the depth image; 0: none
   cv::Mat moved_;

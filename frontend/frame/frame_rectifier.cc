@@ -4,30 +4,12 @@
 #include <opencv2/imgproc.hpp>
 
 namespace rgbd_pose {
-namespace {
-
-// Distance of nodes in both directions, px. Horizontally eight pixels have the
-// same motion.
-constexpr int kStep = 8;
-constexpr double kFirstColumn = (kStep - 1) / 2.0;
-
-}  // namespace
 
 FrameRectifier::FrameRectifier(const Camera& camera)
     : camera_(camera),
       mover_(camera),
-      columns_((camera.width + kStep - 1) / kStep),
-      rows_((camera.height + kStep - 1) / kStep + 1) {
-  for (int row = 0; row < rows_; ++row) {
-    for (int column = 0; column < columns_; ++column) {
-      const Eigen::Vector3d ray = camera.Unproject(
-          Eigen::Vector2d(column * kStep + kFirstColumn, row * kStep), 1.0);
-      // If the lens gives no ray, any ray will do.
-      rays_.push_back(ray.allFinite() ? ray : Eigen::Vector3d::UnitZ());
-      nodes_.push_back(camera.Project(rays_.back()));
-    }
-  }
-}
+      nodes_(camera, (camera.height + RayGrid::kStep - 1) / RayGrid::kStep + 1,
+             0.0) {}
 
 Frame FrameRectifier::Rectify(const Frame& frame) {
   const FrameTiming timing = frame.Timing();
@@ -43,16 +25,12 @@ Frame FrameRectifier::Rectify(const Frame& frame,
   rectified.depth_delay = 0.0;
   rectified.depth_shutter = Shutter();
   rectified.color_shutter = {0.0, 0.0, frame.color_shutter.is_known};
-  const double middle = timing.color.offset;
-  rectified.depth =
-      mover_
-          .Move(frame,
-                [&](double row) {
-                  const double time =
-                      timing.depth.RowTime(row, camera_.height) - middle;
-                  return target_from_middle * timing.twist.MotionDuring(-time);
-                })
-          .clone();
+  const auto target_from_measured = [&](double row) {
+    const double time =
+        timing.depth.RowTime(row, camera_.height) - timing.color.offset;
+    return target_from_middle * timing.twist.MotionDuring(-time);
+  };
+  rectified.depth = mover_.Move(frame, target_from_measured).clone();
   MakeFlows(frame, target_from_middle);
   MakeMaps(rectified.depth, frame.depth_scale);
   const auto resample = [this](const cv::Mat& image) {
@@ -82,40 +60,38 @@ void FrameRectifier::MakeFlows(const Frame& frame,
         turned * ray + inverse_depth * middle_from_target.translation,
         seconds));
   };
-  flows_.resize(rays_.size());
-  for (size_t i = 0; i < rays_.size(); ++i) {
+  flows_.resize(nodes_.rays.size());
+  for (size_t i = 0; i < flows_.size(); ++i) {
     // The time depends on the row, and the row on the time: iterate.
-    Eigen::Vector2d near = nodes_[i];
+    Eigen::Vector2d near = nodes_.pixels[i];
     double time = 0.0;
     for (int step = 0; step < 2; ++step) {
       time =
           timing.color.RowTime(near.y(), camera_.height) - timing.color.offset;
-      near = see(rays_[i], kRoomInverseDepth, time);
+      near = see(nodes_.rays[i], kRoomInverseDepth, time);
     }
-    const Eigen::Vector2d far = see(rays_[i], 0.0, time);
-    const Eigen::Vector2d turn = far - nodes_[i];
-    const Eigen::Vector2d shift = (near - far) / kRoomInverseDepth;
-    flows_[i] = {
-        {static_cast<float>(turn.x()), static_cast<float>(turn.y())},
-        {static_cast<float>(shift.x()), static_cast<float>(shift.y())}};
+    const Eigen::Vector2d far = see(nodes_.rays[i], 0.0, time);
+    flows_[i] = {(far - nodes_.pixels[i]).cast<float>(),
+                 ((near - far) / kRoomInverseDepth).cast<float>()};
   }
 }
 
 // Pixels with the same motion use their mean depth. At an edge, part of the
 // background moves with the foreground, as in a patch around a corner.
 void FrameRectifier::MakeMaps(const cv::Mat& depth, double depth_scale) {
+  constexpr int kStep = RayGrid::kStep;
   map_u_.create(depth.size(), CV_32F);
   map_v_.create(depth.size(), CV_32F);
   for (int v = 0; v < depth.rows; ++v) {
     const Flow* const above =
-        &flows_[static_cast<size_t>(v / kStep) * columns_];
-    const Flow* const below = above + columns_;
+        &flows_[static_cast<size_t>(v / kStep) * nodes_.columns];
+    const Flow* const below = above + nodes_.columns;
     const float down = static_cast<float>(v % kStep) / kStep;
     const auto* const raw = depth.ptr<uint16_t>(v);
     float* const to_u = map_u_.ptr<float>(v);
     float* const to_v = map_v_.ptr<float>(v);
     float inverse_depth = kRoomInverseDepth;  // of the last valid depth
-    for (int column = 0; column < columns_; ++column) {
+    for (int column = 0; column < nodes_.columns; ++column) {
       const int first = column * kStep;
       const int end = std::min(first + kStep, depth.cols);
       int sum = 0, count = 0;
@@ -126,14 +102,11 @@ void FrameRectifier::MakeMaps(const cv::Mat& depth, double depth_scale) {
       if (count > 0) {
         inverse_depth = static_cast<float>(count * depth_scale / sum);
       }
-      std::array<float, 2> flow;
-      for (int k = 0; k < 2; ++k) {
-        const float from =
-            above[column].turn[k] + inverse_depth * above[column].shift[k];
-        const float to =
-            below[column].turn[k] + inverse_depth * below[column].shift[k];
-        flow[k] = from + down * (to - from);
-      }
+      const Flow& top = above[column];
+      const Flow& bottom = below[column];
+      const Eigen::Vector2f from = top.turn + inverse_depth * top.shift;
+      const Eigen::Vector2f to = bottom.turn + inverse_depth * bottom.shift;
+      const Eigen::Vector2f flow = from + down * (to - from);
       for (int u = first; u < end; ++u) {
         to_u[u] = static_cast<float>(u) + flow[0];
         to_v[u] = static_cast<float>(v) + flow[1];

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
 #include <opencv2/core.hpp>
 #include <vector>
 
@@ -32,7 +31,7 @@ class FrameRectifier {
  private:
   // The motion of an image point at a grid node: turn + shift / z, px.
   struct Flow {
-    std::array<float, 2> turn, shift;
+    Eigen::Vector2f turn, shift;
   };
 
   void MakeFlows(const Frame& frame, const Rigid3d& target_from_middle);
@@ -41,11 +40,9 @@ class FrameRectifier {
 
   Camera camera_;
   DepthWarper mover_;
-  int columns_, rows_;                  // number of nodes
-  std::vector<Eigen::Vector3d> rays_;   // of nodes
-  std::vector<Eigen::Vector2d> nodes_;  // image points of nodes, px
-  std::vector<Flow> flows_;             // at nodes
-  cv::Mat map_u_, map_v_;               // source position of each pixel, px
+  RayGrid nodes_;
+  std::vector<Flow> flows_;  // at nodes
+  cv::Mat map_u_, map_v_;    // source position of each pixel, px
 };
 
 }  // namespace rgbd_pose

@@ -3,21 +3,33 @@
 #include <algorithm>
 #include <opencv2/imgproc.hpp>
 
-#include "frontend/frame/view_frame.h"
-
 namespace rgbd_pose {
 namespace {
 
-constexpr int kMinSidePx = 8;
-constexpr int kLevelsOfFrame = 6;
-
-void Smooth(const std::vector<cv::Mat>& sharp, std::vector<cv::Mat>* pyramid) {
-  constexpr double kSigmaPx = 1.0;
-  pyramid->resize(sharp.size());
-  (*pyramid)[0] = sharp[0];
-  for (size_t level = 1; level < sharp.size(); ++level) {
-    cv::GaussianBlur(sharp[level], (*pyramid)[level], {3, 3}, kSigmaPx);
+std::vector<cv::Mat> SharpLevels(const cv::Mat& gray, int levels) {
+  constexpr int kMinSidePx = 8;
+  std::vector<cv::Mat> pyramid = {gray};
+  while (static_cast<int>(pyramid.size()) < levels) {
+    const cv::Mat& finer = pyramid.back();
+    const cv::Size half(finer.cols / 2, finer.rows / 2);
+    if (std::min(half.width, half.height) < kMinSidePx) break;
+    // The last pixel of an odd side is dropped to keep the scale at exactly 2.
+    const cv::Mat even = finer(cv::Rect(0, 0, 2 * half.width, 2 * half.height));
+    cv::Mat coarser;
+    cv::resize(even, coarser, half, 0.0, 0.0, cv::INTER_AREA);
+    pyramid.push_back(coarser);
   }
+  return pyramid;
+}
+
+std::vector<cv::Mat> Smooth(const std::vector<cv::Mat>& sharp) {
+  constexpr double kSigmaPx = 1.0;
+  std::vector<cv::Mat> smooth(sharp.size());
+  smooth[0] = sharp[0];
+  for (size_t level = 1; level < sharp.size(); ++level) {
+    cv::GaussianBlur(sharp[level], smooth[level], {3, 3}, kSigmaPx);
+  }
+  return smooth;
 }
 
 template <typename Pixel>
@@ -28,36 +40,14 @@ ImageView<Pixel> ViewImage(const cv::Mat& image) {
 
 }  // namespace
 
-void BuildImagePyramid(const cv::Mat& gray, int levels,
-                       std::vector<cv::Mat>* pyramid) {
-  pyramid->resize(levels);
-  (*pyramid)[0] = gray;
-  for (int level = 1; level < levels; ++level) {
-    const cv::Mat& finer = (*pyramid)[level - 1];
-    const cv::Size half(finer.cols / 2, finer.rows / 2);
-    if (std::min(half.width, half.height) < kMinSidePx) {
-      pyramid->resize(level);
-      return;
-    }
-    // The last pixel of an odd side is dropped to keep the scale at exactly 2.
-    const cv::Mat even = finer(cv::Rect(0, 0, 2 * half.width, 2 * half.height));
-    cv::resize(even, (*pyramid)[level], half, 0.0, 0.0, cv::INTER_AREA);
-  }
-}
+ImagePyramid::ImagePyramid(const PreparedFrame& frame)
+    : levels(SharpLevels(frame.gray, /*levels=*/6)) {}
 
-void BuildSmoothPyramid(const cv::Mat& gray, int levels,
-                        std::vector<cv::Mat>* pyramid) {
-  std::vector<cv::Mat> sharp;
-  BuildImagePyramid(gray, levels, &sharp);
-  Smooth(sharp, pyramid);
-}
+SmoothPyramid::SmoothPyramid(const PreparedFrame& frame)
+    : levels(Smooth(frame.Derived<ImagePyramid>().levels)) {}
 
-ImagePyramid::ImagePyramid(const PreparedFrame& frame) {
-  BuildImagePyramid(frame.gray, kLevelsOfFrame, &levels);
-}
-
-SmoothPyramid::SmoothPyramid(const PreparedFrame& frame) {
-  Smooth(frame.Derived<ImagePyramid>().levels, &levels);
+std::vector<cv::Mat> SmoothLevels(const cv::Mat& gray, int levels) {
+  return Smooth(SharpLevels(gray, levels));
 }
 
 Camera CameraOfLevel(const Camera& camera, int level) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "frontend/frame/depth_lookup.h"
 #include "frontend/frame/depth_warper.h"
 
 namespace rgbd_pose {
@@ -12,10 +11,6 @@ namespace {
 // Depth assumed for a point without a known depth, m.
 constexpr double kUsualDepth = 1.0 / kRoomInverseDepth;
 
-// The time depends on the row where a point is seen, and the row on the time.
-// The second iteration reduces the remaining error to a hundredth.
-constexpr int kRowSteps = 2;
-
 // The image point of a point (at the stamp) with this shutter. `moved` is the
 // point in camera axes at the exposure time of its row.
 Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
@@ -23,7 +18,9 @@ Eigen::Vector2d SeenByRows(const Camera& camera, const Shutter& shutter,
                            Eigen::Vector3d* moved) {
   Eigen::Vector2d pixel = camera.Project(point);
   *moved = point;
-  for (int step = 0; step < kRowSteps; ++step) {
+  // The time depends on the row where the point is seen, and the row on the
+  // time. The second iteration reduces the remaining error to a hundredth.
+  for (int step = 0; step < 2; ++step) {
     *moved = twist.MovedPoint(point, shutter.RowTime(pixel.y(), camera.height));
     if (!(moved->z() > 0.0)) return pixel;
     pixel = camera.Project(*moved);
@@ -80,23 +77,17 @@ Observation Observe(const Frame& frame, const Camera& camera, double u,
   const FrameTiming timing = frame.Timing();
   const Eigen::Vector2d ideal = camera.Undistort(Eigen::Vector2d(u, v));
   // If the lens gives no ray, nothing is known, not even a depth.
-  if (!ideal.allFinite()) {
-    return {ideal.x(), ideal.y(), 0.0, sigma_px, 0.0, Eigen::Vector3d::Zero()};
-  }
+  if (!ideal.allFinite()) return {ideal.x(), ideal.y(), 0.0, sigma_px};
+  const Eigen::Vector3d ray = camera.Ray(ideal.x(), ideal.y());
   if (!timing.IsOneMoment()) {
-    return ObserveMoving(frame, camera, timing,
-                         camera.Ray(ideal.x(), ideal.y()),
+    return ObserveMoving(frame, camera, timing, ray,
                          timing.color.RowTime(v, camera.height), kUsualDepth,
                          sigma_px, depth_options);
   }
   const DepthSample sample = LookUpDepth(frame, u, v, depth_options);
-  return {ideal.x(),
-          ideal.y(),
-          sample.depth,
-          sigma_px,
-          sample.sigma,
-          LookUpNormal(frame, camera, u, v,
-                       camera.Ray(ideal.x(), ideal.y()).head<2>())};
+  const Eigen::Vector3d normal =
+      LookUpNormal(frame, camera, u, v, ray.head<2>());
+  return {ideal.x(), ideal.y(), sample.depth, sigma_px, sample.sigma, normal};
 }
 
 Observation ObserveAgain(const Frame& frame, const Camera& camera,

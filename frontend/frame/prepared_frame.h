@@ -1,9 +1,11 @@
 #pragma once
 
+#include <any>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <tuple>
+#include <utility>
 #include <vector>
 
 #include "frontend/frame/frame.h"
@@ -33,33 +35,22 @@ class PreparedFrame : public Frame {
   // arguments, which lives as long as any copy of the frame.
   template <typename T, typename... Arguments>
   const T& Derived(const Arguments&... arguments) const {
-    using Made = DerivedOf<T, Arguments...>;
+    using Made = std::pair<std::tuple<Arguments...>, std::shared_ptr<const T>>;
     const std::tuple<Arguments...> wanted(arguments...);
     const std::lock_guard<std::recursive_mutex> lock(derived_->mutex);
-    for (const std::unique_ptr<AnyDerived>& any : derived_->all) {
-      const auto* made = dynamic_cast<const Made*>(any.get());
-      if (made != nullptr && made->arguments == wanted) return made->value;
+    for (const std::any& any : derived_->all) {
+      const auto* made = std::any_cast<Made>(&any);
+      if (made != nullptr && made->first == wanted) return *made->second;
     }
-    auto made = std::make_unique<Made>(*this, arguments...);
-    const T& value = made->value;
-    derived_->all.push_back(std::move(made));
-    return value;
+    const auto value = std::make_shared<const T>(*this, arguments...);
+    derived_->all.push_back(Made(wanted, value));
+    return *value;
   }
 
  private:
-  struct AnyDerived {
-    virtual ~AnyDerived() = default;
-  };
-  template <typename T, typename... Arguments>
-  struct DerivedOf final : AnyDerived {
-    explicit DerivedOf(const PreparedFrame& frame, const Arguments&... all)
-        : arguments(all...), value(frame, all...) {}
-    std::tuple<Arguments...> arguments;
-    T value;
-  };
   struct DerivedData {
     std::recursive_mutex mutex;  // computing one item may request another
-    std::vector<std::unique_ptr<AnyDerived>> all;
+    std::vector<std::any> all;
   };
 
   std::shared_ptr<DerivedData> derived_;

@@ -4,10 +4,9 @@
 
 namespace rgbd_pose {
 
-Undistorter::Undistorter(const Camera& camera)
-    : has_distortion_(camera.HasDistortion()), ideal_(camera) {
+Undistorter::Undistorter(const Camera& camera) : ideal_(camera) {
   ideal_.SetDistortion(LensModel::kRational, {0.0, 0.0, 0.0, 0.0});
-  if (!has_distortion_) return;
+  if (!camera.HasDistortion()) return;
   map_x_.create(camera.height, camera.width, CV_32FC1);
   map_y_.create(camera.height, camera.width, CV_32FC1);
   for (int y = 0; y < camera.height; ++y) {
@@ -20,8 +19,8 @@ Undistorter::Undistorter(const Camera& camera)
 }
 
 Frame Undistorter::Undistort(const Frame& frame) const {
+  if (map_x_.empty()) return frame;
   Frame ideal = frame;
-  if (!has_distortion_) return ideal;
   const auto remap = [this](const cv::Mat& image, int interpolation) {
     cv::Mat moved;
     if (!image.empty()) cv::remap(image, moved, map_x_, map_y_, interpolation);

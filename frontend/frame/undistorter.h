@@ -22,9 +22,9 @@ class Undistorter {
   const Camera& camera() const { return ideal_; }
 
  private:
-  bool has_distortion_;
   Camera ideal_;
-  cv::Mat map_x_, map_y_;  // CV_32FC1: source position of each pixel, px
+  // CV_32FC1: source position of each pixel, px; empty without distortion.
+  cv::Mat map_x_, map_y_;
 };
 
 }  // namespace rgbd_pose

@@ -4,15 +4,6 @@
 #include <cmath>
 
 namespace rgbd_pose {
-namespace {
-
-// Minimum cosine of the angle between the two lines of sight to a point.
-constexpr double kMinCosine = 0.5;
-
-// Relative to depth; more than the noise of any sensor within some metres.
-constexpr double kMaxDepthDifference = 0.05;
-
-}  // namespace
 
 ViewOverlap::ViewOverlap(const Frame& frame, const Camera& camera, int step_px,
                          double min_depth, double max_depth)
@@ -31,6 +22,8 @@ ViewOverlap::ViewOverlap(const Frame& frame, const Camera& camera, int step_px,
 ViewLikeness ViewOverlap::LikenessTo(const Frame& cur, const cv::Mat& view,
                                      const cv::Mat& level,
                                      const Rigid3d& cur_from_view) const {
+  // Relative to depth; more than the noise of any sensor within some metres.
+  constexpr double kMaxDepthDifference = 0.05;
   const double scale = static_cast<double>(view.cols) / camera_.width;
   const auto level_at = [&](const cv::Mat& image, const Eigen::Vector2d& at) {
     const auto column = static_cast<int>(at.x() * scale);
@@ -54,20 +47,19 @@ ViewLikeness ViewOverlap::LikenessTo(const Frame& cur, const cv::Mat& view,
     const double y = level_at(level, at);
     a += x, b += y, aa += x * x, bb += y * y, ab += x * y;
   }
-  ViewLikeness likeness;
-  if (seen == 0) return likeness;
-  likeness.depth = static_cast<double>(agree) / seen;
+  if (seen == 0) return {};
   // `+ seen` is the variance of noise of one gray level, which is no contrast.
   const double contrast_a = aa - a * a / seen + seen;
   const double contrast_b = bb - b * b / seen + seen;
-  likeness.gray = (ab - a * b / seen) / std::sqrt(contrast_a * contrast_b);
-  return likeness;
+  return {(ab - a * b / seen) / std::sqrt(contrast_a * contrast_b),
+          static_cast<double>(agree) / seen};
 }
 
 Overlap ViewOverlap::SeenFrom(const Rigid3d& cur_from_view) const {
-  Overlap overlap;
+  // Minimum cosine of the angle between the two lines of sight to a point.
+  constexpr double kMinCosine = 0.5;
   int seen = 0;
-  double zoom = 0.0;
+  double flow_px = 0.0, zoom = 0.0;
   const Eigen::Matrix3d R = cur_from_view.rotation.toRotationMatrix();
   // Lens distortion does not matter here.
   const Eigen::Vector2d focal(camera_.fx, camera_.fy);
@@ -82,14 +74,12 @@ Overlap ViewOverlap::SeenFrom(const Rigid3d& cur_from_view) const {
     if (!camera_.Contains(pixel + center)) continue;
     ++seen;
     zoom += sample.z() / point.z();
-    overlap.flow_px +=
+    flow_px +=
         (pixel - focal.cwiseProduct(sample.head<2>() / sample.z())).norm();
   }
-  if (seen == 0) return overlap;
-  overlap.share = static_cast<double>(seen) / points_.size();
-  overlap.flow_px /= seen;
-  overlap.zoom = zoom / seen;
-  return overlap;
+  if (seen == 0) return {};
+  return {static_cast<double>(seen) / points_.size(), flow_px / seen,
+          zoom / seen};
 }
 
 }  // namespace rgbd_pose

@@ -1,20 +1,13 @@
 #include "frontend/fusion/cloud_fusion.h"
 
 #include "frontend/frame/depth_lookup.h"
-#include "frontend/fusion/fusion_options.h"
 
 namespace rgbd_pose {
-namespace {
-
-// Smaller cubes are more than any sensor has noise-free points for. With larger
-// cubes, rooms are no longer recognisable.
-constexpr double kMinVoxelSize = 0.001;  // m
-constexpr double kMaxVoxelSize = 1.0;    // m
-
-}  // namespace
 
 std::string FusionOptions::Check() const {
-  if (!(voxel_size >= kMinVoxelSize && voxel_size <= kMaxVoxelSize)) {
+  // Smaller cubes are more than any sensor has noise-free points for. With
+  // larger cubes, rooms are no longer recognisable.
+  if (!(voxel_size >= 0.001 && voxel_size <= 1.0)) {
     return "the voxel size must be 0.001 to 1 m";
   }
   const std::string noise_error = depth.noise.Check();
@@ -28,25 +21,19 @@ std::string FusionOptions::Check() const {
 CloudFusion::CloudFusion(const FusionOptions& options)
     : options_(options), cloud_(static_cast<float>(options.voxel_size)) {
   const Camera& camera = options.camera;
-  std::vector<Eigen::Vector2d> pixels;
   for (int y = 0; y < camera.height; ++y) {
-    for (int x = 0; x < camera.width; ++x) pixels.emplace_back(x, y);
-  }
-  camera.UndistortPoints(&pixels);
-  rays_.reserve(pixels.size());
-  for (const Eigen::Vector2d& pixel : pixels) {
-    rays_.push_back(camera.Ray(pixel.x(), pixel.y()).cast<float>());
+    for (int x = 0; x < camera.width; ++x) {
+      rays_.push_back(camera.Unproject({x, y}, 1.0).cast<float>());
+    }
   }
 }
 
 bool CloudFusion::ShouldIntegrate(const TrackedFrame& tracked) const {
-  if (tracked.status != TrackingStatus::kOk || tracked.segment != 0) {
-    return false;
-  }
-  if (!last_world_from_cam_.has_value()) return true;
   // Closer frames would cost time and add nothing new.
-  return MotionFilter().IsReached(last_world_from_cam_->Inverse() *
-                                  tracked.world_from_cam);
+  return tracked.status == TrackingStatus::kOk && tracked.segment == 0 &&
+         (!last_world_from_cam_.has_value() ||
+          MotionFilter().IsReached(last_world_from_cam_->Inverse() *
+                                   tracked.world_from_cam));
 }
 
 void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
@@ -56,26 +43,19 @@ void CloudFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
   const auto metres_per_unit = static_cast<float>(1.0 / frame.depth_scale);
   const auto min_depth = static_cast<float>(options_.depth.min_depth);
   const auto max_depth = static_cast<float>(options_.depth.max_depth);
-  ColoredPoint point;
   for (int y = 1; y < frame.depth.rows - 1; ++y) {
     const Eigen::Vector3f* rays =
         &rays_[static_cast<size_t>(y) * frame.depth.cols];
     for (int x = 1; x < frame.depth.cols - 1; ++x) {
       const uint16_t raw = frame.depth.at<uint16_t>(y, x);
       const float z = raw * metres_per_unit;
-      if (raw == Frame::kNoDepth || z < min_depth || z > max_depth ||
-          !IsOnSurface(
-              frame.depth, x, y,
-              static_cast<int>(MaxSurfaceStep(z, options_.depth.noise) *
-                               frame.depth_scale))) {
-        continue;
-      }
-      point.position = rotation * (z * rays[x]) + translation;
+      if (raw == Frame::kNoDepth || z < min_depth || z > max_depth) continue;
+      const double max_step =
+          MaxSurfaceStep(z, options_.depth.noise) * frame.depth_scale;
+      if (!IsOnSurface(frame.depth, x, y, static_cast<int>(max_step))) continue;
       const cv::Vec3b& bgr = frame.color.at<cv::Vec3b>(y, x);
-      point.blue = bgr[0];
-      point.green = bgr[1];
-      point.red = bgr[2];
-      cloud_.Add(point);
+      cloud_.Add(
+          {rotation * (z * rays[x]) + translation, bgr[2], bgr[1], bgr[0]});
     }
   }
   last_world_from_cam_ = world_from_cam;

@@ -50,19 +50,14 @@ std::array<uint16_t, 256> LinearColors() {
   return linear;
 }
 
-void Pad(char with, std::string* bytes) {
-  while (bytes->size() % 4 != 0) bytes->push_back(with);
-}
-
 std::string Binary(const TriangleMesh& mesh) {
   static const std::array<uint16_t, 256> linear = LinearColors();
   std::string bytes;
   bytes.reserve((kPositionBytes + kColorBytes) * mesh.vertices.size() +
                 kPositionBytes * mesh.triangles.size());
   for (const ColoredPoint& point : mesh.vertices) {
-    AppendLittleEndian(point.position.x(), &bytes);
-    AppendLittleEndian(-point.position.y(), &bytes);
-    AppendLittleEndian(-point.position.z(), &bytes);
+    const Eigen::Vector3f& p = point.position;
+    for (const float x : {p.x(), -p.y(), -p.z()}) AppendLittleEndian(x, &bytes);
   }
   for (const ColoredPoint& point : mesh.vertices) {
     for (const uint8_t value : {point.red, point.green, point.blue}) {
@@ -79,10 +74,10 @@ std::string Binary(const TriangleMesh& mesh) {
 }
 
 std::string Json(const TriangleMesh& mesh, size_t binary_bytes) {
-  constexpr const char* kAsset =
-      "{\"asset\":{\"version\":\"2.0\",\"generator\":\"rgbd_pose\"}";
+  const std::string asset =
+      R"({"asset":{"version":"2.0","generator":"rgbd_pose"})";
   // An empty mesh gives a file without a scene: glTF forbids empty accessors.
-  if (mesh.triangles.empty()) return std::string(kAsset) + "}";
+  if (mesh.triangles.empty()) return asset + "}";
   Eigen::Vector3f low = mesh.vertices[0].position, high = low;
   for (const ColoredPoint& point : mesh.vertices) {
     low = low.cwiseMin(point.position);
@@ -90,33 +85,26 @@ std::string Json(const TriangleMesh& mesh, size_t binary_bytes) {
   }
   const size_t positions = kPositionBytes * mesh.vertices.size();
   const size_t colors = kColorBytes * mesh.vertices.size();
-  return std::string(kAsset) +
-         ",\"extensionsUsed\":[\"KHR_materials_unlit\"],"
-         "\"scene\":0,\"scenes\":[{\"nodes\":[0]}],"
-         "\"nodes\":[{\"mesh\":0}],"
-         "\"materials\":[{\"pbrMetallicRoughness\":{\"metallicFactor\":0},"
-         "\"doubleSided\":true,\"extensions\":{\"KHR_materials_unlit\":{}}}],"
-         "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0,"
-         "\"COLOR_0\":1},\"indices\":2,\"material\":0}]}]," +
+  return asset +
          Format(
-             "\"buffers\":[{\"byteLength\":%zu}],"
-             "\"bufferViews\":[{\"buffer\":0,\"byteLength\":%zu,"
-             "\"target\":34962},{\"buffer\":0,\"byteOffset\":%zu,"
-             "\"byteLength\":%zu,\"target\":34962},{\"buffer\":0,"
-             "\"byteOffset\":%zu,\"byteLength\":%zu,\"target\":34963}],",
+             R"(,"extensionsUsed":["KHR_materials_unlit"],"scene":0,)"
+             R"("scenes":[{"nodes":[0]}],"nodes":[{"mesh":0}],)"
+             R"("materials":[{"pbrMetallicRoughness":{"metallicFactor":0},)"
+             R"("doubleSided":true,"extensions":{"KHR_materials_unlit":{}}}],)"
+             R"("meshes":[{"primitives":[{"attributes":{"POSITION":0,)"
+             R"("COLOR_0":1},"indices":2,"material":0}]}],)"
+             R"("buffers":[{"byteLength":%zu}],"bufferViews":[)"
+             R"({"buffer":0,"byteLength":%zu,"target":34962},)"
+             R"({"buffer":0,"byteOffset":%zu,"byteLength":%zu,"target":34962},)"
+             R"({"buffer":0,"byteOffset":%zu,"byteLength":%zu,"target":34963}],)"
+             R"("accessors":[{"bufferView":0,"componentType":5126,"count":%zu,)"
+             R"("type":"VEC3","min":[%.9g,%.9g,%.9g],"max":[%.9g,%.9g,%.9g]},)"
+             R"({"bufferView":1,"componentType":5123,"normalized":true,)"
+             R"("count":%zu,"type":"VEC4"},{"bufferView":2,)"
+             R"("componentType":5125,"count":%zu,"type":"SCALAR"}]})",
              binary_bytes, positions, positions, colors, positions + colors,
-             binary_bytes - positions - colors) +
-         Format(
-             "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,"
-             "\"count\":%zu,\"type\":\"VEC3\",\"min\":[%.9g,%.9g,%.9g],"
-             "\"max\":[%.9g,%.9g,%.9g]},",
-             mesh.vertices.size(), low.x(), -high.y(), -high.z(), high.x(),
-             -low.y(), -low.z()) +
-         Format(
-             "{\"bufferView\":1,\"componentType\":5123,"
-             "\"normalized\":true,\"count\":%zu,\"type\":\"VEC4\"},"
-             "{\"bufferView\":2,\"componentType\":5125,\"count\":%zu,"
-             "\"type\":\"SCALAR\"}]}",
+             binary_bytes - positions - colors, mesh.vertices.size(), low.x(),
+             -high.y(), -high.z(), high.x(), -low.y(), -low.z(),
              mesh.vertices.size(), 3 * mesh.triangles.size());
 }
 
@@ -133,7 +121,7 @@ std::string FormatGlb(const TriangleMesh& mesh) {
   const std::string binary =
       mesh.triangles.empty() ? std::string() : Binary(mesh);
   std::string json = Json(mesh, binary.size());
-  Pad(' ', &json);
+  json.resize((json.size() + 3) / 4 * 4, ' ');
   std::string bytes;
   bytes.reserve(kHeaderBytes + 2 * kChunkHeaderBytes + json.size() +
                 binary.size());
@@ -159,23 +147,23 @@ void RequireMeshFile(const std::string& path) {
 std::string FormatMeshPly(const TriangleMesh& mesh) {
   constexpr size_t kVertexBytes = 3 * sizeof(float) + 3;
   constexpr size_t kFaceBytes = 3 * sizeof(uint32_t) + 1;
-  std::string bytes =
+  std::string bytes = Format(
       "ply\n"
       "format binary_little_endian 1.0\n"
-      "element vertex " +
-      std::to_string(mesh.vertices.size()) +
-      "\n"
+      "element vertex %zu\n"
       "property float x\n"
       "property float y\n"
       "property float z\n"
       "property uchar red\n"
       "property uchar green\n"
-      "property uchar blue\n";
+      "property uchar blue\n",
+      mesh.vertices.size());
   // A point cloud does not have this element.
   if (!mesh.triangles.empty()) {
-    bytes += "element face " + std::to_string(mesh.triangles.size()) +
-             "\n"
-             "property list uchar int vertex_indices\n";
+    bytes += Format(
+        "element face %zu\n"
+        "property list uchar int vertex_indices\n",
+        mesh.triangles.size());
   }
   bytes += "end_header\n";
   bytes.reserve(bytes.size() + kVertexBytes * mesh.vertices.size() +
@@ -195,13 +183,9 @@ std::string FormatMeshPly(const TriangleMesh& mesh) {
   return bytes;
 }
 
-std::string FormatPly(const std::vector<ColoredPoint>& points) {
-  return FormatMeshPly(TriangleMesh{points, {}});
-}
-
 void WritePly(const std::string& path,
               const std::vector<ColoredPoint>& points) {
-  WriteFileAtomically(path, FormatPly(points));
+  WriteFileAtomically(path, FormatMeshPly({points, {}}));
 }
 
 }  // namespace rgbd_pose

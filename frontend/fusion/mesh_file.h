@@ -25,10 +25,8 @@ std::string FormatGlb(const TriangleMesh& mesh);
 // The PLY Polygon File Format, 1994.)
 std::string FormatMeshPly(const TriangleMesh& mesh);
 
-// A point cloud as such a PLY file without faces.
-std::string FormatPly(const std::vector<ColoredPoint>& points);
-
-// Writes a PLY file completely or not at all. Throws InputError on failure.
+// Writes a point cloud as such a PLY file without faces, completely or not at
+// all. Throws InputError on failure.
 void WritePly(const std::string& path, const std::vector<ColoredPoint>& points);
 
 }  // namespace rgbd_pose

@@ -7,7 +7,6 @@
 #include "core/util/floor.h"
 #include "core/util/parallel_for.h"
 #include "frontend/frame/depth_lookup.h"
-#include "frontend/fusion/surface_mesh.h"
 #include "frontend/fusion/voxel_key.h"
 
 namespace rgbd_pose {
@@ -64,15 +63,14 @@ void MeshFusion::Add(const Frame& frame, const Rigid3d& world_from_cam) {
   SetDepthScale(frame.depth_scale);
   KeepSurfacePixels(frame);
   const Rigid3d cam_from_world = world_from_cam.Inverse();
-  std::vector<uint64_t> keys;
-  std::vector<TsdfVolume::Block*> blocks;
-  for (const SeenBlock& seen : FindBlocks(world_from_cam)) {
-    if (!seen.is_near && volume_.Find(seen.key) < 0) continue;
-    keys.push_back(seen.key);
-    blocks.push_back(volume_.FindOrInsert(seen.key));
+  std::vector<std::pair<uint64_t, TsdfVolume::Block*>> blocks;
+  for (const auto& [key, is_far] : FindBlocks(world_from_cam)) {
+    if (is_far && volume_.Find(key) < 0) continue;
+    blocks.emplace_back(key, volume_.FindOrInsert(key));
   }
-  ParallelFor(static_cast<int>(keys.size()), options_.threads,
-              [&](int i) { AddToBlock(keys[i], cam_from_world, blocks[i]); });
+  ParallelFor(static_cast<int>(blocks.size()), options_.threads, [&](int i) {
+    AddToBlock(blocks[i].first, cam_from_world, blocks[i].second);
+  });
 }
 
 TriangleMesh MeshFusion::Mesh() const {
@@ -139,20 +137,17 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
       const Eigen::Vector3f ray = R * camera.Ray(x, y).cast<float>();
       const int steps = static_cast<int>(std::ceil(2.0F * reach / step));
       last.resize(std::max<size_t>(last.size(), steps + 1),
-                  SeenBlock{~uint64_t{0}, false});
+                  SeenBlock(~uint64_t{0}, true));
       for (int i = 0; i <= steps; ++i) {
         const float from_end =
             reach *
             (2.0F * static_cast<float>(i) / static_cast<float>(steps) - 1.0F);
         const float z = end + from_end;
         const Eigen::Vector3f at = (z * ray + t) * blocks_per_metre;
-        if (!(at.cwiseAbs().maxCoeff() < kVoxelKeyRange - 1)) {
-          continue;
-        }
-        const SeenBlock block = {
-            VoxelKey(
-                {FloorToInt(at.x()), FloorToInt(at.y()), FloorToInt(at.z())}),
-            std::abs(from_end) <= near};
+        if (!(at.cwiseAbs().maxCoeff() < kVoxelKeyRange - 1)) continue;
+        const Eigen::Vector3i cell(FloorToInt(at.x()), FloorToInt(at.y()),
+                                   FloorToInt(at.z()));
+        const SeenBlock block(VoxelKey(cell), std::abs(from_end) > near);
         if (block == last[i]) continue;
         last[i] = block;
         seen.push_back(block);
@@ -160,13 +155,10 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
     }
   }
   // For each key a near block comes first.
-  std::sort(seen.begin(), seen.end(),
-            [](const SeenBlock& a, const SeenBlock& b) {
-              return a.key != b.key ? a.key < b.key : a.is_near > b.is_near;
-            });
+  std::sort(seen.begin(), seen.end());
   seen.erase(std::unique(seen.begin(), seen.end(),
                          [](const SeenBlock& a, const SeenBlock& b) {
-                           return a.key == b.key;
+                           return a.first == b.first;
                          }),
              seen.end());
   return seen;

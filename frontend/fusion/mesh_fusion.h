@@ -4,14 +4,15 @@
 #include <cstdint>
 #include <opencv2/core.hpp>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/frame.h"
 #include "frontend/frame/undistorter.h"
 #include "frontend/fusion/fusion_options.h"
+#include "frontend/fusion/surface_mesh.h"
 #include "frontend/fusion/triangle_mesh.h"
-#include "frontend/fusion/tsdf_volume.h"
 
 namespace rgbd_pose {
 
@@ -62,15 +63,9 @@ class MeshFusion {
     float weight;      // 1 / m^2
   };
 
-  // A block seen by a frame.
-  struct SeenBlock {
-    uint64_t key;
-    bool is_near;  // whether the surface may be in the block
-
-    bool operator==(const SeenBlock& other) const {
-      return key == other.key && is_near == other.is_near;
-    }
-  };
+  // The key of a block seen by a frame, and whether the surface is too far away
+  // to be in the block.
+  using SeenBlock = std::pair<uint64_t, bool>;
 
   static constexpr int kDepthStepsPerMetre = 512;
 

@@ -1,13 +1,8 @@
 #include "frontend/fusion/surface_mesh.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdint>
-#include <memory>
-#include <unordered_map>
 #include <utility>
-#include <vector>
 
 #include "frontend/fusion/voxel_key.h"
 
@@ -57,32 +52,28 @@ class Mesher {
     const auto corner_at = [&](int x, int y, int z) -> DistanceVoxel {
       const int n = around[x / kSide << 2 | y / kSide << 1 | z / kSide];
       if (n == kNone) return {};
-      return volume_.block(
-          n)[TsdfVolume::PlaceOf(x % kSide, y % kSide, z % kSide)];
+      const int place = TsdfVolume::PlaceOf({x % kSide, y % kSide, z % kSide});
+      return volume_.block(n)[place];
     };
     const Eigen::Vector3i first = kSide * VoxelOfKey(volume_.key(index));
     Corners corners;
-    for (int x = 0; x < kSide; ++x) {
-      for (int y = 0; y < kSide; ++y) {
-        for (int z = 0; z < kSide; ++z) {
-          bool known = true;
-          int behind = 0;
-          for (int c = 0; c < 8 && known; ++c) {
-            corners[c] = corner_at(x + Bit(c, 0), y + Bit(c, 1), z + Bit(c, 2));
-            known = corners[c].weight >= min_weight_;
-            behind += corners[c].distance < 0.0F;
-          }
-          if (!known || behind == 0 || behind == 8) continue;
-          if (vertices_[index] == nullptr) {
-            vertices_[index] = std::make_unique<VertexOfVoxel>();
-            vertices_[index]->fill(kNone);
-          }
-          (*vertices_[index])[TsdfVolume::PlaceOf(x, y, z)] =
-              static_cast<int>(mesh_.vertices.size());
-          mesh_.vertices.push_back(
-              Vertex(first + Eigen::Vector3i(x, y, z), corners));
-        }
+    for (int place = 0; place < TsdfVolume::kBlockSize; ++place) {
+      const Eigen::Vector3i voxel = TsdfVolume::PointAt(place);
+      bool known = true;
+      int behind = 0;
+      for (int c = 0; c < 8 && known; ++c) {
+        corners[c] = corner_at(voxel[0] + Bit(c, 0), voxel[1] + Bit(c, 1),
+                               voxel[2] + Bit(c, 2));
+        known = corners[c].weight >= min_weight_;
+        behind += corners[c].distance < 0.0F;
       }
+      if (!known || behind == 0 || behind == 8) continue;
+      if (vertices_[index] == nullptr) {
+        vertices_[index] = std::make_unique<VertexOfVoxel>();
+        vertices_[index]->fill(kNone);
+      }
+      (*vertices_[index])[place] = static_cast<int>(mesh_.vertices.size());
+      mesh_.vertices.push_back(Vertex(first + voxel, corners));
     }
   }
 
@@ -102,16 +93,15 @@ class Mesher {
       }
     }
     const Eigen::Vector3f at = sum / static_cast<float>(crossed);
-    ColoredPoint point;
-    point.position = (voxel_size_ * (voxel.cast<double>() + at.cast<double>()))
-                         .cast<float>();
-    SetColor(at, corners, &point);
-    return point;
+    const Eigen::Vector3d position =
+        voxel_size_ * (voxel.cast<double>() + at.cast<double>());
+    const std::array<uint8_t, 3> color = ColorAt(at, corners);
+    return {position.cast<float>(), color[0], color[1], color[2]};
   }
 
   // The mean colour of the corners, weighted by their weight and proximity.
-  static void SetColor(const Eigen::Vector3f& at, const Corners& corners,
-                       ColoredPoint* point) {
+  static std::array<uint8_t, 3> ColorAt(const Eigen::Vector3f& at,
+                                        const Corners& corners) {
     std::array<float, 3> sum = {};
     float total = 0.0F;
     for (int c = 0; c < 8; ++c) {
@@ -127,9 +117,7 @@ class Mesher {
       return static_cast<uint8_t>(
           std::min(255.0F, std::round(sum[i] / (kSteps * total))));
     };
-    point->red = mean(0);
-    point->green = mean(1);
-    point->blue = mean(2);
+    return {mean(0), mean(1), mean(2)};
   }
 
   // Each grid edge is shared by four voxels, whose vertices form a quad.
@@ -146,14 +134,12 @@ class Mesher {
       }
       const int n = below[neighbour];
       if (n == kNone || vertices_[n] == nullptr) return kNone;
-      return (*vertices_[n])[TsdfVolume::PlaceOf(in_block[0], in_block[1],
-                                                 in_block[2])];
+      return (*vertices_[n])[TsdfVolume::PlaceOf(in_block)];
     };
     const std::array<int, 8> beyond = Neighbours(index, 1);
     for (int place = 0; place < TsdfVolume::kBlockSize; ++place) {
       if ((*vertices_[index])[place] == kNone) continue;
-      const Eigen::Vector3i voxel(place / (kSide * kSide),
-                                  place / kSide % kSide, place % kSide);
+      const Eigen::Vector3i voxel = TsdfVolume::PointAt(place);
       const float here = volume_.block(index)[place].distance;
       for (int axis = 0; axis < 3; ++axis) {
         Eigen::Vector3i end = voxel;
@@ -161,11 +147,9 @@ class Mesher {
         const bool is_beyond = end[axis] == kSide;
         if (is_beyond) end[axis] = 0;
         // The block exists: the voxel has a vertex, so all corners are known.
-        const float there =
-            volume_
-                .block(beyond[is_beyond ? 4 >> axis : 0])[TsdfVolume::PlaceOf(
-                    end[0], end[1], end[2])]
-                .distance;
+        const TsdfVolume::Block& block =
+            volume_.block(beyond[is_beyond ? 4 >> axis : 0]);
+        const float there = block[TsdfVolume::PlaceOf(end)].distance;
         if ((here < 0.0F) == (there < 0.0F)) continue;
         Eigen::Vector3i b = Eigen::Vector3i::Zero(), c = b;
         b[(axis + 1) % 3] = 1;
@@ -224,10 +208,6 @@ struct Cube {
   int count = 0;
 };
 
-uint64_t KeyOf(const Eigen::Vector3f& position, float size) {
-  return VoxelKey((position / size).array().floor().cast<int>());
-}
-
 uint8_t Round(double value) { return static_cast<uint8_t>(std::lround(value)); }
 
 TriangleMesh Coarser(const TriangleMesh& mesh, float size) {
@@ -235,10 +215,10 @@ TriangleMesh Coarser(const TriangleMesh& mesh, float size) {
   std::vector<Cube> cubes;
   std::vector<int> cube_of;
   for (const ColoredPoint& vertex : mesh.vertices) {
-    const int at = index
-                       .emplace(KeyOf(vertex.position, size),
-                                static_cast<int>(cubes.size()))
-                       .first->second;
+    const uint64_t key =
+        VoxelKey((vertex.position / size).array().floor().cast<int>());
+    const int at =
+        index.emplace(key, static_cast<int>(cubes.size())).first->second;
     if (at == static_cast<int>(cubes.size())) cubes.emplace_back();
     cubes[at].position += vertex.position.cast<double>();
     cubes[at].color += Eigen::Vector3d(vertex.red, vertex.green, vertex.blue);

@@ -40,23 +40,15 @@ void VoxelCloud::Add(const ColoredPoint& point) {
   ++voxel->count;
 }
 
-size_t VoxelCloud::MemoryBytes() const {
-  return voxels_.capacity() * sizeof(Voxel) +
-         slots_.capacity() * sizeof(uint32_t);
-}
-
 std::vector<ColoredPoint> VoxelCloud::Points() const {
   std::vector<ColoredPoint> points;
   points.reserve(voxels_.size());
   for (const Voxel& voxel : voxels_) {
     const Eigen::Map<const Eigen::Vector3f> offset(voxel.offset);
-    ColoredPoint point;
-    point.position =
-        Center(voxel.key) + offset / static_cast<float>(voxel.count);
-    point.red = Mean(voxel.color[0], voxel.count);
-    point.green = Mean(voxel.color[1], voxel.count);
-    point.blue = Mean(voxel.color[2], voxel.count);
-    points.push_back(point);
+    points.push_back(
+        {Center(voxel.key) + offset / static_cast<float>(voxel.count),
+         Mean(voxel.color[0], voxel.count), Mean(voxel.color[1], voxel.count),
+         Mean(voxel.color[2], voxel.count)});
   }
   return points;
 }

@@ -24,9 +24,6 @@ class VoxelCloud {
   int size() const { return static_cast<int>(voxels_.size()); }
   bool empty() const { return voxels_.empty(); }
 
-  // Memory used by the cubes, bytes.
-  size_t MemoryBytes() const;
-
   // One point per cube, in the order of the first points in the cubes.
   std::vector<ColoredPoint> Points() const;
 

@@ -24,16 +24,10 @@ constexpr double kMinInlierShare = 0.1;
 
 PlaceFeatures DescribeKeyframe(const Frame& frame, const Camera& camera,
                                const DepthLookupOptions& depth_options) {
-  DescribedKeypoints all;
-  kOrb.make(kMaxKeypoints)
-      ->detectAndCompute(frame.gray, cv::noArray(), all.keypoints,
-                         all.descriptors);
-  const auto has_depth = [&](const cv::Point2f& pixel) {
-    return LookUpDepth(frame, pixel.x, pixel.y, depth_options).depth > 0.0;
-  };
+  const DescribedKeypoints all(frame, &kOrb, kMaxKeypoints);
   PlaceFeatures features;
-  features.described = all.Select(SelectOverGrid(
-      all.keypoints, frame.gray.size(), kMaxFeatures, has_depth));
+  features.described = all.Select(
+      SelectOverGrid(all.keypoints, frame, kMaxFeatures, depth_options));
   for (const cv::KeyPoint& keypoint : features.described.keypoints) {
     features.observations.push_back(
         Observe(frame, camera, keypoint.pt.x, keypoint.pt.y,

@@ -1,36 +1,29 @@
 #include "frontend/simulation/synthetic_dataset.h"
 
+#include <algorithm>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
-#include <utility>
 #include <vector>
 
-#include "core/geometry/camera.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/simulation/synthetic_hash.h"
-#include "frontend/simulation/synthetic_path.h"
-#include "frontend/simulation/synthetic_renderer.h"
 #include "frontend/simulation/synthetic_sensor.h"
 
 namespace rgbd_pose {
 namespace {
 
-constexpr double kFirstStamp = 1000.0;  // s
-
-constexpr int kMaxFrames = 1000000;  // 9 hours at 30 Hz
-
 void CheckShutters(const RgbdCamera& camera, double frame_s) {
   for (const ShutterParameter& parameter : kShutterParameters) {
     const double size = std::abs(camera.*parameter.image.*parameter.value);
-    const bool is_short = frame_s <= parameter.most;
-    const double most = is_short ? frame_s : parameter.most;
+    const double most = std::min(frame_s, parameter.most);
     if (!(size <= most)) {
       throw InputError(
-          std::string(parameter.name) +
-          " of a synthetic sequence must be at most " + Format("%.6g", most) +
-          " s in magnitude, " +
-          (is_short ? "the time from frame to frame" : "as in camera files"));
+          Format("%s of a synthetic sequence must be at most %.6g s in "
+                 "magnitude, %s",
+                 parameter.name, most,
+                 frame_s <= parameter.most ? "the time from frame to frame"
+                                           : "as in camera files"));
     }
   }
 }
@@ -47,6 +40,7 @@ bool SeesEverywhere(const Camera& camera) {
 
 // Checks the options and stores the shutters in the camera as well.
 SyntheticOptions Checked(SyntheticOptions options) {
+  constexpr int kMaxFrames = 1000000;  // 9 hours at 30 Hz
   const auto require = [](bool holds, const std::string& problem) {
     if (!holds) throw InputError(problem);
   };
@@ -63,8 +57,8 @@ SyntheticOptions Checked(SyntheticOptions options) {
           "the rate of a synthetic sequence must be in 0..1e5 Hz");
   require(options.camera.depth_scale > 0.0,
           "depth_scale of a synthetic sequence must be positive");
-  const std::string problem = options.camera.camera.Check();
-  require(problem.empty(), "camera of the synthetic sequence: " + problem);
+  RequireSound(options.camera.camera.Check(),
+               "camera of the synthetic sequence: ");
   require(SeesEverywhere(options.camera.camera),
           "camera of the synthetic sequence: its distortion cannot be inverted "
           "in the corners of the image");
@@ -83,8 +77,7 @@ SyntheticOptions Checked(SyntheticOptions options) {
       "the registration error of a synthetic sequence must be below 1 m and "
       "45 degrees");
   if (options.depth_camera.has_value()) {
-    const std::string depth_problem = options.depth_camera->camera.Check();
-    require(depth_problem.empty(), "depth camera: " + depth_problem);
+    RequireSound(options.depth_camera->camera.Check(), "depth camera: ");
   }
   require(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0,
           "exposure_drift of a synthetic sequence must be in 0..1");
@@ -139,6 +132,7 @@ SyntheticDataset::SyntheticDataset(const SyntheticOptions& options)
 }
 
 double SyntheticDataset::timestamp(int index) const {
+  constexpr double kFirstStamp = 1000.0;  // s
   return std::round((kFirstStamp + Time(index)) * 1e6) / 1e6;
 }
 

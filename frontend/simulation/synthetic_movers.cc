@@ -1,7 +1,6 @@
 #include <cmath>
 
 #include "frontend/simulation/synthetic_hash.h"
-#include "frontend/simulation/synthetic_materials.h"
 #include "frontend/simulation/synthetic_renderer.h"
 
 namespace rgbd_pose {
@@ -58,15 +57,13 @@ std::vector<SyntheticMover> WalkingBoxes(int count, uint32_t seed) {
   for (int i = 0; i < count; ++i) {
     const WalkingBox& walking = kWalkingBoxes[i];
     SyntheticMover box;
-    box.scene.lamp = {-1.0, 0.3, 2.2};
-    SceneBox at_middle = walking.box;
-    at_middle.foot.setZero();
-    AddBox(at_middle, kPoster, HashCell(i, 3, seed), &box.scene);
+    box.scene = {{}, {-1.0, 0.3, 2.2}, HashCell(i, 3, seed)};
+    AddBox({Vector3d::Zero(), walking.box.size, walking.box.yaw_deg}, kPoster,
+           &box.scene);
     box.world_from_mover = [&walking](double t) {
-      return Rigid3d(
-          Quaterniond::Identity(),
-          walking.box.foot +
-              walking.half * std::sin(walking.rate * t + walking.phase));
+      const double swing = std::sin(walking.rate * t + walking.phase);
+      return Rigid3d(Quaterniond::Identity(),
+                     walking.box.foot + swing * walking.half);
     };
     boxes.push_back(box);
   }

@@ -3,9 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/util/input_error.h"
 #include "core/util/named_values.h"
-#include "core/util/text_file.h"
 #include "core/util/units.h"
 
 namespace rgbd_pose {

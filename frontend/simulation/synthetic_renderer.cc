@@ -7,9 +7,23 @@
 #include <opencv2/imgproc.hpp>
 #include <utility>
 
+#include "core/geometry/shutter.h"
 #include "frontend/simulation/synthetic_texture.h"
 
 namespace rgbd_pose {
+
+// A face as seen by a camera. For the ray (x, y, 1) of a pixel in camera axes,
+// face_from_ray * ray = (u, v, 1) / z: (u, v) is where the ray meets the plane
+// of the face, z the depth there. This is linear in the ray, and the search for
+// the nearest face takes only multiplications and comparisons.
+struct VisibleFace {
+  const SceneFace* face = nullptr;
+  Eigen::Matrix3f face_from_ray;
+  Eigen::Vector3f lamp;       // position along u, along v, above the face (m)
+  Eigen::Vector3f camera;     // in the same axes
+  Eigen::AlignedBox2f range;  // on the plane z = 1, see RangeOf
+};
+
 namespace {
 
 using Eigen::Matrix3d;
@@ -62,41 +76,31 @@ float Highlight(const Vector3f& to_lamp, const Vector3f& to_camera) {
   return std::pow(std::max(0.0f, half.normalized().z()), kSharpness);
 }
 
-// The least and the greatest value of an image with one channel.
-void FindRange(const cv::Mat& image, float* min, float* max) {
-  double low = 0.0;
-  double high = 0.0;
-  cv::minMaxLoc(image, &low, &high);
-  *min = static_cast<float>(low);
-  *max = static_cast<float>(high);
-}
-
-constexpr double kNearPlane = 0.01;  // m
-constexpr float kEndless = std::numeric_limits<float>::max();
-
-// Fills min and max. Returns false if the face is behind the camera.
-bool FindRange(const SceneFace& face, const Vector3d& camera,
-               const Matrix3d& cam_from_world_rotation, VisibleFace* visible) {
-  visible->min.setConstant(kEndless);
-  visible->max.setConstant(-kEndless);
-  int corners_in_front = 0;
+// The range of a face on the plane z = 1: infinite if it reaches behind the
+// camera, empty if it is entirely there.
+Eigen::AlignedBox2f RangeOf(const SceneFace& face, const Vector3d& camera,
+                            const Matrix3d& cam_from_world_rotation) {
+  constexpr double kNearPlane = 0.01;  // m
+  constexpr float kEndless = std::numeric_limits<float>::max();
+  Eigen::AlignedBox2f range;
+  bool is_partly_behind = false;
   for (int corner = 0; corner < 4; ++corner) {
     const double u = (corner & 1) == 0 ? 0.0 : face.width;
     const double v = (corner & 2) == 0 ? 0.0 : face.height;
     const Vector3d in_cam =
         cam_from_world_rotation *
         (face.origin + face.u_axis * u + face.v_axis * v - camera);
-    if (in_cam.z() < kNearPlane) continue;
-    ++corners_in_front;
-    const Vector2f plane = (in_cam.head<2>() / in_cam.z()).cast<float>();
-    visible->min = visible->min.cwiseMin(plane);
-    visible->max = visible->max.cwiseMax(plane);
+    if (in_cam.z() < kNearPlane) {
+      is_partly_behind = true;
+    } else {
+      const Vector2f plane = (in_cam.head<2>() / in_cam.z()).cast<float>();
+      range.extend(plane);
+    }
   }
-  if (corners_in_front < 4) {
-    visible->min.setConstant(-kEndless);
-    visible->max.setConstant(kEndless);
+  if (is_partly_behind && !range.isEmpty()) {
+    range = {Vector2f::Constant(-kEndless), Vector2f::Constant(kEndless)};
   }
-  return corners_in_front > 0;
+  return range;
 }
 
 // A point along u, along v and above the face (m).
@@ -107,22 +111,20 @@ Eigen::Vector3f InFaceAxes(const SceneFace& face, const Vector3d& point) {
       .cast<float>();
 }
 
-}  // namespace
-
-std::vector<VisibleFace> FindVisibleFaces(const Scene& scene,
-                                          const Rigid3d& world_from_cam) {
+// Appends the faces of a scene whose front is turned to the camera and which
+// are not entirely behind it. They point into `scene`.
+void AddVisibleFaces(const Scene& scene, const Rigid3d& world_from_cam,
+                     std::vector<VisibleFace>* faces) {
   const Matrix3d cam_from_world_rotation =
       world_from_cam.rotation.conjugate().toRotationMatrix();
   const Vector3d& camera = world_from_cam.translation;
-  std::vector<VisibleFace> faces;
   for (const SceneFace& face : scene.faces) {
     const Vector3d from_origin = camera - face.origin;
     const double above = face.normal.dot(from_origin);
+    if (above <= 0.0) continue;
     VisibleFace visible;
-    if (above <= 0.0 ||
-        !FindRange(face, camera, cam_from_world_rotation, &visible)) {
-      continue;
-    }
+    visible.range = RangeOf(face, camera, cam_from_world_rotation);
+    if (visible.range.isEmpty()) continue;
     // A ray r meets the plane at depth z where above + z normal . r = 0.
     Matrix3d rows;
     rows.row(2) = -(cam_from_world_rotation * face.normal) / above;
@@ -134,17 +136,51 @@ std::vector<VisibleFace> FindVisibleFaces(const Scene& scene,
     visible.face_from_ray = rows.cast<float>();
     visible.lamp = InFaceAxes(face, scene.lamp);
     visible.camera = InFaceAxes(face, camera);
-    faces.push_back(visible);
+    faces->push_back(visible);
   }
-  return faces;
 }
 
 // For each pixel of a tile, row by row: the inverse depth of the nearest face,
 // 0 if there is none, and its index.
-struct Renderer::NearestFaces {
+struct NearestFaces {
   std::array<float, kTileSize* kTileSize> inverse_depth = {};
   std::array<int, kTileSize* kTileSize> index = {};
 };
+
+// `range`: of the rays of the tile on the plane z = 1.
+NearestFaces FindNearest(const std::vector<VisibleFace>& faces,
+                         const Eigen::AlignedBox2f& range,
+                         const cv::Mat& rays_x, const cv::Mat& rays_y) {
+  NearestFaces nearest;
+  for (size_t i = 0; i < faces.size(); ++i) {
+    if (!faces[i].range.intersects(range)) continue;
+    const Matrix3f h = faces[i].face_from_ray;
+    const float width = static_cast<float>(faces[i].face->width) + kOverlap;
+    const float height = static_cast<float>(faces[i].face->height) + kOverlap;
+    const int face = static_cast<int>(i);
+    const int columns = rays_x.cols;
+    for (int row = 0; row < rays_x.rows; ++row) {
+      const float* x = rays_x.ptr<float>(row);
+      const float* y = rays_y.ptr<float>(row);
+      float* best = nearest.inverse_depth.data() + row * kTileSize;
+      int* index = nearest.index.data() + row * kTileSize;
+      // Without branches and divisions, the compiler vectorises this loop.
+      for (int column = 0; column < columns; ++column) {
+        const float u = h(0, 0) * x[column] + h(0, 1) * y[column] + h(0, 2);
+        const float v = h(1, 0) * x[column] + h(1, 1) * y[column] + h(1, 2);
+        const float w = h(2, 0) * x[column] + h(2, 1) * y[column] + h(2, 2);
+        const bool hit = (w > best[column]) & (u >= -kOverlap * w) &
+                         (u <= width * w) & (v >= -kOverlap * w) &
+                         (v <= height * w);
+        best[column] = hit ? w : best[column];
+        index[column] = hit ? face : index[column];
+      }
+    }
+  }
+  return nearest;
+}
+
+}  // namespace
 
 Renderer::Renderer(Scene scene, const Camera& camera,
                    std::vector<SyntheticMover> movers)
@@ -169,51 +205,20 @@ std::vector<Renderer::Tile> Renderer::MakeTiles(int rows) const {
   std::vector<Tile> tiles;
   for (int v = 0; v < image.height; v += rows) {
     for (int u = 0; u < image.width; u += kTileSize) {
-      Tile tile;
-      tile.pixels = cv::Rect(u, v, kTileSize, rows) & image;
-      FindRange(rays_x_(tile.pixels), &tile.min.x(), &tile.max.x());
-      FindRange(rays_y_(tile.pixels), &tile.min.y(), &tile.max.y());
-      tiles.push_back(tile);
+      const cv::Rect pixels = cv::Rect(u, v, kTileSize, rows) & image;
+      Eigen::Vector2d low, high;
+      cv::minMaxLoc(rays_x_(pixels), &low.x(), &high.x());
+      cv::minMaxLoc(rays_y_(pixels), &low.y(), &high.y());
+      tiles.push_back({pixels, {low.cast<float>(), high.cast<float>()}});
     }
   }
   return tiles;
 }
 
-Renderer::NearestFaces Renderer::FindNearest(
-    const std::vector<VisibleFace>& faces, const Tile& tile) const {
-  NearestFaces nearest;
-  for (size_t i = 0; i < faces.size(); ++i) {
-    if ((faces[i].min.array() > tile.max.array()).any() ||
-        (faces[i].max.array() < tile.min.array()).any()) {
-      continue;
-    }
-    const Matrix3f h = faces[i].face_from_ray;
-    const float width = static_cast<float>(faces[i].face->width) + kOverlap;
-    const float height = static_cast<float>(faces[i].face->height) + kOverlap;
-    const int face = static_cast<int>(i);
-    for (int row = 0; row < tile.pixels.height; ++row) {
-      const float* x = rays_x_.ptr<float>(tile.pixels.y + row) + tile.pixels.x;
-      const float* y = rays_y_.ptr<float>(tile.pixels.y + row) + tile.pixels.x;
-      float* best = nearest.inverse_depth.data() + row * kTileSize;
-      int* index = nearest.index.data() + row * kTileSize;
-      // Without branches and divisions, the compiler vectorises this loop.
-      for (int column = 0; column < tile.pixels.width; ++column) {
-        const float u = h(0, 0) * x[column] + h(0, 1) * y[column] + h(0, 2);
-        const float v = h(1, 0) * x[column] + h(1, 1) * y[column] + h(1, 2);
-        const float w = h(2, 0) * x[column] + h(2, 1) * y[column] + h(2, 2);
-        const bool hit = (w > best[column]) & (u >= -kOverlap * w) &
-                         (u <= width * w) & (v >= -kOverlap * w) &
-                         (v <= height * w);
-        best[column] = hit ? w : best[column];
-        index[column] = hit ? face : index[column];
-      }
-    }
-  }
-  return nearest;
-}
-
-void Renderer::Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
-                     const NearestFaces& nearest, Rendering* out) const {
+void Renderer::RenderTile(const std::vector<VisibleFace>& faces,
+                          const Tile& tile, Rendering* out) const {
+  const NearestFaces nearest = FindNearest(
+      faces, tile.range, rays_x_(tile.pixels), rays_y_(tile.pixels));
   for (int row = 0; row < tile.pixels.height; ++row) {
     for (int column = 0; column < tile.pixels.width; ++column) {
       const int place = row * kTileSize + column;
@@ -239,32 +244,31 @@ void Renderer::Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
   }
 }
 
-std::vector<VisibleFace> Renderer::FindVisible(const StampedPose& pose) const {
-  std::vector<VisibleFace> faces =
-      FindVisibleFaces(scene_, pose.world_from_cam);
-  for (const SyntheticMover& mover : movers_) {
-    const Rigid3d mover_from_world =
-        mover.world_from_mover(pose.timestamp).Inverse();
-    for (const VisibleFace& face : FindVisibleFaces(
-             mover.scene, mover_from_world * pose.world_from_cam)) {
-      faces.push_back(face);
-    }
-  }
-  return faces;
-}
-
 Rendering Renderer::Render(const Rigid3d& world_from_cam, double t) const {
-  return Render(std::vector<StampedPose>{{t, world_from_cam}});
+  return Render([&](double) { return world_from_cam; }, t, 0.0);
 }
 
 Rendering Renderer::Render(
-    const std::vector<StampedPose>& world_from_cam) const {
-  std::vector<std::vector<VisibleFace>> faces;
-  for (const StampedPose& pose : world_from_cam) {
-    faces.push_back(FindVisible(pose));
-  }
-  const bool has_bands = faces.size() > 1;
+    const std::function<Rigid3d(double t)>& world_from_cam, double t,
+    double readout_s) const {
+  const int height = rays_x_.rows;
+  const bool has_bands = readout_s != 0.0;
   const std::vector<Tile>& tiles = has_bands ? band_tiles_ : tiles_;
+  const int bands = has_bands ? (height + kBandRows - 1) / kBandRows : 1;
+  std::vector<std::vector<VisibleFace>> faces(bands);
+  for (int i = 0; i < bands; ++i) {
+    const int first = i * kBandRows;
+    const double middle =
+        (first + std::min(first + kBandRows, height) - 1) / 2.0;
+    const Shutter shutter = {0.0, readout_s};
+    const double time = t + shutter.RowTime(middle, height);
+    const Rigid3d pose = world_from_cam(time);
+    AddVisibleFaces(scene_, pose, &faces[i]);
+    for (const SyntheticMover& mover : movers_) {
+      AddVisibleFaces(mover.scene,
+                      mover.world_from_mover(time).Inverse() * pose, &faces[i]);
+    }
+  }
   Rendering out;
   out.color = cv::Mat::zeros(rays_x_.size(), CV_8UC3);
   out.depth = cv::Mat::zeros(rays_x_.size(), CV_32FC1);
@@ -274,7 +278,7 @@ Rendering Renderer::Render(
         for (int i = range.start; i < range.end; ++i) {
           const auto& visible =
               faces[has_bands ? tiles[i].pixels.y / kBandRows : 0];
-          Shade(visible, tiles[i], FindNearest(visible, tiles[i]), &out);
+          RenderTile(visible, tiles[i], &out);
         }
       });
   cv::GaussianBlur(out.color, out.color, cv::Size(3, 3), kLensBlur);

@@ -1,36 +1,18 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <algorithm>
+#include <Eigen/Geometry>
 #include <cstdint>
 #include <functional>
 #include <opencv2/core.hpp>
 #include <vector>
 
-#include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/simulation/synthetic_scene.h"
 
 namespace rgbd_pose {
 
-// A face as seen by a camera. For the ray (x, y, 1) of a pixel in camera axes,
-// face_from_ray * ray = (u, v, 1) / z: (u, v) is where the ray meets the plane
-// of the face, z the depth there. This is linear in the ray, and the search for
-// the nearest face takes only multiplications and comparisons.
-struct VisibleFace {
-  const SceneFace* face = nullptr;
-  Eigen::Matrix3f face_from_ray;
-  Eigen::Vector3f lamp;    // position along u, along v, above the face (m)
-  Eigen::Vector3f camera;  // in the same axes
-  Eigen::Vector2f min;     // range of the face on the plane z = 1;
-  Eigen::Vector2f max;     // infinite if it reaches behind the camera
-};
-
-// The faces of a scene whose front is turned to the camera and which are not
-// entirely behind it. The result points into `scene`.
-std::vector<VisibleFace> FindVisibleFaces(const Scene& scene,
-                                          const Rigid3d& world_from_cam);
+struct VisibleFace;  // a face as seen by a camera
 
 // An independently moving object: its look, in axes and under a lamp of its
 // own, and its pose at time t (s).
@@ -72,34 +54,23 @@ class Renderer {
   // The time t (s) matters only to moving objects.
   Rendering Render(const Rigid3d& world_from_cam, double t = 0.0) const;
 
-  // With a pose and a time for each band of kBandRows rows, from the top,
-  // num_bands() in all, as a rolling shutter sees the scene.
+  // With a rolling shutter: each band of kBandRows rows, from the top, is
+  // rendered at the time of its middle row. t is the time of the middle row of
+  // the image. Without a readout (s) it is the time of all rows.
   static constexpr int kBandRows = 8;
-  int height() const { return rays_x_.rows; }  // of the image, px
-  int num_bands() const { return (height() + kBandRows - 1) / kBandRows; }
-  // The row in the middle of a band, px.
-  double BandMiddle(int band) const {
-    const int first = band * kBandRows;
-    return (first + std::min(first + kBandRows, height()) - 1) / 2.0;
-  }
-  Rendering Render(const std::vector<StampedPose>& world_from_cam) const;
+  Rendering Render(const std::function<Rigid3d(double t)>& world_from_cam,
+                   double t, double readout_s) const;
 
  private:
   // A block of the image and the range of its rays on the plane z = 1.
   struct Tile {
     cv::Rect pixels;
-    Eigen::Vector2f min;
-    Eigen::Vector2f max;
+    Eigen::AlignedBox2f range;
   };
-  struct NearestFaces;
 
   std::vector<Tile> MakeTiles(int rows) const;
-  NearestFaces FindNearest(const std::vector<VisibleFace>& faces,
-                           const Tile& tile) const;
-  void Shade(const std::vector<VisibleFace>& faces, const Tile& tile,
-             const NearestFaces& nearest, Rendering* out) const;
-
-  std::vector<VisibleFace> FindVisible(const StampedPose& pose) const;
+  void RenderTile(const std::vector<VisibleFace>& faces, const Tile& tile,
+                  Rendering* out) const;
 
   Scene scene_;
   std::vector<SyntheticMover> movers_;

@@ -2,90 +2,14 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <cstdint>
 
 #include "core/util/named_values.h"
 #include "frontend/simulation/synthetic_hash.h"
-#include "frontend/simulation/synthetic_materials.h"
 
 namespace rgbd_pose {
 namespace {
 
-// Scenes without the texture or the shape that some methods depend on. All suit
-// the paths of the room.
-
-Material Painted(const cv::Vec3f& color) { return {color, 0.0f}; }
-
-struct PaintedBox {
-  SceneBox box;
-  float brightness;
-};
-
-// Low boxes near the camera, high ones along the walls.
-const PaintedBox kBoxes[] = {
-    {{{0.60, 0.25, 0.0}, {0.75, 1.50, 0.74}, -18}, 0.62f},
-    {{{0.74, 0.42, 0.74}, {0.20, 0.54, 0.40}, -10}, 0.70f},
-    {{{0.40, -0.12, 0.74}, {0.30, 0.22, 0.16}, 25}, 0.56f},
-    {{{-0.15, 0.85, 0.0}, {0.44, 0.44, 0.47}, 32}, 0.66f},
-    {{{2.30, 0.60, 0.0}, {0.40, 1.40, 1.86}, 0}, 0.58f},
-    {{{2.10, -1.00, 0.0}, {0.50, 0.90, 0.80}, 15}, 0.68f},
-    {{{2.05, -0.90, 0.80}, {0.34, 0.36, 0.30}, 40}, 0.60f},
-    {{{0.55, -1.55, 0.0}, {1.60, 0.75, 0.40}, 0}, 0.64f},
-    {{{0.55, -1.86, 0.40}, {1.60, 0.20, 0.42}, 0}, 0.60f},
-    {{{2.30, 1.80, 0.0}, {0.36, 0.36, 2.60}, 20}, 0.67f},
-    {{{1.35, 1.60, 0.0}, {0.50, 0.45, 0.70}, 28}, 0.57f},
-    {{{-0.90, 1.70, 0.0}, {0.90, 0.42, 0.75}, 0}, 0.61f},
-};
-
-// A room of 5 x 4 x 2.6 m with a dozen boxes, each in one colour: shapes, but
-// no texture.
-Scene MakePlainRoom(uint32_t seed) {
-  Scene scene;
-  scene.lamp = {-0.4, 0.2, 2.2};
-  const Material wall = Painted({0.62f, 0.64f, 0.65f});
-  AddBox({{0.0, 0.0, 0.0}, {5.0, 4.0, 2.6}, 0}, true,
-         {wall, wall, wall, wall, wall, wall}, seed, &scene);
-  for (const PaintedBox& piece : kBoxes) {
-    const float b = piece.brightness;
-    AddBox(piece.box, Painted({b, b, b}), seed, &scene);
-  }
-  return scene;
-}
-
-// A corridor, 2 x 2.5 m and 40 m long, along the world's x axis, each wall in
-// one colour: the position along this axis cannot be observed.
-Scene MakeCorridor(uint32_t seed) {
-  Scene scene;
-  // The lamp is so high that its light is the same everywhere.
-  scene.lamp = {-0.4, -0.35, 1000.0};
-  AddBox({{0.0, -0.35, 0.0}, {40.0, 2.0, 2.5}, 0}, true,
-         {Painted({0.80f, 0.82f, 0.83f}), Painted({0.80f, 0.82f, 0.83f}),
-          Painted({0.90f, 0.90f, 0.88f}), Painted({0.84f, 0.88f, 0.92f}),
-          Painted({0.55f, 0.58f, 0.63f}), Painted({1.00f, 1.00f, 1.00f})},
-         seed, &scene);
-  return scene;
-}
-
-// One wall full of posters and nothing else: texture, but no shape.
-Scene MakePosterWall(uint32_t seed) {
-  Scene scene;
-  scene.lamp = {-0.4, 0.2, 2.2};
-  AddBox({{1.0, 0.0, -5.0}, {0.2, 16.0, 14.0}, 0}, kPoster, seed, &scene);
-  return scene;
-}
-
 using Eigen::Vector3d;
-
-constexpr Named<Scene (*)(uint32_t seed)> kScenes[] = {
-    {"room", MakeRoom},
-    {"plain_room", MakePlainRoom},
-    {"glossy_room", MakeGlossyRoom},
-    {"corridor", MakeCorridor},
-    {"poster_wall", MakePosterWall},
-    {"table", MakeTableRoom},
-    {"two_rooms", MakeTwoRooms},
-    {"twin_corridors", MakeTwinCorridors},
-    {"depot", MakeDepot}};
 
 struct Furniture {
   SceneBox box;
@@ -147,11 +71,105 @@ const Furniture kFurniture[] = {
     {{{0.90, -0.30, 2.45}, {0.30, 1.10, 0.08}, 0}, &kMetal},
 };
 
+// A furnished room of 5 x 4 x 2.6 m (x, y, z) around the world's z axis.
+Scene MakeRoom(uint32_t seed) {
+  Scene scene = {{}, {-0.4, 0.2, 2.2}, seed};
+  AddBox({{0.0, 0.0, 0.0}, {5.0, 4.0, 2.6}, 0}, true,
+         {kWallpaper, kWallpaper, kWallpaper, kWallpaper, kParquet, kPlaster},
+         &scene);
+  for (const Furniture& piece : kFurniture) {
+    AddBox(piece.box, *piece.material, &scene);
+  }
+  return scene;
+}
+
+// The same room with highlights on desk, screens, floor and pictures.
+Scene MakeGlossyRoom(uint32_t seed) {
+  constexpr float kGloss = 0.6f;
+  Scene scene = MakeRoom(seed);
+  for (SceneFace& face : scene.faces) {
+    for (const Material* shiny : {&kWood, &kScreen, &kParquet, &kPoster}) {
+      if (face.material.color == shiny->color) face.material.gloss = kGloss;
+    }
+  }
+  return scene;
+}
+
+// Scenes without the texture or the shape that some methods depend on. All suit
+// the paths of the room.
+
+Material Painted(const cv::Vec3f& color) { return {color, 0.0f}; }
+
+struct PaintedBox {
+  SceneBox box;
+  float brightness;
+};
+
+// Low boxes near the camera, high ones along the walls.
+const PaintedBox kBoxes[] = {
+    {{{0.60, 0.25, 0.0}, {0.75, 1.50, 0.74}, -18}, 0.62f},
+    {{{0.74, 0.42, 0.74}, {0.20, 0.54, 0.40}, -10}, 0.70f},
+    {{{0.40, -0.12, 0.74}, {0.30, 0.22, 0.16}, 25}, 0.56f},
+    {{{-0.15, 0.85, 0.0}, {0.44, 0.44, 0.47}, 32}, 0.66f},
+    {{{2.30, 0.60, 0.0}, {0.40, 1.40, 1.86}, 0}, 0.58f},
+    {{{2.10, -1.00, 0.0}, {0.50, 0.90, 0.80}, 15}, 0.68f},
+    {{{2.05, -0.90, 0.80}, {0.34, 0.36, 0.30}, 40}, 0.60f},
+    {{{0.55, -1.55, 0.0}, {1.60, 0.75, 0.40}, 0}, 0.64f},
+    {{{0.55, -1.86, 0.40}, {1.60, 0.20, 0.42}, 0}, 0.60f},
+    {{{2.30, 1.80, 0.0}, {0.36, 0.36, 2.60}, 20}, 0.67f},
+    {{{1.35, 1.60, 0.0}, {0.50, 0.45, 0.70}, 28}, 0.57f},
+    {{{-0.90, 1.70, 0.0}, {0.90, 0.42, 0.75}, 0}, 0.61f},
+};
+
+// A room of 5 x 4 x 2.6 m with a dozen boxes, each in one colour: shapes, but
+// no texture.
+Scene MakePlainRoom(uint32_t seed) {
+  Scene scene = {{}, {-0.4, 0.2, 2.2}, seed};
+  const Material wall = Painted({0.62f, 0.64f, 0.65f});
+  AddBox({{0.0, 0.0, 0.0}, {5.0, 4.0, 2.6}, 0}, true,
+         {wall, wall, wall, wall, wall, wall}, &scene);
+  for (const PaintedBox& piece : kBoxes) {
+    const float b = piece.brightness;
+    AddBox(piece.box, Painted({b, b, b}), &scene);
+  }
+  return scene;
+}
+
+// A corridor, 2 x 2.5 m and 40 m long, along the world's x axis, each wall in
+// one colour: the position along this axis cannot be observed.
+Scene MakeCorridor(uint32_t seed) {
+  // The lamp is so high that its light is the same everywhere.
+  Scene scene = {{}, {-0.4, -0.35, 1000.0}, seed};
+  AddBox({{0.0, -0.35, 0.0}, {40.0, 2.0, 2.5}, 0}, true,
+         {Painted({0.80f, 0.82f, 0.83f}), Painted({0.80f, 0.82f, 0.83f}),
+          Painted({0.90f, 0.90f, 0.88f}), Painted({0.84f, 0.88f, 0.92f}),
+          Painted({0.55f, 0.58f, 0.63f}), Painted({1.00f, 1.00f, 1.00f})},
+         &scene);
+  return scene;
+}
+
+// One wall full of posters and nothing else: texture, but no shape.
+Scene MakePosterWall(uint32_t seed) {
+  Scene scene = {{}, {-0.4, 0.2, 2.2}, seed};
+  AddBox({{1.0, 0.0, -5.0}, {0.2, 16.0, 14.0}, 0}, kPoster, &scene);
+  return scene;
+}
+
+constexpr Named<Scene (*)(uint32_t seed)> kScenes[] = {
+    {"room", MakeRoom},
+    {"plain_room", MakePlainRoom},
+    {"glossy_room", MakeGlossyRoom},
+    {"corridor", MakeCorridor},
+    {"poster_wall", MakePosterWall},
+    {"table", MakeTableRoom},
+    {"two_rooms", MakeTwoRooms},
+    {"twin_corridors", MakeTwinCorridors},
+    {"depot", MakeDepot}};
+
 }  // namespace
 
 void AddBox(const SceneBox& box, bool from_within,
-            const std::array<Material, 6>& materials, uint32_t seed,
-            Scene* scene) {
+            const std::array<Material, 6>& materials, Scene* scene) {
   const Eigen::Matrix3d turn =
       Eigen::AngleAxisd(box.yaw_deg * M_PI / 180.0, Vector3d::UnitZ())
           .toRotationMatrix();
@@ -171,7 +189,7 @@ void AddBox(const SceneBox& box, bool from_within,
                   face.u_axis * (face.width / 2) -
                   face.v_axis * (face.height / 2);
     face.material = materials[side];
-    face.seed = HashCell(static_cast<int>(scene->faces.size()), 0, seed);
+    face.seed = HashCell(static_cast<int>(scene->faces.size()), 0, scene->seed);
     scene->faces.push_back(face);
   }
 }
@@ -181,28 +199,5 @@ Scene MakeScene(const std::string& name, uint32_t seed) {
 }
 
 std::vector<std::string> SceneNames() { return NamesOf(kScenes); }
-
-Scene MakeRoom(uint32_t seed) {
-  Scene scene;
-  scene.lamp = {-0.4, 0.2, 2.2};
-  AddBox({{0.0, 0.0, 0.0}, {5.0, 4.0, 2.6}, 0}, true,
-         {kWallpaper, kWallpaper, kWallpaper, kWallpaper, kParquet, kPlaster},
-         seed, &scene);
-  for (const Furniture& piece : kFurniture) {
-    AddBox(piece.box, *piece.material, seed, &scene);
-  }
-  return scene;
-}
-
-Scene MakeGlossyRoom(uint32_t seed) {
-  constexpr float kGloss = 0.6f;
-  Scene scene = MakeRoom(seed);
-  for (SceneFace& face : scene.faces) {
-    for (const Material* shiny : {&kWood, &kScreen, &kParquet, &kPoster}) {
-      if (face.material.color == shiny->color) face.material.gloss = kGloss;
-    }
-  }
-  return scene;
-}
 
 }  // namespace rgbd_pose

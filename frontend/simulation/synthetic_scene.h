@@ -28,6 +28,7 @@ struct SceneFace {
 struct Scene {
   std::vector<SceneFace> faces;
   Eigen::Vector3d lamp = Eigen::Vector3d::Zero();  // point light
+  uint32_t seed = 0;                               // of the textures to come
 };
 
 // An upright box, rotated about the vertical.
@@ -40,13 +41,11 @@ struct SceneBox {
 // Adds the faces of a box, visible from outside or, for a room, from inside.
 // The materials are those of the sides -x, +x, -y, +y, -z, +z of its own axes.
 void AddBox(const SceneBox& box, bool from_within,
-            const std::array<Material, 6>& materials, uint32_t seed,
-            Scene* scene);
+            const std::array<Material, 6>& materials, Scene* scene);
 
 // The same with one material, visible from outside.
-inline void AddBox(const SceneBox& box, const Material& m, uint32_t seed,
-                   Scene* scene) {
-  AddBox(box, false, {m, m, m, m, m, m}, seed, scene);
+inline void AddBox(const SceneBox& box, const Material& m, Scene* scene) {
+  AddBox(box, false, {m, m, m, m, m, m}, scene);
 }
 
 // The scene with this name. Throws InputError that lists the names if there is
@@ -66,12 +65,6 @@ Scene MakeScene(const std::string& name, uint32_t seed);
 
 // The names of all scenes.
 std::vector<std::string> SceneNames();
-
-// A furnished room of 5 x 4 x 2.6 m (x, y, z) around the world's z axis.
-Scene MakeRoom(uint32_t seed);
-
-// The same room with highlights on desk, screens, floor and pictures.
-Scene MakeGlossyRoom(uint32_t seed);
 
 // Scenes for tours, whose paths return (synthetic_path.h). Walls are solid
 // boxes 0.1 m thick; furniture stands along them in rows.

@@ -3,10 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <opencv2/core.hpp>
-#include <vector>
 
-#include "core/geometry/shutter.h"
 #include "frontend/simulation/synthetic_hash.h"
 
 namespace rgbd_pose {
@@ -37,33 +34,14 @@ void DropShadow(int columns, float* row) {
   }
 }
 
-constexpr double kInvisibleBlur = 0.1;  // px
-
 // Approximate distance (px) that the nearest object moves in the image.
 double BlurLength(const Rigid3d& motion, const cv::Mat& depth,
                   double focal_px) {
-  double nearest = 0.0;
-  double farthest = 0.0;
+  double nearest = 0.0, farthest = 0.0;
   cv::minMaxLoc(depth, &nearest, &farthest, nullptr, nullptr, depth > 0.0f);
   const double shift =
       farthest > 0.0 ? motion.translation.norm() / nearest : 0.0;
   return focal_px * (motion.Angle() + shift);
-}
-
-// What the camera sees in an instant or, with a rolling shutter, row by row
-// with time t in the middle of the readout.
-Rendering RenderAt(const Renderer& renderer,
-                   const std::function<Rigid3d(double t)>& world_from_cam,
-                   double t, double readout_s) {
-  if (readout_s == 0.0) return renderer.Render(world_from_cam(t), t);
-  std::vector<StampedPose> poses(renderer.num_bands());
-  for (size_t i = 0; i < poses.size(); ++i) {
-    const double row = renderer.BandMiddle(static_cast<int>(i));
-    const Shutter shutter = {0.0, readout_s};
-    const double time = t + shutter.RowTime(row, renderer.height());
-    poses[i] = {time, world_from_cam(time)};
-  }
-  return renderer.Render(poses);
 }
 
 }  // namespace
@@ -127,8 +105,9 @@ double DriftingGain(double amplitude, double t) {
 Rendering Expose(const Renderer& renderer, double focal_px,
                  const std::function<Rigid3d(double t)>& world_from_cam,
                  double t, const Exposure& exposure) {
+  constexpr double kInvisibleBlur = 0.1;  // px
   const double half_time = exposure.shutter_s / 2.0;
-  Rendering out = RenderAt(renderer, world_from_cam, t, exposure.readout_s);
+  Rendering out = renderer.Render(world_from_cam, t, exposure.readout_s);
   const Rigid3d closing_from_opening =
       world_from_cam(t + half_time).Inverse() * world_from_cam(t - half_time);
   const double length = BlurLength(closing_from_opening, out.depth, focal_px);
@@ -142,8 +121,8 @@ Rendering Expose(const Renderer& renderer, double focal_px,
   for (int i = 1; i <= pairs; ++i) {
     const double offset = exposure.shutter_s * i / renderings;
     for (const double side : {-1.0, 1.0}) {
-      const Rendering moved = RenderAt(renderer, world_from_cam,
-                                       t + side * offset, exposure.readout_s);
+      const Rendering moved = renderer.Render(world_from_cam, t + side * offset,
+                                              exposure.readout_s);
       cv::add(sum, moved.color, sum, cv::noArray(), CV_32F);
     }
   }

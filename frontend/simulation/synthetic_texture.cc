@@ -124,12 +124,6 @@ float Signed(uint32_t hash, int byte) {
   return static_cast<float>((hash >> (8 * byte)) & 0xffu) / 127.5f - 1.0f;
 }
 
-// The share of a pattern with this cell size that is visible at this pixel
-// extent: 0 when the shortest wavelength, two cells, is below two pixels.
-float Visible(float cell, float footprint) {
-  return Clamp01(cell / footprint - 1.0f);
-}
-
 // Calls use(hash, weight) for each cell, of size 1, under a pixel of extent
 // (footprint_x, footprint_y): one within a cell, up to four at its corners.
 template <typename Use>
@@ -167,7 +161,9 @@ cv::Vec3f Tiles(const Material& material, const SurfacePoint& p,
 // The share of the pixel that is covered by ink of words, 0..1.
 float Ink(const Material& material, const SurfacePoint& p, uint32_t seed) {
   const float block = material.glyph;
-  const float visible = Visible(block, std::max(p.footprint_u, p.footprint_v));
+  // 0 when the shortest wavelength, two blocks, is below two pixels.
+  const float visible =
+      Clamp01(block / std::max(p.footprint_u, p.footprint_v) - 1.0f);
   const float x = p.u / block;
   const float y = p.v / block;
   const float width = p.footprint_u / block;
@@ -204,10 +200,9 @@ float Grain(float u, float v, float footprint, uint32_t seed) {
 
 cv::Vec3f Paint(const Material& material, uint32_t seed,
                 const SurfacePoint& point) {
+  const float extent = std::max(point.footprint_u, point.footprint_v);
   const float grain =
-      1.0f + material.grain *
-                 Grain(point.u, point.v,
-                       std::max(point.footprint_u, point.footprint_v), seed);
+      1.0f + material.grain * Grain(point.u, point.v, extent, seed);
   cv::Vec3f color = material.color;
   if (material.tile_contrast > 0.0f || material.tile_tint > 0.0f) {
     color += Tiles(material, point, seed + 0x100u);

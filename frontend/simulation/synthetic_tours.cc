@@ -69,20 +69,18 @@ Vector3d Lift(const Vector2d& place, double height) {
 
 // Motion of the hand: about 1 cm and 1 degree on each axis.
 Rigid3d Sway(double t) {
-  const Vector3d shift(0.010 * std::sin(2.0 * M_PI * 0.53 * t),
-                       0.015 * std::sin(2.0 * M_PI * 0.83 * t + 1.0),
-                       0.010 * std::sin(2.0 * M_PI * 0.41 * t + 2.0));
-  const Quaterniond turn =
-      AngleAxisd(
-          0.8 * kRadiansPerDegree * std::sin(2.0 * M_PI * 0.67 * t + 3.0),
-          Vector3d::UnitX()) *
-      AngleAxisd(
-          1.2 * kRadiansPerDegree * std::sin(2.0 * M_PI * 0.47 * t + 4.0),
-          Vector3d::UnitY()) *
-      AngleAxisd(
-          1.0 * kRadiansPerDegree * std::sin(2.0 * M_PI * 0.59 * t + 5.0),
-          Vector3d::UnitZ());
-  return Rigid3d(turn, shift);
+  const auto wave = [t](double amplitude, double hz, double phase) {
+    return amplitude * std::sin(2.0 * M_PI * hz * t + phase);
+  };
+  const Vector3d shift(wave(0.010, 0.53, 0.0), wave(0.015, 0.83, 1.0),
+                       wave(0.010, 0.41, 2.0));
+  const double pitch = wave(0.8 * kRadiansPerDegree, 0.67, 3.0);
+  const double yaw = wave(1.2 * kRadiansPerDegree, 0.47, 4.0);
+  const double roll = wave(1.0 * kRadiansPerDegree, 0.59, 5.0);
+  return Rigid3d(AngleAxisd(pitch, Vector3d::UnitX()) *
+                     AngleAxisd(yaw, Vector3d::UnitY()) *
+                     AngleAxisd(roll, Vector3d::UnitZ()),
+                 shift);
 }
 
 // Looks in the direction of the way's point `ahead` m further on, turned by

@@ -10,7 +10,6 @@
 #include "core/util/stage_timer.h"
 #include "frontend/frame/image_pyramid.h"
 #include "frontend/frame/observe.h"
-#include "frontend/frame/view_frame.h"
 
 namespace rgbd_pose {
 namespace {

@@ -42,8 +42,7 @@ cv::Mat FindPlaces(const FrameView& reference, const Rigid3d& cur_from_ref) {
 cv::Mat DrawResiduals(const FrameView& reference, const Frame& frame,
                       const Rigid3d& cur_from_ref) {
   const ImageView<uint8_t>& gray = reference.levels[1].gray;
-  std::vector<cv::Mat> pyramid;
-  BuildSmoothPyramid(frame.gray, 2, &pyramid);
+  const std::vector<cv::Mat> pyramid = SmoothLevels(frame.gray, 2);
   const cv::Mat places = FindPlaces(reference, cur_from_ref);
   cv::Mat seen;
   cv::remap(pyramid[1], seen, places, cv::Mat(), cv::INTER_LINEAR);

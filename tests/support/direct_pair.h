@@ -8,7 +8,6 @@
 #include "core/geometry/depth_noise.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/image_pyramid.h"
-#include "frontend/frame/view_frame.h"
 #include "frontend/simulation/synthetic_dataset.h"
 
 namespace rgbd_pose {
@@ -26,7 +25,7 @@ struct DirectFrame {
       : DirectFrame(dataset.Read(index), dataset.camera().camera) {}
 
   void Build() {
-    BuildSmoothPyramid(frame.gray, kLevels, &pyramid);
+    pyramid = SmoothLevels(frame.gray, kLevels);
     const auto id = view.id;
     view = ViewFrame(frame, pyramid, camera, DepthNoiseModels()[0]);
     view.id = id;

@@ -35,10 +35,9 @@ Scene MakeBox(uint32_t seed) {
   print.tile_tint = 0.15f;
   print.glyph = 0.008f;
   print.glyph_density = 0.4f;
-  Scene scene;
-  scene.lamp = {0.3, -1.5, 1.0};
+  Scene scene = {{}, {0.3, -1.5, 1.0}, seed};
   AddBox({{0.0, 0.0, -kBoxSize.z() / 2.0}, kBoxSize, 0.0}, false,
-         {print, print, print, print, print, print}, seed, &scene);
+         {print, print, print, print, print, print}, &scene);
   return scene;
 }
 

@@ -59,15 +59,6 @@ TEST(CameraTest, UndistortInvertsProjectEverywhereInTheImage) {
   }
 }
 
-TEST(CameraTest, UndistortPointsDoesAsUndistort) {
-  const Camera camera = CameraPreset("tum_fr1")->camera;
-  std::vector<Vector2d> pixels = {{10, 20}, {600, 400}};
-  camera.UndistortPoints(&pixels);
-  EXPECT_EQ(pixels[0], camera.Undistort(Vector2d(10, 20)));
-  EXPECT_EQ(pixels[1], camera.Undistort(Vector2d(600, 400)));
-  EXPECT_GT((pixels[0] - Vector2d(10, 20)).norm(), 1.0);
-}
-
 TEST(CameraTest, ChecksItsParameters) {
   EXPECT_EQ(Camera{}.Check(), "");
   Camera camera;

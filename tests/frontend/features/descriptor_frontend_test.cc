@@ -1,5 +1,3 @@
-#include "frontend/features/descriptor_frontend.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

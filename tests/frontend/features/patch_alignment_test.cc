@@ -19,6 +19,8 @@ const Eigen::Vector2d kCentre(31.0, 33.0);
 // about 60. Over 64 pixels, this leaves a few hundredths of a pixel.
 constexpr double kExactPx = 0.05;
 
+constexpr float kMinStepPx = 0.02F;  // as on the finest level
+
 // A texture with gradients in all directions.
 double Texture(const Eigen::Vector2d& x) {
   return 120.0 + 25.0 * std::sin(0.45 * x.x() + 0.2 * x.y()) +
@@ -47,7 +49,7 @@ Patch PatchOf(const cv::Mat& image,
 AlignedPatch Align(const Patch& patch, const cv::Mat& image,
                    const Eigen::Vector2d& start = kCentre) {
   return AlignPatch(patch, image, static_cast<float>(start.x()),
-                    static_cast<float>(start.y()), PatchAlignmentOptions());
+                    static_cast<float>(start.y()), kMinStepPx);
 }
 
 // Expects that the patch is found at `expected`.

