@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/batch/batch_list.h"
 #include "apps/batch/batch_plan.h"
 #include "apps/batch/batch_pool.h"
 #include "apps/batch/batch_run_folder.h"
@@ -89,11 +88,11 @@ std::string ProgramPath() {
   const fs::path beside =
       fs::read_symlink("/proc/self/exe", error).parent_path() /
       (FLAGS_program.empty() ? "rgbd_odometry" : FLAGS_program);
-  const bool is_beside = FLAGS_program.find('/') == std::string::npos &&
-                         fs::is_regular_file(beside, error);
+  const bool is_beside =
+      FLAGS_program.find('/') == std::string::npos && IsFile(beside);
   const fs::path path =
       is_beside || FLAGS_program.empty() ? beside : fs::absolute(FLAGS_program);
-  if (!fs::is_regular_file(path, error) || access(path.c_str(), X_OK) != 0) {
+  if (!IsFile(path) || access(path.c_str(), X_OK) != 0) {
     throw InputError(path.string() +
                      ": not an executable program; give one with --program");
   }
@@ -157,14 +156,13 @@ void RefuseEarlierRuns(const std::vector<BatchRun>& plan,
 void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
             const std::string& program) {
   BatchPoolOptions options;
-  options.program = program;
   // A page per run would be too much by default. --settings may request it, and
   // rgbd_report can make it later. A stopped run must not count as finished,
   // because the next call would then not repeat it.
-  options.arguments = {"--report=false", "--finish_on_signal=false"};
+  options.command = {program, "--report=false", "--finish_on_signal=false"};
   if (!FLAGS_settings.empty()) {
-    options.arguments.push_back("--flagfile=" +
-                                fs::absolute(FLAGS_settings).string());
+    options.command.push_back("--flagfile=" +
+                              fs::absolute(FLAGS_settings).string());
   }
   options.jobs = FLAGS_jobs > 0 ? FLAGS_jobs : AvailableCores();
   options.timeout_seconds = FLAGS_timeout;

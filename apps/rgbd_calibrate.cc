@@ -1,7 +1,6 @@
 // Calibrates an RGB-D camera from its own recording.
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 
 #include <chrono>
 #include <cstdio>
@@ -9,7 +8,7 @@
 #include <string>
 
 #include "apps/calibration/calibration_run.h"
-#include "apps/report/calibration_page.h"
+#include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/shell/program.h"
 

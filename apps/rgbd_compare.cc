@@ -55,10 +55,9 @@ int Main(const ExperimentSettings& settings, const ProgramInfo& info) {
   RequireFlag("experiment", settings.experiment);
   RequireFlag("output", FLAGS_output);
   cv::setNumThreads(1);  // threads are created here
-  CompareOutput output(FLAGS_output);
-  const ExperimentResult result = RunExperiment(settings, &output);
-  output.Write("config.flags", FormatFlagFile(info));
-  output.WriteReport(result.report);
+  const ExperimentResult result = RunExperiment(settings, FLAGS_output);
+  WriteOutput(FLAGS_output, "config.flags", FormatFlagFile(info));
+  WriteOutput(FLAGS_output, "report.md", result.report);
   std::printf("%s", result.report.c_str());
   if (FLAGS_report) {
     std::printf("report in   %s\n",

@@ -1,7 +1,6 @@
 // Converts any recording to a TUM RGB-D folder.
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 
 #include <cstdio>
 #include <opencv2/core.hpp>

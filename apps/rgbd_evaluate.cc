@@ -1,9 +1,7 @@
 // Evaluates an estimated trajectory against the ground truth.
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 
-#include <algorithm>
 #include <charconv>
 #include <cstdio>
 #include <filesystem>
@@ -128,8 +126,7 @@ int Main() {
   if (!FLAGS_aligned.empty()) {
     WriteAligned(estimate, report.truth_from_estimate, FLAGS_aligned);
   }
-  const std::string warning = Sim3Warning(report.sim3, report.ate.rmse);
-  if (!warning.empty()) LOG(WARNING) << warning;
+  Warn({Sim3Warning(report.sim3, report.ate.rmse)});
   const std::string text = FLAGS_json ? EvaluationToJson(report).dump(2) + "\n"
                                       : FormatEvaluation(report);
   std::fputs(text.c_str(), stdout);

@@ -2,12 +2,9 @@
 // figures and errors.
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 
-#include <algorithm>
 #include <chrono>
 #include <cstdio>
-#include <filesystem>
 #include <opencv2/core.hpp>
 
 #include "apps/export/export_format.h"

@@ -2,7 +2,6 @@
 // rgbd_odometry, plus loop closure, saved maps and relocalisation.
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 
 #include <algorithm>
 #include <chrono>
@@ -16,7 +15,6 @@
 #include "apps/export/export_format.h"
 #include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/sequence.h"
-#include "apps/report/calibration_page.h"
 #include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/results/run_output.h"
@@ -89,69 +87,45 @@ void LoadMaps(const MapSettings& maps, SlamRun* run) {
   }
 }
 
-// The result of --calibrate, and the camera to continue with.
-class Calibration {
- public:
-  Calibration(const ProgramSettings& settings, int threads)
-      : settings_(settings) {
-    if (!FLAGS_calibrate) return;
-    OdometrySettings odometry = settings.odometry;
-    odometry.odometry.max_flow_px =
-        std::min(odometry.odometry.max_flow_px,
-                 CalibrationOdometry().odometry.max_flow_px);
-    found_ = CalibrateWithProgress(settings.sequence, odometry,
-                                   CalibrationSlam(), {}, threads);
+// The result of --calibrate, if it is requested.
+std::optional<RecordingCalibration> Calibrate(const ProgramSettings& settings,
+                                              int threads) {
+  if (!FLAGS_calibrate) return std::nullopt;
+  OpenSequence(settings.sequence);
+  OdometrySettings odometry = settings.odometry;
+  odometry.odometry.max_flow_px =
+      std::min(odometry.odometry.max_flow_px,
+               CalibrationOdometry().odometry.max_flow_px);
+  return CalibrateWithProgress(settings.sequence, odometry, CalibrationSlam(),
+                               {}, threads);
+}
+
+// Writes the calibration files and returns the text that the program prints.
+// Afterwards the flags are those of a run with the camera found.
+std::string WriteFound(const RecordingCalibration& found,
+                       const ProgramSettings& settings,
+                       const RunFolder& output) {
+  constexpr char kFile[] = "camera.yaml";
+  const CalibrationResult& result = found.result;
+  if (result.is_accepted) {
+    output.WriteFile(kFile,
+                     FormatCameraFile(result.camera, settings.sequence.camera));
+    const std::filesystem::path folder(settings.output.output);
+    gflags::SetCommandLineOption("camera", (folder / kFile).c_str());
+    gflags::SetCommandLineOption("depth_scale", "0");
+    gflags::SetCommandLineOption("calibrate", "false");
   }
-
-  // The camera found, or null.
-  const RgbdCamera* camera() const {
-    return found_.has_value() && found_->result.is_accepted
-               ? &found_->result.camera
-               : nullptr;
+  if (result.noise.has_value()) {
+    output.WriteFile("depth_noise.yaml",
+                     FormatDepthNoiseFile(result.noise->model));
   }
-
-  // Writes the calibration files and returns the text that the program prints.
-  // Afterwards the flags are those of a run with the camera found.
-  std::string Write(const RunFolder& output) const {
-    if (!found_.has_value()) return "";
-    const CalibrationResult& result = found_->result;
-    if (result.is_accepted) {
-      output.WriteFile(
-          kFile, FormatCameraFile(result.camera, settings_.sequence.camera));
-      const std::filesystem::path folder(settings_.output.output);
-      SetFlag("camera", (folder / kFile).string());
-      SetFlag("depth_scale", "0");
-      SetFlag("calibrate", "false");
-    }
-    if (result.noise.has_value()) {
-      output.WriteFile("depth_noise.yaml",
-                       FormatDepthNoiseFile(result.noise->model));
-    }
-    if (FLAGS_report) {
-      output.WriteFile("calibration.html",
-                       CalibrationPage(result, found_->path));
-    }
-    return FormatCalibrationSummary(result) +
-           (result.is_accepted ? "tracked with the new camera:\n"
-                               : "tracked with the first camera:\n");
+  if (FLAGS_report) {
+    output.WriteFile("calibration.html", CalibrationPage(result, found.path));
   }
-
-  // For metrics.json; null without a calibration.
-  nlohmann::json Json() const {
-    return found_.has_value() ? CalibrationToJson(found_->result)
-                              : nlohmann::json();
-  }
-
- private:
-  static constexpr char kFile[] = "camera.yaml";
-
-  static void SetFlag(const char* name, const std::string& value) {
-    gflags::SetCommandLineOption(name, value.c_str());
-  }
-
-  const ProgramSettings& settings_;
-  std::optional<RecordingCalibration> found_;
-};
+  return FormatCalibrationSummary(result) +
+         (result.is_accepted ? "tracked with the new camera:\n"
+                             : "tracked with the first camera:\n");
+}
 
 int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   const Clock::time_point start = Clock::now();
@@ -163,10 +137,12 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
 
   // Check the input before the work starts and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
-  if (FLAGS_calibrate) OpenSequence(settings.sequence);
-  const Calibration calibration(settings, threads);
+  const std::optional<RecordingCalibration> found =
+      Calibrate(settings, threads);
+  const bool has_camera = found.has_value() && found->result.is_accepted;
   Sequence sequence =
-      OpenSequence(settings.sequence, keep_color, calibration.camera());
+      OpenSequence(settings.sequence, keep_color,
+                   has_camera ? &found->result.camera : nullptr);
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
   const RunInputs inputs = sequence.inputs();
@@ -192,11 +168,13 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   const Slam& slam = run.slam();
   LogWarnings(results);
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
-  const std::string warning = SlamWarning(map_json);
-  if (!warning.empty()) LOG(WARNING) << warning;
-  std::string text = calibration.Write(output.folder());
+  Warn({SlamWarning(map_json)});
+  std::string text;
   nlohmann::json more = {{"stopped", flaws.stopped}, {"slam", map_json}};
-  if (!calibration.Json().is_null()) more["calibration"] = calibration.Json();
+  if (found.has_value()) {
+    text = WriteFound(*found, settings, output.folder());
+    more["calibration"] = CalibrationToJson(found->result);
+  }
   text += output.Write(results, threads, seconds, sequence.GroundTruth(),
                        settings.sequence.dataset, FormatFlagFile(info),
                        info.name, more);

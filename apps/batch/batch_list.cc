@@ -1,10 +1,9 @@
-#include "apps/batch/batch_list.h"
-
 #include <glob.h>
 
 #include <filesystem>
 #include <map>
 
+#include "apps/batch/batch_plan.h"
 #include "core/geometry/camera.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
@@ -45,89 +44,64 @@ bool IsUsableName(const std::string& name) {
   return true;
 }
 
-class ListReader {
- public:
-  explicit ListReader(const std::string& path)
-      : path_(path), base_(fs::absolute(path).parent_path()) {}
-
-  std::vector<BatchSequence> Read() {
-    for (const TextLine& line : ReadTextTable(path_)) AddLine(line);
-    if (sequences_.empty()) throw InputError(path_ + ": lists no sequences");
-    return std::move(sequences_);
-  }
-
- private:
-  std::string FromBase(const std::string& path) const {
-    return (base_ / path).lexically_normal().string();
-  }
-
-  void AddLine(const TextLine& line) {
-    if (line.words.size() > 2) {
-      throw InputError(path_, line.number,
-                       "needs one or two columns (folder camera), has " +
-                           std::to_string(line.words.size()));
-    }
-    const std::vector<std::string> folders =
-        MatchingFolders(FromBase(line.words[0]));
-    if (folders.empty()) {
-      throw InputError(path_, line.number,
-                       "no such folder: " + FromBase(line.words[0]));
-    }
-    for (const std::string& folder : folders) AddSequence(line, folder);
-  }
-
-  void AddSequence(const TextLine& line, const std::string& folder) {
-    // "folder/" has an empty last component.
-    const fs::path path = fs::path(folder + "/").parent_path();
-    const std::string name = path.lexically_normal().filename().string();
-    if (!IsUsableName(name)) {
-      throw InputError(path_, line.number,
-                       "'" + name +
-                           "' is not a valid name (leading dot, comma, "
-                           "quote or backslash); rename the folder or list a "
-                           "link to it");
-    }
-    const auto [entry, is_new] = lines_.emplace(name, line.number);
-    if (!is_new) {
-      throw InputError(path_, line.number,
-                       "sequence name '" + name + "' is already used in line " +
-                           std::to_string(entry->second) +
-                           "; rename the folder or list a link to it");
-    }
-    sequences_.push_back({name, path.string(), CameraOf(line, path)});
-  }
-
-  std::string CameraOf(const TextLine& line, const fs::path& folder) const {
-    if (line.words.size() == 2 && CameraPreset(line.words[1])) {
-      return line.words[1];
-    }
-    const bool given = line.words.size() == 2;
-    std::string file =
-        given ? FromBase(line.words[1]) : (folder / "camera.yaml").string();
-    std::error_code error;
-    // Other kinds of recordings contain the camera, or their run fails.
-    const bool is_tum = fs::is_regular_file(folder / "rgb.txt", error);
-    if (!given && !is_tum && !fs::is_regular_file(file, error)) return "";
-    if (!fs::is_regular_file(file, error)) {
-      throw InputError(path_, line.number,
-                       "no camera: " + file +
-                           " is not a file; give one in the second column, a "
-                           "YAML file or one of " +
-                           Join(CameraPresetNames()));
-    }
-    return file;
-  }
-
-  const std::string path_;
-  const fs::path base_;
-  std::map<std::string, int> lines_;  // by sequence name
-  std::vector<BatchSequence> sequences_;
-};
+// The camera of a recording: `named`, or that in its folder if this is empty.
+// `place` (file:line) is put before an error.
+std::string CameraOf(const fs::path& folder, const std::string& named,
+                     const fs::path& base, const std::string& place) {
+  if (CameraPreset(named)) return named;
+  const fs::path file = named.empty() ? folder / "camera.yaml"
+                                      : (base / named).lexically_normal();
+  if (IsFile(file)) return file.string();
+  // Other kinds of recordings contain the camera, or their run fails.
+  if (named.empty() && !IsFile(folder / "rgb.txt")) return "";
+  throw InputError(place + "no camera: " + file.string() +
+                   " is not a file; give one in the second column, a YAML "
+                   "file or one of " +
+                   Join(CameraPresetNames()));
+}
 
 }  // namespace
 
 std::vector<BatchSequence> ReadSequenceList(const std::string& path) {
-  return ListReader(path).Read();
+  const fs::path base = fs::absolute(path).parent_path();
+  std::vector<BatchSequence> sequences;
+  std::map<std::string, int> lines;  // by sequence name
+  for (const auto& [number, words] : ReadTextTable(path)) {
+    const std::string place = path + ":" + std::to_string(number) + ": ";
+    if (words.size() > 2) {
+      throw InputError(place +
+                       "needs one or two columns (folder camera), has " +
+                       std::to_string(words.size()));
+    }
+    const std::string pattern = (base / words[0]).lexically_normal().string();
+    const std::vector<std::string> folders = MatchingFolders(pattern);
+    if (folders.empty()) {
+      throw InputError(place + "no such folder: " + pattern);
+    }
+    for (const std::string& match : folders) {
+      // "folder/" has an empty last component.
+      const fs::path folder = fs::path(match + "/").parent_path();
+      const std::string name = folder.lexically_normal().filename().string();
+      if (!IsUsableName(name)) {
+        throw InputError(place + "'" + name +
+                         "' is not a valid name (leading dot, comma, "
+                         "quote or backslash); rename the folder or list a "
+                         "link to it");
+      }
+      const auto [entry, is_new] = lines.emplace(name, number);
+      if (!is_new) {
+        throw InputError(place + "sequence name '" + name +
+                         "' is already used in line " +
+                         std::to_string(entry->second) +
+                         "; rename the folder or list a link to it");
+      }
+      sequences.push_back(
+          {name, folder.string(),
+           CameraOf(folder, words.size() == 2 ? words[1] : "", base, place)});
+    }
+  }
+  if (sequences.empty()) throw InputError(path + ": lists no sequences");
+  return sequences;
 }
 
 }  // namespace rgbd_pose

@@ -13,6 +13,7 @@
 
 #include "core/geometry/camera.h"
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "core/util/text_hash.h"
 #include "costs/cost_factory.h"
@@ -40,8 +41,7 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
 
 void CheckKnown(const std::string& name,
                 const std::vector<std::string>& known) {
-  if (Contains(known, name)) return;
-  throw InputError("unknown name '" + name + "'; available: " + Join(known));
+  if (!Contains(known, name)) throw UnknownName("name", name, known);
 }
 
 std::vector<std::string> ParseList(const BatchSetting& setting,
@@ -77,15 +77,6 @@ std::vector<std::vector<std::string>> Combinations(const BatchGrid& grid) {
   return all;
 }
 
-std::string HashRun(const BatchRun& run, const std::string& settings,
-                    const std::string& inputs) {
-  TextHash hash;
-  for (const std::string& value : run.values) hash.Add(value);
-  hash.Add(settings);
-  hash.Add(inputs);
-  return hash.Hex();
-}
-
 std::optional<int> ParseWhole(std::string_view text) {
   int value = 0;
   const auto [end, error] =
@@ -116,11 +107,6 @@ BatchShard ShardOfSlurmTask() {
 }
 
 namespace fs = std::filesystem;
-
-bool IsFile(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error);
-}
 
 void AddFile(const fs::path& path, TextHash* hash) {
   hash->Add(IsFile(path) ? "file" : "none");
@@ -219,17 +205,16 @@ std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,
     if (!shard.Has(static_cast<int>(i))) continue;
     const std::string inputs = HashSequence(sequences[i]);
     for (const std::vector<std::string>& values : combinations) {
+      TextHash hash;
+      for (const std::string& value : values) hash.Add(value);
+      hash.Add(settings);
+      hash.Add(inputs);
       for (int repeat = 1; repeat <= grid.repeats; ++repeat) {
-        runs.push_back({sequences[i], values, repeat, ""});
-        runs.back().hash = HashRun(runs.back(), settings, inputs);
+        runs.push_back({sequences[i], values, repeat, hash.Hex()});
       }
     }
   }
   return runs;
-}
-
-std::string BatchShard::Name() const {
-  return std::to_string(index) + "-of-" + std::to_string(count);
 }
 
 BatchShard ParseShard(const std::string& text) {

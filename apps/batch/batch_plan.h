@@ -4,9 +4,21 @@
 #include <string>
 #include <vector>
 
-#include "apps/batch/batch_list.h"
-
 namespace rgbd_pose {
+
+// A sequence of a batch.
+struct BatchSequence {
+  std::string name;    // folder name in the output; unique in a list
+  std::string folder;  // absolute
+  std::string camera;  // a preset or an absolute path
+};
+
+// Reads a list of sequences, one per line: a folder and optionally its camera
+// (preset or YAML file; default: camera.yaml of the folder). Paths are relative
+// to the folder of the list. A folder may be a pattern (*, ?, [...]), which
+// stands for all matches in order of name. Throws InputError (file:line) for a
+// line without a valid folder or camera and for duplicate names.
+std::vector<BatchSequence> ReadSequenceList(const std::string& path);
 
 // A part of a batch: every count-th sequence, starting at index.
 struct BatchShard {
@@ -17,7 +29,9 @@ struct BatchShard {
   bool Has(int sequence) const { return sequence % count == index; }
 
   // "0-of-4", for file names.
-  std::string Name() const;
+  std::string Name() const {
+    return std::to_string(index) + "-of-" + std::to_string(count);
+  }
 };
 
 // A setting that may differ between the runs of a sequence. Each row defines a

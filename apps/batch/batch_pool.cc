@@ -5,12 +5,10 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstring>
-#include <optional>
 #include <thread>
 
 #include "core/util/input_error.h"
@@ -58,9 +56,7 @@ struct Process {
 // not contain the path, and the folder may be renamed.
 std::vector<std::string> CommandOf(const BatchRun& run,
                                    const BatchPoolOptions& options) {
-  std::vector<std::string> command = {options.program};
-  command.insert(command.end(), options.arguments.begin(),
-                 options.arguments.end());
+  std::vector<std::string> command = options.command;
   for (size_t k = 0; k < run.values.size(); ++k) {
     command.push_back(std::string("--") + BatchSettings()[k].flag + "=" +
                       run.values[k]);
@@ -88,11 +84,10 @@ RunEnd EndOf(const Process& process, int state) {
 // output in run.log there. The program is killed when this process ends in any
 // way, so call this from the main thread. Throws InputError if no process can
 // be created; a program that cannot be executed exits with 127.
-pid_t StartProcess(const std::vector<std::string>& command,
+pid_t StartProcess(std::vector<std::string> command,
                    const std::string& folder) {
-  std::vector<std::string> words = command;
   std::vector<char*> arguments;
-  for (std::string& word : words) arguments.push_back(word.data());
+  for (std::string& word : command) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const pid_t parent = getpid();
   const pid_t child = fork();
@@ -102,13 +97,6 @@ pid_t StartProcess(const std::vector<std::string>& command,
                      std::strerror(errno) + "); use fewer --jobs");
   }
   return child;
-}
-
-// Returns the waitpid state once the process has ended; empty before.
-std::optional<int> PollProcess(pid_t process) {
-  int state = 0;
-  if (waitpid(process, &state, WNOHANG) != process) return std::nullopt;
-  return state;
 }
 
 }  // namespace
@@ -129,13 +117,11 @@ void RunBatch(const std::vector<BatchRun>& runs, const BatchFolder& folder,
     }
     std::vector<Process> running;
     for (Process& process : processes) {
-      const std::optional<int> state = PollProcess(process.id);
-      if (state) {
-        const RunEnd end = EndOf(process, *state);
+      int state = 0;
+      if (waitpid(process.id, &state, WNOHANG) == process.id) {
+        const RunEnd end = EndOf(process, state);
         folder.Finish(*process.run, end);
-        if (options.on_end) {
-          options.on_end(*process.run, end, process.Seconds());
-        }
+        options.on_end(*process.run, end, process.Seconds());
         continue;
       }
       if (options.timeout_seconds > 0.0 && !process.timed_out &&

@@ -10,14 +10,15 @@
 namespace rgbd_pose {
 
 struct BatchPoolOptions {
-  std::string program;                      // path of rgbd_odometry
-  std::vector<std::string> arguments = {};  // of every run, before its own
-  int jobs = 1;                             // processes at a time
-  double timeout_seconds = 0.0;             // per run; 0: none
+  // The path of rgbd_odometry, and arguments of every run before its own.
+  std::vector<std::string> command;
 
-  // Called for each run after it has ended and is in its folder; may be empty.
+  int jobs = 1;                  // processes at a time
+  double timeout_seconds = 0.0;  // per run; 0: none
+
+  // Called for each run after it has ended and is in its folder.
   std::function<void(const BatchRun& run, const RunEnd& end, double seconds)>
-      on_end = {};
+      on_end;
 };
 
 // Executes all runs, each in its own process, started in the given order. A run

@@ -93,23 +93,19 @@ std::optional<RunEnd> BatchFolder::ReadEnd(const BatchRun& run) const {
   if (!Holds(run)) return std::nullopt;
   const std::string path = (fs::path(Complete(run)) / kMarker).string();
   const auto json = nlohmann::json::parse(ReadTextFile(path), nullptr, false);
-  if (!json.is_object() || !json.contains("exit_code") ||
-      !json.at("exit_code").is_number_integer()) {
-    return std::nullopt;
-  }
   try {
+    if (!json.at("exit_code").is_number_integer()) return std::nullopt;
     const RunEnd end = {json.at("status"), json.at("exit_code"),
                         json.at("hash")};
-    if (end.hash != run.hash || !IsStatus(end.status)) return std::nullopt;
-    return end;
+    if (end.hash == run.hash && IsStatus(end.status)) return end;
   } catch (const nlohmann::json::exception&) {
-    return std::nullopt;  // from another program
+    // from another program
   }
+  return std::nullopt;
 }
 
 bool BatchFolder::Holds(const BatchRun& run) const {
-  std::error_code error;
-  return fs::is_regular_file(fs::path(Complete(run)) / kMarker, error);
+  return IsFile(fs::path(Complete(run)) / kMarker);
 }
 
 std::string BatchFolder::FindRun(const std::string& sequence) const {

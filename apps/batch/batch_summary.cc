@@ -41,8 +41,7 @@ constexpr Figure kFigures[] = {
 json ReadMetrics(const std::string& folder) {
   const std::filesystem::path path =
       std::filesystem::path(folder) / "metrics.json";
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) return nullptr;
+  if (!IsFile(path)) return nullptr;
   return json::parse(ReadTextFile(path.string()), nullptr, false);
 }
 
@@ -61,8 +60,7 @@ ordered_json MakeRow(const BatchRun& run, const BatchFolder& folder) {
   }
   row["repeat"] = run.repeat;
   row["status"] = end ? end->status : "missing";
-  row["exit_code"] = nullptr;
-  if (end) row["exit_code"] = end->exit_code;
+  row["exit_code"] = end ? ordered_json(end->exit_code) : nullptr;
   const json metrics = end ? ReadMetrics(folder.Complete(run)) : json();
   for (const Figure& figure : kFigures) {
     row[figure.column] = FindFigure(metrics, figure.pointer);
@@ -90,9 +88,10 @@ bool IsVaried(const BatchSummary& summary, const char* column) {
   });
 }
 
+using Cells = std::vector<std::string>;
+
 // Formats rows under a header; right-aligns columns from `first_figure` on.
-std::string FormatColumns(const std::vector<std::vector<std::string>>& rows,
-                          size_t first_figure) {
+std::string FormatColumns(const std::vector<Cells>& rows, size_t first_figure) {
   std::vector<size_t> widths(rows[0].size());
   for (const auto& row : rows) {
     for (size_t i = 0; i < row.size(); ++i) {
@@ -110,48 +109,46 @@ std::string FormatColumns(const std::vector<std::vector<std::string>>& rows,
   return text;
 }
 
-std::string TableOfRuns(const BatchSummary& summary,
-                        std::vector<std::string> names) {
-  for (const char* name : {"repeat", "status"}) names.push_back(name);
-  std::vector<std::vector<std::string>> rows = {names};
-  for (const char* figure :
-       {"tracked %", "ATE mm", "RPE over 1 s mm", "deg", "ms/frame"}) {
-    rows[0].push_back(figure);
-  }
+Cells NamedCells(const ordered_json& row, const Cells& names) {
+  Cells cells;
+  for (const std::string& name : names) cells.push_back(FormatCell(row[name]));
+  return cells;
+}
+
+std::string TableOfRuns(const BatchSummary& summary, Cells names) {
+  names.emplace_back("repeat");
+  names.emplace_back("status");
+  std::vector<Cells> rows = {names};
+  rows[0].insert(rows[0].end(),
+                 {"tracked %", "ATE mm", "RPE over 1 s mm", "deg", "ms/frame"});
   for (const ordered_json& row : summary) {
-    std::vector<std::string> cells;
-    for (const std::string& name : names) {
-      cells.push_back(FormatCell(row[name]));
-    }
-    cells.push_back(FormatScaled(row["tracked_share"], 100.0, 1));
-    cells.push_back(FormatScaled(row["ate_rmse_m"], 1000.0, 2));
-    cells.push_back(FormatScaled(row["rpe_seconds_translation_m"], 1000.0, 2));
-    cells.push_back(FormatScaled(row["rpe_seconds_rotation_deg"], 1.0, 3));
-    cells.push_back(FormatScaled(row["track_ms_median"], 1.0, 2));
-    rows.push_back(std::move(cells));
+    rows.push_back(NamedCells(row, names));
+    rows.back().insert(
+        rows.back().end(),
+        {FormatScaled(row["tracked_share"], 100.0, 1),
+         FormatScaled(row["ate_rmse_m"], 1000.0, 2),
+         FormatScaled(row["rpe_seconds_translation_m"], 1000.0, 2),
+         FormatScaled(row["rpe_seconds_rotation_deg"], 1.0, 3),
+         FormatScaled(row["track_ms_median"], 1.0, 2)});
   }
   return FormatColumns(rows, names.size());
 }
 
 // One row for all parts of a sequence with otherwise equal settings, because
 // the result of a single part may be chance.
-std::string TableOfParts(const BatchSummary& summary,
-                         const std::vector<std::string>& names) {
-  std::vector<std::vector<std::string>> rows = {names};
-  for (const char* figure : {"runs", "tracked % min", "ATE mm", "min", "max",
-                             "RPE over 1 s mm", "min", "max"}) {
-    rows[0].push_back(figure);
-  }
-  std::vector<std::vector<std::string>> settings;  // in order of appearance
-  std::map<std::vector<std::string>, std::vector<const ordered_json*>> runs;
+std::string TableOfParts(const BatchSummary& summary, const Cells& names) {
+  std::vector<Cells> rows = {names};
+  rows[0].insert(rows[0].end(), {"runs", "tracked % min", "ATE mm", "min",
+                                 "max", "RPE over 1 s mm", "min", "max"});
+  std::vector<Cells> settings;  // in order of appearance
+  std::map<Cells, std::vector<const ordered_json*>> runs;
   for (const ordered_json& row : summary) {
-    std::vector<std::string> own;
-    for (const std::string& name : names) own.push_back(FormatCell(row[name]));
+    const Cells own = NamedCells(row, names);
     if (runs.count(own) == 0) settings.push_back(own);
     runs[own].push_back(&row);
   }
-  for (const std::vector<std::string>& own : settings) {
-    std::vector<std::string> cells = own;
+  for (const Cells& own : settings) {
+    Cells cells = own;
     cells.push_back(std::to_string(runs[own].size()));
     double least_tracked = 1.0;
     for (const ordered_json* row : runs[own]) {
@@ -217,7 +214,7 @@ std::string FormatBatchJson(const BatchSummary& summary) {
 }
 
 std::string FormatBatchTable(const BatchSummary& summary) {
-  std::string same;
+  std::vector<std::string> same;
   std::vector<std::string> names = {"sequence"};
   bool has_parts = false;
   for (const BatchSetting& setting : BatchSettings()) {
@@ -225,15 +222,14 @@ std::string FormatBatchTable(const BatchSummary& summary) {
       const std::string value =
           summary.empty() ? "" : FormatCell(summary[0][setting.column]);
       if (value.empty()) continue;
-      same +=
-          std::string(same.empty() ? "" : ", ") + setting.column + " " + value;
+      same.push_back(std::string(setting.column) + " " + value);
     } else if (setting.column == std::string(kPart)) {
       has_parts = true;
     } else {
       names.push_back(setting.column);
     }
   }
-  return (same.empty() ? "" : "the same in all runs: " + same + "\n") +
+  return (same.empty() ? "" : "the same in all runs: " + Join(same) + "\n") +
          (has_parts ? TableOfParts(summary, names)
                     : TableOfRuns(summary, std::move(names)));
 }

@@ -1,8 +1,7 @@
-#include "apps/compare/compare_paths.h"
-
 #include <cmath>
 #include <limits>
 
+#include "apps/compare/compare_sequence.h"
 #include "apps/figures/svg_chart.h"
 #include "core/evaluation/association.h"
 #include "core/util/format.h"
@@ -13,40 +12,39 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// The truth at the times of all frames, where it has a pose close in time.
+// The truth at the times of all frames, where it has a pose close in time:
+// nowhere if it is empty.
 ComparedPath TruthAt(const std::vector<TrackedFrame>& frames,
                      const Trajectory& truth) {
-  std::vector<double> times;
-  times.reserve(truth.size());
-  for (const StampedPose& pose : truth) times.push_back(pose.timestamp);
+  const std::vector<double> times = TimesOf(truth);
   ComparedPath path;
   path.name = kTruthName;
   for (const TrackedFrame& frame : frames) {
     ComparedPose pose;
     pose.timestamp = frame.timestamp;
+    path.poses.push_back(pose);
+    if (truth.empty()) continue;
     const size_t nearest = NearestTime(times, frame.timestamp);
     if (std::abs(times[nearest] - frame.timestamp) <=
         EvaluationOptions().max_time_difference) {
-      pose.world_from_cam = truth[nearest].world_from_cam;
+      path.poses.back().world_from_cam = truth[nearest].world_from_cam;
     }
-    path.poses.push_back(pose);
   }
   return path;
 }
 
 // The motion that aligns a run with the truth at their first common pose.
-Rigid3d WorldFromRun(const LossRun& run, const ComparedPath* truth) {
-  if (truth == nullptr) return {};
+Rigid3d WorldFromRun(const LossRun& run, const ComparedPath& truth) {
   for (size_t i = 0; i < run.frames.size(); ++i) {
     if (run.frames[i].status == TrackingStatus::kLost) continue;
-    if (!truth->poses[i].world_from_cam.has_value()) continue;
-    return *truth->poses[i].world_from_cam *
+    if (!truth.poses[i].world_from_cam.has_value()) continue;
+    return *truth.poses[i].world_from_cam *
            run.frames[i].world_from_cam.Inverse();
   }
   return {};
 }
 
-ComparedPath PathOf(const LossRun& run, const ComparedPath* truth) {
+ComparedPath PathOf(const LossRun& run, const ComparedPath& truth) {
   const Rigid3d world_from_run = WorldFromRun(run, truth);
   ComparedPath path;
   path.name = run.loss;
@@ -57,9 +55,9 @@ ComparedPath PathOf(const LossRun& run, const ComparedPath* truth) {
     pose.timestamp = frame.timestamp;
     if (frame.status != TrackingStatus::kLost) {
       pose.world_from_cam = world_from_run * frame.world_from_cam;
-      if (truth != nullptr && truth->poses[i].world_from_cam.has_value()) {
+      if (truth.poses[i].world_from_cam.has_value()) {
         const Rigid3d error =
-            truth->poses[i].world_from_cam->Inverse() * *pose.world_from_cam;
+            truth.poses[i].world_from_cam->Inverse() * *pose.world_from_cam;
         pose.distance = error.translation.norm();
         pose.angle = error.Angle();
       }
@@ -76,18 +74,16 @@ ComparedPath PathOf(const LossRun& run, const ComparedPath* truth) {
   return path;
 }
 
-void AddCell(const std::optional<double>& value, double factor,
-             std::string* row) {
-  *row += value.has_value() ? Format(",%.6f", *value * factor) : ",";
+std::string Cell(const std::optional<double>& value, double factor = 1.0) {
+  return value.has_value() ? Format(",%.6f", *value * factor) : ",";
 }
 
-void AddPose(const std::optional<Rigid3d>& pose, std::string* row) {
-  if (!pose.has_value()) {
-    *row += ",,,,,,,";
-    return;
-  }
-  for (const double value : pose->translation) AddCell(value, 1.0, row);
-  for (const double value : pose->rotation.coeffs()) AddCell(value, 1.0, row);
+std::string PoseCells(const std::optional<Rigid3d>& pose) {
+  if (!pose.has_value()) return ",,,,,,,";
+  std::string cells;
+  for (const double value : pose->translation) cells += Cell(value);
+  for (const double value : pose->rotation.coeffs()) cells += Cell(value);
+  return cells;
 }
 
 ChartSeries Series(const std::vector<ComparedPath>& paths, size_t k) {
@@ -125,8 +121,10 @@ ChartPanel TopView(const std::vector<ComparedPath>& paths, int row) {
 
 ChartPanel ErrorsOverTime(const std::vector<ComparedPath>& paths,
                           std::optional<double> ComparedPose::*error,
-                          double factor) {
+                          double factor, const char* title, const char* label) {
   ChartPanel panel;
+  panel.title = title;
+  panel.y_label = label;
   panel.x_label = "time since the first frame (s)";
   panel.log_y = true;
   for (size_t k = 1; k < paths.size(); ++k) {
@@ -154,35 +152,23 @@ bool HasErrors(const std::vector<ComparedPath>& paths) {
 
 std::vector<ComparedPath> ComparePaths(const std::vector<LossRun>& runs,
                                        const std::optional<Trajectory>& truth) {
+  const ComparedPath true_path =
+      TruthAt(runs.front().frames, truth.value_or(Trajectory()));
   std::vector<ComparedPath> paths;
-  std::optional<ComparedPath> true_path;
-  if (truth.has_value()) {
-    true_path = TruthAt(runs.front().frames, *truth);
-    paths.push_back(*true_path);
-  }
-  for (const LossRun& run : runs) {
-    paths.push_back(PathOf(run, true_path ? &*true_path : nullptr));
-  }
+  if (truth.has_value()) paths.push_back(true_path);
+  for (const LossRun& run : runs) paths.push_back(PathOf(run, true_path));
   return paths;
 }
-
-const char kComparedPathsCsvHeader[] =
-    "sequence,loss,timestamp,x,y,z,qx,qy,qz,qw,distance_m,angle_deg,"
-    "rpe_seconds_m,rpe_seconds_deg\n";
 
 std::string ComparedPathsCsvRows(const std::string& name,
                                  const std::vector<ComparedPath>& paths) {
   std::string text;
   for (const ComparedPath& path : paths) {
     for (const ComparedPose& pose : path.poses) {
-      std::string row = "\"" + name + "\"," + path.name;
-      AddCell(pose.timestamp, 1.0, &row);
-      AddPose(pose.world_from_cam, &row);
-      AddCell(pose.distance, 1.0, &row);
-      AddCell(pose.angle, kDegreesPerRadian, &row);
-      AddCell(pose.rpe_translation, 1.0, &row);
-      AddCell(pose.rpe_rotation, kDegreesPerRadian, &row);
-      text += row + "\n";
+      text += "\"" + name + "\"," + path.name + Cell(pose.timestamp) +
+              PoseCells(pose.world_from_cam) + Cell(pose.distance) +
+              Cell(pose.angle, kDegreesPerRadian) + Cell(pose.rpe_translation) +
+              Cell(pose.rpe_rotation, kDegreesPerRadian) + "\n";
     }
   }
   return text;
@@ -195,16 +181,12 @@ std::string PathFigure(const std::string& title,
   chart.panel_height_px = 300;
   chart.panels = {TopView(paths, 1), TopView(paths, 2)};
   if (HasErrors(paths)) {
-    ChartPanel distance =
-        ErrorsOverTime(paths, &ComparedPose::distance, kMillimetresPerMetre);
-    distance.title = "Distance from the ground truth";
-    distance.y_label = "distance (mm)";
-    ChartPanel angle =
-        ErrorsOverTime(paths, &ComparedPose::angle, kDegreesPerRadian);
-    angle.title = "Angle from the ground truth";
-    angle.y_label = "angle (deg)";
-    chart.panels.push_back(distance);
-    chart.panels.push_back(angle);
+    chart.panels.push_back(
+        ErrorsOverTime(paths, &ComparedPose::distance, kMillimetresPerMetre,
+                       "Distance from the ground truth", "distance (mm)"));
+    chart.panels.push_back(
+        ErrorsOverTime(paths, &ComparedPose::angle, kDegreesPerRadian,
+                       "Angle from the ground truth", "angle (deg)"));
   }
   return FormatSvg(chart);
 }

@@ -1,14 +1,7 @@
 #include "apps/compare/compare_sequence.h"
 
-#include <glog/logging.h>
-
-#include <Eigen/Geometry>
-#include <cmath>
 #include <optional>
 
-#include "apps/pipeline/sequence.h"
-#include "apps/shell/program.h"
-#include "apps/shell/progress_bar.h"
 #include "core/geometry/motion.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
@@ -71,36 +64,6 @@ std::string TableRow(const std::string& loss, const LossFigures& figures,
 
 }  // namespace
 
-std::vector<LossRun> CompareLosses(FrameSource* source,
-                                   const std::optional<Trajectory>& truth,
-                                   const std::vector<std::string>& losses,
-                                   OdometrySettings settings, int threads) {
-  if (truth.has_value()) RequireOverlap(*source, *truth);
-  std::vector<OdometryRun> runs;
-  for (const std::string& loss : losses) {
-    settings.estimator.loss = loss;
-    runs.emplace_back(settings, source->camera().camera);
-  }
-  std::vector<SequenceRun*> all;
-  for (OdometryRun& run : runs) all.push_back(&run);
-  {
-    ProgressBar bar("tracking", static_cast<int>(source->timestamps().size()));
-    const std::string stopped =
-        TrackAll(source, threads, all, [&bar](const Frame& frame) {
-          bar.Update(frame.index + 1);
-          return true;
-        });
-    Warn(DroppedFrames(*source, all[0]->damaged()));
-    if (!stopped.empty()) LOG(WARNING) << "stopped early: " << stopped;
-  }
-  std::vector<LossRun> results;
-  for (size_t i = 0; i < losses.size(); ++i) {
-    results.push_back(
-        {runs[i].Finish(truth.has_value() ? &*truth : nullptr), losses[i]});
-  }
-  return results;
-}
-
 std::string EndPoseTable(const std::vector<LossRun>& runs,
                          bool returns_to_start) {
   std::string text =
@@ -135,10 +98,6 @@ std::string TrackedLine(const std::vector<LossRun>& runs) {
   }
   return "Frames tracked (%): " + Join(shares) + ".\n";
 }
-
-const char kSequenceCsvHeader[] =
-    "sequence,loss,alpha_deg,beta_deg,gamma_deg,cx_mm,cy_mm,cz_mm,end_deg,"
-    "end_mm,ate_mm,rpe_seconds_mm,rpe_seconds_deg,tracked_share\n";
 
 std::string SequenceCsvRows(const std::string& name,
                             const std::vector<LossRun>& runs) {

@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "apps/pipeline/odometry_run.h"
+#include "core/evaluation/trajectory.h"
+#include "core/geometry/rigid3.h"
 
 namespace rgbd_pose {
 
@@ -12,14 +14,6 @@ namespace rgbd_pose {
 struct LossRun : RunResults {
   std::string loss;
 };
-
-// Tracks a sequence with several losses and otherwise equal settings. Every
-// frame is read once. Throws InputError for unknown names and for a ground
-// truth that does not overlap in time.
-std::vector<LossRun> CompareLosses(FrameSource* source,
-                                   const std::optional<Trajectory>& truth,
-                                   const std::vector<std::string>& losses,
-                                   OdometrySettings settings, int threads);
 
 // The last pose of each run relative to its first pose, in the thesis'
 // parameters and as an angle and a distance, as in its Tables 4.4-4.6. With
@@ -37,6 +31,47 @@ std::string TrackedLine(const std::vector<LossRun>& runs);
 // with `name` (of the sequence); unknown figures are empty cells.
 std::string SequenceCsvRows(const std::string& name,
                             const std::vector<LossRun>& runs);
-extern const char kSequenceCsvHeader[];
+inline constexpr char kSequenceCsvHeader[] =
+    "sequence,loss,alpha_deg,beta_deg,gamma_deg,cx_mm,cy_mm,cz_mm,end_deg,"
+    "end_mm,ate_mm,rpe_seconds_mm,rpe_seconds_deg,tracked_share\n";
+
+// A frame of a path; unknown values are empty.
+struct ComparedPose {
+  double timestamp = 0.0;  // s
+  std::optional<Rigid3d> world_from_cam;
+  // Relative to the truth at the same time.
+  std::optional<double> distance;  // m
+  std::optional<double> angle;     // rad
+  // Error of the motion over the second that starts at this frame.
+  std::optional<double> rpe_translation;  // m
+  std::optional<double> rpe_rotation;     // rad
+};
+
+struct ComparedPath {
+  std::string name;  // a loss or kTruthName
+  std::vector<ComparedPose> poses;
+};
+
+constexpr char kTruthName[] = "truth";
+
+// Returns the paths of all runs in one world, with one pose for each frame of
+// the sequence. With a ground truth, this is the world of the truth, and each
+// path is aligned to it at its first paired pose; the first returned path is
+// the truth. Without a ground truth, it is the world of the first camera.
+std::vector<ComparedPath> ComparePaths(const std::vector<LossRun>& runs,
+                                       const std::optional<Trajectory>& truth);
+
+// paths.csv: one row per frame of each path. Each row starts with `name` (of
+// the sequence). Lengths are in metres, angles in degrees.
+std::string ComparedPathsCsvRows(const std::string& name,
+                                 const std::vector<ComparedPath>& paths);
+inline constexpr char kComparedPathsCsvHeader[] =
+    "sequence,loss,timestamp,x,y,z,qx,qy,qz,qw,distance_m,angle_deg,"
+    "rpe_seconds_m,rpe_seconds_deg\n";
+
+// SVG with top views X-Y and X-Z of the paths, as in the thesis' Figures 4.8
+// and 4.9, and, with a truth, the errors over time.
+std::string PathFigure(const std::string& title,
+                       const std::vector<ComparedPath>& paths);
 
 }  // namespace rgbd_pose

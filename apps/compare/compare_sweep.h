@@ -3,8 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "apps/pipeline/settings.h"
-
 namespace rgbd_pose {
 
 // The median of a sample with its confidence interval.
@@ -25,22 +23,17 @@ int MedianBandRank(int count);
 // All NaN if there are no values.
 MedianBand FindMedianBand(std::vector<double> values);
 
-// "median [low, high]", three digits each.
-std::string FormatBand(const MedianBand& band);
-
-struct SweepOptions {
-  std::vector<std::string> losses;
-  EstimatorSettings estimator;  // without loss and schedule
-  int seeds = 200;              // random motions with matches, per share
-  int matches = 300;            // number of inliers and outliers together
-  int threads = 1;              // does not affect the result
-};
-
 // A method to estimate a motion from matches.
 struct SweepMethod {
   std::string loss;
   std::string schedule;  // gnc or direct
   bool ransac = false;   // starts from RANSAC, else from no motion
+
+  // Whether both are the same method.
+  bool operator==(const SweepMethod& other) const {
+    return loss == other.loss && schedule == other.schedule &&
+           ransac == other.ransac;
+  }
 };
 
 // All methods with these losses, ordered by loss, schedule and start.
@@ -58,16 +51,30 @@ struct SweepCell {
 constexpr int kSweepShares = 7;
 inline double SweepShare(int i) { return i * 0.1; }
 
-// Estimates the motions of simulated matches, some of them wrong, with every
-// loss, schedule and start. All methods use the same matches. Ordered by loss,
-// schedule, start, share. Throws InputError for unknown names.
-std::vector<SweepCell> RunSweep(const SweepOptions& options);
-
 // The cells of one method, ordered by share; empty if the method was not run.
 std::vector<SweepCell> CellsOf(const std::vector<SweepCell>& cells,
                                const SweepMethod& method);
 
 // The losses of a sweep in order.
 std::vector<std::string> LossesOf(const std::vector<SweepCell>& cells);
+
+// sweep.csv: a header and one row per cell.
+std::string SweepCsv(const std::vector<SweepCell>& cells);
+
+// Reads sweep.csv. Throws InputError if it is missing, broken or incomplete.
+std::vector<SweepCell> ReadSweepCsv(const std::string& path);
+
+// Median translation errors (mm) with their 95 % bands for the graduated losses
+// that start from no motion: one row per loss, one column per share.
+std::string SweepTable(const std::vector<SweepCell>& cells);
+
+// SVG of the median errors, in rotation or in translation, over the share of
+// wrong matches with 95 % bands. It shows all losses, started from no motion,
+// in two panels: the graduated and the direct schedule.
+std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation);
+
+// Describes the result of a sweep with its figures: the best M-estimator, its
+// margin and spread, and the effect of a start from RANSAC.
+std::string SweepVerdict(const std::vector<SweepCell>& cells);
 
 }  // namespace rgbd_pose

@@ -1,9 +1,8 @@
-#include "apps/compare/compare_sweep_report.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
+#include "apps/compare/compare_sweep.h"
 #include "apps/figures/svg_chart.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/format.h"
@@ -27,6 +26,11 @@ constexpr struct {
     {"translation_low_mm", &SweepCell::translation_mm, &MedianBand::low},
     {"translation_high_mm", &SweepCell::translation_mm, &MedianBand::high},
     {"translation_p90_mm", &SweepCell::translation_mm, &MedianBand::p90}};
+
+// "median [low, high]", three digits each.
+std::string FormatBand(const MedianBand& band) {
+  return Format("%.3g [%.3g, %.3g]", band.median, band.low, band.high);
+}
 
 bool Meet(const MedianBand& a, const MedianBand& b) {
   return a.low <= b.high && b.low <= a.high;

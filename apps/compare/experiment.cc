@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "robust/m_estimator.h"
 
@@ -14,37 +15,55 @@ namespace {
 
 constexpr char kReport[] = "report.md";
 
-// All experiments except those on a folder.
-const std::vector<Experiment>& Experiments() {
-  static const std::vector<Experiment> rows = {
-      {"pan_tilt", SequenceLosses, RunSimulated},
-      {"xyz", SequenceLosses, RunSimulated},
-      {"sweep", MEstimatorNames, RunSweepOfMatches},
-  };
-  return rows;
+// All experiments except that on a folder, RunRecorded.
+constexpr Named<decltype(&RunSimulated)> kExperiments[] = {
+    {"pan_tilt", RunSimulated},
+    {"xyz", RunSimulated},
+    {"sweep", RunSweepOfMatches},
+};
+
+}  // namespace
+
+void PrepareOutput(const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) {
+    throw InputError("--output=" + folder + ": cannot be made (" +
+                     error.message() + ")");
+  }
+  RequireWritable(std::filesystem::path(folder) / kReport);
 }
 
-// The experiment on a folder.
-constexpr Experiment kRecorded = {"", SequenceLosses, RunRecorded};
+void WriteOutput(const std::string& folder, const std::string& file,
+                 const std::string& content) {
+  const std::filesystem::path path(folder);
+  std::error_code ignored;
+  std::filesystem::remove(path / kReport, ignored);
+  WriteFileAtomically(path / file, content);
+}
 
-Experiment FindExperiment(const std::string& name) {
-  std::string names;
-  for (const Experiment& experiment : Experiments()) {
-    if (experiment.name == name) return experiment;
-    if (!names.empty()) {
-      names += &experiment == &Experiments().back() ? " or " : ", ";
-    }
-    names += experiment.name;
+ExperimentResult RunExperiment(const ExperimentSettings& settings,
+                               const std::string& output) {
+  const std::string& name = settings.experiment;
+  if (const auto* found = FindNamed(kExperiments, name)) {
+    return found->value(settings, output);
   }
   std::error_code error;
-  if (std::filesystem::is_directory(name, error)) return kRecorded;
-  throw InputError("--experiment=" + name + " is neither " + names +
-                   " nor a folder");
+  if (std::filesystem::is_directory(name, error)) {
+    return RunRecorded(settings, output);
+  }
+  std::vector<std::string> names = NamesOf(kExperiments);
+  const std::string last = names.back();
+  names.pop_back();
+  throw InputError("--experiment=" + name + " is neither " + Join(names) +
+                   " or " + last + " nor a folder");
 }
 
-std::vector<std::string> ParseLosses(const std::string& text) {
+std::vector<std::string> ChosenLosses(const ExperimentSettings& settings,
+                                      const std::vector<std::string>& own) {
+  if (settings.losses.empty()) return own;
   std::vector<std::string> losses;
-  std::istringstream words(text);
+  std::istringstream words(settings.losses);
   for (std::string loss; std::getline(words >> std::ws, loss, ',');) {
     loss.erase(loss.find_last_not_of(' ') + 1);
     try {
@@ -59,38 +78,6 @@ std::vector<std::string> ParseLosses(const std::string& text) {
   }
   if (losses.empty()) throw InputError("--losses contains no names");
   return losses;
-}
-
-}  // namespace
-
-void CompareOutput::Prepare() const {
-  std::error_code error;
-  std::filesystem::create_directories(folder_, error);
-  if (error) {
-    throw InputError("--output=" + folder_.string() + ": cannot be created (" +
-                     error.message() + ")");
-  }
-  RequireWritable(folder_ / kReport);
-}
-
-void CompareOutput::Write(const std::string& file,
-                          const std::string& content) const {
-  std::error_code ignored;
-  std::filesystem::remove(folder_ / kReport, ignored);
-  WriteFileAtomically(folder_ / file, content);
-}
-
-void CompareOutput::WriteReport(const std::string& content) const {
-  Write(kReport, content);
-}
-
-ExperimentResult RunExperiment(const ExperimentSettings& settings,
-                               CompareOutput* output) {
-  const Experiment experiment = FindExperiment(settings.experiment);
-  return experiment.run(settings,
-                        settings.losses.empty() ? experiment.losses()
-                                                : ParseLosses(settings.losses),
-                        output);
 }
 
 }  // namespace rgbd_pose

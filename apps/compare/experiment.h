@@ -1,8 +1,6 @@
 #pragma once
 
-#include <filesystem>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "apps/pipeline/settings.h"
@@ -16,22 +14,14 @@ inline OdometrySettings ByFeatures() {
   return settings;
 }
 
-// The output folder of a comparison.
-class CompareOutput {
- public:
-  explicit CompareOutput(const std::string& folder) : folder_(folder) {}
+// Creates the output folder of a comparison early, before the work starts.
+// Throws InputError.
+void PrepareOutput(const std::string& folder);
 
-  // Creates the folder early, before the work starts. Throws InputError.
-  void Prepare() const;
-
-  // The report is written last, and an earlier report is removed first. If it
-  // is there, all files are from the same comparison.
-  void Write(const std::string& file, const std::string& content) const;
-  void WriteReport(const std::string& content) const;
-
- private:
-  std::filesystem::path folder_;
-};
+// Writes a file into it. An earlier report is removed first: if report.md,
+// which is written last, is there, all files are from the same comparison.
+void WriteOutput(const std::string& folder, const std::string& file,
+                 const std::string& content);
 
 // The settings of an experiment.
 struct ExperimentSettings {
@@ -49,33 +39,25 @@ struct ExperimentResult {
   bool is_usable = true;
 };
 
-// A way to compare M-estimators: one file and one row of experiment.cc.
-struct Experiment {
-  std::string_view name;                 // value of --experiment
-  std::vector<std::string> (*losses)();  // default losses
-
-  // Writes all files except the report. For invalid settings, throws InputError
-  // before writing anything.
-  ExperimentResult (*run)(const ExperimentSettings& settings,
-                          const std::vector<std::string>& losses,
-                          CompareOutput* output);
-};
-
 // Runs the experiment of that name, or, if it is a folder, the experiment on a
-// recorded sequence. Throws InputError for other names and unknown losses.
+// recorded sequence. `output` is the output folder. Throws InputError for other
+// names and unknown losses.
 ExperimentResult RunExperiment(const ExperimentSettings& settings,
-                               CompareOutput* output);
+                               const std::string& output);
 
-// The functions of the rows, in files of their names.
-std::vector<std::string> SequenceLosses();
+// The losses to compare: those of the settings, or else the experiment's own.
+// Throws InputError for unknown names and for names that come twice.
+std::vector<std::string> ChosenLosses(const ExperimentSettings& settings,
+                                      const std::vector<std::string>& own);
+
+// The ways to compare M-estimators: one file and one row of experiment.cc each.
+// They write all files except the report. For invalid settings, they throw
+// InputError before writing anything.
 ExperimentResult RunSimulated(const ExperimentSettings& settings,
-                              const std::vector<std::string>& losses,
-                              CompareOutput* output);
+                              const std::string& output);
 ExperimentResult RunRecorded(const ExperimentSettings& settings,
-                             const std::vector<std::string>& losses,
-                             CompareOutput* output);
+                             const std::string& output);
 ExperimentResult RunSweepOfMatches(const ExperimentSettings& settings,
-                                   const std::vector<std::string>& losses,
-                                   CompareOutput* output);
+                                   const std::string& output);
 
 }  // namespace rgbd_pose

@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "apps/compare/compare_paths.h"
 #include "apps/compare/compare_sequence.h"
 #include "apps/compare/experiment.h"
 #include "apps/pipeline/sequence.h"
 #include "apps/shell/program.h"
+#include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
@@ -37,10 +37,10 @@ class SequenceExperiment {
  public:
   SequenceExperiment(const std::string& name,
                      const ExperimentSettings& settings,
-                     const std::vector<std::string>& losses,
-                     const CompareOutput& output)
+                     const std::string& output)
       : settings_(settings),
-        losses_(losses),
+        losses_(ChosenLosses(settings, {"none", "huber", "cauchy",
+                                        "geman_mcclure", "welsch", "tukey"})),
         output_(output),
         report_("# M-estimators on " + name + "\n\nTracker " +
                 settings.odometry.tracker + ", cost " +
@@ -50,9 +50,8 @@ class SequenceExperiment {
   void Add(const std::string& title, const std::string& figure,
            FrameSource* source, const std::optional<Trajectory>& truth,
            bool returns_to_start) {
-    output_.Prepare();
-    const std::vector<LossRun> runs = CompareLosses(
-        source, truth, losses_, settings_.odometry, AvailableCores());
+    PrepareOutput(output_);
+    const std::vector<LossRun> runs = Track(source, truth);
     report_ += "## " + title + "\n\n";
     if (returns_to_start) {
       report_ +=
@@ -75,22 +74,55 @@ class SequenceExperiment {
     tables_ += SequenceCsvRows(title, runs);
     const std::vector<ComparedPath> paths = ComparePaths(runs, truth);
     paths_ += ComparedPathsCsvRows(title, paths);
-    output_.Write(figure, PathFigure(title, paths));
+    WriteOutput(output_, figure, PathFigure(title, paths));
     for (const LossRun& run : runs) {
       any_tracked_ |= run.TrackedShare() >= kMinTrackedShare;
     }
   }
 
   ExperimentResult Finish() const {
-    output_.Write("tables.csv", tables_);
-    output_.Write("paths.csv", paths_);
+    WriteOutput(output_, "tables.csv", tables_);
+    WriteOutput(output_, "paths.csv", paths_);
     return {report_, any_tracked_};
   }
 
  private:
+  // Tracks a sequence with all losses and otherwise equal settings. Every frame
+  // is read once. Throws InputError for unknown names and for a ground truth
+  // that does not overlap in time.
+  std::vector<LossRun> Track(FrameSource* source,
+                             const std::optional<Trajectory>& truth) const {
+    if (truth.has_value()) RequireOverlap(*source, *truth);
+    OdometrySettings settings = settings_.odometry;
+    std::vector<OdometryRun> runs;
+    for (const std::string& loss : losses_) {
+      settings.estimator.loss = loss;
+      runs.emplace_back(settings, source->camera().camera);
+    }
+    std::vector<SequenceRun*> all;
+    for (OdometryRun& run : runs) all.push_back(&run);
+    {
+      ProgressBar bar("tracking",
+                      static_cast<int>(source->timestamps().size()));
+      const std::string stopped =
+          TrackAll(source, AvailableCores(), all, [&bar](const Frame& frame) {
+            bar.Update(frame.index + 1);
+            return true;
+          });
+      Warn(DroppedFrames(*source, all[0]->damaged()));
+      if (!stopped.empty()) Warn({"ended early: " + stopped});
+    }
+    std::vector<LossRun> results;
+    for (size_t i = 0; i < losses_.size(); ++i) {
+      results.push_back(
+          {runs[i].Finish(truth.has_value() ? &*truth : nullptr), losses_[i]});
+    }
+    return results;
+  }
+
   const ExperimentSettings& settings_;
-  const std::vector<std::string>& losses_;
-  const CompareOutput& output_;
+  const std::vector<std::string> losses_;
+  const std::string& output_;
   std::string report_;
   std::string tables_ = kSequenceCsvHeader;
   std::string paths_ = kComparedPathsCsvHeader;
@@ -99,21 +131,16 @@ class SequenceExperiment {
 
 }  // namespace
 
-std::vector<std::string> SequenceLosses() {
-  return {"none", "huber", "cauchy", "geman_mcclure", "welsch", "tukey"};
-}
-
 ExperimentResult RunSimulated(const ExperimentSettings& settings,
-                              const std::vector<std::string>& losses,
-                              CompareOutput* output) {
+                              const std::string& output) {
   const std::string& name = settings.experiment;
+  SequenceExperiment experiment(name, settings, output);
   SyntheticOptions options;
   options.path = name;
   options.frames = settings.frames;
   options.camera =
       ResolveCamera(settings.camera.empty() ? "ros_default" : settings.camera);
   SyntheticDataset dataset(options);
-  SequenceExperiment experiment(name, settings, losses, *output);
   experiment.Add(
       "simulated " + name + ", " + std::to_string(settings.frames) + " frames",
       "paths.svg", &dataset, dataset.ground_truth(), name == kReturnsToStart);
@@ -122,16 +149,15 @@ ExperimentResult RunSimulated(const ExperimentSettings& settings,
 
 // Runs once for each possible depth scale of the sequence.
 ExperimentResult RunRecorded(const ExperimentSettings& settings,
-                             const std::vector<std::string>& losses,
-                             CompareOutput* output) {
+                             const std::string& output) {
+  const std::string name = FolderName(settings.experiment);
+  SequenceExperiment experiment(name, settings, output);
   RequireFlag("camera", settings.camera);
   SequenceSettings files;
   files.dataset = settings.experiment;
   files.camera = settings.camera;
   std::vector<double> scales = {ResolveCamera(files.camera).depth_scale};
   if (files.camera == "tum_fr2") scales.push_back(kOtherFr2DepthScale);
-  const std::string name = FolderName(settings.experiment);
-  SequenceExperiment experiment(name, settings, losses, *output);
   for (const double scale : scales) {
     files.depth_scale = scale;
     Sequence sequence = OpenSequence(files);

@@ -1,38 +1,123 @@
 // Compares losses, schedules and starts on wrong matches.
 
+#include <cmath>
+#include <optional>
+
 #include "apps/compare/compare_sweep.h"
-#include "apps/compare/compare_sweep_report.h"
 #include "apps/compare/experiment.h"
 #include "apps/shell/program.h"
+#include "core/initial_guess/consensus.h"
 #include "core/util/input_error.h"
+#include "core/util/parallel_for.h"
+#include "frontend/simulation/synthetic_matches.h"
+#include "robust/m_estimator.h"
 
 namespace rgbd_pose {
 namespace {
 
 constexpr int kMaxSeeds = 100000;
+constexpr int kMatches = 300;  // number of inliers and outliers together
+
+// Typical motion between a reference and a frame tenths of a second later.
+constexpr double kMaxAngle = 0.1;        // rad
+constexpr double kMaxTranslation = 0.1;  // m, along each axis
+constexpr unsigned kFirstSeed = 7000;    // different from the benchmarks' seeds
+
+struct MotionError {
+  double rotation_deg = 0.0;
+  double translation_mm = 0.0;
+};
+
+MotionError ErrorOf(const Rigid3d& estimate, const Rigid3d& truth) {
+  const Rigid3d difference = estimate.Inverse() * truth;
+  return {difference.Angle() * 180.0 / M_PI,
+          difference.translation.norm() * 1e3};
+}
+
+Estimator MakeEstimator(EstimatorSettings settings, const SweepMethod& method) {
+  settings.loss = method.loss;
+  settings.options.schedule =
+      method.schedule == "gnc" ? RobustSchedule::kGnc : RobustSchedule::kDirect;
+  return MakeEstimator(settings);
+}
+
+// The errors of all methods on the matches of one seed.
+std::vector<MotionError> RunSeed(int seed, double outlier_share,
+                                 const std::vector<SweepMethod>& methods,
+                                 std::vector<Estimator>* estimators) {
+  RandomWorld world(kFirstSeed + seed);
+  const Rigid3d truth = world.Motion(kMaxAngle, kMaxTranslation);
+  const Correspondences found = world.Matches(kMatches, outlier_share, truth);
+  const std::optional<Consensus> consensus = FindByRansac(found);
+  const Rigid3d ransac =
+      consensus.has_value() ? consensus->cur_from_prev : Rigid3d();
+  std::vector<MotionError> errors;
+  for (size_t i = 0; i < methods.size(); ++i) {
+    const Rigid3d guess = methods[i].ransac ? ransac : Rigid3d();
+    errors.push_back(
+        ErrorOf((*estimators)[i].Estimate(found, guess).cur_from_prev, truth));
+  }
+  return errors;
+}
+
+// Estimates the motions of simulated matches, some of them wrong, with every
+// loss, schedule and start. All methods use the same matches. Ordered by loss,
+// schedule, start, share. The result does not depend on the number of threads.
+std::vector<SweepCell> RunSweep(const EstimatorSettings& settings,
+                                const std::vector<std::string>& losses,
+                                int seeds) {
+  const std::vector<SweepMethod> methods = SweepMethods(losses);
+  const int threads = AvailableCores();
+  // Each thread needs its own estimators.
+  std::vector<std::vector<Estimator>> estimators(threads);
+  for (std::vector<Estimator>& own : estimators) {
+    for (const SweepMethod& method : methods) {
+      own.push_back(MakeEstimator(settings, method));
+    }
+  }
+  std::vector<SweepCell> cells(methods.size() * kSweepShares);
+  for (int share = 0; share < kSweepShares; ++share) {
+    std::vector<std::vector<MotionError>> errors(seeds);
+    ParallelFor(threads, threads, [&](int thread) {
+      for (int seed = thread; seed < seeds; seed += threads) {
+        errors[seed] =
+            RunSeed(seed, SweepShare(share), methods, &estimators[thread]);
+      }
+    });
+    for (size_t i = 0; i < methods.size(); ++i) {
+      std::vector<double> rotations, translations;
+      for (const std::vector<MotionError>& of_seed : errors) {
+        rotations.push_back(of_seed[i].rotation_deg);
+        translations.push_back(of_seed[i].translation_mm);
+      }
+      cells[i * kSweepShares + share] = {methods[i], SweepShare(share),
+                                         FindMedianBand(rotations),
+                                         FindMedianBand(translations)};
+    }
+  }
+  return cells;
+}
 
 }  // namespace
 
 ExperimentResult RunSweepOfMatches(const ExperimentSettings& settings,
-                                   const std::vector<std::string>& losses,
-                                   CompareOutput* output) {
-  SweepOptions options;
-  options.losses = losses;
-  options.estimator = settings.odometry.estimator;
-  options.seeds = settings.seeds;
-  options.threads = AvailableCores();
-  if (options.seeds < 1 || options.seeds > kMaxSeeds) {
+                                   const std::string& output) {
+  const std::vector<std::string> losses =
+      ChosenLosses(settings, MEstimatorNames());
+  if (settings.seeds < 1 || settings.seeds > kMaxSeeds) {
     throw InputError("--seeds must be 1 to " + std::to_string(kMaxSeeds));
   }
-  output->Prepare();
-  const std::vector<SweepCell> cells = RunSweep(options);
-  output->Write("sweep.csv", SweepCsv(cells));
-  output->Write("translation.svg", SweepFigure(cells, /*rotation=*/false));
-  output->Write("rotation.svg", SweepFigure(cells, /*rotation=*/true));
+  PrepareOutput(output);
+  const std::vector<SweepCell> cells =
+      RunSweep(settings.odometry.estimator, losses, settings.seeds);
+  WriteOutput(output, "sweep.csv", SweepCsv(cells));
+  WriteOutput(output, "translation.svg",
+              SweepFigure(cells, /*rotation=*/false));
+  WriteOutput(output, "rotation.svg", SweepFigure(cells, /*rotation=*/true));
   return {"# M-estimators on wrong matches\n\n" + SweepVerdict(cells) +
           "\n\nMedian translation errors (mm) and their 95 % bands over " +
-          std::to_string(options.seeds) + " trials of " +
-          std::to_string(options.matches) +
+          std::to_string(settings.seeds) + " trials of " +
+          std::to_string(kMatches) +
           " matches with Kinect noise;\ngraduated losses that start from "
           "identity:\n\n" +
           SweepTable(cells) +

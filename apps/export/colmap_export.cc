@@ -31,15 +31,18 @@ std::string FormatCamera(const Camera& camera) {
 }
 
 // cam_from_world with w first. The second line of an image (features) is empty.
-std::string FormatImages(const ExportedViews& images) {
+std::string FormatImages(const FinishedRun& run,
+                         const std::vector<int>& views) {
   std::string text = "# image, qw qx qy qz tx ty tz, camera, name; features\n";
-  for (size_t i = 0; i < images.names.size(); ++i) {
-    const Rigid3d cam_from_world = images.world_from_cam[i].Inverse();
+  int number = 0;
+  for (const int view : views) {
+    const Rigid3d cam_from_world =
+        run.trajectory[view].world_from_cam.Inverse();
     const Eigen::Quaterniond& q = cam_from_world.rotation;
     const Eigen::Vector3d& t = cam_from_world.translation;
-    text += Format("%zu %.12g %.12g %.12g %.12g %.12g %.12g %.12g 1 %s\n\n",
-                   i + 1, q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(),
-                   images.names[i].c_str());
+    text += Format("%d %.12g %.12g %.12g %.12g %.12g %.12g %.12g 1 %s\n\n",
+                   ++number, q.w(), q.x(), q.y(), q.z(), t.x(), t.y(), t.z(),
+                   ImageName(run, view).c_str());
   }
   return text;
 }
@@ -47,9 +50,9 @@ std::string FormatImages(const ExportedViews& images) {
 // Points from depth, not from features: unknown errors, no tracks.
 std::string FormatPoints(const std::vector<ColoredPoint>& points) {
   std::string text = "# point, x y z, red green blue, error, track\n";
-  for (size_t i = 0; i < points.size(); ++i) {
-    const ColoredPoint& p = points[i];
-    text += Format("%zu %.6g %.6g %.6g %d %d %d 0\n", i + 1, p.position.x(),
+  int number = 0;
+  for (const ColoredPoint& p : points) {
+    text += Format("%d %.6g %.6g %.6g %d %d %d 0\n", ++number, p.position.x(),
                    p.position.y(), p.position.z(), p.red, p.green, p.blue);
   }
   return text;
@@ -59,9 +62,9 @@ std::string FormatPoints(const std::vector<ColoredPoint>& points) {
 std::string PackPoints(const std::vector<ColoredPoint>& points) {
   std::string bytes;
   AppendLittleEndian(uint64_t{points.size()}, &bytes);
-  for (size_t i = 0; i < points.size(); ++i) {
-    const ColoredPoint& p = points[i];
-    AppendLittleEndian(uint64_t{i + 1}, &bytes);
+  uint64_t number = 0;
+  for (const ColoredPoint& p : points) {
+    AppendLittleEndian(++number, &bytes);
     for (const float x : p.position) AppendLittleEndian(double{x}, &bytes);
     for (const uint8_t c : {p.red, p.green, p.blue}) {
       bytes.push_back(static_cast<char>(c));
@@ -80,11 +83,11 @@ std::string ExportColmap(const FinishedRun& run, const ExportOptions& options) {
       WriteViewImages(run, options, folder.MakeFolder("images"));
   const std::filesystem::path model = folder.MakeFolder("sparse/0");
   WriteFileAtomically(model / "cameras.txt", FormatCamera(images.camera));
-  WriteFileAtomically(model / "images.txt", FormatImages(images));
+  WriteFileAtomically(model / "images.txt", FormatImages(run, images.views));
   WriteFileAtomically(model / "points3D.txt", FormatPoints(images.cloud));
   WriteFileAtomically(model / "points3D.bin", PackPoints(images.cloud));
   folder.Publish();
-  return Format("%zu images, %zu points in %s\n", images.names.size(),
+  return Format("%zu images, %zu points in %s\n", images.views.size(),
                 images.cloud.size(), options.output.c_str());
 }
 

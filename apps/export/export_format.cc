@@ -6,6 +6,7 @@
 #include "core/util/named_values.h"
 #include "core/util/units.h"
 #include "frontend/files/image_file.h"
+#include "frontend/frame/undistorter.h"
 #include "frontend/fusion/cloud_fusion.h"
 
 namespace rgbd_pose {
@@ -40,34 +41,38 @@ const ExportFormat& FindExportFormat(const std::string& name) {
   return RowOf(kFormats, "format", name);
 }
 
+ExportedViews ReadImages(const FinishedRun& run, const ExportOptions& options,
+                         const OnView& on_image) {
+  const std::unique_ptr<FrameSource> source = OpenRecording(run);
+  const Camera& camera = source->camera().camera;
+  const Undistorter undistorter(camera);
+  CloudFusion cloud(FusionOf<FusionOptions>(camera, run, options));
+  const std::vector<int> views = ReadViews(
+      run, options.step, options.threads, source.get(),
+      [&](const Frame& frame, int view) {
+        cloud.Add(frame, run.trajectory[view].world_from_cam);
+        on_image(options.undistort ? undistorter.Undistort(frame) : frame,
+                 view);
+      });
+  return {options.undistort ? undistorter.camera() : camera, views,
+          cloud.cloud().Thin(options.max_points)};
+}
+
+std::string ImageName(const FinishedRun& run, int view) {
+  return Format("%06d.png", run.frames[view]);
+}
+
 ExportedViews WriteViewImages(const FinishedRun& run,
                               const ExportOptions& options,
                               const std::filesystem::path& color_folder,
                               const std::filesystem::path& depth_folder) {
-  ExportedViews images;
-  RunRecording recording(run);
-  const Camera& camera = recording.camera().camera;
-  const Undistorter undistorter(camera);
-  images.camera = options.undistort ? undistorter.camera() : camera;
-  CloudFusion cloud(FusionOf<FusionOptions>(camera, run, options));
-  const std::vector<int> views = run.PickViews(options.step);
-  recording.ReadViews(
-      views, options.threads,
-      [&](const Frame& frame, const Rigid3d& world_from_cam) {
-        const int number = run.frames()[views[images.names.size()]];
-        const std::string name = Format("%06d.png", number);
-        cloud.Add(frame, world_from_cam);
-        const Frame shown =
-            options.undistort ? undistorter.Undistort(frame) : frame;
-        WritePngFile(color_folder / name, shown.color, kQuick);
-        if (!depth_folder.empty()) {
-          WritePngFile(depth_folder / name, InMillimetres(shown));
-        }
-        images.names.push_back(name);
-        images.world_from_cam.push_back(world_from_cam);
-      });
-  images.cloud = cloud.cloud().Thin(options.max_points);
-  return images;
+  return ReadImages(run, options, [&](const Frame& frame, int view) {
+    const std::string name = ImageName(run, view);
+    WritePngFile(color_folder / name, frame.color, kQuick);
+    if (!depth_folder.empty()) {
+      WritePngFile(depth_folder / name, InMillimetres(frame));
+    }
+  });
 }
 
 }  // namespace rgbd_pose

@@ -7,7 +7,6 @@
 #include "apps/export/finished_run.h"
 #include "apps/results/run_output.h"
 #include "core/util/input_error.h"
-#include "frontend/frame/undistorter.h"
 #include "frontend/fusion/fusion_options.h"
 
 namespace rgbd_pose {
@@ -70,17 +69,23 @@ std::vector<std::string> ExportFormatNames();
 // Returns the format of that name. Throws InputError with the list of names.
 const ExportFormat& FindExportFormat(const std::string& name);
 
-// The images of some views as separate files, for tools that require a folder
-// of images, and the points seen in them.
+// The views of a run that take part in an export with images, and the points
+// seen in them.
 struct ExportedViews {
-  Camera camera;  // of the exported images
-  std::vector<std::string> names;
-  std::vector<Rigid3d> world_from_cam;
+  Camera camera;           // of the exported images
+  std::vector<int> views;  // indices in the run's trajectory
   std::vector<ColoredPoint> cloud;
 };
 
-// Writes the images, named by their frame numbers. With a folder for them,
-// depth images are written in whole millimetres, 0 where depth is missing.
+// Calls `on_image` for each view, in order, with the image to export.
+ExportedViews ReadImages(const FinishedRun& run, const ExportOptions& options,
+                         const OnView& on_image);
+
+// The file name of the image of a view, by its frame number.
+std::string ImageName(const FinishedRun& run, int view);
+
+// Writes the images as files of these names. With a folder for them, depth
+// images are written in whole millimetres, 0 where depth is missing.
 ExportedViews WriteViewImages(const FinishedRun& run,
                               const ExportOptions& options,
                               const std::filesystem::path& color_folder,
@@ -92,10 +97,9 @@ Fusion FusionOf(const Camera& camera, const FinishedRun& run,
                 const ExportOptions& options, Fusion fusion = {}) {
   fusion.camera = camera;
   fusion.voxel_size = options.voxel;
-  fusion.depth = run.depth();
+  fusion.depth = run.depth;
   if (options.max_depth > 0.0) fusion.depth.max_depth = options.max_depth;
-  const std::string problem = fusion.Check();
-  if (!problem.empty()) throw InputError("--voxel or --max_depth: " + problem);
+  RequireSound(fusion.Check(), "--voxel or --max_depth: ");
   return fusion;
 }
 

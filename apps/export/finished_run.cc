@@ -1,6 +1,5 @@
 #include "apps/export/finished_run.h"
 
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <set>
@@ -75,9 +74,9 @@ class PickedFrames final : public FrameSource {
 
 }  // namespace
 
-FinishedRun::FinishedRun(const std::string& folder, const std::string& dataset,
-                         const std::string& camera)
-    : folder_(folder) {
+FinishedRun::FinishedRun(const std::string& run_folder,
+                         const std::string& dataset, const std::string& camera)
+    : folder(run_folder) {
   const fs::path path(folder);
   if (!fs::is_directory(path)) {
     throw InputError("--run: " + folder + ": no such folder");
@@ -89,12 +88,12 @@ FinishedRun::FinishedRun(const std::string& folder, const std::string& dataset,
     }
   }
   const nlohmann::json flags = ReadReportSettings(path / "config.flags");
-  Apply(flags, SettingTable(&sequence_));
+  Apply(flags, SettingTable(&sequence));
   OdometrySettings odometry;
   Apply(flags, SettingTable(&odometry));
-  depth_ = odometry.features.DepthLookup();
-  if (!dataset.empty()) sequence_.dataset = dataset;
-  if (!camera.empty()) sequence_.camera = camera;
+  depth = odometry.features.DepthLookup();
+  if (!dataset.empty()) sequence.dataset = dataset;
+  if (!camera.empty()) sequence.camera = camera;
 
   const CsvTable table = CsvTable::Read(path / "frames.csv");
   const std::vector<std::string> status = table.Words("status");
@@ -102,37 +101,24 @@ FinishedRun::FinishedRun(const std::string& folder, const std::string& dataset,
   const bool is_one = IsOneSegment(path / "keyframes.csv");
   for (size_t i = 0; i < status.size(); ++i) {
     if (status[i] == "lost") continue;
-    frames_.push_back(static_cast<int>(i));
-    segments_.push_back(is_one ? 0 : static_cast<int>(segment[i]));
+    frames.push_back(static_cast<int>(i));
+    segments.push_back(is_one ? 0 : static_cast<int>(segment[i]));
   }
-  lost_ = static_cast<int>(status.size() - frames_.size());
-  if (frames_.empty()) {
+  lost = static_cast<int>(status.size() - frames.size());
+  if (frames.empty()) {
     throw InputError("--run: " + folder + ": no frame of the run has a pose");
   }
-  trajectory_ = ReadTrajectory(path / "trajectory.txt");
-  if (trajectory_.size() != frames_.size()) {
+  trajectory = ReadTrajectory(path / "trajectory.txt");
+  if (trajectory.size() != frames.size()) {
     throw InputError("--run: " + folder + ": trajectory.txt has " +
-                     std::to_string(trajectory_.size()) + " poses, but " +
-                     std::to_string(frames_.size()) +
+                     std::to_string(trajectory.size()) + " poses, but " +
+                     std::to_string(frames.size()) +
                      " tracked frames in frames.csv; repeat the run");
   }
 }
 
-std::vector<int> FinishedRun::PickViews(const MotionFilter& step) const {
-  std::vector<int> views;
-  for (size_t i = 0; i < trajectory_.size(); ++i) {
-    if (segments_[i] != segments_[0]) continue;
-    if (views.empty() ||
-        step.IsReached(trajectory_[views.back()].world_from_cam.Inverse() *
-                       trajectory_[i].world_from_cam)) {
-      views.push_back(static_cast<int>(i));
-    }
-  }
-  return views;
-}
-
-RunRecording::RunRecording(const FinishedRun& run) : run_(run) {
-  SequenceSettings settings = run.sequence();
+std::unique_ptr<FrameSource> OpenRecording(const FinishedRun& run) {
+  SequenceSettings settings = run.sequence;
   if (!fs::exists(settings.dataset)) {
     throw InputError("the recording of the run, " + settings.dataset +
                      ", does not exist; give its location with --dataset");
@@ -140,22 +126,33 @@ RunRecording::RunRecording(const FinishedRun& run) : run_(run) {
   // Only the frames are needed.
   settings.motion_guess.clear();
   settings.groundtruth = "none";
-  sequence_ = OpenSequence(settings, /*keep_color=*/true);
+  return OpenSequence(settings, /*keep_color=*/true).source;
 }
 
-void RunRecording::ReadViews(const std::vector<int>& views, int threads,
-                             const OnView& on_view) {
-  const Trajectory& poses = run_.trajectory();
+std::vector<int> ReadViews(const FinishedRun& run, const MotionFilter& step,
+                           int threads, FrameSource* source,
+                           const OnView& on_view) {
+  const Trajectory& poses = run.trajectory;
+  std::vector<int> views;
   std::vector<double> times;
-  for (const int view : views) times.push_back(poses[view].timestamp);
-  PickedFrames picked(sequence_.source.get(), times);
+  for (size_t i = 0; i < poses.size(); ++i) {
+    if (run.segments[i] != run.segments[0]) continue;
+    if (views.empty() ||
+        step.IsReached(poses[views.back()].world_from_cam.Inverse() *
+                       poses[i].world_from_cam)) {
+      views.push_back(static_cast<int>(i));
+      times.push_back(poses[i].timestamp);
+    }
+  }
+  PickedFrames picked(source, times);
   ProgressBar bar("reading", static_cast<int>(views.size()));
   FrameStream stream(&picked, nullptr, threads);
-  for (size_t i = 0; i < views.size(); ++i) {
-    const std::optional<StreamedFrame> next = stream.Next();
-    on_view(next->frame, poses[views[i]].world_from_cam);
-    bar.Update(static_cast<int>(i) + 1);
+  int done = 0;
+  for (const int view : views) {
+    on_view(stream.Next()->frame, view);
+    bar.Update(++done);
   }
+  return views;
 }
 
 }  // namespace rgbd_pose

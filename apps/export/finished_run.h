@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,67 +14,41 @@
 namespace rgbd_pose {
 
 // A finished run of rgbd_odometry or rgbd_slam, read from its folder.
-class FinishedRun {
- public:
+struct FinishedRun {
   // Reads the poses and settings. `dataset` and `camera`, unless empty,
   // override those of the run, because the recording may have moved. Throws
   // InputError for a folder without a run or with broken files.
-  explicit FinishedRun(const std::string& folder,
+  explicit FinishedRun(const std::string& run_folder,
                        const std::string& dataset = "",
                        const std::string& camera = "");
 
-  const std::string& folder() const { return folder_; }
+  std::string folder;         // of its results
+  SequenceSettings sequence;  // with which the recording was opened
+  DepthLookupOptions depth;   // of the run
 
-  // The poses of all frames that have one, and the numbers of these frames:
-  // rows of frames.csv, from 0.
-  const Trajectory& trajectory() const { return trajectory_; }
-  const std::vector<int>& frames() const { return frames_; }
+  // The poses of all frames that have one. Of each pose: the number of its
+  // frame (row of frames.csv, from 0) and its segment. Segments have unrelated
+  // worlds.
+  Trajectory trajectory;
+  std::vector<int> frames;
+  std::vector<int> segments;
 
-  // The segment of each of these poses. Segments have unrelated worlds.
-  const std::vector<int>& segments() const { return segments_; }
-
-  // The number of frames without a pose.
-  int lost() const { return lost_; }
-
-  // Returns poses of the first segment, each at least `step` away from the one
-  // before, as indices in trajectory().
-  std::vector<int> PickViews(const MotionFilter& step) const;
-
-  // The depth options of the run.
-  const DepthLookupOptions& depth() const { return depth_; }
-
-  // The settings that the recording was opened with.
-  const SequenceSettings& sequence() const { return sequence_; }
-
- private:
-  std::string folder_;
-  SequenceSettings sequence_;
-  DepthLookupOptions depth_;
-  Trajectory trajectory_;
-  std::vector<int> frames_;
-  std::vector<int> segments_;
-  int lost_ = 0;
+  int lost = 0;  // number of frames without a pose
 };
 
-// The recording of a run, for reading its frames again.
-class RunRecording {
- public:
-  // Opens the recording. Throws InputError if it is missing or broken. The run
-  // must outlive this object.
-  explicit RunRecording(const FinishedRun& run);
+// Opens the recording of a run to read its frames again, with colour. Throws
+// InputError if it is missing or broken.
+std::unique_ptr<FrameSource> OpenRecording(const FinishedRun& run);
 
-  const RgbdCamera& camera() const { return sequence_.source->camera(); }
+// Called for a frame of a run; `view` is the index of its pose.
+using OnView = std::function<void(const Frame& frame, int view)>;
 
-  // Reads the frames of some poses (increasing indices in trajectory()) with
-  // colour, in advance by `threads` threads. Call it once. Throws InputError if
-  // a frame is missing or unreadable.
-  using OnView = std::function<void(const Frame&, const Rigid3d&)>;
-  void ReadViews(const std::vector<int>& views, int threads,
-                 const OnView& on_view);
-
- private:
-  const FinishedRun& run_;
-  Sequence sequence_;
-};
+// Reads frames of the first segment, each at least `step` away from the one
+// before, in advance by `threads` threads. Call it once for an opened
+// recording. Returns the indices of their poses in the trajectory. Throws
+// InputError if a frame is missing or unreadable.
+std::vector<int> ReadViews(const FinishedRun& run, const MotionFilter& step,
+                           int threads, FrameSource* source,
+                           const OnView& on_view);
 
 }  // namespace rgbd_pose

@@ -18,14 +18,6 @@
 namespace rgbd_pose {
 namespace {
 
-MeshFusionOptions MeshOptions(const Camera& camera, const FinishedRun& run,
-                              const ExportOptions& options) {
-  MeshFusionOptions fusion;
-  fusion.threads = options.threads;
-  if (options.max_depth > 0.0) fusion.max_depth = options.max_depth;
-  return FusionOf(camera, run, options, fusion);
-}
-
 // Adds the mesh to the page of the run, if there is one. The export does not
 // fail if the run's folder is read-only.
 void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
@@ -37,7 +29,7 @@ void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
        most = most * 3 / 4) {
     thin = SimplifyMesh(mesh, static_cast<float>(options.voxel), most);
   }
-  nlohmann::json preview = MeshPreview(thin, Rigid3d());
+  nlohmann::json preview = MeshPreview(thin);
   preview["file"] = options.output;
   preview["all_triangles"] = mesh.triangles.size();
   preview["frames"] = frames;
@@ -58,14 +50,14 @@ void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
 }  // namespace
 
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
-  RunRecording recording(run);
+  const std::unique_ptr<FrameSource> source = OpenRecording(run);
   CloudFusion cloud(
-      FusionOf<FusionOptions>(recording.camera().camera, run, options));
+      FusionOf<FusionOptions>(source->camera().camera, run, options));
   RequireWritable(options.output);
-  recording.ReadViews(run.PickViews(options.step), options.threads,
-                      [&](const Frame& frame, const Rigid3d& world_from_cam) {
-                        cloud.Add(frame, world_from_cam);
-                      });
+  ReadViews(run, options.step, options.threads, source.get(),
+            [&](const Frame& frame, int view) {
+              cloud.Add(frame, run.trajectory[view].world_from_cam);
+            });
   WritePly(options.output, cloud.cloud().Points());
   return Format("%d points of %d frames in %s\n", cloud.cloud().size(),
                 cloud.frames(), options.output.c_str());
@@ -73,16 +65,19 @@ std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
 
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
   RequireMeshFile(options.output);
-  RunRecording recording(run);
-  MeshFusion fusion(MeshOptions(recording.camera().camera, run, options));
-  const std::vector<int> views = run.PickViews(options.step);
-  recording.ReadViews(views, options.threads,
-                      [&](const Frame& frame, const Rigid3d& world_from_cam) {
-                        fusion.Add(frame, world_from_cam);
-                      });
+  const std::unique_ptr<FrameSource> source = OpenRecording(run);
+  MeshFusionOptions settings;
+  settings.threads = options.threads;
+  if (options.max_depth > 0.0) settings.max_depth = options.max_depth;
+  MeshFusion fusion(FusionOf(source->camera().camera, run, options, settings));
+  const std::vector<int> views =
+      ReadViews(run, options.step, options.threads, source.get(),
+                [&](const Frame& frame, int view) {
+                  fusion.Add(frame, run.trajectory[view].world_from_cam);
+                });
   const TriangleMesh mesh = fusion.Mesh();
   WriteMesh(options.output, mesh);
-  ShowMesh(run.folder(), mesh, views.size(), options);
+  ShowMesh(run.folder, mesh, views.size(), options);
   return Format("mesh        %zu triangles of %zu frames in %s\n",
                 mesh.triangles.size(), views.size(), options.output.c_str());
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <set>
 #include <utility>
@@ -14,7 +15,6 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/fusion/cloud_fusion.h"
 #include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
@@ -106,7 +106,7 @@ std::string Jpeg(const cv::Mat& image) {
 // The poses of the path that are keyframes of the run's map, if it has one.
 Trajectory KeyframesOf(const FinishedRun& run, const Trajectory& path) {
   const std::filesystem::path file =
-      std::filesystem::path(run.folder()) / "keyframes.csv";
+      std::filesystem::path(run.folder) / "keyframes.csv";
   if (!std::filesystem::exists(file)) return {};
   const std::vector<double> column = CsvTable::Read(file).Numbers("timestamp");
   const std::set<double> times(column.begin(), column.end());
@@ -120,37 +120,24 @@ Trajectory KeyframesOf(const FinishedRun& run, const Trajectory& path) {
 }  // namespace
 
 std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
-  const std::vector<int>& segments = run.segments();
   Trajectory path;
-  for (size_t i = 0; i < segments.size(); ++i) {
-    if (segments[i] == segments[0]) path.push_back(run.trajectory()[i]);
+  for (size_t i = 0; i < run.segments.size(); ++i) {
+    if (run.segments[i] == run.segments[0]) path.push_back(run.trajectory[i]);
   }
   if (path[0].timestamp < 0.0 ||
       path.back().timestamp > std::numeric_limits<uint32_t>::max()) {
-    throw InputError("--run: " + run.folder() +
+    throw InputError("--run: " + run.folder +
                      ": Foxglove has times from 1970 to 2106; export the poses "
                      "with --to=tum");
   }
   RequireWritable(options.output);
-  RunRecording recording(run);
-  const Camera& camera = recording.camera().camera;
-  const Undistorter undistorter(camera);
-  const Camera& shown = options.undistort ? undistorter.camera() : camera;
-  CloudFusion cloud(FusionOf<FusionOptions>(camera, run, options));
-  const std::vector<int> views = run.PickViews(options.step);
   // Images are kept in memory because messages are written in order of time,
   // and the cloud, which needs all frames, comes first.
-  std::vector<std::string> images;
-  recording.ReadViews(
-      views, options.threads,
-      [&](const Frame& frame, const Rigid3d& world_from_cam) {
-        cloud.Add(frame, world_from_cam);
-        images.push_back(Jpeg(options.undistort
-                                  ? undistorter.Undistort(frame).color
-                                  : frame.color));
+  std::map<double, std::string> images;  // by time
+  const ExportedViews views =
+      ReadImages(run, options, [&](const Frame& frame, int view) {
+        images[run.trajectory[view].timestamp] = Jpeg(frame.color);
       });
-  const std::vector<ColoredPoint> points =
-      cloud.cloud().Thin(options.max_points);
 
   McapWriter file;
   // Time stamps of trajectories have 6 decimals.
@@ -170,31 +157,28 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
   if (!keyframes.empty()) {
     write("/keyframes", "PosesInFrame", start, PosesInFrame(keyframes));
   }
-  write("/cloud", "PointCloud", start, PointCloud(points));
-  size_t next = 0;
+  write("/cloud", "PointCloud", start, PointCloud(views.cloud));
   for (const auto& [time, world_from_cam] : path) {
     write("/tf", "FrameTransform", time,
           FrameTransform(kWorld, kCamera, world_from_cam));
-    if (next == views.size() ||
-        run.trajectory()[views[next]].timestamp != time) {
-      continue;
-    }
+    const auto image = images.find(time);
+    if (image == images.end()) continue;
     write("/camera/calibration", "CameraCalibration", time,
-          CameraCalibration(shown));
+          CameraCalibration(views.camera));
     write("/camera/image", "CompressedImage", time,
           {{"frame_id", kCamera},
            {"format", "jpeg"},
-           {"data", Base64(std::exchange(images[next++], {}))}});
+           {"data", Base64(std::exchange(image->second, {}))}});
   }
   WriteFileAtomically(options.output, file.Finish());
   std::string text =
       Format("%zu poses, %zu images, %zu points in %s\n", path.size(),
-             images.size(), points.size(), options.output.c_str());
-  if (path.size() < segments.size()) {
+             images.size(), views.cloud.size(), options.output.c_str());
+  if (path.size() < run.segments.size()) {
     text += Format(
         "%zu poses of other segments are left out: their position relative to "
         "the first segment is unknown\n",
-        segments.size() - path.size());
+        run.segments.size() - path.size());
   }
   return text;
 }

@@ -20,14 +20,14 @@ nlohmann::json TransformMatrix(const Rigid3d& world_from_cam) {
   matrix.topRightCorner<3, 1>() = world_from_cam.translation;
   matrix.col(1) *= -1.0;
   matrix.col(2) *= -1.0;
-  nlohmann::json rows = nlohmann::json::array();
-  for (int i = 0; i < 4; ++i) {
-    rows.push_back({matrix(i, 0), matrix(i, 1), matrix(i, 2), matrix(i, 3)});
+  nlohmann::json rows;
+  for (const auto& row : matrix.rowwise()) {
+    rows.push_back(std::vector<double>(row.begin(), row.end()));
   }
   return rows;
 }
 
-nlohmann::json Transforms(const ExportedViews& images) {
+nlohmann::json Transforms(const FinishedRun& run, const ExportedViews& images) {
   const Camera& camera = images.camera;
   const bool is_fisheye = camera.lens_model == LensModel::kEquidistant;
   if (camera.MakeLens().factor == Lens<double>::Factor::kRational) {
@@ -53,11 +53,13 @@ nlohmann::json Transforms(const ExportedViews& images) {
       {"applied_transform", {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}}},
       {"ply_file_path", "points.ply"},
       {"frames", nlohmann::json::array()}};
-  for (size_t i = 0; i < images.names.size(); ++i) {
+  for (const int view : images.views) {
+    const std::string name = ImageName(run, view);
     json["frames"].push_back(
-        {{"file_path", "images/" + images.names[i]},
-         {"depth_file_path", "depth/" + images.names[i]},
-         {"transform_matrix", TransformMatrix(images.world_from_cam[i])}});
+        {{"file_path", "images/" + name},
+         {"depth_file_path", "depth/" + name},
+         {"transform_matrix",
+          TransformMatrix(run.trajectory[view].world_from_cam)}});
   }
   return json;
 }
@@ -73,9 +75,9 @@ std::string ExportNerfstudio(const FinishedRun& run,
       run, options, folder.MakeFolder("images"), folder.MakeFolder("depth"));
   WritePly(folder.staging_dir() / "points.ply", images.cloud);
   WriteFileAtomically(folder.staging_dir() / "transforms.json",
-                      Transforms(images).dump(1) + "\n");
+                      Transforms(run, images).dump(1) + "\n");
   folder.Publish();
-  return Format("%zu images, %zu points in %s\n", images.names.size(),
+  return Format("%zu images, %zu points in %s\n", images.views.size(),
                 images.cloud.size(), options.output.c_str());
 }
 

@@ -1,14 +1,13 @@
 // Exports poses: TUM, KITTI, g2o.
 
 #include <filesystem>
-#include <map>
+#include <set>
 
 #include "apps/export/export_format.h"
 #include "apps/export/output_folder.h"
 #include "apps/results/frame_tables.h"
 #include "apps/results/slam_output.h"
 #include "core/util/format.h"
-#include "core/util/input_error.h"
 #include "core/util/text_file.h"
 
 namespace rgbd_pose {
@@ -27,17 +26,16 @@ int Count(std::string_view word, std::string_view text) {
 // The motions measured by rgbd_odometry, as a graph of all frames with a pose.
 KeyframeMap GraphOfFrames(const FinishedRun& run) {
   KeyframeMap graph;
-  std::map<int, bool> has_pose;
-  for (size_t i = 0; i < run.frames().size(); ++i) {
+  const std::set<int> posed(run.frames.begin(), run.frames.end());
+  for (size_t i = 0; i < run.frames.size(); ++i) {
     Keyframe keyframe;
-    keyframe.id = run.frames()[i];
-    keyframe.segment = run.segments()[i];
-    keyframe.world_from_cam = run.trajectory()[i].world_from_cam;
+    keyframe.id = run.frames[i];
+    keyframe.segment = run.segments[i];
+    keyframe.world_from_cam = run.trajectory[i].world_from_cam;
     graph.keyframes.push_back(keyframe);
-    has_pose[keyframe.id] = true;
   }
-  for (const RelativePose& edge : ReadEdges(run.folder())) {
-    if (has_pose.count(edge.ref) != 0 && has_pose.count(edge.cur) != 0) {
+  for (const RelativePose& edge : ReadEdges(run.folder)) {
+    if (posed.count(edge.ref) != 0 && posed.count(edge.cur) != 0) {
       graph.edges.push_back(edge);
     }
   }
@@ -47,8 +45,8 @@ KeyframeMap GraphOfFrames(const FinishedRun& run) {
 }  // namespace
 
 std::string ExportTum(const FinishedRun& run, const ExportOptions& options) {
-  WriteFileAtomically(options.output, FormatTrajectory(run.trajectory()));
-  return Said("poses", run.trajectory().size(), options.output);
+  WriteFileAtomically(options.output, FormatTrajectory(run.trajectory));
+  return Said("poses", run.trajectory.size(), options.output);
 }
 
 // One line per pose, the upper three rows of world_from_cam. In the KITTI
@@ -57,21 +55,21 @@ std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
   OutputFolder folder(options.output, {"poses.txt", "times.txt"},
                       options.overwrite);
   std::string poses, times;
-  for (const StampedPose& pose : run.trajectory()) {
+  for (const StampedPose& pose : run.trajectory) {
     const Eigen::Matrix3d R = pose.world_from_cam.rotation.toRotationMatrix();
     for (int i = 0; i < 3; ++i) {
       poses += Format("%s%.9g %.9g %.9g %.9g", i > 0 ? " " : "", R(i, 0),
                       R(i, 1), R(i, 2), pose.world_from_cam.translation[i]);
     }
     poses += "\n";
-    times += Format("%.6f\n", pose.timestamp - run.trajectory()[0].timestamp);
+    times += Format("%.6f\n", pose.timestamp - run.trajectory[0].timestamp);
   }
   WriteFileAtomically(folder.staging_dir() / "poses.txt", poses);
   WriteFileAtomically(folder.staging_dir() / "times.txt", times);
   folder.Publish();
-  std::string text = Said("poses", run.trajectory().size(), options.output);
-  if (run.lost() > 0) {
-    text += std::to_string(run.lost()) +
+  std::string text = Said("poses", run.trajectory.size(), options.output);
+  if (run.lost > 0) {
+    text += std::to_string(run.lost) +
             " frames have no pose and therefore no line: line numbers are not "
             "frame numbers; see times.txt\n";
   }
@@ -80,7 +78,7 @@ std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
 
 std::string ExportG2o(const FinishedRun& run, const ExportOptions& options) {
   const std::filesystem::path solved =
-      std::filesystem::path(run.folder()) / "graph.g2o";
+      std::filesystem::path(run.folder) / "graph.g2o";
   const std::string text = std::filesystem::exists(solved)
                                ? ReadTextFile(solved.string())
                                : FormatG2o(GraphOfFrames(run));

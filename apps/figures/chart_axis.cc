@@ -1,20 +1,21 @@
 #include "apps/figures/chart_axis.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace rgbd_pose {
 
-void AxisRangeFinder::Add(double value) {
-  if (!std::isfinite(value)) return;
-  low_ = std::min(low_, value);
-  high_ = std::max(high_, value);
-}
-
-AxisRange AxisRangeFinder::Found() const {
-  if (!(low_ <= high_)) return {};
-  if (low_ == high_) return {low_ - 0.5, high_ + 0.5};
-  const double room = 0.04 * (high_ - low_);
-  return {low_ - room, high_ + room};
+AxisRange RangeOf(const std::vector<double>& values) {
+  double low = INFINITY, high = -INFINITY;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    low = std::min(low, value);
+    high = std::max(high, value);
+  }
+  if (low > high) return {};
+  if (low == high) return {low - 0.5, high + 0.5};
+  const double room = 0.04 * (high - low);
+  return {low - room, high + room};
 }
 
 std::vector<AxisTick> LinearTicks(const AxisRange& range) {

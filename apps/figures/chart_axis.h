@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cmath>
 #include <vector>
 
 namespace rgbd_pose {
@@ -14,16 +13,8 @@ struct AxisRange {
   double Share(double value) const { return (value - low) / span(); }
 };
 
-// Finds the range of some values with a margin. Non-finite values are ignored.
-class AxisRangeFinder {
- public:
-  void Add(double value);
-  AxisRange Found() const;
-
- private:
-  double low_ = INFINITY;
-  double high_ = -INFINITY;
-};
+// The range of some values with a margin. Non-finite values are ignored.
+AxisRange RangeOf(const std::vector<double>& values);
 
 // A tick. On a logarithmic axis, `place` is the decimal logarithm of `value`.
 struct AxisTick {

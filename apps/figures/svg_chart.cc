@@ -65,20 +65,20 @@ struct Ranges {
 };
 
 Ranges RangesOf(const std::vector<ChartPanel>& panels) {
-  AxisRangeFinder x, y;
+  std::vector<double> x, y;
   for (const ChartPanel& panel : panels) {
     for (const ChartSeries& series : panel.series) {
       for (const ChartPoint& point : series.points) {
         if (!std::isfinite(AxisY(panel, point.y))) continue;
-        x.Add(point.x);
-        y.Add(AxisY(panel, point.y));
+        x.push_back(point.x);
+        y.push_back(AxisY(panel, point.y));
         if (point.high <= point.low) continue;
-        y.Add(AxisY(panel, point.low));
-        y.Add(AxisY(panel, point.high));
+        y.push_back(AxisY(panel, point.low));
+        y.push_back(AxisY(panel, point.high));
       }
     }
   }
-  return {x.Found(), y.Found()};
+  return {RangeOf(x), RangeOf(y)};
 }
 
 class Drawing {
@@ -89,9 +89,8 @@ class Drawing {
     cell_height_ = kTop + chart.panel_height_px + kBottom;
     width_ = kColumns * cell_width_;
     per_row_ = std::max(1, (width_ - kLeft) / kLegendColumn);
-    const int labels = chart.panels.empty() || chart.label_lines
-                           ? 0
-                           : static_cast<int>(chart.panels[0].series.size());
+    const int labels =
+        chart.label_lines ? 0 : static_cast<int>(chart.panels[0].series.size());
     top_ = kTitle + kLegendRow * ((labels + per_row_ - 1) / per_row_);
   }
 
@@ -134,7 +133,6 @@ class Drawing {
   }
 
   void DrawLegend() {
-    if (chart_.panels.empty()) return;
     int i = 0;
     for (const ChartSeries& series : chart_.panels[0].series) {
       const int x = kLeft + i % per_row_ * kLegendColumn;

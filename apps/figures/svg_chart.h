@@ -47,7 +47,7 @@ struct ChartPanel {
 // labels at the ends of the lines.
 struct Chart {
   std::string title;
-  std::vector<ChartPanel> panels;
+  std::vector<ChartPanel> panels;  // at least one
   int panel_width_px = 360;
   int panel_height_px = 360;
   bool same_ranges = false;  // of all panels except maps

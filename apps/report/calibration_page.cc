@@ -1,11 +1,10 @@
-#include "apps/report/calibration_page.h"
-
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/figures/svg_chart.h"
+#include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"
 #include "core/util/format.h"
 
@@ -153,31 +152,28 @@ std::string NoiseInWords(const CalibrationResult& result) {
 
 std::string PathPicture(const Trajectory& path) {
   if (path.size() < 2) return "";
-  Eigen::Vector2d low(1e9, 1e9), high(-1e9, -1e9);
   const auto from_above = [](const StampedPose& pose) {
     const Eigen::Vector3d& p = pose.world_from_cam.translation;
     return Eigen::Vector2d(p.x(), -p.z());
   };
-  for (const StampedPose& pose : path) {
-    low = low.cwiseMin(from_above(pose));
-    high = high.cwiseMax(from_above(pose));
-  }
+  Eigen::AlignedBox2d box;
+  for (const StampedPose& pose : path) box.extend(from_above(pose));
   constexpr double kBorder = 10.0;
-  const double size = std::max((high - low).maxCoeff(), 1e-3);
+  const double size = std::max(box.sizes().maxCoeff(), 1e-3);
   const double scale = (kPictureWidth - 2.0 * kBorder) / size;
   std::string text = Format(
       "<h2>Path from above</h2><figure><svg width=\"%.0f"
       "\" height=\"%.0f\"><polyline fill=\"none\" "
       "stroke=\"#1f77b4\" points=\"",
-      kPictureWidth, (high.y() - low.y()) * scale + 2.0 * kBorder);
+      kPictureWidth, box.sizes().y() * scale + 2.0 * kBorder);
   for (const StampedPose& pose : path) {
-    const Eigen::Vector2d at = (from_above(pose) - low) * scale;
+    const Eigen::Vector2d at = (from_above(pose) - box.min()) * scale;
     text += Format("%.1f,%.1f ", at.x() + kBorder, at.y() + kBorder);
   }
   return text + Format(
                     "\"/></svg><figcaption>%.2f m wide, as tracked with the "
                     "first camera</figcaption></figure>\n",
-                    high.x() - low.x());
+                    box.sizes().x());
 }
 
 }  // namespace

@@ -5,8 +5,8 @@
 #include <map>
 #include <vector>
 
-#include "apps/compare/compare_paths.h"
-#include "apps/compare/compare_sweep_report.h"
+#include "apps/compare/compare_sequence.h"
+#include "apps/compare/compare_sweep.h"
 #include "apps/report/report_data.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/input_error.h"
@@ -16,75 +16,63 @@ namespace {
 
 using nlohmann::json;
 
-// The rows of a table for one path: [begin, end).
+// The rows of paths.csv for one path, as numeric columns.
 struct PathRows {
   std::string sequence;
   std::string loss;
-  size_t begin = 0;
-  size_t end = 0;
+  std::map<std::string, std::vector<double>> columns;
+
+  size_t size() const { return columns.at("timestamp").size(); }
 };
 
-std::vector<PathRows> FindPaths(const CsvTable& table) {
+std::vector<PathRows> ReadPaths(const std::string& file) {
+  const CsvTable table = CsvTable::Read(file);
+  std::map<std::string, std::vector<double>> columns;
+  for (const char* name :
+       {"timestamp", "x", "y", "z", "qx", "qy", "qz", "qw", "distance_m",
+        "angle_deg", "rpe_seconds_m", "rpe_seconds_deg"}) {
+    columns[name] = table.Numbers(name);
+  }
   const std::vector<std::string> sequences = table.Words("sequence");
   const std::vector<std::string> losses = table.Words("loss");
   std::vector<PathRows> paths;
   for (size_t i = 0; i < table.size(); ++i) {
     if (paths.empty() || paths.back().sequence != sequences[i] ||
         paths.back().loss != losses[i]) {
-      paths.push_back({sequences[i], losses[i], i, i});
+      paths.push_back({sequences[i], losses[i], {}});
     }
-    paths.back().end = i + 1;
+    for (const auto& [name, numbers] : columns) {
+      paths.back().columns[name].push_back(numbers[i]);
+    }
   }
   return paths;
 }
 
-// paths.csv as numeric columns.
-class PathTable {
- public:
-  explicit PathTable(const CsvTable& table) {
-    for (const char* name :
-         {"timestamp", "x", "y", "z", "qx", "qy", "qz", "qw", "distance_m",
-          "angle_deg", "rpe_seconds_m", "rpe_seconds_deg"}) {
-      columns_[name] = table.Numbers(name);
-    }
+// The downward axis of the first known camera pose of a path, in world
+// coordinates: cameras are assumed to be upright.
+json Down(const PathRows& path) {
+  for (size_t i = 0; i < path.size(); ++i) {
+    const Eigen::Quaterniond rotation(
+        path.columns.at("qw")[i], path.columns.at("qx")[i],
+        path.columns.at("qy")[i], path.columns.at("qz")[i]);
+    if (!rotation.coeffs().allFinite()) continue;
+    const Eigen::Vector3d down = rotation * Eigen::Vector3d::UnitY();
+    return {down.x(), down.y(), down.z()};
   }
+  return {0.0, 1.0, 0.0};
+}
 
-  std::vector<double> Rows(const std::string& name,
-                           const PathRows& rows) const {
-    const std::vector<double>& all = columns_.at(name);
-    return {all.begin() + rows.begin, all.begin() + rows.end};
-  }
-
-  // The downward axis of the first known camera pose of a path, in world
-  // coordinates: cameras are assumed to be upright.
-  json Down(const PathRows& rows) const {
-    for (size_t i = rows.begin; i < rows.end; ++i) {
-      const Eigen::Quaterniond rotation(
-          columns_.at("qw")[i], columns_.at("qx")[i], columns_.at("qy")[i],
-          columns_.at("qz")[i]);
-      if (!rotation.coeffs().allFinite()) continue;
-      const Eigen::Vector3d down = rotation * Eigen::Vector3d::UnitY();
-      return {down.x(), down.y(), down.z()};
-    }
-    return {0.0, 1.0, 0.0};
-  }
-
- private:
-  std::map<std::string, std::vector<double>> columns_;
-};
-
-json PathColumns(const PathTable& table, const PathRows& rows,
-                 const ReportThinning& thinning) {
+json PathColumns(const PathRows& rows, const ReportThinning& thinning) {
   json path;
   for (const char* name : {"x", "y", "z"}) {
-    path[name] = thinning.First(table.Rows(name, rows), 5);
+    path[name] = thinning.First(rows.columns.at(name), 5);
   }
   if (rows.loss == kTruthName) return path;
   for (const char* name : {"distance_m", "rpe_seconds_m"}) {
-    path[name] = thinning.Largest(table.Rows(name, rows), 6);
+    path[name] = thinning.Largest(rows.columns.at(name), 6);
   }
   for (const char* name : {"angle_deg", "rpe_seconds_deg"}) {
-    path[name] = thinning.Largest(table.Rows(name, rows), 5);
+    path[name] = thinning.Largest(rows.columns.at(name), 5);
   }
   return path;
 }
@@ -109,30 +97,28 @@ json Figures(const CsvTable& table) {
 
 json Sequences(const std::string& tables_file, const std::string& paths_file) {
   const json figures = Figures(CsvTable::Read(tables_file));
-  const CsvTable table = CsvTable::Read(paths_file);
-  const PathTable numbers(table);
-  const std::vector<PathRows> paths = FindPaths(table);
+  const std::vector<PathRows> paths = ReadPaths(paths_file);
   const size_t max_points =
       kMaxComparedPoints / std::max<size_t>(paths.size(), 1);
   json sequences = json::array();
   for (const PathRows& rows : paths) {
-    const ReportThinning thinning(rows.end - rows.begin, max_points);
+    const ReportThinning thinning(rows.size(), max_points);
     if (sequences.empty() || sequences.back().at("name") != rows.sequence) {
       sequences.push_back(
           {{"name", rows.sequence},
-           {"num_frames", rows.end - rows.begin},
-           {"every", thinning.every()},
-           {"down", numbers.Down(rows)},
-           {"t", thinning.First(Elapsed(numbers.Rows("timestamp", rows)), 4)},
+           {"num_frames", rows.size()},
+           {"every", thinning.every},
+           {"down", Down(rows)},
+           {"t", thinning.First(Elapsed(rows.columns.at("timestamp")), 4)},
            {"losses", json::array()}});
     }
     json& sequence = sequences.back();
-    if (rows.end - rows.begin != sequence.at("num_frames")) {
+    if (rows.size() != sequence.at("num_frames")) {
       throw InputError(paths_file + ": " + rows.loss +
                        " has a different number of rows than the path before; "
                        "repeat the comparison");
     }
-    json path = PathColumns(numbers, rows, thinning);
+    json path = PathColumns(rows, thinning);
     if (rows.loss == kTruthName) {
       sequence["truth"] = path;
       continue;

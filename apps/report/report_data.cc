@@ -31,12 +31,12 @@ std::vector<double> Elapsed(std::vector<double> times) {
 }
 
 ReportThinning::ReportThinning(size_t frames, size_t max_points)
-    : every_(std::max<size_t>((frames + max_points - 1) / max_points, 1)) {}
+    : every(std::max<size_t>((frames + max_points - 1) / max_points, 1)) {}
 
 json ReportThinning::First(const std::vector<double>& values,
                            int decimals) const {
   json result = json::array();
-  for (size_t i = 0; i < values.size(); i += every_) {
+  for (size_t i = 0; i < values.size(); i += every) {
     result.push_back(Rounded(values[i], decimals));
   }
   return result;
@@ -45,9 +45,9 @@ json ReportThinning::First(const std::vector<double>& values,
 json ReportThinning::Largest(const std::vector<double>& values,
                              int decimals) const {
   json result = json::array();
-  for (size_t i = 0; i < values.size(); i += every_) {
+  for (size_t i = 0; i < values.size(); i += every) {
     double largest = std::numeric_limits<double>::quiet_NaN();
-    const size_t end = std::min(i + every_, values.size());
+    const size_t end = std::min(i + every, values.size());
     for (size_t k = i; k < end; ++k) {
       if (!(largest >= values[k]) && !std::isnan(values[k])) {
         largest = values[k];
@@ -57,8 +57,6 @@ json ReportThinning::Largest(const std::vector<double>& values,
   }
   return result;
 }
-
-using nlohmann::json;
 
 json ReadReportSettings(const std::string& flag_file) {
   json groups = json::array();

@@ -34,11 +34,8 @@ nlohmann::json CompareReportData(const std::string& folder);
 std::vector<double> Elapsed(std::vector<double> times);
 
 // Groups `every` frames into one drawn point, to keep the page small.
-class ReportThinning {
- public:
+struct ReportThinning {
   ReportThinning(size_t frames, size_t max_points);
-
-  size_t every() const { return every_; }
 
   // The first value of each group; null if it is not finite.
   nlohmann::json First(const std::vector<double>& values, int decimals) const;
@@ -46,8 +43,7 @@ class ReportThinning {
   // The largest value of each group, which keeps peaks; null if there is none.
   nlohmann::json Largest(const std::vector<double>& values, int decimals) const;
 
- private:
-  size_t every_;
+  const size_t every;
 };
 
 // The flags of a config.flags in groups: [title, [[name, value], ...]]. Throws

@@ -27,9 +27,10 @@ std::string InlineScript(std::string_view script) {
   return text;
 }
 
-std::string WritePage(const std::string& folder, const std::string& page) {
+std::string WritePage(const std::string& folder, std::string_view kind,
+                      const nlohmann::json& data) {
   std::string path = (std::filesystem::path(folder) / "report.html").string();
-  WriteFileAtomically(path, page);
+  WriteFileAtomically(path, ReportPage(kind, data));
   return path;
 }
 
@@ -73,19 +74,17 @@ std::string ReportPage(std::string_view kind, const nlohmann::json& data) {
 }
 
 std::string WriteRunReport(const std::string& run_folder) {
-  return WritePage(run_folder, ReportPage("run", RunReportData(run_folder)));
+  return WritePage(run_folder, "run", RunReportData(run_folder));
 }
 
 std::string WriteBatchReport(const std::string& batch_folder) {
-  return WritePage(batch_folder,
-                   ReportPage("batch", BatchReportData(batch_folder)));
+  return WritePage(batch_folder, "batch", BatchReportData(batch_folder));
 }
 
 std::string WriteComparisonReport(const std::string& folder) {
   const nlohmann::json data = CompareReportData(folder);
-  return WritePage(
-      folder,
-      ReportPage(data.contains("sequences") ? "comparison" : "sweep", data));
+  return WritePage(folder, data.contains("sequences") ? "comparison" : "sweep",
+                   data);
 }
 
 std::string WriteRunPage(const std::filesystem::path& staging_dir,

@@ -7,7 +7,11 @@
 #include <utility>
 #include <vector>
 
+#include "core/evaluation/trajectory.h"
+
 namespace rgbd_pose {
+
+struct CalibrationResult;
 
 // Files that the build embeds in the program (apps/CMakeLists.txt).
 struct ReportAssets {
@@ -46,6 +50,12 @@ std::string FillPage(
 // apps/report, which draw the given `kind`: "run", "batch", "comparison" or
 // "sweep".
 std::string ReportPage(std::string_view kind, const nlohmann::json& data);
+
+// A self-contained page about a calibration: the verdict, parameters with error
+// bars, residuals of held-out views over the image with both cameras, and the
+// path seen from above.
+std::string CalibrationPage(const CalibrationResult& result,
+                            const Trajectory& path);
 
 // Writes report.html for a run from the files in its folder; returns its path.
 // Throws InputError for missing or broken files.

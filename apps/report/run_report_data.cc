@@ -58,10 +58,8 @@ json Incidents(const CsvTable& frames) {
 json FrameColumns(const CsvTable& frames, const ReportThinning& thinning) {
   json columns = {
       {"t", thinning.First(Elapsed(frames.Numbers("timestamp")), 4)},
-      {"status", thinning.Largest(StatusCodes(frames), 0)},
-      {"segment", thinning.First(frames.Numbers("segment"), 0)},
-      {"sigma", thinning.Largest(frames.Numbers("sigma"), 3)}};
-  for (const char* name : {"matches", "inliers"}) {
+      {"status", thinning.Largest(StatusCodes(frames), 0)}};
+  for (const char* name : {"segment", "matches", "inliers"}) {
     columns[name] = thinning.First(frames.Numbers(name), 0);
   }
   std::vector<double> by_pixels;
@@ -70,8 +68,8 @@ json FrameColumns(const CsvTable& frames, const ReportThinning& thinning) {
   }
   columns["by_pixels"] = thinning.First(by_pixels, 0);
   columns["is_reference"] = thinning.Largest(frames.Numbers("is_reference"), 0);
-  for (const char* name : {"decode_ms", "track_ms", "match_ms", "solve_ms",
-                           "reference_ms", "relocalise_ms"}) {
+  for (const char* name : {"sigma", "decode_ms", "track_ms", "match_ms",
+                           "solve_ms", "reference_ms", "relocalise_ms"}) {
     columns[name] = thinning.Largest(frames.Numbers(name), 3);
   }
   return columns;
@@ -198,8 +196,6 @@ json ParseJson(const std::string& file) {
   return value;
 }
 
-using nlohmann::json;
-
 }  // namespace
 
 json RunReportData(const std::string& run_folder) {
@@ -208,7 +204,7 @@ json RunReportData(const std::string& run_folder) {
   const CsvTable frames = CsvTable::Read(file("frames.csv"));
   const ReportThinning thinning(frames.size(), kMaxReportPoints);
   json data = {{"num_frames", frames.size()},
-               {"every", thinning.every()},
+               {"every", thinning.every},
                {"frames", FrameColumns(frames, thinning)},
                {"incidents", Incidents(frames)},
                {"metrics", ParseJson(file("metrics.json"))},

@@ -1,7 +1,6 @@
 #include "apps/results/calibration_output.h"
 
-#include <cmath>
-#include <memory>
+#include <optional>
 
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/shell/program.h"
@@ -28,15 +27,9 @@ std::string FormatResiduals(const CalibrationResult& result) {
 }  // namespace
 
 const char* ToString(Status status) {
-  switch (status) {
-    case Status::kFixed:
-      return "fixed";
-    case Status::kUndetermined:
-      return "not determined";
-    case Status::kDetermined:
-      return "determined";
-  }
-  return "";
+  return status == Status::kFixed          ? "fixed"
+         : status == Status::kUndetermined ? "not determined"
+                                           : "determined";
 }
 
 RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
@@ -44,15 +37,13 @@ RecordingCalibration CalibrateWithProgress(const SequenceSettings& sequence,
                                            const SlamSettings& slam,
                                            const CalibrationSettings& settings,
                                            int threads) {
-  std::unique_ptr<ProgressBar> bar;
+  std::optional<ProgressBar> bar;
   int shown = 0;
   RecordingCalibration calibration = CalibrateRecording(
       sequence, odometry, slam, settings, threads,
       [&](int pass, int done, int all) {
         if (pass != shown) {
-          bar.reset();
-          bar = std::make_unique<ProgressBar>(
-              pass == 1 ? "calibrating" : "calibrating again", all);
+          bar.emplace(pass == 1 ? "calibrating" : "calibrating again", all);
           shown = pass;
         }
         bar->Update(done);
@@ -71,13 +62,13 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
                        .c_str()
                  : "");
   text += Format("%-22s %12s %12s %10s  %s\n", "", "before", "found", "+-", "");
-  std::string undetermined;
+  std::vector<std::string> undetermined;
   for (int k = 0; k < kCalibrationSize; ++k) {
     const CalibrationParameter& row = kCalibrationParameters[k];
     const CalibratedParameter& parameter = result.parameters[k];
     if (parameter.status == Status::kFixed) continue;
     if (parameter.status == Status::kUndetermined) {
-      undetermined += std::string(undetermined.empty() ? "" : ", ") + row.name;
+      undetermined.emplace_back(row.name);
       continue;
     }
     text +=
@@ -87,17 +78,15 @@ std::string FormatCalibrationSummary(const CalibrationResult& result) {
                NumberTo(parameter.sigma, parameter.sigma).c_str(), row.unit);
   }
   if (!undetermined.empty()) {
-    text += undetermined +
+    text += Join(undetermined) +
             " are unchanged: the recording does not determine them, or "
             "held-out pairs fit no better with other values\n";
   }
-  if (result.scale_from.empty()) {
-    text +=
-        "depth_factor is unchanged: images do not contain the depth scale; "
-        "give a known length, ground truth or motion guess to estimate it\n";
-  } else {
-    text += "depth scale estimated from " + result.scale_from + "\n";
-  }
+  text += result.scale_from.empty()
+              ? "depth_factor is unchanged: images do not contain the depth "
+                "scale; give a known length, ground truth or motion guess to "
+                "estimate it\n"
+              : "depth scale estimated from " + result.scale_from + "\n";
   if (result.held_out_pairs > 0) {
     text += Format(
         "%d held-out pairs: cost per view %.4g -> %.4g (%.1f standard "

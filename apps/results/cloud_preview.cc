@@ -1,6 +1,5 @@
 #include "apps/results/cloud_preview.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
@@ -20,18 +19,15 @@ nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
                             const Rigid3d& shown_from_world) {
   std::vector<Eigen::Vector3d> positions;
   positions.reserve(points.size());
+  Eigen::AlignedBox3d box;
   for (const ColoredPoint& point : points) {
     positions.push_back(shown_from_world * point.position.cast<double>());
+    box.extend(positions.back());
   }
-  Eigen::Vector3d low = Eigen::Vector3d::Zero();
-  Eigen::Vector3d high = Eigen::Vector3d::Zero();
-  if (!positions.empty()) low = high = positions.front();
-  for (const Eigen::Vector3d& position : positions) {
-    low = low.cwiseMin(position);
-    high = high.cwiseMax(position);
-  }
+  if (points.empty()) box.extend(Eigen::Vector3d::Zero());
+  const Eigen::Vector3d low = box.min();
   // All axes share one step. For a cloud of one point any step works.
-  const double span = (high - low).maxCoeff();
+  const double span = box.sizes().maxCoeff();
   const double step = span > 0.0 ? span / kMaxStep : 1.0;
   std::string position_bytes, color_bytes;
   for (size_t i = 0; i < points.size(); ++i) {
@@ -52,9 +48,8 @@ nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
           {"colors", Base64(color_bytes)}};
 }
 
-nlohmann::json MeshPreview(const TriangleMesh& mesh,
-                           const Rigid3d& shown_from_world) {
-  nlohmann::json preview = CloudPreview(mesh.vertices, shown_from_world);
+nlohmann::json MeshPreview(const TriangleMesh& mesh) {
+  nlohmann::json preview = CloudPreview(mesh.vertices, Rigid3d());
   std::string corners;
   for (const Eigen::Vector3i& triangle : mesh.triangles) {
     for (const int vertex : triangle) {

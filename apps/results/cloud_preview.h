@@ -28,10 +28,9 @@ constexpr int kMaxPreviewVertices = 65535;
 // The file in a run's folder with the result of MeshPreview.
 constexpr char kMeshPreviewFile[] = "mesh_preview.json";
 
-// The same for the vertices of a mesh. In addition, `triangles` is the number
-// of triangles and `corners` holds their vertex indices (16 bits each, low byte
-// first) in base64.
-nlohmann::json MeshPreview(const TriangleMesh& mesh,
-                           const Rigid3d& shown_from_world);
+// The same for the vertices of a mesh, as they are. In addition, `triangles` is
+// the number of triangles and `corners` holds their vertex indices (16 bits
+// each, low byte first) in base64.
+nlohmann::json MeshPreview(const TriangleMesh& mesh);
 
 }  // namespace rgbd_pose

@@ -45,48 +45,46 @@ json PoseToJson(const Rigid3d& pose) {
           {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-ErrorStatistics Scaled(ErrorStatistics errors, double factor) {
-  for (double* value : {&errors.rmse, &errors.median, &errors.mean, &errors.max,
-                        &errors.p90, &errors.p99}) {
-    *value *= factor;
+// The columns of a table of errors.
+using Columns = std::vector<double ErrorStatistics::*>;
+const Columns kOverall = {&ErrorStatistics::rmse, &ErrorStatistics::median,
+                          &ErrorStatistics::mean, &ErrorStatistics::max};
+const Columns kQuantiles = {&ErrorStatistics::median, &ErrorStatistics::p90,
+                            &ErrorStatistics::p99};
+
+// One line of the table: a quantity, times `factor`, in its unit.
+std::string FormatStatistics(const char* quantity,
+                             const ErrorStatistics& errors, double factor,
+                             const Columns& columns) {
+  std::string text = Format("  %-30s", quantity);
+  if (errors.count == 0) return text + Format("%12s\n", "n/a");
+  for (const auto column : columns) {
+    text += Format("%12.4f", errors.*column * factor);
   }
-  return errors;
-}
-
-ErrorStatistics InMillimetres(const ErrorStatistics& metres) {
-  return Scaled(metres, kMillimetresPerMetre);
-}
-
-ErrorStatistics InDegrees(const ErrorStatistics& radians) {
-  return Scaled(radians, kDegreesPerRadian);
-}
-
-// One line: RMSE, median, mean and maximum of a quantity, in its unit.
-std::string FormatStatistics(const char* quantity, const ErrorStatistics& e) {
-  if (e.count == 0) return Format("  %-30s%12s\n", quantity, "n/a");
-  return Format("  %-30s%12.4f%12.4f%12.4f%12.4f\n", quantity, e.rmse, e.median,
-                e.mean, e.max);
+  return text + "\n";
 }
 
 std::string FormatAte(const std::string& title, const ErrorStatistics& ate) {
   return Format("%-32s%12s%12s%12s%12s\n", "", "RMSE", "median", "mean",
                 "max") +
          Format("ATE%s (%d poses)\n", title.c_str(), ate.count) +
-         FormatStatistics("position (mm)", InMillimetres(ate));
+         FormatStatistics("position (mm)", ate, kMillimetresPerMetre, kOverall);
 }
 
-std::string FormatRpe(const std::string& title,
-                      const RelativePoseError& error) {
+std::string FormatRpe(const std::string& title, const RelativePoseError& error,
+                      const Columns& columns = kOverall) {
   return Format("RPE%s (%d pairs)\n", title.c_str(), error.translation.count) +
-         FormatStatistics("translation (mm)",
-                          InMillimetres(error.translation)) +
-         FormatStatistics("rotation (deg)", InDegrees(error.rotation));
+         FormatStatistics("translation (mm)", error.translation,
+                          kMillimetresPerMetre, columns) +
+         FormatStatistics("rotation (deg)", error.rotation, kDegreesPerRadian,
+                          columns);
 }
 
-json StatisticsToJson(const ErrorStatistics& e) {
+json StatisticsToJson(const ErrorStatistics& e, double factor = 1.0) {
   if (e.count == 0) return nullptr;
-  return {{"rmse", e.rmse}, {"median", e.median}, {"mean", e.mean},
-          {"max", e.max},   {"p90", e.p90},       {"p99", e.p99}};
+  return {{"rmse", factor * e.rmse}, {"median", factor * e.median},
+          {"mean", factor * e.mean}, {"max", factor * e.max},
+          {"p90", factor * e.p90},   {"p99", factor * e.p99}};
 }
 
 json AteToJson(const ErrorStatistics& ate) {
@@ -94,25 +92,11 @@ json AteToJson(const ErrorStatistics& ate) {
 }
 
 json RpeToJson(const RelativePoseError& error, double delta) {
-  return {{"delta", delta},
-          {"count", error.translation.count},
-          {"translation_m", StatisticsToJson(error.translation)},
-          {"rotation_deg", StatisticsToJson(InDegrees(error.rotation))}};
-}
-
-std::string FormatQuantiles(const char* quantity, const ErrorStatistics& e) {
-  if (e.count == 0) return Format("  %-30s%12s\n", quantity, "n/a");
-  return Format("  %-30s%12.4f%12.4f%12.4f\n", quantity, e.median, e.p90,
-                e.p99);
-}
-
-// Formats median, 90 % and 99 % quantiles of relative errors.
-std::string FormatQuantiles(const std::string& delta,
-                            const RelativePoseError& error) {
-  return Format("RPE, fixed delta %s (%d pairs)\n", delta.c_str(),
-                error.translation.count) +
-         FormatQuantiles("translation (mm)", InMillimetres(error.translation)) +
-         FormatQuantiles("rotation (deg)", InDegrees(error.rotation));
+  return {
+      {"delta", delta},
+      {"count", error.translation.count},
+      {"translation_m", StatisticsToJson(error.translation)},
+      {"rotation_deg", StatisticsToJson(error.rotation, kDegreesPerRadian)}};
 }
 
 std::string FormatLine(const char* what, const Consistency& c) {
@@ -151,25 +135,19 @@ json ConsistencyToJson(const RunConsistency& consistency) {
           {"edges", ToJson(consistency.edges)}};
 }
 
-// Formats "1.40 +- 0.05", or "n/a" if the value is undetermined.
-std::string FormatEstimate(double value, double sigma, double factor,
-                           int decimals) {
-  if (!std::isfinite(sigma)) return "n/a";
-  const double unit = std::pow(10.0, -decimals);
-  // Adding 0.0 removes the sign of -0.
-  const double rounded = unit * std::round(factor * value / unit) + 0.0;
-  return FixedNumber(rounded, decimals) + " +- " +
-         FixedNumber(factor * sigma, decimals);
-}
-
-std::string FormatEstimates(const char* quantity, const Eigen::Vector3d& values,
-                            const Eigen::Vector3d& sigmas, double factor,
+// Formats values such as "1.40 +- 0.05", or "n/a" if undetermined.
+std::string FormatEstimates(const char* quantity, const Eigen::VectorXd& values,
+                            const Eigen::VectorXd& sigmas, double factor,
                             int decimals) {
+  const double unit = std::pow(10.0, -decimals);
   std::string text = Format("  %-30s", quantity);
-  for (int i = 0; i < 3; ++i) {
+  for (int i = 0; i < values.size(); ++i) {
+    // Adding 0.0 removes the sign of -0.
+    const double rounded = unit * std::round(factor * values[i] / unit) + 0.0;
+    const std::string estimate = FixedNumber(rounded, decimals) + " +- " +
+                                 FixedNumber(factor * sigmas[i], decimals);
     text +=
-        Format("  %16s",
-               FormatEstimate(values[i], sigmas[i], factor, decimals).c_str());
+        Format("  %16s", std::isfinite(sigmas[i]) ? estimate.c_str() : "n/a");
   }
   return text + "\n";
 }
@@ -214,12 +192,13 @@ std::string FormatEvaluation(const EvaluationReport& report) {
   text += Format("\n%-32s%12s%12s%12s\n", "", "median", "90 %", "99 %");
   for (size_t i = 0; i < report.rpe_frames.size(); ++i) {
     const int frames = report.options.rpe_frames[i];
-    text +=
-        FormatQuantiles(Format("%d frame%s", frames, frames == 1 ? "" : "s"),
-                        report.rpe_frames[i]);
+    text += FormatRpe(
+        Format(", fixed delta %d frame%s", frames, frames == 1 ? "" : "s"),
+        report.rpe_frames[i], kQuantiles);
   }
-  text += FormatQuantiles(Format("%g s", report.options.rpe_delta_seconds),
-                          report.rpe_seconds);
+  text +=
+      FormatRpe(Format(", fixed delta %g s", report.options.rpe_delta_seconds),
+                report.rpe_seconds, kQuantiles);
   if (report.consistency.has_value()) {
     text += FormatConsistency(*report.consistency);
   }
@@ -254,8 +233,10 @@ json EvaluationToJson(const EvaluationReport& report) {
     result["rpe_frames"].push_back(
         {{"frames", report.options.rpe_frames[i]},
          {"count", error.translation.count},
-         {"translation_mm", StatisticsToJson(InMillimetres(error.translation))},
-         {"rotation_deg", StatisticsToJson(InDegrees(error.rotation))}});
+         {"translation_mm",
+          StatisticsToJson(error.translation, kMillimetresPerMetre)},
+         {"rotation_deg",
+          StatisticsToJson(error.rotation, kDegreesPerRadian)}});
   }
   if (report.consistency.has_value()) {
     result["consistency"] = ConsistencyToJson(*report.consistency);
@@ -278,9 +259,9 @@ std::string FormatTruthAlignment(const TruthAlignment& alignment,
   }
   const TruthFixing& fixing = alignment.fixing;
   std::string text = head + Format(" (%d motions)\n", alignment.motions);
-  text +=
-      Format("  %-30s  %16s\n", "time shift (ms)",
-             FormatEstimate(fixing.shift, alignment.sigma[0], 1e3, 1).c_str());
+  text += FormatEstimates("time shift (ms)",
+                          Eigen::VectorXd::Constant(1, fixing.shift),
+                          alignment.sigma.head<1>(), 1e3, 1);
   text += FormatEstimates("rotation x, y, z (deg)", RotationVectorOf(fixing),
                           alignment.sigma.segment<3>(1), kDegreesPerRadian, 2);
   text +=

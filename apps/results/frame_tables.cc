@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "apps/shell/csv_table.h"
 #include "core/evaluation/association.h"
@@ -12,10 +11,12 @@
 #include "core/util/units.h"
 
 namespace rgbd_pose {
-const char kCovarianceColumns[] =
-    ",cov_wx_wx,cov_wx_wy,cov_wx_wz,cov_wx_cx,cov_wx_cy,cov_wx_cz,cov_wy_wy"
-    ",cov_wy_wz,cov_wy_cx,cov_wy_cy,cov_wy_cz,cov_wz_wz,cov_wz_cx,cov_wz_cy"
-    ",cov_wz_cz,cov_cx_cx,cov_cx_cy,cov_cx_cz,cov_cy_cy,cov_cy_cz,cov_cz_cz";
+namespace {
+
+const std::string kEdgeColumns =
+    std::string("ref,cur,tx,ty,tz,qx,qy,qz,qw") + kCovarianceColumns;
+
+}  // namespace
 
 std::string FormatPose(const Rigid3d& pose, char separator) {
   std::string text;
@@ -63,8 +64,7 @@ std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames) {
 }
 
 std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames) {
-  std::string text =
-      std::string("ref,cur,tx,ty,tz,qx,qy,qz,qw") + kCovarianceColumns + "\n";
+  std::string text = kEdgeColumns + "\n";
   for (const TrackedFrame& frame : frames) {
     for (const RelativePose& edge : frame.edges) {
       text += Format("%d,%d", edge.ref, edge.cur) +
@@ -77,27 +77,23 @@ std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames) {
 
 std::vector<RelativePose> ReadEdges(const std::filesystem::path& folder) {
   const CsvTable table = CsvTable::Read(folder / "edges.csv");
-  const std::vector<double> ref = table.Numbers("ref");
-  const std::vector<double> cur = table.Numbers("cur");
-  std::vector<std::vector<double>> pose, covariance;
-  for (const char* name : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
-    pose.push_back(table.Numbers(name));
+  std::vector<std::vector<double>> columns;
+  for (const std::string& name : SplitText(kEdgeColumns, ',')) {
+    columns.push_back(table.Numbers(name));
   }
-  for (const std::string& name : SplitText(kCovarianceColumns + 1, ',')) {
-    covariance.push_back(table.Numbers(name));
-  }
-  std::vector<RelativePose> edges(table.size());
+  std::vector<RelativePose> edges;
   for (size_t row = 0; row < table.size(); ++row) {
-    RelativePose& edge = edges[row];
-    edge.ref = static_cast<int>(ref[row]);
-    edge.cur = static_cast<int>(cur[row]);
-    edge.cur_from_ref = Rigid3d(Eigen::Quaterniond(pose[6][row], pose[3][row],
-                                                   pose[4][row], pose[5][row]),
-                                {pose[0][row], pose[1][row], pose[2][row]});
-    size_t at = 0;
+    auto column = columns.begin();
+    const auto next = [&] { return (*column++)[row]; };
+    RelativePose& edge = edges.emplace_back();
+    edge.ref = static_cast<int>(next());
+    edge.cur = static_cast<int>(next());
+    const double tx = next(), ty = next(), tz = next();
+    const double qx = next(), qy = next(), qz = next(), qw = next();
+    edge.cur_from_ref = Rigid3d({qw, qx, qy, qz}, {tx, ty, tz});
     for (int i = 0; i < 6; ++i) {
-      for (int j = i; j < 6; ++j, ++at) {
-        edge.covariance(i, j) = edge.covariance(j, i) = covariance[at][row];
+      for (int j = i; j < 6; ++j) {
+        edge.covariance(i, j) = edge.covariance(j, i) = next();
       }
     }
   }
@@ -136,9 +132,7 @@ std::string FormatErrorsCsv(const std::vector<TrackedFrame>& frames,
                             const EvaluationReport& report) {
   std::string text =
       "timestamp,true_x,true_y,true_z,x,y,z,position_error_m,rpe_m,rpe_deg\n";
-  std::vector<double> times;
-  times.reserve(truth.size());
-  for (const StampedPose& pose : truth) times.push_back(pose.timestamp);
+  const std::vector<double> times = TimesOf(truth);
   auto error = report.poses.begin();
   for (const TrackedFrame& frame : frames) {
     // NaN stands for an unknown value.

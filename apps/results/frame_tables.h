@@ -16,7 +16,10 @@ std::string FormatPose(const Rigid3d& pose, char separator = ',');
 // The upper triangle of a 6 x 6 matrix, row by row, each value after a
 // separator, and the column names for a covariance (see MotionEstimate).
 std::string FormatTriangle(const MotionMatrix& matrix, char separator = ',');
-extern const char kCovarianceColumns[];
+inline constexpr char kCovarianceColumns[] =
+    ",cov_wx_wx,cov_wx_wy,cov_wx_wz,cov_wx_cx,cov_wx_cy,cov_wx_cz,cov_wy_wy"
+    ",cov_wy_wz,cov_wy_cx,cov_wy_cy,cov_wy_cz,cov_wz_wz,cov_wz_cx,cov_wz_cy"
+    ",cov_wz_cz,cov_cx_cx,cov_cx_cy,cov_cx_cz,cov_cy_cy,cov_cy_cz,cov_cz_cz";
 
 // frames.csv: a header and one row per input frame.
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames);

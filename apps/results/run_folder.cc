@@ -19,21 +19,6 @@ namespace fs = std::filesystem;
 
 constexpr char kAside[] = ".rgbd_odometry.partial";
 constexpr char kLast[] = "metrics.json";
-constexpr const char* kResults[] = {kLast,
-                                    "report.html",
-                                    "errors.csv",
-                                    "trajectory.txt",
-                                    "frames.csv",
-                                    "edges.csv",
-                                    "config.flags",
-                                    "cloud_preview.json",
-                                    "mesh_preview.json",
-                                    "slam.csv",
-                                    "keyframes.csv",
-                                    "graph.g2o",
-                                    "trajectory_online.txt",
-                                    "trajectory_odometry.txt"};
-constexpr char kImages[] = "debug";
 
 [[noreturn]] void FailOnFolder(const fs::path& folder,
                                const std::error_code& error) {
@@ -123,8 +108,14 @@ void RunFolder::WriteFile(const char* name, const std::string& content) const {
 
 void RunFolder::Publish() {
   try {
-    for (const char* name : kResults) fs::remove(path_ / name);
-    RemoveDebugImages(path_ / kImages);
+    for (const char* name :
+         {kLast, "report.html", "errors.csv", "trajectory.txt", "frames.csv",
+          "edges.csv", "config.flags", "cloud_preview.json",
+          "mesh_preview.json", "slam.csv", "keyframes.csv", "graph.g2o",
+          "trajectory_online.txt", "trajectory_odometry.txt"}) {
+      fs::remove(path_ / name);
+    }
+    RemoveDebugImages(path_ / "debug");
     for (const fs::path& file : FilesBelow(staging_dir_)) {
       if (file == kLast) continue;
       fs::create_directories((path_ / file).parent_path());

@@ -32,15 +32,14 @@ nlohmann::json ShutterToJson(const RgbdCamera& camera) {
           {"depth", both(camera.depth_shutter)}};
 }
 
-FusionOptions CloudOptions(const Camera& camera, double voxel,
-                           const DepthLookupOptions& depth) {
-  FusionOptions options;
-  options.camera = camera;
-  options.voxel_size = voxel;
-  options.depth = depth;
-  const std::string problem = options.Check();
-  if (!problem.empty()) throw InputError("--voxel: " + problem);
-  return options;
+// The cloud to fuse frames into, if it is requested. Checks --voxel anyway.
+std::optional<CloudFusion> MakeCloud(const RunOutputSettings& settings,
+                                     const Camera& camera,
+                                     const DepthLookupOptions& depth) {
+  const FusionOptions options = {camera, settings.voxel, depth};
+  RequireSound(options.Check(), "--voxel: ");
+  if (settings.save_cloud.empty()) return std::nullopt;
+  return CloudFusion(options);
 }
 
 // Draws the result of the odometry for its last frame.
@@ -64,6 +63,14 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                  DrawResiduals(*keyframe->reference->images(), frame,
                                odometry.last_estimate().cur_from_prev));
   }
+}
+
+// `stamps_ms`: of depth relative to colour, per frame.
+nlohmann::json DepthStampsToJson(const std::vector<double>& stamps_ms) {
+  if (stamps_ms.empty()) return nullptr;
+  const auto [least, most] =
+      std::minmax_element(stamps_ms.begin(), stamps_ms.end());
+  return {{"least", *least}, {"median", Median(stamps_ms)}, {"most", *most}};
 }
 
 nlohmann::json ResidualsToJson(const ResidualHistogram& residuals) {
@@ -114,25 +121,13 @@ RunOutput::RunOutput(const RunOutputSettings& settings,
     : settings_(settings),
       source_(source),
       drawn_("debug_images", settings.debug_images),
-      cloud_options_(
-          CloudOptions(source.camera().camera, settings.voxel, depth)),
+      cloud_(MakeCloud(settings, source.camera().camera, depth)),
       folder_(settings.output) {
   if (!settings.debug_images.empty()) {
     std::filesystem::create_directory(folder_.staging_dir() / kDebug);
   }
   if (!settings.save_mesh.empty()) RequireMeshFile(settings.save_mesh);
-  if (!settings.save_cloud.empty()) {
-    cloud_.emplace(cloud_options_);
-    RequireWritable(settings.save_cloud);
-  }
-}
-
-nlohmann::json RunOutput::DepthStampsToJson() const {
-  if (depth_stamps_ms_.empty()) return nullptr;
-  const auto [least, most] =
-      std::minmax_element(depth_stamps_ms_.begin(), depth_stamps_ms_.end());
-  return {
-      {"least", *least}, {"median", Median(depth_stamps_ms_)}, {"most", *most}};
+  if (cloud_.has_value()) RequireWritable(settings.save_cloud);
 }
 
 void RunOutput::Add(const Frame& frame, const SequenceRun& run) {
@@ -162,18 +157,19 @@ std::string RunOutput::Write(const RunResults& results, int threads,
   const std::vector<MotionJump> jumps = FindJumps(results.frames);
   std::string text =
       FormatSummary(summary) + FormatJumps(jumps, results.frames);
-  nlohmann::json metrics = {{"program", program},
-                            {"dataset", dataset},
-                            {"unmatched_color", source_.unmatched_color()},
-                            {"dropped_frames", source_.dropped()},
-                            {"damaged_frames", results.damaged.size()},
-                            {"remarks", source_.remarks()},
-                            {"peak_rss_mb", PeakMemoryMb()},
-                            {"run", summary},
-                            {"jumps", JumpsToJson(jumps, results.frames)},
-                            {"shutter", ShutterToJson(source_.camera())},
-                            {"depth_stamp_ms", DepthStampsToJson()},
-                            {"residuals", ResidualsToJson(results.residuals)}};
+  nlohmann::json metrics = {
+      {"program", program},
+      {"dataset", dataset},
+      {"unmatched_color", source_.unmatched_color()},
+      {"dropped_frames", source_.dropped()},
+      {"damaged_frames", results.damaged.size()},
+      {"remarks", source_.remarks()},
+      {"peak_rss_mb", PeakMemoryMb()},
+      {"run", summary},
+      {"jumps", JumpsToJson(jumps, results.frames)},
+      {"shutter", ShutterToJson(source_.camera())},
+      {"depth_stamp_ms", DepthStampsToJson(depth_stamps_ms_)},
+      {"residuals", ResidualsToJson(results.residuals)}};
   if (more.is_object()) metrics.update(more);
   Rigid3d shown_from_world;
   if (results.evaluation.has_value()) {

@@ -52,14 +52,12 @@ class RunOutput {
                     const nlohmann::json& more = nullptr);
 
  private:
-  nlohmann::json DepthStampsToJson() const;
   nlohmann::json WriteCloud(const Rigid3d& shown_from_world,
                             std::string* text) const;
 
   RunOutputSettings settings_;
   const FrameSource& source_;
   FrameSelection drawn_;
-  FusionOptions cloud_options_;
   std::optional<CloudFusion> cloud_;
   RunFolder folder_;
   std::vector<double> depth_stamps_ms_;  // relative to colour, per frame

@@ -137,16 +137,14 @@ std::vector<MotionJump> FindJumps(const std::vector<TrackedFrame>& frames) {
   if (deviations.empty()) return {};
   const double limit =
       std::max(kLeastMetres, kTimesMedian * Median(deviations));
-  jumps.erase(std::remove_if(jumps.begin(), jumps.end(),
-                             [=](const MotionJump& jump) {
-                               return jump.translation <= limit;
-                             }),
-              jumps.end());
   std::stable_sort(jumps.begin(), jumps.end(),
                    [](const MotionJump& a, const MotionJump& b) {
                      return a.translation > b.translation;
                    });
-  jumps.resize(std::min(jumps.size(), kMostJumps));
+  while (!jumps.empty() &&
+         (jumps.size() > kMostJumps || jumps.back().translation <= limit)) {
+    jumps.pop_back();
+  }
   return jumps;
 }
 

@@ -1,7 +1,6 @@
 #include "apps/results/run_tracking.h"
 
 #include <gflags/gflags.h>
-#include <glog/logging.h>
 
 #include <csignal>
 #include <cstdio>
@@ -39,11 +38,8 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
   const std::string stopped =
       TrackAll(source, threads, {run}, [&](const Frame& frame) {
         if (run->frames().size() == 1) {
-          for (const std::string& doubt :
-               {source->camera().camera.SanityWarning(),
-                DepthScaleWarning(frame)}) {
-            if (!doubt.empty()) LOG(WARNING) << doubt;
-          }
+          Warn({source->camera().camera.SanityWarning(),
+                DepthScaleWarning(frame)});
         }
         output->Add(frame, *run);
         bar.Update(static_cast<int>(run->frames().size()));
@@ -58,10 +54,9 @@ std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
 
 void LogWarnings(const RunResults& results) {
   if (!results.no_evaluation.empty()) {
-    LOG(WARNING) << "no evaluation: " << results.no_evaluation;
+    Warn({"no evaluation: " + results.no_evaluation});
   }
-  const std::string warning = results.Warning();
-  if (!warning.empty()) LOG(WARNING) << warning;
+  Warn({results.Warning()});
 }
 
 int ExitCodeOf(const std::string& program, const RunResults& results,
@@ -110,14 +105,7 @@ StopSignal::~StopSignal() {
 }
 
 std::string StopSignal::name() const {
-  switch (came) {
-    case SIGINT:
-      return "SIGINT";
-    case SIGTERM:
-      return "SIGTERM";
-    default:
-      return "";
-  }
+  return came == SIGINT ? "SIGINT" : came == SIGTERM ? "SIGTERM" : "";
 }
 
 }  // namespace rgbd_pose

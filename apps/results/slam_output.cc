@@ -2,7 +2,6 @@
 
 #include <Eigen/LU>
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <set>
 
@@ -36,13 +35,10 @@ nlohmann::json LocalisedFrom(const std::vector<SlamFrame>& frames) {
 }  // namespace
 
 std::string FormatSlamCsv(const std::vector<SlamFrame>& frames) {
-  std::string text = "timestamp,status,segment";
-  for (const char* pose : {"odom", "map"}) {
-    for (const char* part : {"tx", "ty", "tz", "qx", "qy", "qz", "qw"}) {
-      text += std::string(",") + pose + "_" + part;
-    }
-  }
-  text += ",pairs,loops,joined,map_ms,wait_ms\n";
+  std::string text =
+      "timestamp,status,segment,odom_tx,odom_ty,odom_tz,odom_qx,odom_qy,"
+      "odom_qz,odom_qw,map_tx,map_ty,map_tz,map_qx,map_qy,map_qz,map_qw,"
+      "pairs,loops,joined,map_ms,wait_ms\n";
   for (const SlamFrame& frame : frames) {
     text += Format("%.6f,%s,%d", frame.tracked.timestamp,
                    ToString(frame.tracked.status), frame.segment) +
@@ -108,20 +104,18 @@ std::string FormatG2o(const KeyframeMap& map) {
 nlohmann::json SlamToJson(const Slam& slam,
                           const std::vector<SlamFrame>& frames) {
   const KeyframeGraph& graph = slam.graph();
-  int tracked = 0, pairs = 0, loops = 0, joined = 0, dropped = 0, unsolved = 0;
-  std::string error;
+  int tracked = 0, pairs = 0, loops = 0, joined = 0, dropped = 0;
+  std::vector<std::string> errors;
   double map_ms = 0.0;
   std::vector<double> waits, works;
   for (const SlamFrame& frame : frames) {
     joined += frame.joined;
-    unsolved += !frame.error.empty();
-    if (!frame.error.empty()) error = frame.error;
+    if (!frame.error.empty()) errors.push_back(frame.error);
     map_ms += frame.map_ms;
     waits.push_back(frame.wait_ms);
     if (frame.map_ms > 0.0) works.push_back(frame.map_ms);
   }
-  unsolved += !slam.error().empty();
-  if (!slam.error().empty()) error = slam.error();
+  if (!slam.error().empty()) errors.push_back(slam.error());
   nlohmann::json keyframes = nlohmann::json::array();
   for (int at = 0; at < graph.size(); ++at) {
     dropped += graph.IsRemoved(at);
@@ -147,8 +141,8 @@ nlohmann::json SlamToJson(const Slam& slam,
           {"segments_joined", joined},
           {"localised_from_frame", LocalisedFrom(frames)},
           {"proportional_error", graph.proportional_error()},
-          {"unsolved", unsolved},
-          {"error", error},
+          {"unsolved", errors.size()},
+          {"error", errors.empty() ? "" : errors.back()},
           {"map_ms_per_frame", frames.empty() ? 0.0 : map_ms / frames.size()},
           {"map_ms_per_keyframe", works.empty() ? 0.0 : Median(works)},
           {"wait_ms_p99", waits.empty() ? 0.0 : Quantile(waits, 0.99)},
@@ -166,6 +160,10 @@ std::string SlamWarning(const nlohmann::json& slam) {
 }
 
 std::string FormatSlamSummary(const nlohmann::json& slam) {
+  const auto number = [&](const char* key) {
+    return slam.at(key).get<double>();
+  };
+  const auto whole = [&](const char* key) { return slam.at(key).get<int>(); };
   const nlohmann::json& from = slam.at("localised_from_frame");
   const std::string localised =
       from.is_null() ? ""
@@ -175,18 +173,13 @@ std::string FormatSlamSummary(const nlohmann::json& slam) {
   return localised +
          Format(
              "map         %d keyframes (%d more removed), %d pairs, %d "
-             "loops, %d segments joined\n",
-             slam.at("keyframes").get<int>(),
-             slam.at("keyframes_dropped").get<int>(),
-             slam.at("tracked_pairs").get<int>() + slam.at("pairs").get<int>(),
-             slam.at("loops").get<int>(),
-             slam.at("segments_joined").get<int>()) +
-         Format(
+             "loops, %d segments joined\n"
              "mapping     %.2f ms per frame, %.1f ms per keyframe median; "
              "tracking waited %.1f ms at most\n",
-             slam.at("map_ms_per_frame").get<double>(),
-             slam.at("map_ms_per_keyframe").get<double>(),
-             slam.at("wait_ms_max").get<double>());
+             whole("keyframes"), whole("keyframes_dropped"),
+             whole("tracked_pairs") + whole("pairs"), whole("loops"),
+             whole("segments_joined"), number("map_ms_per_frame"),
+             number("map_ms_per_keyframe"), number("wait_ms_max"));
 }
 
 }  // namespace rgbd_pose

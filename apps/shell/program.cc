@@ -205,7 +205,9 @@ std::string FormatFlagFile(const ProgramInfo& info) {
 }
 
 void Warn(const std::vector<std::string>& lines) {
-  for (const std::string& line : lines) LOG(WARNING) << line;
+  for (const std::string& line : lines) {
+    if (!line.empty()) LOG(WARNING) << line;
+  }
 }
 
 void RequireFlag(const std::string& name, const std::string& value) {

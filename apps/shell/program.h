@@ -59,7 +59,7 @@ int RunProgram(int argc, char** argv, ProgramInfo (*info)(Settings*),
 // Formats all flags of the program's groups as a file for --flagfile.
 std::string FormatFlagFile(const ProgramInfo& info);
 
-// Prints warnings on stderr, one per line.
+// Prints warnings on stderr, one per line; empty ones are skipped.
 void Warn(const std::vector<std::string>& lines);
 
 // If a required flag is empty, throws UsageError, which RunProgram turns into

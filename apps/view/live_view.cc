@@ -68,7 +68,7 @@ std::string LiveView::Add(const Frame& frame, const StopSignal& signal) {
   AddMap(!news.keyframes.empty(), &news);
   if (state_.readers() > 0) news.images = Show(frame);
   state_.Add(std::move(news));
-  KeepPace(tracked.timestamp, signal);
+  KeepPace(signal);
   WaitWhilePaused(signal);
   return state_.is_stopped() ? "stop button of the live page" : "";
 }
@@ -83,15 +83,8 @@ void LiveView::Finish(const std::string& results) {
 }
 
 ViewFrame LiveView::Describe(const TrackedFrame& tracked) const {
-  ViewFrame shown;
-  shown.timestamp = tracked.timestamp;
-  shown.status = tracked.status;
-  shown.reason = tracked.reason;
-  shown.track_ms = tracked.track_ms;
-  shown.matches = tracked.matches;
-  shown.inliers = tracked.inliers;
-  shown.sigma = tracked.sigma;
-  shown.segment = tracked.segment;
+  ViewFrame shown = {tracked, std::nullopt, {}};
+  shown.edges.clear();
   if (tracked.status == TrackingStatus::kLost) return shown;
   int keyframe = tracked.index;
   if (!tracked.is_reference && tracked.reference != -1) {
@@ -126,37 +119,31 @@ void LiveView::AddMap(bool has_moved, ViewNews* news) {
 }
 
 ViewImages LiveView::Show(const Frame& frame) const {
-  ViewImages images;
-  images.gray = frame.gray;
-  images.depth = frame.depth;
-  images.depth_scale = frame.depth_scale;
+  ViewImages images = {frame.gray, frame.depth, frame.depth_scale, {}};
   if (run_.frames().back().reference == -1) return images;
   const Correspondences& matches = run_.odometry().last_matches().matches;
-  for (const Match& match : matches) {
-    const cv::Vec2f from = ImagePoint(camera_, match.prev);
-    const cv::Vec2f to = ImagePoint(camera_, match.cur);
-    images.moves.emplace_back(from[0], from[1], to[0], to[1]);
-  }
   const std::vector<double>& weights = run_.odometry().last_estimate().weights;
-  if (weights.size() == matches.size()) {
-    images.weights.assign(weights.begin(), weights.end());
+  for (size_t i = 0; i < matches.size(); ++i) {
+    const cv::Vec2f from = ImagePoint(camera_, matches[i].prev);
+    const cv::Vec2f to = ImagePoint(camera_, matches[i].cur);
+    const double weight = weights.size() == matches.size() ? weights[i] : -1.0;
+    images.moves.emplace_back(from[0], from[1], to[0], to[1],
+                              static_cast<float>(weight));
   }
   return images;
 }
 
 // A late frame delays all later ones: the lost time is not caught up.
-void LiveView::KeepPace(double timestamp, const StopSignal& signal) {
+void LiveView::KeepPace(const StopSignal& signal) {
   if (FLAGS_view_speed <= 0.0) return;
-  const Clock::time_point now = Clock::now();
-  if (run_.frames().size() > 1) {
-    const std::chrono::duration<double> wait((timestamp - last_timestamp_) /
-                                             FLAGS_view_speed);
-    due_ =
-        std::max(now, due_ + std::chrono::duration_cast<Clock::duration>(wait));
-  } else {
-    due_ = now;
+  const std::vector<TrackedFrame>& frames = run_.frames();
+  if (frames.size() > 1) {
+    const std::chrono::duration<double> wait(
+        (frames.back().timestamp - frames[frames.size() - 2].timestamp) /
+        FLAGS_view_speed);
+    due_ += std::chrono::duration_cast<Clock::duration>(wait);
   }
-  last_timestamp_ = timestamp;
+  due_ = std::max(due_, Clock::now());
   while (Clock::now() < due_ && signal.name().empty() && !state_.is_stopped() &&
          !state_.is_paused()) {
     state_.WaitForControl(std::min(

@@ -34,7 +34,7 @@ class LiveView {
   void AddKeyframe(const TrackedFrame& tracked, ViewNews* news);
   void AddMap(bool has_moved, ViewNews* news);
   ViewImages Show(const Frame& frame) const;
-  void KeepPace(double timestamp, const StopSignal& signal);
+  void KeepPace(const StopSignal& signal);
   void WaitWhilePaused(const StopSignal& signal);
 
   const Camera camera_;
@@ -46,7 +46,6 @@ class LiveView {
   std::map<int, Rigid3d> keyframes_;  // for a run without a map
   size_t links_ = 0;                  // number of map links shown so far
   Clock::time_point due_ = {};        // when the last frame had to be shown
-  double last_timestamp_ = 0.0;
 };
 
 }  // namespace rgbd_pose

@@ -1,10 +1,8 @@
-#include "apps/view/view_events.h"
-
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "apps/view/view_state.h"
 #include "core/util/format.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/frame.h"
@@ -99,7 +97,6 @@ std::string FormatImages(const ViewImages& images, int index) {
   const cv::Mat depth = Narrowed(images.depth, kDepthWidth, cv::INTER_NEAREST);
   depth.convertTo(steps, CV_8U, 1.0 / (images.depth_scale * kDepthStep));
   steps.setTo(0, depth == Frame::kNoDepth);
-  size_t match = 0;
   return Event(
       "images",
       Format("{\"index\":%d,\"width\":%d,\"height\":%d,\"depth_step\":%g,",
@@ -107,12 +104,9 @@ std::string FormatImages(const ViewImages& images, int index) {
           "\"gray\":\"" + Base64({jpeg.begin(), jpeg.end()}) +
           "\",\"depth\":\"" + Base64(EncodePng(steps)) + "\",\"matches\":" +
           List(images.moves,
-               [&](const cv::Vec4f& move) {
-                 const double weight =
-                     images.weights.empty() ? -1.0 : images.weights[match];
-                 ++match;
+               [](const cv::Vec<float, 5>& move) {
                  return Format("[%.1f,%.1f,%.1f,%.1f,%.2f]", move[0], move[1],
-                               move[2], move[3], weight);
+                               move[2], move[3], move[4]);
                }) +
           "}");
 }

@@ -1,5 +1,6 @@
 #include "apps/view/view_server.h"
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 
 #ifdef RGBD_POSE_HAS_HTTPLIB
@@ -8,11 +9,9 @@
 #include <atomic>
 #include <chrono>
 #include <mutex>
-#include <nlohmann/json.hpp>
 #include <thread>
 
 #include "apps/report/report_page.h"
-#include "apps/view/view_events.h"
 #endif
 
 namespace rgbd_pose {
@@ -196,31 +195,22 @@ class ViewServer::Impl {
   std::thread thread_;
 };
 
-bool HasViewServer() { return true; }
-
 ViewServer::ViewServer(const std::string& title, int port, ViewState* state)
-    : impl_(std::make_unique<Impl>(title, port, state)) {}
-ViewServer::~ViewServer() = default;
-
-std::string ViewServer::address() const {
-  return "http://" + std::string(kHost) + ":" + std::to_string(impl_->port()) +
-         "/";
-}
+    : impl_(std::make_unique<Impl>(title, port, state)),
+      address_(Format("http://%s:%d/", kHost, impl_->port())) {}
 
 #else
 
 class ViewServer::Impl {};
-
-bool HasViewServer() { return false; }
 
 ViewServer::ViewServer(const std::string&, int, ViewState*) {
   throw InputError(
       "--view: built without cpp-httplib; install libcpp-httplib-dev "
       "(scripts/install_dependencies) and build again");
 }
-ViewServer::~ViewServer() = default;
-std::string ViewServer::address() const { return ""; }
 
 #endif
+
+ViewServer::~ViewServer() = default;
 
 }  // namespace rgbd_pose

@@ -7,9 +7,6 @@
 
 namespace rgbd_pose {
 
-// Whether the program was built with the web server library.
-bool HasViewServer();
-
 // Serves a live page of a state to browsers on this machine, in its own
 // threads: the page, its events and its buttons. Nothing is read from disk.
 // Requests with another host name or from another page are refused.
@@ -24,11 +21,12 @@ class ViewServer {
   ViewServer& operator=(const ViewServer&) = delete;
 
   // The address for a browser: "http://127.0.0.1:40123/"
-  std::string address() const;
+  const std::string& address() const { return address_; }
 
  private:
   class Impl;
   std::unique_ptr<Impl> impl_;
+  std::string address_;
 };
 
 }  // namespace rgbd_pose

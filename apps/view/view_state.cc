@@ -73,15 +73,34 @@ void ViewState::ThinPoints() {
   }
 }
 
-void ViewState::Finish(const std::string& results) {
+template <typename Change>
+void ViewState::Control(const Change& change) {
   {
     const std::lock_guard<std::mutex> lock(mutex_);
-    all_.results = results;
-    all_.is_finished = true;
-    all_.is_paused = false;
+    change();
     ++controls_;
   }
   changed_.notify_all();
+  control_.notify_all();
+}
+
+void ViewState::Finish(const std::string& results) {
+  Control([&] {
+    all_.results = results;
+    all_.is_finished = true;
+    all_.is_paused = false;
+  });
+}
+
+void ViewState::Pause(bool is_paused) {
+  Control([&] { all_.is_paused = is_paused; });
+}
+
+void ViewState::Stop() {
+  Control([&] {
+    is_stopped_ = true;
+    all_.is_paused = false;
+  });
 }
 
 ViewNews ViewState::Next(std::chrono::milliseconds patience,
@@ -108,32 +127,6 @@ ViewNews ViewState::Next(std::chrono::milliseconds patience,
   cursor->images = images_;
   cursor->controls = controls_;
   return news;
-}
-
-void ViewState::AddReaders(int more) {
-  readers_ += more;
-  control_.notify_all();
-}
-
-void ViewState::Pause(bool is_paused) {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    all_.is_paused = is_paused;
-    ++controls_;
-  }
-  changed_.notify_all();
-  control_.notify_all();
-}
-
-void ViewState::Stop() {
-  {
-    const std::lock_guard<std::mutex> lock(mutex_);
-    is_stopped_ = true;
-    all_.is_paused = false;
-    ++controls_;
-  }
-  changed_.notify_all();
-  control_.notify_all();
 }
 
 bool ViewState::is_stopped() const {

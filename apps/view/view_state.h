@@ -18,16 +18,9 @@
 
 namespace rgbd_pose {
 
-// A frame on the page, relative to its keyframe, which loop closures move.
-struct ViewFrame {
-  double timestamp = 0.0;  // s
-  TrackingStatus status = TrackingStatus::kLost;
-  std::string reason;
-  double track_ms = 0.0;
-  int matches = 0;
-  int inliers = 0;
-  double sigma = 0.0;
-  int segment = 0;
+// A frame on the page (without edges), and its pose relative to its keyframe,
+// which loop closures move.
+struct ViewFrame : TrackedFrame {
   std::optional<int> keyframe;  // id; empty: the frame was lost
   Rigid3d keyframe_from_cam;
 };
@@ -40,11 +33,12 @@ struct ViewKeyframe {
 
 // The images and matches of a frame. They share the frame's memory.
 struct ViewImages {
-  cv::Mat gray;                  // CV_8UC1
-  cv::Mat depth;                 // CV_16UC1
-  double depth_scale = 5000.0;   // raw units per metre
-  std::vector<cv::Vec4f> moves;  // matches: from and to, px (u, v, u, v)
-  std::vector<float> weights;    // of the matches, 0 to 1; empty: unknown
+  cv::Mat gray;                 // CV_8UC1
+  cv::Mat depth;                // CV_16UC1
+  double depth_scale = 5000.0;  // raw units per metre
+
+  // Matches: from and to, px (u, v, u, v), and weight, 0 to 1; -1: unknown.
+  std::vector<cv::Vec<float, 5>> moves;
 };
 
 // The state of a page: either everything so far, or everything after a cursor.
@@ -60,6 +54,13 @@ struct ViewNews {
   std::string results;  // after the end: location of the results
   bool is_finished = false;
 };
+
+// Formats news as events for the browser (text/event-stream): always "news",
+// and "end" after the last frame.
+std::string FormatNews(const ViewNews& news);
+
+// Formats images and matches as an event "images". Takes milliseconds.
+std::string FormatImages(const ViewImages& images, int index);
 
 // The position of a reader in the news.
 struct ViewCursor {
@@ -86,7 +87,7 @@ class ViewState {
 
   // The number of open pages.
   int readers() const { return readers_; }
-  void AddReaders(int more);
+  void AddReaders(int more) { readers_ += more; }
 
   // The buttons.
   void Pause(bool is_paused);
@@ -98,6 +99,9 @@ class ViewState {
 
  private:
   void ThinPoints();
+  // Changes what buttons and the end set, and wakes all that wait for it.
+  template <typename Change>
+  void Control(const Change& change);
 
   mutable std::mutex mutex_;
   std::condition_variable changed_, control_;

@@ -58,6 +58,11 @@ bool PathExists(const std::filesystem::path& path) {
   return std::filesystem::exists(path, error);
 }
 
+bool IsFile(const std::filesystem::path& path) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(path, error);
+}
+
 std::string ReadTextFile(const std::string& path) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) {

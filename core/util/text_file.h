@@ -42,6 +42,9 @@ double ParseTimestamp(std::string_view word, const std::string& path, int line);
 // Whether the file or folder exists; false, too, if this cannot be determined.
 bool PathExists(const std::filesystem::path& path);
 
+// Whether it is a file and no folder or device; false, too, if unknown.
+bool IsFile(const std::filesystem::path& path);
+
 // The whole content of a file. Throws InputError if it cannot be read.
 std::string ReadTextFile(const std::string& path);
 

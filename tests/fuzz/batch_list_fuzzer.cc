@@ -3,7 +3,7 @@
 #include <filesystem>
 #include <set>
 
-#include "apps/batch/batch_list.h"
+#include "apps/batch/batch_plan.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

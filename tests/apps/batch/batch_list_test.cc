@@ -1,11 +1,10 @@
-#include "apps/batch/batch_list.h"
-
 #include <gtest/gtest.h>
 
 #include <filesystem>
 #include <string>
 #include <vector>
 
+#include "apps/batch/batch_plan.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

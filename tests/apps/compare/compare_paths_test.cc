@@ -1,5 +1,3 @@
-#include "apps/compare/compare_paths.h"
-
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -1,9 +1,10 @@
+#include "apps/compare/compare_sweep.h"
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <string>
 
-#include "apps/compare/compare_sweep_report.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 
@@ -38,10 +39,7 @@ std::vector<SweepCell> LevelCells(const std::vector<std::string>& losses) {
 void SetError(const SweepMethod& method, int share, double median,
               std::vector<SweepCell>* cells) {
   for (SweepCell& cell : *cells) {
-    if (cell.method.loss == method.loss &&
-        cell.method.schedule == method.schedule &&
-        cell.method.ransac == method.ransac &&
-        cell.outlier_share == SweepShare(share)) {
+    if (cell.method == method && cell.outlier_share == SweepShare(share)) {
       cell.translation_mm = Around(median);
     }
   }

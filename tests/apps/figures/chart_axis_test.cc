@@ -21,20 +21,16 @@ std::vector<double> ValuesOf(const std::vector<AxisTick>& ticks) {
 }
 
 TEST(ChartAxisTest, ARangeHasRoomAroundItsValues) {
-  AxisRangeFinder finder;
-  for (const double value : {2.0, std::nan(""), 12.0, std::log(0.0), 7.0}) {
-    finder.Add(value);
-  }
-  EXPECT_DOUBLE_EQ(finder.Found().low, 1.6);
-  EXPECT_DOUBLE_EQ(finder.Found().high, 12.4);
+  const AxisRange range =
+      RangeOf({2.0, std::nan(""), 12.0, std::log(0.0), 7.0});
+  EXPECT_DOUBLE_EQ(range.low, 1.6);
+  EXPECT_DOUBLE_EQ(range.high, 12.4);
 }
 
 TEST(ChartAxisTest, ARangeOfOneOrNoValueIsWide) {
-  AxisRangeFinder finder;
-  EXPECT_GT(finder.Found().span(), 0.0);
-  finder.Add(3.0);
-  EXPECT_GT(finder.Found().span(), 0.0);
-  EXPECT_EQ(finder.Found().Share(3.0), 0.5);
+  EXPECT_GT(RangeOf({}).span(), 0.0);
+  EXPECT_GT(RangeOf({3.0}).span(), 0.0);
+  EXPECT_EQ(RangeOf({3.0}).Share(3.0), 0.5);
 }
 
 TEST(ChartAxisTest, LinearTicsAreRoundNumbers) {

@@ -89,7 +89,7 @@ TEST(CloudPreviewTest, AMeshKeepsItsCorners) {
   mesh.vertices.resize(300);  // indices need more than 8 bits
   mesh.vertices[299].position = {1.0F, 2.0F, 3.0F};
   mesh.triangles = {{0, 1, 299}, {299, 258, 2}};
-  const nlohmann::json preview = MeshPreview(mesh, Rigid3d());
+  const nlohmann::json preview = MeshPreview(mesh);
   EXPECT_EQ(preview.at("points"), 300);
   EXPECT_EQ(preview.at("triangles"), 2);
   // 0 0 1 0 43 1 | 43 1 2 1 2 0, low bytes first.

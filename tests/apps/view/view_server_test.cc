@@ -43,8 +43,7 @@ ViewNews OneFrame(int index) {
   ViewImages images;
   images.gray = cv::Mat(480, 640, CV_8UC1, cv::Scalar(100));
   images.depth = cv::Mat(480, 640, CV_16UC1, cv::Scalar(10000));
-  images.moves.emplace_back(1, 2, 3, 4);
-  images.weights.push_back(0.5F);
+  images.moves.emplace_back(1, 2, 3, 4, 0.5F);
   news.images = images;
   return news;
 }
