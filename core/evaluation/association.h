@@ -33,11 +33,11 @@ struct PosePair {
 };
 
 // The timestamps of the entries of a list.
-template <typename Stamped>
-std::vector<double> TimesOf(const std::vector<Stamped>& list) {
+template <typename List>
+std::vector<double> TimesOf(const List& list) {
   std::vector<double> times;
   times.reserve(list.size());
-  for (const Stamped& entry : list) times.push_back(entry.timestamp);
+  for (const auto& entry : list) times.push_back(entry.timestamp);
   return times;
 }
 

@@ -119,10 +119,10 @@ std::vector<std::string> SplitText(std::string_view text, char separator) {
   }
 }
 
-std::string Join(const std::vector<std::string>& names) {
+std::string Join(const std::vector<std::string>& names, const char* separator) {
   std::string text;
   for (const std::string& name : names) {
-    text += (text.empty() ? "" : ", ") + name;
+    text += (text.empty() ? "" : separator) + name;
   }
   return text;
 }

@@ -28,7 +28,8 @@ std::string_view WithoutByteOrderMark(std::string_view text);
 std::vector<std::string> SplitText(std::string_view text, char separator);
 
 // Names as a list for a message: "a, b, c".
-std::string Join(const std::vector<std::string>& names);
+std::string Join(const std::vector<std::string>& names,
+                 const char* separator = ", ");
 
 // A finite number that takes up the whole word, independent of the locale.
 // Otherwise throws InputError with the file, the line and `what`.

@@ -3,10 +3,10 @@
 #include <map>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 #include "core/util/units.h"
 #include "frontend/bags/bag_topics.h"
 #include "frontend/bags/ros_image.h"
-#include "frontend/bags/transform_tree.h"
 
 namespace rgbd_pose {
 namespace {
@@ -17,56 +17,47 @@ struct ImageTraits {
   RosImageUse use = RosImageUse::kOther;
 };
 
-ImageTraits TraitsOf(BagReader* bag, int topic) {
+ImageTraits TraitsOf(BagReader* bag, const std::string& topic) {
   const std::vector<BagMessage> first = bag->First(topic, 1);
   if (first.empty()) {
-    throw InputError(bag->path() + ": " + bag->topics()[topic].name +
-                     ": has no messages");
+    throw InputError(bag->path() + ": " + topic + ": has no messages");
   }
   const RosImage image = ReadImageOf(*bag, first.front());
-  return {std::string(image.header.frame_id),
-          UseOfEncoding(std::string(image.encoding))};
+  return {std::string(image.header.frame_id), UseOfEncoding(image.encoding)};
 }
 
-std::optional<Camera> ReadCamera(BagReader* bag, int info_topic,
-                                 int image_topic) {
-  if (info_topic < 0) return std::nullopt;
+std::optional<Camera> ReadCamera(BagReader* bag, const std::string& info_topic,
+                                 const std::string& image_topic) {
+  if (info_topic.empty()) return std::nullopt;
   const std::vector<BagMessage> first = bag->First(info_topic, 1);
   if (first.empty()) return std::nullopt;
   return CameraOfInfo(ReadMessage(*bag, first.front(), ReadRosCameraInfo),
-                      Contains(bag->topics()[image_topic].name, "rect"),
-                      bag->path() + ": " + bag->topics()[info_topic].name);
+                      Contains(image_topic, "rect"),
+                      bag->path() + ": " + info_topic);
 }
 
-// A topic of the RealSense viewer like /device_0/sensor_0/Depth_0/image/data.
-struct ViewerTopic {
-  std::string stream;  // /device_0/sensor_0/Depth_0
-  std::string sensor;  // /device_0/sensor_0
-};
-
-std::optional<ViewerTopic> ViewerTopicOf(const std::string& name) {
+// The stream of an image topic of the RealSense viewer:
+// /device_0/sensor_0/Depth_0 of /device_0/sensor_0/Depth_0/image/data. Empty
+// for other topics.
+std::string ViewerStreamOf(const std::string& topic) {
   const std::string ending = "/image/data";
-  if (name.rfind("/device_", 0) != 0 || name.size() < ending.size() ||
-      name.compare(name.size() - ending.size(), ending.size(), ending) != 0) {
-    return std::nullopt;
+  if (topic.rfind("/device_", 0) != 0 || topic.size() < ending.size() ||
+      topic.compare(topic.size() - ending.size(), ending.size(), ending) != 0) {
+    return "";
   }
-  ViewerTopic topic;
-  topic.stream = name.substr(0, name.size() - ending.size());
-  topic.sensor = topic.stream.substr(0, topic.stream.rfind('/'));
-  return topic;
+  return topic.substr(0, topic.size() - ending.size());
 }
 
 // Raw units per metre, from the inverse that the viewer records as an option.
-std::optional<double> ViewerDepthScale(BagReader* bag, int depth) {
-  const auto viewer = ViewerTopicOf(bag->topics()[depth].name);
-  if (!viewer.has_value()) return std::nullopt;
-  const std::string name = viewer->sensor + "/option/Depth_Units/value";
-  const int topic = bag->FindTopic(name);
-  if (topic < 0) return std::nullopt;
-  const auto first = bag->First(topic, 1);
-  if (first.empty() || bag->topics()[topic].type != "std_msgs/Float32") {
-    return std::nullopt;
-  }
+std::optional<double> ViewerDepthScale(BagReader* bag,
+                                       const std::string& depth) {
+  const std::string stream = ViewerStreamOf(depth);
+  if (stream.empty()) return std::nullopt;
+  const std::string sensor = stream.substr(0, stream.rfind('/'));
+  const BagTopic* topic = bag->FindTopic(sensor + "/option/Depth_Units/value");
+  if (topic == nullptr) return std::nullopt;
+  const auto first = bag->First(topic->name, 1);
+  if (first.empty() || topic->type != "std_msgs/Float32") return std::nullopt;
   const double metres = ReadMessage(*bag, first.front(), [](WireReader reader) {
     return reader.Number<float>();
   });
@@ -76,46 +67,27 @@ std::optional<double> ViewerDepthScale(BagReader* bag, int depth) {
 }
 
 // stream_from_reference of the viewer's topics .../tf/REFERENCE, by reference.
-std::map<std::string, Rigid3d> ViewerTransforms(BagReader* bag, int topic) {
+std::map<std::string, Rigid3d> ViewerTransforms(BagReader* bag,
+                                                const std::string& image) {
   std::map<std::string, Rigid3d> transforms;
-  const auto viewer = ViewerTopicOf(bag->topics()[topic].name);
-  if (!viewer.has_value()) return transforms;
-  const std::string prefix = viewer->stream + "/tf/";
-  for (size_t i = 0; i < bag->topics().size(); ++i) {
-    const BagTopic& candidate = bag->topics()[i];
-    if (candidate.name.rfind(prefix, 0) != 0 ||
-        candidate.type != "geometry_msgs/Transform") {
+  const std::string stream = ViewerStreamOf(image);
+  if (stream.empty()) return transforms;
+  const std::string prefix = stream + "/tf/";
+  for (const BagTopic& topic : bag->topics()) {
+    if (topic.name.rfind(prefix, 0) != 0 ||
+        topic.type != "geometry_msgs/Transform") {
       continue;
     }
-    const auto first = bag->First(static_cast<int>(i), 1);
+    const auto first = bag->First(topic.name, 1);
     if (first.empty()) continue;
     Rigid3d transform = ReadMessage(*bag, first.front(), [](WireReader reader) {
       return ReadRosTransform(&reader);
     });
     if (!transform.IsFinite() || transform.rotation.norm() < 0.5) continue;
     transform.rotation.normalize();
-    transforms[candidate.name.substr(prefix.size())] = transform;
+    transforms[topic.name.substr(prefix.size())] = transform;
   }
   return transforms;
-}
-
-// target_from_source by the transforms at the beginning of the bag.
-std::optional<Rigid3d> FixedTransform(BagReader* bag, const BagTopics& topics,
-                                      const std::string& target,
-                                      const std::string& source) {
-  constexpr int kManyMessages = 500;  // several seconds
-  TransformTree tree;
-  for (const int topic : topics.transforms) {
-    for (const BagMessage& message : bag->First(topic, kManyMessages)) {
-      for (const RosTransform& transform :
-           ReadMessage(*bag, message, ReadRosTransforms)) {
-        tree.Add(std::string(transform.header.frame_id),
-                 std::string(transform.child_frame_id), transform.header.stamp,
-                 transform.parent_from_child);
-      }
-    }
-  }
-  return tree.Fixed(target, source);
 }
 
 // Turns the camera of the full image into the camera of the cropped and binned
@@ -124,12 +96,11 @@ void CropAndBin(const RosCameraInfo& info, Camera* camera) {
   const uint32_t bin_x = std::max(info.binning_x, 1u);
   const uint32_t bin_y = std::max(info.binning_y, 1u);
   const bool is_part = info.roi_width > 0 && info.roi_height > 0;
-  const auto size = [](uint32_t full, uint32_t part, bool is_part,
-                       uint32_t bin) {
-    return static_cast<int>(std::min((is_part ? part : full) / bin, 1u << 20));
+  const auto size = [](uint32_t pixels, uint32_t bin) {
+    return static_cast<int>(std::min(pixels / bin, 1u << 20));
   };
-  camera->width = size(info.width, info.roi_width, is_part, bin_x);
-  camera->height = size(info.height, info.roi_height, is_part, bin_y);
+  camera->width = size(is_part ? info.roi_width : info.width, bin_x);
+  camera->height = size(is_part ? info.roi_height : info.height, bin_y);
   camera->fx /= bin_x;
   camera->fy /= bin_y;
   camera->cx = (camera->cx - info.x_offset + 0.5) / bin_x - 0.5;
@@ -147,12 +118,17 @@ std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
     const auto same = of_color.find(reference);
     if (same != of_color.end()) return same->second * transform.Inverse();
   }
-  const std::string& name = bag->topics()[topics.depth].name;
-  if (color.frame_id == depth.frame_id || IsCalledRegistered(name)) {
+  if (color.frame_id == depth.frame_id || IsCalledRegistered(topics.depth)) {
     return std::nullopt;
   }
-  std::optional<Rigid3d> fixed =
-      FixedTransform(bag, topics, color.frame_id, depth.frame_id);
+  constexpr int kManyMessages = 500;  // several seconds
+  TransformTree tree;
+  for (const std::string& topic : topics.transforms) {
+    for (const BagMessage& message : bag->First(topic, kManyMessages)) {
+      AddTransforms(*bag, message, &tree);
+    }
+  }
+  std::optional<Rigid3d> fixed = tree.Fixed(color.frame_id, depth.frame_id);
   if (!fixed.has_value() && !has_camera) {
     throw InputError(bag->path() + ": no transform from '" + depth.frame_id +
                      "' (depth) to '" + color.frame_id +
@@ -188,7 +164,7 @@ Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
                           model == "plumb_bob" || model == "Brown Conrady" ||
                           model == "rational_polynomial";
     // For fisheye lenses RealSense adds a fifth coefficient, which is 0.
-    std::vector<double> coefficients(info.d.begin(), info.d.end());
+    std::vector<double> coefficients = info.d;
     if (is_equidistant && coefficients.size() == 5 && coefficients[4] == 0.0) {
       coefficients.pop_back();
     }
@@ -222,15 +198,15 @@ std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
     const std::optional<Camera> camera =
         ReadCamera(bag, topics.color_info, topics.color);
     if (!camera.has_value()) {
-      std::string others;
+      std::vector<std::string> others;
       for (const BagTopic& topic : bag->topics()) {
         if (topic.type == "sensor_msgs/CameraInfo") {
-          others += (others.empty() ? "" : ", ") + topic.name;
+          others.push_back(topic.name);
         }
       }
       if (others.empty()) return std::nullopt;  // no CameraInfo
       throw InputError(bag->path() + ": has no CameraInfo next to " +
-                       bag->topics()[topics.color].name + ", only " + others +
+                       topics.color + ", only " + Join(others) +
                        "; choose it (topics=COLOUR,DEPTH,CAMERA_INFO), or give "
                        "a calibration file or a preset (camera)");
     }
@@ -248,10 +224,10 @@ std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
   if (depth_camera.has_value()) {
     setup.depth_camera = DepthCamera{*depth_camera, *color_from_depth};
   } else if (!has_camera) {
-    throw InputError(bag->path() + ": " + bag->topics()[topics.depth].name +
-                     ": is from a different camera than colour and has no "
-                     "CameraInfo; give both cameras (a Kalibr file: camera, "
-                     "depth_camera)");
+    throw InputError(
+        bag->path() + ": " + topics.depth +
+        ": is from a different camera than colour and has no CameraInfo; give "
+        "both cameras (a Kalibr file: camera, depth_camera)");
   }
   return setup;
 }

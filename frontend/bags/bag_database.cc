@@ -3,9 +3,11 @@
 #ifdef RGBD_POSE_HAS_SQLITE
 #include <sqlite3.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
+#include "core/util/text_file.h"
 #include "frontend/bags/chunk_codec.h"
 #endif
 
@@ -102,84 +104,58 @@ class BagDatabase final : public BagReader {
       throw InputError(
           path + ": cannot be opened: " + sqlite3_errmsg(database_.get()));
     }
-    ReadTopics();
-    // Sorting by time without an index would sort whole rows with their data.
-    Rows index(path_, database_.get(), "PRAGMA index_list(messages)");
-    order_ = index.Next() ? " ORDER BY timestamp, id" : " ORDER BY id";
-  }
-
-  std::vector<BagMessage> First(int topic, int count) override {
-    std::vector<BagMessage> first;
-    const auto rows = Query({topic});
-    while (static_cast<int>(first.size()) < count && rows->Next()) {
-      first.push_back(Message(rows.get()));
-    }
-    return first;
-  }
-
-  void Select(const std::vector<int>& topics) override {
-    selected_ = Query(topics);
-  }
-
-  std::optional<BagMessage> Next() override {
-    if (selected_ == nullptr || !selected_->Next()) {
-      selected_.reset();
-      return std::nullopt;
-    }
-    return Message(selected_.get());
-  }
-
- private:
-  struct Close {
-    void operator()(sqlite3* database) const { sqlite3_close(database); }
-  };
-
-  void ReadTopics() {
     Rows rows(path_, database_.get(),
               "SELECT id, name, type, serialization_format FROM topics "
               "ORDER BY id");
     while (rows.Next()) {
       const std::string format = rows.Bytes(3);
       if (format != "cdr") continue;  // unknown format
-      places_[rows.Number(0)] = static_cast<int>(topics_.size());
-      ids_.push_back(rows.Number(0));
       topics_.push_back({rows.Bytes(1), Ros1Type(rows.Bytes(2))});
+      names_[rows.Number(0)] = topics_.back().name;
     }
+    // Sorting by time without an index would sort whole rows with their data.
+    Rows index(path_, database_.get(), "PRAGMA index_list(messages)");
+    order_ = index.Next() ? " ORDER BY timestamp, id" : " ORDER BY id";
   }
 
-  std::unique_ptr<Rows> Query(const std::vector<int>& topics) {
-    std::string ids;
-    for (const int topic : topics) {
-      ids += (ids.empty() ? "" : ",") + std::to_string(ids_[topic]);
+ private:
+  // Databases are closed once their last query has ended.
+  struct Close {
+    void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+  };
+
+  Messages MessagesOf(const std::vector<std::string>& topics) override {
+    std::vector<std::string> ids;
+    for (const auto& [id, name] : names_) {
+      if (std::count(topics.begin(), topics.end(), name) > 0) {
+        ids.push_back(std::to_string(id));
+      }
     }
     // The plus makes sqlite3 go through the messages by time, not by topic.
-    return std::make_unique<Rows>(
+    const auto rows = std::make_shared<Rows>(
         path_, database_.get(),
         "SELECT topic_id, timestamp, data FROM messages WHERE +topic_id IN (" +
-            ids + ")" + order_);
+            Join(ids) + ")" + order_);
+    return [this, rows]() -> std::optional<BagMessage> {
+      if (!rows->Next()) return std::nullopt;
+      return Message(rows.get());
+    };
   }
 
   BagMessage Message(Rows* rows) const {
     BagMessage message;
-    message.topic = places_.at(rows->Number(0));
+    message.topic = names_.at(rows->Number(0));
     message.received = static_cast<double>(rows->Number(1)) * 1e-9;
     std::string bytes = rows->Bytes(2);
-    if (IsZstd(bytes)) {
-      try {
-        bytes = UnpackZstdMessage(bytes);
-      } catch (const InputError& error) {
-        throw InputError(path_ + ": a message: " + error.what());
-      }
-    }
-    message.bytes = std::make_shared<std::string>(std::move(bytes));
+    const auto unpack = [&] { return UnpackMessage(std::move(bytes)); };
+    message.bytes =
+        std::make_shared<std::string>(Located(path_ + ": a message", unpack));
     return message;
   }
 
   std::unique_ptr<sqlite3, Close> database_;
-  std::vector<int64_t> ids_;       // of topics_ in the database
-  std::map<int64_t, int> places_;  // indices into topics_ by id
+  std::map<int64_t, std::string> names_;  // of topics by id
   std::string order_;
-  std::unique_ptr<Rows> selected_;
 };
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <map>
 #include <set>
+#include <utility>
 
 #include "core/util/input_error.h"
 #include "frontend/bags/bag_reader.h"
@@ -33,47 +34,31 @@ bool IsPartOfBag(const fs::path& path, BagKind kind) {
 bool ComesBefore(const fs::path& a, const fs::path& b) {
   const std::string first = a.string();
   const std::string second = b.string();
-  return first.size() != second.size() ? first.size() < second.size()
-                                       : first < second;
+  return std::pair(first.size(), first) < std::pair(second.size(), second);
 }
 
-// A decompressed copy of a file that its recorder compressed as a whole. The
-// copy is in a temporary folder and is removed with this object.
-class UnpackedFile {
- public:
-  explicit UnpackedFile(const fs::path& packed) {
+struct RemoveFolder {
+  void operator()(const fs::path* folder) const {
     std::error_code error;
-    std::string folder =
-        (fs::temp_directory_path(error) / "rgbd_pose-XXXXXX").string();
-    if (mkdtemp(folder.data()) == nullptr) {
-      throw InputError(packed.string() + ": cannot be decompressed to " +
-                       folder + "; set TMPDIR to a writable folder");
-    }
-    folder_ = folder;
-    try {
-      UnpackZstdFile(packed.string(), path(packed).string());
-    } catch (const InputError&) {
-      Remove();
-      throw;
-    }
+    fs::remove_all(*folder, error);
+    delete folder;
   }
-  ~UnpackedFile() { Remove(); }
-  UnpackedFile(const UnpackedFile&) = delete;
-  UnpackedFile& operator=(const UnpackedFile&) = delete;
-
-  // Path of the decompressed copy of `packed`.
-  fs::path path(const fs::path& packed) const {
-    return folder_ / packed.stem();
-  }
-
- private:
-  void Remove() {
-    std::error_code error;
-    fs::remove_all(folder_, error);
-  }
-
-  fs::path folder_;
 };
+
+// The path of a folder that is removed with this object.
+using TemporaryFolder = std::unique_ptr<const fs::path, RemoveFolder>;
+
+// For the decompressed copy of a file that its recorder compressed as a whole.
+TemporaryFolder MakeFolderFor(const fs::path& packed) {
+  std::error_code error;
+  std::string folder =
+      (fs::temp_directory_path(error) / "rgbd_pose-XXXXXX").string();
+  if (mkdtemp(folder.data()) == nullptr) {
+    throw InputError(packed.string() + ": cannot be decompressed to " + folder +
+                     "; set TMPDIR to a writable folder");
+  }
+  return TemporaryFolder(new fs::path(folder));
+}
 
 // Whether files are the parts of one recording: NAME_0.bag, NAME_1.bag, ...
 // NAME may differ between the parts, as it may contain a date.
@@ -125,8 +110,10 @@ class BagFiles final : public BagReader {
       : BagReader(path, WireFormat::kCdr) {
     for (fs::path file : files) {
       if (file.extension() == kPacked) {
-        unpacked_.push_back(std::make_unique<UnpackedFile>(file));
-        file = unpacked_.back()->path(file);
+        unpacked_.push_back(MakeFolderFor(file));
+        const fs::path copy = *unpacked_.back() / file.stem();
+        UnpackZstdFile(file.string(), copy.string());
+        file = copy;
       }
       files_.push_back(OpenFile(file, kind));
       if (files_.size() == 1) format_ = files_.back()->format();
@@ -135,90 +122,59 @@ class BagFiles final : public BagReader {
                          ": has messages of a different ROS version than the "
                          "previous files");
       }
-      std::vector<int>& places = places_.emplace_back();
       for (const BagTopic& topic : files_.back()->topics()) {
-        places.push_back(PlaceOf(topic));
+        if (FindTopic(topic.name) == nullptr) topics_.push_back(topic);
       }
-      if (files.size() > 1) CheckCameras(files_.back().get(), places);
+      if (files.size() > 1) CheckCameras(files_.back().get());
     }
   }
 
-  std::vector<BagMessage> First(int topic, int count) override {
+  std::vector<BagMessage> First(const std::string& topic, int count) override {
     std::vector<BagMessage> first;
-    for (size_t i = 0; i < files_.size(); ++i) {
-      for (const int inner : InnerPlaces(i, {topic})) {
-        const int missing = count - static_cast<int>(first.size());
-        for (BagMessage& message : files_[i]->First(inner, missing)) {
-          message.topic = topic;
-          first.push_back(std::move(message));
-        }
+    for (const auto& file : files_) {
+      if (file->FindTopic(topic) == nullptr) continue;
+      const int missing = count - static_cast<int>(first.size());
+      for (BagMessage& message : file->First(topic, missing)) {
+        first.push_back(std::move(message));
       }
     }
     return first;
   }
 
-  void Select(const std::vector<int>& topics) override {
-    for (size_t i = 0; i < files_.size(); ++i) {
-      files_[i]->Select(InnerPlaces(i, topics));
-    }
-    at_ = 0;
-  }
-
-  std::optional<BagMessage> Next() override {
-    for (; at_ < files_.size(); ++at_) {
-      if (std::optional<BagMessage> message = files_[at_]->Next()) {
-        message->topic = places_[at_][message->topic];
-        return message;
-      }
-    }
-    return std::nullopt;
-  }
-
  private:
-  int PlaceOf(const BagTopic& topic) {
-    if (const int known = FindTopic(topic.name); known >= 0) return known;
-    topics_.push_back(topic);
-    return static_cast<int>(topics_.size() - 1);
+  Messages MessagesOf(const std::vector<std::string>& topics) override {
+    for (const auto& file : files_) file->Select(topics);
+    return [this, at = size_t{0}]() mutable -> std::optional<BagMessage> {
+      for (; at < files_.size(); ++at) {
+        if (auto message = files_[at]->Next()) return message;
+      }
+      return std::nullopt;
+    };
   }
 
   // Checks that the cameras of a file are the same as in the files before.
-  void CheckCameras(BagReader* file, const std::vector<int>& places) {
-    for (size_t i = 0; i < places.size(); ++i) {
-      if (file->topics()[i].type != "sensor_msgs/CameraInfo") continue;
-      const auto first = file->First(static_cast<int>(i), 1);
+  void CheckCameras(BagReader* file) {
+    for (const BagTopic& topic : file->topics()) {
+      if (topic.type != "sensor_msgs/CameraInfo") continue;
+      const auto first = file->First(topic.name, 1);
       if (first.empty()) continue;
       const auto info = ReadMessage(*file, first.front(), ReadRosCameraInfo);
       std::vector<double> camera(info.k.begin(), info.k.end());
       camera.insert(camera.end(), info.d.begin(), info.d.end());
       camera.push_back(info.width);
       camera.push_back(info.height);
-      const auto known = cameras_.emplace(places[i], camera).first;
+      const auto known = cameras_.emplace(topic.name, camera).first;
       if (known->second != camera) {
-        throw InputError(file->path() + ": " + file->topics()[i].name +
+        throw InputError(file->path() + ": " + topic.name +
                          ": is from a different camera than in the previous "
                          "files; move this file to a separate folder");
       }
     }
   }
 
-  // The indices of `topics` within the topics of one file.
-  std::vector<int> InnerPlaces(size_t file,
-                               const std::vector<int>& topics) const {
-    std::vector<int> inner;
-    const std::vector<int>& places = places_[file];
-    for (size_t i = 0; i < places.size(); ++i) {
-      if (std::find(topics.begin(), topics.end(), places[i]) != topics.end()) {
-        inner.push_back(static_cast<int>(i));
-      }
-    }
-    return inner;
-  }
-
-  std::vector<std::unique_ptr<UnpackedFile>> unpacked_;
+  std::vector<TemporaryFolder> unpacked_;
   std::vector<std::unique_ptr<BagReader>> files_;
-  std::vector<std::vector<int>> places_;  // per file: indices into topics_
-  std::map<int, std::vector<double>> cameras_;  // by CameraInfo topic
-  size_t at_ = 0;                               // index of the current file
+  std::map<std::string, std::vector<double>> cameras_;  // by CameraInfo topic
 };
 
 }  // namespace

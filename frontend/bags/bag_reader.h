@@ -1,12 +1,13 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/util/input_error.h"
+#include "core/util/named_values.h"
 #include "frontend/bags/wire_reader.h"
 
 namespace rgbd_pose {
@@ -27,7 +28,7 @@ inline std::string Ros1Type(std::string type) {
 
 // A message as stored in the bag, not yet parsed.
 struct BagMessage {
-  int topic = 0;                             // index into the topics
+  std::string topic;                         // its name
   double received = 0.0;                     // time of the recorder, s
   std::shared_ptr<const std::string> bytes;  // never null
 };
@@ -43,45 +44,64 @@ class BagReader {
 
   WireFormat format() const { return format_; }
 
-  // All topics of the bag, each once.
+  // All topics of the bag.
   const std::vector<BagTopic>& topics() const { return topics_; }
 
-  // Index of the topic of this name in topics(), or -1.
-  int FindTopic(const std::string& name) const {
-    for (size_t i = 0; i < topics_.size(); ++i) {
-      if (topics_[i].name == name) return static_cast<int>(i);
-    }
-    return -1;
+  // The topic of this name, or null.
+  const BagTopic* FindTopic(const std::string& name) const {
+    return FindNamed(topics_, name);
   }
 
   // The first messages of a topic, at most `count`. Does not affect Next.
-  virtual std::vector<BagMessage> First(int topic, int count) = 0;
+  virtual std::vector<BagMessage> First(const std::string& topic, int count) {
+    std::vector<BagMessage> first;
+    const Messages next = MessagesOf({topic});
+    while (static_cast<int>(first.size()) < count) {
+      std::optional<BagMessage> message = next();
+      if (!message.has_value()) break;
+      first.push_back(*std::move(message));
+    }
+    return first;
+  }
 
   // Makes Next return the messages of these topics, starting at the first one.
-  virtual void Select(const std::vector<int>& topics) = 0;
+  void Select(const std::vector<std::string>& topics) {
+    next_ = MessagesOf(topics);
+  }
 
   // The next message in the order of reception; nothing after the last one.
-  virtual std::optional<BagMessage> Next() = 0;
+  std::optional<BagMessage> Next() {
+    if (next_ == nullptr) return std::nullopt;
+    std::optional<BagMessage> message = next_();
+    if (!message.has_value()) next_ = nullptr;
+    return message;
+  }
 
  protected:
+  // Gives the next message at each call; nothing after the last one.
+  using Messages = std::function<std::optional<BagMessage>()>;
+
   BagReader(const std::string& path, WireFormat format)
       : path_(path), format_(format) {}
+
+  // The messages of these topics, from the first one.
+  virtual Messages MessagesOf(const std::vector<std::string>& topics) = 0;
 
   const std::string path_;
   WireFormat format_;
   std::vector<BagTopic> topics_;  // filled in by the derived class
+
+ private:
+  Messages next_;
 };
 
 // Parses a message by `read`, which takes a WireReader. Adds the names of the
 // bag and the topic to an InputError.
 template <typename Read>
 auto ReadMessage(const BagReader& bag, const BagMessage& message, Read read) {
-  try {
+  return Located(bag.path() + ": " + message.topic, [&] {
     return read(WireReader(*message.bytes, bag.format()));
-  } catch (const InputError& error) {
-    throw InputError(bag.path() + ": " + bag.topics()[message.topic].name +
-                     ": " + error.what());
-  }
+  });
 }
 
 // kRos1: .bag files. kRos2: .db3 (sqlite3) and .mcap files; an .mcap file may

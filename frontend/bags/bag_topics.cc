@@ -46,120 +46,108 @@ std::string ListOf(const std::vector<BagTopic>& topics) {
   return Join(names) + (is_long ? ", ..." : "");
 }
 
-// How suitable a topic is as colour or depth; 0: unsuitable.
+// How suitable an image topic is as colour or depth; 0: unsuitable.
 struct Fitness {
+  std::string topic;
   int color = 0;
   int depth = 0;
-  std::string encoding;  // of its images
+  std::string encoding = {};  // of its images
 };
 
-Fitness FitnessOf(BagReader* bag, int index) {
-  const BagTopic& topic = bag->topics()[index];
-  const std::vector<BagMessage> first = bag->First(index, 1);
-  if (first.empty()) return {};
+Fitness FitnessOf(BagReader* bag, const BagTopic& topic) {
+  Fitness fitness{topic.name};
+  const std::vector<BagMessage> first = bag->First(topic.name, 1);
+  if (first.empty()) return fitness;
   const RosImage image = ReadImageOf(*bag, first.front());
   const std::string name = LowerCase(topic.name);
   const bool is_raw = topic.type == kImage;
-  const bool is_called_depth = Contains(name, "depth");
-  RosImageUse use = UseOfEncoding(std::string(image.encoding));
-  if (use == RosImageUse::kGrayOrDepth && is_called_depth) {
-    use = RosImageUse::kDepth;
-  }
-  // The format of a compressed PNG image does not say that it is depth.
-  if (use == RosImageUse::kColor && !is_raw && is_called_depth) {
-    use = RosImageUse::kDepth;
-  }
-  Fitness fitness;
+  const int if_raw = is_raw ? 1 : 0;
   fitness.encoding = image.encoding;
+  RosImageUse use = UseOfEncoding(fitness.encoding);
+  // The format of a compressed PNG image does not say that it is depth.
+  const bool may_be_depth = use == RosImageUse::kGrayOrDepth ||
+                            (use == RosImageUse::kColor && !is_raw);
+  if (may_be_depth && Contains(name, "depth")) use = RosImageUse::kDepth;
   switch (use) {
     case RosImageUse::kColor:
-      fitness.color = 40;
+      fitness.color = 40 + if_raw;
       break;
     case RosImageUse::kGray:
       fitness.color =
-          Contains(name, "infra") || Contains(name, "/ir") ? 10 : 20;
+          (Contains(name, "infra") || Contains(name, "/ir") ? 10 : 20) + if_raw;
       break;
     case RosImageUse::kDepth:
-    case RosImageUse::kMetricDepth: {
-      fitness.depth = IsCalledRegistered(topic.name) ? 40 : 20;
+    case RosImageUse::kMetricDepth:
+      fitness.depth = (IsCalledRegistered(name) ? 40 : 20) + if_raw;
       break;
-    }
     case RosImageUse::kGrayOrDepth:
-      fitness.depth = 5;
+      fitness.depth = 5 + if_raw;
       break;
     case RosImageUse::kOther:
       break;
   }
-  if (fitness.color > 0) fitness.color += is_raw ? 1 : 0;
-  if (fitness.depth > 0) fitness.depth += is_raw ? 1 : 0;
   return fitness;
 }
 
-int Best(const BagReader& bag, const std::vector<Fitness>& fitness,
-         int Fitness::*what, const char* name) {
-  int best = -1;
-  int rival = -1;
-  for (size_t i = 0; i < fitness.size(); ++i) {
-    if (fitness[i].*what == 0) continue;
-    if (best < 0 || fitness[i].*what > fitness[best].*what) {
-      best = static_cast<int>(i);
-      rival = -1;
-    } else if (fitness[i].*what == fitness[best].*what) {
-      rival = static_cast<int>(i);
-    }
+// The name of the topic that is most suitable as `what`, which is a member.
+// Sets `had_choice` if others are suitable, too.
+std::string Best(const BagReader& bag, const std::vector<Fitness>& fitness,
+                 int Fitness::*what, const char* name, bool* had_choice) {
+  int most = 1;
+  for (const Fitness& f : fitness) most = std::max(most, f.*what);
+  std::vector<std::string> best;  // all that are equally suitable
+  std::vector<std::string> encodings;
+  for (const Fitness& f : fitness) {
+    if (f.*what == most) best.push_back(f.topic);
+    if (f.*what > 0 && f.*what < most) *had_choice = true;
+    encodings.push_back(f.topic + " '" + f.encoding + "'");
   }
-  const std::vector<BagTopic>& topics = bag.topics();
-  if (best < 0) {
-    std::string encodings;
-    for (size_t i = 0; i < fitness.size(); ++i) {
-      if (!IsImage(topics[i])) continue;
-      encodings += (encodings.empty() ? " (encodings: " : ", ") +
-                   topics[i].name + " '" + fitness[i].encoding + "'";
-    }
-    if (!encodings.empty()) encodings += ")";
-    throw InputError(bag.path() + ": has no readable " + name +
-                     " images; topics: " + ListOf(topics) + encodings);
+  if (best.empty()) {
+    throw InputError(
+        bag.path() + ": has no readable " + name +
+        " images; topics: " + ListOf(bag.topics()) +
+        (encodings.empty() ? "" : " (encodings: " + Join(encodings) + ")"));
   }
-  if (rival >= 0) {
-    throw InputError(bag.path() + ": both " + topics[best].name + " and " +
-                     topics[rival].name + " may be the " + name +
+  if (best.size() > 1) {
+    throw InputError(bag.path() + ": both " + best.front() + " and " +
+                     best.back() + " may be the " + name +
                      " images; choose with topics=COLOUR,DEPTH from " +
-                     ListOf(topics));
+                     ListOf(bag.topics()));
   }
-  return best;
+  return best.front();
 }
 
 // The CameraInfo topic of an image topic: next to it, or where the RealSense
-// viewer records it. -1 if there is none.
-int InfoOf(const BagReader& bag, int image) {
-  const std::vector<BagTopic>& topics = bag.topics();
-  std::string name = topics[image].name;
+// viewer records it. Empty if there is none.
+std::string InfoOf(const BagReader& bag, const std::string& image) {
+  std::string parent = Parent(image);
   // A compressed topic is one level below the topic of the raw images.
-  if (topics[image].type == kCompressedImage) {
-    const int info = bag.FindTopic(Parent(name) + "/camera_info");
-    if (info >= 0) return info;
-    name = Parent(name);
+  if (bag.FindTopic(image)->type == kCompressedImage) {
+    const std::string info = parent + "/camera_info";
+    if (bag.FindTopic(info) != nullptr) return info;
+    parent = Parent(parent);
   }
-  for (const std::string& candidate :
-       {Parent(name) + "/camera_info",
-        Parent(Parent(name)) + "/info/camera_info"}) {
-    const int info = bag.FindTopic(candidate);
-    if (info >= 0 && topics[info].type == kCameraInfo) return info;
+  for (const std::string& info :
+       {parent + "/camera_info", Parent(parent) + "/info/camera_info"}) {
+    const BagTopic* topic = bag.FindTopic(info);
+    if (topic != nullptr && topic->type == kCameraInfo) return info;
   }
-  return -1;
+  return "";
 }
 
-int TopicNamed(const BagReader& bag, const std::string& name, bool is_image) {
-  const std::vector<BagTopic>& topics = bag.topics();
-  const int index = bag.FindTopic(name);
-  if (index >= 0 &&
-      (is_image ? IsImage(topics[index]) : topics[index].type == kCameraInfo)) {
-    return index;
+// Returns the name if the bag has such a topic of images or of CameraInfo.
+std::string Existing(const BagReader& bag, const std::string& name,
+                     bool is_image) {
+  const BagTopic* topic = bag.FindTopic(name);
+  if (topic != nullptr &&
+      (is_image ? IsImage(*topic) : topic->type == kCameraInfo)) {
+    return name;
   }
-  const std::string has =
-      index < 0 ? "no topic '" + name + "'"
-                : name + " of the unsuitable type " + topics[index].type;
-  throw InputError(bag.path() + ": has " + has + "; topics: " + ListOf(topics));
+  const std::string has = topic == nullptr
+                              ? "no topic '" + name + "'"
+                              : name + " of the unsuitable type " + topic->type;
+  throw InputError(bag.path() + ": has " + has +
+                   "; topics: " + ListOf(bag.topics()));
 }
 
 }  // namespace
@@ -171,42 +159,47 @@ bool IsCalledRegistered(const std::string& topic) {
 }
 
 RosImage ReadImageOf(const BagReader& bag, const BagMessage& message) {
-  const bool is_raw = bag.topics()[message.topic].type == kImage;
+  const bool is_raw = bag.FindTopic(message.topic)->type == kImage;
   return ReadMessage(bag, message,
                      is_raw ? ReadRosImage : ReadRosCompressedImage);
 }
 
+void AddTransforms(const BagReader& bag, const BagMessage& message,
+                   TransformTree* tree) {
+  for (const RosTransform& transform :
+       ReadMessage(bag, message, ReadRosTransforms)) {
+    tree->Add(std::string(transform.header.frame_id),
+              std::string(transform.child_frame_id), transform.header.stamp,
+              transform.parent_from_child);
+  }
+}
+
 BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names) {
-  const std::vector<BagTopic>& topics = bag->topics();
   BagTopics chosen;
   if (names.empty()) {
-    std::vector<Fitness> fitness(topics.size());
-    for (size_t i = 0; i < topics.size(); ++i) {
-      if (IsImage(topics[i])) fitness[i] = FitnessOf(bag, static_cast<int>(i));
+    std::vector<Fitness> fitness;
+    for (const BagTopic& topic : bag->topics()) {
+      if (IsImage(topic)) fitness.push_back(FitnessOf(bag, topic));
     }
-    chosen.color = Best(*bag, fitness, &Fitness::color, "colour");
-    chosen.depth = Best(*bag, fitness, &Fitness::depth, "depth");
-    for (int Fitness::*what : {&Fitness::color, &Fitness::depth}) {
-      chosen.had_choice |=
-          std::count_if(fitness.begin(), fitness.end(),
-                        [what](const Fitness& f) { return f.*what > 0; }) > 1;
-    }
+    chosen.color =
+        Best(*bag, fitness, &Fitness::color, "colour", &chosen.had_choice);
+    chosen.depth =
+        Best(*bag, fitness, &Fitness::depth, "depth", &chosen.had_choice);
   } else {
     if (names.size() < 2 || names.size() > 3) {
       throw InputError(
           "topics: must be COLOUR,DEPTH or COLOUR,DEPTH,CAMERA_INFO, not " +
           std::to_string(names.size()) + " names");
     }
-    chosen.color = TopicNamed(*bag, names[0], true);
-    chosen.depth = TopicNamed(*bag, names[1], true);
+    chosen.color = Existing(*bag, names[0], true);
+    chosen.depth = Existing(*bag, names[1], true);
   }
-  chosen.color_info = names.size() == 3 ? TopicNamed(*bag, names[2], false)
+  chosen.color_info = names.size() == 3 ? Existing(*bag, names[2], false)
                                         : InfoOf(*bag, chosen.color);
   chosen.depth_info = InfoOf(*bag, chosen.depth);
-  for (size_t i = 0; i < topics.size(); ++i) {
-    if (topics[i].type == "tf2_msgs/TFMessage" ||
-        topics[i].type == "tf/tfMessage") {
-      chosen.transforms.push_back(static_cast<int>(i));
+  for (const BagTopic& topic : bag->topics()) {
+    if (topic.type == "tf2_msgs/TFMessage" || topic.type == "tf/tfMessage") {
+      chosen.transforms.push_back(topic.name);
     }
   }
   return chosen;

@@ -7,18 +7,19 @@
 #include "frontend/bags/bag_reader.h"
 #include "frontend/bags/ros_image.h"
 #include "frontend/bags/ros_messages.h"
+#include "frontend/bags/transform_tree.h"
 #include "frontend/files/camera_setup.h"
 
 namespace rgbd_pose {
 
-// The topics of an RGB-D recording in a bag: indices into BagReader::topics.
+// The names of the topics of an RGB-D recording in a bag.
 struct BagTopics {
-  int color = -1;
-  int depth = -1;
-  int color_info = -1;  // CameraInfo; -1: none
-  int depth_info = -1;
-  std::vector<int> transforms;  // /tf and /tf_static
-  bool had_choice = false;      // whether other topics were suitable as well
+  std::string color;
+  std::string depth;
+  std::string color_info;  // CameraInfo; empty: none
+  std::string depth_info;
+  std::vector<std::string> transforms;  // /tf and /tf_static
+  bool had_choice = false;  // whether other topics were suitable as well
 };
 
 // Chooses the topics given by `names` (colour, depth and, unless it is next to
@@ -35,6 +36,10 @@ inline bool Contains(const std::string& name, const char* part) {
 
 // Parses a message of an image topic, compressed or not.
 RosImage ReadImageOf(const BagReader& bag, const BagMessage& message);
+
+// Adds the transforms of a message of /tf or /tf_static to a tree.
+void AddTransforms(const BagReader& bag, const BagMessage& message,
+                   TransformTree* tree);
 
 // Whether the name of a depth topic says that it is registered to colour.
 bool IsCalledRegistered(const std::string& topic);

@@ -58,11 +58,11 @@ bool UnpackBz2(std::string_view packed, std::string* unpacked) {
 
 #else
 
-[[noreturn]] void FailWithout(std::string_view codec) {
-  throw InputError("is compressed with " + std::string(codec) +
-                   ", which this build does not support; install libzstd-dev, "
-                   "liblz4-dev and libbz2-dev (scripts/install_dependencies "
-                   "formats) and build again");
+std::string WhatIsMissing(std::string_view codec) {
+  return "is compressed with " + std::string(codec) +
+         ", which this build does not support; install libzstd-dev, liblz4-dev "
+         "and libbz2-dev (scripts/install_dependencies formats) and build "
+         "again";
 }
 
 #endif
@@ -89,42 +89,38 @@ std::string Unpack(std::string_view packed, std::string_view codec,
   if (!is_whole) throw Damaged(kWhat);
   return unpacked;
 #else
-  FailWithout(codec);
+  throw InputError(WhatIsMissing(codec));
 #endif
 }
 
-bool IsZstd(std::string_view bytes) {
-  return bytes.substr(0, 4) == "\x28\xB5\x2F\xFD";
-}
-
-std::string UnpackZstdMessage(std::string_view packed) {
+std::string UnpackMessage(std::string bytes) {
+  if (bytes.rfind("\x28\xB5\x2F\xFD", 0) != 0) return bytes;
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
   // The codes for an unknown size and for errors are larger than any chunk.
-  const uint64_t size = ZSTD_getFrameContentSize(packed.data(), packed.size());
+  const uint64_t size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
 #else
   const uint64_t size = 0;
 #endif
-  return Unpack(packed, "zstd", size);
+  return Unpack(bytes, "zstd", size);
 }
 
-void UnpackZstdFile(const std::string& packed, const std::string& unpacked) {
+void UnpackZstdFile(const std::string& packed,
+                    [[maybe_unused]] const std::string& unpacked) {
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
   std::ifstream from(packed, std::ios::binary);
   std::ofstream to(unpacked, std::ios::binary);
   const ZstdStream stream(ZSTD_createDStream(), ZSTD_freeDStream);
   std::vector<char> read(ZSTD_DStreamInSize());
   std::vector<char> written(ZSTD_DStreamOutSize());
-  size_t left = 1;  // 0 at the end of a frame
-  while (from.read(read.data(), static_cast<std::streamsize>(read.size())),
-         from.gcount() > 0) {
+  const auto num_read = static_cast<std::streamsize>(read.size());
+  size_t left = 1;  // 0 at the end of a frame, or an error
+  while (!ZSTD_isError(left) && from.read(read.data(), num_read).gcount() > 0) {
     ZSTD_inBuffer in = {read.data(), static_cast<size_t>(from.gcount()), 0};
-    while (in.pos < in.size) {
+    while (!ZSTD_isError(left) && in.pos < in.size) {
       ZSTD_outBuffer out = {written.data(), written.size(), 0};
       left = ZSTD_decompressStream(stream.get(), &out, &in);
-      if (ZSTD_isError(left)) break;
       to.write(written.data(), static_cast<std::streamsize>(out.pos));
     }
-    if (ZSTD_isError(left)) break;
   }
   if (left != 0) {
     throw InputError(packed + ": is damaged or cut off; copy it again");
@@ -135,12 +131,7 @@ void UnpackZstdFile(const std::string& packed, const std::string& unpacked) {
                      "; set TMPDIR to a folder with more space");
   }
 #else
-  static_cast<void>(unpacked);
-  try {
-    FailWithout("zstd");
-  } catch (const InputError& error) {
-    throw InputError(packed + ": " + error.what());
-  }
+  throw InputError(packed + ": " + WhatIsMissing("zstd"));
 #endif
 }
 

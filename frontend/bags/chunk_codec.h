@@ -13,12 +13,9 @@ namespace rgbd_pose {
 std::string Unpack(std::string_view packed, std::string_view codec,
                    uint64_t size);
 
-// Whether bytes are zstd data, as of a file or message compressed as a whole.
-// Uncompressed ROS messages, databases and mcap files begin differently.
-bool IsZstd(std::string_view bytes);
-
-// Decompresses a message compressed by zstd as a whole. Throws as Unpack does.
-std::string UnpackZstdMessage(std::string_view packed);
+// Decompresses a message if it is compressed by zstd as a whole; uncompressed
+// ROS messages begin differently. Throws as Unpack does.
+std::string UnpackMessage(std::string bytes);
 
 // Decompresses a zstd file into another file, piece by piece. Throws InputError
 // as Unpack does, and if the output cannot be written.

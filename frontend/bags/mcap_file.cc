@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
-#include <set>
 #include <utility>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 #include "frontend/bags/bag_reader.h"
 #include "frontend/bags/chunk_codec.h"
 #include "frontend/bags/mcap_format.h"
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+#include <libdeflate.h>
+#endif
 
 namespace rgbd_pose {
 namespace {
@@ -50,11 +53,11 @@ class McapRecords {
     }
   }
 
-  // The channels of the summary at the end of the file; nothing without one.
-  std::optional<McapChannels> ReadSummary() {
+  // The channels of the summary at the end of the file; none without one.
+  // Nothing can be read after it.
+  McapChannels ReadSummary() {
     const uint64_t tail = kRecordHead + kFooterSize + kMcapMagic.size();
-    if (size_ < kMcapMagic.size() + tail) return std::nullopt;
-    const std::streampos before = file_.tellg();
+    if (size_ < kMcapMagic.size() + tail) return {};
     file_.seekg(static_cast<std::streamoff>(size_ - tail));
     const std::optional<Record> footer = ReadRecord();
     uint64_t start = 0;
@@ -71,9 +74,6 @@ class McapRecords {
         }
       }
     }
-    file_.clear();
-    file_.seekg(before);
-    if (channels_.empty()) return std::nullopt;
     return channels_;
   }
 
@@ -97,11 +97,9 @@ class McapRecords {
       try {
         if (record->opcode == kMcapChunk) {
           TakeChunk(record->content);
-        } else if (record->opcode == kMcapMessage) {
-          chunk_ = std::move(record->content);
-          Take(kMcapMessage, chunk_);
         } else {
-          Take(record->opcode, record->content);
+          chunk_ = std::move(record->content);
+          Take(record->opcode, chunk_);
         }
       } catch (const InputError& error) {
         Fail(error.what());
@@ -211,65 +209,52 @@ class McapRecords {
 class McapFile final : public BagReader {
  public:
   explicit McapFile(const std::string& path)
-      : BagReader(path, WireFormat::kCdr), channels_(FindChannels(path)) {
-    std::string encodings;
-    bool is_ros2 = false;
-    for (const auto& [number, channel] : channels_) {
-      is_ros2 = is_ros2 || channel.encoding == "cdr";
-    }
+      : BagReader(path, WireFormat::kCdr) {
+    const McapChannels channels = FindChannels(path);
+    const bool is_ros2 = std::any_of(
+        channels.begin(), channels.end(),
+        [](const auto& row) { return row.second.encoding == "cdr"; });
     format_ = is_ros2 ? WireFormat::kCdr : WireFormat::kRos1;
-    const std::string known = is_ros2 ? "cdr" : "ros1";
-    std::map<std::string, int> places;
-    for (const auto& [number, channel] : channels_) {
-      if (channel.encoding != known) {
-        encodings += (encodings.empty() ? "" : ", ") + channel.encoding;
+    std::vector<std::string> others;  // encodings
+    for (const auto& [number, channel] : channels) {
+      if (channel.encoding != (is_ros2 ? "cdr" : "ros1")) {
+        others.push_back(channel.encoding);
         continue;
       }
       // A topic has one channel per publisher.
-      const auto [place, is_new] =
-          places.emplace(channel.topic, static_cast<int>(topics_.size()));
-      if (is_new) topics_.push_back({channel.topic, Ros1Type(channel.type)});
-      places_[number] = place->second;
+      if (FindTopic(channel.topic) == nullptr) {
+        topics_.push_back({channel.topic, Ros1Type(channel.type)});
+      }
+      names_[number] = channel.topic;
     }
-    if (topics_.empty() && !encodings.empty()) {
-      throw InputError(path + ": has messages encoded as " + encodings +
+    if (topics_.empty() && !others.empty()) {
+      throw InputError(path + ": has messages encoded as " + Join(others) +
                        "; only those of ROS (cdr, ros1) are supported");
     }
   }
 
-  std::vector<BagMessage> First(int topic, int count) override {
+  std::vector<BagMessage> First(const std::string& topic, int count) override {
     std::vector<BagMessage> first;
     McapRecords records(path_);
-    while (static_cast<int>(first.size()) < count) {
-      std::optional<BagMessage> message;
-      try {
-        message = NextOf(&records, {topic});
-      } catch (const InputError&) {
-        // Unless rethrown here, Next reports the error when it reaches it.
-        if (first.empty() && !records.is_cut_off()) throw;
-        break;
+    try {
+      while (static_cast<int>(first.size()) < count) {
+        std::optional<BagMessage> message = NextOf(&records, {topic});
+        if (!message.has_value()) break;
+        first.push_back(*std::move(message));
       }
-      if (!message.has_value()) break;
-      first.push_back(*std::move(message));
+    } catch (const InputError&) {
+      // Unless rethrown here, Next reports the error when it reaches it.
+      if (first.empty() && !records.is_cut_off()) throw;
     }
     return first;
-  }
-
-  void Select(const std::vector<int>& topics) override {
-    selected_ = {topics.begin(), topics.end()};
-    records_ = std::make_unique<McapRecords>(path_);
-  }
-
-  std::optional<BagMessage> Next() override {
-    if (records_ == nullptr) return std::nullopt;
-    return NextOf(records_.get(), selected_);
   }
 
  private:
   // The channels of the summary. Without one the whole file is read once.
   static McapChannels FindChannels(const std::string& path) {
+    McapChannels summary = McapRecords(path).ReadSummary();
+    if (!summary.empty()) return summary;
     McapRecords records(path);
-    if (auto summary = records.ReadSummary()) return *std::move(summary);
     try {
       while (records.Next().has_value()) {
       }
@@ -279,24 +264,37 @@ class McapFile final : public BagReader {
     return records.channels();
   }
 
-  std::optional<BagMessage> NextOf(McapRecords* records,
-                                   const std::set<int>& topics) const {
+  Messages MessagesOf(const std::vector<std::string>& topics) override {
+    const auto records = std::make_shared<McapRecords>(path_);
+    return [this, records, topics] { return NextOf(records.get(), topics); };
+  }
+
+  std::optional<BagMessage> NextOf(
+      McapRecords* records, const std::vector<std::string>& topics) const {
     while (const std::optional<McapMessage> message = records->Next()) {
-      const auto place = places_.find(message->channel);
-      if (place == places_.end() || topics.count(place->second) == 0) continue;
-      return BagMessage{place->second, 1e-9 * message->log_time,
+      const auto name = names_.find(message->channel);
+      if (name == names_.end() ||
+          std::count(topics.begin(), topics.end(), name->second) == 0) {
+        continue;
+      }
+      return BagMessage{name->second, 1e-9 * message->log_time,
                         std::make_shared<std::string>(message->bytes)};
     }
     return std::nullopt;
   }
 
-  McapChannels channels_;
-  std::map<uint16_t, int> places_;  // indices into topics_ by channel id
-  std::set<int> selected_;
-  std::unique_ptr<McapRecords> records_;  // used by Next
+  std::map<uint16_t, std::string> names_;  // of topics by channel id
 };
 
 }  // namespace
+
+uint32_t McapChecksum([[maybe_unused]] std::string_view bytes) {
+#ifdef RGBD_POSE_HAS_LIBDEFLATE
+  return libdeflate_crc32(0, bytes.data(), bytes.size());
+#else
+  return 0;
+#endif
+}
 
 std::unique_ptr<BagReader> OpenMcapFile(const std::string& path) {
   return std::make_unique<McapFile>(path);

@@ -14,7 +14,7 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr std::string_view kVersion = "#ROSBAG V2.0\n";
+constexpr std::string_view kRos1Version = "#ROSBAG V2.0\n";
 
 enum Ros1Op : uint8_t {
   kMessageData = 0x02,
@@ -61,9 +61,9 @@ class Ros1Bag final : public BagReader {
     if (size == 0) throw InputError(path + ": is empty; copy it again");
     size_ = static_cast<uint64_t>(size);
     file_.seekg(0);
-    std::string version(kVersion.size(), '\0');
+    std::string version(kRos1Version.size(), '\0');
     file_.read(version.data(), static_cast<std::streamsize>(version.size()));
-    if (version != kVersion) {
+    if (version != kRos1Version) {
       throw InputError(path + ": is not a ROS 1 bag (of format 2.0)");
     }
     std::string header;
@@ -83,25 +83,6 @@ class Ros1Bag final : public BagReader {
     Guarded([&] { ReadIndex(index); });
   }
 
-  std::vector<BagMessage> First(int topic, int count) override {
-    std::vector<BagMessage> first;
-    Reader reader;
-    reader.topics = {topic};
-    while (static_cast<int>(first.size()) < count) {
-      std::optional<BagMessage> message = NextOf(&reader);
-      if (!message.has_value()) break;
-      first.push_back(*std::move(message));
-    }
-    return first;
-  }
-
-  void Select(const std::vector<int>& topics) override {
-    selected_ = {};
-    selected_.topics = {topics.begin(), topics.end()};
-  }
-
-  std::optional<BagMessage> Next() override { return NextOf(&selected_); }
-
  private:
   struct Chunk {
     uint64_t place = 0;  // offset in the file, bytes
@@ -111,7 +92,7 @@ class Ros1Bag final : public BagReader {
 
   // The state of reading the messages of some topics.
   struct Reader {
-    std::set<int> topics;
+    std::set<uint32_t> connections;               // of the topics
     size_t chunk = 0;                             // the next chunk to read
     std::multimap<uint64_t, BagMessage> waiting;  // of chunks read, by time
   };
@@ -119,12 +100,7 @@ class Ros1Bag final : public BagReader {
   // Runs `call`, which parses parts of the file, and adds advice to its errors.
   template <typename Call>
   void Guarded(Call call) const {
-    try {
-      call();
-    } catch (const InputError& error) {
-      throw InputError(path_ + ": " + error.what() +
-                       ", or try `rosbag reindex`");
-    }
+    Located(path_, call, ", or try `rosbag reindex`");
   }
 
   // Reads a header or data at the current position of the file.
@@ -142,21 +118,18 @@ class Ros1Bag final : public BagReader {
   }
 
   void ReadIndex(uint64_t index) {
-    std::map<std::string, size_t, std::less<>> places;  // by topic
     file_.seekg(static_cast<std::streamoff>(std::min(index, size_)));
     while (static_cast<uint64_t>(file_.tellg()) < size_) {
       const std::string header = ReadBlock();
       const std::string data = ReadBlock();
       const auto op = NumberField<uint8_t>(header, "op");
       if (op == kConnection) {
+        const std::string topic(Field(header, "topic"));
         // A topic has one connection per publisher.
-        const auto [place, is_new] =
-            places.emplace(Field(header, "topic"), topics_.size());
-        if (is_new) {
-          topics_.push_back({place->first, std::string(Field(data, "type"))});
+        if (FindTopic(topic) == nullptr) {
+          topics_.push_back({topic, std::string(Field(data, "type"))});
         }
-        topics_of_[NumberField<uint32_t>(header, "conn")] =
-            static_cast<int>(place->second);
+        topics_of_[NumberField<uint32_t>(header, "conn")] = topic;
       } else if (op == kChunkInfo) {
         Chunk chunk;
         chunk.place = NumberField<uint64_t>(header, "chunk_pos");
@@ -177,9 +150,14 @@ class Ros1Bag final : public BagReader {
         [](const Chunk& a, const Chunk& b) { return a.start < b.start; });
   }
 
-  bool Has(const Reader& reader, uint32_t connection) const {
-    const auto topic = topics_of_.find(connection);
-    return topic != topics_of_.end() && reader.topics.count(topic->second) > 0;
+  Messages MessagesOf(const std::vector<std::string>& topics) override {
+    Reader reader;
+    for (const auto& [connection, topic] : topics_of_) {
+      if (std::count(topics.begin(), topics.end(), topic) > 0) {
+        reader.connections.insert(connection);
+      }
+    }
+    return [this, reader]() mutable { return NextOf(&reader); };
   }
 
   // The next message of the reader. A chunk is loaded when the time of its
@@ -190,8 +168,9 @@ class Ros1Bag final : public BagReader {
            (waiting.empty() ||
             chunks_[reader->chunk].start <= waiting.begin()->first)) {
       const Chunk& chunk = chunks_[reader->chunk++];
-      if (std::any_of(chunk.connections.begin(), chunk.connections.end(),
-                      [&](uint32_t of) { return Has(*reader, of); })) {
+      if (std::any_of(
+              chunk.connections.begin(), chunk.connections.end(),
+              [&](uint32_t of) { return reader->connections.count(of) > 0; })) {
         Load(chunk);
         Guarded([&] { TakeMessages(reader); });
       }
@@ -212,11 +191,9 @@ class Ros1Bag final : public BagReader {
       size = NumberField<uint32_t>(header, "size");
     });
     const std::string_view codec = Field(header, "compression");
-    try {
-      records_ = Unpack(packed, codec == "none" ? "" : codec, size);
-    } catch (const InputError& error) {
-      throw InputError(path_ + ": " + error.what());
-    }
+    records_ = Located(path_, [&] {
+      return Unpack(packed, codec == "none" ? "" : codec, size);
+    });
     loaded_ = &chunk;
   }
 
@@ -228,7 +205,7 @@ class Ros1Bag final : public BagReader {
       const std::string_view data = records.Bytes();
       if (NumberField<uint8_t>(header, "op") != kMessageData) continue;
       const auto connection = NumberField<uint32_t>(header, "conn");
-      if (!Has(*reader, connection)) continue;
+      if (reader->connections.count(connection) == 0) continue;
       const uint64_t time = TimeField(header, "time");
       reader->waiting.emplace(time,
                               BagMessage{topics_of_.at(connection), 1e-9 * time,
@@ -238,11 +215,10 @@ class Ros1Bag final : public BagReader {
 
   std::ifstream file_;
   uint64_t size_ = 0;
-  std::map<uint32_t, int> topics_of_;  // by connection
-  std::vector<Chunk> chunks_;          // in order of time
+  std::map<uint32_t, std::string> topics_of_;  // by connection
+  std::vector<Chunk> chunks_;                  // in order of time
   const Chunk* loaded_ = nullptr;
   std::string records_;  // of the loaded chunk
-  Reader selected_;
 };
 
 }  // namespace

@@ -38,10 +38,6 @@ constexpr Encoding kEncodings[] = {
     {"32FC1", RosImageUse::kMetricDepth, CV_32FC1, -1, -1},
 };
 
-const Encoding* FindEncoding(std::string_view name) {
-  return FindNamed(kEncodings, name);
-}
-
 bool IsCompressed(const RosImage& image) { return image.width == 0; }
 
 // An example of compressed depth is "16UC1; compressedDepth png". Other images
@@ -80,6 +76,7 @@ cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
   if (image.width > kMaxSize || image.height > kMaxSize) {
     throw InputError(name + ": is too large to be an image");
   }
+  if (image.height == 0) throw InputError(name + ": is empty");
   const auto width = static_cast<int>(image.width);
   const auto height = static_cast<int>(image.height);
   if (CV_ELEM_SIZE1(encoding.type) == 1) {  // callers only read the pixels
@@ -97,13 +94,18 @@ cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
   return rows;
 }
 
+// A copy of pixels, converted by a code for cv::cvtColor unless it is -1.
+cv::Mat Converted(const cv::Mat& rows, int code) {
+  if (code < 0) return rows.clone();
+  cv::Mat converted;
+  cv::cvtColor(rows, converted, code);
+  return converted;
+}
+
 // The image file in a compressed message. Only JPEG and PNG, which ROS uses,
 // are accepted; untrusted bytes of other formats are passed to no parser.
 std::string FileIn(std::string_view bytes, const std::string& name) {
-  constexpr std::string_view kJpeg = "\xFF\xD8\xFF";
-  constexpr std::string_view kPng = "\x89PNG";
-  if (bytes.substr(0, kJpeg.size()) != kJpeg &&
-      bytes.substr(0, kPng.size()) != kPng) {
+  if (bytes.rfind("\xFF\xD8\xFF", 0) != 0 && bytes.rfind("\x89PNG", 0) != 0) {
     throw InputError(name + ": is neither a JPEG nor a PNG file");
   }
   return std::string(bytes);
@@ -143,16 +145,17 @@ cv::Mat DecodeCompressedDepth(const RosImage& image, const std::string& name,
 
 }  // namespace
 
-RosImageUse UseOfEncoding(const std::string& encoding) {
+RosImageUse UseOfEncoding(std::string_view encoding) {
   if (IsCompressedDepth(encoding)) {
     return encoding.substr(0, 5) == "32FC1" ? RosImageUse::kMetricDepth
                                             : RosImageUse::kDepth;
   }
-  const Encoding* row = FindEncoding(encoding.substr(0, encoding.find(';')));
+  const Encoding* row =
+      FindNamed(kEncodings, encoding.substr(0, encoding.find(';')));
   if (row != nullptr) return row->use;
-  const bool is_file = encoding.find("jpeg") != std::string::npos ||
-                       encoding.find("jpg") != std::string::npos ||
-                       encoding.find("png") != std::string::npos;
+  const bool is_file = encoding.find("jpeg") != encoding.npos ||
+                       encoding.find("jpg") != encoding.npos ||
+                       encoding.find("png") != encoding.npos;
   return is_file ? RosImageUse::kColor : RosImageUse::kOther;
 }
 
@@ -164,23 +167,13 @@ cv::Mat DecodeRosGray(const RosImage& image, const std::string& name,
     }
     return DecodeGrayImage(FileIn(image.data, name), name, color);
   }
-  const Encoding* encoding = FindEncoding(image.encoding);
+  const Encoding* encoding = FindNamed(kEncodings, image.encoding);
   if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) != CV_8U) {
     throw Unreadable(name, image.encoding, "colour");
   }
   const cv::Mat rows = PixelRows(image, *encoding, name);
-  if (rows.empty()) throw InputError(name + ": is empty");
-  if (color != nullptr) {
-    if (encoding->to_color < 0) {
-      *color = rows.clone();
-    } else {
-      cv::cvtColor(rows, *color, encoding->to_color);
-    }
-  }
-  if (encoding->to_gray < 0) return rows.clone();
-  cv::Mat gray;
-  cv::cvtColor(rows, gray, encoding->to_gray);
-  return gray;
+  if (color != nullptr) *color = Converted(rows, encoding->to_color);
+  return Converted(rows, encoding->to_gray);
 }
 
 cv::Mat DecodeRosDepth(const RosImage& image, const std::string& name,
@@ -190,12 +183,11 @@ cv::Mat DecodeRosDepth(const RosImage& image, const std::string& name,
                ? DecodeCompressedDepth(image, name, depth_scale)
                : DecodeDepthImage(FileIn(image.data, name), name);
   }
-  const Encoding* encoding = FindEncoding(image.encoding);
+  const Encoding* encoding = FindNamed(kEncodings, image.encoding);
   if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) == CV_8U) {
     throw Unreadable(name, image.encoding, "depth");
   }
   cv::Mat rows = PixelRows(image, *encoding, name);
-  if (rows.empty()) throw InputError(name + ": is empty");
   if (encoding->type == CV_16UC1) return rows;
   cv::Mat depth(rows.size(), CV_16UC1);
   for (int y = 0; y < rows.rows; ++y) {

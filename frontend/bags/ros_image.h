@@ -2,6 +2,7 @@
 
 #include <opencv2/core.hpp>
 #include <string>
+#include <string_view>
 
 #include "frontend/bags/ros_messages.h"
 
@@ -16,7 +17,7 @@ enum class RosImageUse {
   kGrayOrDepth,  // mono16 may be either
   kOther,        // cannot be read
 };
-RosImageUse UseOfEncoding(const std::string& encoding);
+RosImageUse UseOfEncoding(std::string_view encoding);
 
 // Default scale to which depth in metres is converted, raw units per metre. The
 // resolution is 0.2 mm; pixels farther than 13.1 m get no depth.

@@ -82,9 +82,9 @@ Rigid3d ReadRosTransform(WireReader* reader) {
 std::vector<RosTransform> ReadRosTransforms(WireReader reader) {
   constexpr size_t kLeastBytes = 72;  // with empty names
   constexpr double kMaxNormError = 0.01;
-  std::vector<RosTransform> transforms(reader.Count(kLeastBytes));
-  size_t used = 0;
-  for (size_t i = 0; i < transforms.size(); ++i) {
+  const uint32_t count = reader.Count(kLeastBytes);
+  std::vector<RosTransform> transforms;
+  for (uint32_t i = 0; i < count; ++i) {
     RosTransform transform;
     transform.header = ReadHeader(&reader);
     transform.child_frame_id = ReadFrameId(&reader);
@@ -93,9 +93,8 @@ std::vector<RosTransform> ReadRosTransforms(WireReader reader) {
     const double error = std::abs(motion.rotation.norm() - 1.0);
     if (!motion.IsFinite() || !(error < kMaxNormError)) continue;
     motion.rotation.normalize();
-    transforms[used++] = transform;
+    transforms.push_back(transform);
   }
-  transforms.resize(used);
   return transforms;
 }
 

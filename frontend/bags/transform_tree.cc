@@ -36,47 +36,43 @@ void TransformTree::Add(const std::string& parent, const std::string& child,
   samples.insert(place, {stamp, parent_from_child});
 }
 
-std::vector<std::string> TransformTree::Above(const std::string& frame) const {
-  std::vector<std::string> above = {frame};
-  // The limit ends the loop if the frames form a cycle.
+std::optional<std::vector<const TransformTree::Edge*>> TransformTree::Up(
+    const std::string& frame, const std::string& top) const {
+  std::vector<const Edge*> edges;
+  for (const std::string* at = &frame; *at != top;) {
+    const auto edge = edges_.find(*at);
+    // The limit ends the loop if the frames form a cycle.
+    if (edge == edges_.end() || edges.size() == edges_.size()) {
+      return std::nullopt;
+    }
+    edges.push_back(&edge->second);
+    at = &edge->second.parent;
+  }
+  return edges;
+}
+
+std::vector<std::pair<std::string, Rigid3d>> TransformTree::FixedAbove(
+    const std::string& frame) const {
+  std::vector<std::pair<std::string, Rigid3d>> above = {{frame, Rigid3d()}};
   while (above.size() <= edges_.size()) {
-    const auto edge = edges_.find(above.back());
-    if (edge == edges_.end()) break;
-    above.push_back(edge->second.parent);
+    const auto& [name, name_from_frame] = above.back();
+    const auto edge = edges_.find(name);
+    if (edge == edges_.end() || edge->second.moves) break;
+    above.emplace_back(
+        edge->second.parent,
+        edge->second.samples.front().world_from_cam * name_from_frame);
   }
   return above;
 }
 
-std::optional<std::vector<const TransformTree::Edge*>> TransformTree::Up(
-    const std::string& frame, const std::string& top) const {
-  std::vector<const Edge*> edges;
-  for (const std::string& next : Above(frame)) {
-    if (next == top) return edges;
-    const auto edge = edges_.find(next);
-    if (edge != edges_.end()) edges.push_back(&edge->second);
-  }
-  return std::nullopt;
-}
-
 std::optional<Rigid3d> TransformTree::Fixed(const std::string& target,
                                             const std::string& source) const {
-  for (const std::string& common : Above(target)) {
-    const auto to_target = Up(target, common);
-    const auto to_source = Up(source, common);
-    if (!to_source.has_value()) continue;
-    Rigid3d common_from_target;
-    for (const Edge* edge : *to_target) {
-      if (edge->moves) return std::nullopt;
-      common_from_target =
-          edge->samples.front().world_from_cam * common_from_target;
+  const auto above_source = FixedAbove(source);
+  for (const auto& [common, common_from_target] : FixedAbove(target)) {
+    for (const auto& [name, name_from_source] : above_source) {
+      if (name != common) continue;
+      return common_from_target.Inverse() * name_from_source;
     }
-    Rigid3d common_from_source;
-    for (const Edge* edge : *to_source) {
-      if (edge->moves) return std::nullopt;
-      common_from_source =
-          edge->samples.front().world_from_cam * common_from_source;
-    }
-    return common_from_target.Inverse() * common_from_source;
   }
   return std::nullopt;
 }

@@ -3,6 +3,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
@@ -39,8 +40,10 @@ class TransformTree {
   std::optional<std::vector<const Edge*>> Up(const std::string& frame,
                                              const std::string& top) const;
 
-  // The frame and all frames above it.
-  std::vector<std::string> Above(const std::string& frame) const;
+  // The frame and those above it in which it does not move, with the motion
+  // from the frame to them.
+  std::vector<std::pair<std::string, Rigid3d>> FixedAbove(
+      const std::string& frame) const;
 
   std::map<std::string, Edge> edges_;  // by child frame
 };

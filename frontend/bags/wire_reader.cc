@@ -4,14 +4,10 @@
 #include <cstring>
 
 namespace rgbd_pose {
-namespace {
-
-constexpr bool kHostIsBigEndian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
-
-}  // namespace
 
 WireReader::WireReader(std::string_view message, WireFormat format)
     : rest_(message), format_(format) {
+  constexpr bool kHostIsBigEndian = __BYTE_ORDER__ == __ORDER_BIG_ENDIAN__;
   if (format == WireFormat::kRos1) {
     swaps_ = kHostIsBigEndian;
     return;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -53,18 +52,14 @@ void ReadDistortion(const YamlSection& file, const std::string& key,
 Camera ReadCameraInfoFile(const YamlSection& file) {
   const std::string model = file.Word(
       "distortion_model", {"plumb_bob", "rational_polynomial", "equidistant"});
-  Camera camera;
-  camera.width = file.Pixels("image_width");
-  camera.height = file.Pixels("image_height");
+  const int width = file.Pixels("image_width");
+  const int height = file.Pixels("image_height");
   const YamlSection matrix = file.Child("camera_matrix");
   const std::vector<double> k = matrix.Numbers("data", {9});
   if (k[1] != 0.0 || k[3] != 0.0 || k[6] != 0.0 || k[7] != 0.0 || k[8] != 1.0) {
     matrix.Fail("data", "must read [fx 0 cx 0 fy cy 0 0 1], row by row");
   }
-  camera.fx = k[0];
-  camera.fy = k[4];
-  camera.cx = k[2];
-  camera.cy = k[5];
+  Camera camera = {width, height, k[0], k[4], k[2], k[5]};
   const bool is_equidistant = model == "equidistant";
   ReadDistortion(file.Child("distortion_coefficients"), "data",
                  is_equidistant         ? std::vector<size_t>{4}
@@ -79,15 +74,11 @@ Camera ReadKalibr(const YamlSection& file, const std::string& name) {
   cam.Word("camera_model", {"pinhole"});
   const std::string model =
       cam.Word("distortion_model", {"radtan", "equidistant"});
-  Camera camera;
   const std::vector<double> size = cam.Numbers("resolution", {2});
-  camera.width = cam.Pixels("resolution", size[0]);
-  camera.height = cam.Pixels("resolution", size[1]);
-  const std::vector<double> intrinsics = cam.Numbers("intrinsics", {4});
-  camera.fx = intrinsics[0];
-  camera.fy = intrinsics[1];
-  camera.cx = intrinsics[2];
-  camera.cy = intrinsics[3];
+  const int width = cam.Pixels("resolution", size[0]);
+  const int height = cam.Pixels("resolution", size[1]);
+  const std::vector<double> k = cam.Numbers("intrinsics", {4});
+  Camera camera = {width, height, k[0], k[1], k[2], k[3]};
   ReadDistortion(cam, "distortion_coeffs", {4}, model == "equidistant",
                  &camera);
   return camera;
@@ -96,7 +87,7 @@ Camera ReadKalibr(const YamlSection& file, const std::string& name) {
 // camera_from_previous of a camera other than the first, from a 4 x 4 matrix.
 Rigid3d ReadKalibrMotion(const YamlSection& file, const std::string& name) {
   const YamlSection cam = file.Child(name);
-  const std::vector<double> m = cam.Matrix("T_cn_cnm1", 4, 4);
+  const std::vector<double> m = cam.Matrix("T_cn_cnm1");
   Eigen::Matrix3d rotation;
   rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
   const bool is_rigid =
@@ -165,16 +156,13 @@ void CheckSize(const YamlSection& file, const std::string& key, double size,
 }
 
 // Exposure times of the rows of colour and depth.
-void ReadShutters(const YamlSection& file, CameraSetup* setup) {
-  RgbdCamera read;
+void ReadShutters(const YamlSection& file, RgbdCamera* camera) {
   for (const ShutterParameter& parameter : kShutterParameters) {
-    double* const value = &(read.*parameter.image.*parameter.value);
+    double* const value = &(camera->*parameter.image.*parameter.value);
     *value = file.NumberOr(parameter.name, 0.0);
     CheckSize(file, parameter.name, std::abs(*value), parameter.most, "s");
-    read.color_shutter.is_known |= file.Has(parameter.name);
+    camera->color_shutter.is_known |= file.Has(parameter.name);
   }
-  setup->color_shutter = read.color_shutter;
-  setup->depth_shutter = read.depth_shutter;
 }
 
 // The errors of depth found by rgbd_calibrate.
@@ -206,11 +194,12 @@ CameraSetup ReadCameraFile(const std::string& path,
 CameraSetup ReadCameraText(const std::string& text, const std::string& path,
                            const std::string& depth_camera) {
   const YamlSection file = YamlSection::FromText(text, path);
-  CameraSetup result;
-  result.camera = ReadAnyLayout(path, file);
-  result.depth_scale = ReadDepthScale(file);
-  result.depth_correction = ReadDepthCorrection(file);
-  ReadShutters(file, &result);
+  RgbdCamera camera = {ReadAnyLayout(path, file)};
+  const std::optional<double> depth_scale = ReadDepthScale(file);
+  camera.depth_correction = ReadDepthCorrection(file);
+  ReadShutters(file, &camera);
+  CameraSetup result(camera);
+  result.depth_scale = depth_scale;
   RequireSound(result.camera.Check(), path + ": ");
   if (depth_camera.empty() && file.Has("cam0") && file.Has("cam1")) {
     throw InputError(path +
@@ -226,26 +215,25 @@ CameraSetup ReadCameraText(const std::string& text, const std::string& path,
 
 CameraSetup ResolveCameraSetup(const std::string& file_or_preset,
                                const std::string& depth_camera) {
-  std::error_code error;
   const auto preset = CameraPreset(file_or_preset);
-  if (!preset && std::filesystem::exists(file_or_preset, error)) {
+  if (!preset && PathExists(file_or_preset)) {
     return ReadCameraFile(file_or_preset, depth_camera);
   }
-  // Presets have registered depth. Their depth scale, which comes from the
-  // benchmark, is dropped: the scale of a recording takes precedence.
-  if (preset && IsOfColor(depth_camera)) {
-    CameraSetup setup(*preset);
-    setup.depth_scale.reset();
-    return setup;
+  if (!preset) {
+    throw InputError("camera '" + file_or_preset +
+                     "' is neither a file nor one of the presets: " +
+                     Join(CameraPresetNames()));
   }
-  if (preset) {
+  if (!IsOfColor(depth_camera)) {
     throw InputError("camera '" + file_or_preset +
                      "' is a preset and has no depth camera '" + depth_camera +
                      "'; give a Kalibr file of both cameras");
   }
-  throw InputError("camera '" + file_or_preset +
-                   "' is neither a file nor one of the presets: " +
-                   Join(CameraPresetNames()));
+  // Presets have registered depth. Their depth scale, which comes from the
+  // benchmark, is dropped: the scale of a recording takes precedence.
+  CameraSetup setup(*preset);
+  setup.depth_scale.reset();
+  return setup;
 }
 
 RgbdCamera ResolveCamera(const std::string& file_or_preset) {

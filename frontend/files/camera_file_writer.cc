@@ -22,6 +22,44 @@ namespace {
 using YamlLines =
     std::vector<std::pair<std::string, std::string>>;  // key, value
 
+// The keys that are the same in all layouts, see RgbdLines.
+const std::vector<std::string>& RgbdKeys() {
+  static const std::vector<std::string> keys = {
+      "color_time_offset", "color_readout",        "depth_time_offset",
+      "depth_readout",     "inverse_depth_offset", "depth_rotation",
+      "depth_translation"};
+  return keys;
+}
+
+// Formats a number with all significant digits.
+std::string Digits(double value) { return Format("%.10g", value); }
+
+std::string List(const Eigen::Vector3d& v) {
+  return "[" + Join({Digits(v.x()), Digits(v.y()), Digits(v.z())}) + "]";
+}
+
+// The lines with these keys.
+std::string RgbdLines(const RgbdCamera& camera) {
+  std::string lines;
+  const auto add = [&lines](const std::string& key, const std::string& value) {
+    lines += key + ": " + value + "\n";
+  };
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    const double value = camera.*parameter.image.*parameter.value;
+    if (value != 0.0 || camera.color_shutter.is_known) {
+      add(parameter.name, Digits(value));
+    }
+  }
+  const double offset = camera.depth_correction.inverse_depth_offset;
+  if (offset != 0.0) add("inverse_depth_offset", Digits(offset));
+  const Rigid3d& moved = camera.depth_correction.depth_from_color;
+  if (!moved.IsIdentity()) {
+    add("depth_rotation", List(RotationVector(moved.rotation)));
+    add("depth_translation", List(moved.translation));
+  }
+  return lines;
+}
+
 // The index of the line of a key, if it is within `lines`.
 std::optional<size_t> LineOf(const YAML::Node& file, const std::string& key,
                              const std::vector<std::string>& lines) {
@@ -34,14 +72,12 @@ std::optional<size_t> LineOf(const YAML::Node& file, const std::string& key,
 }
 
 // Replaces values in the text of a file and keeps all other lines. `file` is
-// the parsed text. Missing keys of `values` are added unless they are 0, the
-// lines of `left_out` are removed and those of `more` are added. The result is
-// correct only if each of these keys has a line of its own. In general keys may
-// share a line, and a value may span lines or have an anchor used by others.
+// the parsed text. Missing keys of `values` are added unless they are 0, and
+// the lines of RgbdKeys are replaced by RgbdLines. The result is correct only
+// if each of these keys has a line of its own. In general keys may share a
+// line, and a value may span lines or have an anchor used by others.
 std::string EditLines(const std::string& text, const YAML::Node& file,
-                      const YamlLines& values,
-                      const std::vector<std::string>& left_out,
-                      const YamlLines& more) {
+                      const YamlLines& values, const RgbdCamera& camera) {
   std::stringstream in(text);
   std::vector<std::string> lines;
   for (std::string line; std::getline(in, line);) {
@@ -49,9 +85,8 @@ std::string EditLines(const std::string& text, const YAML::Node& file,
     lines.push_back(line);
   }
   std::vector<bool> is_left_out(lines.size(), false);
-  for (const std::string& key : left_out) {
-    const std::optional<size_t> line = LineOf(file, key, lines);
-    if (line.has_value()) is_left_out[*line] = true;
+  for (const std::string& key : RgbdKeys()) {
+    if (const auto line = LineOf(file, key, lines)) is_left_out[*line] = true;
   }
   size_t last = 0;  // the last changed line
   std::string added;
@@ -67,7 +102,7 @@ std::string EditLines(const std::string& text, const YAML::Node& file,
         (comment == std::string::npos ? "" : lines[*line].substr(comment));
     last = std::max(last, *line);
   }
-  for (const auto& [key, value] : more) added += key + ": " + value + "\n";
+  added += RgbdLines(camera);
   std::string result;
   for (size_t i = 0; i < lines.size(); ++i) {
     if (!is_left_out[i]) result += lines[i] + "\n";
@@ -80,17 +115,19 @@ std::string EditLines(const std::string& text, const YAML::Node& file,
 // keys may refer to it.
 
 // Sets the value of one key.
-void Set(YAML::Node* map, const std::string& key, const YAML::Node& value) {
+template <typename Value>
+void Set(YAML::Node* map, const std::string& key, const Value& value) {
+  const YAML::Node node(value);
   YAML::Node result(YAML::NodeType::Map);
   result.SetStyle(map->Style());
   bool is_there = false;
   for (const auto& entry : *map) {
     const bool is_it = entry.first.Scalar() == key;
     if (is_it && is_there) continue;  // only the first one counts
-    result.force_insert(entry.first, is_it ? value : entry.second);
+    result.force_insert(entry.first, is_it ? node : entry.second);
     is_there |= is_it;
   }
-  if (!is_there) result.force_insert(key, value);
+  if (!is_there) result.force_insert(key, node);
   map->reset(result);
 }
 
@@ -106,44 +143,7 @@ void Remove(YAML::Node* map, const std::vector<std::string>& keys) {
   map->reset(result);
 }
 
-// Formats a number with all significant digits.
-std::string Digits(double value) { return Format("%.10g", value); }
-
-std::string List(const std::vector<double>& values) {
-  std::string text = "[";
-  for (size_t i = 0; i < values.size(); ++i) {
-    text += (i > 0 ? ", " : "") + Digits(values[i]);
-  }
-  return text + "]";
-}
-
-std::vector<double> ToList(const Eigen::Vector3d& v) {
-  return {v.x(), v.y(), v.z()};
-}
-
-// The lines that are the same in all layouts.
-YamlLines RgbdLines(const RgbdCamera& camera) {
-  YamlLines lines;
-  const auto add = [&lines](const char* key, double value, bool is_said) {
-    if (value != 0.0 || is_said) lines.emplace_back(key, Digits(value));
-  };
-  for (const ShutterParameter& parameter : kShutterParameters) {
-    add(parameter.name, camera.*parameter.image.*parameter.value,
-        camera.color_shutter.is_known);
-  }
-  add("inverse_depth_offset", camera.depth_correction.inverse_depth_offset,
-      false);
-  const Rigid3d& moved = camera.depth_correction.depth_from_color;
-  if (!moved.IsIdentity()) {
-    lines.emplace_back("depth_rotation",
-                       List(ToList(RotationVector(moved.rotation))));
-    lines.emplace_back("depth_translation", List(ToList(moved.translation)));
-  }
-  return lines;
-}
-
-YamlLines OrbSlamLines(const RgbdCamera& rgbd, const std::string& prefix) {
-  const Camera& camera = rgbd.camera;
+YamlLines OrbSlamLines(const Camera& camera, const std::string& prefix) {
   YamlLines lines;
   for (const CameraParameter& parameter : kCameraParameters) {
     lines.emplace_back(prefix + parameter.name,
@@ -155,15 +155,6 @@ YamlLines OrbSlamLines(const RgbdCamera& rgbd, const std::string& prefix) {
   lines.emplace_back("Camera.width", std::to_string(camera.width));
   lines.emplace_back("Camera.height", std::to_string(camera.height));
   return lines;
-}
-
-// The keys of RgbdLines.
-const std::vector<std::string>& RgbdKeys() {
-  static const std::vector<std::string> keys = {
-      "color_time_offset", "color_readout",        "depth_time_offset",
-      "depth_readout",     "inverse_depth_offset", "depth_rotation",
-      "depth_translation"};
-  return keys;
 }
 
 YAML::Node ToNode(const std::vector<double>& values) {
@@ -181,15 +172,12 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
   const Camera& c = rgbd.camera;
   const std::vector<double> coefficients = c.Distortion();
   const bool is_equidistant = c.lens_model == LensModel::kEquidistant;
-  const auto set = [](YAML::Node* map, const char* key, const auto& value) {
-    Set(map, key, YAML::Node(value));
-  };
-  for (const auto& [key, value] : values) Set(&file, key, YAML::Node(value));
+  for (const auto& [key, value] : values) Set(&file, key, value);
   if (is_of_orb_slam) {
     // This layout has no nested keys.
   } else if (file["camera_matrix"].IsDefined()) {
-    set(&file, "image_width", c.width);
-    set(&file, "image_height", c.height);
+    Set(&file, "image_width", c.width);
+    Set(&file, "image_height", c.height);
     YAML::Node matrix = file["camera_matrix"];
     Set(&matrix, "data",
         ToNode({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0}));
@@ -197,10 +185,10 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
     YAML::Node distortion = file["distortion_coefficients"];
     Set(&distortion, "data", ToNode(coefficients));
     if (distortion["cols"].IsDefined()) {
-      set(&distortion, "cols", coefficients.size());
+      Set(&distortion, "cols", coefficients.size());
     }
     Set(&file, "distortion_coefficients", distortion);
-    set(&file, "distortion_model",
+    Set(&file, "distortion_model",
         is_equidistant             ? "equidistant"
         : coefficients.size() == 5 ? "plumb_bob"
                                    : "rational_polynomial");
@@ -212,7 +200,7 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
     // If radtan cannot hold all coefficients, Says returns false later.
     Set(&cam0, "distortion_coeffs",
         ToNode({coefficients.begin(), coefficients.begin() + 4}));
-    set(&cam0, "distortion_model", is_equidistant ? "equidistant" : "radtan");
+    Set(&cam0, "distortion_model", is_equidistant ? "equidistant" : "radtan");
     Set(&cam0, "resolution",
         ToNode({static_cast<double>(c.width), static_cast<double>(c.height)}));
     Set(&file, "cam0", cam0);
@@ -221,12 +209,29 @@ std::string EditNodes(const RgbdCamera& rgbd, const std::string& text,
   file.SetStyle(YAML::EmitterStyle::Block);
   // The first line of OpenCV's files, which is not valid YAML.
   const bool is_of_opencv = text.rfind("%YAML", 0) == 0;
-  std::string result = is_of_opencv ? "%YAML:1.0\n---\n" : "";
-  result += YAML::Dump(file) + "\n";
-  for (const auto& [key, value] : RgbdLines(rgbd)) {
-    result += key + ": " + value + "\n";
+  const std::string result = is_of_opencv ? "%YAML:1.0\n---\n" : "";
+  return result + YAML::Dump(file) + "\n" + RgbdLines(rgbd);
+}
+
+// All numbers of a camera except the motion of its depth correction.
+std::vector<double> NumbersOf(const RgbdCamera& rgbd) {
+  const Camera& camera = rgbd.camera;
+  const bool has_known_times = rgbd.color_shutter.is_known ||
+                               !rgbd.color_shutter.IsGlobal() ||
+                               !rgbd.depth_shutter.IsGlobal();
+  std::vector<double> numbers = {static_cast<double>(camera.lens_model),
+                                 static_cast<double>(camera.width),
+                                 static_cast<double>(camera.height),
+                                 rgbd.depth_scale,
+                                 rgbd.depth_correction.inverse_depth_offset,
+                                 has_known_times ? 1.0 : 0.0};
+  for (const CameraParameter& parameter : kCameraParameters) {
+    numbers.push_back(camera.*parameter.value);
   }
-  return result;
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    numbers.push_back(rgbd.*parameter.image.*parameter.value);
+  }
+  return numbers;
 }
 
 // Whether reading a text gives this camera.
@@ -240,30 +245,11 @@ bool Says(const std::string& text, const RgbdCamera& camera) {
   const auto is_same = [](double a, double b) {
     return std::abs(a - b) <= 1e-8 * (1.0 + std::abs(b));
   };
-  const auto are_times_known = [](const RgbdCamera& rgbd) {
-    return rgbd.color_shutter.is_known || !rgbd.color_shutter.IsGlobal() ||
-           !rgbd.depth_shutter.IsGlobal();
-  };
-  const auto is_same_shutter = [&](const Shutter& a, const Shutter& b) {
-    return is_same(a.offset, b.offset) && is_same(a.readout, b.readout);
-  };
-  for (const CameraParameter& parameter : kCameraParameters) {
-    if (!is_same(read.camera.*parameter.value,
-                 camera.camera.*parameter.value)) {
-      return false;
-    }
-  }
-  const DepthCorrection &a = read.depth_correction,
-                        &b = camera.depth_correction;
-  const Rigid3d between = a.depth_from_color.Inverse() * b.depth_from_color;
-  return read.camera.lens_model == camera.camera.lens_model &&
-         read.camera.width == camera.camera.width &&
-         read.camera.height == camera.camera.height &&
-         is_same(read.depth_scale, camera.depth_scale) &&
-         is_same(a.inverse_depth_offset, b.inverse_depth_offset) &&
-         is_same_shutter(read.color_shutter, camera.color_shutter) &&
-         is_same_shutter(read.depth_shutter, camera.depth_shutter) &&
-         are_times_known(read) == are_times_known(camera) &&
+  const std::vector<double> found = NumbersOf(read);
+  const std::vector<double> wanted = NumbersOf(camera);
+  const Rigid3d between = read.depth_correction.depth_from_color.Inverse() *
+                          camera.depth_correction.depth_from_color;
+  return std::equal(found.begin(), found.end(), wanted.begin(), is_same) &&
          is_same(between.Angle(), 0.0) &&
          is_same(between.translation.norm(), 0.0);
 }
@@ -284,11 +270,10 @@ std::optional<std::string> Edited(const RgbdCamera& camera,
           : "DepthMapFactor";
   const bool is_of_orb_slam = file.Has(prefix + "fx");
   YamlLines values;
-  if (is_of_orb_slam) values = OrbSlamLines(camera, prefix);
+  if (is_of_orb_slam) values = OrbSlamLines(camera.camera, prefix);
   values.emplace_back(scale, Digits(camera.depth_scale));
   if (is_of_orb_slam) {
-    const std::string lines =
-        EditLines(text, file.node(), values, RgbdKeys(), RgbdLines(camera));
+    const std::string lines = EditLines(text, file.node(), values, camera);
     if (Says(lines, camera)) return lines;
   }
   const std::string rewritten =
@@ -308,11 +293,11 @@ std::string FormatCameraFile(const RgbdCamera& camera,
         "# The layout of the original file cannot represent this camera.\n"
         "# Other entries of that file are not included.\n";
   }
-  YamlLines values = OrbSlamLines(camera, "Camera.");
+  YamlLines values = OrbSlamLines(camera.camera, "Camera.");
   values.emplace_back("DepthMapFactor", Digits(camera.depth_scale));
   const std::string first = "%YAML:1.0\n";
-  std::string text = EditLines(first, YAML::Node(YAML::NodeType::Map), values,
-                               {}, RgbdLines(camera));
+  std::string text =
+      EditLines(first, YAML::Node(YAML::NodeType::Map), values, camera);
   return text.insert(first.size(), why);
 }
 

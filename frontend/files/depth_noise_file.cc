@@ -41,8 +41,7 @@ DepthNoiseModel ReadDepthNoiseFile(const std::string& path) {
 }
 
 DepthNoiseModel ResolveDepthNoise(const std::string& name_or_file) {
-  const DepthNoiseModel* row = FindDepthNoiseModel(name_or_file);
-  if (row != nullptr) return *row;
+  if (const auto* row = FindDepthNoiseModel(name_or_file)) return *row;
   std::error_code error;
   if (std::filesystem::is_regular_file(name_or_file, error)) {
     return ReadDepthNoiseFile(name_or_file);

@@ -15,8 +15,7 @@ namespace rgbd_pose {
 namespace {
 
 bool IsJpeg(std::string_view bytes) {
-  constexpr std::string_view kJpegStart = "\xFF\xD8\xFF";
-  return bytes.substr(0, kJpegStart.size()) == kJpegStart;
+  return bytes.rfind("\xFF\xD8\xFF", 0) == 0;
 }
 
 // OpenCV fills the missing rest of a JPEG with grey and reports success, so
@@ -37,7 +36,7 @@ bool IsOfKnownKind(std::string_view bytes) {
   using std::string_view_literals::operator""sv;
   for (const std::string_view start : {"\x89PNG\r\n\x1A\n"sv, "\xFF\xD8\xFF"sv,
                                        "BM"sv, "II*\0"sv, "MM\0*"sv}) {
-    if (bytes.substr(0, start.size()) == start) return true;
+    if (bytes.rfind(start, 0) == 0) return true;
   }
   const bool is_webp = bytes.substr(0, 4) == "RIFF" && bytes.size() > 8 &&
                        bytes.substr(8, 4) == "WEBP";
@@ -68,14 +67,13 @@ cv::Mat DecodeByOpenCv(const std::string& bytes, const std::string& path,
 cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
                cv::Mat* color) {
   if (bytes.empty()) throw InputError(path + ": is empty; copy it again");
+  const bool is_gray = (flags & ~cv::IMREAD_ANYDEPTH) == cv::IMREAD_GRAYSCALE;
   bool is_damaged = IsCutOffJpeg(bytes);
 #ifdef RGBD_POSE_HAS_LIBDEFLATE
-  PngUse use = PngUse::kOther;
-  const int depth_or_not = flags & ~cv::IMREAD_ANYDEPTH;  // 8 bits in any case
-  if (depth_or_not == cv::IMREAD_GRAYSCALE) {
-    use = color == nullptr ? PngUse::kGray : PngUse::kGrayAndColor;
-  }
-  if (flags == cv::IMREAD_UNCHANGED) use = PngUse::kDepth;
+  const PngUse use = flags == cv::IMREAD_UNCHANGED ? PngUse::kDepth
+                     : !is_gray                    ? PngUse::kOther
+                     : color == nullptr            ? PngUse::kGray
+                                                   : PngUse::kGrayAndColor;
   const DecodedPng png = DecodePng(bytes, use);
   if (!png.image.empty()) {
     if (color != nullptr) *color = png.color;
@@ -91,7 +89,6 @@ cv::Mat Decode(const std::string& bytes, const std::string& path, int flags,
                      ": is damaged, cut off or not in a supported format "
                      "(PNG, JPEG, TIFF, BMP, PGM, PPM, WebP)");
   }
-  const bool is_gray = (flags & ~cv::IMREAD_ANYDEPTH) == cv::IMREAD_GRAYSCALE;
   // JPEG stores grey levels by the same formula, with less loss than colours.
   if (!is_gray || IsJpeg(bytes)) {
     if (color != nullptr) {

@@ -33,9 +33,8 @@ struct PngImage {
 
 // What a file contains according to its chunks.
 enum class PngContent {
-  kNoPng,
   kDamaged,
-  kOther,  // an image that is not decoded here for the given use
+  kOther,  // no PNG or one that is not decoded here for the given use
   kOurs,
 };
 
@@ -52,13 +51,6 @@ struct Chunk {
   std::string_view data;
   bool is_intact = false;  // whether the checksum is correct
 };
-
-bool SkipSignature(std::string_view* bytes) {
-  constexpr std::string_view kSignature = "\x89PNG\r\n\x1A\n";
-  if (bytes->substr(0, kSignature.size()) != kSignature) return false;
-  bytes->remove_prefix(kSignature.size());
-  return true;
-}
 
 // Removes the next chunk from `bytes`. False if it is incomplete.
 bool NextChunk(std::string_view* bytes, Chunk* chunk) {
@@ -106,17 +98,11 @@ bool IsOurs(const PngImage& png, PngUse use) {
          (png.color_type == kPngRgb || png.color_type == kPngGray);
 }
 
-// Chunks needed to decode the image begin with a capital letter.
-bool IsCritical(const Chunk& chunk) { return (chunk.type[0] & 0x20) == 0; }
-
-// Other chunks that do not affect pixel values, unlike a colour space.
-bool IsComment(const Chunk& chunk) {
-  return chunk.type == "pHYs" || chunk.type == "tIME" || chunk.type == "tEXt";
-}
-
 // Reads all chunks. If the result is kOurs, `png` has the compressed bytes.
 PngContent ReadPngChunks(std::string_view bytes, PngUse use, PngImage* png) {
-  if (!SkipSignature(&bytes)) return PngContent::kNoPng;
+  constexpr std::string_view kSignature = "\x89PNG\r\n\x1A\n";
+  if (bytes.rfind(kSignature, 0) != 0) return PngContent::kOther;
+  bytes.remove_prefix(kSignature.size());
   Chunk chunk;
   if (!NextChunk(&bytes, &chunk) || chunk.type != "IHDR" || !chunk.is_intact ||
       !ReadHeader(chunk.data, png)) {
@@ -125,12 +111,17 @@ PngContent ReadPngChunks(std::string_view bytes, PngUse use, PngImage* png) {
   bool is_ours = IsOurs(*png, use);
   if (is_ours) png->compressed.reserve(bytes.size());
   while (NextChunk(&bytes, &chunk)) {
-    if (IsCritical(chunk) && !chunk.is_intact) return PngContent::kDamaged;
+    // Chunks needed to decode the image begin with a capital letter.
+    const bool is_critical = (chunk.type[0] & 0x20) == 0;
+    if (is_critical && !chunk.is_intact) return PngContent::kDamaged;
     if (chunk.type == "IEND") {
       return is_ours ? PngContent::kOurs : PngContent::kOther;
     }
     if (chunk.type != "IDAT") {
-      is_ours &= IsComment(chunk) && chunk.is_intact;
+      // Other chunks may affect pixel values, such as a colour space.
+      is_ours &=
+          chunk.is_intact && (chunk.type == "pHYs" || chunk.type == "tIME" ||
+                              chunk.type == "tEXt");
     } else if (is_ours) {
       png->compressed += chunk.data;
     }
@@ -194,12 +185,6 @@ bool Unfilter(int filter, const uint8_t* up_row, uint8_t* row, int size) {
   }
 }
 
-struct FreeDecompressor {
-  void operator()(libdeflate_decompressor* decompressor) const {
-    libdeflate_free_decompressor(decompressor);
-  }
-};
-
 // Decompresses an image of `size` bytes. Null if there are fewer or they are
 // damaged. `has_more`: whether there are more.
 std::unique_ptr<uint8_t[]> Decompress(const PngImage& png, size_t size,
@@ -209,8 +194,10 @@ std::unique_ptr<uint8_t[]> Decompress(const PngImage& png, size_t size,
   constexpr size_t kMaxRatio = 1032;
   if (size / kMaxRatio > png.compressed.size()) return nullptr;
   std::unique_ptr<uint8_t[]> rows(new uint8_t[size]);
-  const std::unique_ptr<libdeflate_decompressor, FreeDecompressor> decompressor(
-      libdeflate_alloc_decompressor());
+  const std::unique_ptr<libdeflate_decompressor,
+                        void (*)(libdeflate_decompressor*)>
+      decompressor(libdeflate_alloc_decompressor(),
+                   libdeflate_free_decompressor);
   if (decompressor == nullptr) return nullptr;
   const libdeflate_result result = libdeflate_zlib_decompress(
       decompressor.get(), png.compressed.data(), png.compressed.size(),

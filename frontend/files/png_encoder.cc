@@ -52,17 +52,12 @@ std::string FilteredRows(const cv::Mat& image) {
   return rows;
 }
 
-struct FreeCompressor {
-  void operator()(libdeflate_compressor* compressor) const {
-    libdeflate_free_compressor(compressor);
-  }
-};
-
 std::string Compress(const std::string& bytes) {
   // The next levels take 50 % more time to save a few percent of size.
   constexpr int kFastest = 1;
-  const std::unique_ptr<libdeflate_compressor, FreeCompressor> compressor(
-      libdeflate_alloc_compressor(kFastest));
+  const std::unique_ptr<libdeflate_compressor, void (*)(libdeflate_compressor*)>
+      compressor(libdeflate_alloc_compressor(kFastest),
+                 libdeflate_free_compressor);
   if (compressor == nullptr) throw std::bad_alloc();
   std::string compressed(
       libdeflate_zlib_compress_bound(compressor.get(), bytes.size()), '\0');

@@ -1,5 +1,6 @@
 #include "frontend/files/yaml_section.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/util/input_error.h"
@@ -14,11 +15,6 @@ std::string WithoutDirective(std::string_view content) {
   std::string text(WithoutByteOrderMark(content));
   if (text.rfind("%YAML", 0) == 0) text.erase(0, text.find_first_of("\r\n"));
   return text;
-}
-
-void Append(const std::string& word, const char* separator, std::string* list) {
-  if (!list->empty()) *list += separator;
-  *list += word;
 }
 
 }  // namespace
@@ -65,33 +61,29 @@ double YamlSection::NumberOr(const std::string& key, double fallback) const {
 std::vector<double> YamlSection::Numbers(
     const std::string& key, const std::vector<size_t>& lengths) const {
   const YAML::Node list = Find(key);
-  std::string wanted;
-  for (const size_t length : lengths) {
-    if (list.IsSequence() && list.size() == length) {
-      std::vector<double> numbers;
-      for (const auto& item : list) numbers.push_back(ToNumber(key, item));
-      return numbers;
-    }
-    Append(std::to_string(length), " or ", &wanted);
+  if (!list.IsSequence() ||
+      std::count(lengths.begin(), lengths.end(), list.size()) == 0) {
+    std::vector<std::string> wanted;
+    for (const size_t length : lengths)
+      wanted.push_back(std::to_string(length));
+    Fail(key, "needs a list of " + Join(wanted, " or ") + " numbers");
   }
-  Fail(key, "needs a list of " + wanted + " numbers");
+  std::vector<double> numbers;
+  for (const auto& item : list) numbers.push_back(ToNumber(key, item));
+  return numbers;
 }
 
-std::vector<double> YamlSection::Matrix(const std::string& key, size_t rows,
-                                        size_t columns) const {
+std::vector<double> YamlSection::Matrix(const std::string& key) const {
   const YAML::Node list = Find(key);
-  if (list.IsSequence() && list.size() == rows * columns) {
-    return Numbers(key, {rows * columns});
-  }
+  if (list.IsSequence() && list.size() == 16) return Numbers(key, {16});
   std::vector<double> numbers;
   for (size_t i = 0; list.IsSequence() && i < list.size(); ++i) {
     const YAML::Node row = list[i];
-    if (!row.IsSequence() || row.size() != columns) break;
+    if (!row.IsSequence() || row.size() != 4) break;
     for (const auto& item : row) numbers.push_back(ToNumber(key, item));
   }
-  if (numbers.size() == rows * columns && list.size() == rows) return numbers;
-  Fail(key, "needs a list of " + std::to_string(rows) + " lists of " +
-                std::to_string(columns) + " numbers");
+  if (numbers.size() == 16 && list.size() == 4) return numbers;
+  Fail(key, "needs a list of 4 lists of 4 numbers");
 }
 
 int YamlSection::Pixels(const std::string& key) const {
@@ -110,12 +102,8 @@ std::string YamlSection::Word(const std::string& key,
                               const std::vector<std::string>& known) const {
   if (!Has(key)) return known.front();
   const std::string value = node_[key].Scalar();
-  std::string list;
-  for (const std::string& word : known) {
-    if (value == word) return word;
-    Append(word, ", ", &list);
-  }
-  Fail(key, "'" + value + "' is not supported, only: " + list);
+  if (std::count(known.begin(), known.end(), value) > 0) return value;
+  Fail(key, "'" + value + "' is not supported, only: " + Join(known));
 }
 
 void YamlSection::Fail(const std::string& key,

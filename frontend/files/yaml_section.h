@@ -31,10 +31,8 @@ class YamlSection {
   std::vector<double> Numbers(const std::string& key,
                               const std::vector<size_t>& lengths) const;
 
-  // A matrix, row by row: a list of `rows` lists of `columns` numbers each, or
-  // one list of all numbers.
-  std::vector<double> Matrix(const std::string& key, size_t rows,
-                             size_t columns) const;
+  // A 4 x 4 matrix, row by row: a list of 4 lists of numbers, or of 16 numbers.
+  std::vector<double> Matrix(const std::string& key) const;
 
   // A positive whole number of pixels: the value of a key, or a number already
   // read from there.

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <exception>
 #include <utility>
 
@@ -6,8 +5,6 @@
 #include "core/util/input_error.h"
 #include "frontend/bags/bag_topics.h"
 #include "frontend/bags/ros_image.h"
-#include "frontend/bags/ros_messages.h"
-#include "frontend/bags/transform_tree.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/image_pairing.h"
 #include "frontend/sources/source_kinds.h"
@@ -17,23 +14,18 @@ namespace {
 
 constexpr char kWorld[] = "world";
 
-std::string Seconds(double seconds) { return Format("%.6f s", seconds); }
-
-CameraSetup Setup(BagReader* bag, const BagTopics& topics,
-                  const SourceOptions& options) {
-  return ChooseCamera(options,
-                      CameraOfBag(bag, topics, options.camera.has_value()));
-}
-
 class BagSource final : public FrameSource {
  public:
   BagSource(std::unique_ptr<BagReader> bag, const SourceOptions& options)
       : bag_(std::move(bag)),
         topics_(ChooseTopics(bag_.get(), options.topics)),
         max_time_difference_(options.max_time_difference),
-        assembly_(Setup(bag_.get(), topics_, options), options.keep_color),
+        assembly_(
+            ChooseCamera(options, CameraOfBag(bag_.get(), topics_,
+                                              options.camera.has_value())),
+            options.keep_color),
         pairing_(options.max_time_difference) {
-    std::vector<int> wanted = topics_.transforms;
+    std::vector<std::string> wanted = topics_.transforms;
     wanted.push_back(topics_.color);
     wanted.push_back(topics_.depth);
     bag_->Select(wanted);
@@ -55,55 +47,62 @@ class BagSource final : public FrameSource {
     is_over_ = true;
     if (error_ != nullptr) std::rethrow_exception(error_);
     if (num_frames_ > 0) return std::nullopt;
-    throw InputError(bag_->path() + ": none of " + std::to_string(num_color_) +
-                     " colour images is within " +
-                     Seconds(max_time_difference_) + " of one of " +
-                     std::to_string(num_depth_) +
-                     " depth images; the first ones are " +
-                     Seconds(first_depth_ - first_color_) +
-                     " apart; do they use the same clock?");
+    throw InputError(
+        bag_->path() +
+        Format(": none of %d colour images is within %.6f s of one of %d depth "
+               "images; the first ones are %.6f s apart; do they use the same "
+               "clock?",
+               color_.images, max_time_difference_, depth_.images,
+               depth_.first - color_.first));
   }
 
   const RgbdCamera& camera() const override { return assembly_.camera(); }
 
   Trajectory ground_truth() const override {
-    return transforms_.PathOf(kWorld, color_frame_);
+    return transforms_.PathOf(kWorld, color_.frame);
   }
 
   int unmatched_color() const override { return pairing_.unmatched_color(); }
 
   std::vector<std::string> remarks() const override {
     std::vector<std::string> lines;
-    const std::string& color = bag_->topics()[topics_.color].name;
-    const std::string& depth = bag_->topics()[topics_.depth].name;
     if (topics_.had_choice) {
-      lines.push_back(bag_->path() + ": colour is " + color + ", depth " +
-                      depth + "; choose others with topics=COLOUR,DEPTH");
+      lines.push_back(bag_->path() + ": colour is " + topics_.color +
+                      ", depth " + topics_.depth +
+                      "; choose others with topics=COLOUR,DEPTH");
     }
-    if (IsCalledRegistered(depth) && num_color_ > 0 && num_depth_ > 0 &&
-        color_frame_ != depth_frame_) {
-      lines.push_back(
-          bag_->path() + ": " + depth +
-          " is assumed to be registered to colour because of its name, but its "
-          "frame is '" +
-          depth_frame_ + "', that of colour '" + color_frame_ + "'");
+    if (IsCalledRegistered(topics_.depth) && color_.images > 0 &&
+        depth_.images > 0 && color_.frame != depth_.frame) {
+      lines.push_back(bag_->path() + ": " + topics_.depth +
+                      " is assumed to be registered to colour because of its "
+                      "name, but its frame is '" +
+                      depth_.frame + "', that of colour '" + color_.frame +
+                      "'");
     }
     if (pairing_.same_stamp() > 0) {
       lines.push_back(SameStampRemark(bag_->path(), pairing_.same_stamp()));
     }
     if (pairing_.late() > 0) {
       lines.push_back(
-          bag_->path() + ": " + std::to_string(pairing_.late()) +
-          " depth images are more than " +
-          std::to_string(static_cast<int>(ImagePairing::kMaxSeconds)) +
-          " s or " + std::to_string(ImagePairing::kMaxBytes >> 20) +
-          " MiB behind colour images of the same time; rewrite the bag in the "
-          "order of its header stamps");
+          bag_->path() +
+          Format(
+              ": %d depth images are more than %g s or %zu MiB behind colour "
+              "images of the same time; rewrite the bag in the order of its "
+              "header stamps",
+              pairing_.late(), ImagePairing::kMaxSeconds,
+              ImagePairing::kMaxBytes >> 20));
     }
     return lines;
   }
 
  private:
+  // What was read of an image topic.
+  struct Stream {
+    int images = 0;
+    double first = 0.0;  // stamp of the first image, s
+    std::string frame;   // frame_id of the first image
+  };
+
   // Reads the next message. Returns false if the bag has ended before.
   bool ReadOn() {
     if (is_read_) return false;
@@ -129,30 +128,20 @@ class BagSource final : public FrameSource {
   void Add(const BagMessage& message) {
     const bool is_color = message.topic == topics_.color;
     if (!is_color && message.topic != topics_.depth) {
-      for (const RosTransform& transform :
-           ReadMessage(*bag_, message, ReadRosTransforms)) {
-        transforms_.Add(std::string(transform.header.frame_id),
-                        std::string(transform.child_frame_id),
-                        transform.header.stamp, transform.parent_from_child);
-      }
+      AddTransforms(*bag_, message, &transforms_);
       return;
     }
     const RosHeader header = ReadImageOf(*bag_, message).header;
     // Without a stamp in the header, the time of recording is used.
     const double stamp = header.stamp > 0.0 ? header.stamp : message.received;
+    Stream& stream = is_color ? color_ : depth_;
+    if (stream.images++ == 0) {
+      stream.first = stamp;
+      stream.frame = header.frame_id;
+    }
     if (!is_color) {
-      if (num_depth_++ == 0) {
-        first_depth_ = stamp;
-        depth_frame_ = header.frame_id;
-      }
       pairing_.AddDepth({stamp, message.bytes});
-      return;
-    }
-    if (num_color_++ == 0) {
-      first_color_ = stamp;
-      color_frame_ = header.frame_id;
-    }
-    if (!pairing_.AddColor({stamp, message.bytes})) {
+    } else if (!pairing_.AddColor({stamp, message.bytes})) {
       throw InputError(NameOf(message.topic, stamp) + ": is more than " +
                        std::to_string(ImagePairing::kWindow) +
                        " images out of order; rewrite the bag in the order of "
@@ -162,12 +151,12 @@ class BagSource final : public FrameSource {
 
   RgbdFrame MakeFrame(const StampedPair& pair) {
     const int index = num_frames_++;
-    last_stamp_ = pair.color.stamp;
+    last_stamp_ = pair.color.timestamp;
     return {last_stamp_, [this, index, pair] {
               const std::string color_name =
-                  NameOf(topics_.color, pair.color.stamp);
+                  NameOf(topics_.color, pair.color.timestamp);
               const std::string depth_name =
-                  NameOf(topics_.depth, pair.depth.stamp);
+                  NameOf(topics_.depth, pair.depth.timestamp);
               cv::Mat color;
               const cv::Mat gray = DecodeRosGray(
                   ReadImageOf(*bag_, {topics_.color, 0.0, pair.color.message}),
@@ -178,31 +167,26 @@ class BagSource final : public FrameSource {
               Frame frame = assembly_.Make({gray, color_name}, color,
                                            {depth, depth_name});
               frame.index = index;
-              frame.timestamp = pair.color.stamp;
-              frame.depth_delay = pair.depth.stamp - pair.color.stamp;
+              frame.timestamp = pair.color.timestamp;
+              frame.depth_delay = pair.depth.timestamp - pair.color.timestamp;
               return frame;
             }};
   }
 
-  std::string NameOf(int topic, double stamp) const {
-    return bag_->path() + ": " + bag_->topics()[topic].name + " at " +
-           Seconds(stamp);
+  std::string NameOf(const std::string& topic, double stamp) const {
+    return bag_->path() + ": " + topic + Format(" at %.6f s", stamp);
   }
 
   std::unique_ptr<BagReader> bag_;
   BagTopics topics_;
   double max_time_difference_;
-  std::string color_frame_;  // frame_id of the first image
-  std::string depth_frame_;
   FrameAssembly assembly_;
   ImagePairing pairing_;
   TransformTree transforms_;
-  int num_color_ = 0;
-  int num_depth_ = 0;
+  Stream color_;
+  Stream depth_;
   int num_frames_ = 0;
-  double first_color_ = 0.0;  // stamps, s
-  double first_depth_ = 0.0;
-  double last_stamp_ = 0.0;    // of the last frame
+  double last_stamp_ = 0.0;    // of the last frame, s
   std::exception_ptr damage_;  // error of the last message
   std::exception_ptr error_;   // error of the bag
   bool is_read_ = false;       // to its end

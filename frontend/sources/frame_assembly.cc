@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "frontend/files/image_file.h"
 #include "frontend/frame/depth_warper.h"
@@ -10,14 +11,16 @@
 namespace rgbd_pose {
 namespace {
 
-void CheckSize(const FrameAssembly::Named& named, int width, int height,
+cv::Size SizeOf(const Camera& camera) { return {camera.width, camera.height}; }
+
+void CheckSize(const FrameAssembly::Named& named, const cv::Size& size,
                const char* camera) {
-  if (named.image.cols == width && named.image.rows == height) return;
-  throw InputError(named.name + ": is " + std::to_string(named.image.cols) +
-                   " x " + std::to_string(named.image.rows) + " pixels, the " +
-                   camera + " has " + std::to_string(width) + " x " +
-                   std::to_string(height) +
-                   "; is it the right camera file or preset?");
+  if (named.image.size() == size) return;
+  throw InputError(named.name +
+                   Format(": is %d x %d pixels, the %s has %d x %d; is it the "
+                          "right camera file or preset?",
+                          named.image.cols, named.image.rows, camera,
+                          size.width, size.height));
 }
 
 // Raw depths after an offset (1/m) is added to their inverse.
@@ -59,20 +62,18 @@ Frame CorrectDepth(const RgbdCamera& camera, Frame frame) {
 
 FrameAssembly::FrameAssembly(const CameraSetup& setup, bool keep_color)
     : camera_(RegisteredCamera(setup)),
-      depth_width_(camera_.camera.width),
-      depth_height_(camera_.camera.height),
+      depth_size_(SizeOf(camera_.camera)),
       keep_color_(keep_color) {
   if (!setup.depth_camera.has_value()) return;
-  depth_width_ = setup.depth_camera->camera.width;
-  depth_height_ = setup.depth_camera->camera.height;
+  depth_size_ = SizeOf(setup.depth_camera->camera);
   registration_ =
       std::make_shared<DepthRegistration>(*setup.depth_camera, camera_.camera);
 }
 
 Frame FrameAssembly::Make(const Named& gray, const cv::Mat& color,
                           const Named& depth) const {
-  CheckSize(gray, camera_.camera.width, camera_.camera.height, "camera");
-  CheckSize(depth, depth_width_, depth_height_,
+  CheckSize(gray, SizeOf(camera_.camera), "camera");
+  CheckSize(depth, depth_size_,
             registration_ == nullptr ? "camera" : "depth camera");
   Frame frame;
   frame.gray = gray.image;

@@ -46,8 +46,7 @@ class FrameAssembly {
 
  private:
   RgbdCamera camera_;
-  int depth_width_;
-  int depth_height_;
+  cv::Size depth_size_;
   bool keep_color_;
   std::shared_ptr<const DepthRegistration> registration_;  // null: not needed
 };

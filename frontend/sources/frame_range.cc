@@ -19,38 +19,35 @@ struct End {
   double value = 0.0;
 };
 
-// Removes an end from the front of the text. Returns false if it is invalid.
-bool TakeEnd(std::string_view* text, End* end) {
-  if (text->empty() || text->front() == '-') return true;  // no end is given
-  const char* begin = text->data();
-  const auto [rest, error] = std::from_chars(
-      begin, begin + text->size(), end->value, std::chars_format::fixed);
-  if (error != std::errc()) return text->front() == ':';
-  text->remove_prefix(rest - begin);
+// Returns false if the text is invalid; if it is empty, no end is given.
+bool ParseEnd(std::string_view text, End* end) {
+  if (text.empty()) return true;
   end->is_given = true;
-  if (!text->empty() && text->front() == 's') {
-    end->is_time = true;
-    text->remove_prefix(1);
-  }
+  end->is_time = text.back() == 's';
+  if (end->is_time) text.remove_suffix(1);
+  const char* const stop = text.data() + text.size();
+  const auto [rest, error] =
+      std::from_chars(text.data(), stop, end->value, std::chars_format::fixed);
   const bool is_number =
       end->is_time || (end->value == std::floor(end->value) &&
                        end->value < std::numeric_limits<int>::max());
-  return std::isfinite(end->value) && end->value >= 0.0 && is_number;
+  return error == std::errc() && rest == stop && std::isfinite(end->value) &&
+         end->value >= 0.0 && is_number;
 }
 
 bool Parse(std::string_view text, FrameRange* range) {
+  const size_t dash = text.find('-');
+  const size_t colon = std::min(text.find(':'), text.size());
   End first;
   End last;
-  if (!TakeEnd(&text, &first) || text.empty() || text.front() != '-') {
+  if (dash > colon || !ParseEnd(text.substr(0, dash), &first) ||
+      !ParseEnd(text.substr(dash + 1, colon - dash - 1), &last)) {
     return false;
   }
-  text.remove_prefix(1);
-  if (!TakeEnd(&text, &last)) return false;
-  if (!text.empty()) {
-    const char* end = text.data() + text.size();
-    if (text.front() != ':') return false;
+  if (colon < text.size()) {
+    const char* const end = text.data() + text.size();
     const auto [rest, error] =
-        std::from_chars(text.data() + 1, end, range->step);
+        std::from_chars(text.data() + colon + 1, end, range->step);
     if (error != std::errc() || rest != end || range->step < 1) return false;
   }
   if (!first.is_given && !last.is_given) return false;
@@ -80,12 +77,7 @@ class PartialSource final : public FrameSource {
       std::optional<RgbdFrame> next = whole_->Next();
       if (!next.has_value()) return std::nullopt;
       if (!picker_.Takes(next->timestamp)) continue;
-      const int index = num_taken_++;
-      return RgbdFrame{next->timestamp, [read = std::move(next->read), index] {
-                         Frame frame = read();
-                         frame.index = index;
-                         return frame;
-                       }};
+      return next->WithIndex(num_taken_++);
     }
     return std::nullopt;
   }

@@ -19,6 +19,15 @@ struct RgbdFrame {
   // other frames, while the source exists. Throws InputError if an image is
   // unreadable or does not fit the camera.
   std::function<Frame()> read;
+
+  // The same frame with another index.
+  RgbdFrame WithIndex(int index) const {
+    return {timestamp, [read = read, index] {
+              Frame frame = read();
+              frame.index = index;
+              return frame;
+            }};
+  }
 };
 
 // A source of RGB-D frames: a recording, a simulation or a camera. The time

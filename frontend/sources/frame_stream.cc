@@ -1,10 +1,10 @@
 #include "frontend/sources/frame_stream.h"
 
 #include <algorithm>
-#include <chrono>
 #include <utility>
 
 #include "core/util/format.h"
+#include "core/util/stage_timer.h"
 #include "core/util/worker.h"
 
 namespace rgbd_pose {
@@ -124,18 +124,15 @@ void FrameStream::ReadOne(Lock* lock) {
   if (!next.has_value()) return;
 
   lock->unlock();
-  const auto start = std::chrono::steady_clock::now();
   result.failed = Result::kRead;
   try {
+    const StageTimer timer(&result.frame.decode_ms);
     result.frame.frame = PreparedFrame(next->read());
     result.failed = Result::kPrepare;
     if (prepare_) prepare_(result.frame.frame);
   } catch (...) {
     result.error = std::current_exception();
   }
-  result.frame.decode_ms = std::chrono::duration<double, std::milli>(
-                               std::chrono::steady_clock::now() - start)
-                               .count();
   lock->lock();
   ready_.emplace(index, std::move(result));
   changed_.notify_all();

@@ -41,8 +41,6 @@ class FrameStream {
 
   // Discards the frames that were not requested; waits for those being read.
   ~FrameStream();
-  FrameStream(const FrameStream&) = delete;
-  FrameStream& operator=(const FrameStream&) = delete;
 
   // The next frame; nothing after the last one. Must always be called from the
   // same thread. Rethrows the error of reading this frame; the frame after it

@@ -9,15 +9,6 @@
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
-namespace {
-
-std::vector<double> StampsOf(const std::deque<StampedImage>& images) {
-  std::vector<double> stamps;
-  for (const StampedImage& image : images) stamps.push_back(image.stamp);
-  return stamps;
-}
-
-}  // namespace
 
 std::string SameStampRemark(const std::string& recording, int images) {
   return recording + ": " + std::to_string(images) +
@@ -28,9 +19,11 @@ std::string SameStampRemark(const std::string& recording, int images) {
 
 bool ImagePairing::Waiting::Insert(StampedImage image) {
   const auto place = std::lower_bound(
-      images.begin(), images.end(), image.stamp,
-      [](const StampedImage& a, double stamp) { return a.stamp < stamp; });
-  if (place != images.end() && place->stamp == image.stamp) return false;
+      images.begin(), images.end(), image.timestamp,
+      [](const StampedImage& a, double stamp) { return a.timestamp < stamp; });
+  if (place != images.end() && place->timestamp == image.timestamp) {
+    return false;
+  }
   if (image.message != nullptr) bytes += image.message->size();
   images.insert(place, std::move(image));
   return true;
@@ -47,12 +40,12 @@ StampedImage ImagePairing::Waiting::Remove(size_t index) {
 bool ImagePairing::Waiting::IsFull() const {
   return !images.empty() &&
          (bytes > kMaxBytes ||
-          images.back().stamp - images.front().stamp > kMaxSeconds);
+          images.back().timestamp - images.front().timestamp > kMaxSeconds);
 }
 
 bool ImagePairing::AddColor(StampedImage image) {
-  if (last_color_.has_value() && image.stamp <= *last_color_) {
-    if (image.stamp < *last_color_) return false;
+  if (last_color_.has_value() && image.timestamp <= *last_color_) {
+    if (image.timestamp < *last_color_) return false;
     ++same_stamp_;
     return true;
   }
@@ -61,28 +54,29 @@ bool ImagePairing::AddColor(StampedImage image) {
 }
 
 void ImagePairing::AddDepth(StampedImage image) {
-  if (last_color_.has_value() && image.stamp < *last_color_ - max_difference_) {
+  if (last_color_.has_value() &&
+      image.timestamp < *last_color_ - max_difference_) {
     ++late_;
     return;
   }
   if (!depths_.Insert(std::move(image))) ++same_stamp_;
   // Without colour images for long, the oldest depth images are left out.
-  while (colors_.empty() && depths_.IsFull()) depths_.Remove(0);
+  while (colors_.images.empty() && depths_.IsFull()) depths_.Remove(0);
 }
 
 bool ImagePairing::CanDecide() const {
-  if (colors_.empty()) return false;
+  if (colors_.images.empty()) return false;
   return is_finished_ || colors_.IsFull() || depths_.IsFull() ||
-         (colors_.size() > kWindow && depths_.size() > kWindow);
+         (colors_.images.size() > kWindow && depths_.images.size() > kWindow);
 }
 
 std::optional<StampedPair> ImagePairing::Take() {
   while (CanDecide()) {
     const std::vector<IndexPair> pairs = Associate(
-        StampsOf(colors_.images), StampsOf(depths_.images), max_difference_);
+        TimesOf(colors_.images), TimesOf(depths_.images), max_difference_);
     StampedPair pair;
     pair.color = colors_.Remove(0);
-    last_color_ = pair.color.stamp;
+    last_color_ = pair.color.timestamp;
     const bool is_paired = !pairs.empty() && pairs.front().first == 0;
     if (is_paired) {
       pair.depth = depths_.Remove(pairs.front().second);
@@ -90,8 +84,8 @@ std::optional<StampedPair> ImagePairing::Take() {
       ++unmatched_color_;
     }
     // These depth images are too old for all later colour images.
-    while (!depths_.empty() &&
-           depths_.images.front().stamp < *last_color_ - max_difference_) {
+    while (!depths_.images.empty() &&
+           depths_.images.front().timestamp < *last_color_ - max_difference_) {
       depths_.Remove(0);
     }
     if (is_paired) return pair;

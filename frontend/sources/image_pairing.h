@@ -13,7 +13,7 @@ namespace rgbd_pose {
 
 // An image that waits for its counterpart.
 struct StampedImage {
-  double stamp = 0.0;                          // s
+  double timestamp = 0.0;                      // s
   std::shared_ptr<const std::string> message;  // serialised
 };
 
@@ -78,8 +78,6 @@ class ImagePairing {
     bool Insert(StampedImage image);
     StampedImage Remove(size_t index);
     bool IsFull() const;
-    bool empty() const { return images.empty(); }
-    size_t size() const { return images.size(); }
   };
 
   const double max_difference_;

@@ -43,14 +43,7 @@ std::optional<RgbdFrame> LatestFrame::Next() {
   std::unique_lock<std::mutex> lock(mutex_);
   changed_.wait(lock, [this] { return newest_.has_value() || is_over_; });
   if (newest_.has_value()) {
-    RgbdFrame frame = *std::exchange(newest_, std::nullopt);
-    const int index = taken_++;
-    frame.read = [read = std::move(frame.read), index] {
-      Frame decoded = read();
-      decoded.index = index;
-      return decoded;
-    };
-    return frame;
+    return std::exchange(newest_, std::nullopt)->WithIndex(taken_++);
   }
   if (error_ != nullptr) {
     std::rethrow_exception(std::exchange(error_, nullptr));

@@ -21,8 +21,6 @@ class LatestFrame final : public FrameSource {
 
   // Waits until the camera has delivered its next frame.
   ~LatestFrame() override;
-  LatestFrame(const LatestFrame&) = delete;
-  LatestFrame& operator=(const LatestFrame&) = delete;
 
   // Waits for a frame that was not returned yet. Rethrows the camera's error.
   std::optional<RgbdFrame> Next() override;

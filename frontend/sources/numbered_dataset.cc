@@ -15,34 +15,35 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// The number between prefix and suffix; nothing if the name does not match.
+// The number that is at the place of * in a name; nothing if the name differs
+// elsewhere.
 std::optional<int> NumberIn(const std::string& name,
-                            const NumberedFiles& files) {
-  const size_t around = files.prefix.size() + files.suffix.size();
-  if (name.size() <= around ||
-      name.compare(0, files.prefix.size(), files.prefix) != 0 ||
-      name.compare(name.size() - files.suffix.size(), files.suffix.size(),
-                   files.suffix) != 0) {
+                            const std::string& pattern) {
+  const size_t star = pattern.find('*');
+  const std::string suffix = pattern.substr(star + 1);
+  if (name.size() < pattern.size() ||
+      name.compare(0, star, pattern, 0, star) != 0 ||
+      name.compare(name.size() - suffix.size(), suffix.size(), suffix) != 0) {
     return std::nullopt;
   }
-  const char* begin = name.data() + files.prefix.size();
-  const char* end = name.data() + name.size() - files.suffix.size();
+  const char* const end = name.data() + name.size() - suffix.size();
   int number = 0;
-  const auto [rest, error] = std::from_chars(begin, end, number);
+  const auto [rest, error] = std::from_chars(name.data() + star, end, number);
   if (error != std::errc() || rest != end || number < 0) return std::nullopt;
   return number;
 }
 
 // Paths by number, of the first alternative with any images.
-std::map<int, std::string> List(const std::string& folder,
-                                const std::vector<NumberedFiles>& choices) {
+std::map<int, std::string> NumberedPaths(
+    const std::string& folder, const std::vector<std::string>& choices) {
   std::map<int, std::string> found;
-  for (const NumberedFiles& files : choices) {
+  for (const std::string& choice : choices) {
+    const fs::path pattern = choice;
     std::error_code error;
-    for (const fs::directory_entry& entry :
-         fs::directory_iterator(fs::path(folder) / files.folder, error)) {
-      const std::string name = entry.path().filename().string();
-      const std::optional<int> number = NumberIn(name, files);
+    for (const fs::directory_entry& entry : fs::directory_iterator(
+             fs::path(folder) / pattern.parent_path(), error)) {
+      const std::optional<int> number = NumberIn(
+          entry.path().filename().string(), pattern.filename().string());
       if (number.has_value()) found[*number] = entry.path().string();
     }
     if (!found.empty()) break;
@@ -51,36 +52,24 @@ std::map<int, std::string> List(const std::string& folder,
 }
 
 // "color/123.jpg or rgb/123.png"
-std::string Examples(const std::vector<NumberedFiles>& choices) {
-  std::string text;
-  for (const NumberedFiles& files : choices) {
-    text += (text.empty() ? "" : " or ") + files.folder +
-            (files.folder.empty() ? "" : "/") + files.prefix + "123" +
-            files.suffix;
-  }
-  return text;
+std::string Examples(std::vector<std::string> choices) {
+  for (std::string& file : choices) file.replace(file.find('*'), 1, "123");
+  return Join(choices, " or ");
 }
 
 class NumberedDataset final : public Dataset {
  public:
   NumberedDataset(const NumberedLayout& layout, const SourceOptions& options)
       : layout_(layout),
-        folder_(options.path),
-        frames_(FindFrames()),
-        assembly_(MakeAssembly(options)) {}
+        folder_{options.path, FindFrames(options.path)},
+        assembly_(ChooseSetup(options), options.keep_color) {}
 
-  bool Recognises(const NumberedLayout& layout, const std::string& folder) {
-    return PathExists(fs::path(folder) / layout.mark) &&
-           !List(folder, layout.color).empty() &&
-           !List(folder, layout.depth).empty();
-  }
-
-  int size() const override { return static_cast<int>(frames_.size()); }
+  int size() const override { return static_cast<int>(folder_.frames.size()); }
   double timestamp(int index) const override {
-    return frames_[index].number / kNumberedRate;
+    return folder_.frames[index].number / kNumberedRate;
   }
   Frame Read(int index) const override {
-    const NumberedFrame& files = frames_[index];
+    const NumberedFrame& files = folder_.frames[index];
     Frame frame = assembly_.Read(files.color_path, files.depth_path);
     frame.index = index;
     frame.timestamp = timestamp(index);
@@ -88,10 +77,8 @@ class NumberedDataset final : public Dataset {
   }
   const RgbdCamera& camera() const override { return assembly_.camera(); }
   Trajectory ground_truth() const override {
-    std::vector<int> numbers;
-    for (const NumberedFrame& frame : frames_) numbers.push_back(frame.number);
     Trajectory truth;
-    for (const auto& [number, pose] : layout_.poses(folder_, numbers)) {
+    for (const auto& [number, pose] : layout_.poses(folder_)) {
       truth.push_back({number / kNumberedRate, pose});
     }
     return truth;
@@ -99,17 +86,11 @@ class NumberedDataset final : public Dataset {
   int unmatched_color() const override { return unmatched_color_; }
 
  private:
-  struct NumberedFrame {
-    int number;
-    std::string color_path;
-    std::string depth_path;
-  };
-
-  std::vector<NumberedFrame> FindFrames() {
-    const std::map<int, std::string> color = List(folder_, layout_.color);
-    const std::map<int, std::string> depth = List(folder_, layout_.depth);
+  std::vector<NumberedFrame> FindFrames(const std::string& folder) {
+    const auto color = NumberedPaths(folder, layout_.color);
+    const auto depth = NumberedPaths(folder, layout_.depth);
     if (color.empty()) {
-      throw InputError(folder_ + ": has no colour images such as " +
+      throw InputError(folder + ": has no colour images such as " +
                        Examples(layout_.color) + "; expected: " + layout_.what);
     }
     std::vector<NumberedFrame> frames;
@@ -122,7 +103,7 @@ class NumberedDataset final : public Dataset {
       }
     }
     if (frames.empty()) {
-      throw InputError(folder_ + ": none of its " +
+      throw InputError(folder + ": none of its " +
                        std::to_string(color.size()) +
                        " colour images has a depth image " +
                        Examples(layout_.depth) + " of the same number");
@@ -130,26 +111,19 @@ class NumberedDataset final : public Dataset {
     return frames;
   }
 
-  FrameAssembly MakeAssembly(const SourceOptions& options) const {
+  CameraSetup ChooseSetup(const SourceOptions& options) const {
     std::optional<CameraSetup> own;
-    if (!options.camera.has_value()) {
-      own = layout_.camera(folder_, frames_.front().color_path,
-                           frames_.front().depth_path);
+    if (!options.camera.has_value() && layout_.camera != nullptr) {
+      own = layout_.camera(folder_);
     }
-    SourceOptions said = options;
-    if (own.has_value() && !own->depth_scale) {
-      own->depth_scale = layout_.depth_scale;
-    }
-    if (said.camera.has_value() && !said.camera->depth_scale) {
-      said.camera->depth_scale = layout_.depth_scale;
-    }
-    return FrameAssembly(ChooseCamera(said, own), options.keep_color);
+    CameraSetup setup = ChooseCamera(options, own);
+    if (!setup.depth_scale) setup.depth_scale = layout_.depth_scale;
+    return setup;
   }
 
   const NumberedLayout& layout_;
-  std::string folder_;
   int unmatched_color_ = 0;
-  std::vector<NumberedFrame> frames_;
+  NumberedFolder folder_;
   FrameAssembly assembly_;
 };
 
@@ -157,8 +131,8 @@ class NumberedDataset final : public Dataset {
 
 bool IsNumbered(const NumberedLayout& layout, const std::string& folder) {
   return PathExists(fs::path(folder) / layout.mark) &&
-         !List(folder, layout.color).empty() &&
-         !List(folder, layout.depth).empty();
+         !NumberedPaths(folder, layout.color).empty() &&
+         !NumberedPaths(folder, layout.depth).empty();
 }
 
 std::unique_ptr<FrameSource> OpenNumbered(const NumberedLayout& layout,

@@ -15,14 +15,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-std::optional<CameraSetup> NoCamera(const std::string&, const std::string&,
-                                    const std::string&) {
-  return std::nullopt;
-}
-
 // The camera of ICL-NUIM's renderer, with the y axis of its images down.
-std::optional<CameraSetup> IclCamera(const std::string&, const std::string&,
-                                     const std::string&) {
+std::optional<CameraSetup> IclCamera(const NumberedFolder&) {
   Camera camera;
   camera.fx = 481.2;
   camera.fy = 480.0;
@@ -31,11 +25,9 @@ std::optional<CameraSetup> IclCamera(const std::string&, const std::string&,
 
 // intrinsic.json, or the file name of Open3D's recorder: width, height and
 // intrinsic_matrix, column by column. JSON is valid YAML.
-std::optional<CameraSetup> Open3dCamera(const std::string& folder,
-                                        const std::string&,
-                                        const std::string&) {
-  fs::path path = fs::path(folder) / "intrinsic.json";
-  if (!PathExists(path)) path = fs::path(folder) / "camera_intrinsic.json";
+std::optional<CameraSetup> Open3dCamera(const NumberedFolder& folder) {
+  fs::path path = folder.path / "intrinsic.json";
+  if (!PathExists(path)) path = folder.path / "camera_intrinsic.json";
   if (!PathExists(path)) return std::nullopt;
   const YamlSection file = YamlSection::FromFile(path.string());
   const int width = file.Pixels("width");
@@ -47,11 +39,9 @@ std::optional<CameraSetup> Open3dCamera(const std::string& folder,
 }
 
 // cam_params.json of the folder, or of its parent for all rooms.
-std::optional<CameraSetup> ReplicaCamera(const std::string& folder,
-                                         const std::string&,
-                                         const std::string&) {
+std::optional<CameraSetup> ReplicaCamera(const NumberedFolder& folder) {
   for (const char* name : {"cam_params.json", "../cam_params.json"}) {
-    const fs::path path = fs::path(folder) / name;
+    const fs::path path = folder.path / name;
     if (!PathExists(path)) continue;
     const YamlSection file =
         YamlSection::FromFile(path.string()).Child("camera");
@@ -104,18 +94,17 @@ void RequireIdentity(const fs::path& file) {
 }
 
 // Two cameras of different image sizes, assumed to be at the same place.
-std::optional<CameraSetup> ScanNetCamera(const std::string& folder,
-                                         const std::string& first_color,
-                                         const std::string& first_depth) {
-  const fs::path intrinsic = fs::path(folder) / "intrinsic";
+std::optional<CameraSetup> ScanNetCamera(const NumberedFolder& folder) {
+  const fs::path intrinsic = folder.path / "intrinsic";
+  const NumberedFrame& first = folder.frames.front();
   CameraSetup setup(
-      ReadIntrinsicText(intrinsic / "intrinsic_color.txt", first_color));
+      ReadIntrinsicText(intrinsic / "intrinsic_color.txt", first.color_path));
   RequireIdentity(intrinsic / "extrinsic_color.txt");
   RequireIdentity(intrinsic / "extrinsic_depth.txt");
   const fs::path of_depth = intrinsic / "intrinsic_depth.txt";
   if (PathExists(of_depth)) {
     setup.depth_camera =
-        DepthCamera{ReadIntrinsicText(of_depth, first_depth), Rigid3d()};
+        DepthCamera{ReadIntrinsicText(of_depth, first.depth_path), Rigid3d()};
   }
   return setup;
 }
@@ -126,16 +115,16 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
   static const std::vector<NumberedLayout> layouts = {
       {"7scenes",
        "7-Scenes (frame-000000.color.png, .depth.png, .pose.txt)",
-       {{"", "frame-", ".color.png"}, {"", "frame-", ".color.jpg"}},
-       {{"", "frame-", ".depth.png"}},
+       {"frame-*.color.png", "frame-*.color.jpg"},
+       {"frame-*.depth.png"},
        "",
        1000.0,
-       NoCamera,
+       nullptr,
        ReadFramePoses},
       {"scannet",
        "ScanNet as exported (color/0.jpg, depth/0.png, pose/0.txt, intrinsic/)",
-       {{"color", "", ".jpg"}, {"color", "", ".png"}},
-       {{"depth", "", ".png"}},
+       {"color/*.jpg", "color/*.png"},
+       {"depth/*.png"},
        "intrinsic/intrinsic_color.txt",
        1000.0,
        ScanNetCamera,
@@ -143,8 +132,8 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
       {"replica",
        "Replica as NICE-SLAM ships it (results/frame000000.jpg, "
        "depth000000.png, traj.txt)",
-       {{"results", "frame", ".jpg"}, {"results", "frame", ".png"}},
-       {{"results", "depth", ".png"}},
+       {"results/frame*.jpg", "results/frame*.png"},
+       {"results/depth*.png"},
        "",
        6553.5,
        ReplicaCamera,
@@ -152,8 +141,8 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
       {"icl_nuim",
        "ICL-NUIM in TUM's PNG files (rgb/0.png, depth/0.png, "
        "associations.txt)",
-       {{"rgb", "", ".png"}},
-       {{"depth", "", ".png"}},
+       {"rgb/*.png"},
+       {"depth/*.png"},
        "associations.txt",
        5000.0,
        IclCamera,
@@ -161,13 +150,9 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
       {"open3d",
        "Open3D, Redwood (color/, rgb/ or image/, and depth/ with numbered "
        "images, intrinsic.json)",
-       {{"color", "", ".jpg"},
-        {"color", "", ".png"},
-        {"rgb", "", ".jpg"},
-        {"rgb", "", ".png"},
-        {"image", "", ".jpg"},
-        {"image", "", ".png"}},
-       {{"depth", "", ".png"}},
+       {"color/*.jpg", "color/*.png", "rgb/*.jpg", "rgb/*.png", "image/*.jpg",
+        "image/*.png"},
+       {"depth/*.png"},
        "",
        1000.0,
        Open3dCamera,

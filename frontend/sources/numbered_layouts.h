@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,43 +11,43 @@
 
 namespace rgbd_pose {
 
+// A frame of a recording in numbered files.
+struct NumberedFrame {
+  int number = 0;
+  std::string color_path;
+  std::string depth_path;
+};
+
+// A recording in numbered files.
+struct NumberedFolder {
+  std::filesystem::path path;
+  std::vector<NumberedFrame> frames;  // by number
+};
+
 // The poses world_from_cam of frames by their numbers; some may be missing.
 using NumberedPoses = std::map<int, Rigid3d>;
 
-// Readers of the poses of a recording in numbered files, for the table in
-// numbered_layouts.cc. `numbers`: the frames of `folder`, in order. Each reader
-// returns no poses if its file does not exist, and throws InputError
+// Readers of the poses of a recording, for the table in numbered_layouts.cc.
+// Each returns no poses if its file does not exist, and throws InputError
 // (file:line) if the file holds something else.
 
 // frame-000012.pose.txt: 4 rows of 4 numbers, one file per frame (7-Scenes).
-NumberedPoses ReadFramePoses(const std::string& folder,
-                             const std::vector<int>& numbers);
+NumberedPoses ReadFramePoses(const NumberedFolder& folder);
 
 // pose/12.txt, the same format; -inf for a lost frame (ScanNet).
-NumberedPoses ReadPoseFolder(const std::string& folder,
-                             const std::vector<int>& numbers);
+NumberedPoses ReadPoseFolder(const NumberedFolder& folder);
 
 // traj.txt: the 16 numbers of each frame, in order, one frame per line (Replica
 // as NICE-SLAM ships it).
-NumberedPoses ReadPoseLines(const std::string& folder,
-                            const std::vector<int>& numbers);
+NumberedPoses ReadPoseLines(const NumberedFolder& folder);
 
 // trajectory.log: for each frame, in order, a line of three integers and 4 rows
 // of 4 numbers (Redwood, Open3D).
-NumberedPoses ReadPoseLog(const std::string& folder,
-                          const std::vector<int>& numbers);
+NumberedPoses ReadPoseLog(const NumberedFolder& folder);
 
 // *.gt.freiburg: TUM text in which the time is the frame's number, from 1. The
 // world is mirrored (its y axis is inverted), which is undone (ICL-NUIM).
-NumberedPoses ReadMirroredPoses(const std::string& folder,
-                                const std::vector<int>& numbers);
-
-// Files whose names differ by a number only: FOLDER/PREFIX123SUFFIX.
-struct NumberedFiles {
-  std::string folder;  // in the recording's folder; "": that folder itself
-  std::string prefix;
-  std::string suffix;
-};
+NumberedPoses ReadMirroredPoses(const NumberedFolder& folder);
 
 // A layout whose images are numbered and have no time stamps: one row of the
 // table in numbered_layouts.cc.
@@ -54,21 +55,19 @@ struct NumberedLayout {
   const char* name;  // of the source
   const char* what;  // description for messages
 
-  // Its images; the first alternative with any images is used.
-  std::vector<NumberedFiles> color;
-  std::vector<NumberedFiles> depth;
+  // Its images, with * for the number; the first alternative with any images is
+  // used.
+  std::vector<std::string> color;
+  std::vector<std::string> depth;
 
   const char* mark;    // a file that only this layout has; "": none needed
   double depth_scale;  // raw units per metre
 
-  // Reads the camera from the folder, given the paths of a colour and a depth
-  // image. Nothing if the folder does not specify it.
-  std::optional<CameraSetup> (*camera)(const std::string& folder,
-                                       const std::string& first_color,
-                                       const std::string& first_depth);
+  // Reads the camera, given at least one frame. Nothing if the folder does not
+  // specify it; null: none of this layout does.
+  std::optional<CameraSetup> (*camera)(const NumberedFolder& folder);
 
-  NumberedPoses (*poses)(const std::string& folder,
-                         const std::vector<int>& numbers);
+  NumberedPoses (*poses)(const NumberedFolder& folder);
 };
 
 // Frames per second: all are from a Kinect or rendered as if.

@@ -1,4 +1,3 @@
-#include <array>
 #include <cmath>
 #include <filesystem>
 
@@ -13,153 +12,131 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// A matrix, word by word. In a lost frame its values are infinite or NaN.
-class MatrixWords {
- public:
-  void Add(const std::string& word, const std::string& path, int line) {
+// Appends the numbers of a line to a 4 x 4 matrix, row by row. In a lost frame
+// they are infinite or NaN, here always NaN.
+void AddNumbers(const TextLine& line, const std::string& path,
+                std::vector<double>* matrix) {
+  for (const std::string& word : line.words) {
+    if (matrix->size() == 16) {
+      throw InputError(path, line.number, "has more than 4 x 4 numbers");
+    }
     const bool is_lost =
         word == "-inf" || word == "inf" || word == "nan" || word == "-nan";
-    is_lost_ |= is_lost;
-    values_[count_++] = is_lost ? 0.0 : ParseNumber(word, path, line, "pose");
+    matrix->push_back(is_lost ? NAN
+                              : ParseNumber(word, path, line.number, "pose"));
   }
-  bool IsWhole() const { return count_ == 16; }
+}
 
-  // Stores the pose unless the frame is lost, and starts the next matrix.
-  void Finish(int number, const std::string& path, int line,
-              NumberedPoses* poses) {
-    const auto& m = values_;
-    if (!is_lost_) {
-      Eigen::Matrix3d rotation;
-      rotation << m[0], m[1], m[2], m[4], m[5], m[6], m[8], m[9], m[10];
-      // Tolerates values with few digits.
-      const double error =
-          (rotation * rotation.transpose() - Eigen::Matrix3d::Identity())
-              .norm();
-      if (!(error < 0.05) || !(rotation.determinant() > 0.0)) {
-        throw InputError(path, line,
-                         "not a pose: the upper left 3 x 3 is not a rotation");
-      }
-      (*poses)[number] =
-          Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
-    }
-    *this = MatrixWords();
+// Stores the pose of a 4 x 4 matrix unless its frame is lost.
+void AddPose(const std::vector<double>& m, int number, const std::string& path,
+             int line, NumberedPoses* poses) {
+  const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> matrix(
+      m.data());
+  if (!matrix.allFinite()) return;
+  const Eigen::Matrix3d rotation = matrix.topLeftCorner<3, 3>();
+  // Tolerates values with few digits.
+  const double error =
+      (rotation * rotation.transpose() - Eigen::Matrix3d::Identity()).norm();
+  if (!(error < 0.05) || !(rotation.determinant() > 0.0)) {
+    throw InputError(path, line,
+                     "not a pose: the upper left 3 x 3 is not a rotation");
   }
+  (*poses)[number] = Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
+}
 
- private:
-  std::array<double, 16> values_ = {};
-  int count_ = 0;
-  bool is_lost_ = false;
-};
-
-// Reads 16 numbers, in any distribution over the lines.
-void ReadMatrixFile(const std::string& path, int number, NumberedPoses* poses) {
-  MatrixWords matrix;
+// Reads 16 numbers, in any distribution over the lines, if the file exists.
+void ReadMatrixFile(const fs::path& file, int number, NumberedPoses* poses) {
+  if (!PathExists(file)) return;
+  const std::string path = file.string();
+  std::vector<double> matrix;
   for (const TextLine& line : ReadTextTable(path)) {
-    for (const std::string& word : line.words) {
-      if (matrix.IsWhole()) {
-        throw InputError(path, line.number, "has more than 4 x 4 numbers");
-      }
-      matrix.Add(word, path, line.number);
-    }
+    AddNumbers(line, path, &matrix);
   }
-  if (!matrix.IsWhole()) throw InputError(path + ": needs 4 rows of 4 numbers");
-  matrix.Finish(number, path, 1, poses);
+  if (matrix.size() < 16) {
+    throw InputError(path + ": needs 4 rows of 4 numbers");
+  }
+  AddPose(matrix, number, path, 1, poses);
 }
 
 }  // namespace
 
-NumberedPoses ReadFramePoses(const std::string& folder,
-                             const std::vector<int>& numbers) {
+NumberedPoses ReadFramePoses(const NumberedFolder& folder) {
   NumberedPoses poses;
-  for (const int number : numbers) {
-    const fs::path path =
-        fs::path(folder) / Format("frame-%06d.pose.txt", number);
-    if (PathExists(path)) ReadMatrixFile(path.string(), number, &poses);
+  for (const NumberedFrame& frame : folder.frames) {
+    ReadMatrixFile(folder.path / Format("frame-%06d.pose.txt", frame.number),
+                   frame.number, &poses);
   }
   return poses;
 }
 
-NumberedPoses ReadPoseFolder(const std::string& folder,
-                             const std::vector<int>& numbers) {
+NumberedPoses ReadPoseFolder(const NumberedFolder& folder) {
   NumberedPoses poses;
-  for (const int number : numbers) {
-    const fs::path path =
-        fs::path(folder) / "pose" / (std::to_string(number) + ".txt");
-    if (PathExists(path)) ReadMatrixFile(path.string(), number, &poses);
+  for (const NumberedFrame& frame : folder.frames) {
+    ReadMatrixFile(folder.path / "pose" / Format("%d.txt", frame.number),
+                   frame.number, &poses);
   }
   return poses;
 }
 
-NumberedPoses ReadPoseLines(const std::string& folder,
-                            const std::vector<int>& numbers) {
-  const fs::path file = fs::path(folder) / "traj.txt";
+NumberedPoses ReadPoseLines(const NumberedFolder& folder) {
+  const std::string path = (folder.path / "traj.txt").string();
   NumberedPoses poses;
-  if (!PathExists(file)) return poses;
-  const std::string path = file.string();
+  if (!PathExists(path)) return poses;
   size_t i = 0;
   for (const TextLine& line : ReadTextTable(path)) {
-    if (i == numbers.size()) break;  // the rest are poses of missing frames
+    if (i == folder.frames.size()) break;  // the rest are of missing frames
     if (line.words.size() != 16) {
       throw InputError(path, line.number,
                        "needs the 16 numbers of a 4 x 4 matrix, has " +
                            std::to_string(line.words.size()));
     }
-    MatrixWords matrix;
-    for (const std::string& word : line.words) {
-      matrix.Add(word, path, line.number);
-    }
-    matrix.Finish(numbers[i++], path, line.number, &poses);
+    std::vector<double> matrix;
+    AddNumbers(line, path, &matrix);
+    AddPose(matrix, folder.frames[i++].number, path, line.number, &poses);
   }
   return poses;
 }
 
-NumberedPoses ReadPoseLog(const std::string& folder,
-                          const std::vector<int>& numbers) {
-  const fs::path file = fs::path(folder) / "trajectory.log";
+NumberedPoses ReadPoseLog(const NumberedFolder& folder) {
+  const std::string path = (folder.path / "trajectory.log").string();
   NumberedPoses poses;
-  if (!PathExists(file)) return poses;
-  const std::string path = file.string();
+  if (!PathExists(path)) return poses;
   const std::vector<TextLine> lines = ReadTextTable(path);
-  for (size_t i = 0; i < numbers.size() && 5 * i < lines.size(); ++i) {
+  for (size_t i = 0; i < folder.frames.size() && 5 * i < lines.size(); ++i) {
     const TextLine& head = lines[5 * i];
     if (head.words.size() != 3 || 5 * i + 4 >= lines.size()) {
       throw InputError(path, head.number,
                        "needs three integers and then 4 rows of 4 numbers");
     }
-    MatrixWords matrix;
+    std::vector<double> matrix;
     for (int row = 1; row <= 4; ++row) {
       const TextLine& line = lines[5 * i + row];
       if (line.words.size() != 4) {
         throw InputError(path, line.number, "needs a row of 4 numbers");
       }
-      for (const std::string& word : line.words) {
-        matrix.Add(word, path, line.number);
-      }
+      AddNumbers(line, path, &matrix);
     }
-    matrix.Finish(numbers[i], path, head.number, &poses);
+    AddPose(matrix, folder.frames[i].number, path, head.number, &poses);
   }
   return poses;
 }
 
-NumberedPoses ReadMirroredPoses(const std::string& folder,
-                                const std::vector<int>& numbers) {
+NumberedPoses ReadMirroredPoses(const NumberedFolder& folder) {
   NumberedPoses poses;
   std::error_code error;
   for (const fs::directory_entry& entry :
-       fs::directory_iterator(folder, error)) {
-    const std::string path = entry.path().string();
-    const std::string end = ".gt.freiburg";
-    if (path.size() < end.size() ||
-        path.compare(path.size() - end.size(), end.size(), end) != 0) {
+       fs::directory_iterator(folder.path, error)) {
+    const fs::path& path = entry.path();
+    if (path.extension() != ".freiburg" || path.stem().extension() != ".gt") {
       continue;
     }
-    for (const StampedPose& pose : ReadTrajectory(path)) {
+    for (const StampedPose& pose : ReadTrajectory(path.string())) {
       // M T M with M = diag(1, -1, 1) has a proper rotation again.
       const Eigen::Quaterniond& q = pose.world_from_cam.rotation;
       const Eigen::Vector3d& t = pose.world_from_cam.translation;
       const auto place = static_cast<size_t>(std::lround(pose.timestamp)) - 1;
-      if (place >= numbers.size()) continue;
-      poses[numbers[place]] =
+      if (place >= folder.frames.size()) continue;
+      poses[folder.frames[place].number] =
           Rigid3d(Eigen::Quaterniond(q.w(), -q.x(), q.y(), -q.z()),
                   {t.x(), -t.y(), t.z()});
     }

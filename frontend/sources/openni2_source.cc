@@ -3,12 +3,12 @@
 #ifdef RGBD_POSE_HAS_OPENNI2
 #include <OpenNI.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <opencv2/imgproc.hpp>
 #include <string>
 #include <thread>
-#include <utility>
 #include <vector>
 
 #include "frontend/sources/frame_assembly.h"
@@ -28,16 +28,11 @@ constexpr std::chrono::milliseconds kFewFrames(150);
 
 // OpenNI's message on its last error, without surrounding white space.
 std::string Reason() {
-  std::string reason = openni::OpenNI::getExtendedError();
-  while (!reason.empty() &&
-         std::isspace(static_cast<unsigned char>(reason.back()))) {
-    reason.pop_back();
-  }
-  while (!reason.empty() &&
-         std::isspace(static_cast<unsigned char>(reason.front()))) {
-    reason.erase(0, 1);
-  }
-  return reason;
+  constexpr char kWhiteSpace[] = " \t\n\v\f\r";
+  const std::string reason = openni::OpenNI::getExtendedError();
+  const size_t first = reason.find_first_not_of(kWhiteSpace);
+  if (first == std::string::npos) return "";
+  return reason.substr(first, reason.find_last_not_of(kWhiteSpace) + 1 - first);
 }
 
 // Initialises the library once. It is never shut down, as this would unload
@@ -49,38 +44,17 @@ void RequireLibrary() {
   }
 }
 
-// The mode with the image size of TUM's recordings, or the next best one.
-openni::VideoMode ChooseMode(const openni::SensorInfo& sensor,
-                             const std::vector<openni::PixelFormat>& formats,
-                             const std::string& name) {
-  constexpr int kWidth = 640;
-  constexpr int kHeight = 480;
-  constexpr int kRate = 30;
-  const openni::VideoMode* best = nullptr;
-  int best_score = -1;
-  const auto& modes = sensor.getSupportedVideoModes();
-  for (int i = 0; i < modes.getSize(); ++i) {
-    const openni::VideoMode& mode = modes[i];
-    int score = 0;
-    for (size_t k = 0; k < formats.size(); ++k) {
-      if (mode.getPixelFormat() == formats[k]) {
-        score = 10 * static_cast<int>(formats.size() - k);
-      }
-    }
-    if (score == 0) continue;
-    if (mode.getResolutionX() == kWidth && mode.getResolutionY() == kHeight) {
-      score += 100;
-    }
-    if (mode.getFps() == kRate) score += 1;
-    if (score > best_score) {
-      best = &mode;
-      best_score = score;
-    }
-  }
-  if (best == nullptr) {
-    throw InputError(name + ": has no images in a supported format");
-  }
-  return *best;
+// How suitable a mode is: best with the image size of TUM's recordings, with
+// one of the first formats, and with their rate. 0: its format is not read.
+int ScoreOf(const openni::VideoMode& mode,
+            const std::vector<openni::PixelFormat>& formats) {
+  const auto format =
+      std::find(formats.begin(), formats.end(), mode.getPixelFormat());
+  if (format == formats.end()) return 0;
+  const bool has_size =
+      mode.getResolutionX() == 640 && mode.getResolutionY() == 480;
+  return (has_size ? 100 : 0) + 10 * static_cast<int>(formats.end() - format) +
+         (mode.getFps() == 30 ? 1 : 0);
 }
 
 class OpenNi2Source final : public FrameSource {
@@ -94,8 +68,9 @@ class OpenNi2Source final : public FrameSource {
     assembly_ = std::make_unique<FrameAssembly>(
         ChooseCamera(options, OwnCamera(options.camera.has_value())),
         options.keep_color);
-    Start(&color_);
-    Start(&depth_);
+    for (openni::VideoStream* stream : {&color_, &depth_}) {
+      Check(stream->start(), "cannot be started");
+    }
   }
   ~OpenNi2Source() override {
     color_.stop();
@@ -153,16 +128,20 @@ class OpenNi2Source final : public FrameSource {
       throw InputError(name_ + ": has no " + what + " images");
     }
     Check(stream->create(device_, type), "provides no images");
-    const openni::VideoMode mode = ChooseMode(*sensor, formats, name_);
+    const auto& modes = sensor->getSupportedVideoModes();
+    int best = 0;
+    for (int i = 1; i < modes.getSize(); ++i) {
+      if (ScoreOf(modes[i], formats) > ScoreOf(modes[best], formats)) best = i;
+    }
+    if (modes.getSize() == 0 || ScoreOf(modes[best], formats) == 0) {
+      throw InputError(name_ + ": has no images in a supported format");
+    }
     // A camera with only one mode need not accept settings.
-    if (sensor->getSupportedVideoModes().getSize() > 1) {
-      Check(stream->setVideoMode(mode), "rejects a video mode that it lists");
+    if (modes.getSize() > 1) {
+      Check(stream->setVideoMode(modes[best]),
+            "rejects a video mode that it lists");
     }
     stream->setMirroringEnabled(false);
-  }
-
-  void Start(openni::VideoStream* stream) {
-    Check(stream->start(), "cannot be started");
   }
 
   // With `has_camera` only the depth scale is set.

@@ -9,6 +9,7 @@
 
 #include "core/evaluation/association.h"
 #include "core/util/format.h"
+#include "core/util/units.h"
 #include "frontend/files/image_file.h"
 #include "frontend/files/video_file.h"
 #include "frontend/frame/depth_resampling.h"
@@ -25,7 +26,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMaxWidth = 640;         // of frames, px
-constexpr double kMillimetres = 1e3;   // depth units per metre
 constexpr uint8_t kMinConfidence = 1;  // of the levels 0, 1 and 2
 
 // The camera of the same image, scaled to a size.
@@ -106,7 +106,7 @@ class StrayScanner final : public FrameSource {
                      {width, cvRound(static_cast<double>(width) * size.height /
                                      size.width)});
     CameraSetup own(camera_);
-    own.depth_scale = kMillimetres;
+    own.depth_scale = kMillimetresPerMetre;
     return FrameAssembly(ChooseCamera(options, own), options.keep_color);
   }
 

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
-#include <utility>
 #include <vector>
 
 #include "core/evaluation/association.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
@@ -28,10 +28,7 @@ struct ListedImage {
 
 std::string Quote(const TextLine& line) {
   constexpr size_t kMaxLength = 120;
-  std::string text;
-  for (const std::string& word : line.words) {
-    text += (text.empty() ? "" : " ") + word;
-  }
+  std::string text = Join(line.words, " ");
   if (text.size() > kMaxLength) text = text.substr(0, kMaxLength) + "...";
   return "'" + text + "'";
 }
@@ -39,6 +36,13 @@ std::string Quote(const TextLine& line) {
 ImagePair PairOf(const ListedImage& color, const ListedImage& depth) {
   return {color.timestamp, depth.timestamp - color.timestamp, color.path,
           depth.path};
+}
+
+// The image in two columns of a list: its time and its path.
+ListedImage ImageIn(const TextLine& line, size_t column,
+                    const std::string& list, const std::string& folder) {
+  return {ParseTimestamp(line.words[column], list, line.number),
+          (fs::path(folder) / line.words[column + 1]).string(), line.number};
 }
 
 // The lines of a list, each with `columns` words.
@@ -79,9 +83,7 @@ std::vector<ListedImage> ReadImageList(const std::string& folder,
   }
   std::vector<ListedImage> images;
   for (const TextLine& line : ReadLines(list, 2, "time image")) {
-    images.push_back({ParseTimestamp(line.words[0], list, line.number),
-                      (fs::path(folder) / line.words[1]).string(),
-                      line.number});
+    images.push_back(ImageIn(line, 0, list, folder));
   }
   CheckTimeOrder(list, images);
   const auto end = std::unique(images.begin(), images.end(),
@@ -178,11 +180,11 @@ TumLists ReadTumLists(const std::string& folder, double max_time_difference) {
     lists.pairs.push_back(PairOf(color[i], depth[j]));
   }
   if (lists.pairs.empty()) {
-    throw InputError(folder + ": no image of rgb.txt is within " +
-                     std::to_string(max_time_difference) +
-                     " s of one of depth.txt; the lists start at " +
-                     std::to_string(color.front().timestamp) + " and " +
-                     std::to_string(depth.front().timestamp) + " s");
+    throw InputError(folder +
+                     Format(": no image of rgb.txt is within %f s of one of "
+                            "depth.txt; the lists start at %f and %f s",
+                            max_time_difference, color.front().timestamp,
+                            depth.front().timestamp));
   }
   lists.unmatched_color = static_cast<int>(color.size() - lists.pairs.size());
   return lists;
@@ -195,12 +197,8 @@ TumLists ReadTumAssociations(const std::string& folder,
   const std::vector<TextLine> lines =
       ReadLines(associations_file, 4, "time image time image");
   for (const TextLine& line : lines) {
-    for (const size_t column : {0, 2}) {
-      ListedImage image = {
-          ParseTimestamp(line.words[column], associations_file, line.number),
-          (fs::path(folder) / line.words[column + 1]).string(), line.number};
-      (column == 0 ? left : right).push_back(std::move(image));
-    }
+    left.push_back(ImageIn(line, 0, associations_file, folder));
+    right.push_back(ImageIn(line, 2, associations_file, folder));
   }
   const bool depth_left = IsDepthLeft(associations_file, lines.front(),
                                       left.front(), right.front());

@@ -14,14 +14,14 @@ using namespace rgbd_pose;
 void ReadAll(const std::string& path, BagKind kind) {
   MayRefuse([&] {
     const auto bag = OpenBag(path, kind);
-    std::vector<int> all;
-    for (int i = 0; i < static_cast<int>(bag->topics().size()); ++i) {
-      MayRefuse([&] { bag->First(i, 2); });
-      all.push_back(i);
+    std::vector<std::string> all;
+    for (const BagTopic& topic : bag->topics()) {
+      MayRefuse([&] { bag->First(topic.name, 2); });
+      all.push_back(topic.name);
     }
     bag->Select(all);
     while (const auto message = bag->Next()) {
-      Require(message->topic < static_cast<int>(all.size()), "a topic");
+      Require(bag->FindTopic(message->topic) != nullptr, "a topic");
     }
   });
   MayRefuse([&] {

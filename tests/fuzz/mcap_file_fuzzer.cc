@@ -9,14 +9,14 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string file = folder.Write("a.mcap", FuzzText(data, size));
   MayRefuse([&] {
     const auto bag = OpenMcapFile(file);
-    std::vector<int> all;
-    for (int i = 0; i < static_cast<int>(bag->topics().size()); ++i) {
-      MayRefuse([&] { bag->First(i, 2); });
-      all.push_back(i);
+    std::vector<std::string> all;
+    for (const BagTopic& topic : bag->topics()) {
+      MayRefuse([&] { bag->First(topic.name, 2); });
+      all.push_back(topic.name);
     }
     bag->Select(all);
     while (const auto message = bag->Next()) {
-      Require(message->topic < static_cast<int>(all.size()), "a topic");
+      Require(bag->FindTopic(message->topic) != nullptr, "a topic");
     }
   });
   return 0;

@@ -15,11 +15,12 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     folder.Write(name, FuzzText(data, size));
   }
   for (const NumberedLayout& layout : NumberedLayouts()) {
+    if (layout.camera == nullptr) continue;
     MayRefuse([&] {
       SourceOptions options;
       options.path = folder.path();
-      const CameraSetup setup =
-          ChooseCamera(options, layout.camera(folder.path(), "", ""));
+      const CameraSetup setup = ChooseCamera(
+          options, layout.camera({folder.path(), {NumberedFrame()}}));
       Require(setup.camera.Check().empty(), "a camera that can be used");
     });
   }

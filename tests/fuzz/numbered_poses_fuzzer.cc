@@ -17,7 +17,9 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   for (const auto read : {ReadFramePoses, ReadPoseFolder, ReadPoseLines,
                           ReadPoseLog, ReadMirroredPoses}) {
     MayRefuse([&] {
-      for (const auto& [number, pose] : read(folder.path(), {1, 2, 3})) {
+      const NumberedFolder frames = {folder.path(),
+                                     {{1, "", ""}, {2, "", ""}, {3, "", ""}}};
+      for (const auto& [number, pose] : read(frames)) {
         Require(number >= 1 && number <= 3, "a number that was asked for");
         Require(pose.IsFinite(), "a pose that can be used");
       }

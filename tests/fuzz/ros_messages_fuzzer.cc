@@ -10,7 +10,7 @@ namespace {
 
 void ReadImage(const RosImage& image) {
   Require(image.header.stamp >= 0.0, "a time");
-  UseOfEncoding(std::string(image.encoding));
+  UseOfEncoding(image.encoding);
   MayRefuse([&] {
     cv::Mat color;
     const cv::Mat gray = DecodeRosGray(image, "image", &color);

@@ -28,7 +28,7 @@ std::vector<Stamps> PairAll(const std::vector<Arrival>& events,
   std::vector<Stamps> pairs;
   const auto take = [&] {
     while (const auto pair = pairing->Take()) {
-      pairs.push_back({pair->color.stamp, pair->depth.stamp});
+      pairs.push_back({pair->color.timestamp, pair->depth.timestamp});
     }
   };
   for (const Arrival& event : events) {
