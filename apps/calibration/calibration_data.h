@@ -8,7 +8,6 @@
 #include "core/evaluation/trajectory.h"
 #include "costs/calibration/calibration_views.h"
 #include "frontend/map/keyframe_map.h"
-#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 
@@ -49,8 +48,8 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
 // Other sources of the camera's position. A null pointer means that the source
 // is not available.
 struct CalibrationScale {
-  const Trajectory* ground_truth = nullptr;   // the true path
-  const MotionGuess* motion_guess = nullptr;  // for example from wheels
+  const Trajectory* ground_truth = nullptr;  // the true path
+  const Trajectory* motion_guess = nullptr;  // for example from wheels
 };
 
 // Adds known distances (KnownDistance) from the first available source:

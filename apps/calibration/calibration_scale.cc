@@ -8,6 +8,7 @@
 #include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
+#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 namespace {
@@ -141,7 +142,7 @@ std::string AddKnownDistances(const Trajectory& path,
     distances = Between(
         *data,
         [&](double from, double to) -> std::optional<double> {
-          const auto moved = scale.motion_guess->CurFromPrev(from, to);
+          const auto moved = MotionAlong(*scale.motion_guess, from, to);
           if (!moved.has_value()) return std::nullopt;
           return moved->translation.norm();
         },

@@ -8,6 +8,7 @@
 
 #include "core/geometry/motion.h"
 #include "core/util/format.h"
+#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 namespace {
@@ -136,12 +137,11 @@ void CompareHeldOut(const CalibrationViews& views_before,
 
 double TruthError(const CalibrationData& data, const CalibrationState& state,
                   const Trajectory& truth) {
-  const MotionGuess motion(truth);
   double sum = 0.0;
   int count = 0;
   for (const auto& [a, b] : data.pairs) {
     const auto b_from_a =
-        motion.CurFromPrev(data.timestamps[a], data.timestamps[b]);
+        MotionAlong(truth, data.timestamps[a], data.timestamps[b]);
     if (!b_from_a.has_value()) continue;
     const Rigid3d found =
         state.world_from_cam[b].Inverse() * state.world_from_cam[a];

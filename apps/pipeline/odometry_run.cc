@@ -5,6 +5,7 @@
 
 #include "core/evaluation/association.h"
 #include "core/util/input_error.h"
+#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 
@@ -12,8 +13,8 @@ void SequenceRun::Add(const StreamedFrame& next) {
   std::vector<TrackedFrame>& frames = results_.frames;
   std::optional<Rigid3d> guess;
   if (inputs_.motion_guess != nullptr && !frames.empty()) {
-    guess = inputs_.motion_guess->CurFromPrev(frames.back().timestamp,
-                                              next.frame.timestamp);
+    guess = MotionAlong(*inputs_.motion_guess, frames.back().timestamp,
+                        next.frame.timestamp);
   }
   frames.push_back(Track(next.frame, guess.has_value() ? &*guess : nullptr));
   TrackedFrame& tracked = frames.back();

@@ -15,7 +15,6 @@
 #include "core/evaluation/trajectory.h"
 #include "frontend/sources/frame_source.h"
 #include "frontend/sources/frame_stream.h"
-#include "frontend/tracking/motion_guess.h"
 #include "frontend/tracking/odometry.h"
 
 namespace rgbd_pose {
@@ -40,7 +39,7 @@ struct ResidualHistogram {
 // Additional inputs of a run. A null pointer means that the input is not
 // available. The pointed-to objects must outlive the run.
 struct RunInputs {
-  const MotionGuess* motion_guess = nullptr;
+  const Trajectory* motion_guess = nullptr;  // see MotionAlong
   // The share of frames that may be damaged, see FrameStream.
   double max_damaged = 0.05;
 };

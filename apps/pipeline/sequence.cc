@@ -158,8 +158,8 @@ Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
   sequence.compares = settings.groundtruth != kNoGroundTruth;
   if (sequence.compares) FindTruth(settings, &sequence);
   if (!settings.motion_guess.empty()) {
-    sequence.motion_guess.emplace(
-        ReadTrajectory(settings.motion_guess, &sequence.remarks));
+    sequence.motion_guess =
+        ReadTrajectory(settings.motion_guess, &sequence.remarks);
   }
   return sequence;
 }

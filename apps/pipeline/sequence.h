@@ -9,7 +9,6 @@
 #include "apps/pipeline/settings.h"
 #include "core/evaluation/trajectory.h"
 #include "frontend/sources/frame_source.h"
-#include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
 
@@ -35,7 +34,7 @@ struct Sequence {
   std::unique_ptr<FrameSource> source;
   std::optional<Trajectory> ground_truth;  // if known before the frames
   bool compares = true;  // whether to use the recording's truth
-  std::optional<MotionGuess> motion_guess;
+  std::optional<Trajectory> motion_guess;
   double max_damaged = 0.05;         // share of frames
   std::vector<std::string> remarks;  // on the files, for users; one per line
 

@@ -127,8 +127,7 @@ std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
   return MakeTracker(settings.tracker,
                      {settings.tracking, features, settings.frontend,
                       MakeEstimator(settings.estimator),
-                      MakeDirectEstimators(settings.estimator, direct),
-                      settings.direct_tracking});
+                      MakeDirectEstimators(settings.estimator, direct)});
 }
 
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
@@ -216,7 +215,7 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
       {"min_seen_share", kTracking,
        "a frame tracked by pixels is lost if a smaller share of its reference "
        "frame is visible",
-       &settings->direct_tracking.min_seen_share},
+       &tracking->min_seen_share},
       {"initial_guess", kTracking, "where the solver starts in a frame",
        GuessByName(tracking, odometry), GuessNames()},
       {"on_lost", kTracking,

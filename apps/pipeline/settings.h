@@ -35,14 +35,13 @@ struct DirectSettings {
 // All settings of an odometry, for programs, Python and benchmarks alike.
 // SettingTable names each value that users may want to set.
 struct OdometrySettings {
-  EstimatorSettings estimator;           // estimates motion from matches
-  std::string frontend = "patch";        // source of the matches
-  FrontendOptions features;              // without the camera
-  std::string tracker = "hybrid";        // tracking method
-  TrackerOptions tracking;               // validation of the estimates
-  DirectSettings direct;                 // estimates motion from pixels
-  DirectTrackerOptions direct_tracking;  // validation of these estimates
-  OdometryOptions odometry;              // keyframes, lost frames
+  EstimatorSettings estimator;     // estimates motion from matches
+  std::string frontend = "patch";  // source of the matches
+  FrontendOptions features;        // without the camera
+  std::string tracker = "hybrid";  // tracking method
+  TrackerOptions tracking;         // validation of the estimates
+  DirectSettings direct;           // estimates motion from pixels
+  OdometryOptions odometry;        // keyframes, lost frames
 };
 
 // Create an estimator, tracker or odometry with these settings. Throw

@@ -112,7 +112,7 @@ class Slam {
   // After Finish: covariances of the keyframe poses in map order, [omega (rad),
   // C (m)] as in PoseGraph; empty if they cannot be computed.
   std::vector<MotionMatrix> Covariances() const {
-    return mapper_.Covariances();
+    return mapper_.graph().Covariances();
   }
 
   // After Finish: the graph of keyframe pairs.

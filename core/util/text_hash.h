@@ -14,13 +14,14 @@ namespace rgbd_pose {
 class TextHash {
  public:
   // Adds a text and its length: "a", "bc" differ from "ab", "c".
-  void Add(std::string_view text) {
+  TextHash& Add(std::string_view text) {
     uint64_t state = state_;
     for (const char c : text) state = AddByte(state, static_cast<uint8_t>(c));
     for (uint64_t size = text.size(), i = 0; i < 8; ++i, size >>= 8) {
       state = AddByte(state, size & 0xff);
     }
     state_ = state;
+    return *this;
   }
 
   // 16 hexadecimal digits.

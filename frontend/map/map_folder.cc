@@ -143,10 +143,14 @@ KeyframeMap LoadIndexed(const fs::path& folder, const std::string& text) {
   return std::move(index.map);
 }
 
-// Runs `call` and converts file system errors to InputError.
+// Runs `call` with the folder created, locked and found to be a map's. Converts
+// file system errors to InputError.
 template <typename Call>
-void InFolder(const std::string& folder, Call call) {
+void InMapFolder(const std::string& folder, Call call) {
   try {
+    MakeFolder(folder);
+    const FolderLock lock(folder);
+    RequireNoOtherThings(folder);
     call();
   } catch (const fs::filesystem_error& error) {
     throw InputError(folder + ": no map can be saved here (" +
@@ -158,21 +162,12 @@ void InFolder(const std::string& folder, Call call) {
 
 void SaveMap(const std::string& folder, const KeyframeMap& map) {
   RequireSound(map.Check(), folder + ": not saved: ");
-  InFolder(folder, [&] {
-    MakeFolder(folder);
-    const FolderLock lock(folder);
-    RequireNoOtherThings(folder);
-    Save(folder, map);
-  });
+  InMapFolder(folder, [&] { Save(folder, map); });
 }
 
 void RequireMapFolder(const std::string& folder) {
-  InFolder(folder, [&] {
-    MakeFolder(folder);
-    const FolderLock lock(folder);
-    RequireNoOtherThings(folder);
-    RequireWritable((fs::path(folder) / kIndex).string());
-  });
+  InMapFolder(folder,
+              [&] { RequireWritable((fs::path(folder) / kIndex).string()); });
 }
 
 KeyframeMap LoadMap(const std::string& folder) {

@@ -35,12 +35,9 @@ class LineWriter {
   LineWriter& operator=(const LineWriter&) = delete;
 
   void Word(const std::string& word) { text_ += ' ' + word; }
-  void Integer(int value) { Word(std::to_string(value)); }
-  void Number(double value) { Word(ShortNumber(value)); }
-  void Motion(const Rigid3d& motion) {
-    for (int i = 0; i < 3; ++i) Number(motion.translation[i]);
-    for (int i = 0; i < 4; ++i) Number(motion.rotation.coeffs()[i]);
-  }
+  void Integer(const int* value) { Word(std::to_string(*value)); }
+  void Number(const double* value) { Word(ShortNumber(*value)); }
+  void ImageName(const std::string* name) { Word(*name); }
 
  private:
   std::string& text_;
@@ -63,28 +60,23 @@ class LineReader {
   const std::string& Kind() const { return line_.words[0]; }
   size_t Count() const { return line_.words.size(); }
   const std::string& Word() { return line_.words[next_++]; }
-  double Number() {
-    return ParseNumber(Word(), path_, line_.number, "a " + Kind());
+  void Number(double* value) {
+    *value = ParseNumber(Word(), path_, line_.number, "a " + Kind());
   }
-  int Integer() {
-    const double value = Number();
+  void Integer(int* integer) {
+    double value = 0.0;
+    Number(&value);
     constexpr double kMax = std::numeric_limits<int>::max();
     if (value != std::floor(value) || std::abs(value) > kMax) {
       Fail("'" + line_.words[next_ - 1] + "' must be an integer");
     }
-    return static_cast<int>(value);
+    *integer = static_cast<int>(value);
   }
-  // Avoids the constructor of Rigid3d, which might change the last digit.
-  Rigid3d Motion() {
-    Rigid3d motion;
-    for (int i = 0; i < 3; ++i) motion.translation[i] = Number();
-    for (int i = 0; i < 4; ++i) motion.rotation.coeffs()[i] = Number();
-    return motion;
-  }
-  std::string ImageName() {
-    const std::string& word = Word();
-    if (!IsImageName(word)) Fail("'" + word + "' must be an image's checksum");
-    return word;
+  void ImageName(std::string* name) {
+    *name = Word();
+    if (!IsImageName(*name)) {
+      Fail("'" + *name + "' must be an image's checksum");
+    }
   }
 
  private:
@@ -93,15 +85,45 @@ class LineReader {
   size_t next_ = 1;
 };
 
+// What follows are the words of each line in their order: a LineWriter writes
+// them, a LineReader reads them.
+
+// Avoids the constructor of Rigid3d, which might change the last digit.
+template <typename Line, typename Rigid>
+void PassMotion(Line* line, Rigid* motion) {
+  for (int i = 0; i < 3; ++i) line->Number(&motion->translation[i]);
+  for (int i = 0; i < 4; ++i) line->Number(&motion->rotation.coeffs()[i]);
+}
+
+template <typename Line, typename Node, typename Names>
+void PassKeyframe(Line* line, Node* keyframe, Names* images) {
+  line->Integer(&keyframe->id);
+  line->Integer(&keyframe->segment);
+  line->Number(&keyframe->images.timestamp);
+  line->Number(&keyframe->images.depth_delay);
+  line->Number(&keyframe->images.depth_scale);
+  PassMotion(line, &keyframe->world_from_cam);
+  line->ImageName(&images->gray);
+  line->ImageName(&images->depth);
+}
+
+template <typename Line, typename Edge>
+void PassEdge(Line* line, Edge* edge) {
+  line->Integer(&edge->ref);
+  line->Integer(&edge->cur);
+  PassMotion(line, &edge->cur_from_ref);
+  for (int i = 0; i < 36; ++i) line->Number(&edge->covariance(i / 6, i % 6));
+}
+
 void ReadCamera(LineReader* line, Camera* camera) {
   const bool is_usual = line->Count() <= 3 + kNumUsualParameters;
   const size_t count =
       is_usual ? kNumUsualParameters : kCameraParameters.size();
   line->Require(3 + count + (is_usual ? 0 : 1));
-  camera->width = line->Integer();
-  camera->height = line->Integer();
+  line->Integer(&camera->width);
+  line->Integer(&camera->height);
   for (size_t i = 0; i < count; ++i) {
-    camera->*kCameraParameters[i].value = line->Number();
+    line->Number(&(camera->*kCameraParameters[i].value));
   }
   if (is_usual) return;
   const std::string& lens = line->Word();
@@ -111,28 +133,19 @@ void ReadCamera(LineReader* line, Camera* camera) {
   if (lens == kEquidistant) camera->lens_model = LensModel::kEquidistant;
 }
 
-void ReadKeyframe(LineReader* line, MapIndex* index) {
-  line->Require(15);
-  Keyframe keyframe;
-  keyframe.id = line->Integer();
-  keyframe.segment = line->Integer();
-  keyframe.images.timestamp = line->Number();
-  keyframe.images.depth_delay = line->Number();
-  keyframe.images.depth_scale = line->Number();
-  keyframe.world_from_cam = line->Motion();
-  const std::string gray = line->ImageName();
-  index->images.push_back({gray, line->ImageName()});
-  index->map.keyframes.push_back(std::move(keyframe));
-}
-
-void ReadEdge(LineReader* line, std::vector<RelativePose>* edges) {
-  line->Require(46);
-  RelativePose edge;
-  edge.ref = line->Integer();
-  edge.cur = line->Integer();
-  edge.cur_from_ref = line->Motion();
-  for (int i = 0; i < 36; ++i) edge.covariance(i / 6, i % 6) = line->Number();
-  edges->push_back(edge);
+void WriteCamera(const Camera& camera, std::string* text) {
+  LineWriter line("camera", text);
+  line.Integer(&camera.width);
+  line.Integer(&camera.height);
+  // The long form is used if the short one cannot express the lens.
+  const bool is_equidistant = camera.lens_model == LensModel::kEquidistant;
+  const bool is_usual = !is_equidistant && camera.MakeLens().factor !=
+                                               Lens<double>::Factor::kRational;
+  for (size_t i = 0; i < kCameraParameters.size(); ++i) {
+    if (is_usual && i == kNumUsualParameters) break;
+    line.Number(&(camera.*kCameraParameters[i].value));
+  }
+  if (!is_usual) line.Word(is_equidistant ? kEquidistant : kRational);
 }
 
 // Checks the first and the last line of a text and returns it without the last.
@@ -162,9 +175,7 @@ std::string_view Unseal(std::string_view text, const std::string& path) {
 }  // namespace
 
 std::string ChecksumLine(std::string_view above) {
-  TextHash hash;
-  hash.Add(above);
-  return "checksum " + hash.Hex() + "\n";
+  return "checksum " + TextHash().Add(above).Hex() + "\n";
 }
 
 bool IsImageName(std::string_view word) {
@@ -176,40 +187,14 @@ std::string FormatMapIndex(const MapIndex& index) {
   std::string text;
   ((text += kMagic) += kVersion) += '\n';
   text += kColumns;
-  {
-    const Camera& camera = index.map.camera;
-    LineWriter line("camera", &text);
-    line.Integer(camera.width);
-    line.Integer(camera.height);
-    // The long form is used if the short one cannot express the lens.
-    const bool is_equidistant = camera.lens_model == LensModel::kEquidistant;
-    const bool is_usual =
-        !is_equidistant &&
-        camera.MakeLens().factor != Lens<double>::Factor::kRational;
-    for (size_t i = 0; i < kCameraParameters.size(); ++i) {
-      if (is_usual && i == kNumUsualParameters) break;
-      line.Number(camera.*kCameraParameters[i].value);
-    }
-    if (!is_usual) line.Word(is_equidistant ? kEquidistant : kRational);
-  }
+  WriteCamera(index.map.camera, &text);
   for (size_t i = 0; i < index.map.keyframes.size(); ++i) {
-    const Keyframe& keyframe = index.map.keyframes[i];
     LineWriter line("keyframe", &text);
-    line.Integer(keyframe.id);
-    line.Integer(keyframe.segment);
-    line.Number(keyframe.images.timestamp);
-    line.Number(keyframe.images.depth_delay);
-    line.Number(keyframe.images.depth_scale);
-    line.Motion(keyframe.world_from_cam);
-    line.Word(index.images[i].gray);
-    line.Word(index.images[i].depth);
+    PassKeyframe(&line, &index.map.keyframes[i], &index.images[i]);
   }
   for (const RelativePose& edge : index.map.edges) {
     LineWriter line("edge", &text);
-    line.Integer(edge.ref);
-    line.Integer(edge.cur);
-    line.Motion(edge.cur_from_ref);
-    for (int i = 0; i < 36; ++i) line.Number(edge.covariance(i / 6, i % 6));
+    PassEdge(&line, &edge);
   }
   return text + ChecksumLine(text);
 }
@@ -225,9 +210,12 @@ MapIndex ParseMapIndex(std::string_view text, const std::string& path) {
     if (line.Kind() == "camera") {
       ReadCamera(&line, &index.map.camera);
     } else if (line.Kind() == "keyframe") {
-      ReadKeyframe(&line, &index);
+      line.Require(15);
+      PassKeyframe(&line, &index.map.keyframes.emplace_back(),
+                   &index.images.emplace_back());
     } else if (line.Kind() == "edge") {
-      ReadEdge(&line, &index.map.edges);
+      line.Require(46);
+      PassEdge(&line, &index.map.edges.emplace_back());
     } else {
       line.Fail("'" + line.Kind() + "' must be camera, keyframe or edge");
     }

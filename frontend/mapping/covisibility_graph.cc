@@ -1,12 +1,15 @@
 #include "frontend/mapping/covisibility_graph.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace rgbd_pose {
 namespace {
 
 // Neighbours of a keyframe are near each other within this many links.
 constexpr int kHopsAround = 3;
+
+constexpr int kAnyHops = std::numeric_limits<int>::max();
 
 }  // namespace
 
@@ -28,45 +31,34 @@ bool CovisibilityGraph::AreJoined(int a, int b) const {
          neighbors_[a].end();
 }
 
-std::vector<int> CovisibilityGraph::Distances(int from, int most,
-                                              int without) const {
-  std::vector<int> distances(neighbors_.size(), -1), reached = {from};
-  distances[from] = 0;
-  for (size_t i = 0; i < reached.size(); ++i) {
-    const int at = reached[i];
-    if (distances[at] == most) break;
-    for (const int other : neighbors_[at]) {
-      if (distances[other] >= 0 || other == without) continue;
-      distances[other] = distances[at] + 1;
-      reached.push_back(other);
+std::vector<int> CovisibilityGraph::Reach(int from, int hops,
+                                          std::vector<int>* before) const {
+  std::vector<int> reached = {from};
+  (*before)[from] = from;
+  size_t next = 0;
+  for (int hop = 0; hop < hops && next < reached.size(); ++hop) {
+    for (const size_t end = reached.size(); next < end; ++next) {
+      const int at = reached[next];
+      for (const int other : neighbors_[at]) {
+        if ((*before)[other] >= 0) continue;
+        (*before)[other] = at;
+        reached.push_back(other);
+      }
     }
   }
-  return distances;
+  return reached;
 }
 
 std::vector<bool> CovisibilityGraph::Within(int from, int hops) const {
-  std::vector<bool> within;
-  for (const int distance : Distances(from, hops)) {
-    within.push_back(distance >= 0);
-  }
+  std::vector<int> before(neighbors_.size(), -1);
+  std::vector<bool> within(neighbors_.size(), false);
+  for (const int at : Reach(from, hops, &before)) within[at] = true;
   return within;
 }
 
-int CovisibilityGraph::Hops(int from, int to, int most) const {
-  const int distance = Distances(from, most)[to];
-  return distance >= 0 ? distance : most;
-}
-
 std::vector<int> CovisibilityGraph::ShortestPath(int from, int to) const {
-  std::vector<int> before(neighbors_.size(), -1), reached = {from};
-  before[from] = from;
-  for (size_t i = 0; i < reached.size() && before[to] < 0; ++i) {
-    for (const int other : neighbors_[reached[i]]) {
-      if (before[other] >= 0) continue;
-      before[other] = reached[i];
-      reached.push_back(other);
-    }
-  }
+  std::vector<int> before(neighbors_.size(), -1);
+  Reach(from, kAnyHops, &before);
   if (before[to] < 0) return {};
   std::vector<int> way = {to};
   while (way.back() != from) way.push_back(before[way.back()]);
@@ -75,18 +67,10 @@ std::vector<int> CovisibilityGraph::ShortestPath(int from, int to) const {
 }
 
 std::vector<int> CovisibilityGraph::FirstOfParts() const {
-  std::vector<int> first(neighbors_.size(), -1), reached;
-  for (size_t from = 0; from < first.size(); ++from) {
-    if (first[from] >= 0) continue;
-    first[from] = static_cast<int>(from);
-    reached = {first[from]};
-    for (size_t i = 0; i < reached.size(); ++i) {
-      for (const int other : neighbors_[reached[i]]) {
-        if (first[other] >= 0) continue;
-        first[other] = first[from];
-        reached.push_back(other);
-      }
-    }
+  std::vector<int> first(neighbors_.size()), before(neighbors_.size(), -1);
+  for (int from = 0; from < static_cast<int>(first.size()); ++from) {
+    if (before[from] >= 0) continue;
+    for (const int at : Reach(from, kAnyHops, &before)) first[at] = from;
   }
   return first;
 }
@@ -94,9 +78,11 @@ std::vector<int> CovisibilityGraph::FirstOfParts() const {
 bool CovisibilityGraph::StaysConnectedWithout(int without) const {
   const std::vector<int>& around = neighbors_[without];
   if (around.empty()) return false;
-  const std::vector<int> near = Distances(around.front(), kHopsAround, without);
+  std::vector<int> before(neighbors_.size(), -1);
+  before[without] = without;
+  Reach(around.front(), kHopsAround, &before);
   return std::all_of(around.begin(), around.end(),
-                     [&](int at) { return near[at] >= 0; });
+                     [&](int at) { return before[at] >= 0; });
 }
 
 }  // namespace rgbd_pose

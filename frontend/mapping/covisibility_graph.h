@@ -21,9 +21,6 @@ class CovisibilityGraph {
   // For each keyframe whether it is within `hops` links of `from`.
   std::vector<bool> Within(int from, int hops) const;
 
-  // The number of links on the shortest path, or `most` if there are more.
-  int Hops(int from, int to, int most) const;
-
   // A path with the fewest links, including both ends; empty if there is none.
   std::vector<int> ShortestPath(int from, int to) const;
 
@@ -34,9 +31,10 @@ class CovisibilityGraph {
   bool StaysConnectedWithout(int at) const;
 
  private:
-  // For each keyframe the number of links on the shortest path from `from` that
-  // avoids `without`; -1 for more than `most` links.
-  std::vector<int> Distances(int from, int most, int without = -1) const;
+  // Searches breadth first, up to `hops` links away, but not through keyframes
+  // with an entry in `before` (-1: none). Returns the keyframes reached and
+  // enters for each the one it was reached from.
+  std::vector<int> Reach(int from, int hops, std::vector<int>* before) const;
 
   std::vector<std::vector<int>> neighbors_;
 };

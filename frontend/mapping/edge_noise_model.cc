@@ -51,15 +51,6 @@ MotionMatrix EdgeNoiseModel::CovarianceOf(const RelativePose& edge,
   return covariance;
 }
 
-MotionMatrix EdgeNoiseModel::CovarianceOf(const RelativePose& edge) const {
-  return CovarianceOf(edge, proportional_error_);
-}
-
-const ceres::LossFunction* EdgeNoiseModel::LossOf(
-    const KeyframePair& pair) const {
-  return pair.is_tracked ? tracked_loss_.get() : pair_loss_.get();
-}
-
 MotionMatrix EdgeNoiseModel::CovarianceAsSolved(
     const KeyframePair& pair, const Rigid3d& cur_from_ref) const {
   const MotionMatrix covariance = CovarianceOf(pair.edge);

@@ -37,10 +37,14 @@ class EdgeNoiseModel {
                             const std::vector<Rigid3d>& cur_from_ref);
 
   // The covariance with noise floor and proportional error.
-  MotionMatrix CovarianceOf(const RelativePose& edge) const;
+  MotionMatrix CovarianceOf(const RelativePose& edge) const {
+    return CovarianceOf(edge, proportional_error_);
+  }
 
   // The loss function of a pair.
-  const ceres::LossFunction* LossOf(const KeyframePair& pair) const;
+  const ceres::LossFunction* LossOf(const KeyframePair& pair) const {
+    return pair.is_tracked ? tracked_loss_.get() : pair_loss_.get();
+  }
 
   // The effective covariance of a pair if the motion by the poses is
   // `cur_from_ref`: larger if the loss function reduces the pair's weight.

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "core/util/input_error.h"
-
 namespace rgbd_pose {
 namespace {
 
@@ -15,11 +13,7 @@ constexpr int kMaxFitRounds = 4;
 }  // namespace
 
 int KeyframeGraph::Add(const Rigid3d& map_from_cam, int segment, bool is_held) {
-  Node node;
-  node.map_from_cam = map_from_cam;
-  node.segment = segment;
-  node.is_held = is_held;
-  nodes_.push_back(std::move(node));
+  nodes_.push_back({map_from_cam, segment, is_held, /*anchor=*/-1, {}});
   links_.Add();
   first_of_.emplace(segment, size() - 1);
   return size() - 1;
@@ -31,10 +25,6 @@ void KeyframeGraph::AddPair(const RelativePose& edge, bool is_tracked,
   links_.Join(edge.ref, edge.cur);
 }
 
-Rigid3d KeyframeGraph::MotionOf(const RelativePose& edge) const {
-  return pose(edge.cur).Inverse() * pose(edge.ref);
-}
-
 bool KeyframeGraph::PassesMahalanobisGate(const RelativePose& edge) const {
   std::vector<Rigid3d> way;
   for (const int at : links_.ShortestPath(edge.ref, edge.cur))
@@ -42,16 +32,15 @@ bool KeyframeGraph::PassesMahalanobisGate(const RelativePose& edge) const {
   return !way.empty() && noise_.PassesMahalanobisGate(edge, way);
 }
 
-bool KeyframeGraph::IsHeld(int segment) const {
-  return nodes_[first_of_.at(segment)].is_held;
-}
-
 bool KeyframeGraph::Join(const RelativePose& edge) {
   int from = segment(edge.cur), to = segment(edge.ref);
   Rigid3d to_from_from =
       pose(edge.ref) * edge.cur_from_ref.Inverse() * pose(edge.cur).Inverse();
-  if (IsHeld(from)) {
-    if (IsHeld(to)) return false;
+  const auto is_held = [this](int whole) {
+    return nodes_[first_of_.at(whole)].is_held;
+  };
+  if (is_held(from)) {
+    if (is_held(to)) return false;
     std::swap(from, to);
     to_from_from = to_from_from.Inverse();
   }
@@ -71,9 +60,7 @@ bool KeyframeGraph::IsRedundant(int at) const {
 void KeyframeGraph::Remove(int at, int anchor) {
   Node& node = nodes_[at];
   node.anchor = anchor;
-  node.from_anchor.ref = anchor;
-  node.from_anchor.cur = at;
-  node.from_anchor.cur_from_ref = pose(at).Inverse() * pose(anchor);
+  node.from_anchor = {anchor, at, CurFromRef(anchor, at)};
   for (const KeyframePair& pair : pairs_) {
     const bool is_it = (pair.edge.ref == at && pair.edge.cur == anchor) ||
                        (pair.edge.ref == anchor && pair.edge.cur == at);
@@ -101,18 +88,6 @@ RelativePose KeyframeGraph::Reanchor(RelativePose edge) const {
 
 bool KeyframeGraph::IsFixed(int at) const {
   return nodes_[at].is_held || first_of_.at(segment(at)) == at;
-}
-
-MotionMatrix KeyframeGraph::CovarianceAsSolved(const KeyframePair& pair) const {
-  return noise_.CovarianceAsSolved(pair, MotionOf(pair.edge));
-}
-
-void KeyframeGraph::FitProportionalError() {
-  std::vector<Rigid3d> motions;
-  for (const KeyframePair& pair : pairs_) {
-    motions.push_back(MotionOf(pair.edge));
-  }
-  noise_.FitProportionalError(pairs_, motions);
 }
 
 // A pose graph and the poses of keyframes in it.
@@ -166,11 +141,6 @@ std::string KeyframeGraph::Solve(const std::vector<int>& free, bool graduated) {
   for (const int at : free) {
     nodes_[at].map_from_cam = problem.graph.pose(problem.pose_of[at]);
   }
-  FollowAnchors();
-  return "";
-}
-
-void KeyframeGraph::FollowAnchors() {
   // An anchor may be removed as well, but it is older and updated first.
   for (Node& node : nodes_) {
     if (node.anchor < 0) continue;
@@ -178,15 +148,14 @@ void KeyframeGraph::FollowAnchors() {
         pose(node.anchor) * node.from_anchor.cur_from_ref.Inverse();
     node.segment = segment(node.anchor);
   }
+  return "";
 }
 
 std::string KeyframeGraph::SolveNear(int newest) {
   std::vector<int> free;
-  int latest = 0;
-  for (int at = newest; at >= 0 && latest < window_; --at) {
-    if (IsRemoved(at)) continue;
-    free.push_back(at);
-    ++latest;
+  for (int at = newest; at >= 0 && static_cast<int>(free.size()) < window_;
+       --at) {
+    if (!IsRemoved(at)) free.push_back(at);
   }
   const int oldest = free.back();
   for (const int at : links_.Neighbors(newest)) {
@@ -207,7 +176,11 @@ std::string KeyframeGraph::SolveAll() {
   std::string error = Solve(All(), /*graduated=*/true);
   for (int round = 1; round < kMaxFitRounds && error.empty(); ++round) {
     const double before = proportional_error();
-    FitProportionalError();
+    std::vector<Rigid3d> motions;
+    for (const KeyframePair& pair : pairs_) {
+      motions.push_back(CurFromRef(pair.edge.ref, pair.edge.cur));
+    }
+    noise_.FitProportionalError(pairs_, motions);
     if (proportional_error() == before) break;
     error = Solve(All(), /*graduated=*/true);
     if (std::abs(proportional_error() - before) <= 0.1 * before) break;
@@ -216,18 +189,15 @@ std::string KeyframeGraph::SolveAll() {
 }
 
 std::vector<MotionMatrix> KeyframeGraph::Covariances() const {
-  const Problem problem = Build(All(), /*graduated=*/false);
+  const std::vector<int> all = All();
+  const Problem problem = Build(all, /*graduated=*/false);
   std::vector<int> poses;
-  for (const int at : All()) poses.push_back(problem.pose_of[at]);
-  std::vector<MotionMatrix> all(nodes_.size(), MotionMatrix::Zero());
-  const std::vector<MotionMatrix> found =
+  for (const int at : all) poses.push_back(problem.pose_of[at]);
+  std::vector<MotionMatrix> covariances =
       problem.graph.MarginalCovariances(poses);
-  if (found.empty()) return {};
-  size_t next = 0;
-  for (const int at : All()) {
-    all[at] = problem.graph.OvercountingFactor() * found[next++];
-  }
-  return all;
+  const double factor = problem.graph.OvercountingFactor();
+  for (MotionMatrix& covariance : covariances) covariance *= factor;
+  return covariances;
 }
 
 }  // namespace rgbd_pose

@@ -26,6 +26,10 @@ class KeyframeGraph {
   // map_from_cam and the segment of a keyframe.
   const Rigid3d& pose(int at) const { return nodes_[at].map_from_cam; }
   int segment(int at) const { return nodes_[at].segment; }
+  // The motion between two keyframes by their current poses.
+  Rigid3d CurFromRef(int ref, int cur) const {
+    return pose(cur).Inverse() * pose(ref);
+  }
   // All pairs, and the links that they form.
   const std::vector<KeyframePair>& pairs() const { return pairs_; }
   const CovisibilityGraph& links() const { return links_; }
@@ -61,13 +65,17 @@ class KeyframeGraph {
   std::string SolveNear(int newest);
   std::string SolveAll();
 
-  // Covariances of all poses after SolveAll: those of PoseGraph times its
-  // OvercountingFactor. Zero for fixed poses; empty if they cannot be computed.
+  // Covariances of all poses after SolveAll, without removed keyframes: those
+  // of PoseGraph times its OvercountingFactor. Zero for fixed poses; empty if
+  // they cannot be computed.
   std::vector<MotionMatrix> Covariances() const;
 
   // The effective covariance of a pair at the current poses (EdgeNoiseModel).
   // Least squares with these covariances gives the same poses.
-  MotionMatrix CovarianceAsSolved(const KeyframePair& pair) const;
+  MotionMatrix CovarianceAsSolved(const KeyframePair& pair) const {
+    return noise_.CovarianceAsSolved(pair,
+                                     CurFromRef(pair.edge.ref, pair.edge.cur));
+  }
 
   // See EdgeNoiseModel.
   double proportional_error() const { return noise_.proportional_error(); }
@@ -83,14 +91,9 @@ class KeyframeGraph {
   struct Problem;
 
   bool IsFixed(int at) const;
-  bool IsHeld(int segment) const;
-  // cur_from_ref by the current poses.
-  Rigid3d MotionOf(const RelativePose& edge) const;
-  void FitProportionalError();
   Problem Build(const std::vector<int>& free, bool graduated) const;
   std::string Solve(const std::vector<int>& free, bool graduated);
   std::vector<int> All() const;
-  void FollowAnchors();
 
   const int window_;
   EdgeNoiseModel noise_;

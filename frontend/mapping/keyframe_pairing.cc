@@ -1,10 +1,11 @@
-#include "frontend/mapping/keyframe_pairing.h"
-
 #include <algorithm>
+#include <string>
 #include <utility>
 
-#include "frontend/mapping/pair_tracker.h"
-#include "frontend/places/relocaliser.h"
+#include "frontend/mapping/mapper.h"
+
+// Finds keyframes that see the same place as the newest one and measures the
+// motions between them.
 
 namespace rgbd_pose {
 namespace {
@@ -26,10 +27,31 @@ constexpr double kMinLookalikeInliers = 0.5;
 constexpr double kMeetingRotation = 0.05;    // rad
 constexpr double kMeetingTranslation = 0.1;  // m
 
+// Number of references kept, about 3 MB each.
+constexpr size_t kMaxReferences = 24;
+
+// Limits of a good pair: the share of the view that is visible, and the spread
+// of the residuals in sigmas.
+constexpr double kMinSeenShare = 0.1;
+constexpr double kMaxPairSigma = 3.0;
+
+// A pair that differs from its initial guess, by poses or descriptors, by more
+// than this is wrong.
+constexpr double kMaxPairRotation = 0.2;     // rad
+constexpr double kMaxPairTranslation = 0.3;  // m
+
+// Whether two motions differ by at most `rotation` (rad) and `translation` (m).
+bool IsWithin(const Rigid3d& a, const Rigid3d& b, double rotation,
+              double translation) {
+  const Rigid3d moved = a.Inverse() * b;
+  return moved.Angle() <= rotation && moved.translation.norm() <= translation;
+}
+
 }  // namespace
 
-double KeyframePairing::SharedView(int ref, int cur,
-                                   const Rigid3d& cur_from_ref) const {
+// The share of each view that the other one sees, the smaller of both. 0 if
+// their scales differ too much.
+double Mapper::SharedView(int ref, int cur, const Rigid3d& cur_from_ref) const {
   const Overlap there = keyframes_[ref].samples.SeenFrom(cur_from_ref);
   if (there.share < options_.min_pair_share) return 0.0;
   const Overlap back = keyframes_[cur].samples.SeenFrom(cur_from_ref.Inverse());
@@ -37,16 +59,14 @@ double KeyframePairing::SharedView(int ref, int cur,
   return std::min(there.share, back.share);
 }
 
-std::vector<int> KeyframePairing::SeeingTheSame(int newest) const {
+std::vector<int> Mapper::SeeingTheSame(int newest) const {
   std::vector<std::pair<double, int>> seen;
   for (int at = 0; at < newest; ++at) {
     if (graph_.IsRemoved(at) || graph_.segment(at) != graph_.segment(newest) ||
         graph_.links().AreJoined(at, newest)) {
       continue;
     }
-    const Rigid3d cur_from_ref =
-        graph_.pose(newest).Inverse() * graph_.pose(at);
-    const double share = SharedView(at, newest, cur_from_ref);
+    const double share = SharedView(at, newest, graph_.CurFromRef(at, newest));
     if (share >= options_.min_pair_share) seen.emplace_back(-share, at);
   }
   std::sort(seen.begin(), seen.end());
@@ -62,27 +82,55 @@ std::vector<int> KeyframePairing::SeeingTheSame(int newest) const {
   return result;
 }
 
-// PairTracker's pair with the covariance increased by timing errors.
-std::optional<RelativePose> KeyframePairing::MakePair(
-    int ref, int cur, const PreparedFrame& frame,
-    const Rigid3d& cur_from_ref_guess, double min_inlier_share) {
-  auto pair = tracker_.MakePair(ref, cur, keyframes_[ref], frame,
-                                cur_from_ref_guess, min_inlier_share);
-  if (pair.has_value()) {
-    pair->covariance +=
-        keyframes_[ref].timing_covariance + keyframes_[cur].timing_covariance;
+// The motion between two keyframes, if it is reliable and near the initial
+// guess, with a covariance that includes timing errors. `frame`: of `cur`.
+std::optional<RelativePose> Mapper::MakePair(int ref, int cur,
+                                             const PreparedFrame& frame,
+                                             const Rigid3d& cur_from_ref_guess,
+                                             double min_inlier_share) {
+  const Reference* reference = ReferenceOf(ref);
+  if (reference == nullptr) return std::nullopt;
+  tracker_->Track(*reference, frame, cur_from_ref_guess, &tracked_);
+  const MotionEstimate& estimate = tracked_.estimate;
+  if (tracked_.status != TrackingStatus::kOk || !estimate.ok() ||
+      estimate.num_inliers < min_inlier_share * estimate.num_used ||
+      estimate.sigma > kMaxPairSigma ||
+      tracked_.overlap.share < kMinSeenShare ||
+      !IsWithin(estimate.cur_from_prev, cur_from_ref_guess, kMaxPairRotation,
+                kMaxPairTranslation)) {
+    return std::nullopt;
   }
-  return pair;
+  const MotionMatrix timing =
+      keyframes_[ref].timing_covariance + keyframes_[cur].timing_covariance;
+  return RelativePose{ref, cur, estimate.cur_from_prev,
+                      estimate.covariance + timing};
 }
 
-void KeyframePairing::PairByPose(int newest, const PreparedFrame& frame,
-                                 MapUpdate* update) {
+const Reference* Mapper::ReferenceOf(int at) {
+  const auto made =
+      std::find_if(references_.begin(), references_.end(),
+                   [=](const auto& entry) { return entry.first == at; });
+  if (made != references_.end()) {
+    references_.splice(references_.begin(), references_, made);
+    return references_.front().second.get();
+  }
+  std::string why_not;
+  auto reference = tracker_->MakeReference(keyframes_[at].Unpacked(), nullptr,
+                                           nullptr, &why_not);
+  if (reference == nullptr) return nullptr;
+  if (references_.size() == kMaxReferences) references_.pop_back();
+  references_.emplace_front(at, std::move(reference));
+  return references_.front().second.get();
+}
+
+// Pairs the newest keyframe with those of its segment that, by their poses, see
+// the same.
+void Mapper::PairByPose(int newest, const PreparedFrame& frame,
+                        MapUpdate* update) {
   for (const int at : SeeingTheSame(newest)) {
-    const bool is_loop =
-        graph_.links().Hops(newest, at, kLoopHops + 1) > kLoopHops;
+    const bool is_loop = !graph_.links().Within(newest, kLoopHops)[at];
     const auto edge =
-        MakePair(at, newest, frame,
-                 graph_.pose(newest).Inverse() * graph_.pose(at), 0.0);
+        MakePair(at, newest, frame, graph_.CurFromRef(at, newest), 0.0);
     if (!edge.has_value()) continue;
     graph_.AddPair(*edge, /*is_tracked=*/false, is_loop);
     ++update->pairs;
@@ -90,11 +138,11 @@ void KeyframePairing::PairByPose(int newest, const PreparedFrame& frame,
   }
 }
 
-// A similar keyframe is accepted if the path by other pairs is consistent with
+// Pairs it with similar ones of any segment. Segments that meet are joined. A
+// similar keyframe is accepted if the path by other pairs is consistent with
 // it or, without a path, if more than one pair supports it.
-void KeyframePairing::CloseLoopsByAppearance(int newest,
-                                             const PreparedFrame& frame,
-                                             MapUpdate* update) {
+void Mapper::CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
+                                    MapUpdate* update) {
   if (options_.max_loop_candidates == 0) return;
   const PlaceFeatures& cur = *keyframes_[newest].features;
   const std::vector<bool> is_near = graph_.links().Within(newest, kLoopHops);
@@ -105,7 +153,7 @@ void KeyframePairing::CloseLoopsByAppearance(int newest,
     if (candidate.score < kMinScoreShare * alike.front().score) break;
     const int at = candidate.keyframe;
     const auto rough = VerifyGeometrically(
-        MatchPlaces(*keyframes_[at].features, cur, tracker_.images().camera));
+        MatchPlaces(*keyframes_[at].features, cur, tracker_->images().camera));
     if (!rough.has_value()) continue;
     const auto edge =
         MakePair(at, newest, frame, rough->cur_from_prev, kMinLookalikeInliers);
@@ -127,8 +175,8 @@ void KeyframePairing::CloseLoopsByAppearance(int newest,
 }
 
 // Whether a pair with a neighbour of edge.ref gives the same motion.
-bool KeyframePairing::AgreesWithOthers(const RelativePose& edge,
-                                       const PreparedFrame& frame) {
+bool Mapper::AgreesWithOthers(const RelativePose& edge,
+                              const PreparedFrame& frame) {
   const std::vector<int> neighbors = graph_.links().Neighbors(edge.ref);
   for (const int at : neighbors) {
     const Rigid3d guess =
@@ -146,7 +194,7 @@ bool KeyframePairing::AgreesWithOthers(const RelativePose& edge,
 
 // Whether an earlier pair between the two segments gave the same motion.
 // Otherwise this one is remembered.
-bool KeyframePairing::AreConnected(const RelativePose& edge) {
+bool Mapper::AreConnected(const RelativePose& edge) {
   const Meeting meeting = {graph_.segment(edge.ref), graph_.segment(edge.cur),
                            graph_.pose(edge.ref) * edge.cur_from_ref.Inverse() *
                                graph_.pose(edge.cur).Inverse()};

@@ -1,7 +1,5 @@
 #include "frontend/mapping/mapper.h"
 
-#include <utility>
-
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
 #include "frontend/places/relocaliser.h"
@@ -32,15 +30,15 @@ std::string MappingOptions::Check() const {
 
 Mapper::Mapper(const MappingOptions& options, std::unique_ptr<Tracker> tracker)
     : options_(options),
-      tracker_(std::move(tracker)),
       graph_(options.window, options.drift),
-      pairing_(options_, keyframes_, index_, &tracker_, &graph_) {
+      tracker_(std::move(tracker)),
+      tracked_(tracker_->images().camera) {
   RequireSound(options.Check(), "mapping: ");
 }
 
 int Mapper::AddKeyframe(Keyframe keyframe, const PreparedFrame& frame,
                         bool is_held) {
-  const FrontendOptions& images = tracker_.images();
+  const FrontendOptions& images = tracker_->images();
   const int at = graph_.Add(keyframe.world_from_cam, keyframe.segment, is_held);
   numbers_[keyframe.id] = at;
   keyframe.frame = PreparedFrame();
@@ -62,7 +60,7 @@ void Mapper::Index(int at) {
 
 void Mapper::Load(const KeyframeMap& map, bool is_held) {
   RequireSound(map.Check(), "map: ");
-  RequireSound(map.CheckCamera(tracker_.images().camera), "map: ");
+  RequireSound(map.CheckCamera(tracker_->images().camera), "map: ");
   for (const Keyframe& keyframe : map.keyframes) {
     Index(AddKeyframe(keyframe, keyframe.Unpacked(), is_held));
   }
@@ -101,9 +99,9 @@ MapUpdate Mapper::Add(Keyframe added,
     }
     graph_.AddPair(edge, /*is_tracked=*/true);
   }
-  pairing_.PairByPose(newest, frame, &update);
-  pairing_.CloseLoopsByAppearance(newest, frame, &update);
-  if (update.joined > 0) pairing_.PairByPose(newest, frame, &update);
+  PairByPose(newest, frame, &update);
+  CloseLoopsByAppearance(newest, frame, &update);
+  if (update.joined > 0) PairByPose(newest, frame, &update);
   Index(newest);
   for (size_t i = known_pairs; i < graph_.pairs().size(); ++i) {
     const KeyframePair& pair = graph_.pairs()[i];
@@ -126,7 +124,7 @@ Keyframe Mapper::WithImages(int at) const {
 }
 
 std::optional<Keyframe> Mapper::Find(const Frame& lost) {
-  const FrontendOptions& images = tracker_.images();
+  const FrontendOptions& images = tracker_->images();
   const Relocaliser relocaliser(images.camera, images.DepthLookup());
   const auto found = relocaliser.FindInMap(
       lost, index_, [this](int at) -> const PlaceFeatures& {
@@ -145,8 +143,8 @@ void Mapper::FindReturn(int newest, MapUpdate* update) const {
     if (graph_.IsRemoved(at) || graph_.segment(at) != graph_.segment(newest)) {
       continue;
     }
-    const Overlap overlap = keyframes_[at].samples.SeenFrom(
-        graph_.pose(newest).Inverse() * graph_.pose(at));
+    const Overlap overlap =
+        keyframes_[at].samples.SeenFrom(graph_.CurFromRef(at, newest));
     if (overlap.share < options_.redundant_share || overlap.flow_px >= least) {
       continue;
     }
@@ -162,15 +160,15 @@ void Mapper::CullKeyframes(int newest) {
   if (at < 0 || graph_.IsRemoved(at) || !graph_.IsRedundant(at)) return;
   for (const int neighbor : graph_.links().Neighbors(at)) {
     if (neighbor > at) continue;
-    const Overlap overlap = keyframes_[at].samples.SeenFrom(
-        graph_.pose(neighbor).Inverse() * graph_.pose(at));
+    const Overlap overlap =
+        keyframes_[at].samples.SeenFrom(graph_.CurFromRef(at, neighbor));
     if (overlap.share < options_.redundant_share ||
         overlap.flow_px > kRedundantFlowPx) {
       continue;
     }
     graph_.Remove(at, neighbor);
     index_.Remove(at);
-    tracker_.Forget(at);
+    references_.remove_if([=](const auto& r) { return r.first == at; });
     MappedKeyframe gone;
     gone.id = keyframes_[at].id;
     gone.published = keyframes_[at].published;
@@ -203,7 +201,7 @@ void Mapper::PublishMovedPoses(MapUpdate* update) {
 
 KeyframeMap Mapper::Map(bool as_solved) const {
   KeyframeMap map;
-  map.camera = tracker_.images().camera;
+  map.camera = tracker_->images().camera;
   for (int at = 0; at < graph_.size(); ++at) {
     if (graph_.IsRemoved(at)) continue;
     map.keyframes.push_back(keyframes_[at]);
@@ -218,15 +216,6 @@ KeyframeMap Mapper::Map(bool as_solved) const {
     map.edges.push_back(edge);
   }
   return map;
-}
-
-std::vector<MotionMatrix> Mapper::Covariances() const {
-  const std::vector<MotionMatrix> all = graph_.Covariances();
-  std::vector<MotionMatrix> kept;
-  for (int at = 0; at < static_cast<int>(all.size()); ++at) {
-    if (!graph_.IsRemoved(at)) kept.push_back(all[at]);
-  }
-  return kept;
 }
 
 }  // namespace rgbd_pose

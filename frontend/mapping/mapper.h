@@ -1,23 +1,53 @@
 #pragma once
 
 #include <deque>
+#include <list>
 #include <map>
 #include <memory>
 #include <optional>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/rigid3.h"
 #include "core/pose_graph/relative_pose.h"
 #include "frontend/map/keyframe_map.h"
 #include "frontend/mapping/keyframe_graph.h"
-#include "frontend/mapping/keyframe_pairing.h"
 #include "frontend/mapping/map_update.h"
-#include "frontend/mapping/mapping_options.h"
-#include "frontend/mapping/pair_tracker.h"
 #include "frontend/places/place_database.h"
 #include "frontend/tracking/tracker.h"
 
 namespace rgbd_pose {
+
+// The options of Mapper.
+struct MappingOptions {
+  // Maximum number of older keyframes that a new one is paired with by its
+  // pose. Half of them are those that see most of its view; the others are the
+  // oldest ones, which limit the drift.
+  int max_pairs = 8;
+
+  // Two keyframes see the same if each shows this share of the other's view.
+  double min_pair_share = 0.4;
+
+  // Number of similar keyframes that are checked for showing the same place. 0:
+  // loops are found only by pose, and segments are not joined.
+  int max_loop_candidates = 4;
+
+  // A keyframe is removed if an older one nearby sees this share of its view. A
+  // map thus grows with the size of the place, not with time.
+  double redundant_share = 0.85;
+
+  // Number of latest keyframes whose poses are optimised at each keyframe,
+  // together with those paired with the newest one. After a loop all are.
+  int window = 10;
+
+  // Maximum drift of a path relative to its length and rotation, as one
+  // standard deviation. It limits the correction by a loop.
+  double drift = 0.01;
+
+  // A one-line description of an error in the options, or empty.
+  std::string Check() const;
+};
 
 // Builds a map of keyframes. Finds keyframes that see the same place by their
 // poses or appearance (PlaceDatabase), measures the motions between them
@@ -47,11 +77,17 @@ class Mapper {
   // measured, or `as_solved` by KeyframeGraph::CovarianceAsSolved.
   KeyframeMap Map(bool as_solved = false) const;
 
-  // Covariances in the order of keyframes in Map(), see KeyframeGraph.
-  std::vector<MotionMatrix> Covariances() const;
+  // The poses and pairs of keyframes. Its covariances are in the order of
+  // keyframes in Map().
   const KeyframeGraph& graph() const { return graph_; }
 
  private:
+  // A motion between two segments that only one pair supports so far.
+  struct Meeting {
+    int ref_segment = 0, cur_segment = 0;
+    Rigid3d ref_from_cur;  // between their world frames
+  };
+
   // Compresses the images of a keyframe; returns its number in graph_.
   int AddKeyframe(Keyframe keyframe, const PreparedFrame& frame, bool is_held);
   void Index(int at);
@@ -61,13 +97,31 @@ class Mapper {
   void CullKeyframes(int newest);
   void PublishMovedPoses(MapUpdate* update);
 
+  // In keyframe_pairing.cc.
+  void PairByPose(int newest, const PreparedFrame& frame, MapUpdate* update);
+  void CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
+                              MapUpdate* update);
+  double SharedView(int ref, int cur, const Rigid3d& cur_from_ref) const;
+  std::vector<int> SeeingTheSame(int newest) const;
+  std::optional<RelativePose> MakePair(int ref, int cur,
+                                       const PreparedFrame& frame,
+                                       const Rigid3d& cur_from_ref_guess,
+                                       double min_inlier_share);
+  const Reference* ReferenceOf(int at);
+  bool AgreesWithOthers(const RelativePose& edge, const PreparedFrame& frame);
+  bool AreConnected(const RelativePose& edge);
+
   const MappingOptions options_;
-  PairTracker tracker_;
   KeyframeGraph graph_;
   std::deque<MappedKeyframe> keyframes_;  // by number in graph_
   std::map<int, int> numbers_;            // by keyframe id
   PlaceDatabase index_;
-  KeyframePairing pairing_;
+  std::vector<Meeting> meetings_;
+
+  const std::unique_ptr<Tracker> tracker_;
+  TrackingResult tracked_;
+  // Those used last, the latest first, by number in graph_.
+  std::list<std::pair<int, std::unique_ptr<Reference>>> references_;
 };
 
 }  // namespace rgbd_pose

@@ -9,10 +9,6 @@
 namespace rgbd_pose {
 namespace {
 
-std::shared_ptr<const PngBytes> Compress(const cv::Mat& image) {
-  return std::make_shared<const PngBytes>(EncodePng(image));
-}
-
 bool StartsWith(const std::shared_ptr<const PngBytes>& png,
                 const std::string& start) {
   return png != nullptr && png->bytes.compare(0, start.size(), start) == 0;
@@ -20,19 +16,12 @@ bool StartsWith(const std::shared_ptr<const PngBytes>& png,
 
 }  // namespace
 
-PngBytes::PngBytes(std::string file)
-    : bytes(file.data(), file.size()), checksum([this] {
-        TextHash hash;
-        hash.Add(bytes);
-        return hash.Hex();
-      }()) {}
-
 StoredImages::StoredImages(const Frame& frame)
     : timestamp(frame.timestamp),
       depth_delay(frame.depth_delay),
       depth_scale(frame.depth_scale),
-      gray(Compress(frame.gray)),
-      depth(Compress(frame.depth)) {}
+      gray(std::make_shared<const PngBytes>(EncodePng(frame.gray))),
+      depth(std::make_shared<const PngBytes>(EncodePng(frame.depth))) {}
 
 Frame StoredImages::Restore() const {
   const std::string of =

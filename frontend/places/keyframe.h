@@ -2,7 +2,7 @@
 
 #include <memory>
 #include <string>
-#include <utility>
+#include <string_view>
 
 #include "core/geometry/motion.h"
 #include "core/geometry/rigid3.h"
@@ -17,7 +17,8 @@ namespace rgbd_pose {
 // StoredImages share one object.
 struct PngBytes {
   // Computes the checksum.
-  explicit PngBytes(std::string file);
+  explicit PngBytes(std::string_view file)
+      : bytes(file), checksum(TextHash().Add(bytes).Hex()) {}
 
   const std::string bytes;     // the whole file
   const std::string checksum;  // TextHash of `bytes`, 16 hexadecimal digits

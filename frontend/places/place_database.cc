@@ -83,8 +83,7 @@ void PlaceDatabase::Add(int keyframe, const cv::Mat& descriptors) {
   const int block = free_blocks_.back();
   free_blocks_.pop_back();
   blocks_of_[keyframe] = block;
-  blocks_[block].keyframe = keyframe;
-  std::vector<Entry>& entries = blocks_[block].entries;
+  Block& entries = blocks_[block];
   entries.resize(std::min(descriptors.rows, kMaxDescriptors));
   for (size_t i = 0; i < entries.size(); ++i) {
     const size_t row = i * descriptors.rows / entries.size();
@@ -108,7 +107,7 @@ void PlaceDatabase::Remove(int keyframe) {
   const auto found = blocks_of_.find(keyframe);
   if (found == blocks_of_.end()) return;
   const int block = found->second;
-  std::vector<Entry>& entries = blocks_[block].entries;
+  Block& entries = blocks_[block];
   for (size_t i = 0; i < entries.size(); ++i) {
     const int entry = block * kMaxDescriptors + static_cast<int>(i);
     for (int word = 0; word < kWords; ++word) {
@@ -182,9 +181,7 @@ std::vector<PlaceCandidate> PlaceDatabase::Query(
                    [](const PlaceCandidate& a, const PlaceCandidate& b) {
                      return a.score > b.score;
                    });
-  if (candidates.size() > static_cast<size_t>(std::max(most, 0))) {
-    candidates.resize(std::max(most, 0));
-  }
+  candidates.resize(std::min<size_t>(candidates.size(), std::max(most, 0)));
   return candidates;
 }
 

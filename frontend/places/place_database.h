@@ -60,10 +60,7 @@ class PlaceDatabase {
     std::array<int, kWords> next;
   };
   // The entries of a keyframe: b * kMaxDescriptors + i is entry i of block b.
-  struct Block {
-    int keyframe = 0;
-    std::vector<Entry> entries;
-  };
+  using Block = std::vector<Entry>;
   struct Bucket {
     int first = -1;  // number of the first entry; -1: none
     int size = 0;
@@ -81,10 +78,10 @@ class PlaceDatabase {
   };
 
   Entry& At(int entry) {
-    return blocks_[entry / kMaxDescriptors].entries[entry % kMaxDescriptors];
+    return blocks_[entry / kMaxDescriptors][entry % kMaxDescriptors];
   }
   const Entry& At(int entry) const {
-    return blocks_[entry / kMaxDescriptors].entries[entry % kMaxDescriptors];
+    return blocks_[entry / kMaxDescriptors][entry % kMaxDescriptors];
   }
   void Split(int word);
   // Appends each block that has a similar descriptor once; the blocks that are

@@ -1,7 +1,5 @@
 #include "frontend/places/place_features.h"
 
-#include "core/initial_guess/consensus.h"
-#include "frontend/features/descriptor_matching.h"
 #include "frontend/features/grid_selection.h"
 #include "frontend/frame/observe.h"
 

@@ -7,7 +7,6 @@
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
-#include "core/util/stage_timer.h"
 #include "frontend/frame/image_pyramid.h"
 #include "frontend/frame/observe.h"
 
@@ -40,49 +39,47 @@ double LargestSigma(const Eigen::Matrix3d& covariance) {
   return std::sqrt(std::max(0.0, eigen.eigenvalues()[2]));
 }
 
+// A reference that keeps the images of its frame for the direct costs.
+struct DirectReference final : Reference {
+  // `id`: unique for each reference.
+  DirectReference(const PreparedFrame& frame, const FrontendOptions& images,
+                  uint64_t id)
+      : depth(frame.depth),
+        pyramid(frame.Derived<SmoothPyramid>().levels),
+        view(ViewFrame(frame, pyramid, images.camera, images.depth_noise)),
+        samples(frame, images.camera, kSampleStepPx, images.min_depth,
+                images.max_depth) {
+    view.id = id;
+  }
+
+  Overlap SeenFrom(const Rigid3d& cur_from_ref) const override {
+    return samples.SeenFrom(cur_from_ref);
+  }
+  const FrameView* images() const override { return &view; }
+
+  // How similar the reference and a frame look.
+  ViewLikeness LikenessTo(const PreparedFrame& cur,
+                          const Rigid3d& cur_from_ref) const {
+    const std::vector<cv::Mat>& levels = cur.Derived<SmoothPyramid>().levels;
+    const size_t level =
+        std::min({kLikenessLevel, pyramid.size() - 1, levels.size() - 1});
+    return samples.LikenessTo(cur, pyramid[level], levels[level], cur_from_ref);
+  }
+
+  cv::Mat depth;
+  std::vector<cv::Mat> pyramid;
+  FrameView view;
+  ViewOverlap samples;  // pixels with depth on a grid over the image
+};
+
 }  // namespace
-
-std::string DirectTrackerOptions::Check() const {
-  if (!(min_seen_share >= 0.0 && min_seen_share <= 1.0)) {
-    return "min_seen_share must be from 0 to 1";
-  }
-  if (!(min_likeness >= -1.0 && min_likeness <= 1.0)) {
-    return "min_likeness must be from -1 to 1";
-  }
-  return "";
-}
-
-DirectReference::DirectReference(const PreparedFrame& frame,
-                                 const FrontendOptions& images, uint64_t id)
-    : depth_(frame.depth),
-      pyramid_(frame.Derived<SmoothPyramid>().levels),
-      samples_(frame, images.camera, kSampleStepPx, images.min_depth,
-               images.max_depth) {
-  view_ = ViewFrame(frame, pyramid_, images.camera, images.depth_noise);
-  view_.id = id;
-}
-
-ViewLikeness DirectReference::LikenessTo(const PreparedFrame& cur,
-                                         const Rigid3d& cur_from_ref) const {
-  const std::vector<cv::Mat>& pyramid = cur.Derived<SmoothPyramid>().levels;
-  const size_t level =
-      std::min({kLikenessLevel, pyramid_.size() - 1, pyramid.size() - 1});
-  return samples_.LikenessTo(cur, pyramid_[level], pyramid[level],
-                             cur_from_ref);
-}
 
 DirectTracker::DirectTracker(const FrontendOptions& images,
                              DirectEstimators estimators,
-                             const TrackerOptions& common,
-                             const DirectTrackerOptions& options)
-    : images_(images),
-      estimators_(std::move(estimators)),
-      common_(common),
-      options_(options) {
-  for (const std::string& error :
-       {images.Check(), common.Check(), options.Check()}) {
-    if (!error.empty()) throw InputError("tracker: " + error);
-  }
+                             const TrackerOptions& options)
+    : images_(images), estimators_(std::move(estimators)), options_(options) {
+  RequireSound(images.Check(), "tracker: ");
+  RequireSound(options.Check(), "tracker: ");
 }
 
 void DirectTracker::Prepare(const PreparedFrame& frame) const {
@@ -94,7 +91,7 @@ std::unique_ptr<Reference> DirectTracker::MakeReference(
     const TrackingResult* /*tracked*/, std::string* why_not) {
   auto reference =
       std::make_unique<DirectReference>(frame, images_, ++last_id_);
-  if (reference->num_samples() < kMinSamples) {
+  if (reference->samples.size() < kMinSamples) {
     *why_not = "too few pixels with depth";
     return nullptr;
   }
@@ -104,19 +101,19 @@ std::unique_ptr<Reference> DirectTracker::MakeReference(
 void DirectTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
                           const TrackingGuess& guess, TrackingResult* tracked) {
-  Begin(tracked);
-  Estimate(reference, frame, frame.Timing(), guess.cur_from_ref, guess, 0,
-           &estimators_.leading, &tracked->estimate);
-  if (tracked->estimate.num_used > 0) {
-    const Rigid3d found = tracked->estimate.cur_from_prev;
-    Estimate(reference, frame, frame.Timing(), found, guess, 1,
-             &estimators_.refining, &tracked->estimate);
+  tracked->Begin(TrackingSource::kDirect);
+  MotionEstimate* const estimate = &tracked->estimate;
+  Estimate(reference, frame, guess.cur_from_ref, Prior(guess), nullptr,
+           &estimators_.leading, estimate);
+  if (estimate->num_used > 0) {
+    Estimate(reference, frame, Rigid3d(estimate->cur_from_prev), Prior(guess),
+             nullptr, &estimators_.refining, estimate);
   }
   if (guess.velocity != nullptr) FindTwist(reference, frame, guess, tracked);
   Judge(reference, frame, tracked);
   // If features have led the way, the result can be compared with them. Pixels
   // alone have to fit.
-  const double sigma = tracked->estimate.sigma;
+  const double sigma = estimate->sigma;
   if (tracked->status == TrackingStatus::kOk && sigma > kMaxSigmaOk) {
     tracked->status = TrackingStatus::kDegraded;
     tracked->reason =
@@ -128,16 +125,9 @@ void DirectTracker::Refine(const Reference& reference,
                            const PreparedFrame& frame, const MotionPrior& prior,
                            const TrackingResult& by_features,
                            TrackingResult* tracked) {
-  Begin(tracked);
-  const FrameView view = ViewOf(frame, frame.Timing(), &by_features.moving);
-  FramePair pair;
-  pair.matches = &by_features.matches.matches;
-  pair.prior = &prior;
-  pair.prev = reference.images();
-  pair.cur = &view;
-  pair.num_levels = 1;
-  estimators_.refining.Estimate(pair, by_features.estimate.cur_from_prev,
-                                &tracked->estimate);
+  tracked->Begin(TrackingSource::kDirect);
+  Estimate(reference, frame, by_features.estimate.cur_from_prev, prior,
+           &by_features, &estimators_.refining, &tracked->estimate);
   Judge(reference, frame, tracked);
 }
 
@@ -148,20 +138,22 @@ void DirectTracker::FindTwist(const Reference& reference,
   constexpr int kMaxRounds = 2;
   constexpr double kSmallFlowPx = 0.2;
   MotionEstimate* const estimate = &tracked->estimate;
-  FrameTiming timing = frame.Timing(frame.twist.value_or(Twist()));
-  for (int round = 0; estimate->ok(); ++round) {
+  PreparedFrame seen = frame.WithTwist(frame.twist.value_or(Twist()));
+  for (int round = 0; round < kMaxRounds && estimate->ok(); ++round) {
     const Twist twist =
-        guess.velocity->Mean(estimate->cur_from_prev, timing.twist);
-    const bool is_small = LargestFlow(images_.camera, timing,
-                                      twist - timing.twist) < kSmallFlowPx;
-    if (is_small || round == kMaxRounds) break;
-    timing.twist = twist;
-    Estimate(reference, frame, timing, Rigid3d(estimate->cur_from_prev), guess,
-             1, &estimators_.refining, estimate);
+        guess.velocity->Mean(estimate->cur_from_prev, *seen.twist);
+    if (LargestFlow(images_.camera, seen.Timing(), twist - *seen.twist) <
+        kSmallFlowPx) {
+      break;
+    }
+    seen.twist = twist;
+    Estimate(reference, seen, Rigid3d(estimate->cur_from_prev), Prior(guess),
+             nullptr, &estimators_.refining, estimate);
   }
-  tracked->twist = timing.twist;
-  tracked->twist_covariance = MotionCovarianceOfTwist(
-      timing, guess.velocity->sigma_angular, guess.velocity->sigma_linear);
+  tracked->twist = seen.twist;
+  tracked->twist_covariance =
+      MotionCovarianceOfTwist(seen.Timing(), guess.velocity->sigma_angular,
+                              guess.velocity->sigma_linear);
   estimate->covariance += tracked->twist_covariance;
 }
 
@@ -169,48 +161,30 @@ Rigid3d DirectTracker::FindStart(const Reference& reference,
                                  const PreparedFrame& frame,
                                  const TrackingGuess& guess) {
   if (!estimators_.coarse.has_value()) return guess.cur_from_ref;
-  Estimate(reference, frame, frame.Timing(), guess.cur_from_ref, guess, 0,
+  Estimate(reference, frame, guess.cur_from_ref, Prior(guess), nullptr,
            &*estimators_.coarse, &start_);
-  const bool is_found =
-      start_.ok() || start_.status == EstimateStatus::kNotConverged;
-  return is_found ? start_.cur_from_prev : guess.cur_from_ref;
-}
-
-FrameView DirectTracker::ViewOf(const PreparedFrame& frame,
-                                const FrameTiming& timing,
-                                const CellMask* moving) const {
-  FrameView view = ViewFrame(frame, frame.Derived<SmoothPyramid>().levels,
-                             images_.camera, images_.depth_noise);
-  view.timing = timing;
-  view.moving = moving;
-  return view;
+  return HasMotion(start_) ? start_.cur_from_prev : guess.cur_from_ref;
 }
 
 void DirectTracker::Estimate(const Reference& reference,
-                             const PreparedFrame& frame,
-                             const FrameTiming& timing, const Rigid3d& start,
-                             const TrackingGuess& guess, int num_levels,
+                             const PreparedFrame& frame, const Rigid3d& start,
+                             const MotionPrior& prior,
+                             const TrackingResult* by_features,
                              Estimator* estimator,
                              MotionEstimate* estimate) const {
-  const FrameView view = ViewOf(frame, timing, nullptr);
-  const MotionPrior prior = Prior(guess);
+  FrameView view = ViewFrame(frame, frame.Derived<SmoothPyramid>().levels,
+                             images_.camera, images_.depth_noise);
   FramePair pair;
+  if (by_features != nullptr) {
+    pair.matches = &by_features->matches.matches;
+    view.moving = &by_features->moving;
+  }
   pair.prior = &prior;
   pair.prev = reference.images();
   pair.cur = &view;
-  pair.num_levels = num_levels;
+  // Near the result the finest level is enough.
+  pair.num_levels = estimator == &estimators_.refining ? 1 : 0;
   estimator->Estimate(pair, start, estimate);
-}
-
-void DirectTracker::Begin(TrackingResult* tracked) {
-  tracked->matches.Clear();
-  tracked->on_probation.Clear();
-  tracked->is_ambiguous = false;
-  tracked->prior_of_refinement.reset();
-  tracked->match_ms = 0.0;
-  tracked->source = TrackingSource::kDirect;
-  tracked->twist.reset();
-  tracked->twist_covariance.setZero();
 }
 
 void DirectTracker::Judge(const Reference& reference,
@@ -220,53 +194,41 @@ void DirectTracker::Judge(const Reference& reference,
   const MotionEstimate& estimate = tracked->estimate;
   tracked->num_found = estimate.num_used;
   tracked->overlap = ours.SeenFrom(estimate.cur_from_prev);
+  double& share = tracked->overlap.share;
   if (estimate.num_used > 0) {
-    tracked->overlap.share *=
-        static_cast<double>(estimate.num_inliers) / estimate.num_used;
+    share *= static_cast<double>(estimate.num_inliers) / estimate.num_used;
   }
-  JudgeMotion(ours.LikenessTo(frame, estimate.cur_from_prev), tracked);
-  tracked->needs_new_keyframe = tracked->status != TrackingStatus::kLost &&
-                                tracked->overlap.share < kMinSeenShareOk;
-}
-
-void DirectTracker::JudgeMotion(const ViewLikeness& likeness,
-                                TrackingResult* tracked) const {
-  const MotionEstimate& estimate = tracked->estimate;
-  const double share = tracked->overlap.share;
+  const ViewLikeness likeness = ours.LikenessTo(frame, estimate.cur_from_prev);
+  const std::string few =
+      Format("only %.0f %% of the reference agrees", 100.0 * share);
   tracked->status = TrackingStatus::kLost;
-  tracked->reason = estimate.reason;
-  // kNotConverged is accepted: its last step is some hundredths of a pixel.
-  if (!estimate.ok() && estimate.status != EstimateStatus::kNotConverged) {
-    return;
-  }
-  if (estimate.num_used < kMinPixels) {
+  tracked->needs_new_keyframe = false;
+  if (!HasMotion(estimate)) {
+    tracked->reason = estimate.reason;
+  } else if (estimate.num_used < kMinPixels) {
     tracked->reason = Format("only %d pixels to compare", estimate.num_used);
-    return;
-  }
-  if (share < options_.min_seen_share) {
-    tracked->reason =
-        Format("only %.0f %% of the reference agrees", 100.0 * share);
-    return;
-  }
-  if (std::max(likeness.gray, likeness.depth) < options_.min_likeness) {
+  } else if (share < options_.min_seen_share) {
+    tracked->reason = few;
+  } else if (std::max(likeness.gray, likeness.depth) < options_.min_likeness) {
     tracked->reason = "the image differs too much from its reference";
-    return;
-  }
-  const double rotation =
-      LargestSigma(estimate.covariance.topLeftCorner<3, 3>());
-  const double translation =
-      LargestSigma(estimate.covariance.bottomRightCorner<3, 3>());
-  tracked->status = TrackingStatus::kDegraded;
-  if (share < kMinSeenShareOk) {
-    tracked->reason =
-        Format("only %.0f %% of the reference agrees", 100.0 * share);
-  } else if (rotation > kMaxSigmaRotation) {
-    tracked->reason = Format("rotation is uncertain by %.4f rad", rotation);
-  } else if (translation > kMaxSigmaTranslation) {
-    tracked->reason = Format("translation is uncertain by %.4f m", translation);
   } else {
-    tracked->status = TrackingStatus::kOk;
-    tracked->reason.clear();
+    const double rotation =
+        LargestSigma(estimate.covariance.topLeftCorner<3, 3>());
+    const double translation =
+        LargestSigma(estimate.covariance.bottomRightCorner<3, 3>());
+    tracked->needs_new_keyframe = share < kMinSeenShareOk;
+    tracked->status = TrackingStatus::kDegraded;
+    if (tracked->needs_new_keyframe) {
+      tracked->reason = few;
+    } else if (rotation > kMaxSigmaRotation) {
+      tracked->reason = Format("rotation is uncertain by %.4f rad", rotation);
+    } else if (translation > kMaxSigmaTranslation) {
+      tracked->reason =
+          Format("translation is uncertain by %.4f m", translation);
+    } else {
+      tracked->status = TrackingStatus::kOk;
+      tracked->reason.clear();
+    }
   }
 }
 

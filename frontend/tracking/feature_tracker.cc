@@ -1,14 +1,11 @@
 #include "frontend/tracking/feature_tracker.h"
 
 #include <cmath>
-#include <utility>
 
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
 #include "frontend/frame/observe.h"
-#include "frontend/tracking/moving_regions.h"
-#include "frontend/tracking/seen_at.h"
 #include "frontend/tracking/twist_estimation.h"
 
 namespace rgbd_pose {
@@ -27,10 +24,6 @@ constexpr double kMaxRivalCells = 0.7;
 // moving object. Measured: with such an object on 40 % of the view mostly 0.5
 // to 0.6, on 10 % 0.8; 95 % of real frames have more than 0.64.
 constexpr double kMinAgreeingViewOk = 0.45;
-
-std::string OnlyInliers(int inliers) {
-  return "only " + std::to_string(inliers) + " inliers";
-}
 
 // Corrects image points by the frame's velocity instead of by `moved_by`.
 void MoveAgain(const FeatureSet& features, const Frame& frame,
@@ -67,25 +60,18 @@ double MeanInlierFlowPx(const FeatureMatches& found,
 
 }  // namespace
 
-FeatureReference::FeatureReference(const Camera& camera,
-                                   std::unique_ptr<FeatureSet> features,
-                                   FeatureValidation validation)
-    : validation(std::move(validation)),
-      camera_(camera),
-      features_(std::move(features)) {}
-
 Overlap FeatureReference::SeenFrom(const Rigid3d& cur_from_ref) const {
   Overlap overlap;
   int seen = 0;
-  for (const Observation& o : features_->observations) {
+  for (const Observation& o : features->observations) {
     // Lens distortion does not matter here.
-    const auto pixel = SeenAt(camera_, cur_from_ref, o);
-    if (!pixel.has_value() || !camera_.Contains(*pixel)) continue;
+    const auto pixel = SeenAt(camera, cur_from_ref, o);
+    if (!pixel.has_value() || !camera.Contains(*pixel)) continue;
     ++seen;
     overlap.flow_px += (*pixel - Eigen::Vector2d(o.u, o.v)).norm();
   }
   if (seen == 0) return overlap;
-  overlap.share = static_cast<double>(seen) / features_->observations.size();
+  overlap.share = static_cast<double>(seen) / features->observations.size();
   overlap.flow_px /= seen;
   return overlap;
 }
@@ -97,8 +83,7 @@ FeatureTracker::FeatureTracker(std::unique_ptr<Frontend> frontend,
       estimator_(std::move(estimator)),
       options_(options),
       other_(images().camera) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("tracker: " + error);
+  RequireSound(options.Check(), "tracker: ");
 }
 
 std::unique_ptr<Reference> FeatureTracker::MakeReference(
@@ -111,7 +96,7 @@ std::unique_ptr<Reference> FeatureTracker::MakeReference(
   FeatureValidation validation(count);
   if (last != nullptr) {
     validation = FeatureValidation(
-        dynamic_cast<const FeatureReference&>(*last).features(),
+        *dynamic_cast<const FeatureReference&>(*last).features,
         tracked->matches, tracked->on_probation, tracked->estimate,
         frontend_->is_exhaustive(), *features, 2 * options_.min_inliers_ok);
   }
@@ -129,17 +114,13 @@ void FeatureTracker::Track(const Reference& reference,
                            const TrackingGuess& guess,
                            TrackingResult* tracked) {
   const auto& ours = dynamic_cast<const FeatureReference&>(reference);
-  tracked->prior_of_refinement.reset();
-  tracked->match_ms = 0.0;
-  tracked->source = TrackingSource::kFeatures;
-  tracked->twist.reset();
-  tracked->twist_covariance.setZero();
+  tracked->Begin(TrackingSource::kFeatures);
   Match(ours, frame, cur_from_ref_start, tracked);
   const MotionPrior prior = PriorOf(options_, guess);
   Estimate(guess.cur_from_ref, prior, tracked);
   ChooseMotion(prior, tracked);
   if (guess.velocity != nullptr) {
-    FindTwist(ours.features(), frame, guess, tracked);
+    FindTwist(*ours.features, frame, guess, tracked);
     // With a wrong velocity, few features were where they were searched for.
     if (tracked->estimate.ok() && ShareOf(ours, *tracked) < kFewFound) {
       const PreparedFrame moved = frame.WithTwist(tracked->twist);
@@ -147,13 +128,13 @@ void FeatureTracker::Track(const Reference& reference,
       Match(ours, moved, found, tracked);
       Estimate(found, prior, tracked);
       ChooseMotion(prior, tracked);
-      FindTwist(ours.features(), moved, guess, tracked);
+      FindTwist(*ours.features, moved, guess, tracked);
     }
   }
   Judge(tracked);
   if (tracked->status == TrackingStatus::kLost) return;
   const double agreeing_view = MarkMoving(
-      ours.features(), tracked->matches, tracked->on_probation,
+      *ours.features, tracked->matches, tracked->on_probation,
       tracked->estimate, frontend_->is_exhaustive(), &tracked->moving);
   if (tracked->status == TrackingStatus::kOk &&
       agreeing_view < kMinAgreeingViewOk) {
@@ -173,7 +154,7 @@ void FeatureTracker::Match(const FeatureReference& reference,
                            const Rigid3d& cur_from_ref_start,
                            TrackingResult* tracked) {
   const StageTimer timer(&tracked->match_ms);
-  frontend_->Match(reference.features(), frame, cur_from_ref_start,
+  frontend_->Match(*reference.features, frame, cur_from_ref_start,
                    &tracked->matches);
   reference.validation.Split(&tracked->matches, &tracked->on_probation);
   tracked->num_found = static_cast<int>(tracked->matches.matches.size());
@@ -232,8 +213,7 @@ void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,
   tracked->twist_covariance =
       MotionCovarianceOfTwist(seen.Timing(), guess.velocity->sigma_angular,
                               guess.velocity->sigma_linear);
-  for (int round = 0; round < kMaxRounds; ++round) {
-    if (!estimate.ok()) break;
+  for (int round = 0; round < kMaxRounds && estimate.ok(); ++round) {
     const TwistEstimate found = EstimateTwist(
         tracked->matches.matches, estimate.is_inlier, estimate.sigma,
         estimate.cur_from_prev, seen.Timing(),
@@ -276,32 +256,27 @@ void FeatureTracker::Estimate(const Rigid3d& cur_from_ref_start,
 void FeatureTracker::Judge(TrackingResult* tracked) const {
   const MotionEstimate& estimate = tracked->estimate;
   const int inliers = estimate.num_inliers;
+  const std::string few = Format("only %d inliers", inliers);
   tracked->status = TrackingStatus::kLost;
   tracked->reason = estimate.reason;
-  if (estimate.status != EstimateStatus::kOk &&
-      estimate.status != EstimateStatus::kNotConverged) {
-    return;
-  }
+  if (!HasMotion(estimate)) return;
   if (inliers < options_.min_inliers) {
-    tracked->reason = OnlyInliers(inliers);
+    tracked->reason = few;
     return;
   }
-  tracked->status =
-      estimate.ok() ? TrackingStatus::kOk : TrackingStatus::kDegraded;
+  tracked->status = TrackingStatus::kDegraded;
   if (tracked->is_ambiguous) {
-    tracked->status = TrackingStatus::kDegraded;
     tracked->reason = "matches agree with two motions";
   } else if (inliers < options_.min_inliers_ok) {
-    tracked->status = TrackingStatus::kDegraded;
-    tracked->reason = OnlyInliers(inliers);
+    tracked->reason = few;
   } else if (inliers < options_.min_inlier_share_ok * estimate.num_used) {
-    tracked->status = TrackingStatus::kDegraded;
-    tracked->reason = "only " + std::to_string(inliers) + " of " +
-                      std::to_string(estimate.num_used) + " matches agree";
+    tracked->reason =
+        Format("only %d of %d matches agree", inliers, estimate.num_used);
   } else if (estimate.sigma > options_.max_sigma_ok) {
-    tracked->status = TrackingStatus::kDegraded;
     tracked->reason =
         Format("residuals are %.1f times as large as expected", estimate.sigma);
+  } else if (estimate.ok()) {
+    tracked->status = TrackingStatus::kOk;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "core/estimation/estimator.h"
 #include "frontend/features/frontend.h"
@@ -11,30 +12,25 @@
 namespace rgbd_pose {
 
 // The features of a frame, and which of them may affect the motion.
-class FeatureReference final : public Reference {
- public:
+struct FeatureReference final : Reference {
   // `validation` must be made for these features.
   FeatureReference(const Camera& camera, std::unique_ptr<FeatureSet> features,
-                   FeatureValidation validation);
+                   FeatureValidation validation)
+      : camera(camera),
+        features(std::move(features)),
+        validation(std::move(validation)) {}
 
   Overlap SeenFrom(const Rigid3d& cur_from_ref) const override;
 
-  // The features of the reference.
-  const FeatureSet& features() const { return *features_; }
-
-  FeatureValidation validation;  // of the features
-
- private:
-  Camera camera_;
-  std::unique_ptr<FeatureSet> features_;
+  Camera camera;                         // of the frame
+  std::unique_ptr<FeatureSet> features;  // of the frame
+  FeatureValidation validation;          // of the features
 };
 
 // Finds the features of the reference in the frame (see Frontend) and estimates
 // the motion from the matches.
 class FeatureTracker final : public Tracker {
  public:
-  static constexpr char kName[] = "features";  // name in the programs' options
-
   // Throws InputError for invalid options (see Check).
   FeatureTracker(std::unique_ptr<Frontend> frontend, Estimator estimator,
                  const TrackerOptions& options = {});

@@ -1,12 +1,30 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <optional>
 #include <vector>
 
+#include "core/estimation/correspondences.h"
+#include "core/estimation/frame_view.h"
 #include "core/estimation/motion_estimate.h"
+#include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/features/frontend.h"
 
 namespace rgbd_pose {
+
+// Returns the ideal pixel at which the current camera sees a point observed
+// with depth from the reference. The pixel may lie outside the image. Returns
+// nothing if the depth is unknown or the point is behind the camera.
+inline std::optional<Eigen::Vector2d> SeenAt(const Camera& camera,
+                                             const Rigid3d& cur_from_ref,
+                                             const Observation& o) {
+  if (o.depth <= 0.0) return std::nullopt;
+  const Eigen::Vector3d point = cur_from_ref * (camera.Ray(o.u, o.v) * o.depth);
+  if (point.z() <= 0.0) return std::nullopt;
+  return Eigen::Vector2d(camera.fx * point.x() / point.z() + camera.cx,
+                         camera.fy * point.y() / point.z() + camera.cy);
+}
 
 // Decides which features of a reference may affect the motion. A robust loss
 // follows the majority. With a reference older than the appearance of a moving
@@ -42,5 +60,17 @@ class FeatureValidation {
   // How often each feature still has to agree before it is trusted.
   std::vector<int> agreements_needed_;
 };
+
+// Returns the number of image cells (64 px) that contain inliers. The scene
+// covers more cells than a moving object, even if the object has more features.
+int CellsOfInliers(const FeatureMatches& found, const MotionEstimate& estimate);
+
+// Marks where in the current image more features contradict the motion than
+// agree; `missing_contradict`: features not found contradict it a little, too.
+// Returns in which share of the regions with features some features agree.
+double MarkMoving(const FeatureSet& reference, const FeatureMatches& found,
+                  const FeatureMatches& on_probation,
+                  const MotionEstimate& estimate, bool missing_contradict,
+                  CellMask* moving);
 
 }  // namespace rgbd_pose

@@ -61,12 +61,11 @@ std::unique_ptr<Reference> HybridTracker::MakeReference(
   const bool by_features = before != nullptr && before->features != nullptr &&
                            tracked->source != TrackingSource::kDirect;
   auto reference = std::make_unique<HybridReference>();
+  reference->direct = direct_->MakeReference(frame, nullptr, nullptr, why_not);
+  // After the pixels, as the reason of the features counts.
   reference->features = features_->MakeReference(
       frame, by_features ? before->features.get() : nullptr,
       by_features ? tracked : nullptr, why_not);
-  std::string why_not_direct;
-  reference->direct =
-      direct_->MakeReference(frame, nullptr, nullptr, &why_not_direct);
   if (reference->features == nullptr &&
       (!refines_ || reference->direct == nullptr)) {
     return nullptr;

@@ -14,8 +14,6 @@ namespace rgbd_pose {
 // there are few features or they fail, direct costs are used alone.
 class HybridTracker final : public Tracker {
  public:
-  static constexpr char kName[] = "hybrid";  // name in the programs' options
-
   // Neither may be null; both must have the same camera. If `refines` is false,
   // pixels only provide the start, and features alone provide the motion.
   HybridTracker(std::unique_ptr<FeatureTracker> features,

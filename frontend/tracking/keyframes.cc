@@ -16,10 +16,9 @@ OdometryKeyframe* Keyframes::Add(OdometryKeyframe keyframe,
 }
 
 void Keyframes::Renew(const OdometryKeyframe* keyframe) {
-  const auto at =
-      std::find_if(keyframes_.begin(), keyframes_.end(),
-                   [=](const auto& kept) { return kept.get() == keyframe; });
-  if (at != keyframes_.end()) std::rotate(at, at + 1, keyframes_.end());
+  std::stable_partition(
+      keyframes_.begin(), keyframes_.end(),
+      [=](const auto& kept) { return kept.get() != keyframe; });
 }
 
 OdometryKeyframe* Keyframes::Find(int id) const {

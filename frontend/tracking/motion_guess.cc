@@ -13,25 +13,15 @@ constexpr double kMaxGap = 0.2;
 // Times beyond an end by at most this (s) are rounded stamps: the end is used.
 constexpr double kMaxBeyond = 0.02;
 
-}  // namespace
-
-std::optional<Rigid3d> MotionGuess::CurFromPrev(double prev_time,
-                                                double cur_time) const {
-  const std::optional<Rigid3d> prev = WorldFromCam(prev_time);
-  const std::optional<Rigid3d> cur = WorldFromCam(cur_time);
-  if (!prev.has_value() || !cur.has_value()) return std::nullopt;
-  return cur->Inverse() * *prev;
-}
-
 // Interpolates between two poses with constant linear and angular velocities.
-std::optional<Rigid3d> MotionGuess::WorldFromCam(double time) const {
+std::optional<Rigid3d> PoseAlong(const Trajectory& trajectory, double time) {
   const auto after = std::lower_bound(
-      trajectory_.begin(), trajectory_.end(), time,
+      trajectory.begin(), trajectory.end(), time,
       [](const StampedPose& pose, double t) { return pose.timestamp < t; });
-  if (after == trajectory_.begin() || after == trajectory_.end()) {
-    if (trajectory_.empty()) return std::nullopt;
+  if (after == trajectory.begin() || after == trajectory.end()) {
+    if (trajectory.empty()) return std::nullopt;
     const StampedPose& end =
-        after == trajectory_.begin() ? trajectory_.front() : trajectory_.back();
+        after == trajectory.begin() ? trajectory.front() : trajectory.back();
     if (std::abs(end.timestamp - time) > kMaxBeyond) return std::nullopt;
     return end.world_from_cam;
   }
@@ -44,6 +34,16 @@ std::optional<Rigid3d> MotionGuess::WorldFromCam(double time) const {
   const Rigid3d& b = next.world_from_cam;
   return Rigid3d(a.rotation.slerp(share, b.rotation),
                  a.translation + share * (b.translation - a.translation));
+}
+
+}  // namespace
+
+std::optional<Rigid3d> MotionAlong(const Trajectory& trajectory,
+                                   double prev_time, double cur_time) {
+  const std::optional<Rigid3d> prev = PoseAlong(trajectory, prev_time);
+  const std::optional<Rigid3d> cur = PoseAlong(trajectory, cur_time);
+  if (!prev.has_value() || !cur.has_value()) return std::nullopt;
+  return cur->Inverse() * *prev;
 }
 
 }  // namespace rgbd_pose

@@ -1,8 +1,5 @@
 #include "frontend/tracking/odometry.h"
 
-#include <cmath>
-#include <optional>
-#include <string>
 #include <utility>
 
 #include "core/util/input_error.h"
@@ -37,6 +34,20 @@ constexpr double kSigmaUnknownTime = 5e-3;
 
 }  // namespace
 
+std::string OdometryOptions::Check() const {
+  if (!(min_reference_share <= 1.0)) {
+    return "min_reference_share must not be above 1";
+  }
+  if (!(max_flow_px > 0.0)) return "max_flow_px must be positive";
+  if (!(new_segment_after >= 0.0)) {
+    return "new_segment_after must not be negative";
+  }
+  if (!(guess_sigma_rotation > 0.0) || !(guess_sigma_translation > 0.0)) {
+    return "the guess's standard deviations must be positive";
+  }
+  return "";
+}
+
 Odometry::Odometry(const OdometryOptions& options,
                    std::unique_ptr<Tracker> tracker)
     : options_(options),
@@ -44,8 +55,7 @@ Odometry::Odometry(const OdometryOptions& options,
       relocaliser_(tracker_->images().camera, tracker_->images().DepthLookup()),
       attempts_(tracker_.get()),
       shutter_tracking_(tracker_.get()) {
-  const std::string error = options.Check();
-  if (!error.empty()) throw InputError("odometry: " + error);
+  RequireSound(options.Check(), "odometry: ");
 }
 
 Odometry::Odometry(const OdometryOptions& options,
@@ -94,7 +104,9 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
     }
     const Prediction* prediction = predicted ? &*predicted : nullptr;
     if (reference_ == nullptr) {
-      Start(frame, &result);
+      if (TakeReference(frame, WorldFromCam(), &result)) {
+        result.status = TrackingStatus::kOk;
+      }
     } else if (is_lost_ && options_.on_lost == LostPolicy::kStop) {
       result.reason = "stopped after an earlier frame was lost";
     } else if (!Follow(frame, prediction, &result) &&
@@ -108,7 +120,12 @@ TrackedFrame Odometry::Track(const PreparedFrame& frame,
     result.status = TrackingStatus::kDegraded;
     result.reason = "not yet reconnected to the previous segment";
   }
-  KeepLast(frame, result);
+  last_.reset();
+  if (result.status != TrackingStatus::kLost && !result.is_reference) {
+    last_ =
+        LastFrame{frame.WithTwist(twist_),
+                  twist_covariance_ + timing_covariance_, covariance_, result};
+  }
   return result;
 }
 
@@ -122,21 +139,13 @@ MotionMatrix Odometry::TimingCovariance(const Frame& frame,
 
 Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
                                        const MotionMatrix* covariance) const {
-  const double turn = options_.guess_sigma_rotation;
-  const double shift = options_.guess_sigma_translation;
-  MotionMatrix usual = MotionMatrix::Zero();
-  usual.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
-      shift * shift, shift * shift;
+  const MotionMatrix usual = IndependentErrors(
+      options_.guess_sigma_rotation, options_.guess_sigma_translation);
   const bool is_certain = covariance != nullptr;
   return {cur_from_prev, cur_from_prev * cur_from_ref_,
           ComposedCovariance(cur_from_prev, is_certain ? *covariance : usual,
                              cur_from_ref_, covariance_),
           is_certain};
-}
-
-void Odometry::Start(const PreparedFrame& frame, TrackedFrame* result) {
-  if (!TakeReference(frame, WorldFromCam(), result)) return;
-  result->status = TrackingStatus::kOk;
 }
 
 bool Odometry::Follow(const PreparedFrame& measured,
@@ -159,13 +168,13 @@ bool Odometry::Follow(const PreparedFrame& measured,
   if (frame == nullptr || (is_lost_ && result->status != TrackingStatus::kOk)) {
     return false;
   }
-  const Rigid3d last = cur_from_ref_;
   twist_ = frame->twist;
   if (attempts_.kept().twist.has_value()) {
     twist_covariance_ = attempts_.kept().twist_covariance;
   }
   cur_from_prev_ =
-      is_lost_ ? Rigid3d() : last_estimate().cur_from_prev * last.Inverse();
+      is_lost_ ? Rigid3d()
+               : last_estimate().cur_from_prev * cur_from_ref_.Inverse();
   if (!is_lost_ && interval_ > 0.0) {
     timing_covariance_ =
         TimingCovariance(measured, TwistOf(cur_from_prev_, interval_));
@@ -188,8 +197,7 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
   const Rigid3d first = options_.predict_velocity ? predicted : last;
   const Rigid3d second = options_.predict_velocity ? last : predicted;
   const auto track = [&](const PreparedFrame& frame,
-                         const VelocityPrior* velocity,
-                         const Rigid3d* found) -> const TrackingResult* {
+                         const VelocityPrior* velocity, const Rigid3d* found) {
     const auto from = [&](const Rigid3d& cur_from_ref) {
       TrackingGuess guess = cur_from_ref;
       guess.velocity = velocity;
@@ -198,25 +206,21 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
     };
     if (found != nullptr &&
         attempts_.Try(frame, *reference_, from(*found), result)) {
-      return &attempts_.kept();
+      return true;
     }
     if (prediction != nullptr) {
       TrackingGuess guess = from(prediction->cur_from_ref);
       if (prediction->is_certain) guess.covariance = &prediction->covariance;
-      if (attempts_.Try(frame, *reference_, guess, result)) {
-        return &attempts_.kept();
-      }
+      if (attempts_.Try(frame, *reference_, guess, result)) return true;
     }
     return attempts_.TryEither(frame, *reference_, from(first), from(second),
-                               result)
-               ? &attempts_.kept()
-               : nullptr;
+                               result);
   };
   if (!has_shutter_) {
     // A frame without a shutter among frames with one does not determine a
     // velocity, and the known velocity is older than this frame.
     shutter_tracking_.Forget();
-    return track(measured, nullptr, nullptr) != nullptr ? &measured : nullptr;
+    return track(measured, nullptr, nullptr) ? &measured : nullptr;
   }
   std::optional<Twist> twist;
   if (prediction != nullptr && interval_ > 0.0) {
@@ -225,7 +229,7 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
   std::optional<Rigid3d> prev_from_ref;
   if (!is_lost_) prev_from_ref = last;
   return shutter_tracking_.Follow(measured, interval_, prev_from_ref, twist,
-                                  reference_, track);
+                                  reference_, attempts_.kept(), track);
 }
 
 void Odometry::Refine(const PreparedFrame* frame, TrackedFrame* result) {
@@ -241,9 +245,7 @@ void Odometry::TakeMotion(TrackedFrame* result) {
   if (!attempts_.kept().twist.has_value()) covariance_ += twist_covariance_;
   covariance_ += timing_covariance_ + reference_->timing_covariance;
   result->cur_from_reference = cur_from_ref_;
-  if (!estimate.ok() && estimate.status != EstimateStatus::kNotConverged) {
-    return;
-  }
+  if (!HasMotion(estimate)) return;
   result->edges.insert(result->edges.begin(), {reference_->id, result->index,
                                                cur_from_ref_, covariance_});
 }
@@ -253,25 +255,17 @@ void Odometry::Accept(const PreparedFrame& frame, TrackedFrame* result) {
   is_unconnected_ = false;
   tracker_->OnAccepted(reference_->reference.get(), attempts_.mutable_kept());
   wants_reference_ = false;
-  if (NeedsNewReference()) ChangeReference(frame, result);
-}
-
-bool Odometry::NeedsNewReference() const {
-  const TrackingResult& tracked = attempts_.kept();
-  return tracked.needs_new_keyframe ||
-         tracked.overlap.share < options_.min_reference_share ||
-         tracked.overlap.flow_px > options_.max_flow_px;
-}
-
-void Odometry::ChangeReference(const PreparedFrame& frame,
-                               TrackedFrame* result) {
+  if (!NeedsNewReference()) return;
   const Rigid3d world_from_cam = WorldFromCam();
   OdometryKeyframe* const earlier =
       keyframes_.FindNearest(world_from_cam, segment_, kMinReturnShare,
                              kMaxReturnFlow * options_.max_flow_px, reference_);
   if (earlier != nullptr &&
-      ReturnTo(frame, earlier,
-               world_from_cam.Inverse() * earlier->world_from_cam, result)) {
+      attempts_.TryFallback(frame, *earlier,
+                            world_from_cam.Inverse() * earlier->world_from_cam,
+                            result, [&] { return !NeedsNewReference(); })) {
+    reference_ = earlier;
+    TakeMotion(result);
     return;
   }
   // The next frame determines how the camera moved during this one.
@@ -279,16 +273,11 @@ void Odometry::ChangeReference(const PreparedFrame& frame,
   if (!wants_reference_) TakeReference(frame, world_from_cam, result);
 }
 
-bool Odometry::ReturnTo(const PreparedFrame& frame, OdometryKeyframe* earlier,
-                        const Rigid3d& cur_from_earlier_guess,
-                        TrackedFrame* result) {
-  if (!attempts_.TryFallback(frame, *earlier, cur_from_earlier_guess, result,
-                             [&] { return !NeedsNewReference(); })) {
-    return false;
-  }
-  reference_ = earlier;
-  TakeMotion(result);
-  return true;
+bool Odometry::NeedsNewReference() const {
+  const TrackingResult& tracked = attempts_.kept();
+  return tracked.needs_new_keyframe ||
+         tracked.overlap.share < options_.min_reference_share ||
+         tracked.overlap.flow_px > options_.max_flow_px;
 }
 
 bool Odometry::TakeReference(const PreparedFrame& frame,
@@ -300,17 +289,15 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
   std::string why_not;
   const PreparedFrame seen =
       has_shutter_ ? shutter_tracking_.AtOneMoment(frame) : frame;
-  std::unique_ptr<Reference> reference = tracker_->MakeReference(
-      seen, was_tracked ? reference_->reference.get() : nullptr,
-      was_tracked ? &attempts_.kept() : nullptr, &why_not);
-  if (reference == nullptr) {
+  OdometryKeyframe* const added = AddKeyframe(
+      {result->index, segment_, world_from_cam, seen, {}, timing_covariance_},
+      was_tracked ? reference_->reference.get() : nullptr, nullptr, &why_not);
+  if (added == nullptr) {
     if (is_lost) result->reason = why_not;
     return false;
   }
-  reference_ = AddKeyframe({result->index, segment_, world_from_cam, seen},
-                           std::move(reference), nullptr);
+  reference_ = added;
   if (has_shutter_) shutter_tracking_.AddReference(frame, seen);
-  reference_->timing_covariance = timing_covariance_;
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
   result->is_reference = true;
@@ -318,8 +305,13 @@ bool Odometry::TakeReference(const PreparedFrame& frame,
 }
 
 OdometryKeyframe* Odometry::AddKeyframe(Keyframe keyframe,
-                                        std::unique_ptr<Reference> reference,
-                                        const OdometryKeyframe* in_use) {
+                                        const Reference* last,
+                                        const OdometryKeyframe* in_use,
+                                        std::string* why_not) {
+  std::unique_ptr<Reference> reference = tracker_->MakeReference(
+      keyframe.frame, last, last != nullptr ? &attempts_.kept() : nullptr,
+      why_not);
+  if (reference == nullptr) return nullptr;
   keyframe.frame.depth_delay = 0.0;
   keyframe.frame.color.release();
   return keyframes_.Add({std::move(keyframe), std::move(reference)}, in_use);
@@ -327,26 +319,21 @@ OdometryKeyframe* Odometry::AddKeyframe(Keyframe keyframe,
 
 bool Odometry::InsertKeyframe(const Keyframe& inserted) {
   OdometryKeyframe* keyframe = keyframes_.Find(inserted.id);
-  if (keyframe != nullptr && keyframe == reference_) return true;
-  if (keyframe != nullptr) {
-    keyframe->world_from_cam = inserted.world_from_cam;
-    keyframe->segment = segment_;
-    keyframes_.Renew(keyframe);
-    return true;
+  if (keyframe == nullptr) {
+    std::string why_not;
+    return AddKeyframe({inserted.id,
+                        segment_,
+                        inserted.world_from_cam,
+                        inserted.Unpacked(),
+                        {},
+                        inserted.timing_covariance,
+                        inserted.features},
+                       nullptr, reference_, &why_not) != nullptr;
   }
-  std::string why_not;
-  const PreparedFrame frame = inserted.Unpacked();
-  std::unique_ptr<Reference> reference =
-      tracker_->MakeReference(frame, nullptr, nullptr, &why_not);
-  if (reference == nullptr) return false;
-  AddKeyframe({inserted.id,
-               segment_,
-               inserted.world_from_cam,
-               frame,
-               {},
-               inserted.timing_covariance,
-               inserted.features},
-              std::move(reference), reference_);
+  if (keyframe == reference_) return true;
+  keyframe->world_from_cam = inserted.world_from_cam;
+  keyframe->segment = segment_;
+  keyframes_.Renew(keyframe);
   return true;
 }
 

@@ -1,19 +1,66 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "core/estimation/estimator.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/features/frontend.h"
 #include "frontend/places/relocaliser.h"
 #include "frontend/tracking/keyframes.h"
-#include "frontend/tracking/odometry_options.h"
 #include "frontend/tracking/shutter_tracking.h"
 #include "frontend/tracking/tracked_frame.h"
 #include "frontend/tracking/tracker.h"
 #include "frontend/tracking/tracking_attempts.h"
 
 namespace rgbd_pose {
+
+// What to do with frames whose motion is not found. Except after kStop, each is
+// searched for among earlier references, and tracking continues if it is found.
+enum class LostPolicy {
+  kStop,        // every further frame is lost, without a search
+  kHold,        // the last pose is reported until the place is found again
+  kPredict,     // the pose continues with the last motion
+  kNewSegment,  // a new segment starts there; for a while, each of its frames
+                // is searched for in the previous segment
+};
+
+// How the exposure times of the rows of a frame are used.
+enum class ShutterUse {
+  kCamera,  // exposure times of the frame are compensated by the velocity found
+  kNone,    // everything counts as seen at the stamp of the frame
+};
+
+// When to change the reference, where to start, when to give up.
+struct OdometryOptions {
+  // A new reference is taken when a smaller share of the reference agrees, or
+  // when the reference has moved by more than this in the image on average.
+  double min_reference_share = 0.5;
+  double max_flow_px = 60.0;
+
+  // Tracking starts from the last pose; if true, from the last pose moved on at
+  // constant velocity.
+  bool predict_velocity = false;
+
+  // What to do with frames whose motion is not found.
+  LostPolicy on_lost = LostPolicy::kNewSegment;
+
+  // Whether to compensate that rows are exposed one after another and that
+  // depth is exposed at another time than colour.
+  ShutterUse shutter = ShutterUse::kCamera;
+
+  // How long (s) the previous segment is searched for after a new one starts.
+  double new_segment_after = 1.5;
+
+  // Standard deviations of a motion guess between two frames that comes without
+  // a covariance.
+  double guess_sigma_rotation = 0.01;     // rad
+  double guess_sigma_translation = 0.01;  // m
+
+  // Returns one line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
 
 // Tracks a camera frame by frame against a reference frame (keyframe). The
 // reference changes when the view has changed; if the view returns, an earlier
@@ -94,7 +141,6 @@ class Odometry {
   MotionMatrix TimingCovariance(const Frame& frame, const Twist& twist) const;
   Prediction Predict(const Rigid3d& cur_from_prev,
                      const MotionMatrix* covariance) const;
-  void Start(const PreparedFrame& frame, TrackedFrame* result);
   bool Follow(const PreparedFrame& frame, const Prediction* prediction,
               TrackedFrame* result);
   // Tracks a frame against reference_. Returns it as tracked, or null if lost.
@@ -117,13 +163,12 @@ class Odometry {
   // known after the current frame has been tracked.
   bool GoOnFromLast(TrackedFrame* result);
   // Returns false and changes nothing without a suitable last frame.
-  bool MakeLastReference();
-  void KeepLast(const PreparedFrame& frame, const TrackedFrame& result);
+  bool MakeLastReference(TrackedFrame* result);
   bool Relocalise(const PreparedFrame& frame, TrackedFrame* result);
   void HandleLost(const PreparedFrame& frame, const Prediction* prediction,
                   TrackedFrame* result);
-  // Returns false, with unchanged state, if the frame cannot be a reference.
-  bool StartSegment(const PreparedFrame& frame, const Rigid3d& world_from_cam,
+  // Changes nothing if the frame cannot be a reference.
+  void StartSegment(const PreparedFrame& frame, const Rigid3d& world_from_cam,
                     TrackedFrame* result);
   // Searches for a frame of a new segment in the previous one; continues there.
   void ReturnToEarlierSegment(const PreparedFrame& frame, TrackedFrame* result);
@@ -131,18 +176,15 @@ class Odometry {
   // Sets the pose from the motion found since reference_. Adds the motion as
   // the first edge of the result.
   void TakeMotion(TrackedFrame* result);
-  // Updates the state after a frame was tracked against reference_.
+  // Updates the state after a frame was tracked against reference_. Changes the
+  // reference if needed.
   void Accept(const PreparedFrame& frame, TrackedFrame* result);
-  void ChangeReference(const PreparedFrame& frame, TrackedFrame* result);
   bool NeedsNewReference() const;
-  // Continues from an earlier reference. Returns false and changes only times
-  // if the frame cannot be tracked well enough against it.
-  bool ReturnTo(const PreparedFrame& frame, OdometryKeyframe* earlier,
-                const Rigid3d& cur_from_earlier_guess, TrackedFrame* result);
-  // `in_use`: see Keyframes.
-  OdometryKeyframe* AddKeyframe(Keyframe keyframe,
-                                std::unique_ptr<Reference> reference,
-                                const OdometryKeyframe* in_use);
+  // Returns null, and why, if the frame cannot be a reference. `last`: against
+  // which it was tracked, or null; `in_use`: see Keyframes.
+  OdometryKeyframe* AddKeyframe(Keyframe keyframe, const Reference* last,
+                                const OdometryKeyframe* in_use,
+                                std::string* why_not);
   // Returns false, with unchanged state, if the frame cannot be a reference.
   bool TakeReference(const PreparedFrame& frame, const Rigid3d& world_from_cam,
                      TrackedFrame* result);

@@ -11,15 +11,6 @@
 
 namespace rgbd_pose {
 
-void Odometry::KeepLast(const PreparedFrame& frame,
-                        const TrackedFrame& result) {
-  last_.reset();
-  if (result.status == TrackingStatus::kLost || result.is_reference) return;
-  last_ =
-      LastFrame{frame.WithTwist(twist_), twist_covariance_ + timing_covariance_,
-                covariance_, result};
-}
-
 // Whether the pose of the frame is certain enough for it to become a reference.
 bool Odometry::IsTrusted(const PreparedFrame* frame,
                          const TrackedFrame& result) const {
@@ -52,13 +43,9 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   OdometryKeyframe* const reference = reference_;
   const Rigid3d cur_from_ref = cur_from_ref_;
   const MotionMatrix covariance = covariance_;
-  {
-    const StageTimer timer(&result->reference_ms);
-    if (!MakeLastReference()) return found;
-  }
-  result->previous_is_reference = true;
+  if (!MakeLastReference(result)) return found;
   TrackedFrame from_last = *result;
-  attempts_.Stash();
+  attempts_.SwapStashed();
   ShutterTracking::Found before = shutter_tracking_.TakeFound();
   std::optional<Prediction> since;
   if (prediction != nullptr)
@@ -80,21 +67,19 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
   reference_ = reference;
   cur_from_ref_ = cur_from_ref;
   covariance_ = covariance;
-  attempts_.RestoreStashed();
+  attempts_.SwapStashed();
   shutter_tracking_.PutBack(std::move(before));
   return found;
 }
 
 bool Odometry::GoOnFromLast(TrackedFrame* result) {
   if (!last_.has_value()) return false;
-  const StageTimer timer(&result->reference_ms);
   Reference* const reference = reference_->reference.get();
   const MotionMatrix covariance = last_->covariance + covariance_;
-  if (!MakeLastReference()) return false;
+  if (!MakeLastReference(result)) return false;
   tracker_->OnAccepted(reference, attempts_.mutable_kept());
   cur_from_ref_ = cur_from_prev_;
   covariance_ = covariance;
-  result->previous_is_reference = true;
   result->reference = reference_->id;
   result->cur_from_reference = cur_from_ref_;
   wants_reference_ = false;
@@ -102,19 +87,23 @@ bool Odometry::GoOnFromLast(TrackedFrame* result) {
   return true;
 }
 
-bool Odometry::MakeLastReference() {
+bool Odometry::MakeLastReference(TrackedFrame* result) {
   if (!last_.has_value()) return false;
+  const StageTimer timer(&result->reference_ms);
   const PreparedFrame& frame = last_->frame;
   const PreparedFrame seen = shutter_tracking_.LastAtOneMoment(frame);
   std::string why_not;
-  std::unique_ptr<Reference> reference =
-      tracker_->MakeReference(seen, nullptr, nullptr, &why_not);
-  if (reference == nullptr) return false;
-  reference_ = AddKeyframe(
-      {last_->result.index, segment_, last_->result.world_from_cam, seen},
-      std::move(reference), reference_);
+  OdometryKeyframe* const added = AddKeyframe({last_->result.index,
+                                               segment_,
+                                               last_->result.world_from_cam,
+                                               seen,
+                                               {},
+                                               last_->timing_covariance},
+                                              nullptr, reference_, &why_not);
+  if (added == nullptr) return false;
+  reference_ = added;
   shutter_tracking_.AddReference(frame, seen);
-  reference_->timing_covariance = last_->timing_covariance;
+  result->previous_is_reference = true;
   last_.reset();
   cur_from_ref_ = Rigid3d();
   covariance_.setZero();
@@ -132,7 +121,8 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   TrackingGuess guess = place->cur_from_keyframe;
   VelocityPrior velocity;
   if (has_shutter_) {
-    velocity = shutter_tracking_.LostPrior(frame, interval_);
+    velocity = shutter_tracking_.velocity()->Prior(std::nullopt, interval_,
+                                                   frame.color_shutter.offset);
     guess.velocity = &velocity;
   }
   if (!attempts_.Try(frame, *keyframe, guess, result) ||
@@ -141,7 +131,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   }
   twist_ = attempts_.kept().twist;
   if (twist_.has_value()) {
-    shutter_tracking_.Accept(*twist_, frame.color_shutter.offset);
+    shutter_tracking_.velocity()->Add(*twist_, frame.color_shutter.offset);
   }
   reference_ = keyframe;
   if (segment_ != keyframe->segment) earlier_segment_.reset();
@@ -179,26 +169,23 @@ void Odometry::HandleLost(const PreparedFrame& frame,
         {reference_->id, result->index, cur_from_ref_, covariance_}};
   }
   if (options_.on_lost != LostPolicy::kNewSegment) return;
-  const EarlierSegment earlier = {reference_->id, cur_from_ref_,
-                                  frame.timestamp};
-  const Rigid3d start = prediction != nullptr ? cur_from_ref_ : moved_on;
-  if (StartSegment(frame, reference_->world_from_cam * start.Inverse(),
-                   result) &&
-      !earlier_segment_.has_value()) {
-    earlier_segment_ = earlier;
-  }
+  const Rigid3d& start = prediction != nullptr ? cur_from_ref_ : moved_on;
+  StartSegment(frame, reference_->world_from_cam * start.Inverse(), result);
 }
 
-bool Odometry::StartSegment(const PreparedFrame& frame,
+void Odometry::StartSegment(const PreparedFrame& frame,
                             const Rigid3d& world_from_cam,
                             TrackedFrame* result) {
+  const EarlierSegment earlier = {reference_->id, cur_from_ref_,
+                                  frame.timestamp};
   const int before = segment_;
   segment_ = latest_segment_ + 1;
   if (!TakeReference(frame, world_from_cam, result)) {
     segment_ = before;
-    return false;
+    return;
   }
   latest_segment_ = segment_;
+  if (!earlier_segment_.has_value()) earlier_segment_ = earlier;
   is_lost_ = false;
   result->reference = -1;
   // The relation of two segments that start in a row is unknown: stay lost.
@@ -209,7 +196,6 @@ bool Odometry::StartSegment(const PreparedFrame& frame,
         (is_predicted_ ? "only predicted" : "unknown");
   }
   is_unconnected_ = true;
-  return true;
 }
 
 void Odometry::ReturnToEarlierSegment(const PreparedFrame& frame,

@@ -53,13 +53,12 @@ const PreparedFrame* ShutterTracking::Follow(
     const PreparedFrame& frame, double interval,
     const std::optional<Rigid3d>& prev_from_ref,
     const std::optional<Twist>& first_guess, OdometryKeyframe* reference,
-    const Track& track) {
+    const TrackingResult& tracked, const Track& track) {
   found_ = Found();
   const auto forget = [&] {
     Forget();
     found_.frame = frame.WithTwist(std::nullopt);
-    return track(*found_.frame, nullptr, nullptr) != nullptr ? &*found_.frame
-                                                             : nullptr;
+    return track(*found_.frame, nullptr, nullptr) ? &*found_.frame : nullptr;
   };
   if (!(interval > 0.0 && interval <= VelocityModel::kMaxInterval)) {
     return forget();
@@ -67,26 +66,24 @@ const PreparedFrame* ShutterTracking::Follow(
   const double middle = frame.color_shutter.offset;
   found_.frame = frame.WithTwist(first_guess ? first_guess : velocity_.last());
   VelocityPrior prior = velocity_.Prior(prev_from_ref, interval, middle);
-  const TrackingResult* tracked = track(*found_.frame, &prior, nullptr);
-  if (tracked == nullptr) return nullptr;
+  if (!track(*found_.frame, &prior, nullptr)) return nullptr;
   const auto look = [&] {
-    if (tracked->twist.has_value()) {
-      found_.frame = frame.WithTwist(tracked->twist);
+    if (tracked.twist.has_value()) {
+      found_.frame = frame.WithTwist(tracked.twist);
     }
     found_.prior = prior;
-    Update(*tracked);
+    Update(tracked);
   };
   look();
   const int rounds = between_.has_value() ? 1 : kMaxRounds;
   for (int round = 0; round < rounds && found_.between.has_value(); ++round) {
     if (!MendReference(*found_.between, interval, reference)) break;
     prior = velocity_.Prior(prev_from_ref, interval, middle);
-    const Rigid3d found = tracked->estimate.cur_from_prev;
-    tracked = track(*found_.frame, &prior, &found);
-    if (tracked == nullptr) return nullptr;
+    const Rigid3d found = tracked.estimate.cur_from_prev;
+    if (!track(*found_.frame, &prior, &found)) return nullptr;
     look();
     if (early_->is_free) {
-      reference->timing_covariance = tracked->twist_covariance;
+      reference->timing_covariance = tracked.twist_covariance;
     }
   }
   if (!IsOfAHand(found_.between.value_or(Twist())) ||
@@ -160,15 +157,14 @@ PreparedFrame ShutterTracking::LastAtOneMoment(const Frame& last) {
 
 void ShutterTracking::AddReference(const Frame& frame,
                                    const Frame& at_one_moment) {
-  early_.emplace();
-  early_->frame = frame;
+  early_ = EarlyReference{frame,
+                          TargetFromMiddle(frame),
+                          /*is_free=*/!frame.twist.has_value(),
+                          /*is_late=*/found_.between.has_value(),
+                          between_,
+                          interval_};
   early_->frame.color.release();
-  early_->target_from_middle = TargetFromMiddle(frame);
-  early_->is_free = !frame.twist.has_value();
-  early_->is_late = found_.between.has_value();
   early_->frame.twist = at_one_moment.twist;
-  early_->before = between_;
-  early_->interval = interval_;
 }
 
 }  // namespace rgbd_pose

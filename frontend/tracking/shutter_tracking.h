@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <optional>
 
 #include "core/geometry/rigid3.h"
@@ -31,10 +30,10 @@ struct EarlyReference {
 class ShutterTracking {
  public:
   // Tracks a frame. `prior`: of its velocity (null: nothing is known);
-  // `cur_from_ref`: found before (null: not yet). Returns null if it is lost.
-  using Track = std::function<const TrackingResult*(
-      const PreparedFrame& frame, const VelocityPrior* prior,
-      const Rigid3d* cur_from_ref)>;
+  // `cur_from_ref`: found before (null: not yet). Returns false if it is lost.
+  using Track =
+      std::function<bool(const PreparedFrame& frame, const VelocityPrior* prior,
+                         const Rigid3d* cur_from_ref)>;
 
   // `tracker` must outlive this object.
   explicit ShutterTracking(Tracker* tracker)
@@ -42,23 +41,21 @@ class ShutterTracking {
 
   // Tracks a frame against a reference, `interval` s after the last frame.
   // `prev_from_ref`: motion of the last frame if it was found; `first_guess`:
-  // of the velocity, by default the last one. Returns the frame with the
-  // velocity found, valid until the next call, or null if it is lost.
+  // of the velocity, by default the last one; `tracked`: what `track` fills.
+  // Returns the frame with the velocity found, valid until the next call, or
+  // null if it is lost.
   const PreparedFrame* Follow(const PreparedFrame& frame, double interval,
                               const std::optional<Rigid3d>& prev_from_ref,
                               const std::optional<Twist>& first_guess,
-                              OdometryKeyframe* reference, const Track& track);
+                              OdometryKeyframe* reference,
+                              const TrackingResult& tracked,
+                              const Track& track);
 
   // Corrects the result of the last Follow after its pose was refined.
   void Update(const TrackingResult& refined);
 
   // Accepts the pose of the last Follow; the next frame continues from it.
   void Accept();
-
-  // Accepts the velocity of a frame that was tracked without Follow.
-  void Accept(const Twist& twist, double middle) {
-    velocity_.Add(twist, middle);
-  }
 
   // Call this if the last frame was not found.
   void HandleLost();
@@ -79,10 +76,8 @@ class ShutterTracking {
   Found TakeFound() { return std::move(found_); }
   void PutBack(Found found) { found_ = std::move(found); }
 
-  // Prior of the velocity of a frame if the previous frames were not found.
-  VelocityPrior LostPrior(const Frame& frame, double interval) const {
-    return velocity_.Prior(std::nullopt, interval, frame.color_shutter.offset);
-  }
+  // The velocity, for frames that are tracked without Follow.
+  VelocityModel* velocity() { return &velocity_; }
 
   // Corrects a frame to one moment before it becomes a reference. The frame
   // comes from Follow or has an unknown velocity.

@@ -15,8 +15,11 @@ enum class TrackingStatus {
   kLost,      // no pose was found; LostPolicy says which one is reported
 };
 
-// "ok", "degraded", "lost"
-const char* ToString(TrackingStatus status);
+// The name printed by programs.
+inline const char* ToString(TrackingStatus status) {
+  constexpr const char* kNames[] = {"ok", "degraded", "lost"};
+  return kNames[static_cast<int>(status)];
+}
 
 // What the motion of a frame was estimated from.
 enum class TrackingSource {
@@ -26,8 +29,12 @@ enum class TrackingSource {
   kBoth,      // pixels, starting from the motion of the features
 };
 
-// "", "features", "direct", "features+direct"
-const char* ToString(TrackingSource source);
+// The name printed by programs.
+inline const char* ToString(TrackingSource source) {
+  constexpr const char* kNames[] = {"", "features", "direct",
+                                    "features+direct"};
+  return kNames[static_cast<int>(source)];
+}
 
 // The result for one input frame.
 struct TrackedFrame {

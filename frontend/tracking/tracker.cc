@@ -16,6 +16,12 @@ std::string TrackerOptions::Check() const {
   if (!(prior_sigma_rotation > 0.0) || !(prior_sigma_translation > 0.0)) {
     return "the prior's standard deviations must be positive";
   }
+  if (!(min_seen_share >= 0.0 && min_seen_share <= 1.0)) {
+    return "min_seen_share must be from 0 to 1";
+  }
+  if (!(min_likeness >= -1.0 && min_likeness <= 1.0)) {
+    return "min_likeness must be from -1 to 1";
+  }
   return "";
 }
 
@@ -26,10 +32,8 @@ MotionPrior PriorOf(const TrackerOptions& options, const TrackingGuess& guess) {
     prior.information = guess.covariance->inverse();
     return prior;
   }
-  const double turn = 1.0 / options.prior_sigma_rotation;
-  const double shift = 1.0 / options.prior_sigma_translation;
-  prior.information.diagonal() << turn * turn, turn * turn, turn * turn,
-      shift * shift, shift * shift, shift * shift;
+  prior.information = IndependentErrors(1.0 / options.prior_sigma_rotation,
+                                        1.0 / options.prior_sigma_translation);
   return prior;
 }
 

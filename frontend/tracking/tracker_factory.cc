@@ -4,7 +4,6 @@
 
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
-#include "frontend/tracking/direct_tracker.h"
 #include "frontend/tracking/feature_tracker.h"
 #include "frontend/tracking/hybrid_tracker.h"
 
@@ -23,9 +22,8 @@ std::unique_ptr<DirectTracker> ByPixels(TrackerParts* parts) {
   if (!parts->direct_estimators.has_value()) {
     throw InputError("a direct tracker needs estimators of direct costs");
   }
-  return std::make_unique<DirectTracker>(parts->images,
-                                         *std::move(parts->direct_estimators),
-                                         parts->options, parts->direct_options);
+  return std::make_unique<DirectTracker>(
+      parts->images, *std::move(parts->direct_estimators), parts->options);
 }
 
 std::unique_ptr<Tracker> MakeFeatureTracker(TrackerParts parts) {
@@ -45,9 +43,9 @@ std::unique_ptr<Tracker> MakeHybridTracker(TrackerParts parts) {
 
 // A new tracker needs one header and one row here.
 constexpr Named<Make> kTrackers[] = {
-    {FeatureTracker::kName, MakeFeatureTracker},
-    {DirectTracker::kName, MakeDirectTracker},
-    {HybridTracker::kName, MakeHybridTracker},
+    {"features", MakeFeatureTracker},
+    {"direct", MakeDirectTracker},
+    {"hybrid", MakeHybridTracker},
 };
 
 }  // namespace

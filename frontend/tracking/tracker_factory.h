@@ -23,8 +23,6 @@ struct TrackerParts {
   // Estimators of trackers that use the images. Optional for a tracker by
   // features, which then starts from the guess.
   std::optional<DirectEstimators> direct_estimators = std::nullopt;
-  // When to accept their motions.
-  DirectTrackerOptions direct_options = {};
 };
 
 // Returns the names of all trackers.

@@ -1,7 +1,5 @@
 #include "frontend/tracking/tracking_attempts.h"
 
-#include <utility>
-
 namespace rgbd_pose {
 
 bool TrackingAttempts::Try(const PreparedFrame& frame,

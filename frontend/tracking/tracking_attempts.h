@@ -3,8 +3,6 @@
 #include <functional>
 #include <utility>
 
-#include "core/estimation/motion_estimate.h"
-#include "core/geometry/rigid3.h"
 #include "frontend/tracking/keyframes.h"
 #include "frontend/tracking/tracked_frame.h"
 #include "frontend/tracking/tracker.h"
@@ -47,8 +45,7 @@ class TrackingAttempts {
               TrackedFrame* result);
 
   // Stores the result that counts during another attempt, and restores it.
-  void Stash() { std::swap(tracked_, stashed_); }
-  void RestoreStashed() { std::swap(tracked_, stashed_); }
+  void SwapStashed() { std::swap(tracked_, stashed_); }
 
   // The tracker's result of the attempt that counts.
   const TrackingResult& kept() const { return tracked_; }
@@ -58,7 +55,7 @@ class TrackingAttempts {
   Tracker* tracker_;
   TrackingResult tracked_;
   TrackingResult other_;    // scratch result
-  TrackingResult stashed_;  // see Stash
+  TrackingResult stashed_;  // see SwapStashed
 };
 
 }  // namespace rgbd_pose

@@ -94,18 +94,14 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
   // The motion has no prior; this only keeps the system solvable.
   equations.hessian.diagonal().head<6>().array() += 1e-3;
   const Twist off = prior_mean - timing.twist;
-  for (int i = 0; i < 3; ++i) {
-    const double angular = 1.0 / (prior.sigma_angular * prior.sigma_angular);
-    const double linear = 1.0 / (prior.sigma_linear * prior.sigma_linear);
-    equations.hessian(6 + i, 6 + i) += angular;
-    equations.hessian(9 + i, 9 + i) += linear;
-    equations.right[6 + i] += angular * off.angular[i];
-    equations.right[9 + i] += linear * off.linear[i];
-  }
+  const double angular = 1.0 / (prior.sigma_angular * prior.sigma_angular);
+  const double linear = 1.0 / (prior.sigma_linear * prior.sigma_linear);
+  equations.hessian.diagonal().segment<3>(6).array() += angular;
+  equations.hessian.diagonal().tail<3>().array() += linear;
+  equations.right.segment<3>(6) += angular * off.angular;
+  equations.right.tail<3>() += linear * off.linear;
   const Vector12 change = equations.hessian.ldlt().solve(equations.right);
-  TwistEstimate result;
-  result.twist =
-      timing.twist + Twist{change.segment<3>(6), change.segment<3>(9)};
+  const Twist change_of_twist = {change.segment<3>(6), change.segment<3>(9)};
   // A change of the velocity changes the motion by -H_mm^-1 H_mv.
   const MotionMatrix H_mm = equations.hessian.topLeftCorner<6, 6>();
   const MotionMatrix H_mv = equations.hessian.topRightCorner<6, 6>();
@@ -116,9 +112,8 @@ TwistEstimate EstimateTwist(const Correspondences& matches,
   to_center.bottomRightCorner<3, 3>() =
       -cur_from_ref.rotation.conjugate().toRotationMatrix();
   const MotionMatrix moves = to_center * follows;
-  result.motion_covariance =
-      moves * velocity_information.ldlt().solve(moves.transpose());
-  return result;
+  return {timing.twist + change_of_twist,
+          moves * velocity_information.ldlt().solve(moves.transpose())};
 }
 
 }  // namespace rgbd_pose

@@ -30,14 +30,14 @@ constexpr double kShareOfNew = 0.1;
 // much (m per rad): a part of the displacement of objects in a room.
 constexpr double kShiftOfTurn = 0.5;
 
+}  // namespace
+
 MotionMatrix IndependentErrors(double turn, double shift) {
   MotionMatrix covariance = MotionMatrix::Zero();
   covariance.diagonal() << turn * turn, turn * turn, turn * turn, shift * shift,
       shift * shift, shift * shift;
   return covariance;
 }
-
-}  // namespace
 
 std::optional<Twist> VelocityPrior::Between(const Rigid3d& cur_from_ref,
                                             const Twist& twist) const {
@@ -94,21 +94,17 @@ MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
 
 VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
                                    double interval, double middle) const {
-  VelocityPrior prior;
-  prior.prev_from_ref = prev_from_ref;
-  prior.prev_twist = last_;
-  prior.interval = interval;
-  prior.middle = middle;
-  prior.prev_middle_from_prev = middle_from_last_;
-  prior.sigma_angular =
-      kSigmaOfChange * std::max(kMinChangeAngular, std::sqrt(change_angular_));
-  prior.sigma_linear =
-      kSigmaOfChange * std::max(kMinChangeLinear, std::sqrt(change_linear_));
-  if (!prev_from_ref.has_value()) {
-    prior.sigma_angular = kLostSigmaAngular;
-    prior.sigma_linear = kLostSigmaLinear;
-  }
-  return prior;
+  const double angular =
+      std::max(kMinChangeAngular, std::sqrt(change_angular_));
+  const double linear = std::max(kMinChangeLinear, std::sqrt(change_linear_));
+  const bool is_lost = !prev_from_ref.has_value();
+  return {prev_from_ref,
+          last_,
+          interval,
+          middle,
+          middle_from_last_,
+          is_lost ? kLostSigmaAngular : kSigmaOfChange * angular,
+          is_lost ? kLostSigmaLinear : kSigmaOfChange * linear};
 }
 
 void VelocityModel::Add(const Twist& twist, double middle) {

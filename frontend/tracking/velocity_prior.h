@@ -33,6 +33,10 @@ struct VelocityPrior {
   Twist Mean(const Rigid3d& cur_from_ref, const Twist& twist) const;
 };
 
+// Returns the covariance of a motion whose errors in all directions are
+// independent, with these standard deviations (rad, m).
+MotionMatrix IndependentErrors(double turn, double shift);
+
 // Returns what a velocity with these standard deviations (rad/s, m/s) adds to
 // the covariance (see MotionEstimate) of the motion to a frame corrected with
 // it: the mean time of the rows differs from the stamp by their offset, by a

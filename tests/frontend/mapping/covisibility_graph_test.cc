@@ -21,9 +21,9 @@ CovisibilityGraph Chain() {
 
 TEST(CovisibilityGraphTest, HopsCountLinks) {
   const CovisibilityGraph links = Chain();
-  EXPECT_EQ(links.Hops(3, 3, 5), 0);
-  EXPECT_EQ(links.Hops(3, 7, 9), 4);
-  EXPECT_EQ(links.Hops(3, 7, 2), 2);
+  EXPECT_TRUE(links.Within(3, 0)[3]);
+  EXPECT_TRUE(links.Within(3, 4)[7]);
+  EXPECT_FALSE(links.Within(3, 3)[7]);
   const std::vector<bool> near = links.Within(3, 2);
   EXPECT_EQ(std::count(near.begin(), near.end(), true), 5);
   EXPECT_TRUE(near[1] && near[5]);

@@ -14,12 +14,12 @@ Rigid3d Pose(double yaw, double x) {
 }
 
 // A quarter turn in 0.1 s while moving 1 m along x; then a gap.
-const MotionGuess kGuess(Trajectory{{10.0, Pose(0.0, 0.0)},
-                                    {10.1, Pose(M_PI / 2, 1.0)},
-                                    {11.0, Pose(0.0, 5.0)}});
+const Trajectory kGuess = {{10.0, Pose(0.0, 0.0)},
+                           {10.1, Pose(M_PI / 2, 1.0)},
+                           {11.0, Pose(0.0, 5.0)}};
 
 TEST(MotionGuessTest, IsTheMotionFromPreviousToCurrent) {
-  const auto motion = kGuess.CurFromPrev(10.0, 10.1);
+  const auto motion = MotionAlong(kGuess, 10.0, 10.1);
   ASSERT_TRUE(motion.has_value());
   // The current camera's z axis is the world's x axis; hence the previous
   // camera is 1 m behind it.
@@ -30,18 +30,18 @@ TEST(MotionGuessTest, IsTheMotionFromPreviousToCurrent) {
 }
 
 TEST(MotionGuessTest, InterpolatesBetweenPoses) {
-  const auto motion = kGuess.CurFromPrev(10.0, 10.05);
+  const auto motion = MotionAlong(kGuess, 10.0, 10.05);
   ASSERT_TRUE(motion.has_value());
   EXPECT_NEAR(motion->Angle(), M_PI / 4, 1e-9);
   EXPECT_NEAR(motion->Inverse().translation.x(), 0.5, 1e-9);
 }
 
 TEST(MotionGuessTest, KnowsNothingInGapsAndBeyondTheEnds) {
-  EXPECT_FALSE(kGuess.CurFromPrev(10.05, 10.5).has_value());
-  EXPECT_FALSE(kGuess.CurFromPrev(9.9, 10.05).has_value());
-  EXPECT_FALSE(kGuess.CurFromPrev(11.0, 11.1).has_value());
-  EXPECT_TRUE(kGuess.CurFromPrev(9.99, 10.05).has_value());
-  EXPECT_FALSE(MotionGuess(Trajectory()).CurFromPrev(0.0, 0.1).has_value());
+  EXPECT_FALSE(MotionAlong(kGuess, 10.05, 10.5).has_value());
+  EXPECT_FALSE(MotionAlong(kGuess, 9.9, 10.05).has_value());
+  EXPECT_FALSE(MotionAlong(kGuess, 11.0, 11.1).has_value());
+  EXPECT_TRUE(MotionAlong(kGuess, 9.99, 10.05).has_value());
+  EXPECT_FALSE(MotionAlong(Trajectory(), 0.0, 0.1).has_value());
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
-#include "frontend/tracking/moving_regions.h"
-
 #include <gtest/gtest.h>
+
+#include "frontend/tracking/feature_validation.h"
 
 namespace rgbd_pose {
 namespace {

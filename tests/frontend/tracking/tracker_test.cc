@@ -54,7 +54,7 @@ class HalfWrongFrontend final : public Frontend {
       : Frontend({kCamera}), error_px_(error_px) {}
 
   std::unique_ptr<FeatureSet> Detect(const PreparedFrame&) override {
-    return std::make_unique<FeatureSet>(FeatureWall().features());
+    return std::make_unique<FeatureSet>(*FeatureWall().features);
   }
   void Match(const FeatureSet& reference, const PreparedFrame&, const Rigid3d&,
              FeatureMatches* matches) override {
@@ -285,7 +285,7 @@ TEST(DirectTrackerTest, AFrameHasToLookLikeItsReference) {
   next.depth = cv::Mat::zeros(next.depth.size(), CV_16UC1);
   for (const bool is_strict : {false, true}) {
     TrackerParts parts = PartsFor(room.camera().camera);
-    if (is_strict) parts.direct_options.min_likeness = 1.0;
+    if (is_strict) parts.options.min_likeness = 1.0;
     const auto tracker = MakeTracker("direct", std::move(parts));
     std::string why_not;
     const auto reference = tracker->MakeReference(PreparedFrame(room.Read(0)),
@@ -356,11 +356,10 @@ TEST(HybridTrackerTest, PixelsMakeMotionsMoreAccurate) {
       << hybrid.off << " against " << features.off;
 }
 
-TEST(DirectTrackerOptionsTest, NoFieldMayBeNan) {
-  for (double DirectTrackerOptions::*field :
-       {&DirectTrackerOptions::min_seen_share,
-        &DirectTrackerOptions::min_likeness}) {
-    DirectTrackerOptions options;
+TEST(TrackerOptionsTest, NoFieldMayBeNan) {
+  for (double TrackerOptions::*field :
+       {&TrackerOptions::min_seen_share, &TrackerOptions::min_likeness}) {
+    TrackerOptions options;
     EXPECT_EQ(options.Check(), "");
     options.*field = std::nan("");
     EXPECT_NE(options.Check(), "");
