@@ -15,6 +15,7 @@
 #include "apps/batch/batch_summary.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "costs/cost_factory.h"
@@ -69,14 +70,15 @@ ProgramInfo Info() {
       "runs rgbd_odometry or rgbd_slam on many sequences with many settings, "
       "each run in its own process and folder, and writes one table of the "
       "results.",
-      "rgbd_batch --sequences=list.txt --losses=huber,tukey "
-      "--parts=0-,3-,7- --output=runs",
+      "rgbd_batch --sequences=list.txt --losses=huber,tukey --parts=0-,3-,7- "
+      "--output=runs",
       {{"Plan",
         {"sequences", "costs", "losses", "frontends", "trackers", "parts",
          "repeats", "settings"}},
        {"How it is run",
         {"jobs", "timeout", "resume", "shard", "merge", "dry_run", "program"}},
        {"Output", {"output"}}},
+      /*settings=*/{},
       {{"costs", CostNames()},
        {"losses", MEstimatorNames()},
        {"frontends", FrontendNames()},
@@ -118,25 +120,19 @@ void CheckFlags() {
   }
 }
 
-std::vector<BatchRun> RunsToDo(const std::vector<BatchRun>& plan,
-                               const BatchFolder& folder) {
-  std::vector<BatchRun> runs;
-  for (const BatchRun& run : plan) {
-    const std::optional<RunEnd> end = folder.ReadEnd(run);
-    if (!end || end->status != "ok") runs.push_back(run);
-  }
-  return runs;
+bool IsToDo(const BatchRun& run, const BatchFolder& folder) {
+  const std::optional<RunEnd> end = folder.ReadEnd(run);
+  return !end || end->status != "ok";
 }
 
 int PrintPlan(const std::vector<BatchRun>& plan, const BatchFolder& folder) {
-  const std::vector<BatchRun> to_do = RunsToDo(plan, folder);
-  auto next = to_do.begin();
+  int to_do = 0;
   for (const BatchRun& run : plan) {
-    const bool is_next = next != to_do.end() && next->Name() == run.Name();
-    if (is_next) ++next;
-    std::printf("%s  %s\n", is_next ? "run " : "done", run.Name().c_str());
+    const bool is_to_do = IsToDo(run, folder);
+    to_do += is_to_do;
+    std::printf("%s  %s\n", is_to_do ? "run " : "done", run.Name().c_str());
   }
-  std::printf("%zu runs, %zu of them to do\n", plan.size(), to_do.size());
+  std::printf("%zu runs, %d of them to do\n", plan.size(), to_do);
   return kExitOk;
 }
 
@@ -171,19 +167,15 @@ void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
   int done = 0;
   options.on_end = [&](const BatchRun& run, const RunEnd& end, double seconds) {
     ++done;
+    const bool is_ok = end.status == "ok";
     // For successful runs, the bar is sufficient.
-    if (!bar.visible() || end.status != "ok") {
-      std::string line = "[" + std::to_string(done) + "/" +
-                         std::to_string(total) + "] " + end.status;
-      if (end.status != "ok") {
-        line += " (exit code " + std::to_string(end.exit_code) + ")";
-      }
-      line += "  " + run.Name() + "  " + FormatDuration(seconds) + ", " +
-              bar.TimeLeft(done) + " left";
-      if (end.status != "ok") {
-        line += "; see " + folder.Complete(run) + "/run.log";
-      }
-      bar.PrintLine(line);
+    if (!bar.visible() || !is_ok) {
+      bar.PrintLine(
+          Format("[%d/%d] ", done, total) + end.status +
+          (is_ok ? "" : Format(" (exit code %d)", end.exit_code)) + "  " +
+          run.Name() + "  " + FormatDuration(seconds) + ", " +
+          bar.TimeLeft(done) + " left" +
+          (is_ok ? "" : "; see " + folder.Complete(run) + "/run.log"));
     }
     bar.Update(done);
   };
@@ -247,7 +239,11 @@ int Main() {
     return WriteSummary(plan, folder, shard);
   }
   if (!FLAGS_resume) RefuseEarlierRuns(plan, folder, shard);
-  RunAll(RunsToDo(plan, folder), folder, program);
+  std::vector<BatchRun> to_do;
+  for (const BatchRun& run : plan) {
+    if (IsToDo(run, folder)) to_do.push_back(run);
+  }
+  RunAll(to_do, folder, program);
   return WriteSummary(plan, folder, shard);
 }
 

@@ -4,8 +4,6 @@
 
 #include <chrono>
 #include <cstdio>
-#include <opencv2/core.hpp>
-#include <string>
 
 #include "apps/calibration/calibration_run.h"
 #include "apps/report/report_page.h"
@@ -33,7 +31,6 @@ ProgramInfo Info(ProgramSettings* settings) {
       "rgbd_calibrate --dataset=my_recording --camera=my_camera.yaml "
       "--output=calibration",
       {{"Run", {"output", "report", "threads"}}},
-      /*choices=*/{},
       {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
        SettingTable(&settings->slam), SettingTable(&settings->calibration)}};
 }
@@ -42,7 +39,6 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   RequireFlag("dataset", settings.sequence.dataset);
   RequireFlag("output", FLAGS_output);
   const int threads = NumThreads(FLAGS_threads);
-  cv::setNumThreads(1);
 
   // Check the input before anything is created.
   OpenSequence(settings.sequence);
@@ -52,9 +48,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
       CalibrateWithProgress(settings.sequence, settings.odometry, settings.slam,
                             settings.calibration, threads);
   const CalibrationResult& result = calibration.result;
-  const double seconds =
-      std::chrono::duration<double>(std::chrono::steady_clock::now() - start)
-          .count();
+  const double seconds = SecondsSince(start);
   WriteCalibration(calibration, settings.sequence.camera, FormatFlagFile(info),
                    seconds, folder);
   if (FLAGS_report) {

@@ -5,7 +5,6 @@
 #include <gflags/gflags.h>
 
 #include <cstdio>
-#include <opencv2/core.hpp>
 
 #include "apps/compare/experiment.h"
 #include "apps/pipeline/settings.h"
@@ -26,14 +25,14 @@ std::vector<Setting> ExperimentTable(ExperimentSettings* settings) {
       {"experiment", kGroup,
        "pan_tilt or xyz (simulated), sweep (wrong matches), or the folder of a "
        "sequence in TUM RGB-D layout, best with groundtruth.txt",
-       Text(&settings->experiment)},
+       &settings->experiment},
       {"losses", kGroup,
        "M-estimators, separated by commas; empty: all in a sweep, else "
        "none,huber,cauchy,geman_mcclure,welsch,tukey",
-       Text(&settings->losses), MEstimatorNames()},
+       &settings->losses, MEstimatorNames()},
       {"camera", kGroup,
        "YAML file or preset; empty: ros_default where simulated",
-       Text(&settings->camera), CameraPresetNames()},
+       &settings->camera, CameraPresetNames()},
       {"frames", kGroup, "frames of a simulated sequence", &settings->frames},
       {"seeds", kGroup, "trials of a sweep at each share of wrong matches",
        &settings->seeds},
@@ -46,7 +45,6 @@ ProgramInfo Info(ExperimentSettings* settings) {
           "features alone, unless --tracker says otherwise.",
           "rgbd_compare --experiment=xyz --output=compare/xyz",
           {{"Output", {"output", "report"}}},
-          /*choices=*/{},
           {ExperimentTable(settings),
            WithoutRow("loss", SettingTable(&settings->odometry))}};
 }
@@ -54,7 +52,6 @@ ProgramInfo Info(ExperimentSettings* settings) {
 int Main(const ExperimentSettings& settings, const ProgramInfo& info) {
   RequireFlag("experiment", settings.experiment);
   RequireFlag("output", FLAGS_output);
-  cv::setNumThreads(1);  // threads are created here
   const ExperimentResult result = RunExperiment(settings, FLAGS_output);
   WriteOutput(FLAGS_output, "config.flags", FormatFlagFile(info));
   WriteOutput(FLAGS_output, "report.md", result.report);

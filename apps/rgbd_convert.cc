@@ -3,7 +3,6 @@
 #include <gflags/gflags.h>
 
 #include <cstdio>
-#include <opencv2/core.hpp>
 
 #include "apps/pipeline/sequence.h"
 #include "apps/shell/program.h"
@@ -11,10 +10,9 @@
 #include "frontend/sources/tum_writer.h"
 
 DEFINE_string(output, "", "folder to create, in TUM RGB-D layout");
-DEFINE_int32(
-    threads, 0,
-    "threads that read and write images; 0: one for each core; the result "
-    "does not depend on it");
+DEFINE_int32(threads, 0,
+             "threads that read and write images; 0: one for each core; the "
+             "result does not depend on it");
 
 namespace rgbd_pose {
 namespace {
@@ -25,14 +23,12 @@ ProgramInfo Info(SequenceSettings* settings) {
       "writes a recording of any kind, or part of it, as a TUM RGB-D folder.",
       "rgbd_convert --dataset=scene0000_00 --output=scene_tum",
       {{"Run", {"output", "threads"}}},
-      /*choices=*/{},
       {SettingTable(settings)}};
 }
 
 int Main(const SequenceSettings& settings, const ProgramInfo& info) {
   RequireFlag("dataset", settings.dataset);
   RequireFlag("output", FLAGS_output);
-  cv::setNumThreads(1);  // threads are created here
   Sequence sequence = OpenSequence(settings, /*keep_color=*/true);
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
@@ -42,7 +38,7 @@ int Main(const SequenceSettings& settings, const ProgramInfo& info) {
     const Trajectory* truth = sequence.GroundTruth();
     return truth == nullptr ? Trajectory() : *truth;
   };
-  writer.max_damaged = sequence.max_damaged;
+  writer.max_damaged = sequence.inputs.max_damaged;
   WrittenSequence written;
   {
     ProgressBar bar("converting", static_cast<int>(source.timestamps().size()));

@@ -43,10 +43,9 @@ DEFINE_string(rpe_frames, "1,6",
 DEFINE_double(truth_sigma_metres, 0.0,
               "by how much (1 sigma, m) a motion of the ground truth may be "
               "off itself, when covariances are judged");
-DEFINE_double(
-    truth_sigma_degrees, 0.0,
-    "by how much (1 sigma, degrees) a rotation of the ground truth may "
-    "be off itself, when covariances are judged");
+DEFINE_double(truth_sigma_degrees, 0.0,
+              "by how much (1 sigma, degrees) a rotation of the ground truth "
+              "may be off itself, when covariances are judged");
 DEFINE_bool(json, false, "print JSON instead of a table");
 DEFINE_string(aligned, "",
               "write the estimate, aligned to the ground truth, to this file "
@@ -56,16 +55,16 @@ namespace rgbd_pose {
 namespace {
 
 ProgramInfo Info() {
-  return {"rgbd_evaluate",
-          "evaluates an estimated trajectory against the ground truth.",
-          "rgbd_evaluate --estimate=trajectory.txt "
-          "--groundtruth=groundtruth.txt",
-          {{"Input", {"estimate", "run", "groundtruth"}},
-           {"Definitions",
-            {"align", "max_time_difference", "rpe_delta_seconds",
-             "rpe_delta_metres", "rpe_frames", "truth_sigma_metres",
-             "truth_sigma_degrees"}},
-           {"Output", {"json", "aligned"}}}};
+  return {
+      "rgbd_evaluate",
+      "evaluates an estimated trajectory against the ground truth.",
+      "rgbd_evaluate --estimate=trajectory.txt --groundtruth=groundtruth.txt",
+      {{"Input", {"estimate", "run", "groundtruth"}},
+       {"Definitions",
+        {"align", "max_time_difference", "rpe_delta_seconds",
+         "rpe_delta_metres", "rpe_frames", "truth_sigma_metres",
+         "truth_sigma_degrees"}},
+       {"Output", {"json", "aligned"}}}};
 }
 
 std::vector<int> ParseFrames(const std::string& text) {
@@ -84,15 +83,6 @@ std::vector<int> ParseFrames(const std::string& text) {
   return frames;
 }
 
-void WriteAligned(const Trajectory& estimate,
-                  const Rigid3d& truth_from_estimate, const std::string& path) {
-  Trajectory aligned = estimate;
-  for (StampedPose& pose : aligned) {
-    pose.world_from_cam = truth_from_estimate * pose.world_from_cam;
-  }
-  WriteFileAtomically(path, FormatTrajectory(aligned));
-}
-
 int Main() {
   const std::filesystem::path run = FLAGS_run;
   if (!FLAGS_run.empty() && !FLAGS_estimate.empty()) {
@@ -107,7 +97,7 @@ int Main() {
   if (FLAGS_run.empty()) RequireFlag("estimate", FLAGS_estimate);
   RequireFlag("groundtruth", FLAGS_groundtruth);
   std::vector<std::string> remarks;
-  const Trajectory estimate = ReadTrajectory(
+  Trajectory estimate = ReadTrajectory(
       FLAGS_run.empty() ? FLAGS_estimate : (run / "trajectory.txt").string(),
       &remarks);
   const Trajectory truth = ReadTrajectory(FLAGS_groundtruth, &remarks);
@@ -124,7 +114,10 @@ int Main() {
                      FLAGS_truth_sigma_degrees * kRadiansPerDegree});
   }
   if (!FLAGS_aligned.empty()) {
-    WriteAligned(estimate, report.truth_from_estimate, FLAGS_aligned);
+    for (StampedPose& pose : estimate) {
+      pose.world_from_cam = report.truth_from_estimate * pose.world_from_cam;
+    }
+    WriteFileAtomically(FLAGS_aligned, FormatTrajectory(estimate));
   }
   Warn({Sim3Warning(report.sim3, report.ate.rmse)});
   const std::string text = FLAGS_json ? EvaluationToJson(report).dump(2) + "\n"

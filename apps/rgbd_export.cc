@@ -2,7 +2,6 @@
 
 #include <cstdio>
 #include <filesystem>
-#include <opencv2/core.hpp>
 
 #include "apps/export/export_format.h"
 #include "apps/pipeline/settings.h"
@@ -25,16 +24,16 @@ std::vector<Setting> Table(ExportSettings* settings) {
   options->threads = 0;
   return {
       {"run", kInput, "results folder of rgbd_odometry or rgbd_slam",
-       Text(&settings->run)},
+       &settings->run},
       {"dataset", kInput, "recording of the run, if it was moved",
-       Text(&settings->dataset)},
+       &settings->dataset},
       {"camera", kInput, "camera file of the run, if it was moved",
-       Text(&settings->camera)},
-      {"to", kOutput, "format", Text(&settings->to), ExportFormatNames()},
+       &settings->camera},
+      {"to", kOutput, "format", &settings->to, ExportFormatNames()},
       {"output", kOutput,
        "file or folder to write; empty: a default name in the folder of the "
        "run",
-       Text(&options->output)},
+       &options->output},
       {"overwrite", kOutput, "replace a folder written by an earlier export",
        &options->overwrite},
       {"min_distance", kPart,
@@ -70,7 +69,6 @@ ProgramInfo Info(ExportSettings* settings) {
           "exports the results of a run to the formats of other tools.",
           "rgbd_export --run=runs/fr1_room --to=mesh --output=room.glb",
           {},
-          /*choices=*/{},
           {Table(settings)}};
 }
 
@@ -79,7 +77,6 @@ int Main(const ExportSettings& settings, const ProgramInfo& /*info*/) {
   RequireFlag("run", folder);
   RequireFlag("to", to);
   const ExportFormat& format = FindExportFormat(to);
-  cv::setNumThreads(1);
   const FinishedRun run(folder, dataset, camera);
   ExportOptions options = given;
   // VoxelCloud::Thin needs at least 8 points.

@@ -3,8 +3,6 @@
 
 #include <gflags/gflags.h>
 
-#include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -31,97 +29,82 @@ constexpr double kJetTolerance = 1e-12;
 constexpr double kDifferenceTolerance = 1e-5;
 constexpr double kStep = 1e-5;
 
-// A block of the Jacobian: one row of the residual by the angles or the centre.
-struct Block {
-  std::string name;
-  double jet = 0.0;
-  double differences = 0.0;
-};
+using Jacobian = Eigen::Matrix<double, Eigen::Dynamic, 6, Eigen::RowMajor>;
+
+Jacobian Evaluate(const ceres::CostFunction& function, const MotionVector& x) {
+  const double* parameters[] = {x.data()};
+  Eigen::VectorXd residuals(function.num_residuals());
+  Jacobian jacobian(function.num_residuals(), 6);
+  double* jacobians[] = {jacobian.data()};
+  function.Evaluate(parameters, residuals.data(), jacobians);
+  return jacobian;
+}
 
 template <typename Residual>
-class Checker {
- public:
-  using Jacobian = Eigen::Matrix<double, Residual::kRows, 6, Eigen::RowMajor>;
-  using Rows = Eigen::Matrix<double, Residual::kRows, 1>;
+Jacobian Differences(const ResidualSample<Residual>& sample) {
+  const auto residuals_at = [&sample](int k, double step) {
+    MotionVector x = sample.x;
+    x[k] += step;
+    Eigen::Matrix<double, Residual::kRows, 1> residuals;
+    Residual::Residual(sample.origin.PoseAt(x.data()), sample.columns,
+                       residuals.data());
+    return residuals;
+  };
+  Jacobian jacobian(Residual::kRows, 6);
+  for (int k = 0; k < 6; ++k) {
+    jacobian.col(k) =
+        (residuals_at(k, kStep) - residuals_at(k, -kStep)) / (2.0 * kStep);
+  }
+  return jacobian;
+}
 
-  // The largest errors over all samples, with a block for each row and each
-  // half of the columns.
-  std::vector<Block> Run() {
-    std::vector<Block> blocks;
-    for (int row = 0; row < Residual::kRows; ++row) {
-      blocks.push_back({"row " + std::to_string(row) + ", angles"});
-      blocks.push_back({"row " + std::to_string(row) + ", centre"});
+// The largest errors of each row: in the columns of the angles and in those of
+// the centre.
+using Errors = Eigen::ArrayX2d;
+
+Errors ErrorsOf(const Jacobian& actual, const Jacobian& expected) {
+  Errors errors(actual.rows(), 2);
+  for (int row = 0; row < actual.rows(); ++row) {
+    const double size = expected.row(row).lpNorm<Eigen::Infinity>();
+    for (int half = 0; half < 2; ++half) {
+      const double error = (actual.row(row) - expected.row(row))
+                               .segment<3>(3 * half)
+                               .lpNorm<Eigen::Infinity>();
+      errors(row, half) = size > 0.0 ? error / size : error;
     }
-    RandomWorld world(FLAGS_seed);
-    for (int i = 0; i < FLAGS_samples; ++i) {
-      const ResidualSample<Residual> sample(&world);
-      const Jacobian by_hand = Evaluate(
-          AnalyticBlock<Residual>(sample.origin, sample.columns), sample.x);
-      const Jacobian by_jet =
-          Evaluate(OracleBlock<Residual>(new OracleFunctor<Residual>(
-                       sample.origin, sample.columns)),
-                   sample.x);
-      const Jacobian by_differences = Differences(sample);
-      for (int row = 0; row < Residual::kRows; ++row) {
-        for (int half = 0; half < 2; ++half) {
-          Block& block = blocks[2 * row + half];
-          block.jet = std::max(block.jet, Error(by_hand, by_jet, row, half));
-          block.differences = std::max(
-              block.differences, Error(by_hand, by_differences, row, half));
-        }
-      }
-    }
-    return blocks;
   }
-
- private:
-  static Jacobian Evaluate(const ceres::CostFunction& function,
-                           const MotionVector& x) {
-    const double* parameters[] = {x.data()};
-    Rows residuals;
-    Jacobian jacobian;
-    double* jacobians[] = {jacobian.data()};
-    function.Evaluate(parameters, residuals.data(), jacobians);
-    return jacobian;
-  }
-
-  static Jacobian Differences(const ResidualSample<Residual>& sample) {
-    Jacobian jacobian;
-    for (int k = 0; k < 6; ++k) {
-      MotionVector low = sample.x, high = sample.x;
-      low[k] -= kStep;
-      high[k] += kStep;
-      Rows r_low, r_high;
-      Residual::Residual(sample.origin.PoseAt(low.data()), sample.columns,
-                         r_low.data());
-      Residual::Residual(sample.origin.PoseAt(high.data()), sample.columns,
-                         r_high.data());
-      jacobian.col(k) = (r_high - r_low) / (2.0 * kStep);
-    }
-    return jacobian;
-  }
-
-  static double Error(const Jacobian& actual, const Jacobian& expected, int row,
-                      int half) {
-    const double size = expected.row(row).template lpNorm<Eigen::Infinity>();
-    const double error = (actual.row(row) - expected.row(row))
-                             .template segment<3>(3 * half)
-                             .template lpNorm<Eigen::Infinity>();
-    return size > 0.0 ? error / size : error;
-  }
-};
+  return errors;
+}
 
 template <typename Residual>
 bool Report() {
   if (!FLAGS_cost.empty() && FLAGS_cost != Residual::kName) return true;
+  Errors jet = Errors::Zero(Residual::kRows, 2);
+  Errors differences = jet;
+  RandomWorld world(FLAGS_seed);
+  for (int i = 0; i < FLAGS_samples; ++i) {
+    const ResidualSample<Residual> sample(&world);
+    const Jacobian by_hand = Evaluate(
+        AnalyticBlock<Residual>(sample.origin, sample.columns), sample.x);
+    const Jacobian by_jet =
+        Evaluate(OracleBlock<Residual>(new OracleFunctor<Residual>(
+                     sample.origin, sample.columns)),
+                 sample.x);
+    jet = jet.max(ErrorsOf(by_hand, by_jet));
+    differences = differences.max(ErrorsOf(by_hand, Differences(sample)));
+  }
   bool passed = true;
-  for (const Block& block : Checker<Residual>().Run()) {
-    const bool good =
-        block.jet <= kJetTolerance && block.differences <= kDifferenceTolerance;
-    std::printf("%-20s %-16s %12.1e %12.1e  %s\n", Residual::kName,
-                block.name.c_str(), block.jet, block.differences,
-                good ? "ok" : "WRONG");
-    passed = passed && good;
+  for (int row = 0; row < Residual::kRows; ++row) {
+    for (int half = 0; half < 2; ++half) {
+      const std::string block =
+          "row " + std::to_string(row) + (half == 0 ? ", angles" : ", centre");
+      const bool good = jet(row, half) <= kJetTolerance &&
+                        differences(row, half) <= kDifferenceTolerance;
+      std::printf("%-20s %-16s %12.1e %12.1e  %s\n", Residual::kName,
+                  block.c_str(), jet(row, half), differences(row, half),
+                  good ? "ok" : "WRONG");
+      passed = passed && good;
+    }
   }
   return passed;
 }
@@ -152,6 +135,7 @@ ProgramInfo Info() {
           "central differences; exit 3 if one is wrong.",
           "rgbd_jacobians --samples=1000",
           {{"What to check", {"cost", "samples", "seed"}}},
+          /*settings=*/{},
           {{"cost", CostNames()}}};
 }
 

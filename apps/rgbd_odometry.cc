@@ -5,7 +5,8 @@
 
 #include <chrono>
 #include <cstdio>
-#include <opencv2/core.hpp>
+#include <string>
+#include <vector>
 
 #include "apps/export/export_format.h"
 #include "apps/pipeline/sequence.h"
@@ -19,10 +20,9 @@
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
 
-DEFINE_int32(
-    threads, 0,
-    "threads that read images ahead and track; 0: one for each core; the "
-    "result does not depend on it");
+DEFINE_int32(threads, 0,
+             "threads that read images ahead and track; 0: one for each core; "
+             "the result does not depend on it");
 DEFINE_bool(validate_only, false,
             "only read every image and print the speed; needs no --output");
 DEFINE_bool(report, true, "write OUTPUT/report.html");
@@ -43,25 +43,18 @@ ProgramInfo Info(ProgramSettings* settings) {
           "--output=runs/fr1_xyz",
           {{"Run", {"report", "validate_only", "finish_on_signal", "threads"}},
            {"View", {"view", "view_port", "view_speed"}}},
-          /*choices=*/{},
           {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
            SettingTable(&settings->output)}};
 }
 
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
 int ValidateOnly(const Sequence& sequence, int threads) {
   FrameSource* const source = sequence.source.get();
-  const Clock::time_point start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   std::vector<double> decode_ms;
   std::vector<std::string> damaged;
   {
     ProgressBar bar("reading", static_cast<int>(source->timestamps().size()));
-    FrameStream stream(source, nullptr, threads, sequence.max_damaged);
+    FrameStream stream(source, nullptr, threads, sequence.inputs.max_damaged);
     while (const auto next = stream.Next()) {
       decode_ms.push_back(next->decode_ms);
       bar.Update(static_cast<int>(decode_ms.size()));
@@ -82,12 +75,10 @@ int ValidateOnly(const Sequence& sequence, int threads) {
 }
 
 int Main(const ProgramSettings& settings, const ProgramInfo& info) {
-  const Clock::time_point start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   RequireFlag("dataset", settings.sequence.dataset);
   if (!FLAGS_validate_only) RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
-  // OpenCV's threads would compete with those of this program.
-  cv::setNumThreads(1);
 
   // Check the input before the work starts and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
@@ -95,8 +86,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
   if (FLAGS_validate_only) return ValidateOnly(sequence, threads);
-  const RunInputs inputs = sequence.inputs();
-  OdometryRun run(settings.odometry, source.camera().camera, inputs);
+  OdometryRun run(settings.odometry, source.camera().camera, sequence.inputs);
   RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());

@@ -34,17 +34,16 @@ std::string WriteReport() {
 }
 
 int Main() {
-  const int given = static_cast<int>(!FLAGS_run.empty()) +
-                    static_cast<int>(!FLAGS_batch.empty()) +
-                    static_cast<int>(!FLAGS_comparison.empty());
+  const int given =
+      !FLAGS_run.empty() + !FLAGS_batch.empty() + !FLAGS_comparison.empty();
   if (given == 0) RequireFlag("run", FLAGS_run);
   if (given > 1) {
     throw InputError("give only one of --run, --batch and --comparison");
   }
   if (!HasReportLibrary()) {
     throw InputError(
-        "built without plotly.js, which pages need; run scripts/"
-        "install_dependencies, then configure and build again");
+        "built without plotly.js, which pages need; run "
+        "scripts/install_dependencies, then configure and build again");
   }
   std::printf("report in   %s\n", WriteReport().c_str());
   return kExitOk;

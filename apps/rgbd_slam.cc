@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
-#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 
@@ -28,10 +27,9 @@
 #include "frontend/files/depth_noise_file.h"
 #include "frontend/map/map_folder.h"
 
-DEFINE_int32(
-    threads, 0,
-    "threads that read images ahead and track; 0: one for each core; the "
-    "result does not depend on it");
+DEFINE_int32(threads, 0,
+             "threads that read images ahead and track; 0: one for each core; "
+             "the result does not depend on it");
 DEFINE_bool(report, true, "write OUTPUT/report.html");
 DEFINE_bool(calibrate, false,
             "first calibrate the camera as rgbd_calibrate does, and use the "
@@ -39,6 +37,27 @@ DEFINE_bool(calibrate, false,
 
 namespace rgbd_pose {
 namespace {
+
+// Map files; empty: none.
+struct MapSettings {
+  std::string save_map;        // folder
+  std::string load_map;        // comma-separated folders
+  bool localise_only = false;  // do not change the loaded map
+};
+
+std::vector<Setting> SettingTable(MapSettings* settings) {
+  constexpr std::string_view kGroup = "Maps";
+  return {
+      {"save_map", kGroup, "folder to save the map to; empty: it is not saved",
+       &settings->save_map},
+      {"load_map", kGroup,
+       "map folder to continue with, or several, separated by commas, to join",
+       &settings->load_map},
+      {"localise_only", kGroup,
+       "track within the loaded map without changing it",
+       &settings->localise_only},
+  };
+}
 
 struct ProgramSettings {
   SequenceSettings sequence;
@@ -56,19 +75,12 @@ ProgramInfo Info(ProgramSettings* settings) {
           "--output=runs/fr1_room --save_map=maps/room",
           {{"Run", {"calibrate", "report", "finish_on_signal", "threads"}},
            {"View", {"view", "view_port", "view_speed"}}},
-          /*choices=*/{},
           {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
            SettingTable(&settings->slam), SettingTable(&settings->maps),
            SettingTable(&settings->output)}};
 }
 
-using Clock = std::chrono::steady_clock;
-
-double SecondsSince(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-void LoadMaps(const MapSettings& maps, SlamRun* run) {
+void LoadMaps(const MapSettings& maps, Slam* slam) {
   std::vector<std::string> folders = SplitText(maps.load_map, ',');
   folders.erase(std::remove(folders.begin(), folders.end(), ""), folders.end());
   if (maps.localise_only && folders.empty()) {
@@ -80,7 +92,7 @@ void LoadMaps(const MapSettings& maps, SlamRun* run) {
   }
   for (const std::string& folder : folders) {
     try {
-      run->Load(LoadMap(folder), maps.localise_only);
+      slam->Load(LoadMap(folder), maps.localise_only);
     } catch (const InputError& error) {
       throw InputError("--load_map=" + folder + ": " + error.what());
     }
@@ -128,12 +140,10 @@ std::string WriteFound(const RecordingCalibration& found,
 }
 
 int Main(const ProgramSettings& settings, const ProgramInfo& info) {
-  const Clock::time_point start = Clock::now();
+  const auto start = std::chrono::steady_clock::now();
   RequireFlag("dataset", settings.sequence.dataset);
   RequireFlag("output", settings.output.output);
   const int threads = NumThreads(FLAGS_threads);
-  // OpenCV's threads would compete with those of this program.
-  cv::setNumThreads(1);
 
   // Check the input before the work starts and before anything is written.
   const bool keep_color = !settings.output.save_cloud.empty();
@@ -145,10 +155,10 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
                    has_camera ? &found->result.camera : nullptr);
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
-  const RunInputs inputs = sequence.inputs();
   if (!settings.maps.save_map.empty()) RequireMapFolder(settings.maps.save_map);
-  SlamRun run(settings.odometry, settings.slam, source.camera().camera, inputs);
-  LoadMaps(settings.maps, &run);
+  SlamRun run(settings.odometry, settings.slam, source.camera().camera,
+              sequence.inputs);
+  LoadMaps(settings.maps, &run.slam());
   RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
@@ -180,20 +190,19 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
                        info.name, more);
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
-  output.folder().WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
-  output.folder().WriteFile("trajectory_online.txt",
-                            FormatOnlineTrajectory(slam, run.slam_frames()));
-  output.folder().WriteFile("trajectory_odometry.txt",
-                            FormatTrajectory(SmoothPath(run.slam_frames())));
-  output.folder().WriteFile("keyframes.csv",
-                            FormatKeyframesCsv(map, slam.Covariances()));
-  output.folder().WriteFile("graph.g2o",
-                            FormatG2o(slam.Map(/*as_solved=*/true)));
+  folder.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
+  folder.WriteFile("trajectory_online.txt",
+                   FormatOnlineTrajectory(slam, run.slam_frames()));
+  folder.WriteFile("trajectory_odometry.txt",
+                   FormatTrajectory(SmoothPath(run.slam_frames())));
+  folder.WriteFile("keyframes.csv",
+                   FormatKeyframesCsv(map, slam.Covariances()));
+  folder.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
   if (FLAGS_report) {
-    text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
+    text += WriteRunPage(folder.staging_dir(), settings.output.output,
                          &flaws.no_report);
   }
-  output.folder().Publish();
+  folder.Publish();
   text += SaveMesh(settings.output, threads);
   // If the map cannot be saved, the results stay.
   if (!settings.maps.save_map.empty()) {

@@ -176,6 +176,7 @@ int main(int argc, char** argv) {
       "frames_benchmark --frames=90 --rounds=5 --output=frames.json",
       {{"Input", {"frames", "rounds", "path", "methods", "dataset", "camera"}},
        {"Output", {"output"}}},
+      /*settings=*/{},
       {{"path", rgbd_pose::SyntheticPathNames()}}};
   return rgbd_pose::RunProgram(argc, argv, info, rgbd_pose::Main);
 }

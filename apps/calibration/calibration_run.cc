@@ -129,7 +129,7 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
     const std::string error = settings.Check();
     if (!error.empty()) throw InputError("calibration: " + error);
     const RgbdCamera camera = opened.source->camera();
-    SlamRun run(with_shutter, slam, camera.camera, opened.inputs());
+    SlamRun run(with_shutter, slam, camera.camera, opened.inputs);
     int done = 0;
     all.stopped = TrackAll(opened.source.get(), threads, {&run},
                            [&](const Frame& /*frame*/) {
@@ -143,10 +143,10 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
                         opened.remarks.end());
     const Trajectory* const truth = opened.GroundTruth();
     run.Finish(truth);
-    const CalibrationResult result =
-        Calibrate(run.slam().Map(), SmoothPath(run.slam_frames()), camera,
-                  with_shutter, settings, {truth, opened.inputs().motion_guess},
-                  threads, pass > 1 ? &first : nullptr);
+    const CalibrationResult result = Calibrate(
+        run.slam().Map(), SmoothPath(run.slam_frames()), camera, with_shutter,
+        settings, {truth, opened.inputs.motion_guess.get()}, threads,
+        pass > 1 ? &first : nullptr);
     all.path = run.slam().Path();
     bool goes_on;
     if (pass == 1) {

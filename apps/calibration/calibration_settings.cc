@@ -57,11 +57,11 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
       {"fix", kGroup,
        "parameters to keep, separated by commas: focal, centre, distortion, "
        "readouts, registration, or single parameter names",
-       Text(&settings->fix)},
+       &settings->fix},
       {"known_length", kGroup,
        "known length that gives depth its scale: T0,T1,METRES, two time stamps "
        "(s) and the distance between the camera positions at these times",
-       Text(&settings->known_length)},
+       &settings->known_length},
       {"determined_share", kGroup,
        "a parameter is determined if the recording reduces its standard "
        "deviation to this share of the prior's",

@@ -28,7 +28,7 @@ void PrepareOutput(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) {
-    throw InputError("--output=" + folder + ": cannot be made (" +
+    throw InputError("--output=" + folder + ": cannot be created (" +
                      error.message() + ")");
   }
   RequireWritable(std::filesystem::path(folder) / kReport);

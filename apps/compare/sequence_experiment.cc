@@ -110,7 +110,7 @@ class SequenceExperiment {
             return true;
           });
       Warn(DroppedFrames(*source, all[0]->damaged()));
-      if (!stopped.empty()) Warn({"ended early: " + stopped});
+      if (!stopped.empty()) Warn({"stopped early: " + stopped});
     }
     std::vector<LossRun> results;
     for (size_t i = 0; i < losses_.size(); ++i) {

@@ -32,6 +32,8 @@ void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
       **whole = std::atoi(text.c_str());
     } else if (double* const* real = std::get_if<double*>(&setting.value)) {
       **real = std::strtod(text.c_str(), nullptr);
+    } else if (auto* const* words = std::get_if<std::string*>(&setting.value)) {
+      **words = text;
     } else {
       *std::get<bool*>(setting.value) = text == "true";
     }

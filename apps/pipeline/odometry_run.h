@@ -3,9 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "apps/pipeline/settings.h"
@@ -36,10 +36,10 @@ struct ResidualHistogram {
   void Add(const MotionEstimate& estimate);
 };
 
-// Additional inputs of a run. A null pointer means that the input is not
-// available. The pointed-to objects must outlive the run.
+// Additional inputs of a run.
 struct RunInputs {
-  const Trajectory* motion_guess = nullptr;  // see MotionAlong
+  // See MotionAlong; null: not available.
+  std::shared_ptr<const Trajectory> motion_guess;
   // The share of frames that may be damaged, see FrameStream.
   double max_damaged = 0.05;
 };
@@ -56,17 +56,9 @@ struct RunResults {
   std::optional<EvaluationReport> evaluation;
   std::string no_evaluation;
 
-  // One line that warns of a suspicious input, judged by the errors, or empty.
-  std::string Warning() const {
-    return evaluation.has_value()
-               ? Sim3Warning(evaluation->sim3, evaluation->ate.rmse)
-               : "";
-  }
-
   double TrackedShare() const {
-    return frames.empty() ? 0.0
-                          : static_cast<double>(trajectory.size()) /
-                                static_cast<double>(frames.size());
+    if (frames.empty()) return 0.0;
+    return static_cast<double>(trajectory.size()) / frames.size();
   }
 };
 
@@ -137,15 +129,10 @@ class SlamRun final : public SequenceRun {
           const Camera& camera, const RunInputs& inputs = {})
       : SequenceRun(inputs), slam_(odometry, settings, camera) {}
 
-  // Call before the first frame, see Slam::Load.
-  void Load(KeyframeMap map, bool is_held) {
-    slam_.Load(std::move(map), is_held);
-  }
-
   const Odometry& odometry() const override { return slam_.odometry(); }
 
-  // The map; complete after Finish.
-  const Slam& slam() const { return slam_; }
+  // The map: loaded before the first frame, complete after Finish.
+  Slam& slam() { return slam_; }
 
   // The SLAM results of each frame, without edges (these are in RunResults).
   const std::vector<SlamFrame>& slam_frames() const { return frames_; }

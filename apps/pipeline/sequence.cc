@@ -1,6 +1,5 @@
 #include "apps/pipeline/sequence.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "core/util/input_error.h"
@@ -11,8 +10,6 @@
 
 namespace rgbd_pose {
 namespace {
-
-constexpr char kNoGroundTruth[] = "none";
 
 SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
                         const RgbdCamera* camera) {
@@ -65,50 +62,46 @@ std::vector<Setting> SettingTable(SequenceSettings* settings) {
       {"dataset", kGroup,
        "recording of an RGB-D camera: a folder or file of a known kind (see "
        "source)",
-       Text(&settings->dataset)},
-      {"source", kGroup, "kind of recording; auto: detected",
-       Text(&settings->source), SourceNames()},
+       &settings->dataset},
+      {"source", kGroup, "kind of recording; auto: detected", &settings->source,
+       SourceNames()},
       {"frames", kGroup,
        "part of the recording: first-last[:step] by number from 0, such as "
        "100-400:2, or by seconds from its start, such as 2.5s-10s; empty: all",
-       Text(&settings->frames)},
+       &settings->frames},
       {"associations", kGroup,
        "file that pairs colour and depth images, either column order; empty: "
        "rgb.txt and depth.txt are paired by time",
-       Text(&settings->associations)},
+       &settings->associations},
       {"topics", kGroup,
        "topics of a bag: COLOUR,DEPTH or COLOUR,DEPTH,CAMERA_INFO; empty: "
        "chosen by type and name",
-       Text(&settings->topics)},
+       &settings->topics},
       {"camera", kGroup,
        "YAML file (ORB-SLAM2/3, ROS camera_info or Kalibr layout) or preset; "
        "empty: the camera stored in the recording",
-       Text(&settings->camera), CameraPresetNames()},
+       &settings->camera, CameraPresetNames()},
       {"depth_camera", kGroup,
        "camera of a multi-camera Kalibr file that took the depth images: with "
        "cam1, for example, they are registered to colour; cam0: they are "
        "already registered",
-       Text(&settings->depth_camera)},
+       &settings->depth_camera},
       {"depth_scale", kGroup,
        "raw depth units per metre; 0: from the camera or the recording",
        &settings->depth_scale},
       {"motion_guess", kGroup,
        "trajectory (TUM text) with a rough motion between frames, from wheels "
        "or an IMU for example; empty: none",
-       Text(&settings->motion_guess)},
+       &settings->motion_guess},
       {"groundtruth", kGroup,
        "ground-truth trajectory (TUM text); empty: the one in the recording, "
        "if any; none: no comparison",
-       Text(&settings->groundtruth)},
+       &settings->groundtruth},
       {"max_damaged", kGroup,
        "largest share of damaged or missing frames, which are skipped; with "
        "more (at least three) the run stops early and keeps its results",
        &settings->max_damaged},
   };
-}
-
-RunInputs Sequence::inputs() const {
-  return {motion_guess.has_value() ? &*motion_guess : nullptr, max_damaged};
 }
 
 const Trajectory* Sequence::GroundTruth() {
@@ -131,14 +124,14 @@ std::vector<std::string> DroppedFrames(
                     " further frames are damaged and left out");
   }
   if (source.unmatched_color() > 0) {
-    lines.push_back(std::to_string(source.unmatched_color()) +
-                    " colour images have no depth image of the same time and "
-                    "are left out");
+    lines.push_back(
+        std::to_string(source.unmatched_color()) +
+        " colour images have no depth image of the same time and are left out");
   }
   if (source.dropped() > 0) {
-    lines.push_back(std::to_string(source.dropped()) +
-                    " frames arrived faster than they were processed and are "
-                    "left out");
+    lines.push_back(
+        std::to_string(source.dropped()) +
+        " frames arrived faster than they were processed and are left out");
   }
   for (std::string& line : source.remarks()) lines.push_back(std::move(line));
   return lines;
@@ -147,7 +140,7 @@ std::vector<std::string> DroppedFrames(
 Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
                       const RgbdCamera* camera) {
   Sequence sequence;
-  sequence.max_damaged = settings.max_damaged;
+  sequence.inputs.max_damaged = settings.max_damaged;
   if (!(settings.max_damaged >= 0.0)) {
     throw InputError("max_damaged: must not be negative");
   }
@@ -155,11 +148,11 @@ Sequence OpenSequence(const SequenceSettings& settings, bool keep_color,
   sequence.source = PartOf(
       OpenSource(settings.source, OptionsOf(settings, keep_color, camera)),
       range);
-  sequence.compares = settings.groundtruth != kNoGroundTruth;
+  sequence.compares = settings.groundtruth != "none";
   if (sequence.compares) FindTruth(settings, &sequence);
   if (!settings.motion_guess.empty()) {
-    sequence.motion_guess =
-        ReadTrajectory(settings.motion_guess, &sequence.remarks);
+    sequence.inputs.motion_guess = std::make_shared<Trajectory>(
+        ReadTrajectory(settings.motion_guess, &sequence.remarks));
   }
   return sequence;
 }

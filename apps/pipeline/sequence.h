@@ -33,13 +33,9 @@ std::vector<Setting> SettingTable(SequenceSettings* settings);
 struct Sequence {
   std::unique_ptr<FrameSource> source;
   std::optional<Trajectory> ground_truth;  // if known before the frames
-  bool compares = true;  // whether to use the recording's truth
-  std::optional<Trajectory> motion_guess;
-  double max_damaged = 0.05;         // share of frames
+  bool compares = true;              // whether to use the recording's truth
+  RunInputs inputs;                  // of a run
   std::vector<std::string> remarks;  // on the files, for users; one per line
-
-  // Inputs for a run. They refer to this object.
-  RunInputs inputs() const;
 
   // The ground truth, or null if there is none. For some recordings it is known
   // only after all frames have been read. It refers to this object.

@@ -41,12 +41,11 @@ constexpr Named<ShutterUse> kShutterUses[] = {
 template <typename Value, size_t N>
 NamedSetting ByName(const Named<Value> (&rows)[N], const char* what,
                     Value* value) {
-  return {[&rows, value]() -> std::string {
-            return std::find_if(std::begin(rows), std::end(rows),
-                                [=](const Named<Value>& row) {
-                                  return row.value == *value;
-                                })
-                ->name;
+  const auto is_set = [value](const Named<Value>& row) {
+    return row.value == *value;
+  };
+  return {[&rows, is_set]() -> std::string {
+            return std::find_if(std::begin(rows), std::end(rows), is_set)->name;
           },
           [&rows, what, value](const std::string& name) {
             *value = ValueOf(rows, what, name);
@@ -61,11 +60,7 @@ NamedSetting ScaleByName(decltype(EstimatorOptions::scale)* scale) {
             return std::string("a custom function");
           },
           [=](const std::string& name) {
-            const ScaleEstimator* row = FindScaleEstimator(name);
-            if (row == nullptr) {
-              throw UnknownName("scale", name, ScaleEstimatorNames());
-            }
-            *scale = row->estimate;
+            *scale = RowOf(ScaleEstimators(), "scale", name).estimate;
           }};
 }
 
@@ -99,13 +94,6 @@ NamedSetting DepthNoiseByName(DepthNoiseModel* model) {
           [=](const std::string& name) { *model = ResolveDepthNoise(name); }};
 }
 
-}  // namespace
-
-Estimator MakeEstimator(const EstimatorSettings& settings) {
-  return Estimator(settings.options,
-                   MakeRobustCosts(settings.cost, settings.loss));
-}
-
 DirectEstimators MakeDirectEstimators(const EstimatorSettings& matches,
                                       const DirectSettings& pixels) {
   return {Estimator(pixels.options,
@@ -115,6 +103,13 @@ DirectEstimators MakeDirectEstimators(const EstimatorSettings& matches,
                               MakeDirectCosts(pixels.cost, pixels.loss,
                                               pixels.points))),
           MakeCoarseEstimator(pixels.points)};
+}
+
+}  // namespace
+
+Estimator MakeEstimator(const EstimatorSettings& settings) {
+  return Estimator(settings.options,
+                   MakeRobustCosts(settings.cost, settings.loss));
 }
 
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
@@ -134,11 +129,6 @@ Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera) {
   return Odometry(settings.odometry, MakeTracker(settings, camera));
 }
 
-NamedSetting Text(std::string* text) {
-  return {[=] { return *text; },
-          [=](const std::string& name) { *text = name; }};
-}
-
 std::vector<Setting> SettingTable(OdometrySettings* settings) {
   EstimatorSettings* estimator = &settings->estimator;
   EstimatorOptions* options = &estimator->options;
@@ -148,11 +138,11 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
   DirectSettings* direct = &settings->direct;
   return {
       {"cost", kEstimationGroup, "cost of a match; a+b adds costs",
-       Text(&estimator->cost), CostNames()},
+       &estimator->cost, CostNames()},
       {"loss", kEstimationGroup,
        "M-estimator, optionally with its width in sigmas: huber(1.5); with "
        "several costs one for each: a,b",
-       Text(&estimator->loss), MEstimatorNames()},
+       &estimator->loss, MEstimatorNames()},
       {"scale", kEstimationGroup,
        "scale of the residuals: from the noise model (fixed) or estimated; for "
        "the units of depth images see --depth_scale",
@@ -185,8 +175,8 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
       {"assembly", kEstimationGroup, "how matches become Ceres residual blocks",
        ByName(kAssemblies, "assembly", &options->assembly),
        NamesOf(kAssemblies)},
-      {"frontend", kFeatures, "how features are matched",
-       Text(&settings->frontend), FrontendNames()},
+      {"frontend", kFeatures, "how features are matched", &settings->frontend,
+       FrontendNames()},
       {"max_features", kFeatures, "features wanted in a reference frame",
        &features->max_features},
       {"min_depth", kFeatures, "smaller depths (m) are ignored",
@@ -195,13 +185,13 @@ std::vector<Setting> SettingTable(OdometrySettings* settings) {
        &features->max_depth},
       {"tracker", kTracking,
        "how a frame is tracked: by features, pixels or both",
-       Text(&settings->tracker), TrackerNames()},
+       &settings->tracker, TrackerNames()},
       {"direct_cost", kTracking, "cost of a pixel; a+b adds costs",
-       Text(&direct->cost), DirectCostNames()},
+       &direct->cost, DirectCostNames()},
       {"direct_loss", kTracking,
        "M-estimator of pixels in the last step; with several costs one for "
        "each",
-       Text(&direct->loss), MEstimatorNames()},
+       &direct->loss, MEstimatorNames()},
       {"direct_points", kTracking,
        "pixels compared for each cost; 0: the cost's default",
        &direct->points.max_points},

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <memory>
 #include <string>
@@ -47,8 +48,6 @@ struct OdometrySettings {
 // Create an estimator, tracker or odometry with these settings. Throw
 // InputError for unknown names and invalid values.
 Estimator MakeEstimator(const EstimatorSettings& settings);
-DirectEstimators MakeDirectEstimators(const EstimatorSettings& matches,
-                                      const DirectSettings& pixels);
 std::unique_ptr<Tracker> MakeTracker(const OdometrySettings& settings,
                                      const Camera& camera);
 Odometry MakeOdometry(const OdometrySettings& settings, const Camera& camera);
@@ -65,12 +64,12 @@ struct Setting {
   const char* name;        // as users write it
   std::string_view group;  // title of the group of settings
   const char* help;        // meaning and unit
-  std::variant<int*, double*, bool*, NamedSetting> value;  // value that is set
-  std::vector<std::string> choices = {};  // valid names, if set by name
+  // The value that is set. The validity of texts is checked where they are
+  // used.
+  std::variant<int*, uint32_t*, double*, bool*, std::string*, NamedSetting>
+      value;
+  std::vector<std::string> choices = {};  // valid names, if it takes names
 };
-
-// A free text. Its validity is checked where it is used.
-NamedSetting Text(std::string* text);
 
 // The group of the settings that concern only matches.
 inline constexpr char kEstimationGroup[] = "Estimation";

@@ -258,18 +258,4 @@ std::vector<Setting> SettingTable(SlamSettings* settings) {
   };
 }
 
-std::vector<Setting> SettingTable(MapSettings* settings) {
-  constexpr std::string_view kGroup = "Maps";
-  return {
-      {"save_map", kGroup, "folder to save the map to; empty: it is not saved",
-       Text(&settings->save_map)},
-      {"load_map", kGroup,
-       "map folder to continue with, or several, separated by commas, to join",
-       Text(&settings->load_map)},
-      {"localise_only", kGroup,
-       "track within the loaded map without changing it",
-       &settings->localise_only},
-  };
-}
-
 }  // namespace rgbd_pose

@@ -3,7 +3,6 @@
 #include <deque>
 #include <future>
 #include <map>
-#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,16 +27,6 @@ struct SlamSettings {
 
 // The settings by name, bound to `settings`, which must outlive the table.
 std::vector<Setting> SettingTable(SlamSettings* settings);
-
-// Map files, as users specify them; empty: none.
-struct MapSettings {
-  std::string save_map;        // folder
-  std::string load_map;        // comma-separated folders
-  bool localise_only = false;  // do not change the loaded map
-};
-
-// The same for map files.
-std::vector<Setting> SettingTable(MapSettings* settings);
 
 // The result for one frame. map_from_odom * odom_from_cam is its pose in the
 // map.

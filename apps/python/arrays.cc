@@ -5,7 +5,6 @@
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 #include "core/util/input_error.h"
 
@@ -26,17 +25,6 @@ std::string NumbersInWords(const std::vector<py::ssize_t>& shape) {
   return "(" + text + (shape.size() == 1 ? ",)" : ")");
 }
 
-void RequireShape(const py::array& array, const std::string& name,
-                  const std::vector<py::ssize_t>& shape) {
-  bool fits = array.ndim() == static_cast<py::ssize_t>(shape.size());
-  for (size_t i = 0; fits && i < shape.size(); ++i) {
-    fits = shape[i] == NumberArray::kAny || array.shape(i) == shape[i];
-  }
-  if (fits) return;
-  throw InputError(name + ": has shape " + ShapeInWords(array) + "; it needs " +
-                   NumbersInWords(shape));
-}
-
 constexpr double kMaxQuaternionError = 0.01;  // as for TUM text
 
 Rigid3d PoseFromRow(const NumberArray& row, size_t i,
@@ -52,12 +40,29 @@ Rigid3d PoseFromRow(const NumberArray& row, size_t i,
   return Rigid3d(rotation, translation);
 }
 
-Rigid3d PoseFromMatrix(const NumberArray& poses, size_t i,
-                       const std::string& where) {
-  return RigidFromMatrix(Eigen::Matrix4d::NullaryExpr([&](int row, int column) {
-                           return poses(i, row, column);
-                         }),
-                         where);
+// `element` gives the numbers of a matrix by row and column.
+template <typename Element>
+Rigid3d PoseFromMatrix(const Element& element, const std::string& where) {
+  const Eigen::Matrix4d matrix = Eigen::Matrix4d::NullaryExpr(element);
+  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
+  const Eigen::Matrix3d error = R * R.transpose() - Eigen::Matrix3d::Identity();
+  const bool is_rigid = matrix.allFinite() &&
+                        error.cwiseAbs().maxCoeff() <= kMaxRotationError &&
+                        R.determinant() > 0.0 &&
+                        matrix.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
+  if (!is_rigid) {
+    throw InputError(where +
+                     ": is not a rigid motion; it needs a rotation matrix, a "
+                     "translation (m) and a last row 0 0 0 1");
+  }
+  return Rigid3d(Eigen::Quaterniond(R), matrix.topRightCorner<3, 1>());
+}
+
+RowMajorMatrix MatrixFromRigid(const Rigid3d& motion) {
+  RowMajorMatrix matrix = RowMajorMatrix::Identity(4, 4);
+  matrix.topLeftCorner<3, 3>() = motion.rotation.toRotationMatrix();
+  matrix.topRightCorner<3, 1>() = motion.translation;
+  return matrix;
 }
 
 Trajectory FromArrays(const py::object& stamps, const py::object& poses,
@@ -83,8 +88,9 @@ Trajectory FromArrays(const py::object& stamps, const py::object& poses,
                        "by time and remove duplicates");
     }
     const std::string where = name + "[1]" + index;
+    const auto element = [&](int j, int k) { return numbers(i, j, k); };
     trajectory.push_back({times(i), are_matrices
-                                        ? PoseFromMatrix(numbers, i, where)
+                                        ? PoseFromMatrix(element, where)
                                         : PoseFromRow(numbers, i, where)});
   }
   return trajectory;
@@ -101,7 +107,16 @@ NumberArray::NumberArray(const py::object& object, const std::string& name,
                      py::str(array_.dtype()).cast<std::string>() +
                      "; it needs real numbers, such as float64");
   }
-  RequireShape(array_, name, shape);
+  const bool fits =
+      std::equal(shape.begin(), shape.end(), array_.shape(),
+                 array_.shape() + array_.ndim(),
+                 [](py::ssize_t needed, py::ssize_t given) {
+                   return needed == NumberArray::kAny || needed == given;
+                 });
+  if (!fits) {
+    throw InputError(name + ": has shape " + ShapeInWords(array_) +
+                     "; it needs " + NumbersInWords(shape));
+  }
   is_float32_ = py::isinstance<py::array_t<float>>(array_);
   if (!is_float32_ && !py::isinstance<py::array_t<double>>(array_)) {
     array_ = py::array_t<double, py::array::forcecast>::ensure(array_);
@@ -121,34 +136,9 @@ std::string ShapeInWords(const py::array& array) {
   return NumbersInWords({array.shape(), array.shape() + array.ndim()});
 }
 
-Rigid3d RigidFromMatrix(const Eigen::Matrix4d& matrix,
-                        const std::string& where) {
-  const Eigen::Matrix3d R = matrix.topLeftCorner<3, 3>();
-  const Eigen::Matrix3d error = R * R.transpose() - Eigen::Matrix3d::Identity();
-  const bool is_rigid = matrix.allFinite() &&
-                        error.cwiseAbs().maxCoeff() <= kMaxRotationError &&
-                        R.determinant() > 0.0 &&
-                        matrix.row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
-  if (!is_rigid) {
-    throw InputError(where +
-                     ": is not a rigid motion; it needs a rotation matrix, a "
-                     "translation (m) and a last row 0 0 0 1");
-  }
-  return Rigid3d(Eigen::Quaterniond(R), matrix.topRightCorner<3, 1>());
-}
-
 Rigid3d RigidFromArray(const py::object& object, const std::string& name) {
   const NumberArray numbers(object, name, {4, 4});
-  return RigidFromMatrix(
-      Eigen::Matrix4d::NullaryExpr([&](int i, int j) { return numbers(i, j); }),
-      name);
-}
-
-Eigen::Matrix4d MatrixFromRigid(const Rigid3d& motion) {
-  Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
-  matrix.topLeftCorner<3, 3>() = motion.rotation.toRotationMatrix();
-  matrix.topRightCorner<3, 1>() = motion.translation;
-  return matrix;
+  return PoseFromMatrix([&](int i, int j) { return numbers(i, j); }, name);
 }
 
 py::array ReadOnly(py::array array) {
@@ -156,17 +146,13 @@ py::array ReadOnly(py::array array) {
   return array;
 }
 
-py::array ArrayFromMatrix(const Eigen::MatrixXd& matrix) {
-  py::array_t<double> array({matrix.rows(), matrix.cols()});
-  auto to = array.mutable_unchecked<2>();
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    for (Eigen::Index j = 0; j < matrix.cols(); ++j) to(i, j) = matrix(i, j);
-  }
-  return ReadOnly(std::move(array));
+py::array ArrayFromMatrix(const RowMajorMatrix& matrix) {
+  return ReadOnly(
+      py::array_t<double>({matrix.rows(), matrix.cols()}, matrix.data()));
 }
 
-bool IsPath(const py::object& object) {
-  return py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__");
+py::array ToPython(const Rigid3d& motion) {
+  return ArrayFromMatrix(MatrixFromRigid(motion));
 }
 
 std::string PathFrom(const py::object& path) {
@@ -174,7 +160,9 @@ std::string PathFrom(const py::object& path) {
 }
 
 Trajectory TrajectoryFrom(const py::object& object, const std::string& name) {
-  if (IsPath(object)) return ReadTrajectory(PathFrom(object));
+  if (py::isinstance<py::str>(object) || py::hasattr(object, "__fspath__")) {
+    return ReadTrajectory(PathFrom(object));
+  }
   if (!py::isinstance<py::sequence>(object) || py::len(object) != 2) {
     throw InputError(name +
                      ": must be the path of a trajectory or a pair of time "
@@ -191,9 +179,7 @@ py::tuple ArraysFromTrajectory(const Trajectory& trajectory) {
   double* to = poses.mutable_data();
   for (py::ssize_t i = 0; i < size; ++i, to += 16) {
     stamps.mutable_at(i) = trajectory[i].timestamp;
-    const Eigen::Matrix<double, 4, 4, Eigen::RowMajor> matrix =
-        MatrixFromRigid(trajectory[i].world_from_cam);
-    std::copy_n(matrix.data(), 16, to);
+    std::copy_n(MatrixFromRigid(trajectory[i].world_from_cam).data(), 16, to);
   }
   return py::make_tuple(ReadOnly(stamps), ReadOnly(poses));
 }

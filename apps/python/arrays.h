@@ -60,53 +60,64 @@ pybind11::array ToArray(const pybind11::object& object,
 // The shape of an array as Python prints it: "(3, 4)".
 std::string ShapeInWords(const pybind11::array& array);
 
-// The rigid motion of a 4 x 4 matrix. Throws InputError if it is invalid.
-Rigid3d RigidFromMatrix(const Eigen::Matrix4d& matrix,
-                        const std::string& where);
-
-// The same for a 4 x 4 array.
+// The rigid motion of a 4 x 4 array. Throws InputError if it is invalid.
 Rigid3d RigidFromArray(const pybind11::object& object, const std::string& name);
 
-Eigen::Matrix4d MatrixFromRigid(const Rigid3d& motion);
+// A matrix as it lies in arrays: row by row.
+using RowMajorMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 // Makes an array read-only.
 pybind11::array ReadOnly(pybind11::array array);
 
-// A read-only copy of a small matrix, row by row.
-pybind11::array ArrayFromMatrix(const Eigen::MatrixXd& matrix);
+// A read-only copy of a small matrix.
+pybind11::array ArrayFromMatrix(const RowMajorMatrix& matrix);
 
 // Converts a value to Python: motions and matrices to arrays, enums to words,
 // everything else as pybind11 does.
-inline pybind11::array ToPython(const Rigid3d& motion) {
-  return ArrayFromMatrix(MatrixFromRigid(motion));
-}
+pybind11::array ToPython(const Rigid3d& motion);
 template <typename T>
-auto ToPython(const T& value) {
+decltype(auto) ToPython(const T& value) {
   if constexpr (std::is_enum_v<T>) {
     return ToString(value);
   } else if constexpr (std::is_base_of_v<Eigen::MatrixBase<T>, T>) {
     return ArrayFromMatrix(value);
   } else {
-    return value;
+    return value;  // a reference
   }
 }
 
-// A getter for a data member.
-template <typename Self, typename T>
-auto Get(T Self::*member) {
-  return [member](const Self& self) { return ToPython(self.*member); };
+// A getter for a list of numbers: a read-only array without a copy, which keeps
+// `self` alive.
+template <typename Class, auto kMember>
+pybind11::array ViewOf(const pybind11::object& self) {
+  const auto& values = self.cast<const Class&>().*kMember;
+  using T = typename std::decay_t<decltype(values)>::value_type;
+  return ReadOnly(pybind11::array(pybind11::dtype::of<T>(), {values.size()}, {},
+                                  values.data(), self));
 }
 
-// A read-only array on a member of `owner`, no copy. Keeps `owner` alive.
-template <typename T>
-pybind11::array ViewOf(const std::vector<T>& values, pybind11::handle owner) {
-  return ReadOnly(pybind11::array(pybind11::dtype::of<T>(), {values.size()}, {},
-                                  values.data(), owner));
+// Returns a function that defines a read-only property of a Python class:
+//   property(name, what, help)
+// `what` is a getter, or a data member for ToPython.
+template <typename Class>
+auto PropertiesOf(Class* type) {
+  return [type](const char* name, const auto& what, const char* help) {
+    using What = std::decay_t<decltype(what)>;
+    if constexpr (std::is_member_object_pointer_v<What>) {
+      using Self = typename Class::type;
+      const auto get = [what](const Self& self) -> decltype(auto) {
+        return ToPython(self.*what);
+      };
+      type->def_property_readonly(name, get, help);
+    } else {
+      type->def_property_readonly(name, what, help);
+    }
+  };
 }
 
 // A path from a string or a path-like object.
 std::string PathFrom(const pybind11::object& path);
-bool IsPath(const pybind11::object& object);
 
 // A trajectory from the path of a TUM text file, or from a pair of timestamps
 // (N,) and poses (N, 7) tx ty tz qx qy qz qw or (N, 4, 4). Throws InputError

@@ -3,8 +3,6 @@
 
 #include <map>
 #include <string>
-#include <utility>
-#include <vector>
 
 #include "apps/calibration/calibration_run.h"
 #include "apps/python/arrays.h"
@@ -21,10 +19,6 @@
 namespace py = pybind11;
 
 namespace rgbd_pose {
-static void EachField(PickledBytes* bytes, CalibratedParameter& parameter) {
-  (*bytes)(parameter);
-}
-
 static void EachField(PickledBytes* bytes, HeldOutResidual& residual) {
   (*bytes)(residual.u, residual.v, residual.before, residual.after);
 }
@@ -39,23 +33,21 @@ static void EachField(PickledBytes* bytes, DepthNoiseFit& noise) {
 namespace {
 
 // A result, and the file whose layout the new camera file has.
-struct Calibration {
-  CalibrationResult result;
+struct Calibration : CalibrationResult {
   std::string like;
 };
 
-void EachField(PickledBytes* bytes, Calibration& calibration) {
-  CalibrationResult& r = calibration.result;
-  (*bytes)(calibration.like, r.parameters, r.is_accepted, r.reason, r.camera,
-           r.found, r.keyframes, r.pairs, r.held_out_pairs, r.landmarks,
-           r.views, r.cost_before, r.cost_after, r.gain_sigmas, r.pixel_before,
+void EachField(PickledBytes* bytes, Calibration& r) {
+  (*bytes)(r.like, r.parameters, r.is_accepted, r.reason, r.camera, r.found,
+           r.keyframes, r.pairs, r.held_out_pairs, r.landmarks, r.views,
+           r.cost_before, r.cost_after, r.gain_sigmas, r.pixel_before,
            r.pixel_after, r.depth_before, r.depth_after, r.residuals, r.noise,
            r.truth_before, r.truth_after, r.halves, r.halves_spread,
            r.displacement_px, r.passes, r.scale_from);
 }
 
 // Called after each frame without the GIL. Ctrl-C interrupts a calibration.
-void ThrowIfInterrupted() {
+void ThrowIfInterrupted(int /*pass*/, int /*done*/, int /*all*/) {
   const py::gil_scoped_acquire gil;
   if (PyErr_CheckSignals() != 0) throw py::error_already_set();
 }
@@ -84,8 +76,7 @@ Calibration CalibrateFile(const py::object& path, const py::object& camera,
   settings.max_views = max_views;
   const ReleasedGil no_gil;
   return {CalibrateRecording(sequence, CalibrationOdometry(), CalibrationSlam(),
-                             settings, NumThreads(threads),
-                             [](int, int, int) { ThrowIfInterrupted(); })
+                             settings, NumThreads(threads), ThrowIfInterrupted)
               .result,
           sequence.camera};
 }
@@ -93,84 +84,78 @@ Calibration CalibrateFile(const py::object& path, const py::object& camera,
 std::map<std::string, CalibratedParameter> Parameters(const Calibration& self) {
   std::map<std::string, CalibratedParameter> all;
   for (int k = 0; k < kCalibrationSize; ++k) {
-    all[kCalibrationParameters[k].name] = self.result.parameters[k];
+    all[kCalibrationParameters[k].name] = self.parameters[k];
   }
   return all;
 }
 
-// A getter for a member of the result.
-template <auto kMember>
-auto Found(const Calibration& self) {
-  return self.result.*kMember;
+void BindCalibratedParameter(py::module_* module) {
+  py::class_<CalibratedParameter> parameter(
+      *module, "CalibratedParameter",
+      "The result for one parameter of a camera.");
+  const auto property = PropertiesOf(&parameter);
+  property("status", &CalibratedParameter::status,
+           "fixed, not determined or determined");
+  property("before", &CalibratedParameter::before, "value of the first camera");
+  property("found", &CalibratedParameter::found,
+           "value estimated from the recording");
+  property("sigma", &CalibratedParameter::sigma,
+           "standard deviation of the estimate");
+  parameter.def(Pickled<CalibratedParameter>());
 }
 
 void BindResult(py::module_* module) {
-  py::class_<CalibratedParameter>(*module, "CalibratedParameter",
-                                  "The result for one parameter of a camera.")
-      .def_property_readonly(
-          "status",
-          [](const CalibratedParameter& self) { return ToString(self.status); },
-          "fixed, not determined or determined")
-      .def_readonly("before", &CalibratedParameter::before,
-                    "value of the first camera")
-      .def_readonly("found", &CalibratedParameter::found,
-                    "value estimated from the recording")
-      .def_readonly("sigma", &CalibratedParameter::sigma,
-                    "standard deviation of the estimate")
-      .def(Pickled<CalibratedParameter>());
-  py::class_<Calibration>(*module, "Calibration", "The result of calibrate().")
-      .def_property_readonly(
-          "accepted", &Found<&CalibrationResult::is_accepted>,
-          "whether the camera found is better than the first one")
-      .def_property_readonly("reason", &Found<&CalibrationResult::reason>,
-                             "why it is not; empty if it is")
-      .def_property_readonly(
-          "camera", &Found<&CalibrationResult::camera>,
-          "the camera to use: the camera found, or the first one if not "
-          "accepted")
-      .def_property_readonly("parameters", &Parameters,
-                             "CalibratedParameter by name, such as fx")
-      .def_property_readonly(
-          "depth_noise",
-          [](const Calibration& self) -> py::object {
-            if (!self.result.noise.has_value()) return py::none();
-            const DepthNoiseModel& model = self.result.noise->model;
-            return py::make_tuple(model.constant, model.quadratic);
-          },
-          "(a, b) of sigma(z) = a + b z^2, m; None: too few depths")
-      .def_property_readonly(
-          "summary",
-          [](const Calibration& self) {
-            return FormatCalibrationSummary(self.result);
-          },
-          "the result as text, as rgbd_calibrate prints it")
-      .def(
-          "save_camera",
-          [](const Calibration& self, const py::object& path) {
-            WriteFileAtomically(
-                PathFrom(path),
-                FormatCameraFile(self.result.camera, self.like));
-          },
-          "Writes the camera to use, in the layout of the first one's file.",
-          py::arg("path"))
-      .def(
-          "save_depth_noise",
-          [](const Calibration& self, const py::object& path) {
-            if (!self.result.noise.has_value()) {
-              throw InputError("too few depths to estimate the depth noise");
-            }
-            WriteFileAtomically(PathFrom(path),
-                                FormatDepthNoiseFile(self.result.noise->model));
-          },
-          "Writes a file for the argument depth_noise. Raises InputError if "
-          "depth_noise is\nNone.",
-          py::arg("path"))
-      .def(Pickled<Calibration>());
+  py::class_<Calibration> calibration(*module, "Calibration",
+                                      "The result of calibrate().");
+  const auto property = PropertiesOf(&calibration);
+  property("accepted", &CalibrationResult::is_accepted,
+           "whether the camera found is better than the first one");
+  property("reason", &CalibrationResult::reason,
+           "why it is not; empty if it is");
+  property(
+      "camera", &CalibrationResult::camera,
+      "the camera to use: the camera found, or the first one if not accepted");
+  property("parameters", &Parameters,
+           "CalibratedParameter by name, such as fx");
+  property(
+      "depth_noise",
+      [](const Calibration& self) -> py::object {
+        if (!self.noise.has_value()) return py::none();
+        const DepthNoiseModel& model = self.noise->model;
+        return py::make_tuple(model.constant, model.quadratic);
+      },
+      "(a, b) of sigma(z) = a + b z^2, m; None: too few depths");
+  property(
+      "summary",
+      [](const Calibration& self) { return FormatCalibrationSummary(self); },
+      "the result as text, as rgbd_calibrate prints it");
+  calibration.def(
+      "save_camera",
+      [](const Calibration& self, const py::object& path) {
+        WriteFileAtomically(PathFrom(path),
+                            FormatCameraFile(self.camera, self.like));
+      },
+      "Writes the camera to use, in the layout of the first one's file.",
+      py::arg("path"));
+  calibration.def(
+      "save_depth_noise",
+      [](const Calibration& self, const py::object& path) {
+        if (!self.noise.has_value()) {
+          throw InputError("too few depths to estimate the depth noise");
+        }
+        WriteFileAtomically(PathFrom(path),
+                            FormatDepthNoiseFile(self.noise->model));
+      },
+      "Writes a file for the argument depth_noise. Raises InputError if "
+      "depth_noise is\nNone.",
+      py::arg("path"));
+  calibration.def(Pickled<Calibration>());
 }
 
 }  // namespace
 
 void BindCalibration(py::module_* module) {
+  BindCalibratedParameter(module);
   BindResult(module);
   module->def("calibrate", &CalibrateFile, R"(
 Calibrates a camera from its own recording, as rgbd_calibrate does: lens, depth,

@@ -20,8 +20,7 @@ namespace rgbd_pose {
 namespace {
 
 RgbdCamera Checked(const RgbdCamera& camera) {
-  const std::string problem = camera.camera.Check();
-  if (!problem.empty()) throw InputError("Camera: " + problem);
+  RequireSound(camera.camera.Check(), "Camera: ");
   if (!std::isfinite(camera.depth_scale) || camera.depth_scale <= 0.0) {
     throw InputError("Camera: the depth scale must be a positive number");
   }
@@ -77,13 +76,10 @@ RgbdCamera LoadCamera(const py::object& path_or_preset,
   return Checked(camera);
 }
 
-Eigen::Matrix3d Intrinsics(const Camera& camera) {
-  Eigen::Matrix3d matrix = Eigen::Matrix3d::Identity();
-  matrix(0, 0) = camera.fx;
-  matrix(1, 1) = camera.fy;
-  matrix(0, 2) = camera.cx;
-  matrix(1, 2) = camera.cy;
-  return matrix;
+py::array Intrinsics(const RgbdCamera& camera) {
+  const Camera& c = camera.camera;
+  return ArrayFromMatrix(
+      Eigen::Matrix3d{{c.fx, 0.0, c.cx}, {0.0, c.fy, c.cy}, {0.0, 0.0, 1.0}});
 }
 
 std::string CameraInWords(const RgbdCamera& camera) {
@@ -113,17 +109,6 @@ auto Of(const RgbdCamera& camera) {
   return camera.camera.*kMember;
 }
 
-void BindShutters(py::class_<RgbdCamera>* camera) {
-  for (const ShutterParameter& parameter : kShutterParameters) {
-    camera->def_property_readonly(
-        parameter.name,
-        [parameter](const RgbdCamera& self) {
-          return self.*parameter.image.*parameter.value;
-        },
-        "s");
-  }
-}
-
 }  // namespace
 
 void BindCamera(py::module_* module) {
@@ -136,53 +121,52 @@ of OpenCV: k1 k2 p1 p2, optionally k3 or k3 k4 k5 k6; with lens='equidistant'
 (fisheye) k1 k2 k3 k4. depth_scale is raw units of a depth image per metre.
 
 A row r of the colour image is exposed color_time_offset + color_readout *
-((r + 1/2) / height - 1/2) seconds after the image's time stamp; likewise for
-depth, after its own time stamp.)");
-  camera
-      .def(py::init(&MakeCamera), "Raises InputError for invalid values.",
-           py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
-           py::arg("width") = 640, py::arg("height") = 480,
-           py::arg_v("distortion", std::vector<double>(), "()"),
-           py::arg("depth_scale") = 5000.0, py::arg("color_time_offset") = 0.0,
-           py::arg("color_readout") = 0.0, py::arg("depth_time_offset") = 0.0,
-           py::arg("depth_readout") = 0.0, py::arg("lens") = "rational")
-      .def_static("load", &LoadCamera, R"(
+((r + 1/2) / height - 1/2) seconds after the image's time stamp; depth likewise,
+after its own.)");
+  camera.def(py::init(&MakeCamera), "Raises InputError for invalid values.",
+             py::arg("fx"), py::arg("fy"), py::arg("cx"), py::arg("cy"),
+             py::arg("width") = 640, py::arg("height") = 480,
+             py::arg_v("distortion", std::vector<double>(), "()"),
+             py::arg("depth_scale") = 5000.0,
+             py::arg("color_time_offset") = 0.0, py::arg("color_readout") = 0.0,
+             py::arg("depth_time_offset") = 0.0, py::arg("depth_readout") = 0.0,
+             py::arg("lens") = "rational");
+  camera.def_static("load", &LoadCamera, R"(
 A camera by the name of a preset (camera_presets()) or a YAML file in the layout
 of ORB-SLAM2/3, ROS camera_info or Kalibr. depth_scale, if given, replaces that
 of the preset or file.)",
-                  py::arg("path_or_preset"),
-                  py::arg("depth_scale") = py::none())
-      .def_property_readonly("fx", &Of<&Camera::fx>, "px")
-      .def_property_readonly("fy", &Of<&Camera::fy>, "px")
-      .def_property_readonly("cx", &Of<&Camera::cx>, "px")
-      .def_property_readonly("cy", &Of<&Camera::cy>, "px")
-      .def_property_readonly("width", &Of<&Camera::width>, "px")
-      .def_property_readonly("height", &Of<&Camera::height>, "px")
-      .def_property_readonly(
-          "distortion",
-          [](const RgbdCamera& self) {
-            return py::tuple(py::cast(self.camera.Distortion()));
-          },
-          "k1 k2 p1 p2 k3, and k4 k5 k6 if not 0; for a fisheye k1 k2 k3 k4")
-      .def_property_readonly(
-          "lens",
-          [](const RgbdCamera& self) {
-            return self.camera.lens_model == LensModel::kEquidistant
-                       ? "equidistant"
-                       : "rational";
-          },
-          "'rational' (includes plumb bob) or 'equidistant'")
-      .def_readonly("depth_scale", &RgbdCamera::depth_scale,
-                    "raw units of a depth image per metre")
-      .def_property_readonly(
-          "matrix",
-          [](const RgbdCamera& self) {
-            return ArrayFromMatrix(Intrinsics(self.camera));
-          },
-          "(3, 3) [fx 0 cx; 0 fy cy; 0 0 1], px")
-      .def("__repr__", &CameraInWords)
-      .def(Pickled<RgbdCamera>());
-  BindShutters(&camera);
+                    py::arg("path_or_preset"),
+                    py::arg("depth_scale") = py::none());
+  const auto property = PropertiesOf(&camera);
+  property("fx", &Of<&Camera::fx>, "px");
+  property("fy", &Of<&Camera::fy>, "px");
+  property("cx", &Of<&Camera::cx>, "px");
+  property("cy", &Of<&Camera::cy>, "px");
+  property("width", &Of<&Camera::width>, "px");
+  property("height", &Of<&Camera::height>, "px");
+  property(
+      "distortion",
+      [](const RgbdCamera& self) {
+        return py::tuple(py::cast(self.camera.Distortion()));
+      },
+      "k1 k2 p1 p2 k3, and k4 k5 k6 if not 0; for a fisheye k1 k2 k3 k4");
+  property(
+      "lens",
+      [](const RgbdCamera& self) {
+        return self.camera.lens_model == LensModel::kEquidistant ? "equidistant"
+                                                                 : "rational";
+      },
+      "'rational' (includes plumb bob) or 'equidistant'");
+  property("depth_scale", &RgbdCamera::depth_scale,
+           "raw units of a depth image per metre");
+  property("matrix", &Intrinsics, "(3, 3) [fx 0 cx; 0 fy cy; 0 0 1], px");
+  camera.def("__repr__", &CameraInWords).def(Pickled<RgbdCamera>());
+  for (const ShutterParameter& parameter : kShutterParameters) {
+    const auto get = [parameter](const RgbdCamera& self) {
+      return self.*parameter.image.*parameter.value;
+    };
+    property(parameter.name, get, "s");
+  }
 }
 
 }  // namespace rgbd_pose

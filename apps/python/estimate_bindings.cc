@@ -1,7 +1,7 @@
 #include <pybind11/pybind11.h>
 
-#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -13,6 +13,7 @@
 #include "apps/python/estimate_result.h"
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
+#include "apps/shell/program.h"
 #include "core/estimation/correspondences.h"
 #include "core/estimation/estimator.h"
 #include "core/geometry/camera.h"
@@ -25,34 +26,21 @@ namespace py = pybind11;
 namespace rgbd_pose {
 namespace {
 
-// More threads than any machine could use here.
-constexpr int kMaxThreads = 256;
-
-// The start of the solver: a motion, or a method to find one in the matches.
-struct Start {
-  Rigid3d cur_from_prev;
-  const InitialGuess* guess = nullptr;
-
-  explicit Start(const py::object& initial_guess) {
-    if (!py::isinstance<py::str>(initial_guess)) {
-      cur_from_prev = RigidFromArray(initial_guess, "initial_guess");
-      return;
-    }
-    const auto name = initial_guess.cast<std::string>();
-    guess = FindInitialGuess(name);
-    if (guess != nullptr) return;
-    std::vector<std::string> names;
-    for (const InitialGuess& row : InitialGuesses()) {
-      names.emplace_back(row.name);
-    }
-    throw UnknownName("initial guess", name, names);
+// How the solver finds its start in the matches; a given motion is the start
+// whatever they are.
+std::function<Rigid3d(const Correspondences& matches)> StartFrom(
+    const py::object& initial_guess) {
+  if (!py::isinstance<py::str>(initial_guess)) {
+    const Rigid3d start = RigidFromArray(initial_guess, "initial_guess");
+    return [start](const Correspondences&) { return start; };
   }
-
-  Rigid3d Find(const Correspondences& matches) const {
-    if (guess == nullptr) return cur_from_prev;
-    return guess->find(matches).value_or(Rigid3d());
-  }
-};
+  const auto find = RowOf(InitialGuesses(), "initial guess",
+                          initial_guess.cast<std::string>())
+                        .find;
+  return [find](const Correspondences& matches) {
+    return find(matches).value_or(Rigid3d());
+  };
+}
 
 std::optional<MotionPrior> PriorFrom(const py::object& prior) {
   if (prior.is_none()) return std::nullopt;
@@ -75,13 +63,11 @@ std::optional<MotionPrior> PriorFrom(const py::object& prior) {
 
 // The rows that concern only matches.
 std::vector<Setting> EstimateTable(OdometrySettings* settings) {
-  std::vector<Setting> table = SettingTable(settings);
-  table.erase(std::remove_if(table.begin(), table.end(),
-                             [](const Setting& setting) {
-                               return setting.group != kEstimationGroup;
-                             }),
-              table.end());
-  return table;
+  std::vector<Setting> rows;
+  for (const Setting& setting : SettingTable(settings)) {
+    if (setting.group == kEstimationGroup) rows.push_back(setting);
+  }
+  return rows;
 }
 
 void CheckSizes(const NumberArray& prev, const std::string& prev_name,
@@ -98,7 +84,7 @@ Eigen::Vector3d Row(const NumberArray& array, size_t i) {
 }
 
 // Moves the values of matches to their input rows; zero elsewhere.
-template <typename To, typename From>
+template <typename From, typename To = From>
 std::vector<To> AtRows(const std::vector<From>& values,
                        const std::vector<size_t>& rows, size_t size) {
   std::vector<To> result(size);
@@ -108,21 +94,14 @@ std::vector<To> AtRows(const std::vector<From>& values,
 
 // From x, y, z in camera axes (m). z = 0 gives non-finite values and no match.
 Observation ObservePoint(const Camera& camera, const Eigen::Vector3d& point) {
-  Observation o;
-  o.u = camera.fx * point.x() / point.z() + camera.cx;
-  o.v = camera.fy * point.y() / point.z() + camera.cy;
-  o.depth = point.z();
-  return o;
+  return {camera.fx * point.x() / point.z() + camera.cx,
+          camera.fy * point.y() / point.z() + camera.cy, point.z()};
 }
 
 // From an image pixel u, v (px) and a depth (m), 0 if missing.
 Observation ObservePixel(const Camera& camera, const Eigen::Vector3d& pixel) {
   const Eigen::Vector2d ideal = camera.Undistort(pixel.head<2>());
-  Observation o;
-  o.u = ideal.x();
-  o.v = ideal.y();
-  o.depth = pixel.z();
-  return o;
+  return {ideal.x(), ideal.y(), pixel.z()};
 }
 
 // Makes an observation from a row of three numbers.
@@ -134,11 +113,11 @@ struct RowMatches {
   std::vector<size_t> rows;
 };
 
-// Makes matches from the valid rows. `normals_cur` may be null.
+// Makes matches from the valid rows.
 RowMatches MakeMatches(const Camera& camera, ToObservation to_observation,
                        const NumberArray& prev, const NumberArray& cur,
-                       const NumberArray* normals_cur, double sigma_px,
-                       const DepthNoiseModel& depth_noise) {
+                       const std::optional<NumberArray>& normals_cur,
+                       double sigma_px, const DepthNoiseModel& depth_noise) {
   RowMatches result;
   result.matches = Correspondences(camera);
   result.matches.Reserve(prev.size());
@@ -151,7 +130,7 @@ RowMatches MakeMatches(const Camera& camera, ToObservation to_observation,
   };
   for (size_t i = 0; i < prev.size(); ++i) {
     Observation seen = observe(cur, i);
-    if (normals_cur != nullptr) seen.normal = Row(*normals_cur, i);
+    if (normals_cur.has_value()) seen.normal = Row(*normals_cur, i);
     if (result.matches.Add(observe(prev, i), seen)) result.rows.push_back(i);
   }
   return result;
@@ -160,19 +139,16 @@ RowMatches MakeMatches(const Camera& camera, ToObservation to_observation,
 // The result of an estimate from `matches`, for `size` input rows.
 EstimateResult MakeResult(MotionEstimate estimate, const RowMatches& matches,
                           size_t size) {
-  EstimateResult result;
   const std::vector<size_t>& rows = matches.rows;
-  result.num_rejected = matches.matches.rejected();
-  result.is_inlier = AtRows<uint8_t>(estimate.is_inlier, rows, size);
-  if (result.num_rejected > 0) {
-    estimate.weights = AtRows<double>(estimate.weights, rows, size);
-    estimate.residual_norms =
-        AtRows<double>(estimate.residual_norms, rows, size);
-    estimate.residual_degrees =
-        AtRows<int>(estimate.residual_degrees, rows, size);
+  std::vector<uint8_t> inliers =
+      AtRows<bool, uint8_t>(estimate.is_inlier, rows, size);
+  const size_t num_rejected = matches.matches.rejected();
+  if (num_rejected > 0) {
+    estimate.weights = AtRows(estimate.weights, rows, size);
+    estimate.residual_norms = AtRows(estimate.residual_norms, rows, size);
+    estimate.residual_degrees = AtRows(estimate.residual_degrees, rows, size);
   }
-  result.estimate = std::move(estimate);
-  return result;
+  return {std::move(estimate), std::move(inliers), num_rejected};
 }
 
 // Defines a function that takes matches as two arrays of rows.
@@ -199,7 +175,7 @@ void BindFunction(py::module_* module, const char* name,
         if (!std::isfinite(sigma_px) || sigma_px <= 0.0) {
           throw InputError("sigma_px must be a positive number of pixels");
         }
-        const Start start(initial_guess);
+        const auto find_start = StartFrom(initial_guess);
         const std::optional<MotionPrior> prior = PriorFrom(prior_object);
         OdometrySettings settings;
         SetFromKeywords(name, keywords, EstimateTable(&settings));
@@ -213,11 +189,10 @@ void BindFunction(py::module_* module, const char* name,
 
         const ReleasedGil no_gil;
         const RowMatches matches =
-            MakeMatches(seen_by, to_observation, prev, cur,
-                        normals.has_value() ? &*normals : nullptr, sigma_px,
+            MakeMatches(seen_by, to_observation, prev, cur, normals, sigma_px,
                         settings.features.depth_noise);
         return MakeResult(
-            estimator.Estimate(matches.matches, start.Find(matches.matches),
+            estimator.Estimate(matches.matches, find_start(matches.matches),
                                prior.has_value() ? &*prior : nullptr),
             matches, prev.size());
       };

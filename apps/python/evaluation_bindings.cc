@@ -1,7 +1,6 @@
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
 
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -56,15 +55,11 @@ EvaluationReport EvaluateObjects(const py::object& estimated,
 
 AteResult EvaluateAte(const py::object& estimated, const py::object& reference,
                       double max_time_difference) {
-  EvaluationOptions options;
-  options.max_time_difference = max_time_difference;
   // Not used here, but it must exceed the time difference.
-  options.rpe_delta_seconds = 2.0 * max_time_difference + 1.0;
-  const EvaluationReport report =
-      EvaluateObjects(estimated, reference, options);
-  AteResult result;
-  static_cast<ErrorStatistics&>(result) = report.ate;
-  result.reference_from_estimated = report.truth_from_estimate;
+  const double delta_seconds = 2.0 * max_time_difference + 1.0;
+  const EvaluationReport report = EvaluateObjects(
+      estimated, reference, {max_time_difference, delta_seconds});
+  AteResult result{{report.ate, {}}, {}, report.truth_from_estimate};
   for (const PoseError& pose : report.poses) {
     result.timestamps.push_back(pose.timestamp);
     result.values.push_back(pose.position);
@@ -74,15 +69,10 @@ AteResult EvaluateAte(const py::object& estimated, const py::object& reference,
 
 RpeResult EvaluateRpe(const py::object& estimated, const py::object& reference,
                       double delta_seconds, double max_time_difference) {
-  EvaluationOptions options;
-  options.max_time_difference = max_time_difference;
-  options.rpe_delta_seconds = delta_seconds;
-  const EvaluationReport report =
-      EvaluateObjects(estimated, reference, options);
-  RpeResult result;
-  static_cast<ErrorStatistics&>(result.translation) =
-      report.rpe_seconds.translation;
-  static_cast<ErrorStatistics&>(result.rotation) = report.rpe_seconds.rotation;
+  const EvaluationReport report = EvaluateObjects(
+      estimated, reference, {max_time_difference, delta_seconds});
+  const auto& [translation, rotation] = report.rpe_seconds;
+  RpeResult result{{}, {translation, {}}, {rotation, {}}};
   for (const PoseError& pose : report.poses) {
     if (!pose.rpe_translation.has_value()) continue;
     result.timestamps.push_back(pose.timestamp);
@@ -92,55 +82,57 @@ RpeResult EvaluateRpe(const py::object& estimated, const py::object& reference,
   return result;
 }
 
-template <auto kList, typename Result>
-py::array List(const py::object& self) {
-  return ViewOf(self.cast<const Result&>().*kList, self);
+void BindErrors(py::module_* module) {
+  py::class_<Errors> errors(*module, "Errors",
+                            "Errors (m or rad): statistics, which are 0 if "
+                            "there are no errors, and values.");
+  const auto property = PropertiesOf(&errors);
+  property("count", &Errors::count, "number of errors");
+  property("rmse", &Errors::rmse, "root mean square");
+  property("mean", &Errors::mean, "mean");
+  property("median", &Errors::median,
+           "median; for an even count the mean of the two middle ones");
+  property("max", &Errors::max, "maximum");
+  property("values", &ViewOf<Errors, &Errors::values>,
+           "(count,), in the order of time");
+  errors.def("__repr__", [](const Errors& self) {
+    return "Errors(rmse=" + std::to_string(self.rmse) +
+           ", count=" + std::to_string(self.count) + ")";
+  });
+  errors.def(Pickled<Errors>());
 }
 
-void BindResults(py::module_* module) {
-  py::class_<Errors>(*module, "Errors",
-                     "Errors (m or rad): statistics, which are 0 if there are "
-                     "no errors, and values.")
-      .def_readonly("count", &Errors::count, "number of errors")
-      .def_readonly("rmse", &Errors::rmse, "root mean square")
-      .def_readonly("mean", &Errors::mean, "mean")
-      .def_readonly("median", &Errors::median,
-                    "median; for an even count the mean of the two middle ones")
-      .def_readonly("max", &Errors::max, "maximum")
-      .def_property_readonly("values", &List<&Errors::values, Errors>,
-                             "(count,), in the order of time")
-      .def("__repr__",
-           [](const Errors& self) {
-             return "Errors(rmse=" + std::to_string(self.rmse) +
-                    ", count=" + std::to_string(self.count) + ")";
-           })
-      .def(Pickled<Errors>());
-  py::class_<AteResult, Errors>(
+void BindAteResult(py::module_* module) {
+  py::class_<AteResult, Errors> result(
       *module, "AteResult",
       "Absolute trajectory error: distances (m) of positions after the best "
-      "rigid\nalignment, without scale.")
-      .def_property_readonly("timestamps",
-                             &List<&AteResult::timestamps, AteResult>,
-                             "(count,), of the estimated poses, s")
-      .def_property_readonly("reference_from_estimated",
-                             Get(&AteResult::reference_from_estimated),
-                             "(4, 4), the rigid alignment")
-      .def(Pickled<AteResult>());
-  py::class_<RpeResult>(
+      "rigid\nalignment, without scale.");
+  const auto property = PropertiesOf(&result);
+  property("timestamps", &ViewOf<AteResult, &AteResult::timestamps>,
+           "(count,), of the estimated poses, s");
+  property("reference_from_estimated", &AteResult::reference_from_estimated,
+           "(4, 4), the rigid alignment");
+  result.def(Pickled<AteResult>());
+}
+
+void BindRpeResult(py::module_* module) {
+  py::class_<RpeResult> result(
       *module, "RpeResult",
-      "Relative pose errors of all motions over the interval.")
-      .def_readonly("translation", &RpeResult::translation, "Errors, m")
-      .def_readonly("rotation", &RpeResult::rotation, "Errors, rad")
-      .def_property_readonly("timestamps",
-                             &List<&RpeResult::timestamps, RpeResult>,
-                             "(count,), of the first pose of each interval, s")
-      .def(Pickled<RpeResult>());
+      "Relative pose errors of all motions over the interval.");
+  const auto property = PropertiesOf(&result);
+  property("translation", &RpeResult::translation, "Errors, m");
+  property("rotation", &RpeResult::rotation, "Errors, rad");
+  property("timestamps", &ViewOf<RpeResult, &RpeResult::timestamps>,
+           "(count,), of the first pose of each interval, s");
+  result.def(Pickled<RpeResult>());
 }
 
 }  // namespace
 
 void BindEvaluation(py::module_* module) {
-  BindResults(module);
+  BindErrors(module);
+  BindAteResult(module);
+  BindRpeResult(module);
   const double difference = EvaluationOptions().max_time_difference;
   module->def("evaluate_ate", &EvaluateAte, R"(
 Absolute trajectory error of an estimated trajectory.

@@ -2,35 +2,57 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "apps/pipeline/odometry_run.h"
 #include "apps/pipeline/settings.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
-#include "apps/python/frame_images.h"
 #include "apps/python/pickling.h"
-#include "apps/python/released_gil.h"
-#include "apps/python/setting_arguments.h"
-#include "apps/python/shared_slam.h"
+#include "apps/python/tracker_bindings.h"
 #include "core/evaluation/trajectory.h"
-#include "core/util/text_file.h"
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/tracking/odometry.h"
+#include "frontend/tracking/tracked_frame.h"
 
 namespace py = pybind11;
 
 namespace rgbd_pose {
 namespace {
 
-std::unique_ptr<SharedOdometry> MakeSharedOdometry(const RgbdCamera& camera,
-                                                   const std::string& frontend,
-                                                   const py::kwargs& keywords) {
-  OdometrySettings settings;
-  settings.frontend = frontend;
-  SetFromKeywords("Odometry", keywords, SettingTable(&settings));
-  return std::make_unique<SharedOdometry>(settings, camera);
-}
+// An odometry for several threads. Calls wait for each other and therefore must
+// not hold the GIL. Keeps the results of all frames.
+class SharedOdometry {
+ public:
+  SharedOdometry(const OdometrySettings& settings, const RgbdCamera& camera)
+      : camera_(camera), odometry_(MakeOdometry(settings, camera.camera)) {}
+
+  const RgbdCamera& camera() const { return camera_; }
+
+  // Tracks the next frame. If time does not increase (see StampFrame), throws
+  // InputError and changes nothing.
+  TrackedFrame Track(Frame frame, std::optional<double> timestamp,
+                     const Rigid3d* guess) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    StampFrame(timestamp, frames_.empty() ? nullptr : &frames_.back(), &frame);
+    frames_.push_back(odometry_.Track(frame, guess));
+    return frames_.back();
+  }
+
+  // The poses of the frames that were not lost.
+  Trajectory trajectory() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return TrackedTrajectory(frames_);
+  }
+
+ private:
+  const RgbdCamera camera_;
+  std::mutex mutex_;
+  Odometry odometry_;
+  std::vector<TrackedFrame> frames_;
+};
 
 std::string FrameInWords(const TrackedFrame& frame) {
   std::string text = "TrackedFrame(" + std::to_string(frame.index) + ": " +
@@ -40,95 +62,90 @@ std::string FrameInWords(const TrackedFrame& frame) {
          std::to_string(frame.matches) + " matches agree)";
 }
 
-void BindTrackedFrame(py::module_* module) {
-  py::class_<RelativePose>(
+void BindRelativePose(py::module_* module) {
+  py::class_<RelativePose> pose(
       *module, "RelativePose",
-      "A measured motion between two frames, by their index.")
-      .def_readonly("ref", &RelativePose::ref, "index of the reference")
-      .def_readonly("cur", &RelativePose::cur, "index of the frame")
-      .def_property_readonly(
-          "cur_from_ref", Get(&RelativePose::cur_from_ref),
-          "(4, 4): point_in_cur = cur_from_ref @ point_in_ref (m)")
-      .def_property_readonly("covariance", Get(&RelativePose::covariance),
-                             "(6, 6), as that of MotionEstimate")
-      .def(Pickled<RelativePose>());
-  py::class_<TrackedFrame>(*module, "TrackedFrame",
-                           "The tracking result of one frame.")
-      .def_readonly("index", &TrackedFrame::index, "index of the frame, from 0")
-      .def_readonly("timestamp", &TrackedFrame::timestamp, "s")
-      .def_property_readonly(
-          "status", Get(&TrackedFrame::status),
-          "'ok', 'degraded' (a pose, but from few or contradictory matches) "
-          "or\n'lost' (no pose was found: see on_lost for the one reported)")
-      .def_readonly("reason", &TrackedFrame::reason,
-                    "reason of the status; empty if ok")
-      .def_property_readonly(
-          "world_from_cam", Get(&TrackedFrame::world_from_cam),
-          "(4, 4): point_in_world = world_from_cam @ point_in_cam (m); the "
-          "world\nis the camera of the first frame")
-      .def_property_readonly(
-          "covariance",
-          [](const TrackedFrame& self) -> py::object {
-            if (self.edges.empty()) return py::none();
-            return ArrayFromMatrix(self.edges.front().covariance);
-          },
-          "(6, 6), of the motion since the reference frame: that of the first\n"
-          "edge; None if there is none")
-      .def_readonly(
-          "edges", &TrackedFrame::edges,
-          "list of RelativePose: the measured motions; the first gives the "
-          "pose. If the\nreference changes to an earlier frame, a second one "
-          "connects the frame to the\nprevious reference")
-      .def_readonly("segment", &TrackedFrame::segment,
-                    "relative poses are known only within a segment")
-      .def_readonly("reference", &TrackedFrame::reference,
-                    "index of its reference frame; -1: none")
-      .def_readonly("is_reference", &TrackedFrame::is_reference,
-                    "whether it became the reference of later frames")
-      .def_readonly("previous_is_reference",
-                    &TrackedFrame::previous_is_reference,
-                    "whether the previous frame became the reference for it")
-      .def_readonly("relocalised", &TrackedFrame::relocalised,
-                    "whether it was relocalised among earlier references")
-      .def_readonly("is_predicted", &TrackedFrame::is_predicted,
-                    "whether it is lost, but its pose follows motion_guess")
-      .def_property_readonly(
-          "tracking_source", Get(&TrackedFrame::source),
-          "source of its motion: 'features', 'direct' (pixels),\n"
-          "'features+direct', or '' if it has none")
-      .def_readonly("matches", &TrackedFrame::matches,
-                    "number of matches (features or pixels) with the reference")
-      .def_readonly("inliers", &TrackedFrame::inliers,
-                    "number of inliers among these")
-      .def_readonly("iterations", &TrackedFrame::iterations,
-                    "solver iterations")
-      .def_readonly("sigma", &TrackedFrame::sigma,
-                    "spread of the whitened residuals, ideally 1")
-      .def_readonly("track_ms", &TrackedFrame::track_ms,
-                    "total time of tracking, ms")
-      .def_readonly("match_ms", &TrackedFrame::match_ms,
-                    "part of track_ms: matching")
-      .def_readonly("solve_ms", &TrackedFrame::solve_ms,
-                    "part of track_ms: motion estimation")
-      .def_readonly("reference_ms", &TrackedFrame::reference_ms,
-                    "part of track_ms: features of a new reference")
-      .def_readonly("relocalise_ms", &TrackedFrame::relocalise_ms,
-                    "part of track_ms: relocalisation when lost")
-      .def("__repr__", &FrameInWords)
-      .def(Pickled<TrackedFrame>());
+      "A measured motion between two frames, by their index.");
+  const auto property = PropertiesOf(&pose);
+  property("ref", &RelativePose::ref, "index of the reference");
+  property("cur", &RelativePose::cur, "index of the frame");
+  property("cur_from_ref", &RelativePose::cur_from_ref,
+           "(4, 4): point_in_cur = cur_from_ref @ point_in_ref (m)");
+  property("covariance", &RelativePose::covariance,
+           "(6, 6), as that of MotionEstimate");
+  pose.def(Pickled<RelativePose>());
 }
 
-void BindSharedOdometry(py::module_* module) {
-  OdometrySettings settings;
-  const std::string doc = R"(
+void BindTrackedFrame(py::module_* module) {
+  py::class_<TrackedFrame> frame(*module, "TrackedFrame",
+                                 "The tracking result of one frame.");
+  const auto property = PropertiesOf(&frame);
+  property("index", &TrackedFrame::index, "index of the frame, from 0");
+  property("timestamp", &TrackedFrame::timestamp, "s");
+  property("status", &TrackedFrame::status,
+           "'ok', 'degraded' (a pose, but from few or contradictory matches) "
+           "or\n'lost' (no pose was found: see on_lost for the one reported)");
+  property("reason", &TrackedFrame::reason,
+           "reason of the status; empty if ok");
+  property("world_from_cam", &TrackedFrame::world_from_cam,
+           "(4, 4): point_in_world = world_from_cam @ point_in_cam (m); the "
+           "world\nis the camera of the first frame");
+  property(
+      "covariance",
+      [](const TrackedFrame& self) -> py::object {
+        if (self.edges.empty()) return py::none();
+        return ArrayFromMatrix(self.edges.front().covariance);
+      },
+      "(6, 6), of the motion since the reference frame: that of the first\n"
+      "edge; None if there is none");
+  property("edges", &TrackedFrame::edges,
+           "list of RelativePose: the measured motions; the first gives the "
+           "pose. If the\nreference changes to an earlier frame, a second one "
+           "connects the frame to the\nprevious reference");
+  property("segment", &TrackedFrame::segment,
+           "relative poses are known only within a segment");
+  property("reference", &TrackedFrame::reference,
+           "index of its reference frame; -1: none");
+  property("is_reference", &TrackedFrame::is_reference,
+           "whether it became the reference of later frames");
+  property("previous_is_reference", &TrackedFrame::previous_is_reference,
+           "whether the previous frame became the reference for it");
+  property("relocalised", &TrackedFrame::relocalised,
+           "whether it was relocalised among earlier references");
+  property("is_predicted", &TrackedFrame::is_predicted,
+           "whether it is lost, but its pose follows motion_guess");
+  property("tracking_source", &TrackedFrame::source,
+           "source of its motion: 'features', 'direct' "
+           "(pixels),\n'features+direct', or '' if it has none");
+  property("matches", &TrackedFrame::matches,
+           "number of matches (features or pixels) with the reference");
+  property("inliers", &TrackedFrame::inliers, "number of inliers among these");
+  property("iterations", &TrackedFrame::iterations, "solver iterations");
+  property("sigma", &TrackedFrame::sigma,
+           "spread of the whitened residuals, ideally 1");
+  property("track_ms", &TrackedFrame::track_ms, "total time of tracking, ms");
+  property("match_ms", &TrackedFrame::match_ms, "part of track_ms: matching");
+  property("solve_ms", &TrackedFrame::solve_ms,
+           "part of track_ms: motion estimation");
+  property("reference_ms", &TrackedFrame::reference_ms,
+           "part of track_ms: features of a new reference");
+  property("relocalise_ms", &TrackedFrame::relocalise_ms,
+           "part of track_ms: relocalisation when lost");
+  frame.def("__repr__", &FrameInWords).def(Pickled<TrackedFrame>());
+}
+
+}  // namespace
+
+void BindOdometry(py::module_* module) {
+  BindRelativePose(module);
+  BindTrackedFrame(module);
+  BindTracker<SharedOdometry, OdometrySettings>(
+      module, "Odometry", R"(
 Tracks a camera frame by frame against a reference frame. Calls of one object
 from several threads wait for each other; objects do not share anything.
 
-)" + HelpOf(SettingTable(&settings));
-  py::class_<SharedOdometry> odometry(*module, "Odometry", doc.c_str());
-  DefineInit(&odometry, &MakeSharedOdometry, "Odometry", settings.frontend,
-             SettingTable(&settings));
-  BindTracking(&odometry, R"(
+)",
+      R"(
 Tracks the next frame. The GIL is released.
 
 image: (height, width) uint8 grey, or (height, width, 3) uint8 in the order red,
@@ -142,17 +159,10 @@ motion_guess: (4, 4) cur_from_prev since the previous frame, from another
     sensor; tried first, but used only if the images agree with it.
 depth_delay: time from the image to the depth measurement, s.
 
-Both arrays are copied. A lost frame is reported by its status; images of a
-wrong shape or type raise InputError and are not counted as frames.)",
-               "(timestamps (N,), world_from_cam (N, 4, 4)) of frames not "
-               "lost");
-}
-
-}  // namespace
-
-void BindOdometry(py::module_* module) {
-  BindTrackedFrame(module);
-  BindSharedOdometry(module);
+Both images are copied: what becomes of the arrays afterwards does not matter.
+A frame that is lost is a status; images of a wrong shape or type raise
+InputError and count as no frame.)",
+      "(timestamps (N,), world_from_cam (N, 4, 4)) of frames not lost");
 }
 
 }  // namespace rgbd_pose

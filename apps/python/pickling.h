@@ -137,8 +137,8 @@ auto Pickled() {
   return py::pickle(
       [](const T& self) {
         PickledBytes bytes;
-        T copy = self;  // EachField takes a non-const object
-        EachField(&bytes, copy);
+        T copy = self;  // fields are not const
+        bytes(copy);
         return py::make_tuple(RGBD_POSE_VERSION, py::bytes(bytes.bytes()));
       },
       [](const py::tuple& state) {
@@ -148,7 +148,7 @@ auto Pickled() {
         }
         PickledBytes bytes(state[1].cast<std::string>());
         T object;
-        EachField(&bytes, object);
+        bytes(object);
         return object;
       });
 }

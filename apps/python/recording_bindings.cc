@@ -4,7 +4,9 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
+#include <functional>
 #include <memory>
+#include <opencv2/core.hpp>
 #include <optional>
 #include <string>
 #include <utility>
@@ -12,7 +14,6 @@
 
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
-#include "apps/python/frame_images.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
 #include "frontend/files/camera_file.h"
@@ -55,29 +56,20 @@ Frame ReadFrame(const TumDataset& dataset, int index) {
 // A recording of any kind. Each iteration reads it from the start.
 class Recording {
  public:
-  Recording(SourceOptions options, std::string source, const FrameRange& range)
-      : options_(std::move(options)),
-        name_(std::move(source)),
-        range_(range),
-        source_(Open()) {}
+  explicit Recording(std::function<std::shared_ptr<FrameSource>()> open)
+      : open_(std::move(open)), source_(open_()) {}
 
   const FrameSource& source() const { return *source_; }
 
   // The source at its start.
   std::shared_ptr<FrameSource> Begin() {
-    if (is_used_) source_ = Open();
+    if (is_used_) source_ = open_();
     is_used_ = true;
     return source_;
   }
 
  private:
-  std::shared_ptr<FrameSource> Open() const {
-    return PartOf(OpenSource(name_, options_), range_);
-  }
-
-  SourceOptions options_;
-  std::string name_;
-  FrameRange range_;
+  std::function<std::shared_ptr<FrameSource>()> open_;
   std::shared_ptr<FrameSource> source_;
   bool is_used_ = false;
 };
@@ -103,41 +95,40 @@ std::unique_ptr<Recording> OpenRecording(
   }
   options.depth_scale = depth_scale;
   options.topics = topics;
-  return std::make_unique<Recording>(std::move(options), source,
-                                     ParseFrameRange(frames));
+  const auto open = [options, source, range = ParseFrameRange(frames)] {
+    return PartOf(OpenSource(source, options), range);
+  };
+  return std::make_unique<Recording>(open);
 }
 
 Frame NextFrame(RecordingIterator* self) {
-  std::optional<Frame> frame;
-  {
-    const ReleasedGil no_gil;
-    const std::optional<RgbdFrame> next = self->source->Next();
-    if (next.has_value()) frame = next->read();
-  }
-  if (!frame.has_value()) throw py::stop_iteration();
-  return *frame;
+  const ReleasedGil no_gil;
+  const std::optional<RgbdFrame> next = self->source->Next();
+  if (!next.has_value()) throw py::stop_iteration();
+  return next->read();
+}
+
+// A getter for an image: a read-only array without a copy, which keeps the
+// frame alive.
+template <typename T, auto kImage>
+py::array ArrayOf(const py::object& frame) {
+  const cv::Mat& image = frame.cast<const Frame&>().*kImage;
+  return ReadOnly(py::array(py::dtype::of<T>(), {image.rows, image.cols},
+                            {image.step[0], image.step[1]}, image.data, frame));
 }
 
 void BindFrame(py::module_* module) {
-  py::class_<Frame>(*module, "Frame", "One RGB-D image pair of a sequence.")
-      .def_readonly("index", &Frame::index, "index in its dataset, from 0")
-      .def_readonly("timestamp", &Frame::timestamp, "of the colour image, s")
-      .def_readonly("depth_delay", &Frame::depth_delay,
-                    "of the depth image, s after the colour image")
-      .def_property_readonly(
-          "gray",
-          [](const py::object& self) {
-            return ArrayOfImage<uint8_t>(self.cast<const Frame&>().gray, self);
-          },
-          "(height, width) uint8")
-      .def_property_readonly(
-          "depth",
-          [](const py::object& self) {
-            return ArrayOfImage<uint16_t>(self.cast<const Frame&>().depth,
-                                          self);
-          },
-          "(height, width) uint16, raw units; 0 and 65535: none")
-      .def(Pickled<Frame>());
+  py::class_<Frame> frame(*module, "Frame",
+                          "One RGB-D image pair of a sequence.");
+  const auto property = PropertiesOf(&frame);
+  property("index", &Frame::index, "index in its dataset, from 0");
+  property("timestamp", &Frame::timestamp, "of the colour image, s");
+  property("depth_delay", &Frame::depth_delay,
+           "of the depth image, s after the colour image");
+  property("gray", &ArrayOf<uint8_t, &Frame::gray>, "(height, width) uint8");
+  property("depth", &ArrayOf<uint16_t, &Frame::depth>,
+           "(height, width) uint16, raw units; 0 and 65535: none");
+  frame.def(Pickled<Frame>());
 }
 
 void BindTumDataset(py::module_* module) {
@@ -168,9 +159,10 @@ void BindAnyRecording(py::module_* module) {
   py::class_<RecordingIterator>(*module, "_RecordingIterator")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &NextFrame);
-  py::class_<Recording>(*module, "Recording", R"(
-A recording of any supported kind: `for frame in recording` yields each Frame,
-decoded when it is accessed, with the GIL released. Each loop reads it again.
+  py::class_<Recording> recording(*module, "Recording", R"(
+A recording of any kind that the programs read: `for frame in recording` gives
+one Frame after the other, decoded as it is asked for with the GIL released.
+Each loop reads it again.
 
 path: a folder or a file.
 camera: a Camera, a preset or a calibration file; None: the camera stored in the
@@ -183,31 +175,33 @@ depth_camera: the camera of a Kalibr file that took the depth images, which are
 depth_scale: raw depth units per metre; 0: from the camera or the recording.
 topics: of a bag: colour, depth[, camera_info]; empty: chosen by their types.
 
-Raises InputError for unreadable input.)")
-      .def(py::init(&OpenRecording), "Raises InputError for unreadable input.",
-           py::arg("path"), py::arg("camera") = py::none(), py::kw_only(),
-           py::arg("source") = "auto", py::arg("frames") = "",
-           py::arg("associations") = py::none(), py::arg("depth_camera") = "",
-           py::arg("depth_scale") = 0.0, py::arg("topics") = py::tuple())
-      .def("__iter__",
-           [](Recording* self) { return RecordingIterator{self->Begin()}; })
-      .def_property_readonly(
-          "camera",
-          [](const Recording& self) { return self.source().camera(); },
-          "camera of all frames")
-      .def_property_readonly(
-          "timestamps",
-          [](const Recording& self) {
-            return py::array(py::cast(self.source().timestamps()));
-          },
-          "(N,) of all frames, s; empty if they are not known in advance")
-      .def(
-          "ground_truth",
-          [](const Recording& self) {
-            return ArraysFromTrajectory(self.source().ground_truth());
-          },
-          "(timestamps (N,), world_from_cam (N, 4, 4)) of the recording; for a "
-          "bag what has been read so far");
+InputError for what cannot be read.)");
+  recording.def(
+      py::init(&OpenRecording), "Raises InputError for unreadable input.",
+      py::arg("path"), py::arg("camera") = py::none(), py::kw_only(),
+      py::arg("source") = "auto", py::arg("frames") = "",
+      py::arg("associations") = py::none(), py::arg("depth_camera") = "",
+      py::arg("depth_scale") = 0.0, py::arg("topics") = py::tuple());
+  recording.def("__iter__", [](Recording* self) {
+    return RecordingIterator{self->Begin()};
+  });
+  const auto property = PropertiesOf(&recording);
+  property(
+      "camera", [](const Recording& self) { return self.source().camera(); },
+      "camera of all frames");
+  property(
+      "timestamps",
+      [](const Recording& self) {
+        return py::array(py::cast(self.source().timestamps()));
+      },
+      "(N,) of all frames, s; empty if they are not known in advance");
+  recording.def(
+      "ground_truth",
+      [](const Recording& self) {
+        return ArraysFromTrajectory(self.source().ground_truth());
+      },
+      "(timestamps (N,), world_from_cam (N, 4, 4)) of the recording; for a bag "
+      "what has been read so far");
 }
 
 }  // namespace

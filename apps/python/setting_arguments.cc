@@ -40,7 +40,7 @@ void Set(const Setting& setting, const py::handle& value) {
 
 }  // namespace
 
-void SetFromKeywords(const std::string& function, const py::kwargs& keywords,
+void SetFromKeywords(const std::string& function, const py::dict& keywords,
                      const std::vector<Setting>& table) {
   for (const auto& [key, value] : keywords) {
     const auto name = key.cast<std::string>();

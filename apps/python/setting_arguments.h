@@ -15,7 +15,7 @@ namespace rgbd_pose {
 // Sets the settings given as keywords. Raises TypeError for an unknown keyword
 // or a value of another type, and InputError for unknown names.
 void SetFromKeywords(const std::string& function,
-                     const pybind11::kwargs& keywords,
+                     const pybind11::dict& keywords,
                      const std::vector<Setting>& table);
 
 // The rows as the arguments of a signature: "cost: str = 'epipolar', ...".
@@ -28,19 +28,6 @@ std::string InitSignature(const std::string& class_name,
 
 // The rows as help text, one paragraph each.
 std::string HelpOf(const std::vector<Setting>& table);
-
-// Defines the constructor of such a class. `make` takes the camera, the
-// frontend and py::kwargs.
-template <typename Type, typename Make>
-void DefineInit(pybind11::class_<Type>* type, const Make& make,
-                const char* class_name, const std::string& frontend,
-                const std::vector<Setting>& table) {
-  namespace py = pybind11;
-  py::options options;
-  options.disable_function_signatures();
-  type->def(py::init(make), InitSignature(class_name, table).c_str(),
-            py::arg("camera").none(false), py::arg("frontend") = frontend);
-}
 
 // Defines a function whose last argument is py::kwargs. In its signature and
 // help, the rows of the table replace this argument.

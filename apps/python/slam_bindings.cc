@@ -2,7 +2,8 @@
 #include <pybind11/pybind11.h>
 #include <pybind11/stl.h>
 
-#include <memory>
+#include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -10,166 +11,246 @@
 #include "apps/pipeline/slam.h"
 #include "apps/python/arrays.h"
 #include "apps/python/bindings.h"
-#include "apps/python/frame_images.h"
 #include "apps/python/pickling.h"
 #include "apps/python/released_gil.h"
-#include "apps/python/setting_arguments.h"
-#include "apps/python/shared_slam.h"
-#include "core/util/text_file.h"
+#include "apps/python/tracker_bindings.h"
+#include "core/util/input_error.h"
+#include "frontend/map/map_folder.h"
 
 namespace py = pybind11;
 
 namespace rgbd_pose {
-static void EachField(PickledBytes* bytes, FrameInMap& f) {
-  SlamFrame& slam = f.slam;
-  (*bytes)(static_cast<TrackedFrame&>(f), slam.tracked, slam.odom_from_cam,
-           slam.map_from_odom, slam.segment, slam.pairs, slam.loops,
-           slam.joined, slam.error, slam.map_ms, slam.wait_ms);
+namespace {
+
+// A frame for Python: the result of the odometry and the pose in the map.
+struct FrameInMap : TrackedFrame, SlamFrame {
+  explicit FrameInMap(const SlamFrame& frame = {})
+      : TrackedFrame(frame.tracked), SlamFrame(frame) {}
+};
+
+void EachField(PickledBytes* bytes, FrameInMap& f) {
+  (*bytes)(static_cast<TrackedFrame&>(f), f.tracked, f.odom_from_cam,
+           f.map_from_odom, f.SlamFrame::segment, f.pairs, f.loops, f.joined,
+           f.error, f.map_ms, f.wait_ms);
 }
 
-static void EachField(PickledBytes* bytes, KeyframePose& k) {
+// A keyframe of the map without its images.
+struct KeyframePose {
+  int id = 0;
+  int segment = 0;
+  double timestamp = 0.0;
+  Rigid3d map_from_cam;
+  std::optional<MotionMatrix> covariance;  // empty if not computable
+};
+
+void EachField(PickledBytes* bytes, KeyframePose& k) {
   (*bytes)(k.id, k.segment, k.timestamp, k.map_from_cam, k.covariance);
 }
 
-namespace {
-
-struct Settings {
+struct SharedSlamSettings {
   OdometrySettings odometry;
   SlamSettings slam;
-
-  std::vector<Setting> Table() {
-    std::vector<Setting> table = SettingTable(&odometry);
-    for (const Setting& setting : SettingTable(&slam)) table.push_back(setting);
-    return table;
-  }
 };
 
-std::unique_ptr<SharedSlam> MakeSharedSlam(const RgbdCamera& camera,
-                                           const std::string& frontend,
-                                           const py::kwargs& keywords) {
-  Settings settings;
-  settings.odometry.frontend = frontend;
-  SetFromKeywords("Slam", keywords, settings.Table());
-  return std::make_unique<SharedSlam>(settings.odometry, settings.slam, camera);
+std::vector<Setting> SettingTable(SharedSlamSettings* settings) {
+  std::vector<Setting> table = SettingTable(&settings->odometry);
+  const std::vector<Setting> more = SettingTable(&settings->slam);
+  table.insert(table.end(), more.begin(), more.end());
+  return table;
 }
 
-// A getter for an additional member of SlamFrame.
-template <typename T>
-auto InMap(T SlamFrame::*member) {
-  return
-      [member](const FrameInMap& self) { return ToPython(self.slam.*member); };
-}
+// A Slam for several threads, like SharedOdometry.
+class SharedSlam {
+ public:
+  SharedSlam(const SharedSlamSettings& settings, const RgbdCamera& camera)
+      : camera_(camera),
+        slam_(settings.odometry, settings.slam, camera.camera) {}
 
-void BindFrames(py::module_* module) {
-  py::class_<FrameInMap, TrackedFrame>(
+  const RgbdCamera& camera() const { return camera_; }
+
+  // Throws InputError if called after the first frame, for a folder without a
+  // map and for a map of another camera.
+  void Load(const std::string& folder, bool localise_only) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (last_.has_value() || is_finished_) {
+      throw InputError("load_map: maps must be loaded before the first frame");
+    }
+    slam_.Load(LoadMap(folder), localise_only);
+    is_held_ = is_held_ || localise_only;
+  }
+
+  // If time does not increase (see StampFrame) or after Finish, throws
+  // InputError and changes nothing.
+  FrameInMap Track(Frame frame, std::optional<double> timestamp,
+                   const Rigid3d* guess) {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (is_finished_) {
+      throw InputError(
+          "track: finish() was called; save the map and load it in another "
+          "Slam to continue");
+    }
+    StampFrame(timestamp, last_.has_value() ? &*last_ : nullptr, &frame);
+    FrameInMap result(slam_.Track(frame, guess));
+    last_ = result;
+    return result;
+  }
+
+  // Waits for the mapping thread. A second call has no effect.
+  void Finish() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    if (!is_finished_) slam_.Finish();
+    is_finished_ = true;
+  }
+
+  // The current poses of the frames that were not lost.
+  Trajectory trajectory() {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return slam_.Path();
+  }
+
+  // The following functions throw InputError before Finish.
+  std::vector<KeyframePose> Keyframes() {
+    const auto lock = LockFinished("keyframes");
+    const std::vector<MotionMatrix> covariances = slam_.Covariances();
+    std::vector<KeyframePose> poses;
+    for (const Keyframe& keyframe : slam_.Map().keyframes) {
+      std::optional<MotionMatrix> covariance;
+      if (!covariances.empty()) covariance = covariances[poses.size()];
+      poses.push_back({keyframe.id, keyframe.segment, keyframe.images.timestamp,
+                       keyframe.world_from_cam, covariance});
+    }
+    return poses;
+  }
+
+  std::vector<RelativePose> Edges() {
+    const auto lock = LockFinished("edges");
+    return slam_.Map().edges;
+  }
+
+  void Save(const std::string& folder) {
+    const auto lock = LockFinished("save_map");
+    if (is_held_) {
+      throw InputError(
+          "save_map: localise_only does not change the map, so there is "
+          "nothing to save");
+    }
+    SaveMap(folder, slam_.Map());
+  }
+
+ private:
+  std::unique_lock<std::mutex> LockFinished(const std::string& what) {
+    std::unique_lock<std::mutex> lock(mutex_);
+    if (is_finished_) return lock;
+    throw InputError(what + ": finish() must be called first");
+  }
+
+  const RgbdCamera camera_;
+  std::mutex mutex_;
+  Slam slam_;
+  std::optional<TrackedFrame> last_;
+  bool is_finished_ = false;
+  bool is_held_ = false;
+};
+
+void BindSlamFrame(py::module_* module) {
+  py::class_<FrameInMap, TrackedFrame> frame(
       *module, "SlamFrame",
-      "The result of one frame: its tracking result and its pose in the map.")
-      .def_property_readonly(
-          "odom_from_cam", InMap(&SlamFrame::odom_from_cam),
-          "(4, 4), m: drifts, but never jumps when the map is corrected")
-      .def_property_readonly(
-          "map_from_odom", InMap(&SlamFrame::map_from_odom),
-          "(4, 4), m: the correction; changes at keyframes and loops")
-      .def_property_readonly(
-          "map_from_cam",
-          [](const FrameInMap& self) {
-            return ToPython(self.slam.map_from_cam());
-          },
-          "(4, 4), m: map_from_odom @ odom_from_cam, the current pose in the "
-          "map")
-      .def_property_readonly(
-          "segment", InMap(&SlamFrame::segment),
-          "of the map: relative poses are known only within a segment")
-      .def_property_readonly(
-          "pairs", InMap(&SlamFrame::pairs),
-          "keyframe pairs added to the map since the previous frame")
-      .def_property_readonly("loops", InMap(&SlamFrame::loops),
-                             "number of loop closures among these pairs")
-      .def_property_readonly("joined", InMap(&SlamFrame::joined),
-                             "number of segments joined to another one")
-      .def_property_readonly("error", InMap(&SlamFrame::error),
-                             "why poses were not corrected; empty: they were")
-      .def_property_readonly("map_ms", InMap(&SlamFrame::map_ms),
-                             "mapping time in the background thread, ms")
-      .def_property_readonly("wait_ms", InMap(&SlamFrame::wait_ms),
-                             "time that tracking waited for the map, ms")
-      .def(Pickled<FrameInMap>());
-  py::class_<KeyframePose>(*module, "Keyframe", "A keyframe of the map.")
-      .def_readonly("id", &KeyframePose::id,
-                    "id in the map; without a loaded map the index of its "
-                    "frame")
-      .def_readonly("segment", &KeyframePose::segment,
-                    "poses of one segment share one map")
-      .def_readonly("timestamp", &KeyframePose::timestamp, "s")
-      .def_property_readonly("map_from_cam", Get(&KeyframePose::map_from_cam),
-                             "(4, 4), m")
-      .def_property_readonly(
-          "covariance",
-          [](const KeyframePose& self) -> py::object {
-            if (!self.covariance.has_value()) return py::none();
-            return ArrayFromMatrix(*self.covariance);
-          },
-          "(6, 6), of a small rotation about the axes of the camera (rad) and "
-          "of its\ncentre in the map (m); zero for the first of a segment, "
-          "None if it cannot\nbe computed")
-      .def(Pickled<KeyframePose>());
+      "The result of one frame: its tracking result and its pose in the map.");
+  const auto property = PropertiesOf(&frame);
+  property("odom_from_cam", &SlamFrame::odom_from_cam,
+           "(4, 4), m: drifts, but never jumps when the map is corrected");
+  property("map_from_odom", &SlamFrame::map_from_odom,
+           "(4, 4), m: the correction; changes at keyframes and loops");
+  property(
+      "map_from_cam",
+      [](const FrameInMap& self) { return ToPython(self.map_from_cam()); },
+      "(4, 4), m: map_from_odom @ odom_from_cam, the current pose in the map");
+  property("segment", &SlamFrame::segment,
+           "of the map: relative poses are known only within a segment");
+  property("pairs", &SlamFrame::pairs,
+           "keyframe pairs added to the map since the previous frame");
+  property("loops", &SlamFrame::loops,
+           "number of loop closures among these pairs");
+  property("joined", &SlamFrame::joined,
+           "number of segments joined to another one");
+  property("error", &SlamFrame::error,
+           "why poses were not corrected; empty: they were");
+  property("map_ms", &SlamFrame::map_ms,
+           "mapping time in the background thread, ms");
+  property("wait_ms", &SlamFrame::wait_ms,
+           "time that tracking waited for the map, ms");
+  frame.def(Pickled<FrameInMap>());
 }
 
-void BindSlamClass(py::module_* module) {
-  Settings settings;
-  const std::string doc = R"(
-Tracks a camera as Odometry does and builds a map of its keyframes in a
-background thread; loop closures correct the path. The same frames give the same
-result, to the last bit. Calls of one object from several threads wait for each
-other; objects do not share anything.
-
-)" + HelpOf(settings.Table());
-  py::class_<SharedSlam> slam(*module, "Slam", doc.c_str());
-  DefineInit(&slam, &MakeSharedSlam, "Slam", settings.odometry.frontend,
-             settings.Table());
-  BindTracking(&slam,
-               "Tracks the next frame; arguments are those of Odometry.track. "
-               "The GIL is\nreleased. Raises InputError after finish().",
-               "(timestamps (N,), map_from_cam (N, 4, 4)) of frames not lost, "
-               "with all\ncorrections so far");
-  const py::call_guard<ReleasedGil> no_gil;
-  slam.def("finish", &SharedSlam::Finish, no_gil,
-           "Waits for the background thread and corrects all poses once more. "
-           "No frame can\nbe tracked afterwards.")
-      .def("keyframes", &SharedSlam::Keyframes, no_gil,
-           "After finish(): list of Keyframe, in the order of the map.")
-      .def("edges", &SharedSlam::Edges, no_gil,
-           "After finish(): list of RelativePose, the measured motions between "
-           "keyframes; ref\nand cur are ids of keyframes.")
-      .def(
-          "save_map",
-          [](SharedSlam* self, const py::object& folder) {
-            const std::string path = PathFrom(folder);
-            const ReleasedGil released;
-            self->SaveMap(path);
-          },
-          "After finish(): saves the map to a folder and replaces an existing "
-          "map there.\nRaises InputError if that fails.",
-          py::arg("folder"))
-      .def(
-          "load_map",
-          [](SharedSlam* self, const py::object& folder, bool localise_only) {
-            const std::string path = PathFrom(folder);
-            const ReleasedGil released;
-            self->LoadMap(path, localise_only);
-          },
-          "Before the first frame: loads a saved map; several maps are joined "
-          "where they\noverlap. localise_only: the map is not changed. Raises "
-          "InputError for a folder\nwithout a map and for a map of another "
-          "camera.",
-          py::arg("folder"), py::arg("localise_only") = false);
+void BindKeyframe(py::module_* module) {
+  py::class_<KeyframePose> keyframe(*module, "Keyframe",
+                                    "A keyframe of the map.");
+  const auto property = PropertiesOf(&keyframe);
+  property("id", &KeyframePose::id,
+           "id in the map; without a loaded map the index of its frame");
+  property("segment", &KeyframePose::segment,
+           "poses of one segment share one map");
+  property("timestamp", &KeyframePose::timestamp, "s");
+  property("map_from_cam", &KeyframePose::map_from_cam, "(4, 4), m");
+  property(
+      "covariance",
+      [](const KeyframePose& self) -> py::object {
+        if (!self.covariance.has_value()) return py::none();
+        return ArrayFromMatrix(*self.covariance);
+      },
+      "(6, 6), of a small rotation about the axes of the camera (rad) and of "
+      "its\ncentre in the map (m); zero for the first of a segment, None if it "
+      "cannot\nbe computed");
+  keyframe.def(Pickled<KeyframePose>());
 }
 
 }  // namespace
 
 void BindSlam(py::module_* module) {
-  BindFrames(module);
-  BindSlamClass(module);
+  BindSlamFrame(module);
+  BindKeyframe(module);
+  auto slam = BindTracker<SharedSlam, SharedSlamSettings>(
+      module, "Slam", R"(
+Tracks a camera as Odometry does and builds a map of its keyframes behind it, in
+a thread of its own: where the view returns, the path is corrected. The same
+frames give the same result, to the last bit. Calls of one object from several
+threads wait for each other; objects do not share anything.
+
+)",
+      "Tracks the next frame; arguments are those of Odometry.track. The GIL "
+      "is\nreleased. Raises InputError after finish().",
+      "(timestamps (N,), map_from_cam (N, 4, 4)) of frames not lost, with "
+      "all\ncorrections so far");
+  const py::call_guard<ReleasedGil> no_gil;
+  slam.def("finish", &SharedSlam::Finish, no_gil,
+           "Waits for the background thread and corrects all poses once more. "
+           "No frame can\nbe tracked afterwards.");
+  slam.def("keyframes", &SharedSlam::Keyframes, no_gil,
+           "After finish(): list of Keyframe, in the order of the map.");
+  slam.def("edges", &SharedSlam::Edges, no_gil,
+           "After finish(): list of RelativePose, the measured motions between "
+           "keyframes; ref\nand cur are ids of keyframes.");
+  slam.def(
+      "save_map",
+      [](SharedSlam* self, const py::object& folder) {
+        const std::string path = PathFrom(folder);
+        const ReleasedGil released;
+        self->Save(path);
+      },
+      "After finish(): saves the map to a folder and replaces an existing map "
+      "there.\nRaises InputError if that fails.",
+      py::arg("folder"));
+  slam.def(
+      "load_map",
+      [](SharedSlam* self, const py::object& folder, bool localise_only) {
+        const std::string path = PathFrom(folder);
+        const ReleasedGil released;
+        self->Load(path, localise_only);
+      },
+      "Before the first frame: loads a saved map; several maps are joined "
+      "where they\noverlap. localise_only: the map is not changed. Raises "
+      "InputError for a folder\nwithout a map and for a map of another camera.",
+      py::arg("folder"), py::arg("localise_only") = false);
 }
 
 }  // namespace rgbd_pose

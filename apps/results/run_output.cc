@@ -97,20 +97,20 @@ std::vector<Setting> SettingTable(RunOutputSettings* settings) {
   constexpr std::string_view kGroup = "Output";
   return {
       {"output", kGroup, "folder for the results, created if missing",
-       Text(&settings->output)},
+       &settings->output},
       {"debug_images", kGroup,
        "frames for which OUTPUT/debug gets images of the matches, coloured by "
        "robust weight, and of pixel residuals: all, or numbers and ranges such "
        "as 10,20-40:5",
-       Text(&settings->debug_images)},
+       &settings->debug_images},
       {"save_cloud", kGroup,
        "file for a coloured point cloud (PLY) in the world frame of the "
        "trajectory; empty: none",
-       Text(&settings->save_cloud)},
+       &settings->save_cloud},
       {"save_mesh", kGroup,
        "file for a coloured mesh (.ply or .glb), fused with the final poses "
        "after the run, which reads the frames again; empty: none",
-       Text(&settings->save_mesh)},
+       &settings->save_mesh},
       {"voxel", kGroup, "voxel size (m) of the cloud and the mesh",
        &settings->voxel},
   };

@@ -56,7 +56,8 @@ void LogWarnings(const RunResults& results) {
   if (!results.no_evaluation.empty()) {
     Warn({"no evaluation: " + results.no_evaluation});
   }
-  Warn({results.Warning()});
+  if (!results.evaluation.has_value()) return;
+  Warn({Sim3Warning(results.evaluation->sim3, results.evaluation->ate.rmse)});
 }
 
 int ExitCodeOf(const std::string& program, const RunResults& results,

@@ -45,17 +45,13 @@ CsvTable CsvTable::Read(const std::string& path) {
   return table;
 }
 
-bool CsvTable::Has(const std::string& column) const {
-  return std::find(columns_.begin(), columns_.end(), column) != columns_.end();
-}
-
 std::vector<std::string> CsvTable::Words(const std::string& column) const {
-  if (!Has(column)) {
+  const size_t place =
+      std::find(columns_.begin(), columns_.end(), column) - columns_.begin();
+  if (place == columns_.size()) {
     throw InputError(path_ + ":1: no column '" + column +
                      "'; create the file again with this version");
   }
-  const size_t place =
-      std::find(columns_.begin(), columns_.end(), column) - columns_.begin();
   std::vector<std::string> words;
   words.reserve(rows_.size());
   for (const std::vector<std::string>& row : rows_) words.push_back(row[place]);

@@ -14,7 +14,6 @@ class CsvTable {
   static CsvTable Read(const std::string& path);
 
   size_t size() const { return rows_.size(); }
-  bool Has(const std::string& column) const;
 
   // The cells of a column. Throws InputError if there is no such column.
   std::vector<std::string> Words(const std::string& column) const;

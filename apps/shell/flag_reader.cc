@@ -79,86 +79,74 @@ std::string Hint(const std::string& name) {
                          : "did you mean --" + nearest + "?";
 }
 
-class FlagReader {
- public:
-  // `where` is the prefix of error messages.
-  void Read(const std::vector<std::string>& words, const std::string& where) {
-    for (auto word = words.begin(); word != words.end(); ++word) {
-      // gflags would read a word only up to its first zero byte.
-      if (word->size() < 2 || word->front() != '-' || *word == "--" ||
-          word->find('\0') != std::string::npos) {
-        const bool is_of_list =
-            word != words.begin() && (word - 1)->back() == ',';
-        throw InputError(where + "'" + *word + "' is not a flag; " +
-                         (is_of_list ? "lists have no space after the comma"
-                                     : "flags look like --name=value"));
-      }
-      const std::string text = word->substr((*word)[1] == '-' ? 2 : 1);
-      const size_t equals = text.find('=');
-      const bool has_value = equals != std::string::npos;
-      const std::string name = text.substr(0, equals);
-      CommandLineFlagInfo flag;
-      if (name != "flagfile" && !FindFlag(name, &flag)) {
-        if (has_value || !FindNegated(name, &flag)) {
-          throw InputError(where + "unknown flag --" + name + "; " +
-                           Hint(name));
-        }
-        Set(flag, "false", where);
-      } else if (has_value) {
-        Take(name, flag, text.substr(equals + 1), where);
-      } else if (flag.type == "bool") {
-        Set(flag, "true", where);
-      } else if (++word != words.end()) {
-        Take(name, flag, *word, where);
-      } else {
-        throw InputError(where + "--" + name + " needs a value");
-      }
-    }
-  }
+constexpr int kMaxNestedFiles = 8;
 
- private:
-  void Take(const std::string& name, const CommandLineFlagInfo& flag,
-            const std::string& value, const std::string& where) {
-    if (name == "flagfile") {
-      ReadFile(value);
+void ReadFlagFile(const std::string& path, int depth);
+
+// `where` is the prefix of error messages, `depth` the number of files that
+// have led to these words.
+void ReadWords(const std::vector<std::string>& words, const std::string& where,
+               int depth) {
+  for (auto word = words.begin(); word != words.end(); ++word) {
+    // gflags would read a word only up to its first zero byte.
+    if (word->size() < 2 || word->front() != '-' || *word == "--" ||
+        word->find('\0') != std::string::npos) {
+      const bool is_of_list =
+          word != words.begin() && (word - 1)->back() == ',';
+      throw InputError(where + "'" + *word + "' is not a flag; " +
+                       (is_of_list ? "lists have no space after the comma"
+                                   : "flags look like --name=value"));
+    }
+    const std::string text = word->substr((*word)[1] == '-' ? 2 : 1);
+    const size_t equals = text.find('=');
+    const bool has_value = equals != std::string::npos;
+    const std::string name = text.substr(0, equals);
+    CommandLineFlagInfo flag;
+    std::string value;
+    if (name != "flagfile" && !FindFlag(name, &flag)) {
+      if (has_value || !FindNegated(name, &flag)) {
+        throw InputError(where + "unknown flag --" + name + "; " + Hint(name));
+      }
+      value = "false";
+    } else if (has_value) {
+      value = text.substr(equals + 1);
+    } else if (flag.type == "bool") {
+      value = "true";
+    } else if (++word != words.end()) {
+      value = *word;
     } else {
-      Set(flag, value, where);
+      throw InputError(where + "--" + name + " needs a value");
     }
-  }
-
-  static void Set(const CommandLineFlagInfo& flag, const std::string& value,
-                  const std::string& where) {
-    if (gflags::SetCommandLineOption(flag.name.c_str(), value.c_str())
-            .empty()) {
+    if (name == "flagfile") {
+      ReadFlagFile(value, depth + 1);
+    } else if (gflags::SetCommandLineOption(flag.name.c_str(), value.c_str())
+                   .empty()) {
       throw InputError(where + "'" + value + "' is not a valid " + flag.type +
                        " for --" + flag.name);
     }
   }
+}
 
-  void ReadFile(const std::string& path) {
-    if (++depth_ > kMaxDepth) {
-      throw InputError(path + ": flag files include each other in a loop");
-    }
-    const std::string content = ReadTextFile(path);
-    std::string_view rest = WithoutByteOrderMark(content);
-    for (int number = 1; !rest.empty(); ++number) {
-      const size_t end = std::min(rest.find('\n'), rest.size());
-      const std::string_view line = WithoutSpaceAround(rest.substr(0, end));
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-      if (line.empty() || line.front() == '#') continue;
-      Read({std::string(line)}, path + ":" + std::to_string(number) + ": ");
-    }
-    --depth_;
+void ReadFlagFile(const std::string& path, int depth) {
+  if (depth > kMaxNestedFiles) {
+    throw InputError(path + ": flag files include each other in a loop");
   }
-
-  static constexpr int kMaxDepth = 8;
-  int depth_ = 0;
-};
+  const std::string content = ReadTextFile(path);
+  int number = 0;
+  for (const std::string& text :
+       SplitText(WithoutByteOrderMark(content), '\n')) {
+    ++number;
+    const std::string_view line = WithoutSpaceAround(text);
+    if (line.empty() || line.front() == '#') continue;
+    const std::string where = path + ":" + std::to_string(number) + ": ";
+    ReadWords({std::string(line)}, where, depth);
+  }
+}
 
 }  // namespace
 
 void ReadFlags(const std::vector<std::string>& words) {
-  FlagReader().Read(words, "");
+  ReadWords(words, "", 0);
 }
 
 }  // namespace rgbd_pose

@@ -11,6 +11,7 @@
 #include <cstdlib>
 #include <deque>
 #include <exception>
+#include <opencv2/core.hpp>
 #include <stdexcept>
 #include <string>
 #include <system_error>
@@ -25,8 +26,7 @@ namespace rgbd_pose {
 namespace {
 
 // The error of a call without a required flag.
-class UsageError : public std::runtime_error {
- public:
+struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
@@ -71,7 +71,7 @@ class SettingFlags {
 
   // Deques keep the addresses of their elements.
   std::deque<Row> rows_;
-  std::deque<std::variant<int, double, bool, std::string>> defaults_;
+  std::deque<std::variant<int, uint32_t, double, bool, std::string>> defaults_;
 };
 
 bool IsHelp(const std::string& argument) {
@@ -83,9 +83,8 @@ bool IsHelp(const std::string& argument) {
 // Shortens numbers: gflags prints all 17 digits.
 std::string FlagValue(const gflags::CommandLineFlagInfo& flag,
                       const std::string& value) {
-  return flag.type == "double"
-             ? ShortNumber(std::strtod(value.c_str(), nullptr))
-             : value;
+  if (flag.type != "double") return value;
+  return ShortNumber(std::strtod(value.c_str(), nullptr));
 }
 
 // The groups of the settings, then the program's own groups.
@@ -138,19 +137,34 @@ void PrintHelp(const ProgramInfo& info) {
   }
   std::printf(
       "\nAlso: --flagfile=FILE reads flags from a file, --help, --version.\n"
-      "Exit codes: 0 ok, 1 usage, 2 bad input, 3 tracking failed, "
-      "4 some batch items failed, 5 no better camera found,\n"
+      "Exit codes: 0 ok, 1 usage, 2 bad input, 3 tracking failed, 4 some batch "
+      "items failed, 5 no better camera found,\n"
       "6 stopped early: results so far are kept.\n");
 }
 
-int Run(int argc, char** argv, const ProgramInfo& info,
-        const SettingFlags& settings, const std::function<int()>& body) {
+}  // namespace
+
+int RunProgram(int argc, char** argv, const ProgramInfo& info,
+               const std::function<int()>& body) {
+  const SettingFlags settings(info.settings);
+  for (int i = 1; i < argc; ++i) {
+    if (IsHelp(argv[i])) {
+      PrintHelp(info);
+      return kExitOk;
+    }
+    if (std::string(argv[i]) == "--version") {
+      std::printf("%s %s\n", info.name.c_str(), RGBD_POSE_VERSION);
+      return kExitOk;
+    }
+  }
   try {
     ReadFlags({argv + 1, argv + argc});
     FLAGS_logtostderr = true;
     google::InitGoogleLogging(argv[0]);
     // Ignored: exceeding a file size limit is then reported like a full disk.
     std::signal(SIGXFSZ, SIG_IGN);
+    // Programs have threads of their own; OpenCV's would compete with them.
+    cv::setNumThreads(1);
     settings.Apply();
     const int exit_code = body();
     if (std::fflush(stdout) != 0) {
@@ -171,27 +185,6 @@ int Run(int argc, char** argv, const ProgramInfo& info,
   }
 }
 
-// More threads than any machine could use here.
-constexpr int kMaxThreads = 256;
-
-}  // namespace
-
-int RunProgram(int argc, char** argv, const ProgramInfo& info,
-               const std::function<int()>& body) {
-  const SettingFlags settings(info.settings);
-  for (int i = 1; i < argc; ++i) {
-    if (IsHelp(argv[i])) {
-      PrintHelp(info);
-      return kExitOk;
-    }
-    if (std::string(argv[i]) == "--version") {
-      std::printf("%s %s\n", info.name.c_str(), RGBD_POSE_VERSION);
-      return kExitOk;
-    }
-  }
-  return Run(argc, argv, info, settings, body);
-}
-
 std::string FormatFlagFile(const ProgramInfo& info) {
   std::string text;
   for (const FlagGroup& group : AllGroups(info)) {
@@ -202,6 +195,11 @@ std::string FormatFlagFile(const ProgramInfo& info) {
     }
   }
   return text;
+}
+
+double SecondsSince(std::chrono::steady_clock::time_point start) {
+  const auto passed = std::chrono::steady_clock::now() - start;
+  return std::chrono::duration<double>(passed).count();
 }
 
 void Warn(const std::vector<std::string>& lines) {

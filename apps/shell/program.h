@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <string>
@@ -32,11 +33,11 @@ struct ProgramInfo {
   std::string summary;  // one sentence
   std::string example;  // one example call
   std::vector<FlagGroup> flag_groups;
-  // Flags whose value is one of a list of names, with these names.
-  std::map<std::string, std::vector<std::string>> choices = {};
   // Tables of settings whose rows become flags, shown before the groups above.
   // The settings must live as long as the program.
   std::vector<std::vector<Setting>> settings = {};
+  // Flags of the groups whose value is one of a list of names.
+  std::map<std::string, std::vector<std::string>> choices = {};
 };
 
 // Runs a program. Handles --help and --version, then reads the flags (one line
@@ -59,12 +60,18 @@ int RunProgram(int argc, char** argv, ProgramInfo (*info)(Settings*),
 // Formats all flags of the program's groups as a file for --flagfile.
 std::string FormatFlagFile(const ProgramInfo& info);
 
+// The time that has passed since `start`, s.
+double SecondsSince(std::chrono::steady_clock::time_point start);
+
 // Prints warnings on stderr, one per line; empty ones are skipped.
 void Warn(const std::vector<std::string>& lines);
 
 // If a required flag is empty, throws UsageError, which RunProgram turns into
 // one line on stderr and kExitUsage.
 void RequireFlag(const std::string& name, const std::string& value);
+
+// More threads than any machine could use here.
+constexpr int kMaxThreads = 256;
 
 // The number of processor cores that this process may use, at least 1.
 int AvailableCores();

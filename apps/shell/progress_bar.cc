@@ -2,7 +2,6 @@
 
 #include <unistd.h>
 
-#include <cinttypes>
 #include <cmath>
 #include <cstdio>
 #include <utility>
@@ -51,16 +50,11 @@ std::string ProgressBar::TimeLeft(int done) const {
 }
 
 std::string FormatDuration(double seconds) {
-  constexpr int64_t kMinute = 60;
-  constexpr int64_t kHour = 60 * kMinute;
-  const int64_t whole = std::llround(seconds);
-  if (whole < kMinute) return Format("%" PRId64 " s", whole);
-  if (whole < kHour) {
-    return Format("%" PRId64 " min %02" PRId64 " s", whole / kMinute,
-                  whole % kMinute);
-  }
-  return Format("%" PRId64 " h %02" PRId64 " min", whole / kHour,
-                whole % kHour / kMinute);
+  const long long whole = std::llround(seconds);
+  const long long minutes = whole / 60;
+  if (whole < 60) return Format("%lld s", whole);
+  if (minutes < 60) return Format("%lld min %02lld s", minutes, whole % 60);
+  return Format("%lld h %02lld min", minutes / 60, minutes % 60);
 }
 
 }  // namespace rgbd_pose

@@ -43,6 +43,8 @@ TEST(SettingTableTest, EveryRowIsAPlaceOfItsOwn) {
 TEST(SettingTableTest, EveryChoiceIsTakenAndToldAgain) {
   OdometrySettings settings;
   for (const Setting& row : SettingTable(&settings)) {
+    // A text takes anything.
+    if (std::holds_alternative<std::string*>(row.value)) continue;
     const NamedSetting* named = std::get_if<NamedSetting>(&row.value);
     ASSERT_EQ(named == nullptr, row.choices.empty()) << row.name;
     for (const std::string& choice : row.choices) {

@@ -1,8 +1,7 @@
-#include "apps/python/frame_images.h"
+#include "apps/python/tracker_bindings.h"
 
 #include <cmath>
 #include <string>
-#include <utility>
 
 #include "core/util/input_error.h"
 #include "frontend/files/image_file.h"
@@ -14,6 +13,8 @@ namespace {
 
 // Depths in metres are converted to raw units of 0.2 mm, finer than any sensor.
 constexpr double kUnitsPerMetre = 5000.0;
+
+constexpr double kDefaultFrameRate = 30.0;  // Hz
 
 // The number of channels; 0 if the array is not an image of the camera's size.
 int Channels(const py::array& array, const Camera& camera) {
@@ -95,6 +96,21 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
     fill([&from](int y, int x) { return RawDepth(from(y, x)); });
   }
   return frame;
+}
+
+void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
+                Frame* frame) {
+  frame->index = last == nullptr ? 0 : last->index + 1;
+  frame->timestamp = timestamp.value_or(
+      last == nullptr ? 0.0 : last->timestamp + 1.0 / kDefaultFrameRate);
+  if (!std::isfinite(frame->timestamp)) {
+    throw InputError("timestamp: is not a finite number of seconds");
+  }
+  if (last != nullptr && frame->timestamp <= last->timestamp) {
+    throw InputError("timestamp: " + std::to_string(frame->timestamp) +
+                     " s is not after that of the previous frame; frames must "
+                     "be in the order of time");
+  }
 }
 
 }  // namespace rgbd_pose

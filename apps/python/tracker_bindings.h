@@ -1,0 +1,96 @@
+#pragma once
+
+#include <pybind11/numpy.h>
+#include <pybind11/pybind11.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "apps/pipeline/settings.h"
+#include "apps/python/arrays.h"
+#include "apps/python/released_gil.h"
+#include "apps/python/setting_arguments.h"
+#include "core/geometry/camera.h"
+#include "core/util/text_file.h"
+#include "frontend/frame/frame.h"
+#include "frontend/tracking/tracked_frame.h"
+
+namespace rgbd_pose {
+
+// Makes a frame with copies of the Python images (see Odometry.track). Copies
+// are needed because frontends keep the image of a reference, while camera
+// drivers overwrite their memory with the next image. The shutter times are
+// those of `camera`. Throws InputError for images of a wrong shape or type.
+Frame FrameFromArrays(const pybind11::object& image,
+                      const pybind11::object& depth, const RgbdCamera& camera);
+
+// Sets the number and the time of a frame. Frames without a timestamp are 1/30
+// s apart. `last` is the previous frame, or null. Throws InputError if time
+// does not increase.
+void StampFrame(std::optional<double> timestamp, const TrackedFrame* last,
+                Frame* frame);
+
+// Defines what Odometry and Slam share: the constructor Type(Settings,
+// RgbdCamera), track, trajectory, save_trajectory.
+template <typename Type, typename Settings>
+pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
+                                   const std::string& help,
+                                   const char* track_help,
+                                   const char* trajectory_help) {
+  namespace py = pybind11;
+  Settings defaults;
+  const std::vector<Setting> table = SettingTable(&defaults);
+  py::class_<Type> type(*module, name, (help + HelpOf(table)).c_str());
+  const auto make = [name](const RgbdCamera& camera,
+                           const std::string& frontend,
+                           const py::kwargs& keywords) {
+    Settings settings;
+    const std::vector<Setting> rows = SettingTable(&settings);
+    SetFromKeywords(name, py::dict(py::arg("frontend") = frontend), rows);
+    SetFromKeywords(name, keywords, rows);
+    return std::make_unique<Type>(settings, camera);
+  };
+  {
+    py::options options;
+    options.disable_function_signatures();
+    type.def(py::init(make), InitSignature(name, table).c_str(),
+             py::arg("camera").none(false),
+             py::arg("frontend") = OdometrySettings().frontend);
+  }
+  const auto track = [](Type* self, const py::object& image,
+                        const py::object& depth,
+                        std::optional<double> timestamp,
+                        const py::object& motion_guess, double depth_delay) {
+    Frame frame = FrameFromArrays(image, depth, self->camera());
+    frame.depth_delay = depth_delay;
+    std::optional<Rigid3d> guess;
+    if (!motion_guess.is_none()) {
+      guess = RigidFromArray(motion_guess, "motion_guess");
+    }
+    const ReleasedGil no_gil;
+    return self->Track(std::move(frame), timestamp,
+                       guess.has_value() ? &*guess : nullptr);
+  };
+  const auto trajectory = [](Type* self) {
+    const ReleasedGil no_gil;
+    return self->trajectory();
+  };
+  const auto get = [=](Type* self) {
+    return ArraysFromTrajectory(trajectory(self));
+  };
+  const auto save = [=](Type* self, const py::object& path) {
+    WriteFileAtomically(PathFrom(path), FormatTrajectory(trajectory(self)));
+  };
+  type.def("track", track, track_help, py::arg("image"), py::arg("depth"),
+           py::arg("timestamp") = py::none(),
+           py::arg("motion_guess") = py::none(), py::arg("depth_delay") = 0.0);
+  type.def_property_readonly("trajectory", get, trajectory_help);
+  type.def("save_trajectory", save, "Writes the trajectory as TUM text.",
+           py::arg("path"));
+  return type;
+}
+
+}  // namespace rgbd_pose
