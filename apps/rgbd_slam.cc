@@ -190,19 +190,20 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
                        info.name, more);
   text += FormatSlamSummary(map_json);
   const KeyframeMap map = slam.Map();
-  folder.WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
-  folder.WriteFile("trajectory_online.txt",
-                   FormatOnlineTrajectory(slam, run.slam_frames()));
-  folder.WriteFile("trajectory_odometry.txt",
-                   FormatTrajectory(SmoothPath(run.slam_frames())));
-  folder.WriteFile("keyframes.csv",
-                   FormatKeyframesCsv(map, slam.Covariances()));
-  folder.WriteFile("graph.g2o", FormatG2o(slam.Map(/*as_solved=*/true)));
+  output.folder().WriteFile("slam.csv", FormatSlamCsv(run.slam_frames()));
+  output.folder().WriteFile("trajectory_online.txt",
+                            FormatOnlineTrajectory(slam, run.slam_frames()));
+  output.folder().WriteFile("trajectory_odometry.txt",
+                            FormatTrajectory(SmoothPath(run.slam_frames())));
+  output.folder().WriteFile("keyframes.csv",
+                            FormatKeyframesCsv(map, slam.Covariances()));
+  output.folder().WriteFile("graph.g2o",
+                            FormatG2o(slam.Map(/*as_solved=*/true)));
   if (FLAGS_report) {
-    text += WriteRunPage(folder.staging_dir(), settings.output.output,
+    text += WriteRunPage(output.folder().staging_dir(), settings.output.output,
                          &flaws.no_report);
   }
-  folder.Publish();
+  output.folder().Publish();
   text += SaveMesh(settings.output, threads);
   // If the map cannot be saved, the results stay.
   if (!settings.maps.save_map.empty()) {

@@ -62,7 +62,7 @@ MotionDerivatives Motion() {
 }
 
 std::unique_ptr<ceres::LossFunction> Huber() {
-  return FindMEstimator("huber")->MakeLoss(1);
+  return ParseLoss("huber").Make(1);
 }
 
 template <typename Residual>

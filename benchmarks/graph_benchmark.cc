@@ -71,7 +71,7 @@ Solved ByEdges(const World& world) {
 }
 
 Solved ByBundle(const World& world) {
-  const auto loss = FindMEstimator("huber")->MakeLoss(3);
+  const auto loss = ParseLoss("huber").Make(3);
   BundleSolution solution = AdjustBundle(world.graph, world.start, loss.get());
   return {std::move(solution.poses), solution.iterations};
 }

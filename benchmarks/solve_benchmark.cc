@@ -57,7 +57,7 @@ struct World {
   World(int count, const std::string& loss_name)
       : matches(Matches(count, 0.005)),
         cost(MakeCost(kCost)),
-        loss(FindMEstimator(loss_name)->MakeLoss(cost->degrees_of_freedom())) {}
+        loss(ParseLoss(loss_name).Make(cost->degrees_of_freedom())) {}
 };
 
 ceres::Problem::Options ProblemOptions(Assembly assembly) {

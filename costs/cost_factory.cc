@@ -16,10 +16,7 @@ template bool FactorSums<6>(const CompressedSums<6>& sums, double* residuals,
 
 namespace {
 
-struct CostEntry {
-  std::string_view name;
-  std::unique_ptr<MotionCost> (*make)();
-};
+using CostEntry = Named<std::unique_ptr<MotionCost> (*)()>;
 
 template <typename... Residuals>
 std::vector<CostEntry> EntriesOf(TypeList<Residuals...>) {
@@ -33,10 +30,9 @@ std::vector<std::string> CostNames() {
 }
 
 std::unique_ptr<MotionCost> MakeCost(std::string_view name) {
-  for (const CostEntry& entry : EntriesOf(ResidualTypes())) {
-    if (entry.name == name) return entry.make();
-  }
-  return nullptr;
+  const std::vector<CostEntry> entries = EntriesOf(ResidualTypes());
+  const CostEntry* const entry = FindNamed(entries, name);
+  return entry != nullptr ? entry->value() : nullptr;
 }
 
 std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,
@@ -62,10 +58,7 @@ std::vector<RobustCost> MakeRobustCosts(
   std::vector<RobustCost> terms;
   for (size_t i = 0; i < costs.size(); ++i) {
     std::unique_ptr<MotionCost> cost = make(costs[i]);
-    if (cost == nullptr) {
-      throw InputError("unknown cost '" + costs[i] +
-                       "'; available: " + Join(names));
-    }
+    if (cost == nullptr) throw UnknownName("cost", costs[i], names);
     const std::string& loss_name = losses[losses.size() == 1 ? 0 : i];
     std::unique_ptr<ceres::LossFunction> loss =
         ParseLoss(loss_name).Make(cost->degrees_of_freedom());

@@ -12,10 +12,8 @@
 namespace rgbd_pose {
 namespace {
 
-struct Entry {
-  std::string_view name;
-  std::unique_ptr<MotionCost> (*make)(const DirectOptions& options);
-};
+using Entry =
+    Named<std::unique_ptr<MotionCost> (*)(const DirectOptions& options)>;
 
 template <typename Residual>
 std::unique_ptr<MotionCost> Make(const DirectOptions& options) {
@@ -100,7 +98,7 @@ std::unique_ptr<MotionCost> MakeDirectCost(std::string_view name,
   RequireSound(options.Check(), "direct cost: ");
   const std::vector<Entry> entries = DirectEntriesOf(DirectResidualTypes());
   const Entry* const entry = FindNamed(entries, name);
-  return entry != nullptr ? entry->make(options) : nullptr;
+  return entry != nullptr ? entry->value(options) : nullptr;
 }
 
 std::vector<RobustCost> MakeDirectCosts(const std::string& cost_names,

@@ -158,42 +158,24 @@ class PowerLoss final : public ceres::LossFunction {
   double at_zero_;
 };
 
-// Barron's family (A General and Adaptive Robust Loss Function, CVPR 2019),
-// scaled to R'(0) = 1; w(x) = (1 + (x/c)^2 / (2-a))^(a/2-1):
+// Barron's loss (A General and Adaptive Robust Loss Function, CVPR 2019) of the
+// shape -1, half-way between Cauchy (0) and Geman-McClure (-2), scaled to
+// R'(0) = 1; w(x) = (1 + (x/c)^2 / 3)^(-3/2):
 //
-//   R(s) = 2 c^2 (2-a)/a ((1 + s / (c^2 (2-a)))^(a/2) - 1).
-//
-// The shape a <= 2 ranges from least squares (2) through L1-L2 (1), Cauchy (0)
-// and Geman-McClure (-2) to Welsch (minus infinity): the lower a, the less
-// large residuals count. Below 1 it is redescending. (Shapes above 2 have a
-// positive R'', which the compressed block does not support.)
+//   R(s) = 6 c^2 (1 - (1 + s / (3 c^2))^(-1/2)).
 class BarronLoss final : public ceres::LossFunction {
  public:
-  // Half-way between Cauchy and Geman-McClure.
-  static constexpr double kDefaultAlpha = -1.0;
-
-  explicit BarronLoss(double width, double alpha = kDefaultAlpha)
-      : alpha_(alpha), width2_(width * width) {}
+  explicit BarronLoss(double width) : width2_(width * width) {}
 
   void Evaluate(double s, double rho[3]) const override {
-    const double gap = 2.0 - alpha_;
-    if (gap <= 0.0) {
-      rho[0] = s;
-      rho[1] = 1.0;
-      rho[2] = 0.0;
-      return;
-    }
-    const double q = s / (width2_ * gap);
+    const double q = s / (width2_ * 3.0);
     const double log = std::log1p(q);
-    const double growth =
-        alpha_ == 0.0 ? 0.5 * log : std::expm1(0.5 * alpha_ * log) / alpha_;
-    rho[0] = 2.0 * width2_ * gap * growth;
-    rho[1] = std::exp(-0.5 * gap * log);
+    rho[0] = -6.0 * width2_ * std::expm1(-0.5 * log);
+    rho[1] = std::exp(-1.5 * log);
     rho[2] = -0.5 * rho[1] / (width2_ * (1.0 + q));
   }
 
  private:
-  double alpha_;
   double width2_;
 };
 

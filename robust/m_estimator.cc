@@ -1,13 +1,11 @@
 #include "robust/m_estimator.h"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <system_error>
 
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
-#include "core/util/text_file.h"
 #include "robust/losses.h"
 
 namespace rgbd_pose {
@@ -41,14 +39,13 @@ LossPointer MakeStudentT(double width) {
                                              width);
 }
 
-constexpr std::array<double, MEstimator::kMaxDimension> kUntuned = {1, 1, 1,
-                                                                    1, 1, 1};
+MEstimator Tuned(std::string_view name, std::string_view formula,
+                 LossPointer (*make)(double width),
+                 const std::array<double, MEstimator::kMaxDimension>& width95) {
+  return {name, formula, make, width95};
+}
 
 }  // namespace
-
-double MEstimator::Width95(int dimension) const {
-  return width95[std::clamp(dimension, 1, kMaxDimension) - 1];
-}
 
 // The widths were computed by quadrature over the chi distribution;
 // tests/robust/m_estimator_width_test.cc recomputes them. Student's t keeps the
@@ -56,50 +53,26 @@ double MEstimator::Width95(int dimension) const {
 // Cauchy's loss.
 const std::vector<MEstimator>& MEstimators() {
   static const std::vector<MEstimator>& rows = *new std::vector<MEstimator>{
-      {"none", "1", nullptr, false, kUntuned},
-      {"l1", "c / x", MakeL1, false, kUntuned},
-      {"l1_l2",
-       "(1 + (x/c)^2 / 2)^-0.5",
-       MakeL1L2,
-       true,
-       {0.9101, 0.9259, 0.9137, 0.8801, 0.8277, 0.7561}},
-      {"lp", "(x/c)^-0.8", MakeLp, false, kUntuned},
-      {"fair",
-       "1 / (1 + x/c)",
-       Make<FairLoss>,
-       true,
-       {1.3998, 1.2226, 1.0440, 0.8703, 0.7034, 0.5434}},
-      {"huber",
-       "1 if x <= c, c / x beyond",
-       Make<HuberLoss>,
-       true,
-       {1.3450, 1.5011, 1.6280, 1.7311, 1.8120, 1.8693}},
-      {"cauchy",
-       "1 / (1 + (x/c)^2)",
-       Make<ceres::CauchyLoss>,
-       true,
-       {2.3849, 2.5486, 2.6656, 2.7516, 2.8154, 2.8624}},
-      {"geman_mcclure",
-       "(1 + (x/c)^2)^-2",
-       Make<GemanMcClureLoss>,
-       true,
-       {3.7874, 4.0956, 4.3373, 4.5354, 4.7024, 4.8460}},
-      {"welsch",
-       "exp(-(x/c)^2)",
-       Make<WelschLoss>,
-       true,
-       {2.9846, 3.2510, 3.4691, 3.6552, 3.8186, 3.9646}},
-      {"tukey",
-       "(1 - (x/c)^2)^2 if x <= c, 0 beyond",
-       Make<TukeyLoss>,
-       true,
-       {4.6851, 5.1230, 5.4902, 5.8103, 6.0963, 6.3562}},
-      {"barron",
-       "(1 + (x/c)^2 / 3)^-1.5",
-       Make<BarronLoss>,
-       true,
-       {1.8238, 1.9655, 2.0743, 2.1613, 2.2329, 2.2928}},
-      {"student_t", "1 / (1 + (x/c)^2 / 5)", MakeStudentT, false, kUntuned},
+      {"none", "1", nullptr},
+      {"l1", "c / x", MakeL1},
+      Tuned("l1_l2", "(1 + (x/c)^2 / 2)^-0.5", MakeL1L2,
+            {0.9101, 0.9259, 0.9137, 0.8801, 0.8277, 0.7561}),
+      {"lp", "(x/c)^-0.8", MakeLp},
+      Tuned("fair", "1 / (1 + x/c)", Make<FairLoss>,
+            {1.3998, 1.2226, 1.0440, 0.8703, 0.7034, 0.5434}),
+      Tuned("huber", "1 if x <= c, c / x beyond", Make<HuberLoss>,
+            {1.3450, 1.5011, 1.6280, 1.7311, 1.8120, 1.8693}),
+      Tuned("cauchy", "1 / (1 + (x/c)^2)", Make<ceres::CauchyLoss>,
+            {2.3849, 2.5486, 2.6656, 2.7516, 2.8154, 2.8624}),
+      Tuned("geman_mcclure", "(1 + (x/c)^2)^-2", Make<GemanMcClureLoss>,
+            {3.7874, 4.0956, 4.3373, 4.5354, 4.7024, 4.8460}),
+      Tuned("welsch", "exp(-(x/c)^2)", Make<WelschLoss>,
+            {2.9846, 3.2510, 3.4691, 3.6552, 3.8186, 3.9646}),
+      Tuned("tukey", "(1 - (x/c)^2)^2 if x <= c, 0 beyond", Make<TukeyLoss>,
+            {4.6851, 5.1230, 5.4902, 5.8103, 6.0963, 6.3562}),
+      Tuned("barron", "(1 + (x/c)^2 / 3)^-1.5", Make<BarronLoss>,
+            {1.8238, 1.9655, 2.0743, 2.1613, 2.2329, 2.2928}),
+      {"student_t", "1 / (1 + (x/c)^2 / 5)", MakeStudentT},
   };
   return rows;
 }
@@ -114,8 +87,7 @@ NamedLoss ParseLoss(const std::string& text) {
   const size_t open = text.find('(');
   const MEstimator* const row = FindMEstimator(text.substr(0, open));
   if (row == nullptr) {
-    throw InputError("unknown loss '" + text +
-                     "'; available: " + Join(MEstimatorNames()));
+    throw UnknownName("loss", text, MEstimatorNames());
   }
   if (open == std::string::npos) return {row, 0.0};
   double width = 0.0;

@@ -2,6 +2,7 @@
 
 #include <ceres/loss_function.h>
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <string>
@@ -25,17 +26,13 @@ struct MEstimator {
   // Makes the loss of a given width; null for least squares.
   std::unique_ptr<ceres::LossFunction> (*make)(double width);
 
-  // Width by the number of independent components of the residual, 1 to 6.
-  // Tuned to 95 % efficiency under normal noise if is_tuned, else 1.
-  bool is_tuned;
-  std::array<double, kMaxDimension> width95;
+  // Width by the number of independent components of the residual, 1 to 6:
+  // tuned to 95 % efficiency under normal noise, or 1 for all.
+  std::array<double, kMaxDimension> width95 = {1, 1, 1, 1, 1, 1};
 
   // The width for a residual of `dimension` components, limited to 1 to 6.
-  double Width95(int dimension) const;
-
-  // The loss at that width; null for least squares.
-  std::unique_ptr<ceres::LossFunction> MakeLoss(int dimension) const {
-    return make != nullptr ? make(Width95(dimension)) : nullptr;
+  double Width95(int dimension) const {
+    return width95[std::clamp(dimension, 1, kMaxDimension) - 1];
   }
 };
 

@@ -131,13 +131,12 @@ double MadScale(std::vector<double>* values) {
 }
 
 const std::vector<ScaleEstimator>& ScaleEstimators() {
-  static const std::vector<ScaleEstimator>& rows =
-      *new std::vector<ScaleEstimator>{
-          {"fixed", nullptr},
-          {"mad", MadScale},
-          {"sn", SnScale},
-          {"qn", QnScale},
-      };
+  static const auto& rows = *new std::vector<ScaleEstimator>{
+      {"fixed", nullptr},
+      {"mad", MadScale},
+      {"sn", SnScale},
+      {"qn", QnScale},
+  };
   return rows;
 }
 

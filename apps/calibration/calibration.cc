@@ -13,13 +13,21 @@
 namespace rgbd_pose {
 namespace {
 
-using FreeParts = std::array<bool, kCalibrationSize>;
 using Status = CalibratedParameter::Status;
 
 // In the order of CalibrationIndex.
 constexpr double Camera::*kOfLens[kLensSize] = {
     &Camera::fx, &Camera::fy, &Camera::cx, &Camera::cy, &Camera::k1,
     &Camera::k2, &Camera::k3, &Camera::k4, &Camera::p1, &Camera::p2};
+
+// A camera as calibration parameters: its lens, and no error in corrected
+// depth.
+CalibrationVector ThetaOf(const Camera& camera) {
+  CalibrationVector theta = CalibrationVector::Zero();
+  for (int k = 0; k < kLensSize; ++k) theta[k] = camera.*kOfLens[k];
+  theta[kDepthFactor] = 1.0;
+  return theta;
+}
 
 CalibrationVector PriorSigmas(const CalibrationVector& start) {
   CalibrationVector prior;
@@ -72,7 +80,7 @@ FreeParts SolveWithLensAsked(const BundleAdjustment& training,
                              const FreeParts& asked, int rounds,
                              CalibrationState* state) {
   FreeParts is_free = asked;
-  std::fill_n(is_free.begin() + kK3, kNumHigher, false);
+  for (int k = kK3; k < kLensSize; ++k) is_free[k] = false;
   SolveWithScales(training, is_free, rounds, state);
   if (is_free == asked) return is_free;
   CalibrationState higher = *state;
@@ -130,8 +138,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const CalibrationSettings& settings,
                             const CalibrationScale& scale, int threads,
                             const RgbdCamera* known) {
-  const std::string error = settings.Check();
-  if (!error.empty()) throw InputError("calibration: " + error);
+  RequireSound(settings.Check(), "calibration: ");
   CalibrationResult result;
   result.camera = result.found = first;
   CalibrationData data =
@@ -197,7 +204,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     look_up(after.theta);
     SolveWithScales(training, is_free, kRounds, &after);
   }
-  if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
+  if (is_free.none()) {
     result.reason =
         "no error found: held-out pairs fit no better with another camera";
     return result;
@@ -209,20 +216,16 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     half.sigma *= result.halves_spread;
   }
   const FreeParts needed = is_free;
-  CalibrationMatrix model_covariance, sandwich_covariance;
   const auto judge = [&](const BundleAdjustment& problem,
                          const CalibrationState& state) {
-    const bool can_tell = problem.Covariance(needed, state, &model_covariance,
-                                             &sandwich_covariance);
+    const auto variances = problem.Variances(needed, state);
     for (int k = 0; k < kCalibrationSize; ++k) {
       if (!needed[k]) continue;
       CalibratedParameter& parameter = result.parameters[k];
       parameter.found = state.theta[k];
       parameter.sigma =
-          can_tell
-              ? std::hypot(result.halves_spread *
-                               std::sqrt(std::max(model_covariance(k, k),
-                                                  sandwich_covariance(k, k))),
+          variances.has_value()
+              ? std::hypot(result.halves_spread * std::sqrt((*variances)[k]),
                            CalibrationFloor(k, result.keyframes))
               : prior.sigma[k];
     }
@@ -234,7 +237,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                  parameter.sigma < settings.determined_share * parameter.prior;
     if (is_free[k]) parameter.status = Status::kDetermined;
   }
-  if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
+  if (is_free.none()) {
     result.reason = "the recording determines none of its parameters";
     return result;
   }
@@ -278,13 +281,6 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
   result.noise =
       FitDepthNoise(data.views, found, odometry.features.depth_noise);
   return result;
-}
-
-CalibrationVector ThetaOf(const Camera& camera) {
-  CalibrationVector theta = CalibrationVector::Zero();
-  for (int k = 0; k < kLensSize; ++k) theta[k] = camera.*kOfLens[k];
-  theta[kDepthFactor] = 1.0;
-  return theta;
 }
 
 RgbdCamera ApplyCalibration(const RgbdCamera& first,

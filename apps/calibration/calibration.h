@@ -1,8 +1,10 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "apps/calibration/calibration_data.h"
 #include "apps/calibration/calibration_result.h"
-#include "apps/calibration/calibration_settings.h"
 #include "apps/pipeline/settings.h"
 #include "core/evaluation/trajectory.h"
 #include "core/geometry/camera.h"
@@ -10,6 +12,45 @@
 #include "frontend/map/keyframe_map.h"
 
 namespace rgbd_pose {
+
+// How a camera is calibrated from its own recording.
+struct CalibrationSettings {
+  // Comma-separated names of parameters that keep their value. Some names stand
+  // for several: focal, centre, distortion, readouts, registration.
+  std::string fix;
+
+  // A known length: two times (s) and the distance between the camera positions
+  // at these times (m), as T0,T1,METRES; empty: none.
+  std::string known_length;
+
+  // A parameter counts as determined if the recording reduces its standard
+  // deviation below this share of the prior's.
+  double determined_share = 0.3;
+
+  // Minimum gain of another camera on held-out pairs, as a share of their cost.
+  double min_gain = 0.01;
+
+  // The maximum difference between the halves of a recording, each calibrated
+  // separately, in standard deviations.
+  double max_halves_sigmas = 4.0;
+
+  // If a recording has more frames per second than this, only every second one
+  // or fewer are used, because near frames add little information. Ignored if a
+  // part of the recording was requested. 0: all frames are used.
+  double max_rate = 20.0;
+
+  // The maximum number of passes (mapping and calibration).
+  int max_passes = 3;
+
+  // Approximate number of landmark views. The time to solve grows with it.
+  int max_views = 40000;
+
+  // Returns one line that says what is wrong with the settings, or empty.
+  std::string Check() const;
+};
+
+// The rows of these settings.
+std::vector<Setting> SettingTable(CalibrationSettings* settings);
 
 // Calibrates a camera from the keyframes and keyframe pairs of its recording.
 // `first` is the camera that the keyframes were tracked with. `path` is a
@@ -23,9 +64,12 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const CalibrationScale& scale, int threads,
                             const RgbdCamera* known = nullptr);
 
-// A camera as calibration parameters: its lens, and no error in corrected
-// depth.
-CalibrationVector ThetaOf(const Camera& camera);
+// Returns which parameters are free: all except those that `fix` names (see
+// CalibrationSettings). depth_factor is free only if the scale is known, and
+// only the distortion coefficients of this lens model are free. Throws
+// InputError for an unknown name.
+FreeParts FreeParameters(const std::string& fix, bool has_scale,
+                         LensModel lens);
 
 // Returns the first camera, changed by theta.
 RgbdCamera ApplyCalibration(const RgbdCamera& first,

@@ -17,13 +17,6 @@ constexpr int kMostFeatures = 300;
 constexpr int kFewestFeatures = 80;
 constexpr double kFoundAgain = 0.2;
 
-int FeaturesOfEach(int max_views, size_t num_pairs) {
-  const double in_each =
-      max_views / (kFoundAgain * 2.0 * std::max<double>(1.0, num_pairs));
-  return static_cast<int>(
-      std::clamp<double>(in_each, kFewestFeatures, kMostFeatures));
-}
-
 // Adds as many landmarks that have views as `max_views` allows.
 void AddLandmarks(const std::vector<LandmarksOfKeyframe>& found, int max_views,
                   CalibrationViews* views) {
@@ -31,10 +24,8 @@ void AddLandmarks(const std::vector<LandmarksOfKeyframe>& found, int max_views,
   for (const LandmarksOfKeyframe& keyframe : found) {
     for (const auto& own : keyframe.views) all_views += own.size();
   }
-  const double share = all_views == 0
-                           ? 1.0
-                           : std::min(1.0, static_cast<double>(max_views) /
-                                               static_cast<double>(all_views));
+  const double share =
+      std::min(1.0, max_views / std::max(1.0, static_cast<double>(all_views)));
   for (const LandmarksOfKeyframe& keyframe : found) {
     std::vector<size_t> seen;  // in other keyframes
     for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
@@ -66,28 +57,20 @@ Twist TwistAt(const Trajectory& path, double time) {
       path.begin(), path.end(), time - 1e-4,
       [](const StampedPose& pose, double t) { return pose.timestamp < t; });
   if (at == path.end()) return {};
-  // The frame at this offset, or the last one before a gap.
-  const auto place = at - path.begin();
-  const auto neighbour = [&](int steps) {
-    const int direction = steps > 0 ? 1 : -1;
-    auto there = place;
-    for (int i = 0; i < std::abs(steps); ++i) {
-      const auto next = there + direction;
-      if (next < 0 || next >= static_cast<std::ptrdiff_t>(path.size()) ||
-          std::abs(path[next].timestamp - path[there].timestamp) > kMaxGap) {
-        break;
-      }
-      there = next;
-    }
-    return there;
+  // The next frame in a direction (1 or -1), or the same one before a gap.
+  const auto next = [&](std::ptrdiff_t from, int direction) {
+    const auto to = from + direction;
+    const bool is_near =
+        to >= 0 && to < static_cast<std::ptrdiff_t>(path.size()) &&
+        std::abs(path[to].timestamp - path[from].timestamp) <= kMaxGap;
+    return is_near ? to : from;
   };
   struct Difference {
     Twist twist;
     double interval = 0.0;  // s
     double lean = 0.0;      // offset of its middle from the frame, s
   };
-  const auto difference = [&](int steps) {
-    const auto before = neighbour(-steps), after = neighbour(steps);
+  const auto difference = [&](std::ptrdiff_t before, std::ptrdiff_t after) {
     const double t0 = path[before].timestamp, t1 = path[after].timestamp;
     Difference result;
     result.interval = t1 - t0;
@@ -101,8 +84,10 @@ Twist TwistAt(const Trajectory& path, double time) {
     result.twist = seen(after) - seen(before);
     return result;
   };
-  const Difference near = difference(1);
-  const Difference far = difference(2);
+  const std::ptrdiff_t place = at - path.begin();
+  const auto before = next(place, -1), after = next(place, 1);
+  const Difference near = difference(before, after);
+  const Difference far = difference(next(before, -1), next(after, 1));
   constexpr double kEven = 0.05;
   const bool is_even = std::abs(far.interval / near.interval - 2.0) < kEven &&
                        std::max(near.lean, far.lean) < kEven * near.interval;
@@ -204,7 +189,10 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
     data.timestamps.push_back(keyframe.images.timestamp);
     data.views.twists.push_back(TwistAt(path, keyframe.images.timestamp));
   }
-  const int features = FeaturesOfEach(max_views, data.pairs.size());
+  const double in_each = max_views / (kFoundAgain * 2.0 *
+                                      std::max<double>(1.0, data.pairs.size()));
+  const int features = static_cast<int>(
+      std::clamp<double>(in_each, kFewestFeatures, kMostFeatures));
   AddLandmarks(FindLandmarks(map, data, settings, features, threads), max_views,
                &data.views);
   return data;

@@ -1,15 +1,11 @@
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
-#include <utility>
 
 #include "apps/calibration/calibration_result.h"
 
 namespace rgbd_pose {
 namespace {
-
-using FreeParts = std::array<bool, kCalibrationSize>;
 
 // A smaller part cannot be calibrated.
 constexpr int kMinKeyframes = 3;
@@ -76,20 +72,12 @@ std::optional<PartEstimate> Calibrated(Part part, const FreeParts& is_free,
   const BundleAdjustment problem(part.views, prior, false);
   if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
   problem.MeasureScales(&part.state);
-  CalibrationMatrix model_covariance, sandwich_covariance;
-  if (!problem.Covariance(is_free, part.state, &model_covariance,
-                          &sandwich_covariance)) {
-    return {};
-  }
-  return PartEstimate{part.state.theta, model_covariance.diagonal().cwiseMax(
-                                            sandwich_covariance.diagonal())};
+  const auto variances = problem.Variances(is_free, part.state);
+  if (!variances.has_value()) return {};
+  return PartEstimate{part.state.theta, *variances};
 }
 
 }  // namespace
-
-double HalvesOfParameter::Sigmas() const {
-  return std::abs(second - first) / sigma;
-}
 
 double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves) {
   if (halves.empty()) return 0.0;

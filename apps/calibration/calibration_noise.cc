@@ -18,68 +18,60 @@ struct Sample {
   double share = 0.0;  // share of the landmark position from this depth
 };
 
-constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution
-
-// Collects the depths of a landmark in its anchor and in all views.
-class Collector {
- public:
-  Collector(const CalibrationViews& views, const CalibrationState& state)
-      : views_(views), state_(state), poses_(PosesOf(state)) {}
-
-  void Collect(size_t i, std::vector<Sample>* samples) const {
-    const Landmark& landmark = views_.landmarks[i];
-    const MotionDerivatives& anchor = poses_[landmark.anchor];
-    const double d = state_.inverse_depths[i];
-    const double* const theta = state_.theta.data();
-    const size_t first = samples->size();
-    double information = 0.0;
-    const auto add = [&](const LandmarkData& data, double w,
-                         const Eigen::Vector3d& ray, double by_depth) {
-      const MeasuredInverseDepth& depth = data.depth;
-      information += by_depth;
-      if (depth.pixel_value == 0.0) return;
-      const double expected =
-          MeasuredFrom<double>(w, theta, data.motion, depth);
-      // Moves the depth along the plane to the position of the landmark.
-      const double there = depth.plane.dot(ray);
-      const double pixel =
-          depth.pixel_value * there / depth.plane.dot(depth.pixel_ray);
-      const double z2 = 1.0 / (expected * expected);
-      samples->push_back({1.0 / expected, (pixel - expected) * z2,
-                          (depth.value * there - expected) * z2, by_depth});
-    };
-    double r[2];
-    LandmarkDerivatives<1> J1;
-    LandmarkDerivatives<2> J2;
-    const LandmarkData own = DataOf(views_, landmark, state_);
-    AnchorDepth::Jacobian(anchor, anchor, d, theta, own, r, &J1);
-    add(own, d, landmark.depth.ray, J1.inverse_depth.squaredNorm());
-    for (int k = 0; k < landmark.num_views; ++k) {
-      const LandmarkView& view = views_.views[landmark.first_view + k];
-      const LandmarkData data = DataOf(views_, landmark, view, state_);
-      const MotionDerivatives& there = poses_[view.keyframe];
-      LandmarkPixel::Jacobian(anchor, there, d, theta, data, r, &J2);
-      information += J2.inverse_depth.squaredNorm();
-      if (view.depth.inverse_sigma == 0.0) continue;
-      // Offset from the position of the feature to that of the landmark.
-      const Eigen::Vector3d beside(r[0] / data.inverse_sigma_px / theta[kFx],
-                                   r[1] / data.inverse_sigma_px / theta[kFy],
-                                   0.0);
-      LandmarkDepth::Jacobian(anchor, there, d, theta, data, r, &J1);
-      const Eigen::Vector3d Y = InView<double>(anchor, there, d, theta, data);
-      add(data, d / Y.z(), view.depth.ray + beside,
-          J1.inverse_depth.squaredNorm());
+// Appends the depths of the i-th landmark in its anchor and in all views.
+void CollectDepths(const CalibrationViews& views, const CalibrationState& state,
+                   const std::vector<MotionDerivatives>& poses, size_t i,
+                   std::vector<Sample>* samples) {
+  const Landmark& landmark = views.landmarks[i];
+  const MotionDerivatives& anchor = poses[landmark.anchor];
+  const double d = state.inverse_depths[i];
+  const double* const theta = state.theta.data();
+  const size_t first = samples->size();
+  double information = 0.0;
+  const auto add = [&](const LandmarkData& data, double w,
+                       const Eigen::Vector3d& ray, double by_depth) {
+    const MeasuredInverseDepth& depth = data.depth;
+    information += by_depth;
+    if (depth.pixel_value == 0.0) return;
+    const double expected = MeasuredFrom<double>(w, theta, data.motion, depth);
+    // Moves the depth along the plane to the position of the landmark.
+    const double there = depth.plane.dot(ray);
+    const double pixel =
+        depth.pixel_value * there / depth.plane.dot(depth.pixel_ray);
+    const double z2 = 1.0 / (expected * expected);
+    const Sample sample = {1.0 / expected, (pixel - expected) * z2,
+                           (depth.value * there - expected) * z2, by_depth};
+    if (sample.depth > 0.0 && std::isfinite(sample.pixel) &&
+        std::isfinite(sample.mean)) {
+      samples->push_back(sample);
     }
-    for (size_t s = first; s < samples->size(); ++s) {
-      (*samples)[s].share /= information;
-    }
+  };
+  double r[2];
+  LandmarkDerivatives<1> J1;
+  LandmarkDerivatives<2> J2;
+  const LandmarkData own = DataOf(views, landmark, state);
+  AnchorDepth::Jacobian(anchor, anchor, d, theta, own, r, &J1);
+  add(own, d, landmark.depth.ray, J1.inverse_depth.squaredNorm());
+  for (int k = 0; k < landmark.num_views; ++k) {
+    const LandmarkView& view = views.views[landmark.first_view + k];
+    const LandmarkData data = DataOf(views, landmark, view, state);
+    const MotionDerivatives& there = poses[view.keyframe];
+    LandmarkPixel::Jacobian(anchor, there, d, theta, data, r, &J2);
+    information += J2.inverse_depth.squaredNorm();
+    if (view.depth.inverse_sigma == 0.0) continue;
+    // Offset from the position of the feature to that of the landmark.
+    const Eigen::Vector3d beside(r[0] / data.inverse_sigma_px / theta[kFx],
+                                 r[1] / data.inverse_sigma_px / theta[kFy],
+                                 0.0);
+    LandmarkDepth::Jacobian(anchor, there, d, theta, data, r, &J1);
+    const Eigen::Vector3d Y = InView<double>(anchor, there, d, theta, data);
+    add(data, d / Y.z(), view.depth.ray + beside,
+        J1.inverse_depth.squaredNorm());
   }
-
- private:
-  const CalibrationViews& views_;
-  const CalibrationState& state_;
-  std::vector<MotionDerivatives> poses_;
-};
+  for (size_t s = first; s < samples->size(); ++s) {
+    (*samples)[s].share /= information;
+  }
+}
 
 // The variance of a mean of 3 x 3 pixels, divided by the variance of one pixel.
 // A depth that contributes a share h to the position of a landmark leaves
@@ -140,18 +132,12 @@ void FitSigmas(const std::vector<DepthScatter>& scatter, double relative_error,
 std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
                                            const CalibrationState& state,
                                            const DepthNoiseModel& old) {
-  const Collector collector(views, state);
+  const std::vector<MotionDerivatives> poses = PosesOf(state);
   std::vector<Sample> samples;
   for (size_t i = 0; i < views.landmarks.size(); ++i) {
-    if (views.landmarks[i].num_views > 0) collector.Collect(i, &samples);
+    if (views.landmarks[i].num_views == 0) continue;
+    CollectDepths(views, state, poses, i, &samples);
   }
-  samples.erase(std::remove_if(samples.begin(), samples.end(),
-                               [](const Sample& sample) {
-                                 return !(sample.depth > 0.0) ||
-                                        !std::isfinite(sample.pixel) ||
-                                        !std::isfinite(sample.mean);
-                               }),
-                samples.end());
   constexpr size_t kMinSamples = 300;
   if (samples.size() < kMinSamples) return std::nullopt;
 
@@ -176,11 +162,10 @@ std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
       in_old_sigmas.push_back(errors.back() / old.sigma(sample.depth));
       squares += sample.depth * sample.depth;
     }
+    constexpr double kLeast = 1e-6;  // m
     fit.scatter.push_back(
         {std::sqrt(squares / static_cast<double>(end - begin)),
-         kSigmaOfMedian * Median(errors)});
-    constexpr double kLeast = 1e-6;  // m
-    fit.scatter.back().sigma = std::max(kLeast, fit.scatter.back().sigma);
+         std::max(kLeast, kSigmaOfMedian * Median(errors))});
   }
   fit.in_old_sigmas = kSigmaOfMedian * Median(in_old_sigmas);
   // The relative error of a median of absolute values is 1.17 / sqrt(n).

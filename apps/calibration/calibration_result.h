@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <cmath>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,7 +45,7 @@ struct HalvesOfParameter {
   double sigma = 0.0;   // standard deviation of their difference
 
   // The difference of the halves in standard deviations.
-  double Sigmas() const;
+  double Sigmas() const { return std::abs(second - first) / sigma; }
 };
 
 // The scatter of depths in one depth bin.
@@ -136,8 +137,7 @@ double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves);
 // what the camera sees. Empty if a half cannot determine the parameters.
 std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
-    const std::array<bool, kCalibrationSize>& is_free,
-    const CalibrationPrior& prior);
+    const FreeParts& is_free, const CalibrationPrior& prior);
 
 // Fits the noise of single depth pixels robustly to the scatter of depths at
 // landmarks seen in several keyframes. Depths are compared at the landmark, so

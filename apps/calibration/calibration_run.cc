@@ -2,10 +2,7 @@
 
 #include <cmath>
 #include <optional>
-#include <string>
-#include <vector>
 
-#include "apps/calibration/calibration.h"
 #include "apps/calibration/calibration_verdict.h"
 #include "core/util/input_error.h"
 #include "core/util/quantile.h"
@@ -126,8 +123,7 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
     Sequence opened = OpenSequence(part, /*keep_color=*/false,
                                    known.has_value() ? &*known : nullptr);
     const auto frames = opened.source->timestamps().size();
-    const std::string error = settings.Check();
-    if (!error.empty()) throw InputError("calibration: " + error);
+    RequireSound(settings.Check(), "calibration: ");
     const RgbdCamera camera = opened.source->camera();
     SlamRun run(with_shutter, slam, camera.camera, opened.inputs);
     int done = 0;

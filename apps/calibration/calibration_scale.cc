@@ -1,13 +1,11 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <vector>
 
 #include "apps/calibration/calibration_data.h"
 #include "core/evaluation/association.h"
 #include "core/util/input_error.h"
-#include "core/util/text_file.h"
 #include "frontend/tracking/motion_guess.h"
 
 namespace rgbd_pose {
@@ -70,20 +68,20 @@ KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
           b.in_keyframe, metres,     kLengthSigma};
 }
 
-// The distance (m) between the camera positions at two times (s), if known.
-using DistanceBetween =
-    std::function<std::optional<double>(double from, double to)>;
-
 // Connects each keyframe to the first distant one, or to the farthest one.
+// `distance` is that (m) between the camera positions at two times (s), if
+// known.
+template <typename Distance>
 std::vector<KnownDistance> Between(const CalibrationData& data,
-                                   const DistanceBetween& distance,
-                                   double sigma, double share) {
+                                   const Distance& distance, double sigma,
+                                   double share) {
   std::vector<KnownDistance> distances;
   const int n = static_cast<int>(data.timestamps.size());
   for (int i = 0; i < n; ++i) {
     KnownDistance farthest;
     for (int k = i + 1; k < n && farthest.metres < kFarApart; ++k) {
-      const auto metres = distance(data.timestamps[i], data.timestamps[k]);
+      const std::optional<double> metres =
+          distance(data.timestamps[i], data.timestamps[k]);
       if (!metres.has_value() || *metres <= farthest.metres) continue;
       farthest.a = i;
       farthest.b = k;

@@ -1,21 +1,15 @@
-#include "apps/calibration/calibration_settings.h"
-
 #include <sstream>
 #include <string_view>
 
+#include "apps/calibration/calibration.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
 
 namespace rgbd_pose {
 namespace {
 
-struct NamedParts {
-  const char* name;
-  std::vector<int> parts;
-};
-
-std::vector<NamedParts> PartNames() {
-  std::vector<NamedParts> names = {
+std::vector<Named<std::vector<int>>> PartNames() {
+  std::vector<Named<std::vector<int>>> names = {
       {"focal", {kFx, kFy}},
       {"centre", {kCx, kCy}},
       {"distortion", {kK1, kK2, kK3, kK4, kP1, kP2}},
@@ -89,23 +83,22 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
   };
 }
 
-std::array<bool, kCalibrationSize> FreeParameters(const std::string& fix,
-                                                  bool has_scale,
-                                                  LensModel lens) {
-  std::array<bool, kCalibrationSize> is_free;
-  is_free.fill(true);
+FreeParts FreeParameters(const std::string& fix, bool has_scale,
+                         LensModel lens) {
+  FreeParts is_free;
+  is_free.set();
   is_free[kDepthFactor] = has_scale;
   is_free[kK4] = lens == LensModel::kEquidistant;
   is_free[kP1] = is_free[kP2] = lens != LensModel::kEquidistant;
-  const std::vector<NamedParts> names = PartNames();
+  const std::vector<Named<std::vector<int>>> names = PartNames();
   std::stringstream list(fix);
   for (std::string word; std::getline(list, word, ',');) {
-    const NamedParts* const named = FindNamed(names, word);
+    const auto* const named = FindNamed(names, word);
     if (named == nullptr) {
       throw InputError("fix: unknown parameter '" + word +
                        "'; available: " + Join(NamesOf(names)));
     }
-    for (const int part : named->parts) is_free[part] = false;
+    for (const int part : named->value) is_free[part] = false;
   }
   return is_free;
 }

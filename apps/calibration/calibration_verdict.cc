@@ -102,9 +102,7 @@ void CompareHeldOut(const CalibrationViews& views_before,
       const bool with_depth = view->depth.inverse_sigma > 0.0 &&
                               view_after.depth.inverse_sigma > 0.0;
       OfPair& pair = pairs[std::minmax(landmark.anchor, view->keyframe)];
-      HeldOutResidual residual;
-      residual.u = view->u;
-      residual.v = view->v;
+      HeldOutResidual residual = {view->u, view->v, {}, {}};
       pair.before += CostOf(views_before, landmark, *view, with_depth,
                             before.inverse_depths[i], before, after,
                             poses_before, &residual.before);

@@ -1,18 +1,14 @@
 #include "apps/calibration/displaced_depths.h"
 
 #include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "core/geometry/camera.h"
-#include "core/geometry/depth_noise.h"
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"
 #include "frontend/frame/depth_warper.h"
-#include "frontend/frame/frame.h"
 #include "frontend/frame/observe.h"
 
 namespace rgbd_pose {
@@ -38,16 +34,17 @@ struct Displacement {
 
 // Looks up a depth again in an image in which a displacement has been undone.
 void LookUpAgain(const Frame& frame, const Camera& camera,
-                 const DepthLookupOptions& options, double u, double v,
-                 const Displacement& undone, MeasuredInverseDepth* depth) {
-  const Observation o = Observe(frame, camera, u, v, 1.0, options);
+                 const DepthLookupOptions& options, const Displacement& undone,
+                 DepthPixel* pixel) {
+  const Observation o =
+      Observe(frame, camera, pixel->u, pixel->v, 1.0, options);
   MeasuredInverseDepth updated =
-      MeasuredAt(frame, camera, o, {u, v}, options.noise);
+      MeasuredAt(frame, camera, o, {pixel->u, pixel->v}, options.noise);
   updated.undone_rotation = undone.rotation;
   updated.undone_translation = undone.translation;
   // Without a valid depth, a landmark keeps its value as the initial guess.
-  if (updated.inverse_sigma == 0.0) updated.value = depth->value;
-  *depth = updated;
+  if (updated.inverse_sigma == 0.0) updated.value = pixel->depth.value;
+  pixel->depth = updated;
 }
 
 constexpr int kReach = 3;  // grid points on each side
@@ -78,21 +75,19 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
       row >= frame.depth.rows - border) {
     return Eigen::Vector3d::Zero();
   }
-  double inverse[kWindowSide][kWindowSide];
+  double inverse[kWindowSide * kWindowSide];
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
   int count = 0;
-  for (int i = 0; i < kWindowSide; ++i) {
-    for (int j = 0; j < kWindowSide; ++j) {
-      const double depth = frame.DepthAt(column + (j - kReach) * stride,
-                                         row + (i - kReach) * stride);
-      inverse[i][j] = depth > 0.0 ? 1.0 / depth : 0.0;
-      if (depth == 0.0) continue;
-      const Eigen::Vector3d at(j - kReach, i - kReach, 1.0);
-      normal += at * at.transpose();
-      right += at * inverse[i][j];
-      ++count;
-    }
+  for (int k = 0; k < kWindowSide * kWindowSide; ++k) {
+    const int i = k / kWindowSide - kReach, j = k % kWindowSide - kReach;
+    const double depth = frame.DepthAt(column + j * stride, row + i * stride);
+    inverse[k] = depth > 0.0 ? 1.0 / depth : 0.0;
+    if (depth == 0.0) continue;
+    const Eigen::Vector3d at(j, i, 1.0);
+    normal += at * at.transpose();
+    right += at * inverse[k];
+    ++count;
   }
   if (count < kMinOnPlane) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d fit = normal.ldlt().solve(right);
@@ -102,12 +97,11 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
   const double limit =
       std::max(kMaxSigmas * noise.sigma(1.0 / middle) * middle * middle,
                kMaxBulge * middle);
-  for (int i = 0; i < kWindowSide; ++i) {
-    for (int j = 0; j < kWindowSide; ++j) {
-      if (inverse[i][j] == 0.0) continue;
-      const double plane = fit.dot(Eigen::Vector3d(j - kReach, i - kReach, 1));
-      if (std::abs(inverse[i][j] - plane) > limit) --count;
-    }
+  for (int k = 0; k < kWindowSide * kWindowSide; ++k) {
+    const int i = k / kWindowSide - kReach, j = k % kWindowSide - kReach;
+    if (inverse[k] == 0.0) continue;
+    const double plane = fit.dot(Eigen::Vector3d(j, i, 1.0));
+    if (std::abs(inverse[k] - plane) > limit) --count;
   }
   if (count < kMinOnPlane) return Eigen::Vector3d::Zero();
   const Eigen::Vector2d ideal = camera.Undistort({u, v});
@@ -159,36 +153,27 @@ void LookUpDepthsAgain(const KeyframeMap& map, const Camera& camera,
   const DepthLookupOptions options = features.DepthLookup();
   const int num_keyframes = static_cast<int>(data->in_map.size());
   // By keyframe: its own landmarks, and its views of other landmarks.
-  std::vector<std::vector<Landmark*>> landmarks(num_keyframes);
-  std::vector<std::vector<LandmarkView*>> views(num_keyframes);
+  std::vector<std::vector<DepthPixel*>> pixels(num_keyframes);
   for (Landmark& landmark : data->views.landmarks) {
-    landmarks[landmark.anchor].push_back(&landmark);
+    pixels[landmark.anchor].push_back(&landmark);
   }
   for (LandmarkView& view : data->views.views) {
-    views[view.keyframe].push_back(&view);
+    pixels[view.keyframe].push_back(&view);
   }
   ParallelFor(num_keyframes, threads, [&](int k) {
-    if (landmarks[k].empty() && views[k].empty()) return;
+    if (pixels[k].empty()) return;
     const auto moved_at = [&](double row) {
       return Displacement(theta, MotionAt(data->views, k, row));
     };
+    const auto undo = [&](double row) {
+      const Displacement moved = moved_at(row);
+      return Rigid3d::FromRotationVector(moved.rotation, moved.translation)
+          .Inverse();
+    };
     Frame frame = map.keyframes[data->in_map[k]].images.Restore();
-    frame.depth = DepthWarper(camera)
-                      .Move(frame,
-                            [&](double row) {
-                              const Displacement moved = moved_at(row);
-                              return Rigid3d::FromRotationVector(
-                                         moved.rotation, moved.translation)
-                                  .Inverse();
-                            })
-                      .clone();
-    for (Landmark* landmark : landmarks[k]) {
-      LookUpAgain(frame, camera, options, landmark->u, landmark->v,
-                  moved_at(landmark->v), &landmark->depth);
-    }
-    for (LandmarkView* view : views[k]) {
-      LookUpAgain(frame, camera, options, view->u, view->v, moved_at(view->v),
-                  &view->depth);
+    frame.depth = DepthWarper(camera).Move(frame, undo).clone();
+    for (DepthPixel* pixel : pixels[k]) {
+      LookUpAgain(frame, camera, options, moved_at(pixel->v), pixel);
     }
   });
 }

@@ -17,109 +17,89 @@ class LandmarkMatcher {
   // All arguments except `settings` must outlive the matcher. `chosen` has the
   // map indices of the keyframes; other functions use positions in `chosen`.
   LandmarkMatcher(const KeyframeMap& map, const std::vector<int>& chosen,
-                  const OdometrySettings& settings, int max_features);
+                  const OdometrySettings& settings, int max_features)
+      : map_(map), chosen_(chosen), noise_(settings.features.depth_noise) {
+    FrontendOptions options = settings.features;
+    options.camera = map.camera;
+    options.max_features = max_features;
+    frontend_ = MakeFrontend("patch", options);
+  }
 
   // `held_out` has one entry for each neighbour.
   LandmarksOfKeyframe Match(int anchor, const std::vector<int>& neighbours,
-                            const std::vector<bool>& held_out);
+                            const std::vector<bool>& held_out) {
+    LandmarksOfKeyframe result;
+    const PreparedFrame frame = Images(anchor);
+    const auto features = frontend_->Detect(frame);
+    std::vector<int> place(features->observations.size(), -1);
+    for (size_t i = 0; i < features->observations.size(); ++i) {
+      const Observation& o = features->observations[i];
+      Landmark landmark;
+      Measure(frame, o, &landmark);
+      landmark.anchor = anchor;
+      if (landmark.depth.inverse_sigma == 0.0) continue;
+      place[i] = static_cast<int>(result.landmarks.size());
+      result.landmarks.push_back(landmark);
+    }
+    result.views.resize(result.landmarks.size());
+    for (size_t n = 0; n < neighbours.size(); ++n) {
+      const int to = neighbours[n];
+      const PreparedFrame& there = Images(to);
+      frontend_->Match(*features, there, Pose(to).Inverse() * Pose(anchor),
+                       &matches_);
+      for (size_t i = 0; i < matches_.matches.size(); ++i) {
+        const int landmark = place[matches_.features[i]];
+        if (landmark < 0) continue;
+        const Observation& o = matches_.matches[i].cur;
+        LandmarkView view;
+        Measure(there, o, &view);
+        view.keyframe = to;
+        view.sigma_px = o.sigma_px;
+        view.is_held_out = held_out[n];
+        result.views[landmark].push_back(view);
+      }
+    }
+    return result;
+  }
 
  private:
   const Rigid3d& Pose(int at) const {
     return map_.keyframes[chosen_[at]].world_from_cam;
   }
-  // The measured (distorted) pixel.
-  Eigen::Vector2d Seen(const Observation& o) const {
-    return map_.camera.Project(map_.camera.Ray(o.u, o.v));
+  void Measure(const Frame& frame, const Observation& o,
+               DepthPixel* seen) const {
+    const Camera& camera = map_.camera;
+    const Eigen::Vector2d pixel = camera.Project(camera.Ray(o.u, o.v));
+    seen->u = pixel.x();
+    seen->v = pixel.y();
+    seen->depth = MeasuredAt(frame, camera, o, pixel, noise_);
   }
-  // Decodes images once for consecutive neighbours.
-  const PreparedFrame& Images(int at);
 
-  MeasuredInverseDepth DepthOf(const Frame& frame, const Observation& o,
-                               const Eigen::Vector2d& pixel) const {
-    return MeasuredAt(frame, map_.camera, o, pixel, noise_);
+  // Decodes images once for consecutive neighbours.
+  const PreparedFrame& Images(int at) {
+    constexpr size_t kMost = 40;
+    const auto found = images_.find(at);
+    if (found != images_.end()) return found->second;
+    if (images_.size() >= kMost) {
+      // The keyframe farthest in time is needed last.
+      images_.erase(std::max_element(
+          images_.begin(), images_.end(), [at](const auto& a, const auto& b) {
+            return std::abs(a.first - at) < std::abs(b.first - at);
+          }));
+    }
+    return images_
+        .emplace(at,
+                 PreparedFrame(map_.keyframes[chosen_[at]].images.Restore()))
+        .first->second;
   }
 
   const KeyframeMap& map_;
   const std::vector<int>& chosen_;
+  const DepthNoiseModel noise_;
   std::unique_ptr<Frontend> frontend_;
-  DepthNoiseModel noise_;
   std::map<int, PreparedFrame> images_;
   FeatureMatches matches_;
 };
-
-LandmarkMatcher::LandmarkMatcher(const KeyframeMap& map,
-                                 const std::vector<int>& chosen,
-                                 const OdometrySettings& settings,
-                                 int max_features)
-    : map_(map), chosen_(chosen) {
-  FrontendOptions options = settings.features;
-  options.camera = map.camera;
-  options.max_features = max_features;
-  frontend_ = MakeFrontend("patch", options);
-  noise_ = options.depth_noise;
-}
-
-LandmarksOfKeyframe LandmarkMatcher::Match(int anchor,
-                                           const std::vector<int>& neighbours,
-                                           const std::vector<bool>& held_out) {
-  LandmarksOfKeyframe result;
-  const PreparedFrame frame = Images(anchor);
-  const auto features = frontend_->Detect(frame);
-  std::vector<int> place(features->observations.size(), -1);
-  for (size_t i = 0; i < features->observations.size(); ++i) {
-    const Observation& o = features->observations[i];
-    const Eigen::Vector2d pixel = Seen(o);
-    Landmark landmark;
-    landmark.anchor = anchor;
-    landmark.u = pixel.x();
-    landmark.v = pixel.y();
-    landmark.depth = DepthOf(frame, o, pixel);
-    if (landmark.depth.inverse_sigma == 0.0) continue;
-    place[i] = static_cast<int>(result.landmarks.size());
-    result.landmarks.push_back(landmark);
-  }
-  result.views.resize(result.landmarks.size());
-  for (size_t n = 0; n < neighbours.size(); ++n) {
-    const int to = neighbours[n];
-    const PreparedFrame& there = Images(to);
-    const Rigid3d cur_from_ref = Pose(to).Inverse() * Pose(anchor);
-    frontend_->Match(*features, there, cur_from_ref, &matches_);
-    for (size_t i = 0; i < matches_.matches.size(); ++i) {
-      const int landmark = place[matches_.features[i]];
-      if (landmark < 0) continue;
-      const Observation& o = matches_.matches[i].cur;
-      const Eigen::Vector2d pixel = Seen(o);
-      LandmarkView view;
-      view.keyframe = to;
-      view.u = pixel.x();
-      view.v = pixel.y();
-      view.sigma_px = o.sigma_px;
-      view.depth = DepthOf(there, o, pixel);
-      view.is_held_out = held_out[n];
-      result.views[landmark].push_back(view);
-    }
-  }
-  return result;
-}
-
-const PreparedFrame& LandmarkMatcher::Images(int at) {
-  constexpr size_t kMost = 40;
-  const auto found = images_.find(at);
-  if (found != images_.end()) return found->second;
-  if (images_.size() >= kMost) {
-    // The keyframe farthest in time is needed last.
-    auto farthest = images_.begin();
-    for (auto it = images_.begin(); it != images_.end(); ++it) {
-      if (std::abs(it->first - at) > std::abs(farthest->first - at)) {
-        farthest = it;
-      }
-    }
-    images_.erase(farthest);
-  }
-  return images_
-      .emplace(at, PreparedFrame(map_.keyframes[chosen_[at]].images.Restore()))
-      .first->second;
-}
 
 }  // namespace
 

@@ -48,7 +48,7 @@ NamedSetting ByName(const Named<Value> (&rows)[N], const char* what,
             return std::find_if(std::begin(rows), std::end(rows), is_set)->name;
           },
           [&rows, what, value](const std::string& name) {
-            *value = ValueOf(rows, what, name);
+            *value = RowOf(rows, what, name).value;
           }};
 }
 

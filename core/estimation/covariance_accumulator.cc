@@ -50,15 +50,6 @@ MotionMatrix LessSpurious(const MotionMatrix& hessian,
   return root * root.transpose();
 }
 
-// Writes a match's weight and agreement to an estimate. A match that several
-// costs use (`again`) is an inlier if it agrees with all of them.
-void JudgeMatch(int match, bool again, double weight, bool agrees,
-                MotionEstimate* estimate) {
-  estimate->is_inlier[match] = agrees && (!again || estimate->is_inlier[match]);
-  estimate->weights[match] =
-      again ? std::min(estimate->weights[match], weight) : weight;
-}
-
 }  // namespace
 
 MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
@@ -95,42 +86,46 @@ MotionMatrix RobustCovariance(const std::vector<CovarianceTerm>& terms,
   return A_inverse * (fitted * B + exact) * A_inverse;
 }
 
-void CovarianceAccumulator::JudgeMatches(const RobustProblem& terms,
+void CovarianceAccumulator::JudgeMatches(const RobustProblem& problem,
                                          MotionEstimate* estimate) {
   counted_.assign(estimate->is_inlier.size(), false);
-  shares_.resize(terms.size());
+  shares_.resize(problem.terms().size());
   estimate->num_inliers = 0;
-  for (size_t i = 0; i < terms.size(); ++i) {
-    const RobustTerm term = terms[i];
+  for (size_t i = 0; i < shares_.size(); ++i) {
+    const RobustTerm& term = problem.terms()[i];
     const double scale2 = term.scale * term.scale;
-    const double information = term.cost.information_factor();
+    const double information = term.cost->information_factor();
+    const double factor = term.factor();
     LossSums& sums = shares_[i].sums;
     sums = LossSums();
     for (size_t k = 0; k < term.norms.size(); ++k) {
-      const int p = term.cost.degrees()[k];
+      const int p = term.cost->degrees()[k];
       const double s = term.norms[k];
       double rho[3];
-      term.loss.Evaluate(s, rho);
-      const double weight = rho[1] / term.factor;
+      term.scaled.Evaluate(s, rho);
+      const double weight = rho[1] / factor;
       sums.psi2 += information * weight * weight * s / scale2;
       sums.weight_p += information * weight * p;
-      sums.slope_p +=
-          information * (weight * p + 2.0 * s * rho[2] / term.factor);
+      sums.slope_p += information * (weight * p + 2.0 * s * rho[2] / factor);
       ++sums.blocks;
-      const double limit =
-          term.cost.is_whitened() ? ChiSquared99(p) : term.cost.InlierLimit(k);
+      const double limit = term.cost->is_whitened() ? ChiSquared99(p)
+                                                    : term.cost->InlierLimit(k);
       // The squared sigma in the unit of the residuals is limit / ChiSquared99.
       sums.least_psi2 += information * weight * p * limit / ChiSquared99(p) *
                          kRounding * kRounding / scale2;
       const bool agrees = s <= limit * scale2;
-      const int match = term.cost.matches()[k];
+      const int match = term.cost->matches()[k];
       if (match < 0) {
-        if (agrees && term.has_scale) ++estimate->num_inliers;
+        if (agrees && term.has_scale()) ++estimate->num_inliers;
         continue;
       }
-      // Losses steeper than least squares near 0 have weights above 1.
-      JudgeMatch(match, counted_[match], std::min(weight, 1.0), agrees,
-                 estimate);
+      // A match that several costs use is an inlier if it agrees with all of
+      // them. Losses steeper than least squares near 0 have weights above 1.
+      const bool again = counted_[match];
+      estimate->is_inlier[match] =
+          agrees && (!again || estimate->is_inlier[match]);
+      estimate->weights[match] =
+          std::min(weight, again ? estimate->weights[match] : 1.0);
       counted_[match] = true;
       const double norm = std::sqrt(s);
       if (norm >= estimate->residual_norms[match]) {
@@ -144,18 +139,18 @@ void CovarianceAccumulator::JudgeMatches(const RobustProblem& terms,
 }
 
 NormalEquations CovarianceAccumulator::Linearise(
-    const RobustProblem& terms, const MotionDerivatives& motion) {
+    const RobustProblem& problem, const MotionDerivatives& motion) {
   NormalEquations sum;
-  shares_.resize(terms.size());
-  for (size_t i = 0; i < terms.size(); ++i) {
-    const RobustTerm term = terms[i];
+  shares_.resize(problem.terms().size());
+  for (size_t i = 0; i < shares_.size(); ++i) {
+    const RobustTerm& term = problem.terms()[i];
     NormalEquations share;
-    term.cost.Linearise(motion, term.loss_or_null(), &share);
+    term.cost->Linearise(motion, term.scaled_or_null(), &share);
     MotionMatrix spurious = MotionMatrix::Zero();
-    term.cost.AddSpuriousInformation(motion, &spurious);
+    term.cost->AddSpuriousInformation(motion, &spurious);
     // Residuals larger than their noise do not make slopes noisier.
     const double excess = std::max(1.0, term.scale);
-    double times = kSpuriousCostMargin * term.cost.information_factor() /
+    double times = kSpuriousCostMargin * term.cost->information_factor() /
                    (excess * excess);
     // An image without content does not even have noise to subtract.
     for (int k = 0; k < 6; ++k) {
@@ -173,19 +168,19 @@ NormalEquations CovarianceAccumulator::Linearise(
   return sum;
 }
 
-MotionMatrix CovarianceAccumulator::Covariance(const RobustProblem& terms,
+MotionMatrix CovarianceAccumulator::Covariance(const RobustProblem& problem,
                                                const MotionDerivatives& motion,
                                                const MotionMatrix& inverse) {
-  for (size_t i = 0; i < terms.size(); ++i) {
-    const RobustTerm term = terms[i];
-    shares_[i].is_whitened = term.cost.is_whitened();
-    shares_[i].scale_group = term.cost.scale_group();
+  for (size_t i = 0; i < shares_.size(); ++i) {
+    const RobustTerm& term = problem.terms()[i];
+    shares_[i].is_whitened = term.cost->is_whitened();
+    shares_[i].scale_group = term.cost->scale_group();
     shares_[i].scatter.setZero();
-    if (term.cost.is_whitened()) continue;
-    term.cost.AddScoreOuterProduct(motion, term.loss_or_null(),
-                                   &shares_[i].scatter);
+    if (term.cost->is_whitened()) continue;
+    term.cost->AddScoreOuterProduct(motion, term.scaled_or_null(),
+                                    &shares_[i].scatter);
     // Blocks that are not independent scatter together.
-    shares_[i].scatter /= term.cost.information_factor();
+    shares_[i].scatter /= term.cost->information_factor();
   }
   return RobustCovariance(shares_, inverse);
 }

@@ -57,15 +57,15 @@ class CovarianceAccumulator {
  public:
   // Fills weights, inliers and residual norms of the estimate from the norms of
   // the terms. The lists of the estimate must have one entry per match.
-  void JudgeMatches(const RobustProblem& terms, MotionEstimate* estimate);
+  void JudgeMatches(const RobustProblem& problem, MotionEstimate* estimate);
 
   // RobustProblem::Linearise, minus the spurious information from noise
   // (MotionCost::AddSpuriousInformation).
-  NormalEquations Linearise(const RobustProblem& terms,
+  NormalEquations Linearise(const RobustProblem& problem,
                             const MotionDerivatives& motion);
 
   // `inverse` is the inverse of the whole Hessian.
-  MotionMatrix Covariance(const RobustProblem& terms,
+  MotionMatrix Covariance(const RobustProblem& problem,
                           const MotionDerivatives& motion,
                           const MotionMatrix& inverse);
 

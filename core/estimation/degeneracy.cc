@@ -73,7 +73,6 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
                           double max_standard_deviation) {
   Degeneracy result;
   if (!hessian.allFinite()) {
-    result.is_degenerate = true;
     result.reason = "the Hessian is not finite";
     return result;
   }
@@ -86,7 +85,6 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
   const Eigen::SelfAdjointEigenSolver<MotionMatrix> eigen(
       unit.asDiagonal() * hessian * unit.asDiagonal());
   if (!(eigen.eigenvalues()[0] > kSingular)) {
-    result.is_degenerate = true;
     result.reason = Describe(
         unit.cwiseProduct(eigen.eigenvectors().col(0)).cwiseQuotient(means),
         std::numeric_limits<double>::infinity());
@@ -103,7 +101,6 @@ Degeneracy FindDegeneracy(const MotionMatrix& hessian,
                            known < kSpuriousMargin * spurious_information;
   if (is_rotation || translation.deviation > max_standard_deviation) {
     const WeakDirection& weak = is_rotation ? rotation : translation;
-    result.is_degenerate = true;
     result.reason =
         Describe(weak.direction.cwiseQuotient(means), weak.deviation);
     return result;
@@ -119,7 +116,6 @@ void JudgeWeakestRotation(double share, double spurious_information,
   const double known = share * result->known_rotation;
   const double least = 1.0 / (max_standard_deviation * max_standard_deviation);
   if (known >= std::max(least, kSpuriousMargin * spurious_information)) return;
-  result->is_degenerate = true;
   MotionVector rotation = result->weakest_rotation;
   rotation.tail<3>().setZero();  // in another unit
   result->reason = Describe(rotation, 1.0 / std::sqrt(known));

@@ -11,14 +11,15 @@ namespace rgbd_pose {
 
 // Whether the matches determine all six directions of motion.
 struct Degeneracy {
-  bool is_degenerate = false;
-  std::string reason;                           // names the weak direction
+  std::string reason;  // names the weak direction; empty if there is none
   MotionMatrix inverse = MotionMatrix::Zero();  // of the Hessian, or zero
 
   // The change of the motion with the least determined rotation, per 1 rad, and
   // the information on this rotation, rad^-2.
   MotionVector weakest_rotation = MotionVector::Zero();
   double known_rotation = 0.0;
+
+  bool is_degenerate() const { return !reason.empty(); }
 };
 
 // Judges a Gauss-Newton Hessian of [omega (rad), C (m)] by the resulting

@@ -1,13 +1,13 @@
 #include "core/estimation/estimator.h"
 
-#include <chrono>
-#include <string>
+#include <algorithm>
 #include <utility>
 
 #include "core/estimation/covariance_accumulator.h"
 #include "core/estimation/degeneracy.h"
 #include "core/estimation/minimiser.h"
 #include "core/util/input_error.h"
+#include "core/util/stage_timer.h"
 
 namespace rgbd_pose {
 namespace {
@@ -26,11 +26,10 @@ std::vector<RobustCost> TermsOf(std::unique_ptr<MotionCost> cost,
 // Whether most points are beyond the range of any RGB-D camera.
 bool AreFarAway(const Correspondences& matches) {
   constexpr double kFarthest = 100.0;  // m
-  size_t far = 0;
-  for (size_t i = 0; i < matches.size(); ++i) {
-    far += matches[i].prev.depth > kFarthest ? 1 : 0;
-  }
-  return 2 * far > matches.size();
+  const auto far = std::count_if(
+      matches.begin(), matches.end(),
+      [](const Match& match) { return match.prev.depth > kFarthest; });
+  return 2 * static_cast<size_t>(far) > matches.size();
 }
 
 }  // namespace
@@ -44,9 +43,6 @@ std::string EstimatorOptions::Check() const {
   }
   if (!(max_scale > 0.0)) return "max_scale must be positive";
   if (max_scale_rounds < 0) return "max_scale_rounds must not be negative";
-  if (max_association_rounds < 1) {
-    return "max_association_rounds must be at least 1";
-  }
   if (threads < 1) return "threads must be at least 1";
   if (!(step_tolerance > 0.0)) return "step_tolerance must be positive";
   if (!(max_standard_deviation > 0.0)) {
@@ -78,7 +74,7 @@ class Estimator::Impl {
       }
       return;
     }
-    const bool is_found = minimiser_.Run();
+    const bool is_found = minimiser_.Run(guess, pair.num_levels);
     out_->iterations = minimiser_.iterations();
     if (is_found) {
       out_->cur_from_prev = minimiser_.motion();
@@ -105,16 +101,12 @@ class Estimator::Impl {
     out_->is_inlier.assign(matches_->size(), false);
     out_->residual_norms.assign(matches_->size(), 0.0);
     out_->residual_degrees.assign(matches_->size(), 0);
-    out_->num_inliers = 0;
-    out_->sigma = 0.0;
-    out_->initial_cost = 0.0;
-    out_->final_cost = 0.0;
-    out_->iterations = 0;
+    out_->num_inliers = out_->iterations = 0;
+    out_->sigma = out_->initial_cost = out_->final_cost = 0.0;
     FramePair data = pair;
     data.threads = options_.threads;
     terms_.Bind(data, guess);
     out_->num_used = terms_.num_used();
-    minimiser_.Begin(guess, pair.num_levels);
   }
 
   // Called if the solver found no usable step or too few matches remained: the
@@ -123,13 +115,14 @@ class Estimator::Impl {
     terms_.SetLevel(0, guess);
     const NormalEquations sum =
         terms_.Linearise(DerivativesAt(guess), /*with_losses=*/false);
-    const Degeneracy degeneracy =
+    out_->status = EstimateStatus::kDegenerate;
+    out_->reason =
         FindDegeneracy(sum.hessian, SpuriousInformation(*matches_, {}),
-                       options_.max_standard_deviation);
-    out_->status = degeneracy.is_degenerate ? EstimateStatus::kDegenerate
-                                            : EstimateStatus::kNotConverged;
-    out_->reason = degeneracy.is_degenerate ? degeneracy.reason
-                                            : "the solver found no usable step";
+                       options_.max_standard_deviation)
+            .reason;
+    if (!out_->reason.empty()) return;
+    out_->status = EstimateStatus::kNotConverged;
+    out_->reason = "the solver found no usable step";
   }
 
   void Judge(const Rigid3d& guess) {
@@ -142,13 +135,13 @@ class Estimator::Impl {
     const double spurious = SpuriousInformation(*matches_, out_->weights);
     Degeneracy degeneracy =
         FindDegeneracy(sum.hessian, spurious, options_.max_standard_deviation);
-    if (!degeneracy.is_degenerate &&
+    if (!degeneracy.is_degenerate() &&
         out_->num_inliers < kHardlyWrong * terms_.num_used()) {
       JudgeWeakestRotation(
           SupportedShare(*matches_, *out_, degeneracy.weakest_rotation),
           spurious, options_.max_standard_deviation, &degeneracy);
     }
-    if (degeneracy.is_degenerate) {
+    if (degeneracy.is_degenerate()) {
       out_->status = EstimateStatus::kDegenerate;
       out_->reason = degeneracy.reason;
       return;
@@ -210,11 +203,9 @@ MotionEstimate Estimator::Estimate(const Correspondences& matches,
 
 void Estimator::Estimate(const FramePair& pair, const Rigid3d& guess,
                          MotionEstimate* estimate) {
-  using Clock = std::chrono::steady_clock;
-  const Clock::time_point start = Clock::now();
+  estimate->solve_ms = 0.0;
+  const StageTimer timer(&estimate->solve_ms);
   impl_->Run(pair, guess, estimate);
-  estimate->solve_ms =
-      std::chrono::duration<double, std::milli>(Clock::now() - start).count();
 }
 
 }  // namespace rgbd_pose

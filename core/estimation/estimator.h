@@ -3,15 +3,68 @@
 #include <ceres/loss_function.h>
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "core/estimation/correspondences.h"
-#include "core/estimation/estimator_options.h"
 #include "core/estimation/motion_cost.h"
 #include "core/estimation/motion_estimate.h"
 #include "core/estimation/robust_problem.h"
 
 namespace rgbd_pose {
+
+// How losses reach their final widths.
+enum class RobustSchedule {
+  kDirect,  // at once: for a guess with residuals within the widths
+  kGnc,     // graduated non-convexity: at first wide enough for all matches to
+            // count, then narrower step by step
+};
+
+// The options of Estimator.
+struct EstimatorOptions {
+  // How matches become residual blocks; the result does not depend on it.
+  Assembly assembly = Assembly::kCompressed;
+
+  // How losses reach their final widths.
+  RobustSchedule schedule = RobustSchedule::kGnc;
+
+  // Each stage of the graduation narrows the losses by this factor (at least
+  // 1.01), or directly to the spread of the residuals if this is narrower.
+  double gnc_factor = 2.0;
+
+  // Estimates the spread of residual components in units of the noise model;
+  // the widths are then adapted to it. May reorder its argument. Null: the
+  // noise model is used unchanged.
+  double (*scale)(std::vector<double>* residuals) = nullptr;
+
+  // Scale and motion are estimated alternately, at most this many times.
+  int max_scale_rounds = 10;
+
+  // If residuals are chosen again after every step, iteration stops at the
+  // first step smaller than this (rad and m).
+  double step_tolerance = 1e-6;
+
+  // Maximum iterations of the solver in the last stage; 2 in earlier ones.
+  int max_iterations = 50;
+
+  // The estimate is `inconsistent` if the share of inliers is below this.
+  double min_inlier_share = 0.2;
+
+  // The estimate is also `inconsistent` if the estimated scale exceeds this:
+  // matches so much noisier than the noise model are wrong.
+  double max_scale = 5.0;
+
+  // A direction of motion is `degenerate` if its standard deviation exceeds
+  // this (rad for rotation, m for translation).
+  double max_standard_deviation = 0.5;
+
+  // Threads for sums over tens of thousands of matches. The result does not
+  // depend on it, to the last bit.
+  int threads = 1;
+
+  // One line that says what is wrong with the options, or empty.
+  std::string Check() const;
+};
 
 // Estimates the motion between two frames: minimises the sum of all costs under
 // their losses with Ceres, coarse to fine for costs with levels. Memory is

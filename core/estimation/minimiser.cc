@@ -10,6 +10,10 @@ namespace {
 
 constexpr int kIterationsPerEarlyStage = 2;
 
+// Maximum number of solves in the last stage. In between, residuals or weights
+// that depend on the motion are chosen again if it has changed.
+constexpr int kMaxAssociationRounds = 3;
+
 // Frozen weights stay valid within this motion (rad and m): if noise is ten
 // times larger along the ray than across it, a rotation by this angle adds 1 %
 // to the variance across the ray.
@@ -22,53 +26,35 @@ bool IsWithin(const Rigid3d& a, const Rigid3d& b, double limit) {
 
 }  // namespace
 
-MotionDerivatives DerivativesAt(const Rigid3d& cur_from_prev) {
-  const MotionVector zero = MotionVector::Zero();
-  return LinearizationPoint(cur_from_prev).DerivativesAt(zero.data());
-}
-
-void Minimiser::Begin(const Rigid3d& guess, int max_levels) {
+bool Minimiser::Run(const Rigid3d& guess, int max_levels) {
   motion_ = guess;
-  associated_at_ = guess;
-  level_ = 0;
-  max_levels_ = max_levels;
   iterations_ = 0;
   converged_ = false;
-}
-
-bool Minimiser::Run() {
   int levels = terms_.num_levels();
-  if (max_levels_ > 0) levels = std::min(levels, max_levels_);
-  for (int level = levels - 1; level >= 0; --level) {
-    if (levels > 1) SetLevel(level);
+  if (max_levels > 0) levels = std::min(levels, max_levels);
+  for (level_ = levels - 1; level_ >= 0; --level_) {
+    associated_at_ = motion_;
+    if (levels > 1) terms_.SetLevel(level_, motion_);
     if (terms_.num_used() < kMinMatches) return false;
-    if (!MinimiseWithScale(level)) return false;
+    if (!MinimiseWithScale()) return false;
   }
   return true;
 }
 
-void Minimiser::SetLevel(int level) {
-  level_ = level;
-  associated_at_ = motion_;
-  terms_.SetLevel(level, motion_);
-}
-
-bool Minimiser::MinimiseWithScale(int level) {
+bool Minimiser::MinimiseWithScale() {
   terms_.ResetScales();
   if (!Minimise()) return false;
-  if (options_.scale == nullptr) return true;
-  for (int i = 0; i < MaxScaleRounds(level); ++i) {
+  // If residuals are chosen at every step, coarse levels only improve the
+  // guess.
+  if (options_.scale == nullptr ||
+      (level_ > 0 && terms_.AsksFor(AssociationPolicy::kEveryStep))) {
+    return true;
+  }
+  for (int i = 0; i < options_.max_scale_rounds; ++i) {
     if (!terms_.UpdateScales(DerivativesAt(motion_), options_.scale)) break;
     if (!Minimise()) return false;
   }
   return true;
-}
-
-// If residuals are chosen at every step, coarse levels only improve the guess.
-int Minimiser::MaxScaleRounds(int level) const {
-  return level > 0 && terms_.AsksFor(AssociationPolicy::kEveryStep)
-             ? 0
-             : options_.max_scale_rounds;
 }
 
 // All stages at one scale. Returns false if the solver found no finite step or
@@ -81,7 +67,7 @@ bool Minimiser::Minimise() {
   while (width > 1.0) {
     terms_.SetLosses(width);
     if (!MinimiseStage(kIterationsPerEarlyStage)) return false;
-    Associate(AssociationPolicy::kWhenMoved);
+    AssociateIfMoved();
     if (terms_.num_used() < kMinMatches) return false;
     // If over half of the matches are right, this soon skips most stages.
     width = std::min(width / options_.gnc_factor,
@@ -91,22 +77,19 @@ bool Minimiser::Minimise() {
   return MinimiseLastStage();
 }
 
-// Associates at the current motion. Returns false if no cost needs it that
-// often, or if the weights were frozen at a motion close enough.
-bool Minimiser::Associate(AssociationPolicy least) {
-  if (least != AssociationPolicy::kEveryStep) {
-    if (IsWithin(associated_at_, motion_, kFrozenWithin)) return false;
-    associated_at_ = motion_;
-  }
-  return terms_.Associate(least, motion_);
+// Associates at the current motion. Returns false if no cost needs it, or if
+// the weights were frozen at a motion close enough.
+bool Minimiser::AssociateIfMoved() {
+  if (IsWithin(associated_at_, motion_, kFrozenWithin)) return false;
+  associated_at_ = motion_;
+  return terms_.Associate(AssociationPolicy::kWhenMoved, motion_);
 }
 
 // Weights that were frozen too far away need another round.
 bool Minimiser::MinimiseLastStage() {
   for (int round = 1;; ++round) {
     if (!MinimiseStage(options_.max_iterations)) return false;
-    if (round == options_.max_association_rounds ||
-        !Associate(AssociationPolicy::kWhenMoved)) {
+    if (round == kMaxAssociationRounds || !AssociateIfMoved()) {
       return true;
     }
     if (terms_.num_used() < kMinMatches) return false;
@@ -120,20 +103,17 @@ bool Minimiser::MinimiseStage(int max_iterations) {
   // Step by step, each with fixed residuals: if they were chosen again within a
   // trial step, the solver would compare the costs of different residuals.
   converged_ = false;
+  // Each coarser level has pixels twice as large and needs only half the
+  // precision in pixels, since the next level continues from there.
+  const double settled = options_.step_tolerance * (1 << 2 * level_);
   for (int i = 0; i < max_iterations && !converged_; ++i) {
     const Rigid3d before = motion_;
     if (!SolveOnce(1)) return false;
-    converged_ = converged_ || IsWithin(before, motion_, SettledWithin());
+    converged_ = converged_ || IsWithin(before, motion_, settled);
     terms_.Reassociate(motion_);
     if (terms_.num_used() < kMinMatches) return false;
   }
   return true;
-}
-
-// Each coarser level has pixels twice as large and needs only half the
-// precision in pixels, since the next level continues from there.
-double Minimiser::SettledWithin() const {
-  return options_.step_tolerance * (1 << 2 * level_);
 }
 
 // Solves with the currently associated residuals.

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "core/estimation/estimator_options.h"
-#include "core/estimation/motion_cost.h"
+#include "core/estimation/estimator.h"
 #include "core/estimation/robust_problem.h"
 #include "core/geometry/rigid3.h"
 
@@ -9,9 +8,6 @@ namespace rgbd_pose {
 
 // Minimum number of matches for six degrees of freedom.
 constexpr int kMinMatches = 3;
-
-// R, C and the derivatives of a motion with respect to small changes of it.
-MotionDerivatives DerivativesAt(const Rigid3d& cur_from_prev);
 
 // Minimises the sum of terms with Ceres, starting at a guess: coarse to fine,
 // losses from wide to narrow, scale and motion alternately.
@@ -22,10 +18,8 @@ class Minimiser {
       : options_(options), terms_(*terms) {}
 
   // Terms must be bound to a pair at the guess; `max_levels` as in FramePair.
-  void Begin(const Rigid3d& guess, int max_levels);
-
   // Returns false if the solver finds no finite step or too few matches remain.
-  bool Run();
+  bool Run(const Rigid3d& guess, int max_levels);
 
   // The motion, the number of solver steps, whether the last solve converged.
   const Rigid3d& motion() const { return motion_; }
@@ -33,14 +27,11 @@ class Minimiser {
   bool converged() const { return converged_; }
 
  private:
-  void SetLevel(int level);
-  bool MinimiseWithScale(int level);
-  int MaxScaleRounds(int level) const;
+  bool MinimiseWithScale();
   bool Minimise();
-  bool Associate(AssociationPolicy least);
+  bool AssociateIfMoved();
   bool MinimiseLastStage();
   bool MinimiseStage(int max_iterations);
-  double SettledWithin() const;
   bool SolveOnce(int max_iterations);
 
   const EstimatorOptions& options_;
@@ -50,7 +41,6 @@ class Minimiser {
   Rigid3d motion_;
   Rigid3d associated_at_;  // the motion at which the weights were chosen
   int level_ = 0;
-  int max_levels_ = 0;
   int iterations_ = 0;
   bool converged_ = false;
 };

@@ -4,7 +4,6 @@
 #include <ceres/problem.h>
 #include <ceres/types.h>
 
-#include <Eigen/Core>
 #include <string_view>
 #include <vector>
 

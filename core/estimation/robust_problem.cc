@@ -27,20 +27,19 @@ constexpr double kScaleTolerance = 0.01;
 
 }  // namespace
 
-RobustProblem::RobustProblem(std::vector<RobustCost> costs)
-    : costs_(std::move(costs)), norms_(costs_.size()) {
-  ResetScales();
+RobustProblem::RobustProblem(std::vector<RobustCost> costs) {
+  for (RobustCost& cost : costs) terms_.push_back({std::move(cost)});
 }
 
 bool RobustProblem::has_losses() const {
-  return std::any_of(costs_.begin(), costs_.end(), [](const RobustCost& term) {
+  return std::any_of(terms_.begin(), terms_.end(), [](const RobustTerm& term) {
     return term.loss != nullptr;
   });
 }
 
 int RobustProblem::num_levels() const {
   int most = 1;
-  for (const RobustCost& term : costs_) {
+  for (const RobustTerm& term : terms_) {
     most = std::max(most, term.cost->num_levels());
   }
   return most;
@@ -49,20 +48,20 @@ int RobustProblem::num_levels() const {
 void RobustProblem::Bind(const FramePair& pair, const Rigid3d& cur_from_prev) {
   num_matches_ = pair.matches != nullptr ? pair.matches->size() : 0;
   ResetScales();
-  for (const RobustCost& term : costs_) term.cost->Bind(pair);
+  for (const RobustTerm& term : terms_) term.cost->Bind(pair);
   Associate(AssociationPolicy::kOnce, cur_from_prev);
   SetLosses(1.0);
 }
 
 void RobustProblem::SetLevel(int level, const Rigid3d& cur_from_prev) {
-  for (const RobustCost& term : costs_) {
+  for (const RobustTerm& term : terms_) {
     term.cost->SetLevel(std::min(level, term.cost->num_levels() - 1));
   }
   Associate(AssociationPolicy::kOnce, cur_from_prev);
 }
 
 bool RobustProblem::AsksFor(AssociationPolicy least) const {
-  return std::any_of(costs_.begin(), costs_.end(), [=](const auto& term) {
+  return std::any_of(terms_.begin(), terms_.end(), [=](const auto& term) {
     return term.cost->association() >= least;
   });
 }
@@ -70,7 +69,7 @@ bool RobustProblem::AsksFor(AssociationPolicy least) const {
 bool RobustProblem::Associate(AssociationPolicy least,
                               const Rigid3d& cur_from_prev) {
   if (!AsksFor(least)) return false;
-  for (const RobustCost& term : costs_) {
+  for (const RobustTerm& term : terms_) {
     if (term.cost->association() >= least) term.cost->Associate(cur_from_prev);
   }
   CountMatches();
@@ -78,7 +77,7 @@ bool RobustProblem::Associate(AssociationPolicy least,
 }
 
 void RobustProblem::Reassociate(const Rigid3d& cur_from_prev) {
-  for (const RobustCost& term : costs_) {
+  for (const RobustTerm& term : terms_) {
     if (term.cost->association() == AssociationPolicy::kEveryStep) {
       term.cost->Reassociate(cur_from_prev);
     }
@@ -89,8 +88,8 @@ void RobustProblem::Reassociate(const Rigid3d& cur_from_prev) {
 void RobustProblem::CountMatches() {
   num_used_ = 0;
   counted_.assign(num_matches_, false);
-  for (const RobustCost& term : costs_) {
-    if (!HasScale(*term.cost)) continue;
+  for (const RobustTerm& term : terms_) {
+    if (!term.has_scale()) continue;
     for (const int match : term.cost->matches()) {
       if (match >= 0 && counted_[match]) continue;
       if (match >= 0) counted_[match] = true;
@@ -100,39 +99,39 @@ void RobustProblem::CountMatches() {
 }
 
 void RobustProblem::SetLosses(double width) {
-  losses_.clear();
-  for (size_t i = 0; i < costs_.size(); ++i) {
-    losses_.emplace_back(costs_[i].loss.get(), scales_[i] * width, Factor(i));
+  for (RobustTerm& term : terms_) {
+    term.scaled =
+        ScaledLoss(term.loss.get(), term.scale * width, term.factor());
   }
 }
 
 void RobustProblem::AddTo(Assembly assembly, const LinearizationPoint& origin,
                           double* x, ceres::Problem* problem) {
-  for (size_t i = 0; i < costs_.size(); ++i) {
-    ceres::LossFunction* const loss = Loss(i) ? &losses_[i] : nullptr;
-    costs_[i].cost->AddTo(assembly, origin, loss, x, problem);
+  for (RobustTerm& term : terms_) {
+    ceres::LossFunction* const loss = term.is_plain() ? nullptr : &term.scaled;
+    term.cost->AddTo(assembly, origin, loss, x, problem);
   }
 }
 
 NormalEquations RobustProblem::Linearise(const MotionDerivatives& motion,
                                          bool with_losses) const {
   NormalEquations sum;
-  for (size_t i = 0; i < costs_.size(); ++i) {
-    costs_[i].cost->Linearise(motion, with_losses ? Loss(i) : nullptr, &sum);
+  for (const RobustTerm& term : terms_) {
+    term.cost->Linearise(motion, with_losses ? term.scaled_or_null() : nullptr,
+                         &sum);
   }
   return sum;
 }
 
 double RobustProblem::UpdateNorms(const MotionDerivatives& motion) {
   values_.clear();
-  for (size_t i = 0; i < costs_.size(); ++i) {
-    const MotionCost& cost = *costs_[i].cost;
-    cost.SquaredNorms(motion, &norms_[i]);
-    if (!HasScale(cost)) continue;
-    const double scale2 = scales_[i] * scales_[i];
-    for (size_t k = 0; k < norms_[i].size(); ++k) {
-      const double median = ChiSquaredMedian(cost.degrees()[k]);
-      values_.push_back(norms_[i][k] / (scale2 * median));
+  for (RobustTerm& term : terms_) {
+    term.cost->SquaredNorms(motion, &term.norms);
+    if (!term.has_scale()) continue;
+    const double scale2 = term.scale * term.scale;
+    for (size_t k = 0; k < term.norms.size(); ++k) {
+      const double median = ChiSquaredMedian(term.cost->degrees()[k]);
+      values_.push_back(term.norms[k] / (scale2 * median));
     }
   }
   if (values_.empty()) return 0.0;
@@ -143,25 +142,27 @@ bool RobustProblem::UpdateScales(
     const MotionDerivatives& motion,
     double (*scale)(std::vector<double>* residuals)) {
   bool has_changed = false;
-  new_scales_.assign(costs_.size(), 1.0);
-  for (size_t i = 0; i < costs_.size(); ++i) {
-    if (!HasScale(*costs_[i].cost)) continue;
-    const int group = costs_[i].cost->scale_group();
+  new_scales_.assign(terms_.size(), 1.0);
+  for (size_t i = 0; i < terms_.size(); ++i) {
+    if (!terms_[i].has_scale()) continue;
+    const int group = terms_[i].cost->scale_group();
     size_t first = 0;
-    while (costs_[first].cost->scale_group() != group) ++first;
+    while (terms_[first].cost->scale_group() != group) ++first;
     new_scales_[i] =
         first < i ? new_scales_[first] : EstimateScale(group, motion, scale);
-    const double change = std::abs(new_scales_[i] - scales_[i]);
-    if (change > kScaleTolerance * scales_[i]) has_changed = true;
+    const double change = std::abs(new_scales_[i] - terms_[i].scale);
+    if (change > kScaleTolerance * terms_[i].scale) has_changed = true;
   }
-  if (has_changed) scales_ = new_scales_;
+  for (size_t i = 0; has_changed && i < terms_.size(); ++i) {
+    terms_[i].scale = new_scales_[i];
+  }
   return has_changed;
 }
 
 double RobustProblem::scale() const {
   double largest = 0.0;
-  for (size_t i = 0; i < costs_.size(); ++i) {
-    if (HasScale(*costs_[i].cost)) largest = std::max(largest, scales_[i]);
+  for (const RobustTerm& term : terms_) {
+    if (term.has_scale()) largest = std::max(largest, term.scale);
   }
   return largest;
 }
@@ -170,7 +171,7 @@ double RobustProblem::EstimateScale(
     int group, const MotionDerivatives& motion,
     double (*scale)(std::vector<double>* residuals)) {
   values_.clear();
-  for (const RobustCost& term : costs_) {
+  for (const RobustTerm& term : terms_) {
     if (term.cost->scale_group() != group) continue;
     term.cost->Residuals(motion, &residuals_);
     // Redundant rows are smaller by the root of their redundancy.

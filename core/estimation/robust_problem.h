@@ -17,19 +17,23 @@ struct RobustCost {
   std::unique_ptr<ceres::LossFunction> loss;  // null: least squares
 };
 
-// One term of a sum that is bound to a pair.
-struct RobustTerm {
-  const MotionCost& cost;  // as given
-  const ScaledLoss& loss;  // at its current width
-  bool has_loss;           // false: plain least squares
-  bool has_scale;          // whether its sigmas share the unknown noise scale
-  double scale;            // see RobustProblem::UpdateScales
-  double factor;           // weight in the sum, apart from the loss
-  const std::vector<double>& norms;  // squared, one per block
+// A term of a sum that is bound to a pair.
+struct RobustTerm : RobustCost {
+  double scale = 1.0;               // see RobustProblem::UpdateScales
+  ScaledLoss scaled{nullptr, 1.0};  // the loss at its current width
+  std::vector<double> norms = {};   // squared, one per block
 
-  // For the functions of MotionCost.
-  const ceres::LossFunction* loss_or_null() const {
-    return has_loss ? &loss : nullptr;
+  // Whether its sigmas share the unknown noise scale.
+  bool has_scale() const {
+    return cost->scale_group() != MotionCost::kFixedScale;
+  }
+  // Its weight in the sum, apart from the loss.
+  double factor() const { return cost->information_factor() / (scale * scale); }
+  // Whether `scaled` has no effect: plain least squares.
+  bool is_plain() const { return loss == nullptr && factor() == 1.0; }
+  // `scaled` for the functions of MotionCost; null if it has no effect.
+  const ceres::LossFunction* scaled_or_null() const {
+    return is_plain() ? nullptr : &scaled;
   }
 };
 
@@ -79,48 +83,23 @@ class RobustProblem {
   // The scale of a group of costs is the ratio of its noise to its noise model:
   // 1, or estimated from the residual components by a scale estimator. Without
   // a noticeable change UpdateScales changes nothing and returns false.
-  void ResetScales() { scales_.assign(costs_.size(), 1.0); }
+  void ResetScales() {
+    for (RobustTerm& term : terms_) term.scale = 1.0;
+  }
   bool UpdateScales(const MotionDerivatives& motion,
                     double (*scale)(std::vector<double>* residuals));
 
   // The largest scale.
   double scale() const;
 
-  // The current state of a term.
-  size_t size() const { return costs_.size(); }
-  RobustTerm operator[](size_t term) const {
-    return {*costs_[term].cost,    losses_[term],
-            Loss(term) != nullptr, HasScale(*costs_[term].cost),
-            scales_[term],         Factor(term),
-            norms_[term]};
-  }
+  const std::vector<RobustTerm>& terms() const { return terms_; }
 
  private:
   void CountMatches();
-
-  // Whether the sigmas of a cost share the unknown noise scale.
-  static bool HasScale(const MotionCost& cost) {
-    return cost.scale_group() != MotionCost::kFixedScale;
-  }
   double EstimateScale(int group, const MotionDerivatives& motion,
                        double (*scale)(std::vector<double>* residuals));
 
-  // The weight of a term in the sum, apart from the loss.
-  double Factor(size_t term) const {
-    return costs_[term].cost->information_factor() /
-           (scales_[term] * scales_[term]);
-  }
-
-  // The loss of a term at its current width; null for plain least squares.
-  const ceres::LossFunction* Loss(size_t term) const {
-    const bool is_plain = costs_[term].loss == nullptr && Factor(term) == 1.0;
-    return is_plain ? nullptr : &losses_[term];
-  }
-
-  const std::vector<RobustCost> costs_;
-  std::vector<ScaledLoss> losses_;
-  std::vector<double> scales_;  // one per cost, equal within a group
-  std::vector<std::vector<double>> norms_;  // squared, of each cost's blocks
+  std::vector<RobustTerm> terms_;
   int num_used_ = 0;
   size_t num_matches_ = 0;
 

@@ -28,11 +28,11 @@ struct Entry {
 std::vector<Entry> MergeLists(const std::vector<double>& first,
                               const std::vector<double>& second) {
   std::vector<Entry> entries;
-  for (size_t i = 0; i < first.size(); ++i) {
-    entries.push_back({first[i], static_cast<int>(i), true});
-  }
-  for (size_t i = 0; i < second.size(); ++i) {
-    entries.push_back({second[i], static_cast<int>(i), false});
+  for (const bool in_first : {true, false}) {
+    int index = 0;
+    for (const double time : in_first ? first : second) {
+      entries.push_back({time, index++, in_first});
+    }
   }
   std::stable_sort(
       entries.begin(), entries.end(),
@@ -81,15 +81,13 @@ std::vector<IndexPair> Associate(const std::vector<double>& first,
     Entry& b = entries[right];
     if (a.used || b.used) continue;
     a.used = b.used = true;
-    pairs.push_back(
-        {a.in_first ? a.index : b.index, a.in_first ? b.index : a.index});
+    pairs.emplace_back(a.in_first ? a.index : b.index,
+                       a.in_first ? b.index : a.index);
     if (a.previous != kNone) entries[a.previous].next = b.next;
     if (b.next != kNone) entries[b.next].previous = a.previous;
     add_candidate(a.previous, b.next);
   }
-  std::sort(
-      pairs.begin(), pairs.end(),
-      [](const IndexPair& a, const IndexPair& b) { return a.first < b.first; });
+  std::sort(pairs.begin(), pairs.end());
   return pairs;
 }
 
@@ -108,7 +106,7 @@ std::vector<PosePair> PairPoses(const Trajectory& estimate,
   const std::vector<double> estimate_times = TimesOf(estimate);
   const std::vector<double> truth_times = TimesOf(ground_truth);
   std::vector<PosePair> pairs;
-  for (const auto [i, j] :
+  for (const auto& [i, j] :
        Associate(estimate_times, truth_times, max_time_difference)) {
     pairs.push_back({estimate_times[i], ground_truth[j].world_from_cam,
                      estimate[i].world_from_cam});

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
@@ -8,11 +9,8 @@
 
 namespace rgbd_pose {
 
-// A pair of entries, one from each of two lists with timestamps.
-struct IndexPair {
-  int first = 0;   // index in the first list
-  int second = 0;  // index in the second list
-};
+// The indices of a pair of entries in the first and in the second of two lists.
+using IndexPair = std::pair<int, int>;
 
 // Pairs two lists of strictly increasing, finite timestamps (s) by nearest
 // time, at most `max_difference` (s) apart: the pair with the smallest

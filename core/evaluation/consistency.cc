@@ -1,19 +1,11 @@
 #include "core/evaluation/consistency.h"
 
-#include <cstddef>
 #include <optional>
-#include <utility>
 
-#include "core/evaluation/moving_poses.h"
 #include "core/geometry/motion.h"
 #include "core/util/quantile.h"
 
 namespace rgbd_pose {
-namespace {
-
-constexpr double kDegreesOfFreedom = 6.0;
-
-}  // namespace
 
 double ChiSquare(const RelativePose& edge, const Rigid3d& true_cur_from_ref,
                  const TruthNoise& noise) {
@@ -39,7 +31,7 @@ Consistency Judge(const std::vector<RelativePose>& edges,
     const double chi_square = ChiSquare(edge, cur->Inverse() * *ref, noise);
     // Negated to count invalid covariances (NaN) as wrong, too.
     result.wrong += !(chi_square >= 0.0 && chi_square <= kWrongChiSquare);
-    shares.push_back(chi_square / kDegreesOfFreedom);
+    shares.push_back(chi_square / 6.0);  // degrees of freedom
     result.nees += shares.back();
   }
   if (shares.empty()) return result;

@@ -1,10 +1,7 @@
 #include "core/evaluation/evaluation.h"
 
-#include <cmath>
 #include <utility>
-#include <vector>
 
-#include "core/evaluation/alignment.h"
 #include "core/evaluation/association.h"
 #include "core/util/input_error.h"
 
@@ -27,12 +24,10 @@ std::vector<PoseError> PoseErrors(const std::vector<PosePair>& pairs,
                                   const std::vector<PoseInterval>& intervals) {
   std::vector<PoseError> errors;
   for (const PosePair& pair : pairs) {
-    PoseError error;
-    error.timestamp = pair.timestamp;
     const Eigen::Vector3d aligned =
         truth_from_estimate * pair.estimate.translation;
-    error.position = (aligned - pair.truth.translation).norm();
-    errors.push_back(error);
+    errors.push_back(
+        {pair.timestamp, (aligned - pair.truth.translation).norm(), {}, {}});
   }
   for (const auto& [i, j] : intervals) {
     const Rigid3d error = RelativeError(pairs[i], pairs[j]);
@@ -40,13 +35,6 @@ std::vector<PoseError> PoseErrors(const std::vector<PosePair>& pairs,
     errors[i].rpe_rotation = error.Angle();
   }
   return errors;
-}
-
-ErrorStatistics AbsoluteError(const std::vector<PoseError>& poses) {
-  std::vector<double> errors;
-  errors.reserve(poses.size());
-  for (const PoseError& pose : poses) errors.push_back(pose.position);
-  return Summarise(std::move(errors));
 }
 
 }  // namespace
@@ -92,7 +80,9 @@ EvaluationReport Evaluate(const Trajectory& estimate,
   const std::vector<PoseInterval> intervals = TimeIntervals(
       times, options.rpe_delta_seconds, options.max_time_difference);
   report.poses = PoseErrors(pairs, report.truth_from_estimate, intervals);
-  report.ate = AbsoluteError(report.poses);
+  std::vector<double> distances;
+  for (const PoseError& pose : report.poses) distances.push_back(pose.position);
+  report.ate = Summarise(std::move(distances));
   report.rpe_frame = SummariseIntervals(pairs, FrameIntervals(pairs.size(), 1));
   report.rpe_seconds = SummariseIntervals(pairs, intervals);
   report.rpe_metres =

@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/geometry/twist.h"
-#include "core/pose_graph/pose_pair.h"
+#include "core/geometry/motion.h"
 #include "core/util/format.h"
 #include "core/util/quantile.h"
 #include "core/util/units.h"
@@ -41,13 +40,10 @@ void NameAxes(const Eigen::Matrix<double, 3, Eigen::Dynamic>& part,
   }
 }
 
-using FixingDirections = Eigen::Matrix<double, 7, Eigen::Dynamic>;
 using FixingJacobian = Eigen::Matrix<double, 6, 7>;
-using MotionResidual = Eigen::Matrix<double, 6, 1>;
 
-constexpr double kSigmaPerMedian = 1.4826;  // of absolute Gaussian errors
-constexpr double kMinTurnSigma = 1e-5;      // rad; no camera is better
-constexpr double kMinPlaceSigma = 1e-5;     // m
+constexpr double kMinTurnSigma = 1e-5;   // rad; no camera is better
+constexpr double kMinPlaceSigma = 1e-5;  // m
 
 // Tukey's width for the norm of six whitened differences, which is about
 // sqrt(6) for Gaussian ones.
@@ -72,23 +68,20 @@ FixingJacobian MotionByFixing(const PoseChange& motion,
   return jacobian;
 }
 
-double SpreadOf(std::vector<double>* components) {
-  return kSigmaPerMedian * QuantileInPlace(components, 0.5);
-}
-
 // 1 / sigma of the components of turns and of translations.
-MotionResidual Whitening(const std::vector<MotionResidual>& residuals) {
-  std::vector<double> turns;
-  std::vector<double> places;
-  for (const MotionResidual& r : residuals) {
+MotionVector Whitening(const std::vector<MotionVector>& residuals) {
+  std::vector<double> turns, places;
+  for (const MotionVector& r : residuals) {
     for (int i = 0; i < 3; ++i) turns.push_back(std::abs(r[i]));
     for (int i = 3; i < 6; ++i) places.push_back(std::abs(r[i]));
   }
-  MotionResidual whitening;
-  whitening.head<3>().setConstant(1.0 /
-                                  std::max(SpreadOf(&turns), kMinTurnSigma));
-  whitening.tail<3>().setConstant(1.0 /
-                                  std::max(SpreadOf(&places), kMinPlaceSigma));
+  const auto weight = [](std::vector<double>* errors, double min_sigma) {
+    const double sigma = kSigmaOfMedian * QuantileInPlace(errors, 0.5);
+    return 1.0 / std::max(sigma, min_sigma);
+  };
+  MotionVector whitening;
+  whitening.head<3>().setConstant(weight(&turns, kMinTurnSigma));
+  whitening.tail<3>().setConstant(weight(&places, kMinPlaceSigma));
   return whitening;
 }
 
@@ -108,7 +101,7 @@ TruthFixing FixingAt(const FixingVector& x) {
 }
 
 std::vector<std::string> NameFixingDirections(
-    const Eigen::Matrix<double, 7, Eigen::Dynamic>& directions) {
+    const FixingDirections& directions) {
   std::vector<std::string> names;
   if (directions.cols() == 0) return names;
   if (directions.row(0).squaredNorm() > kNamedShare) {
@@ -119,34 +112,64 @@ std::vector<std::string> NameFixingDirections(
   return names;
 }
 
+std::vector<std::optional<MovingPose>> MovingPoses(
+    const std::vector<double>& times,
+    const std::vector<std::optional<Rigid3d>>& poses) {
+  constexpr double kMaxVelocitySpan = 0.25;  // s
+  std::vector<std::optional<MovingPose>> moving(poses.size());
+  for (size_t i = 1; i + 1 < poses.size(); ++i) {
+    const std::optional<Rigid3d>& before = poses[i - 1];
+    const std::optional<Rigid3d>& after = poses[i + 1];
+    if (!before || !poses[i] || !after) continue;
+    const double seconds = times[i + 1] - times[i - 1];
+    if (seconds > kMaxVelocitySpan) continue;
+    moving[i] =
+        MovingPose{*poses[i],
+                   {TwistOf(after->Inverse() * *before, seconds).angular,
+                    poses[i]->rotation.conjugate() *
+                        (after->translation - before->translation) / seconds}};
+  }
+  return moving;
+}
+
+PoseChange::PoseChange(const MovingPose& from, const MovingPose& to) {
+  const Rigid3d change = from.world_from_cam.Inverse() * to.world_from_cam;
+  rotation = change.rotation.toRotationMatrix();
+  turn = TwistOf(change, -1.0).angular;
+  translation = change.translation;
+  rate.angular = rotation * to.velocity.angular - from.velocity.angular;
+  rate.linear = rotation * to.velocity.linear - from.velocity.linear -
+                from.velocity.angular.cross(translation);
+}
+
 FixingEquations::FixingEquations(const std::vector<ComparedMotion>& motions,
                                  const Eigen::Vector3d& lever, double overlap)
     : overlap_(overlap) {
   if (motions.empty()) return;
-  std::vector<MotionResidual> residuals;
+  std::vector<MotionVector> residuals;
   for (const ComparedMotion& motion : motions) {
     residuals.emplace_back();
     residuals.back() << motion.estimate.turn - motion.truth.turn,
         motion.estimate.translation - motion.truth.translation;
   }
-  const MotionResidual whitening = Whitening(residuals);
+  const MotionVector whitening = Whitening(residuals);
   for (size_t i = 0; i < motions.size(); ++i) {
-    const MotionResidual r = whitening.cwiseProduct(residuals[i]);
+    const MotionVector r = whitening.cwiseProduct(residuals[i]);
     const double share = r.squaredNorm() / (kTukeyWidth * kTukeyWidth);
     if (share >= 1.0) continue;
-    const MotionResidual weights = (1.0 - share) * whitening;  // w = (1 - s)^2
+    const MotionVector weights = (1.0 - share) * whitening;  // w = (1 - s)^2
     const auto scaled = [&](const PoseChange& motion) -> FixingJacobian {
       return weights.asDiagonal() * MotionByFixing(motion, lever) *
              FixingUnits().asDiagonal();
     };
     const FixingJacobian by_truth = scaled(motions[i].truth);
     const FixingJacobian by_estimate = scaled(motions[i].estimate);
-    hessian_ += by_truth.transpose() * by_truth;
+    hessian += by_truth.transpose() * by_truth;
     by_estimate_ += by_estimate.transpose() * by_estimate;
     agreed_ += by_truth.transpose() * by_estimate;
-    const FixingVector gradient = by_truth.transpose() * ((1.0 - share) * r);
-    gradient_ += gradient;
-    rows_.push_back({motions[i].start, gradient});
+    rows_.push_back(
+        {motions[i].start, by_truth.transpose() * ((1.0 - share) * r)});
+    gradient += rows_.back().gradient;
   }
 }
 
@@ -171,7 +194,7 @@ FixingDirections FixingEquations::Determined(double limit, double min_agreement,
     const bool is_determined =
         agreed > 1.0 / (limit * limit) &&
         agreed * overlapping >
-            min_agreement * std::sqrt(direction.dot(hessian_ * direction) *
+            min_agreement * std::sqrt(direction.dot(hessian * direction) *
                                       direction.dot(by_estimate_ * direction));
     directions.col(is_determined ? determined++ : --left) = direction;
   }

@@ -1,11 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/evaluation/moving_poses.h"
 #include "core/geometry/rigid3.h"
+#include "core/geometry/twist.h"
 
 namespace rgbd_pose {
 
@@ -24,6 +25,8 @@ struct TruthFixing {
 // is not known better than that is not worth correcting.
 using FixingVector = Eigen::Matrix<double, 7, 1>;
 using FixingMatrix = Eigen::Matrix<double, 7, 7>;
+// Orthonormal directions of the parameters, as columns.
+using FixingDirections = Eigen::Matrix<double, 7, Eigen::Dynamic>;
 
 // The units, in s, rad and m.
 FixingVector FixingUnits();
@@ -31,10 +34,33 @@ FixingVector FixingUnits();
 // Converts parameters to a fixing in s, rad and m.
 TruthFixing FixingAt(const FixingVector& x);
 
-// Names directions of the parameters, given as orthonormal columns: "time
-// shift", "rotation about (0.00, 0.00, 1.00)", "lever", ...
+// Names directions of the parameters: "time shift", "rotation about (0.00,
+// 0.00, 1.00)", "lever", ...
 std::vector<std::string> NameFixingDirections(
-    const Eigen::Matrix<double, 7, Eigen::Dynamic>& directions);
+    const FixingDirections& directions);
+
+// A pose and its velocity.
+struct MovingPose {
+  Rigid3d world_from_cam;
+  Twist velocity;  // in the camera's own axes, rad/s and m/s
+};
+
+// The poses at these times (s) with velocities from the previous to the next
+// pose; nothing where one of the three is missing or they are too far apart.
+std::vector<std::optional<MovingPose>> MovingPoses(
+    const std::vector<double>& times,
+    const std::vector<std::optional<Rigid3d>>& poses);
+
+// The motion from one pose to a later one, in the axes of the first, and its
+// rate of change when both poses are shifted to a later time.
+struct PoseChange {
+  PoseChange(const MovingPose& from, const MovingPose& to);
+
+  Eigen::Matrix3d rotation;     // from_from_to
+  Eigen::Vector3d turn;         // the same as a rotation vector, rad
+  Eigen::Vector3d translation;  // m
+  Twist rate;                   // of turn (first order) and translation
+};
 
 // The same camera motion according to the estimate and to the truth, the latter
 // for some fixing.
@@ -46,8 +72,7 @@ struct ComparedMotion {
 
 // Normal equations, in units of FixingVector, of the differences between
 // estimated and true motions, whitened by their own spread and robust (Tukey).
-class FixingEquations {
- public:
+struct FixingEquations {
   // `lever` (m) is the lever of the fixing. Motions must be in time order and
   // last `overlap` seconds: motions that overlap in time are not independent.
   FixingEquations(const std::vector<ComparedMotion>& motions,
@@ -56,23 +81,21 @@ class FixingEquations {
   // Number of motions used: all except outliers.
   int used() const { return static_cast<int>(rows_.size()); }
 
-  const FixingMatrix& hessian() const { return hessian_; }
-
-  // A small step towards the minimum is hessian^-1 gradient.
-  const FixingVector& gradient() const { return gradient_; }
-
   // Returns the directions that the motions determine to better than `limit`
-  // (in units of FixingVector) as orthonormal columns, and the others in
-  // `rest`. Noise of either trajectory looks like motion, but differs between
-  // the two. Only motion present in both counts, and it must be at least
-  // `min_agreement` (0 to 1, like a correlation) of the motion in each of them.
-  Eigen::Matrix<double, 7, Eigen::Dynamic> Determined(
-      double limit, double min_agreement,
-      Eigen::Matrix<double, 7, Eigen::Dynamic>* rest) const;
+  // (in units of FixingVector), and the others in `rest`. Noise of either
+  // trajectory looks like motion, but differs between the two. Only motion
+  // present in both counts, and it must be at least `min_agreement` (0 to 1,
+  // like a correlation) of the motion in each of them.
+  FixingDirections Determined(double limit, double min_agreement,
+                              FixingDirections* rest) const;
 
   // The covariance of the gradient, estimated from the differences themselves,
   // which are correlated over time and vary in size.
   FixingMatrix GradientCovariance() const;
+
+  // A small step towards the minimum is hessian^-1 gradient.
+  FixingMatrix hessian = FixingMatrix::Zero();
+  FixingVector gradient = FixingVector::Zero();
 
  private:
   // A motion's contribution to the gradient.
@@ -82,11 +105,9 @@ class FixingEquations {
   };
 
   std::vector<Row> rows_;
-  double overlap_;  // s
-  FixingMatrix hessian_ = FixingMatrix::Zero();
+  double overlap_;                                   // s
   FixingMatrix by_estimate_ = FixingMatrix::Zero();  // J_estimate^T J_estimate
   FixingMatrix agreed_ = FixingMatrix::Zero();       // J_truth^T J_estimate
-  FixingVector gradient_ = FixingVector::Zero();
 };
 
 }  // namespace rgbd_pose

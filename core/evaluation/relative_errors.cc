@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/util/quantile.h"
 
@@ -11,12 +12,9 @@ ErrorStatistics Summarise(std::vector<double> errors) {
   ErrorStatistics result;
   if (errors.empty()) return result;
   std::sort(errors.begin(), errors.end());
-  double sum = 0.0;
-  double sum_of_squares = 0.0;
-  for (const double error : errors) {
-    sum += error;
-    sum_of_squares += error * error;
-  }
+  const double sum = std::accumulate(errors.begin(), errors.end(), 0.0);
+  const double sum_of_squares =
+      std::inner_product(errors.begin(), errors.end(), errors.begin(), 0.0);
   const size_t n = errors.size();
   result.count = static_cast<int>(n);
   result.rmse = std::sqrt(sum_of_squares / n);

@@ -1,5 +1,6 @@
 #include "core/evaluation/trajectory.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <string_view>
@@ -47,6 +48,23 @@ StampedPose ParsePose(const TextLine& line, const std::string& path) {
 
 }  // namespace
 
+std::optional<Rigid3d> InterpolatedPath::At(double time) const {
+  const auto after = std::lower_bound(
+      trajectory_.begin(), trajectory_.end(), time,
+      [](const StampedPose& pose, double at) { return pose.timestamp < at; });
+  if (after == trajectory_.end()) return std::nullopt;
+  if (after->timestamp == time) return after->world_from_cam;
+  if (after == trajectory_.begin()) return std::nullopt;
+  const StampedPose& before = *(after - 1);
+  const double gap = after->timestamp - before.timestamp;
+  if (gap >= max_gap_) return std::nullopt;
+  const double share = (time - before.timestamp) / gap;
+  const Rigid3d& a = before.world_from_cam;
+  const Rigid3d& b = after->world_from_cam;
+  return Rigid3d(a.rotation.slerp(share, b.rotation),
+                 a.translation + share * (b.translation - a.translation));
+}
+
 Trajectory ReadTrajectory(const std::string& path,
                           std::vector<std::string>* remarks) {
   Trajectory trajectory;
@@ -88,8 +106,7 @@ std::string FormatTrajectory(const Trajectory& trajectory) {
     text += FixedNumber(pose.timestamp, kTimeDecimals);
     for (const double value :
          {t.x(), t.y(), t.z(), q.x(), q.y(), q.z(), q.w()}) {
-      text += ' ';
-      text += FixedNumber(value, kPoseDecimals);
+      text += ' ' + FixedNumber(value, kPoseDecimals);
     }
     text += '\n';
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,24 @@ struct StampedPose {
 
 // Poses with strictly increasing timestamps.
 using Trajectory = std::vector<StampedPose>;
+
+// A trajectory, interpolated between its poses: positions linearly,
+// orientations spherically, but not across gaps of `max_gap` (s) or more: a
+// hand can make any motion within 50 ms.
+class InterpolatedPath {
+ public:
+  // The trajectory must outlive this object.
+  explicit InterpolatedPath(const Trajectory& trajectory, double max_gap = 0.05)
+      : trajectory_(trajectory), max_gap_(max_gap) {}
+
+  // Returns world_from_cam at this time (s); nothing in a gap, before the first
+  // pose or after the last.
+  std::optional<Rigid3d> At(double time) const;
+
+ private:
+  const Trajectory& trajectory_;
+  const double max_gap_;
+};
 
 // Reads TUM text with one `timestamp tx ty tz qx qy qz qw` per line (world from
 // camera, metres). '#' comments and empty lines are skipped; CRLF and a byte

@@ -6,14 +6,9 @@
 #include <limits>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "core/evaluation/alignment.h"
 #include "core/evaluation/association.h"
-#include "core/evaluation/fixing_equations.h"
-#include "core/evaluation/moving_poses.h"
-#include "core/evaluation/relative_errors.h"
-#include "core/evaluation/trajectory.h"
 #include "core/util/format.h"
 
 namespace rgbd_pose {
@@ -27,18 +22,57 @@ class TruthComparison {
   // short enough for drift not to count.
   static constexpr double kMotionSeconds = 0.2;
 
-  TruthComparison(const Trajectory& estimate, const Trajectory& ground_truth);
+  TruthComparison(const Trajectory& estimate, const Trajectory& ground_truth)
+      : estimate_(estimate), path_(ground_truth), times_(TimesOf(estimate)) {
+    std::vector<std::optional<Rigid3d>> poses;
+    for (const StampedPose& pose : estimate) {
+      poses.emplace_back(pose.world_from_cam);
+    }
+    moving_estimate_ = MovingPoses(times_, poses);
+    constexpr double kMotionTolerance = 0.05;  // s
+    constexpr size_t kMaxMotions = 20000;
+    const std::vector<PoseInterval> all =
+        TimeIntervals(times_, kMotionSeconds, kMotionTolerance);
+    const size_t step = all.size() / kMaxMotions + 1;
+    for (size_t i = 0; i < all.size(); i += step) intervals_.push_back(all[i]);
+  }
 
   // Motions of the estimate for which the truth is known, in time order; a
   // subset if there are too many.
-  std::vector<ComparedMotion> Motions(const TruthFixing& fixing) const;
+  std::vector<ComparedMotion> Motions(const TruthFixing& fixing) const {
+    const auto truth = MovingPoses(times_, Truth(fixing));
+    const auto& estimate = moving_estimate_;
+    std::vector<ComparedMotion> motions;
+    for (const auto& [i, j] : intervals_) {
+      if (!estimate[i] || !estimate[j] || !truth[i] || !truth[j]) continue;
+      motions.push_back({times_[i], PoseChange(*estimate[i], *estimate[j]),
+                         PoseChange(*truth[i], *truth[j])});
+    }
+    return motions;
+  }
 
   // Poses of the estimate and of the camera according to the truth.
-  std::vector<PosePair> Pairs(const TruthFixing& fixing) const;
+  std::vector<PosePair> Pairs(const TruthFixing& fixing) const {
+    const std::vector<std::optional<Rigid3d>> truth = Truth(fixing);
+    std::vector<PosePair> pairs;
+    for (size_t i = 0; i < truth.size(); ++i) {
+      if (!truth[i].has_value()) continue;
+      pairs.push_back({times_[i], *truth[i], estimate_[i].world_from_cam});
+    }
+    return pairs;
+  }
 
  private:
   // Poses of the camera according to the truth, at the times of the estimate.
-  std::vector<std::optional<Rigid3d>> Truth(const TruthFixing& fixing) const;
+  std::vector<std::optional<Rigid3d>> Truth(const TruthFixing& fixing) const {
+    const Rigid3d body_from_camera = fixing.camera_from_body.Inverse();
+    std::vector<std::optional<Rigid3d>> poses;
+    for (const double time : times_) {
+      poses.push_back(path_.At(time + fixing.shift));
+      if (poses.back()) poses.back() = *poses.back() * body_from_camera;
+    }
+    return poses;
+  }
 
   const Trajectory& estimate_;
   InterpolatedPath path_;
@@ -46,58 +80,6 @@ class TruthComparison {
   std::vector<std::optional<MovingPose>> moving_estimate_;
   std::vector<PoseInterval> intervals_;
 };
-
-constexpr double kMotionTolerance = 0.05;  // s
-constexpr size_t kMaxMotions = 20000;
-
-TruthComparison::TruthComparison(const Trajectory& estimate,
-                                 const Trajectory& ground_truth)
-    : estimate_(estimate), path_(ground_truth), times_(TimesOf(estimate)) {
-  std::vector<std::optional<Rigid3d>> poses;
-  for (const StampedPose& pose : estimate) {
-    poses.emplace_back(pose.world_from_cam);
-  }
-  moving_estimate_ = MovingPoses(times_, poses);
-  const std::vector<PoseInterval> all =
-      TimeIntervals(times_, kMotionSeconds, kMotionTolerance);
-  const size_t step = all.size() / kMaxMotions + 1;
-  for (size_t i = 0; i < all.size(); i += step) intervals_.push_back(all[i]);
-}
-
-std::vector<ComparedMotion> TruthComparison::Motions(
-    const TruthFixing& fixing) const {
-  const auto truth = MovingPoses(times_, Truth(fixing));
-  const auto& estimate = moving_estimate_;
-  std::vector<ComparedMotion> motions;
-  for (const auto& [i, j] : intervals_) {
-    if (!estimate[i] || !estimate[j] || !truth[i] || !truth[j]) continue;
-    motions.push_back({times_[i], PoseChange(*estimate[i], *estimate[j]),
-                       PoseChange(*truth[i], *truth[j])});
-  }
-  return motions;
-}
-
-std::vector<PosePair> TruthComparison::Pairs(const TruthFixing& fixing) const {
-  const std::vector<std::optional<Rigid3d>> truth = Truth(fixing);
-  std::vector<PosePair> pairs;
-  for (size_t i = 0; i < truth.size(); ++i) {
-    if (!truth[i].has_value()) continue;
-    pairs.push_back({times_[i], *truth[i], estimate_[i].world_from_cam});
-  }
-  return pairs;
-}
-
-std::vector<std::optional<Rigid3d>> TruthComparison::Truth(
-    const TruthFixing& fixing) const {
-  const Rigid3d body_from_camera = fixing.camera_from_body.Inverse();
-  std::vector<std::optional<Rigid3d>> poses = path_.At(times_, fixing.shift);
-  for (std::optional<Rigid3d>& pose : poses) {
-    if (pose.has_value()) pose = *pose * body_from_camera;
-  }
-  return poses;
-}
-
-using FixingColumns = Eigen::Matrix<double, 7, Eigen::Dynamic>;
 
 constexpr int kMinMotions = 30;
 
@@ -122,12 +104,12 @@ constexpr double kMaxOpenShare = 0.1;
 // The standard deviations along `directions`, in FixingUnits; infinite for
 // parameters with a share in `rest`.
 FixingVector SigmaOf(const FixingEquations& equations,
-                     const FixingColumns& directions,
-                     const FixingColumns& rest) {
+                     const FixingDirections& directions,
+                     const FixingDirections& rest) {
   FixingMatrix covariance = FixingMatrix::Zero();
   if (directions.cols() > 0) {
     const Eigen::MatrixXd hessian =
-        directions.transpose() * equations.hessian() * directions;
+        directions.transpose() * equations.hessian * directions;
     const Eigen::MatrixXd to_step =
         directions * hessian.ldlt().solve(directions.transpose());
     covariance = to_step * equations.GradientCovariance() * to_step.transpose();
@@ -147,8 +129,8 @@ FixingVector SigmaOf(const FixingEquations& equations,
 std::string FindFixing(const TruthComparison& comparison,
                        TruthAlignment* result) {
   FixingVector x = FixingVector::Zero();
-  FixingColumns directions;
-  FixingColumns rest;
+  FixingDirections directions;
+  FixingDirections rest;
   for (int round = 0;; ++round) {
     const TruthFixing fixing = FixingAt(x);
     const FixingEquations equations(comparison.Motions(fixing),
@@ -169,10 +151,10 @@ std::string FindFixing(const TruthComparison& comparison,
     FixingVector next = FixingVector::Zero();
     if (directions.cols() > 0) {
       const Eigen::MatrixXd hessian =
-          directions.transpose() * equations.hessian() * directions;
-      next = directions * hessian.ldlt().solve(
-                              directions.transpose() *
-                              (equations.hessian() * x + equations.gradient()));
+          directions.transpose() * equations.hessian * directions;
+      next = directions *
+             hessian.ldlt().solve(directions.transpose() *
+                                  (equations.hessian * x + equations.gradient));
     }
     const double step = kMaxShiftStep / FixingUnits()[0];
     const double limit = kMaxShift / FixingUnits()[0];

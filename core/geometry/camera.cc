@@ -1,9 +1,7 @@
 #include "core/geometry/camera.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <iterator>
 
 #include "core/util/format.h"
 #include "core/util/named_values.h"
@@ -75,11 +73,6 @@ Vector2d InvertEquidistant(const Lens<double>& lens,
 constexpr double kMinFocal = 0.1;
 constexpr double kMaxFocal = 100.0;
 
-struct Preset {
-  std::string_view name;
-  RgbdCamera camera;
-};
-
 // TUM RGB-D benchmark, "intrinsic camera calibration" table. The depth factors
 // of each camera are already applied in the released images.
 constexpr double kTumDepthScale = 5000.0;
@@ -90,7 +83,7 @@ constexpr double kTumDepthScale = 5000.0;
 // for freiburg3, unknown for freiburg2.
 constexpr Shutter kTumColor = {-0.0075, 0.028, true};
 constexpr double kTumDepthReadout = 0.027;
-const std::array<Preset, 4> kPresets = {{
+const Named<RgbdCamera> kPresets[] = {
     {"tum_fr1",
      {{640, 480, 517.306408, 516.469215, 318.643040, 255.313989, 0.262383,
        -0.953104, -0.005358, 0.002628, 1.163314},
@@ -113,7 +106,7 @@ const std::array<Preset, 4> kPresets = {{
       {kTumColor.offset - 0.0025, kTumDepthReadout}}},
     {"ros_default",
      {{640, 480, 525.0, 525.0, 319.5, 239.5, 0, 0, 0, 0, 0}, kTumDepthScale}},
-}};
+};
 
 }  // namespace
 
@@ -232,15 +225,10 @@ Vector2d Camera::Undistort(const Vector2d& pixel) const {
   return {fx * plane.x() + cx, fy * plane.y() + cy};
 }
 
-Eigen::Vector3d Camera::Unproject(const Vector2d& pixel, double depth) const {
-  const Vector2d ideal = Undistort(pixel);
-  return Ray(ideal.x(), ideal.y()) * depth;
-}
-
 std::optional<RgbdCamera> CameraPreset(std::string_view name) {
-  const Preset* const preset = FindNamed(kPresets, name);
+  const auto* const preset = FindNamed(kPresets, name);
   if (preset == nullptr) return std::nullopt;
-  return preset->camera;
+  return preset->value;
 }
 
 std::vector<std::string> CameraPresetNames() { return NamesOf(kPresets); }

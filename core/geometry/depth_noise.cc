@@ -23,12 +23,11 @@ std::string DepthNoiseModel::Check() const {
 }
 
 const std::vector<DepthNoiseModel>& DepthNoiseModels() {
-  static const std::vector<DepthNoiseModel>& models =
-      *new std::vector<DepthNoiseModel>{
-          {"khoshelham", 0.0, 1.425e-3},
-          {"nguyen", 0.0012, 0.0019, 0.4},
-          {"constant", 0.005},
-      };
+  static const auto& models = *new std::vector<DepthNoiseModel>{
+      {"khoshelham", 0.0, 1.425e-3},
+      {"nguyen", 0.0012, 0.0019, 0.4},
+      {"constant", 0.005},
+  };
   return models;
 }
 

@@ -1,7 +1,6 @@
 #include "core/geometry/motion.h"
 
 #include <Eigen/Cholesky>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -47,6 +46,11 @@ MotionDerivatives LinearizationPoint::DerivativesAt(const double* x) const {
   return motion;
 }
 
+MotionDerivatives DerivativesAt(const Rigid3d& cur_from_prev) {
+  const MotionVector zero = MotionVector::Zero();
+  return LinearizationPoint(cur_from_prev).DerivativesAt(zero.data());
+}
+
 Rigid3d LinearizationPoint::CurFromPrev(const double* x) const {
   const RotationAndCenter<double> pose = PoseAt(x);
   return Rigid3d(Eigen::Quaterniond(pose.R), -(pose.R * pose.C));
@@ -59,13 +63,11 @@ MotionMatrix ComposedCovariance(const Rigid3d& c_from_b,
   const Eigen::Matrix3d R_cb = c_from_b.rotation.toRotationMatrix();
   const Eigen::Matrix3d R_ab = b_from_a.rotation.toRotationMatrix().transpose();
   const Eigen::Vector3d C = -(R_cb.transpose() * c_from_b.translation);
-  Eigen::Matrix3d cross;
-  cross << 0, -C.z(), C.y(), C.z(), 0, -C.x(), -C.y(), C.x(), 0;
   MotionMatrix by_cb = MotionMatrix::Identity();
   by_cb.bottomRightCorner<3, 3>() = R_ab;
   MotionMatrix by_ba = MotionMatrix::Identity();
   by_ba.topLeftCorner<3, 3>() = R_cb;
-  by_ba.bottomLeftCorner<3, 3>() = R_ab * cross;
+  by_ba.bottomLeftCorner<3, 3>() = R_ab * CrossMatrix(C);
   return by_cb * covariance_cb * by_cb.transpose() +
          by_ba * covariance_ba * by_ba.transpose();
 }

@@ -100,6 +100,9 @@ class LinearizationPoint {
   mutable MotionDerivatives shared_;
 };
 
+// R, C and the derivatives of a motion with respect to small changes of it.
+MotionDerivatives DerivativesAt(const Rigid3d& cur_from_prev);
+
 // Covariance of c_from_b * b_from_a from the covariances of both motions, which
 // are independent; all are of [omega C] as in MotionEstimate. To first order:
 //

@@ -26,6 +26,13 @@ inline Eigen::Vector3d RotationVector(const Eigen::Quaterniond& rotation) {
   return turn.angle() * turn.axis();
 }
 
+// [v]x, with [v]x w = v x w.
+inline Eigen::Matrix3d CrossMatrix(const Eigen::Vector3d& v) {
+  Eigen::Matrix3d m;
+  m << 0, -v.z(), v.y(), v.z(), 0, -v.x(), -v.y(), v.x(), 0;
+  return m;
+}
+
 // A rigid motion, named target_from_source: point_in_target =
 // target_from_source * point_in_source. Inner names cancel in products:
 // a_from_c = a_from_b * b_from_c. Translation in metres.

@@ -1,5 +1,5 @@
 #include <algorithm>
-#include <cstdint>
+#include <bitset>
 #include <numeric>
 #include <vector>
 
@@ -12,63 +12,46 @@ namespace {
 // square.
 constexpr int kMaxMatches = 500;
 
-// Consistency of all pairs of matches, one row of bits per match.
-class ConsistencyGraph {
- public:
-  explicit ConsistencyGraph(const std::vector<PointMatch>& matches)
-      : size_(matches.size()),
-        words_((size_ + 63) / 64),
-        bits_(size_ * words_),
-        degrees_(size_) {
-    for (size_t i = 0; i < size_; ++i) {
-      for (size_t j = 0; j < i; ++j) {
-        if (AreDistanceConsistent(matches[i], matches[j])) {
-          Connect(i, j);
-          Connect(j, i);
-        }
-      }
+// The matches that are consistent with each match.
+using ConsistencyGraph = std::vector<std::bitset<kMaxMatches>>;
+
+ConsistencyGraph ConsistencyOf(const std::vector<PointMatch>& matches) {
+  ConsistencyGraph graph(matches.size());
+  for (size_t i = 0; i < matches.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) {
+      graph[i][j] = graph[j][i] = AreDistanceConsistent(matches[i], matches[j]);
     }
   }
+  return graph;
+}
 
-  // Howard's greedy clique. Matches join in the order of their degrees; hence
-  // one pass in that order is enough.
-  std::vector<int> GreedyClique() const {
-    std::vector<int> order(size_);
-    std::iota(order.begin(), order.end(), 0);
-    std::stable_sort(order.begin(), order.end(), [this](int a, int b) {
-      return degrees_[a] > degrees_[b];
-    });
-    std::vector<int> clique;
-    std::vector<uint64_t> candidates(words_, ~uint64_t{0});
-    for (const int i : order) {
-      if ((candidates[i / 64] >> (i % 64) & 1) == 0) continue;
-      clique.push_back(i);
-      for (size_t w = 0; w < words_; ++w) {
-        candidates[w] &= bits_[i * words_ + w];
-      }
-    }
-    return clique;
+// Howard's greedy clique. Matches join in the order of their degrees; hence one
+// pass in that order is enough.
+std::vector<int> GreedyClique(const ConsistencyGraph& graph) {
+  std::vector<int> order(graph.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::vector<size_t> degrees;
+  for (const auto& consistent : graph) degrees.push_back(consistent.count());
+  std::stable_sort(order.begin(), order.end(), [&degrees](int a, int b) {
+    return degrees[a] > degrees[b];
+  });
+  std::vector<int> clique;
+  std::bitset<kMaxMatches> candidates;
+  candidates.set();
+  for (const int i : order) {
+    if (!candidates[i]) continue;
+    clique.push_back(i);
+    candidates &= graph[i];
   }
-
- private:
-  void Connect(size_t i, size_t j) {
-    bits_[i * words_ + j / 64] |= uint64_t{1} << (j % 64);
-    ++degrees_[i];
-  }
-
-  size_t size_;
-  size_t words_;  // of 64 bits, per row
-  std::vector<uint64_t> bits_;
-  std::vector<int> degrees_;
-};
+  return clique;
+}
 
 }  // namespace
 
 std::optional<Consensus> FindByClique(const Correspondences& matches) {
   const std::vector<PointMatch> points = PointMatches(matches, kMaxMatches);
-  const ConsistencyGraph graph(points);
   const std::optional<Rigid3d> fit =
-      FitRigidTransform(points, graph.GreedyClique());
+      FitRigidTransform(points, GreedyClique(ConsistencyOf(points)));
   if (!fit) return std::nullopt;
   return FindConsensus(points, *fit, {});
 }

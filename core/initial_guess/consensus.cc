@@ -1,28 +1,77 @@
 #include "core/initial_guess/consensus.h"
 
 #include <algorithm>
-#include <utility>
-
-#include "core/util/chi_squared.h"
+#include <cmath>
+#include <limits>
 
 namespace rgbd_pose {
 namespace {
 
-// How often a motion is refitted to the matches that agree with it.
-constexpr int kRefits = 2;
+bool HasDepths(const Match& match) {
+  return match.prev.depth > 0.0 && match.cur.depth > 0.0;
+}
+
+NoisyPoint MakeNoisyPoint(const Correspondences& matches,
+                          const Observation& o) {
+  const double sigma_u = o.depth * o.sigma_px / matches.camera().fx;
+  const double sigma_v = o.depth * o.sigma_px / matches.camera().fy;
+  const double sigma_ray = o.sigma_depth / o.depth;
+  return {matches.Point(o), sigma_u * sigma_u, sigma_v * sigma_v,
+          sigma_ray * sigma_ray};
+}
+
+PointMatch MakePointMatch(const Correspondences& matches, size_t i) {
+  const Observation& prev = matches[i].prev;
+  const Observation& cur = matches[i].cur;
+  PointMatch match;
+  match.index = static_cast<int>(i);
+  match.prev = MakeNoisyPoint(matches, prev);
+  match.cur = MakeNoisyPoint(matches, cur);
+  match.inverse_sigma = {
+      1.0 / std::sqrt(match.prev.variance_u + match.cur.variance_u),
+      1.0 / std::sqrt(match.prev.variance_v + match.cur.variance_v),
+      1.0 / std::hypot(prev.sigma_depth, cur.sigma_depth)};
+  match.ray = match.cur.position.head<2>() / cur.depth;
+  match.weight = 3.0 / (match.prev.TotalVariance() + match.cur.TotalVariance());
+  return match;
+}
+
+// Variance of the length of the vector between two points.
+double VarianceOfLength(const NoisyPoint& a, const NoisyPoint& b,
+                        const Eigen::Vector3d& a_from_b) {
+  constexpr double kNotZero = std::numeric_limits<double>::min();
+  return (a.VarianceAlong(a_from_b) + b.VarianceAlong(a_from_b)) /
+         std::max(a_from_b.squaredNorm(), kNotZero);
+}
 
 }  // namespace
 
-double MaxSquaredDistance() { return ChiSquared99(3); }
+std::vector<PointMatch> PointMatches(const Correspondences& matches,
+                                     size_t max_count) {
+  const size_t count = std::count_if(matches.begin(), matches.end(), HasDepths);
+  const size_t wanted = std::min(count, max_count);
 
-std::optional<Rigid3d> FitRigidTransform(const std::vector<PointMatch>& matches,
-                                         const std::vector<int>& chosen) {
-  PairMoments moments;
-  for (const int i : chosen) {
-    moments.Add(matches[i].cur.position, matches[i].prev.position,
-                matches[i].weight);
+  std::vector<PointMatch> points;
+  points.reserve(wanted);
+  size_t place = 0;  // among matches with depths
+  for (size_t i = 0; i < matches.size(); ++i) {
+    if (!HasDepths(matches[i])) continue;
+    ++place;
+    if (place * wanted / count > points.size()) {
+      points.push_back(MakePointMatch(matches, i));
+    }
   }
-  return UmeyamaAlignment(moments);
+  return points;
+}
+
+bool AreDistanceConsistent(const PointMatch& a, const PointMatch& b,
+                           double max_sigmas) {
+  const Eigen::Vector3d prev = a.prev.position - b.prev.position;
+  const Eigen::Vector3d cur = a.cur.position - b.cur.position;
+  const double change = cur.norm() - prev.norm();
+  const double variance = VarianceOfLength(a.prev, b.prev, prev) +
+                          VarianceOfLength(a.cur, b.cur, cur);
+  return change * change <= max_sigmas * max_sigmas * variance;
 }
 
 void FindInliers(const std::vector<PointMatch>& matches,
@@ -32,7 +81,7 @@ void FindInliers(const std::vector<PointMatch>& matches,
   for (size_t i = 0; i < matches.size(); ++i) {
     const double distance =
         matches[i].SquaredDistance(rotation, cur_from_prev.translation);
-    if (distance <= MaxSquaredDistance()) {
+    if (distance <= kMaxSquaredDistance) {
       inliers->push_back(static_cast<int>(i));
     }
   }
@@ -41,6 +90,7 @@ void FindInliers(const std::vector<PointMatch>& matches,
 std::optional<Consensus> FindConsensus(const std::vector<PointMatch>& matches,
                                        const Rigid3d& cur_from_prev,
                                        const ConsensusOptions& options) {
+  constexpr int kRefits = 2;
   Consensus consensus{cur_from_prev, {}};
   FindInliers(matches, cur_from_prev, &consensus.inliers);
   for (int i = 0; i < kRefits; ++i) {

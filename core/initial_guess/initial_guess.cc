@@ -14,12 +14,11 @@ std::optional<Rigid3d> MotionOf(const std::optional<Consensus>& consensus) {
 }  // namespace
 
 const std::vector<InitialGuess>& InitialGuesses() {
-  static const std::vector<InitialGuess>& guesses =
-      *new std::vector<InitialGuess>{
-          {"identity", [](const auto&) { return std::optional(Rigid3d()); }},
-          {"ransac", [](const auto& m) { return MotionOf(FindByRansac(m)); }},
-          {"clique", [](const auto& m) { return MotionOf(FindByClique(m)); }},
-      };
+  static const auto& guesses = *new std::vector<InitialGuess>{
+      {"identity", [](const auto&) { return std::optional(Rigid3d()); }},
+      {"ransac", [](const auto& m) { return MotionOf(FindByRansac(m)); }},
+      {"clique", [](const auto& m) { return MotionOf(FindByClique(m)); }},
+  };
   return guesses;
 }
 

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -22,76 +21,54 @@ constexpr int kMaxMatches = 1000;
 
 constexpr uint64_t kSeed = 1;
 
-using Sample = std::array<uint32_t, 3>;
+// How many samples are needed if this share of the matches are inliers.
+int SamplesNeeded(double share) {
+  const double needed =
+      std::log(1.0 - kConfidence) / std::log1p(-share * share * share);
+  return static_cast<int>(std::min<double>(needed, kMaxSamples)) + 1;
+}
 
-// The implementation of FindByRansac and its memory.
-class Search {
- public:
-  explicit Search(const std::vector<PointMatch>& matches) : matches_(matches) {
-    inliers_.reserve(matches.size());
-  }
-
-  std::optional<Rigid3d> Run() {
-    CounterRandom random(kSeed);
-    const auto count = static_cast<uint32_t>(matches_.size());
-    int num_samples = kMaxSamples;
-    for (int i = 0; i < num_samples; ++i) {
-      const Sample sample = random.ThreeBelow(count);
-      if (!CanBeRight(sample) || !Improve(FitToSample(sample))) continue;
-      FindInliers(matches_, *best_, &inliers_);
-      if (Improve(FitRigidTransform(matches_, inliers_))) {
-        FindInliers(matches_, *best_, &inliers_);
-      }
-      num_samples = std::min(num_samples, SamplesNeeded(inliers_.size()));
-    }
-    return best_;
-  }
-
- private:
-  bool CanBeRight(const Sample& s) const {
-    return AreDistanceConsistent(matches_[s[0]], matches_[s[1]]) &&
-           AreDistanceConsistent(matches_[s[0]], matches_[s[2]]) &&
-           AreDistanceConsistent(matches_[s[1]], matches_[s[2]]);
-  }
-
-  std::optional<Rigid3d> FitToSample(const Sample& sample) const {
-    PairMoments moments;
-    for (const uint32_t i : sample) {
-      moments.Add(matches_[i].cur.position, matches_[i].prev.position,
-                  matches_[i].weight);
-    }
-    return UmeyamaAlignment(moments);
-  }
-
+std::optional<Rigid3d> BestOfSamples(const std::vector<PointMatch>& matches) {
+  std::optional<Rigid3d> best;
+  double best_cost = std::numeric_limits<double>::infinity();
   // Takes a motion if it is better than the best one so far, by the sum of
   // squared distances, each limited to the maximum of an inlier (MSAC; Torr &
   // Zisserman 2000). Returns whether it was better.
-  bool Improve(const std::optional<Rigid3d>& motion) {
+  const auto improve = [&](const std::optional<Rigid3d>& motion) {
     if (!motion) return false;
     const Eigen::Matrix3d rotation = motion->rotation.toRotationMatrix();
     double cost = 0.0;
-    for (const PointMatch& match : matches_) {
+    for (const PointMatch& match : matches) {
       cost += std::min(match.SquaredDistance(rotation, motion->translation),
-                       MaxSquaredDistance());
-      if (cost >= best_cost_) return false;
+                       kMaxSquaredDistance);
+      if (cost >= best_cost) return false;
     }
-    best_cost_ = cost;
-    best_ = motion;
+    best_cost = cost;
+    best = motion;
     return true;
+  };
+  CounterRandom random(kSeed);
+  std::vector<int> inliers;
+  int num_samples = kMaxSamples;
+  for (int i = 0; i < num_samples; ++i) {
+    const auto sample =
+        random.ThreeBelow(static_cast<uint32_t>(matches.size()));
+    const auto& [a, b, c] = sample;
+    if (!AreDistanceConsistent(matches[a], matches[b]) ||
+        !AreDistanceConsistent(matches[a], matches[c]) ||
+        !AreDistanceConsistent(matches[b], matches[c]) ||
+        !improve(FitRigidTransform(matches, sample))) {
+      continue;
+    }
+    FindInliers(matches, *best, &inliers);
+    if (improve(FitRigidTransform(matches, inliers))) {
+      FindInliers(matches, *best, &inliers);
+    }
+    const double share = static_cast<double>(inliers.size()) / matches.size();
+    num_samples = std::min(num_samples, SamplesNeeded(share));
   }
-
-  int SamplesNeeded(size_t inliers) const {
-    const double share = static_cast<double>(inliers) / matches_.size();
-    const double needed =
-        std::log(1.0 - kConfidence) / std::log1p(-share * share * share);
-    return static_cast<int>(std::min<double>(needed, kMaxSamples)) + 1;
-  }
-
-  const std::vector<PointMatch>& matches_;
-  std::vector<int> inliers_;
-  std::optional<Rigid3d> best_;
-  double best_cost_ = std::numeric_limits<double>::infinity();
-};
+  return best;
+}
 
 }  // namespace
 
@@ -99,7 +76,7 @@ std::optional<Consensus> FindByRansac(const Correspondences& matches,
                                       const ConsensusOptions& options) {
   const std::vector<PointMatch> points = PointMatches(matches, kMaxMatches);
   if (points.size() < 3) return std::nullopt;
-  const std::optional<Rigid3d> best = Search(points).Run();
+  const std::optional<Rigid3d> best = BestOfSamples(points);
   if (!best) return std::nullopt;
   return FindConsensus(points, *best, options);
 }

@@ -5,16 +5,11 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/SparseCholesky>
 #include <Eigen/SparseCore>
-#include <algorithm>
 #include <limits>
-#include <numeric>
 #include <utility>
-#include <vector>
 
 namespace rgbd_pose {
 namespace {
-
-std::string NameOf(int pose) { return "pose " + std::to_string(pose); }
 
 // Copies the halves of a Jacobian that Ceres requests.
 template <typename Jacobian>
@@ -45,15 +40,6 @@ MotionMatrix SqrtInformation(const MotionMatrix& information) {
   if (eigen.eigenvalues().minCoeff() < -1e-9) return none;
   return eigen.eigenvalues().cwiseMax(0.0).cwiseSqrt().asDiagonal() *
          eigen.eigenvectors().transpose() * size.asDiagonal();
-}
-
-RelativePoseErrorTerm RelativePoseErrorTerm::Of(const Rigid3d& cur_from_ref,
-                                                const MotionMatrix& root) {
-  RelativePoseErrorTerm term;
-  term.measured.R = cur_from_ref.rotation.toRotationMatrix();
-  term.measured.C = cur_from_ref.Inverse().translation;
-  term.root = root;
-  return term;
 }
 
 MotionVector RelativePoseErrorTerm::ResidualAt(
@@ -95,12 +81,16 @@ GraphProblem::GraphProblem(const GraphTerms& graph, double width)
   options.disable_all_safety_checks = true;  // see FindBadInput
   problem_ = std::make_unique<ceres::Problem>(options);
   for (size_t i = 0; i < x_.size(); ++i) {
-    if (!graph.poses[i].is_fixed) {
-      problem_->AddParameterBlock(x_[i].data(), 6);
-    }
+    if (!graph.poses[i].is_fixed) problem_->AddParameterBlock(x_[i].data(), 6);
   }
   for (const GraphTerms::Edge& edge : graph.edges) {
-    if (!graph.IsIdle(edge.ref, edge.cur)) AddEdge(edge, width);
+    if (graph.IsIdle(edge.ref, edge.cur)) continue;
+    ceres::LossFunction* loss = nullptr;
+    if (edge.loss != nullptr) loss = &losses_.emplace_back(edge.loss, width);
+    problem_->AddResidualBlock(
+        new EdgeBlock({edge.cur_from_ref, edge.root}, &origins_[edge.ref],
+                      &origins_[edge.cur]),
+        loss, x_[edge.ref].data(), x_[edge.cur].data());
   }
   for (size_t i = 0; i < x_.size(); ++i) {
     double* const x = x_[i].data();
@@ -108,40 +98,6 @@ GraphProblem::GraphProblem(const GraphTerms& graph, double width)
       problem_->SetParameterBlockConstant(x);
     }
   }
-}
-
-void GraphProblem::AddEdge(const GraphTerms::Edge& edge, double width) {
-  ceres::LossFunction* loss = nullptr;
-  if (edge.loss != nullptr) loss = &losses_.emplace_back(edge.loss, width);
-  problem_->AddResidualBlock(
-      new EdgeBlock(RelativePoseErrorTerm::Of(edge.cur_from_ref, edge.root),
-                    &origins_[edge.ref], &origins_[edge.cur]),
-      loss, x_[edge.ref].data(), x_[edge.cur].data());
-}
-
-double GraphProblem::Cost() {
-  double cost = 0.0;
-  problem_->Evaluate({}, &cost, nullptr, nullptr, nullptr);
-  return cost;
-}
-
-void GraphProblem::Solve(const ceres::Solver::Options& options,
-                         ceres::Solver::Summary* summary) {
-  ceres::Solve(options, problem_.get(), summary);
-}
-
-Rigid3d GraphProblem::WorldFromCam(int pose) const {
-  return origins_[pose].CurFromPrev(x_[pose].data()).Inverse();
-}
-
-ceres::CRSMatrix GraphProblem::Jacobian(const std::vector<int>& poses) {
-  ceres::Problem::EvaluateOptions evaluate;
-  for (const int pose : poses) {
-    evaluate.parameter_blocks.push_back(x_[pose].data());
-  }
-  ceres::CRSMatrix jacobian;
-  problem_->Evaluate(evaluate, nullptr, nullptr, nullptr, &jacobian);
-  return jacobian;
 }
 
 // A fixed pose without edges to free poses is not a parameter of the problem.
@@ -175,67 +131,20 @@ std::vector<MotionMatrix> GraphProblem::MarginalCovariances(
   return result;
 }
 
-std::string FindBadInput(const GraphTerms& graph) {
-  for (size_t i = 0; i < graph.poses.size(); ++i) {
-    if (graph.poses[i].world_from_cam.IsFinite()) continue;
-    return NameOf(static_cast<int>(i)) + " is not finite";
-  }
-  for (const GraphTerms::Edge& edge : graph.edges) {
-    const std::string name =
-        "the edge from " + NameOf(edge.ref) + " to " + NameOf(edge.cur);
-    if (!graph.Has(edge.ref) || !graph.Has(edge.cur) || edge.ref == edge.cur) {
-      return name + " does not connect two poses of the graph";
-    }
-    if (!edge.cur_from_ref.IsFinite()) {
-      return name + " has a motion that is not finite";
-    }
-    if (!edge.root.allFinite())
-      return name + " has a covariance that is not positive definite";
-  }
-  return "";
-}
-
-// Groups connected poses by the smallest number among them (union-find). All
-// fixed poses count as connected.
-std::string FindUnanchoredPose(const GraphTerms& graph) {
-  std::vector<int> root(graph.poses.size());
-  std::iota(root.begin(), root.end(), 0);
-  const auto find = [&](int pose) {
-    while (root[pose] != pose) pose = root[pose] = root[root[pose]];
-    return pose;
-  };
-  const auto join = [&](int a, int b) {
-    a = find(a);
-    b = find(b);
-    root[std::max(a, b)] = std::min(a, b);
-  };
-  for (const GraphTerms::Edge& edge : graph.edges) join(edge.ref, edge.cur);
-  const int poses = static_cast<int>(graph.poses.size());
-  int fixed = -1;
-  for (int i = 0; i < poses; ++i) {
-    if (!graph.poses[i].is_fixed) continue;
-    if (fixed >= 0) join(fixed, i);
-    fixed = i;
-  }
-  for (int i = 0; i < poses; ++i) {
-    if (fixed >= 0 && find(i) == find(fixed)) continue;
-    return NameOf(i) + " is not connected to any fixed pose";
-  }
-  return "";
-}
-
 // The pivots of a Cholesky decomposition are the information on one parameter
 // if those eliminated before it are unknown and those after it known: an upper
 // bound of the actual information, exact for the last pivot.
-std::string FindUndetermined(const GraphTerms& graph,
-                             double max_standard_deviation,
-                             GraphProblem* problem) {
-  if (problem->is_empty()) return "";
+int GraphProblem::FindUndetermined(double max_standard_deviation) {
+  if (is_empty()) return -1;
   std::vector<int> free;  // the pose of each six columns
-  for (size_t i = 0; i < graph.poses.size(); ++i) {
-    if (!graph.poses[i].is_fixed) free.push_back(static_cast<int>(i));
+  ceres::Problem::EvaluateOptions evaluate;
+  for (size_t i = 0; i < x_.size(); ++i) {
+    if (IsConstant(static_cast<int>(i))) continue;
+    free.push_back(static_cast<int>(i));
+    evaluate.parameter_blocks.push_back(x_[i].data());
   }
-  const ceres::CRSMatrix crs = problem->Jacobian(free);
+  ceres::CRSMatrix crs;  // the Jacobian of all residuals under their losses
+  problem_->Evaluate(evaluate, nullptr, nullptr, nullptr, &crs);
   using Sparse = Eigen::SparseMatrix<double, Eigen::RowMajor, int>;
   const Eigen::Map<const Sparse> J(
       crs.num_rows, crs.num_cols, static_cast<int>(crs.values.size()),
@@ -246,10 +155,9 @@ std::string FindUndetermined(const GraphTerms& graph,
   const Eigen::VectorXd pivots = ldlt.vectorD();
   for (int k = 0; k < pivots.size(); ++k) {
     if (ldlt.info() == Eigen::Success && pivots[k] >= least) continue;
-    const int column = ldlt.permutationPinv().indices()[k];
-    return NameOf(free[column / 6]) + " is not determined";
+    return free[ldlt.permutationPinv().indices()[k] / 6];
   }
-  return "";
+  return -1;
 }
 
 }  // namespace rgbd_pose

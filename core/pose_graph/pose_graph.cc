@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <numeric>
 
 #include "core/pose_graph/graph_problem.h"
 #include "core/util/input_error.h"
@@ -20,6 +20,7 @@ constexpr double kWidest = 1024.0;
 
 // Stages before the last one need not converge.
 constexpr int kGraphIterationsPerEarlyStage = 3;
+constexpr int kGraphIterationsPerRound = 30;
 
 // The smallest factor on the widths of the losses at which all edges count.
 double FirstWidth(const GraphTerms& graph) {
@@ -31,12 +32,65 @@ double FirstWidth(const GraphTerms& graph) {
     RelativeMotion pair;
     pair.motion = {motion.rotation.toRotationMatrix(),
                    motion.Inverse().translation};
-    largest = std::max(largest,
-                       RelativePoseErrorTerm::Of(edge.cur_from_ref, edge.root)
-                           .ResidualAt(pair, nullptr)
-                           .squaredNorm());
+    largest =
+        std::max(largest, RelativePoseErrorTerm(edge.cur_from_ref, edge.root)
+                              .ResidualAt(pair, nullptr)
+                              .squaredNorm());
   }
   return std::clamp(std::sqrt(largest), 1.0, kWidest);
+}
+
+std::string NameOf(int pose) { return "pose " + std::to_string(pose); }
+
+// The functions below return one line on why a graph cannot be solved, which
+// names poses by their numbers, or an empty text. Here: values that are not
+// finite, or an edge that does not connect two poses of the graph.
+std::string FindBadInput(const GraphTerms& graph) {
+  for (size_t i = 0; i < graph.poses.size(); ++i) {
+    if (graph.poses[i].world_from_cam.IsFinite()) continue;
+    return NameOf(static_cast<int>(i)) + " is not finite";
+  }
+  for (const GraphTerms::Edge& edge : graph.edges) {
+    const std::string name =
+        "the edge from " + NameOf(edge.ref) + " to " + NameOf(edge.cur);
+    if (!graph.Has(edge.ref) || !graph.Has(edge.cur) || edge.ref == edge.cur) {
+      return name + " does not connect two poses of the graph";
+    }
+    if (!edge.cur_from_ref.IsFinite()) {
+      return name + " has a motion that is not finite";
+    }
+    if (!edge.root.allFinite()) {
+      return name + " has a covariance that is not positive definite";
+    }
+  }
+  return "";
+}
+
+// A pose with no connection to a fixed pose. Groups connected poses by the
+// smallest number among them (union-find). One more number than there are poses
+// stands for the world of all fixed ones.
+std::string FindUnanchoredPose(const GraphTerms& graph) {
+  const int world = static_cast<int>(graph.poses.size());
+  std::vector<int> root(world + 1);
+  std::iota(root.begin(), root.end(), 0);
+  const auto find = [&](int pose) {
+    while (root[pose] != pose) pose = root[pose] = root[root[pose]];
+    return pose;
+  };
+  const auto join = [&](int a, int b) {
+    a = find(a);
+    b = find(b);
+    root[std::max(a, b)] = std::min(a, b);
+  };
+  for (const GraphTerms::Edge& edge : graph.edges) join(edge.ref, edge.cur);
+  for (int i = 0; i < world; ++i) {
+    if (graph.poses[i].is_fixed) join(i, world);
+  }
+  for (int i = 0; i < world; ++i) {
+    if (find(i) == find(world)) continue;
+    return NameOf(i) + " is not connected to any fixed pose";
+  }
+  return "";
 }
 
 }  // namespace
@@ -44,7 +98,6 @@ double FirstWidth(const GraphTerms& graph) {
 std::string PoseGraphOptions::Check() const {
   if (max_rounds < 1) return "max_rounds must be at least 1";
   if (!(step_tolerance > 0.0)) return "step_tolerance must be positive";
-  if (max_iterations < 1) return "max_iterations must be at least 1";
   if (!(max_standard_deviation > 0.0)) {
     return "max_standard_deviation must be positive";
   }
@@ -110,14 +163,14 @@ GraphSolution PoseGraph::Solve() {
     }
   }
   for (int round = 0; round < options_.max_rounds && solution.ok(); ++round) {
-    const double moved = Round(1.0, options_.max_iterations, &solution);
+    const double moved = Round(1.0, kGraphIterationsPerRound, &solution);
     if (!(moved > options_.step_tolerance)) break;
   }
   if (solution.ok()) {
-    GraphProblem problem(graph_, 1.0);
-    is_refused(
-        FindUndetermined(graph_, options_.max_standard_deviation, &problem),
-        GraphStatus::kSingular);
+    const int pose = GraphProblem(graph_, 1.0)
+                         .FindUndetermined(options_.max_standard_deviation);
+    is_refused(pose < 0 ? "" : NameOf(pose) + " is not determined",
+               GraphStatus::kSingular);
   }
   if (!solution.ok()) graph_.poses = before;
   return solution;

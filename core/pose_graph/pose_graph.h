@@ -58,9 +58,6 @@ struct PoseGraphOptions {
   // Stops when no pose moves by more than this (rad and m).
   double step_tolerance = 1e-6;
 
-  // Maximum number of solver iterations per round.
-  int max_iterations = 30;
-
   // A pose is not determined if some direction of it has a larger standard
   // deviation (rad or m). Other parameters are held fixed or estimated with it.
   double max_standard_deviation = 0.5;

@@ -47,10 +47,4 @@ const auto& RowOf(const Rows& rows, const std::string& what,
   throw UnknownName(what, std::string(name), NamesOf(rows));
 }
 
-// As RowOf, but returns the value of a Named row.
-template <typename Rows>
-auto ValueOf(const Rows& rows, const std::string& what, std::string_view name) {
-  return RowOf(rows, what, name).value;
-}
-
 }  // namespace rgbd_pose

@@ -24,6 +24,9 @@ inline double Quantile(std::vector<double> values, double share) {
   return QuantileInPlace(&values, share);
 }
 
+// Sigma of a normal distribution, divided by the median of absolute values.
+inline constexpr double kSigmaOfMedian = 1.4826;
+
 inline double Median(const std::vector<double>& values) {
   return Quantile(values, 0.5);
 }

@@ -3,13 +3,12 @@
 #include <fcntl.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <system_error>
 
 #include "core/util/input_error.h"
@@ -17,24 +16,22 @@
 namespace rgbd_pose {
 namespace {
 
-bool IsSeparator(char c) {
-  return c == ' ' || c == '\t' || c == ',' || c == '\r';
+std::vector<std::string> SplitWords(std::string_view line) {
+  constexpr std::string_view kSeparators = " \t,\r";
+  std::vector<std::string> words;
+  for (size_t end = 0;;) {
+    const size_t begin = line.find_first_not_of(kSeparators, end);
+    if (begin == std::string_view::npos) return words;
+    end = std::min(line.find_first_of(kSeparators, begin), line.size());
+    words.emplace_back(line.substr(begin, end - begin));
+  }
 }
 
-std::vector<std::string> SplitWords(std::string_view line) {
-  std::vector<std::string> words;
-  size_t begin = 0;
-  while (begin < line.size()) {
-    if (IsSeparator(line[begin])) {
-      ++begin;
-      continue;
-    }
-    size_t end = begin;
-    while (end < line.size() && !IsSeparator(line[end])) ++end;
-    words.emplace_back(line.substr(begin, end - begin));
-    begin = end;
+void RefuseFolder(const std::string& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) {
+    throw InputError(path + ": is a folder, but a file is expected");
   }
-  return words;
 }
 
 // Reason of the last failed call, as "(No space left on device)".
@@ -64,10 +61,7 @@ bool IsFile(const std::filesystem::path& path) {
 }
 
 std::string ReadTextFile(const std::string& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) {
-    throw InputError(path + ": is a folder, but a file is expected");
-  }
+  RefuseFolder(path);
   std::ifstream file(path, std::ios::binary);
   if (!file) {
     throw InputError(path +
@@ -186,11 +180,9 @@ void SyncFolder(const std::string& path) {
 }
 
 void RequireWritable(const std::string& path) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(path, ignored)) {
-    throw InputError(path + ": is a folder, but a file is expected");
-  }
+  RefuseFolder(path);
   std::fclose(OpenToWrite(path));
+  std::error_code ignored;
   std::filesystem::remove(TemporaryPath(path), ignored);
 }
 

@@ -58,42 +58,35 @@ class CostOf final : public PackedCost<Type> {
 
   // Stores the matches only if they have to be packed again.
   void Bind(const FramePair& pair) override {
-    this->SetThreads(pair.threads);
-    if (association() != AssociationPolicy::kOnce) {
-      if (pair.matches != nullptr) {
-        kept_ = *pair.matches;
-      } else {
-        kept_.Clear();
-      }
-      return;
-    }
     static const Correspondences none;
-    PackAll({pair.matches != nullptr ? *pair.matches : none, Rigid3d(),
-             pair.prior});
+    const Correspondences& matches =
+        pair.matches != nullptr ? *pair.matches : none;
+    this->SetThreads(pair.threads);
+    if (association() == AssociationPolicy::kOnce) {
+      PackAll({matches, Rigid3d(), pair.prior});
+    } else {
+      kept_ = matches;
+    }
   }
 
   void Associate(const Rigid3d& cur_from_prev) override {
-    if (association() != AssociationPolicy::kOnce)
-      PackAll({kept_, cur_from_prev});
+    if (association() == AssociationPolicy::kOnce) return;
+    PackAll({kept_, cur_from_prev});
   }
 
  private:
   static constexpr bool kIsPrior = kHas<IsPriorOf, Residual>;
 
   void PackAll(const CostInput& input) {
-    const size_t count = Count(input);
+    const size_t num_priors = input.prior != nullptr ? 1 : 0;
+    const size_t count = kIsPrior ? num_priors : input.matches.size();
     this->BeginBlocks(count);
-    double columns[Residual::kColumns];
+    typename PackedCost<Type>::Block columns = {};
     for (size_t i = 0; i < count; ++i) {
-      if (!Residual::Pack(input, i, columns)) continue;
+      if (!Residual::Pack(input, i, columns.data())) continue;
       this->AddBlock(columns, kIsPrior ? -1 : static_cast<int>(i));
     }
     this->EndBlocks();
-  }
-
-  static size_t Count(const CostInput& input) {
-    if (kIsPrior) return input.prior != nullptr ? 1 : 0;
-    return input.matches.size();
   }
 
   Correspondences kept_;  // see Bind

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <optional>
 #include <string_view>
 #include <type_traits>
@@ -45,11 +46,9 @@ class PackedCost : public MotionCost {
 
   double InlierLimit(int k) const override {
     if constexpr (kHas<InlierLimitOf, Residual>) {
-      double columns[kColumns];
-      for (int i = 0; i < kColumns; ++i) {
-        columns[i] = packed_.values[i * packed_.stride + k];
-      }
-      return Residual::InlierLimit(columns);
+      Block columns;
+      packed_.Read(k, &columns);
+      return Residual::InlierLimit(columns.data());
     }
     return MotionCost::InlierLimit(k);
   }
@@ -64,8 +63,8 @@ class PackedCost : public MotionCost {
   void SquaredNorms(const MotionDerivatives& motion,
                     std::vector<double>* squared_norms) const override {
     squared_norms->resize(packed_.stride);
-    RunVectorised<packed::SquaredNormsKernel<Residual>>(motion, packed_,
-                                                        squared_norms->data());
+    RunVectorised<packed::SquaredNormsKernel<Residual>>(
+        motion, packed_, 0, packed_.size, squared_norms->data());
     squared_norms->resize(matches_.size());
   }
 
@@ -107,9 +106,10 @@ class PackedCost : public MotionCost {
       problem->AddResidualBlock(&*block_, nullptr, x);
       return;
     }
-    Unpack();
+    rows_.resize(matches_.size());
     for (size_t i = 0; i < matches_.size(); ++i) {
-      const double* columns = &rows_[i * kColumns];
+      packed_.Read(i, &rows_[i]);
+      const double* const columns = rows_[i].data();
       ceres::CostFunction* block;
       if (assembly == Assembly::kPerMatch) {
         block = new AnalyticBlock<Residual>(origin, columns);
@@ -122,7 +122,8 @@ class PackedCost : public MotionCost {
   }
 
  protected:
-  static constexpr int kColumns = Residual::kColumns;  // of a block
+  static constexpr int kColumns = Residual::kColumns;
+  using Block = std::array<double, kColumns>;  // its columns
 
   // See FramePair::threads.
   void SetThreads(int threads) { threads_ = threads; }
@@ -130,21 +131,17 @@ class PackedCost : public MotionCost {
   // Removes all blocks and reserves memory for max_blocks. The caller may write
   // blocks without a match, and their number, directly to the returned columns.
   PackedColumns* BeginBlocks(size_t max_blocks) {
-    // At least one lane more than max_blocks.
-    packed_.stride = static_cast<ptrdiff_t>((max_blocks + kMaxLanes) /
-                                            kMaxLanes * kMaxLanes);
-    packed_.values.resize(packed_.stride * kColumns);
-    packed_.size = 0;
+    packed_.Clear(kColumns, max_blocks);
     matches_.clear();
     degrees_.clear();
     return &packed_;
   }
 
   // `match` as in MotionCost::matches.
-  void AddBlock(const double* columns, int match) {
-    Store(packed_.size++, columns);
+  void AddBlock(const Block& columns, int match) {
+    packed_.Append(columns);
     matches_.push_back(match);
-    degrees_.push_back(Degrees(columns));
+    degrees_.push_back(Degrees(columns.data()));
   }
 
   // Adds `step` times the Hessian of every step-th block, summed over
@@ -153,30 +150,21 @@ class PackedCost : public MotionCost {
   template <typename Change>
   void AddSample(const MotionDerivatives& motion, int step, int variants,
                  const Change& change, MotionMatrix* hessian) const {
-    PackedColumns& sample = sample_;
-    const int rows = (packed_.size + step - 1) / step * variants;
-    sample.stride = (rows + kMaxLanes - 1) / kMaxLanes * kMaxLanes;
-    sample.values.resize(sample.stride * kColumns);
-    sample.size = 0;
-    double columns[kColumns];
+    sample_.Clear(kColumns, (packed_.size + step - 1) / step * variants);
+    Block columns;
     for (int i = 0; i < packed_.size; i += step) {
       for (int variant = 0; variant < variants; ++variant) {
-        for (int k = 0; k < kColumns; ++k) {
-          columns[k] = packed_.values[k * packed_.stride + i];
-        }
-        change(variant, columns);
-        for (int k = 0; k < kColumns; ++k) {
-          sample.values[k * sample.stride + sample.size] = columns[k];
-        }
-        ++sample.size;
+        packed_.Read(i, &columns);
+        change(variant, columns.data());
+        sample_.Append(columns);
       }
     }
-    PadColumns(&sample);
+    sample_.Pad();
     NormalEquations sum;
     NormalEquations* const to = &sum;
     const ceres::LossFunction* const none = nullptr;
-    RunVectorised<packed::LineariseKernel<Residual>>(motion, sample, none, 0,
-                                                     sample.size, to);
+    RunVectorised<packed::LineariseKernel<Residual>>(motion, sample_, none, 0,
+                                                     sample_.size, to);
     *hessian += step * sum.hessian;
   }
 
@@ -184,7 +172,7 @@ class PackedCost : public MotionCost {
   void EndBlocks() {
     matches_.resize(packed_.size, -1);
     degrees_.resize(packed_.size, Residual::kDegreesOfFreedom);
-    PadColumns(&packed_);
+    packed_.Pad();
     chunks_.resize((packed_.size + packed::kChunk - 1) / packed::kChunk);
   }
 
@@ -194,29 +182,14 @@ class PackedCost : public MotionCost {
     return Residual::kDegreesOfFreedom;
   }
 
-  void Store(size_t i, const double* columns) {
-    for (int k = 0; k < kColumns; ++k) {
-      packed_.values[k * packed_.stride + i] = columns[k];
-    }
-  }
-
-  // Stores the columns match by match, for the assemblies that need them so.
-  void Unpack() {
-    rows_.resize(matches_.size() * kColumns);
-    for (size_t i = 0; i < matches_.size(); ++i) {
-      for (int k = 0; k < kColumns; ++k) {
-        rows_[i * kColumns + k] = packed_.values[k * packed_.stride + i];
-      }
-    }
-  }
-
   std::vector<int> matches_;
   std::vector<int> degrees_;
   PackedColumns packed_;
   int threads_ = 1;
   mutable std::vector<NormalEquations> chunks_;  // see Linearise
   mutable PackedColumns sample_;                 // see AddSample
-  std::vector<double> rows_;                     // see Unpack
+  // The columns match by match, for the assemblies that need them so.
+  std::vector<Block> rows_;
   std::optional<MotionBlock> block_;
 };
 

@@ -3,6 +3,7 @@
 #include <ceres/loss_function.h>
 
 #include <algorithm>
+#include <array>
 #include <cstddef>
 #include <cstring>
 #include <type_traits>
@@ -25,18 +26,35 @@ struct PackedColumns {
   std::vector<double> values;  // column k starts at k * stride
   ptrdiff_t stride = 0;
   int size = 0;
-};
 
-// Pads with copies of the last match, whose numbers cannot overflow.
-inline void PadColumns(PackedColumns* columns) {
-  if (columns->size == 0) return;
-  for (size_t k = 0; k < columns->values.size(); k += columns->stride) {
-    double* const column = &columns->values[k];
-    for (int i = columns->size; i % kMaxLanes != 0; ++i) {
-      column[i] = column[columns->size - 1];
+  // Removes all matches; makes room for `max_size` of them and one more lane.
+  void Clear(int columns, size_t max_size) {
+    stride =
+        static_cast<ptrdiff_t>((max_size + kMaxLanes) / kMaxLanes * kMaxLanes);
+    values.resize(stride * columns);
+    size = 0;
+  }
+
+  // One match: its number in each column.
+  template <size_t N>
+  void Append(const std::array<double, N>& match) {
+    for (size_t k = 0; k < N; ++k) values[k * stride + size] = match[k];
+    ++size;
+  }
+  template <size_t N>
+  void Read(int i, std::array<double, N>* match) const {
+    for (size_t k = 0; k < N; ++k) (*match)[k] = values[k * stride + i];
+  }
+
+  // Pads with copies of the last match, whose numbers cannot overflow.
+  void Pad() {
+    if (size == 0) return;
+    for (size_t k = 0; k < values.size(); k += stride) {
+      double* const column = &values[k];
+      for (int i = size; i % kMaxLanes != 0; ++i) column[i] = column[size - 1];
     }
   }
-}
+};
 
 namespace packed {
 
@@ -52,12 +70,6 @@ struct Pack {
     }
   }
 
-  // Result by pointer: how vectors are returned depends on the instruction set.
-  static void SquaredNorm(const D* r, D* s) {
-    *s = r[0] * r[0];
-    for (int row = 1; row < Residual::kRows; ++row) *s += r[row] * r[row];
-  }
-
   D m[Residual::kColumns];
   int lanes;
 };
@@ -67,20 +79,26 @@ struct Pack {
 // vector registers at every call.
 constexpr int kTile = 256;
 
-template <typename Residual, int W>
-[[gnu::always_inline]] inline void SquaredNormsOfTile(
-    const MotionDerivatives& motion, const PackedColumns& columns, int begin,
-    int end, double* squared_norms) {
-  using D = typename Lanes<W>::Type;
-  for (int i = begin; i < end; i += W) {
-    const Pack<Residual, W> pack(columns, i);
-    D r[Residual::kRows];
-    Residual::Residual(motion, pack.m, r);
-    D s;
-    pack.SquaredNorm(r, &s);
-    std::memcpy(squared_norms + (i - begin), &s, sizeof(D));
+// The squared norm of the residual of each match from `begin` (a multiple of
+// kMaxLanes) to `end`. The output must have room for the padding.
+template <typename Residual>
+struct SquaredNormsKernel {
+  template <int W>
+  [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
+                                         const PackedColumns& columns,
+                                         int begin, int end,
+                                         double* squared_norms) {
+    using D = typename Lanes<W>::Type;
+    for (int i = begin; i < end; i += W) {
+      const Pack<Residual, W> pack(columns, i);
+      D r[Residual::kRows];
+      Residual::Residual(motion, pack.m, r);
+      D s = r[0] * r[0];
+      for (int row = 1; row < Residual::kRows; ++row) s += r[row] * r[row];
+      std::memcpy(squared_norms + (i - begin), &s, sizeof(D));
+    }
   }
-}
+};
 
 // Fills in the weights rho' of a tile, 0 for padding; returns the sum of rho.
 template <typename Residual, int W>
@@ -90,7 +108,8 @@ template <typename Residual, int W>
                                                int begin, int end,
                                                double* weights) {
   alignas(64) double squared_norms[kTile + kMaxLanes];
-  SquaredNormsOfTile<Residual, W>(motion, columns, begin, end, squared_norms);
+  SquaredNormsKernel<Residual>::template Run<W>(motion, columns, begin, end,
+                                                squared_norms);
   const double cost = Weigh(loss, squared_norms, end - begin, weights);
   for (int i = end - begin; i % W != 0; ++i) weights[i] = 0.0;
   return cost;
@@ -137,19 +156,6 @@ struct ResidualsKernel {
         }
       }
     }
-  }
-};
-
-// The squared norm of each match's residual. The output must have room for the
-// padding.
-template <typename Residual>
-struct SquaredNormsKernel {
-  template <int W>
-  [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
-                                         const PackedColumns& columns,
-                                         double* squared_norms) {
-    SquaredNormsOfTile<Residual, W>(motion, columns, 0, columns.size,
-                                    squared_norms);
   }
 };
 

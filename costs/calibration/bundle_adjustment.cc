@@ -1,58 +1,17 @@
 #include "costs/calibration/bundle_adjustment.h"
 
 #include <ceres/loss_function.h>
+#include <ceres/normal_prior.h>
 #include <ceres/problem.h>
 #include <ceres/solver.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 
-#include "costs/calibration/landmark_block.h"
-#include "costs/calibration/landmark_covariance.h"
+#include "core/util/quantile.h"
 
 namespace rgbd_pose {
-namespace {
-
-using FreeParts = std::array<bool, kCalibrationSize>;
-
-// The prior of y. y is in standard deviations, so the residual is y itself.
-class PriorBlock final
-    : public ceres::SizedCostFunction<kCalibrationSize, kCalibrationSize> {
- public:
-  bool Evaluate(double const* const* y, double* residuals,
-                double** jacobians) const override {
-    for (int i = 0; i < kCalibrationSize; ++i) {
-      residuals[i] = y[0][i];
-      if (jacobians == nullptr || jacobians[0] == nullptr) continue;
-      for (int k = 0; k < kCalibrationSize; ++k) {
-        jacobians[0][i * kCalibrationSize + k] = i == k ? 1.0 : 0.0;
-      }
-    }
-    return true;
-  }
-};
-
-std::vector<LinearizationPoint> OriginsOf(
-    const std::vector<Rigid3d>& world_from_cam) {
-  std::vector<LinearizationPoint> origins;
-  for (const Rigid3d& pose : world_from_cam) {
-    origins.emplace_back(pose.Inverse());
-  }
-  return origins;
-}
-
-}  // namespace
-
-BundleAdjustment::BundleAdjustment(const CalibrationViews& views,
-                                   const CalibrationPrior& prior,
-                                   bool training_only, int max_iterations)
-    : views_(views),
-      prior_(prior),
-      training_only_(training_only),
-      max_iterations_(max_iterations) {}
 
 CalibrationState BundleAdjustment::Begin(const CalibrationVector& theta) const {
   CalibrationState state;
@@ -102,13 +61,10 @@ void BundleAdjustment::MeasureScales(CalibrationState* state) const {
       depths.push_back(std::abs(r[0]));
     }
   }
-  constexpr double kSigmaOfMedian = 1.4826;  // of a normal distribution
   constexpr double kLeast = 1e-3;
   const auto scale_of = [&](std::vector<double>* values) {
     if (values->empty()) return 1.0;
-    const auto middle = values->begin() + values->size() / 2;
-    std::nth_element(values->begin(), middle, values->end());
-    return std::max(kLeast, kSigmaOfMedian * *middle);
+    return std::max(kLeast, kSigmaOfMedian * UpperMedian(values));
   };
   state->pixel_scale = scale_of(&pixels);
   state->depth_scale = scale_of(&depths);
@@ -117,8 +73,10 @@ void BundleAdjustment::MeasureScales(CalibrationState* state) const {
 double BundleAdjustment::Solve(const FreeParts& is_free,
                                CalibrationState* state) const {
   const CalibrationOrigin origin = OriginOf(is_free, state->theta);
-  const std::vector<LinearizationPoint> origins =
-      OriginsOf(state->world_from_cam);
+  std::vector<LinearizationPoint> origins;
+  for (const Rigid3d& pose : state->world_from_cam) {
+    origins.emplace_back(pose.Inverse());
+  }
   std::vector<MotionVector> x(origins.size(), MotionVector::Zero());
   CalibrationVector y;
   for (int k = 0; k < kCalibrationSize; ++k) {
@@ -137,33 +95,23 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
   options.linear_solver_ordering.reset(new ceres::ParameterBlockOrdering);
   for (size_t i = 0; i < num_landmarks; ++i) {
     const Landmark& landmark = views_.landmarks[i];
-    double* const anchor = x[landmark.anchor].data();
     double* const d = &state->inverse_depths[i];
+    const auto add = [&](auto residual, int keyframe) {
+      problem.AddResidualBlock(
+          new LandmarkBlock<decltype(residual)>(
+              origins[landmark.anchor], origins[keyframe], origin, data.back()),
+          &loss, x[landmark.anchor].data(), x[keyframe].data(), d, y.data());
+    };
     // The view's pose is a dummy: an anchor's depth does not depend on it.
     data.push_back(DataOf(views_, landmark, *state));
     int used = 0;
     for (int k = 0; k < landmark.num_views; ++k) {
       const LandmarkView& view = views_.views[landmark.first_view + k];
       if (!view.TakesPart(training_only_)) continue;
-      if (used++ == 0) {
-        problem.AddResidualBlock(
-            new LandmarkBlock<AnchorDepth>(origins[landmark.anchor],
-                                           origins[view.keyframe], origin,
-                                           data.back()),
-            &loss, anchor, x[view.keyframe].data(), d, y.data());
-      }
+      if (used++ == 0) add(AnchorDepth(), view.keyframe);
       data.push_back(DataOf(views_, landmark, view, *state));
-      problem.AddResidualBlock(new LandmarkBlock<LandmarkPixel>(
-                                   origins[landmark.anchor],
-                                   origins[view.keyframe], origin, data.back()),
-                               &loss, anchor, x[view.keyframe].data(), d,
-                               y.data());
-      if (view.depth.inverse_sigma == 0.0) continue;
-      problem.AddResidualBlock(new LandmarkBlock<LandmarkDepth>(
-                                   origins[landmark.anchor],
-                                   origins[view.keyframe], origin, data.back()),
-                               &loss, anchor, x[view.keyframe].data(), d,
-                               y.data());
+      add(LandmarkPixel(), view.keyframe);
+      if (view.depth.inverse_sigma != 0.0) add(LandmarkDepth(), view.keyframe);
     }
     if (used > 0) options.linear_solver_ordering->AddElementToGroup(d, 0);
   }
@@ -173,7 +121,10 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
                                known),
         nullptr, x[known.a].data(), x[known.b].data(), y.data());
   }
-  problem.AddResidualBlock(new PriorBlock, nullptr, y.data());
+  // y is in standard deviations of the prior, so the residual is y itself.
+  problem.AddResidualBlock(new ceres::NormalPrior(CalibrationMatrix::Identity(),
+                                                  CalibrationVector::Zero()),
+                           nullptr, y.data());
   options.linear_solver_ordering->AddElementToGroup(y.data(), 1);
   for (MotionVector& pose : x) {
     if (!problem.HasParameterBlock(pose.data())) continue;
@@ -182,9 +133,7 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
   if (problem.HasParameterBlock(x[0].data())) {
     problem.SetParameterBlockConstant(x[0].data());
   }
-  if (std::none_of(is_free.begin(), is_free.end(), [](bool b) { return b; })) {
-    problem.SetParameterBlockConstant(y.data());
-  }
+  if (is_free.none()) problem.SetParameterBlockConstant(y.data());
 
   options.linear_solver_type = ceres::SPARSE_SCHUR;
   options.max_num_iterations = max_iterations_;
@@ -204,13 +153,15 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
   return summary.final_cost;
 }
 
-bool BundleAdjustment::Covariance(
-    const FreeParts& is_free, const CalibrationState& state,
-    CalibrationMatrix* model_covariance,
-    CalibrationMatrix* sandwich_covariance) const {
-  return LandmarkCovariance(views_, training_only_,
-                            OriginOf(is_free, state.theta), state,
-                            model_covariance, sandwich_covariance);
+std::optional<CalibrationVector> BundleAdjustment::Variances(
+    const FreeParts& is_free, const CalibrationState& state) const {
+  CalibrationMatrix model, sandwich;
+  if (!LandmarkCovariance(views_, training_only_,
+                          OriginOf(is_free, state.theta), state, &model,
+                          &sandwich)) {
+    return std::nullopt;
+  }
+  return CalibrationVector(model.diagonal().cwiseMax(sandwich.diagonal()));
 }
 
 }  // namespace rgbd_pose

@@ -1,7 +1,10 @@
 #pragma once
 
-#include <array>
+#include <Eigen/Core>
+#include <optional>
+#include <vector>
 
+#include "core/geometry/motion.h"
 #include "costs/calibration/calibration_parameters.h"
 #include "costs/calibration/calibration_views.h"
 #include "costs/calibration/landmark_block.h"
@@ -21,7 +24,11 @@ class BundleAdjustment {
   // `views` must outlive this object. With `training_only`, views that are held
   // out are not used.
   BundleAdjustment(const CalibrationViews& views, const CalibrationPrior& prior,
-                   bool training_only, int max_iterations = 20);
+                   bool training_only, int max_iterations = 20)
+      : views_(views),
+        prior_(prior),
+        training_only_(training_only),
+        max_iterations_(max_iterations) {}
 
   // The initial state: the poses of the views, the depths as measured.
   CalibrationState Begin(const CalibrationVector& theta) const;
@@ -31,18 +38,16 @@ class BundleAdjustment {
 
   // Solves for everything but the scales; `is_free` selects parameters of
   // theta. Returns the cost, NaN if there is no solution.
-  double Solve(const std::array<bool, kCalibrationSize>& is_free,
-               CalibrationState* state) const;
+  double Solve(const FreeParts& is_free, CalibrationState* state) const;
 
-  // The covariance of theta at a solution, see LandmarkCovariance.
-  bool Covariance(const std::array<bool, kCalibrationSize>& is_free,
-                  const CalibrationState& state,
-                  CalibrationMatrix* model_covariance,
-                  CalibrationMatrix* sandwich_covariance) const;
+  // The variances of theta at a solution, each the larger one of the two from
+  // LandmarkCovariance; nothing if they cannot be computed.
+  std::optional<CalibrationVector> Variances(
+      const FreeParts& is_free, const CalibrationState& state) const;
 
  private:
   // Free parameters count from their prior mean, the others keep their value.
-  CalibrationOrigin OriginOf(const std::array<bool, kCalibrationSize>& is_free,
+  CalibrationOrigin OriginOf(const FreeParts& is_free,
                              const CalibrationVector& theta) const;
 
   const CalibrationViews& views_;
@@ -50,5 +55,43 @@ class BundleAdjustment {
   const bool training_only_;
   const int max_iterations_;
 };
+
+// The covariance of theta at a solution of a BundleAdjustment, with all else
+// free: from the noise of the residuals (model) and from their scatter over the
+// keyframes, whatever their noise (sandwich). Both include the prior. Zero for
+// parameters that `origin` fixes. Returns false if they cannot be computed.
+bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
+                        const CalibrationOrigin& origin,
+                        const CalibrationState& state,
+                        CalibrationMatrix* model_covariance,
+                        CalibrationMatrix* sandwich_covariance);
+
+// The normal equations of a bundle adjustment at a state. The unknowns are all
+// poses but the first, six numbers each, then y of CalibrationOrigin; the
+// depths of landmarks are eliminated. Only landmarks are included, neither
+// known distances nor the prior.
+struct ReducedCameraSystem {
+  Eigen::MatrixXd hessian;  // lower triangle only
+
+  // One column per keyframe: the gradient of the landmarks anchored there.
+  Eigen::MatrixXd gradients;
+
+  // Residuals lose weight as they grow, so the gradients change less with the
+  // unknowns than `hessian`, by slope_p / weight_p: sums of rho' p + 2 s rho''
+  // and of rho' p over residuals with p rows and s = |r|^2.
+  double slope_p = 0.0, weight_p = 0.0;
+
+  // Index of a pose among the unknowns; negative for the first, a constant.
+  static int PlaceOfPose(int keyframe) { return 6 * (keyframe - 1); }
+  int PlaceOfY() const {
+    return static_cast<int>(hessian.rows()) - kCalibrationSize;
+  }
+};
+
+// `poses` must be the poses of `state`. Residuals have Cauchy's loss.
+ReducedCameraSystem MakeReducedCameraSystem(
+    const CalibrationViews& views, bool training_only,
+    const CalibrationOrigin& origin, const CalibrationState& state,
+    const std::vector<MotionDerivatives>& poses);
 
 }  // namespace rgbd_pose

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 
 namespace rgbd_pose {
@@ -42,6 +43,9 @@ inline constexpr int kDistortionSize = kLensSize - kK1;
 using CalibrationVector = Eigen::Matrix<double, kCalibrationSize, 1>;
 using CalibrationMatrix =
     Eigen::Matrix<double, kCalibrationSize, kCalibrationSize>;
+
+// Which of the parameters are free.
+using FreeParts = std::bitset<kCalibrationSize>;
 
 // One row of the table of parameters.
 struct CalibrationParameter {

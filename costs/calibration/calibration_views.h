@@ -10,13 +10,17 @@
 
 namespace rgbd_pose {
 
+// A pixel of a keyframe and the inverse depth measured there.
+struct DepthPixel {
+  double u = 0.0, v = 0.0;  // px, as seen (distorted)
+  MeasuredInverseDepth depth;
+};
+
 // An observation of a landmark in a keyframe other than its anchor.
-struct LandmarkView {
+struct LandmarkView : DepthPixel {
   int keyframe = 0;
-  double u = 0.0, v = 0.0;     // px, as seen (distorted)
-  double sigma_px = 0.5;       // of u and v
-  MeasuredInverseDepth depth;  // there, if measured
-  bool is_held_out = false;    // kept for validation
+  double sigma_px = 0.5;     // of u and v
+  bool is_held_out = false;  // kept for validation
 
   // Whether the view is used; with training_only, held-out views are not.
   bool TakesPart(bool training_only) const {
@@ -24,12 +28,10 @@ struct LandmarkView {
   }
 };
 
-// A point on the viewing ray of a pixel of a keyframe.
-struct Landmark {
-  int anchor = 0;              // its keyframe
-  double u = 0.0, v = 0.0;     // px, as seen (distorted)
-  MeasuredInverseDepth depth;  // there
-  int first_view = 0;          // of CalibrationViews::views
+// A point on the viewing ray of a pixel of a keyframe, its anchor.
+struct Landmark : DepthPixel {
+  int anchor = 0;      // the keyframe
+  int first_view = 0;  // of CalibrationViews::views
   int num_views = 0;
 };
 
@@ -66,17 +68,49 @@ struct CalibrationState {
 
 // The poses of a state's keyframes (cam from world), with their derivatives by
 // an additional motion, at zero motion.
-std::vector<MotionDerivatives> PosesOf(const CalibrationState& state);
+inline std::vector<MotionDerivatives> PosesOf(const CalibrationState& state) {
+  std::vector<MotionDerivatives> poses;
+  for (const Rigid3d& pose : state.world_from_cam) {
+    poses.push_back(DerivativesAt(pose.Inverse()));
+  }
+  return poses;
+}
 
 // When a row (px) of a keyframe is exposed, and the keyframe's velocity.
-RowMotion MotionAt(const CalibrationViews& views, int keyframe, double row);
+inline RowMotion MotionAt(const CalibrationViews& views, int keyframe,
+                          double row) {
+  return {views.twists[keyframe],
+          Shutter{0.0, 1.0}.RowTime(row, views.camera.height)};
+}
 
-// The measurements of a landmark in one view, with sigmas scaled by the state.
-LandmarkData DataOf(const CalibrationViews& views, const Landmark& landmark,
-                    const LandmarkView& view, const CalibrationState& state);
+// The measurements of a landmark at its anchor, with sigmas scaled by the
+// state.
+inline LandmarkData DataOf(const CalibrationViews& views,
+                           const Landmark& landmark,
+                           const CalibrationState& state) {
+  LandmarkData data;
+  data.rest = &views.camera;
+  data.anchor_u = landmark.u;
+  data.anchor_v = landmark.v;
+  data.anchor_motion = MotionAt(views, landmark.anchor, landmark.v);
+  data.motion = data.anchor_motion;
+  data.depth = landmark.depth;
+  data.depth.inverse_sigma /= state.depth_scale;
+  return data;
+}
 
-// The same at its anchor.
-LandmarkData DataOf(const CalibrationViews& views, const Landmark& landmark,
-                    const CalibrationState& state);
+// The same in one view.
+inline LandmarkData DataOf(const CalibrationViews& views,
+                           const Landmark& landmark, const LandmarkView& view,
+                           const CalibrationState& state) {
+  LandmarkData data = DataOf(views, landmark, state);
+  data.u = view.u;
+  data.v = view.v;
+  data.motion = MotionAt(views, view.keyframe, view.v);
+  data.inverse_sigma_px = 1.0 / (view.sigma_px * state.pixel_scale);
+  data.depth = view.depth;
+  data.depth.inverse_sigma /= state.depth_scale;
+  return data;
+}
 
 }  // namespace rgbd_pose

@@ -56,12 +56,11 @@ class LandmarkBlock final
     Residual::Jacobian(anchor_.DerivativesAt(x[0]), view_.DerivativesAt(x[1]),
                        x[2][0], theta.data(), data_, residuals, &J);
     const auto give = [&](int block, const auto& derivatives) {
-      double* to = jacobians[block];
-      if (to == nullptr) return;
-      for (int row = 0; row < kRows; ++row) {
-        for (int k = 0; k < derivatives.cols(); ++k)
-          *to++ = derivatives(row, k);
-      }
+      if (jacobians[block] == nullptr) return;
+      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic,
+                                     Eigen::RowMajor>;
+      Eigen::Map<RowMajor>(jacobians[block], kRows, derivatives.cols()) =
+          derivatives;
     };
     give(0, J.anchor);
     give(1, J.view);

@@ -1,20 +1,13 @@
-#include "costs/calibration/landmark_covariance.h"
-
 #include <Eigen/Cholesky>
 #include <algorithm>
 
-#include "costs/calibration/landmark_block.h"
+#include "costs/calibration/bundle_adjustment.h"
 
 namespace rgbd_pose {
 namespace {
 
 // As in core/estimation/covariance_accumulator.cc.
 constexpr double kMinSlope = 0.2;
-
-// rho' of Cauchy's loss.
-double Weight(double squared) {
-  return 1.0 / (1.0 + squared / (kLandmarkLossWidth * kLandmarkLossWidth));
-}
 
 // The normal equations of one landmark at a time.
 class OneLandmark {
@@ -106,11 +99,13 @@ class OneLandmark {
     return {kFixed + 6 * (i - 2), 6, equations_.PlaceOfPose(keyframes_[i - 2])};
   }
 
+  // rho' of Cauchy's loss.
   template <typename Residual>
   double WeightOf(const Residual& r) {
-    const double s = r.squaredNorm(), weight = Weight(s);
-    const double curvature =
-        -weight * weight / (kLandmarkLossWidth * kLandmarkLossWidth);
+    constexpr double kWidth2 = kLandmarkLossWidth * kLandmarkLossWidth;
+    const double s = r.squaredNorm();
+    const double weight = 1.0 / (1.0 + s / kWidth2);
+    const double curvature = -weight * weight / kWidth2;
     equations_.weight_p += weight * r.size();
     equations_.slope_p += weight * r.size() + 2.0 * s * curvature;
     return weight;

@@ -8,7 +8,6 @@
 #include "core/geometry/twist.h"
 #include "costs/calibration/calibration_parameters.h"
 #include "costs/calibration/lens.h"
-#include "costs/parts/cost_input.h"
 
 // Residuals of a landmark: a point on the viewing ray of a pixel of one
 // keyframe, its anchor. Its inverse depth d there is a parameter. Other
@@ -223,7 +222,6 @@ struct InViewDerivatives {
 struct LandmarkPixel {
   static constexpr char kName[] = "landmark_pixel";
   static constexpr int kRows = 2;
-  static constexpr bool kHasView = true;
 
   template <typename T>
   static void Residual(const RotationAndCenter<T>& anchor,
@@ -274,7 +272,6 @@ struct LandmarkPixel {
 struct LandmarkDepth {
   static constexpr char kName[] = "landmark_depth";
   static constexpr int kRows = 1;
-  static constexpr bool kHasView = true;
 
   template <typename T>
   static void Residual(const RotationAndCenter<T>& anchor,
@@ -311,7 +308,6 @@ struct LandmarkDepth {
 struct AnchorDepth {
   static constexpr char kName[] = "anchor_depth";
   static constexpr int kRows = 1;
-  static constexpr bool kHasView = false;
 
   template <typename T>
   static void Residual(const RotationAndCenter<T>& /*anchor*/,
@@ -336,9 +332,5 @@ struct AnchorDepth {
     J->theta *= data.depth.inverse_sigma;
   }
 };
-
-// All residuals; their Jacobian tests follow from this list.
-using CalibrationResiduals =
-    TypeList<LandmarkPixel, LandmarkDepth, AnchorDepth>;
 
 }  // namespace rgbd_pose

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <Eigen/LU>
-#include <cmath>
 
 #include "core/geometry/camera.h"
 #include "costs/calibration/calibration_parameters.h"
@@ -68,8 +67,6 @@ inline Eigen::Matrix2d DistortDerivative(const CalibratedLens<double>& at,
 // d Distort / d (k1, k2, k3, k4, p1, p2).
 inline Eigen::Matrix<double, 2, kDistortionSize> DistortByCoefficients(
     const CalibratedLens<double>& at, double x, double y) {
-  const bool is_equidistant =
-      at.lens.factor == Lens<double>::Factor::kEquidistant;
   const double r2 = x * x + y * y;
   double by[4];
   at.lens.RadialByCoefficients(r2, by);
@@ -77,7 +74,7 @@ inline Eigen::Matrix<double, 2, kDistortionSize> DistortByCoefficients(
   for (int k = 0; k < 4; ++k) D.col(k) << x * by[k], y * by[k];
   D.rightCols<2>() << 2.0 * x * y, r2 + 2.0 * x * x, r2 + 2.0 * y * y,
       2.0 * x * y;
-  if (is_equidistant) {
+  if (at.lens.factor == Lens<double>::Factor::kEquidistant) {
     D.rightCols<2>().setZero();
   } else {
     D.col(3).setZero();
@@ -100,26 +97,6 @@ inline Eigen::Vector2d Undistorted(const CalibratedLens<double>& lens, double u,
     if (!(change.lpNorm<Eigen::Infinity>() > kTolerance)) break;
   }
   return place;
-}
-
-// The same with derivatives: one more Newton step from the converged values
-// yields the exact derivatives.
-template <typename T>
-Eigen::Matrix<T, 2, 1> Undistorted(const CalibratedLens<T>& lens, double u,
-                                   double v) {
-  double values[kCalibrationSize];
-  for (int k = 0; k < kCalibrationSize; ++k) values[k] = lens.theta[k].a;
-  const CalibratedLens<double> plain{values, lens.rest};
-  const Eigen::Vector2d place = Undistorted(plain, u, v);
-  const Eigen::Matrix2d inverse =
-      DistortDerivative(plain, place[0], place[1]).inverse();
-  const Eigen::Matrix<T, 2, 1> off =
-      lens.FromPixel(u, v) - lens.Distort(T(place[0]), T(place[1]));
-  Eigen::Matrix<T, 2, 1> result;
-  for (int i = 0; i < 2; ++i) {
-    result[i] = place[i] + inverse(i, 0) * off[0] + inverse(i, 1) * off[1];
-  }
-  return result;
 }
 
 }  // namespace rgbd_pose

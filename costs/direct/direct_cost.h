@@ -10,7 +10,6 @@
 #include "core/util/input_error.h"
 #include "core/util/vector_lanes.h"
 #include "costs/assembly/packed_cost.h"
-#include "costs/direct/direct_input.h"
 #include "costs/direct/direct_points.h"
 
 namespace rgbd_pose {
@@ -215,9 +214,14 @@ class DirectCostOf final : public PackedCost<Type> {
                  "direct cost: the view's depth_noise: ");
     if (pair.prev->id != 0 && pair.prev->id == points_of_) return;
     points_of_ = pair.prev->id;
+    int count =
+        options_.max_points > 0 ? options_.max_points : Residual::kMaxPoints;
     for (int level = 0; level < options_.num_levels; ++level) {
       Residual::Points(*pair.prev, ImageLevel(*pair.prev, level),
-                       Selection(level), &points_[level]);
+                       {count, options_.min_gradient, options_.min_depth,
+                        options_.max_depth},
+                       &points_[level]);
+      count = std::min(count, options_.max_coarse_points);
     }
   }
 
@@ -254,13 +258,6 @@ class DirectCostOf final : public PackedCost<Type> {
  private:
   // One in this many points represents all of them in the spurious information.
   static constexpr int kSpuriousStep = 8;
-
-  PointSelection Selection(int level) const {
-    const int finest =
-        options_.max_points > 0 ? options_.max_points : Residual::kMaxPoints;
-    return {level == 0 ? finest : std::min(finest, options_.max_coarse_points),
-            options_.min_gradient, options_.min_depth, options_.max_depth};
-  }
 
   // Images with fewer levels repeat their coarsest one.
   int ImageLevel(const FrameView& frame, int level) const {

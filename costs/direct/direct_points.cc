@@ -1,9 +1,8 @@
 #include "costs/direct/direct_points.h"
 
-#include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <initializer_list>
 #include <limits>
 
 #include "costs/direct/surface.h"
@@ -20,31 +19,6 @@ int CellSize(double pixels, int max_points) {
 
 // Distance between the depths that a slope is computed from, px.
 constexpr int kSlopeStep = 3;
-
-// Appends points to columns; Finish pads them.
-class ColumnWriter {
- public:
-  ColumnWriter(PackedColumns* points, int columns, size_t max_points)
-      : points_(points) {
-    points->stride = static_cast<ptrdiff_t>((max_points + kMaxLanes - 1) /
-                                            kMaxLanes * kMaxLanes);
-    points->values.resize(points->stride * columns);
-    points->size = 0;
-  }
-
-  void Add(std::initializer_list<double> point) {
-    double* at = points_->values.data() + points_->size++;
-    for (const double value : point) {
-      *at = value;
-      at += points_->stride;
-    }
-  }
-
-  void Finish() { PadColumns(points_); }
-
- private:
-  PackedColumns* points_;
-};
 
 // Whether the depths of the 3 x 3 pixels around a pixel belong to one surface,
 // with a slope of up to about 75 degrees.
@@ -141,9 +115,8 @@ void TexturedPoints(const FrameView& frame, int level_index,
   const int border = std::max(2, (kBorder + scale - 1) / scale);
   const int flat =
       static_cast<int>(4.0 * selection.min_gradient * selection.min_gradient);
-  ColumnWriter writer(
-      points, 5,
-      static_cast<size_t>(gray.width / cell + 1) * (gray.height / cell + 1));
+  points->Clear(
+      5, static_cast<size_t>(gray.width / cell + 1) * (gray.height / cell + 1));
   for (int top = border; top < gray.height - border; top += cell) {
     const int bottom = std::min(top + cell, gray.height - border);
     for (int left = border; left < gray.width - border; left += cell) {
@@ -160,11 +133,12 @@ void TexturedPoints(const FrameView& frame, int level_index,
       const Eigen::Vector3d X =
           level.camera.Unproject(at.cast<double>(), depth);
       if (!X.allFinite()) continue;
-      writer.Add({X.x(), X.y(), X.z(), frame.depth_noise.sigma(depth),
-                  static_cast<double>(gray.At(at.x(), at.y()))});
+      points->Append(std::array{X.x(), X.y(), X.z(),
+                                frame.depth_noise.sigma(depth),
+                                static_cast<double>(gray.At(at.x(), at.y()))});
     }
   }
-  writer.Finish();
+  points->Pad();
 }
 
 void SmoothPoints(const FrameView& frame, const PointSelection& selection,
@@ -175,8 +149,7 @@ void SmoothPoints(const FrameView& frame, const PointSelection& selection,
   const int width = frame.depth.width, height = frame.depth.height;
   const int cell =
       CellSize(static_cast<double>(width) * height, selection.max_points);
-  ColumnWriter writer(
-      points, 7, static_cast<size_t>(width / cell + 1) * (height / cell + 1));
+  points->Clear(7, static_cast<size_t>(width / cell + 1) * (height / cell + 1));
   for (int v = kBorder + cell / 2; v < height - kBorder; v += cell) {
     for (int u = kBorder + cell / 2; u < width - kBorder; u += cell) {
       InverseDepthPlane fit;
@@ -190,11 +163,11 @@ void SmoothPoints(const FrameView& frame, const PointSelection& selection,
       const Eigen::Vector3d N(slope.x(), slope.y(),
                               fit.inverse_depth - slope.dot(ray.head<2>()));
       if (!(N.dot(ray) > kMinCosine * N.norm() * ray.norm())) continue;
-      writer.Add({X.x(), X.y(), X.z(), N.x(), N.y(), N.z(),
-                  frame.depth_noise.sigma(depth)});
+      points->Append(std::array{X.x(), X.y(), X.z(), N.x(), N.y(), N.z(),
+                                frame.depth_noise.sigma(depth)});
     }
   }
-  writer.Finish();
+  points->Pad();
 }
 
 }  // namespace rgbd_pose

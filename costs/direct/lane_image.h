@@ -1,10 +1,8 @@
 #pragma once
 
-#include "core/estimation/frame_view.h"
 #include "core/geometry/camera.h"
 #include "core/geometry/shutter.h"
 #include "core/geometry/twist.h"
-#include "core/util/lane_math.h"
 
 // Image operations of the direct costs, for double and for vectors of doubles
 // (one lane per point, core/util/vector_lanes.h).

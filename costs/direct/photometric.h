@@ -1,8 +1,6 @@
 #pragma once
 
-#include "core/estimation/motion_cost.h"
 #include "core/util/lane_math.h"
-#include "costs/direct/direct_input.h"
 #include "costs/direct/direct_points.h"
 #include "costs/direct/lane_image.h"
 #include "costs/parts/moved_point.h"
@@ -15,7 +13,7 @@ namespace rgbd_pose {
 //
 //   r = (I_cur(u(q)) - gain I_prev - bias) / sigma,   q = R (X_prev - C)
 //
-// The image is approximated by a plane around u (direct_input.h). In the
+// The image is approximated by a plane around u (see DirectInput). In the
 // normalised image coordinates x = q_x / q_z, y = q_y / q_z:
 //
 //   r = k_0 + k_x x + k_y y

@@ -1,8 +1,5 @@
 #pragma once
 
-#include "core/estimation/motion_cost.h"
-#include "core/util/lane_math.h"
-#include "costs/direct/direct_input.h"
 #include "costs/direct/surface.h"
 #include "costs/parts/moved_point.h"
 

@@ -2,7 +2,6 @@
 
 #include "core/estimation/frame_view.h"
 #include "core/util/lane_math.h"
-#include "costs/direct/direct_input.h"
 #include "costs/direct/direct_points.h"
 #include "costs/direct/lane_image.h"
 
@@ -20,7 +19,6 @@ constexpr int kSurfaceStep = 4;
 template <typename D>
 struct MeasuredSurface {
   D q[3];       // m
-  D x, y;       // normalised image coordinates
   D plane[3];   // N, 1 / m
   D excess;     // N . q - 1: 0 on the surface, about (q_z - z) / z
   D rejection;  // 1 or more: an edge, not a surface
@@ -115,8 +113,6 @@ struct Surface : DirectResidual {
     Move(input, point, s->q, in_row);
     // The surface's offset from the point is taken to be equal at the stamp.
     const D inverse_z = 1.0 / s->q[2], inverse_measured_z = 1.0 / in_row[2];
-    s->x = s->q[0] * inverse_z;
-    s->y = s->q[1] * inverse_z;
     // The moved plane is n . p = 1 + n . t; near q only its slope matters.
     D n[3];
     Multiply(input.R, point + 3, n);
@@ -138,7 +134,8 @@ struct Surface : DirectResidual {
                        n[1] * (samples[1] * per_v);
     s->plane[0] = n[0];
     s->plane[1] = n[1];
-    s->plane[2] = measured - n[0] * s->x - n[1] * s->y;
+    s->plane[2] =
+        measured - n[0] * (s->q[0] * inverse_z) - n[1] * (s->q[1] * inverse_z);
     s->excess = measured * s->q[2] - 1.0;
     const D sigma = point[6] / (point[2] * point[2]);
     s->rejection =

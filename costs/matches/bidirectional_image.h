@@ -22,7 +22,7 @@ namespace rgbd_pose {
 //
 // If only one frame has depth, only its points can be projected, and only u and
 // v can be compared: two rows, not divided; the other four are zero. Points
-// behind a camera: see projection.h.
+// behind a camera: see Projection (image_error.h).
 struct BidirectionalImage {
   static constexpr char kName[] = "bidirectional_image";
   static constexpr int kRows = 6;

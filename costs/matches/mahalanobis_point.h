@@ -1,6 +1,5 @@
 #pragma once
 
-#include "core/estimation/motion_cost.h"
 #include "costs/parts/cost_input.h"
 #include "costs/parts/forward_error.h"
 #include "costs/parts/moved_point.h"
@@ -17,12 +16,8 @@ namespace rgbd_pose {
 // with the covariances S of PointCovariance. L is frozen at the bound motion: L
 // changes little with the motion, and a weight that follows the motion would
 // reward motions that make the noise look large.
-struct MahalanobisPoint {
+struct MahalanobisPoint : WeightedForwardError<MahalanobisPoint, 3> {
   static constexpr char kName[] = "mahalanobis_point";
-  static constexpr int kRows = 3;
-  static constexpr int kDegreesOfFreedom = 3;
-  static constexpr AssociationPolicy kAssociation =
-      AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns =
       ForwardError::kColumns + Whitening<3, double>::kColumns;
@@ -33,24 +28,9 @@ struct MahalanobisPoint {
                             columns + ForwardError::kColumns);
   }
 
-  template <typename M, typename D, typename T>
-  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
-                       T* r) {
-    T e[3];
-    ForwardError::Error(motion, columns, e);
-    Whitening<3, D>(columns + ForwardError::kColumns).Whiten(e, r);
-  }
-
-  template <typename D>
-  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
-                       D (*J)[6]) {
-    Residual(motion, columns, r);
-    const Whitening<3, D> whitening(columns + ForwardError::kColumns);
-    for (int parameter = 0; parameter < 6; ++parameter) {
-      D de[3];
-      ForwardError::Derivative(motion, columns, parameter, de);
-      whitening.WhitenColumn(de, J, parameter);
-    }
+  template <typename D, typename T>
+  [[gnu::always_inline]] static void Weigh(const D* weights, const T* e, T* r) {
+    Whitening<3, D>(weights).Whiten(e, r);
   }
 
   // The same for the compressed sums (point_sums.h): r = W e decreases by W dq,
@@ -64,7 +44,7 @@ struct MahalanobisPoint {
     Forward::TransformPoint(motion, columns, term->q);
     D e[3], r[3];
     for (int i = 0; i < 3; ++i) e[i] = columns[3 + i] - term->q[i];
-    Whitening<3, D>(w).Whiten(e, r);
+    Weigh(w, e, r);
     term->JtJ[0] = w[0] * w[0] + w[1] * w[1] + w[3] * w[3];
     term->JtJ[1] = w[1] * w[2] + w[3] * w[4];
     term->JtJ[2] = w[3] * w[5];

@@ -51,12 +51,15 @@ struct MotionPriorCost {
                        D (*J)[6]) {
     Residual(motion, columns, r);
     const Whitening<6, D> whitening(columns + kPose);
-    for (int angle = 0; angle < 3; ++angle) {
-      D de[3];
-      HalfTwist(columns, motion.dR[angle], de);
-      whitening.template WhitenHead<3>(de, J, angle);
+    for (int parameter = 0; parameter < 6; ++parameter) {
+      D de[6] = {};
+      if (parameter < 3) {
+        HalfTwist(columns, motion.dR[parameter], de);
+      } else {
+        de[parameter] += 1.0;
+      }
+      whitening.WhitenColumn(de, J, parameter);
     }
-    for (int k = 3; k < 6; ++k) whitening.WhitenUnit(k, J, k);
   }
 
  private:

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "core/estimation/motion_cost.h"
 #include "costs/parts/cost_input.h"
 #include "costs/parts/forward_error.h"
 
@@ -18,12 +17,8 @@ namespace rgbd_pose {
 // matter. sigma is frozen at the bound motion. Matches without a normal or a
 // depth are not used. A single plane leaves three directions of motion
 // undetermined: the matches must lie on surfaces with different orientations.
-struct PointToPlane {
+struct PointToPlane : WeightedForwardError<PointToPlane, 1> {
   static constexpr char kName[] = "point_to_plane";
-  static constexpr int kRows = 1;
-  static constexpr int kDegreesOfFreedom = 1;
-  static constexpr AssociationPolicy kAssociation =
-      AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = ForwardError::kColumns + 3;  // n / sigma
 
@@ -36,25 +31,9 @@ struct PointToPlane {
     return true;
   }
 
-  template <typename M, typename D, typename T>
-  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
-                       T* r) {
-    T e[3];
-    ForwardError::Error(motion, columns, e);
-    const D* n = columns + ForwardError::kColumns;
+  template <typename D, typename T>
+  [[gnu::always_inline]] static void Weigh(const D* n, const T* e, T* r) {
     r[0] = n[0] * e[0] + n[1] * e[1] + n[2] * e[2];
-  }
-
-  template <typename D>
-  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
-                       D (*J)[6]) {
-    Residual(motion, columns, r);
-    const D* n = columns + ForwardError::kColumns;
-    for (int parameter = 0; parameter < 6; ++parameter) {
-      D de[3];
-      ForwardError::Derivative(motion, columns, parameter, de);
-      J[0][parameter] = n[0] * de[0] + n[1] * de[1] + n[2] * de[2];
-    }
   }
 };
 

@@ -2,7 +2,6 @@
 
 #include <cmath>
 
-#include "core/estimation/motion_cost.h"
 #include "costs/parts/cost_input.h"
 #include "costs/parts/forward_error.h"
 
@@ -18,12 +17,8 @@ namespace rgbd_pose {
 // rows do not have unit variance. They are not whitened, so the covariance
 // comes from their scatter. Their squared norm has longer tails than chi^2 of
 // three degrees; how long depends on the bound motion.
-struct PointToPoint {
+struct PointToPoint : WeightedForwardError<PointToPoint, 3> {
   static constexpr char kName[] = "point_to_point";
-  static constexpr int kRows = 3;
-  static constexpr int kDegreesOfFreedom = 3;
-  static constexpr AssociationPolicy kAssociation =
-      AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = false;
   static constexpr int kColumns = ForwardError::kColumns + 2;
 
@@ -45,23 +40,9 @@ struct PointToPoint {
     return 3.0 * root * root * root;
   }
 
-  template <typename M, typename D, typename T>
-  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
-                       T* r) {
-    ForwardError::Error(motion, columns, r);
-    for (int row = 0; row < 3; ++row) r[row] *= columns[6];
-  }
-
-  template <typename D>
-  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
-                       D (*J)[6]) {
-    Residual(motion, columns, r);
-    for (int parameter = 0; parameter < 6; ++parameter) {
-      D de[3];
-      ForwardError::Derivative(motion, columns, parameter, de);
-      for (int row = 0; row < 3; ++row)
-        J[row][parameter] = columns[6] * de[row];
-    }
+  template <typename D, typename T>
+  [[gnu::always_inline]] static void Weigh(const D* weight, const T* e, T* r) {
+    for (int row = 0; row < 3; ++row) r[row] = weight[0] * e[row];
   }
 };
 

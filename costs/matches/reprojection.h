@@ -44,7 +44,7 @@ struct ReprojectionOf {
 //
 // L L^T is the inverse covariance of m_cur plus the projected point, frozen at
 // the bound motion. Needs only the depth of the previous frame and uses no
-// other. Points behind the camera: see projection.h.
+// other. Points behind the camera: see Projection.
 struct Reprojection : ReprojectionOf<2> {
   static constexpr char kName[] = "reprojection";
 };
@@ -57,7 +57,7 @@ struct Reprojection : ReprojectionOf<2> {
 //
 // L L^T is the inverse covariance of m_cur plus the projected point, frozen at
 // the bound motion. Needs both depths. Points behind the camera: see
-// projection.h.
+// Projection.
 struct ReprojectionDepth : ReprojectionOf<3> {
   static constexpr char kName[] = "reprojection_depth";
 };

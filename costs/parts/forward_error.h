@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "core/estimation/motion_cost.h"
 #include "core/geometry/motion.h"
 #include "costs/parts/cost_input.h"
 #include "costs/parts/moved_point.h"
@@ -49,6 +50,40 @@ struct ForwardError {
                          int parameter, D* de) {
     Forward::Derivative(motion, columns, parameter, de);
     for (int i = 0; i < 3; ++i) de[i] = -de[i];
+  }
+};
+
+// Common part of the costs whose residual is linear in the error: r = W e, with
+// weights W that are frozen at the bound motion. Type::Weigh(weights, e, r)
+// multiplies, for any scalars; the weights follow the columns of ForwardError.
+template <typename Type, int rows>
+struct WeightedForwardError {
+  // As of every residual type (costs/assembly/cost_of.h).
+  static constexpr int kRows = rows;
+  static constexpr int kDegreesOfFreedom = rows;
+  static constexpr AssociationPolicy kAssociation =
+      AssociationPolicy::kWhenMoved;
+
+  // r.
+  template <typename M, typename D, typename T>
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
+    T e[3];
+    ForwardError::Error(motion, columns, e);
+    Type::Weigh(columns + ForwardError::kColumns, e, r);
+  }
+
+  // r and dr / dx = W de / dx.
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
+    Residual(motion, columns, r);
+    for (int parameter = 0; parameter < 6; ++parameter) {
+      D de[3], dr[rows];
+      ForwardError::Derivative(motion, columns, parameter, de);
+      Type::Weigh(columns + ForwardError::kColumns, de, dr);
+      for (int row = 0; row < rows; ++row) J[row][parameter] = dr[row];
+    }
   }
 };
 

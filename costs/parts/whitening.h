@@ -14,7 +14,7 @@ namespace rgbd_pose {
 //
 //   S = z^2 sigma_px^2 diag(1/fx^2, 1/fy^2, 0) + sigma_depth^2 ray ray^T
 //
-// ray_whitening.h has its inverse square root.
+// RayWhitening (bidirectional_point.h) has its inverse square root.
 inline Eigen::Matrix3d PointCovariance(const Camera& camera,
                                        const Observation& o) {
   const Eigen::Vector3d ray = camera.Ray(o.u, o.v);
@@ -50,25 +50,6 @@ class Whitening {
     D r[N];
     Whiten(e, r);
     for (int row = 0; row < N; ++row) J[row][column] = r[row];
-  }
-
-  // The same for a column that is zero from `size` on; e has `size` entries.
-  template <int size>
-  void WhitenHead(const D* e, D (*J)[6], int column) const {
-    const D* w = w_;
-    for (int row = 0; row < N; w += ++row) {
-      D r = w[0] * e[0];
-      for (int k = 1; k < size && k <= row; ++k) r += w[k] * e[k];
-      J[row][column] = r;
-    }
-  }
-
-  // The same for column `k` of the identity.
-  void WhitenUnit(int k, D (*J)[6], int column) const {
-    const D* w = w_;
-    for (int row = 0; row < N; w += ++row) {
-      J[row][column] = row < k ? D{} : w[k];
-    }
   }
 
  private:

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "core/evaluation/moving_poses.h"
-
 namespace rgbd_pose {
 namespace {
 

@@ -41,7 +41,7 @@ std::vector<std::string> FrontendNames() { return NamesOf(kFrontends); }
 std::unique_ptr<Frontend> MakeFrontend(std::string_view name,
                                        const FrontendOptions& options) {
   RequireSound(options.Check(), "frontend: ");
-  return ValueOf(kFrontends, "frontend", name)(options);
+  return RowOf(kFrontends, "frontend", name).value(options);
 }
 
 }  // namespace rgbd_pose

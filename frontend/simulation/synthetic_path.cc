@@ -184,7 +184,7 @@ Rigid3d LookAt(const Vector3d& place, const Vector3d& target) {
 }
 
 SyntheticPath FindSyntheticPath(const std::string& name) {
-  return ValueOf(kPaths, "path", name);
+  return RowOf(kPaths, "path", name).value;
 }
 
 std::vector<std::string> SyntheticPathNames() { return NamesOf(kPaths); }

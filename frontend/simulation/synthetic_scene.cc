@@ -195,7 +195,7 @@ void AddBox(const SceneBox& box, bool from_within,
 }
 
 Scene MakeScene(const std::string& name, uint32_t seed) {
-  return ValueOf(kScenes, "scene", name)(seed);
+  return RowOf(kScenes, "scene", name).value(seed);
 }
 
 std::vector<std::string> SceneNames() { return NamesOf(kScenes); }

@@ -175,7 +175,7 @@ TumLists ReadTumLists(const std::string& folder, double max_time_difference) {
       ReadImageList(folder, "rgb.txt", &lists.same_stamp);
   const std::vector<ListedImage> depth =
       ReadImageList(folder, "depth.txt", &lists.same_stamp);
-  for (const auto [i, j] :
+  for (const auto& [i, j] :
        Associate(TimesOf(color), TimesOf(depth), max_time_difference)) {
     lists.pairs.push_back(PairOf(color[i], depth[j]));
   }

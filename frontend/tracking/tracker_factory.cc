@@ -54,7 +54,7 @@ std::vector<std::string> TrackerNames() { return NamesOf(kTrackers); }
 
 std::unique_ptr<Tracker> MakeTracker(std::string_view name,
                                      TrackerParts parts) {
-  return ValueOf(kTrackers, "tracker", std::string(name))(std::move(parts));
+  return RowOf(kTrackers, "tracker", name).value(std::move(parts));
 }
 
 }  // namespace rgbd_pose

@@ -81,8 +81,7 @@ TEST(AllocationTest, CostsKeepTheirMemory) {
   const MotionDerivatives motion = origin.DerivativesAt(x.data());
   for (const std::string& name : CostNames()) {
     const std::unique_ptr<MotionCost> cost = MakeCost(name);
-    const auto loss =
-        FindMEstimator("tukey")->MakeLoss(cost->degrees_of_freedom());
+    const auto loss = ParseLoss("tukey").Make(cost->degrees_of_freedom());
     std::vector<double> residuals, norms;
     NormalEquations sum;
     MotionMatrix scatter = MotionMatrix::Zero();

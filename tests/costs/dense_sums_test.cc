@@ -43,8 +43,7 @@ class DenseSumsTest : public ::testing::TestWithParam<std::string> {
   NormalEquations Sum(const Correspondences& matches, int threads,
                       MotionMatrix* scatter = nullptr) const {
     const std::unique_ptr<MotionCost> cost = MakeCost(GetParam());
-    const auto loss =
-        FindMEstimator("huber")->MakeLoss(cost->degrees_of_freedom());
+    const auto loss = ParseLoss("huber").Make(cost->degrees_of_freedom());
     cost->Bind({&matches, nullptr, nullptr, nullptr, threads});
     cost->Associate(truth_);
     NormalEquations sum;

@@ -1,5 +1,3 @@
-#include "costs/parts/projection.h"
-
 #include <ceres/jet.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +6,7 @@
 
 #include "core/estimation/motion_cost.h"
 #include "costs/cost_factory.h"
+#include "costs/parts/image_error.h"
 #include "frontend/simulation/synthetic_matches.h"
 
 namespace rgbd_pose {

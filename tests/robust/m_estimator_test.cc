@@ -201,37 +201,6 @@ TEST(MEstimatorTest, AScaledLossIsTheLossOfScaledWidth) {
   }
 }
 
-TEST(BarronLossTest, LeadsFromLeastSquaresToWelsch) {
-  const double c = 1.5;
-  for (double s = 0.01; s < 100.0; s *= 2.0) {
-    const Rho quadratic = Evaluate(BarronLoss(c, 2.0), s);
-    EXPECT_EQ(quadratic.value, s);
-    EXPECT_EQ(quadratic.first, 1.0);
-    EXPECT_EQ(quadratic.second, 0.0);
-    const struct {
-      double alpha;
-      std::string name;
-      double width;  // equal to Barron's loss of width c
-    } members[] = {{1.0, "l1_l2", c / std::sqrt(2.0)},
-                   {0.0, "cauchy", c * std::sqrt(2.0)},
-                   {-2.0, "geman_mcclure", 2.0 * c},
-                   {-1e9, "welsch", c * std::sqrt(2.0)}};
-    for (const auto& member : members) {
-      const double tolerance = member.alpha == -1e9 ? 1e-6 : kRounding;
-      const Rho actual = Evaluate(BarronLoss(c, member.alpha), s);
-      const Rho expected =
-          Evaluate(*FindMEstimator(member.name)->make(member.width), s);
-      EXPECT_NEAR(actual.value, expected.value, tolerance * (1 + s));
-      EXPECT_NEAR(actual.first, expected.first, tolerance) << member.name;
-      EXPECT_NEAR(actual.second, expected.second, tolerance) << member.name;
-    }
-    // No jump where the formula changes.
-    EXPECT_NEAR(Evaluate(BarronLoss(c, 1e-9), s).value,
-                Evaluate(BarronLoss(c, 0.0), s).value, 1e-7 * s);
-    EXPECT_NEAR(Evaluate(BarronLoss(c, 2.0 - 1e-9), s).value, s, 1e-7 * s);
-  }
-}
-
 TEST(MEstimatorTest, FindsByName) {
   for (const std::string& name : MEstimatorNames()) {
     ASSERT_NE(FindMEstimator(name), nullptr);

@@ -53,7 +53,7 @@ TEST(MEstimatorWidthTest, WidthsGive95PercentEfficiency) {
   for (const MEstimator& row : MEstimators()) {
     if (row.make == nullptr) continue;
     for (int p = 1; p <= MEstimator::kMaxDimension; ++p) {
-      if (row.is_tuned) {
+      if (row.Width95(1) != 1.0) {  // tuned
         EXPECT_NEAR(row.Width95(p), FindWidth(row, p, 0.95), kPrinted)
             << row.name << ", p = " << p;
       } else {
@@ -73,8 +73,8 @@ TEST(MEstimatorWidthTest, EfficiencyOfThoseNotTuned) {
   for (const auto& [name, efficiencies] : expected) {
     int i = 0;
     for (const int p : {1, 3, 6}) {
-      EXPECT_NEAR(Efficiency(*FindMEstimator(name)->MakeLoss(p), p),
-                  efficiencies[i++], kPrinted)
+      EXPECT_NEAR(Efficiency(*ParseLoss(name).Make(p), p), efficiencies[i++],
+                  kPrinted)
           << name << ", p = " << p;
     }
   }

@@ -11,7 +11,12 @@ namespace rgbd_pose {
 struct EdgeFunctor {
   template <typename T>
   bool operator()(const T* x_ref, const T* x_cur, T* residuals) const {
-    Residual(MotionBetween(ref->PoseAt(x_ref), cur->PoseAt(x_cur)), residuals);
+    const RotationAndCenter<T> from = ref->PoseAt(x_ref);
+    const RotationAndCenter<T> to = cur->PoseAt(x_cur);
+    const Eigen::Matrix<T, 3, 1> shift = to.C - from.C;
+    const RotationAndCenter<T> motion = {to.R * from.R.transpose(),
+                                         from.R * shift};
+    Residual(motion, residuals);
     return true;
   }
 

@@ -231,8 +231,8 @@ TEST(G2oTest, CostOfAnEdgeIsOurs) {
     pair.motion = {motion.rotation.toRotationMatrix(),
                    motion.Inverse().translation};
     const MotionVector r =
-        RelativePoseErrorTerm::Of(edge.cur_from_ref,
-                                  SqrtInformation(edge.covariance.inverse()))
+        RelativePoseErrorTerm(edge.cur_from_ref,
+                              SqrtInformation(edge.covariance.inverse()))
             .ResidualAt(pair, nullptr);
     const double cost = (graph.edges[0].error.root * e).squaredNorm();
     EXPECT_NEAR(cost, r.squaredNorm(), 1e-6 * r.squaredNorm());

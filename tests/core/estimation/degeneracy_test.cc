@@ -36,7 +36,7 @@ TEST(DegeneracyTest, AWellKnownMotionHasTheInverseHessian) {
       HessianOfPlanes({Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
                        Eigen::Vector3d::UnitZ()});
   const Degeneracy result = FindDegeneracy(hessian, 0.0, kMaxDeviation);
-  EXPECT_FALSE(result.is_degenerate) << result.reason;
+  EXPECT_FALSE(result.is_degenerate()) << result.reason;
   EXPECT_TRUE((result.inverse * hessian).isIdentity(1e-9));
 }
 
@@ -49,7 +49,7 @@ TEST(DegeneracyTest, TiltDoesNotHideWhatIsOpen) {
     const Degeneracy result = FindDegeneracy(
         HessianOfPlanes({Eigen::Vector3d(tilt, -0.3 * tilt, -1.0)}), 0.0,
         kMaxDeviation);
-    EXPECT_TRUE(result.is_degenerate);
+    EXPECT_TRUE(result.is_degenerate());
     EXPECT_EQ(result.reason.find("rotation about x"), std::string::npos)
         << result.reason;
     EXPECT_EQ(result.reason.find("rotation about y"), std::string::npos)
@@ -65,19 +65,19 @@ TEST(DegeneracyTest, ADirectionThatIsKnownTooLittleIsNamed) {
   MotionMatrix hessian = 1e6 * MotionMatrix::Identity();
   hessian(4, 4) = 25.0;  // standard deviation 0.2 m
   const Degeneracy result = FindDegeneracy(hessian, 0.0, kMaxDeviation);
-  EXPECT_TRUE(result.is_degenerate);
+  EXPECT_TRUE(result.is_degenerate());
   EXPECT_EQ(result.reason,
             "translation along y is not determined (standard deviation 0.2 m)");
-  EXPECT_FALSE(FindDegeneracy(hessian, 0.0, 0.21).is_degenerate);
+  EXPECT_FALSE(FindDegeneracy(hessian, 0.0, 0.21).is_degenerate());
 }
 
 // A rotation needs about three times the spurious information of noise.
 TEST(DegeneracyTest, ARotationFromNoiseIsNotKnown) {
   MotionMatrix hessian = 1e6 * MotionMatrix::Identity();
   hessian(1, 1) = 1e4;
-  EXPECT_FALSE(FindDegeneracy(hessian, 0.3e4, kMaxDeviation).is_degenerate);
+  EXPECT_FALSE(FindDegeneracy(hessian, 0.3e4, kMaxDeviation).is_degenerate());
   const Degeneracy result = FindDegeneracy(hessian, 0.4e4, kMaxDeviation);
-  EXPECT_TRUE(result.is_degenerate);
+  EXPECT_TRUE(result.is_degenerate());
   EXPECT_EQ(result.reason,
             "rotation about y is not determined (standard deviation 0.01 rad)");
 }
@@ -85,7 +85,7 @@ TEST(DegeneracyTest, ARotationFromNoiseIsNotKnown) {
 TEST(DegeneracyTest, NothingIsKnownOfNothing) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   EXPECT_TRUE(
-      FindDegeneracy(MotionMatrix::Zero(), 0.0, kMaxDeviation).is_degenerate);
+      FindDegeneracy(MotionMatrix::Zero(), 0.0, kMaxDeviation).is_degenerate());
   EXPECT_EQ(
       FindDegeneracy(MotionMatrix::Constant(nan), 0.0, kMaxDeviation).reason,
       "the Hessian is not finite");

@@ -22,7 +22,7 @@ Pairs AssociateToPairs(const std::vector<double>& first,
                        const std::vector<double>& second,
                        double max_difference = kMaxDifference) {
   Pairs pairs;
-  for (const auto [i, j] : Associate(first, second, max_difference)) {
+  for (const auto& [i, j] : Associate(first, second, max_difference)) {
     pairs.emplace_back(i, j);
   }
   return pairs;

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "core/evaluation/moving_poses.h"
+#include "core/evaluation/trajectory.h"
 
 namespace rgbd_pose {
 namespace {
@@ -41,15 +41,6 @@ TEST(InterpolatedPathTest, CrossesNoGapsAndDoesNotLeave) {
   EXPECT_NEAR(path.At(0.07)->translation.x(), 2.5, kPathTolerance);
   EXPECT_EQ(path.At(0.08)->translation.x(), 3.0);
   EXPECT_FALSE(path.At(0.081).has_value());
-}
-
-TEST(InterpolatedPathTest, TakesTimesWithAShift) {
-  const Trajectory truth = {{0.0, TurnedAndMoved(0.0, 1.0)},
-                            {0.02, TurnedAndMoved(0.0, 2.0)}};
-  const auto poses = InterpolatedPath(truth).At({0.0, 0.02}, 0.01);
-  ASSERT_EQ(poses.size(), 2u);
-  EXPECT_NEAR(poses[0]->translation.x(), 1.5, kPathTolerance);
-  EXPECT_FALSE(poses[1].has_value());
 }
 
 }  // namespace

@@ -1,8 +1,8 @@
-#include "core/evaluation/moving_poses.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
+
+#include "core/evaluation/fixing_equations.h"
 
 namespace rgbd_pose {
 namespace {

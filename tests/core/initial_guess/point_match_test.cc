@@ -1,10 +1,9 @@
-#include "core/initial_guess/point_match.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "core/initial_guess/consensus.h"
 #include "core/util/chi_squared.h"
 #include "frontend/simulation/synthetic_matches.h"
 

@@ -70,8 +70,7 @@ TEST(EdgeBlockTest, GrowsUpToAHalfTurn) {
           Eigen::Quaterniond(Eigen::AngleAxisd(-angle, axis)) *
               cur_from_ref.rotation,
           cur_from_ref.translation);
-      const RelativePoseErrorTerm term =
-          RelativePoseErrorTerm::Of(measured, MotionMatrix::Identity());
+      const RelativePoseErrorTerm term(measured, MotionMatrix::Identity());
       const Evaluated hand = At(EdgeBlock(term, &ref, &cur), zero, zero);
       EXPECT_TRUE(hand.residuals.head<3>().isApprox(
           2.0 * std::sin(angle / 2.0) * axis, 1e-7))

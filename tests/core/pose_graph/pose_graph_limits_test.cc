@@ -41,7 +41,7 @@ TEST(PoseGraphTest, TheLimitIsAStandardDeviation) {
 // All of them pull; the far one with the loss's maximum force. Hence the pose
 // is at half the width of the loss.
 TEST(PoseGraphTest, LossesHaveTheirOwnWidthsInTheEnd) {
-  const auto huber = FindMEstimator("huber")->MakeLoss(6);
+  const auto huber = ParseLoss("huber").Make(6);
   double rho[3];
   huber->Evaluate(100.0, rho);
   const double width = rho[1] * 10.0;

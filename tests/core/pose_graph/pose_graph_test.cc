@@ -64,7 +64,7 @@ TEST(EdgeBlockTest, JacobianIsThatOfTheOracle) {
     MotionMatrix root;
     for (double& value : root.reshaped()) value = world.Uniform(-1.0, 1.0);
     const Rigid3d measured = ref.CurFromPrev(x[0].data()).Inverse();
-    const RelativePoseErrorTerm term = RelativePoseErrorTerm::Of(
+    const RelativePoseErrorTerm term(
         cur.CurFromPrev(x[1].data()) * measured * world.Motion(2.0, 1.0), root);
     const auto oracle = MakeEdgeOracle(term, &ref, &cur);
     const double* at[] = {x[0].data(), x[1].data()};
@@ -116,7 +116,7 @@ TEST(PoseGraphTest, ALoopTakesDriftBack) {
 // 30 of 43 loops are right. Losses are narrowed step by step, since right loops
 // are many sigmas off, too, before the graph is solved.
 TEST(PoseGraphTest, PlantedFalseLoopsDoNoHarm) {
-  const auto loss = FindMEstimator("tukey")->MakeLoss(6);
+  const auto loss = ParseLoss("tukey").Make(6);
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Circle circle(100, seed);
     PoseGraphOptions options;

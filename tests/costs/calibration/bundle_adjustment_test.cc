@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "core/util/quantile.h"
 #include "costs/calibration/landmark_residuals.h"
 #include "frontend/simulation/synthetic_matches.h"
 
@@ -16,10 +17,6 @@ namespace {
 constexpr double kSigmaPx = 0.5;
 constexpr double kInverseSigmaDepth = 200.0;  // m
 constexpr double kFocalOff = 4.0;             // px
-// Ratio of standard deviation to median |x| of a normal distribution.
-constexpr double kSigmaOfMedian = 1.4826;
-
-using Free = std::array<bool, kCalibrationSize>;
 
 // Three keyframes and their views through a camera whose fx is not `start`'s.
 struct World {
@@ -97,8 +94,8 @@ struct World {
     return Problem(/*max_iterations=*/0).Solve(FreeFocal(), &state);
   }
 
-  static Free FreeFocal() {
-    Free free = {};
+  static FreeParts FreeFocal() {
+    FreeParts free;
     free[kFx] = true;
     return free;
   }
@@ -124,7 +121,7 @@ TEST(BundleAdjustmentTest, EndsWhereItCostsLeast) {
     CalibrationState beside = state;
     beside.theta[kFx] += side * 0.01 * kFocalOff;
     // All other unknowns are optimised.
-    Free none = {};
+    FreeParts none;
     const CalibrationPrior prior = {beside.theta, world.prior};
     BundleAdjustment held(world.views, prior, false, {});
     held.Solve(none, &beside);

@@ -2,8 +2,6 @@
 // landmark, with dense ones by ceres::Jet from which all depths are eliminated
 // at once. Also tests the covariance of the camera that follows from them.
 
-#include "costs/calibration/landmark_covariance.h"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -12,6 +10,7 @@
 #include <optional>
 #include <vector>
 
+#include "costs/calibration/bundle_adjustment.h"
 #include "costs/calibration/landmark_block.h"
 #include "costs/calibration/landmark_residuals.h"
 #include "frontend/simulation/synthetic_matches.h"

@@ -34,8 +34,7 @@ class DirectAssemblyTest
 TEST_P(DirectAssemblyTest, CostGradientAndHessianAreEqual) {
   const auto& [cost_name, loss_name] = GetParam();
   const auto cost = MakeDirectCost(cost_name, FewPoints());
-  const auto loss =
-      FindMEstimator(loss_name)->MakeLoss(cost->degrees_of_freedom());
+  const auto loss = ParseLoss(loss_name).Make(cost->degrees_of_freedom());
   const Rigid3d motion =
       Rigid3d(Eigen::Quaterniond::Identity(), {0.004, 0.002, -0.003}) *
       Pair().cur_from_prev;

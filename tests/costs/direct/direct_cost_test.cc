@@ -302,7 +302,7 @@ TEST(BrightnessTest, GainAndBiasOfTheCurrentImageHardlyMatter) {
   MotionEstimate blind;
   Estimator(DirectEstimatorOptions(),
             std::make_unique<DirectCostOf<Unbrightened>>(DirectOptions()),
-            FindMEstimator("huber")->MakeLoss(1))
+            ParseLoss("huber").Make(1))
       .Estimate(brighter.data(), Rigid3d(), &blind);
   const MotionError blind_off =
       ErrorOf(blind.cur_from_prev, plain.cur_from_prev);
