@@ -87,8 +87,8 @@ bool Report() {
     const Jacobian by_hand = Evaluate(
         AnalyticBlock<Residual>(sample.origin, sample.columns), sample.x);
     const Jacobian by_jet =
-        Evaluate(OracleBlock<Residual>(new OracleFunctor<Residual>(
-                     sample.origin, sample.columns)),
+        Evaluate(OracleBlock<Residual>(new OracleFunctor<Residual>{
+                     sample.origin, sample.columns}),
                  sample.x);
     jet = jet.max(ErrorsOf(by_hand, by_jet));
     differences = differences.max(ErrorsOf(by_hand, Differences(sample)));

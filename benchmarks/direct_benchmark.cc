@@ -193,7 +193,7 @@ void Alone(benchmark::State& state, bool by_hand) {
           std::make_unique<AnalyticBlock<Residual>>(origin, row));
     } else {
       functions.push_back(std::make_unique<OracleBlock<Residual>>(
-          new OracleFunctor<Residual>(origin, row)));
+          new OracleFunctor<Residual>{origin, row}));
     }
   }
   MotionVector x;

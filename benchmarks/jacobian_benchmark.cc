@@ -39,7 +39,7 @@ struct Blocks {
       by_hand.push_back(
           std::make_unique<AnalyticBlock<Residual>>(origin, sample.columns));
       by_jet.push_back(std::make_unique<OracleBlock<Residual>>(
-          new OracleFunctor<Residual>(origin, sample.columns)));
+          new OracleFunctor<Residual>{origin, sample.columns}));
     }
   }
 };

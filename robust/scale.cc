@@ -1,6 +1,7 @@
 #include "robust/scale.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -9,6 +10,18 @@
 
 namespace rgbd_pose {
 namespace {
+
+// The factor that makes a scale estimator unbiased for a small sample: one of
+// `factors` for n from 2 to 9, and n / (n + shift) above, with one shift for
+// even and one for odd n. From Croux and Rousseeuw, Time-Efficient Algorithms
+// for Two Highly Robust Estimators of Scale (COMPSTAT 1992);
+// tests/robust/scale_test.cc confirms them by simulation.
+double SmallSampleFactor(size_t n, const std::array<double, 8>& factors,
+                         double shift_even, double shift_odd) {
+  if (n < 10) return factors[n - 2];
+  const double size = static_cast<double>(n);
+  return size / (size + (n % 2 == 0 ? shift_even : shift_odd));
+}
 
 // Counts the pairs i < j of sorted values with x_j - x_i <= limit. For each j
 // these are all i from a first one on, which only increases with j.
@@ -76,8 +89,6 @@ double KthDifference(const std::vector<double>& x, int64_t k, double high) {
 
 double SnScale(std::vector<double>* values) {
   constexpr double kConsistency = 1.1926;
-  constexpr SmallSample kSmallSample = {
-      {0.743, 1.851, 0.954, 1.351, 0.993, 1.198, 1.005, 1.131}, 0.0, -0.9};
   const size_t n = values->size();
   if (n < 2) return 0.0;
   std::vector<double>& x = *values;
@@ -99,14 +110,14 @@ double SnScale(std::vector<double>* values) {
 
   const auto low_median = medians.begin() + (n + 1) / 2 - 1;
   std::nth_element(medians.begin(), low_median, medians.end());
-  return kConsistency * kSmallSample.Factor(n) * *low_median;
+  constexpr std::array kFactors = {0.743, 1.851, 0.954, 1.351,
+                                   0.993, 1.198, 1.005, 1.131};
+  return kConsistency * SmallSampleFactor(n, kFactors, 0.0, -0.9) * *low_median;
 }
 
 double QnScale(std::vector<double>* values) {
   // The 2.2219 printed in 1993 is a known misprint.
   constexpr double kConsistency = 2.21914;
-  constexpr SmallSample kSmallSample = {
-      {0.399, 0.994, 0.512, 0.844, 0.611, 0.857, 0.669, 0.872}, 3.8, 1.4};
   const size_t n = values->size();
   if (n < 2) return 0.0;
   std::sort(values->begin(), values->end());
@@ -115,18 +126,21 @@ double QnScale(std::vector<double>* values) {
   const int64_t k = static_cast<int64_t>(h) * (h - 1) / 2;
   const double difference =
       KthDifference(*values, k, ShortestInterval(*values, h));
-  return kConsistency * kSmallSample.Factor(n) * difference;
+  constexpr std::array kFactors = {0.399, 0.994, 0.512, 0.844,
+                                   0.611, 0.857, 0.669, 0.872};
+  return kConsistency * SmallSampleFactor(n, kFactors, 3.8, 1.4) * difference;
 }
 
 double MadScale(std::vector<double>* values) {
   // 1 / (upper quartile of the normal distribution).
   constexpr double kConsistency = 1.482602;
-  constexpr SmallSample kSmallSample = {
-      {1.196, 1.495, 1.363, 1.206, 1.200, 1.140, 1.129, 1.107}, -0.8, -0.8};
   if (values->size() < 2) return 0.0;
   const double centre = QuantileInPlace(values, 0.5);
   for (double& value : *values) value = std::abs(value - centre);
-  return kConsistency * kSmallSample.Factor(values->size()) *
+  constexpr std::array kFactors = {1.196, 1.495, 1.363, 1.206,
+                                   1.200, 1.140, 1.129, 1.107};
+  return kConsistency *
+         SmallSampleFactor(values->size(), kFactors, -0.8, -0.8) *
          QuantileInPlace(values, 0.5);
 }
 

@@ -20,13 +20,12 @@ double ChiSquare(const RelativePose& edge, const Rigid3d& true_cur_from_ref,
 Consistency Judge(const std::vector<RelativePose>& edges,
                   const std::vector<double>& times, const Trajectory& truth,
                   const TruthNoise& noise) {
-  const InterpolatedPath path(truth);
   Consistency result;
   std::vector<double> shares;
   for (const RelativePose& edge : edges) {
     if (edge.covariance.isZero(0.0)) continue;  // no covariance
-    const std::optional<Rigid3d> ref = path.At(times[edge.ref]);
-    const std::optional<Rigid3d> cur = path.At(times[edge.cur]);
+    const std::optional<Rigid3d> ref = InterpolatedPose(truth, times[edge.ref]);
+    const std::optional<Rigid3d> cur = InterpolatedPose(truth, times[edge.cur]);
     if (!ref.has_value() || !cur.has_value()) continue;
     const double chi_square = ChiSquare(edge, cur->Inverse() * *ref, noise);
     // Negated to count invalid covariances (NaN) as wrong, too.

@@ -48,16 +48,17 @@ StampedPose ParsePose(const TextLine& line, const std::string& path) {
 
 }  // namespace
 
-std::optional<Rigid3d> InterpolatedPath::At(double time) const {
+std::optional<Rigid3d> InterpolatedPose(const Trajectory& trajectory,
+                                        double time, double max_gap) {
   const auto after = std::lower_bound(
-      trajectory_.begin(), trajectory_.end(), time,
+      trajectory.begin(), trajectory.end(), time,
       [](const StampedPose& pose, double at) { return pose.timestamp < at; });
-  if (after == trajectory_.end()) return std::nullopt;
+  if (after == trajectory.end()) return std::nullopt;
   if (after->timestamp == time) return after->world_from_cam;
-  if (after == trajectory_.begin()) return std::nullopt;
+  if (after == trajectory.begin()) return std::nullopt;
   const StampedPose& before = *(after - 1);
   const double gap = after->timestamp - before.timestamp;
-  if (gap >= max_gap_) return std::nullopt;
+  if (gap >= max_gap) return std::nullopt;
   const double share = (time - before.timestamp) / gap;
   const Rigid3d& a = before.world_from_cam;
   const Rigid3d& b = after->world_from_cam;

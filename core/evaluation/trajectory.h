@@ -17,23 +17,12 @@ struct StampedPose {
 // Poses with strictly increasing timestamps.
 using Trajectory = std::vector<StampedPose>;
 
-// A trajectory, interpolated between its poses: positions linearly,
-// orientations spherically, but not across gaps of `max_gap` (s) or more: a
-// hand can make any motion within 50 ms.
-class InterpolatedPath {
- public:
-  // The trajectory must outlive this object.
-  explicit InterpolatedPath(const Trajectory& trajectory, double max_gap = 0.05)
-      : trajectory_(trajectory), max_gap_(max_gap) {}
-
-  // Returns world_from_cam at this time (s); nothing in a gap, before the first
-  // pose or after the last.
-  std::optional<Rigid3d> At(double time) const;
-
- private:
-  const Trajectory& trajectory_;
-  const double max_gap_;
-};
+// The pose (world_from_cam) at a time (s), interpolated between two poses: the
+// position linearly, the orientation spherically. Nothing before the first
+// pose, after the last, or in a gap of `max_gap` (s) or more: a hand can make
+// any motion within 50 ms.
+std::optional<Rigid3d> InterpolatedPose(const Trajectory& trajectory,
+                                        double time, double max_gap = 0.05);
 
 // Reads TUM text with one `timestamp tx ty tz qx qy qz qw` per line (world from
 // camera, metres). '#' comments and empty lines are skipped; CRLF and a byte

@@ -23,7 +23,7 @@ class TruthComparison {
   static constexpr double kMotionSeconds = 0.2;
 
   TruthComparison(const Trajectory& estimate, const Trajectory& ground_truth)
-      : estimate_(estimate), path_(ground_truth), times_(TimesOf(estimate)) {
+      : estimate_(estimate), truth_(ground_truth), times_(TimesOf(estimate)) {
     std::vector<std::optional<Rigid3d>> poses;
     for (const StampedPose& pose : estimate) {
       poses.emplace_back(pose.world_from_cam);
@@ -68,14 +68,14 @@ class TruthComparison {
     const Rigid3d body_from_camera = fixing.camera_from_body.Inverse();
     std::vector<std::optional<Rigid3d>> poses;
     for (const double time : times_) {
-      poses.push_back(path_.At(time + fixing.shift));
+      poses.push_back(InterpolatedPose(truth_, time + fixing.shift));
       if (poses.back()) poses.back() = *poses.back() * body_from_camera;
     }
     return poses;
   }
 
   const Trajectory& estimate_;
-  InterpolatedPath path_;
+  const Trajectory& truth_;
   std::vector<double> times_;  // of the estimate, s
   std::vector<std::optional<MovingPose>> moving_estimate_;
   std::vector<PoseInterval> intervals_;

@@ -10,10 +10,10 @@ namespace {
 
 // Maximum number of matches, evenly spread: time and memory grow with its
 // square.
-constexpr int kMaxMatches = 500;
+constexpr int kMaxCliqueMatches = 500;
 
 // The matches that are consistent with each match.
-using ConsistencyGraph = std::vector<std::bitset<kMaxMatches>>;
+using ConsistencyGraph = std::vector<std::bitset<kMaxCliqueMatches>>;
 
 ConsistencyGraph ConsistencyOf(const std::vector<PointMatch>& matches) {
   ConsistencyGraph graph(matches.size());
@@ -36,7 +36,7 @@ std::vector<int> GreedyClique(const ConsistencyGraph& graph) {
     return degrees[a] > degrees[b];
   });
   std::vector<int> clique;
-  std::bitset<kMaxMatches> candidates;
+  std::bitset<kMaxCliqueMatches> candidates;
   candidates.set();
   for (const int i : order) {
     if (!candidates[i]) continue;
@@ -49,7 +49,8 @@ std::vector<int> GreedyClique(const ConsistencyGraph& graph) {
 }  // namespace
 
 std::optional<Consensus> FindByClique(const Correspondences& matches) {
-  const std::vector<PointMatch> points = PointMatches(matches, kMaxMatches);
+  const std::vector<PointMatch> points =
+      PointMatches(matches, kMaxCliqueMatches);
   const std::optional<Rigid3d> fit =
       FitRigidTransform(points, GreedyClique(ConsistencyOf(points)));
   if (!fit) return std::nullopt;

@@ -42,22 +42,17 @@ class AnalyticBlock final
 
 // The same residual for ceres::AutoDiffCostFunction: the oracle.
 template <typename Residual>
-class OracleFunctor {
- public:
-  OracleFunctor(const LinearizationPoint& origin, const double* columns)
-      : origin_(origin), columns_(columns) {}
-
+struct OracleFunctor {
   // flatten: a translation unit with many costs exhausts the compiler's
   // inlining budget, and the oracle would be three times slower than necessary.
   template <typename T>
   [[gnu::flatten]] bool operator()(const T* x, T* residuals) const {
-    Residual::Residual(origin_.PoseAt(x), columns_, residuals);
+    Residual::Residual(origin.PoseAt(x), columns, residuals);
     return true;
   }
 
- private:
-  const LinearizationPoint& origin_;
-  const double* columns_;
+  const LinearizationPoint& origin;
+  const double* columns;
 };
 
 template <typename Residual>

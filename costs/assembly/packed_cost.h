@@ -115,15 +115,16 @@ class PackedCost : public MotionCost {
         block = new AnalyticBlock<Residual>(origin, columns);
       } else {
         block = new OracleBlock<Residual>(
-            new OracleFunctor<Residual>(origin, columns));
+            new OracleFunctor<Residual>{origin, columns});
       }
       problem->AddResidualBlock(block, loss, x);
     }
   }
 
  protected:
+  // The columns of a block, and their number.
   static constexpr int kColumns = Residual::kColumns;
-  using Block = std::array<double, kColumns>;  // its columns
+  using Block = std::array<double, kColumns>;
 
   // See FramePair::threads.
   void SetThreads(int threads) { threads_ = threads; }

@@ -3,6 +3,7 @@
 #include <ceres/sized_cost_function.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 
 #include "core/geometry/motion.h"
 #include "costs/calibration/calibration_views.h"
@@ -55,17 +56,16 @@ class LandmarkBlock final
     LandmarkDerivatives<kRows> J;
     Residual::Jacobian(anchor_.DerivativesAt(x[0]), view_.DerivativesAt(x[1]),
                        x[2][0], theta.data(), data_, residuals, &J);
+    // All are stored row by row, as Ceres needs them.
     const auto give = [&](int block, const auto& derivatives) {
       if (jacobians[block] == nullptr) return;
-      using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic,
-                                     Eigen::RowMajor>;
-      Eigen::Map<RowMajor>(jacobians[block], kRows, derivatives.cols()) =
-          derivatives;
+      std::copy_n(derivatives.data(), derivatives.size(), jacobians[block]);
     };
     give(0, J.anchor);
     give(1, J.view);
     give(2, J.inverse_depth);
-    give(3, (J.theta * origin_.width.asDiagonal()).eval());
+    const decltype(J.theta) by_y = J.theta * origin_.width.asDiagonal();
+    give(3, by_y);
     return true;
   }
 

@@ -93,7 +93,7 @@ Trajectory TransformTree::PathOf(const std::string& world,
     for (const Edge* edge : *edges) {
       const std::optional<Rigid3d> step =
           edge->moves
-              ? InterpolatedPath(edge->samples, kAnyGap).At(sample.timestamp)
+              ? InterpolatedPose(edge->samples, sample.timestamp, kAnyGap)
               : edge->samples.front().world_from_cam;
       if (!step.has_value()) {
         pose.reset();

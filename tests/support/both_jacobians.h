@@ -21,7 +21,7 @@ struct BothJacobians {
     ASSERT_TRUE(AnalyticBlock<Residual>(origin, columns)
                     .Evaluate(parameters, hand_r_.data(), by_hand));
     double* by_jet[] = {jet_J_.data()};
-    OracleBlock<Residual> oracle(new OracleFunctor<Residual>(origin, columns));
+    OracleBlock<Residual> oracle(new OracleFunctor<Residual>{origin, columns});
     ASSERT_TRUE(oracle.Evaluate(parameters, jet_r_.data(), by_jet));
   }
 

@@ -16,31 +16,30 @@ Rigid3d TurnedAndMoved(double angle, double distance) {
           Vector3d(distance, 0, 0)};
 }
 
-TEST(InterpolatedPathTest, GoesAlongLineAndArc) {
+TEST(InterpolatedPoseTest, GoesAlongLineAndArc) {
   Rigid3d other_sign = TurnedAndMoved(0.4, 2.0);
   other_sign.rotation.coeffs() *= -1.0;
   const Trajectory truth = {{1.00, TurnedAndMoved(0.0, 1.0)},
                             {1.04, other_sign}};
-  const InterpolatedPath path(truth);
-  const std::optional<Rigid3d> pose = path.At(1.01);
+  const std::optional<Rigid3d> pose = InterpolatedPose(truth, 1.01);
   ASSERT_TRUE(pose.has_value());
   EXPECT_NEAR((pose->Inverse() * TurnedAndMoved(0.1, 1.25)).Angle(), 0.0,
               kPathTolerance);
   EXPECT_NEAR(pose->translation.x(), 1.25, kPathTolerance);
 }
 
-TEST(InterpolatedPathTest, CrossesNoGapsAndDoesNotLeave) {
+TEST(InterpolatedPoseTest, CrossesNoGapsAndDoesNotLeave) {
   const Trajectory truth = {{0.0, TurnedAndMoved(0.0, 1.0)},
                             {0.06, TurnedAndMoved(0.0, 2.0)},
                             {0.08, TurnedAndMoved(0.0, 3.0)}};
-  const InterpolatedPath path(truth);
-  EXPECT_FALSE(path.At(-0.001).has_value());
-  EXPECT_TRUE(path.At(0.0).has_value());
-  EXPECT_FALSE(path.At(0.03).has_value());
-  EXPECT_EQ(path.At(0.06)->translation.x(), 2.0);
-  EXPECT_NEAR(path.At(0.07)->translation.x(), 2.5, kPathTolerance);
-  EXPECT_EQ(path.At(0.08)->translation.x(), 3.0);
-  EXPECT_FALSE(path.At(0.081).has_value());
+  EXPECT_FALSE(InterpolatedPose(truth, -0.001).has_value());
+  EXPECT_TRUE(InterpolatedPose(truth, 0.0).has_value());
+  EXPECT_FALSE(InterpolatedPose(truth, 0.03).has_value());
+  EXPECT_EQ(InterpolatedPose(truth, 0.06)->translation.x(), 2.0);
+  EXPECT_NEAR(InterpolatedPose(truth, 0.07)->translation.x(), 2.5,
+              kPathTolerance);
+  EXPECT_EQ(InterpolatedPose(truth, 0.08)->translation.x(), 3.0);
+  EXPECT_FALSE(InterpolatedPose(truth, 0.081).has_value());
 }
 
 }  // namespace
