@@ -4,6 +4,7 @@
 #include <gflags/gflags.h>
 
 #include <cstdio>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -59,7 +60,7 @@ Jacobian Differences(const ResidualSample<Residual>& sample) {
 }
 
 // The largest errors of each row: in the columns of the angles and in those of
-// the centre.
+// the centre. Infinite if an element is not finite.
 using Errors = Eigen::ArrayX2d;
 
 Errors ErrorsOf(const Jacobian& actual, const Jacobian& expected) {
@@ -67,9 +68,11 @@ Errors ErrorsOf(const Jacobian& actual, const Jacobian& expected) {
   for (int row = 0; row < actual.rows(); ++row) {
     const double size = expected.row(row).lpNorm<Eigen::Infinity>();
     for (int half = 0; half < 2; ++half) {
-      const double error = (actual.row(row) - expected.row(row))
-                               .segment<3>(3 * half)
-                               .lpNorm<Eigen::Infinity>();
+      const Eigen::Vector3d off =
+          (actual.row(row) - expected.row(row)).segment<3>(3 * half);
+      const double error = off.allFinite()
+                               ? off.lpNorm<Eigen::Infinity>()
+                               : std::numeric_limits<double>::infinity();
       errors(row, half) = size > 0.0 ? error / size : error;
     }
   }

@@ -121,14 +121,15 @@ std::string Best(const BagReader& bag, const std::vector<Fitness>& fitness,
 // viewer records it. Empty if there is none.
 std::string InfoOf(const BagReader& bag, const std::string& image) {
   std::string parent = Parent(image);
+  std::vector<std::string> candidates;
   // A compressed topic is one level below the topic of the raw images.
   if (bag.FindTopic(image)->type == kCompressedImage) {
-    const std::string info = parent + "/camera_info";
-    if (bag.FindTopic(info) != nullptr) return info;
+    candidates.push_back(parent + "/camera_info");
     parent = Parent(parent);
   }
-  for (const std::string& info :
-       {parent + "/camera_info", Parent(parent) + "/info/camera_info"}) {
+  candidates.push_back(parent + "/camera_info");
+  candidates.push_back(Parent(parent) + "/info/camera_info");
+  for (const std::string& info : candidates) {
     const BagTopic* topic = bag.FindTopic(info);
     if (topic != nullptr && topic->type == kCameraInfo) return info;
   }

@@ -70,7 +70,7 @@ class McapRecords {
       while (const std::optional<Record> record = ReadRecord()) {
         if (record->opcode == kMcapFooter) break;
         if (record->opcode == kMcapSchema || record->opcode == kMcapChannel) {
-          Take(record->opcode, record->content);
+          Located(path_, [&] { Take(record->opcode, record->content); });
         }
       }
     }

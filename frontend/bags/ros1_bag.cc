@@ -183,14 +183,15 @@ class Ros1Bag final : public BagReader {
     if (loaded_ == &chunk) return;
     loaded_ = nullptr;
     std::string header, packed;
+    std::string_view codec;
     uint32_t size = 0;
     Guarded([&] {
       file_.seekg(static_cast<std::streamoff>(std::min(chunk.place, size_)));
       header = ReadBlock();
       packed = ReadBlock();
       size = NumberField<uint32_t>(header, "size");
+      codec = Field(header, "compression");
     });
-    const std::string_view codec = Field(header, "compression");
     records_ = Located(path_, [&] {
       return Unpack(packed, codec == "none" ? "" : codec, size);
     });

@@ -77,9 +77,12 @@ void HybridTracker::Track(const Reference& reference,
                           const PreparedFrame& frame,
                           const TrackingGuess& guess, TrackingResult* tracked) {
   const auto& ours = dynamic_cast<const HybridReference&>(reference);
-  tracked->status = TrackingStatus::kLost;
-  tracked->reason = "the reference has no features";
-  if (ours.features != nullptr) {
+  if (ours.features == nullptr) {
+    tracked->Begin(TrackingSource::kFeatures);
+    tracked->estimate = MotionEstimate();
+    tracked->status = TrackingStatus::kLost;
+    tracked->reason = "the reference has no features";
+  } else {
     double start_ms = 0.0;
     Rigid3d start = guess.cur_from_ref;
     if (ours.direct != nullptr) {
