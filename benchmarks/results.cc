@@ -17,7 +17,7 @@ double Nanoseconds(const std::string& unit, const std::string& path) {
   if (unit == "ms") return 1e6;
   if (unit == "s") return 1e9;
   throw InputError(path + ": unknown time unit '" + unit +
-                   "'; there are ns, us, ms, s");
+                   "'; available: ns, us, ms, s");
 }
 
 void AddEntry(const nlohmann::json& entry, const std::string& path,

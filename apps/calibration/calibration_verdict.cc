@@ -245,7 +245,7 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
            std::string(gain < 0.0 ? "rises by " : "falls by ") +
            Percent(std::abs(gain)) + " (" +
            Short(std::abs(result.gain_sigmas)) +
-           " standard deviations), so the error is not in the camera (";
+           " standard deviations)";
   }
   if (result.truth_after > result.truth_before) {
     return "the ground truth contradicts it: motions of pairs are wrong by " +

@@ -68,14 +68,14 @@ class LineReader {
     Number(&value);
     constexpr double kMax = std::numeric_limits<int>::max();
     if (value != std::floor(value) || std::abs(value) > kMax) {
-      Fail("' must be 'rational' or 'equidistant'" + line_.words[next_ - 1] + "' must be an integer");
+      Fail("'" + line_.words[next_ - 1] + "' must be an integer");
     }
     *integer = static_cast<int>(value);
   }
   void ImageName(std::string* name) {
     *name = Word();
     if (!IsImageName(*name)) {
-      Fail("' must be 'rational' or 'equidistant'" + *name + "' must be an image's checksum");
+      Fail("'" + *name + "' must be an image's checksum");
     }
   }
 
@@ -217,7 +217,7 @@ MapIndex ParseMapIndex(std::string_view text, const std::string& path) {
       line.Require(46);
       PassEdge(&line, &index.map.edges.emplace_back());
     } else {
-      line.Fail("' must be 'rational' or 'equidistant'" + line.Kind() + "' must be camera, keyframe or edge");
+      line.Fail("'" + line.Kind() + "' must be camera, keyframe or edge");
     }
   }
   if (lines.size() < 2) throw InputError(path + ": has no camera");
