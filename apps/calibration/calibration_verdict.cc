@@ -244,8 +244,7 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
     return "held-out pairs fit no better with the camera found: their cost " +
            std::string(gain < 0.0 ? "rises by " : "falls by ") +
            Percent(std::abs(gain)) + " (" +
-           Short(std::abs(result.gain_sigmas)) +
-           " standard deviations)";
+           Short(std::abs(result.gain_sigmas)) + " standard deviations)";
   }
   if (result.truth_after > result.truth_before) {
     return "the ground truth contradicts it: motions of pairs are wrong by " +
