@@ -123,7 +123,9 @@ double PoseGraph::Round(double width, int max_iterations,
   options.initial_trust_region_radius = 1e8;
   ceres::Solver::Summary summary;
   problem.Solve(options, &summary);
-  solution->iterations += static_cast<int>(summary.iterations.size());
+  // The first entry is the start.
+  solution->iterations +=
+      std::max(0, static_cast<int>(summary.iterations.size()) - 1);
   ++solution->rounds;
   solution->final_cost = summary.final_cost;
   if (!summary.IsSolutionUsable()) {
@@ -172,7 +174,10 @@ GraphSolution PoseGraph::Solve() {
     is_refused(pose < 0 ? "" : NameOf(pose) + " is not determined",
                GraphStatus::kSingular);
   }
-  if (!solution.ok()) graph_.poses = before;
+  if (!solution.ok()) {
+    graph_.poses = before;
+    solution.final_cost = solution.initial_cost;
+  }
   return solution;
 }
 

@@ -92,7 +92,7 @@ struct GraphSolution {
   std::string reason;                     // in words; empty if ok
 
   double initial_cost = 0.0;  // with the final widths of the losses
-  double final_cost = 0.0;    // the same at the new poses
+  double final_cost = 0.0;    // the same at the poses after solving
   int iterations = 0;         // of the solver, in all rounds
   int rounds = 0;             // see PoseGraphOptions::max_rounds
 

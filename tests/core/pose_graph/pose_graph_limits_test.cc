@@ -30,10 +30,17 @@ TEST(PoseGraphTest, TheLimitIsAStandardDeviation) {
     RelativePose edge = AddTwoPoses(&graph);
     edge.covariance = 1e-4 * MotionMatrix::Identity();
     edge.covariance(4, 4) = std::pow(ratio * options.max_standard_deviation, 2);
+    edge.cur_from_ref.translation.x() = 0.1;
     graph.AddEdge(edge);
     const GraphSolution solution = graph.Solve();
     EXPECT_EQ(solution.status,
               ratio < 1.0 ? GraphStatus::kOk : GraphStatus::kSingular);
+    // Without a solution the poses stay, and their cost.
+    EXPECT_GT(solution.initial_cost, 0.1);
+    EXPECT_NEAR(solution.final_cost,
+                solution.ok() ? 0.0 : solution.initial_cost, 1e-9);
+    EXPECT_EQ(graph.pose(1).translation.isZero(), !solution.ok());
+    EXPECT_GT(solution.iterations, 0);
   }
 }
 
