@@ -121,10 +121,11 @@ void DirectTracker::Track(const Reference& reference,
   }
 }
 
-void DirectTracker::Refine(const Reference& reference,
-                           const PreparedFrame& frame, const MotionPrior& prior,
-                           const TrackingResult& by_features,
-                           TrackingResult* tracked) {
+void DirectTracker::RefineWithMatches(const Reference& reference,
+                                      const PreparedFrame& frame,
+                                      const MotionPrior& prior,
+                                      const TrackingResult& by_features,
+                                      TrackingResult* tracked) {
   tracked->Begin(TrackingSource::kDirect);
   Estimate(reference, frame, by_features.estimate.cur_from_prev, prior,
            &by_features, &estimators_.refining, &tracked->estimate);

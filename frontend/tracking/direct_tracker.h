@@ -40,9 +40,10 @@ class DirectTracker final : public Tracker {
   // Estimates the motion from matches and pixels together, without pixels where
   // features contradict the motion. Starts from the motion of the matches,
   // which is accurate enough for the finest level.
-  void Refine(const Reference& reference, const PreparedFrame& frame,
-              const MotionPrior& prior, const TrackingResult& by_features,
-              TrackingResult* tracked);
+  void RefineWithMatches(const Reference& reference, const PreparedFrame& frame,
+                         const MotionPrior& prior,
+                         const TrackingResult& by_features,
+                         TrackingResult* tracked);
   // What a guess says about the motion.
   MotionPrior Prior(const TrackingGuess& guess) const {
     return PriorOf(options_, guess);

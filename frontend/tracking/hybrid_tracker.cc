@@ -136,8 +136,8 @@ bool HybridTracker::RefineByPixels(const HybridReference& reference,
                                    const PreparedFrame& frame,
                                    const MotionPrior& prior,
                                    TrackingResult* tracked) {
-  direct_->Refine(*reference.direct, WithVelocity(frame, *tracked), prior,
-                  *tracked, &pixels_);
+  direct_->RefineWithMatches(*reference.direct, WithVelocity(frame, *tracked),
+                             prior, *tracked, &pixels_);
   pixels_.estimate.covariance += tracked->twist_covariance;
   tracked->estimate.iterations += pixels_.estimate.iterations;
   tracked->estimate.solve_ms += pixels_.estimate.solve_ms;
