@@ -77,7 +77,7 @@ TEST(SettingTableTest, WhatMakesNoSenseMakesNoOdometry) {
   const auto refused = [](const char* name, double value) {
     OdometrySettings settings;
     const std::vector<Setting> table = SettingTable(&settings);
-    const Setting& row = Row(table, name);
+    const Setting row = Row(table, name);
     if (int* const* whole = std::get_if<int*>(&row.value)) {
       **whole = static_cast<int>(value);
     } else {
