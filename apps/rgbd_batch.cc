@@ -110,8 +110,9 @@ std::string SettingsText(const std::string& program) {
 void CheckFlags() {
   RequireFlag("sequences", FLAGS_sequences);
   RequireFlag("output", FLAGS_output);
-  if (FLAGS_jobs < 0)
+  if (FLAGS_jobs < 0) {
     throw InputError("--jobs must be 0 (one per core) or more");
+  }
   if (!(FLAGS_timeout >= 0.0)) {
     throw InputError("--timeout must be 0 (none) or a number of seconds");
   }

@@ -39,13 +39,13 @@ DEFINE_double(rpe_delta_metres, rgbd_pose::EvaluationOptions().rpe_delta_metres,
               "ground truth, in metres");
 DEFINE_string(rpe_frames, "1,6",
               "numbers of frames over which the median, 90 % and 99 % of the "
-              "relative pose error are given, set apart by commas");
+              "relative pose error are given, separated by commas");
 DEFINE_double(truth_sigma_metres, 0.0,
-              "by how much (1 sigma, m) a motion of the ground truth may be "
-              "off itself, when covariances are judged");
+              "standard deviation (m) of motions of the ground truth, used "
+              "when covariances are judged");
 DEFINE_double(truth_sigma_degrees, 0.0,
-              "by how much (1 sigma, degrees) a rotation of the ground truth "
-              "may be off itself, when covariances are judged");
+              "standard deviation (degrees) of rotations of the ground truth, "
+              "used when covariances are judged");
 DEFINE_bool(json, false, "print JSON instead of a table");
 DEFINE_string(aligned, "",
               "write the estimate, aligned to the ground truth, to this file "

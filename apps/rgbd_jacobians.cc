@@ -70,10 +70,10 @@ Errors ErrorsOf(const Jacobian& actual, const Jacobian& expected) {
     for (int half = 0; half < 2; ++half) {
       const Eigen::Vector3d off =
           (actual.row(row) - expected.row(row)).segment<3>(3 * half);
-      const double error = off.allFinite()
-                               ? off.lpNorm<Eigen::Infinity>()
-                               : std::numeric_limits<double>::infinity();
-      errors(row, half) = size > 0.0 ? error / size : error;
+      const double error = off.lpNorm<Eigen::Infinity>();
+      errors(row, half) = !off.allFinite()
+                              ? std::numeric_limits<double>::infinity()
+                              : (size > 0.0 ? error / size : error);
     }
   }
   return errors;

@@ -30,16 +30,17 @@ std::vector<Setting> Table(SimulateSettings* settings) {
   constexpr std::string_view kGroup = "Sequence";
   SyntheticOptions* options = &settings->options;
   return {
-      {"scene", kGroup, "what to look at", &options->scene, SceneNames()},
-      {"path", kGroup, "how to move", &options->path, SyntheticPathNames()},
+      {"scene", kGroup, "scene to render", &options->scene, SceneNames()},
+      {"path", kGroup, "camera path", &options->path, SyntheticPathNames()},
       {"frames", kGroup, "number of frames", &options->frames},
-      {"rate", kGroup, "frames a second", &options->rate_hz},
+      {"rate", kGroup, "frames per second", &options->rate_hz},
       {"laps", kGroup,
-       "how often the path is gone within these frames, to and fro in turn",
+       "number of passes along the path within these frames, forward and "
+       "backward in turn",
        &options->laps},
       {"seed", kGroup, "seed of textures and noise", &options->seed},
       {"noise", kGroup, "add the noise of a real sensor", &options->noise},
-      {"exposure", kGroup, "how long the shutter is open (s): blurs motion",
+      {"exposure", kGroup, "exposure time (s): blurs motion",
        &options->exposure_s},
       {"exposure_drift", kGroup,
        "swing of the automatic exposure in 4 s, 0..1: gains from exp(-this) to "
@@ -47,40 +48,40 @@ std::vector<Setting> Table(SimulateSettings* settings) {
        &options->exposure_drift},
       {"moving_patch", kGroup,
        "share of the view, 0..0.45, under a printed sheet 1 m before the "
-       "camera that moves through the image at 5 to 8 px a frame",
+       "camera that moves through the image at 5 to 8 px per frame",
        &options->moving_patch},
       {"walking_boxes", kGroup,
-       "how many boxes, 0..3, walk to and fro through the scene 'room'",
+       "number of boxes, 0..3, that walk to and fro through the scene 'room'",
        &options->walking_boxes},
       {"black", kGroup,
-       "colour is black for so long (s), in the middle of the sequence",
+       "time (s) during which colour is black, in the middle of the sequence",
        &options->black_s},
       {"color_time_offset", kGroup,
-       "how much later than its stamp says colour is exposed, in its middle "
-       "row (s); negative: earlier",
+       "delay of the exposure of colour, in its middle row, after its time "
+       "stamp (s); negative: earlier",
        &options->color_shutter.offset},
       {"color_readout", kGroup,
        "rolling shutter of colour: time from the first row to the last (s); "
        "negative: the last comes first",
        &options->color_shutter.readout},
       {"depth_time_offset", kGroup,
-       "how much later than its own stamp says depth is exposed, in its middle "
-       "row (s); negative: earlier",
+       "delay of the exposure of depth, in its middle row, after its own time "
+       "stamp (s); negative: earlier",
        &options->depth_shutter.offset},
       {"depth_readout", kGroup,
        "rolling shutter of depth: time from the first row to the last (s); "
        "negative: the last comes first",
        &options->depth_shutter.readout},
       {"depth_delay", kGroup,
-       "how much later depth is exposed and stamped (s); negative: earlier",
+       "delay of depth and its time stamps after colour (s); negative: earlier",
        &options->depth_delay_s},
       {"registration_shift", kGroup,
-       "error of the registration of depth: everything is so far (m) to the "
-       "right, along the camera's x axis",
+       "error of the registration of depth: everything is shifted to the right "
+       "by this distance (m), along the camera's x axis",
        &settings->registration_shift},
       {"registration_turn", kGroup,
-       "error of the registration of depth: everything is turned so far "
-       "(degrees) to the right, around its y axis",
+       "error of the registration of depth: everything is turned to the right "
+       "by this angle (degrees), around its y axis",
        &settings->registration_turn},
       {"camera", kGroup, "preset or YAML file", &settings->camera,
        CameraPresetNames()},

@@ -101,7 +101,7 @@ BundleSolution AdjustBundle(const SimulatedGraph& graph,
   for (size_t i = 0; i < start.size(); ++i) {
     solution.poses.push_back(origins[i].CurFromPrev(x[i].data()).Inverse());
   }
-  solution.iterations = static_cast<int>(summary.iterations.size());
+  solution.iterations = static_cast<int>(summary.iterations.size()) - 1;
   solution.residuals = problem.NumResiduals();
   return solution;
 }

@@ -29,7 +29,8 @@ std::vector<Entry> DirectEntriesOf(TypeList<Residuals...>) {
 
 std::string DirectOptions::Check() const {
   if (max_points < 0 || max_coarse_points < 1) {
-    return "the number of points must be positive";
+    return "max_points must not be negative, max_coarse_points must be "
+           "positive";
   }
   if (!(min_gradient >= 0.0)) return "min_gradient must not be negative";
   if (!(min_depth > 0.0 && min_depth < max_depth)) {

@@ -10,7 +10,7 @@ namespace rgbd_pose {
 struct BatchSequence {
   std::string name;    // folder name in the output; unique in a list
   std::string folder;  // absolute
-  std::string camera;  // a preset or an absolute path
+  std::string camera;  // a preset or an absolute path; empty: in the recording
 };
 
 // Reads a list of sequences, one per line: a folder and optionally its camera

@@ -205,8 +205,9 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     SolveWithScales(training, is_free, kRounds, &after);
   }
   if (is_free.none()) {
-    result.reason =
-        "no error found: held-out pairs fit no better with another camera";
+    result.reason = asked.none() ? "all parameters are fixed"
+                                 : "no error found: held-out pairs fit no "
+                                   "better with another camera";
     return result;
   }
   result.halves = SplitHalfConsistency(data.views, after, is_free, prior);
@@ -238,7 +239,7 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
     if (is_free[k]) parameter.status = Status::kDetermined;
   }
   if (is_free.none()) {
-    result.reason = "the recording determines none of its parameters";
+    result.reason = "the recording determines none of the camera's parameters";
     return result;
   }
   if (is_free != needed) {

@@ -69,8 +69,8 @@ KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
 }
 
 // Connects each keyframe to the first distant one, or to the farthest one.
-// `distance` is that (m) between the camera positions at two times (s), if
-// known.
+// `distance(from, to)` returns the distance (m) of the camera positions at two
+// times (s), or nothing if it is unknown.
 template <typename Distance>
 std::vector<KnownDistance> Between(const CalibrationData& data,
                                    const Distance& distance, double sigma,

@@ -174,7 +174,8 @@ std::string WhyHalvesDisagree(const CalibrationSettings& settings,
   return "the halves of the recording disagree: " + std::string(row.name) +
          " differs by " + Short(std::abs(worst->second - worst->first)) + unit +
          " (" + Short(worst->Sigmas()) +
-         " standard deviations), so the error is not in the camera (" +
+         " standard deviations), so there is an error that no parameter "
+         "describes (" +
          WhatIsLeft(result) + ")";
 }
 
@@ -186,7 +187,7 @@ std::string HalvesInWords(const CalibrationResult& result) {
                "at most " +
                    Short(worst->Sigmas()) + " standard deviations" +
                    (result.halves_spread > 1.0
-                        ? "; error bars are therefore widened by a factor of " +
+                        ? " after error bars were widened by a factor of " +
                               Short(result.halves_spread)
                         : "");
 }
@@ -232,7 +233,7 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
                             const CalibrationSettings& settings,
                             const CalibrationResult& result) {
   if (result.held_out_pairs < 2) {
-    return "there are too few pairs to evaluate the new camera";
+    return "there are too few held-out pairs to evaluate the new camera";
   }
   if (result.cost_after > result.cost_of_map) {
     return "the solution fails: held-out pairs fit worse (cost " +
@@ -263,7 +264,7 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
                    kMinSigmas * parameter.sigma;
       });
   if (!has_moved) {
-    return "no error found: no parameter changes by more than " +
+    return "no error found: no determined parameter changes by more than " +
            Short(kMinSigmas) + " standard deviations";
   }
   return ImplausibilityReason(first, found, result);

@@ -27,7 +27,7 @@ MedianBand FindMedianBand(std::vector<double> values);
 struct SweepMethod {
   std::string loss;
   std::string schedule;  // gnc or direct
-  bool ransac = false;   // starts from RANSAC, else from no motion
+  bool ransac = false;   // starts from RANSAC, else from identity
 
   // Whether both are the same method.
   bool operator==(const SweepMethod& other) const {
@@ -65,11 +65,11 @@ std::string SweepCsv(const std::vector<SweepCell>& cells);
 std::vector<SweepCell> ReadSweepCsv(const std::string& path);
 
 // Median translation errors (mm) with their 95 % bands for the graduated losses
-// that start from no motion: one row per loss, one column per share.
+// that start from identity: one row per loss, one column per share.
 std::string SweepTable(const std::vector<SweepCell>& cells);
 
 // SVG of the median errors, in rotation or in translation, over the share of
-// wrong matches with 95 % bands. It shows all losses, started from no motion,
+// wrong matches with 95 % bands. It shows all losses, started from identity,
 // in two panels: the graduated and the direct schedule.
 std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation);
 

@@ -190,9 +190,10 @@ std::vector<SweepCell> ReadSweepCsv(const std::string& path) {
   }
   for (const SweepMethod& method : SweepMethods(LossesOf(cells))) {
     if (CellsOf(cells, method).size() == kSweepShares) continue;
-    throw InputError(
-        path + ": missing shares of " + method.loss + ", " + method.schedule +
-        ", " + (method.ransac ? "RANSAC" : "no guess") + "; repeat the sweep");
+    throw InputError(path + ": missing shares of " + method.loss + ", " +
+                     method.schedule + ", " +
+                     (method.ransac ? "from RANSAC" : "from identity") +
+                     "; repeat the sweep");
   }
   if (cells.empty()) throw InputError(path + ": no rows; repeat the sweep");
   return cells;

@@ -24,8 +24,9 @@ SourceOptions OptionsOf(const SequenceSettings& settings, bool keep_color,
   if (!settings.camera.empty()) {
     options.camera = ResolveCameraSetup(settings.camera, settings.depth_camera);
   } else if (!settings.depth_camera.empty()) {
-    throw InputError("depth_camera '" + settings.depth_camera +
-                     "': needs a Kalibr file with this camera (camera)");
+    throw InputError(
+        "depth_camera '" + settings.depth_camera +
+        "': needs a Kalibr file with this camera; set it as camera");
   }
   if (camera != nullptr) {
     const CameraSetup said = options.camera.value_or(CameraSetup());

@@ -84,7 +84,8 @@ Trajectory FromArrays(const py::object& stamps, const py::object& poses,
     if (!std::isfinite(times(i)) ||
         (i > 0 && times(i) <= trajectory.back().timestamp)) {
       throw InputError(name + "[0]" + index +
-                       ": is not after the previous time stamp; sort the poses "
+                       ": is not finite or not after the previous time stamp; "
+                       "sort the poses "
                        "by time and remove duplicates");
     }
     const std::string where = name + "[1]" + index;

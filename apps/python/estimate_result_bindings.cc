@@ -100,7 +100,7 @@ could use.)");
   property("num_inliers", &MotionEstimate::num_inliers,
            "number of inliers among these");
   property("num_rejected", &EstimateResult::num_rejected,
-           "ignored rows: not finite, or with a negative depth");
+           "ignored rows: not finite, or with an invalid depth");
   property("sigma", &MotionEstimate::sigma,
            "robust spread of the whitened residuals, ideally 1");
   property("initial_cost", &MotionEstimate::initial_cost,

@@ -159,9 +159,9 @@ motion_guess: (4, 4) cur_from_prev since the previous frame, from another
     sensor; tried first, but used only if the images agree with it.
 depth_delay: time from the image to the depth measurement, s.
 
-Both images are copied: what becomes of the arrays afterwards does not matter.
-A frame that is lost is a status; images of a wrong shape or type raise
-InputError and count as no frame.)",
+Both images are copied, so the arrays may be reused afterwards. A lost frame is
+reported by its status. Images of a wrong shape or type raise InputError and are
+not counted as frames.)",
       "(timestamps (N,), world_from_cam (N, 4, 4)) of frames not lost");
 }
 

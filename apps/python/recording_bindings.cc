@@ -161,8 +161,8 @@ void BindAnyRecording(py::module_* module) {
       .def("__next__", &NextFrame);
   py::class_<Recording> recording(*module, "Recording", R"(
 A recording of any kind that the programs read: `for frame in recording` gives
-one Frame after the other, decoded as it is asked for with the GIL released.
-Each loop reads it again.
+one Frame after the other; each is decoded on access, with the GIL released.
+Each loop reads the recording again.
 
 path: a folder or a file.
 camera: a Camera, a preset or a calibration file; None: the camera stored in the
@@ -175,7 +175,7 @@ depth_camera: the camera of a Kalibr file that took the depth images, which are
 depth_scale: raw depth units per metre; 0: from the camera or the recording.
 topics: of a bag: colour, depth[, camera_info]; empty: chosen by their types.
 
-InputError for what cannot be read.)");
+Raises InputError for unreadable input.)");
   recording.def(
       py::init(&OpenRecording), "Raises InputError for unreadable input.",
       py::arg("path"), py::arg("camera") = py::none(), py::kw_only(),

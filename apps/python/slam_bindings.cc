@@ -211,9 +211,9 @@ void BindSlam(py::module_* module) {
   BindKeyframe(module);
   auto slam = BindTracker<SharedSlam, SharedSlamSettings>(
       module, "Slam", R"(
-Tracks a camera as Odometry does and builds a map of its keyframes behind it, in
-a thread of its own: where the view returns, the path is corrected. The same
-frames give the same result, to the last bit. Calls of one object from several
+Tracks a camera as Odometry does and builds a map of its keyframes in a thread in
+the background. When the camera returns to a known place, the path is corrected.
+The same frames give identical results. Calls of one object from several
 threads wait for each other; objects do not share anything.
 
 )",

@@ -134,7 +134,7 @@ constexpr char kWhatNext[] =
     "the camera file, or move slowly), blur, moving objects, a wrong depth "
     "unit.</li>"
     "<li>&ldquo;not plausible&rdquo; or an arrow in the table: the parameter "
-    "compensates another error; keep it with --fix=.</li>"
+    "compensates for another error; keep it with --fix=.</li>"
     "<li>too few pairs, or no parameter determined: record half a minute, turn "
     "and move at the same time, with near and far objects in view.</li></ul>\n";
 

@@ -253,7 +253,7 @@ json EvaluationToJson(const EvaluationReport& report) {
 std::string FormatTruthAlignment(const TruthAlignment& alignment,
                                  double rpe_delta_seconds) {
   const std::string head =
-      "\nBest time shift and camera pose of the ground truth";
+      "\nBest time shift of the ground truth and its body in the camera";
   if (!alignment.skipped.empty()) {
     return head + ": not estimated; " + alignment.skipped + "\n";
   }

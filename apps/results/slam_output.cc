@@ -155,8 +155,9 @@ nlohmann::json SlamToJson(const Slam& slam,
 std::string SlamWarning(const nlohmann::json& slam) {
   const int unsolved = slam.at("unsolved").get<int>();
   if (unsolved == 0) return "";
-  return Format("solving for the map's poses failed %d times; last reason: %s",
-                unsolved, slam.at("error").get<std::string>().c_str());
+  return Format("solving for the map's poses failed %d time%s; last reason: %s",
+                unsolved, unsolved == 1 ? "" : "s",
+                slam.at("error").get<std::string>().c_str());
 }
 
 std::string FormatSlamSummary(const nlohmann::json& slam) {

@@ -43,8 +43,9 @@ class SettingFlags {
     }
   }
 
-  // gflags writes numbers directly into the settings. This sets values by name,
-  // after the flags have been read. Throws InputError for unknown names.
+  // gflags writes numbers and texts directly into the settings. This sets the
+  // values with a NamedSetting, after the flags have been read. Throws
+  // InputError for unknown names.
   void Apply() const {
     for (const Row& row : rows_) row.named.set(row.text);
   }

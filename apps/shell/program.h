@@ -71,7 +71,7 @@ void Warn(const std::vector<std::string>& lines);
 void RequireFlag(const std::string& name, const std::string& value);
 
 // More threads than any machine could use here.
-constexpr int kMaxThreads = 256;
+inline constexpr int kMaxThreads = 256;
 
 // The number of processor cores that this process may use, at least 1.
 int AvailableCores();

@@ -84,7 +84,7 @@ void LiveView::Finish(const std::string& results) {
 
 ViewFrame LiveView::Describe(const TrackedFrame& tracked) const {
   ViewFrame shown = {tracked, std::nullopt, {}};
-  shown.edges.clear();
+  shown.edges = std::vector<RelativePose>();  // frees them
   if (tracked.status == TrackingStatus::kLost) return shown;
   int keyframe = tracked.index;
   if (!tracked.is_reference && tracked.reference != -1) {

@@ -99,7 +99,7 @@ class ViewState {
 
  private:
   void ThinPoints();
-  // Changes what buttons and the end set, and wakes all that wait for it.
+  // Applies a button or the end of the run, and wakes all waiting threads.
   template <typename Change>
   void Control(const Change& change);
 

@@ -139,8 +139,8 @@ std::string FindFixing(const TruthComparison& comparison,
     result->motions = equations.used();
     if (equations.used() < kMinMotions) {
       return Format(
-          "only %d motions of %g s have a ground truth with poses less than 50 "
-          "ms apart; at least %d are needed",
+          "only %d motions of %g s can be compared with the ground truth (its "
+          "poses must be less than 50 ms apart); at least %d are needed",
           equations.used(), TruthComparison::kMotionSeconds, kMinMotions);
     }
     if (round < kOpenRounds) {

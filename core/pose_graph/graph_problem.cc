@@ -78,7 +78,8 @@ GraphProblem::GraphProblem(const GraphTerms& graph, double width)
   }
   ceres::Problem::Options options;
   options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;
-  options.disable_all_safety_checks = true;  // see FindBadInput
+  options.disable_all_safety_checks =
+      true;  // PoseGraph::Solve checks the input
   problem_ = std::make_unique<ceres::Problem>(options);
   for (size_t i = 0; i < x_.size(); ++i) {
     if (!graph.poses[i].is_fixed) problem_->AddParameterBlock(x_[i].data(), 6);

@@ -122,7 +122,7 @@ class PackedCost : public MotionCost {
   }
 
  protected:
-  // The columns of a block, and their number.
+  // The number of columns of a block, and their values.
   static constexpr int kColumns = Residual::kColumns;
   using Block = std::array<double, kColumns>;
 

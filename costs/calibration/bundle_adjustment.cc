@@ -96,18 +96,19 @@ double BundleAdjustment::Solve(const FreeParts& is_free,
   for (size_t i = 0; i < num_landmarks; ++i) {
     const Landmark& landmark = views_.landmarks[i];
     double* const d = &state->inverse_depths[i];
+    // Adds a residual of the measurements appended last.
     const auto add = [&](auto residual, int keyframe) {
       problem.AddResidualBlock(
           new LandmarkBlock<decltype(residual)>(
               origins[landmark.anchor], origins[keyframe], origin, data.back()),
           &loss, x[landmark.anchor].data(), x[keyframe].data(), d, y.data());
     };
-    // The view's pose is a dummy: an anchor's depth does not depend on it.
     data.push_back(DataOf(views_, landmark, *state));
     int used = 0;
     for (int k = 0; k < landmark.num_views; ++k) {
       const LandmarkView& view = views_.views[landmark.first_view + k];
       if (!view.TakesPart(training_only_)) continue;
+      // The view's pose is a dummy: an anchor's depth does not depend on it.
       if (used++ == 0) add(AnchorDepth(), view.keyframe);
       data.push_back(DataOf(views_, landmark, view, *state));
       add(LandmarkPixel(), view.keyframe);

@@ -21,7 +21,7 @@ enum CalibrationIndex {
   kP1,  // tangential distortion, all other lenses
   kP2,
   kInverseDepth,  // 1 / z = 1 / measured z + this, 1/m
-  kDepthTime,     // delay of depth after its stamp, s
+  kDepthTime,     // delay of depth after its time stamp, s
   kColorReadout,  // time from the first row to the last, beyond what has been
   kDepthReadout,  // corrected already, s
   kRotationX,     // in the registered depth image a point X of the colour axes

@@ -58,13 +58,13 @@ struct ForwardError {
 // multiplies, for any scalars; the weights follow the columns of ForwardError.
 template <typename Type, int rows>
 struct WeightedForwardError {
-  // As of every residual type (costs/assembly/cost_of.h).
+  // Constants that every residual type has, see costs/assembly/cost_of.h.
   static constexpr int kRows = rows;
   static constexpr int kDegreesOfFreedom = rows;
   static constexpr AssociationPolicy kAssociation =
       AssociationPolicy::kWhenMoved;
 
-  // r.
+  // The residual r = W e.
   template <typename M, typename D, typename T>
   static void Residual(const RotationAndCenter<M>& motion, const D* columns,
                        T* r) {

@@ -130,8 +130,8 @@ std::optional<Rigid3d> ColorFromDepth(BagReader* bag, const BagTopics& topics,
   }
   std::optional<Rigid3d> fixed = tree.Fixed(color.frame_id, depth.frame_id);
   if (!fixed.has_value() && !has_camera) {
-    throw InputError(bag->path() + ": no transform from '" + depth.frame_id +
-                     "' (depth) to '" + color.frame_id +
+    throw InputError(bag->path() + ": no fixed transform from '" +
+                     depth.frame_id + "' (depth) to '" + color.frame_id +
                      "' (colour); give both cameras (a Kalibr file: camera, "
                      "depth_camera), or camera alone if depth is registered to "
                      "colour");

@@ -45,7 +45,7 @@ struct RemoveFolder {
   }
 };
 
-// The path of a folder that is removed with this object.
+// The path of a temporary folder, which is removed with this object.
 using TemporaryFolder = std::unique_ptr<const fs::path, RemoveFolder>;
 
 // For the decompressed copy of a file that its recorder compressed as a whole.
@@ -54,8 +54,9 @@ TemporaryFolder MakeFolderFor(const fs::path& packed) {
   std::string folder =
       (fs::temp_directory_path(error) / "rgbd_pose-XXXXXX").string();
   if (mkdtemp(folder.data()) == nullptr) {
-    throw InputError(packed.string() + ": cannot be decompressed to " + folder +
-                     "; set TMPDIR to a writable folder");
+    throw InputError(
+        packed.string() + ": cannot be decompressed: the temporary folder " +
+        folder + " could not be created; set TMPDIR to a writable folder");
   }
   return TemporaryFolder(new fs::path(folder));
 }

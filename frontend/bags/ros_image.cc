@@ -49,8 +49,9 @@ bool IsCompressedDepth(std::string_view format) {
 InputError Unreadable(const std::string& name, std::string_view encoding,
                       const char* what) {
   return InputError(name + ": encoding '" + std::string(encoding) +
-                    "' is not supported for " + what + " images; supported: " +
-                    Join(NamesOf(kEncodings)) + ", compressed jpeg and png");
+                    "' is not supported for " + what +
+                    " images; known encodings: " + Join(NamesOf(kEncodings)) +
+                    ", compressed jpeg and png");
 }
 
 // Reverses the byte order of each number of `size` bytes.

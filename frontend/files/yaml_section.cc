@@ -64,8 +64,9 @@ std::vector<double> YamlSection::Numbers(
   if (!list.IsSequence() ||
       std::count(lengths.begin(), lengths.end(), list.size()) == 0) {
     std::vector<std::string> wanted;
-    for (const size_t length : lengths)
+    for (const size_t length : lengths) {
       wanted.push_back(std::to_string(length));
+    }
     Fail(key, "needs a list of " + Join(wanted, " or ") + " numbers");
   }
   std::vector<double> numbers;

@@ -88,7 +88,8 @@ class LineReader {
 // What follows are the words of each line in their order: a LineWriter writes
 // them, a LineReader reads them.
 
-// Avoids the constructor of Rigid3d, which might change the last digit.
+// Does not call the constructor of Rigid3d when reading: it might change the
+// last digit.
 template <typename Line, typename Rigid>
 void PassMotion(Line* line, Rigid* motion) {
   for (int i = 0; i < 3; ++i) line->Number(&motion->translation[i]);

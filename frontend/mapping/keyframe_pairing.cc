@@ -138,9 +138,9 @@ void Mapper::PairByPose(int newest, const PreparedFrame& frame,
   }
 }
 
-// Pairs it with similar ones of any segment. Segments that meet are joined. A
-// similar keyframe is accepted if the path by other pairs is consistent with
-// it or, without a path, if more than one pair supports it.
+// Pairs the newest keyframe with similar ones of any segment. Segments that
+// meet are joined. A similar keyframe is accepted if the path by other pairs is
+// consistent with it or, without a path, if more than one pair supports it.
 void Mapper::CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
                                     MapUpdate* update) {
   if (options_.max_loop_candidates == 0) return;

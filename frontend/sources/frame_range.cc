@@ -32,7 +32,7 @@ bool ParseEnd(std::string_view text, End* end) {
       end->is_time || (end->value == std::floor(end->value) &&
                        end->value < std::numeric_limits<int>::max());
   return error == std::errc() && rest == stop && std::isfinite(end->value) &&
-         end->value >= 0.0 && is_number;
+         !std::signbit(end->value) && is_number;
 }
 
 bool Parse(std::string_view text, FrameRange* range) {

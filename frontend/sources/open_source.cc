@@ -122,11 +122,12 @@ std::unique_ptr<FrameSource> OpenSource(const std::string& name,
     throw InputError(options.path + ": no such file or folder");
   }
   if (!fs::is_directory(options.path, error)) {
-    throw InputError(options.path +
-                     ": is not a supported recording; supported are: " + known);
+    throw InputError(
+        options.path +
+        ": is not a supported recording; supported recordings: " + known);
   }
   throw InputError(options.path + ": is not a supported recording: contains " +
-                   Content(options.path) + "; supported are: " + known +
+                   Content(options.path) + "; supported recordings: " + known +
                    " (give bags of different recordings one at a time)");
 }
 

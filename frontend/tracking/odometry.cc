@@ -151,7 +151,8 @@ Odometry::Prediction Odometry::Predict(const Rigid3d& cur_from_prev,
 bool Odometry::Follow(const PreparedFrame& measured,
                       const Prediction* prediction, TrackedFrame* result) {
   // If the last frame is to become the reference, the pose since then probably
-  // replaces this one.
+  // replaces this one. Until Refine, IsSlow and the velocity that rectifies the
+  // last frame then rely on features alone.
   const bool is_provisional = wants_reference_ && last_.has_value();
   const PreparedFrame* frame =
       Look(measured, prediction, is_provisional, result);

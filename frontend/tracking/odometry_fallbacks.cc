@@ -129,6 +129,8 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
       result->status != TrackingStatus::kOk) {
     return false;
   }
+  // What waits for a velocity is another reference.
+  shutter_tracking_.HandleLost();
   twist_ = attempts_.kept().twist;
   if (twist_.has_value()) {
     shutter_tracking_.velocity()->Add(*twist_, frame.color_shutter.offset);

@@ -89,8 +89,8 @@ struct TrackingGuess {
   // The tracker may skip its slow methods (see TrackingResult::is_partial).
   bool is_tentative = false;
 
-  // If the pose is good, its refinement may be left to Tracker::Refine, since
-  // it may not be needed (see TrackingResult::prior_of_refinement).
+  // The refinement of a pose that needs no confirmation may be left to
+  // Tracker::Refine, as it may not be needed (see prior_of_refinement).
   bool leaves_refinement = false;
 };
 
@@ -107,6 +107,7 @@ struct TrackingResult {
   // Clears what not every tracker fills, before the next frame.
   void Begin(TrackingSource tracked_from) {
     source = tracked_from;
+    num_found = 0;
     match_ms = 0.0;
     is_ambiguous = false;
     prior_of_refinement.reset();
@@ -143,8 +144,7 @@ struct TrackingResult {
   // skipped because the guess was tentative.
   bool is_partial = false;
 
-  // Set if the pose is good but Tracker::Refine has still to refine it, with
-  // this prior.
+  // Set if Tracker::Refine has still to refine the pose, with this prior.
   std::optional<MotionPrior> prior_of_refinement;
 
   // Regions where features contradict the motion (feature trackers only).

@@ -21,8 +21,8 @@ function shutterInWords(data) {
       `${ms(color.offset_ms)} ms (colour) and ${ms(depth.offset_ms)} ms (depth) after ` +
       `the time stamp; the readout takes ${ms(color.readout_ms)} ms (colour) and ` +
       `${ms(depth.readout_ms)} ms (depth). ` +
-      (setting(data, 'shutter') === 'none' ? 'Nothing was compensated (--shutter=none).'
-          : 'All is compensated to the time stamp of colour.');
+      (setting(data, 'shutter') === 'none' ? 'These times are not compensated (--shutter=none).'
+          : 'All rows are corrected to the time stamp of colour.');
 }
 
 function header(data) {

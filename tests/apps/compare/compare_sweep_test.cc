@@ -118,7 +118,7 @@ TEST(SweepCsvTest, AnIncompleteFileIsRefused) {
   cells.pop_back();
   const std::string file = folder.Write("sweep.csv", SweepCsv(cells));
   ExpectInputError([&] { ReadSweepCsv(file); },
-                   {file, "missing shares of none, direct, RANSAC"});
+                   {file, "missing shares of none, direct, from RANSAC"});
   folder.Write("sweep.csv", SweepCsv({}));
   ExpectInputError([&] { ReadSweepCsv(file); }, {file, "no rows"});
 }

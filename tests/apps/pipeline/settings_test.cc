@@ -36,6 +36,9 @@ TEST(SettingTableTest, EveryRowIsAPlaceOfItsOwn) {
       EXPECT_TRUE(places.insert(*real).second) << row.name;
     } else if (bool* const* yes = std::get_if<bool*>(&row.value)) {
       EXPECT_TRUE(places.insert(*yes).second) << row.name;
+    } else if (std::string* const* text =
+                   std::get_if<std::string*>(&row.value)) {
+      EXPECT_TRUE(places.insert(*text).second) << row.name;
     }
   }
 }
@@ -43,8 +46,11 @@ TEST(SettingTableTest, EveryRowIsAPlaceOfItsOwn) {
 TEST(SettingTableTest, EveryChoiceIsTakenAndToldAgain) {
   OdometrySettings settings;
   for (const Setting& row : SettingTable(&settings)) {
-    // A text takes anything.
-    if (std::holds_alternative<std::string*>(row.value)) continue;
+    // A text takes anything, and says what is valid.
+    if (std::holds_alternative<std::string*>(row.value)) {
+      EXPECT_FALSE(row.choices.empty()) << row.name;
+      continue;
+    }
     const NamedSetting* named = std::get_if<NamedSetting>(&row.value);
     ASSERT_EQ(named == nullptr, row.choices.empty()) << row.name;
     for (const std::string& choice : row.choices) {

@@ -30,7 +30,8 @@ TEST(TruthAlignmentReportTest, TableHasEstimatesWithTheirErrors) {
   EXPECT_EQ(
       FormatTruthAlignment(SomeAlignment(), 1.0),
       "\n"
-      "Best time shift and camera pose of the ground truth (753 motions)\n"
+      "Best time shift of the ground truth and its body in the camera (753 "
+      "motions)\n"
       "  time shift (ms)                      -7.5 +- 0.4\n"
       "  rotation x, y, z (deg)              1.50 +- 0.12      0.00 +- 0.12    "
       " "
@@ -70,9 +71,10 @@ TEST(TruthAlignmentReportTest, JsonHasTheSameFigures) {
 TEST(TruthAlignmentReportTest, OneLineWhereThereIsNone) {
   TruthAlignment alignment;
   alignment.skipped = "too short";
-  EXPECT_EQ(FormatTruthAlignment(alignment, 1.0),
-            "\nBest time shift and camera pose of the ground truth: not "
-            "estimated; too short\n");
+  EXPECT_EQ(
+      FormatTruthAlignment(alignment, 1.0),
+      "\nBest time shift of the ground truth and its body in the camera: not "
+      "estimated; too short\n");
   const nlohmann::json json = TruthAlignmentToJson(alignment, 1.0);
   EXPECT_EQ(json.at("skipped"), "too short");
   EXPECT_FALSE(json.contains("time_shift_s"));

@@ -82,7 +82,8 @@ TEST(EvaluationReportTest, TableSaysWhatIsMeasuredAndHow) {
       "  all motions                            375           3        1.50"
       "        0.75\n"
       "\n"
-      "Best time shift and camera pose of the ground truth: not estimated; too "
+      "Best time shift of the ground truth and its body in the camera: not "
+      "estimated; too "
       "short\n");
 }
 

@@ -61,7 +61,7 @@ TEST(FlagReaderTest, RefusesAllElse) {
       {{"--fromenv=test_word"}, "unknown flag --fromenv"},
       {{"--help"}, "unknown flag --help"},
       {{"--flagfile=" + file}, file + ":2: 'test_number=4' is not a flag"},
-      {{"--flagfile=" + circle}, "circle"},
+      {{"--flagfile=" + circle}, "include each other in a loop"},
       {{"--flagfile=" + folder.path()}, "is a folder"},
   };
   for (const auto& c : kCases) {

@@ -29,7 +29,7 @@ TEST_F(Ros1BagTest, RegistersDepthOfAnotherFrame) {
     Write("/camera/depth/image_raw", kStart,
           MakeImage(depth, "16UC1", kStart, "depth_optical"));
     if (!says_where) {
-      ExpectRefused({"no transform from 'depth_optical'", "Kalibr"});
+      ExpectRefused({"no fixed transform from 'depth_optical'", "Kalibr"});
       SourceOptions options = Options();
       options.camera = SmallCamera();
       const Frame frame = OpenSource("auto", options)->Next()->read();

@@ -94,7 +94,7 @@ TEST(VoxelCloudTest, CountsTheCubesThatAMapCounts) {
   EXPECT_TRUE(cubes.empty());
 }
 
-TEST(VoxelCloudTest, StoresCubesAndNotPoints) {
+TEST(VoxelCloudTest, PointsOfKnownCubesAddNone) {
   VoxelCloud cloud(0.02F);
   const std::vector<ColoredPoint> plate = Plate(400);
   for (const ColoredPoint& point : plate) cloud.Add(point);

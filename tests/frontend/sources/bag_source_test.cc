@@ -52,7 +52,8 @@ TEST_F(Ros1BagTest, RefusesImagesOfOtherTimes) {
   WriteInfo();
   WriteColor(0);
   Write(kDepth, kStart, MakeImage(DepthImage(0), "16UC1", kStart + 5));
-  ExpectRefused({"none of 1 colour images", "5.000000 s"});
+  ExpectRefused(
+      {"none of 1 colour images", "of one of 1 depth images", "5.000000 s"});
 }
 
 TEST_F(Ros1BagTest, MotionCaptureIsTheGroundTruth) {

@@ -80,9 +80,9 @@ TEST(FrameRangeTest, RefusesWhatIsNoPart) {
         [&] { PartOf(std::make_unique<TenFrames>(), ParseFrameRange(text)); },
         {"only 10 frames", "none of them in this range"});
   }
-  for (const char* text :
-       {"100", "-", "a-b", "4-2", "2s-1s", "1-2s", "1.5-3", "1-2:0", "1-2:x",
-        "1-2:3:4", "1-2 ", "1--2", "nan-", "0-99999999999", "1s", "-:2"}) {
+  for (const char* text : {"100", "-", "a-b", "4-2", "2s-1s", "1-2s", "1.5-3",
+                           "1-2:0", "1-2:x", "1-2:3:4", "1-2 ", "1--2", "0--0",
+                           "--0", "nan-", "0-99999999999", "1s", "-:2"}) {
     ExpectInputError([&] { ParseFrameRange(text); }, {text, "0-99", "2.5s"});
   }
 }

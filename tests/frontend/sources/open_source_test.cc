@@ -37,9 +37,10 @@ TEST_F(OpenSourceTest, RefusesWhatItDoesNotKnow) {
   std::filesystem::create_directory(other / "images");
   other.Write("notes.txt", "");
   options_.path = other.path();
-  ExpectInputError([&] { OpenSource("auto", options_); },
-                   {options_.path, "contains images/, notes.txt; supported are",
-                    "7-Scenes"});
+  ExpectInputError(
+      [&] { OpenSource("auto", options_); },
+      {options_.path, "contains images/, notes.txt; supported recordings",
+       "7-Scenes"});
   options_.path = folder_ / "nowhere";
   ExpectInputError([&] { OpenSource("auto", options_); },
                    {options_.path, "no such file or folder"});

@@ -309,6 +309,40 @@ Honesty HonestyOf(const Shutters& shutters, const std::string& tracker,
   return honesty;
 }
 
+// A frame of another place starts a segment; the next one is found again in an
+// earlier keyframe. The velocity found there is not that of the other place.
+TEST(ShutterTrackingTest, ARelocalisationEndsTheWaitForAVelocity) {
+  const ShutterSequence sequence("handheld", RollingShutters(1.0), 14);
+  SyntheticOptions elsewhere = OptionsOf("handheld", RollingShutters(1.0));
+  elsewhere.scene = "corridor";
+  constexpr int kOther = 10;
+  Odometry odometry = OdometryFor(sequence, "hybrid", ShutterUse::kCamera);
+  int keyframe = -1;
+  cv::Mat image;
+  for (int i = 0; i < static_cast<int>(sequence.frames.size()); ++i) {
+    Frame frame = sequence.frames[i];
+    if (i == kOther) {
+      frame = SyntheticDataset(elsewhere).Read(i);
+      frame.timestamp = sequence.frames[i].timestamp;
+    }
+    const TrackedFrame tracked = odometry.Track(frame);
+    if (i == kOther) {
+      ASSERT_TRUE(tracked.is_reference) << tracked.reason;
+    }
+    if (i == kOther + 1) {
+      ASSERT_TRUE(tracked.relocalised) << tracked.reason;
+      keyframe = tracked.reference;
+      image = odometry.FindKeyframe(keyframe)->frame.gray.clone();
+    }
+    if (i > kOther + 1) {
+      EXPECT_EQ(tracked.status, TrackingStatus::kOk) << tracked.reason;
+      EXPECT_EQ(cv::norm(odometry.FindKeyframe(keyframe)->frame.gray, image,
+                         cv::NORM_INF),
+                0.0);
+    }
+  }
+}
+
 // Only if the middle row is exposed at the stamp: otherwise the references'
 // time is known only as well as their velocity.
 TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {

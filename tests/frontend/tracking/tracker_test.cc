@@ -358,7 +358,10 @@ TEST(HybridTrackerTest, PixelsMakeMotionsMoreAccurate) {
 
 TEST(TrackerOptionsTest, NoFieldMayBeNan) {
   for (double TrackerOptions::*field :
-       {&TrackerOptions::min_seen_share, &TrackerOptions::min_likeness}) {
+       {&TrackerOptions::min_inlier_share_ok, &TrackerOptions::max_sigma_ok,
+        &TrackerOptions::min_seen_share, &TrackerOptions::min_likeness,
+        &TrackerOptions::prior_sigma_rotation,
+        &TrackerOptions::prior_sigma_translation}) {
     TrackerOptions options;
     EXPECT_EQ(options.Check(), "");
     options.*field = std::nan("");
