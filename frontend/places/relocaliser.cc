@@ -13,6 +13,14 @@ constexpr size_t kMaxDescriptions = 2;
 
 }  // namespace
 
+const PlaceFeatures& Relocaliser::FeaturesOf(Keyframe* keyframe) const {
+  if (keyframe->features == nullptr) {
+    keyframe->features = std::make_shared<const PlaceFeatures>(
+        DescribeKeyframe(keyframe->Unpacked(), camera_, depth_options_));
+  }
+  return *keyframe->features;
+}
+
 std::optional<Relocalisation> Relocaliser::Find(
     const Frame& frame, const std::vector<Keyframe*>& keyframes) {
   const size_t count = keyframes.size();
@@ -26,19 +34,27 @@ std::optional<Relocalisation> Relocaliser::Find(
     // The latest keyframe, then those whose turn it is.
     const size_t at = look == 0 ? 0 : next_;
     Keyframe& keyframe = *keyframes[at];
-    if (keyframe.features == nullptr) {
-      if (++descriptions > kMaxDescriptions) break;
-      keyframe.features = std::make_shared<const PlaceFeatures>(
-          DescribeKeyframe(keyframe.Unpacked(), camera_, depth_options_));
+    if (keyframe.features == nullptr && ++descriptions > kMaxDescriptions) {
+      break;
     }
     if (look > 0 && ++next_ >= count) next_ = 1;
     if (const auto found = VerifyGeometrically(
-            MatchPlaces(*keyframe.features, current, camera_))) {
+            MatchPlaces(FeaturesOf(&keyframe), current, camera_))) {
       return Relocalisation{keyframe.id, found->cur_from_prev,
                             static_cast<int>(found->inliers.size())};
     }
   }
   return std::nullopt;
+}
+
+bool Relocaliser::FindIn(const Frame& frame, Keyframe* keyframe,
+                         Rigid3d* cur_from_keyframe) const {
+  const auto found = VerifyGeometrically(
+      MatchPlaces(FeaturesOf(keyframe),
+                  DescribeKeyframe(frame, camera_, depth_options_), camera_));
+  if (!found.has_value()) return false;
+  *cur_from_keyframe = found->cur_from_prev;
+  return true;
 }
 
 std::optional<Relocalisation> Relocaliser::FindInMap(

@@ -39,6 +39,10 @@ class Relocaliser {
   std::optional<Relocalisation> Find(const Frame& frame,
                                      const std::vector<Keyframe*>& keyframes);
 
+  // Searches one keyframe. Returns false if the frame is not found in it.
+  bool FindIn(const Frame& frame, Keyframe* keyframe,
+              Rigid3d* cur_from_keyframe) const;
+
   // Searches a whole map: of the keyframes most similar according to the index,
   // the one with the most inliers. `features_of`: the features of a keyframe.
   std::optional<Relocalisation> FindInMap(
@@ -47,6 +51,8 @@ class Relocaliser {
       const;
 
  private:
+  const PlaceFeatures& FeaturesOf(Keyframe* keyframe) const;
+
   Camera camera_;
   DepthLookupOptions depth_options_;
   int latest_id_ = -1;  // latest keyframe in the last Find

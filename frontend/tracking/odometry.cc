@@ -214,8 +214,13 @@ const PreparedFrame* Odometry::Look(const PreparedFrame& measured,
       if (prediction->is_certain) guess.covariance = &prediction->covariance;
       if (attempts_.Try(frame, *reference_, guess, result)) return true;
     }
-    return attempts_.TryEither(frame, *reference_, from(first), from(second),
-                               result);
+    return attempts_.TryInTurn(
+        frame, *reference_, from(first), from(second),
+        [&](Rigid3d* cur_from_ref) {
+          const StageTimer timer(&result->relocalise_ms);
+          return relocaliser_.FindIn(frame, reference_, cur_from_ref);
+        },
+        result);
   };
   if (!has_shutter_) {
     // A frame without a shutter among frames with one does not determine a

@@ -133,7 +133,8 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   shutter_tracking_.HandleLost();
   twist_ = attempts_.kept().twist;
   if (twist_.has_value()) {
-    shutter_tracking_.velocity()->Add(*twist_, frame.color_shutter.offset);
+    shutter_tracking_.velocity()->Add(*twist_, interval_,
+                                      frame.color_shutter.offset);
   }
   reference_ = keyframe;
   if (segment_ != keyframe->segment) earlier_segment_.reset();

@@ -103,7 +103,8 @@ void ShutterTracking::Update(const TrackingResult& refined) {
 void ShutterTracking::Accept() {
   early_.reset();
   if (found_.frame.has_value() && found_.frame->twist.has_value()) {
-    velocity_.Add(*found_.frame->twist, found_.frame->color_shutter.offset);
+    velocity_.Add(*found_.frame->twist, found_.interval,
+                  found_.frame->color_shutter.offset);
   }
   between_ = found_.between;
   interval_ = found_.interval;

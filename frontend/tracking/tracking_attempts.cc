@@ -33,27 +33,31 @@ void TrackingAttempts::Refine(const PreparedFrame& frame,
   result->solve_ms += estimate.solve_ms;
 }
 
-bool TrackingAttempts::TryEither(const PreparedFrame& frame,
+bool TrackingAttempts::TryInTurn(const PreparedFrame& frame,
                                  const OdometryKeyframe& keyframe,
                                  const TrackingGuess& first,
-                                 const TrackingGuess& second,
+                                 const TrackingGuess& second, const Find& find,
                                  TrackedFrame* result) {
-  TrackingGuess tentative = first;
-  tentative.is_tentative = true;
-  const bool has_pose = Try(frame, keyframe, tentative, result);
-  if (tracked_.is_partial) {
-    if (Try(frame, keyframe, second, result) &&
-        result->status == TrackingStatus::kOk) {
-      return true;
-    }
-    return Try(frame, keyframe, first, result) ||
-           Try(frame, keyframe, second, result);
+  bool has_pose = false;
+  const auto is_good = [&](TrackingGuess guess, bool is_tentative) {
+    guess.is_tentative = is_tentative;
+    if (has_pose) return TryFallback(frame, keyframe, guess, result);
+    has_pose = Try(frame, keyframe, guess, result) && !tracked_.is_partial;
+    return has_pose && result->status == TrackingStatus::kOk;
+  };
+  if (is_good(first, true)) return true;
+  const bool is_ambiguous = tracked_.is_ambiguous;
+  if (is_good(second, true)) return true;
+  // Descriptors take the motion that most of the view agrees with.
+  if (!is_ambiguous) {
+    TrackingGuess third = first;
+    if (find(&third.cur_from_ref) && is_good(third, true)) return true;
   }
-  if (!has_pose) return Try(frame, keyframe, second, result);
-  if (result->status != TrackingStatus::kOk) {
-    TryFallback(frame, keyframe, second, result);
+  const bool has_slow_methods = tracked_.is_partial;
+  for (const TrackingGuess* guess : {&first, &second}) {
+    if (!has_pose && has_slow_methods) is_good(*guess, false);
   }
-  return true;
+  return has_pose;
 }
 
 bool TrackingAttempts::TryFallback(const PreparedFrame& frame,

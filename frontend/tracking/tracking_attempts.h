@@ -14,6 +14,8 @@ namespace rgbd_pose {
 class TrackingAttempts {
  public:
   using Accept = std::function<bool()>;
+  // Finds a motion without a guess, slowly; returns false if there is none.
+  using Find = std::function<bool(Rigid3d* cur_from_ref)>;
 
   // `tracker` must outlive this object.
   explicit TrackingAttempts(Tracker* tracker)
@@ -26,12 +28,13 @@ class TrackingAttempts {
   bool Try(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
            const TrackingGuess& guess, TrackedFrame* result);
 
-  // The same from two guesses. The second result counts if the first has no
-  // pose, or a doubtful one and the second a good one. The slow methods of the
-  // tracker are used only if neither guess leads to a good pose without them.
-  bool TryEither(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
+  // The same from several guesses until one leads to a good pose: the first,
+  // the second and, unless the pose is ambiguous, a third from `find`.
+  // Otherwise the first pose counts. The slow methods of the tracker are used
+  // only if no guess leads to a good pose without them.
+  bool TryInTurn(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
                  const TrackingGuess& first, const TrackingGuess& second,
-                 TrackedFrame* result);
+                 const Find& find, TrackedFrame* result);
 
   // Makes another attempt after a pose was found. It counts if its pose is good
   // and `accept`, called while kept() is the new result, returns true.

@@ -94,26 +94,28 @@ MotionMatrix MotionCovarianceOfAcceleration(const FrameTiming& timing,
 
 VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
                                    double interval, double middle) const {
-  const double angular =
-      std::max(kMinChangeAngular, std::sqrt(change_angular_));
-  const double linear = std::max(kMinChangeLinear, std::sqrt(change_linear_));
   const bool is_lost = !prev_from_ref.has_value();
-  return {prev_from_ref,
-          last_,
-          interval,
-          middle,
-          middle_from_last_,
-          is_lost ? kLostSigmaAngular : kSigmaOfChange * angular,
-          is_lost ? kLostSigmaLinear : kSigmaOfChange * linear};
+  const auto sigma = [&](double acceleration, double min_change, double lost) {
+    const double change = std::max(min_change, acceleration * interval);
+    return is_lost ? lost : std::min(lost, kSigmaOfChange * change);
+  };
+  return {
+      prev_from_ref,
+      last_,
+      interval,
+      middle,
+      middle_from_last_,
+      sigma(std::sqrt(angular_square_), kMinChangeAngular, kLostSigmaAngular),
+      sigma(std::sqrt(linear_square_), kMinChangeLinear, kLostSigmaLinear)};
 }
 
-void VelocityModel::Add(const Twist& twist, double middle) {
-  if (last_.has_value()) {
-    const Twist change = twist - *last_;
-    change_angular_ +=
-        kShareOfNew * (change.angular.squaredNorm() / 3.0 - change_angular_);
-    change_linear_ +=
-        kShareOfNew * (change.linear.squaredNorm() / 3.0 - change_linear_);
+void VelocityModel::Add(const Twist& twist, double interval, double middle) {
+  if (last_.has_value() && interval > 0.0) {
+    const Twist acceleration = (1.0 / interval) * (twist - *last_);
+    angular_square_ += kShareOfNew * (acceleration.angular.squaredNorm() / 3.0 -
+                                      angular_square_);
+    linear_square_ += kShareOfNew * (acceleration.linear.squaredNorm() / 3.0 -
+                                     linear_square_);
   }
   last_ = twist;
   middle_from_last_ = twist.MotionDuring(middle);

@@ -60,7 +60,7 @@ class VelocityModel {
   void Reset() { *this = VelocityModel(); }
 
   // Velocities older than this (s) are not used.
-  static constexpr double kMaxInterval = 0.1;
+  static constexpr double kMaxInterval = 0.5;
 
   // The velocity of the last frame; nothing if it is unknown.
   const std::optional<Twist>& last() const { return last_; }
@@ -70,8 +70,9 @@ class VelocityModel {
   VelocityPrior Prior(const std::optional<Rigid3d>& prev_from_ref,
                       double interval, double middle) const;
 
-  // Adds the velocity of the next frame, which was corrected with it.
-  void Add(const Twist& twist, double middle);
+  // Adds the velocity of the next frame, `interval` s later, which was
+  // corrected with it.
+  void Add(const Twist& twist, double interval, double middle);
 
   // Replaces the velocity of the last frame by a better one.
   void Correct(const Twist& twist) { last_ = twist; }
@@ -83,9 +84,9 @@ class VelocityModel {
  private:
   std::optional<Twist> last_;
   Rigid3d middle_from_last_;
-  // Mean squares of the change from frame to frame; initial values for a hand.
-  double change_angular_ = 0.2 * 0.2;  // (rad/s)^2
-  double change_linear_ = 0.1 * 0.1;   // (m/s)^2
+  // Mean squares of the accelerations; initial values for a hand.
+  double angular_square_ = 6.0 * 6.0;  // (rad/s^2)^2
+  double linear_square_ = 3.0 * 3.0;   // (m/s^2)^2
 };
 
 }  // namespace rgbd_pose

@@ -10,6 +10,7 @@
 
 #include "core/evaluation/evaluation.h"
 #include "core/util/input_error.h"
+#include "tests/support/motion_error.h"
 #include "tests/support/track_sequence.h"
 
 namespace rgbd_pose {
@@ -102,6 +103,27 @@ TEST(OdometryTest, ABlackStartIsLostUntilThereAreFeatures) {
 }
 
 // The second frame is far from the first; only the guess makes it easy to find.
+// The camera has turned by 17 degrees, more than the other guesses can bridge.
+TEST(OdometryTest, DescriptorsBridgeALargeTurn) {
+  SyntheticOptions options;
+  options.path = "pan_tilt";
+  const SyntheticDataset dataset(options);
+  constexpr int kTurned = 18;
+  const Rigid3d truth =
+      dataset.WorldFromCam(0).Inverse() * dataset.WorldFromCam(kTurned);
+  ASSERT_GT(truth.Angle(), 0.3);
+  for (const std::string& name : TrackerNames()) {
+    Odometry odometry(OdometryOptions(),
+                      MakeTracker(name, PartsFor(dataset.camera().camera)));
+    odometry.Track(dataset.Read(0));
+    const TrackedFrame tracked = odometry.Track(dataset.Read(kTurned));
+    EXPECT_EQ(tracked.status, TrackingStatus::kOk) << name << tracked.reason;
+    EXPECT_FALSE(tracked.relocalised) << name;
+    EXPECT_LT(ErrorOf(tracked.world_from_cam, truth).translation, 0.001)
+        << name;
+  }
+}
+
 TEST(OdometryTest, AMotionGuessIsTriedFirst) {
   const SyntheticDataset dataset = Room("pan_tilt", 40);
   const Frame first = dataset.Read(0);

@@ -250,7 +250,7 @@ TEST(ShutterTrackingTest, AGapForgetsTheVelocityALossDoesNot) {
         frame = Black(frame);
         frame.depth = cv::Mat(frame.depth.size(), CV_16UC1, cv::Scalar(0));
       }
-      if (!is_loss && i > 6) frame.timestamp += 0.1;
+      if (!is_loss && i > 6) frame.timestamp += 0.5;
       const TrackedFrame tracked = odometry.Track(frame);
       const bool is_lost = is_loss && i == 6;
       EXPECT_EQ(tracked.status == TrackingStatus::kLost, is_lost) << i;
@@ -258,6 +258,19 @@ TEST(ShutterTrackingTest, AGapForgetsTheVelocityALossDoesNot) {
                 i != 0 && !is_lost && (is_loss || i != 7))
           << i;
     }
+  }
+}
+
+// A camera with few frames, or a program that misses some.
+TEST(ShutterTrackingTest, OfEveryFourthFrame) {
+  ShutterSequence sequence("handheld", RollingShutters(1.0), 0);
+  for (int i = 0; i < 120; i += 4) {
+    sequence.frames.push_back(sequence.dataset.Read(i));
+  }
+  for (const char* const tracker : {"features", "hybrid"}) {
+    EXPECT_LT(PositionError(sequence, tracker),
+              0.3 * PositionError(sequence, tracker, ShutterUse::kNone))
+        << tracker;
   }
 }
 

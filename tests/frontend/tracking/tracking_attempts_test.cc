@@ -22,9 +22,13 @@ struct EmptyReference final : Reference {
 // The status that a guess leads to without and with the slow methods.
 struct Outcome {
   Status quick, full;
+  bool is_ambiguous = false;  // a pose that slow methods do not change
 };
 
-constexpr double kFirst = 1.0, kSecond = 2.0;  // x of the guesses, m
+constexpr Outcome kGood = {Status::kOk, Status::kOk};
+constexpr Outcome kNone = {Status::kLost, Status::kLost};
+
+constexpr double kFirst = 1.0, kSecond = 2.0, kThird = 3.0;  // x of guesses, m
 
 Rigid3d At(double x) {
   return Rigid3d(Eigen::Quaterniond::Identity(), {x, 0.0, 0.0});
@@ -33,8 +37,8 @@ Rigid3d At(double x) {
 // Returns the guess as the pose. Skips the slow methods of a tentative guess.
 class ScriptedTracker final : public Tracker {
  public:
-  ScriptedTracker(Outcome first, Outcome second)
-      : first_(first), second_(second) {}
+  ScriptedTracker(Outcome first, Outcome second, Outcome third)
+      : first_(first), second_(second), third_(third) {}
 
   void Prepare(const PreparedFrame& /*frame*/) const override {}
   std::unique_ptr<Reference> MakeReference(const PreparedFrame& /*frame*/,
@@ -47,12 +51,15 @@ class ScriptedTracker final : public Tracker {
   void Track(const Reference& /*reference*/, const PreparedFrame& /*frame*/,
              const TrackingGuess& guess, TrackingResult* tracked) override {
     const double x = guess.cur_from_ref.translation.x();
-    const Outcome& outcome = x == kFirst ? first_ : second_;
+    const Outcome& outcome =
+        x == kFirst ? first_ : (x == kSecond ? second_ : third_);
     tracked->status = outcome.quick;
     tracked->estimate.cur_from_prev = guess.cur_from_ref;
     const bool is_good = outcome.quick == Status::kOk;
-    tracked->is_partial = guess.is_tentative && !is_good;
-    if (!is_good && !guess.is_tentative) {
+    tracked->is_ambiguous = outcome.is_ambiguous;
+    tracked->is_partial =
+        guess.is_tentative && !is_good && !outcome.is_ambiguous;
+    if (!is_good && !guess.is_tentative && !outcome.is_ambiguous) {
       tracked->status = outcome.full;
       ++num_slow;
     }
@@ -64,71 +71,91 @@ class ScriptedTracker final : public Tracker {
 
  private:
   FrontendOptions images_;
-  Outcome first_, second_;
+  Outcome first_, second_, third_;
 };
 
-// The guess that the kept pose comes from (0: no pose), its status, and how
-// often the slow methods ran.
+// The guess that the kept pose comes from (0: no pose), its status, how often
+// the slow methods ran and whether a third guess was searched for.
 struct Attempt {
   double kept = 0.0;
   Status status = Status::kLost;
   int num_slow = 0;
+  bool has_searched = false;
 };
 
-Attempt TryEither(Outcome first, Outcome second) {
-  ScriptedTracker tracker(first, second);
+Attempt TryInTurn(Outcome first, Outcome second, Outcome third = kNone) {
+  ScriptedTracker tracker(first, second, third);
   TrackingAttempts attempts(&tracker);
   OdometryKeyframe keyframe;
   keyframe.reference = std::make_unique<EmptyReference>();
   TrackedFrame result;
-  const bool is_found = attempts.TryEither(PreparedFrame(Frame()), keyframe,
-                                           At(kFirst), At(kSecond), &result);
-  return {
-      is_found ? attempts.kept().estimate.cur_from_prev.translation.x() : 0.0,
-      result.status, tracker.num_slow};
+  Attempt attempt;
+  if (attempts.TryInTurn(
+          PreparedFrame(Frame()), keyframe, At(kFirst), At(kSecond),
+          [&](Rigid3d* cur_from_ref) {
+            attempt.has_searched = true;
+            *cur_from_ref = At(kThird);
+            return true;
+          },
+          &result)) {
+    attempt.kept = attempts.kept().estimate.cur_from_prev.translation.x();
+  }
+  attempt.status = result.status;
+  attempt.num_slow = tracker.num_slow;
+  return attempt;
 }
 
 TEST(TrackingAttemptsTest, AGoodFirstGuessIsEnough) {
-  const Attempt attempt =
-      TryEither({Status::kOk, Status::kOk}, {Status::kOk, Status::kOk});
+  const Attempt attempt = TryInTurn(kGood, kGood, kGood);
   EXPECT_EQ(attempt.kept, kFirst);
   EXPECT_EQ(attempt.num_slow, 0);
+  EXPECT_FALSE(attempt.has_searched);
 }
 
-TEST(TrackingAttemptsTest, TheSecondGuessComesBeforeSlowMethods) {
+TEST(TrackingAttemptsTest, OtherGuessesComeBeforeSlowMethods) {
   for (const Status quick : {Status::kDegraded, Status::kLost}) {
-    const Attempt attempt =
-        TryEither({quick, Status::kOk}, {Status::kOk, Status::kOk});
-    EXPECT_EQ(attempt.kept, kSecond);
-    EXPECT_EQ(attempt.status, Status::kOk);
-    EXPECT_EQ(attempt.num_slow, 0);
+    for (const double good : {kSecond, kThird}) {
+      const Attempt attempt = TryInTurn(
+          {quick, Status::kOk},
+          good == kSecond ? kGood : Outcome{quick, Status::kOk}, kGood);
+      EXPECT_EQ(attempt.kept, good);
+      EXPECT_EQ(attempt.status, Status::kOk);
+      EXPECT_EQ(attempt.num_slow, 0);
+      EXPECT_EQ(attempt.has_searched, good == kThird);
+    }
   }
 }
 
+TEST(TrackingAttemptsTest, AnAmbiguousPoseIsNotReplacedByWhatDescriptorsFind) {
+  const Attempt attempt =
+      TryInTurn({Status::kDegraded, Status::kDegraded, /*is_ambiguous=*/true},
+                {Status::kDegraded, Status::kDegraded}, kGood);
+  EXPECT_EQ(attempt.kept, kFirst);
+  EXPECT_EQ(attempt.status, Status::kDegraded);
+  EXPECT_FALSE(attempt.has_searched);
+}
+
 TEST(TrackingAttemptsTest, SlowMethodsRunIfNoGuessIsGood) {
-  const Attempt attempt = TryEither({Status::kLost, Status::kOk},
+  const Attempt attempt = TryInTurn({Status::kLost, Status::kOk},
                                     {Status::kLost, Status::kDegraded});
   EXPECT_EQ(attempt.kept, kFirst);
   EXPECT_EQ(attempt.status, Status::kOk);
-  EXPECT_EQ(attempt.num_slow, 2);
+  EXPECT_EQ(attempt.num_slow, 1);
 }
 
 TEST(TrackingAttemptsTest, OfTwoDoubtfulPosesTheFirstIsKept) {
-  const Attempt attempt = TryEither({Status::kLost, Status::kDegraded},
+  const Attempt attempt = TryInTurn({Status::kLost, Status::kDegraded},
                                     {Status::kDegraded, Status::kDegraded});
   EXPECT_EQ(attempt.kept, kFirst);
   EXPECT_EQ(attempt.status, Status::kDegraded);
 }
 
 TEST(TrackingAttemptsTest, ADoubtfulPoseIsBetterThanNone) {
-  const Attempt attempt = TryEither({Status::kLost, Status::kLost},
-                                    {Status::kDegraded, Status::kDegraded});
+  const Attempt attempt =
+      TryInTurn(kNone, {Status::kDegraded, Status::kDegraded});
   EXPECT_EQ(attempt.kept, kSecond);
   EXPECT_EQ(attempt.status, Status::kDegraded);
-  EXPECT_EQ(
-      TryEither({Status::kLost, Status::kLost}, {Status::kLost, Status::kLost})
-          .kept,
-      0.0);
+  EXPECT_EQ(TryInTurn(kNone, kNone).kept, 0.0);
 }
 
 }  // namespace

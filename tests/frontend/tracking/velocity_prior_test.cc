@@ -35,7 +35,7 @@ TEST(VelocityPriorTest, MotionsAreToldByTheMiddleRow) {
   const Twist wrong = {{-1.0, 0.3, 0.6}, {0.5, 0.5, -0.5}};
   const Twist wrong_before = {{0.2, -0.7, 0.1}, {0.3, -0.1, 0.4}};
   VelocityModel model;
-  model.Add(wrong_before, kMiddle);
+  model.Add(wrong_before, kInterval, kMiddle);
   const Rigid3d middle_from_ref = kPriorTwist.MotionDuring(kInterval) *
                                   wrong_before.MotionDuring(kMiddle) *
                                   kPrevFromRef;
@@ -52,7 +52,7 @@ TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
   ExpectNear(model.Prior(kPrevFromRef, kInterval, 0.0).Mean(motion, Twist()),
              kPriorTwist);
   const Twist last = {{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}};
-  model.Add(last, 0.0);
+  model.Add(last, kInterval, 0.0);
   const auto mean = [&] {
     return model.Prior(kPrevFromRef, kInterval, 0.0).Mean(motion, Twist());
   };
@@ -66,12 +66,15 @@ TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
   ExpectNear(mean(), kPriorTwist);
 }
 
-// The sigma is half of the recent changes of velocity from frame to frame.
+// The sigma is half of the change of velocity since the last frame at recent
+// accelerations.
 TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   VelocityModel model;
   const auto prior = [&] { return model.Prior(kPrevFromRef, kInterval, 0.0); };
   const VelocityPrior at_first = prior();
-  for (int i = 0; i < 100; ++i) model.Add(kPriorTwist, 0.0);
+  for (int i = 0; i < 100; ++i) {
+    model.Add(kPriorTwist, kInterval, 0.0);
+  }
   const VelocityPrior steady = prior();
   EXPECT_LT(steady.sigma_angular, 0.1 * at_first.sigma_angular);
   EXPECT_LT(steady.sigma_linear, 0.1 * at_first.sigma_linear);
@@ -79,12 +82,15 @@ TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   EXPECT_GT(steady.sigma_linear, 0.0);
   const Twist change = {{0.4, -0.4, 0.4}, {0.3, 0.3, -0.3}};
   for (int i = 0; i < 100; ++i) {
-    model.Add(kPriorTwist + (i % 2) * change, 0.0);
+    model.Add(kPriorTwist + (i % 2) * change, kInterval, 0.0);
   }
   // Values from a hundred frames ago count only e^-10.
   constexpr double kForgotten = 1e-4;
   EXPECT_NEAR(prior().sigma_angular, 0.5 * 0.4, kForgotten);
   EXPECT_NEAR(prior().sigma_linear, 0.5 * 0.3, kForgotten);
+  const VelocityPrior later = model.Prior(kPrevFromRef, 3.0 * kInterval, 0.0);
+  EXPECT_NEAR(later.sigma_angular, 3.0 * prior().sigma_angular, kTwistRounding);
+  EXPECT_NEAR(later.sigma_linear, 3.0 * prior().sigma_linear, kTwistRounding);
   model.Reset();
   EXPECT_EQ(prior().sigma_angular, at_first.sigma_angular);
   EXPECT_EQ(prior().sigma_linear, at_first.sigma_linear);
