@@ -33,7 +33,8 @@ const cv::Mat& Seen() {
     const SyntheticDataset dataset(options);
     cv::Mat all;
     for (int i = 0; i < kViews; ++i) {
-      all.push_back(DescribeKeyframe(dataset.Read(i), options.camera.camera, {})
+      all.push_back(DescribeKeyframe(PreparedFrame(dataset.Read(i)),
+                                    options.camera.camera, {})
                         .described.descriptors);
     }
     return all;

@@ -58,7 +58,9 @@ class DescriptorFrontend final : public Frontend {
       const Eigen::Vector3d point = cur_from_ref_guess * PointOf(o);
       Eigen::Vector2d pixel =
           Eigen::Vector2d::Constant(std::numeric_limits<double>::quiet_NaN());
-      if (point.z() > 0.0) pixel = ImagePoint(options_.camera, timing, point);
+      if (o.depth > 0.0 && point.z() > 0.0) {
+        pixel = ImagePoint(options_.camera, timing, point);
+      }
       guide.expected.push_back(cv::Point2d(pixel.x(), pixel.y()));
     }
     std::vector<KeypointMatch> found =

@@ -114,7 +114,7 @@ Nearest FindDistinct(const std::vector<cv::KeyPoint>& keypoints,
   if (best.distance > max_distance) return {};
   const double limit = best.distance / kMaxRatio;
   for (size_t k = 0; k < candidates.size(); ++k) {
-    if (distances[k] >= limit) continue;
+    if (distances[k] >= limit && distances[k] > best.distance) continue;
     const cv::Point2f offset =
         keypoints[candidates[k]].pt - keypoints[best.place].pt;
     if (offset.dot(offset) > kSameFeaturePx * kSameFeaturePx) return {};

@@ -1,6 +1,7 @@
 #include "frontend/features/grid_selection.h"
 
 #include <algorithm>
+#include <cmath>
 #include <opencv2/features2d.hpp>
 #include <tuple>
 
@@ -9,26 +10,29 @@ namespace rgbd_pose {
 std::vector<int> SelectOverGrid(const std::vector<cv::KeyPoint>& keypoints,
                                 const Frame& frame, int max_count,
                                 const DepthLookupOptions& depth_options) {
-  constexpr int kCellPx = 32;
-  constexpr int kBorderPx = 8;  // a patch needs this border
+  constexpr int kBorderPx = 8;  // room for descriptors
   const cv::Size image = frame.gray.size();
-  const int columns = (image.width + kCellPx - 1) / kCellPx;
-  const int rows = (image.height + kCellPx - 1) / kCellPx;
+  // Larger if there would be more than two cells per feature.
+  const int cell_px = std::max(
+      32, static_cast<int>(std::ceil(
+              std::sqrt(image.area() / 2.0 / std::max(1, max_count)))));
+  const int columns = (image.width + cell_px - 1) / cell_px;
+  const int rows = (image.height + cell_px - 1) / cell_px;
   std::vector<std::vector<int>> cells(columns * rows);
   const cv::Rect2f inside(kBorderPx, kBorderPx, image.width - 2 * kBorderPx,
                           image.height - 2 * kBorderPx);
   for (size_t i = 0; i < keypoints.size(); ++i) {
     const cv::Point2f& pixel = keypoints[i].pt;
     if (!inside.contains(pixel)) continue;
-    const int cell = static_cast<int>(pixel.y) / kCellPx * columns +
-                     static_cast<int>(pixel.x) / kCellPx;
+    const int cell = static_cast<int>(pixel.y) / cell_px * columns +
+                     static_cast<int>(pixel.x) / cell_px;
     cells[cell].push_back(static_cast<int>(i));
   }
-  // The strongest first. Ties are broken by place, independently of the sort's
-  // implementation.
+  // The strongest first. Ties are broken by place and number, independently of
+  // the sort's implementation.
   const auto rank = [&](int i) {
     const cv::KeyPoint& k = keypoints[i];
-    return std::make_tuple(-k.response, k.pt.y, k.pt.x);
+    return std::make_tuple(-k.response, k.pt.y, k.pt.x, i);
   };
   const auto has_depth = [&](const cv::Point2f& pixel) {
     return LookUpDepth(frame, pixel.x, pixel.y, depth_options).depth > 0.0;

@@ -8,15 +8,15 @@
 
 namespace rgbd_pose {
 
-// Returns the indices of up to about max_count keypoints of a frame spread over
-// a grid: from each cell the strongest with depth, because textured places
-// would crowd out the rest. In the order of the cells.
+// Returns the indices of about max_count keypoints of a frame spread over a
+// grid, at most about twice as many: from each cell the strongest with depth,
+// because textured places would crowd out the rest. In the order of the cells.
 std::vector<int> SelectOverGrid(const std::vector<cv::KeyPoint>& keypoints,
                                 const Frame& frame, int max_count,
                                 const DepthLookupOptions& depth_options);
 
-// Returns up to about max_corners FAST corners with depth, spread over the
-// image by SelectOverGrid.
+// Returns about max_corners FAST corners with depth, selected by
+// SelectOverGrid.
 std::vector<cv::Point2f> DetectGridCorners(
     const Frame& frame, int max_corners,
     const DepthLookupOptions& depth_options);

@@ -28,7 +28,7 @@ constexpr float kMinCorrelation = 0.7F;
 constexpr int kPatchLevels = 3;
 
 // Patches are rebuilt when their shape has changed by this, which allows an
-// error of up to a quarter of a pixel at their corners.
+// error of up to half a pixel at their corners.
 constexpr float kWarpStep = 0.125F;
 
 // A surface that has grown or shrunk by more than this factor (in area), or

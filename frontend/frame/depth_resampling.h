@@ -99,14 +99,14 @@ inline void MoveEight(const uint16_t* top, const uint16_t* bottom,
   }
   const cv::v_uint16x8 moved =
       cv::v_select(is_one, encode(between), encode(halves(near)));
-  const cv::v_uint16x8 most = cv::v_setall_u16(Frame::kNoDepth - 1);
-  const cv::v_uint16x8 none = near == cv::v_setzero_u16();
-  cv::v_store(to, cv::v_min(moved, most) & ~none);
+  const cv::v_uint16x8 none = (near == cv::v_setzero_u16()) |
+                              (moved == cv::v_setall_u16(Frame::kNoDepth));
+  cv::v_store(to, moved & ~none);
 }
 
 // Rounds a depth in raw units; a depth that does not fit becomes 0 (unknown).
 inline uint16_t EncodeDepth(float raw) {
-  return raw > 0.0F && raw < static_cast<float>(Frame::kNoDepth)
+  return raw > 0.0F && raw < static_cast<float>(Frame::kNoDepth) - 0.5F
              ? static_cast<uint16_t>(raw + 0.5F)
              : 0;
 }

@@ -29,10 +29,13 @@ void AverageColor(const cv::Vec3b& bgr, float share, DistanceVoxel* voxel) {
 }  // namespace
 
 std::string MeshFusionOptions::Check() const {
-  if (!(truncation_voxels >= 1.0) || !(truncation_sigmas >= 0.0)) {
-    return "the truncation must be at least one voxel";
+  if (!(truncation_voxels >= 1.0 && truncation_voxels <= 1e3) ||
+      !(truncation_sigmas >= 0.0 && truncation_sigmas <= 1e3)) {
+    return "the truncation must be 1 to 1000 voxels and 0 to 1000 sigmas";
   }
-  if (!(max_sigma >= 0.0)) return "max_sigma must not be negative";
+  if (!(max_sigma >= 0.0 && max_sigma <= 1e3)) {
+    return "max_sigma must be 0 to 1000 m";
+  }
   if (threads < 1) return "at least one thread is needed";
   constexpr double kFar = 1000.0;  // beyond the range of all sensors, m
   const double farthest = std::min(depth.max_depth, max_depth);
@@ -111,12 +114,16 @@ void MeshFusion::KeepSurfacePixels(const Frame& frame) {
 }
 
 // All blocks that rays pass within the truncation distance of their end points.
-// Blocks are much larger than the gaps between rays. Only blocks within a few
+// The gaps between rays are smaller than blocks. Only blocks within a few
 // voxels of an end point need creating: larger noise spreads the end points.
 std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
     const Rigid3d& world_from_cam) const {
-  constexpr int kStride = 4;  // px
   const Camera& camera = undistorter_.camera();
+  // At most half a block between rays at the largest depth.
+  const int stride = static_cast<int>(std::clamp(
+      kBlockSide * options_.voxel_size * std::min(camera.fx, camera.fy) /
+          (2.0 * options_.depth.max_depth),
+      1.0, 4.0));  // px
   const auto blocks_per_metre =
       static_cast<float>(1.0 / (kBlockSide * options_.voxel_size));
   const float step = 0.5F / blocks_per_metre;
@@ -128,9 +135,9 @@ std::vector<MeshFusion::SeenBlock> MeshFusion::FindBlocks(
       static_cast<float>(options_.truncation_voxels * options_.voxel_size));
   std::vector<SeenBlock> seen;
   std::vector<SeenBlock> last;  // of the previous ray, by step
-  for (int y = 0; y < depth_.rows; y += kStride) {
+  for (int y = 0; y < depth_.rows; y += stride) {
     last.clear();
-    for (int x = 0; x < depth_.cols; x += kStride) {
+    for (int x = 0; x < depth_.cols; x += stride) {
       const float end = depth_.at<float>(y, x);
       if (end == 0.0F) continue;
       const float reach = UseOf(end).truncation;

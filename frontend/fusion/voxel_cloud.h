@@ -34,8 +34,8 @@ class VoxelCloud {
  private:
   struct Voxel {
     uint64_t key;
-    // Sums. Positions are relative to the centre of the cube, for which floats
-    // are accurate enough for any number of points.
+    // Sums over up to kEnough points; positions are relative to the centre of
+    // the cube.
     float offset[3];
     uint32_t color[3];
     uint32_t count;

@@ -111,7 +111,8 @@ void Save(const fs::path& folder, const KeyframeMap& map) {
       unused.push_back(file);
     }
   }
-  for (const fs::path& file : unused) fs::remove(file);
+  std::error_code ignored;  // the new map is saved
+  for (const fs::path& file : unused) fs::remove(file, ignored);
 }
 
 std::shared_ptr<const PngBytes> LoadImage(const fs::path& folder,

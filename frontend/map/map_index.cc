@@ -66,8 +66,9 @@ class LineReader {
   void Integer(int* integer) {
     double value = 0.0;
     Number(&value);
+    constexpr double kMin = std::numeric_limits<int>::min();
     constexpr double kMax = std::numeric_limits<int>::max();
-    if (value != std::floor(value) || std::abs(value) > kMax) {
+    if (value != std::floor(value) || value < kMin || value > kMax) {
       Fail("'" + line_.words[next_ - 1] + "' must be an integer");
     }
     *integer = static_cast<int>(value);

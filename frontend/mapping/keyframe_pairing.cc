@@ -201,7 +201,10 @@ bool Mapper::AreConnected(const RelativePose& edge) {
   for (const Meeting& earlier : meetings_) {
     if (earlier.ref_segment == meeting.ref_segment &&
         earlier.cur_segment == meeting.cur_segment &&
-        IsWithin(earlier.ref_from_cur, meeting.ref_from_cur, kMeetingRotation,
+        // Compared where the camera is: far from the origin of a segment, a
+        // small rotation is a large translation.
+        IsWithin(earlier.ref_from_cur * graph_.pose(edge.cur),
+                 meeting.ref_from_cur * graph_.pose(edge.cur), kMeetingRotation,
                  kMeetingTranslation)) {
       return true;
     }

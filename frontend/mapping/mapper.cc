@@ -123,7 +123,7 @@ Keyframe Mapper::WithImages(int at) const {
   return keyframe;
 }
 
-std::optional<Keyframe> Mapper::Find(const Frame& lost) {
+std::optional<Keyframe> Mapper::Find(const PreparedFrame& lost) {
   const FrontendOptions& images = tracker_->images();
   const Relocaliser relocaliser(images.camera, images.DepthLookup());
   const auto found = relocaliser.FindInMap(

@@ -68,7 +68,7 @@ class Mapper {
   MapUpdate Add(Keyframe keyframe, const std::vector<RelativePose>& edges);
 
   // Relocalises a lost frame in the whole map; returns a keyframe of the place.
-  std::optional<Keyframe> Find(const Frame& lost);
+  std::optional<Keyframe> Find(const PreparedFrame& lost);
 
   // Optimises all poses.
   MapUpdate Finish();

@@ -20,9 +20,9 @@ constexpr double kMinInlierShare = 0.1;
 
 }  // namespace
 
-PlaceFeatures DescribeKeyframe(const Frame& frame, const Camera& camera,
+PlaceFeatures DescribeKeyframe(const PreparedFrame& frame, const Camera& camera,
                                const DepthLookupOptions& depth_options) {
-  const DescribedKeypoints all(frame, &kOrb, kMaxKeypoints);
+  const auto& all = frame.Derived<DescribedKeypoints>(&kOrb, kMaxKeypoints);
   PlaceFeatures features;
   features.described = all.Select(
       SelectOverGrid(all.keypoints, frame, kMaxFeatures, depth_options));

@@ -8,7 +8,7 @@
 #include "core/initial_guess/consensus.h"
 #include "frontend/features/descriptor_matching.h"
 #include "frontend/frame/depth_lookup.h"
-#include "frontend/frame/frame.h"
+#include "frontend/frame/prepared_frame.h"
 
 namespace rgbd_pose {
 
@@ -19,7 +19,7 @@ struct PlaceFeatures {
 };
 
 // Up to about 800 features with depth, all over the image. Takes about 8 ms.
-PlaceFeatures DescribeKeyframe(const Frame& frame, const Camera& camera,
+PlaceFeatures DescribeKeyframe(const PreparedFrame& frame, const Camera& camera,
                                const DepthLookupOptions& depth_options);
 
 // Matches two frames by their descriptors alone.

@@ -22,10 +22,15 @@ const PlaceFeatures& Relocaliser::FeaturesOf(Keyframe* keyframe) const {
 }
 
 std::optional<Relocalisation> Relocaliser::Find(
-    const Frame& frame, const std::vector<Keyframe*>& keyframes) {
+    const PreparedFrame& frame, const std::vector<Keyframe*>& keyframes) {
   const size_t count = keyframes.size();
   if (count == 0) return std::nullopt;
-  if (keyframes.front()->id != latest_id_ || next_ >= count) next_ = 1;
+  if (keyframes.front()->id != latest_id_) {
+    // One more keyframe since the last search shifts the others by one.
+    const bool is_shifted = count > 1 && keyframes[1]->id == latest_id_;
+    next_ = is_shifted ? next_ + 1 : 1;
+  }
+  if (next_ >= count) next_ = 1;
   latest_id_ = keyframes.front()->id;
   const PlaceFeatures current =
       DescribeKeyframe(frame, camera_, depth_options_);
@@ -47,7 +52,7 @@ std::optional<Relocalisation> Relocaliser::Find(
   return std::nullopt;
 }
 
-bool Relocaliser::FindIn(const Frame& frame, Keyframe* keyframe,
+bool Relocaliser::FindIn(const PreparedFrame& frame, Keyframe* keyframe,
                          Rigid3d* cur_from_keyframe) const {
   const auto found = VerifyGeometrically(
       MatchPlaces(FeaturesOf(keyframe),
@@ -58,7 +63,7 @@ bool Relocaliser::FindIn(const Frame& frame, Keyframe* keyframe,
 }
 
 std::optional<Relocalisation> Relocaliser::FindInMap(
-    const Frame& frame, const PlaceDatabase& index,
+    const PreparedFrame& frame, const PlaceDatabase& index,
     const std::function<const PlaceFeatures&(int)>& features_of) const {
   const PlaceFeatures current =
       DescribeKeyframe(frame, camera_, depth_options_);

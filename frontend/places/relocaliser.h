@@ -8,7 +8,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/depth_lookup.h"
-#include "frontend/frame/frame.h"
+#include "frontend/frame/prepared_frame.h"
 #include "frontend/places/keyframe.h"
 #include "frontend/places/place_database.h"
 #include "frontend/places/place_features.h"
@@ -35,18 +35,19 @@ class Relocaliser {
       : camera_(camera), depth_options_(depth_options) {}
 
   // Searches the latest keyframe (first in `keyframes`) and a few others,
-  // different ones in each call. Nothing if the frame is not found in these.
-  std::optional<Relocalisation> Find(const Frame& frame,
+  // different ones in each call, also if each call comes with one more. Nothing
+  // if the frame is not found in these.
+  std::optional<Relocalisation> Find(const PreparedFrame& frame,
                                      const std::vector<Keyframe*>& keyframes);
 
   // Searches one keyframe. Returns false if the frame is not found in it.
-  bool FindIn(const Frame& frame, Keyframe* keyframe,
+  bool FindIn(const PreparedFrame& frame, Keyframe* keyframe,
               Rigid3d* cur_from_keyframe) const;
 
   // Searches a whole map: of the keyframes most similar according to the index,
   // the one with the most inliers. `features_of`: the features of a keyframe.
   std::optional<Relocalisation> FindInMap(
-      const Frame& frame, const PlaceDatabase& index,
+      const PreparedFrame& frame, const PlaceDatabase& index,
       const std::function<const PlaceFeatures&(int keyframe)>& features_of)
       const;
 

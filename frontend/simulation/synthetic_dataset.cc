@@ -78,6 +78,8 @@ SyntheticOptions Checked(SyntheticOptions options) {
       "45 degrees");
   if (options.depth_camera.has_value()) {
     RequireSound(options.depth_camera->camera.Check(), "depth camera: ");
+    require(SeesEverywhere(options.depth_camera->camera),
+            "depth camera: its distortion cannot be inverted in the corners");
   }
   require(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0,
           "exposure_drift of a synthetic sequence must be in 0..1");
@@ -99,8 +101,9 @@ std::function<Rigid3d(double t)> CameraPath(const SyntheticOptions& options) {
   const double lap = (options.frames - 1) / options.rate_hz / options.laps;
   return [path, lap, laps = options.laps,
           path_from_cam = options.path_from_cam](double t) {
-    const double on_path =
-        laps == 1 ? t : lap * 0.5 * (1.0 - std::cos(M_PI * t / lap));
+    const double on_path = laps == 1 || lap == 0.0
+                               ? t
+                               : lap * 0.5 * (1.0 - std::cos(M_PI * t / lap));
     const Rigid3d world_from_path = path(on_path, lap);
     return path_from_cam.has_value() ? world_from_path * *path_from_cam
                                      : world_from_path;

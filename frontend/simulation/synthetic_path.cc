@@ -27,12 +27,13 @@ Rigid3d Xyz(double t, double /*duration*/) {
   constexpr double kRound = 5.0;  // s for all three axes
   constexpr double kSway = 1.0 * kRadiansPerDegree;
   const double leg = t / (kRound / 3.0);
-  const int index = static_cast<int>(leg);
-  const double side = index % 6 < 3 ? 1.0 : -1.0;
+  const double whole = std::trunc(leg);
+  const int index = static_cast<int>(std::fmod(whole, 6.0));
+  const double side = index < 3 ? 1.0 : -1.0;
   Vector3d shift = Vector3d::Zero();
   // A raised cosine starts and stops smoothly.
   shift[index % 3] =
-      side * kReach * 0.5 * (1.0 - std::cos(2.0 * M_PI * (leg - index)));
+      side * kReach * 0.5 * (1.0 - std::cos(2.0 * M_PI * (leg - whole)));
   const Rigid3d sway = Turn(kSway * std::sin(1.9 * t), Vector3d::UnitX()) *
                        Turn(kSway * std::sin(1.3 * t), Vector3d::UnitY()) *
                        Turn(kSway * std::sin(2.3 * t), Vector3d::UnitZ());
@@ -125,7 +126,7 @@ Rigid3d Handheld(double t, double /*duration*/) {
 
 Rigid3d Still(double /*t*/, double duration) { return Xyz(0.0, duration); }
 
-// Straight on at a walking pace and back, along the world's x axis.
+// Straight on at a walking pace and back, along the camera's axis.
 Rigid3d Walk(double t, double /*duration*/) {
   constexpr double kWay = 3.0;    // m
   constexpr double kRound = 8.0;  // s, there and back

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/stage_timer.h"
 #include "frontend/tracking/feature_tracker.h"
@@ -75,6 +76,14 @@ TrackedFrame Odometry::Track(const Frame& frame,
 TrackedFrame Odometry::Track(const PreparedFrame& frame,
                              const Rigid3d* cur_from_prev_guess,
                              const MotionMatrix* guess_covariance) {
+  const Camera& camera = tracker_->images().camera;
+  const cv::Size size(camera.width, camera.height);
+  if (frame.gray.size() != size || frame.depth.size() != size) {
+    throw InputError(
+        Format("odometry: grey and depth image must have the size of the "
+               "camera, %d x %d",
+               size.width, size.height));
+  }
   TrackedFrame result;
   result.index = num_frames_++;
   result.timestamp = frame.timestamp;

@@ -133,7 +133,7 @@ bool Odometry::Relocalise(const PreparedFrame& frame, TrackedFrame* result) {
   shutter_tracking_.HandleLost();
   twist_ = attempts_.kept().twist;
   if (twist_.has_value()) {
-    shutter_tracking_.velocity()->Add(*twist_, interval_,
+    shutter_tracking_.velocity()->Add(*twist_, frame.timestamp,
                                       frame.color_shutter.offset);
   }
   reference_ = keyframe;

@@ -60,7 +60,7 @@ const PreparedFrame* ShutterTracking::Follow(
     found_.frame = frame.WithTwist(std::nullopt);
     return track(*found_.frame, nullptr, nullptr) ? &*found_.frame : nullptr;
   };
-  if (!(interval > 0.0 && interval <= VelocityModel::kMaxInterval)) {
+  if (!(interval > 0.0) || velocity_.IsOutdated(frame.timestamp)) {
     return forget();
   }
   const double middle = frame.color_shutter.offset;
@@ -103,7 +103,7 @@ void ShutterTracking::Update(const TrackingResult& refined) {
 void ShutterTracking::Accept() {
   early_.reset();
   if (found_.frame.has_value() && found_.frame->twist.has_value()) {
-    velocity_.Add(*found_.frame->twist, found_.interval,
+    velocity_.Add(*found_.frame->twist, found_.frame->timestamp,
                   found_.frame->color_shutter.offset);
   }
   between_ = found_.between;

@@ -109,15 +109,17 @@ VelocityPrior VelocityModel::Prior(const std::optional<Rigid3d>& prev_from_ref,
       sigma(std::sqrt(linear_square_), kMinChangeLinear, kLostSigmaLinear)};
 }
 
-void VelocityModel::Add(const Twist& twist, double interval, double middle) {
-  if (last_.has_value() && interval > 0.0) {
-    const Twist acceleration = (1.0 / interval) * (twist - *last_);
+void VelocityModel::Add(const Twist& twist, double timestamp, double middle) {
+  if (last_.has_value() && timestamp > timestamp_) {
+    const Twist acceleration =
+        (1.0 / (timestamp - timestamp_)) * (twist - *last_);
     angular_square_ += kShareOfNew * (acceleration.angular.squaredNorm() / 3.0 -
                                       angular_square_);
     linear_square_ += kShareOfNew * (acceleration.linear.squaredNorm() / 3.0 -
                                      linear_square_);
   }
   last_ = twist;
+  timestamp_ = timestamp;
   middle_from_last_ = twist.MotionDuring(middle);
 }
 

@@ -59,8 +59,11 @@ class VelocityModel {
   // Forgets everything: after a loss, a jump or a gap.
   void Reset() { *this = VelocityModel(); }
 
-  // Velocities older than this (s) are not used.
-  static constexpr double kMaxInterval = 0.5;
+  // Whether the last velocity is too old to be used.
+  bool IsOutdated(double timestamp) const {
+    constexpr double kMaxAge = 0.5;  // s
+    return last_.has_value() && !(timestamp - timestamp_ <= kMaxAge);
+  }
 
   // The velocity of the last frame; nothing if it is unknown.
   const std::optional<Twist>& last() const { return last_; }
@@ -83,6 +86,7 @@ class VelocityModel {
 
  private:
   std::optional<Twist> last_;
+  double timestamp_ = 0.0;  // of the last velocity, s
   Rigid3d middle_from_last_;
   // Mean squares of the accelerations; initial values for a hand.
   double angular_square_ = 6.0 * 6.0;  // (rad/s^2)^2

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+
 namespace rgbd_pose {
 namespace {
 
@@ -36,6 +38,29 @@ TEST(DepthResamplingTest, NoDepthStaysNone) {
   const cv::Mat moved =
       ResampleDepth(depth, kLarge, kPlace + cv::Matx23d(0, 0, 40, 0, 0, 0));
   EXPECT_EQ(cv::countNonZero(moved.colRange(542, 640)), 0);
+  const cv::Mat start = ResampleDepth(
+      depth, kLarge, kPlace * 1.0 + cv::Matx23d(0, 0, -0.3, 0, 0, 0));
+  EXPECT_EQ(start.at<uint16_t>(240, 0), 0);     // at -0.6
+  EXPECT_EQ(start.at<uint16_t>(240, 1), 1000);  // at -0.2
+}
+
+TEST(DepthResamplingTest, WhatDoesNotFitIsNoDepth) {
+  EXPECT_EQ(EncodeDepth(65534.2F), 65534);
+  EXPECT_EQ(EncodeDepth(65534.7F), 0);
+  EXPECT_EQ(EncodeDepth(70000.0F), 0);
+  const std::array<uint16_t, 16> row = [] {
+    std::array<uint16_t, 16> depths;
+    depths.fill(65000);
+    return depths;
+  }();
+  for (const float offset : {500.0F, 534.7F, 600.0F}) {
+    std::array<uint16_t, 8> moved;
+    MoveEight(row.data(), row.data(), row.data(), {0.0F, 0.0F, 1.0F, offset},
+              moved.data());
+    for (const uint16_t depth : moved) {
+      EXPECT_EQ(depth, EncodeDepth(65000.0F + offset)) << offset;
+    }
+  }
 }
 
 }  // namespace

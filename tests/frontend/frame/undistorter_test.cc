@@ -44,6 +44,14 @@ TEST(UndistorterTest, APixelComesFromWhereTheLensHasPutIt) {
   EXPECT_TRUE(ideal.gray.empty());
 }
 
+// A lens whose distortion folds back towards the corners.
+TEST(UndistorterTest, NothingIsShownTwice) {
+  const Camera camera = {640, 480, 525.0, 525.0, 319.5, 239.5, 0.2, -0.9};
+  const Frame ideal = Undistorter(camera).Undistort(Places(camera));
+  EXPECT_EQ(ideal.depth.at<uint16_t>(2, 2), 0);
+  EXPECT_NE(ideal.depth.at<uint16_t>(240, 320), 0);
+}
+
 TEST(UndistorterTest, WithoutDistortionImagesAreTheSame) {
   const Camera camera = {96, 64, 80.0, 82.0, 47.0, 31.0, 0, 0, 0};
   const Frame frame = Places(camera);

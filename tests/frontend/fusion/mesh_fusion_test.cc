@@ -94,6 +94,29 @@ TEST(MeshFusionTest, ANoisyRoomIsWhereItIsFromAllSides) {
   EXPECT_LT(differences[differences.size() / 2], 20);
 }
 
+// Between the rays of a coarse image there are blocks, too.
+TEST(MeshFusionTest, ASmallImageLeavesNoHoles) {
+  MeshFusionOptions options;
+  options.camera = {160, 120, 131.25, 131.25, 79.5, 59.5};
+  options.max_sigma = 1.0;  // one frame is enough
+  MeshFusion fusion(options);
+  constexpr double kDepth = 3.9;
+  Frame wall;
+  wall.depth_scale = 1000.0;
+  wall.depth = cv::Mat(120, 160, CV_16UC1, cv::Scalar(1000.0 * kDepth));
+  wall.gray = cv::Mat(120, 160, CV_8UC1, cv::Scalar(100));
+  wall.color = cv::Mat(120, 160, CV_8UC3, cv::Scalar(100, 100, 100));
+  fusion.Add(wall, Rigid3d());
+  const TriangleMesh mesh = fusion.Mesh();
+  double area = 0.0;
+  for (const Eigen::Vector3i& t : mesh.triangles) {
+    const auto at = [&](int i) { return mesh.vertices[t[i]].position; };
+    area += 0.5 * (at(1) - at(0)).cross(at(2) - at(0)).norm();
+  }
+  const double seen = 160.0 * 120.0 * std::pow(kDepth / options.camera.fx, 2.0);
+  EXPECT_NEAR(area, seen, 0.05 * seen);
+}
+
 TEST(MeshFusionTest, ThreadsDoNotMatter) {
   SyntheticOptions options = MeshRoom();
   options.frames = 2;
@@ -142,6 +165,14 @@ TEST(MeshFusionTest, RefusesWhatMakesNoSense) {
   options = {};
   options.truncation_voxels = 0.5;
   EXPECT_NE(options.Check(), "");
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  for (double MeshFusionOptions::*field :
+       {&MeshFusionOptions::truncation_voxels,
+        &MeshFusionOptions::truncation_sigmas, &MeshFusionOptions::max_sigma}) {
+    options = {};
+    options.*field = kInfinity;
+    EXPECT_NE(options.Check(), "");
+  }
   options = {};
   options.depth.max_depth = options.max_depth = 1e9;
   EXPECT_NE(options.Check(), "");

@@ -56,6 +56,14 @@ TEST(VoxelCloudTest, MergesPointsOfACubeToTheirMean) {
   EXPECT_EQ(points[1].green, 50);
 }
 
+TEST(VoxelCloudTest, MillionsOfPointsOfACubeKeepTheirMean) {
+  VoxelCloud cloud(1.0F);
+  for (int i = 0; i < 20000000; ++i) cloud.Add(Point(0.9F, 0.9F, 0.9F, 255));
+  const ColoredPoint mean = cloud.Points()[0];
+  EXPECT_EQ(mean.red, 255);
+  EXPECT_NEAR(mean.position.x(), 0.9F, 0.01F);
+}
+
 TEST(VoxelCloudTest, ZeroIsABorderLikeAnyOther) {
   VoxelCloud cloud(1.0F);
   for (const float x : {-0.5F, 0.5F}) {

@@ -77,7 +77,7 @@ class Search {
   std::optional<Relocalisation> Find(const Frame& frame) {
     std::vector<Keyframe*> keyframes;
     for (Keyframe& keyframe : kept_) keyframes.push_back(&keyframe);
-    return relocaliser_.Find(frame, keyframes);
+    return relocaliser_.Find(PreparedFrame(frame), keyframes);
   }
 
  private:
@@ -132,20 +132,20 @@ TEST(RelocaliserTest, FindsAFrameInTheWholeMap) {
     return map[id];
   };
   for (int i = 0; i < 12; ++i) {
-    map.push_back(
-        DescribeKeyframe(room.See(Turned(30.0 * i)), room.camera(), {}));
+    map.push_back(DescribeKeyframe(PreparedFrame(room.See(Turned(30.0 * i))),
+                                   room.camera(), {}));
     index.Add(i, map.back().described.descriptors);
   }
   for (const int i : {0, 1, 5, 11}) {
     const Rigid3d pose = Turned(30.0 * i) * Moved(0.1, 0.0, 0.1) * Turned(5.0);
-    const std::optional<Relocalisation> found =
-        relocaliser.FindInMap(room.See(pose), index, features_of);
+    const std::optional<Relocalisation> found = relocaliser.FindInMap(
+        PreparedFrame(room.See(pose)), index, features_of);
     ASSERT_TRUE(found.has_value()) << i;
     ExpectFound(found, pose.Inverse() * Turned(30.0 * found->keyframe));
   }
   FurnishedRoom other(2);
-  EXPECT_FALSE(
-      relocaliser.FindInMap(other.See(Turned(10.0)), index, features_of));
+  EXPECT_FALSE(relocaliser.FindInMap(PreparedFrame(other.See(Turned(10.0))),
+                                     index, features_of));
 }
 
 TEST(RelocaliserTest, LooksOnlyAmongTheKeyframesThatAreKept) {
@@ -155,9 +155,29 @@ TEST(RelocaliserTest, LooksOnlyAmongTheKeyframesThatAreKept) {
   relocaliser.Add(place, 7);
   const Frame elsewhere = room.See(Turned(180.0));
   for (int i = 0; i < 5; ++i) relocaliser.Add(elsewhere, 100 + i);
-  relocaliser.Find(elsewhere);
+  // The searches have come to the last keyframe when it is forgotten.
+  const Frame nowhere = FurnishedRoom(2).See(Turned(90.0));
+  for (int i = 0; i < 2; ++i) EXPECT_FALSE(relocaliser.Find(nowhere));
+  relocaliser.ForgetTheOldest();
   relocaliser.ForgetTheOldest();
   for (int i = 0; i < 6; ++i) EXPECT_FALSE(relocaliser.Find(place));
+}
+
+// As while each lost frame starts a segment.
+TEST(RelocaliserTest, FindsOldKeyframesWhileOthersAreAdded) {
+  FurnishedRoom room(1);
+  Search relocaliser(room.camera());
+  relocaliser.Add(room.See(Rigid3d()), 7);
+  const Frame elsewhere = room.See(Turned(180.0));
+  for (int i = 0; i < 9; ++i) relocaliser.Add(elsewhere, 100 + i);
+  const Frame frame = room.See(Moved(0.1, 0.0, 0.0));
+  std::optional<Relocalisation> found;
+  for (int i = 0; i < 12 && !found; ++i) {
+    relocaliser.Add(elsewhere, 200 + i);
+    found = relocaliser.Find(frame);
+  }
+  ASSERT_TRUE(found.has_value());
+  EXPECT_EQ(found->keyframe, 7);
 }
 
 TEST(RelocaliserTest, FindsNothingWhereNothingIsSeen) {

@@ -265,6 +265,19 @@ TEST(SyntheticDatasetTest, RegistrationErrorMovesPoints) {
   EXPECT_GT(agree, 0.95 * seen);  // the others are at depth edges
 }
 
+TEST(SyntheticDatasetTest, OneFrameAndHugeTimesHaveAPose) {
+  SyntheticOptions options;
+  options.frames = 1;
+  options.laps = 2;
+  EXPECT_TRUE(SyntheticDataset(options).WorldFromCam(0).IsFinite());
+  options = {};
+  options.path = "xyz";
+  options.frames = 2;
+  options.rate_hz = 1e-10;
+  const Rigid3d far = SyntheticDataset(options).WorldFromCam(1);
+  EXPECT_LT(far.translation.norm(), 10.0);
+}
+
 TEST(SyntheticDatasetTest, RefusesOptionsWithoutSense) {
   SyntheticOptions options;
   options.frames = 0;

@@ -10,6 +10,7 @@
 
 #include "core/evaluation/evaluation.h"
 #include "core/util/input_error.h"
+#include "tests/support/expect_input_error.h"
 #include "tests/support/motion_error.h"
 #include "tests/support/track_sequence.h"
 
@@ -60,6 +61,15 @@ TEST(OdometryTest, ComesBackFromPanAndTilt) {
     EXPECT_LE(end.Angle(), 0.3 * M_PI / 180.0) << loss;
     EXPECT_LE(end.translation.norm(), 0.005) << loss;
   }
+}
+
+TEST(OdometryTest, RefusesImagesOfAnotherSize) {
+  const SyntheticDataset dataset((SyntheticOptions()));
+  Odometry odometry = MakeOdometry(dataset.camera().camera, "tukey");
+  Frame frame = dataset.Read(0);
+  frame.depth = frame.depth.rowRange(0, 240);
+  ExpectInputError([&] { odometry.Track(frame); },
+                   {"the size of the camera, 640 x 480"});
 }
 
 TEST(OdometryTest, StandsStill) {

@@ -35,7 +35,7 @@ TEST(VelocityPriorTest, MotionsAreToldByTheMiddleRow) {
   const Twist wrong = {{-1.0, 0.3, 0.6}, {0.5, 0.5, -0.5}};
   const Twist wrong_before = {{0.2, -0.7, 0.1}, {0.3, -0.1, 0.4}};
   VelocityModel model;
-  model.Add(wrong_before, kInterval, kMiddle);
+  model.Add(wrong_before, 0.0, kMiddle);
   const Rigid3d middle_from_ref = kPriorTwist.MotionDuring(kInterval) *
                                   wrong_before.MotionDuring(kMiddle) *
                                   kPrevFromRef;
@@ -52,7 +52,7 @@ TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
   ExpectNear(model.Prior(kPrevFromRef, kInterval, 0.0).Mean(motion, Twist()),
              kPriorTwist);
   const Twist last = {{0.1, 0.1, 0.1}, {0.2, 0.2, 0.2}};
-  model.Add(last, kInterval, 0.0);
+  model.Add(last, 0.0, 0.0);
   const auto mean = [&] {
     return model.Prior(kPrevFromRef, kInterval, 0.0).Mean(motion, Twist());
   };
@@ -70,20 +70,20 @@ TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
 // accelerations.
 TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   VelocityModel model;
+  double time = 0.0;
+  const auto add = [&](const Twist& twist) {
+    model.Add(twist, time += kInterval, 0.0);
+  };
   const auto prior = [&] { return model.Prior(kPrevFromRef, kInterval, 0.0); };
   const VelocityPrior at_first = prior();
-  for (int i = 0; i < 100; ++i) {
-    model.Add(kPriorTwist, kInterval, 0.0);
-  }
+  for (int i = 0; i < 100; ++i) add(kPriorTwist);
   const VelocityPrior steady = prior();
   EXPECT_LT(steady.sigma_angular, 0.1 * at_first.sigma_angular);
   EXPECT_LT(steady.sigma_linear, 0.1 * at_first.sigma_linear);
   EXPECT_GT(steady.sigma_angular, 0.0);  // also for a tripod
   EXPECT_GT(steady.sigma_linear, 0.0);
   const Twist change = {{0.4, -0.4, 0.4}, {0.3, 0.3, -0.3}};
-  for (int i = 0; i < 100; ++i) {
-    model.Add(kPriorTwist + (i % 2) * change, kInterval, 0.0);
-  }
+  for (int i = 0; i < 100; ++i) add(kPriorTwist + (i % 2) * change);
   // Values from a hundred frames ago count only e^-10.
   constexpr double kForgotten = 1e-4;
   EXPECT_NEAR(prior().sigma_angular, 0.5 * 0.4, kForgotten);
@@ -94,6 +94,16 @@ TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   model.Reset();
   EXPECT_EQ(prior().sigma_angular, at_first.sigma_angular);
   EXPECT_EQ(prior().sigma_linear, at_first.sigma_linear);
+}
+
+TEST(VelocityPriorTest, VelocitiesAreOutdatedAfterHalfASecond) {
+  VelocityModel model;
+  EXPECT_FALSE(model.IsOutdated(100.0));
+  model.Add(kPriorTwist, 10.0, 0.0);
+  EXPECT_FALSE(model.IsOutdated(10.4));
+  EXPECT_TRUE(model.IsOutdated(10.6));
+  model.Add(kPriorTwist, 10.6, 0.0);
+  EXPECT_FALSE(model.IsOutdated(10.7));
 }
 
 }  // namespace
