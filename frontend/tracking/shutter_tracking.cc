@@ -117,7 +117,7 @@ bool ShutterTracking::MendReference(const Twist& since, double interval,
       VelocityBetween(early_->before, early_->interval, since, interval);
   Frame& frame = early_->frame;
   const FrameTiming timing = frame.Timing(twist);
-  velocity_.Correct(twist);
+  velocity_.Correct(twist, frame.timestamp);
   if (LargestFlow(tracker_->images().camera, timing,
                   twist - frame.twist.value_or(Twist())) <
       (early_->is_late ? kSmallFlowPxOfLate : kSmallFlowPx)) {

@@ -77,8 +77,11 @@ class VelocityModel {
   // corrected with it.
   void Add(const Twist& twist, double interval, double middle);
 
-  // Replaces the velocity of the last frame by a better one.
-  void Correct(const Twist& twist) { last_ = twist; }
+  // Replaces the velocity of the last frame, if any, by a better one.
+  void Correct(const Twist& twist, double timestamp) {
+    last_ = twist;
+    timestamp_ = timestamp;
+  }
   // Call this if the last frame was corrected with another velocity.
   void SetMiddle(const Rigid3d& middle_from_last) {
     middle_from_last_ = middle_from_last;

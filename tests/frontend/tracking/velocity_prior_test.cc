@@ -58,7 +58,7 @@ TEST(VelocityPriorTest, IsDrawnToTheLastVelocity) {
   };
   ExpectNear(mean(), 0.8 * kPriorTwist + 0.2 * last);
   const Twist better = {{0.5, 0.0, 0.1}, {0.0, 0.3, 0.0}};
-  model.Correct(better);
+  model.Correct(better, 0.0);
   ExpectNear(*model.last(), better);
   ExpectNear(mean(), 0.8 * kPriorTwist + 0.2 * better);
   model.Reset();
@@ -94,6 +94,10 @@ TEST(VelocityPriorTest, IsAsCertainAsVelocitiesAreSteady) {
   model.Reset();
   EXPECT_EQ(prior().sigma_angular, at_first.sigma_angular);
   EXPECT_EQ(prior().sigma_linear, at_first.sigma_linear);
+  // The first velocity may come from a correction.
+  model.Correct(kPriorTwist, 1e9);
+  model.Add(kPriorTwist + change, 1e9 + kInterval, 0.0);
+  EXPECT_GT(prior().sigma_angular, at_first.sigma_angular);
 }
 
 TEST(VelocityPriorTest, VelocitiesAreOutdatedAfterHalfASecond) {
