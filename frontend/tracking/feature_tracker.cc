@@ -195,6 +195,7 @@ void FeatureTracker::ChooseMotion(const MotionPrior& prior,
   std::swap(tracked->matches, other_.matches);
   std::swap(tracked->on_probation, other_.on_probation);
   std::swap(tracked->estimate, other_.estimate);
+  tracked->num_found = static_cast<int>(tracked->matches.matches.size());
 }
 
 void FeatureTracker::FindTwist(const FeatureSet& features, const Frame& frame,

@@ -52,8 +52,10 @@ const PreparedFrame* Odometry::LookFromLast(const PreparedFrame& measured,
     since = Predict(prediction->cur_from_prev, nullptr);
   const PreparedFrame* const frame =
       Look(measured, since ? &*since : nullptr, false, &from_last);
+  result->iterations = from_last.iterations;
   result->match_ms = from_last.match_ms;
   result->solve_ms = from_last.solve_ms;
+  result->relocalise_ms = from_last.relocalise_ms;
   const bool is_better =
       frame != nullptr &&
       (found == nullptr ||

@@ -72,6 +72,7 @@ bool TrackingAttempts::TryFallback(const PreparedFrame& frame,
     return true;
   }
   std::swap(tracked_, other_);
+  result->iterations = attempt.iterations;
   result->match_ms = attempt.match_ms;
   result->solve_ms = attempt.solve_ms;
   return false;

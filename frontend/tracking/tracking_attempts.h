@@ -38,7 +38,7 @@ class TrackingAttempts {
 
   // Makes another attempt after a pose was found. It counts if its pose is good
   // and `accept`, called while kept() is the new result, returns true.
-  // Otherwise returns false and changes only the times.
+  // Otherwise returns false and changes only iterations and times.
   bool TryFallback(const PreparedFrame& frame, const OdometryKeyframe& keyframe,
                    const TrackingGuess& guess, TrackedFrame* result,
                    const Accept& accept = nullptr);

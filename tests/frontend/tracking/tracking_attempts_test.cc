@@ -55,6 +55,8 @@ class ScriptedTracker final : public Tracker {
         x == kFirst ? first_ : (x == kSecond ? second_ : third_);
     tracked->status = outcome.quick;
     tracked->estimate.cur_from_prev = guess.cur_from_ref;
+    tracked->estimate.iterations = 1;
+    ++num_tracked;
     const bool is_good = outcome.quick == Status::kOk;
     tracked->is_ambiguous = outcome.is_ambiguous;
     tracked->is_partial =
@@ -67,6 +69,7 @@ class ScriptedTracker final : public Tracker {
 
   const FrontendOptions& images() const override { return images_; }
 
+  int num_tracked = 0;
   int num_slow = 0;
 
  private:
@@ -100,6 +103,7 @@ Attempt TryInTurn(Outcome first, Outcome second, Outcome third = kNone) {
           &result)) {
     attempt.kept = attempts.kept().estimate.cur_from_prev.translation.x();
   }
+  EXPECT_EQ(result.iterations, tracker.num_tracked);
   attempt.status = result.status;
   attempt.num_slow = tracker.num_slow;
   return attempt;
