@@ -32,8 +32,7 @@ void VoxelCloud::Add(const ColoredPoint& point) {
   }
   const uint64_t key = VoxelKey(cell);
   Voxel* voxel = FindOrInsert(key);
-  constexpr uint32_t kEnough = 1U << 20;  // the sums are exact enough so far
-  if (voxel->count == kEnough) return;
+  if (voxel->count == kMaxCount) return;
   const Eigen::Vector3f center = Center(key);
   for (int i = 0; i < 3; ++i) voxel->offset[i] += point.position[i] - center[i];
   voxel->color[0] += point.red;

@@ -34,12 +34,14 @@ class VoxelCloud {
  private:
   struct Voxel {
     uint64_t key;
-    // Sums over up to kEnough points; positions are relative to the centre of
-    // the cube.
+    // Sums; positions are relative to the centre of the cube.
     float offset[3];
     uint32_t color[3];
     uint32_t count;
   };
+
+  // Further points of a cube are not added: the sums would lose accuracy.
+  static constexpr uint32_t kMaxCount = 1U << 20;
 
   Eigen::Vector3f Center(uint64_t key) const;
   Voxel* FindOrInsert(uint64_t key);

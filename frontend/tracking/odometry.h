@@ -79,7 +79,8 @@ class Odometry {
   // the images agree; while tracking is lost, the pose follows it. Its
   // covariance, as in MotionEstimate, becomes the prior of costs that have one;
   // null: unknown (see OdometryOptions). The images are copied: their memory
-  // may be reused for the next frame.
+  // may be reused for the next frame. Throws InputError, and counts no frame,
+  // if they do not have the camera's size.
   TrackedFrame Track(const Frame& frame,
                      const Rigid3d* cur_from_prev_guess = nullptr,
                      const MotionMatrix* guess_covariance = nullptr);

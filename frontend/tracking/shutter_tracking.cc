@@ -60,7 +60,8 @@ const PreparedFrame* ShutterTracking::Follow(
     found_.frame = frame.WithTwist(std::nullopt);
     return track(*found_.frame, nullptr, nullptr) ? &*found_.frame : nullptr;
   };
-  if (!(interval > 0.0) || velocity_.IsOutdated(frame.timestamp)) {
+  if (!(interval > 0.0 && interval <= VelocityModel::kMaxAge) ||
+      velocity_.IsOutdated(frame.timestamp)) {
     return forget();
   }
   const double middle = frame.color_shutter.offset;

@@ -48,7 +48,7 @@ bool TrackingAttempts::TryInTurn(const PreparedFrame& frame,
   if (is_good(first, true)) return true;
   const bool is_ambiguous = tracked_.is_ambiguous;
   if (is_good(second, true)) return true;
-  // Descriptors take the motion that most of the view agrees with.
+  // If the view agrees with two motions, descriptors may find either.
   if (!is_ambiguous) {
     TrackingGuess third = first;
     if (find(&third.cur_from_ref) && is_good(third, true)) return true;

@@ -6,8 +6,8 @@
 namespace rgbd_pose {
 namespace {
 
-// Lower limits of the change of velocity from frame to frame (root mean
-// square), for a camera on a tripod.
+// Lower limits of the change of velocity from frame to frame, for a camera on a
+// tripod.
 constexpr double kMinChangeAngular = 0.01;
 constexpr double kMinChangeLinear = 0.005;
 
@@ -15,7 +15,8 @@ constexpr double kMinChangeLinear = 0.005;
 // velocity; the rest is the previous one's. With 1 the errors are 20 % larger.
 constexpr double kShareOfBetween = 0.8;
 
-// Standard deviations if the previous frames were not found: rad/s and m/s.
+// Standard deviations if the previous frames were not found, and upper limits
+// otherwise: rad/s and m/s.
 constexpr double kLostSigmaAngular = 1.0;
 constexpr double kLostSigmaLinear = 0.5;
 

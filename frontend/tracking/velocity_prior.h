@@ -59,9 +59,10 @@ class VelocityModel {
   // Forgets everything: after a loss, a jump or a gap.
   void Reset() { *this = VelocityModel(); }
 
-  // Whether the last velocity is too old to be used.
+  // Velocities older than this, and motions over longer intervals, tell nothing
+  // about the velocity of a frame.
+  static constexpr double kMaxAge = 0.5;  // s
   bool IsOutdated(double timestamp) const {
-    constexpr double kMaxAge = 0.5;  // s
     return last_.has_value() && !(timestamp - timestamp_ <= kMaxAge);
   }
 
@@ -73,11 +74,10 @@ class VelocityModel {
   VelocityPrior Prior(const std::optional<Rigid3d>& prev_from_ref,
                       double interval, double middle) const;
 
-  // Adds the velocity of the next frame, `interval` s later, which was
-  // corrected with it.
-  void Add(const Twist& twist, double interval, double middle);
+  // Adds the velocity of the next frame, which was corrected with it.
+  void Add(const Twist& twist, double timestamp, double middle);
 
-  // Replaces the velocity of the last frame, if any, by a better one.
+  // Sets the velocity of the last frame, which is better known now.
   void Correct(const Twist& twist, double timestamp) {
     last_ = twist;
     timestamp_ = timestamp;

@@ -112,8 +112,7 @@ TEST(OdometryTest, ABlackStartIsLostUntilThereAreFeatures) {
   EXPECT_EQ(odometry.Track(good).status, TrackingStatus::kOk);
 }
 
-// The second frame is far from the first; only the guess makes it easy to find.
-// The camera has turned by 17 degrees, more than the other guesses can bridge.
+// The camera has turned by 17 degrees, more than pixels alone can bridge.
 TEST(OdometryTest, DescriptorsBridgeALargeTurn) {
   SyntheticOptions options;
   options.path = "pan_tilt";
@@ -134,6 +133,7 @@ TEST(OdometryTest, DescriptorsBridgeALargeTurn) {
   }
 }
 
+// The second frame is far from the first; only the guess makes it easy to find.
 TEST(OdometryTest, AMotionGuessIsTriedFirst) {
   const SyntheticDataset dataset = Room("pan_tilt", 40);
   const Frame first = dataset.Read(0);
