@@ -10,62 +10,14 @@
 #include <utility>
 #include <vector>
 
-#include "core/evaluation/consistency.h"
 #include "core/evaluation/evaluation.h"
 #include "frontend/features/frontend.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/motion_error.h"
-#include "tests/support/track_sequence.h"
+#include "tests/support/shutter_sequence.h"
 
 namespace rgbd_pose {
 namespace {
-
-struct Shutters {
-  Shutter color, depth;
-  double depth_delay = 0.0;
-};
-
-// Shutters of a handheld sensor; `sign` is -1 if the last row is first.
-Shutters RollingShutters(double sign) {
-  return {{-0.0075, sign * 0.028}, {-0.018, sign * 0.028}};
-}
-
-SyntheticOptions OptionsOf(const std::string& path, const Shutters& shutters) {
-  SyntheticOptions options;
-  options.path = path;
-  options.camera.camera = {320, 240, 262.5, 262.5, 159.5, 119.5};
-  options.color_shutter = shutters.color;
-  options.depth_shutter = shutters.depth;
-  options.depth_delay_s = shutters.depth_delay;
-  return options;
-}
-
-constexpr int kShutterFrames = 40;
-
-// The first frames of a path, rendered once.
-struct ShutterSequence {
-  ShutterSequence(const std::string& path, const Shutters& shutters,
-                  int count = kShutterFrames)
-      : dataset(OptionsOf(path, shutters)) {
-    for (int i = 0; i < count; ++i) frames.push_back(dataset.Read(i));
-  }
-
-  Rigid3d Motion(int ref, int cur) const {
-    return dataset.WorldFromCam(cur).Inverse() * dataset.WorldFromCam(ref);
-  }
-
-  SyntheticDataset dataset;
-  std::vector<Frame> frames;
-};
-
-Odometry OdometryFor(const ShutterSequence& sequence,
-                     const std::string& tracker, ShutterUse use) {
-  OdometryOptions options;
-  options.shutter = use;
-  return Odometry(
-      options,
-      MakeTracker(tracker, PartsFor(sequence.dataset.camera().camera)));
-}
 
 // RMSE of positions at the time stamps, m.
 double PositionError(const ShutterSequence& sequence,
@@ -287,8 +239,9 @@ TEST(ShutterTrackingTest, OfEveryFourthFrame) {
 // A reference without shutter between frames with shutters is not changed by
 // data of the last reference with a shutter.
 TEST(ShutterTrackingTest, ReferencesOfOneMomentAreNotMended) {
-  const SyntheticDataset global(OptionsOf("handheld", {}));
-  const SyntheticDataset rolling(OptionsOf("handheld", RollingShutters(1.0)));
+  const SyntheticDataset global(ShutterOptions("handheld", {}));
+  const SyntheticDataset rolling(
+      ShutterOptions("handheld", RollingShutters(1.0)));
   OdometryOptions options;
   options.max_flow_px = 1.0;  // every frame is a reference
   Odometry odometry(options,
@@ -304,39 +257,11 @@ TEST(ShutterTrackingTest, ReferencesOfOneMomentAreNotMended) {
   EXPECT_LT(ErrorOf(tracked.cur_from_reference, truth).translation, 0.005);
 }
 
-// Errors of edges of ok frames compared with their covariances.
-struct Honesty {
-  double nees = 0.0;  // mean chi^2 (6 degrees of freedom)
-  int wrong = 0;      // errors of more than five sigmas
-  int edges = 0;
-};
-
-Honesty HonestyOf(const Shutters& shutters, const std::string& tracker,
-                  ShutterUse use) {
-  const ShutterSequence sequence("handheld", shutters, 45);
-  Odometry odometry = OdometryFor(sequence, tracker, use);
-  Honesty honesty;
-  for (const Frame& frame : sequence.frames) {
-    const TrackedFrame tracked = odometry.Track(frame);
-    if (tracked.status != TrackingStatus::kOk) continue;
-    for (const RelativePose& edge : tracked.edges) {
-      const double chi_square =
-          ChiSquare(edge, sequence.Motion(edge.ref, edge.cur), {});
-      honesty.nees += chi_square;
-      honesty.wrong += chi_square > kWrongChiSquare;
-      ++honesty.edges;
-    }
-  }
-  EXPECT_GE(honesty.edges, 40);
-  honesty.nees /= honesty.edges;
-  return honesty;
-}
-
 // A frame of another place starts a segment; the next one is found again in an
 // earlier keyframe. The velocity found there is not that of the other place.
 TEST(ShutterTrackingTest, ARelocalisationEndsTheWaitForAVelocity) {
   const ShutterSequence sequence("handheld", RollingShutters(1.0), 14);
-  SyntheticOptions elsewhere = OptionsOf("handheld", RollingShutters(1.0));
+  SyntheticOptions elsewhere = ShutterOptions("handheld", RollingShutters(1.0));
   elsewhere.scene = "corridor";
   constexpr int kOther = 10;
   Odometry odometry = OdometryFor(sequence, "hybrid", ShutterUse::kCamera);
@@ -359,48 +284,6 @@ TEST(ShutterTrackingTest, ARelocalisationEndsTheWaitForAVelocity) {
                          cv::NORM_INF),
                 0.0);
     }
-  }
-}
-
-// Only if the middle row is exposed at the stamp: otherwise the references'
-// time is known only as well as their velocity.
-TEST(ShutterTrackingTest, CovariancesAreAsHonestAsWithout) {
-  const auto nees_with = [](const Shutters& shutters) {
-    return HonestyOf(shutters, "features", ShutterUse::kCamera).nees;
-  };
-  const double without = nees_with({});
-  for (const double sign : {1.0, -1.0}) {
-    const double with =
-        nees_with({{0.0, sign * 0.028}, {-0.0105, sign * 0.028}});
-    EXPECT_LT(with, 2.0 * without);
-    EXPECT_GT(with, 1.0);
-  }
-}
-
-// The covariance includes the error of unknown shutters: partly for a hand as
-// fast as this one, fully for real ones (see odometry.cc).
-TEST(ShutterTrackingTest, ShuttersThatNobodyKnowsAreAllowedFor) {
-  for (const std::string tracker : {"features", "hybrid"}) {
-    const Honesty honesty =
-        HonestyOf(RollingShutters(1.0), tracker, ShutterUse::kNone);
-    EXPECT_LE(honesty.wrong, honesty.edges / 4) << tracker;
-    EXPECT_LT(honesty.nees, 6.0 * 4.0) << tracker;
-  }
-}
-
-// Cameras with unspecified shutters are treated like ignored shutters.
-TEST(ShutterTrackingTest, OnlyWhoSaysSoHasAGlobalShutter) {
-  const ShutterSequence sequence("handheld", {}, 4);
-  Odometry said = OdometryFor(sequence, "features", ShutterUse::kCamera);
-  Odometry unsaid = OdometryFor(sequence, "features", ShutterUse::kCamera);
-  for (Frame frame : sequence.frames) {
-    ASSERT_TRUE(frame.HasKnownTimes());
-    const TrackedFrame sure = said.Track(frame);
-    frame.color_shutter.is_known = false;
-    const TrackedFrame unsure = unsaid.Track(frame);
-    if (sure.edges.empty()) continue;
-    EXPECT_GT(unsure.edges[0].covariance.trace(),
-              10.0 * sure.edges[0].covariance.trace());
   }
 }
 
