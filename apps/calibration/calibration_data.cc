@@ -3,50 +3,107 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <memory>
+#include <set>
 #include <utility>
 
+#include "apps/calibration/displaced_depths.h"
 #include "core/geometry/twist.h"
+#include "core/util/parallel_for.h"
+#include "frontend/features/frontend.h"
 
 namespace rgbd_pose {
 namespace {
 
-// The number of features per keyframe. It is chosen for the requested number of
-// views, since only a share of the features is found again, but it does not
-// fall below the number that covers the whole image.
-constexpr int kMostFeatures = 300;
-constexpr int kFewestFeatures = 80;
-constexpr double kFoundAgain = 0.2;
+// A landmark and its views in other keyframes.
+struct SeenLandmark {
+  Landmark landmark;
+  std::vector<LandmarkView> views;
+};
 
-// Adds as many landmarks that have views as `max_views` allows.
-void AddLandmarks(const std::vector<LandmarksOfKeyframe>& found, int max_views,
-                  CalibrationViews* views) {
-  size_t all_views = 0;
-  for (const LandmarksOfKeyframe& keyframe : found) {
-    for (const auto& own : keyframe.views) all_views += own.size();
-  }
-  const double share =
-      std::min(1.0, max_views / std::max(1.0, static_cast<double>(all_views)));
-  for (const LandmarksOfKeyframe& keyframe : found) {
-    std::vector<size_t> seen;  // in other keyframes
-    for (size_t i = 0; i < keyframe.landmarks.size(); ++i) {
-      if (!keyframe.views[i].empty()) seen.push_back(i);
-    }
-    // Choose evenly: landmarks are ordered by their position in the image.
-    const auto count = static_cast<size_t>(std::ceil(share * seen.size()));
-    for (size_t chosen = 0; chosen < count; ++chosen) {
-      const size_t i = seen[chosen * seen.size() / count];
-      Landmark landmark = keyframe.landmarks[i];
-      landmark.first_view = static_cast<int>(views->views.size());
-      landmark.num_views = static_cast<int>(keyframe.views[i].size());
-      views->landmarks.push_back(landmark);
-      views->views.insert(views->views.end(), keyframe.views[i].begin(),
-                          keyframe.views[i].end());
-    }
-  }
-}
+// Matches features of keyframes in other keyframes. Each thread has its own.
+class LandmarkMatcher {
+ public:
+  // `map` and `chosen` must outlive the matcher. `chosen` has the map indices
+  // of the keyframes; other functions use positions in `chosen`.
+  LandmarkMatcher(const KeyframeMap& map, const std::vector<int>& chosen,
+                  const FrontendOptions& options)
+      : map_(map), chosen_(chosen), frontend_(MakeFrontend("patch", options)) {}
 
-// No velocity is computed across a longer gap between two frames.
-constexpr double kMaxGap = 0.15;  // s
+  // The landmarks of a keyframe that have views. Each neighbour is a keyframe,
+  // and whether its views are held out.
+  std::vector<SeenLandmark> Match(
+      int anchor, const std::vector<std::pair<int, bool>>& neighbours) {
+    const PreparedFrame frame = Images(anchor);
+    const auto features = frontend_->Detect(frame);
+    std::vector<SeenLandmark> found(features->observations.size());
+    for (size_t i = 0; i < found.size(); ++i) {
+      found[i].landmark.anchor = anchor;
+      Measure(frame, features->observations[i], &found[i].landmark);
+    }
+    for (const auto& [to, is_held_out] : neighbours) {
+      const PreparedFrame& there = Images(to);
+      frontend_->Match(*features, there, Pose(to).Inverse() * Pose(anchor),
+                       &matches_);
+      for (size_t i = 0; i < matches_.matches.size(); ++i) {
+        SeenLandmark& seen = found[matches_.features[i]];
+        if (seen.landmark.depth.inverse_sigma == 0.0) continue;
+        const Observation& o = matches_.matches[i].cur;
+        LandmarkView view;
+        Measure(there, o, &view);
+        view.keyframe = to;
+        view.sigma_px = o.sigma_px;
+        view.is_held_out = is_held_out;
+        seen.views.push_back(view);
+      }
+    }
+    found.erase(std::remove_if(found.begin(), found.end(),
+                               [](const SeenLandmark& seen) {
+                                 return seen.views.empty();
+                               }),
+                found.end());
+    return found;
+  }
+
+ private:
+  const Rigid3d& Pose(int at) const {
+    return map_.keyframes[chosen_[at]].world_from_cam;
+  }
+
+  void Measure(const Frame& frame, const Observation& o,
+               DepthPixel* seen) const {
+    const Camera& camera = map_.camera;
+    const Eigen::Vector2d pixel = camera.Project(camera.Ray(o.u, o.v));
+    seen->u = pixel.x();
+    seen->v = pixel.y();
+    seen->depth =
+        MeasuredAt(frame, camera, o, pixel, frontend_->options().depth_noise);
+  }
+
+  // Decodes images once for consecutive neighbours.
+  const PreparedFrame& Images(int at) {
+    constexpr size_t kMost = 40;
+    const auto found = images_.find(at);
+    if (found != images_.end()) return found->second;
+    if (images_.size() >= kMost) {
+      // The keyframe farthest in time is needed last.
+      images_.erase(std::max_element(
+          images_.begin(), images_.end(), [at](const auto& a, const auto& b) {
+            return std::abs(a.first - at) < std::abs(b.first - at);
+          }));
+    }
+    return images_
+        .emplace(at,
+                 PreparedFrame(map_.keyframes[chosen_[at]].images.Restore()))
+        .first->second;
+  }
+
+  const KeyframeMap& map_;
+  const std::vector<int>& chosen_;
+  std::unique_ptr<Frontend> frontend_;
+  std::map<int, PreparedFrame> images_;
+  FeatureMatches matches_;
+};
 
 // The velocity (zero if unknown) from a smooth path of the camera (world from
 // camera, any world) at the time of one of its frames (s): fourth-order central
@@ -57,42 +114,40 @@ Twist TwistAt(const Trajectory& path, double time) {
       path.begin(), path.end(), time - 1e-4,
       [](const StampedPose& pose, double t) { return pose.timestamp < t; });
   if (at == path.end()) return {};
+  using Place = Trajectory::const_iterator;
   // The next frame in a direction (1 or -1), or the same one before a gap.
-  const auto next = [&](std::ptrdiff_t from, int direction) {
-    const auto to = from + direction;
-    const bool is_near =
-        to >= 0 && to < static_cast<std::ptrdiff_t>(path.size()) &&
-        std::abs(path[to].timestamp - path[from].timestamp) <= kMaxGap;
+  const auto next = [&](Place from, int direction) {
+    constexpr double kMaxGap = 0.15;  // s
+    if (from == (direction > 0 ? path.end() - 1 : path.begin())) return from;
+    const Place to = from + direction;
+    const bool is_near = std::abs(to->timestamp - from->timestamp) <= kMaxGap;
     return is_near ? to : from;
   };
-  struct Difference {
-    Twist twist;
-    double interval = 0.0;  // s
-    double lean = 0.0;      // offset of its middle from the frame, s
+  const Place before = next(at, -1), after = next(at, 1);
+  if (before == after) return {};
+  const auto interval = [](Place from, Place to) {
+    return to->timestamp - from->timestamp;
   };
-  const auto difference = [&](std::ptrdiff_t before, std::ptrdiff_t after) {
-    const double t0 = path[before].timestamp, t1 = path[after].timestamp;
-    Difference result;
-    result.interval = t1 - t0;
-    result.lean = std::abs(0.5 * (t0 + t1) - at->timestamp);
-    if (!(result.interval > 0.0)) return result;
+  const auto difference = [&](Place from, Place to) {
     // A pose of the path, expressed in the camera frame of the given time.
-    const auto seen = [&](std::ptrdiff_t there) {
-      return TwistOf(path[there].world_from_cam.Inverse() * at->world_from_cam,
-                     result.interval);
+    const auto seen = [&](Place there) {
+      return TwistOf(there->world_from_cam.Inverse() * at->world_from_cam,
+                     interval(from, to));
     };
-    result.twist = seen(after) - seen(before);
-    return result;
+    return seen(to) - seen(from);
   };
-  const std::ptrdiff_t place = at - path.begin();
-  const auto before = next(place, -1), after = next(place, 1);
-  const Difference near = difference(before, after);
-  const Difference far = difference(next(before, -1), next(after, 1));
+  // The offset of the middle from the frame, s.
+  const auto lean = [&](Place from, Place to) {
+    return std::abs(0.5 * (from->timestamp + to->timestamp) - at->timestamp);
+  };
+  const Place first = next(before, -1), last = next(after, 1);
+  const Twist near = difference(before, after);
+  const double step = interval(before, after);
   constexpr double kEven = 0.05;
-  const bool is_even = std::abs(far.interval / near.interval - 2.0) < kEven &&
-                       std::max(near.lean, far.lean) < kEven * near.interval;
-  return is_even ? near.twist + (1.0 / 3.0) * (near.twist - far.twist)
-                 : near.twist;
+  const bool is_even =
+      std::abs(interval(first, last) / step - 2.0) < kEven &&
+      std::max(lean(before, after), lean(first, last)) < kEven * step;
+  return is_even ? near + (1.0 / 3.0) * (near - difference(first, last)) : near;
 }
 
 // The work grows with the third power of the number of keyframes.
@@ -115,10 +170,10 @@ std::vector<int> ChosenKeyframes(const KeyframeMap& map) {
     return map.keyframes[a].images.timestamp <
            map.keyframes[b].images.timestamp;
   });
-  if (largest.size() <= kMaxKeyframes) return largest;
   std::vector<int> chosen;
-  for (size_t i = 0; i < kMaxKeyframes; ++i) {
-    chosen.push_back(largest[i * largest.size() / kMaxKeyframes]);
+  const size_t count = std::min(largest.size(), kMaxKeyframes);
+  for (size_t i = 0; i < count; ++i) {
+    chosen.push_back(largest[i * largest.size() / count]);
   }
   return chosen;
 }
@@ -154,25 +209,75 @@ std::vector<bool> HeldOut(int num_keyframes,
 CalibrationData ChoosePairs(const KeyframeMap& map) {
   CalibrationData result;
   result.in_map = ChosenKeyframes(map);
-  const int num_keyframes = static_cast<int>(result.in_map.size());
   std::map<int, int> number_of;  // by keyframe id
-  for (int i = 0; i < num_keyframes; ++i) {
-    number_of[map.keyframes[result.in_map[i]].id] = i;
+  for (size_t i = 0; i < result.in_map.size(); ++i) {
+    number_of[map.keyframes[result.in_map[i]].id] = static_cast<int>(i);
   }
+  std::set<std::array<int, 2>> pairs;  // their distance, the first keyframe
   for (const RelativePose& edge : map.edges) {
     const auto a = number_of.find(edge.ref), b = number_of.find(edge.cur);
     if (a == number_of.end() || b == number_of.end()) continue;
-    result.pairs.push_back(
-        {std::min(a->second, b->second), std::max(a->second, b->second)});
+    pairs.insert(
+        {std::abs(a->second - b->second), std::min(a->second, b->second)});
   }
-  std::sort(result.pairs.begin(), result.pairs.end(), [](auto& a, auto& b) {
-    return std::make_pair(a[1] - a[0], a[0]) <
-           std::make_pair(b[1] - b[0], b[0]);
-  });
-  result.pairs.erase(std::unique(result.pairs.begin(), result.pairs.end()),
-                     result.pairs.end());
-  result.is_held_out = HeldOut(num_keyframes, result.pairs);
+  for (const auto& [distance, first] : pairs) {
+    result.pairs.push_back({first, first + distance});
+  }
   return result;
+}
+
+// The landmarks of each keyframe, from up to `max_features` features.
+std::vector<std::vector<SeenLandmark>> FindLandmarks(
+    const KeyframeMap& map, const CalibrationData& chosen,
+    const OdometrySettings& settings, int max_features, int threads) {
+  FrontendOptions options = settings.features;
+  options.camera = map.camera;
+  options.max_features = max_features;
+  const int num_keyframes = static_cast<int>(chosen.in_map.size());
+  const std::vector<bool> is_held_out = HeldOut(num_keyframes, chosen.pairs);
+  std::vector<std::vector<std::pair<int, bool>>> neighbours(num_keyframes);
+  for (size_t i = 0; i < chosen.pairs.size(); ++i) {
+    const auto [a, b] = chosen.pairs[i];
+    neighbours[a].emplace_back(b, is_held_out[i]);
+    neighbours[b].emplace_back(a, is_held_out[i]);
+  }
+  std::vector<std::vector<SeenLandmark>> found(num_keyframes);
+  threads = std::max(1, std::min(threads, num_keyframes));
+  ParallelFor(threads, threads, [&](int thread) {
+    // Consecutive keyframes per thread, because they share decoded neighbours.
+    LandmarkMatcher matcher(map, chosen.in_map, options);
+    const int begin = thread * num_keyframes / threads;
+    const int end = (thread + 1) * num_keyframes / threads;
+    for (int i = begin; i < end; ++i) {
+      found[i] = matcher.Match(i, neighbours[i]);
+    }
+  });
+  return found;
+}
+
+// Adds as many landmarks as `max_views` allows.
+void AddLandmarks(const std::vector<std::vector<SeenLandmark>>& found,
+                  int max_views, CalibrationViews* views) {
+  size_t all_views = 0;
+  for (const auto& of_keyframe : found) {
+    for (const SeenLandmark& seen : of_keyframe) all_views += seen.views.size();
+  }
+  const double share =
+      std::min(1.0, max_views / std::max(1.0, static_cast<double>(all_views)));
+  for (const auto& of_keyframe : found) {
+    // Choose evenly: landmarks are ordered by their position in the image.
+    const auto count =
+        static_cast<size_t>(std::ceil(share * of_keyframe.size()));
+    for (size_t chosen = 0; chosen < count; ++chosen) {
+      const auto& [landmark, own] =
+          of_keyframe[chosen * of_keyframe.size() / count];
+      views->landmarks.push_back(landmark);
+      views->landmarks.back().first_view =
+          static_cast<int>(views->views.size());
+      views->landmarks.back().num_views = static_cast<int>(own.size());
+      views->views.insert(views->views.end(), own.begin(), own.end());
+    }
+  }
 }
 
 }  // namespace
@@ -189,10 +294,15 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
     data.timestamps.push_back(keyframe.images.timestamp);
     data.views.twists.push_back(TwistAt(path, keyframe.images.timestamp));
   }
+  // The number of features per keyframe is chosen for the requested number of
+  // views, since only a share of the features is found again, but it does not
+  // fall below the number that covers the whole image.
+  constexpr double kMostFeatures = 300.0, kFewestFeatures = 80.0;
+  constexpr double kFoundAgain = 0.2;
   const double in_each = max_views / (kFoundAgain * 2.0 *
                                       std::max<double>(1.0, data.pairs.size()));
-  const int features = static_cast<int>(
-      std::clamp<double>(in_each, kFewestFeatures, kMostFeatures));
+  const int features =
+      static_cast<int>(std::clamp(in_each, kFewestFeatures, kMostFeatures));
   AddLandmarks(FindLandmarks(map, data, settings, features, threads), max_views,
                &data.views);
   return data;

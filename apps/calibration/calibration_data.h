@@ -17,22 +17,8 @@ struct CalibrationData {
   std::vector<int> in_map;                // indices in the map
   std::vector<double> timestamps;         // s
   std::vector<std::array<int, 2>> pairs;  // of these keyframes, near ones first
-  std::vector<bool> is_held_out;          // of each pair
   CalibrationViews views;
 };
-
-// The landmarks of one keyframe; each landmark has a view list of its own.
-struct LandmarksOfKeyframe {
-  std::vector<Landmark> landmarks;
-  std::vector<std::vector<LandmarkView>> views;  // of each landmark
-};
-
-// Matches up to `max_features` features of each keyframe in the keyframes that
-// it is paired with.
-std::vector<LandmarksOfKeyframe> FindLandmarks(const KeyframeMap& map,
-                                               const CalibrationData& chosen,
-                                               const OdometrySettings& settings,
-                                               int max_features, int threads);
 
 // Takes up to 300 evenly chosen keyframes of the map's largest segment, in
 // order of time, and matches the features of each keyframe in the keyframes

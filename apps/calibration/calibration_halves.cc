@@ -1,6 +1,4 @@
-#include <array>
 #include <cmath>
-#include <optional>
 
 #include "apps/calibration/calibration_result.h"
 
@@ -9,14 +7,16 @@ namespace {
 
 // A smaller part cannot be calibrated.
 constexpr int kMinKeyframes = 3;
-constexpr int kMinViews = 200;
+constexpr size_t kMinViews = 200;
 
-// The views of consecutive keyframes, and the start of their solution.
+// The views of consecutive keyframes and their solution.
 struct Part {
   CalibrationViews views;
   CalibrationState state;
+  CalibrationVector variance;  // of theta
 };
 
+// The state is that of the whole recording.
 Part PartOf(const CalibrationViews& all, const CalibrationState& found,
             int begin, int end) {
   Part part;
@@ -59,24 +59,6 @@ Part PartOf(const CalibrationViews& all, const CalibrationState& found,
   return part;
 }
 
-// The estimate of the parameters from one part.
-struct PartEstimate {
-  CalibrationVector theta;
-  CalibrationVector variance;
-};
-
-// Returns nothing if the part does not determine the parameters.
-std::optional<PartEstimate> Calibrated(Part part, const FreeParts& is_free,
-                                       const CalibrationPrior& prior) {
-  if (part.views.views.size() < static_cast<size_t>(kMinViews)) return {};
-  const BundleAdjustment problem(part.views, prior, false);
-  if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
-  problem.MeasureScales(&part.state);
-  const auto variances = problem.Variances(is_free, part.state);
-  if (!variances.has_value()) return {};
-  return PartEstimate{part.state.theta, *variances};
-}
-
 }  // namespace
 
 double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves) {
@@ -92,21 +74,28 @@ std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
     const FreeParts& is_free, const CalibrationPrior& prior) {
   const int all = static_cast<int>(views.world_from_cam.size());
-  std::array<std::optional<PartEstimate>, 2> halves;
+  Part halves[2];
   // One half after the other: in parallel, the order of additions would change.
   for (int half = 0; half < 2; ++half) {
     const int begin = half * (all / 2), end = half == 0 ? all / 2 : all;
     if (end - begin < kMinKeyframes) return {};
-    halves[half] = Calibrated(PartOf(views, found, begin, end), is_free, prior);
+    Part& part = halves[half];
+    part = PartOf(views, found, begin, end);
+    if (part.views.views.size() < kMinViews) return {};
+    const BundleAdjustment problem(part.views, prior, false);
+    if (!std::isfinite(problem.Solve(is_free, &part.state))) return {};
+    problem.MeasureScales(&part.state);
+    const auto variances = problem.Variances(is_free, part.state);
+    if (!variances.has_value()) return {};
+    part.variance = *variances;
   }
-  if (!halves[0].has_value() || !halves[1].has_value()) return {};
   std::vector<HalvesOfParameter> result;
   for (int k = 0; k < kCalibrationSize; ++k) {
     if (!is_free[k]) continue;
     const double floor = CalibrationFloor(k, all / 2);
-    result.push_back({k, halves[0]->theta[k], halves[1]->theta[k],
-                      std::sqrt(halves[0]->variance[k] +
-                                halves[1]->variance[k] + 2.0 * floor * floor)});
+    result.push_back({k, halves[0].state.theta[k], halves[1].state.theta[k],
+                      std::sqrt(halves[0].variance[k] + halves[1].variance[k] +
+                                2.0 * floor * floor)});
   }
   return result;
 }

@@ -109,16 +109,16 @@ void FitSigmas(const std::vector<DepthScatter>& scatter, double relative_error,
   }
   const Eigen::Matrix2d covariance = information.inverse();
   const Eigen::Vector2d both = covariance * right;
+  const Eigen::Vector2d sigmas = covariance.diagonal().cwiseSqrt();
   constexpr double kMinSignificance = 2.0;
-  const bool is_significant[2] = {
-      both[0] > kMinSignificance * std::sqrt(covariance(0, 0)),
-      both[1] > kMinSignificance * std::sqrt(covariance(1, 1))};
-  if (is_significant[0] && is_significant[1]) {
+  const bool has_constant = both[0] > kMinSignificance * sigmas[0];
+  const bool has_quadratic = both[1] > kMinSignificance * sigmas[1];
+  if (has_constant && has_quadratic) {
     fit->model.constant = both[0];
     fit->model.quadratic = both[1];
-    fit->constant_sigma = std::sqrt(covariance(0, 0));
-    fit->quadratic_sigma = std::sqrt(covariance(1, 1));
-  } else if (is_significant[0]) {
+    fit->constant_sigma = sigmas[0];
+    fit->quadratic_sigma = sigmas[1];
+  } else if (has_constant) {
     fit->model.constant = right[0] / information(0, 0);
     fit->constant_sigma = 1.0 / std::sqrt(information(0, 0));
   } else {
@@ -135,7 +135,6 @@ std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
   const std::vector<MotionDerivatives> poses = PosesOf(state);
   std::vector<Sample> samples;
   for (size_t i = 0; i < views.landmarks.size(); ++i) {
-    if (views.landmarks[i].num_views == 0) continue;
     CollectDepths(views, state, poses, i, &samples);
   }
   constexpr size_t kMinSamples = 300;

@@ -41,9 +41,9 @@ bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
     }
     if (parameter.status == Status::kDetermined) parameter.found = theta[k];
   }
-  merged.reason = ImplausibilityReason(first, further.found, merged);
-  if (!merged.reason.empty()) return false;
   merged.camera = merged.found = further.found;
+  merged.reason = ImplausibilityReason(first, merged);
+  if (!merged.reason.empty()) return false;
   merged.noise = further.noise;
   merged.halves = further.halves;
   merged.halves_spread = further.halves_spread;

@@ -21,56 +21,46 @@ constexpr double kGuessShare = 0.02;
 // Keyframes at this distance (m) determine the scale well; nearer ones less so.
 constexpr double kFarApart = 0.5;
 
-// The position of a frame relative to the nearest keyframe in time.
-struct Place {
-  int keyframe = 0;
-  Eigen::Vector3d in_keyframe;
-};
-
-Place PlaceAt(const CalibrationData& data, const Trajectory& path,
-              double time) {
-  const auto frame_at = [&path](double t) {
-    return std::min_element(path.begin(), path.end(),
-                            [t](const StampedPose& a, const StampedPose& b) {
-                              return std::abs(a.timestamp - t) <
-                                     std::abs(b.timestamp - t);
-                            });
-  };
-  const auto frame = frame_at(time);
-  constexpr double kMaxOff = 0.1;  // s
-  if (frame == path.end() || std::abs(frame->timestamp - time) > kMaxOff) {
-    throw InputError("known_length: no frame was tracked at " +
-                     std::to_string(time) + " s");
-  }
-  const size_t keyframe = NearestTime(data.timestamps, time);
-  const auto at_keyframe = frame_at(data.timestamps[keyframe]);
-  return {static_cast<int>(keyframe),
-          (at_keyframe->world_from_cam.Inverse() * frame->world_from_cam)
-              .translation};
-}
-
 KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
                        const std::string& text) {
-  double t0, t1, metres;
+  KnownDistance known;
+  double t0, t1;
   char end;
-  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &t0, &t1, &metres, &end) !=
-          3 ||
-      !std::isfinite(t0) || !std::isfinite(t1) || !(metres > 0.0) ||
-      !std::isfinite(metres)) {
+  if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &t0, &t1, &known.metres,
+                  &end) != 3 ||
+      !std::isfinite(t0) || !std::isfinite(t1) || !(known.metres > 0.0) ||
+      !std::isfinite(known.metres)) {
     throw InputError("known_length: must be T0,T1,METRES, not '" + text + "'");
   }
-  const Place a = PlaceAt(data, path, t0), b = PlaceAt(data, path, t1);
-  if (a.keyframe == b.keyframe) {
+  const std::vector<double> times = TimesOf(path);
+  // The position of a frame relative to the nearest keyframe in time.
+  const auto find = [&](double time, int* keyframe,
+                        Eigen::Vector3d* in_keyframe) {
+    const size_t frame = NearestTime(times, time);
+    constexpr double kMaxOff = 0.1;  // s
+    if (times.empty() || std::abs(times[frame] - time) > kMaxOff) {
+      throw InputError("known_length: no frame was tracked at " +
+                       std::to_string(time) + " s");
+    }
+    *keyframe = static_cast<int>(NearestTime(data.timestamps, time));
+    const StampedPose& there =
+        path[NearestTime(times, data.timestamps[*keyframe])];
+    *in_keyframe = (there.world_from_cam.Inverse() * path[frame].world_from_cam)
+                       .translation;
+  };
+  find(t0, &known.a, &known.in_a);
+  find(t1, &known.b, &known.in_b);
+  if (known.a == known.b) {
     throw InputError(
         "known_length: the camera hardly moved between the two times");
   }
-  return {a.keyframe,    b.keyframe, a.in_keyframe,
-          b.in_keyframe, metres,     kLengthSigma};
+  known.sigma = kLengthSigma;
+  return known;
 }
 
 // Connects each keyframe to the first distant one, or to the farthest one.
 // `distance(from, to)` returns the distance (m) of the camera positions at two
-// times (s), or nothing if it is unknown.
+// times (s), 0 if it is unknown.
 template <typename Distance>
 std::vector<KnownDistance> Between(const CalibrationData& data,
                                    const Distance& distance, double sigma,
@@ -80,13 +70,12 @@ std::vector<KnownDistance> Between(const CalibrationData& data,
   for (int i = 0; i < n; ++i) {
     KnownDistance farthest;
     for (int k = i + 1; k < n && farthest.metres < kFarApart; ++k) {
-      const std::optional<double> metres =
-          distance(data.timestamps[i], data.timestamps[k]);
-      if (!metres.has_value() || *metres <= farthest.metres) continue;
+      const double metres = distance(data.timestamps[i], data.timestamps[k]);
+      if (metres <= farthest.metres) continue;
       farthest.a = i;
       farthest.b = k;
-      farthest.metres = *metres;
-      farthest.sigma = std::hypot(sigma, share * *metres);
+      farthest.metres = metres;
+      farthest.sigma = std::hypot(sigma, share * metres);
     }
     constexpr double kMinDistance = 0.05;  // m
     if (farthest.metres > kMinDistance) distances.push_back(farthest);
@@ -101,9 +90,8 @@ std::optional<Eigen::Vector3d> PlaceOf(const Trajectory& truth, double time) {
   constexpr double kMaxGap = 0.1;  // s
   if (after == truth.end()) return std::nullopt;
   if (after == truth.begin()) {
-    return after->timestamp == time
-               ? std::make_optional(after->world_from_cam.translation)
-               : std::nullopt;
+    if (after->timestamp != time) return std::nullopt;
+    return after->world_from_cam.translation;
   }
   const auto before = after - 1;
   const double gap = after->timestamp - before->timestamp;
@@ -127,11 +115,10 @@ std::string AddKnownDistances(const Trajectory& path,
   if (scale.ground_truth != nullptr) {
     distances = Between(
         *data,
-        [&](double from, double to) -> std::optional<double> {
+        [&](double from, double to) {
           const auto a = PlaceOf(*scale.ground_truth, from);
           const auto b = PlaceOf(*scale.ground_truth, to);
-          if (!a.has_value() || !b.has_value()) return std::nullopt;
-          return (*a - *b).norm();
+          return a.has_value() && b.has_value() ? (*a - *b).norm() : 0.0;
         },
         kTruthSigma, 0.0);
     if (!distances.empty()) return "the ground truth";
@@ -139,10 +126,9 @@ std::string AddKnownDistances(const Trajectory& path,
   if (scale.motion_guess != nullptr) {
     distances = Between(
         *data,
-        [&](double from, double to) -> std::optional<double> {
+        [&](double from, double to) {
           const auto moved = MotionAlong(*scale.motion_guess, from, to);
-          if (!moved.has_value()) return std::nullopt;
-          return moved->translation.norm();
+          return moved.has_value() ? moved->translation.norm() : 0.0;
         },
         kGuessSigma, kGuessShare);
     if (!distances.empty()) return "the motion guess";

@@ -60,10 +60,6 @@ double CostOf(const CalibrationViews& views, const Landmark& landmark,
   return 0.5 * cost;
 }
 
-std::string Short(double value) { return Format("%.3g", value); }
-
-std::string Percent(double share) { return Short(100.0 * share) + " %"; }
-
 // The parameter whose halves differ most; null if the halves were not compared.
 const HalvesOfParameter* WorstOfHalves(const CalibrationResult& result) {
   const auto worst = std::max_element(
@@ -157,9 +153,9 @@ bool IsAnotherPassDue(const CalibrationResult& result) {
 std::string WhatIsLeft(const CalibrationResult& result) {
   constexpr double kOfFeatures = 0.3;  // px, with rendered recordings
   const double px = 0.5 * result.pixel_after;
-  return "residuals spread by " + Short(px) + " px, " +
-         (px > 1.5 * kOfFeatures ? "more than" : "consistent with") + " the " +
-         Short(kOfFeatures) + " px of feature noise";
+  return Format("residuals spread by %.3g px, %s the %.3g px of feature noise",
+                px, px > 1.5 * kOfFeatures ? "more than" : "consistent with",
+                kOfFeatures);
 }
 
 std::string WhyHalvesDisagree(const CalibrationSettings& settings,
@@ -169,51 +165,56 @@ std::string WhyHalvesDisagree(const CalibrationSettings& settings,
     return "";
   }
   const CalibrationParameter& row = kCalibrationParameters[worst->part];
-  const std::string unit =
-      row.unit[0] == '\0' ? "" : " " + std::string(row.unit);
-  return "the halves of the recording disagree: " + std::string(row.name) +
-         " differs by " + Short(std::abs(worst->second - worst->first)) + unit +
-         " (" + Short(worst->Sigmas()) +
-         " standard deviations), so there is an error that no parameter "
-         "describes (" +
-         WhatIsLeft(result) + ")";
+  return Format(
+      "the halves of the recording disagree: %s differs by %.3g%s%s (%.3g "
+      "standard deviations), so there is an error that no parameter describes "
+      "(%s)",
+      row.name, std::abs(worst->second - worst->first),
+      row.unit[0] == '\0' ? "" : " ", row.unit, worst->Sigmas(),
+      WhatIsLeft(result).c_str());
 }
 
 std::string HalvesInWords(const CalibrationResult& result) {
   const HalvesOfParameter* worst = WorstOfHalves(result);
-  return worst == nullptr
-             ? "the halves of the recording have too little data to be compared"
-             : "the halves of the recording, calibrated separately, differ by "
-               "at most " +
-                   Short(worst->Sigmas()) + " standard deviations" +
-                   (result.halves_spread > 1.0
-                        ? " after error bars were widened by a factor of " +
-                              Short(result.halves_spread)
-                        : "");
+  if (worst == nullptr) {
+    return "the halves of the recording have too little data to be compared";
+  }
+  std::string text = Format(
+      "the halves of the recording, calibrated separately, differ by at most "
+      "%.3g standard deviations",
+      worst->Sigmas());
+  if (result.halves_spread > 1.0) {
+    text += Format(" after error bars were widened by a factor of %.3g",
+                   result.halves_spread);
+  }
+  return text;
 }
 
 std::string ImplausibilityReason(const RgbdCamera& first,
-                                 const RgbdCamera& found,
                                  const CalibrationResult& result) {
-  const Camera& camera = found.camera;
+  const auto implausible = [](const std::string& why) {
+    return "the camera found is not plausible: " + why;
+  };
+  const Camera& camera = result.found.camera;
   const double aspect = camera.fx / camera.fy;
   const double aspect_before = first.camera.fx / first.camera.fy;
   if (std::abs(aspect - 1.0) > kMaxAspect &&
       std::abs(aspect / aspect_before - 1.0) > kMaxAspect) {
-    return "the camera found is not plausible: fx and fy differ by " +
-           Percent(std::abs(aspect - 1.0));
+    return implausible(
+        Format("fx and fy differ by %.3g %%", 100.0 * std::abs(aspect - 1.0)));
   }
   if (std::abs(camera.cx - 0.5 * (camera.width - 1)) >
           kMaxOffCentre * camera.width ||
       std::abs(camera.cy - 0.5 * (camera.height - 1)) >
           kMaxOffCentre * camera.height) {
-    return "the camera found is not plausible: its principal point (" +
-           Short(camera.cx) + ", " + Short(camera.cy) +
-           ") is too far from the image centre";
+    return implausible(Format(
+        "its principal point (%.3g, %.3g) is too far from the image centre",
+        camera.cx, camera.cy));
   }
   if (HasRaysAllAround(first.camera) && !HasRaysAllAround(camera)) {
-    return "the camera found is not plausible: its distortion is not "
-           "invertible at the image border; record objects there, too";
+    return implausible(
+        "its distortion is not invertible at the image border; record objects "
+        "there, too");
   }
   for (int k = 0; k < kCalibrationSize; ++k) {
     const CalibratedParameter& parameter = result.parameters[k];
@@ -221,36 +222,39 @@ std::string ImplausibilityReason(const RgbdCamera& first,
     const double moved =
         std::abs(parameter.found - parameter.before) / parameter.prior;
     if (moved > kMaxPriorSigmas) {
-      return "the camera found is not plausible: " +
-             std::string(kCalibrationParameters[k].name) + " changes by " +
-             Short(moved) + " standard deviations of its prior";
+      return implausible(
+          Format("%s changes by %.3g standard deviations of its prior",
+                 kCalibrationParameters[k].name, moved));
     }
   }
   return "";
 }
 
-std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
+std::string RejectionReason(const RgbdCamera& first,
                             const CalibrationSettings& settings,
                             const CalibrationResult& result) {
   if (result.held_out_pairs < 2) {
     return "there are too few held-out pairs to evaluate the new camera";
   }
   if (result.cost_after > result.cost_of_map) {
-    return "the solution fails: held-out pairs fit worse (cost " +
-           Short(result.cost_after) + ") than with the poses of the map (" +
-           Short(result.cost_of_map) + "), so some matches are wrong";
+    return Format(
+        "the solution fails: held-out pairs fit worse (cost %.3g) than with "
+        "the poses of the map (%.3g), so some matches are wrong",
+        result.cost_after, result.cost_of_map);
   }
   const double gain = 1.0 - result.cost_after / result.cost_before;
   if (!(gain >= settings.min_gain) || !(result.gain_sigmas >= kMinSigmas)) {
-    return "held-out pairs fit no better with the camera found: their cost " +
-           std::string(gain < 0.0 ? "rises by " : "falls by ") +
-           Percent(std::abs(gain)) + " (" +
-           Short(std::abs(result.gain_sigmas)) + " standard deviations)";
+    return Format(
+        "held-out pairs fit no better with the camera found: their cost %s by "
+        "%.3g %% (%.3g standard deviations)",
+        gain < 0.0 ? "rises" : "falls", 100.0 * std::abs(gain),
+        std::abs(result.gain_sigmas));
   }
   if (result.truth_after > result.truth_before) {
-    return "the ground truth contradicts it: motions of pairs are wrong by " +
-           Short(1e3 * result.truth_after) + " mm instead of " +
-           Short(1e3 * result.truth_before) + " mm";
+    return Format(
+        "the ground truth contradicts it: motions of pairs are wrong by %.3g "
+        "mm instead of %.3g mm",
+        1e3 * result.truth_after, 1e3 * result.truth_before);
   }
   if (!IsAnotherPassDue(result)) {
     std::string disagree = WhyHalvesDisagree(settings, result);
@@ -264,10 +268,12 @@ std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
                    kMinSigmas * parameter.sigma;
       });
   if (!has_moved) {
-    return "no error found: no determined parameter changes by more than " +
-           Short(kMinSigmas) + " standard deviations";
+    return Format(
+        "no error found: no determined parameter changes by more than %.3g "
+        "standard deviations",
+        kMinSigmas);
   }
-  return ImplausibilityReason(first, found, result);
+  return ImplausibilityReason(first, result);
 }
 
 }  // namespace rgbd_pose

@@ -35,11 +35,10 @@ std::string HalvesInWords(const CalibrationResult& result);
 
 // Explains in words why the camera found is not plausible, or empty.
 std::string ImplausibilityReason(const RgbdCamera& first,
-                                 const RgbdCamera& found,
                                  const CalibrationResult& result);
 
 // Explains why the camera found must not replace the first one, or empty.
-std::string RejectionReason(const RgbdCamera& first, const RgbdCamera& found,
+std::string RejectionReason(const RgbdCamera& first,
                             const CalibrationSettings& settings,
                             const CalibrationResult& result);
 

@@ -24,38 +24,17 @@ struct Displacement {
     rotation = theta.segment<3>(kRotationX) - lag * motion.twist.angular;
     translation = theta.segment<3>(kTranslationX) - lag * motion.twist.linear;
   }
-
-  // How far (px, about) a point on a ray at an inverse depth is displaced.
-  double Flow(double fx, const Eigen::Vector3d& ray, double inverse) const {
-    const Eigen::Vector3d moved = rotation.cross(ray) + inverse * translation;
-    return fx * (moved - moved.z() * ray).head<2>().norm();
-  }
 };
-
-// Looks up a depth again in an image in which a displacement has been undone.
-void LookUpAgain(const Frame& frame, const Camera& camera,
-                 const DepthLookupOptions& options, const Displacement& undone,
-                 DepthPixel* pixel) {
-  const Observation o =
-      Observe(frame, camera, pixel->u, pixel->v, 1.0, options);
-  MeasuredInverseDepth updated =
-      MeasuredAt(frame, camera, o, {pixel->u, pixel->v}, options.noise);
-  updated.undone_rotation = undone.rotation;
-  updated.undone_translation = undone.translation;
-  // Without a valid depth, a landmark keeps its value as the initial guess.
-  if (updated.inverse_sigma == 0.0) updated.value = pixel->depth.value;
-  pixel->depth = updated;
-}
-
-constexpr int kReach = 3;  // grid points on each side
-constexpr int kWindowSide = 2 * kReach + 1;
 
 // Limit for the distance of a pixel from the plane: this many sigmas, or this
 // share of the depth, which tolerates a curved surface.
 constexpr double kMaxSigmas = 3.0;
 constexpr double kMaxBulge = 0.01;
 
-// The number of pixels, out of 49, that must be valid and lie on the plane.
+// A plane is fitted to 7 x 7 pixels; this many of them must have a depth and
+// lie on it.
+constexpr int kReach = 3;
+constexpr int kNumPixels = (2 * kReach + 1) * (2 * kReach + 1);
 constexpr int kMinOnPlane = 44;
 
 // Returns the surface around an image point (px, distorted) as a plane m . X =
@@ -75,19 +54,21 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
       row >= frame.depth.rows - border) {
     return Eigen::Vector3d::Zero();
   }
-  double inverse[kWindowSide * kWindowSide];
+  Eigen::Vector3d at[kNumPixels];  // column and row in the grid, 1
+  double inverse[kNumPixels];
+  int count = 0;
   Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
   Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  int count = 0;
-  for (int k = 0; k < kWindowSide * kWindowSide; ++k) {
-    const int i = k / kWindowSide - kReach, j = k % kWindowSide - kReach;
-    const double depth = frame.DepthAt(column + j * stride, row + i * stride);
-    inverse[k] = depth > 0.0 ? 1.0 / depth : 0.0;
-    if (depth == 0.0) continue;
-    const Eigen::Vector3d at(j, i, 1.0);
-    normal += at * at.transpose();
-    right += at * inverse[k];
-    ++count;
+  for (int i = -kReach; i <= kReach; ++i) {
+    for (int j = -kReach; j <= kReach; ++j) {
+      const double depth = frame.DepthAt(column + j * stride, row + i * stride);
+      if (depth == 0.0) continue;
+      at[count] << j, i, 1.0;
+      inverse[count] = 1.0 / depth;
+      normal += at[count] * at[count].transpose();
+      right += at[count] * inverse[count];
+      ++count;
+    }
   }
   if (count < kMinOnPlane) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d fit = normal.ldlt().solve(right);
@@ -97,16 +78,14 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
   const double limit =
       std::max(kMaxSigmas * noise.sigma(1.0 / middle) * middle * middle,
                kMaxBulge * middle);
-  for (int k = 0; k < kWindowSide * kWindowSide; ++k) {
-    const int i = k / kWindowSide - kReach, j = k % kWindowSide - kReach;
-    if (inverse[k] == 0.0) continue;
-    const double plane = fit.dot(Eigen::Vector3d(j, i, 1.0));
-    if (std::abs(inverse[k] - plane) > limit) --count;
+  int on_plane = count;
+  for (int k = 0; k < count; ++k) {
+    if (std::abs(inverse[k] - fit.dot(at[k])) > limit) --on_plane;
   }
-  if (count < kMinOnPlane) return Eigen::Vector3d::Zero();
+  if (on_plane < kMinOnPlane) return Eigen::Vector3d::Zero();
   const Eigen::Vector2d ideal = camera.Undistort({u, v});
   const Eigen::Vector3d ray = camera.Ray(ideal.x(), ideal.y());
-  Eigen::Vector3d plane = Eigen::Vector3d::Zero();
+  Eigen::Vector3d plane;
   plane.head<2>() = camera.ProjectDerivative(ray.head<2>()).transpose() *
                     fit.head<2>() / (stride * middle);
   plane.z() = 1.0 - plane.x() * ray.x() - plane.y() * ray.y();
@@ -128,18 +107,21 @@ bool IsDisplaced(const CalibrationVector& theta) {
 
 double DisplacementPx(const CalibrationViews& views,
                       const CalibrationVector& change) {
+  // Colour is displaced most in its first row.
+  CalibrationVector of_color = CalibrationVector::Zero();
+  of_color[kDepthTime] = 0.5 * change[kColorReadout];
   std::vector<double> all;
   for (const Landmark& landmark : views.landmarks) {
-    const MeasuredInverseDepth& at = landmark.depth;
-    const RowMotion motion = MotionAt(views, landmark.anchor, landmark.v);
-    const double depth =
-        Displacement(change, motion).Flow(views.camera.fx, at.ray, at.value);
-    // Colour is displaced most in its first row.
-    CalibrationVector readout = CalibrationVector::Zero();
-    readout[kDepthTime] = 0.5 * change[kColorReadout];
-    const double color =
-        Displacement(readout, motion).Flow(views.camera.fx, at.ray, at.value);
-    all.push_back(std::max(depth, color));
+    const auto flow = [&](const CalibrationVector& theta) {
+      const Displacement displaced(
+          theta, MotionAt(views, landmark.anchor, landmark.v));
+      const Eigen::Vector3d& ray = landmark.depth.ray;
+      const Eigen::Vector3d moved =
+          displaced.rotation.cross(ray) +
+          landmark.depth.value * displaced.translation;
+      return views.camera.fx * (moved - moved.z() * ray).head<2>().norm();
+    };
+    all.push_back(std::max(flow(change), flow(of_color)));
   }
   return all.empty() ? 0.0 : Median(all);
 }
@@ -148,9 +130,7 @@ void LookUpDepthsAgain(const KeyframeMap& map, const Camera& camera,
                        const OdometrySettings& settings,
                        const CalibrationVector& theta, int threads,
                        CalibrationData* data) {
-  FrontendOptions features = settings.features;
-  features.camera = camera;
-  const DepthLookupOptions options = features.DepthLookup();
+  const DepthLookupOptions options = settings.features.DepthLookup();
   const int num_keyframes = static_cast<int>(data->in_map.size());
   // By keyframe: its own landmarks, and its views of other landmarks.
   std::vector<std::vector<DepthPixel*>> pixels(num_keyframes);
@@ -162,18 +142,27 @@ void LookUpDepthsAgain(const KeyframeMap& map, const Camera& camera,
   }
   ParallelFor(num_keyframes, threads, [&](int k) {
     if (pixels[k].empty()) return;
-    const auto moved_at = [&](double row) {
+    const auto displacement_at = [&](double row) {
       return Displacement(theta, MotionAt(data->views, k, row));
     };
     const auto undo = [&](double row) {
-      const Displacement moved = moved_at(row);
+      const Displacement moved = displacement_at(row);
       return Rigid3d::FromRotationVector(moved.rotation, moved.translation)
           .Inverse();
     };
     Frame frame = map.keyframes[data->in_map[k]].images.Restore();
     frame.depth = DepthWarper(camera).Move(frame, undo).clone();
     for (DepthPixel* pixel : pixels[k]) {
-      LookUpAgain(frame, camera, options, moved_at(pixel->v), pixel);
+      const Displacement undone = displacement_at(pixel->v);
+      const Observation o =
+          Observe(frame, camera, pixel->u, pixel->v, 1.0, options);
+      MeasuredInverseDepth updated =
+          MeasuredAt(frame, camera, o, {pixel->u, pixel->v}, options.noise);
+      updated.undone_rotation = undone.rotation;
+      updated.undone_translation = undone.translation;
+      // Without a valid depth, a landmark keeps its value as initial guess.
+      if (updated.inverse_sigma == 0.0) updated.value = pixel->depth.value;
+      pixel->depth = updated;
     }
   });
 }

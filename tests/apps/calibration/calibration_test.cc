@@ -217,20 +217,20 @@ TEST(CalibrationTest, ASolutionThatIsWorseThanTheMapIsAFailure) {
   result.cost_before = 3.0;
   result.cost_after = 2.0;
   result.gain_sigmas = 5.0;
-  EXPECT_NE(RejectionReason({}, {}, {}, result).find("the solution fails"),
+  EXPECT_NE(RejectionReason({}, {}, result).find("the solution fails"),
             std::string::npos);
 }
 
 TEST(CalibrationTest, ALensThatTurnsOverInTheCornersIsRefused) {
-  RgbdCamera found;
-  found.camera.k1 = -0.9;
-  const std::string why = ImplausibilityReason({}, found, {});
+  CalibrationResult result;
+  result.found.camera.k1 = -0.9;
+  const std::string why = ImplausibilityReason({}, result);
   EXPECT_NE(why.find("not invertible at the image border"), std::string::npos)
       << why;
   // A camera that had this fault before is not refused.
-  EXPECT_EQ(ImplausibilityReason(found, found, {}), "");
-  found.camera.k1 = -0.2;
-  EXPECT_EQ(ImplausibilityReason({}, found, {}), "");
+  EXPECT_EQ(ImplausibilityReason(result.found, result), "");
+  result.found.camera.k1 = -0.2;
+  EXPECT_EQ(ImplausibilityReason({}, result), "");
 }
 
 TEST(CalibrationTest, HalvesOfOneCameraAgree) {
