@@ -3,10 +3,9 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <optional>
+#include <utility>
 
 #include "apps/calibration/calibration_verdict.h"
-#include "apps/calibration/displaced_depths.h"
 #include "core/util/input_error.h"
 #include "costs/calibration/bundle_adjustment.h"
 
@@ -29,106 +28,231 @@ CalibrationVector ThetaOf(const Camera& camera) {
   return theta;
 }
 
-CalibrationVector PriorSigmas(const CalibrationVector& start) {
-  CalibrationVector prior;
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    prior[k] = kCalibrationParameters[k].prior;
-    if (k == kFx || k == kFy) prior[k] *= start[k];
-  }
-  return prior;
-}
-
-// Alternates between solving and measuring the scales of the residuals until
-// the scales converge.
+// Solves and measures the scales of the residuals; again if they changed.
 void SolveWithScales(const BundleAdjustment& problem, const FreeParts& is_free,
-                     int rounds, CalibrationState* state) {
+                     CalibrationState* state) {
+  const double pixel = state->pixel_scale, depth = state->depth_scale;
+  const double cost = problem.Solve(is_free, state);
+  problem.MeasureScales(state);
   constexpr double kSame = 0.02;
-  for (int round = 0; round < rounds; ++round) {
-    const double pixel = state->pixel_scale, depth = state->depth_scale;
-    const double cost = problem.Solve(is_free, state);
-    problem.MeasureScales(state);
-    if (!std::isfinite(cost)) return;
-    if (std::abs(state->pixel_scale / pixel - 1.0) < kSame &&
-        std::abs(state->depth_scale / depth - 1.0) < kSame) {
-      return;
-    }
-  }
+  const bool is_same = std::abs(state->pixel_scale / pixel - 1.0) < kSame &&
+                       std::abs(state->depth_scale / depth - 1.0) < kSame;
+  if (is_same || !std::isfinite(cost)) return;
+  problem.Solve(is_free, state);
+  problem.MeasureScales(state);
 }
 
-// Returns by how many standard deviations the second state fits held-out pairs
-// better; nothing if there are too few of them.
-std::optional<double> GainSigmas(const CalibrationViews& views,
-                                 const CalibrationState& before,
-                                 const CalibrationState& after) {
-  CalibrationResult compared;
-  CompareHeldOut(views, before, views, after, &compared);
-  if (compared.held_out_pairs < 2) return std::nullopt;
-  return compared.gain_sigmas;
-}
-
-// The higher lens coefficients are free only if the held-out pairs improve by
-// at least this many standard deviations. Where these coefficients were wrong,
-// the gain was 12 and 25 standard deviations. Where they were right, but a hand
-// moved unevenly within a frame, the gain was 4 to 7.
-constexpr double kHigherSigmas = 9.0;
-constexpr int kNumHigher = kLensSize - kK3;
-
-// Solves without the higher lens coefficients, then with them, and keeps them
-// if the gain is large enough. Returns which parameters were free.
-FreeParts SolveWithLensAsked(const BundleAdjustment& training,
-                             const CalibrationViews& views,
-                             const FreeParts& asked, int rounds,
-                             CalibrationState* state) {
-  FreeParts is_free = asked;
-  for (int k = kK3; k < kLensSize; ++k) is_free[k] = false;
-  SolveWithScales(training, is_free, rounds, state);
-  if (is_free == asked) return is_free;
-  CalibrationState higher = *state;
-  SolveWithScales(training, asked, rounds, &higher);
-  if (GainSigmas(views, *state, higher).value_or(0.0) < kHigherSigmas) {
-    return is_free;
-  }
-  *state = higher;
-  return asked;
-}
-
-// Parameters that are determined together, the best determined groups first.
-struct Group {
-  int first, size;
-};
-constexpr Group kGroups[] = {
-    {kFx, 2},        {kK3, kNumHigher},  {kK1, 2},
-    {kCx, 2},        {kDepthFactor, 1},  {kInverseDepth, 1},
-    {kRotationX, 6}, {kColorReadout, 2}, {kDepthTime, 1},
+// Parameters that are determined together, the best determined groups first:
+// the first one of each and their number.
+constexpr std::pair<int, int> kGroups[] = {
+    {kFx, 2},        {kK3, kLensSize - kK3}, {kK1, 2},
+    {kCx, 2},        {kDepthFactor, 1},      {kInverseDepth, 1},
+    {kRotationX, 6}, {kColorReadout, 2},     {kDepthTime, 1},
 };
 
-// Resets parameters that the held-out pairs do not need. Parameters that
-// compensate each other, or something other than the camera, do not improve the
-// fit of these pairs. `spread` is the factor by which errors may exceed the
-// scatter of the pairs.
-void ResetUnneeded(const CalibrationViews& views, const CalibrationPrior& prior,
-                   const CalibrationVector& start, double spread,
-                   FreeParts* is_free, CalibrationState* state) {
-  constexpr int kNearby = 5;  // iterations; few, as the start is a solution
-  const BundleAdjustment training(views, prior, true, kNearby);
-  CalibrationState best = *state;
-  for (const Group& group : kGroups) {
-    FreeParts fewer = *is_free;
-    CalibrationState simpler = *state;
-    for (int k = group.first; k < group.first + group.size; ++k) {
-      fewer[k] = false;
-      simpler.theta[k] = start[k];
+// If the halves differ by more than this times their error bars, they
+// contradict each other.
+constexpr double kMaxSpread = 4.0;
+
+// The steps of Calibrate and what they share.
+struct CalibrationSteps {
+  // As given to Calibrate.
+  const KeyframeMap& map;
+  const RgbdCamera& first;
+  const OdometrySettings& odometry;
+  const CalibrationSettings& settings;
+  const int threads;
+
+  CalibrationData data = {};
+  CalibrationVector start = {};  // theta of the first camera
+  CalibrationPrior prior = {};
+  CalibrationViews views_before = {};  // with depths as first looked up
+  CalibrationState before = {};        // the solution with the first camera
+  CalibrationState after = {};         // the solution with free parameters
+  CalibrationVector undone = CalibrationVector::Zero();  // in depths of `data`
+  FreeParts asked = {};                                  // may be free
+  FreeParts needed = {};      // of these: held-out pairs fit better with them
+  FreeParts determined = {};  // of these: better known than from the prior
+  CalibrationResult result = {};
+
+  // The problem without the held-out pairs.
+  BundleAdjustment Training() const { return {data.views, prior, true}; }
+
+  void Collect(const Trajectory& path, const CalibrationScale& scale,
+               const RgbdCamera& known) {
+    result.camera = result.found = first;
+    data = CollectCalibrationData(map, path, odometry, settings.max_views,
+                                  threads);
+    result.scale_from =
+        AddKnownDistances(path, settings.known_length, scale, &data);
+    result.keyframes = static_cast<int>(data.timestamps.size());
+    result.pairs = static_cast<int>(data.pairs.size());
+    result.landmarks = static_cast<int>(data.views.landmarks.size());
+    result.views = static_cast<int>(data.views.views.size());
+    start = ThetaOf(map.camera);
+    prior.mean = ThetaBetween(first, known);
+    asked = FreeParameters(settings.fix, !data.views.distances.empty(),
+                           map.camera.lens_model);
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      prior.sigma[k] = kCalibrationParameters[k].prior;
+      if (k == kFx || k == kFy) prior.sigma[k] *= start[k];
+      CalibratedParameter& parameter = result.parameters[k];
+      parameter.before = parameter.found = start[k];
+      parameter.prior = parameter.sigma = prior.sigma[k];
+      if (asked[k]) parameter.status = Status::kUndetermined;
     }
-    if (fewer == *is_free) continue;
-    SolveWithScales(training, fewer, 1, &simpler);
-    const std::optional<double> gain = GainSigmas(views, simpler, best);
-    if (!gain.has_value()) return;
-    if (*gain >= spread * kMinSigmas) continue;
-    if (*gain < 0.0) best = simpler;
-    *is_free = fewer;
-    *state = simpler;
   }
-}
+
+  void SolveWithFirstCamera() {
+    views_before = data.views;
+    before = Training().Begin(start);
+    Training().MeasureScales(&before);
+    SolveWithScales(Training(), FreeParts{}, &before);
+    result.noise =
+        FitDepthNoise(views_before, before, odometry.features.depth_noise);
+  }
+
+  // Higher lens coefficients are free only if the held-out pairs improve by at
+  // least this many standard deviations (docs/calibration.md).
+  void SolveForAsked() {
+    constexpr double kHigherSigmas = 9.0;
+    needed = asked;
+    for (int k = kK3; k < kLensSize; ++k) needed[k] = false;
+    after = before;
+    SolveWithScales(Training(), needed, &after);
+    if (needed == asked) return;
+    CalibrationState higher = after;
+    SolveWithScales(Training(), asked, &higher);
+    CalibrationResult compared;
+    CompareHeldOut(data.views, after, data.views, higher, &compared);
+    if (compared.gain_sigmas < kHigherSigmas) return;
+    after = higher;
+    needed = asked;
+  }
+
+  // While the solution displaces depth, looks it up again and solves again.
+  void LookUpDisplacedDepths(int max_rounds) {
+    for (int i = 0; i < max_rounds && IsDisplaced(after.theta - undone); ++i) {
+      undone = after.theta;
+      LookUpDepthsAgain(map, ApplyCalibration(first, undone).camera, odometry,
+                        undone, threads, &data);
+      SolveWithScales(Training(), needed, &after);
+    }
+  }
+
+  // Resets parameters that the held-out pairs do not need: parameters that
+  // compensate each other, or something other than the camera, do not improve
+  // the fit of these pairs.
+  void ResetUnneeded() {
+    // Errors may exceed the scatter of pairs as much as those of the halves.
+    const double spread = std::clamp(
+        SpreadOfHalves(SplitHalfConsistency(data.views, after, needed, prior)),
+        1.0, kMaxSpread);
+    constexpr int kNearby = 5;  // iterations; few, as the start is a solution
+    const BundleAdjustment nearby(data.views, prior, true, kNearby);
+    CalibrationState best = after;
+    for (const auto& [begin, size] : kGroups) {
+      FreeParts fewer = needed;
+      CalibrationState simpler = after;
+      for (int k = begin; k < begin + size; ++k) {
+        fewer[k] = false;
+        simpler.theta[k] = start[k];
+      }
+      if (fewer == needed) continue;
+      nearby.Solve(fewer, &simpler);
+      nearby.MeasureScales(&simpler);
+      CalibrationResult compared;
+      CompareHeldOut(data.views, simpler, data.views, best, &compared);
+      if (compared.held_out_pairs < 2) return;
+      if (compared.gain_sigmas >= spread * kMinSigmas) continue;
+      if (compared.gain_sigmas < 0.0) best = simpler;
+      needed = fewer;
+      after = simpler;
+    }
+  }
+
+  // The difference of the halves shows how wide the error bars have to be.
+  void CompareHalves() {
+    result.halves = SplitHalfConsistency(data.views, after, needed, prior);
+    const double spread = SpreadOfHalves(result.halves);
+    result.halves_spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
+    for (HalvesOfParameter& half : result.halves) {
+      half.sigma *= result.halves_spread;
+    }
+  }
+
+  // Takes needed parameters and their error bars from the solution.
+  void TakeParameters(const BundleAdjustment& problem) {
+    const auto variances = problem.Variances(needed, after);
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      if (!needed[k]) continue;
+      CalibratedParameter& parameter = result.parameters[k];
+      parameter.found = after.theta[k];
+      parameter.sigma =
+          variances.has_value()
+              ? std::hypot(result.halves_spread * std::sqrt((*variances)[k]),
+                           CalibrationFloor(k, result.keyframes))
+              : prior.sigma[k];
+    }
+  }
+
+  void FindDetermined() {
+    TakeParameters(Training());
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      CalibratedParameter& parameter = result.parameters[k];
+      determined[k] = needed[k] && parameter.sigma < settings.determined_share *
+                                                         parameter.prior;
+      if (determined[k]) parameter.status = Status::kDetermined;
+    }
+  }
+
+  void ResetUndetermined() {
+    if (determined == needed) return;
+    for (int k = 0; k < kCalibrationSize; ++k) {
+      if (!determined[k]) after.theta[k] = start[k];
+    }
+    std::vector<HalvesOfParameter>& halves = result.halves;
+    halves.erase(std::remove_if(halves.begin(), halves.end(),
+                                [this](const HalvesOfParameter& half) {
+                                  return !determined[half.part];
+                                }),
+                 halves.end());
+    SolveWithScales(Training(), determined, &after);
+  }
+
+  void CompareWithFirstCamera(const Trajectory* ground_truth) {
+    if (ground_truth != nullptr) {
+      result.truth_before = TruthError(data, before, *ground_truth);
+      result.truth_after = TruthError(data, after, *ground_truth);
+    }
+    CalibrationResult with_map_poses;
+    CompareHeldOut(views_before, Training().Begin(start), data.views, after,
+                   &with_map_poses);
+    result.cost_of_map = with_map_poses.cost_before;
+    CompareHeldOut(views_before, before, data.views, after, &result);
+  }
+
+  void SolveWithAllPairs() {
+    const BundleAdjustment all(data.views, prior, false);
+    SolveWithScales(all, determined, &after);
+    TakeParameters(all);
+    result.displacement_px = DisplacementPx(data.views, after.theta - start);
+    result.pixel_before = before.pixel_scale;
+    result.pixel_after = after.pixel_scale;
+    result.depth_before = before.depth_scale;
+    result.depth_after = after.depth_scale;
+    result.found = ApplyCalibration(first, after.theta);
+  }
+
+  void AcceptOrReject() {
+    result.reason = RejectionReason(first, settings, result);
+    if (!result.reason.empty()) return;
+    result.is_accepted = true;
+    result.camera = result.found;
+    result.noise =
+        FitDepthNoise(data.views, after, odometry.features.depth_noise);
+  }
+};
 
 }  // namespace
 
@@ -139,28 +263,9 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                             const CalibrationScale& scale, int threads,
                             const RgbdCamera* known) {
   RequireSound(settings.Check(), "calibration: ");
-  CalibrationResult result;
-  result.camera = result.found = first;
-  CalibrationData data =
-      CollectCalibrationData(map, path, odometry, settings.max_views, threads);
-  result.scale_from =
-      AddKnownDistances(path, settings.known_length, scale, &data);
-  result.keyframes = static_cast<int>(data.timestamps.size());
-  result.pairs = static_cast<int>(data.pairs.size());
-  result.landmarks = static_cast<int>(data.views.landmarks.size());
-  result.views = static_cast<int>(data.views.views.size());
-  const CalibrationVector start = ThetaOf(map.camera);
-  CalibrationPrior prior;
-  prior.mean = ThetaBetween(first, known != nullptr ? *known : first);
-  prior.sigma = PriorSigmas(start);
-  const FreeParts asked = FreeParameters(
-      settings.fix, !data.views.distances.empty(), map.camera.lens_model);
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    CalibratedParameter& parameter = result.parameters[k];
-    parameter.before = parameter.found = start[k];
-    parameter.prior = parameter.sigma = prior.sigma[k];
-    if (asked[k]) parameter.status = Status::kUndetermined;
-  }
+  CalibrationSteps steps{map, first, odometry, settings, threads};
+  CalibrationResult& result = steps.result;
+  steps.Collect(path, scale, known != nullptr ? *known : first);
   constexpr int kMinViews = 100;
   if (result.views < kMinViews) {
     result.reason = "the camera hardly moved: only " +
@@ -168,119 +273,27 @@ CalibrationResult Calibrate(const KeyframeMap& map, const Trajectory& path,
                     std::to_string(result.keyframes) + " keyframes";
     return result;
   }
-
-  CalibrationVector undone = CalibrationVector::Zero();
-  const auto look_up = [&](const CalibrationVector& theta) {
-    undone = theta;
-    LookUpDepthsAgain(map, ApplyCalibration(first, theta).camera, odometry,
-                      theta, threads, &data);
-  };
-
-  // Solve for the training pairs (not held out) with both cameras.
-  constexpr int kRounds = 2;
-  const BundleAdjustment training(data.views, prior, true);
-  CalibrationState before = training.Begin(start);
-  training.MeasureScales(&before);
-  SolveWithScales(training, FreeParts{}, kRounds, &before);
-  CalibrationState after = before;
-  FreeParts is_free =
-      SolveWithLensAsked(training, data.views, asked, kRounds, &after);
-  const CalibrationViews views_before = data.views;
-  constexpr int kMostLookUps = 4;
-  for (int i = 0; i < kMostLookUps && IsDisplaced(after.theta - undone); ++i) {
-    look_up(after.theta);
-    SolveWithScales(training, is_free, kRounds, &after);
-  }
-  result.noise =
-      FitDepthNoise(views_before, before, odometry.features.depth_noise);
-  // The difference of the halves shows how wide the error bars have to be.
-  // Beyond this factor, the halves contradict each other.
-  constexpr double kMaxSpread = 4.0;
-  const double spread_of_all =
-      SpreadOfHalves(SplitHalfConsistency(data.views, after, is_free, prior));
-  ResetUnneeded(data.views, prior, start,
-                std::clamp(spread_of_all, 1.0, kMaxSpread), &is_free, &after);
-  if (IsDisplaced(after.theta - undone)) {
-    look_up(after.theta);
-    SolveWithScales(training, is_free, kRounds, &after);
-  }
-  if (is_free.none()) {
-    result.reason = asked.none() ? "all parameters are fixed"
-                                 : "no error found: held-out pairs fit no "
-                                   "better with another camera";
+  steps.SolveWithFirstCamera();
+  steps.SolveForAsked();
+  steps.LookUpDisplacedDepths(/*max_rounds=*/4);
+  steps.ResetUnneeded();
+  steps.LookUpDisplacedDepths(/*max_rounds=*/1);
+  if (steps.needed.none()) {
+    result.reason = steps.asked.none() ? "all parameters are fixed"
+                                       : "no error found: held-out pairs fit "
+                                         "no better with another camera";
     return result;
   }
-  result.halves = SplitHalfConsistency(data.views, after, is_free, prior);
-  const double spread = SpreadOfHalves(result.halves);
-  result.halves_spread = spread > kMaxSpread ? 1.0 : std::max(1.0, spread);
-  for (HalvesOfParameter& half : result.halves) {
-    half.sigma *= result.halves_spread;
-  }
-  const FreeParts needed = is_free;
-  const auto judge = [&](const BundleAdjustment& problem,
-                         const CalibrationState& state) {
-    const auto variances = problem.Variances(needed, state);
-    for (int k = 0; k < kCalibrationSize; ++k) {
-      if (!needed[k]) continue;
-      CalibratedParameter& parameter = result.parameters[k];
-      parameter.found = state.theta[k];
-      parameter.sigma =
-          variances.has_value()
-              ? std::hypot(result.halves_spread * std::sqrt((*variances)[k]),
-                           CalibrationFloor(k, result.keyframes))
-              : prior.sigma[k];
-    }
-  };
-  judge(training, after);
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    CalibratedParameter& parameter = result.parameters[k];
-    is_free[k] = needed[k] &&
-                 parameter.sigma < settings.determined_share * parameter.prior;
-    if (is_free[k]) parameter.status = Status::kDetermined;
-  }
-  if (is_free.none()) {
+  steps.CompareHalves();
+  steps.FindDetermined();
+  if (steps.determined.none()) {
     result.reason = "the recording determines none of the camera's parameters";
     return result;
   }
-  if (is_free != needed) {
-    // The other parameters keep their start values.
-    for (int k = 0; k < kCalibrationSize; ++k) {
-      if (!is_free[k]) after.theta[k] = start[k];
-    }
-    std::vector<HalvesOfParameter> halves;
-    for (const HalvesOfParameter& half : result.halves) {
-      if (is_free[half.part]) halves.push_back(half);
-    }
-    result.halves = halves;
-    SolveWithScales(training, is_free, kRounds, &after);
-  }
-  if (scale.ground_truth != nullptr) {
-    result.truth_before = TruthError(data, before, *scale.ground_truth);
-    result.truth_after = TruthError(data, after, *scale.ground_truth);
-  }
-  CalibrationResult with_map_poses;
-  CompareHeldOut(views_before, training.Begin(start), data.views, after,
-                 &with_map_poses);
-  result.cost_of_map = with_map_poses.cost_before;
-  CompareHeldOut(views_before, before, data.views, after, &result);
-
-  // Finally solve with all pairs.
-  const BundleAdjustment all(data.views, prior, false);
-  CalibrationState found = after;
-  SolveWithScales(all, is_free, kRounds, &found);
-  judge(all, found);
-  result.displacement_px = DisplacementPx(data.views, found.theta - start);
-  result.pixel_before = before.pixel_scale;
-  result.pixel_after = found.pixel_scale;
-  result.depth_before = before.depth_scale;
-  result.depth_after = found.depth_scale;
-  result.found = ApplyCalibration(first, found.theta);
-  result.reason = RejectionReason(first, result.found, settings, result);
-  if (!result.reason.empty()) return result;
-  result.is_accepted = true;
-  result.camera = result.found;
-  result.noise =
-      FitDepthNoise(data.views, found, odometry.features.depth_noise);
+  steps.ResetUndetermined();
+  steps.CompareWithFirstCamera(scale.ground_truth);
+  steps.SolveWithAllPairs();
+  steps.AcceptOrReject();
   return result;
 }
 

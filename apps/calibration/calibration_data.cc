@@ -7,7 +7,6 @@
 #include <set>
 #include <utility>
 
-#include "apps/calibration/displaced_depths.h"
 #include "core/geometry/twist.h"
 #include "core/util/parallel_for.h"
 #include "frontend/features/frontend.h"

@@ -96,11 +96,10 @@ double VarianceShare(const std::vector<Sample>& samples) {
 
 // Weighted least-squares fit of sigma = a + b z^2. A coefficient that is not
 // significant (2 standard deviations) is set to 0.
-void FitSigmas(const std::vector<DepthScatter>& scatter, double relative_error,
-               DepthNoiseFit* fit) {
+void FitSigmas(double relative_error, DepthNoiseFit* fit) {
   Eigen::Matrix2d information = Eigen::Matrix2d::Zero();
   Eigen::Vector2d right = Eigen::Vector2d::Zero();
-  for (const DepthScatter& bin : scatter) {
+  for (const DepthScatter& bin : fit->scatter) {
     const Eigen::Vector2d row(1.0, bin.depth * bin.depth);
     const double weight =
         1.0 / (relative_error * relative_error * bin.sigma * bin.sigma);
@@ -170,7 +169,7 @@ std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
   // The relative error of a median of absolute values is 1.17 / sqrt(n).
   const double in_bin =
       static_cast<double>(samples.size()) / static_cast<double>(bins);
-  FitSigmas(fit.scatter, 1.17 / std::sqrt(in_bin), &fit);
+  FitSigmas(1.17 / std::sqrt(in_bin), &fit);
   return fit;
 }
 

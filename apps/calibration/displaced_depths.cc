@@ -1,11 +1,10 @@
-#include "apps/calibration/displaced_depths.h"
-
 #include <Eigen/Cholesky>
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "apps/calibration/calibration_data.h"
 #include "core/util/parallel_for.h"
 #include "core/util/quantile.h"
 #include "frontend/frame/depth_warper.h"
