@@ -42,7 +42,9 @@ class LandmarkMatcher {
     }
     for (const auto& [to, is_held_out] : neighbours) {
       const PreparedFrame& there = Images(to);
-      frontend_->Match(*features, there, Pose(to).Inverse() * Pose(anchor),
+      frontend_->Match(*features, there,
+                       KeyframeAt(to).world_from_cam.Inverse() *
+                           KeyframeAt(anchor).world_from_cam,
                        &matches_);
       for (size_t i = 0; i < matches_.matches.size(); ++i) {
         SeenLandmark& seen = found[matches_.features[i]];
@@ -65,8 +67,8 @@ class LandmarkMatcher {
   }
 
  private:
-  const Rigid3d& Pose(int at) const {
-    return map_.keyframes[chosen_[at]].world_from_cam;
+  const Keyframe& KeyframeAt(int at) const {
+    return map_.keyframes[chosen_[at]];
   }
 
   void Measure(const Frame& frame, const Observation& o,
@@ -82,19 +84,16 @@ class LandmarkMatcher {
   // Decodes images once for consecutive neighbours.
   const PreparedFrame& Images(int at) {
     constexpr size_t kMost = 40;
-    const auto found = images_.find(at);
-    if (found != images_.end()) return found->second;
-    if (images_.size() >= kMost) {
+    const auto [place, is_new] = images_.try_emplace(at);
+    if (is_new) place->second = PreparedFrame(KeyframeAt(at).images.Restore());
+    if (images_.size() > kMost) {
       // The keyframe farthest in time is needed last.
       images_.erase(std::max_element(
           images_.begin(), images_.end(), [at](const auto& a, const auto& b) {
             return std::abs(a.first - at) < std::abs(b.first - at);
           }));
     }
-    return images_
-        .emplace(at,
-                 PreparedFrame(map_.keyframes[chosen_[at]].images.Restore()))
-        .first->second;
+    return place->second;
   }
 
   const KeyframeMap& map_;
@@ -104,10 +103,9 @@ class LandmarkMatcher {
   FeatureMatches matches_;
 };
 
-// The velocity (zero if unknown) from a smooth path of the camera (world from
-// camera, any world) at the time of one of its frames (s): fourth-order central
-// differences where frames are evenly spaced, else differences of adjacent
-// frames.
+// The velocity (zero if unknown) on a smooth path at the time of one of its
+// frames (s): fourth-order central differences where frames are evenly spaced,
+// else differences of adjacent frames.
 Twist TwistAt(const Trajectory& path, double time) {
   const auto at = std::lower_bound(
       path.begin(), path.end(), time - 1e-4,
@@ -149,35 +147,30 @@ Twist TwistAt(const Trajectory& path, double time) {
   return is_even ? near + (1.0 / 3.0) * (near - difference(first, last)) : near;
 }
 
-// The work grows with the third power of the number of keyframes.
-constexpr size_t kMaxKeyframes = 300;
-
-// One pair in this number is held out for judging the result.
-constexpr int kHoldOut = 5;
-
 // The keyframes of the largest segment, as indices in the map.
 std::vector<int> ChosenKeyframes(const KeyframeMap& map) {
-  std::map<int, std::vector<int>> segments;
+  using TimeAndIndex = std::pair<double, int>;
+  std::map<int, std::vector<TimeAndIndex>> segments;
   for (size_t i = 0; i < map.keyframes.size(); ++i) {
-    segments[map.keyframes[i].segment].push_back(static_cast<int>(i));
+    segments[map.keyframes[i].segment].emplace_back(
+        map.keyframes[i].images.timestamp, i);
   }
-  std::vector<int> largest;
+  std::vector<TimeAndIndex> largest;
   for (const auto& [segment, members] : segments) {
     if (members.size() > largest.size()) largest = members;
   }
-  std::sort(largest.begin(), largest.end(), [&](int a, int b) {
-    return map.keyframes[a].images.timestamp <
-           map.keyframes[b].images.timestamp;
-  });
-  std::vector<int> chosen;
+  std::sort(largest.begin(), largest.end());
+  // The work grows with the third power of the number of keyframes.
+  constexpr size_t kMaxKeyframes = 300;
   const size_t count = std::min(largest.size(), kMaxKeyframes);
+  std::vector<int> chosen;
   for (size_t i = 0; i < count; ++i) {
-    chosen.push_back(largest[i * largest.size() / count]);
+    chosen.push_back(largest[i * largest.size() / count].second);
   }
   return chosen;
 }
 
-// Holds out one pair in kHoldOut, but none that is needed to connect keyframes.
+// Holds out one pair in five, but none that is needed to connect keyframes.
 std::vector<bool> HeldOut(int num_keyframes,
                           const std::vector<std::array<int, 2>>& pairs) {
   std::vector<int> root(num_keyframes);
@@ -190,39 +183,17 @@ std::vector<bool> HeldOut(int num_keyframes,
   std::vector<size_t> spare;
   for (size_t i = 0; i < pairs.size(); ++i) {
     const int a = find(pairs[i][0]), b = find(pairs[i][1]);
-    if (a == b) {
-      spare.push_back(i);
-    } else {
-      root[a] = b;
-    }
+    if (a == b) spare.push_back(i);
+    root[a] = b;
   }
-  // One in kHoldOut of all pairs, if there are enough spare ones.
+  // One in five of all pairs, if there are enough spare ones.
+  constexpr int kHoldOut = 5;
   const double step = std::max(
       1.0, static_cast<double>(spare.size()) * kHoldOut / pairs.size());
   for (double i = 0.0; i < spare.size(); i += step) {
     held_out[spare[static_cast<size_t>(i)]] = true;
   }
   return held_out;
-}
-
-CalibrationData ChoosePairs(const KeyframeMap& map) {
-  CalibrationData result;
-  result.in_map = ChosenKeyframes(map);
-  std::map<int, int> number_of;  // by keyframe id
-  for (size_t i = 0; i < result.in_map.size(); ++i) {
-    number_of[map.keyframes[result.in_map[i]].id] = static_cast<int>(i);
-  }
-  std::set<std::array<int, 2>> pairs;  // their distance, the first keyframe
-  for (const RelativePose& edge : map.edges) {
-    const auto a = number_of.find(edge.ref), b = number_of.find(edge.cur);
-    if (a == number_of.end() || b == number_of.end()) continue;
-    pairs.insert(
-        {std::abs(a->second - b->second), std::min(a->second, b->second)});
-  }
-  for (const auto& [distance, first] : pairs) {
-    result.pairs.push_back({first, first + distance});
-  }
-  return result;
 }
 
 // The landmarks of each keyframe, from up to `max_features` features.
@@ -285,13 +256,26 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
                                        const Trajectory& path,
                                        const OdometrySettings& settings,
                                        int max_views, int threads) {
-  CalibrationData data = ChoosePairs(map);
+  CalibrationData data;
+  data.in_map = ChosenKeyframes(map);
   data.views.camera = map.camera;
+  std::map<int, int> number_of;  // by keyframe id
   for (const int place : data.in_map) {
     const Keyframe& keyframe = map.keyframes[place];
-    data.views.world_from_cam.push_back(keyframe.world_from_cam);
+    number_of[keyframe.id] = static_cast<int>(data.timestamps.size());
     data.timestamps.push_back(keyframe.images.timestamp);
+    data.views.world_from_cam.push_back(keyframe.world_from_cam);
     data.views.twists.push_back(TwistAt(path, keyframe.images.timestamp));
+  }
+  std::set<std::array<int, 2>> pairs;  // their distance, the first keyframe
+  for (const RelativePose& edge : map.edges) {
+    const auto a = number_of.find(edge.ref), b = number_of.find(edge.cur);
+    if (a == number_of.end() || b == number_of.end()) continue;
+    pairs.insert(
+        {std::abs(a->second - b->second), std::min(a->second, b->second)});
+  }
+  for (const auto& [distance, first] : pairs) {
+    data.pairs.push_back({first, first + distance});
   }
   // The number of features per keyframe is chosen for the requested number of
   // views, since only a share of the features is found again, but it does not

@@ -122,21 +122,21 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
     if (pass > 1) known = all.result.camera;
     Sequence opened = OpenSequence(part, /*keep_color=*/false,
                                    known.has_value() ? &*known : nullptr);
-    const auto frames = opened.source->timestamps().size();
+    const int frames = static_cast<int>(opened.source->timestamps().size());
     RequireSound(settings.Check(), "calibration: ");
     const RgbdCamera camera = opened.source->camera();
     SlamRun run(with_shutter, slam, camera.camera, opened.inputs);
     int done = 0;
     all.stopped = TrackAll(opened.source.get(), threads, {&run},
                            [&](const Frame& /*frame*/) {
-                             if (on_frame)
-                               on_frame(pass, ++done, static_cast<int>(frames));
+                             if (on_frame) on_frame(pass, ++done, frames);
                              return true;
                            });
     all.damaged = static_cast<int>(run.damaged().size());
-    all.left_out = DroppedFrames(*opened.source, run.damaged());
-    all.left_out.insert(all.left_out.begin(), opened.remarks.begin(),
-                        opened.remarks.end());
+    all.left_out = opened.remarks;
+    for (const auto& line : DroppedFrames(*opened.source, run.damaged())) {
+      all.left_out.push_back(line);
+    }
     const Trajectory* const truth = opened.GroundTruth();
     run.Finish(truth);
     const CalibrationResult result = Calibrate(
@@ -144,14 +144,13 @@ RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
         settings, {truth, opened.inputs.motion_guess.get()}, threads,
         pass > 1 ? &first : nullptr);
     all.path = run.slam().Path();
-    bool goes_on;
     if (pass == 1) {
       first = camera;
       all.result = result;
-      goes_on = result.is_accepted;
-    } else {
-      goes_on = TakeUp(first, settings, result, &all.result);
     }
+    const bool goes_on = pass == 1
+                             ? result.is_accepted
+                             : TakeUp(first, settings, result, &all.result);
     // A live camera cannot be read again.
     if (!goes_on || frames == 0 || pass >= settings.max_passes ||
         !IsAnotherPassDue(result)) {

@@ -30,9 +30,7 @@ std::string CalibrationSettings::Check() const {
   if (!(determined_share > 0.0 && determined_share <= 1.0)) {
     return "determined_share must be above 0 and at most 1";
   }
-  if (!(min_gain >= 0.0)) {
-    return "min_gain must not be negative";
-  }
+  if (!(min_gain >= 0.0)) return "min_gain must not be negative";
   if (!(max_halves_sigmas > 0.0)) return "max_halves_sigmas must be positive";
   if (!(max_rate >= 0.0)) return "max_rate must not be negative";
   if (max_passes < 1 || max_passes > 10) return "max_passes must be 1 to 10";

@@ -44,8 +44,8 @@ double CostOf(const CalibrationViews& views, const Landmark& landmark,
               const std::vector<MotionDerivatives>& poses,
               Eigen::Vector2d* error) {
   const LandmarkData data = DataOf(views, landmark, view, scales);
-  const RotationAndCenter<double>& anchor = poses[landmark.anchor];
-  const RotationAndCenter<double>& there = poses[view.keyframe];
+  const MotionDerivatives& anchor = poses[landmark.anchor];
+  const MotionDerivatives& there = poses[view.keyframe];
   const double square = kLandmarkLossWidth * kLandmarkLossWidth;
   LandmarkPixel::Residual<double>(anchor, there, inverse_depth,
                                   state.theta.data(), data, error->data());

@@ -30,8 +30,7 @@ struct Displacement {
 constexpr double kMaxSigmas = 3.0;
 constexpr double kMaxBulge = 0.01;
 
-// A plane is fitted to 7 x 7 pixels; this many of them must have a depth and
-// lie on it.
+// The plane is fitted to 7 x 7 pixels. This many of them must be on it.
 constexpr int kReach = 3;
 constexpr int kNumPixels = (2 * kReach + 1) * (2 * kReach + 1);
 constexpr int kMinOnPlane = 44;
@@ -39,13 +38,13 @@ constexpr int kMinOnPlane = 44;
 // Returns the surface around an image point (px, distorted) as a plane m . X =
 // z, where X is a point on the plane and z is the depth at the image point.
 // Thus m . r = 1 for the ray r = (a, b, 1) of the image point. Returns zero if
-// there is no plane. The plane is fitted to the inverse depths of 49 pixels,
-// which are up to 6 px away in a VGA image; with fewer or nearer pixels, the
-// slope is mostly noise.
-Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
-                            double v, const DepthNoiseModel& noise) {
-  const int column = static_cast<int>(std::lround(u));
-  const int row = static_cast<int>(std::lround(v));
+// there is no plane. It is fitted to inverse depths of pixels that are up to 6
+// px away in a VGA image; with nearer or fewer, its slope is mostly noise.
+Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera,
+                            const Eigen::Vector2d& pixel,
+                            const DepthNoiseModel& noise) {
+  const int column = static_cast<int>(std::lround(pixel.x()));
+  const int row = static_cast<int>(std::lround(pixel.y()));
   // The spacing corresponds to 2 px of a VGA image.
   const int stride = std::max(1, frame.depth.cols / 320);
   const int border = kReach * stride;
@@ -82,8 +81,7 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera, double u,
     if (std::abs(inverse[k] - fit.dot(at[k])) > limit) --on_plane;
   }
   if (on_plane < kMinOnPlane) return Eigen::Vector3d::Zero();
-  const Eigen::Vector2d ideal = camera.Undistort({u, v});
-  const Eigen::Vector3d ray = camera.Ray(ideal.x(), ideal.y());
+  const Eigen::Vector3d ray = camera.Unproject(pixel, 1.0);
   Eigen::Vector3d plane;
   plane.head<2>() = camera.ProjectDerivative(ray.head<2>()).transpose() *
                     fit.head<2>() / (stride * middle);
@@ -173,7 +171,7 @@ MeasuredInverseDepth MeasuredAt(const Frame& frame, const Camera& camera,
   MeasuredInverseDepth depth;
   if (o.depth <= 0.0) return depth;
   depth.value = 1.0 / o.depth;
-  depth.plane = LookUpPlane(frame, camera, pixel.x(), pixel.y(), noise);
+  depth.plane = LookUpPlane(frame, camera, pixel, noise);
   if (depth.plane.isZero(0.0)) return depth;
   depth.ray = camera.Ray(o.u, o.v);
   depth.inverse_sigma = o.depth * o.depth / o.sigma_depth;
@@ -181,9 +179,8 @@ MeasuredInverseDepth MeasuredAt(const Frame& frame, const Camera& camera,
   const double at_middle =
       frame.DepthAt(static_cast<int>(middle.x()), static_cast<int>(middle.y()));
   if (at_middle > 0.0) {
-    const Eigen::Vector2d ideal = camera.Undistort(middle);
     depth.pixel_value = 1.0 / at_middle;
-    depth.pixel_ray = camera.Ray(ideal.x(), ideal.y());
+    depth.pixel_ray = camera.Unproject(middle, 1.0);
   }
   return depth;
 }
