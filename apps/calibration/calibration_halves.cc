@@ -20,41 +20,40 @@ struct Part {
 Part PartOf(const CalibrationViews& all, const CalibrationState& found,
             int begin, int end) {
   Part part;
-  part.views.camera = all.camera;
+  CalibrationViews& views = part.views;
+  views.camera = all.camera;
+  views.world_from_cam.assign(found.world_from_cam.begin() + begin,
+                              found.world_from_cam.begin() + end);
+  views.twists.assign(all.twists.begin() + begin, all.twists.begin() + end);
   part.state.theta = found.theta;
   part.state.pixel_scale = found.pixel_scale;
   part.state.depth_scale = found.depth_scale;
-  part.views.world_from_cam.assign(found.world_from_cam.begin() + begin,
-                                   found.world_from_cam.begin() + end);
-  part.state.world_from_cam = part.views.world_from_cam;
-  part.views.twists.assign(all.twists.begin() + begin,
-                           all.twists.begin() + end);
+  part.state.world_from_cam = views.world_from_cam;
   const auto is_in = [&](int keyframe) {
     return keyframe >= begin && keyframe < end;
   };
   for (size_t i = 0; i < all.landmarks.size(); ++i) {
     Landmark landmark = all.landmarks[i];
     if (!is_in(landmark.anchor)) continue;
-    const int first = landmark.first_view, count = landmark.num_views;
     landmark.anchor -= begin;
-    landmark.first_view = static_cast<int>(part.views.views.size());
-    for (int k = first; k < first + count; ++k) {
-      LandmarkView view = all.views[k];
+    landmark.first_view = static_cast<int>(views.views.size());
+    landmark.num_views = 0;
+    for (int k = 0; k < all.landmarks[i].num_views; ++k) {
+      LandmarkView view = all.views[all.landmarks[i].first_view + k];
       if (!is_in(view.keyframe)) continue;
       view.keyframe -= begin;
-      part.views.views.push_back(view);
+      views.views.push_back(view);
+      ++landmark.num_views;
     }
-    landmark.num_views =
-        static_cast<int>(part.views.views.size()) - landmark.first_view;
     if (landmark.num_views == 0) continue;
-    part.views.landmarks.push_back(landmark);
+    views.landmarks.push_back(landmark);
     part.state.inverse_depths.push_back(found.inverse_depths[i]);
   }
   for (KnownDistance known : all.distances) {
     if (!is_in(known.a) || !is_in(known.b)) continue;
     known.a -= begin;
     known.b -= begin;
-    part.views.distances.push_back(known);
+    views.distances.push_back(known);
   }
   return part;
 }

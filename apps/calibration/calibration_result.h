@@ -88,11 +88,10 @@ struct CalibrationResult {
   int landmarks = 0;
   int views = 0;  // of the landmarks
 
-  // Mean robust cost of a held-out view with the first camera and with the
-  // camera found, and the difference of both in standard deviations.
+  // Mean robust cost of a held-out view.
   double cost_before = 0.0;  // with the first camera
   double cost_after = 0.0;   // with the camera found
-  double gain_sigmas = 0.0;  // cost reduction
+  double gain_sigmas = 0.0;  // their difference in standard deviations
   double cost_of_map = 0.0;  // with the first camera and the poses of the map
 
   // Spread of the residuals, in px and in sigmas of the depth noise.
@@ -113,8 +112,8 @@ struct CalibrationResult {
   // The halves' estimates of the determined parameters; may be empty.
   std::vector<HalvesOfParameter> halves;
 
-  // Factor by which error bars are widened beyond what the residuals imply,
-  // because the halves differ by more than these error bars explain.
+  // Factor by which error bars are widened, because the halves differ by more
+  // than the residuals explain.
   double halves_spread = 1.0;
 
   // How far depth, or the first row of colour, turned out to be displaced, px

@@ -60,17 +60,15 @@ KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
 
 // Connects each keyframe to the first distant one, or to the farthest one.
 // `distance(from, to)` returns the distance (m) of the camera positions at two
-// times (s), 0 if it is unknown.
+// times (s), 0 if it is unknown. Returns whether any are known.
 template <typename Distance>
-std::vector<KnownDistance> Between(const CalibrationData& data,
-                                   const Distance& distance, double sigma,
-                                   double share) {
-  std::vector<KnownDistance> distances;
-  const int n = static_cast<int>(data.timestamps.size());
+bool Connect(const Distance& distance, double sigma, double share,
+             CalibrationData* data) {
+  const int n = static_cast<int>(data->timestamps.size());
   for (int i = 0; i < n; ++i) {
     KnownDistance farthest;
     for (int k = i + 1; k < n && farthest.metres < kFarApart; ++k) {
-      const double metres = distance(data.timestamps[i], data.timestamps[k]);
+      const double metres = distance(data->timestamps[i], data->timestamps[k]);
       if (metres <= farthest.metres) continue;
       farthest.a = i;
       farthest.b = k;
@@ -78,9 +76,11 @@ std::vector<KnownDistance> Between(const CalibrationData& data,
       farthest.sigma = std::hypot(sigma, share * metres);
     }
     constexpr double kMinDistance = 0.05;  // m
-    if (farthest.metres > kMinDistance) distances.push_back(farthest);
+    if (farthest.metres > kMinDistance) {
+      data->views.distances.push_back(farthest);
+    }
   }
-  return distances;
+  return !data->views.distances.empty();
 }
 
 std::optional<Eigen::Vector3d> PlaceOf(const Trajectory& truth, double time) {
@@ -107,31 +107,26 @@ std::string AddKnownDistances(const Trajectory& path,
                               const std::string& known_length,
                               const CalibrationScale& scale,
                               CalibrationData* data) {
-  std::vector<KnownDistance>& distances = data->views.distances;
   if (!known_length.empty()) {
-    distances.push_back(FromText(*data, path, known_length));
+    data->views.distances.push_back(FromText(*data, path, known_length));
     return "the known length";
   }
-  if (scale.ground_truth != nullptr) {
-    distances = Between(
-        *data,
-        [&](double from, double to) {
-          const auto a = PlaceOf(*scale.ground_truth, from);
-          const auto b = PlaceOf(*scale.ground_truth, to);
-          return a.has_value() && b.has_value() ? (*a - *b).norm() : 0.0;
-        },
-        kTruthSigma, 0.0);
-    if (!distances.empty()) return "the ground truth";
+  const auto true_distance = [&](double from, double to) {
+    const auto a = PlaceOf(*scale.ground_truth, from);
+    const auto b = PlaceOf(*scale.ground_truth, to);
+    return a.has_value() && b.has_value() ? (*a - *b).norm() : 0.0;
+  };
+  if (scale.ground_truth != nullptr &&
+      Connect(true_distance, kTruthSigma, 0.0, data)) {
+    return "the ground truth";
   }
-  if (scale.motion_guess != nullptr) {
-    distances = Between(
-        *data,
-        [&](double from, double to) {
-          const auto moved = MotionAlong(*scale.motion_guess, from, to);
-          return moved.has_value() ? moved->translation.norm() : 0.0;
-        },
-        kGuessSigma, kGuessShare);
-    if (!distances.empty()) return "the motion guess";
+  const auto guessed_distance = [&](double from, double to) {
+    const auto moved = MotionAlong(*scale.motion_guess, from, to);
+    return moved.has_value() ? moved->translation.norm() : 0.0;
+  };
+  if (scale.motion_guess != nullptr &&
+      Connect(guessed_distance, kGuessSigma, kGuessShare, data)) {
+    return "the motion guess";
   }
   return "";
 }

@@ -48,10 +48,7 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera,
   // The spacing corresponds to 2 px of a VGA image.
   const int stride = std::max(1, frame.depth.cols / 320);
   const int border = kReach * stride;
-  if (column < border || row < border || column >= frame.depth.cols - border ||
-      row >= frame.depth.rows - border) {
-    return Eigen::Vector3d::Zero();
-  }
+  if (!camera.Contains({column, row}, border)) return Eigen::Vector3d::Zero();
   Eigen::Vector3d at[kNumPixels];  // column and row in the grid, 1
   double inverse[kNumPixels];
   int count = 0;
@@ -68,7 +65,6 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera,
       ++count;
     }
   }
-  if (count < kMinOnPlane) return Eigen::Vector3d::Zero();
   const Eigen::Vector3d fit = normal.ldlt().solve(right);
   const double middle = fit[2];
   if (!(middle > 0.0)) return Eigen::Vector3d::Zero();
