@@ -211,12 +211,11 @@ struct CalibrationSteps {
     for (int k = 0; k < kCalibrationSize; ++k) {
       if (!determined[k]) after.theta[k] = start[k];
     }
-    std::vector<HalvesOfParameter>& halves = result.halves;
-    halves.erase(std::remove_if(halves.begin(), halves.end(),
-                                [this](const HalvesOfParameter& half) {
-                                  return !determined[half.part];
-                                }),
-                 halves.end());
+    std::vector<HalvesOfParameter> halves;
+    for (const HalvesOfParameter& half : result.halves) {
+      if (determined[half.part]) halves.push_back(half);
+    }
+    result.halves = halves;
     SolveWithScales(Training(), determined, &after);
   }
 

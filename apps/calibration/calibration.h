@@ -34,9 +34,8 @@ struct CalibrationSettings {
   // separately, in standard deviations.
   double max_halves_sigmas = 4.0;
 
-  // If a recording has more frames per second than this, only every second one
-  // or fewer are used, because near frames add little information. Ignored if a
-  // part of the recording was requested. 0: all frames are used.
+  // The maximum number of frames per second, as near frames add little
+  // information; 0: all. Ignored if a part of the recording was requested.
   double max_rate = 20.0;
 
   // The maximum number of passes (mapping and calibration).

@@ -58,12 +58,11 @@ class LandmarkMatcher {
         seen.views.push_back(view);
       }
     }
-    found.erase(std::remove_if(found.begin(), found.end(),
-                               [](const SeenLandmark& seen) {
-                                 return seen.views.empty();
-                               }),
-                found.end());
-    return found;
+    std::vector<SeenLandmark> seen;
+    for (SeenLandmark& landmark : found) {
+      if (!landmark.views.empty()) seen.push_back(std::move(landmark));
+    }
+    return seen;
   }
 
  private:
@@ -122,14 +121,14 @@ Twist TwistAt(const Trajectory& path, double time) {
   };
   const Place before = next(at, -1), after = next(at, 1);
   if (before == after) return {};
-  const auto interval = [](Place from, Place to) {
-    return to->timestamp - from->timestamp;
-  };
-  const auto difference = [&](Place from, Place to) {
+  const Place first = next(before, -1), last = next(after, 1);
+  const double near = after->timestamp - before->timestamp;
+  const double far = last->timestamp - first->timestamp;
+  const auto difference = [&](Place from, Place to, double interval) {
     // A pose of the path, expressed in the camera frame of the given time.
     const auto seen = [&](Place there) {
       return TwistOf(there->world_from_cam.Inverse() * at->world_from_cam,
-                     interval(from, to));
+                     interval);
     };
     return seen(to) - seen(from);
   };
@@ -137,14 +136,13 @@ Twist TwistAt(const Trajectory& path, double time) {
   const auto lean = [&](Place from, Place to) {
     return std::abs(0.5 * (from->timestamp + to->timestamp) - at->timestamp);
   };
-  const Place first = next(before, -1), last = next(after, 1);
-  const Twist near = difference(before, after);
-  const double step = interval(before, after);
   constexpr double kEven = 0.05;
   const bool is_even =
-      std::abs(interval(first, last) / step - 2.0) < kEven &&
-      std::max(lean(before, after), lean(first, last)) < kEven * step;
-  return is_even ? near + (1.0 / 3.0) * (near - difference(first, last)) : near;
+      std::abs(far / near - 2.0) < kEven &&
+      std::max(lean(before, after), lean(first, last)) < kEven * near;
+  const Twist twist = difference(before, after, near);
+  if (!is_even) return twist;
+  return twist + (1.0 / 3.0) * (twist - difference(first, last, far));
 }
 
 // The keyframes of the largest segment, as indices in the map.

@@ -5,10 +5,6 @@
 namespace rgbd_pose {
 namespace {
 
-// A smaller part cannot be calibrated.
-constexpr int kMinKeyframes = 3;
-constexpr size_t kMinViews = 200;
-
 // The views of consecutive keyframes and their solution.
 struct Part {
   CalibrationViews views;
@@ -73,6 +69,9 @@ std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
     const FreeParts& is_free, const CalibrationPrior& prior) {
   const int all = static_cast<int>(views.world_from_cam.size());
+  // Smaller parts cannot be calibrated.
+  constexpr int kMinKeyframes = 3;
+  constexpr size_t kMinViews = 200;
   Part halves[2];
   // One half after the other: in parallel, the order of additions would change.
   for (int half = 0; half < 2; ++half) {

@@ -97,12 +97,10 @@ Trajectory SmoothPath(const std::vector<SlamFrame>& frames) {
   return path;
 }
 
-RecordingCalibration CalibrateRecording(const SequenceSettings& sequence,
-                                        const OdometrySettings& odometry,
-                                        const SlamSettings& slam,
-                                        const CalibrationSettings& settings,
-                                        int threads,
-                                        const CalibrationProgress& on_frame) {
+RecordingCalibration CalibrateRecording(
+    const SequenceSettings& sequence, const OdometrySettings& odometry,
+    const SlamSettings& slam, const CalibrationSettings& settings, int threads,
+    const std::function<void(int pass, int done, int all)>& on_frame) {
   RecordingCalibration all;
   RgbdCamera first;
   SequenceSettings part = sequence;

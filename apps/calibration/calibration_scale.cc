@@ -11,16 +11,6 @@
 namespace rgbd_pose {
 namespace {
 
-// Standard deviations of a length measured by hand, a ground-truth distance and
-// a motion guess, for example from wheels (plus a share of the distance).
-constexpr double kLengthSigma = 0.005;  // m
-constexpr double kTruthSigma = 0.005;   // m
-constexpr double kGuessSigma = 0.01;    // m
-constexpr double kGuessShare = 0.02;
-
-// Keyframes at this distance (m) determine the scale well; nearer ones less so.
-constexpr double kFarApart = 0.5;
-
 KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
                        const std::string& text) {
   KnownDistance known;
@@ -54,16 +44,20 @@ KnownDistance FromText(const CalibrationData& data, const Trajectory& path,
     throw InputError(
         "known_length: the camera hardly moved between the two times");
   }
-  known.sigma = kLengthSigma;
+  known.sigma = 0.005;  // m, of a length measured by hand
   return known;
 }
 
 // Connects each keyframe to the first distant one, or to the farthest one.
 // `distance(from, to)` returns the distance (m) of the camera positions at two
-// times (s), 0 if it is unknown. Returns whether any are known.
+// times (s), 0 if it is unknown. Its standard deviation is `sigma` (m) and a
+// `share` of it. Returns whether any distances are known.
 template <typename Distance>
 bool Connect(const Distance& distance, double sigma, double share,
              CalibrationData* data) {
+  // Keyframes at this distance determine the scale well, nearer ones less so.
+  constexpr double kFarApart = 0.5;      // m
+  constexpr double kMinDistance = 0.05;  // m
   const int n = static_cast<int>(data->timestamps.size());
   for (int i = 0; i < n; ++i) {
     KnownDistance farthest;
@@ -75,7 +69,6 @@ bool Connect(const Distance& distance, double sigma, double share,
       farthest.metres = metres;
       farthest.sigma = std::hypot(sigma, share * metres);
     }
-    constexpr double kMinDistance = 0.05;  // m
     if (farthest.metres > kMinDistance) {
       data->views.distances.push_back(farthest);
     }
@@ -117,7 +110,7 @@ std::string AddKnownDistances(const Trajectory& path,
     return a.has_value() && b.has_value() ? (*a - *b).norm() : 0.0;
   };
   if (scale.ground_truth != nullptr &&
-      Connect(true_distance, kTruthSigma, 0.0, data)) {
+      Connect(true_distance, /*sigma=*/0.005, /*share=*/0.0, data)) {
     return "the ground truth";
   }
   const auto guessed_distance = [&](double from, double to) {
@@ -125,7 +118,7 @@ std::string AddKnownDistances(const Trajectory& path,
     return moved.has_value() ? moved->translation.norm() : 0.0;
   };
   if (scale.motion_guess != nullptr &&
-      Connect(guessed_distance, kGuessSigma, kGuessShare, data)) {
+      Connect(guessed_distance, /*sigma=*/0.01, /*share=*/0.02, data)) {
     return "the motion guess";
   }
   return "";

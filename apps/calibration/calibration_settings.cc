@@ -6,26 +6,6 @@
 #include "core/util/named_values.h"
 
 namespace rgbd_pose {
-namespace {
-
-std::vector<Named<std::vector<int>>> PartNames() {
-  std::vector<Named<std::vector<int>>> names = {
-      {"focal", {kFx, kFy}},
-      {"centre", {kCx, kCy}},
-      {"distortion", {kK1, kK2, kK3, kK4, kP1, kP2}},
-      {"readouts", {kColorReadout, kDepthReadout}},
-      {"registration",
-       {kRotationX, kRotationY, kRotationZ, kTranslationX, kTranslationY,
-        kTranslationZ}},
-  };
-  for (int k = 0; k < kCalibrationSize; ++k) {
-    names.push_back({kCalibrationParameters[k].name, {k}});
-  }
-  return names;
-}
-
-}  // namespace
-
 std::string CalibrationSettings::Check() const {
   if (!(determined_share > 0.0 && determined_share <= 1.0)) {
     return "determined_share must be above 0 and at most 1";
@@ -83,12 +63,23 @@ std::vector<Setting> SettingTable(CalibrationSettings* settings) {
 
 FreeParts FreeParameters(const std::string& fix, bool has_scale,
                          LensModel lens) {
+  std::vector<Named<std::vector<int>>> names = {
+      {"focal", {kFx, kFy}},
+      {"centre", {kCx, kCy}},
+      {"distortion", {kK1, kK2, kK3, kK4, kP1, kP2}},
+      {"readouts", {kColorReadout, kDepthReadout}},
+      {"registration",
+       {kRotationX, kRotationY, kRotationZ, kTranslationX, kTranslationY,
+        kTranslationZ}},
+  };
+  for (int k = 0; k < kCalibrationSize; ++k) {
+    names.push_back({kCalibrationParameters[k].name, {k}});
+  }
   FreeParts is_free;
   is_free.set();
   is_free[kDepthFactor] = has_scale;
   is_free[kK4] = lens == LensModel::kEquidistant;
   is_free[kP1] = is_free[kP2] = lens != LensModel::kEquidistant;
-  const std::vector<Named<std::vector<int>>> names = PartNames();
   std::stringstream list(fix);
   for (std::string word; std::getline(list, word, ',');) {
     const auto* const named = FindNamed(names, word);

@@ -13,14 +13,6 @@
 namespace rgbd_pose {
 namespace {
 
-// Limits for a plausible camera, as shares: the difference of fx and fy, and
-// the distance of the principal point from the image centre.
-constexpr double kMaxAspect = 0.01;
-constexpr double kMaxOffCentre = 0.1;
-
-// Limit for the distance of a parameter from its prior.
-constexpr double kMaxPriorSigmas = 4.0;
-
 // Whether every pixel of the image border has a ray. Coefficients that fit
 // where the features are may make the lens model fold over towards the corners.
 bool HasRaysAllAround(const Camera& camera) {
@@ -146,8 +138,7 @@ double TruthError(const CalibrationData& data, const CalibrationState& state,
 }
 
 bool IsAnotherPassDue(const CalibrationResult& result) {
-  constexpr double kManyPx = 1.0;
-  return result.displacement_px > kManyPx;
+  return result.displacement_px > 1.0;
 }
 
 std::string WhatIsLeft(const CalibrationResult& result) {
@@ -192,6 +183,9 @@ std::string HalvesInWords(const CalibrationResult& result) {
 
 std::string ImplausibilityReason(const RgbdCamera& first,
                                  const CalibrationResult& result) {
+  constexpr double kMaxAspect = 0.01;    // difference of fx and fy, as a share
+  constexpr double kMaxOffCentre = 0.1;  // principal point, share of the size
+  constexpr double kMaxPriorSigmas = 4.0;  // of any parameter
   const auto implausible = [](const std::string& why) {
     return "the camera found is not plausible: " + why;
   };
@@ -262,10 +256,9 @@ std::string RejectionReason(const RgbdCamera& first,
   }
   const bool has_moved = std::any_of(
       result.parameters.begin(), result.parameters.end(),
-      [&](const CalibratedParameter& parameter) {
-        return parameter.status == CalibratedParameter::Status::kDetermined &&
-               std::abs(parameter.found - parameter.before) >
-                   kMinSigmas * parameter.sigma;
+      [](const CalibratedParameter& p) {
+        return p.status == CalibratedParameter::Status::kDetermined &&
+               std::abs(p.found - p.before) > kMinSigmas * p.sigma;
       });
   if (!has_moved) {
     return Format(

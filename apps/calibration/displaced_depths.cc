@@ -25,11 +25,6 @@ struct Displacement {
   }
 };
 
-// Limit for the distance of a pixel from the plane: this many sigmas, or this
-// share of the depth, which tolerates a curved surface.
-constexpr double kMaxSigmas = 3.0;
-constexpr double kMaxBulge = 0.01;
-
 // The plane is fitted to 7 x 7 pixels. This many of them must be on it.
 constexpr int kReach = 3;
 constexpr int kNumPixels = (2 * kReach + 1) * (2 * kReach + 1);
@@ -68,7 +63,10 @@ Eigen::Vector3d LookUpPlane(const Frame& frame, const Camera& camera,
   const Eigen::Vector3d fit = normal.ldlt().solve(right);
   const double middle = fit[2];
   if (!(middle > 0.0)) return Eigen::Vector3d::Zero();
-  // d(1/z) = dz / z^2.
+  // A pixel is on the plane up to this many sigmas, or up to this share of the
+  // depth, which tolerates a curved surface; d(1/z) = dz / z^2.
+  constexpr double kMaxSigmas = 3.0;
+  constexpr double kMaxBulge = 0.01;
   const double limit =
       std::max(kMaxSigmas * noise.sigma(1.0 / middle) * middle * middle,
                kMaxBulge * middle);
