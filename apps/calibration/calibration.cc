@@ -112,10 +112,9 @@ struct CalibrationSteps {
         FitDepthNoise(views_before, before, odometry.features.depth_noise);
   }
 
-  // Higher lens coefficients are free only if the held-out pairs improve by at
-  // least this many standard deviations (docs/calibration.md).
+  // Higher lens coefficients are free only if held-out pairs gain enough.
   void SolveForAsked() {
-    constexpr double kHigherSigmas = 9.0;
+    constexpr double kHigherSigmas = 9.0;  // see docs/calibration.md
     needed = asked;
     for (int k = kK3; k < kLensSize; ++k) needed[k] = false;
     after = before;
@@ -140,9 +139,8 @@ struct CalibrationSteps {
     }
   }
 
-  // Resets parameters that the held-out pairs do not need: parameters that
-  // compensate each other, or something other than the camera, do not improve
-  // the fit of these pairs.
+  // Resets parameters that do not improve the fit of held-out pairs: they
+  // compensate each other, or something other than the camera.
   void ResetUnneeded() {
     // Errors may exceed the scatter of pairs as much as those of the halves.
     const double spread = std::clamp(

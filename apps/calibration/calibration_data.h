@@ -31,8 +31,7 @@ CalibrationData CollectCalibrationData(const KeyframeMap& map,
                                        const OdometrySettings& settings,
                                        int max_views, int threads);
 
-// Other sources of the camera's position. A null pointer means that the source
-// is not available.
+// Other sources of the camera's position; null: not available.
 struct CalibrationScale {
   const Trajectory* ground_truth = nullptr;  // the true path
   const Trajectory* motion_guess = nullptr;  // for example from wheels
@@ -55,9 +54,8 @@ double DisplacementPx(const CalibrationViews& views,
                       const CalibrationVector& change);
 
 // Undoes the displacement of depth (registration, delay) that theta describes
-// in the images of the keyframes and looks up all depths again. This corrects
-// large, non-linear displacements. `camera` is the current estimate of the
-// lens.
+// in the images of the keyframes and looks up all depths again, as a large
+// displacement is not linear. `camera` has the current estimate of the lens.
 void LookUpDepthsAgain(const KeyframeMap& map, const Camera& camera,
                        const OdometrySettings& settings,
                        const CalibrationVector& theta, int threads,

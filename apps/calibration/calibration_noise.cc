@@ -161,14 +161,12 @@ std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
       squares += sample.depth * sample.depth;
     }
     constexpr double kLeast = 1e-6;  // m
-    fit.scatter.push_back(
-        {std::sqrt(squares / static_cast<double>(end - begin)),
-         std::max(kLeast, kSigmaOfMedian * Median(errors))});
+    fit.scatter.push_back({std::sqrt(squares / errors.size()),
+                           std::max(kLeast, kSigmaOfMedian * Median(errors))});
   }
   fit.in_old_sigmas = kSigmaOfMedian * Median(in_old_sigmas);
   // The relative error of a median of absolute values is 1.17 / sqrt(n).
-  const double in_bin =
-      static_cast<double>(samples.size()) / static_cast<double>(bins);
+  const double in_bin = static_cast<double>(samples.size()) / bins;
   FitSigmas(1.17 / std::sqrt(in_bin), &fit);
   return fit;
 }

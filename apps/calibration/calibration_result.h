@@ -131,17 +131,15 @@ struct CalibrationResult {
 double SpreadOfHalves(const std::vector<HalvesOfParameter>& halves);
 
 // Calibrates each half of a recording (in time) separately, starting from the
-// result for the whole recording. A real error of the camera shows in both
-// halves; an effect of something else that the parameters absorbed depends on
-// what the camera sees. Empty if a half cannot determine the parameters.
+// result for the whole one. A real error of the camera shows in both halves.
+// Empty if a half cannot determine the parameters.
 std::vector<HalvesOfParameter> SplitHalfConsistency(
     const CalibrationViews& views, const CalibrationState& found,
     const FreeParts& is_free, const CalibrationPrior& prior);
 
 // Fits the noise of single depth pixels robustly to the scatter of depths at
-// landmarks seen in several keyframes. Depths are compared at the landmark, so
-// errors of feature positions do not matter. `old` is the previous noise model.
-// Returns nothing if there are too few depths.
+// landmarks; errors of feature positions do not matter. `old` is the previous
+// noise model. Returns nothing if there are too few depths.
 std::optional<DepthNoiseFit> FitDepthNoise(const CalibrationViews& views,
                                            const CalibrationState& state,
                                            const DepthNoiseModel& old);

@@ -11,10 +11,9 @@
 
 namespace rgbd_pose {
 
-// Settings for mapping a recording that its camera is to be calibrated from.
-// Keyframes are closer than a map needs, which also yields pairs for small
-// motions. No keyframe is removed, and only as many are paired as the
-// calibration needs.
+// Settings for mapping a recording that its camera is to be calibrated from:
+// keyframes are closer than a map needs (also yields pairs for small motions),
+// none is removed, and only as many are paired as needed.
 OdometrySettings CalibrationOdometry();
 SlamSettings CalibrationSlam();
 
@@ -27,11 +26,9 @@ struct RecordingCalibration {
   CalibrationResult result;  // of all passes together
   Trajectory path;           // of the last map
 
-  // Why the recording ended early, or empty; the left-out frames
-  // (DroppedFrames).
-  std::string stopped;
-  int damaged = 0;  // number of damaged frames
-  std::vector<std::string> left_out;
+  std::string stopped;                // why the recording ended early, or empty
+  int damaged = 0;                    // number of damaged frames
+  std::vector<std::string> left_out;  // frames and why, see DroppedFrames
 };
 
 // Maps a recording and calibrates its camera from the map. If depth turns out

@@ -19,34 +19,34 @@ bool HasRaysAllAround(const Camera& camera) {
   const auto has_ray = [&](double u, double v) {
     return camera.Undistort({u, v}).allFinite();
   };
-  const double right = camera.width - 1.0, bottom = camera.height - 1.0;
-  for (double u = 0.0; u <= right; ++u) {
-    if (!has_ray(u, 0.0) || !has_ray(u, bottom)) return false;
+  for (int u = 0; u < camera.width; ++u) {
+    if (!has_ray(u, 0.0) || !has_ray(u, camera.height - 1.0)) return false;
   }
-  for (double v = 0.0; v <= bottom; ++v) {
-    if (!has_ray(0.0, v) || !has_ray(right, v)) return false;
+  for (int v = 0; v < camera.height; ++v) {
+    if (!has_ray(0.0, v) || !has_ray(camera.width - 1.0, v)) return false;
   }
   return true;
 }
 
-// Returns the robust cost of a view and its error in pixels.
-double CostOf(const CalibrationViews& views, const Landmark& landmark,
-              const LandmarkView& view, bool with_depth, double inverse_depth,
-              const CalibrationState& state, const CalibrationState& scales,
-              const std::vector<MotionDerivatives>& poses,
-              Eigen::Vector2d* error) {
+// Returns the robust cost of a view of the i-th landmark and its error (px).
+double CostOf(const CalibrationViews& views, const LandmarkView& view,
+              bool with_depth, const CalibrationState& state,
+              const std::vector<MotionDerivatives>& poses, size_t i,
+              const CalibrationState& scales, Eigen::Vector2d* error) {
+  const Landmark& landmark = views.landmarks[i];
+  const double d = state.inverse_depths[i];
   const LandmarkData data = DataOf(views, landmark, view, scales);
   const MotionDerivatives& anchor = poses[landmark.anchor];
   const MotionDerivatives& there = poses[view.keyframe];
   const double square = kLandmarkLossWidth * kLandmarkLossWidth;
-  LandmarkPixel::Residual<double>(anchor, there, inverse_depth,
-                                  state.theta.data(), data, error->data());
+  LandmarkPixel::Residual<double>(anchor, there, d, state.theta.data(), data,
+                                  error->data());
   double cost = square * std::log1p(error->squaredNorm() / square);
   *error /= data.inverse_sigma_px;
   if (with_depth) {
     double r;
-    LandmarkDepth::Residual<double>(anchor, there, inverse_depth,
-                                    state.theta.data(), data, &r);
+    LandmarkDepth::Residual<double>(anchor, there, d, state.theta.data(), data,
+                                    &r);
     cost += square * std::log1p(r * r / square);
   }
   return 0.5 * cost;
@@ -91,12 +91,10 @@ void CompareHeldOut(const CalibrationViews& views_before,
                               view_after.depth.inverse_sigma > 0.0;
       OfPair& pair = pairs[std::minmax(landmark.anchor, view->keyframe)];
       HeldOutResidual residual = {view->u, view->v, {}, {}};
-      pair.before += CostOf(views_before, landmark, *view, with_depth,
-                            before.inverse_depths[i], before, after,
-                            poses_before, &residual.before);
-      pair.after += CostOf(views_after, landmark, view_after, with_depth,
-                           after.inverse_depths[i], after, after, poses_after,
-                           &residual.after);
+      pair.before += CostOf(views_before, *view, with_depth, before,
+                            poses_before, i, after, &residual.before);
+      pair.after += CostOf(views_after, view_after, with_depth, after,
+                           poses_after, i, after, &residual.after);
       ++pair.count;
       result->residuals.push_back(residual);
     }
