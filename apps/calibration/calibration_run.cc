@@ -12,9 +12,8 @@ namespace {
 
 using Status = CalibratedParameter::Status;
 
-// Merges the result of a further pass. The pass started from the last result
-// and estimates the same parameters, but closer to the linearisation point.
-// Returns whether the result is usable.
+// Merges the result of a further pass, which started from the last result and
+// is closer to the linearisation point. Returns whether it is usable.
 bool TakeUp(const RgbdCamera& first, const CalibrationSettings& settings,
             const CalibrationResult& further, CalibrationResult* all) {
   ++all->passes;

@@ -6,6 +6,7 @@
 #include "core/util/named_values.h"
 
 namespace rgbd_pose {
+
 std::string CalibrationSettings::Check() const {
   if (!(determined_share > 0.0 && determined_share <= 1.0)) {
     return "determined_share must be above 0 and at most 1";
