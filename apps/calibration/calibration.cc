@@ -64,13 +64,13 @@ struct CalibrationSteps {
   const int threads;
 
   CalibrationData data = {};
-  CalibrationVector start = {};  // theta of the first camera
+  CalibrationVector undone = CalibrationVector::Zero();  // in depths of `data`
   CalibrationPrior prior = {};
+  CalibrationVector start = {};        // theta of the first camera
   CalibrationViews views_before = {};  // with depths as first looked up
   CalibrationState before = {};        // the solution with the first camera
   CalibrationState after = {};         // the solution with free parameters
-  CalibrationVector undone = CalibrationVector::Zero();  // in depths of `data`
-  FreeParts asked = {};                                  // may be free
+  FreeParts asked = {};                // may be free
   FreeParts needed = {};      // of these: held-out pairs fit better with them
   FreeParts determined = {};  // of these: better known than from the prior
   CalibrationResult result = {};
