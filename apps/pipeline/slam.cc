@@ -1,6 +1,7 @@
 #include "apps/pipeline/slam.h"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "core/util/input_error.h"
@@ -60,7 +61,10 @@ SlamFrame Slam::Track(const PreparedFrame& frame,
   is_previous_late_ = tracked.is_reference && odometry_.HasShutter(frame);
   if (tracked.is_reference && !is_previous_late_) AddKeyframe(tracked);
   previous_ = tracked;
-  if (tracked.status == TrackingStatus::kLost) SearchMap(frame, tracked.index);
+  if (tracked.status == TrackingStatus::kLost && !search_.has_value()) {
+    search_ = {tracked.index + settings_.update_delay,
+               worker_.Submit([this, frame] { return mapper_.Find(frame); })};
+  }
   ApplyPendingUpdates(tracked.index, &result);
   result.odom_from_cam = odom_from_cam_;
   result.map_from_odom = map_from_odom_;
@@ -141,28 +145,18 @@ void Slam::AddKeyframe(const TrackedFrame& tracked) {
                       })});
 }
 
-void Slam::SearchMap(const PreparedFrame& frame, int index) {
-  if (search_.has_value()) return;
-  search_ = {index + settings_.update_delay,
-             worker_.Submit([this, frame] { return mapper_.Find(frame); })};
-}
-
 void Slam::ApplyPendingUpdates(int frame, SlamFrame* result) {
+  const auto wait_for = [result](auto* pending) {
+    const StageTimer timer(&result->wait_ms);
+    return pending->result.get();
+  };
   while (!updates_.empty() && updates_.front().frame <= frame) {
-    MapUpdate update;
-    {
-      const StageTimer timer(&result->wait_ms);
-      update = updates_.front().result.get();
-    }
+    MapUpdate update = wait_for(&updates_.front());
     updates_.pop_front();
     Apply(std::move(update), result);
   }
   if (!search_.has_value() || search_->frame > frame) return;
-  std::optional<Keyframe> found;
-  {
-    const StageTimer timer(&result->wait_ms);
-    found = search_->result.get();
-  }
+  const std::optional<Keyframe> found = wait_for(&*search_);
   search_.reset();
   const bool is_lost = result->tracked.status == TrackingStatus::kLost;
   if (found.has_value() && is_lost) Adopt(*found);
@@ -173,7 +167,14 @@ void Slam::Apply(MapUpdate update, SlamFrame* result) {
     map_from_keyframe_[id] = place.map_from_cam;
     segments_[id] = place.segment;
   }
-  MoveNewer();
+  // Keyframes newer than the update move with their reference keyframes.
+  if (!pending_.empty()) pending_.pop_front();  // the keyframe of this update
+  for (const Pending& keyframe : pending_) {
+    if (!keyframe.ref.has_value()) continue;
+    map_from_keyframe_[keyframe.id] =
+        map_from_keyframe_.at(*keyframe.ref) * keyframe.ref_from_cam;
+    segments_[keyframe.id] = segments_.at(*keyframe.ref);
+  }
   if (reference_.has_value()) {
     map_from_odom_ =
         map_from_keyframe_.at(*reference_) * odom_from_reference_.Inverse();
@@ -188,23 +189,12 @@ void Slam::Apply(MapUpdate update, SlamFrame* result) {
   if (update.returned_to.has_value()) Adopt(*update.returned_to);
 }
 
-// Keyframes newer than the update move with their reference keyframes.
-void Slam::MoveNewer() {
-  if (!pending_.empty()) pending_.pop_front();  // the keyframe of this update
-  for (const Pending& keyframe : pending_) {
-    if (!keyframe.ref.has_value()) continue;
-    map_from_keyframe_[keyframe.id] =
-        map_from_keyframe_.at(*keyframe.ref) * keyframe.ref_from_cam;
-    segments_[keyframe.id] = segments_.at(*keyframe.ref);
-  }
-}
-
 // Inserts a map keyframe into the odometry, placed relative to the camera.
 void Slam::Adopt(Keyframe keyframe) {
   const Rigid3d map_from_cam = map_from_odom_ * odom_from_cam_;
   keyframe.world_from_cam = world_from_cam_ * map_from_cam.Inverse() *
                             map_from_keyframe_.at(keyframe.id);
-  keyframe.id = OdometryId(keyframe.id);
+  keyframe.id -= first_id_;  // the odometry numbers its frames from 0
   odometry_.InsertKeyframe(keyframe);
 }
 
@@ -212,12 +202,8 @@ void Slam::Finish() {
   SlamFrame unused;
   if (is_previous_late_) AddKeyframe(previous_);
   is_previous_late_ = false;
-  while (!updates_.empty()) {
-    Apply(updates_.front().result.get(), &unused);
-    updates_.pop_front();
-  }
-  if (search_.has_value()) search_->result.wait();
-  search_.reset();
+  search_.reset();  // too late to be of use
+  ApplyPendingUpdates(std::numeric_limits<int>::max(), &unused);
   Apply(worker_.Submit([this] { return mapper_.Finish(); }).get(), &unused);
 }
 

@@ -28,18 +28,14 @@ struct SlamSettings {
 // The settings by name, bound to `settings`, which must outlive the table.
 std::vector<Setting> SettingTable(SlamSettings* settings);
 
-// The result for one frame. map_from_odom * odom_from_cam is its pose in the
-// map.
+// The result for one frame.
 struct SlamFrame {
   TrackedFrame tracked;  // in the world of the odometry
 
-  // The pose in the odometry frame. It has no jumps from map corrections.
-  Rigid3d odom_from_cam;
-  // The map correction. It changes at keyframes and loop closures.
-  Rigid3d map_from_odom;
+  Rigid3d odom_from_cam;  // without jumps from map corrections
+  Rigid3d map_from_odom;  // the correction; changes at keyframes and loops
 
-  // The map segment. Unconnected segments have separate worlds.
-  int segment = 0;
+  int segment = 0;  // of the map; unconnected ones have separate worlds
 
   // Map updates that were applied at this frame, see MapUpdate.
   int pairs = 0;
@@ -132,17 +128,12 @@ class Slam {
     Rigid3d keyframe_from_cam;
   };
 
-  // The odometry numbers its frames from 0.
-  int OdometryId(int keyframe) const { return keyframe - first_id_; }
-
   void Follow(const TrackedFrame& tracked);
   void BecomeReference(const TrackedFrame& tracked);
   // Passes a keyframe of the odometry to the mapper.
   void AddKeyframe(const TrackedFrame& tracked);
-  void SearchMap(const PreparedFrame& frame, int index);
   void ApplyPendingUpdates(int frame, SlamFrame* result);
   void Apply(MapUpdate update, SlamFrame* result);
-  void MoveNewer();
   void Adopt(Keyframe keyframe);
 
   const SlamSettings settings_;
