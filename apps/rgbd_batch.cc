@@ -101,12 +101,6 @@ std::string ProgramPath() {
   return path.string();
 }
 
-// Everything that affects the result of a run, except its place in the plan.
-std::string SettingsText(const std::string& program) {
-  return "program " + HashProgram(program) + "\n" +
-         (FLAGS_settings.empty() ? "" : ReadTextFile(FLAGS_settings));
-}
-
 void CheckFlags() {
   RequireFlag("sequences", FLAGS_sequences);
   RequireFlag("output", FLAGS_output);
@@ -223,8 +217,11 @@ int Main() {
       FLAGS_repeats);
   const BatchShard shard = FLAGS_merge ? BatchShard() : ParseShard(FLAGS_shard);
   const std::string program = ProgramPath();
-  const std::vector<BatchRun> plan = MakePlan(
-      ReadSequenceList(FLAGS_sequences), grid, shard, SettingsText(program));
+  const std::string settings =
+      "program " + HashProgram(program) + "\n" +
+      (FLAGS_settings.empty() ? "" : ReadTextFile(FLAGS_settings));
+  const std::vector<BatchRun> plan =
+      MakePlan(ReadSequenceList(FLAGS_sequences), grid, shard, settings);
   const BatchFolder folder(fs::absolute(FLAGS_output).string());
   if (FLAGS_dry_run) return PrintPlan(plan, folder);
 

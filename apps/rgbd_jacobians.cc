@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <limits>
 #include <string>
-#include <vector>
 
 #include "apps/shell/program.h"
 #include "core/geometry/motion.h"

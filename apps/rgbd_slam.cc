@@ -38,14 +38,16 @@ DEFINE_bool(calibrate, false,
 namespace rgbd_pose {
 namespace {
 
-// Map files; empty: none.
-struct MapSettings {
-  std::string save_map;        // folder
-  std::string load_map;        // comma-separated folders
-  bool localise_only = false;  // do not change the loaded map
+struct ProgramSettings {
+  SequenceSettings sequence;
+  OdometrySettings odometry;
+  SlamSettings slam;
+  RunOutputSettings output;
+  std::string save_map, load_map;
+  bool localise_only = false;
 };
 
-std::vector<Setting> SettingTable(MapSettings* settings) {
+std::vector<Setting> MapTable(ProgramSettings* settings) {
   constexpr std::string_view kGroup = "Maps";
   return {
       {"save_map", kGroup, "folder to save the map to; empty: it is not saved",
@@ -59,14 +61,6 @@ std::vector<Setting> SettingTable(MapSettings* settings) {
   };
 }
 
-struct ProgramSettings {
-  SequenceSettings sequence;
-  OdometrySettings odometry;
-  SlamSettings slam;
-  MapSettings maps;
-  RunOutputSettings output;
-};
-
 ProgramInfo Info(ProgramSettings* settings) {
   return {"rgbd_slam",
           "estimates the path of an RGB-D camera and builds a map with loop "
@@ -76,23 +70,23 @@ ProgramInfo Info(ProgramSettings* settings) {
           {{"Run", {"calibrate", "report", "finish_on_signal", "threads"}},
            {"View", {"view", "view_port", "view_speed"}}},
           {SettingTable(&settings->sequence), SettingTable(&settings->odometry),
-           SettingTable(&settings->slam), SettingTable(&settings->maps),
+           SettingTable(&settings->slam), MapTable(settings),
            SettingTable(&settings->output)}};
 }
 
-void LoadMaps(const MapSettings& maps, Slam* slam) {
-  std::vector<std::string> folders = SplitText(maps.load_map, ',');
+void LoadMaps(const ProgramSettings& settings, Slam* slam) {
+  std::vector<std::string> folders = SplitText(settings.load_map, ',');
   folders.erase(std::remove(folders.begin(), folders.end(), ""), folders.end());
-  if (maps.localise_only && folders.empty()) {
+  if (settings.localise_only && folders.empty()) {
     throw InputError("--localise_only needs --load_map");
   }
-  if (maps.localise_only && !maps.save_map.empty()) {
+  if (settings.localise_only && !settings.save_map.empty()) {
     throw InputError(
         "--localise_only does not change the map; leave out --save_map");
   }
   for (const std::string& folder : folders) {
     try {
-      slam->Load(LoadMap(folder), maps.localise_only);
+      slam->Load(LoadMap(folder), settings.localise_only);
     } catch (const InputError& error) {
       throw InputError("--load_map=" + folder + ": " + error.what());
     }
@@ -155,10 +149,10 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
                    has_camera ? &found->result.camera : nullptr);
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
-  if (!settings.maps.save_map.empty()) RequireMapFolder(settings.maps.save_map);
+  if (!settings.save_map.empty()) RequireMapFolder(settings.save_map);
   SlamRun run(settings.odometry, settings.slam, source.camera().camera,
               sequence.inputs);
-  LoadMaps(settings.maps, &run.slam());
+  LoadMaps(settings, &run.slam());
   RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
@@ -206,9 +200,9 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   output.folder().Publish();
   text += SaveMesh(settings.output, threads);
   // If the map cannot be saved, the results stay.
-  if (!settings.maps.save_map.empty()) {
-    SaveMap(settings.maps.save_map, map);
-    text += "map in      " + settings.maps.save_map + "\n";
+  if (!settings.save_map.empty()) {
+    SaveMap(settings.save_map, map);
+    text += "map in      " + settings.save_map + "\n";
   }
   std::printf("%sresults in  %s\n", text.c_str(),
               settings.output.output.c_str());

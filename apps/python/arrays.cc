@@ -1,7 +1,5 @@
 #include "apps/python/arrays.h"
 
-#include <pybind11/numpy.h>
-
 #include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
@@ -15,15 +13,6 @@ namespace {
 
 // Tolerance for the orthonormality of rotation matrices.
 constexpr double kMaxRotationError = 0.01;
-
-std::string NumbersInWords(const std::vector<py::ssize_t>& shape) {
-  std::string text;
-  for (const py::ssize_t side : shape) {
-    if (!text.empty()) text += ", ";
-    text += side == NumberArray::kAny ? "N" : std::to_string(side);
-  }
-  return "(" + text + (shape.size() == 1 ? ",)" : ")");
-}
 
 constexpr double kMaxQuaternionError = 0.01;  // as for TUM text
 
@@ -85,8 +74,7 @@ Trajectory FromArrays(const py::object& stamps, const py::object& poses,
         (i > 0 && times(i) <= trajectory.back().timestamp)) {
       throw InputError(name + "[0]" + index +
                        ": is not finite or not after the previous time stamp; "
-                       "sort the poses "
-                       "by time and remove duplicates");
+                       "sort the poses by time and remove duplicates");
     }
     const std::string where = name + "[1]" + index;
     const auto element = [&](int j, int k) { return numbers(i, j, k); };
@@ -104,8 +92,7 @@ NumberArray::NumberArray(const py::object& object, const std::string& name,
     : array_(ToArray(object, name)) {
   const char kind = array_.dtype().kind();
   if (kind != 'f' && kind != 'i' && kind != 'u') {
-    throw InputError(name + ": holds " +
-                     py::str(array_.dtype()).cast<std::string>() +
+    throw InputError(name + ": holds " + std::string(py::str(array_.dtype())) +
                      "; it needs real numbers, such as float64");
   }
   const bool fits =
@@ -115,8 +102,15 @@ NumberArray::NumberArray(const py::object& object, const std::string& name,
                    return needed == NumberArray::kAny || needed == given;
                  });
   if (!fits) {
-    throw InputError(name + ": has shape " + ShapeInWords(array_) +
-                     "; it needs " + NumbersInWords(shape));
+    std::string needed;
+    for (const py::ssize_t side : shape) {
+      needed += (needed.empty() ? "(" : ", ") +
+                (side == kAny ? "N" : std::to_string(side));
+    }
+    needed += shape.size() == 1 ? ",)" : ")";
+    throw InputError(name + ": has shape " +
+                     std::string(py::str(array_.attr("shape"))) +
+                     "; it needs " + needed);
   }
   is_float32_ = py::isinstance<py::array_t<float>>(array_);
   if (!is_float32_ && !py::isinstance<py::array_t<double>>(array_)) {
@@ -131,10 +125,6 @@ py::array ToArray(const py::object& object, const std::string& name) {
   py::array array = py::array::ensure(object);
   if (!array) throw InputError(name + ": is not an array of numbers");
   return array;
-}
-
-std::string ShapeInWords(const py::array& array) {
-  return NumbersInWords({array.shape(), array.shape() + array.ndim()});
 }
 
 Rigid3d RigidFromArray(const py::object& object, const std::string& name) {

@@ -57,9 +57,6 @@ class NumberArray {
 pybind11::array ToArray(const pybind11::object& object,
                         const std::string& name);
 
-// The shape of an array as Python prints it: "(3, 4)".
-std::string ShapeInWords(const pybind11::array& array);
-
 // The rigid motion of a 4 x 4 array. Throws InputError if it is invalid.
 Rigid3d RigidFromArray(const pybind11::object& object, const std::string& name);
 

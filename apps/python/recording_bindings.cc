@@ -74,10 +74,6 @@ class Recording {
   bool is_used_ = false;
 };
 
-struct RecordingIterator {
-  std::shared_ptr<FrameSource> source;
-};
-
 std::unique_ptr<Recording> OpenRecording(
     const py::object& path, const py::object& camera, const std::string& source,
     const std::string& frames, const py::object& associations,
@@ -101,11 +97,11 @@ std::unique_ptr<Recording> OpenRecording(
   return std::make_unique<Recording>(open);
 }
 
-Frame NextFrame(RecordingIterator* self) {
+// The next frame; nothing after the last one.
+std::optional<Frame> NextFrame(FrameSource* source) {
   const ReleasedGil no_gil;
-  const std::optional<RgbdFrame> next = self->source->Next();
-  if (!next.has_value()) throw py::stop_iteration();
-  return next->read();
+  const std::optional<RgbdFrame> next = source->Next();
+  return next.has_value() ? std::make_optional(next->read()) : std::nullopt;
 }
 
 // A getter for an image: a read-only array without a copy, which keeps the
@@ -156,9 +152,6 @@ are accessed, with the GIL released.)")
 }
 
 void BindAnyRecording(py::module_* module) {
-  py::class_<RecordingIterator>(*module, "_RecordingIterator")
-      .def("__iter__", [](const py::object& self) { return self; })
-      .def("__next__", &NextFrame);
   py::class_<Recording> recording(*module, "Recording", R"(
 A recording of any kind that the programs read: `for frame in recording` gives
 one Frame after the other; each is decoded on access, with the GIL released.
@@ -182,8 +175,10 @@ Raises InputError for unreadable input.)");
       py::arg("source") = "auto", py::arg("frames") = "",
       py::arg("associations") = py::none(), py::arg("depth_camera") = "",
       py::arg("depth_scale") = 0.0, py::arg("topics") = py::tuple());
-  recording.def("__iter__", [](Recording* self) {
-    return RecordingIterator{self->Begin()};
+  recording.def("__iter__", [](Recording* self) -> py::iterator {
+    const py::cpp_function next(
+        [source = self->Begin()] { return NextFrame(source.get()); });
+    return py::module_::import("builtins").attr("iter")(next, py::none());
   });
   const auto property = PropertiesOf(&recording);
   property(

@@ -1,7 +1,6 @@
 #include "apps/python/tracker_bindings.h"
 
 #include <cmath>
-#include <string>
 
 #include "core/util/input_error.h"
 #include "frontend/files/image_file.h"
@@ -27,11 +26,11 @@ int Channels(const py::array& array, const Camera& camera) {
 
 InputError WrongImage(const std::string& name, const py::array& array,
                       const Camera& camera, const std::string& needed) {
-  return InputError(name + ": is " +
-                    py::str(array.dtype()).cast<std::string>() + " of shape " +
-                    ShapeInWords(array) + "; it needs " + needed +
-                    " of the camera's " + std::to_string(camera.height) +
-                    " x " + std::to_string(camera.width) + " pixels");
+  return InputError(name + ": is " + std::string(py::str(array.dtype())) +
+                    " of shape " + std::string(py::str(array.attr("shape"))) +
+                    "; it needs " + needed + " of the camera's " +
+                    std::to_string(camera.height) + " x " +
+                    std::to_string(camera.width) + " pixels");
 }
 
 cv::Mat GrayFrom(const py::object& object, const Camera& camera) {

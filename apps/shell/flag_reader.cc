@@ -3,10 +3,8 @@
 #include <gflags/gflags.h>
 
 #include <algorithm>
-#include <cctype>
 #include <numeric>
 #include <set>
-#include <string_view>
 #include <vector>
 
 #include "core/util/input_error.h"
@@ -33,19 +31,6 @@ bool IsOfGflags(const std::string& name) {
 bool FindFlag(const std::string& name, CommandLineFlagInfo* flag) {
   return !IsOfGflags(name) &&
          gflags::GetCommandLineFlagInfo(name.c_str(), flag);
-}
-
-// Finds the switch that "no<name>" turns off.
-bool FindNegated(const std::string& name, CommandLineFlagInfo* flag) {
-  return name.rfind("no", 0) == 0 && FindFlag(name.substr(2), flag) &&
-         flag->type == "bool";
-}
-
-std::string_view WithoutSpaceAround(std::string_view line) {
-  const auto is_space = [](unsigned char c) { return std::isspace(c) != 0; };
-  while (!line.empty() && is_space(line.back())) line.remove_suffix(1);
-  while (!line.empty() && is_space(line.front())) line.remove_prefix(1);
-  return line;
 }
 
 // The number of letters to insert, delete or replace.
@@ -80,6 +65,7 @@ std::string Hint(const std::string& name) {
 }
 
 constexpr int kMaxNestedFiles = 8;
+constexpr char kSpace[] = " \t\v\f\r";
 
 void ReadFlagFile(const std::string& path, int depth);
 
@@ -104,7 +90,10 @@ void ReadWords(const std::vector<std::string>& words, const std::string& where,
     CommandLineFlagInfo flag;
     std::string value;
     if (name != "flagfile" && !FindFlag(name, &flag)) {
-      if (has_value || !FindNegated(name, &flag)) {
+      const bool is_off = !has_value && name.rfind("no", 0) == 0 &&
+                          FindFlag(name.substr(2), &flag) &&
+                          flag.type == "bool";
+      if (!is_off) {
         throw InputError(where + "unknown flag --" + name + "; " + Hint(name));
       }
       value = "false";
@@ -133,13 +122,14 @@ void ReadFlagFile(const std::string& path, int depth) {
   }
   const std::string content = ReadTextFile(path);
   int number = 0;
-  for (const std::string& text :
+  for (const std::string& line :
        SplitText(WithoutByteOrderMark(content), '\n')) {
     ++number;
-    const std::string_view line = WithoutSpaceAround(text);
-    if (line.empty() || line.front() == '#') continue;
-    const std::string where = path + ":" + std::to_string(number) + ": ";
-    ReadWords({std::string(line)}, where, depth);
+    const size_t begin = line.find_first_not_of(kSpace);
+    if (begin == std::string::npos || line[begin] == '#') continue;
+    const size_t end = line.find_last_not_of(kSpace) + 1;
+    ReadWords({line.substr(begin, end - begin)},
+              path + ":" + std::to_string(number) + ": ", depth);
   }
 }
 

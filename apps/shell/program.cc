@@ -21,6 +21,7 @@
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/named_values.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -47,19 +48,13 @@ class SettingFlags {
   // values with a NamedSetting, after the flags have been read. Throws
   // InputError for unknown names.
   void Apply() const {
-    for (const Row& row : rows_) row.named.set(row.text);
+    for (const auto& [named, text] : texts_) named.set(text);
   }
 
  private:
-  // A setting by name, and the text of its flag.
-  struct Row {
-    NamedSetting named;
-    std::string text;
-  };
-
   void Add(const Setting& setting, const NamedSetting& named) {
-    rows_.push_back({named, named.get()});
-    Add(setting, &rows_.back().text);
+    texts_.emplace_back(named, named.get());
+    Add(setting, &texts_.back().second);
   }
 
   // gflags keeps both addresses.
@@ -71,7 +66,7 @@ class SettingFlags {
   }
 
   // Deques keep the addresses of their elements.
-  std::deque<Row> rows_;
+  std::deque<std::pair<NamedSetting, std::string>> texts_;
   std::deque<std::variant<int, uint32_t, double, bool, std::string>> defaults_;
 };
 
@@ -129,11 +124,7 @@ void PrintHelp(const ProgramInfo& info) {
       std::printf(")\n      %s\n", flag.description.c_str());
       const std::vector<std::string> choices = ChoicesOf(info, name);
       if (choices.empty()) continue;
-      std::printf("      one of:");
-      for (const std::string& choice : choices) {
-        std::printf(" %s", choice.c_str());
-      }
-      std::printf("\n");
+      std::printf("      one of: %s\n", Join(choices, " ").c_str());
     }
   }
   std::printf(
