@@ -7,7 +7,6 @@ namespace rgbd_pose {
 // Each function adds its classes and functions to the module.
 void BindCalibration(pybind11::module_* module);
 void BindCamera(pybind11::module_* module);
-void BindEstimateResult(pybind11::module_* module);
 void BindEstimate(pybind11::module_* module);
 void BindRecording(pybind11::module_* module);
 void BindOdometry(pybind11::module_* module);

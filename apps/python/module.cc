@@ -26,7 +26,6 @@ PYBIND11_MODULE(_rgbd_pose, m) {
   m.def("camera_presets", CameraPresetNames,
         "Names of the presets for Camera.load.");
   BindCamera(&m);
-  BindEstimateResult(&m);
   BindEstimate(&m);
   BindRecording(&m);
   BindOdometry(&m);

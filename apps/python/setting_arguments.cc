@@ -68,15 +68,6 @@ std::string ArgumentsOf(const std::vector<Setting>& table) {
   return text;
 }
 
-std::string InitSignature(const std::string& class_name,
-                          const std::vector<Setting>& table) {
-  return "__init__(self: rgbd_pose." + class_name +
-         ", camera: rgbd_pose.Camera, " +
-         ArgumentsOf({*FindNamed(table, "frontend")}) + ", *, " +
-         ArgumentsOf(WithoutRow("frontend", table)) +
-         ") -> None\n\nRaises InputError for unknown names and invalid values.";
-}
-
 std::string HelpOf(const std::vector<Setting>& table) {
   std::string text;
   for (const Setting& setting : table) {

@@ -21,11 +21,6 @@ void SetFromKeywords(const std::string& function,
 // The rows as the arguments of a signature: "cost: str = 'epipolar', ...".
 std::string ArgumentsOf(const std::vector<Setting>& table);
 
-// The signature of a class that is constructed from a camera and settings. The
-// settings are keyword-only, except that the frontend may also be positional.
-std::string InitSignature(const std::string& class_name,
-                          const std::vector<Setting>& table);
-
 // The rows as help text, one paragraph each.
 std::string HelpOf(const std::vector<Setting>& table);
 

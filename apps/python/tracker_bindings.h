@@ -14,6 +14,7 @@
 #include "apps/python/released_gil.h"
 #include "apps/python/setting_arguments.h"
 #include "core/geometry/camera.h"
+#include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "frontend/frame/frame.h"
 #include "frontend/tracking/tracked_frame.h"
@@ -54,10 +55,16 @@ pybind11::class_<Type> BindTracker(pybind11::module_* module, const char* name,
     return std::make_unique<Type>(settings, camera);
   };
   {
+    // The settings are keyword-only, except for the frontend.
+    const std::string signature =
+        "__init__(self: rgbd_pose." + std::string(name) +
+        ", camera: rgbd_pose.Camera, " +
+        ArgumentsOf({*FindNamed(table, "frontend")}) + ", *, " +
+        ArgumentsOf(WithoutRow("frontend", table)) +
+        ") -> None\n\nRaises InputError for unknown names and invalid values.";
     py::options options;
     options.disable_function_signatures();
-    type.def(py::init(make), InitSignature(name, table).c_str(),
-             py::arg("camera").none(false),
+    type.def(py::init(make), signature.c_str(), py::arg("camera").none(false),
              py::arg("frontend") = OdometrySettings().frontend);
   }
   const auto track = [](Type* self, const py::object& image,
