@@ -1,7 +1,6 @@
 #include <pybind11/pybind11.h>
 
 #include <cmath>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -132,22 +131,6 @@ could use.)");
   result.def("__repr__", &ResultInWords).def(Pickled<EstimateResult>());
 }
 
-// How the solver finds its start in the matches; a given motion is the start
-// whatever they are.
-std::function<Rigid3d(const Correspondences& matches)> StartFrom(
-    const py::object& initial_guess) {
-  if (!py::isinstance<py::str>(initial_guess)) {
-    const Rigid3d start = RigidFromArray(initial_guess, "initial_guess");
-    return [start](const Correspondences&) { return start; };
-  }
-  const auto find = RowOf(InitialGuesses(), "initial guess",
-                          initial_guess.cast<std::string>())
-                        .find;
-  return [find](const Correspondences& matches) {
-    return find(matches).value_or(Rigid3d());
-  };
-}
-
 std::optional<MotionPrior> PriorFrom(const py::object& prior) {
   if (prior.is_none()) return std::nullopt;
   if (!py::isinstance<py::sequence>(prior) || py::len(prior) != 2) {
@@ -263,45 +246,55 @@ void BindFunction(py::module_* module, const char* name,
                   ToObservation to_observation, const char* prev_name,
                   const char* cur_name, const CameraArgument& camera_argument,
                   const char* doc) {
-  const auto estimate =
-      [=](const py::object& prev_object, const py::object& cur_object,
-          const RgbdCamera* camera, const py::object& initial_guess,
-          double sigma_px, const py::object& normals_object,
-          const py::object& prior_object, int threads,
-          const py::kwargs& keywords) {
-        const NumberArray prev(prev_object, prev_name, {NumberArray::kAny, 3});
-        const NumberArray cur(cur_object, cur_name, {NumberArray::kAny, 3});
-        CheckSizes(prev, prev_name, cur, cur_name);
-        std::optional<NumberArray> normals;
-        if (!normals_object.is_none()) {
-          normals.emplace(normals_object, "normals_cur",
-                          std::vector<py::ssize_t>{NumberArray::kAny, 3});
-          CheckSizes(prev, prev_name, *normals, "normals_cur");
-        }
-        if (!std::isfinite(sigma_px) || sigma_px <= 0.0) {
-          throw InputError("sigma_px must be a positive number of pixels");
-        }
-        const auto find_start = StartFrom(initial_guess);
-        const std::optional<MotionPrior> prior = PriorFrom(prior_object);
-        OdometrySettings settings;
-        SetFromKeywords(name, keywords, EstimateTable(&settings));
-        settings.estimator.options.threads = threads;
-        if (threads > kMaxThreads) {
-          throw InputError("threads must not exceed " +
-                           std::to_string(kMaxThreads));
-        }
-        Estimator estimator = MakeEstimator(settings.estimator);
-        const Camera seen_by = camera == nullptr ? Camera() : camera->camera;
+  const auto estimate = [=](const py::object& prev_object,
+                            const py::object& cur_object,
+                            const RgbdCamera* camera,
+                            const py::object& initial_guess, double sigma_px,
+                            const py::object& normals_object,
+                            const py::object& prior_object, int threads,
+                            const py::kwargs& keywords) {
+    const NumberArray prev(prev_object, prev_name, {NumberArray::kAny, 3});
+    const NumberArray cur(cur_object, cur_name, {NumberArray::kAny, 3});
+    CheckSizes(prev, prev_name, cur, cur_name);
+    std::optional<NumberArray> normals;
+    if (!normals_object.is_none()) {
+      normals.emplace(normals_object, "normals_cur",
+                      std::vector<py::ssize_t>{NumberArray::kAny, 3});
+      CheckSizes(prev, prev_name, *normals, "normals_cur");
+    }
+    if (!std::isfinite(sigma_px) || sigma_px <= 0.0) {
+      throw InputError("sigma_px must be a positive number of pixels");
+    }
+    Rigid3d start;
+    const InitialGuess* guess = nullptr;
+    if (py::isinstance<py::str>(initial_guess)) {
+      guess = &RowOf(InitialGuesses(), "initial guess",
+                     initial_guess.cast<std::string>());
+    } else {
+      start = RigidFromArray(initial_guess, "initial_guess");
+    }
+    const std::optional<MotionPrior> prior = PriorFrom(prior_object);
+    OdometrySettings settings;
+    SetFromKeywords(name, keywords, EstimateTable(&settings));
+    settings.estimator.options.threads = threads;
+    if (threads > kMaxThreads) {
+      throw InputError("threads must not exceed " +
+                       std::to_string(kMaxThreads));
+    }
+    Estimator estimator = MakeEstimator(settings.estimator);
+    const Camera seen_by = camera == nullptr ? Camera() : camera->camera;
 
-        const ReleasedGil no_gil;
-        const RowMatches matches =
-            MakeMatches(seen_by, to_observation, prev, cur, normals, sigma_px,
-                        settings.features.depth_noise);
-        return MakeResult(
-            estimator.Estimate(matches.matches, find_start(matches.matches),
-                               prior.has_value() ? &*prior : nullptr),
-            matches, prev.size());
-      };
+    const ReleasedGil no_gil;
+    const RowMatches matches =
+        MakeMatches(seen_by, to_observation, prev, cur, normals, sigma_px,
+                    settings.features.depth_noise);
+    if (guess != nullptr) {
+      start = guess->find(matches.matches).value_or(start);
+    }
+    return MakeResult(estimator.Estimate(matches.matches, start,
+                                         prior.has_value() ? &*prior : nullptr),
+                      matches, prev.size());
+  };
   OdometrySettings settings;
   DefineWithSettings(module, name, estimate, EstimateTable(&settings), doc,
                      py::arg(prev_name), py::arg(cur_name), camera_argument,

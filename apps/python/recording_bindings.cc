@@ -74,11 +74,11 @@ class Recording {
   bool is_used_ = false;
 };
 
-std::unique_ptr<Recording> OpenRecording(
-    const py::object& path, const py::object& camera, const std::string& source,
-    const std::string& frames, const py::object& associations,
-    const std::string& depth_camera, double depth_scale,
-    const std::vector<std::string>& topics) {
+Recording OpenRecording(const py::object& path, const py::object& camera,
+                        const std::string& source, const std::string& frames,
+                        const py::object& associations,
+                        const std::string& depth_camera, double depth_scale,
+                        const std::vector<std::string>& topics) {
   SourceOptions options;
   options.path = PathFrom(path);
   if (!associations.is_none()) {
@@ -91,10 +91,9 @@ std::unique_ptr<Recording> OpenRecording(
   }
   options.depth_scale = depth_scale;
   options.topics = topics;
-  const auto open = [options, source, range = ParseFrameRange(frames)] {
+  return Recording([options, source, range = ParseFrameRange(frames)] {
     return PartOf(OpenSource(source, options), range);
-  };
-  return std::make_unique<Recording>(open);
+  });
 }
 
 // The next frame; nothing after the last one.

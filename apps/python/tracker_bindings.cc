@@ -1,9 +1,9 @@
 #include "apps/python/tracker_bindings.h"
 
 #include <cmath>
+#include <opencv2/imgproc.hpp>
 
 #include "core/util/input_error.h"
-#include "frontend/files/image_file.h"
 
 namespace py = pybind11;
 
@@ -33,6 +33,14 @@ InputError WrongImage(const std::string& name, const py::array& array,
                     std::to_string(camera.width) + " pixels");
 }
 
+// A copy of an array of this type of pixels, of any strides.
+template <typename T>
+cv::Mat CopyOf(const py::array& array, const Camera& camera, int type) {
+  const py::array_t<T, py::array::c_style | py::array::forcecast> rows(array);
+  return cv::Mat(camera.height, camera.width, type, const_cast<T*>(rows.data()))
+      .clone();
+}
+
 cv::Mat GrayFrom(const py::object& object, const Camera& camera) {
   const py::array array = ToArray(object, "image");
   const int channels = Channels(array, camera);
@@ -40,17 +48,8 @@ cv::Mat GrayFrom(const py::object& object, const Camera& camera) {
       (channels != 1 && channels != 3)) {
     throw WrongImage("image", array, camera, "uint8, grey or RGB,");
   }
-  cv::Mat gray(camera.height, camera.width, CV_8UC1);
-  const auto* data = static_cast<const uint8_t*>(array.data());
-  const py::ssize_t next = channels == 3 ? array.strides(2) : 0;
-  for (int y = 0; y < gray.rows; ++y) {
-    const uint8_t* from = data + y * array.strides(0);
-    uint8_t* to = gray.ptr<uint8_t>(y);
-    for (int x = 0; x < gray.cols; ++x, from += array.strides(1)) {
-      to[x] = channels == 1 ? *from
-                            : GrayLevel(from[0], from[next], from[2 * next]);
-    }
-  }
+  cv::Mat gray = CopyOf<uint8_t>(array, camera, CV_8UC(channels));
+  if (channels == 3) cv::cvtColor(gray, gray, cv::COLOR_RGB2GRAY);
   return gray;
 }
 
@@ -80,19 +79,16 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
                      "uint16 (raw units) or float32 (metres)");
   }
   frame.depth_scale = is_raw ? camera.depth_scale : kUnitsPerMetre;
-  frame.depth.create(camera.camera.height, camera.camera.width, CV_16UC1);
-  const auto fill = [&frame](const auto& raw_at) {
-    for (int y = 0; y < frame.depth.rows; ++y) {
-      auto* to = frame.depth.ptr<uint16_t>(y);
-      for (int x = 0; x < frame.depth.cols; ++x) to[x] = raw_at(y, x);
-    }
-  };
   if (is_raw) {
-    fill(array.unchecked<uint16_t, 2>());
-  } else {
-    const NumberArray from(array, "depth",
-                           {camera.camera.height, camera.camera.width});
-    fill([&from](int y, int x) { return RawDepth(from(y, x)); });
+    frame.depth = CopyOf<uint16_t>(array, camera.camera, CV_16UC1);
+    return frame;
+  }
+  const int height = camera.camera.height, width = camera.camera.width;
+  const NumberArray metres(array, "depth", {height, width});
+  frame.depth.create(height, width, CV_16UC1);
+  for (int y = 0; y < height; ++y) {
+    auto* to = frame.depth.ptr<uint16_t>(y);
+    for (int x = 0; x < width; ++x) to[x] = RawDepth(metres(y, x));
   }
   return frame;
 }
