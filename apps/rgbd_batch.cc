@@ -147,9 +147,8 @@ void RefuseEarlierRuns(const std::vector<BatchRun>& plan,
 void RunAll(const std::vector<BatchRun>& runs, const BatchFolder& folder,
             const std::string& program) {
   BatchPoolOptions options;
-  // A page per run would be too much by default. --settings may request it, and
-  // rgbd_report can make it later. A stopped run must not count as finished,
-  // because the next call would then not repeat it.
+  // A page per run would be too much; --settings may request it. A stopped run
+  // must not count as finished: the next call would not repeat it.
   options.command = {program, "--report=false", "--finish_on_signal=false"};
   if (!FLAGS_settings.empty()) {
     options.command.push_back("--flagfile=" +
@@ -195,14 +194,13 @@ void WarnOfOtherHashes(const std::vector<BatchRun>& plan,
 int WriteSummary(const std::vector<BatchRun>& plan, const BatchFolder& folder,
                  const BatchShard& shard) {
   const BatchSummary summary = Summarise(plan, folder);
-  const std::string base = folder.output() + "/summary";
+  std::string path = folder.output() + "/summary";
   if (shard.IsWhole()) {
-    WriteFileAtomically(base + ".json", FormatBatchJson(summary));
-    WriteFileAtomically(base + ".csv", FormatBatchCsv(summary));
+    WriteFileAtomically(path + ".json", FormatBatchJson(summary));
   } else {
-    WriteFileAtomically(base + "-" + shard.Name() + ".csv",
-                        FormatBatchCsv(summary));
+    path += "-" + shard.Name();
   }
+  WriteFileAtomically(path + ".csv", FormatBatchCsv(summary));
   std::fputs(FormatBatchTable(summary).c_str(), stdout);
   const int not_ok = CountNotOk(summary);
   std::printf("%zu runs, %d not ok; results in %s\n", summary.size(), not_ok,

@@ -1,6 +1,4 @@
-// The experiments of the thesis' fourth chapter: compares M-estimators on a
-// camera that returns to its start, on a camera that moves along its axes, and
-// on wrong matches.
+// The experiments of the thesis' fourth chapter, which compare M-estimators.
 
 #include <gflags/gflags.h>
 

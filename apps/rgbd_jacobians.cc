@@ -23,8 +23,7 @@ namespace rgbd_pose {
 namespace {
 
 // Tolerances for the largest errors, relative to the largest entry of the row.
-// Automatic differentiation differs only by rounding. Central differences also
-// have an error of the order of the step squared plus rounding over the step.
+// Central differences err by the step squared and the rounding over the step.
 constexpr double kJetTolerance = 1e-12;
 constexpr double kDifferenceTolerance = 1e-5;
 constexpr double kStep = 1e-5;

@@ -1,5 +1,4 @@
-// Estimates the camera motion of an RGB-D sequence. Writes the trajectory,
-// figures and errors.
+// Estimates the camera motion of an RGB-D sequence.
 
 #include <gflags/gflags.h>
 

@@ -51,8 +51,8 @@ struct RunResults {
   Trajectory trajectory;             // of the frames that were not lost
   ResidualHistogram residuals;       // of the matches
 
-  // Comparison with the ground truth. Empty without ground truth or if no pose
-  // can be compared; in the second case no_evaluation has the reason.
+  // Empty without ground truth or if no pose can be compared: then
+  // no_evaluation has the reason.
   std::optional<EvaluationReport> evaluation;
   std::string no_evaluation;
 
@@ -73,7 +73,7 @@ class SequenceRun {
   // The odometry that tracks the frames and can prepare frames in advance.
   virtual const Odometry& odometry() const = 0;
 
-  // All frames so far, and the frames that could not be read.
+  // All frames so far, and those that could not be read.
   const std::vector<TrackedFrame>& frames() const { return results_.frames; }
   const std::vector<std::string>& damaged() const { return results_.damaged; }
   void set_damaged(const std::vector<std::string>& damaged) {

@@ -95,12 +95,10 @@ NumberArray::NumberArray(const py::object& object, const std::string& name,
     throw InputError(name + ": holds " + std::string(py::str(array_.dtype())) +
                      "; it needs real numbers, such as float64");
   }
-  const bool fits =
-      std::equal(shape.begin(), shape.end(), array_.shape(),
-                 array_.shape() + array_.ndim(),
-                 [](py::ssize_t needed, py::ssize_t given) {
-                   return needed == NumberArray::kAny || needed == given;
-                 });
+  bool fits = shape.size() == static_cast<size_t>(array_.ndim());
+  for (size_t i = 0; fits && i < shape.size(); ++i) {
+    fits = shape[i] == kAny || shape[i] == array_.shape(i);
+  }
   if (!fits) {
     std::string needed;
     for (const py::ssize_t side : shape) {

@@ -18,13 +18,10 @@
 #include "frontend/tracking/tracked_frame.h"
 
 // Serialises objects for `pickle` and `copy`, between processes of the same
-// version, not for storage. A class provides a function, found by its argument
-// type,
-//
+// version, not for storage. A class provides a function
 //   void EachField(PickledBytes* bytes, Class& object)
-//
-// that calls (*bytes)(object.field, ...) with all relevant fields. It serves
-// both writing and reading.
+// that calls (*bytes)(object.field, ...) with all relevant fields, for writing
+// and for reading.
 
 namespace rgbd_pose {
 

@@ -53,12 +53,6 @@ cv::Mat GrayFrom(const py::object& object, const Camera& camera) {
   return gray;
 }
 
-uint16_t RawDepth(double metres) {
-  const double raw = std::round(metres * kUnitsPerMetre);
-  // NaN compares false.
-  return raw > 0.0 && raw < Frame::kNoDepth ? static_cast<uint16_t>(raw) : 0;
-}
-
 }  // namespace
 
 Frame FrameFromArrays(const py::object& image, const py::object& depth,
@@ -88,7 +82,11 @@ Frame FrameFromArrays(const py::object& image, const py::object& depth,
   frame.depth.create(height, width, CV_16UC1);
   for (int y = 0; y < height; ++y) {
     auto* to = frame.depth.ptr<uint16_t>(y);
-    for (int x = 0; x < width; ++x) to[x] = RawDepth(metres(y, x));
+    for (int x = 0; x < width; ++x) {
+      const double raw = std::round(metres(y, x) * kUnitsPerMetre);
+      const bool is_valid = raw > 0.0 && raw < Frame::kNoDepth;  // NaN is not
+      to[x] = is_valid ? static_cast<uint16_t>(raw) : 0;
+    }
   }
   return frame;
 }

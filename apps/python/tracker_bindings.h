@@ -21,10 +21,9 @@
 
 namespace rgbd_pose {
 
-// Makes a frame with copies of the Python images (see Odometry.track). Copies
-// are needed because frontends keep the image of a reference, while camera
-// drivers overwrite their memory with the next image. The shutter times are
-// those of `camera`. Throws InputError for images of a wrong shape or type.
+// Makes a frame with copies of the Python images (see Odometry.track):
+// frontends keep images, while camera drivers overwrite theirs. Throws
+// InputError for images of a wrong shape or type.
 Frame FrameFromArrays(const pybind11::object& image,
                       const pybind11::object& depth, const RgbdCamera& camera);
 

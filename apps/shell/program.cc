@@ -31,8 +31,7 @@ struct UsageError : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-// Defines a gflag for each row of some tables of settings. It must live as long
-// as flags are read.
+// Defines a gflag for each row of some tables of settings, while it lives.
 class SettingFlags {
  public:
   explicit SettingFlags(const std::vector<std::vector<Setting>>& tables) {
@@ -44,9 +43,8 @@ class SettingFlags {
     }
   }
 
-  // gflags writes numbers and texts directly into the settings. This sets the
-  // values with a NamedSetting, after the flags have been read. Throws
-  // InputError for unknown names.
+  // Sets values by name; gflags writes numbers and texts into the settings
+  // itself. Throws InputError for unknown names.
   void Apply() const {
     for (const auto& [named, text] : texts_) named.set(text);
   }

@@ -40,11 +40,9 @@ struct ProgramInfo {
   std::map<std::string, std::vector<std::string>> choices = {};
 };
 
-// Runs a program. Handles --help and --version, then reads the flags (one line
-// and exit code 2 for an unknown flag or a value of the wrong type),
-// initialises logging to stderr, sets the settings and calls `body`. An
-// InputError of `body` becomes one line on stderr and exit code 2. Call it from
-// main with main's arguments.
+// Runs a program: handles --help and --version, reads the flags into the
+// settings, initialises logging to stderr and calls `body`. A bad flag or an
+// InputError of `body` becomes one line on stderr and exit code 2.
 int RunProgram(int argc, char** argv, const ProgramInfo& info,
                const std::function<int()>& body);
 
@@ -66,8 +64,7 @@ double SecondsSince(std::chrono::steady_clock::time_point start);
 // Prints warnings on stderr, one per line; empty ones are skipped.
 void Warn(const std::vector<std::string>& lines);
 
-// If a required flag is empty, throws UsageError, which RunProgram turns into
-// one line on stderr and kExitUsage.
+// Ends RunProgram with one line on stderr and kExitUsage if the value is empty.
 void RequireFlag(const std::string& name, const std::string& value);
 
 // More threads than any machine could use here.
