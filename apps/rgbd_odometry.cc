@@ -85,13 +85,12 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
   if (FLAGS_validate_only) return ValidateOnly(sequence, threads);
-  OdometryRun run(settings.odometry, source.camera().camera, sequence.inputs);
+  SequenceRun run(settings.odometry, source.camera().camera, sequence.inputs);
   RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
-  LiveView view(settings.sequence.dataset, source.camera().camera, run,
-                nullptr);
+  LiveView view(settings.sequence.dataset, source.camera().camera, run);
 
   RunIssues flaws;
   flaws.stopped =

@@ -150,15 +150,14 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   FrameSource& source = *sequence.source;
   Warn(sequence.remarks);
   if (!settings.save_map.empty()) RequireMapFolder(settings.save_map);
-  SlamRun run(settings.odometry, settings.slam, source.camera().camera,
-              sequence.inputs);
-  LoadMaps(settings, &run.slam());
+  SequenceRun run(settings.odometry, settings.slam, source.camera().camera,
+                  sequence.inputs);
+  LoadMaps(settings, run.slam());
   RequireMeshFrames(settings.output, settings.sequence.dataset);
   RunOutput output(settings.output, source,
                    settings.odometry.features.DepthLookup());
 
-  LiveView view(settings.sequence.dataset, source.camera().camera, run,
-                &run.slam());
+  LiveView view(settings.sequence.dataset, source.camera().camera, run);
 
   RunIssues flaws;
   flaws.stopped =
@@ -169,7 +168,7 @@ int Main(const ProgramSettings& settings, const ProgramInfo& info) {
   const double seconds = SecondsSince(start);
 
   const RunResults results = run.Finish(sequence.GroundTruth());
-  const Slam& slam = run.slam();
+  const Slam& slam = *run.slam();
   LogWarnings(results);
   const nlohmann::json map_json = SlamToJson(slam, run.slam_frames());
   Warn({SlamWarning(map_json)});

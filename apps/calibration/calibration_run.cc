@@ -122,7 +122,7 @@ RecordingCalibration CalibrateRecording(
     const int frames = static_cast<int>(opened.source->timestamps().size());
     RequireSound(settings.Check(), "calibration: ");
     const RgbdCamera camera = opened.source->camera();
-    SlamRun run(with_shutter, slam, camera.camera, opened.inputs);
+    SequenceRun run(with_shutter, slam, camera.camera, opened.inputs);
     int done = 0;
     all.stopped = TrackAll(opened.source.get(), threads, {&run},
                            [&](const Frame& /*frame*/) {
@@ -137,10 +137,10 @@ RecordingCalibration CalibrateRecording(
     const Trajectory* const truth = opened.GroundTruth();
     run.Finish(truth);
     const CalibrationResult result = Calibrate(
-        run.slam().Map(), SmoothPath(run.slam_frames()), camera, with_shutter,
+        run.slam()->Map(), SmoothPath(run.slam_frames()), camera, with_shutter,
         settings, {truth, opened.inputs.motion_guess.get()}, threads,
         pass > 1 ? &first : nullptr);
-    all.path = run.slam().Path();
+    all.path = run.slam()->Path();
     if (pass == 1) {
       first = camera;
       all.result = result;

@@ -94,13 +94,13 @@ class SequenceExperiment {
                              const std::optional<Trajectory>& truth) const {
     if (truth.has_value()) RequireOverlap(*source, *truth);
     OdometrySettings settings = settings_.odometry;
-    std::vector<OdometryRun> runs;
+    std::vector<SequenceRun> runs;
     for (const std::string& loss : losses_) {
       settings.estimator.loss = loss;
       runs.emplace_back(settings, source->camera().camera);
     }
     std::vector<SequenceRun*> all;
-    for (OdometryRun& run : runs) all.push_back(&run);
+    for (SequenceRun& run : runs) all.push_back(&run);
     {
       ProgressBar bar("tracking",
                       static_cast<int>(source->timestamps().size()));

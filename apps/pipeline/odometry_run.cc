@@ -28,7 +28,12 @@ void SequenceRun::Add(const StreamedFrame& next) {
 }
 
 RunResults SequenceRun::Finish(const Trajectory* ground_truth) {
-  results_.trajectory = FinishPath();
+  if (slam_ == nullptr) {
+    results_.trajectory = TrackedTrajectory(results_.frames);
+  } else {
+    slam_->Finish();
+    results_.trajectory = slam_->Path();
+  }
   if (ground_truth != nullptr && !results_.trajectory.empty()) {
     try {
       results_.evaluation = Evaluate(results_.trajectory, *ground_truth);
@@ -110,24 +115,20 @@ void ResidualHistogram::Add(const MotionEstimate& estimate) {
   }
 }
 
-TrackedFrame SlamRun::Track(const PreparedFrame& frame,
-                            const Rigid3d* cur_from_prev_guess) {
-  SlamFrame in_map = slam_.Track(frame, cur_from_prev_guess);
+TrackedFrame SequenceRun::Track(const PreparedFrame& frame,
+                                const Rigid3d* cur_from_prev_guess) {
+  if (slam_ == nullptr) return odometry_->Track(frame, cur_from_prev_guess);
+  SlamFrame in_map = slam_->Track(frame, cur_from_prev_guess);
   if (in_map.tracked.previous_is_reference) {
-    frames_.back().tracked.is_reference = true;
+    slam_frames_.back().tracked.is_reference = true;
   }
   TrackedFrame tracked = in_map.tracked;
   tracked.world_from_cam = in_map.map_from_cam();
   tracked.segment = in_map.segment;
   // Edges are kept only once: a long recording would take much memory.
   in_map.tracked.edges = {};
-  frames_.push_back(std::move(in_map));
+  slam_frames_.push_back(std::move(in_map));
   return tracked;
-}
-
-Trajectory SlamRun::FinishPath() {
-  slam_.Finish();
-  return slam_.Path();
 }
 
 }  // namespace rgbd_pose

@@ -62,16 +62,35 @@ struct RunResults {
   }
 };
 
-// Tracks a sequence frame by frame and collects the results.
+// Tracks a sequence frame by frame, with an Odometry or a Slam, and collects
+// the results.
 class SequenceRun {
  public:
-  explicit SequenceRun(const RunInputs& inputs) : inputs_(inputs) {}
-  virtual ~SequenceRun() = default;
+  // With an Odometry. Throws InputError for invalid settings.
+  SequenceRun(const OdometrySettings& settings, const Camera& camera,
+              const RunInputs& inputs = {})
+      : inputs_(inputs), odometry_(MakeOdometry(settings, camera)) {}
+
+  // With a Slam: frames and debug images have the poses known at the time; the
+  // trajectory has the final poses. Throws InputError for invalid settings.
+  SequenceRun(const OdometrySettings& odometry, const SlamSettings& settings,
+              const Camera& camera, const RunInputs& inputs = {})
+      : inputs_(inputs),
+        slam_(std::make_unique<Slam>(odometry, settings, camera)) {}
 
   void Add(const StreamedFrame& next);
 
   // The odometry that tracks the frames and can prepare frames in advance.
-  virtual const Odometry& odometry() const = 0;
+  const Odometry& odometry() const {
+    return slam_ == nullptr ? *odometry_ : slam_->odometry();
+  }
+
+  // The map: loaded before the first frame, complete after Finish. Null without
+  // a Slam.
+  Slam* slam() const { return slam_.get(); }
+
+  // The SLAM results of each frame, without edges (these are in RunResults).
+  const std::vector<SlamFrame>& slam_frames() const { return slam_frames_; }
 
   // All frames so far, and those that could not be read.
   const std::vector<TrackedFrame>& frames() const { return results_.frames; }
@@ -86,65 +105,19 @@ class SequenceRun {
   // (world from camera) unless it is null.
   RunResults Finish(const Trajectory* ground_truth);
 
- protected:
-  virtual TrackedFrame Track(const PreparedFrame& frame,
-                             const Rigid3d* cur_from_prev_guess) = 0;
-  // Called after the last frame. Returns the poses of all frames not lost.
-  virtual Trajectory FinishPath() = 0;
-
  private:
+  TrackedFrame Track(const PreparedFrame& frame,
+                     const Rigid3d* cur_from_prev_guess);
+
   RunInputs inputs_;
+  std::optional<Odometry> odometry_;  // nothing with a Slam
+  std::unique_ptr<Slam> slam_;        // null: not requested
+  std::vector<SlamFrame> slam_frames_;
   RunResults results_;
 };
 
 // The poses of all frames that were not lost.
 Trajectory TrackedTrajectory(const std::vector<TrackedFrame>& frames);
-
-// A run with an Odometry.
-class OdometryRun final : public SequenceRun {
- public:
-  // Throws InputError for invalid settings.
-  OdometryRun(const OdometrySettings& settings, const Camera& camera,
-              const RunInputs& inputs = {})
-      : SequenceRun(inputs), odometry_(MakeOdometry(settings, camera)) {}
-
-  const Odometry& odometry() const override { return odometry_; }
-
- private:
-  TrackedFrame Track(const PreparedFrame& frame,
-                     const Rigid3d* cur_from_prev_guess) override {
-    return odometry_.Track(frame, cur_from_prev_guess);
-  }
-  Trajectory FinishPath() override { return TrackedTrajectory(frames()); }
-
-  Odometry odometry_;
-};
-
-// A run with a Slam. Frames and debug images have the poses known at the time;
-// the trajectory has the final poses.
-class SlamRun final : public SequenceRun {
- public:
-  // Throws InputError for invalid settings.
-  SlamRun(const OdometrySettings& odometry, const SlamSettings& settings,
-          const Camera& camera, const RunInputs& inputs = {})
-      : SequenceRun(inputs), slam_(odometry, settings, camera) {}
-
-  const Odometry& odometry() const override { return slam_.odometry(); }
-
-  // The map: loaded before the first frame, complete after Finish.
-  Slam& slam() { return slam_; }
-
-  // The SLAM results of each frame, without edges (these are in RunResults).
-  const std::vector<SlamFrame>& slam_frames() const { return frames_; }
-
- private:
-  TrackedFrame Track(const PreparedFrame& frame,
-                     const Rigid3d* cur_from_prev_guess) override;
-  Trajectory FinishPath() override;
-
-  Slam slam_;
-  std::vector<SlamFrame> frames_;
-};
 
 // Sends all frames of a source through one or more runs with the same frontend.
 // Each frame is read and prepared once, in advance, by `threads` >= 1 threads.

@@ -37,8 +37,8 @@ cv::Vec2f ImagePoint(const Camera& camera, const Observation& seen) {
 }  // namespace
 
 LiveView::LiveView(const std::string& dataset, const Camera& camera,
-                   const SequenceRun& run, const Slam* map)
-    : camera_(camera), run_(run), map_(map) {
+                   const SequenceRun& run)
+    : camera_(camera), run_(run), map_(run.slam()) {
   if (!(FLAGS_view_speed >= 0.0)) {
     throw InputError("--view_speed must not be negative");
   }

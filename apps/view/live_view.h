@@ -14,11 +14,10 @@ namespace rgbd_pose {
 // A page that shows a run while it is running, if requested by --view.
 class LiveView {
  public:
-  // Prints the address of the page on stderr. `map` is the map of the run, or
-  // null if it has none. `run` and `map` must outlive this object. Throws
-  // InputError for invalid flags.
+  // Prints the address of the page on stderr. `run` must outlive this object.
+  // Throws InputError for invalid flags.
   LiveView(const std::string& dataset, const Camera& camera,
-           const SequenceRun& run, const Slam* map);
+           const SequenceRun& run);
 
   // Call after a frame was tracked. Shows the frame and waits if --view_speed
   // or a button requests it. Returns why the run is to end, or an empty string.
@@ -39,7 +38,7 @@ class LiveView {
 
   const Camera camera_;
   const SequenceRun& run_;
-  const Slam* map_;
+  const Slam* const map_;  // null: the run has none
   ViewState state_;
   std::unique_ptr<ViewServer> server_;  // null: not requested
 
