@@ -74,8 +74,8 @@ SlamFrame Slam::Track(const PreparedFrame& frame,
 
 // Updates odom_from_cam_ without a jump when the reference changes.
 void Slam::Follow(const TrackedFrame& tracked) {
-  const Rigid3d moved = world_from_cam_.Inverse() * tracked.world_from_cam;
-  world_from_cam_ = tracked.world_from_cam;
+  const Rigid3d moved =
+      previous_.world_from_cam.Inverse() * tracked.world_from_cam;
   const bool is_lost = tracked.status == TrackingStatus::kLost;
   // The second lost frame in a row may start a segment.
   if (is_lost && !tracked.is_reference) {
@@ -192,7 +192,7 @@ void Slam::Apply(MapUpdate update, SlamFrame* result) {
 // Inserts a map keyframe into the odometry, placed relative to the camera.
 void Slam::Adopt(Keyframe keyframe) {
   const Rigid3d map_from_cam = map_from_odom_ * odom_from_cam_;
-  keyframe.world_from_cam = world_from_cam_ * map_from_cam.Inverse() *
+  keyframe.world_from_cam = previous_.world_from_cam * map_from_cam.Inverse() *
                             map_from_keyframe_.at(keyframe.id);
   keyframe.id -= first_id_;  // the odometry numbers its frames from 0
   odometry_.InsertKeyframe(keyframe);

@@ -155,7 +155,6 @@ class Slam {
   Rigid3d odom_from_reference_;
   Rigid3d odom_from_cam_;
   Rigid3d map_from_odom_;
-  Rigid3d world_from_cam_;  // of the odometry
 
   int first_id_ = 0;       // offset of new keyframe ids
   int first_segment_ = 0;  // offset of new segments
