@@ -111,7 +111,7 @@ class SequenceRun {
 
   RunInputs inputs_;
   std::optional<Odometry> odometry_;  // nothing with a Slam
-  std::unique_ptr<Slam> slam_;        // null: not requested
+  std::unique_ptr<Slam> slam_;        // null: without a map
   std::vector<SlamFrame> slam_frames_;
   RunResults results_;
 };
