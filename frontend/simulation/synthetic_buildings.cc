@@ -1,4 +1,5 @@
 #include <cmath>
+#include <utility>
 
 #include "frontend/simulation/synthetic_hash.h"
 #include "frontend/simulation/synthetic_scene.h"
@@ -28,17 +29,6 @@ void PutFloorAndCeiling(const Vector2d& middle, const Vector2d& size,
   const Vector3d slab(size.x(), size.y(), kWall);
   AddBox({{middle.x(), middle.y(), -kWall}, slab}, kParquet, scene);
   AddBox({{middle.x(), middle.y(), kHeight}, slab}, kPlaster, scene);
-}
-
-// Floor, ceiling and the walls around a rectangle.
-void PutRoom(const Vector2d& middle, const Vector2d& size, Scene* scene) {
-  PutFloorAndCeiling(middle, size, scene);
-  const Vector2d x(size.x() / 2, 0.0);
-  const Vector2d y(0.0, size.y() / 2);
-  PutWall(middle - x - y, middle + x - y, 0.0, scene);
-  PutWall(middle + x - y, middle + x + y, 0.0, scene);
-  PutWall(middle + x + y, middle - x + y, 0.0, scene);
-  PutWall(middle - x + y, middle - x - y, 0.0, scene);
 }
 
 // Places furniture by its position along a row, its distance from the wall
@@ -100,52 +90,51 @@ void Furnish(const Vector2d& from, const Vector2d& to, int kind, Scene* scene) {
   }
 }
 
-// Furniture along all four walls of a rectangle, away from its corners.
-void FurnishRoom(const Vector2d& middle, const Vector2d& size, int kind,
-                 Scene* scene) {
+// A room around the world's z axis, with furniture along all four walls, away
+// from the corners.
+void PutFurnishedRoom(const Vector2d& size, Scene* scene) {
+  PutFloorAndCeiling({0, 0}, size, scene);
+  const Vector2d x(size.x() / 2, 0.0);
+  const Vector2d y(0.0, size.y() / 2);
+  PutWall(-x - y, x - y, 0.0, scene);
+  PutWall(x - y, x + y, 0.0, scene);
+  PutWall(x + y, y - x, 0.0, scene);
+  PutWall(y - x, -x - y, 0.0, scene);
   constexpr double kCorner = 0.5;  // m
-  Vector2d half = size / 2.0 - Vector2d::Constant(kWall / 2.0);
+  const Vector2d half = size / 2.0 - Vector2d::Constant(kWall / 2.0);
   Vector2d along(1.0, 0.0);
   for (int side = 0; side < 4; ++side) {
-    const Vector2d wall_middle =
-        middle + Vector2d(along.y() * half.x(), -along.x() * half.y());
+    const Vector2d middle(along.y() * half.x(), -along.x() * half.y());
     const double reach =
         std::abs(along.x()) * half.x() + std::abs(along.y()) * half.y();
-    Furnish(wall_middle - along * (reach - kCorner),
-            wall_middle + along * (reach - kCorner), 4 * kind + side, scene);
+    Furnish(middle - along * (reach - kCorner),
+            middle + along * (reach - kCorner), 4 + side, scene);
     along = Vector2d(-along.y(), along.x());
   }
 }
 
 // A desk with typical equipment, rotated about its middle.
 void PutDesk(const Vector2d& middle, double yaw_deg, Scene* scene) {
-  struct Piece {
-    Vector3d foot;  // in the desk's own axes
-    Vector3d size;
-    double yaw_deg;
-    const Material* material;
-  };
-  const Piece pieces[] = {
-      {{0.0, 0.0, 0.71}, {1.60, 0.90, 0.03}, 0, &kWood},
-      {{-0.74, 0.0, 0.0}, {0.04, 0.80, 0.71}, 0, &kMetal},
-      {{0.74, 0.0, 0.0}, {0.04, 0.80, 0.71}, 0, &kMetal},
-      {{-0.2, 0.15, 0.74}, {0.24, 0.16, 0.02}, 5, &kMetal},
-      {{-0.2, 0.15, 0.76}, {0.54, 0.04, 0.42}, 5, &kScreen},
-      {{-0.2, -0.22, 0.74}, {0.43, 0.15, 0.02}, -4, &kScreen},
-      {{0.45, 0.15, 0.74}, {0.30, 0.22, 0.05}, 25, &kBooks},
-      {{0.46, 0.16, 0.79}, {0.25, 0.18, 0.04}, -8, &kPoster},
-      {{0.55, -0.22, 0.74}, {0.20, 0.26, 0.18}, 35, &kCarton},
-      {{0.25, -0.25, 0.74}, {0.21, 0.30, 0.004}, 12, &kPaper},
-      {{-0.62, -0.25, 0.74}, {0.08, 0.08, 0.10}, 30, &kPoster},
-      {{-0.62, 0.25, 0.74}, {0.18, 0.26, 0.32}, 80, &kBooks}};
+  const std::pair<SceneBox, const Material*> pieces[] = {
+      {{{0.0, 0.0, 0.71}, {1.60, 0.90, 0.03}, 0}, &kWood},
+      {{{-0.74, 0.0, 0.0}, {0.04, 0.80, 0.71}, 0}, &kMetal},
+      {{{0.74, 0.0, 0.0}, {0.04, 0.80, 0.71}, 0}, &kMetal},
+      {{{-0.2, 0.15, 0.74}, {0.24, 0.16, 0.02}, 5}, &kMetal},
+      {{{-0.2, 0.15, 0.76}, {0.54, 0.04, 0.42}, 5}, &kScreen},
+      {{{-0.2, -0.22, 0.74}, {0.43, 0.15, 0.02}, -4}, &kScreen},
+      {{{0.45, 0.15, 0.74}, {0.30, 0.22, 0.05}, 25}, &kBooks},
+      {{{0.46, 0.16, 0.79}, {0.25, 0.18, 0.04}, -8}, &kPoster},
+      {{{0.55, -0.22, 0.74}, {0.20, 0.26, 0.18}, 35}, &kCarton},
+      {{{0.25, -0.25, 0.74}, {0.21, 0.30, 0.004}, 12}, &kPaper},
+      {{{-0.62, -0.25, 0.74}, {0.08, 0.08, 0.10}, 30}, &kPoster},
+      {{{-0.62, 0.25, 0.74}, {0.18, 0.26, 0.32}, 80}, &kBooks}};
   const double yaw = yaw_deg * M_PI / 180.0;
-  for (const Piece& piece : pieces) {
-    const Vector3d& p = piece.foot;
-    AddBox({{middle.x() + std::cos(yaw) * p.x() - std::sin(yaw) * p.y(),
-             middle.y() + std::sin(yaw) * p.x() + std::cos(yaw) * p.y(), p.z()},
-            piece.size,
-            piece.yaw_deg + yaw_deg},
-           *piece.material, scene);
+  for (auto [box, material] : pieces) {
+    const Vector3d p = box.foot;  // in the desk's own axes
+    box.foot.x() = middle.x() + std::cos(yaw) * p.x() - std::sin(yaw) * p.y();
+    box.foot.y() = middle.y() + std::sin(yaw) * p.x() + std::cos(yaw) * p.y();
+    box.yaw_deg += yaw_deg;
+    AddBox(box, *material, scene);
   }
 }
 
@@ -153,8 +142,7 @@ void PutDesk(const Vector2d& middle, double yaw_deg, Scene* scene) {
 
 Scene MakeTableRoom(uint32_t seed) {
   Scene scene = {{}, {0.3, 0.4, 2.5}, seed};
-  PutRoom({0, 0}, {9.4, 7.0}, &scene);
-  FurnishRoom({0, 0}, {9.4, 7.0}, 1, &scene);
+  PutFurnishedRoom({9.4, 7.0}, &scene);
   PutDesk({-0.85, 0.05}, 4.0, &scene);
   PutDesk({0.85, -0.05}, 177.0, &scene);
   return scene;
@@ -234,8 +222,7 @@ Scene MakeDepot(uint32_t seed) {
   constexpr double kReach = 7.5;   // half of a row's length
   constexpr double kThick = 0.34;  // thickness of a row's back
   Scene scene = {{}, {0.0, 0.0, 1000.0}, seed};
-  PutRoom({0, 0}, {kDepotPitch * kDepotAisles, 22.0}, &scene);
-  FurnishRoom({0, 0}, {kDepotPitch * kDepotAisles, 22.0}, 1, &scene);
+  PutFurnishedRoom({kDepotPitch * kDepotAisles, 22.0}, &scene);
   for (int i = 1; i < kDepotAisles; ++i) {
     const double x = kDepotPitch * (i - kDepotAisles / 2.0);
     AddBox({{x, 0.0, 0.0}, {kThick, 2 * kReach, 2.2}}, kWallpaper, &scene);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
@@ -13,90 +14,156 @@
 namespace rgbd_pose {
 namespace {
 
+using Eigen::Quaterniond;
+using Eigen::Vector3d;
+
+using Path = std::function<Rigid3d(double t)>;  // world_from_cam
+
+constexpr double kMaxPatchShare = 0.45;  // a larger one would leave the image
+
+// A printed sheet that moves with the camera, perpendicular to its optical axis
+// and with the image's aspect ratio.
+SyntheticMover MovingPatch(const SyntheticOptions& options, const Path& path) {
+  constexpr double kDepth = 1.0;  // m
+  // Semi-axes of the ellipse, as shares of the image, and its angular rate
+  // (rad/s): 150 to 240 px/s.
+  constexpr double kHalfWidth = 100.0 / 640.0;
+  constexpr double kHalfHeight = 62.5 / 480.0;
+  constexpr double kRate = 2.4;
+  const Camera& camera = options.camera.camera;
+  const double share = options.moving_patch;
+  const double width = kDepth * camera.width / camera.fx;  // of the view, m
+  const double height = kDepth * camera.height / camera.fy;
+  SyntheticMover patch;
+  SceneFace face;
+  face.width = std::sqrt(share) * width;
+  face.height = std::sqrt(share) * height;
+  face.origin = {-face.width / 2, -face.height / 2, kDepth};
+  face.normal = -Vector3d::UnitZ();
+  face.material = kPoster;
+  face.seed = HashCell(1, 2, options.seed);
+  patch.scene = {{face}, {0.3, -0.3, -1.5}};
+  patch.world_from_mover = [path, width, height](double t) {
+    return path(t) * Rigid3d(Quaterniond::Identity(),
+                             {kHalfWidth * width * std::cos(kRate * t),
+                              kHalfHeight * height * std::sin(kRate * t), 0.0});
+  };
+  return patch;
+}
+
+struct WalkingBox {
+  SceneBox box;   // in the middle of its way
+  Vector3d half;  // from there to either end (m)
+  double rate;    // of its phase (rad/s)
+  double phase;   // at time 0 (rad)
+};
+
+// In front of the desk, behind it, and towards and away from the camera.
+const WalkingBox kWalkingBoxes[] = {
+    {{{-0.05, 0.0, 0.0}, {0.30, 0.40, 1.25}, 10}, {0.0, 1.1, 0.0}, 0.8, 4.0},
+    {{{1.50, 0.1, 0.0}, {0.40, 0.50, 1.50}, -20}, {0.0, 1.2, 0.0}, 0.7, 0.5},
+    {{{0.90, -0.8, 0.0}, {0.35, 0.45, 1.40}, 25}, {0.9, 0.2, 0.0}, 0.9, 2.2}};
+
+constexpr int kMaxWalkingBoxes = std::size(kWalkingBoxes);
+
+std::vector<SyntheticMover> WalkingBoxes(int count, uint32_t seed) {
+  std::vector<SyntheticMover> boxes;
+  for (int i = 0; i < count; ++i) {
+    const WalkingBox& walking = kWalkingBoxes[i];
+    SyntheticMover box;
+    box.scene = {{}, {-1.0, 0.3, 2.2}, HashCell(i, 3, seed)};
+    AddBox({Vector3d::Zero(), walking.box.size, walking.box.yaw_deg}, kPoster,
+           &box.scene);
+    box.world_from_mover = [&walking](double t) {
+      const double swing = std::sin(walking.rate * t + walking.phase);
+      return Rigid3d(Quaterniond::Identity(),
+                     walking.box.foot + swing * walking.half);
+    };
+    boxes.push_back(box);
+  }
+  return boxes;
+}
+
+void Require(bool holds, const std::string& problem) {
+  if (!holds) throw InputError(problem);
+}
+
 void CheckShutters(const RgbdCamera& camera, double frame_s) {
   for (const ShutterParameter& parameter : kShutterParameters) {
     const double size = std::abs(camera.*parameter.image.*parameter.value);
     const double most = std::min(frame_s, parameter.most);
-    if (!(size <= most)) {
-      throw InputError(
-          Format("%s of a synthetic sequence must be at most %.6g s in "
-                 "magnitude, %s",
-                 parameter.name, most,
-                 frame_s <= parameter.most ? "the time from frame to frame"
-                                           : "as in camera files"));
-    }
+    Require(size <= most,
+            Format("%s of a synthetic sequence must be at most %.6g s in "
+                   "magnitude, %s",
+                   parameter.name, most,
+                   frame_s <= parameter.most ? "the time from frame to frame"
+                                             : "as in camera files"));
   }
 }
 
-// Whether every pixel has a ray: the distortion is worst in the corners.
-bool SeesEverywhere(const Camera& camera) {
+void CheckCamera(const Camera& camera, const std::string& name) {
+  RequireSound(camera.Check(), name + ": ");
+  // Every pixel must have a ray: the distortion is worst in the corners.
   for (const double u : {0.0, camera.width - 1.0}) {
     for (const double v : {0.0, camera.height - 1.0}) {
-      if (!camera.Undistort({u, v}).allFinite()) return false;
+      Require(camera.Undistort({u, v}).allFinite(),
+              name +
+                  ": its distortion cannot be inverted in the corners of "
+                  "the image");
     }
   }
-  return true;
 }
 
 // Checks the options and stores the shutters in the camera as well.
 SyntheticOptions Checked(SyntheticOptions options) {
   constexpr int kMaxFrames = 1000000;  // 9 hours at 30 Hz
-  const auto require = [](bool holds, const std::string& problem) {
-    if (!holds) throw InputError(problem);
-  };
   options.color_shutter.is_known = true;
   options.camera.color_shutter = options.color_shutter;
   options.camera.depth_shutter = options.depth_shutter;
-  require(options.frames >= 1 && options.frames <= kMaxFrames,
-          "a synthetic sequence has 1 to " + std::to_string(kMaxFrames) +
-              " frames, not " + std::to_string(options.frames));
-  require(options.laps >= 1, "a synthetic sequence has 1 or more laps, not " +
-                                 std::to_string(options.laps));
+  Require(options.frames >= 1 && options.frames <= kMaxFrames,
+          Format("a synthetic sequence has 1 to %d frames, not %d", kMaxFrames,
+                 options.frames));
+  Require(
+      options.laps >= 1,
+      Format("a synthetic sequence has 1 or more laps, not %d", options.laps));
   // Time stamps are whole microseconds and must differ.
-  require(options.rate_hz > 0.0 && options.rate_hz <= 1e5,
+  Require(options.rate_hz > 0.0 && options.rate_hz <= 1e5,
           "the rate of a synthetic sequence must be in 0..1e5 Hz");
-  require(options.camera.depth_scale > 0.0,
+  Require(options.camera.depth_scale > 0.0,
           "depth_scale of a synthetic sequence must be positive");
-  RequireSound(options.camera.camera.Check(),
-               "camera of the synthetic sequence: ");
-  require(SeesEverywhere(options.camera.camera),
-          "camera of the synthetic sequence: its distortion cannot be inverted "
-          "in the corners of the image");
+  CheckCamera(options.camera.camera, "camera of the synthetic sequence");
   const double frame_s = 1.0 / options.rate_hz;
-  require(options.exposure_s >= 0.0 && options.exposure_s <= frame_s,
-          "the shutter time of a synthetic sequence must be in 0.." +
-              std::to_string(frame_s) + " s, the time from frame to frame");
+  Require(options.exposure_s >= 0.0 && options.exposure_s <= frame_s,
+          Format("the shutter time of a synthetic sequence must be in 0..%f s, "
+                 "the time from frame to frame",
+                 frame_s));
   CheckShutters(options.camera, frame_s);
-  require(std::abs(options.depth_delay_s) < 0.5 / options.rate_hz,
-          "the depth delay of a synthetic sequence must be below " +
-              std::to_string(0.5 / options.rate_hz) +
-              " s, half the time from frame to frame");
-  require(
-      options.registration_error.Angle() < M_PI / 4 &&
-          options.registration_error.translation.norm() < 1.0,
-      "the registration error of a synthetic sequence must be below 1 m and "
-      "45 degrees");
+  Require(std::abs(options.depth_delay_s) < 0.5 / options.rate_hz,
+          Format("the depth delay of a synthetic sequence must be below %f s, "
+                 "half the time from frame to frame",
+                 0.5 / options.rate_hz));
+  Require(options.registration_error.Angle() < M_PI / 4 &&
+              options.registration_error.translation.norm() < 1.0,
+          "the registration error of a synthetic sequence must be below 1 m "
+          "and 45 degrees");
   if (options.depth_camera.has_value()) {
-    RequireSound(options.depth_camera->camera.Check(), "depth camera: ");
-    require(SeesEverywhere(options.depth_camera->camera),
-            "depth camera: its distortion cannot be inverted in the corners");
+    CheckCamera(options.depth_camera->camera, "depth camera");
   }
-  require(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0,
+  Require(options.exposure_drift >= 0.0 && options.exposure_drift <= 1.0,
           "exposure_drift of a synthetic sequence must be in 0..1");
-  require(options.moving_patch >= 0.0 && options.moving_patch <= kMaxPatchShare,
-          "moving_patch of a synthetic sequence must be in 0.." +
-              Format("%g", kMaxPatchShare));
-  require(
+  Require(options.moving_patch >= 0.0 && options.moving_patch <= kMaxPatchShare,
+          Format("moving_patch of a synthetic sequence must be in 0..%g",
+                 kMaxPatchShare));
+  Require(
       options.walking_boxes >= 0 && options.walking_boxes <= kMaxWalkingBoxes,
-      "a synthetic sequence has 0 to " + std::to_string(kMaxWalkingBoxes) +
-          " walking boxes");
-  require(options.black_s >= 0.0,
+      Format("a synthetic sequence has 0 to %d walking boxes",
+             kMaxWalkingBoxes));
+  Require(options.black_s >= 0.0,
           "the black time of a synthetic sequence must be 0 s or more");
   return options;
 }
 
-// world_from_cam, t seconds after the first frame.
-std::function<Rigid3d(double t)> CameraPath(const SyntheticOptions& options) {
+Path CameraPath(const SyntheticOptions& options) {
   const SyntheticPath path = FindSyntheticPath(options.path);
   const double lap = (options.frames - 1) / options.rate_hz / options.laps;
   return [path, lap, laps = options.laps,
@@ -111,12 +178,11 @@ std::function<Rigid3d(double t)> CameraPath(const SyntheticOptions& options) {
 }
 
 Renderer MakeRenderer(const SyntheticOptions& options, const Camera& camera,
-                      const std::function<Rigid3d(double t)>& path) {
+                      const Path& path) {
   std::vector<SyntheticMover> movers =
       WalkingBoxes(options.walking_boxes, options.seed);
   if (options.moving_patch > 0.0) {
-    movers.push_back(MovingPatch(options.moving_patch, options.camera.camera,
-                                 path, options.seed));
+    movers.push_back(MovingPatch(options, path));
   }
   return Renderer(MakeScene(options.scene, options.seed), camera, movers);
 }
@@ -146,13 +212,12 @@ Rigid3d SyntheticDataset::WorldFromCam(int index) const {
 // With the registration error E, depth is rendered from world_from_cam * E^-1:
 // a point X of the camera axes is at E * X there.
 Rendering SyntheticDataset::Render(double t) const {
-  const double focal_px = options_.camera.camera.fx;
   const Shutter& color = options_.color_shutter;
   const Shutter& depth = options_.depth_shutter;
   const double color_time = t + color.offset;
   const double depth_time = t + (options_.depth_delay_s + depth.offset);
   Rendering seen = Expose(
-      renderer_, focal_px, world_from_cam_, color_time,
+      renderer_, options_.camera.camera.fx, world_from_cam_, color_time,
       {options_.exposure_s, DriftingGain(options_.exposure_drift, color_time),
        color.readout});
   Rigid3d cam_from_depth = options_.registration_error.Inverse();
@@ -161,13 +226,12 @@ Rendering SyntheticDataset::Render(double t) const {
   }
   if (depth_renderer_.has_value() || depth_time != color_time ||
       depth.readout != color.readout || !cam_from_depth.IsIdentity()) {
-    seen.depth =
-        Expose(
-            depth_renderer_.has_value() ? *depth_renderer_ : renderer_,
-            focal_px,
-            [&](double time) { return world_from_cam_(time) * cam_from_depth; },
-            depth_time, {0.0, 1.0, depth.readout})
-            .depth;
+    const Renderer& renderer =
+        depth_renderer_.has_value() ? *depth_renderer_ : renderer_;
+    const auto path = [&](double time) {
+      return world_from_cam_(time) * cam_from_depth;
+    };
+    seen.depth = renderer.Render(path, depth_time, depth.readout).depth;
   }
   return seen;
 }

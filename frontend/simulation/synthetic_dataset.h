@@ -19,7 +19,7 @@ struct SyntheticOptions {
   std::string scene = "room";  // see MakeScene
   std::string path = "xyz";    // see FindSyntheticPath
   int frames = 150;            // number of frames
-  int laps = 1;                // rounds of the path, see below
+  int laps = 1;                // passes along the path, see below
   uint32_t seed = 1;           // of textures and noise
   double rate_hz = 30.0;       // frames per second
   bool noise = true;           // simulate a real sensor, see synthetic_sensor.h
@@ -50,8 +50,11 @@ struct SyntheticOptions {
   // Amplitude of the automatic exposure's gain, 0..1: see DriftingGain.
   double exposure_drift = 0.0;
 
-  // Independently moving objects: a patch on this share of the view (see
-  // MovingPatch), 0 to kMaxPatchShare, and boxes, 0 to kMaxWalkingBoxes.
+  // Independently moving objects: a printed sheet over this share of the view,
+  // 0 to 0.45, 1 m in front of the camera, that moves on an ellipse at 5 to 8
+  // px per frame (640 x 480 at 30 Hz); and 0 to 3 printed boxes, as tall as
+  // children, that walk back and forth in the scene "room" at up to 0.9 m/s,
+  // through its furniture.
   double moving_patch = 0.0;
   int walking_boxes = 0;
 

@@ -7,9 +7,6 @@
 
 namespace rgbd_pose {
 
-// A camera at `place` that looks at `target`, with a level x axis.
-Rigid3d LookAt(const Eigen::Vector3d& place, const Eigen::Vector3d& target);
-
 // The pose world_from_cam at time t of a path that lasts `duration` (both in
 // seconds; 0 <= t <= duration, or up to a frame outside).
 using SyntheticPath = Rigid3d (*)(double t, double duration);
@@ -18,13 +15,12 @@ using SyntheticPath = Rigid3d (*)(double t, double duration);
 // InputError that lists the names if there is none. Camera axes: x right, y
 // down, z forward.
 //   xyz       0.2 m along the camera's x, y and z axis and back, then the same
-//             in the opposite directions; 5 s per round at 0.24 m/s on average
-//             (0.38 at most), rotations of about 1 degree, as in TUM's
-//             freiburg1_xyz
+//             in the opposite directions; 5 s per round, at most 0.38 m/s and
+//             rotations of about 1 degree, as in TUM's freiburg1_xyz
 //   pan_tilt  pan 0, +20, -20, 0 degrees, then tilt 0, +12, -12, 0 degrees,
 //             stopping smoothly at each; the camera's centre is a few cm off
-//             both axes, as on a pan-tilt unit. Stretched over `duration` (38
-//             deg/s at most in 5 s): the last pose is exactly the first
+//             both axes. Stretched over `duration` (38 deg/s at most in 5 s):
+//             the last pose is exactly the first
 //   circle    a level circle of 0.3 m radius in 9 s, looking at the desk
 //   still     no motion
 //   walk      straight ahead at walking pace, 3 m within 4 s, and back, with
@@ -33,25 +29,16 @@ using SyntheticPath = Rigid3d (*)(double t, double duration);
 //             deg/s (0.96 and 87 reached within the first 5 s)
 //   whip_pan  along xyz, with half a turn to the left or back every 3 s: 0.5 s
 //             at 300 deg/s and 0.1 s each to start and to stop, first at 1.15 s
-// Handheld through the scene of the same name, at up to 0.6 m/s (depot 0.8) and
-// 40 deg/s:
+// Carried by hand through the scene of the same name, at up to 0.6 m/s (depot
+// 0.8) and 40 deg/s:
 //   table           19 m around the desks in 56 s, repeatedly
 //   two_rooms       22 m through both rooms and the door, and back, in 57 s,
 //                   repeatedly; looks in another direction on the way back
 //   twin_corridors  18 m through both in 55 s, and back in the next 55 s
-//   depot           313 m along all aisles and back to the start in 500 s: a
-//                   thousand different views
+//   depot           313 m along all aisles and back to the start in 500 s
 SyntheticPath FindSyntheticPath(const std::string& name);
 
 // The names of all paths.
 std::vector<std::string> SyntheticPathNames();
-
-// Tours: a camera is carried by hand through the scenes of the same name
-// (synthetic_scene.h), at an even pace except in TwinCorridorsTour. They start
-// again, or return, at the end. Parameters as in SyntheticPath.
-Rigid3d TableTour(double t, double duration);
-Rigid3d TwoRoomsTour(double t, double duration);
-Rigid3d TwinCorridorsTour(double t, double duration);
-Rigid3d DepotTour(double t, double duration);
 
 }  // namespace rgbd_pose

@@ -104,11 +104,10 @@ Eigen::AlignedBox2f RangeOf(const SceneFace& face, const Vector3d& camera,
 }
 
 // A point along u, along v and above the face (m).
-Eigen::Vector3f InFaceAxes(const SceneFace& face, const Vector3d& point) {
+Vector3d InFaceAxes(const SceneFace& face, const Vector3d& point) {
   const Vector3d from_origin = point - face.origin;
-  return Vector3d(face.u_axis.dot(from_origin), face.v_axis.dot(from_origin),
-                  face.normal.dot(from_origin))
-      .cast<float>();
+  return {face.u_axis.dot(from_origin), face.v_axis.dot(from_origin),
+          face.normal.dot(from_origin)};
 }
 
 // Appends the faces of a scene whose front is turned to the camera and which
@@ -117,25 +116,24 @@ void AddVisibleFaces(const Scene& scene, const Rigid3d& world_from_cam,
                      std::vector<VisibleFace>* faces) {
   const Matrix3d cam_from_world_rotation =
       world_from_cam.rotation.conjugate().toRotationMatrix();
-  const Vector3d& camera = world_from_cam.translation;
   for (const SceneFace& face : scene.faces) {
-    const Vector3d from_origin = camera - face.origin;
-    const double above = face.normal.dot(from_origin);
-    if (above <= 0.0) continue;
+    const Vector3d camera = InFaceAxes(face, world_from_cam.translation);
+    if (camera.z() <= 0.0) continue;
     VisibleFace visible;
-    visible.range = RangeOf(face, camera, cam_from_world_rotation);
+    visible.range =
+        RangeOf(face, world_from_cam.translation, cam_from_world_rotation);
     if (visible.range.isEmpty()) continue;
-    // A ray r meets the plane at depth z where above + z normal . r = 0.
+    // A ray r meets the plane at depth z where camera.z + z normal . r = 0.
     Matrix3d rows;
-    rows.row(2) = -(cam_from_world_rotation * face.normal) / above;
+    rows.row(2) = -(cam_from_world_rotation * face.normal) / camera.z();
     rows.row(0) = (cam_from_world_rotation * face.u_axis).transpose() +
-                  face.u_axis.dot(from_origin) * rows.row(2);
+                  camera.x() * rows.row(2);
     rows.row(1) = (cam_from_world_rotation * face.v_axis).transpose() +
-                  face.v_axis.dot(from_origin) * rows.row(2);
+                  camera.y() * rows.row(2);
     visible.face = &face;
     visible.face_from_ray = rows.cast<float>();
-    visible.lamp = InFaceAxes(face, scene.lamp);
-    visible.camera = InFaceAxes(face, camera);
+    visible.lamp = InFaceAxes(face, scene.lamp).cast<float>();
+    visible.camera = camera.cast<float>();
     faces->push_back(visible);
   }
 }
@@ -242,10 +240,6 @@ void Renderer::RenderTile(const std::vector<VisibleFace>& faces,
       out->depth.at<float>(pixel) = z;
     }
   }
-}
-
-Rendering Renderer::Render(const Rigid3d& world_from_cam, double t) const {
-  return Render([&](double) { return world_from_cam; }, t, 0.0);
 }
 
 Rendering Renderer::Render(

@@ -21,21 +21,6 @@ struct SyntheticMover {
   std::function<Rigid3d(double t)> world_from_mover;
 };
 
-// A printed sheet that moves with a camera on a path, 1 m in front of it,
-// perpendicular to the optical axis and with the image's aspect ratio. It
-// covers the share `share` of the view, above 0 and at most kMaxPatchShare, and
-// moves on an ellipse at 5 to 8 px per frame (640 x 480 at 30 Hz; scales with
-// the image size).
-constexpr double kMaxPatchShare = 0.45;  // a larger one would leave the image
-SyntheticMover MovingPatch(double share, const Camera& camera,
-                           const std::function<Rigid3d(double t)>& path,
-                           uint32_t seed);
-
-// The first `count` of three printed boxes, as tall as children, that walk back
-// and forth in the scene "room" at up to 0.9 m/s, through its furniture.
-constexpr int kMaxWalkingBoxes = 3;
-std::vector<SyntheticMover> WalkingBoxes(int count, uint32_t seed);
-
 // What an ideal RGB-D camera sees.
 struct Rendering {
   cv::Mat color;  // CV_8UC3, blue, green, red
@@ -52,7 +37,9 @@ class Renderer {
            std::vector<SyntheticMover> movers = {});
 
   // The time t (s) matters only to moving objects.
-  Rendering Render(const Rigid3d& world_from_cam, double t = 0.0) const;
+  Rendering Render(const Rigid3d& world_from_cam, double t = 0.0) const {
+    return Render([&](double) { return world_from_cam; }, t, 0.0);
+  }
 
   // With a rolling shutter: each band of kBandRows rows, from the top, is
   // rendered at the time of its middle row. t is the time of the middle row of

@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <cmath>
+#include <utility>
 
 #include "core/util/named_values.h"
 #include "frontend/simulation/synthetic_hash.h"
@@ -11,12 +12,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-struct Furniture {
-  SceneBox box;
-  const Material* material;
-};
-
-const Furniture kFurniture[] = {
+const std::pair<SceneBox, const Material*> kFurniture[] = {
     // A desk and what lies on it.
     {{{0.55, 0.25, 0.71}, {0.75, 1.50, 0.03}, -18}, &kWood},
     {{{0.09, -0.29, 0.0}, {0.05, 0.05, 0.71}, -18}, &kMetal},
@@ -77,9 +73,7 @@ Scene MakeRoom(uint32_t seed) {
   AddBox({{0.0, 0.0, 0.0}, {5.0, 4.0, 2.6}, 0}, true,
          {kWallpaper, kWallpaper, kWallpaper, kWallpaper, kParquet, kPlaster},
          &scene);
-  for (const Furniture& piece : kFurniture) {
-    AddBox(piece.box, *piece.material, &scene);
-  }
+  for (const auto& [box, material] : kFurniture) AddBox(box, *material, &scene);
   return scene;
 }
 
@@ -100,13 +94,8 @@ Scene MakeGlossyRoom(uint32_t seed) {
 
 Material Painted(const cv::Vec3f& color) { return {color, 0.0f}; }
 
-struct PaintedBox {
-  SceneBox box;
-  float brightness;
-};
-
-// Low boxes near the camera, high ones along the walls.
-const PaintedBox kBoxes[] = {
+// Low boxes near the camera, high ones along the walls, with their brightness.
+const std::pair<SceneBox, float> kBoxes[] = {
     {{{0.60, 0.25, 0.0}, {0.75, 1.50, 0.74}, -18}, 0.62f},
     {{{0.74, 0.42, 0.74}, {0.20, 0.54, 0.40}, -10}, 0.70f},
     {{{0.40, -0.12, 0.74}, {0.30, 0.22, 0.16}, 25}, 0.56f},
@@ -128,9 +117,8 @@ Scene MakePlainRoom(uint32_t seed) {
   const Material wall = Painted({0.62f, 0.64f, 0.65f});
   AddBox({{0.0, 0.0, 0.0}, {5.0, 4.0, 2.6}, 0}, true,
          {wall, wall, wall, wall, wall, wall}, &scene);
-  for (const PaintedBox& piece : kBoxes) {
-    const float b = piece.brightness;
-    AddBox(piece.box, Painted({b, b, b}), &scene);
+  for (const auto& [box, brightness] : kBoxes) {
+    AddBox(box, Painted(cv::Vec3f::all(brightness)), &scene);
   }
   return scene;
 }

@@ -56,33 +56,26 @@ inline void AddBox(const SceneBox& box, const Material& m, Scene* scene) {
 //   corridor     40 m along the world's x axis, without texture: the position
 //                along this axis cannot be observed
 //   poster_wall  one textured plane: texture, but no shape
-// Scenes for tours, with paths of the same name (below):
-//   table           a room with two desks in its middle
-//   two_rooms       with a door between them
-//   twin_corridors  that look exactly alike, with a hall between them
-//   depot           shelves along a path of 313 m
+// Scenes for tours, with paths of the same name (synthetic_path.h); furniture
+// stands in rows along walls:
+//   table           a room of 9.4 x 7 m with two desks, end to end, in its
+//                   middle
+//   two_rooms       of 5.4 x 5.4 m, with a door of 1.2 m between them
+//   twin_corridors  2.4 m wide and 8 m long, a hall between them; the second is
+//                   kTwinShift further along x, with the same texture and light
+//   depot           42 x 22 m, rows of shelves along y and aisles between them
 Scene MakeScene(const std::string& name, uint32_t seed);
 
 // The names of all scenes.
 std::vector<std::string> SceneNames();
 
-// Scenes for tours, whose paths return (synthetic_path.h). Walls are solid
-// boxes 0.1 m thick; furniture stands along them in rows.
-
-// A room of 9.4 x 7 m with two desks, end to end, as an island in the middle.
-Scene MakeTableRoom(uint32_t seed);
-
-// Two rooms of 5.4 x 5.4 m side by side, a door of 1.2 m between them.
-Scene MakeTwoRooms(uint32_t seed);
-
-// A corridor, 2.4 m wide and 8 m long, a hall, and a copy of the corridor,
-// kTwinShift further along x, with identical texture and light.
+// The scenes for tours.
 constexpr double kTwinShift = 14.0;  // m
-Scene MakeTwinCorridors(uint32_t seed);
-
-// A depot of 42 x 22 m with rows of shelves along y and aisles between them.
 constexpr int kDepotAisles = 14;
 constexpr double kDepotPitch = 3.0;  // m, between two aisles
+Scene MakeTableRoom(uint32_t seed);
+Scene MakeTwoRooms(uint32_t seed);
+Scene MakeTwinCorridors(uint32_t seed);
 Scene MakeDepot(uint32_t seed);
 
 }  // namespace rgbd_pose

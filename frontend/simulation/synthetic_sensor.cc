@@ -9,12 +9,6 @@
 namespace rgbd_pose {
 namespace {
 
-// Whether the surface between two neighbouring pixels is too steep, or there is
-// a depth edge between them.
-bool TooSteep(float z, float neighbour, float max_step) {
-  return std::abs(z - neighbour) > max_step * std::min(z, neighbour);
-}
-
 // Sets those pixels of a row to 0 that the projector, right of the camera, does
 // not reach. It sees a point kDisparity / depth pixels further left, where the
 // points of a row keep their order unless they are hidden.
@@ -66,10 +60,12 @@ cv::Mat MeasureDepth(const cv::Mat& depth_m, double focal_px, uint64_t key) {
     for (int u = 0; u < depth_m.cols; ++u) {
       const float z = row[u];
       if (z < kMinSensorDepth || z > kMaxSensorDepth) continue;
-      const float left = row[std::max(u - 1, 0)];
-      const float right = row[std::min(u + 1, depth_m.cols - 1)];
-      if (TooSteep(z, left, max_step) || TooSteep(z, right, max_step) ||
-          TooSteep(z, above[u], max_step) || TooSteep(z, below[u], max_step)) {
+      // The surface there is too steep, or there is a depth edge.
+      const auto is_off = [=](float other) {
+        return std::abs(z - other) > max_step * std::min(z, other);
+      };
+      if (is_off(row[std::max(u - 1, 0)]) || is_off(above[u]) ||
+          is_off(row[std::min(u + 1, depth_m.cols - 1)]) || is_off(below[u])) {
         continue;
       }
       out[u] = z;
