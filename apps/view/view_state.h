@@ -13,7 +13,7 @@
 #include "core/geometry/camera.h"
 #include "core/geometry/rigid3.h"
 #include "frontend/frame/frame.h"
-#include "frontend/mapping/map_update.h"
+#include "frontend/mapping/mapper.h"
 #include "frontend/tracking/tracked_frame.h"
 
 namespace rgbd_pose {

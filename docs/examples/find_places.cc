@@ -21,8 +21,8 @@ int main() {
     const cv::Mat& descriptors = places[i].described.descriptors;
     const auto is_old = [i](int keyframe) { return keyframe < i - 5; };
     for (const auto& [old, score] : index.Query(descriptors, 3, is_old)) {
-      const auto rough = rgbd_pose::VerifyGeometrically(
-          rgbd_pose::MatchPlaces(places[old], places[i], camera));
+      const auto rough =
+          rgbd_pose::VerifyGeometrically(places[old], places[i], camera);
       if (!rough.has_value()) continue;  // another place
       std::printf("%d shows what %d shows, from %.2f m away\n", i, old,
                   rough->cur_from_prev.translation.norm());

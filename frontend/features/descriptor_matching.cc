@@ -162,7 +162,7 @@ std::vector<KeypointMatch> MatchKeypoints(const DescriptorMethod& method,
   if (guide != nullptr) grid.emplace(current.keypoints, guide->radius_px);
   std::vector<double> distances;
   std::vector<Nearest> nearest_reference(current.keypoints.size());
-  std::vector<KeypointMatch> matches;
+  std::vector<KeypointMatch> found;
   for (int i = 0; i < static_cast<int>(reference.keypoints.size()); ++i) {
     if (grid) grid->Near(guide->expected[i], &candidates);
     distances.resize(candidates.size());
@@ -171,22 +171,18 @@ std::vector<KeypointMatch> MatchKeypoints(const DescriptorMethod& method,
           method.distance(reference.descriptors.ptr(i),
                           current.descriptors.ptr(candidates[k]), size);
       Nearest& nearest = nearest_reference[candidates[k]];
-      if (distances[k] < nearest.distance) {
-        nearest = {i, distances[k]};
-      }
+      if (distances[k] < nearest.distance) nearest = {i, distances[k]};
     }
     const Nearest best = FindDistinct(current.keypoints, candidates, distances,
                                       method.max_distance);
-    if (best.place >= 0) matches.push_back({i, best.place});
+    if (best.place >= 0) found.push_back({i, best.place});
   }
-  matches.erase(
-      std::remove_if(matches.begin(), matches.end(),
-                     [&](const KeypointMatch& match) {
-                       return nearest_reference[match.current].place !=
-                              match.reference;
-                     }),
-      matches.end());
-  return matches;
+  std::vector<KeypointMatch> mutual;
+  for (const KeypointMatch& match : found) {
+    const int nearest = nearest_reference[match.current].place;
+    if (nearest == match.reference) mutual.push_back(match);
+  }
+  return mutual;
 }
 
 }  // namespace rgbd_pose

@@ -36,17 +36,16 @@ class KltFrontend final : public PointFrontend {
  private:
   void Follow(const PreparedFrame& from, const Points& points,
               const PreparedFrame& to, Points* moved, Found* found) override {
+    std::vector<float> error;
     cv::calcOpticalFlowPyrLK(
         from.Derived<KltPyramid>(/*with_derivatives=*/true).levels,
         to.Derived<KltPyramid>(/*with_derivatives=*/false).levels, points,
-        *moved, *found, error_, kWindow, kMaxLevel, kTermination,
+        *moved, *found, error, kWindow, kMaxLevel, kTermination,
         cv::OPTFLOW_USE_INITIAL_FLOW);
     for (size_t i = 0; i < found->size(); ++i) {
-      if (error_[i] > kMaxMeanDifference) (*found)[i] = 0;
+      if (error[i] > kMaxMeanDifference) (*found)[i] = 0;
     }
   }
-
-  std::vector<float> error_;
 };
 
 }  // namespace

@@ -207,10 +207,8 @@ Eigen::Matrix2f PlaneWarp(const Camera& camera, const Observation& ref,
   }
   const Eigen::RowVector2d tilt =
       normal.head<2>().transpose() / normal.dot(ray);
-  Eigen::Matrix<double, 3, 2> moved;
-  moved.leftCols<2>() = -ray * tilt;
-  moved(0, 0) += 1.0;
-  moved(1, 1) += 1.0;
+  Eigen::Matrix<double, 3, 2> moved =
+      Eigen::Matrix<double, 3, 2>::Identity() - ray * tilt;
   moved.col(0) *= ref.depth / camera.fx;
   moved.col(1) *= ref.depth / camera.fy;
   moved = cur_from_ref.rotation.toRotationMatrix() * moved;

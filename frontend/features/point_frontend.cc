@@ -43,30 +43,29 @@ void PointFrontend::Match(const FeatureSet& reference,
   matches->Clear();
   const auto& features = static_cast<const PointFeatures&>(reference);
   if (features.points.empty()) return;
-  moved_ = features.points;
+  Points moved = features.points;
   const FrameTiming timing = frame.Timing();
-  for (size_t i = 0; i < moved_.size(); ++i) {
+  for (size_t i = 0; i < moved.size(); ++i) {
     const Eigen::Vector3d point =
         cur_from_ref_guess * PointOf(features.observations[i]);
     if (point.z() < options_.min_depth) continue;
     const Eigen::Vector2d pixel = ImagePoint(options_.camera, timing, point);
-    moved_[i] = cv::Point2d(pixel.x(), pixel.y());
+    moved[i] = cv::Point2d(pixel.x(), pixel.y());
   }
-  found_.assign(moved_.size(), 1);
-  Follow(features.frame, features.points, frame, &moved_, &found_);
+  Found found(moved.size(), 1);
+  Follow(features.frame, features.points, frame, &moved, &found);
   const size_t count = features.points.size();
-  if (moved_.size() != count || found_.size() != count) {
-    throw InputError("a frontend returned " + std::to_string(moved_.size()) +
-                     " points and " + std::to_string(found_.size()) +
+  if (moved.size() != count || found.size() != count) {
+    throw InputError("a frontend returned " + std::to_string(moved.size()) +
+                     " points and " + std::to_string(found.size()) +
                      " flags for " + std::to_string(count) + " points");
   }
-  for (size_t i = 0; i < moved_.size(); ++i) {
-    if (found_[i] == 0 ||
-        !options_.camera.Contains({moved_[i].x, moved_[i].y})) {
+  for (size_t i = 0; i < moved.size(); ++i) {
+    if (found[i] == 0 || !options_.camera.Contains({moved[i].x, moved[i].y})) {
       continue;
     }
     matches->Add(reference, static_cast<int>(i),
-                 ObserveAt(frame, moved_[i], kPointSigmaPx));
+                 ObserveAt(frame, moved[i], kPointSigmaPx));
   }
 }
 

@@ -33,10 +33,6 @@ class PointFrontend : public Frontend {
   // throws InputError.
   virtual void Follow(const PreparedFrame& from, const Points& points,
                       const PreparedFrame& to, Points* moved, Found* found) = 0;
-
- private:
-  Points moved_;
-  Found found_;
 };
 
 }  // namespace rgbd_pose

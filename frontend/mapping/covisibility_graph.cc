@@ -1,17 +1,8 @@
 #include "frontend/mapping/covisibility_graph.h"
 
 #include <algorithm>
-#include <limits>
 
 namespace rgbd_pose {
-namespace {
-
-// Neighbours of a keyframe are near each other within this many links.
-constexpr int kHopsAround = 3;
-
-constexpr int kAnyHops = std::numeric_limits<int>::max();
-
-}  // namespace
 
 void CovisibilityGraph::Join(int a, int b) {
   neighbors_[a].push_back(b);
@@ -31,8 +22,8 @@ bool CovisibilityGraph::AreJoined(int a, int b) const {
          neighbors_[a].end();
 }
 
-std::vector<int> CovisibilityGraph::Reach(int from, int hops,
-                                          std::vector<int>* before) const {
+std::vector<int> CovisibilityGraph::Reach(int from, std::vector<int>* before,
+                                          int hops) const {
   std::vector<int> reached = {from};
   (*before)[from] = from;
   size_t next = 0;
@@ -52,13 +43,13 @@ std::vector<int> CovisibilityGraph::Reach(int from, int hops,
 std::vector<bool> CovisibilityGraph::Within(int from, int hops) const {
   std::vector<int> before(neighbors_.size(), -1);
   std::vector<bool> within(neighbors_.size(), false);
-  for (const int at : Reach(from, hops, &before)) within[at] = true;
+  for (const int at : Reach(from, &before, hops)) within[at] = true;
   return within;
 }
 
 std::vector<int> CovisibilityGraph::ShortestPath(int from, int to) const {
   std::vector<int> before(neighbors_.size(), -1);
-  Reach(from, kAnyHops, &before);
+  Reach(from, &before);
   if (before[to] < 0) return {};
   std::vector<int> way = {to};
   while (way.back() != from) way.push_back(before[way.back()]);
@@ -70,17 +61,18 @@ std::vector<int> CovisibilityGraph::FirstOfParts() const {
   std::vector<int> first(neighbors_.size()), before(neighbors_.size(), -1);
   for (int from = 0; from < static_cast<int>(first.size()); ++from) {
     if (before[from] >= 0) continue;
-    for (const int at : Reach(from, kAnyHops, &before)) first[at] = from;
+    for (const int at : Reach(from, &before)) first[at] = from;
   }
   return first;
 }
 
 bool CovisibilityGraph::StaysConnectedWithout(int without) const {
+  constexpr int kHopsAround = 3;
   const std::vector<int>& around = neighbors_[without];
   if (around.empty()) return false;
   std::vector<int> before(neighbors_.size(), -1);
   before[without] = without;
-  Reach(around.front(), kHopsAround, &before);
+  Reach(around.front(), &before, kHopsAround);
   return std::all_of(around.begin(), around.end(),
                      [&](int at) { return before[at] >= 0; });
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <vector>
 
 namespace rgbd_pose {
@@ -34,7 +35,8 @@ class CovisibilityGraph {
   // Searches breadth first, up to `hops` links away, but not through keyframes
   // with an entry in `before` (-1: none). Returns the keyframes reached and
   // enters for each the one it was reached from.
-  std::vector<int> Reach(int from, int hops, std::vector<int>* before) const;
+  std::vector<int> Reach(int from, std::vector<int>* before,
+                         int hops = std::numeric_limits<int>::max()) const;
 
   std::vector<std::vector<int>> neighbors_;
 };

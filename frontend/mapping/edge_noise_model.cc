@@ -28,7 +28,7 @@ constexpr double kMedianSquare = 5.35;
 constexpr double kLargestSquare = 22.46;
 
 // Minimum number of pairs to fit the proportional error, and its maximum.
-constexpr int kMinPairsForProportionalError = 20;
+constexpr size_t kMinPairsForProportionalError = 20;
 constexpr double kMaxProportionalError = 0.1;
 
 }  // namespace
@@ -38,16 +38,16 @@ EdgeNoiseModel::EdgeNoiseModel(double drift)
       tracked_loss_(FindMEstimator("huber")->make(kTrackedWidth)),
       pair_loss_(FindMEstimator("cauchy")->make(kPairWidth)) {}
 
-MotionMatrix EdgeNoiseModel::CovarianceOf(const RelativePose& edge,
-                                          double proportional_error) const {
+MotionMatrix EdgeNoiseModel::CovarianceOf(const RelativePose& edge) const {
   MotionMatrix covariance = edge.covariance;
   const double angle = edge.cur_from_ref.Angle();
   const double way =
       edge.cur_from_ref.translation.norm() + kTypicalDepth * angle;
   covariance.diagonal().head<3>().array() +=
-      std::pow(kMinSigmaRotation, 2) + std::pow(proportional_error * angle, 2);
+      std::pow(kMinSigmaRotation, 2) + std::pow(proportional_error_ * angle, 2);
   covariance.diagonal().tail<3>().array() +=
-      std::pow(kMinSigmaTranslation, 2) + std::pow(proportional_error * way, 2);
+      std::pow(kMinSigmaTranslation, 2) +
+      std::pow(proportional_error_ * way, 2);
   return covariance;
 }
 
@@ -64,26 +64,23 @@ MotionMatrix EdgeNoiseModel::CovarianceAsSolved(
 void EdgeNoiseModel::FitProportionalError(
     const std::vector<KeyframePair>& pairs,
     const std::vector<Rigid3d>& cur_from_ref) {
-  const auto median = [&](double proportional_error) {
+  const auto disagree = [&] {
     std::vector<double> squares;
     for (size_t i = 0; i < pairs.size(); ++i) {
-      if (pairs[i].is_tracked) continue;
       const RelativePose& edge = pairs[i].edge;
-      squares.push_back(
-          SquaredMahalanobisDistance(cur_from_ref[i], edge.cur_from_ref,
-                                     CovarianceOf(edge, proportional_error)));
+      if (pairs[i].is_tracked) continue;
+      squares.push_back(SquaredMahalanobisDistance(
+          cur_from_ref[i], edge.cur_from_ref, CovarianceOf(edge)));
     }
-    return Median(squares);
+    return squares.size() >= kMinPairsForProportionalError &&
+           Median(squares) > kMedianSquare;
   };
   proportional_error_ = 0.0;
-  const auto found = std::count_if(pairs.begin(), pairs.end(),
-                                   [](const auto& p) { return !p.is_tracked; });
-  if (found < kMinPairsForProportionalError || median(0.0) <= kMedianSquare)
-    return;
+  if (!disagree()) return;
   double low = 0.0, high = kMaxProportionalError;
   for (int step = 0; step < 12; ++step) {
-    const double middle = 0.5 * (low + high);
-    (median(middle) > kMedianSquare ? low : high) = middle;
+    proportional_error_ = 0.5 * (low + high);
+    (disagree() ? low : high) = proportional_error_;
   }
   proportional_error_ = high;
 }

@@ -37,9 +37,7 @@ class EdgeNoiseModel {
                             const std::vector<Rigid3d>& cur_from_ref);
 
   // The covariance with noise floor and proportional error.
-  MotionMatrix CovarianceOf(const RelativePose& edge) const {
-    return CovarianceOf(edge, proportional_error_);
-  }
+  MotionMatrix CovarianceOf(const RelativePose& edge) const;
 
   // The loss function of a pair.
   const ceres::LossFunction* LossOf(const KeyframePair& pair) const {
@@ -57,9 +55,6 @@ class EdgeNoiseModel {
                              const std::vector<Rigid3d>& map_from_cam) const;
 
  private:
-  MotionMatrix CovarianceOf(const RelativePose& edge,
-                            double proportional_error) const;
-
   const double drift_;
   std::unique_ptr<ceres::LossFunction> tracked_loss_, pair_loss_;
   double proportional_error_ = 0.0;

@@ -5,15 +5,9 @@
 #include <utility>
 
 namespace rgbd_pose {
-namespace {
-
-// The proportional error is fitted alternately with the poses.
-constexpr int kMaxFitRounds = 4;
-
-}  // namespace
 
 int KeyframeGraph::Add(const Rigid3d& map_from_cam, int segment, bool is_held) {
-  nodes_.push_back({map_from_cam, segment, is_held, /*anchor=*/-1, {}});
+  nodes_.push_back({map_from_cam, segment, is_held, /*from_anchor=*/{}});
   links_.Add();
   first_of_.emplace(segment, size() - 1);
   return size() - 1;
@@ -58,26 +52,26 @@ bool KeyframeGraph::IsRedundant(int at) const {
 }
 
 void KeyframeGraph::Remove(int at, int anchor) {
-  Node& node = nodes_[at];
-  node.anchor = anchor;
-  node.from_anchor = {anchor, at, CurFromRef(anchor, at)};
+  RelativePose from_anchor = {anchor, at, CurFromRef(anchor, at)};
+  const auto links = [](const KeyframePair& pair, int which) {
+    return pair.edge.ref == which || pair.edge.cur == which;
+  };
   for (const KeyframePair& pair : pairs_) {
-    const bool is_it = (pair.edge.ref == at && pair.edge.cur == anchor) ||
-                       (pair.edge.ref == anchor && pair.edge.cur == at);
-    if (is_it) node.from_anchor.covariance = noise_.CovarianceOf(pair.edge);
+    if (links(pair, at) && links(pair, anchor)) {
+      from_anchor.covariance = noise_.CovarianceOf(pair.edge);
+    }
   }
+  nodes_[at].from_anchor = from_anchor;
   links_.Separate(at);
-  pairs_.erase(std::remove_if(pairs_.begin(), pairs_.end(),
-                              [=](const KeyframePair& pair) {
-                                return pair.edge.ref == at ||
-                                       pair.edge.cur == at;
-                              }),
-               pairs_.end());
+  pairs_.erase(
+      std::remove_if(pairs_.begin(), pairs_.end(),
+                     [&](const auto& pair) { return links(pair, at); }),
+      pairs_.end());
 }
 
 RelativePose KeyframeGraph::Reanchor(RelativePose edge) const {
   while (IsRemoved(edge.ref)) {
-    const RelativePose& step = nodes_[edge.ref].from_anchor;
+    const RelativePose& step = *nodes_[edge.ref].from_anchor;
     edge.covariance = ComposedCovariance(edge.cur_from_ref, edge.covariance,
                                          step.cur_from_ref, step.covariance);
     edge.cur_from_ref = edge.cur_from_ref * step.cur_from_ref;
@@ -143,10 +137,10 @@ std::string KeyframeGraph::Solve(const std::vector<int>& free, bool graduated) {
   }
   // An anchor may be removed as well, but it is older and updated first.
   for (Node& node : nodes_) {
-    if (node.anchor < 0) continue;
-    node.map_from_cam =
-        pose(node.anchor) * node.from_anchor.cur_from_ref.Inverse();
-    node.segment = segment(node.anchor);
+    if (!node.from_anchor.has_value()) continue;
+    const RelativePose& step = *node.from_anchor;
+    node.map_from_cam = pose(step.ref) * step.cur_from_ref.Inverse();
+    node.segment = segment(step.ref);
   }
   return "";
 }
@@ -172,9 +166,11 @@ std::vector<int> KeyframeGraph::All() const {
   return all;
 }
 
+// The proportional error is fitted alternately with the poses.
 std::string KeyframeGraph::SolveAll() {
+  constexpr int kMaxRounds = 4;
   std::string error = Solve(All(), /*graduated=*/true);
-  for (int round = 1; round < kMaxFitRounds && error.empty(); ++round) {
+  for (int round = 1; round < kMaxRounds && error.empty(); ++round) {
     const double before = proportional_error();
     std::vector<Rigid3d> motions;
     for (const KeyframePair& pair : pairs_) {

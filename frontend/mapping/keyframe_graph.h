@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,7 +56,7 @@ class KeyframeGraph {
   // Removes a keyframe and its pairs. Its pose relative to `anchor` is constant
   // from now on.
   void Remove(int at, int anchor);
-  bool IsRemoved(int at) const { return nodes_[at].anchor >= 0; }
+  bool IsRemoved(int at) const { return nodes_[at].from_anchor.has_value(); }
   // Converts a motion from a removed keyframe to one from its anchor. Other
   // motions are returned unchanged.
   RelativePose Reanchor(RelativePose edge) const;
@@ -85,8 +86,7 @@ class KeyframeGraph {
     Rigid3d map_from_cam;
     int segment = 0;
     bool is_held = false;
-    int anchor = -1;  // of a removed keyframe
-    RelativePose from_anchor;
+    std::optional<RelativePose> from_anchor;  // of a removed keyframe
   };
   struct Problem;
 

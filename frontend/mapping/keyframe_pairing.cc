@@ -152,8 +152,8 @@ void Mapper::CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
   for (const PlaceCandidate& candidate : alike) {
     if (candidate.score < kMinScoreShare * alike.front().score) break;
     const int at = candidate.keyframe;
-    const auto rough = VerifyGeometrically(
-        MatchPlaces(*keyframes_[at].features, cur, tracker_->images().camera));
+    const auto rough = VerifyGeometrically(*keyframes_[at].features, cur,
+                                           tracker_->images().camera);
     if (!rough.has_value()) continue;
     const auto edge =
         MakePair(at, newest, frame, rough->cur_from_prev, kMinLookalikeInliers);

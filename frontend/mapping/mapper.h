@@ -11,9 +11,10 @@
 
 #include "core/geometry/rigid3.h"
 #include "core/pose_graph/relative_pose.h"
+#include "frontend/frame/view_overlap.h"
 #include "frontend/map/keyframe_map.h"
 #include "frontend/mapping/keyframe_graph.h"
-#include "frontend/mapping/map_update.h"
+#include "frontend/places/keyframe.h"
 #include "frontend/places/place_database.h"
 #include "frontend/tracking/tracker.h"
 
@@ -49,6 +50,33 @@ struct MappingOptions {
   std::string Check() const;
 };
 
+// The pose of a keyframe in the map.
+struct KeyframePlace {
+  Rigid3d map_from_cam;  // current estimate
+  int segment = 0;       // `map` is the world frame of this segment
+};
+
+// Two keyframes linked by a measured motion, by id.
+struct MapLink {
+  int ref = 0;           // the earlier one
+  int cur = 0;           // the later one
+  bool is_loop = false;  // links keyframes that were far apart in the graph
+};
+
+// Changes of the map.
+struct MapUpdate {
+  std::map<int, KeyframePlace> moved;  // by id, since the last update
+  std::vector<MapLink> links;          // new ones, including tracked ones
+  int pairs = 0;                       // number of pairs added
+  int loops = 0;                       // number of these that are loops
+  int joined = 0;                      // number of segments merged
+  std::string error;  // why optimising the poses failed, or empty
+  double ms = 0.0;    // computing time
+
+  // An old keyframe to whose view the camera has returned.
+  std::optional<Keyframe> returned_to;
+};
+
 // Builds a map of keyframes. Finds keyframes that see the same place by their
 // poses or appearance (PlaceDatabase), measures the motions between them
 // (Tracker), and keeps all poses consistent (KeyframeGraph). Not thread-safe.
@@ -82,6 +110,13 @@ class Mapper {
   const KeyframeGraph& graph() const { return graph_; }
 
  private:
+  // A keyframe with compressed images. Removed ones have neither images nor
+  // derived data. Pose and segment are in graph_.
+  struct MappedKeyframe : Keyframe {
+    std::optional<KeyframePlace> published;  // in the last MapUpdate
+    ViewOverlap samples;                     // to compare views
+  };
+
   // A motion between two segments that only one pair supports so far.
   struct Meeting {
     int ref_segment = 0, cur_segment = 0;

@@ -34,18 +34,15 @@ PlaceFeatures DescribeKeyframe(const PreparedFrame& frame, const Camera& camera,
   return features;
 }
 
-Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,
-                            const Camera& camera) {
+std::optional<Consensus> VerifyGeometrically(const PlaceFeatures& prev,
+                                             const PlaceFeatures& cur,
+                                             const Camera& camera) {
   Correspondences matches(camera);
   for (const KeypointMatch& match :
        MatchKeypoints(kOrb, prev.described, cur.described, nullptr)) {
     matches.Add(prev.observations[match.reference],
                 cur.observations[match.current]);
   }
-  return matches;
-}
-
-std::optional<Consensus> VerifyGeometrically(const Correspondences& matches) {
   return FindByRansac(matches, {kMinInliers, kMinInlierShare});
 }
 

@@ -22,14 +22,12 @@ struct PlaceFeatures {
 PlaceFeatures DescribeKeyframe(const PreparedFrame& frame, const Camera& camera,
                                const DepthLookupOptions& depth_options);
 
-// Matches two frames by their descriptors alone.
-Correspondences MatchPlaces(const PlaceFeatures& prev, const PlaceFeatures& cur,
-                            const Camera& camera);
-
-// The motion between two frames from such matches, by RANSAC
+// The motion between two frames whose descriptors match, by RANSAC
 // (core/initial_guess/consensus.h) without an initial guess. Nothing unless
 // more matches agree than by chance. Accurate enough only as an initial guess
 // for tracking. The same input gives the same bytes.
-std::optional<Consensus> VerifyGeometrically(const Correspondences& matches);
+std::optional<Consensus> VerifyGeometrically(const PlaceFeatures& prev,
+                                             const PlaceFeatures& cur,
+                                             const Camera& camera);
 
 }  // namespace rgbd_pose

@@ -43,8 +43,8 @@ std::optional<Relocalisation> Relocaliser::Find(
       break;
     }
     if (look > 0 && ++next_ >= count) next_ = 1;
-    if (const auto found = VerifyGeometrically(
-            MatchPlaces(FeaturesOf(&keyframe), current, camera_))) {
+    if (const auto found =
+            VerifyGeometrically(FeaturesOf(&keyframe), current, camera_)) {
       return Relocalisation{keyframe.id, found->cur_from_prev,
                             static_cast<int>(found->inliers.size())};
     }
@@ -55,8 +55,8 @@ std::optional<Relocalisation> Relocaliser::Find(
 bool Relocaliser::FindIn(const PreparedFrame& frame, Keyframe* keyframe,
                          Rigid3d* cur_from_keyframe) const {
   const auto found = VerifyGeometrically(
-      MatchPlaces(FeaturesOf(keyframe),
-                  DescribeKeyframe(frame, camera_, depth_options_), camera_));
+      FeaturesOf(keyframe), DescribeKeyframe(frame, camera_, depth_options_),
+      camera_);
   if (!found.has_value()) return false;
   *cur_from_keyframe = found->cur_from_prev;
   return true;
@@ -70,8 +70,8 @@ std::optional<Relocalisation> Relocaliser::FindInMap(
   std::optional<Relocalisation> best;
   for (const PlaceCandidate& candidate :
        index.Query(current.described.descriptors, kMaxLooks)) {
-    const auto found = VerifyGeometrically(
-        MatchPlaces(features_of(candidate.keyframe), current, camera_));
+    const auto found =
+        VerifyGeometrically(features_of(candidate.keyframe), current, camera_);
     const int inliers =
         found.has_value() ? static_cast<int>(found->inliers.size()) : 0;
     if (inliers <= (best.has_value() ? best->inliers : 0)) continue;
