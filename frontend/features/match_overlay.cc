@@ -51,9 +51,17 @@ struct Strip {
   cv::Mat image = cv::Mat((caption_rows + 1) * row_height + margin, width,
                           CV_8UC3, kStripColor);
 
+  // Writes the words that fit into each row: at least a character.
   void DrawCaption(std::string caption) {
     for (int row = 0; row < caption_rows && !caption.empty(); ++row) {
-      PutText(TakeRow(&caption), margin, row);
+      size_t end = caption.size();
+      while (end > 1 && TextWidth(caption.substr(0, end)) > row_width) --end;
+      const size_t space = caption.rfind(' ', end);
+      if (end < caption.size() && space != std::string::npos && space > 0) {
+        end = space;
+      }
+      PutText(caption.substr(0, end), margin, row);
+      caption.erase(0, caption.find_first_not_of(' ', end));
     }
   }
 
@@ -88,21 +96,6 @@ struct Strip {
   void PutText(const std::string& text, int x, int row) {
     cv::putText(image, text, {x, Baseline(row)}, cv::FONT_HERSHEY_SIMPLEX,
                 font_scale, kTextColor, unit, cv::LINE_AA);
-  }
-
-  // Removes and returns the words that fit into a row: at least a character.
-  std::string TakeRow(std::string* text) const {
-    size_t end = text->size();
-    while (end > 1 && TextWidth(text->substr(0, end)) > row_width) {
-      --end;
-    }
-    const size_t space = text->rfind(' ', end);
-    if (end < text->size() && space != std::string::npos && space > 0) {
-      end = space;
-    }
-    std::string row = text->substr(0, end);
-    text->erase(0, std::min(text->find_first_not_of(' ', end), text->size()));
-    return row;
   }
 };
 

@@ -19,13 +19,6 @@ void KeyframeGraph::AddPair(const RelativePose& edge, bool is_tracked,
   links_.Join(edge.ref, edge.cur);
 }
 
-bool KeyframeGraph::PassesMahalanobisGate(const RelativePose& edge) const {
-  std::vector<Rigid3d> way;
-  for (const int at : links_.ShortestPath(edge.ref, edge.cur))
-    way.push_back(pose(at));
-  return !way.empty() && noise_.PassesMahalanobisGate(edge, way);
-}
-
 bool KeyframeGraph::Join(const RelativePose& edge) {
   int from = segment(edge.cur), to = segment(edge.ref);
   Rigid3d to_from_from =
@@ -58,7 +51,7 @@ void KeyframeGraph::Remove(int at, int anchor) {
   };
   for (const KeyframePair& pair : pairs_) {
     if (links(pair, at) && links(pair, anchor)) {
-      from_anchor.covariance = noise_.CovarianceOf(pair.edge);
+      from_anchor.covariance = CovarianceOf(pair.edge);
     }
   }
   nodes_[at].from_anchor = from_anchor;
@@ -120,10 +113,10 @@ KeyframeGraph::Problem KeyframeGraph::Build(const std::vector<int>& free,
     if (!is_free[edge.ref] && !is_free[edge.cur]) continue;
     add(edge.ref, true);
     add(edge.cur, true);
-    edge.covariance = noise_.CovarianceOf(edge);
+    edge.covariance = CovarianceOf(edge);
     edge.ref = problem.pose_of[edge.ref];
     edge.cur = problem.pose_of[edge.cur];
-    problem.graph.AddEdge(edge, noise_.LossOf(pair));
+    problem.graph.AddEdge(edge, LossOf(pair));
   }
   return problem;
 }
@@ -171,15 +164,11 @@ std::string KeyframeGraph::SolveAll() {
   constexpr int kMaxRounds = 4;
   std::string error = Solve(All(), /*graduated=*/true);
   for (int round = 1; round < kMaxRounds && error.empty(); ++round) {
-    const double before = proportional_error();
-    std::vector<Rigid3d> motions;
-    for (const KeyframePair& pair : pairs_) {
-      motions.push_back(CurFromRef(pair.edge.ref, pair.edge.cur));
-    }
-    noise_.FitProportionalError(pairs_, motions);
-    if (proportional_error() == before) break;
+    const double before = proportional_error_;
+    FitProportionalError();
+    if (proportional_error_ == before) break;
     error = Solve(All(), /*graduated=*/true);
-    if (std::abs(proportional_error() - before) <= 0.1 * before) break;
+    if (std::abs(proportional_error_ - before) <= 0.1 * before) break;
   }
   return error;
 }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <ceres/loss_function.h>
+
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -9,9 +12,15 @@
 #include "core/pose_graph/pose_graph.h"
 #include "core/pose_graph/relative_pose.h"
 #include "frontend/mapping/covisibility_graph.h"
-#include "frontend/mapping/edge_noise_model.h"
 
 namespace rgbd_pose {
+
+// A measured motion between two keyframes.
+struct KeyframePair {
+  RelativePose edge;        // ref and cur are keyframe numbers
+  bool is_tracked = false;  // by the odometry, which is hardly ever wrong
+  bool is_loop = false;     // links keyframes that were far apart in the graph
+};
 
 // Poses of keyframes and the motions measured between them. Keyframes have
 // numbers 0, 1, 2, ... The poses of a segment are connected; each segment has
@@ -20,7 +29,7 @@ namespace rgbd_pose {
 class KeyframeGraph {
  public:
   // See MappingOptions.
-  KeyframeGraph(int window, double drift) : window_(window), noise_(drift) {}
+  KeyframeGraph(int window, double drift);
 
   // Number of keyframes, including removed ones.
   int size() const { return static_cast<int>(nodes_.size()); }
@@ -71,15 +80,14 @@ class KeyframeGraph {
   // they cannot be computed.
   std::vector<MotionMatrix> Covariances() const;
 
-  // The effective covariance of a pair at the current poses (EdgeNoiseModel).
-  // Least squares with these covariances gives the same poses.
-  MotionMatrix CovarianceAsSolved(const KeyframePair& pair) const {
-    return noise_.CovarianceAsSolved(pair,
-                                     CurFromRef(pair.edge.ref, pair.edge.cur));
-  }
+  // The effective covariance of a pair at the current poses: larger if the loss
+  // function reduces the pair's weight. Least squares with these covariances
+  // gives the same poses.
+  MotionMatrix CovarianceAsSolved(const KeyframePair& pair) const;
 
-  // See EdgeNoiseModel.
-  double proportional_error() const { return noise_.proportional_error(); }
+  // The error relative to the motion that explains the disagreement of pairs
+  // beyond their covariances. 0 if the calibration is accurate.
+  double proportional_error() const { return proportional_error_; }
 
  private:
   struct Node {
@@ -95,8 +103,20 @@ class KeyframeGraph {
   std::string Solve(const std::vector<int>& free, bool graduated);
   std::vector<int> All() const;
 
+  // In keyframe_noise.cc. The covariance with noise floor and proportional
+  // error; the squared distance of an edge from the current poses, in sigmas.
+  MotionMatrix CovarianceOf(const RelativePose& edge) const;
+  double SquaredDistance(const RelativePose& edge,
+                         const MotionMatrix& covariance) const;
+  const ceres::LossFunction* LossOf(const KeyframePair& pair) const {
+    return pair.is_tracked ? tracked_loss_.get() : pair_loss_.get();
+  }
+  void FitProportionalError();
+
   const int window_;
-  EdgeNoiseModel noise_;
+  const double drift_;
+  const std::unique_ptr<ceres::LossFunction> tracked_loss_, pair_loss_;
+  double proportional_error_ = 0.0;
   std::vector<Node> nodes_;
   CovisibilityGraph links_;
   std::vector<KeyframePair> pairs_;

@@ -195,21 +195,21 @@ bool Mapper::AgreesWithOthers(const RelativePose& edge,
 // Whether an earlier pair between the two segments gave the same motion.
 // Otherwise this one is remembered.
 bool Mapper::AreConnected(const RelativePose& edge) {
-  const Meeting meeting = {graph_.segment(edge.ref), graph_.segment(edge.cur),
-                           graph_.pose(edge.ref) * edge.cur_from_ref.Inverse() *
-                               graph_.pose(edge.cur).Inverse()};
-  for (const Meeting& earlier : meetings_) {
-    if (earlier.ref_segment == meeting.ref_segment &&
-        earlier.cur_segment == meeting.cur_segment &&
-        // Compared where the camera is: far from the origin of a segment, a
-        // small rotation is a large translation.
-        IsWithin(earlier.ref_from_cur * graph_.pose(edge.cur),
-                 meeting.ref_from_cur * graph_.pose(edge.cur), kMeetingRotation,
+  const Rigid3d ref_from_cur = graph_.pose(edge.ref) *
+                               edge.cur_from_ref.Inverse() *
+                               graph_.pose(edge.cur).Inverse();
+  std::vector<Rigid3d>& meetings =
+      meetings_[{graph_.segment(edge.ref), graph_.segment(edge.cur)}];
+  for (const Rigid3d& earlier : meetings) {
+    // Compared where the camera is: far from the origin of a segment, a small
+    // rotation is a large translation.
+    if (IsWithin(earlier * graph_.pose(edge.cur),
+                 ref_from_cur * graph_.pose(edge.cur), kMeetingRotation,
                  kMeetingTranslation)) {
       return true;
     }
   }
-  meetings_.push_back(meeting);
+  meetings.push_back(ref_from_cur);
   return false;
 }
 

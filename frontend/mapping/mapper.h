@@ -117,12 +117,6 @@ class Mapper {
     ViewOverlap samples;                     // to compare views
   };
 
-  // A motion between two segments that only one pair supports so far.
-  struct Meeting {
-    int ref_segment = 0, cur_segment = 0;
-    Rigid3d ref_from_cur;  // between their world frames
-  };
-
   // Compresses the images of a keyframe; returns its number in graph_.
   int AddKeyframe(Keyframe keyframe, const PreparedFrame& frame, bool is_held);
   void Index(int at);
@@ -151,7 +145,9 @@ class Mapper {
   std::deque<MappedKeyframe> keyframes_;  // by number in graph_
   std::map<int, int> numbers_;            // by keyframe id
   PlaceDatabase index_;
-  std::vector<Meeting> meetings_;
+  // Motions between the world frames of two segments, ref_from_cur, that only
+  // one pair supports so far; by the segments of ref and cur.
+  std::map<std::pair<int, int>, std::vector<Rigid3d>> meetings_;
 
   const std::unique_ptr<Tracker> tracker_;
   TrackingResult tracked_;

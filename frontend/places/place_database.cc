@@ -34,14 +34,6 @@ void Require(const cv::Mat& descriptors) {
   }
 }
 
-template <typename Descriptor>
-Descriptor WordsOf(const cv::Mat& descriptors, int row) {
-  Descriptor words;
-  static_assert(sizeof(words) == kBytes, "all of it");
-  std::memcpy(words.data(), descriptors.ptr(row), kBytes);
-  return words;
-}
-
 }  // namespace
 
 size_t PlaceDatabase::Table::Number(uint32_t word) const {
@@ -87,7 +79,8 @@ void PlaceDatabase::Add(int keyframe, const cv::Mat& descriptors) {
   entries.resize(std::min(descriptors.rows, kMaxDescriptors));
   for (size_t i = 0; i < entries.size(); ++i) {
     const size_t row = i * descriptors.rows / entries.size();
-    entries[i].words = WordsOf<Descriptor>(descriptors, static_cast<int>(row));
+    std::memcpy(&entries[i].words, descriptors.ptr(static_cast<int>(row)),
+                kBytes);
     ++num_entries_;
     for (int word = 0; word < kWords; ++word) {
       Table& table = tables_[word];
@@ -125,13 +118,15 @@ void PlaceDatabase::Remove(int keyframe) {
   blocks_of_.erase(found);
 }
 
-void PlaceDatabase::FindAlike(const Descriptor& descriptor, int mark,
+void PlaceDatabase::FindAlike(const uint8_t* descriptor, int mark,
                               std::vector<int>* marks,
                               std::vector<int>* blocks) const {
-  const auto* bytes = reinterpret_cast<const uchar*>(descriptor.data());
+  Descriptor words;
+  static_assert(sizeof(words) == kBytes, "all of it");
+  std::memcpy(&words, descriptor, kBytes);
   std::array<int, kWords> next;
   for (int word = 0; word < kWords; ++word) {
-    next[word] = tables_[word].Of(descriptor[word]).first;
+    next[word] = tables_[word].Of(words[word]).first;
   }
   // All buckets in turn: while one entry is compared, others are prefetched.
   for (bool is_done = false; !is_done;) {
@@ -145,7 +140,8 @@ void PlaceDatabase::FindAlike(const Descriptor& descriptor, int mark,
       if (next[word] != kEnd) __builtin_prefetch(&At(next[word]));
       if ((*marks)[block] == mark) continue;
       const auto* other = reinterpret_cast<const uchar*>(entry.words.data());
-      if (cv::hal::normHamming(bytes, other, kBytes) > kMaxDistance) continue;
+      if (cv::hal::normHamming(descriptor, other, kBytes) > kMaxDistance)
+        continue;
       (*marks)[block] = mark;
       blocks->push_back(block);
     }
@@ -165,7 +161,7 @@ std::vector<PlaceCandidate> PlaceDatabase::Query(
   double total = 0.0;
   for (int row = 0; row < descriptors.rows; ++row) {
     alike.clear();
-    FindAlike(WordsOf<Descriptor>(descriptors, row), row, &marks, &alike);
+    FindAlike(descriptors.ptr(row), row, &marks, &alike);
     const double weight = std::log(
         all / std::max<double>(1.0, static_cast<double>(alike.size())));
     total += weight;

@@ -86,8 +86,8 @@ class PlaceDatabase {
   void Split(int word);
   // Appends each block that has a similar descriptor once; the blocks that are
   // already in have `mark` in `marks`.
-  void FindAlike(const Descriptor& descriptor, int mark,
-                 std::vector<int>* marks, std::vector<int>* blocks) const;
+  void FindAlike(const uint8_t* descriptor, int mark, std::vector<int>* marks,
+                 std::vector<int>* blocks) const;
 
   std::vector<Block> blocks_;
   std::vector<int> free_blocks_;

@@ -36,9 +36,9 @@ class Renderer {
   Renderer(Scene scene, const Camera& camera,
            std::vector<SyntheticMover> movers = {});
 
-  // The time t (s) matters only to moving objects.
-  Rendering Render(const Rigid3d& world_from_cam, double t = 0.0) const {
-    return Render([&](double) { return world_from_cam; }, t, 0.0);
+  // At time 0, which matters only to moving objects.
+  Rendering Render(const Rigid3d& world_from_cam) const {
+    return Render([&](double) { return world_from_cam; }, 0.0, 0.0);
   }
 
   // With a rolling shutter: each band of kBandRows rows, from the top, is

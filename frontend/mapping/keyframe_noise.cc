@@ -1,10 +1,12 @@
-#include "frontend/mapping/edge_noise_model.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "core/util/quantile.h"
+#include "frontend/mapping/keyframe_graph.h"
 #include "robust/m_estimator.h"
+
+// The uncertainty of pairs: their covariance, a noise floor, and an error
+// proportional to the motion, which is caused by an inaccurate calibration.
 
 namespace rgbd_pose {
 namespace {
@@ -33,12 +35,13 @@ constexpr double kMaxProportionalError = 0.1;
 
 }  // namespace
 
-EdgeNoiseModel::EdgeNoiseModel(double drift)
-    : drift_(drift),
+KeyframeGraph::KeyframeGraph(int window, double drift)
+    : window_(window),
+      drift_(drift),
       tracked_loss_(FindMEstimator("huber")->make(kTrackedWidth)),
       pair_loss_(FindMEstimator("cauchy")->make(kPairWidth)) {}
 
-MotionMatrix EdgeNoiseModel::CovarianceOf(const RelativePose& edge) const {
+MotionMatrix KeyframeGraph::CovarianceOf(const RelativePose& edge) const {
   MotionMatrix covariance = edge.covariance;
   const double angle = edge.cur_from_ref.Angle();
   const double way =
@@ -51,26 +54,28 @@ MotionMatrix EdgeNoiseModel::CovarianceOf(const RelativePose& edge) const {
   return covariance;
 }
 
-MotionMatrix EdgeNoiseModel::CovarianceAsSolved(
-    const KeyframePair& pair, const Rigid3d& cur_from_ref) const {
+double KeyframeGraph::SquaredDistance(const RelativePose& edge,
+                                      const MotionMatrix& covariance) const {
+  return SquaredMahalanobisDistance(CurFromRef(edge.ref, edge.cur),
+                                    edge.cur_from_ref, covariance);
+}
+
+MotionMatrix KeyframeGraph::CovarianceAsSolved(const KeyframePair& pair) const {
   const MotionMatrix covariance = CovarianceOf(pair.edge);
   double rho[3];
-  LossOf(pair)->Evaluate(SquaredMahalanobisDistance(
-                             cur_from_ref, pair.edge.cur_from_ref, covariance),
-                         rho);
+  LossOf(pair)->Evaluate(SquaredDistance(pair.edge, covariance), rho);
   return covariance / std::max(rho[1], 1e-9);
 }
 
-void EdgeNoiseModel::FitProportionalError(
-    const std::vector<KeyframePair>& pairs,
-    const std::vector<Rigid3d>& cur_from_ref) {
-  const auto disagree = [&] {
+// With the proportional error fitted, the median disagreement between the pairs
+// and the current poses is as expected from the covariances. Tracked pairs are
+// ignored, as the poses follow them too closely.
+void KeyframeGraph::FitProportionalError() {
+  const auto disagree = [this] {
     std::vector<double> squares;
-    for (size_t i = 0; i < pairs.size(); ++i) {
-      const RelativePose& edge = pairs[i].edge;
-      if (pairs[i].is_tracked) continue;
-      squares.push_back(SquaredMahalanobisDistance(
-          cur_from_ref[i], edge.cur_from_ref, CovarianceOf(edge)));
+    for (const KeyframePair& pair : pairs_) {
+      if (pair.is_tracked) continue;
+      squares.push_back(SquaredDistance(pair.edge, CovarianceOf(pair.edge)));
     }
     return squares.size() >= kMinPairsForProportionalError &&
            Median(squares) > kMedianSquare;
@@ -86,12 +91,13 @@ void EdgeNoiseModel::FitProportionalError(
 }
 
 // Errors add up along a path, and a wrong rotation displaces all that follows.
-bool EdgeNoiseModel::PassesMahalanobisGate(
-    const RelativePose& edge, const std::vector<Rigid3d>& map_from_cam) const {
+bool KeyframeGraph::PassesMahalanobisGate(const RelativePose& edge) const {
+  const std::vector<int> path = links_.ShortestPath(edge.ref, edge.cur);
+  if (path.empty()) return false;
   double way = 0.0, turns = 0.0;
-  const size_t pairs = map_from_cam.size() - 1;
+  const size_t pairs = path.size() - 1;
   for (size_t i = pairs; i > 0; --i) {
-    const Rigid3d step = map_from_cam[i].Inverse() * map_from_cam[i - 1];
+    const Rigid3d step = CurFromRef(path[i - 1], path[i]);
     way += step.translation.norm();
     turns += step.Angle();
   }
@@ -104,9 +110,9 @@ bool EdgeNoiseModel::PassesMahalanobisGate(
   MotionMatrix covariance = CovarianceOf(edge);
   covariance.diagonal().head<3>().array() += rotation;
   covariance.diagonal().tail<3>().array() += translation;
-  const Rigid3d along = map_from_cam.back().Inverse() * map_from_cam.front();
-  return SquaredMahalanobisDistance(edge.cur_from_ref, along, covariance) <
-         kLargestSquare;
+  return SquaredMahalanobisDistance(edge.cur_from_ref,
+                                    CurFromRef(edge.ref, edge.cur),
+                                    covariance) < kLargestSquare;
 }
 
 }  // namespace rgbd_pose
