@@ -18,7 +18,11 @@ std::vector<int> SelectOverGrid(const std::vector<cv::KeyPoint>& keypoints,
               std::sqrt(image.area() / 2.0 / std::max(1, max_count)))));
   const int columns = (image.width + cell_px - 1) / cell_px;
   const int rows = (image.height + cell_px - 1) / cell_px;
-  std::vector<std::vector<int>> cells(columns * rows);
+  // Sorted by strength, the highest first. Ties are broken by place and number,
+  // independently of the sort's implementation.
+  using Ranked =
+      std::tuple<float, float, float, int>;  // -strength, v, u, index
+  std::vector<std::vector<Ranked>> cells(columns * rows);
   const cv::Rect2f inside(kBorderPx, kBorderPx, image.width - 2 * kBorderPx,
                           image.height - 2 * kBorderPx);
   for (size_t i = 0; i < keypoints.size(); ++i) {
@@ -26,27 +30,19 @@ std::vector<int> SelectOverGrid(const std::vector<cv::KeyPoint>& keypoints,
     if (!inside.contains(pixel)) continue;
     const int cell = static_cast<int>(pixel.y) / cell_px * columns +
                      static_cast<int>(pixel.x) / cell_px;
-    cells[cell].push_back(static_cast<int>(i));
+    cells[cell].emplace_back(-keypoints[i].response, pixel.y, pixel.x,
+                             static_cast<int>(i));
   }
-  // The strongest first. Ties are broken by place and number, independently of
-  // the sort's implementation.
-  const auto rank = [&](int i) {
-    const cv::KeyPoint& k = keypoints[i];
-    return std::make_tuple(-k.response, k.pt.y, k.pt.x, i);
-  };
-  const auto has_depth = [&](const cv::Point2f& pixel) {
-    return LookUpDepth(frame, pixel.x, pixel.y, depth_options).depth > 0.0;
-  };
   // Every second cell is often empty (no texture, no depth). The other cells
   // may therefore provide twice their equal share.
   const size_t share = std::max<size_t>(1, 2 * max_count / cells.size());
   std::vector<int> selected;
-  for (std::vector<int>& cell : cells) {
-    std::sort(cell.begin(), cell.end(),
-              [&](int a, int b) { return rank(a) < rank(b); });
+  for (std::vector<Ranked>& cell : cells) {
+    std::sort(cell.begin(), cell.end());
     size_t taken = 0;
-    for (const int i : cell) {
-      if (taken == share || !has_depth(keypoints[i].pt)) continue;
+    for (const auto& [weakness, v, u, i] : cell) {
+      if (taken == share) break;
+      if (LookUpDepth(frame, u, v, depth_options).depth == 0.0) continue;
       selected.push_back(i);
       ++taken;
     }

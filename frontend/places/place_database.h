@@ -17,16 +17,12 @@ struct PlaceCandidate {
 };
 
 // Finds the keyframes that look like a frame, by ORB descriptors alone: nothing
-// is trained or loaded. Each of the eight 32-bit words of a descriptor is a
-// hash key (locality-sensitive hashing, Indyk & Motwani 1998): descriptors that
-// differ in few bits share a bucket in most cases. A feature has a higher
+// is trained or loaded. Each 32-bit word of a descriptor is a hash key
+// (locality-sensitive hashing, Indyk & Motwani 1998). A feature has a higher
 // weight, the fewer keyframes have it (inverse document frequency, Sparck Jones
-// 1972); a feature that is everywhere has no weight.
-//
-// Buckets are split one by one as keyframes are added (linear hashing, Litwin
-// 1980). The time to look up or to add descriptors does not grow with the
-// number of keyframes, except through cache misses. The same calls give the
-// same results. Several threads may call Query at once.
+// 1972). Buckets are split one by one as keyframes are added (linear hashing,
+// Litwin 1980), so larger maps do not take longer, except through cache misses.
+// The same calls give the same results. Several threads may call Query at once.
 class PlaceDatabase {
  public:
   // At most this many descriptors of a keyframe are stored, evenly spread over

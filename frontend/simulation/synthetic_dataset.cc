@@ -163,6 +163,8 @@ SyntheticOptions Checked(SyntheticOptions options) {
   return options;
 }
 
+// Laps share the time equally. Several start and stop smoothly, at up to pi/2
+// times the path's own speed.
 Path CameraPath(const SyntheticOptions& options) {
   const SyntheticPath path = FindSyntheticPath(options.path);
   const double lap = (options.frames - 1) / options.rate_hz / options.laps;

@@ -17,9 +17,9 @@ namespace rgbd_pose {
 // The options of a synthetic sequence.
 struct SyntheticOptions {
   std::string scene = "room";  // see MakeScene
-  std::string path = "xyz";    // see FindSyntheticPath
+  std::string path = "xyz";    // see FindSyntheticPath; lasts for all frames
   int frames = 150;            // number of frames
-  int laps = 1;                // passes along the path, see below
+  int laps = 1;                // passes along the path, to and fro in turn
   uint32_t seed = 1;           // of textures and noise
   double rate_hz = 30.0;       // frames per second
   bool noise = true;           // simulate a real sensor, see synthetic_sensor.h
@@ -64,10 +64,6 @@ struct SyntheticOptions {
   // The pose of the camera in the axes that follow the path, if not identity.
   std::optional<Rigid3d> path_from_cam = {};
 };
-
-// The path lasts as long as the sequence. Several laps share this time equally.
-// They go forward and backward in turn and start and stop smoothly, at up to
-// pi/2 times the path's own speed.
 
 // An RGB-D sequence with exact poses, rendered when it is read. The same
 // options give the same bytes, in any order and with any number of threads.

@@ -51,21 +51,17 @@ class RandomWorld {
   // tracking sigma of 0.5 px in each frame.
   void Match(const Camera& camera, const Rigid3d& cur_from_prev,
              Observation* prev, Observation* cur) {
-    while (true) {
-      prev->u = Uniform(0.0, camera.width - 1.0);
-      prev->v = Uniform(0.0, camera.height - 1.0);
-      prev->depth = Uniform(1.0, 4.0);
-      const Eigen::Vector3d point =
-          cur_from_prev * Correspondences(camera).Point(*prev);
-      if (point.z() < 0.5) continue;
-      cur->u = camera.fx * point.x() / point.z() + camera.cx;
-      cur->v = camera.fy * point.y() / point.z() + camera.cy;
-      cur->depth = point.z();
-      for (Observation* o : {prev, cur}) {
-        o->sigma_px = 0.5;
-        o->sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(o->depth);
-      }
-      return;
+    Eigen::Vector3d point;
+    do {
+      PlaceAnywhere(camera, prev);
+      point = cur_from_prev * Correspondences(camera).Point(*prev);
+    } while (point.z() < 0.5);
+    cur->u = camera.fx * point.x() / point.z() + camera.cx;
+    cur->v = camera.fy * point.y() / point.z() + camera.cy;
+    cur->depth = point.z();
+    for (Observation* o : {prev, cur}) {
+      o->sigma_px = 0.5;
+      o->sigma_depth = FindDepthNoiseModel("khoshelham")->sigma(o->depth);
     }
   }
 
@@ -91,11 +87,7 @@ class RandomWorld {
         AddNoise(&prev);
         AddNoise(&cur);
       }
-      if (i < outlier_share * count) {
-        cur.u = Uniform(0.0, camera.width - 1.0);
-        cur.v = Uniform(0.0, camera.height - 1.0);
-        cur.depth = Uniform(1.0, 4.0);
-      }
+      if (i < outlier_share * count) PlaceAnywhere(camera, &cur);
       cur.normal = FacingNormal(matches.Point(cur));
       for (Observation* o : {&prev, &cur}) {
         if (Extra(0.0, 1.0) < missing_depth_share) o->depth = 0.0;
@@ -127,6 +119,13 @@ class RandomWorld {
   }
 
  private:
+  // Moves an observation to a random pixel and depth.
+  void PlaceAnywhere(const Camera& camera, Observation* o) {
+    o->u = Uniform(0.0, camera.width - 1.0);
+    o->v = Uniform(0.0, camera.height - 1.0);
+    o->depth = Uniform(1.0, 4.0);
+  }
+
   double Extra(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(extra_generator_);
   }

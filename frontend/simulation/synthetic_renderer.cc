@@ -93,8 +93,7 @@ Eigen::AlignedBox2f RangeOf(const SceneFace& face, const Vector3d& camera,
     if (in_cam.z() < kNearPlane) {
       is_partly_behind = true;
     } else {
-      const Vector2f plane = (in_cam.head<2>() / in_cam.z()).cast<float>();
-      range.extend(plane);
+      range.extend((in_cam.head<2>() / in_cam.z()).cast<float>());
     }
   }
   if (is_partly_behind && !range.isEmpty()) {
@@ -150,12 +149,11 @@ NearestFaces FindNearest(const std::vector<VisibleFace>& faces,
                          const Eigen::AlignedBox2f& range,
                          const cv::Mat& rays_x, const cv::Mat& rays_y) {
   NearestFaces nearest;
-  for (size_t i = 0; i < faces.size(); ++i) {
+  for (int i = 0; i < static_cast<int>(faces.size()); ++i) {
     if (!faces[i].range.intersects(range)) continue;
     const Matrix3f h = faces[i].face_from_ray;
     const float width = static_cast<float>(faces[i].face->width) + kOverlap;
     const float height = static_cast<float>(faces[i].face->height) + kOverlap;
-    const int face = static_cast<int>(i);
     const int columns = rays_x.cols;
     for (int row = 0; row < rays_x.rows; ++row) {
       const float* x = rays_x.ptr<float>(row);
@@ -171,7 +169,7 @@ NearestFaces FindNearest(const std::vector<VisibleFace>& faces,
                          (u <= width * w) & (v >= -kOverlap * w) &
                          (v <= height * w);
         best[column] = hit ? w : best[column];
-        index[column] = hit ? face : index[column];
+        index[column] = hit ? i : index[column];
       }
     }
   }

@@ -47,13 +47,12 @@ struct Exposure {
 constexpr double kExposurePeriod = 4.0;  // s
 double DriftingGain(double amplitude, double t);
 
-// What a camera on a path world_from_cam(t) sees at time t. Colour is the mean
-// of an odd number of renderings, evenly spread over the exposure time around t
-// and at most about kMaxBlurStep apart in the image, times the gain, rounded
-// once and clipped at 255. Grey levels are assumed to be proportional to light.
-// Depth is rendered at time t. With a rolling shutter t is the time of the
-// middle row of both images, and each band of rows (see Renderer) is rendered
-// at the time of its own middle.
+// What a camera on a path world_from_cam(t) sees at time t; with a rolling
+// shutter, the time of the middle row (see Renderer). Colour is the mean of an
+// odd number of renderings, evenly spread over the exposure time around t and
+// at most about kMaxBlurStep apart in the image, times the gain, rounded once
+// and clipped at 255: grey levels are proportional to light. Depth is that of
+// t.
 constexpr double kMaxBlurStep = 2.0;  // px; finer steps are blurred by the lens
 Rendering Expose(const Renderer& renderer, double focal_px,
                  const std::function<Rigid3d(double t)>& world_from_cam,
