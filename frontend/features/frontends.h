@@ -9,15 +9,13 @@ namespace rgbd_pose {
 
 // The frontends of MakeFrontend, which checks the options.
 
-// Tracks corners of the reference frame directly into each new frame with
-// pyramidal Lucas-Kanade (Bouguet 2001), starting at their 3D points projected
-// with the guess. Tracking always from the reference prevents drift.
+// Tracks corners with pyramidal Lucas-Kanade (Bouguet 2001), always from the
+// reference, which prevents drift.
 std::unique_ptr<Frontend> MakeKltFrontend(const FrontendOptions& options);
 
-// Finds each corner of the reference frame by aligning small patches coarse to
-// fine (patch.h), independently of the exposure, from a start within some
-// pixels (see DirectTracker::FindStart). Patches are warped according to depth,
-// surface normal and motion.
+// Finds corners by aligning small patches coarse to fine (patch.h), warped
+// according to depth, surface normal and motion, from a start within some
+// pixels (see DirectTracker::FindStart).
 std::unique_ptr<Frontend> MakePatchFrontend(const FrontendOptions& options);
 
 // Detects keypoints in every frame and matches them by their descriptors: first

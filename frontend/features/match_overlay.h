@@ -18,8 +18,7 @@ namespace rgbd_pose {
 //
 // `camera` is the camera of the frame; it maps the undistorted observations
 // back into the distorted image. The caption is ASCII; text beyond about 80
-// characters is cut off. The size of the picture depends only on the size of
-// the image, which allows making a film of the pictures of a sequence.
+// characters is cut off. The size of the picture depends only on the image's.
 cv::Mat DrawMatches(const Frame& frame, const Camera& camera,
                     const FeatureMatches& found, const MotionEstimate& estimate,
                     const std::string& caption);

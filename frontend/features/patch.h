@@ -9,9 +9,8 @@
 
 namespace rgbd_pose {
 
-// Side of a patch, px. Larger patches (16) scatter less from frame to frame,
-// but extend beyond the edges of their surface: in simulation they drift 50 %
-// more, and they take longer.
+// Side of a patch, px. Larger ones extend beyond the edges of their surface: 16
+// px drift 50 % more in simulation, and take longer.
 constexpr int kPatchSize = 8;
 
 // What inverse-compositional Lucas-Kanade (Baker & Matthews 2004) needs to know

@@ -125,25 +125,22 @@ const Reference* Mapper::ReferenceOf(int at) {
 
 // Pairs the newest keyframe with those of its segment that, by their poses, see
 // the same.
-void Mapper::PairByPose(int newest, const PreparedFrame& frame,
-                        MapUpdate* update) {
+void Mapper::PairByPose(int newest, const PreparedFrame& frame) {
   for (const int at : SeeingTheSame(newest)) {
     const bool is_loop = !graph_.links().Within(newest, kLoopHops)[at];
     const auto edge =
         MakePair(at, newest, frame, graph_.CurFromRef(at, newest), 0.0);
-    if (!edge.has_value()) continue;
-    graph_.AddPair(*edge, /*is_tracked=*/false, is_loop);
-    ++update->pairs;
-    update->loops += is_loop;
+    if (edge.has_value()) graph_.AddPair(*edge, /*is_tracked=*/false, is_loop);
   }
 }
 
 // Pairs the newest keyframe with similar ones of any segment. Segments that
 // meet are joined. A similar keyframe is accepted if the path by other pairs is
 // consistent with it or, without a path, if more than one pair supports it.
-void Mapper::CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
-                                    MapUpdate* update) {
-  if (options_.max_loop_candidates == 0) return;
+// Returns the number of segments joined.
+int Mapper::CloseLoopsByAppearance(int newest, const PreparedFrame& frame) {
+  if (options_.max_loop_candidates == 0) return 0;
+  int joined = 0;
   const PlaceFeatures& cur = *keyframes_[newest].features;
   const std::vector<bool> is_near = graph_.links().Within(newest, kLoopHops);
   const auto filter = [&](int at) { return !is_near[at]; };
@@ -164,14 +161,13 @@ void Mapper::CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
     if (graph_.segment(at) != graph_.segment(newest)) {
       if (!AgreesWithOthers(*edge, frame) && !AreConnected(*edge)) continue;
       if (!graph_.Join(*edge)) continue;
-      ++update->joined;
+      ++joined;
     } else if (!graph_.PassesMahalanobisGate(*edge)) {
       continue;
     }
     graph_.AddPair(*edge, /*is_tracked=*/false, /*is_loop=*/true);
-    ++update->pairs;
-    ++update->loops;
   }
+  return joined;
 }
 
 // Whether a pair with a neighbour of edge.ref gives the same motion.

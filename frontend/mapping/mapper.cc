@@ -99,14 +99,16 @@ MapUpdate Mapper::Add(Keyframe added,
     }
     graph_.AddPair(edge, /*is_tracked=*/true);
   }
-  PairByPose(newest, frame, &update);
-  CloseLoopsByAppearance(newest, frame, &update);
-  if (update.joined > 0) PairByPose(newest, frame, &update);
+  PairByPose(newest, frame);
+  update.joined += CloseLoopsByAppearance(newest, frame);
+  if (update.joined > 0) PairByPose(newest, frame);
   Index(newest);
   for (size_t i = known_pairs; i < graph_.pairs().size(); ++i) {
     const KeyframePair& pair = graph_.pairs()[i];
     update.links.push_back({keyframes_[pair.edge.ref].id,
                             keyframes_[pair.edge.cur].id, pair.is_loop});
+    update.pairs += !pair.is_tracked;
+    update.loops += pair.is_loop;
   }
 
   update.error =

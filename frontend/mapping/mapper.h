@@ -23,8 +23,8 @@ namespace rgbd_pose {
 // The options of Mapper.
 struct MappingOptions {
   // Maximum number of older keyframes that a new one is paired with by its
-  // pose. Half of them are those that see most of its view; the others are the
-  // oldest ones, which limit the drift.
+  // pose: half see most of its view, half are the oldest ones, which limit the
+  // drift.
   int max_pairs = 8;
 
   // Two keyframes see the same if each shows this share of the other's view.
@@ -34,8 +34,7 @@ struct MappingOptions {
   // loops are found only by pose, and segments are not joined.
   int max_loop_candidates = 4;
 
-  // A keyframe is removed if an older one nearby sees this share of its view. A
-  // map thus grows with the size of the place, not with time.
+  // A keyframe is removed if an older one nearby sees this share of its view.
   double redundant_share = 0.85;
 
   // Number of latest keyframes whose poses are optimised at each keyframe,
@@ -127,9 +126,8 @@ class Mapper {
   void PublishMovedPoses(MapUpdate* update);
 
   // In keyframe_pairing.cc.
-  void PairByPose(int newest, const PreparedFrame& frame, MapUpdate* update);
-  void CloseLoopsByAppearance(int newest, const PreparedFrame& frame,
-                              MapUpdate* update);
+  void PairByPose(int newest, const PreparedFrame& frame);
+  int CloseLoopsByAppearance(int newest, const PreparedFrame& frame);
   double SharedView(int ref, int cur, const Rigid3d& cur_from_ref) const;
   std::vector<int> SeeingTheSame(int newest) const;
   std::optional<RelativePose> MakePair(int ref, int cur,

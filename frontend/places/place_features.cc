@@ -12,9 +12,8 @@ constexpr int kMaxKeypoints = 2000;
 constexpr int kMaxFeatures = 800;
 
 // A motion is accepted with this many inliers and this share of the matches.
-// Between different places fewer than 6 matches agree on a motion: three points
-// determine it, and a fourth agrees by chance once in some thousand cases. The
-// rest is a margin for repetitive texture.
+// Between different places fewer than 6 matches agree on a motion; the rest is
+// a margin for repetitive texture.
 constexpr int kMinInliers = 10;
 constexpr double kMinInlierShare = 0.1;
 

@@ -22,12 +22,10 @@ struct Relocalisation {
   int inliers = 0;  // matches that agree with the motion
 };
 
-// Relocalises a frame among keyframes without an initial guess; see
-// VerifyGeometrically.
-//
-// A keyframe is described when it is first compared, a few in each search: a
-// search takes some tens of milliseconds at most. The same calls give the same
-// results. One object serves one thread.
+// Relocalises a frame among keyframes without an initial guess (see
+// VerifyGeometrically). A keyframe is described when it is first compared, a
+// few in each search: some tens of milliseconds at most. The same calls give
+// the same results. One object serves one thread.
 class Relocaliser {
  public:
   explicit Relocaliser(const Camera& camera,

@@ -89,9 +89,6 @@ Scene MakeGlossyRoom(uint32_t seed) {
   return scene;
 }
 
-// Scenes without the texture or the shape that some methods depend on. All suit
-// the paths of the room.
-
 Material Painted(const cv::Vec3f& color) { return {color, 0.0f}; }
 
 // Low boxes near the camera, high ones along the walls, with their brightness.
@@ -110,8 +107,7 @@ const std::pair<SceneBox, float> kBoxes[] = {
     {{{-0.90, 1.70, 0.0}, {0.90, 0.42, 0.75}, 0}, 0.61f},
 };
 
-// A room of 5 x 4 x 2.6 m with a dozen boxes, each in one colour: shapes, but
-// no texture.
+// A room of the same size with a dozen boxes, each in one colour.
 Scene MakePlainRoom(uint32_t seed) {
   Scene scene = {{}, {-0.4, 0.2, 2.2}, seed};
   const Material wall = Painted({0.62f, 0.64f, 0.65f});
@@ -123,8 +119,7 @@ Scene MakePlainRoom(uint32_t seed) {
   return scene;
 }
 
-// A corridor, 2 x 2.5 m and 40 m long, along the world's x axis, each wall in
-// one colour: the position along this axis cannot be observed.
+// A corridor of 2 x 2.5 m, each wall in one colour.
 Scene MakeCorridor(uint32_t seed) {
   // The lamp is so high that its light is the same everywhere.
   Scene scene = {{}, {-0.4, -0.35, 1000.0}, seed};
@@ -136,7 +131,7 @@ Scene MakeCorridor(uint32_t seed) {
   return scene;
 }
 
-// One wall full of posters and nothing else: texture, but no shape.
+// One wall full of posters and nothing else.
 Scene MakePosterWall(uint32_t seed) {
   Scene scene = {{}, {-0.4, 0.2, 2.2}, seed};
   AddBox({{1.0, 0.0, -5.0}, {0.2, 16.0, 14.0}, 0}, kPoster, &scene);
