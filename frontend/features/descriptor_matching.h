@@ -32,15 +32,9 @@ struct DescriptorMethod {
   }
 };
 
-// Oriented FAST corners, rotated binary tests (Rublee et al., ICCV 2011).
-extern const DescriptorMethod kOrb;
-
-// Blobs in scale space, histograms of gradients (Lowe, IJCV 2004).
-extern const DescriptorMethod kSift;
-
-// Blobs in a nonlinear scale space, binary tests of gradients (Alcantarilla,
-// Nuevo & Bartoli, BMVC 2013).
-extern const DescriptorMethod kAkaze;
+// ORB (Rublee et al., ICCV 2011), SIFT (Lowe, IJCV 2004) and AKAZE
+// (Alcantarilla, Nuevo & Bartoli, BMVC 2013).
+extern const DescriptorMethod kOrb, kSift, kAkaze;
 
 // The keypoints of an image and their descriptors, one row each.
 struct DescribedKeypoints {

@@ -246,33 +246,31 @@ Rendering Renderer::Render(
   const int height = rays_x_.rows;
   const bool has_bands = readout_s != 0.0;
   const std::vector<Tile>& tiles = has_bands ? band_tiles_ : tiles_;
-  const int bands = has_bands ? (height + kBandRows - 1) / kBandRows : 1;
-  std::vector<std::vector<VisibleFace>> faces(bands);
-  for (int i = 0; i < bands; ++i) {
-    const int first = i * kBandRows;
+  const int band_rows = has_bands ? kBandRows : height;
+  const Shutter shutter = {0.0, readout_s};
+  std::vector<std::vector<VisibleFace>> faces;  // by band
+  for (int first = 0; first < height; first += band_rows) {
     const double middle =
-        (first + std::min(first + kBandRows, height) - 1) / 2.0;
-    const Shutter shutter = {0.0, readout_s};
+        (first + std::min(first + band_rows, height) - 1) / 2.0;
     const double time = t + shutter.RowTime(middle, height);
     const Rigid3d pose = world_from_cam(time);
-    AddVisibleFaces(scene_, pose, &faces[i]);
+    AddVisibleFaces(scene_, pose, &faces.emplace_back());
     for (const SyntheticMover& mover : movers_) {
       AddVisibleFaces(mover.scene,
-                      mover.world_from_mover(time).Inverse() * pose, &faces[i]);
+                      mover.world_from_mover(time).Inverse() * pose,
+                      &faces.back());
     }
   }
   Rendering out;
   out.color = cv::Mat::zeros(rays_x_.size(), CV_8UC3);
   out.depth = cv::Mat::zeros(rays_x_.size(), CV_32FC1);
-  cv::parallel_for_(
-      cv::Range(0, static_cast<int>(tiles.size())),
-      [&](const cv::Range& range) {
-        for (int i = range.start; i < range.end; ++i) {
-          const auto& visible =
-              faces[has_bands ? tiles[i].pixels.y / kBandRows : 0];
-          RenderTile(visible, tiles[i], &out);
-        }
-      });
+  cv::parallel_for_(cv::Range(0, static_cast<int>(tiles.size())),
+                    [&](const cv::Range& range) {
+                      for (int i = range.start; i < range.end; ++i) {
+                        RenderTile(faces[tiles[i].pixels.y / band_rows],
+                                   tiles[i], &out);
+                      }
+                    });
   cv::GaussianBlur(out.color, out.color, cv::Size(3, 3), kLensBlur);
   return out;
 }

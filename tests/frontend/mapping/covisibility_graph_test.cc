@@ -1,8 +1,8 @@
-#include "frontend/mapping/covisibility_graph.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "frontend/mapping/keyframe_graph.h"
 
 namespace rgbd_pose {
 namespace {
