@@ -64,11 +64,9 @@ class KeypointGrid {
   // Finds the keypoints within one cell width of a point.
   void Near(const cv::Point2f& p, std::vector<int>* near) const {
     near->clear();
-    // Written to find nothing for NaN.
-    if (!(p.x >= -cell_px_ && p.x <= (columns_ + 1) * cell_px_ &&
-          p.y >= -cell_px_ && p.y <= (rows_ + 1) * cell_px_)) {
-      return;
-    }
+    // Also finds nothing for NaN, or for what does not fit into an int.
+    const float far = 1e6F * cell_px_;
+    if (!(std::abs(p.x) < far && std::abs(p.y) < far)) return;
     const int column = Cell(p.x);
     const int row = Cell(p.y);
     for (int r = std::max(0, row - 1); r <= std::min(rows_ - 1, row + 1); ++r) {

@@ -114,7 +114,6 @@ class PatchFrontend final : public Frontend {
              FeatureMatches* matches) override {
     matches->Clear();
     const auto& features = static_cast<const PatchFeatures&>(reference);
-    if (features.corners.empty()) return;
     const std::vector<cv::Mat>& pyramid = frame.Derived<ImagePyramid>().levels;
     const int num_levels =
         static_cast<int>(std::min(features.pyramid.size(), pyramid.size()));

@@ -66,22 +66,18 @@ const WalkingBox kWalkingBoxes[] = {
 
 constexpr int kMaxWalkingBoxes = std::size(kWalkingBoxes);
 
-std::vector<SyntheticMover> WalkingBoxes(int count, uint32_t seed) {
-  std::vector<SyntheticMover> boxes;
-  for (int i = 0; i < count; ++i) {
-    const WalkingBox& walking = kWalkingBoxes[i];
-    SyntheticMover box;
-    box.scene = {{}, {-1.0, 0.3, 2.2}, HashCell(i, 3, seed)};
-    AddBox({Vector3d::Zero(), walking.box.size, walking.box.yaw_deg}, kPoster,
-           &box.scene);
-    box.world_from_mover = [&walking](double t) {
-      const double swing = std::sin(walking.rate * t + walking.phase);
-      return Rigid3d(Quaterniond::Identity(),
-                     walking.box.foot + swing * walking.half);
-    };
-    boxes.push_back(box);
-  }
-  return boxes;
+SyntheticMover MakeWalkingBox(int i, uint32_t seed) {
+  const WalkingBox& walking = kWalkingBoxes[i];
+  SyntheticMover box;
+  box.scene = {{}, {-1.0, 0.3, 2.2}, HashCell(i, 3, seed)};
+  AddBox({Vector3d::Zero(), walking.box.size, walking.box.yaw_deg}, kPoster,
+         &box.scene);
+  box.world_from_mover = [&walking](double t) {
+    const double swing = std::sin(walking.rate * t + walking.phase);
+    return Rigid3d(Quaterniond::Identity(),
+                   walking.box.foot + swing * walking.half);
+  };
+  return box;
 }
 
 void Require(bool holds, const std::string& problem) {
@@ -181,8 +177,10 @@ Path CameraPath(const SyntheticOptions& options) {
 
 Renderer MakeRenderer(const SyntheticOptions& options, const Camera& camera,
                       const Path& path) {
-  std::vector<SyntheticMover> movers =
-      WalkingBoxes(options.walking_boxes, options.seed);
+  std::vector<SyntheticMover> movers;
+  for (int i = 0; i < options.walking_boxes; ++i) {
+    movers.push_back(MakeWalkingBox(i, options.seed));
+  }
   if (options.moving_patch > 0.0) {
     movers.push_back(MovingPatch(options, path));
   }

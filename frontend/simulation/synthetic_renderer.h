@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Geometry>
-#include <cstdint>
 #include <functional>
 #include <opencv2/core.hpp>
 #include <vector>

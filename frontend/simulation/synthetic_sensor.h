@@ -51,8 +51,8 @@ double DriftingGain(double amplitude, double t);
 // shutter, the time of the middle row (see Renderer). Colour is the mean of an
 // odd number of renderings, evenly spread over the exposure time around t and
 // at most about kMaxBlurStep apart in the image, times the gain, rounded once
-// and clipped at 255: grey levels are proportional to light. Depth is that of
-// t.
+// and clipped at 255: grey levels are proportional to light. Depth is not
+// mixed.
 constexpr double kMaxBlurStep = 2.0;  // px; finer steps are blurred by the lens
 Rendering Expose(const Renderer& renderer, double focal_px,
                  const std::function<Rigid3d(double t)>& world_from_cam,
