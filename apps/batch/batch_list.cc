@@ -1,5 +1,6 @@
 #include <glob.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
@@ -37,11 +38,10 @@ std::vector<std::string> MatchingFolders(const std::string& pattern) {
 
 // Names are used as folder names and as table cells.
 bool IsUsableName(const std::string& name) {
-  if (name.empty() || name[0] == '.') return false;
-  for (const unsigned char c : name) {
-    if (c < ' ' || c == ',' || c == '"' || c == '\\') return false;
-  }
-  return true;
+  return !name.empty() && name[0] != '.' &&
+         std::none_of(name.begin(), name.end(), [](unsigned char c) {
+           return c < ' ' || c == ',' || c == '"' || c == '\\';
+         });
 }
 
 // The camera of a recording: `named`, or that in its folder if this is empty.

@@ -9,6 +9,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/geometry/camera.h"
@@ -35,13 +36,11 @@ std::vector<std::string> Split(const std::string& text, char separator) {
   return parts;
 }
 
-bool Contains(const std::vector<std::string>& names, const std::string& name) {
-  return std::find(names.begin(), names.end(), name) != names.end();
-}
-
 void CheckKnown(const std::string& name,
                 const std::vector<std::string>& known) {
-  if (!Contains(known, name)) throw UnknownName("name", name, known);
+  if (std::count(known.begin(), known.end(), name) == 0) {
+    throw UnknownName("name", name, known);
+  }
 }
 
 std::vector<std::string> ParseList(const BatchSetting& setting,
@@ -49,7 +48,7 @@ std::vector<std::string> ParseList(const BatchSetting& setting,
   std::vector<std::string> values;
   for (const std::string& value : Split(text, ',')) {
     try {
-      if (Contains(values, value)) {
+      if (std::count(values.begin(), values.end(), value) > 0) {
         throw InputError("'" + value + "' appears twice");
       }
       setting.check(value);
@@ -59,22 +58,6 @@ std::vector<std::string> ParseList(const BatchSetting& setting,
     values.push_back(value);
   }
   return values;
-}
-
-// Returns all combinations; the values of the last list vary fastest.
-std::vector<std::vector<std::string>> Combinations(const BatchGrid& grid) {
-  std::vector<std::vector<std::string>> all = {{}};
-  for (const std::vector<std::string>& values : grid.values) {
-    std::vector<std::vector<std::string>> longer;
-    for (const std::vector<std::string>& begun : all) {
-      for (const std::string& value : values) {
-        longer.push_back(begun);
-        longer.back().push_back(value);
-      }
-    }
-    all = std::move(longer);
-  }
-  return all;
 }
 
 std::optional<int> ParseWhole(std::string_view text) {
@@ -188,11 +171,16 @@ BatchGrid ParseGrid(const std::vector<std::string>& lists, int repeats) {
   if (repeats < 1 || repeats > 10000) {
     throw InputError("--repeats must be 1 to 10000");
   }
-  BatchGrid grid;
+  BatchGrid grid = {{{}}, repeats};
   for (size_t k = 0; k < lists.size(); ++k) {
-    grid.values.push_back(ParseList(BatchSettings()[k], lists[k]));
+    const auto values = ParseList(BatchSettings()[k], lists[k]);
+    for (const auto& begun : std::exchange(grid.combinations, {})) {
+      for (const std::string& value : values) {
+        grid.combinations.push_back(begun);
+        grid.combinations.back().push_back(value);
+      }
+    }
   }
-  grid.repeats = repeats;
   return grid;
 }
 
@@ -200,11 +188,10 @@ std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,
                                const BatchGrid& grid, const BatchShard& shard,
                                const std::string& settings) {
   std::vector<BatchRun> runs;
-  const auto combinations = Combinations(grid);
   for (size_t i = 0; i < sequences.size(); ++i) {
     if (!shard.Has(static_cast<int>(i))) continue;
     const std::string inputs = HashSequence(sequences[i]);
-    for (const std::vector<std::string>& values : combinations) {
+    for (const std::vector<std::string>& values : grid.combinations) {
       TextHash hash;
       for (const std::string& value : values) hash.Add(value);
       hash.Add(settings);

@@ -57,19 +57,18 @@ struct BatchRun {
   std::string Name() const;
 };
 
-// The values to vary. All combinations are run.
+// What is run on each sequence.
 struct BatchGrid {
-  std::vector<std::vector<std::string>> values;  // of each of BatchSettings()
+  std::vector<std::vector<std::string>> combinations;  // of BatchRun::values
   int repeats = 1;
 };
 
-// Makes the grid from one list for each of BatchSettings(). Throws InputError
-// for unknown or duplicate values.
+// Makes the grid of all combinations from one list for each of BatchSettings();
+// the last ones vary fastest. Throws InputError for unknown or double values.
 BatchGrid ParseGrid(const std::vector<std::string>& lists, int repeats);
 
-// Returns the runs of a shard, ordered by sequence (as listed), values (the
-// last ones vary fastest) and repeat. `settings` is everything else that
-// affects a result.
+// Returns the runs of a shard, ordered by sequence (as listed), combination and
+// repeat. `settings` is everything else that affects a result.
 std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,
                                const BatchGrid& grid, const BatchShard& shard,
                                const std::string& settings);
@@ -84,9 +83,8 @@ BatchShard ParseShard(const std::string& text);
 // part of the hash; the location of the sequence is not.
 std::string HashSequence(const BatchSequence& sequence);
 
-// Hashes the program file and the project's shared libraries, if it uses any.
-// The libraries are those loaded by this process, because programs that are
-// installed together share them.
+// Hashes the program file and the project's shared libraries that this process
+// has loaded, because programs that are installed together share them.
 std::string HashProgram(const std::string& path);
 
 }  // namespace rgbd_pose

@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "core/util/format.h"
+#include "core/util/named_values.h"
 #include "core/util/quantile.h"
 #include "core/util/text_file.h"
 
@@ -15,13 +16,8 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-// A column of the summary and its location in metrics.json of a run.
-struct Figure {
-  const char* column;
-  const char* pointer;
-};
-
-constexpr Figure kFigures[] = {
+// Columns of the summary and their locations in metrics.json of a run.
+constexpr Named<const char*> kFigures[] = {
     {"frames", "/run/frames"},
     {"ok", "/run/ok"},
     {"degraded", "/run/degraded"},
@@ -52,22 +48,6 @@ ordered_json FindFigure(const json& metrics, const char* pointer) {
   return figure.is_number() ? ordered_json(figure) : nullptr;
 }
 
-ordered_json MakeRow(const BatchRun& run, const BatchFolder& folder) {
-  const std::optional<RunEnd> end = folder.ReadEnd(run);
-  ordered_json row = {{"sequence", run.sequence.name}};
-  for (size_t k = 0; k < run.values.size(); ++k) {
-    row[BatchSettings()[k].column] = run.values[k];
-  }
-  row["repeat"] = run.repeat;
-  row["status"] = end ? end->status : "missing";
-  row["exit_code"] = end ? ordered_json(end->exit_code) : nullptr;
-  const json metrics = end ? ReadMetrics(folder.Complete(run)) : json();
-  for (const Figure& figure : kFigures) {
-    row[figure.column] = FindFigure(metrics, figure.pointer);
-  }
-  return row;
-}
-
 // Names of runs contain neither commas nor quotes.
 std::string FormatCell(const ordered_json& value) {
   if (value.is_null()) return "";
@@ -78,9 +58,6 @@ std::string FormatScaled(const ordered_json& value, double factor, int digits) {
   if (!value.is_number()) return "-";
   return Format("%.*f", digits, factor * value.get<double>());
 }
-
-// The setting whose values are treated as repeats of each other.
-constexpr char kPart[] = "part";
 
 bool IsVaried(const BatchSummary& summary, const char* column) {
   return std::any_of(summary.begin(), summary.end(), [&](const auto& row) {
@@ -178,7 +155,21 @@ std::string TableOfParts(const BatchSummary& summary, const Cells& names) {
 BatchSummary Summarise(const std::vector<BatchRun>& runs,
                        const BatchFolder& folder) {
   BatchSummary summary;
-  for (const BatchRun& run : runs) summary.push_back(MakeRow(run, folder));
+  for (const BatchRun& run : runs) {
+    const std::optional<RunEnd> end = folder.ReadEnd(run);
+    ordered_json row = {{"sequence", run.sequence.name}};
+    for (size_t k = 0; k < run.values.size(); ++k) {
+      row[BatchSettings()[k].column] = run.values[k];
+    }
+    row["repeat"] = run.repeat;
+    row["status"] = end ? end->status : "missing";
+    row["exit_code"] = end ? ordered_json(end->exit_code) : nullptr;
+    const json metrics = end ? ReadMetrics(folder.Complete(run)) : json();
+    for (const auto& [column, place] : kFigures) {
+      row[column] = FindFigure(metrics, place);
+    }
+    summary.push_back(row);
+  }
   return summary;
 }
 
@@ -194,9 +185,7 @@ std::string FormatBatchCsv(const BatchSummary& summary) {
     text += std::string(",") + setting.column;
   }
   text += ",repeat,status,exit_code";
-  for (const Figure& figure : kFigures) {
-    text += std::string(",") + figure.column;
-  }
+  for (const auto& figure : kFigures) text += std::string(",") + figure.name;
   text += "\n";
   for (const ordered_json& row : summary) {
     std::string line;
@@ -223,8 +212,8 @@ std::string FormatBatchTable(const BatchSummary& summary) {
           summary.empty() ? "" : FormatCell(summary[0][setting.column]);
       if (value.empty()) continue;
       same.push_back(std::string(setting.column) + " " + value);
-    } else if (setting.column == std::string(kPart)) {
-      has_parts = true;
+    } else if (setting.column == std::string("part")) {
+      has_parts = true;  // treated as repeats of each other
     } else {
       names.push_back(setting.column);
     }

@@ -17,17 +17,15 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 ComparedPath TruthAt(const std::vector<TrackedFrame>& frames,
                      const Trajectory& truth) {
   const std::vector<double> times = TimesOf(truth);
-  ComparedPath path;
-  path.name = kTruthName;
+  ComparedPath path = {kTruthName, {}};
   for (const TrackedFrame& frame : frames) {
-    ComparedPose pose;
+    ComparedPose& pose = path.poses.emplace_back();
     pose.timestamp = frame.timestamp;
-    path.poses.push_back(pose);
     if (truth.empty()) continue;
     const size_t nearest = NearestTime(times, frame.timestamp);
     if (std::abs(times[nearest] - frame.timestamp) <=
         EvaluationOptions().max_time_difference) {
-      path.poses.back().world_from_cam = truth[nearest].world_from_cam;
+      pose.world_from_cam = truth[nearest].world_from_cam;
     }
   }
   return path;
@@ -46,30 +44,28 @@ Rigid3d WorldFromRun(const LossRun& run, const ComparedPath& truth) {
 
 ComparedPath PathOf(const LossRun& run, const ComparedPath& truth) {
   const Rigid3d world_from_run = WorldFromRun(run, truth);
-  ComparedPath path;
-  path.name = run.loss;
-  size_t next_error = 0;
+  const std::vector<PoseError> errors =
+      run.evaluation.value_or(EvaluationReport()).poses;
+  auto error = errors.begin();
+  ComparedPath path = {run.loss, {}};
   for (size_t i = 0; i < run.frames.size(); ++i) {
     const TrackedFrame& frame = run.frames[i];
-    ComparedPose pose;
+    ComparedPose& pose = path.poses.emplace_back();
     pose.timestamp = frame.timestamp;
     if (frame.status != TrackingStatus::kLost) {
       pose.world_from_cam = world_from_run * frame.world_from_cam;
       if (truth.poses[i].world_from_cam.has_value()) {
-        const Rigid3d error =
+        const Rigid3d off =
             truth.poses[i].world_from_cam->Inverse() * *pose.world_from_cam;
-        pose.distance = error.translation.norm();
-        pose.angle = error.Angle();
+        pose.distance = off.translation.norm();
+        pose.angle = off.Angle();
       }
     }
-    if (run.evaluation.has_value() &&
-        next_error < run.evaluation->poses.size() &&
-        run.evaluation->poses[next_error].timestamp == frame.timestamp) {
-      pose.rpe_translation = run.evaluation->poses[next_error].rpe_translation;
-      pose.rpe_rotation = run.evaluation->poses[next_error].rpe_rotation;
-      ++next_error;
+    if (error != errors.end() && error->timestamp == frame.timestamp) {
+      pose.rpe_translation = error->rpe_translation;
+      pose.rpe_rotation = error->rpe_rotation;
+      ++error;
     }
-    path.poses.push_back(pose);
   }
   return path;
 }

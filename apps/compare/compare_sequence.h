@@ -27,13 +27,13 @@ std::string PathErrorTable(const std::vector<LossRun>& runs);
 // The share of tracked frames of each run. Used when there are no errors.
 std::string TrackedLine(const std::vector<LossRun>& runs);
 
-// tables.csv: one row per loss with the figures of both tables. Each row starts
-// with `name` (of the sequence); unknown figures are empty cells.
+// tables.csv: one row per loss with `name` (of the sequence), the loss and the
+// figures of both tables; unknown figures are empty cells.
 std::string SequenceCsvRows(const std::string& name,
                             const std::vector<LossRun>& runs);
-inline constexpr char kSequenceCsvHeader[] =
-    "sequence,loss,alpha_deg,beta_deg,gamma_deg,cx_mm,cy_mm,cz_mm,end_deg,"
-    "end_mm,ate_mm,rpe_seconds_mm,rpe_seconds_deg,tracked_share\n";
+inline constexpr char kSequenceFigures[] =
+    "alpha_deg,beta_deg,gamma_deg,cx_mm,cy_mm,cz_mm,end_deg,end_mm,ate_mm,"
+    "rpe_seconds_mm,rpe_seconds_deg,tracked_share";
 
 // A frame of a path; unknown values are empty.
 struct ComparedPose {
@@ -61,13 +61,13 @@ constexpr char kTruthName[] = "truth";
 std::vector<ComparedPath> ComparePaths(const std::vector<LossRun>& runs,
                                        const std::optional<Trajectory>& truth);
 
-// paths.csv: one row per frame of each path. Each row starts with `name` (of
-// the sequence). Lengths are in metres, angles in degrees.
+// paths.csv: one row per frame of each path with `name` (of the sequence), the
+// loss and these columns. Lengths are in metres, angles in degrees.
 std::string ComparedPathsCsvRows(const std::string& name,
                                  const std::vector<ComparedPath>& paths);
-inline constexpr char kComparedPathsCsvHeader[] =
-    "sequence,loss,timestamp,x,y,z,qx,qy,qz,qw,distance_m,angle_deg,"
-    "rpe_seconds_m,rpe_seconds_deg\n";
+inline constexpr char kPathColumns[] =
+    "timestamp,x,y,z,qx,qy,qz,qw,distance_m,angle_deg,rpe_seconds_m,"
+    "rpe_seconds_deg";
 
 // SVG with top views X-Y and X-Z of the paths, as in the thesis' Figures 4.8
 // and 4.9, and, with a truth, the errors over time.

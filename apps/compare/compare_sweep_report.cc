@@ -219,10 +219,9 @@ std::string SweepTable(const std::vector<SweepCell>& cells) {
 
 std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation) {
   Chart chart;
-  chart.title =
-      rotation ? "Median rotation errors with their 95 % bands, from identity"
-               : "Median translation errors with their 95 % bands, from "
-                 "identity";
+  chart.title = std::string("Median ") +
+                (rotation ? "rotation" : "translation") +
+                " errors with their 95 % bands, from identity";
   chart.panel_width_px = 330;
   chart.panel_height_px = 420;
   chart.same_ranges = true;

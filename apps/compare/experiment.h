@@ -7,13 +7,6 @@
 
 namespace rgbd_pose {
 
-// Features only: pixels would hide the effect of M-estimators on wrong matches.
-inline OdometrySettings ByFeatures() {
-  OdometrySettings settings;
-  settings.tracker = "features";
-  return settings;
-}
-
 // Creates the output folder of a comparison early, before the work starts.
 // Throws InputError.
 void PrepareOutput(const std::string& folder);
@@ -25,12 +18,15 @@ void WriteOutput(const std::string& folder, const std::string& file,
 
 // The settings of an experiment.
 struct ExperimentSettings {
+  // Pixels would hide the effect of M-estimators on wrong matches.
+  ExperimentSettings() { odometry.tracker = "features"; }
+
   std::string experiment;  // a name or a folder
   std::string losses;      // comma-separated; empty: default of the experiment
   std::string camera;      // file or preset; empty: ros_default if simulated
   int frames = 150;        // of a simulated sequence
   int seeds = 200;         // of a sweep, per share of wrong matches
-  OdometrySettings odometry = ByFeatures();  // all but the loss
+  OdometrySettings odometry;  // all but the loss
 };
 
 // The result: report.md, and whether enough frames were tracked to compare.

@@ -19,15 +19,12 @@ namespace {
 constexpr double kOtherFr2DepthScale = 5208.0;
 // A sequence compares nothing if all losses track a smaller share.
 constexpr double kMinTrackedShare = 0.5;
-// The camera of pan_tilt ends at its start.
-constexpr char kReturnsToStart[] = "pan_tilt";
 
 // The last component of a path, which may end with a slash, usable in a table.
 std::string FolderName(const std::string& path) {
   const std::filesystem::path folder =
-      std::filesystem::absolute(path).lexically_normal();
-  std::string name =
-      (folder.has_filename() ? folder : folder.parent_path()).filename();
+      std::filesystem::absolute(path).lexically_normal() / "";
+  std::string name = folder.parent_path().filename();
   std::replace(name.begin(), name.end(), '"', '\'');
   return name;
 }
@@ -124,8 +121,8 @@ class SequenceExperiment {
   const std::vector<std::string> losses_;
   const std::string& output_;
   std::string report_;
-  std::string tables_ = kSequenceCsvHeader;
-  std::string paths_ = kComparedPathsCsvHeader;
+  std::string tables_ = std::string("sequence,loss,") + kSequenceFigures + "\n";
+  std::string paths_ = std::string("sequence,loss,") + kPathColumns + "\n";
   bool any_tracked_ = false;  // by any loss, in any sequence
 };
 
@@ -143,7 +140,8 @@ ExperimentResult RunSimulated(const ExperimentSettings& settings,
   SyntheticDataset dataset(options);
   experiment.Add(
       "simulated " + name + ", " + std::to_string(settings.frames) + " frames",
-      "paths.svg", &dataset, dataset.ground_truth(), name == kReturnsToStart);
+      "paths.svg", &dataset, dataset.ground_truth(),
+      /*returns_to_start=*/name == "pan_tilt");
   return experiment.Finish();
 }
 

@@ -28,19 +28,6 @@ struct MotionError {
   double translation_mm = 0.0;
 };
 
-MotionError ErrorOf(const Rigid3d& estimate, const Rigid3d& truth) {
-  const Rigid3d difference = estimate.Inverse() * truth;
-  return {difference.Angle() * 180.0 / M_PI,
-          difference.translation.norm() * 1e3};
-}
-
-Estimator MakeEstimator(EstimatorSettings settings, const SweepMethod& method) {
-  settings.loss = method.loss;
-  settings.options.schedule =
-      method.schedule == "gnc" ? RobustSchedule::kGnc : RobustSchedule::kDirect;
-  return MakeEstimator(settings);
-}
-
 // The errors of all methods on the matches of one seed.
 std::vector<MotionError> RunSeed(int seed, double outlier_share,
                                  const std::vector<SweepMethod>& methods,
@@ -54,8 +41,10 @@ std::vector<MotionError> RunSeed(int seed, double outlier_share,
   std::vector<MotionError> errors;
   for (size_t i = 0; i < methods.size(); ++i) {
     const Rigid3d guess = methods[i].ransac ? ransac : Rigid3d();
+    const Rigid3d off =
+        (*estimators)[i].Estimate(found, guess).cur_from_prev.Inverse() * truth;
     errors.push_back(
-        ErrorOf((*estimators)[i].Estimate(found, guess).cur_from_prev, truth));
+        {off.Angle() * 180.0 / M_PI, off.translation.norm() * 1e3});
   }
   return errors;
 }
@@ -63,7 +52,7 @@ std::vector<MotionError> RunSeed(int seed, double outlier_share,
 // Estimates the motions of simulated matches, some of them wrong, with every
 // loss, schedule and start. All methods use the same matches. Ordered by loss,
 // schedule, start, share. The result does not depend on the number of threads.
-std::vector<SweepCell> RunSweep(const EstimatorSettings& settings,
+std::vector<SweepCell> RunSweep(EstimatorSettings settings,
                                 const std::vector<std::string>& losses,
                                 int seeds) {
   const std::vector<SweepMethod> methods = SweepMethods(losses);
@@ -72,7 +61,11 @@ std::vector<SweepCell> RunSweep(const EstimatorSettings& settings,
   std::vector<std::vector<Estimator>> estimators(threads);
   for (std::vector<Estimator>& own : estimators) {
     for (const SweepMethod& method : methods) {
-      own.push_back(MakeEstimator(settings, method));
+      settings.loss = method.loss;
+      settings.options.schedule = method.schedule == "gnc"
+                                      ? RobustSchedule::kGnc
+                                      : RobustSchedule::kDirect;
+      own.push_back(MakeEstimator(settings));
     }
   }
   std::vector<SweepCell> cells(methods.size() * kSweepShares);

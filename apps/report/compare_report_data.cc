@@ -10,6 +10,7 @@
 #include "apps/report/report_data.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 
 namespace rgbd_pose {
 namespace {
@@ -28,9 +29,7 @@ struct PathRows {
 std::vector<PathRows> ReadPaths(const std::string& file) {
   const CsvTable table = CsvTable::Read(file);
   std::map<std::string, std::vector<double>> columns;
-  for (const char* name :
-       {"timestamp", "x", "y", "z", "qx", "qy", "qz", "qw", "distance_m",
-        "angle_deg", "rpe_seconds_m", "rpe_seconds_deg"}) {
+  for (const std::string& name : SplitText(kPathColumns, ',')) {
     columns[name] = table.Numbers(name);
   }
   const std::vector<std::string> sequences = table.Words("sequence");
@@ -82,10 +81,7 @@ json Figures(const CsvTable& table) {
   const std::vector<std::string> sequences = table.Words("sequence");
   const std::vector<std::string> losses = table.Words("loss");
   json figures;
-  for (const char* name :
-       {"alpha_deg", "beta_deg", "gamma_deg", "cx_mm", "cy_mm", "cz_mm",
-        "end_deg", "end_mm", "ate_mm", "rpe_seconds_mm", "rpe_seconds_deg",
-        "tracked_share"}) {
+  for (const std::string& name : SplitText(kSequenceFigures, ',')) {
     const std::vector<double> numbers = table.Numbers(name);
     for (size_t i = 0; i < numbers.size(); ++i) {
       figures[sequences[i]][losses[i]][name] =

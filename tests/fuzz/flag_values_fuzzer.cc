@@ -17,7 +17,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     for (const int index : {0, 1, 20, 2147483647}) selection.Contains(index);
   });
   MayRefuse([&] {
-    Require(!ParseGrid({text, "tukey", "klt"}, 1).values[0].empty(), "a cost");
+    Require(!ParseGrid({text, "tukey", "klt"}, 1).combinations.empty(),
+            "a cost");
   });
   MayRefuse([&] { Require(!MakeRobustCosts(text, "none").empty(), "a cost"); });
   MayRefuse([&] { MakeRobustCosts("bidirectional_point+epipolar", text); });
