@@ -11,7 +11,7 @@ namespace rgbd_pose {
 namespace {
 
 std::string FormatCamera(const Camera& camera) {
-  const std::vector<double> distortion = camera.Distortion();
+  std::vector<double> distortion = camera.Distortion();
   const bool is_fisheye = camera.lens_model == LensModel::kEquidistant;
   const bool is_full = distortion.size() == 8 || camera.k3 != 0.0;
   const char* model = !camera.HasDistortion() ? "PINHOLE"
@@ -22,10 +22,8 @@ std::string FormatCamera(const Camera& camera) {
                             camera.width, camera.height, camera.fx, camera.fy,
                             camera.cx + kPixelCentre, camera.cy + kPixelCentre);
   if (camera.HasDistortion()) {
-    const size_t count = !is_fisheye && is_full ? 8 : 4;
-    for (size_t i = 0; i < count; ++i) {
-      text += Format(" %.12g", i < distortion.size() ? distortion[i] : 0.0);
-    }
+    distortion.resize(!is_fisheye && is_full ? 8 : 4);
+    for (const double k : distortion) text += Format(" %.12g", k);
   }
   return "# camera, model, width, height, parameters\n" + text + "\n";
 }
@@ -67,7 +65,7 @@ std::string PackPoints(const std::vector<ColoredPoint>& points) {
     AppendLittleEndian(++number, &bytes);
     for (const float x : p.position) AppendLittleEndian(double{x}, &bytes);
     for (const uint8_t c : {p.red, p.green, p.blue}) {
-      bytes.push_back(static_cast<char>(c));
+      AppendLittleEndian(c, &bytes);
     }
     AppendLittleEndian(0.0, &bytes);          // error
     AppendLittleEndian(uint64_t{0}, &bytes);  // track length

@@ -47,9 +47,8 @@ ExportedViews ReadImages(const FinishedRun& run, const ExportOptions& options,
   const Camera& camera = source->camera().camera;
   const Undistorter undistorter(camera);
   CloudFusion cloud(FusionOf<FusionOptions>(camera, run, options));
-  const std::vector<int> views = ReadViews(
-      run, options.step, options.threads, source.get(),
-      [&](const Frame& frame, int view) {
+  const std::vector<int> views =
+      ReadViews(run, options, source.get(), [&](const Frame& frame, int view) {
         cloud.Add(frame, run.trajectory[view].world_from_cam);
         on_image(options.undistort ? undistorter.Undistort(frame) : frame,
                  view);

@@ -1,15 +1,43 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "apps/export/finished_run.h"
+#include "apps/pipeline/sequence.h"
 #include "apps/results/run_output.h"
+#include "core/evaluation/trajectory.h"
 #include "core/util/input_error.h"
+#include "frontend/frame/depth_lookup.h"
+#include "frontend/frame/frame.h"
 #include "frontend/fusion/fusion_options.h"
 
 namespace rgbd_pose {
+
+// A finished run of rgbd_odometry or rgbd_slam, read from its folder.
+struct FinishedRun {
+  // Reads the poses and settings. `dataset` and `camera`, unless empty,
+  // override those of the run, because the recording may have moved. Throws
+  // InputError for a folder without a run or with broken files.
+  explicit FinishedRun(const std::string& run_folder,
+                       const std::string& dataset = "",
+                       const std::string& camera = "");
+
+  std::string folder;         // of its results
+  SequenceSettings sequence;  // with which the recording was opened
+  DepthLookupOptions depth;   // of the run
+
+  // The poses of all frames that have one. Of each pose: the number of its
+  // frame (row of frames.csv, from 0) and its segment. Segments have unrelated
+  // worlds.
+  Trajectory trajectory;
+  std::vector<int> frames;
+  std::vector<int> segments;
+
+  int lost = 0;  // number of frames without a pose
+};
 
 // User options of an export. Each format uses the options that concern it.
 struct ExportOptions {
@@ -69,8 +97,20 @@ std::vector<std::string> ExportFormatNames();
 // Returns the format of that name. Throws InputError with the list of names.
 const ExportFormat& FindExportFormat(const std::string& name);
 
-// The views of a run that take part in an export with images, and the points
-// seen in them.
+// Opens the recording of a run to read its frames again, with colour. Throws
+// InputError if it is missing or broken.
+std::unique_ptr<FrameSource> OpenRecording(const FinishedRun& run);
+
+// Called for a frame of a run; `view` is the index of its pose.
+using OnView = std::function<void(const Frame& frame, int view)>;
+
+// Reads the frames of the first segment that options.step selects. Call it once
+// for an opened recording. Returns the indices of their poses in the
+// trajectory. Throws InputError if a frame is missing or unreadable.
+std::vector<int> ReadViews(const FinishedRun& run, const ExportOptions& options,
+                           FrameSource* source, const OnView& on_view);
+
+// The views of a run in an export with images, and the points seen in them.
 struct ExportedViews {
   Camera camera;           // of the exported images
   std::vector<int> views;  // indices in the run's trajectory

@@ -1,9 +1,7 @@
-#include "apps/export/finished_run.h"
-
 #include <cstdlib>
-#include <filesystem>
 #include <set>
 
+#include "apps/export/export_format.h"
 #include "apps/pipeline/settings.h"
 #include "apps/report/report_data.h"
 #include "apps/shell/csv_table.h"
@@ -131,24 +129,23 @@ std::unique_ptr<FrameSource> OpenRecording(const FinishedRun& run) {
   return OpenSequence(settings, /*keep_color=*/true).source;
 }
 
-std::vector<int> ReadViews(const FinishedRun& run, const MotionFilter& step,
-                           int threads, FrameSource* source,
-                           const OnView& on_view) {
+std::vector<int> ReadViews(const FinishedRun& run, const ExportOptions& options,
+                           FrameSource* source, const OnView& on_view) {
   const Trajectory& poses = run.trajectory;
   std::vector<int> views;
   std::vector<double> times;
   for (size_t i = 0; i < poses.size(); ++i) {
     if (run.segments[i] != run.segments[0]) continue;
     if (views.empty() ||
-        step.IsReached(poses[views.back()].world_from_cam.Inverse() *
-                       poses[i].world_from_cam)) {
+        options.step.IsReached(poses[views.back()].world_from_cam.Inverse() *
+                               poses[i].world_from_cam)) {
       views.push_back(static_cast<int>(i));
       times.push_back(poses[i].timestamp);
     }
   }
   PickedFrames picked(source, times);
   ProgressBar bar("reading", static_cast<int>(views.size()));
-  FrameStream stream(&picked, nullptr, threads);
+  FrameStream stream(&picked, nullptr, options.threads);
   int done = 0;
   for (const int view : views) {
     on_view(stream.Next()->frame, view);

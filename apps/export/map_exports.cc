@@ -54,10 +54,9 @@ std::string ExportCloud(const FinishedRun& run, const ExportOptions& options) {
   CloudFusion cloud(
       FusionOf<FusionOptions>(source->camera().camera, run, options));
   RequireWritable(options.output);
-  ReadViews(run, options.step, options.threads, source.get(),
-            [&](const Frame& frame, int view) {
-              cloud.Add(frame, run.trajectory[view].world_from_cam);
-            });
+  ReadViews(run, options, source.get(), [&](const Frame& frame, int view) {
+    cloud.Add(frame, run.trajectory[view].world_from_cam);
+  });
   WritePly(options.output, cloud.cloud().Points());
   return Format("%d points of %d frames in %s\n", cloud.cloud().size(),
                 cloud.frames(), options.output.c_str());
@@ -71,10 +70,9 @@ std::string ExportMesh(const FinishedRun& run, const ExportOptions& options) {
   if (options.max_depth > 0.0) settings.max_depth = options.max_depth;
   MeshFusion fusion(FusionOf(source->camera().camera, run, options, settings));
   const std::vector<int> views =
-      ReadViews(run, options.step, options.threads, source.get(),
-                [&](const Frame& frame, int view) {
-                  fusion.Add(frame, run.trajectory[view].world_from_cam);
-                });
+      ReadViews(run, options, source.get(), [&](const Frame& frame, int view) {
+        fusion.Add(frame, run.trajectory[view].world_from_cam);
+      });
   const TriangleMesh mesh = fusion.Mesh();
   WriteMesh(options.output, mesh);
   ShowMesh(run.folder, mesh, views.size(), options);

@@ -18,8 +18,7 @@ nlohmann::json TransformMatrix(const Rigid3d& world_from_cam) {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   matrix.topLeftCorner<3, 3>() = world_from_cam.rotation.toRotationMatrix();
   matrix.topRightCorner<3, 1>() = world_from_cam.translation;
-  matrix.col(1) *= -1.0;
-  matrix.col(2) *= -1.0;
+  matrix.middleCols<2>(1) *= -1.0;
   nlohmann::json rows;
   for (const auto& row : matrix.rowwise()) {
     rows.push_back(std::vector<double>(row.begin(), row.end()));

@@ -13,10 +13,6 @@
 namespace rgbd_pose {
 namespace {
 
-std::string Said(const char* what, size_t count, const std::string& output) {
-  return std::to_string(count) + " " + what + " in " + output + "\n";
-}
-
 int Count(std::string_view word, std::string_view text) {
   int count = 0;
   for (size_t at = 0; (at = text.find(word, at)) != text.npos; ++at) ++count;
@@ -46,7 +42,8 @@ KeyframeMap GraphOfFrames(const FinishedRun& run) {
 
 std::string ExportTum(const FinishedRun& run, const ExportOptions& options) {
   WriteFileAtomically(options.output, FormatTrajectory(run.trajectory));
-  return Said("poses", run.trajectory.size(), options.output);
+  return Format("%zu poses in %s\n", run.trajectory.size(),
+                options.output.c_str());
 }
 
 // One line per pose, the upper three rows of world_from_cam. In the KITTI
@@ -67,7 +64,8 @@ std::string ExportKitti(const FinishedRun& run, const ExportOptions& options) {
   WriteFileAtomically(folder.staging_dir() / "poses.txt", poses);
   WriteFileAtomically(folder.staging_dir() / "times.txt", times);
   folder.Publish();
-  std::string text = Said("poses", run.trajectory.size(), options.output);
+  std::string text = Format("%zu poses in %s\n", run.trajectory.size(),
+                            options.output.c_str());
   if (run.lost > 0) {
     text += std::to_string(run.lost) +
             " frames have no pose and therefore no line: line numbers are not "

@@ -8,37 +8,28 @@
 #include "frontend/fusion/little_endian.h"
 
 namespace rgbd_pose {
-namespace {
-
-// The largest 16-bit number.
-constexpr double kMaxStep = 65535.0;
-
-}  // namespace
 
 nlohmann::json CloudPreview(const std::vector<ColoredPoint>& points,
                             const Rigid3d& shown_from_world) {
   std::vector<Eigen::Vector3d> positions;
-  positions.reserve(points.size());
   Eigen::AlignedBox3d box;
+  std::string position_bytes, color_bytes;
   for (const ColoredPoint& point : points) {
     positions.push_back(shown_from_world * point.position.cast<double>());
     box.extend(positions.back());
+    for (const uint8_t c : {point.red, point.green, point.blue}) {
+      AppendLittleEndian(c, &color_bytes);
+    }
   }
   if (points.empty()) box.extend(Eigen::Vector3d::Zero());
   const Eigen::Vector3d low = box.min();
   // All axes share one step. For a cloud of one point any step works.
   const double span = box.sizes().maxCoeff();
-  const double step = span > 0.0 ? span / kMaxStep : 1.0;
-  std::string position_bytes, color_bytes;
-  for (size_t i = 0; i < points.size(); ++i) {
-    for (int k = 0; k < 3; ++k) {
-      const auto steps =
-          static_cast<uint16_t>(std::lround((positions[i](k) - low(k)) / step));
-      AppendLittleEndian(steps, &position_bytes);
-    }
-    for (const uint8_t value :
-         {points[i].red, points[i].green, points[i].blue}) {
-      color_bytes += static_cast<char>(value);
+  const double step = span > 0.0 ? span / 65535.0 : 1.0;
+  for (const Eigen::Vector3d& position : positions) {
+    for (const double steps : Eigen::Vector3d((position - low) / step)) {
+      AppendLittleEndian(static_cast<uint16_t>(std::lround(steps)),
+                         &position_bytes);
     }
   }
   return {{"points", points.size()},

@@ -38,10 +38,12 @@ std::vector<RelativeEntry> RelativeEntries(const EvaluationReport& report) {
        metres, report.rpe_metres}};
 }
 
-json PoseToJson(const Rigid3d& pose) {
-  const Eigen::Vector3d& t = pose.translation;
+// Infinite values are null in the file.
+json ToJson(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
+
+json ToJson(const Rigid3d& pose) {
   const Eigen::Quaterniond& q = pose.rotation;
-  return {{"translation_m", {t.x(), t.y(), t.z()}},
+  return {{"translation_m", ToJson(pose.translation)},
           {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
@@ -152,16 +154,60 @@ std::string FormatEstimates(const char* quantity, const Eigen::VectorXd& values,
   return text + "\n";
 }
 
-json EstimatesToJson(const Eigen::Vector3d& values, double factor) {
-  json result = json::array();
-  for (const double value : values) {
-    result.push_back(std::isfinite(value) ? json(factor * value) : json());
-  }
-  return result;
-}
-
 Eigen::Vector3d RotationVectorOf(const TruthFixing& fixing) {
   return TwistOf(fixing.camera_from_body, -1.0).angular;
+}
+
+// Formats the best-fitting clock offset and TruthFixing (ms, degrees, mm, each
+// with its standard deviation), and the errors with these corrections. One line
+// if there is no alignment.
+std::string FormatTruthAlignment(const EvaluationReport& report) {
+  const TruthAlignment& alignment = report.truth_alignment;
+  const std::string head =
+      "\nBest time shift of the ground truth and its body in the camera";
+  if (!alignment.skipped.empty()) {
+    return head + ": not estimated; " + alignment.skipped + "\n";
+  }
+  const TruthFixing& fixing = alignment.fixing;
+  std::string text = head + Format(" (%d motions)\n", alignment.motions);
+  text += FormatEstimates("time shift (ms)",
+                          Eigen::VectorXd::Constant(1, fixing.shift),
+                          alignment.sigma.head<1>(), 1e3, 1);
+  text += FormatEstimates("rotation x, y, z (deg)", RotationVectorOf(fixing),
+                          alignment.sigma.segment<3>(1), kDegreesPerRadian, 2);
+  text +=
+      FormatEstimates("lever x, y, z (mm)", fixing.camera_from_body.translation,
+                      alignment.sigma.tail<3>(), kMillimetresPerMetre, 1);
+  if (!alignment.undetermined.empty()) {
+    text += "  not determined by the motion: " + Join(alignment.undetermined) +
+            "\n";
+  }
+  return text + FormatAte(", after this correction", alignment.ate) +
+         FormatRpe(Format(", after this correction, fixed delta %g s",
+                          report.options.rpe_delta_seconds),
+                   alignment.rpe_seconds);
+}
+
+// The same; all values but the first three are left out without an alignment.
+json TruthAlignmentToJson(const EvaluationReport& report) {
+  const TruthAlignment& alignment = report.truth_alignment;
+  const bool found = alignment.skipped.empty();
+  json result = {{"skipped", found ? json() : json(alignment.skipped)},
+                 {"motions", alignment.motions},
+                 {"undetermined", alignment.undetermined}};
+  if (!found) return result;
+  const TruthFixing& fixing = alignment.fixing;
+  result["time_shift_s"] = fixing.shift;
+  result["time_shift_sigma_s"] = alignment.sigma[0];
+  result["rotation_deg"] = ToJson(kDegreesPerRadian * RotationVectorOf(fixing));
+  result["rotation_sigma_deg"] =
+      ToJson(kDegreesPerRadian * alignment.sigma.segment<3>(1));
+  result["lever_m"] = ToJson(fixing.camera_from_body.translation);
+  result["lever_sigma_m"] = ToJson(alignment.sigma.tail<3>());
+  result["ate"] = AteToJson(alignment.ate);
+  result["rpe_seconds"] =
+      RpeToJson(alignment.rpe_seconds, report.options.rpe_delta_seconds);
+  return result;
 }
 
 }  // namespace
@@ -202,27 +248,23 @@ std::string FormatEvaluation(const EvaluationReport& report) {
   if (report.consistency.has_value()) {
     text += FormatConsistency(*report.consistency);
   }
-  return text + FormatTruthAlignment(report.truth_alignment,
-                                     report.options.rpe_delta_seconds);
+  return text + FormatTruthAlignment(report);
 }
 
 json EvaluationToJson(const EvaluationReport& report) {
-  json result = {
-      {"estimated_poses", report.estimated_poses},
-      {"paired_poses", report.paired_poses},
-      {"max_time_difference_s", report.options.max_time_difference},
-      {"duration_s", report.duration},
-      {"path_length_m", report.path_length},
-      {"ate", AteToJson(report.ate)},
-      {"with_scale",
-       {{"truth_per_estimate", report.sim3.truth_per_estimate},
-        {"position_rmse_m", report.sim3.residual_rmse}}},
-      {"truth_from_estimate", PoseToJson(report.truth_from_estimate)},
-      {"rpe_frames", json::array()},
-      {"truth_alignment",
-       TruthAlignmentToJson(report.truth_alignment,
-                            report.options.rpe_delta_seconds)},
-      {"final_pose", nullptr}};
+  json result = {{"estimated_poses", report.estimated_poses},
+                 {"paired_poses", report.paired_poses},
+                 {"max_time_difference_s", report.options.max_time_difference},
+                 {"duration_s", report.duration},
+                 {"path_length_m", report.path_length},
+                 {"ate", AteToJson(report.ate)},
+                 {"with_scale",
+                  {{"truth_per_estimate", report.sim3.truth_per_estimate},
+                   {"position_rmse_m", report.sim3.residual_rmse}}},
+                 {"truth_from_estimate", ToJson(report.truth_from_estimate)},
+                 {"rpe_frames", json::array()},
+                 {"truth_alignment", TruthAlignmentToJson(report)},
+                 {"final_pose", nullptr}};
   result["ate"]["definition"] = AteDefinition(report);
   for (const RelativeEntry& entry : RelativeEntries(report)) {
     result[entry.key] = RpeToJson(entry.error, entry.delta);
@@ -247,56 +289,6 @@ json EvaluationToJson(const EvaluationReport& report) {
         {"translation_m", report.final_pose->translation},
         {"rotation_deg", report.final_pose->angle * kDegreesPerRadian}};
   }
-  return result;
-}
-
-std::string FormatTruthAlignment(const TruthAlignment& alignment,
-                                 double rpe_delta_seconds) {
-  const std::string head =
-      "\nBest time shift of the ground truth and its body in the camera";
-  if (!alignment.skipped.empty()) {
-    return head + ": not estimated; " + alignment.skipped + "\n";
-  }
-  const TruthFixing& fixing = alignment.fixing;
-  std::string text = head + Format(" (%d motions)\n", alignment.motions);
-  text += FormatEstimates("time shift (ms)",
-                          Eigen::VectorXd::Constant(1, fixing.shift),
-                          alignment.sigma.head<1>(), 1e3, 1);
-  text += FormatEstimates("rotation x, y, z (deg)", RotationVectorOf(fixing),
-                          alignment.sigma.segment<3>(1), kDegreesPerRadian, 2);
-  text +=
-      FormatEstimates("lever x, y, z (mm)", fixing.camera_from_body.translation,
-                      alignment.sigma.tail<3>(), kMillimetresPerMetre, 1);
-  if (!alignment.undetermined.empty()) {
-    text += "  not determined by the motion: " + Join(alignment.undetermined) +
-            "\n";
-  }
-  return text + FormatAte(", after this correction", alignment.ate) +
-         FormatRpe(Format(", after this correction, fixed delta %g s",
-                          rpe_delta_seconds),
-                   alignment.rpe_seconds);
-}
-
-json TruthAlignmentToJson(const TruthAlignment& alignment,
-                          double rpe_delta_seconds) {
-  const bool found = alignment.skipped.empty();
-  json result = {{"skipped", found ? json() : json(alignment.skipped)},
-                 {"motions", alignment.motions},
-                 {"undetermined", alignment.undetermined}};
-  if (!found) return result;
-  const TruthFixing& fixing = alignment.fixing;
-  const double shift_sigma = alignment.sigma[0];
-  result["time_shift_s"] = fixing.shift;
-  result["time_shift_sigma_s"] =
-      std::isfinite(shift_sigma) ? json(shift_sigma) : json();
-  result["rotation_deg"] =
-      EstimatesToJson(RotationVectorOf(fixing), kDegreesPerRadian);
-  result["rotation_sigma_deg"] =
-      EstimatesToJson(alignment.sigma.segment<3>(1), kDegreesPerRadian);
-  result["lever_m"] = EstimatesToJson(fixing.camera_from_body.translation, 1.0);
-  result["lever_sigma_m"] = EstimatesToJson(alignment.sigma.tail<3>(), 1.0);
-  result["ate"] = AteToJson(alignment.ate);
-  result["rpe_seconds"] = RpeToJson(alignment.rpe_seconds, rpe_delta_seconds);
   return result;
 }
 

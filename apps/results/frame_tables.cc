@@ -19,13 +19,10 @@ const std::string kEdgeColumns =
 }  // namespace
 
 std::string FormatPose(const Rigid3d& pose, char separator) {
+  Eigen::Matrix<double, 7, 1> values;
+  values << pose.translation, pose.rotation.coeffs();
   std::string text;
-  for (const double value : pose.translation) {
-    text += separator + Format("%.9g", value);
-  }
-  for (const double value : pose.rotation.coeffs()) {
-    text += separator + Format("%.9g", value);
-  }
+  for (const double value : values) text += separator + Format("%.9g", value);
   return text;
 }
 

@@ -46,12 +46,11 @@ std::optional<CloudFusion> MakeCloud(const RunOutputSettings& settings,
 void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                      const TrackedFrame& tracked, const Camera& camera,
                      const Odometry& odometry) {
-  std::string caption = "frame " + std::to_string(tracked.index) + "  " +
-                        ToString(tracked.status);
+  std::string caption =
+      Format("frame %d  %s", tracked.index, ToString(tracked.status));
   if (tracked.reference >= 0) {
-    caption += "  " + std::to_string(tracked.inliers) + " of " +
-               std::to_string(tracked.matches) + " matches agree  reference " +
-               std::to_string(tracked.reference);
+    caption += Format("  %d of %d matches agree  reference %d", tracked.inliers,
+                      tracked.matches, tracked.reference);
   }
   WritePngFile(folder / Format("%06d.png", tracked.index),
                DrawMatches(frame, camera, odometry.last_matches(),
@@ -170,7 +169,7 @@ std::string RunOutput::Write(const RunResults& results, int threads,
       {"shutter", ShutterToJson(source_.camera())},
       {"depth_stamp_ms", DepthStampsToJson(depth_stamps_ms_)},
       {"residuals", ResidualsToJson(results.residuals)}};
-  if (more.is_object()) metrics.update(more);
+  metrics.update(more);
   Rigid3d shown_from_world;
   if (results.evaluation.has_value()) {
     text += FormatEvaluation(*results.evaluation);
@@ -180,7 +179,17 @@ std::string RunOutput::Write(const RunResults& results, int threads,
                                                     *results.evaluation));
   }
   if (cloud_.has_value()) {
-    metrics["cloud"] = WriteCloud(shown_from_world, &text);
+    const VoxelCloud& cloud = cloud_->cloud();
+    WritePly(settings_.save_cloud, cloud.Points());
+    text += Format("cloud       %d points of %d frames in %s\n", cloud.size(),
+                   cloud_->frames(), settings_.save_cloud.c_str());
+    // In the world of the run's page.
+    folder_.WriteFile(
+        kCloudPreviewFile,
+        CloudPreview(cloud.Thin(kMaxPreviewPoints), shown_from_world).dump());
+    metrics["cloud"] = {{"points", cloud.size()},
+                        {"frames", cloud_->frames()},
+                        {"voxel_m", settings_.voxel}};
   }
   folder_.WriteFile("trajectory.txt", FormatTrajectory(results.trajectory));
   folder_.WriteFile("frames.csv", FormatFramesCsv(results.frames));
@@ -192,23 +201,6 @@ std::string RunOutput::Write(const RunResults& results, int threads,
                                  nlohmann::json::error_handler_t::replace) +
                         "\n");
   return text;
-}
-
-// Also writes a preview of the cloud in the world of the run's page. Returns
-// the entry for metrics.json.
-nlohmann::json RunOutput::WriteCloud(const Rigid3d& shown_from_world,
-                                     std::string* text) const {
-  const VoxelCloud& points = cloud_->cloud();
-  WritePly(settings_.save_cloud, points.Points());
-  *text += "cloud       " + std::to_string(points.size()) + " points of " +
-           std::to_string(cloud_->frames()) + " frames in " +
-           settings_.save_cloud + "\n";
-  folder_.WriteFile(
-      kCloudPreviewFile,
-      CloudPreview(points.Thin(kMaxPreviewPoints), shown_from_world).dump());
-  return {{"points", points.size()},
-          {"frames", cloud_->frames()},
-          {"voxel_m", settings_.voxel}};
 }
 
 }  // namespace rgbd_pose

@@ -47,14 +47,10 @@ class RunOutput {
   // `threads` threads. `truth` may be null. Returns the text to print.
   std::string Write(const RunResults& results, int threads, double seconds,
                     const Trajectory* truth, const std::string& dataset,
-                    const std::string& flags,
-                    const std::string& program = "rgbd_odometry",
-                    const nlohmann::json& more = nullptr);
+                    const std::string& flags, const std::string& program,
+                    const nlohmann::json& more);
 
  private:
-  nlohmann::json WriteCloud(const Rigid3d& shown_from_world,
-                            std::string* text) const;
-
   RunOutputSettings settings_;
   const FrameSource& source_;
   FrameSelection drawn_;
