@@ -1,5 +1,4 @@
 #include <cmath>
-#include <limits>
 
 #include "apps/compare/compare_sequence.h"
 #include "apps/figures/svg_chart.h"
@@ -9,8 +8,6 @@
 
 namespace rgbd_pose {
 namespace {
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // The truth at the times of all frames, where it has a pose close in time:
 // nowhere if it is empty.
@@ -107,7 +104,7 @@ ChartPanel TopView(const std::vector<ComparedPath>& paths, int row) {
     for (const ComparedPose& pose : paths[k].poses) {
       const Eigen::Vector3d p = pose.world_from_cam.has_value()
                                     ? pose.world_from_cam->translation
-                                    : Eigen::Vector3d::Constant(kNaN);
+                                    : Eigen::Vector3d::Constant(NAN);
       series.points.push_back({p.x(), p(row)});
     }
     panel.series.push_back(series);
@@ -128,7 +125,7 @@ ChartPanel ErrorsOverTime(const std::vector<ComparedPath>& paths,
     for (const ComparedPose& pose : paths[k].poses) {
       series.points.push_back(
           {pose.timestamp - paths[k].poses.front().timestamp,
-           (pose.*error).value_or(kNaN) * factor});
+           (pose.*error).value_or(NAN) * factor});
     }
     panel.series.push_back(series);
   }

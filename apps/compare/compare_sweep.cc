@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/util/quantile.h"
 
@@ -20,10 +19,7 @@ int MedianBandRank(int count) {
 }
 
 MedianBand FindMedianBand(std::vector<double> values) {
-  if (values.empty()) {
-    const double nan = std::numeric_limits<double>::quiet_NaN();
-    return {nan, nan, nan, nan};
-  }
+  if (values.empty()) return {NAN, NAN, NAN, NAN};
   std::sort(values.begin(), values.end());
   const int count = static_cast<int>(values.size());
   const int rank = MedianBandRank(count);

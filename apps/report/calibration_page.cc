@@ -34,27 +34,31 @@ std::string Bar(const CalibratedParameter& parameter) {
   const auto sigmas = [&](double value) {
     return (value - parameter.before) / parameter.prior;
   };
+  const std::string text = Format(
+      "<svg width=\"%.0f\" height=\"14\"><line x1=\"%.0f\" x2=\"%.0f\" "
+      "y1=\"0\" y2=\"14\" stroke=\"#aaa\"/>",
+      2.0 * kHalf, kHalf, kHalf);
   const double found = sigmas(parameter.found);
   if (std::abs(found) > 1.0) {
     const double tip = found > 0.0 ? 2.0 * kHalf : 0.0;
     const double base = found > 0.0 ? tip - 10.0 : 10.0;
-    return Format(
-        "<svg width=\"%.0f\" height=\"14\"><line x1=\"%.0f\" x2=\"%.0f\" "
-        "y1=\"0\" y2=\"14\" stroke=\"#aaa\"/><path d=\"M%.0f 7H%.0f\" "
-        "stroke=\"#d62728\" stroke-width=\"4\"/><path d=\"M%.0f 0L%.0f 7L%.0f "
-        "14Z\" fill=\"#d62728\"/></svg> %+.1f sigma",
-        2.0 * kHalf, kHalf, kHalf, kHalf, base, base, tip, base, found);
+    return text + Format(
+                      "<path d=\"M%.0f 7H%.0f\" stroke=\"#d62728\" "
+                      "stroke-width=\"4\"/>"
+                      "<path d=\"M%.0f 0L%.0f 7L%.0f 14Z\" "
+                      "fill=\"#d62728\"/></svg> %+.1f "
+                      "sigma",
+                      kHalf, base, base, tip, base, found);
   }
   const auto at = [&](double value) {
     return kHalf * (1.0 + std::clamp(sigmas(value), -1.0, 1.0));
   };
   const double low = at(parameter.found - parameter.sigma);
   const double high = at(parameter.found + parameter.sigma);
-  return Format(
-      "<svg width=\"%.0f\" height=\"14\"><line x1=\"%.0f\" x2=\"%.0f\" "
-      "y1=\"0\" y2=\"14\" stroke=\"#aaa\"/><rect x=\"%.1f\" y=\"4\" "
-      "width=\"%.1f\" height=\"6\" fill=\"#1f77b4\"/></svg>",
-      2.0 * kHalf, kHalf, kHalf, low, std::max(1.5, high - low));
+  return text + Format(
+                    "<rect x=\"%.1f\" y=\"4\" width=\"%.1f\" height=\"6\" "
+                    "fill=\"#1f77b4\"/></svg>",
+                    low, std::max(1.5, high - low));
 }
 
 std::string ParameterTable(const CalibrationResult& result) {

@@ -76,7 +76,7 @@ json PathColumns(const PathRows& rows, const ReportThinning& thinning) {
   return path;
 }
 
-// Rows of tables.csv: [sequence][loss] = {figure: number or null}.
+// Rows of tables.csv: [sequence][loss] = {figure: number}; NaN if unknown.
 json Figures(const CsvTable& table) {
   const std::vector<std::string> sequences = table.Words("sequence");
   const std::vector<std::string> losses = table.Words("loss");
@@ -84,8 +84,7 @@ json Figures(const CsvTable& table) {
   for (const std::string& name : SplitText(kSequenceFigures, ',')) {
     const std::vector<double> numbers = table.Numbers(name);
     for (size_t i = 0; i < numbers.size(); ++i) {
-      figures[sequences[i]][losses[i]][name] =
-          std::isnan(numbers[i]) ? json() : json(numbers[i]);
+      figures[sequences[i]][losses[i]][name] = numbers[i];
     }
   }
   return figures;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <sstream>
 
 #include "apps/shell/csv_table.h"
@@ -16,9 +15,8 @@ using nlohmann::json;
 namespace {
 
 // Division by a power of ten gives the double nearest to the short decimal,
-// which is then written with few digits.
-json Rounded(double value, int decimals) {
-  if (!std::isfinite(value)) return nullptr;
+// which is then written with few digits; NaN is written as null.
+double Rounded(double value, int decimals) {
   const double scale = std::pow(10.0, decimals);
   return std::round(value * scale) / scale;
 }
@@ -46,7 +44,7 @@ json ReportThinning::Largest(const std::vector<double>& values,
                              int decimals) const {
   json result = json::array();
   for (size_t i = 0; i < values.size(); i += every) {
-    double largest = std::numeric_limits<double>::quiet_NaN();
+    double largest = NAN;
     const size_t end = std::min(i + every, values.size());
     for (size_t k = i; k < end; ++k) {
       if (!(largest >= values[k]) && !std::isnan(values[k])) {
@@ -86,7 +84,7 @@ std::string SettingOf(const json& groups, const std::string& name) {
 
 json BatchReportData(const std::string& batch_folder) {
   namespace fs = std::filesystem;
-  const fs::path folder = fs::absolute(batch_folder).lexically_normal();
+  const fs::path folder = fs::absolute(batch_folder).lexically_normal() / "";
   const CsvTable table = CsvTable::Read(folder / "summary.csv");
   json rows(std::vector<json>(table.size(), json::object()));
   for (const char* name :
@@ -98,13 +96,9 @@ json BatchReportData(const std::string& batch_folder) {
                            "rpe_seconds_translation_m",
                            "rpe_seconds_rotation_deg", "track_ms_median"}) {
     const std::vector<double> numbers = table.Numbers(name);
-    for (size_t i = 0; i < numbers.size(); ++i) {
-      rows[i][name] = std::isnan(numbers[i]) ? json() : json(numbers[i]);
-    }
+    for (size_t i = 0; i < numbers.size(); ++i) rows[i][name] = numbers[i];
   }
-  // A path that ends with a slash has no file name.
-  const fs::path named = folder.has_filename() ? folder : folder.parent_path();
-  return {{"name", named.filename().string()}, {"rows", rows}};
+  return {{"name", folder.parent_path().filename().string()}, {"rows", rows}};
 }
 
 }  // namespace rgbd_pose

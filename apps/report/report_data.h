@@ -37,10 +37,10 @@ std::vector<double> Elapsed(std::vector<double> times);
 struct ReportThinning {
   ReportThinning(size_t frames, size_t max_points);
 
-  // The first value of each group; null if it is not finite.
+  // The first value of each group, rounded; NaN, too, which is written as null.
   nlohmann::json First(const std::vector<double>& values, int decimals) const;
 
-  // The largest value of each group, which keeps peaks; null if there is none.
+  // The largest value of each group, which keeps peaks; NaN if there is none.
   nlohmann::json Largest(const std::vector<double>& values, int decimals) const;
 
   const size_t every;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <vector>
 
@@ -20,8 +19,6 @@ namespace rgbd_pose {
 namespace {
 
 using nlohmann::json;
-
-constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 
 std::vector<double> StatusCodes(const CsvTable& frames) {
   std::vector<double> codes;
@@ -100,9 +97,8 @@ json PathOf(const CsvTable& frames, const Trajectory& trajectory,
   size_t next = 0;
   for (const double code : status) {
     for (int k = 0; k < 3; ++k) {
-      axes[k].push_back(code < 2
-                            ? trajectory[next].world_from_cam.translation[k]
-                            : kNoNumber);
+      axes[k].push_back(
+          code < 2 ? trajectory[next].world_from_cam.translation[k] : NAN);
     }
     next += code < 2;
   }

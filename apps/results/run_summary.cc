@@ -13,10 +13,7 @@ double QuantileOrZero(const std::vector<double>& values, double share) {
   return values.empty() ? 0.0 : Quantile(values, share);
 }
 
-// Thresholds for a jump, and the maximum number reported.
-constexpr double kLeastMetres = 0.01;
-constexpr double kTimesMedian = 6.0;
-constexpr size_t kMostJumps = 20;
+constexpr size_t kMostJumps = 20;  // reported
 
 // Motions over unequal intervals cannot be compared.
 constexpr double kMaxIntervalRatio = 1.6;
@@ -59,15 +56,12 @@ nlohmann::json Summarise(const std::vector<TrackedFrame>& frames, int threads,
     matches.push_back(frame.matches);
     inlier_shares.push_back(static_cast<double>(frame.inliers) / frame.matches);
   }
-  const auto times = [&frames](double TrackedFrame::*ms) {
-    std::vector<double> all;
+  const auto quantile_ms = [&](double TrackedFrame::*ms, double share = 0.5) {
+    std::vector<double> times;
     for (const TrackedFrame& frame : frames) {
-      if (frame.*ms > 0.0) all.push_back(frame.*ms);
+      if (frame.*ms > 0.0) times.push_back(frame.*ms);
     }
-    return all;
-  };
-  const auto median_ms = [&times](double TrackedFrame::*ms) {
-    return QuantileOrZero(times(ms), 0.5);
+    return QuantileOrZero(times, share);
   };
   const auto [ok, degraded, lost] = status;
   const auto count = static_cast<double>(frames.size());
@@ -82,13 +76,13 @@ nlohmann::json Summarise(const std::vector<TrackedFrame>& frames, int threads,
       {"tracked_share", frames.empty() ? 0.0 : (ok + degraded) / count},
       {"matches_median", QuantileOrZero(matches, 0.5)},
       {"inlier_share_median", QuantileOrZero(inlier_shares, 0.5)},
-      {"decode_ms_median", median_ms(&TrackedFrame::decode_ms)},
-      {"track_ms_median", median_ms(&TrackedFrame::track_ms)},
-      {"track_ms_p99", QuantileOrZero(times(&TrackedFrame::track_ms), 0.99)},
-      {"match_ms_median", median_ms(&TrackedFrame::match_ms)},
-      {"solve_ms_median", median_ms(&TrackedFrame::solve_ms)},
-      {"reference_ms_median", median_ms(&TrackedFrame::reference_ms)},
-      {"relocalise_ms_median", median_ms(&TrackedFrame::relocalise_ms)},
+      {"decode_ms_median", quantile_ms(&TrackedFrame::decode_ms)},
+      {"track_ms_median", quantile_ms(&TrackedFrame::track_ms)},
+      {"track_ms_p99", quantile_ms(&TrackedFrame::track_ms, 0.99)},
+      {"match_ms_median", quantile_ms(&TrackedFrame::match_ms)},
+      {"solve_ms_median", quantile_ms(&TrackedFrame::solve_ms)},
+      {"reference_ms_median", quantile_ms(&TrackedFrame::reference_ms)},
+      {"relocalise_ms_median", quantile_ms(&TrackedFrame::relocalise_ms)},
       {"threads", threads},
       {"wall_seconds", wall_seconds},
       {"frames_per_second", wall_seconds > 0.0 ? count / wall_seconds : 0.0}};
@@ -135,8 +129,7 @@ std::vector<MotionJump> FindJumps(const std::vector<TrackedFrame>& frames) {
     jumps.push_back({static_cast<int>(i), deviation});
   }
   if (deviations.empty()) return {};
-  const double limit =
-      std::max(kLeastMetres, kTimesMedian * Median(deviations));
+  const double limit = std::max(0.01, 6.0 * Median(deviations));
   std::stable_sort(jumps.begin(), jumps.end(),
                    [](const MotionJump& a, const MotionJump& b) {
                      return a.translation > b.translation;

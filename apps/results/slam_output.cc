@@ -57,11 +57,10 @@ std::string FormatOnlineTrajectory(const Slam& slam,
   }
   Trajectory path;
   for (const SlamFrame& frame : frames) {
-    if (frame.tracked.status == TrackingStatus::kLost ||
-        segments.count(frame.segment) == 0) {
-      continue;
+    if (frame.tracked.status != TrackingStatus::kLost &&
+        segments.count(frame.segment) != 0) {
+      path.push_back({frame.tracked.timestamp, frame.map_from_cam()});
     }
-    path.push_back({frame.tracked.timestamp, frame.map_from_cam()});
   }
   return FormatTrajectory(path);
 }
@@ -95,8 +94,8 @@ std::string FormatG2o(const KeyframeMap& map) {
   }
   for (const RelativePose& edge : map.edges) {
     text += Format("EDGE_SE3:QUAT %d %d", edge.ref, edge.cur) +
-            FormatPose(edge.cur_from_ref.Inverse(), ' ');
-    text += FormatTriangle(G2oInformation(edge), ' ') + "\n";
+            FormatPose(edge.cur_from_ref.Inverse(), ' ') +
+            FormatTriangle(G2oInformation(edge), ' ') + "\n";
   }
   return text;
 }
@@ -128,10 +127,8 @@ nlohmann::json SlamToJson(const Slam& slam,
     tracked += pair.is_tracked;
     loops += pair.is_loop;
     pairs += !pair.is_tracked;
-    edges.push_back({pair.edge.ref, pair.edge.cur,
-                     pair.is_tracked ? 0
-                     : pair.is_loop  ? 2
-                                     : 1});
+    const int kind = pair.is_tracked ? 0 : 1 + pair.is_loop;
+    edges.push_back({pair.edge.ref, pair.edge.cur, kind});
   }
   return {{"keyframes", graph.size() - dropped},
           {"keyframes_dropped", dropped},
@@ -146,8 +143,7 @@ nlohmann::json SlamToJson(const Slam& slam,
           {"map_ms_per_frame", frames.empty() ? 0.0 : map_ms / frames.size()},
           {"map_ms_per_keyframe", works.empty() ? 0.0 : Median(works)},
           {"wait_ms_p99", waits.empty() ? 0.0 : Quantile(waits, 0.99)},
-          {"wait_ms_max",
-           waits.empty() ? 0.0 : *std::max_element(waits.begin(), waits.end())},
+          {"wait_ms_max", waits.empty() ? 0.0 : Quantile(waits, 1.0)},
           {"graph_keyframes", keyframes},
           {"graph_pairs", edges}};
 }

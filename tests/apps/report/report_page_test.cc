@@ -54,7 +54,7 @@ TEST(RunReportData, LostFramesAreGaps) {
   const json& z = data.at("path").at("z");
   ASSERT_EQ(z.size(), 15u);
   EXPECT_EQ(z[5], 5.0);
-  EXPECT_TRUE(z[6].is_null());
+  EXPECT_EQ(z[6].dump(), "null");
   EXPECT_EQ(z[7], 7.0);
   ASSERT_EQ(data.at("incidents").size(), 2u);
   EXPECT_EQ(data.at("incidents")[1].at("first"), 13);
