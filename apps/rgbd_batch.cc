@@ -9,10 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "apps/batch/batch_plan.h"
-#include "apps/batch/batch_pool.h"
-#include "apps/batch/batch_run_folder.h"
-#include "apps/batch/batch_summary.h"
+#include "apps/batch/batch_runs.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"

@@ -1,5 +1,3 @@
-#include "apps/batch/batch_pool.h"
-
 #include <fcntl.h>
 #include <sys/prctl.h>
 #include <sys/wait.h>
@@ -11,6 +9,7 @@
 #include <cstring>
 #include <thread>
 
+#include "apps/batch/batch_runs.h"
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {

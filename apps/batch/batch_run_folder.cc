@@ -1,5 +1,3 @@
-#include "apps/batch/batch_run_folder.h"
-
 #include <fcntl.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -9,11 +7,10 @@
 #include <chrono>
 #include <cstring>
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <system_error>
 #include <thread>
-#include <vector>
 
+#include "apps/batch/batch_runs.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
 

@@ -1,10 +1,9 @@
-#include "apps/batch/batch_summary.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <map>
 #include <optional>
 
+#include "apps/batch/batch_runs.h"
 #include "core/util/format.h"
 #include "core/util/named_values.h"
 #include "core/util/quantile.h"

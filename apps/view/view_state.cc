@@ -20,11 +20,10 @@ constexpr size_t kMaxPointBytes = 200000 * kViewPointBytes;
 
 // Copies at most `most` items after `at`.
 template <typename T>
-void TakeNew(const std::vector<T>& all, size_t most, size_t* at,
-             std::vector<T>* news) {
-  const size_t end = std::min(all.size(), *at + most);
-  news->assign(all.begin() + *at, all.begin() + end);
-  *at = end;
+std::vector<T> TakeNew(const std::vector<T>& all, size_t most, size_t* at) {
+  const auto begin = all.begin() + *at;
+  *at = std::min(all.size(), *at + most);
+  return {begin, all.begin() + *at};
 }
 
 template <typename T>
@@ -58,19 +57,17 @@ void ViewState::Add(ViewNews news) {
       all_.images_index = static_cast<int>(all_.frames.size()) - 1;
       ++images_;
     }
-    while (point_bytes_ > kMaxPointBytes) ThinPoints();
+    // Points are in random order, so half of them show the same, only thinner.
+    while (point_bytes_ > kMaxPointBytes) {
+      point_bytes_ = 0;
+      for (ViewKeyframe& keyframe : all_.keyframes) {
+        const size_t points = keyframe.points.size() / kViewPointBytes;
+        keyframe.points.resize(points / 2 * kViewPointBytes);
+        point_bytes_ += keyframe.points.size();
+      }
+    }
   }
   changed_.notify_all();
-}
-
-// Points are in random order, so half of them show the same, only thinner.
-void ViewState::ThinPoints() {
-  point_bytes_ = 0;
-  for (ViewKeyframe& keyframe : all_.keyframes) {
-    const size_t points = keyframe.points.size() / kViewPointBytes;
-    keyframe.points.resize(points / 2 * kViewPointBytes);
-    point_bytes_ += keyframe.points.size();
-  }
 }
 
 template <typename Change>
@@ -81,7 +78,6 @@ void ViewState::Control(const Change& change) {
     ++controls_;
   }
   changed_.notify_all();
-  control_.notify_all();
 }
 
 void ViewState::Finish(const std::string& results) {
@@ -112,9 +108,9 @@ ViewNews ViewState::Next(std::chrono::milliseconds patience,
            cursor->keyframes < all_.keyframes.size() ||
            cursor->images != images_ || cursor->controls != controls_;
   });
-  TakeNew(all_.frames, kMaxFrames, &cursor->frames, &news.frames);
-  TakeNew(all_.keyframes, kMaxKeyframes, &cursor->keyframes, &news.keyframes);
-  TakeNew(all_.links, all_.links.size(), &cursor->links, &news.links);
+  news.frames = TakeNew(all_.frames, kMaxFrames, &cursor->frames);
+  news.keyframes = TakeNew(all_.keyframes, kMaxKeyframes, &cursor->keyframes);
+  news.links = TakeNew(all_.links, all_.links.size(), &cursor->links);
   if (cursor->poses != poses_) news.poses = all_.poses;
   if (cursor->images != images_) news.images = all_.images;
   news.images_index = all_.images_index;
@@ -142,7 +138,7 @@ bool ViewState::is_paused() const {
 void ViewState::WaitForControl(std::chrono::milliseconds patience) {
   std::unique_lock<std::mutex> lock(mutex_);
   const int before = controls_;
-  control_.wait_for(lock, patience, [&] { return controls_ != before; });
+  changed_.wait_for(lock, patience, [&] { return controls_ != before; });
 }
 
 std::string SamplePoints(const Frame& frame, const Camera& camera) {

@@ -98,13 +98,12 @@ class ViewState {
   void WaitForControl(std::chrono::milliseconds patience);
 
  private:
-  void ThinPoints();
   // Applies a button or the end of the run, and wakes all waiting threads.
   template <typename Change>
   void Control(const Change& change);
 
   mutable std::mutex mutex_;
-  std::condition_variable changed_, control_;
+  std::condition_variable changed_;
   ViewNews all_;
   size_t point_bytes_ = 0;
   int poses_ = 0, images_ = 0, controls_ = 0;

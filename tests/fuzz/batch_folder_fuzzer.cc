@@ -1,8 +1,7 @@
 // The files of a finished run that a batch reads: done.json and metrics.json,
 // one after the other in the input.
 
-#include "apps/batch/batch_run_folder.h"
-#include "apps/batch/batch_summary.h"
+#include "apps/batch/batch_runs.h"
 #include "apps/shell/csv_table.h"
 #include "tests/fuzz/fuzz_input.h"
 

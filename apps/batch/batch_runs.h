@@ -1,7 +1,10 @@
 #pragma once
 
+#include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "apps/batch/batch_plan.h"
 
@@ -46,10 +49,9 @@ class BatchFolder {
 };
 
 // Locks an output folder for this process. A whole batch excludes all others;
-// several shards may run together, but each only once. The lock is held until
-// this process and all its child processes have ended, in any way, because
-// children inherit the open files. So a run that briefly outlives a killed
-// batch never writes at the same time as the next batch.
+// several shards may run together, but each only once. Child processes inherit
+// the lock, so a run that briefly outlives a killed batch never writes at the
+// same time as the next batch.
 class BatchLock {
  public:
   // Throws InputError if another process uses the folder.
@@ -62,5 +64,41 @@ class BatchLock {
   int folder_file_ = -1;
   int shard_file_ = -1;  // -1 for a whole batch
 };
+
+struct BatchPoolOptions {
+  // The path of rgbd_odometry, and arguments of every run before its own.
+  std::vector<std::string> command;
+
+  int jobs = 1;                  // processes at a time
+  double timeout_seconds = 0.0;  // per run; 0: none
+
+  // Called for each run after it has ended and is in its folder.
+  std::function<void(const BatchRun& run, const RunEnd& end, double seconds)>
+      on_end;
+};
+
+// Executes all runs, each in its own process, started in the given order. A run
+// that fails, crashes or takes too long does not stop the others.
+void RunBatch(const std::vector<BatchRun>& runs, const BatchFolder& folder,
+              const BatchPoolOptions& options);
+
+// One row per run of a plan, in plan order, from the files in its folder. Keys
+// include units, unknown values are null, and times are last. A run without a
+// result of the same hash has the status "missing".
+using BatchSummary = std::vector<nlohmann::ordered_json>;
+
+BatchSummary Summarise(const std::vector<BatchRun>& runs,
+                       const BatchFolder& folder);
+
+// The number of rows whose status is not "ok".
+int CountNotOk(const BatchSummary& summary);
+
+// For programs: CSV with a header and one row per run; a JSON array of objects.
+std::string FormatBatchCsv(const BatchSummary& summary);
+std::string FormatBatchJson(const BatchSummary& summary);
+
+// For people: the main figures of each run. If a sequence has several parts,
+// their median, minimum and maximum instead.
+std::string FormatBatchTable(const BatchSummary& summary);
 
 }  // namespace rgbd_pose
