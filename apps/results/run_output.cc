@@ -153,9 +153,8 @@ std::string RunOutput::Write(const RunResults& results, int threads,
                              const std::string& program,
                              const nlohmann::json& more) {
   const nlohmann::json summary = Summarise(results.frames, threads, seconds);
-  const std::vector<MotionJump> jumps = FindJumps(results.frames);
-  std::string text =
-      FormatSummary(summary) + FormatJumps(jumps, results.frames);
+  const nlohmann::json jumps = FindJumps(results.frames);
+  std::string text = FormatSummary(summary) + FormatJumps(jumps);
   nlohmann::json metrics = {
       {"program", program},
       {"dataset", dataset},
@@ -165,7 +164,7 @@ std::string RunOutput::Write(const RunResults& results, int threads,
       {"remarks", source_.remarks()},
       {"peak_rss_mb", PeakMemoryMb()},
       {"run", summary},
-      {"jumps", JumpsToJson(jumps, results.frames)},
+      {"jumps", jumps},
       {"shutter", ShutterToJson(source_.camera())},
       {"depth_stamp_ms", DepthStampsToJson(depth_stamps_ms_)},
       {"residuals", ResidualsToJson(results.residuals)}};

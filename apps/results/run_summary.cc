@@ -1,6 +1,7 @@
 #include "apps/results/run_summary.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "core/util/format.h"
 #include "core/util/quantile.h"
@@ -114,55 +115,33 @@ std::string FormatSummary(const nlohmann::json& summary) {
       number("decode_ms_median"), whole("threads"));
 }
 
-std::vector<MotionJump> FindJumps(const std::vector<TrackedFrame>& frames) {
+nlohmann::json FindJumps(const std::vector<TrackedFrame>& frames) {
   std::vector<double> deviations;
-  std::vector<MotionJump> jumps;
+  std::vector<std::pair<double, size_t>> jumps;  // deviation and frame
   for (size_t i = 2; i + 1 < frames.size(); ++i) {
     const double deviation = Deviation(frames, i);
     if (deviation < 0.0) continue;
     deviations.push_back(deviation);
     // A single wrong motion also affects the difference at its neighbours.
-    if (!jumps.empty() && jumps.back().frame + 2 >= static_cast<int>(i)) {
-      if (jumps.back().translation >= 0.99 * deviation) continue;
+    if (!jumps.empty() && jumps.back().second + 2 >= i) {
+      if (jumps.back().first >= 0.99 * deviation) continue;
       jumps.pop_back();
     }
-    jumps.push_back({static_cast<int>(i), deviation});
+    jumps.emplace_back(deviation, i);
   }
-  if (deviations.empty()) return {};
-  const double limit = std::max(0.01, 6.0 * Median(deviations));
-  std::stable_sort(jumps.begin(), jumps.end(),
-                   [](const MotionJump& a, const MotionJump& b) {
-                     return a.translation > b.translation;
-                   });
-  while (!jumps.empty() &&
-         (jumps.size() > kMostJumps || jumps.back().translation <= limit)) {
-    jumps.pop_back();
-  }
-  return jumps;
-}
-
-std::string FormatJumps(const std::vector<MotionJump>& jumps,
-                        const std::vector<TrackedFrame>& frames) {
-  if (jumps.empty()) return "";
-  const TrackedFrame& frame = frames[jumps[0].frame];
-  return Format(
-      "jumps       %zu%s, the largest at frame %d by %.0f mm (%d of %d %s "
-      "agree); --debug_images=%d shows it\n",
-      jumps.size(), jumps.size() == kMostJumps ? " or more" : "",
-      jumps[0].frame, kMillimetresPerMetre * jumps[0].translation,
-      frame.inliers, frame.matches,
-      frame.source == TrackingSource::kDirect ? "pixels" : "matches",
-      jumps[0].frame);
-}
-
-nlohmann::json JumpsToJson(const std::vector<MotionJump>& jumps,
-                           const std::vector<TrackedFrame>& frames) {
+  std::stable_sort(
+      jumps.begin(), jumps.end(),
+      [](const auto& a, const auto& b) { return a.first > b.first; });
   nlohmann::json list = nlohmann::json::array();
-  for (const MotionJump& jump : jumps) {
-    const TrackedFrame& frame = frames[jump.frame];
-    list.push_back({{"frame", jump.frame},
+  for (const auto& [deviation, i] : jumps) {
+    if (list.size() == kMostJumps ||
+        deviation <= std::max(0.01, 6.0 * Median(deviations))) {
+      break;
+    }
+    const TrackedFrame& frame = frames[i];
+    list.push_back({{"frame", i},
                     {"seconds", frame.timestamp - frames[0].timestamp},
-                    {"translation_m", jump.translation},
+                    {"translation_m", deviation},
                     {"status", ToString(frame.status)},
                     {"tracking_source", ToString(frame.source)},
                     {"matches", frame.matches},
@@ -170,6 +149,19 @@ nlohmann::json JumpsToJson(const std::vector<MotionJump>& jumps,
                     {"sigma", frame.sigma}});
   }
   return list;
+}
+
+std::string FormatJumps(const nlohmann::json& jumps) {
+  if (jumps.empty()) return "";
+  const nlohmann::json& largest = jumps[0];
+  const int frame = largest.at("frame");
+  return Format(
+      "jumps       %zu%s, the largest at frame %d by %.0f mm (%d of %d %s "
+      "agree); --debug_images=%d shows it\n",
+      jumps.size(), jumps.size() == kMostJumps ? " or more" : "", frame,
+      kMillimetresPerMetre * largest.at("translation_m").get<double>(),
+      largest.at("inliers").get<int>(), largest.at("matches").get<int>(),
+      largest.at("tracking_source") == "direct" ? "pixels" : "matches", frame);
 }
 
 }  // namespace rgbd_pose

@@ -34,14 +34,15 @@ TEST(MotionJumpsTest, AllPosesFromOneFrameOnAreElsewhere) {
   frames[50].matches = 200;
   frames[50].inliers = 18;
   frames[50].source = TrackingSource::kFeatures;
-  const std::vector<MotionJump> jumps = FindJumps(frames);
+  const nlohmann::json jumps = FindJumps(frames);
   ASSERT_EQ(jumps.size(), 1u);
-  EXPECT_EQ(jumps[0].frame, 50);
-  EXPECT_NEAR(jumps[0].translation, 0.03, 1e-3);  // plus a part of the swing
-  EXPECT_THAT(FormatJumps(jumps, frames),
+  EXPECT_EQ(jumps[0].at("frame"), 50);
+  // Plus a part of the swing.
+  EXPECT_NEAR(jumps[0].at("translation_m"), 0.03, 1e-3);
+  EXPECT_THAT(FormatJumps(jumps),
               testing::HasSubstr("frame 50 by 30 mm (18 of 200 matches agree); "
                                  "--debug_images=50"));
-  EXPECT_EQ(JumpsToJson(jumps, frames)[0].at("inliers"), 18);
+  EXPECT_EQ(jumps[0].at("inliers"), 18);
 }
 
 TEST(MotionJumpsTest, OnePoseThatIsOffIsOneJump) {
