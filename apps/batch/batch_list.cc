@@ -20,8 +20,7 @@ bool IsRecording(const fs::path& path) {
          path.extension() == ".db3" || path.extension() == ".mcap";
 }
 
-// Returns the folders and bags that match a pattern, sorted. A path without
-// wildcards matches itself.
+// The folders and bags that match a pattern, sorted.
 std::vector<std::string> MatchingFolders(const std::string& pattern) {
   glob_t matches = {};
   std::vector<std::string> folders;

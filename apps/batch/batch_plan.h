@@ -34,9 +34,8 @@ struct BatchShard {
   }
 };
 
-// A setting that may differ between the runs of a sequence. Each row defines a
-// list of the plan, a flag of every run, a part of the run's folder name and a
-// column of the summary.
+// A setting that may differ between the runs of a sequence, and is a part of
+// their folder names.
 struct BatchSetting {
   const char* list;    // flag of rgbd_batch with comma-separated values
   const char* flag;    // flag of the program that runs
@@ -73,9 +72,9 @@ std::vector<BatchRun> MakePlan(const std::vector<BatchSequence>& sequences,
                                const BatchGrid& grid, const BatchShard& shard,
                                const std::string& settings);
 
-// Parses a shard "i/n" with 0 <= i < n. An empty text means the task of a Slurm
-// job array (SLURM_ARRAY_TASK_ID, _COUNT and _MIN) or, outside of one, the
-// whole batch. Throws InputError for other texts and for arrays with gaps.
+// Parses a shard "i/n". An empty text means the task of a Slurm job array or,
+// outside of one, the whole batch. Throws InputError for other texts and for
+// arrays with gaps.
 BatchShard ParseShard(const std::string& text);
 
 // Hashes all input of a run on a sequence: rgb.txt, depth.txt, the name and

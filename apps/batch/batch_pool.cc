@@ -80,9 +80,9 @@ RunEnd EndOf(const Process& process, int state) {
 }
 
 // Starts a program (path and arguments) in a folder, without input and with its
-// output in run.log there. The program is killed when this process ends in any
-// way, so call this from the main thread. Throws InputError if no process can
-// be created; a program that cannot be executed exits with 127.
+// output in run.log there. It is killed when this process ends in any way, so
+// call this from the main thread. Throws InputError if no process can be
+// created; a program that cannot be executed exits with 127.
 pid_t StartProcess(std::vector<std::string> command,
                    const std::string& folder) {
   std::vector<char*> arguments;

@@ -54,10 +54,9 @@ struct ComparedPath {
 
 constexpr char kTruthName[] = "truth";
 
-// Returns the paths of all runs in one world, with one pose for each frame of
-// the sequence. With a ground truth, this is the world of the truth, and each
-// path is aligned to it at its first paired pose; the first returned path is
-// the truth. Without a ground truth, it is the world of the first camera.
+// Returns the paths of all runs in one world, with one pose for each frame.
+// With a ground truth, which is then the first path, each path is aligned to it
+// at its first paired pose. Without, it is the world of the first camera.
 std::vector<ComparedPath> ComparePaths(const std::vector<LossRun>& runs,
                                        const std::optional<Trajectory>& truth);
 

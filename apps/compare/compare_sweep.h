@@ -15,9 +15,8 @@ struct MedianBand {
 
 // Returns the rank r (from 0) for which the r-th smallest and the r-th largest
 // of `count` values enclose the population's median with a probability of at
-// least 95 %. It uses order statistics: the number of values below the median
-// is binomial (David & Nagaraja, Order Statistics, 2003, 7.1). Returns 0
-// (smallest and largest value) if 5 or fewer values allow no such rank.
+// least 95 %: the number of values below it is binomial (David & Nagaraja,
+// Order Statistics, 2003, 7.1). 0 if 5 or fewer values allow no such rank.
 int MedianBandRank(int count);
 
 // All NaN if there are no values.
@@ -69,8 +68,8 @@ std::vector<SweepCell> ReadSweepCsv(const std::string& path);
 std::string SweepTable(const std::vector<SweepCell>& cells);
 
 // SVG of the median errors, in rotation or in translation, over the share of
-// wrong matches with 95 % bands. It shows all losses, started from identity,
-// in two panels: the graduated and the direct schedule.
+// wrong matches with 95 % bands: all losses, started from identity, with the
+// graduated and the direct schedule.
 std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation);
 
 // Describes the result of a sweep with its figures: the best M-estimator, its

@@ -7,8 +7,7 @@
 
 namespace rgbd_pose {
 
-// Creates the output folder of a comparison early, before the work starts.
-// Throws InputError.
+// Creates the output folder before the work starts. Throws InputError.
 void PrepareOutput(const std::string& folder);
 
 // Writes a file into it. An earlier report is removed first: if report.md,
@@ -35,9 +34,8 @@ struct ExperimentResult {
   bool is_usable = true;
 };
 
-// Runs the experiment of that name, or, if it is a folder, the experiment on a
-// recorded sequence. `output` is the output folder. Throws InputError for other
-// names and unknown losses.
+// Runs the experiment of that name or on the recording in that folder. `output`
+// is the output folder. Throws InputError for other names and unknown losses.
 ExperimentResult RunExperiment(const ExperimentSettings& settings,
                                const std::string& output);
 

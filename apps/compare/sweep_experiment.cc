@@ -35,9 +35,8 @@ std::vector<MotionError> RunSeed(int seed, double outlier_share,
   RandomWorld world(kFirstSeed + seed);
   const Rigid3d truth = world.Motion(kMaxAngle, kMaxTranslation);
   const Correspondences found = world.Matches(kMatches, outlier_share, truth);
-  const std::optional<Consensus> consensus = FindByRansac(found);
   const Rigid3d ransac =
-      consensus.has_value() ? consensus->cur_from_prev : Rigid3d();
+      FindByRansac(found).value_or(Consensus()).cur_from_prev;
   std::vector<MotionError> errors;
   for (size_t i = 0; i < methods.size(); ++i) {
     const Rigid3d guess = methods[i].ransac ? ransac : Rigid3d();
@@ -49,9 +48,8 @@ std::vector<MotionError> RunSeed(int seed, double outlier_share,
   return errors;
 }
 
-// Estimates the motions of simulated matches, some of them wrong, with every
-// loss, schedule and start. All methods use the same matches. Ordered by loss,
-// schedule, start, share. The result does not depend on the number of threads.
+// The errors of every loss, schedule, start and share, in this order. All
+// methods use the same matches.
 std::vector<SweepCell> RunSweep(EstimatorSettings settings,
                                 const std::vector<std::string>& losses,
                                 int seeds) {
