@@ -84,9 +84,7 @@ class SequenceExperiment {
   }
 
  private:
-  // Tracks a sequence with all losses and otherwise equal settings. Every frame
-  // is read once. Throws InputError for unknown names and for a ground truth
-  // that does not overlap in time.
+  // Tracks a sequence with all losses and otherwise equal settings.
   std::vector<LossRun> Track(FrameSource* source,
                              const std::optional<Trajectory>& truth) const {
     if (truth.has_value()) RequireOverlap(*source, *truth);

@@ -58,8 +58,7 @@ struct ExportOptions {
 // this project places it at (0, 0).
 constexpr double kPixelCentre = 0.5;
 
-// An export format for other tools. To add one, write a file with such a
-// function and add a row to the table in export_format.cc.
+// An export format for other tools, a row of the table in export_format.cc.
 struct ExportFormat {
   const char* name;            // name for users
   const char* default_output;  // file or folder, in that of the run
@@ -83,8 +82,8 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options);
 std::string ExportCloud(const FinishedRun& run, const ExportOptions& options);
 std::string ExportMesh(const FinishedRun& run, const ExportOptions& options);
 
-// Throws InputError if SaveMesh could not read the frames again, for example
-// those of a live camera. Call it before the run, not after it.
+// Throws InputError before a run if SaveMesh could not read its frames again,
+// for example those of a live camera.
 void RequireMeshFrames(const RunOutputSettings& settings,
                        const std::string& dataset);
 

@@ -18,8 +18,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Adds the mesh to the page of the run, if there is one. The export does not
-// fail if the run's folder is read-only.
+// Adds the mesh to the page of the run, if there is one that can be written.
 void ShowMesh(const std::string& folder, const TriangleMesh& mesh,
               size_t frames, const ExportOptions& options) {
   TriangleMesh thin = mesh;

@@ -72,10 +72,9 @@ Json SchemaOf(const Json& value) {
 // chunks, schemas, indexes, statistics and checksums.
 class McapWriter {
  public:
-  // Appends a message. `type` is the name of the topic's schema. The schema
-  // itself is derived from the first message, whose lists must not be empty;
-  // text named "data" is declared as base64, as in all Foxglove types. Times
-  // (ns) must not decrease.
+  // Appends a message. The schema of the name `type` is derived from the first
+  // message of a topic, whose lists must not be empty; text named "data" is
+  // base64, as in all Foxglove types. Times (ns) must not decrease.
   void Write(const std::string& topic, const std::string& type, uint64_t time,
              const Json& message) {
     if (messages_++ == 0) first_time_ = time;
@@ -116,8 +115,7 @@ class McapWriter {
              RecordOf(kMcapStatistics,
                       Pack(messages_, number, uint32_t{number}, kNone, kNone,
                            chunks_, first_time_, last_time_, counts));
-    // There are no summary offsets. The checksum of the summary is the last
-    // field.
+    // Without summary offsets; the checksum of the summary is the last field.
     const std::string footer =
         RecordOf(kMcapFooter, Pack(summary, uint64_t{0}, uint32_t{0}));
     file_.append(footer, 0, footer.size() - sizeof(uint32_t));
@@ -275,8 +273,7 @@ std::string ExportMcap(const FinishedRun& run, const ExportOptions& options) {
                      "with --to=tum");
   }
   RequireWritable(options.output);
-  // Images are kept in memory because messages are written in order of time,
-  // and the cloud, which needs all frames, comes first.
+  // Kept in memory because the cloud, which needs all frames, comes first.
   std::map<double, std::string> images;  // by time
   const ExportedViews views =
       ReadImages(run, options, [&](const Frame& frame, int view) {

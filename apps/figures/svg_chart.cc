@@ -22,10 +22,8 @@ constexpr int kTitle = 34;
 constexpr int kLegendRow = 20;
 constexpr int kLegendColumn = 170;
 
-// Labels at the ends of lines: width of their column and height of one label.
-constexpr int kLabelColumn = 130;
+constexpr int kLabelColumn = 130;  // of labels at the ends of lines
 constexpr double kLabelRow = 14.0;
-// Width of a letter of the title.
 constexpr int kTitleLetter = 9;
 
 std::string Text(double x, double y, const std::string& style,

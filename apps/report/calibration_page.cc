@@ -14,7 +14,7 @@ namespace {
 using Status = CalibratedParameter::Status;
 
 // Number of image columns over which residuals are averaged.
-constexpr int kColumns = 16;
+constexpr int kCells = 16;
 
 constexpr double kPictureWidth = 440.0;
 
@@ -89,29 +89,29 @@ std::string ParameterTable(const CalibrationResult& result) {
 // Mean residuals per image cell as arrows, enlarged by `zoom`.
 std::string Picture(const CalibrationResult& result, bool after, double zoom) {
   const Camera& camera = result.camera.camera;
-  const double cell = static_cast<double>(camera.width) / kColumns;
+  const double cell = static_cast<double>(camera.width) / kCells;
   const int rows = static_cast<int>(std::ceil(camera.height / cell));
-  std::vector<Eigen::Vector2d> sums(kColumns * rows, Eigen::Vector2d::Zero());
-  std::vector<int> counts(kColumns * rows, 0);
+  std::vector<Eigen::Vector2d> sums(kCells * rows, Eigen::Vector2d::Zero());
+  std::vector<int> counts(kCells * rows, 0);
   for (const HeldOutResidual& residual : result.residuals) {
     const int column = static_cast<int>(residual.u / cell);
     const int row = static_cast<int>(residual.v / cell);
-    if (column < 0 || row < 0 || column >= kColumns || row >= rows) continue;
+    if (column < 0 || row < 0 || column >= kCells || row >= rows) continue;
     const Eigen::Vector2d& r = after ? residual.after : residual.before;
     // Wrong matches would dominate the picture.
     constexpr double kMostPx = 20.0;
     if (!(r.norm() < kMostPx)) continue;
-    sums[row * kColumns + column] += r;
-    ++counts[row * kColumns + column];
+    sums[row * kCells + column] += r;
+    ++counts[row * kCells + column];
   }
   const double scale = kPictureWidth / camera.width;
   std::string text = Format("<figure><svg width=\"%.0f\" height=\"%.0f\">",
                             kPictureWidth, camera.height * scale);
   constexpr int kFew = 3;
-  for (int i = 0; i < kColumns * rows; ++i) {
+  for (int i = 0; i < kCells * rows; ++i) {
     if (counts[i] < kFew) continue;
     const Eigen::Vector2d mean = sums[i] / counts[i] * zoom;
-    const int column = i % kColumns, row = i / kColumns;
+    const int column = i % kCells, row = i / kCells;
     const double u = (column + 0.5) * cell * scale;
     const double v = (row + 0.5) * cell * scale;
     text += Format(
@@ -127,8 +127,7 @@ std::string Picture(const CalibrationResult& result, bool after, double zoom) {
                     zoom);
 }
 
-// A camera is mostly rejected because the recording is not informative, or
-// because of an error that no parameter describes.
+// After a camera was rejected.
 constexpr char kWhatNext[] =
     "<p>What to do next:</p><ul>"
     "<li>&ldquo;fit no better&rdquo; or &ldquo;no error found&rdquo;: the "

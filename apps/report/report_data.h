@@ -9,25 +9,19 @@ namespace rgbd_pose {
 // More frames are drawn in groups, to keep the page small.
 constexpr int kMaxReportPoints = 4000;
 
-// All data for the page of a run, from the files in its folder: frames.csv,
-// trajectory.txt, metrics.json, config.flags and, with a ground truth,
-// errors.csv. Frames are stored as columns; unknown numbers are null. Throws
-// InputError for missing or broken files.
+// All data for the page of a run, from the files in its folder. Frames are
+// stored as columns; unknown numbers are null. Throws InputError for missing or
+// broken files.
 nlohmann::json RunReportData(const std::string& run_folder);
 
-// All data for the page of a batch: the name of its folder and one row per run
-// from summary.csv of rgbd_batch; missing figures are null. Throws InputError
-// if the file is missing or broken.
+// The same for a batch: the name of its folder and one row per run from
+// summary.csv.
 nlohmann::json BatchReportData(const std::string& batch_folder);
 
-// If the paths of a comparison have more poses together, the poses are drawn in
-// groups, to keep the page small.
+// The same for the poses of all paths of a comparison together.
 constexpr int kMaxComparedPoints = 15000;
 
-// All data for the page of a comparison, from the files in its folder:
-// config.flags, and sweep.csv (of a sweep) or tables.csv and paths.csv. The key
-// `methods` marks a sweep, `sequences` the other kind. Unknown numbers are
-// null. Throws InputError for missing or broken files.
+// The same for a comparison: a sweep has `methods`, the other kind `sequences`.
 nlohmann::json CompareReportData(const std::string& folder);
 
 // Times since the first frame, s.

@@ -46,14 +46,12 @@ std::string FillPage(
     std::string_view page,
     const std::vector<std::pair<std::string_view, std::string>>& parts);
 
-// A self-contained page with the data, the plotting library and the scripts in
-// apps/report, which draw the given `kind`: "run", "batch", "comparison" or
-// "sweep".
+// A self-contained page with the data and the scripts that draw its `kind`:
+// "run", "batch", "comparison" or "sweep".
 std::string ReportPage(std::string_view kind, const nlohmann::json& data);
 
-// A self-contained page about a calibration: the verdict, parameters with error
-// bars, residuals of held-out views over the image with both cameras, and the
-// path seen from above.
+// A self-contained page about a calibration: verdict, parameters, residuals of
+// held-out views over the image with both cameras, path seen from above.
 std::string CalibrationPage(const CalibrationResult& result,
                             const Trajectory& path);
 
@@ -68,9 +66,8 @@ std::string WriteBatchReport(const std::string& batch_folder);
 std::string WriteComparisonReport(const std::string& folder);
 
 // Writes report.html into the unpublished folder of a run; `out` is its final
-// folder. Returns the text that the program prints: the location of the page,
-// or that this build writes none. If the disk is full, the partial page is
-// removed, `why_not` says so, and all other results stay.
+// folder. Returns the text that the program prints. If the disk is full, the
+// partial page is removed, `why_not` says so, and all other results stay.
 std::string WriteRunPage(const std::filesystem::path& staging_dir,
                          const std::string& out, std::string* why_not);
 

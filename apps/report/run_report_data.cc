@@ -76,8 +76,8 @@ json FrameColumns(const CsvTable& frames, const ReportThinning& thinning) {
 Trajectory TrackedPoses(const CsvTable& frames,
                         const std::string& trajectory_file) {
   const std::vector<double> status = StatusCodes(frames);
-  const size_t tracked = std::count_if(status.begin(), status.end(),
-                                       [](double code) { return code < 2; });
+  const size_t tracked =
+      status.size() - std::count(status.begin(), status.end(), 2.0);
   Trajectory trajectory;
   if (tracked > 0) trajectory = ReadTrajectory(trajectory_file);
   if (trajectory.size() != tracked) {
@@ -92,15 +92,13 @@ Trajectory TrackedPoses(const CsvTable& frames,
 // Positions of all frames, null where lost.
 json PathOf(const CsvTable& frames, const Trajectory& trajectory,
             const ReportThinning& thinning) {
-  const std::vector<double> status = StatusCodes(frames);
   std::vector<double> axes[3];
-  size_t next = 0;
-  for (const double code : status) {
-    for (int k = 0; k < 3; ++k) {
-      axes[k].push_back(
-          code < 2 ? trajectory[next].world_from_cam.translation[k] : NAN);
-    }
-    next += code < 2;
+  auto pose = trajectory.begin();
+  for (const double code : StatusCodes(frames)) {
+    const Eigen::Vector3d position = code < 2
+                                         ? (pose++)->world_from_cam.translation
+                                         : Eigen::Vector3d::Constant(NAN);
+    for (int k = 0; k < 3; ++k) axes[k].push_back(position[k]);
   }
   return {{"x", thinning.First(axes[0], 4)},
           {"y", thinning.First(axes[1], 4)},

@@ -27,10 +27,8 @@ nlohmann::json CalibrationToJson(const CalibrationResult& result);
 // The status of a parameter in words.
 const char* ToString(CalibratedParameter::Status status);
 
-// Writes all output files of rgbd_calibrate except the page: camera.yaml in the
-// layout of `camera` (file or preset of the first camera), depth_noise.yaml if
-// the noise was estimated, metrics.json, residuals.csv, and `flags` in
-// config.flags.
+// Writes all output files of rgbd_calibrate except the page. camera.yaml has
+// the layout of `camera` (file or preset of the first camera).
 void WriteCalibration(const RecordingCalibration& calibration,
                       const std::string& camera, const std::string& flags,
                       double seconds, const RunFolder& folder);

@@ -106,7 +106,6 @@ std::string FormatLine(const char* what, const Consistency& c) {
                 c.median);
 }
 
-// Formats the wrong motions and the NEES of a run.
 std::string FormatConsistency(const RunConsistency& consistency) {
   const TruthNoise& noise = consistency.truth_noise;
   return Format(
@@ -158,9 +157,6 @@ Eigen::Vector3d RotationVectorOf(const TruthFixing& fixing) {
   return TwistOf(fixing.camera_from_body, -1.0).angular;
 }
 
-// Formats the best-fitting clock offset and TruthFixing (ms, degrees, mm, each
-// with its standard deviation), and the errors with these corrections. One line
-// if there is no alignment.
 std::string FormatTruthAlignment(const EvaluationReport& report) {
   const TruthAlignment& alignment = report.truth_alignment;
   const std::string head =
@@ -188,7 +184,6 @@ std::string FormatTruthAlignment(const EvaluationReport& report) {
                    alignment.rpe_seconds);
 }
 
-// The same; all values but the first three are left out without an alignment.
 json TruthAlignmentToJson(const EvaluationReport& report) {
   const TruthAlignment& alignment = report.truth_alignment;
   const bool found = alignment.skipped.empty();

@@ -24,9 +24,8 @@ inline constexpr char kCovarianceColumns[] =
 // frames.csv: a header and one row per input frame.
 std::string FormatFramesCsv(const std::vector<TrackedFrame>& frames);
 
-// edges.csv: a header and one row per edge. Frames are numbered by the rows of
-// frames.csv. Each row has cur_from_ref as translation (m) and quaternion, then
-// the upper triangle of its covariance, row by row (see MotionEstimate).
+// edges.csv: a header and one row per edge: ref and cur (rows of frames.csv),
+// cur_from_ref (translation in m) and the upper triangle of its covariance.
 std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames);
 
 // Read a run's edges from edges.csv, or its frames with timestamps, statuses
@@ -34,11 +33,10 @@ std::string FormatEdgesCsv(const std::vector<TrackedFrame>& frames);
 std::vector<RelativePose> ReadEdges(const std::filesystem::path& folder);
 std::vector<TrackedFrame> ReadFrames(const std::filesystem::path& folder);
 
-// errors.csv: one row per input frame; unknown values are empty cells.
-// Positions (m) are in the world of the ground truth: the true position nearest
-// in time and the estimated position after alignment (empty for a lost frame).
-// Then the errors of `report`, which must compare these frames with this truth:
-// of the position, and of the motion over the interval that starts there.
+// errors.csv: one row per input frame; unknown values are empty cells. The true
+// position nearest in time (m), the estimated one after alignment, and the
+// errors of `report`, which must compare these frames with this truth: of the
+// position, and of the motion over the interval that starts there.
 std::string FormatErrorsCsv(const std::vector<TrackedFrame>& frames,
                             const Trajectory& truth,
                             const EvaluationReport& report);

@@ -6,9 +6,8 @@
 namespace rgbd_pose {
 
 // The folder for the results of a run. Files are first written to a staging
-// folder inside it and moved to their places together when all are written, so
-// a failed run leaves the results of an earlier run unchanged. Two runs cannot
-// use the folder at the same time.
+// folder inside it and moved to their places together, so a failed run leaves
+// earlier results unchanged. Two runs cannot use the folder at the same time.
 class RunFolder {
  public:
   // Creates the folder. Throws InputError if it is in use or not writable.

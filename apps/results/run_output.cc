@@ -42,7 +42,6 @@ std::optional<CloudFusion> MakeCloud(const RunOutputSettings& settings,
   return CloudFusion(options);
 }
 
-// Draws the result of the odometry for its last frame.
 void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
                      const TrackedFrame& tracked, const Camera& camera,
                      const Odometry& odometry) {
@@ -83,7 +82,6 @@ nlohmann::json ResidualsToJson(const ResidualHistogram& residuals) {
           {"degrees_counts", residuals.degrees}};
 }
 
-// The peak memory use of this process, MB.
 double PeakMemoryMb() {
   rusage usage = {};
   getrusage(RUSAGE_SELF, &usage);

@@ -17,12 +17,11 @@ nlohmann::json Summarise(const std::vector<TrackedFrame>& frames, int threads,
 // Formats the summary for printing: lines with a title and figures.
 std::string FormatSummary(const nlohmann::json& summary);
 
-// For metrics.json: the largest jumps of the run, at most 20, largest first,
-// and what tracked each of these frames. At a jump the motion to a frame
-// differs from the mean of the motions before and after it by more than 10 mm
-// and than six times the median difference, because a shaken camera shows such
-// differences without an error. Only frames within three consecutive motions
-// without a lost frame or a time gap are checked.
+// For metrics.json: the jumps of the run, at most 20, largest first, and what
+// tracked these frames. At a jump the motion to a frame differs from the mean
+// of its neighbours by more than 10 mm and than six times the median difference
+// (a shaken camera shows such differences without an error). Frames next to a
+// lost frame or a time gap are not checked.
 nlohmann::json FindJumps(const std::vector<TrackedFrame>& frames);
 
 // Describes the jumps in one line, or empty if there are none.

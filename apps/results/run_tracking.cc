@@ -93,9 +93,7 @@ StopSignal::StopSignal() {
   sigemptyset(&action.sa_mask);
   for (int i = 0; i < 2; ++i) {
     sigaction(kSignals[i], nullptr, &before[i]);
-    // A signal ignored by the parent process stays ignored.
-    const bool is_ignored = before[i].sa_handler == SIG_IGN;
-    if (FLAGS_finish_on_signal && !is_ignored) {
+    if (FLAGS_finish_on_signal && before[i].sa_handler != SIG_IGN) {
       sigaction(kSignals[i], &action, nullptr);
     }
   }

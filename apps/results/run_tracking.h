@@ -37,10 +37,9 @@ using FrameWatcher =
     std::function<std::string(const Frame& frame, const StopSignal& signal)>;
 
 // Tracks the frames of a source, with a progress bar and warnings. `watcher`
-// may be empty. Returns why the run ended before the last frame, or an empty
-// string. Reasons are a signal (StopSignal), the watcher, a source without
-// further frames, and too many damaged frames. Throws InputError if no frame
-// was read.
+// may be empty. Returns why the run ended before the last frame (a signal, the
+// watcher, a source that fails, too many damaged frames), or an empty string.
+// Throws InputError if no frame was read.
 std::string TrackSource(FrameSource* source, int threads, SequenceRun* run,
                         RunOutput* output, const FrameWatcher& watcher = {});
 
