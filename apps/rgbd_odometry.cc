@@ -11,7 +11,6 @@
 #include "apps/pipeline/sequence.h"
 #include "apps/report/report_page.h"
 #include "apps/results/run_output.h"
-#include "apps/results/run_tracking.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "apps/view/live_view.h"

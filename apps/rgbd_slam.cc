@@ -17,7 +17,6 @@
 #include "apps/report/report_page.h"
 #include "apps/results/calibration_output.h"
 #include "apps/results/run_output.h"
-#include "apps/results/run_tracking.h"
 #include "apps/results/slam_output.h"
 #include "apps/shell/program.h"
 #include "apps/view/live_view.h"

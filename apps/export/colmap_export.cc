@@ -2,7 +2,6 @@
 // the layout that COLMAP and compatible tools expect: images/, sparse/0/.
 
 #include "apps/export/export_format.h"
-#include "apps/export/output_folder.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/fusion/little_endian.h"

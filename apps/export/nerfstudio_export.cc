@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/export/export_format.h"
-#include "apps/export/output_folder.h"
 #include "core/util/format.h"
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"

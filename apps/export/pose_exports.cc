@@ -4,7 +4,6 @@
 #include <set>
 
 #include "apps/export/export_format.h"
-#include "apps/export/output_folder.h"
 #include "apps/results/frame_tables.h"
 #include "apps/results/slam_output.h"
 #include "core/util/format.h"

@@ -51,16 +51,6 @@ bool IsAt(int file, const fs::path& path) {
          open_one.st_ino == one_there.st_ino;
 }
 
-std::vector<fs::path> FilesBelow(const fs::path& folder) {
-  std::vector<fs::path> files;
-  for (const auto& entry : fs::recursive_directory_iterator(folder)) {
-    if (!entry.is_directory()) {
-      files.push_back(entry.path().lexically_relative(folder));
-    }
-  }
-  return files;
-}
-
 }  // namespace
 
 RunFolder::RunFolder(const std::string& path)
@@ -68,18 +58,10 @@ RunFolder::RunFolder(const std::string& path)
   std::error_code error;
   is_new_ = fs::create_directories(path_, error);
   if (error) FailOnFolder(path_, error);
-  Lock();
-  for (const auto& entry : fs::directory_iterator(staging_dir_, error)) {
-    fs::remove_all(entry, error);  // left by a killed run
-  }
-}
-
-// The previous run removes the staging folder when it ends. A run that opened
-// the folder just before must create and lock it again.
-void RunFolder::Lock() {
+  // The previous run removes the staging folder when it ends. A run that opened
+  // the folder just before must create and lock it again.
   do {
     if (lock_ >= 0) close(lock_);
-    std::error_code error;
     fs::create_directories(staging_dir_, error);
     if (error) FailOnFolder(path_, error);
     lock_ = open(staging_dir_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -93,6 +75,9 @@ void RunFolder::Lock() {
                        "for it or choose another folder");
     }
   } while (!IsAt(lock_, staging_dir_));
+  for (const auto& entry : fs::directory_iterator(staging_dir_, error)) {
+    fs::remove_all(entry, error);  // left by a killed run
+  }
 }
 
 RunFolder::~RunFolder() {
@@ -116,8 +101,12 @@ void RunFolder::Publish() {
       fs::remove(path_ / name);
     }
     RemoveDebugImages(path_ / "debug");
-    for (const fs::path& file : FilesBelow(staging_dir_)) {
-      if (file == kLast) continue;
+    std::vector<fs::path> files;
+    for (const auto& entry : fs::recursive_directory_iterator(staging_dir_)) {
+      const fs::path file = entry.path().lexically_relative(staging_dir_);
+      if (!entry.is_directory() && file != kLast) files.push_back(file);
+    }
+    for (const fs::path& file : files) {
       fs::create_directories((path_ / file).parent_path());
       fs::rename(staging_dir_ / file, path_ / file);
     }

@@ -30,8 +30,6 @@ class RunFolder {
   void Publish();
 
  private:
-  void Lock();
-
   const std::filesystem::path path_;
   const std::filesystem::path staging_dir_;
   bool is_new_ = false;

@@ -22,17 +22,17 @@ constexpr double kMaxIntervalRatio = 1.6;
 // The difference between the motion to frame i and the mean of its neighbours;
 // negative if it cannot be computed.
 double Deviation(const std::vector<TrackedFrame>& frames, size_t i) {
-  double shortest = 1e9, longest = 0.0;
   for (size_t k = i - 2; k <= i + 1; ++k) {
     if (frames[k].status == TrackingStatus::kLost ||
         frames[k].segment != frames[i].segment) {
       return -1.0;
     }
-    if (k == i + 1) break;
-    const double interval = frames[k + 1].timestamp - frames[k].timestamp;
-    shortest = std::min(shortest, interval);
-    longest = std::max(longest, interval);
   }
+  const auto interval = [&](size_t k) {
+    return frames[k].timestamp - frames[k - 1].timestamp;
+  };
+  const auto [shortest, longest] =
+      std::minmax({interval(i - 1), interval(i), interval(i + 1)});
   if (longest > kMaxIntervalRatio * shortest) return -1.0;
   const auto place = [&](size_t k) -> const Eigen::Vector3d& {
     return frames[k].world_from_cam.translation;

@@ -1,11 +1,10 @@
-#include "apps/results/run_tracking.h"
-
 #include <gflags/gflags.h>
 
 #include <csignal>
 #include <cstdio>
 
 #include "apps/pipeline/sequence.h"
+#include "apps/results/run_output.h"
 #include "apps/shell/program.h"
 #include "apps/shell/progress_bar.h"
 #include "frontend/frame/depth_lookup.h"

@@ -5,7 +5,7 @@
 #include <string>
 
 #include "apps/pipeline/odometry_run.h"
-#include "apps/results/run_tracking.h"
+#include "apps/results/run_output.h"
 #include "apps/view/view_server.h"
 #include "apps/view/view_state.h"
 

@@ -1,5 +1,3 @@
-#include "apps/results/run_tracking.h"
-
 #include <glog/logging.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,6 +6,7 @@
 #include <functional>
 #include <opencv2/core.hpp>
 
+#include "apps/results/run_output.h"
 #include "core/util/input_error.h"
 #include "tests/support/temp_folder.h"
 
