@@ -67,16 +67,12 @@ std::vector<std::string> CommandOf(const BatchRun& run,
 }
 
 RunEnd EndOf(const Process& process, int state) {
-  RunEnd end;
-  end.hash = process.run->hash;
   if (WIFEXITED(state)) {
-    end.exit_code = WEXITSTATUS(state);
-    end.status = end.exit_code == 0 ? "ok" : "failed";
-  } else {
-    end.exit_code = 128 + WTERMSIG(state);
-    end.status = process.timed_out ? "timeout" : "crashed";
+    const int code = WEXITSTATUS(state);
+    return {code == 0 ? "ok" : "failed", code, process.run->hash};
   }
-  return end;
+  return {process.timed_out ? "timeout" : "crashed", 128 + WTERMSIG(state),
+          process.run->hash};
 }
 
 // Starts a program (path and arguments) in a folder, without input and with its

@@ -80,24 +80,17 @@ std::string PoseCells(const std::optional<Rigid3d>& pose) {
 }
 
 ChartSeries Series(const std::vector<ComparedPath>& paths, size_t k) {
-  ChartSeries series;
-  series.label = paths[k].name;
-  if (paths[k].name == kTruthName) {
-    series.style = {"#bbbbbb", "", -1};
-    series.width_px = 4.0;
-    return series;
-  }
+  const std::string& name = paths[k].name;
+  if (name == kTruthName) return {name, {"#bbbbbb", "", -1}, 4.0, {}};
   const bool has_truth = paths[0].name == kTruthName;
-  series.style = StyleOf(static_cast<int>(has_truth ? k - 1 : k));
+  ChartSeries series = {name, StyleOf(static_cast<int>(has_truth ? k - 1 : k))};
   series.style.marker = -1;
   return series;
 }
 
 ChartPanel TopView(const std::vector<ComparedPath>& paths, int row) {
-  ChartPanel panel;
-  panel.title = row == 1 ? "X-Y" : "X-Z";
-  panel.x_label = "X (m)";
-  panel.y_label = row == 1 ? "Y (m)" : "Z (m)";
+  ChartPanel panel = {row == 1 ? "X-Y" : "X-Z", "X (m)",
+                      row == 1 ? "Y (m)" : "Z (m)"};
   panel.is_map = true;
   for (size_t k = 0; k < paths.size(); ++k) {
     ChartSeries series = Series(paths, k);
@@ -115,10 +108,7 @@ ChartPanel TopView(const std::vector<ComparedPath>& paths, int row) {
 ChartPanel ErrorsOverTime(const std::vector<ComparedPath>& paths,
                           std::optional<double> ComparedPose::*error,
                           double factor, const char* title, const char* label) {
-  ChartPanel panel;
-  panel.title = title;
-  panel.y_label = label;
-  panel.x_label = "time since the first frame (s)";
+  ChartPanel panel = {title, "time since the first frame (s)", label};
   panel.log_y = true;
   for (size_t k = 1; k < paths.size(); ++k) {
     ChartSeries series = Series(paths, k);
@@ -169,10 +159,8 @@ std::string ComparedPathsCsvRows(const std::string& name,
 
 std::string PathFigure(const std::string& title,
                        const std::vector<ComparedPath>& paths) {
-  Chart chart;
-  chart.title = title;
+  Chart chart = {title, {TopView(paths, 1), TopView(paths, 2)}};
   chart.panel_height_px = 300;
-  chart.panels = {TopView(paths, 1), TopView(paths, 2)};
   if (HasErrors(paths)) {
     chart.panels.push_back(
         ErrorsOverTime(paths, &ComparedPose::distance, kMillimetresPerMetre,

@@ -227,18 +227,14 @@ std::string SweepFigure(const std::vector<SweepCell>& cells, bool rotation) {
   chart.same_ranges = true;
   chart.label_lines = true;
   for (const char* schedule : {"gnc", "direct"}) {
-    ChartPanel panel;
-    panel.title = schedule == std::string("gnc")
-                      ? "Graduated from wide to narrow (gnc)"
-                      : "Final width from the start (direct)";
-    panel.x_label = "wrong matches (%)";
-    panel.y_label = rotation ? "error (deg)" : "error (mm)";
+    ChartPanel panel = {
+        schedule == std::string("gnc") ? "Graduated from wide to narrow (gnc)"
+                                       : "Final width from the start (direct)",
+        "wrong matches (%)", rotation ? "error (deg)" : "error (mm)"};
     panel.log_y = true;
     int style = 0;
     for (const std::string& loss : LossesOf(cells)) {
-      ChartSeries series;
-      series.label = loss;
-      series.style = StyleOf(style++);
+      ChartSeries series = {loss, StyleOf(style++)};
       for (const SweepCell& cell : CellsOf(cells, {loss, schedule, false})) {
         const MedianBand& band =
             rotation ? cell.rotation_deg : cell.translation_mm;

@@ -23,11 +23,8 @@ KeyframeMap GraphOfFrames(const FinishedRun& run) {
   KeyframeMap graph;
   const std::set<int> posed(run.frames.begin(), run.frames.end());
   for (size_t i = 0; i < run.frames.size(); ++i) {
-    Keyframe keyframe;
-    keyframe.id = run.frames[i];
-    keyframe.segment = run.segments[i];
-    keyframe.world_from_cam = run.trajectory[i].world_from_cam;
-    graph.keyframes.push_back(keyframe);
+    graph.keyframes.push_back(
+        {run.frames[i], run.segments[i], run.trajectory[i].world_from_cam});
   }
   for (const RelativePose& edge : ReadEdges(run.folder)) {
     if (posed.count(edge.ref) != 0 && posed.count(edge.cur) != 0) {

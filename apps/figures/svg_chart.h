@@ -30,14 +30,14 @@ struct ChartSeries {
   SeriesStyle style;
   double width_px = 1.5;
   // The line has a gap where x or y is NaN, or y <= 0 on a logarithmic axis.
-  std::vector<ChartPoint> points;
+  std::vector<ChartPoint> points = {};
 };
 
 struct ChartPanel {
   std::string title;
   std::string x_label;  // with unit
   std::string y_label;
-  std::vector<ChartSeries> series;
+  std::vector<ChartSeries> series = {};
   bool log_y = false;
   // Same scale on both axes, and in all such panels of a chart.
   bool is_map = false;
