@@ -7,10 +7,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
-#include <vector>
 
 #include "core/geometry/camera.h"
 #include "core/util/input_error.h"

@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <map>
-#include <optional>
 
 #include "apps/batch/batch_runs.h"
 #include "core/util/format.h"

@@ -1,7 +1,5 @@
 #include "apps/compare/compare_sequence.h"
 
-#include <optional>
-
 #include "core/geometry/motion.h"
 #include "core/util/format.h"
 #include "core/util/text_file.h"

@@ -1,7 +1,6 @@
 // Compares losses, schedules and starts on wrong matches.
 
 #include <cmath>
-#include <optional>
 
 #include "apps/compare/compare_sweep.h"
 #include "apps/compare/experiment.h"

@@ -1,5 +1,4 @@
 #include <cstdlib>
-#include <set>
 
 #include "apps/export/export_format.h"
 #include "apps/pipeline/settings.h"
@@ -7,7 +6,6 @@
 #include "apps/shell/csv_table.h"
 #include "apps/shell/progress_bar.h"
 #include "core/util/format.h"
-#include "core/util/input_error.h"
 #include "frontend/sources/frame_stream.h"
 
 namespace rgbd_pose {

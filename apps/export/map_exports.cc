@@ -2,14 +2,12 @@
 
 #include <glog/logging.h>
 
-#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "apps/export/export_format.h"
 #include "apps/report/report_page.h"
 #include "apps/results/cloud_preview.h"
 #include "core/util/format.h"
-#include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/fusion/mesh_file.h"
 #include "frontend/fusion/mesh_fusion.h"

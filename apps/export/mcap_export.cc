@@ -2,12 +2,10 @@
 // docs.foxglove.dev/docs/sdk/schemas, in an mcap file.
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <opencv2/imgcodecs.hpp>
-#include <set>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -15,7 +13,6 @@
 #include "apps/export/export_format.h"
 #include "apps/shell/csv_table.h"
 #include "core/util/format.h"
-#include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/bags/mcap_format.h"
 #include "frontend/fusion/little_endian.h"

@@ -5,7 +5,6 @@
 
 #include "apps/export/export_format.h"
 #include "core/util/format.h"
-#include "core/util/input_error.h"
 #include "core/util/text_file.h"
 #include "frontend/fusion/mesh_file.h"
 

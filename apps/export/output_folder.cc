@@ -1,7 +1,6 @@
 #include <system_error>
 
 #include "apps/export/export_format.h"
-#include "core/util/input_error.h"
 
 namespace rgbd_pose {
 namespace {

@@ -1,8 +1,5 @@
 // Exports poses: TUM, KITTI, g2o.
 
-#include <filesystem>
-#include <set>
-
 #include "apps/export/export_format.h"
 #include "apps/results/frame_tables.h"
 #include "apps/results/slam_output.h"

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
 #include "apps/calibration/calibration_verdict.h"
 #include "apps/figures/svg_chart.h"

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <filesystem>
 #include <map>
-#include <vector>
 
 #include "apps/compare/compare_sequence.h"
 #include "apps/compare/compare_sweep.h"

@@ -46,11 +46,8 @@ json ReportThinning::Largest(const std::vector<double>& values,
   for (size_t i = 0; i < values.size(); i += every) {
     double largest = NAN;
     const size_t end = std::min(i + every, values.size());
-    for (size_t k = i; k < end; ++k) {
-      if (!(largest >= values[k]) && !std::isnan(values[k])) {
-        largest = values[k];
-      }
-    }
+    // Skips NaN.
+    for (size_t k = i; k < end; ++k) largest = std::fmax(largest, values[k]);
     result.push_back(Rounded(largest, decimals));
   }
   return result;

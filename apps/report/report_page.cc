@@ -1,7 +1,5 @@
 #include "apps/report/report_page.h"
 
-#include <filesystem>
-#include <string>
 #include <system_error>
 
 #include "apps/report/report_data.h"

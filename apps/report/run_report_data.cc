@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
-#include <vector>
 
 #include "apps/report/report_data.h"
 #include "apps/results/cloud_preview.h"

@@ -6,7 +6,6 @@
 #include <cstdio>
 #include <utility>
 
-#include "apps/view/view_state.h"
 #include "core/util/input_error.h"
 
 DEFINE_bool(view, false,

@@ -5,7 +5,6 @@
 #include "apps/view/view_state.h"
 #include "core/util/format.h"
 #include "frontend/files/image_file.h"
-#include "frontend/frame/frame.h"
 
 namespace rgbd_pose {
 namespace {
