@@ -16,8 +16,7 @@ namespace fs = std::filesystem;
 // Trajectory files have 6 decimals.
 constexpr double kSameTime = 1e-5;  // s
 
-// Sets the settings of a table to the flags of a run. Settings without a flag,
-// for example in a run of an earlier version, keep their value.
+// Sets the settings of a table to the flags of a run, where it has them.
 void Apply(const nlohmann::json& flags, const std::vector<Setting>& table) {
   for (const Setting& setting : table) {
     const std::string text = SettingOf(flags, setting.name);

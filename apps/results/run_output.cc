@@ -2,8 +2,6 @@
 
 #include <sys/resource.h>
 
-#include <algorithm>
-
 #include "apps/results/cloud_preview.h"
 #include "apps/results/evaluation_report.h"
 #include "apps/results/frame_tables.h"
@@ -66,9 +64,9 @@ void WriteDebugImage(const std::filesystem::path& folder, const Frame& frame,
 // `stamps_ms`: of depth relative to colour, per frame.
 nlohmann::json DepthStampsToJson(const std::vector<double>& stamps_ms) {
   if (stamps_ms.empty()) return nullptr;
-  const auto [least, most] =
-      std::minmax_element(stamps_ms.begin(), stamps_ms.end());
-  return {{"least", *least}, {"median", Median(stamps_ms)}, {"most", *most}};
+  return {{"least", Quantile(stamps_ms, 0.0)},
+          {"median", Median(stamps_ms)},
+          {"most", Quantile(stamps_ms, 1.0)}};
 }
 
 nlohmann::json ResidualsToJson(const ResidualHistogram& residuals) {

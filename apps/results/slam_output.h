@@ -8,12 +8,11 @@
 
 namespace rgbd_pose {
 
-// slam.csv: one line per frame with segment, odom_from_cam, map_from_odom and
-// the map updates that were applied.
+// slam.csv: segment, odom_from_cam, map_from_odom and map updates per frame.
 std::string FormatSlamCsv(const std::vector<SlamFrame>& frames);
 
-// The poses map_from_cam as known at the time. Frames whose segment was merged
-// into another one later are left out: their poses are in another world.
+// The poses map_from_cam as known at the time, without frames whose segment was
+// merged into another one later: their poses are in another world.
 std::string FormatOnlineTrajectory(const Slam& slam,
                                    const std::vector<SlamFrame>& frames);
 

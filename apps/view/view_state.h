@@ -56,10 +56,9 @@ struct ViewNews {
 };
 
 // Formats news as events for the browser (text/event-stream): always "news",
-// and "end" after the last frame.
+// and "end" after the last frame; images and matches as an event "images",
+// which takes milliseconds.
 std::string FormatNews(const ViewNews& news);
-
-// Formats images and matches as an event "images". Takes milliseconds.
 std::string FormatImages(const ViewImages& images, int index);
 
 // The position of a reader in the news.
@@ -72,8 +71,8 @@ struct ViewCursor {
   int controls = 0;
 };
 
-// The data shown by live pages. It is written by the tracking thread and read
-// by any number of other threads. The lock is only held for copying.
+// The data shown by live pages, written by the tracking thread and read by any
+// number of other threads. The lock is only held for copying.
 class ViewState {
  public:
   // Adds news. Poses and images replace earlier ones.
