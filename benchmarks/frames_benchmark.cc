@@ -27,7 +27,7 @@
 #include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/source_kinds.h"
 
 DEFINE_int32(frames, 90, "frames of each sequence, from its start");
 DEFINE_int32(rounds, 5, "how often each method tracks each sequence");
@@ -79,7 +79,7 @@ Sequence LoadFolder() {
   const std::string name = folder.has_filename()
                                ? folder.filename().string()
                                : folder.parent_path().filename().string();
-  return Load(name, TumDataset(options),
+  return Load(name, *OpenTum(options),
               ReadTrajectory((folder / "groundtruth.txt").string()));
 }
 

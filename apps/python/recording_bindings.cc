@@ -19,7 +19,7 @@
 #include "frontend/files/camera_file.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/source_kinds.h"
 
 namespace py = pybind11;
 
@@ -31,19 +31,19 @@ static void EachField(PickledBytes* bytes, Frame& f) {
 
 namespace {
 
-std::unique_ptr<TumDataset> OpenTumDataset(const py::object& folder,
-                                           const RgbdCamera& camera,
-                                           const py::object& associations) {
+std::unique_ptr<Dataset> OpenTumDataset(const py::object& folder,
+                                        const RgbdCamera& camera,
+                                        const py::object& associations) {
   SourceOptions options;
   options.path = PathFrom(folder);
   if (!associations.is_none()) {
     options.associations_file = PathFrom(associations);
   }
   options.camera = camera;
-  return std::make_unique<TumDataset>(options);
+  return OpenTum(options);
 }
 
-Frame ReadFrame(const TumDataset& dataset, int index) {
+Frame ReadFrame(const Dataset& dataset, int index) {
   if (index < 0) index += dataset.size();
   if (index < 0 || index >= dataset.size()) {
     throw py::index_error("the dataset has " + std::to_string(dataset.size()) +
@@ -127,7 +127,7 @@ void BindFrame(py::module_* module) {
 }
 
 void BindTumDataset(py::module_* module) {
-  py::class_<TumDataset>(*module, "TumDataset", R"(
+  py::class_<Dataset>(*module, "TumDataset", R"(
 A sequence in the layout of the TUM RGB-D benchmark, as a sequence of Frame.
 
 folder: with rgb.txt and depth.txt, which are paired by time.
@@ -138,7 +138,7 @@ are accessed, with the GIL released.)")
       .def(py::init(&OpenTumDataset), "Raises InputError for unreadable input.",
            py::arg("folder"), py::arg("camera").none(false),
            py::arg("associations") = py::none())
-      .def("__len__", &TumDataset::size)
+      .def("__len__", &Dataset::size)
       .def("__getitem__", &ReadFrame, py::arg("index"))
       .def("__iter__",
            [](const py::object& self) {
@@ -146,7 +146,7 @@ are accessed, with the GIL released.)")
                  PySeqIter_New(self.ptr()));
            })
       .def_property_readonly(
-          "camera", [](const TumDataset& self) { return self.camera(); },
+          "camera", [](const Dataset& self) { return self.camera(); },
           "camera of all frames");
 }
 

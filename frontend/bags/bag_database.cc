@@ -108,8 +108,7 @@ class BagDatabase final : public BagReader {
               "SELECT id, name, type, serialization_format FROM topics "
               "ORDER BY id");
     while (rows.Next()) {
-      const std::string format = rows.Bytes(3);
-      if (format != "cdr") continue;  // unknown format
+      if (rows.Bytes(3) != "cdr") continue;  // unknown format
       topics_.push_back({rows.Bytes(1), Ros1Type(rows.Bytes(2))});
       names_[rows.Number(0)] = topics_.back().name;
     }
@@ -117,12 +116,6 @@ class BagDatabase final : public BagReader {
     Rows index(path_, database_.get(), "PRAGMA index_list(messages)");
     order_ = index.Next() ? " ORDER BY timestamp, id" : " ORDER BY id";
   }
-
- private:
-  // Databases are closed once their last query has ended.
-  struct Close {
-    void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
-  };
 
   Messages MessagesOf(const std::vector<std::string>& topics) override {
     std::vector<std::string> ids;
@@ -138,20 +131,20 @@ class BagDatabase final : public BagReader {
             Join(ids) + ")" + order_);
     return [this, rows]() -> std::optional<BagMessage> {
       if (!rows->Next()) return std::nullopt;
-      return Message(rows.get());
+      std::string bytes = rows->Bytes(2);
+      const auto unpack = [&] { return UnpackMessage(std::move(bytes)); };
+      return BagMessage{names_.at(rows->Number(0)),
+                        static_cast<double>(rows->Number(1)) * 1e-9,
+                        std::make_shared<std::string>(
+                            Located(path_ + ": a message", unpack))};
     };
   }
 
-  BagMessage Message(Rows* rows) const {
-    BagMessage message;
-    message.topic = names_.at(rows->Number(0));
-    message.received = static_cast<double>(rows->Number(1)) * 1e-9;
-    std::string bytes = rows->Bytes(2);
-    const auto unpack = [&] { return UnpackMessage(std::move(bytes)); };
-    message.bytes =
-        std::make_shared<std::string>(Located(path_ + ": a message", unpack));
-    return message;
-  }
+ private:
+  // Databases are closed once their last query has ended.
+  struct Close {
+    void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
+  };
 
   std::unique_ptr<sqlite3, Close> database_;
   std::map<int64_t, std::string> names_;  // of topics by id

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 #include "frontend/bags/bag_reader.h"
 #include "frontend/bags/chunk_codec.h"
 #include "frontend/bags/ros_messages.h"
@@ -28,13 +29,6 @@ bool IsPartOfBag(const fs::path& path, BagKind kind) {
   const fs::path ending = name.extension();
   return is_ros1 ? ending == ".bag" || ending == ".BAG"
                  : ending == kSqlite || ending == kMcap;
-}
-
-// Natural order of file names: NAME_2.db3 comes before NAME_10.db3.
-bool ComesBefore(const fs::path& a, const fs::path& b) {
-  const std::string first = a.string();
-  const std::string second = b.string();
-  return std::pair(first.size(), first) < std::pair(second.size(), second);
 }
 
 struct RemoveFolder {
@@ -85,7 +79,11 @@ std::vector<fs::path> FilesOf(const std::string& path, BagKind kind) {
   for (const fs::directory_entry& entry : fs::directory_iterator(path, error)) {
     if (IsPartOfBag(entry.path(), kind)) files.push_back(entry.path());
   }
-  std::sort(files.begin(), files.end(), ComesBefore);
+  // Natural order: NAME_2.db3 comes before NAME_10.db3.
+  std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) {
+    return std::pair(a.native().size(), a.native()) <
+           std::pair(b.native().size(), b.native());
+  });
   if (kind == BagKind::kRos1 && !AreNumbered(files)) return {};
   return files;
 }
@@ -142,17 +140,18 @@ class BagFiles final : public BagReader {
     return first;
   }
 
- private:
   Messages MessagesOf(const std::vector<std::string>& topics) override {
-    for (const auto& file : files_) file->Select(topics);
-    return [this, at = size_t{0}]() mutable -> std::optional<BagMessage> {
-      for (; at < files_.size(); ++at) {
-        if (auto message = files_[at]->Next()) return message;
+    std::vector<Messages> parts;
+    for (const auto& file : files_) parts.push_back(file->MessagesOf(topics));
+    return [parts, at = size_t{0}]() mutable -> std::optional<BagMessage> {
+      for (; at < parts.size(); ++at) {
+        if (auto message = parts[at]()) return message;
       }
       return std::nullopt;
     };
   }
 
+ private:
   // Checks that the cameras of a file are the same as in the files before.
   void CheckCameras(BagReader* file) {
     for (const BagTopic& topic : file->topics()) {
@@ -183,7 +182,7 @@ class BagFiles final : public BagReader {
 bool IsBag(const std::string& path, BagKind kind) {
   std::error_code error;
   if (fs::is_directory(path, error)) return !FilesOf(path, kind).empty();
-  return fs::is_regular_file(path, error) && IsPartOfBag(path, kind);
+  return IsFile(path) && IsPartOfBag(path, kind);
 }
 
 std::unique_ptr<BagReader> OpenBag(const std::string& path, BagKind kind) {

@@ -52,7 +52,14 @@ class BagReader {
     return FindNamed(topics_, name);
   }
 
-  // The first messages of a topic, at most `count`. Does not affect Next.
+  // Gives the next message at each call; nothing after the last one, when it
+  // must not be called again. The reader must outlive it.
+  using Messages = std::function<std::optional<BagMessage>()>;
+
+  // The messages of these topics in the order of reception.
+  virtual Messages MessagesOf(const std::vector<std::string>& topics) = 0;
+
+  // The first messages of a topic, at most `count`.
   virtual std::vector<BagMessage> First(const std::string& topic, int count) {
     std::vector<BagMessage> first;
     const Messages next = MessagesOf({topic});
@@ -64,35 +71,13 @@ class BagReader {
     return first;
   }
 
-  // Makes Next return the messages of these topics, starting at the first one.
-  void Select(const std::vector<std::string>& topics) {
-    next_ = MessagesOf(topics);
-  }
-
-  // The next message in the order of reception; nothing after the last one.
-  std::optional<BagMessage> Next() {
-    if (next_ == nullptr) return std::nullopt;
-    std::optional<BagMessage> message = next_();
-    if (!message.has_value()) next_ = nullptr;
-    return message;
-  }
-
  protected:
-  // Gives the next message at each call; nothing after the last one.
-  using Messages = std::function<std::optional<BagMessage>()>;
-
   BagReader(const std::string& path, WireFormat format)
       : path_(path), format_(format) {}
-
-  // The messages of these topics, from the first one.
-  virtual Messages MessagesOf(const std::vector<std::string>& topics) = 0;
 
   const std::string path_;
   WireFormat format_;
   std::vector<BagTopic> topics_;  // filled in by the derived class
-
- private:
-  Messages next_;
 };
 
 // Parses a message by `read`, which takes a WireReader. Adds the names of the

@@ -56,15 +56,6 @@ bool UnpackBz2(std::string_view packed, std::string* unpacked) {
          size == unpacked->size();
 }
 
-#else
-
-std::string WhatIsMissing(std::string_view codec) {
-  return "is compressed with " + std::string(codec) +
-         ", which this build does not support; install libzstd-dev, liblz4-dev "
-         "and libbz2-dev (scripts/install_dependencies formats) and build "
-         "again";
-}
-
 #endif
 
 }  // namespace
@@ -89,7 +80,10 @@ std::string Unpack(std::string_view packed, std::string_view codec,
   if (!is_whole) throw Damaged(kWhat);
   return unpacked;
 #else
-  throw InputError(WhatIsMissing(codec));
+  throw InputError(
+      "is compressed with " + std::string(codec) +
+      ", which this build does not support; install libzstd-dev, liblz4-dev "
+      "and libbz2-dev (scripts/install_dependencies formats) and build again");
 #endif
 }
 
@@ -131,7 +125,7 @@ void UnpackZstdFile(const std::string& packed,
                      "; set TMPDIR to a folder with more space");
   }
 #else
-  throw InputError(packed + ": " + WhatIsMissing("zstd"));
+  Located(packed, [] { Unpack("", "zstd", 0); });
 #endif
 }
 

@@ -63,7 +63,7 @@ class McapRecords {
     uint64_t start = 0;
     if (footer && footer->opcode == kMcapFooter &&
         footer->content.size() == kFooterSize) {
-      start = WireReader(footer->content, WireFormat::kRos1).Number<uint64_t>();
+      start = WireReader(footer->content).Number<uint64_t>();
     }
     if (start >= kMcapMagic.size() && start < size_ - tail) {
       file_.seekg(static_cast<std::streamoff>(start));
@@ -83,27 +83,27 @@ class McapRecords {
       if (has_ended_) return std::nullopt;
       messages_.clear();
       next_ = 0;
+      has_ended_ = true;  // unless the record is good
       std::optional<Record> record = ReadRecord();
       if (!record.has_value()) {
         is_cut_off_ = true;
-        Fail(
-            "is cut off: the recording was not finished properly, or the copy "
-            "is incomplete; run `mcap recover`");
+        throw InputError(
+            path_ +
+            ": is cut off: the recording was not finished properly, or the "
+            "copy is incomplete; run `mcap recover`");
       }
       if (record->opcode == kMcapDataEnd || record->opcode == kMcapFooter) {
-        has_ended_ = true;
         return std::nullopt;
       }
-      try {
+      Located(path_, [&] {
         if (record->opcode == kMcapChunk) {
           TakeChunk(record->content);
         } else {
           chunk_ = std::move(record->content);
           Take(record->opcode, chunk_);
         }
-      } catch (const InputError& error) {
-        Fail(error.what());
-      }
+      });
+      has_ended_ = false;
     }
     return messages_[next_++];
   }
@@ -120,11 +120,6 @@ class McapRecords {
     std::string content;
   };
 
-  [[noreturn]] void Fail(const std::string& what) {
-    has_ended_ = true;
-    throw InputError(path_ + ": " + what);
-  }
-
   // The next record of the file; nothing if the file ends within the record.
   std::optional<Record> ReadRecord() {
     const auto at = static_cast<uint64_t>(file_.tellg());
@@ -132,7 +127,7 @@ class McapRecords {
     if (size_ - at < kRecordHead || !file_.read(head, kRecordHead)) {
       return std::nullopt;
     }
-    WireReader fields({head, kRecordHead}, WireFormat::kRos1);
+    WireReader fields({head, kRecordHead});
     Record record;
     record.opcode = fields.Number<uint8_t>();
     const auto length = fields.Number<uint64_t>();
@@ -145,7 +140,7 @@ class McapRecords {
 
   // Parses a schema, channel or message record and stores the result.
   void Take(uint8_t opcode, std::string_view content) {
-    WireReader fields(content, WireFormat::kRos1);
+    WireReader fields(content);
     if (opcode == kMcapSchema) {
       const auto id = fields.Number<uint16_t>();
       schemas_[id] = fields.Text();
@@ -171,7 +166,7 @@ class McapRecords {
   }
 
   void TakeChunk(std::string_view content) {
-    WireReader chunk(content, WireFormat::kRos1);
+    WireReader chunk(content);
     chunk.Take(2 * sizeof(uint64_t));  // times of the first and last message
     const auto size = chunk.Number<uint64_t>();
     const auto checksum = chunk.Number<uint32_t>();
@@ -183,7 +178,7 @@ class McapRecords {
     if (expected != 0 && expected != checksum) {
       throw Damaged("a chunk does not match its checksum");
     }
-    WireReader records(chunk_, WireFormat::kRos1);
+    WireReader records(chunk_);
     while (!records.rest().empty()) {
       const auto opcode = records.Number<uint8_t>();
       Take(opcode, records.Take(records.Number<uint64_t>()));

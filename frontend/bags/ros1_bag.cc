@@ -22,13 +22,9 @@ enum Ros1Op : uint8_t {
   kConnection = 0x07,
 };
 
-WireReader Reading(std::string_view bytes) {
-  return {bytes, WireFormat::kRos1};
-}
-
 // The value of a header field; empty if the header has no such field.
 std::string_view Field(std::string_view header, std::string_view name) {
-  WireReader fields = Reading(header);
+  WireReader fields(header);
   while (!fields.rest().empty()) {
     const std::string_view field = fields.Bytes();
     if (field.size() > name.size() && field[name.size()] == '=' &&
@@ -41,12 +37,12 @@ std::string_view Field(std::string_view header, std::string_view name) {
 
 template <typename T>
 T NumberField(std::string_view header, std::string_view name) {
-  return Reading(Field(header, name)).Number<T>();
+  return WireReader(Field(header, name)).Number<T>();
 }
 
 // The value of a time field, ns.
 uint64_t TimeField(std::string_view header, std::string_view name) {
-  WireReader time = Reading(Field(header, name));
+  WireReader time(Field(header, name));
   const uint64_t seconds = time.Number<uint32_t>();
   return seconds * 1'000'000'000 + time.Number<uint32_t>();
 }
@@ -107,7 +103,7 @@ class Ros1Bag final : public BagReader {
   std::string ReadBlock() {
     char head[sizeof(uint32_t)];
     file_.read(head, sizeof(head));
-    const auto length = Reading({head, sizeof(head)}).Number<uint32_t>();
+    const auto length = WireReader({head, sizeof(head)}).Number<uint32_t>();
     if (!file_ || length > size_ - static_cast<uint64_t>(file_.tellg())) {
       file_.clear();
       throw Damaged("a record ends too early");
@@ -134,7 +130,7 @@ class Ros1Bag final : public BagReader {
         Chunk chunk;
         chunk.place = NumberField<uint64_t>(header, "chunk_pos");
         chunk.start = TimeField(header, "start_time");
-        WireReader counts = Reading(data);
+        WireReader counts(data);
         while (!counts.rest().empty()) {
           chunk.connections.push_back(counts.Number<uint32_t>());
           if (topics_of_.count(chunk.connections.back()) == 0) {
@@ -200,7 +196,7 @@ class Ros1Bag final : public BagReader {
 
   // Puts the messages of the loaded chunk into `waiting`.
   void TakeMessages(Reader* reader) const {
-    WireReader records = Reading(records_);
+    WireReader records(records_);
     while (!records.rest().empty()) {
       const std::string_view header = records.Bytes();
       const std::string_view data = records.Bytes();

@@ -54,13 +54,6 @@ InputError Unreadable(const std::string& name, std::string_view encoding,
                     ", compressed jpeg and png");
 }
 
-// Reverses the byte order of each number of `size` bytes.
-void SwapBytes(uint8_t* row, size_t row_bytes, size_t size) {
-  for (uint8_t* number = row; number < row + row_bytes; number += size) {
-    std::reverse(number, number + size);
-  }
-}
-
 // The pixels without conversion. Rows of bytes share the memory of the message;
 // wider numbers are copied, as they may not be aligned in the message.
 cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
@@ -88,8 +81,11 @@ cv::Mat PixelRows(const RosImage& image, const Encoding& encoding,
   for (int y = 0; y < height; ++y) {
     std::memcpy(rows.ptr(y), image.data.data() + size_t{image.step} * y,
                 row_bytes);
-    if (image.is_bigendian) {
-      SwapBytes(rows.ptr(y), row_bytes, CV_ELEM_SIZE1(encoding.type));
+  }
+  if (image.is_bigendian) {
+    const size_t size = CV_ELEM_SIZE1(encoding.type);
+    for (uint8_t* at = rows.data; at < rows.dataend; at += size) {
+      std::reverse(at, at + size);
     }
   }
   return rows;
@@ -133,13 +129,9 @@ cv::Mat DecodeCompressedDepth(const RosImage& image, const std::string& name,
   cv::Mat depth =
       DecodeDepthImage(FileIn(image.data.substr(kHeader), name), name);
   if (image.encoding.substr(0, 5) != "32FC1") return depth;
-  for (int y = 0; y < depth.rows; ++y) {
-    uint16_t* row = depth.ptr<uint16_t>(y);
-    for (int x = 0; x < depth.cols; ++x) {
-      if (row[x] == 0) continue;
-      row[x] =
-          RawDepth(quantisation[0] / (row[x] - quantisation[1]), depth_scale);
-    }
+  for (uint16_t& raw : cv::Mat_<uint16_t>(depth)) {
+    if (raw == 0) continue;
+    raw = RawDepth(quantisation[0] / (raw - quantisation[1]), depth_scale);
   }
   return depth;
 }
@@ -188,16 +180,12 @@ cv::Mat DecodeRosDepth(const RosImage& image, const std::string& name,
   if (encoding == nullptr || CV_MAT_DEPTH(encoding->type) == CV_8U) {
     throw Unreadable(name, image.encoding, "depth");
   }
-  cv::Mat rows = PixelRows(image, *encoding, name);
+  const cv::Mat rows = PixelRows(image, *encoding, name);
   if (encoding->type == CV_16UC1) return rows;
   cv::Mat depth(rows.size(), CV_16UC1);
-  for (int y = 0; y < rows.rows; ++y) {
-    const float* metres = rows.ptr<float>(y);
-    uint16_t* raw = depth.ptr<uint16_t>(y);
-    for (int x = 0; x < rows.cols; ++x) {
-      raw[x] = RawDepth(metres[x], depth_scale);
-    }
-  }
+  std::transform(rows.begin<float>(), rows.end<float>(),
+                 depth.begin<uint16_t>(),
+                 [=](float metres) { return RawDepth(metres, depth_scale); });
   return depth;
 }
 

@@ -9,10 +9,6 @@ namespace {
 // Allowed gap between two samples, s.
 constexpr double kAnyGap = std::numeric_limits<double>::infinity();
 
-bool IsEarlier(const StampedPose& pose, double stamp) {
-  return pose.timestamp < stamp;
-}
-
 }  // namespace
 
 void TransformTree::Add(const std::string& parent, const std::string& child,
@@ -28,25 +24,11 @@ void TransformTree::Add(const std::string& parent, const std::string& child,
     return;
   }
   edge.moves = !samples.empty();
-  const auto place =
-      std::lower_bound(samples.begin(), samples.end(), stamp, IsEarlier);
+  const auto place = std::lower_bound(
+      samples.begin(), samples.end(), stamp,
+      [](const StampedPose& pose, double at) { return pose.timestamp < at; });
   if (place != samples.end() && place->timestamp == stamp) return;
   samples.insert(place, {stamp, parent_from_child});
-}
-
-std::optional<std::vector<const TransformTree::Edge*>> TransformTree::Up(
-    const std::string& frame, const std::string& top) const {
-  std::vector<const Edge*> edges;
-  for (const std::string* at = &frame; *at != top;) {
-    const auto edge = edges_.find(*at);
-    // The limit ends the loop if the frames form a cycle.
-    if (edge == edges_.end() || edges.size() == edges_.size()) {
-      return std::nullopt;
-    }
-    edges.push_back(&edge->second);
-    at = &edge->second.parent;
-  }
-  return edges;
 }
 
 std::vector<std::pair<std::string, Rigid3d>> TransformTree::FixedAbove(
@@ -77,20 +59,25 @@ std::optional<Rigid3d> TransformTree::Fixed(const std::string& target,
 
 Trajectory TransformTree::PathOf(const std::string& world,
                                  const std::string& frame) const {
-  const auto edges = Up(frame, world);
-  if (!edges.has_value()) return {};
-  const Edge* most = nullptr;
-  for (const Edge* edge : *edges) {
-    if (!edge->moves) continue;
-    if (most == nullptr || edge->samples.size() > most->samples.size()) {
-      most = edge;
+  std::vector<const Edge*> edges;  // from the frame up to the world
+  const Edge* most = nullptr;      // that moves, with most samples
+  for (const std::string* at = &frame; *at != world;) {
+    const auto found = edges_.find(*at);
+    // The limit ends the loop if the frames form a cycle.
+    if (found == edges_.end() || edges.size() == edges_.size()) return {};
+    const Edge& edge = found->second;
+    if (edge.moves &&
+        (most == nullptr || edge.samples.size() > most->samples.size())) {
+      most = &edge;
     }
+    edges.push_back(&edge);
+    at = &edge.parent;
   }
   if (most == nullptr) return {};
   Trajectory path;
   for (const StampedPose& sample : most->samples) {
     std::optional<Rigid3d> pose = Rigid3d();
-    for (const Edge* edge : *edges) {
+    for (const Edge* edge : edges) {
       const std::optional<Rigid3d> step =
           edge->moves
               ? InterpolatedPose(edge->samples, sample.timestamp, kAnyGap)

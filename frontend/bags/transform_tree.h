@@ -35,11 +35,6 @@ class TransformTree {
     Trajectory samples;
   };
 
-  // The edges from a frame up to `top`, starting with the edge of the frame.
-  // Nothing if `top` is not above the frame.
-  std::optional<std::vector<const Edge*>> Up(const std::string& frame,
-                                             const std::string& top) const;
-
   // The frame and those above it in which it does not move, with the motion
   // from the frame to them.
   std::vector<std::pair<std::string, Rigid3d>> FixedAbove(

@@ -38,7 +38,8 @@ enum class WireFormat {
 class WireReader {
  public:
   // Throws InputError for a kind of CDR that ROS 2 does not write.
-  WireReader(std::string_view message, WireFormat format);
+  explicit WireReader(std::string_view message,
+                      WireFormat format = WireFormat::kRos1);
 
   WireFormat format() const { return format_; }
 

@@ -28,7 +28,7 @@ class BagSource final : public FrameSource {
     std::vector<std::string> wanted = topics_.transforms;
     wanted.push_back(topics_.color);
     wanted.push_back(topics_.depth);
-    bag_->Select(wanted);
+    messages_ = bag_->MessagesOf(wanted);
   }
 
   std::optional<RgbdFrame> Next() override {
@@ -40,7 +40,7 @@ class BagSource final : public FrameSource {
                            std::rethrow_exception(error);
                          }};
       }
-      if (std::optional<StampedPair> pair = pairing_.Take()) {
+      if (const auto pair = pairing_.Take()) {
         return MakeFrame(*pair);
       }
     } while (ReadOn());
@@ -108,7 +108,7 @@ class BagSource final : public FrameSource {
     if (is_read_) return false;
     std::optional<BagMessage> message;
     try {
-      message = bag_->Next();
+      message = messages_();
     } catch (const InputError&) {
       error_ = std::current_exception();  // rethrown after the frames before it
     }
@@ -149,7 +149,7 @@ class BagSource final : public FrameSource {
     }
   }
 
-  RgbdFrame MakeFrame(const StampedPair& pair) {
+  RgbdFrame MakeFrame(const PairedImages<StampedImage>& pair) {
     const int index = num_frames_++;
     last_stamp_ = pair.color.timestamp;
     return {last_stamp_, [this, index, pair] {
@@ -181,6 +181,7 @@ class BagSource final : public FrameSource {
   BagTopics topics_;
   double max_time_difference_;
   FrameAssembly assembly_;
+  BagReader::Messages messages_;
   ImagePairing pairing_;
   TransformTree transforms_;
   Stream color_;

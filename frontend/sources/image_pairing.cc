@@ -1,6 +1,6 @@
 #include "frontend/sources/image_pairing.h"
 
-#include <algorithm>
+#include <iterator>
 #include <utility>
 #include <vector>
 
@@ -9,6 +9,21 @@
 #include "core/util/input_error.h"
 
 namespace rgbd_pose {
+namespace {
+
+// Whether the images that wait take too much time or memory.
+bool IsFull(const std::set<StampedImage>& images) {
+  if (images.empty()) return false;
+  size_t bytes = 0;
+  for (const StampedImage& image : images) {
+    bytes += image.message == nullptr ? 0 : image.message->size();
+  }
+  return bytes > ImagePairing::kMaxBytes ||
+         images.rbegin()->timestamp - images.begin()->timestamp >
+             ImagePairing::kMaxSeconds;
+}
+
+}  // namespace
 
 std::string SameStampRemark(const std::string& recording, int images) {
   return recording + ": " + std::to_string(images) +
@@ -17,84 +32,54 @@ std::string SameStampRemark(const std::string& recording, int images) {
          " left out; are these the times when the images were taken?";
 }
 
-bool ImagePairing::Waiting::Insert(StampedImage image) {
-  const auto place = std::lower_bound(
-      images.begin(), images.end(), image.timestamp,
-      [](const StampedImage& a, double stamp) { return a.timestamp < stamp; });
-  if (place != images.end() && place->timestamp == image.timestamp) {
-    return false;
-  }
-  if (image.message != nullptr) bytes += image.message->size();
-  images.insert(place, std::move(image));
-  return true;
-}
-
-StampedImage ImagePairing::Waiting::Remove(size_t index) {
-  const auto place = images.begin() + static_cast<std::ptrdiff_t>(index);
-  StampedImage image = std::move(*place);
-  if (image.message != nullptr) bytes -= image.message->size();
-  images.erase(place);
-  return image;
-}
-
-bool ImagePairing::Waiting::IsFull() const {
-  return !images.empty() &&
-         (bytes > kMaxBytes ||
-          images.back().timestamp - images.front().timestamp > kMaxSeconds);
-}
-
 bool ImagePairing::AddColor(StampedImage image) {
-  if (last_color_.has_value() && image.timestamp <= *last_color_) {
-    if (image.timestamp < *last_color_) return false;
-    ++same_stamp_;
-    return true;
-  }
-  if (!colors_.Insert(std::move(image))) ++same_stamp_;
+  if (image.timestamp < last_color_) return false;
+  const bool is_new =
+      image.timestamp > last_color_ && colors_.insert(std::move(image)).second;
+  if (!is_new) ++same_stamp_;
   return true;
 }
 
 void ImagePairing::AddDepth(StampedImage image) {
-  if (last_color_.has_value() &&
-      image.timestamp < *last_color_ - max_difference_) {
+  if (image.timestamp < last_color_ - max_difference_) {
     ++late_;
     return;
   }
-  if (!depths_.Insert(std::move(image))) ++same_stamp_;
+  if (!depths_.insert(std::move(image)).second) ++same_stamp_;
   // Without colour images for long, the oldest depth images are left out.
-  while (colors_.images.empty() && depths_.IsFull()) depths_.Remove(0);
+  while (colors_.empty() && IsFull(depths_)) depths_.erase(depths_.begin());
 }
 
 bool ImagePairing::CanDecide() const {
-  if (colors_.images.empty()) return false;
-  return is_finished_ || colors_.IsFull() || depths_.IsFull() ||
-         (colors_.images.size() > kWindow && depths_.images.size() > kWindow);
+  if (colors_.empty()) return false;
+  return is_finished_ || IsFull(colors_) || IsFull(depths_) ||
+         (colors_.size() > kWindow && depths_.size() > kWindow);
 }
 
-std::optional<StampedPair> ImagePairing::Take() {
+std::optional<PairedImages<StampedImage>> ImagePairing::Take() {
   while (CanDecide()) {
-    const std::vector<IndexPair> pairs = Associate(
-        TimesOf(colors_.images), TimesOf(depths_.images), max_difference_);
-    StampedPair pair;
-    pair.color = colors_.Remove(0);
+    const std::vector<IndexPair> pairs =
+        Associate(TimesOf(colors_), TimesOf(depths_), max_difference_);
+    PairedImages<StampedImage> pair;
+    pair.color = colors_.extract(colors_.begin()).value();
     last_color_ = pair.color.timestamp;
     const bool is_paired = !pairs.empty() && pairs.front().first == 0;
     if (is_paired) {
-      pair.depth = depths_.Remove(pairs.front().second);
+      const auto depth = std::next(depths_.begin(), pairs.front().second);
+      pair.depth = depths_.extract(depth).value();
     } else {
       ++unmatched_color_;
     }
     // These depth images are too old for all later colour images.
-    while (!depths_.images.empty() &&
-           depths_.images.front().timestamp < *last_color_ - max_difference_) {
-      depths_.Remove(0);
-    }
+    depths_.erase(depths_.begin(),
+                  depths_.lower_bound({last_color_ - max_difference_, {}}));
     if (is_paired) return pair;
   }
   return std::nullopt;
 }
 
-StreamPair ApproximateTimeSync::Next(const std::string& name,
-                                     const std::function<StreamImage()>& read) {
+PairedImages<StreamImage> ApproximateTimeSync::Next(
+    const std::string& name, const std::function<StreamImage()>& read) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point began = Clock::now();
   std::optional<StreamImage> color;

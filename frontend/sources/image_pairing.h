@@ -2,25 +2,31 @@
 
 #include <atomic>
 #include <chrono>
-#include <deque>
 #include <functional>
+#include <limits>
 #include <memory>
 #include <opencv2/core.hpp>
 #include <optional>
+#include <set>
 #include <string>
 
 namespace rgbd_pose {
 
-// An image that waits for its counterpart.
+// A colour image and its depth image.
+template <typename Image>
+struct PairedImages {
+  Image color;  // its stamp becomes the frame's
+  Image depth;  // near it in time
+};
+
+// An image of a recording, ordered by time.
 struct StampedImage {
   double timestamp = 0.0;                      // s
   std::shared_ptr<const std::string> message;  // serialised
-};
 
-// A colour image and its depth image.
-struct StampedPair {
-  StampedImage color;  // its stamp becomes the frame's
-  StampedImage depth;  // near it in time
+  bool operator<(const StampedImage& other) const {
+    return timestamp < other.timestamp;
+  }
 };
 
 // A remark for users: images were left out because of duplicate stamps.
@@ -47,7 +53,7 @@ class ImagePairing {
 
   // The next pair by time, once it is certain. Nothing: add more images; after
   // Finish: there are no more pairs.
-  std::optional<StampedPair> Take();
+  std::optional<PairedImages<StampedImage>> Take();
 
   // Colour images processed without finding a depth image.
   int unmatched_color() const { return unmatched_color_; }
@@ -69,21 +75,11 @@ class ImagePairing {
   // Whether the depth image of the first colour image is certain.
   bool CanDecide() const;
 
-  // Images of a stream, in order of time.
-  struct Waiting {
-    std::deque<StampedImage> images;
-    size_t bytes = 0;
-
-    // Returns false if there is an image with this stamp.
-    bool Insert(StampedImage image);
-    StampedImage Remove(size_t index);
-    bool IsFull() const;
-  };
-
   const double max_difference_;
-  Waiting colors_;
-  Waiting depths_;
-  std::optional<double> last_color_;  // stamp of the last one processed
+  std::set<StampedImage> colors_;  // that wait for their counterparts
+  std::set<StampedImage> depths_;
+  // Stamp of the last colour image processed.
+  double last_color_ = -std::numeric_limits<double>::infinity();
   bool is_finished_ = false;
   int unmatched_color_ = 0;
   int same_stamp_ = 0;
@@ -95,12 +91,6 @@ struct StreamImage {
   bool is_color = false;  // otherwise depth
   double stamp = 0.0;     // s
   cv::Mat pixels;         // not shared
-};
-
-// A colour and a depth image of the same moment.
-struct StreamPair {
-  StreamImage color;
-  StreamImage depth;
 };
 
 // Pairs the colour and depth images of a live camera, which arrive in any
@@ -116,8 +106,8 @@ class ApproximateTimeSync {
   // The next pair, in order of time. `read` waits for an image and returns it.
   // Rethrows what `read` throws. Throws InputError, which begins with `name`
   // (of the camera), if images come but no pair.
-  StreamPair Next(const std::string& name,
-                  const std::function<StreamImage()>& read);
+  PairedImages<StreamImage> Next(const std::string& name,
+                                 const std::function<StreamImage()>& read);
 
   // Colour images without depth so far. May be called from another thread.
   int unmatched_color() const { return unmatched_color_; }

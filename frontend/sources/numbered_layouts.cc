@@ -120,7 +120,9 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        "",
        1000.0,
        nullptr,
-       ReadFramePoses},
+       [](const NumberedFolder& folder) {
+         return ReadPoseFiles(folder, "frame-%06d.pose.txt");
+       }},
       {"scannet",
        "ScanNet as exported (color/0.jpg, depth/0.png, pose/0.txt, intrinsic/)",
        {"color/*.jpg", "color/*.png"},
@@ -128,7 +130,9 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        "intrinsic/intrinsic_color.txt",
        1000.0,
        ScanNetCamera,
-       ReadPoseFolder},
+       [](const NumberedFolder& folder) {
+         return ReadPoseFiles(folder, "pose/%d.txt");
+       }},
       {"replica",
        "Replica as NICE-SLAM ships it (results/frame000000.jpg, "
        "depth000000.png, traj.txt)",

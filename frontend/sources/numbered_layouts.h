@@ -31,11 +31,9 @@ using NumberedPoses = std::map<int, Rigid3d>;
 // Each returns no poses if its file does not exist, and throws InputError
 // (file:line) if the file holds something else.
 
-// frame-000012.pose.txt: 4 rows of 4 numbers, one file per frame (7-Scenes).
-NumberedPoses ReadFramePoses(const NumberedFolder& folder);
-
-// pose/12.txt, the same format; -inf for a lost frame (ScanNet).
-NumberedPoses ReadPoseFolder(const NumberedFolder& folder);
+// One file per frame, whose `name` has printf's place for the number: 4 rows of
+// 4 numbers; -inf for a lost frame (7-Scenes, ScanNet).
+NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* name);
 
 // traj.txt: the 16 numbers of each frame, in order, one frame per line (Replica
 // as NICE-SLAM ships it).

@@ -44,36 +44,22 @@ void AddPose(const std::vector<double>& m, int number, const std::string& path,
   (*poses)[number] = Rigid3d(Eigen::Quaterniond(rotation), {m[3], m[7], m[11]});
 }
 
-// Reads 16 numbers, in any distribution over the lines, if the file exists.
-void ReadMatrixFile(const fs::path& file, int number, NumberedPoses* poses) {
-  if (!PathExists(file)) return;
-  const std::string path = file.string();
-  std::vector<double> matrix;
-  for (const TextLine& line : ReadTextTable(path)) {
-    AddNumbers(line, path, &matrix);
-  }
-  if (matrix.size() < 16) {
-    throw InputError(path + ": needs 4 rows of 4 numbers");
-  }
-  AddPose(matrix, number, path, 1, poses);
-}
-
 }  // namespace
 
-NumberedPoses ReadFramePoses(const NumberedFolder& folder) {
+NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* name) {
   NumberedPoses poses;
   for (const NumberedFrame& frame : folder.frames) {
-    ReadMatrixFile(folder.path / Format("frame-%06d.pose.txt", frame.number),
-                   frame.number, &poses);
-  }
-  return poses;
-}
-
-NumberedPoses ReadPoseFolder(const NumberedFolder& folder) {
-  NumberedPoses poses;
-  for (const NumberedFrame& frame : folder.frames) {
-    ReadMatrixFile(folder.path / "pose" / Format("%d.txt", frame.number),
-                   frame.number, &poses);
+    const std::string path =
+        (folder.path / Format(name, frame.number)).string();
+    if (!PathExists(path)) continue;
+    std::vector<double> matrix;
+    for (const TextLine& line : ReadTextTable(path)) {
+      AddNumbers(line, path, &matrix);
+    }
+    if (matrix.size() < 16) {
+      throw InputError(path + ": needs 4 rows of 4 numbers");
+    }
+    AddPose(matrix, frame.number, path, 1, &poses);
   }
   return poses;
 }

@@ -9,7 +9,6 @@
 #include "core/util/named_values.h"
 #include "core/util/text_file.h"
 #include "frontend/sources/source_kinds.h"
-#include "frontend/sources/tum_dataset.h"
 
 namespace rgbd_pose {
 namespace {
@@ -49,9 +48,7 @@ const std::vector<SourceType>& Types() {
            return !options.associations_file.empty() ||
                   HasFile(options, "rgb.txt") || HasFile(options, "depth.txt");
          },
-         [](const SourceOptions& options) {
-           return std::make_unique<TumDataset>(options);
-         }},
+         OpenTum},
         BagType(BagKind::kRos1, "rosbag",
                 "ROS 1 bag (.bag, also the RealSense viewer's, or a folder of "
                 "NAME_0.bag, NAME_1.bag, ...)"),

@@ -200,7 +200,7 @@ class OpenNi2Source final : public FrameSource {
     }
   }
 
-  RgbdFrame MakeFrame(const StreamPair& pair) {
+  RgbdFrame MakeFrame(const PairedImages<StreamImage>& pair) {
     const int index = num_frames_++;
     return {pair.color.stamp, [this, index, pair] {
               const auto& [color, depth] = pair;

@@ -4,14 +4,22 @@
 #include <string>
 
 #include "frontend/bags/bag_reader.h"
-#include "frontend/sources/frame_source.h"
+#include "frontend/sources/dataset.h"
 #include "frontend/sources/numbered_layouts.h"
 #include "frontend/sources/source_options.h"
 
 namespace rgbd_pose {
 
-// The sources in the table of open_source.cc, except TumDataset. All throw
-// InputError if neither the recording nor the options specify the camera.
+// The sources in the table of open_source.cc. All throw InputError if neither
+// the recording nor the options specify the camera.
+
+// A sequence in the layout of the TUM RGB-D benchmark: rgb.txt and depth.txt,
+// paired by nearest time (see Associate), or the lines of the associations
+// file. Images with the time stamp of another are left out. Its own camera is
+// in camera.yaml, as written by rgbd_simulate, or in calibration.txt (fx fy cx
+// cy), as in ETH3D; its true path in groundtruth.txt, if that exists. Throws
+// InputError (file:line) for wrong columns and for decreasing time stamps.
+std::unique_ptr<Dataset> OpenTum(const SourceOptions& options);
 
 // The frames of a ROS 1 or ROS 2 bag. Colour and depth images are paired by
 // their stamps while they are read: only the frames in progress are in memory.

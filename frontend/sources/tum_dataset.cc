@@ -1,5 +1,3 @@
-#include "frontend/sources/tum_dataset.h"
-
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
@@ -13,7 +11,9 @@
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/files/image_file.h"
+#include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/image_pairing.h"
+#include "frontend/sources/source_kinds.h"
 
 namespace rgbd_pose {
 namespace {
@@ -26,16 +26,17 @@ struct ListedImage {
   int line;  // line number in its list
 };
 
+struct TumLists {
+  std::vector<PairedImages<ListedImage>> pairs;  // by time; never empty
+  int unmatched_color = 0;  // colour images without a depth image
+  int same_stamp = 0;       // images left out for having the stamp of another
+};
+
 std::string Quote(const TextLine& line) {
   constexpr size_t kMaxLength = 120;
   std::string text = Join(line.words, " ");
   if (text.size() > kMaxLength) text = text.substr(0, kMaxLength) + "...";
   return "'" + text + "'";
-}
-
-ImagePair PairOf(const ListedImage& color, const ListedImage& depth) {
-  return {color.timestamp, depth.timestamp - color.timestamp, color.path,
-          depth.path};
 }
 
 // The image in two columns of a list: its time and its path.
@@ -109,16 +110,62 @@ bool IsDepthImage(const ListedImage& image) {
 // paths in its first line, or else by the images themselves.
 bool IsDepthLeft(const std::string& list, const TextLine& line,
                  const ListedImage& left, const ListedImage& right) {
-  const bool left_named = MentionsDepth(line.words[1]);
-  const bool right_named = MentionsDepth(line.words[3]);
-  if (left_named != right_named) return left_named;
-  const bool left_is_depth = IsDepthImage(left);
-  const bool right_is_depth = IsDepthImage(right);
-  if (left_is_depth != right_is_depth) return left_is_depth;
+  const bool is_named = MentionsDepth(line.words[1]);
+  if (is_named != MentionsDepth(line.words[3])) return is_named;
+  const bool is_depth = IsDepthImage(left);
+  if (is_depth != IsDepthImage(right)) return is_depth;
   throw InputError(list, line.number,
                    "one image of a line must be colour and one depth (16 "
                    "bits, 1 channel): " +
                        Quote(line));
+}
+
+// Pairs rgb.txt and depth.txt by nearest time.
+TumLists ReadTumLists(const std::string& folder, double max_time_difference) {
+  TumLists lists;
+  const std::vector<ListedImage> color =
+      ReadImageList(folder, "rgb.txt", &lists.same_stamp);
+  const std::vector<ListedImage> depth =
+      ReadImageList(folder, "depth.txt", &lists.same_stamp);
+  for (const auto& [i, j] :
+       Associate(TimesOf(color), TimesOf(depth), max_time_difference)) {
+    lists.pairs.push_back({color[i], depth[j]});
+  }
+  if (lists.pairs.empty()) {
+    throw InputError(folder +
+                     Format(": no image of rgb.txt is within %f s of one of "
+                            "depth.txt; the lists start at %f and %f s",
+                            max_time_difference, color.front().timestamp,
+                            depth.front().timestamp));
+  }
+  lists.unmatched_color = static_cast<int>(color.size() - lists.pairs.size());
+  return lists;
+}
+
+// Pairs from lines `time colour_image time depth_image`, or depth first.
+TumLists ReadTumAssociations(const std::string& folder,
+                             const std::string& list) {
+  const std::vector<TextLine> lines =
+      ReadLines(list, 4, "time image time image");
+  std::vector<ListedImage> color;
+  std::vector<ListedImage> depth;
+  for (const TextLine& line : lines) {
+    color.push_back(ImageIn(line, 0, list, folder));
+    depth.push_back(ImageIn(line, 2, list, folder));
+  }
+  if (IsDepthLeft(list, lines.front(), color.front(), depth.front())) {
+    color.swap(depth);
+  }
+  CheckTimeOrder(list, color);
+  TumLists lists;
+  for (size_t i = 0; i < color.size(); ++i) {
+    if (i > 0 && color[i].timestamp == color[i - 1].timestamp) {
+      ++lists.same_stamp;
+    } else {
+      lists.pairs.push_back({color[i], depth[i]});
+    }
+  }
+  return lists;
 }
 
 TumLists ReadLists(const SourceOptions& options) {
@@ -162,88 +209,60 @@ std::optional<CameraSetup> OwnCamera(const SourceOptions& options,
   }
   if (PathExists(folder / "calibration.txt")) {
     return ReadCalibrationText((folder / "calibration.txt").string(),
-                               lists.pairs.front().color_path);
+                               lists.pairs.front().color.path);
   }
   return std::nullopt;
 }
 
+class TumDataset final : public Dataset {
+ public:
+  explicit TumDataset(const SourceOptions& options)
+      : folder_(options.path),
+        lists_(ReadLists(options)),
+        assembly_(ChooseCamera(options, OwnCamera(options, lists_)),
+                  options.keep_color) {}
+
+  int size() const override { return static_cast<int>(lists_.pairs.size()); }
+  double timestamp(int index) const override {
+    return lists_.pairs[index].color.timestamp;
+  }
+  Frame Read(int index) const override {
+    const auto& [color, depth] = lists_.pairs[index];
+    Frame frame = assembly_.Read(color.path, depth.path);
+    frame.index = index;
+    frame.timestamp = color.timestamp;
+    frame.depth_delay = depth.timestamp - color.timestamp;
+    return frame;
+  }
+  const RgbdCamera& camera() const override { return assembly_.camera(); }
+  int unmatched_color() const override { return lists_.unmatched_color; }
+
+  Trajectory ground_truth() const override {
+    const fs::path path = fs::path(folder_) / "groundtruth.txt";
+    if (!PathExists(path)) return {};
+    truth_remarks_.clear();
+    return ReadTrajectory(path.string(), &truth_remarks_);
+  }
+
+  std::vector<std::string> remarks() const override {
+    std::vector<std::string> lines = truth_remarks_;
+    if (lists_.same_stamp > 0) {
+      lines.push_back(SameStampRemark(folder_, lists_.same_stamp));
+    }
+    return lines;
+  }
+
+ private:
+  std::string folder_;
+  TumLists lists_;
+  mutable std::vector<std::string> truth_remarks_;
+  FrameAssembly assembly_;
+};
+
 }  // namespace
 
-TumLists ReadTumLists(const std::string& folder, double max_time_difference) {
-  TumLists lists;
-  const std::vector<ListedImage> color =
-      ReadImageList(folder, "rgb.txt", &lists.same_stamp);
-  const std::vector<ListedImage> depth =
-      ReadImageList(folder, "depth.txt", &lists.same_stamp);
-  for (const auto& [i, j] :
-       Associate(TimesOf(color), TimesOf(depth), max_time_difference)) {
-    lists.pairs.push_back(PairOf(color[i], depth[j]));
-  }
-  if (lists.pairs.empty()) {
-    throw InputError(folder +
-                     Format(": no image of rgb.txt is within %f s of one of "
-                            "depth.txt; the lists start at %f and %f s",
-                            max_time_difference, color.front().timestamp,
-                            depth.front().timestamp));
-  }
-  lists.unmatched_color = static_cast<int>(color.size() - lists.pairs.size());
-  return lists;
-}
-
-TumLists ReadTumAssociations(const std::string& folder,
-                             const std::string& associations_file) {
-  std::vector<ListedImage> left;
-  std::vector<ListedImage> right;
-  const std::vector<TextLine> lines =
-      ReadLines(associations_file, 4, "time image time image");
-  for (const TextLine& line : lines) {
-    left.push_back(ImageIn(line, 0, associations_file, folder));
-    right.push_back(ImageIn(line, 2, associations_file, folder));
-  }
-  const bool depth_left = IsDepthLeft(associations_file, lines.front(),
-                                      left.front(), right.front());
-  const std::vector<ListedImage>& color = depth_left ? right : left;
-  const std::vector<ListedImage>& depth = depth_left ? left : right;
-  CheckTimeOrder(associations_file, color);
-  TumLists lists;
-  for (size_t i = 0; i < color.size(); ++i) {
-    if (i > 0 && color[i].timestamp == color[i - 1].timestamp) {
-      ++lists.same_stamp;
-    } else {
-      lists.pairs.push_back(PairOf(color[i], depth[i]));
-    }
-  }
-  return lists;
-}
-
-TumDataset::TumDataset(const SourceOptions& options)
-    : folder_(options.path),
-      lists_(ReadLists(options)),
-      assembly_(ChooseCamera(options, OwnCamera(options, lists_)),
-                options.keep_color) {}
-
-Frame TumDataset::Read(int index) const {
-  const ImagePair& pair = lists_.pairs[index];
-  Frame frame = assembly_.Read(pair.color_path, pair.depth_path);
-  frame.index = index;
-  frame.timestamp = pair.timestamp;
-  frame.depth_delay = pair.depth_delay;
-  return frame;
-}
-
-Trajectory TumDataset::ground_truth() const {
-  const fs::path path = fs::path(folder_) / "groundtruth.txt";
-  if (!PathExists(path)) return {};
-  truth_remarks_.clear();
-  return ReadTrajectory(path.string(), &truth_remarks_);
-}
-
-std::vector<std::string> TumDataset::remarks() const {
-  std::vector<std::string> lines = truth_remarks_;
-  if (lists_.same_stamp > 0) {
-    lines.push_back(SameStampRemark(folder_, lists_.same_stamp));
-  }
-  return lines;
+std::unique_ptr<Dataset> OpenTum(const SourceOptions& options) {
+  return std::make_unique<TumDataset>(options);
 }
 
 }  // namespace rgbd_pose

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/source_kinds.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace {
@@ -27,10 +27,14 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const std::string file =
       folder.Write("associations.txt", FuzzText(data, size));
   MayRefuse([&] {
-    const TumLists lists = ReadTumAssociations(folder.path(), file);
-    Require(!lists.pairs.empty(), "at least one frame");
-    for (size_t i = 1; i < lists.pairs.size(); ++i) {
-      Require(lists.pairs[i].timestamp > lists.pairs[i - 1].timestamp,
+    SourceOptions options;
+    options.path = folder.path();
+    options.associations_file = file;
+    options.camera = RgbdCamera();
+    const auto dataset = OpenTum(options);
+    Require(dataset->size() > 0, "at least one frame");
+    for (int i = 1; i < dataset->size(); ++i) {
+      Require(dataset->timestamp(i) > dataset->timestamp(i - 1),
               "frames in strict time order");
     }
   });

@@ -19,8 +19,8 @@ void ReadAll(const std::string& path, BagKind kind) {
       MayRefuse([&] { bag->First(topic.name, 2); });
       all.push_back(topic.name);
     }
-    bag->Select(all);
-    while (const auto message = bag->Next()) {
+    const auto next = bag->MessagesOf(all);
+    while (const auto message = next()) {
       Require(bag->FindTopic(message->topic) != nullptr, "a topic");
     }
   });

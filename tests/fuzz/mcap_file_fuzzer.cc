@@ -14,8 +14,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
       MayRefuse([&] { bag->First(topic.name, 2); });
       all.push_back(topic.name);
     }
-    bag->Select(all);
-    while (const auto message = bag->Next()) {
+    const auto next = bag->MessagesOf(all);
+    while (const auto message = next()) {
       Require(bag->FindTopic(message->topic) != nullptr, "a topic");
     }
   });

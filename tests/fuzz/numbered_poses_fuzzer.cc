@@ -14,12 +14,11 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
                            "trajectory.log", "a.gt.freiburg"}) {
     folder.Write(name, text);
   }
-  for (const auto read : {ReadFramePoses, ReadPoseFolder, ReadPoseLines,
-                          ReadPoseLog, ReadMirroredPoses}) {
+  for (const NumberedLayout& layout : NumberedLayouts()) {
     MayRefuse([&] {
       const NumberedFolder frames = {folder.path(),
                                      {{1, "", ""}, {2, "", ""}, {3, "", ""}}};
-      for (const auto& [number, pose] : read(frames)) {
+      for (const auto& [number, pose] : layout.poses(frames)) {
         Require(number >= 1 && number <= 3, "a number that was asked for");
         Require(pose.IsFinite(), "a pose that can be used");
       }

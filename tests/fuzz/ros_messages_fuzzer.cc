@@ -50,7 +50,8 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   const auto format = data[0] % 2 == 0 ? WireFormat::kRos1 : WireFormat::kCdr;
   MayRefuse([&] {
-    ReadMessage(data[0] / 2 % 4, {FuzzText(data + 1, size - 1), format});
+    ReadMessage(data[0] / 2 % 4,
+                WireReader(FuzzText(data + 1, size - 1), format));
   });
   return 0;
 }

@@ -1,6 +1,6 @@
 // rgb.txt and depth.txt, one after the other in the input.
 
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/source_kinds.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
@@ -12,11 +12,14 @@ int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   folder.Write("rgb.txt", NextFile(&rest));
   folder.Write("depth.txt", NextFile(&rest));
   MayRefuse([&] {
-    const TumLists lists = ReadTumLists(folder.path(), 0.02);
-    Require(!lists.pairs.empty(), "at least one frame");
-    Require(lists.unmatched_color >= 0, "a number of images");
-    for (size_t i = 1; i < lists.pairs.size(); ++i) {
-      Require(lists.pairs[i].timestamp > lists.pairs[i - 1].timestamp,
+    SourceOptions options;
+    options.path = folder.path();
+    options.camera = RgbdCamera();
+    const auto dataset = OpenTum(options);
+    Require(dataset->unmatched_color() >= 0, "a number of images");
+    Require(dataset->size() > 0, "at least one frame");
+    for (int i = 1; i < dataset->size(); ++i) {
+      Require(dataset->timestamp(i) > dataset->timestamp(i - 1),
               "frames in strict time order");
     }
   });

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/source_kinds.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 
@@ -68,13 +68,13 @@ class TumSequenceTest : public testing::Test {
   }
 
   void ExpectRefused(const std::vector<std::string>& message_parts) {
-    ExpectInputError([this] { TumDataset{options_}; }, message_parts);
+    ExpectInputError([this] { OpenTum(options_); }, message_parts);
   }
 
   // Expects that the sequence is accepted, but not its first frame.
   void ExpectReadRefused(const std::vector<std::string>& message_parts) {
-    const TumDataset dataset(options_);
-    ExpectInputError([&dataset] { dataset.Read(0); }, message_parts);
+    const auto dataset = OpenTum(options_);
+    ExpectInputError([&dataset] { dataset->Read(0); }, message_parts);
   }
 
   TempFolder folder_;

@@ -65,10 +65,10 @@ TEST_F(McapFileTest, FirstMessagesDoNotDisturbTheOrder) {
   ASSERT_EQ(bag->topics().size(), 3u);
   std::vector<std::string> all;
   for (const BagTopic& topic : bag->topics()) all.push_back(topic.name);
-  bag->Select(all);
+  const auto next = bag->MessagesOf(all);
   double last = 0.0;
   int count = 0;
-  while (const auto message = bag->Next()) {
+  while (const auto message = next()) {
     EXPECT_LE(last, message->received);
     last = message->received;
     ++count;

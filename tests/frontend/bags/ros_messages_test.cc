@@ -55,9 +55,9 @@ void ExpectRead(const WireReader& reader, std::string_view frame) {
 }
 
 TEST(RosMessagesTest, ReadsBytesAsTheStandardsSay) {
-  ExpectRead({BytesOf(kCdr), WireFormat::kCdr}, "cam");
-  ExpectRead({BytesOf(kBigEndianCdr), WireFormat::kCdr}, "cm");
-  ExpectRead({BytesOf(kRos1), WireFormat::kRos1}, "cam");
+  ExpectRead(WireReader(BytesOf(kCdr), WireFormat::kCdr), "cam");
+  ExpectRead(WireReader(BytesOf(kBigEndianCdr), WireFormat::kCdr), "cm");
+  ExpectRead(WireReader(BytesOf(kRos1), WireFormat::kRos1), "cam");
 }
 
 TEST(RosMessagesTest, NumbersOfEightBytesAreAligned) {

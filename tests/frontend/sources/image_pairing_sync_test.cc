@@ -36,7 +36,7 @@ TEST(ApproximateTimeSyncTest, PairsWhatIsNear) {
   Images images({Depth(0.98), Color(1.0), Depth(1.005), Color(1.03),
                  Color(1.06), Depth(1.058), Depth(2.0)});
   const auto read = [&] { return images(); };
-  StreamPair pair = pairing.Next("it", read);
+  PairedImages<StreamImage> pair = pairing.Next("it", read);
   EXPECT_EQ(pair.color.stamp, 1.0);
   EXPECT_EQ(pair.depth.stamp, 1.005);
   EXPECT_EQ(pairing.unmatched_color(), 0);

@@ -2,7 +2,8 @@
 
 #include <filesystem>
 
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/image_pairing.h"
+#include "frontend/sources/source_kinds.h"
 #include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {
@@ -85,15 +86,15 @@ INSTANTIATE_TEST_SUITE_P(
 TEST_F(TumListsTest, TakesOneImageOfATimeStamp) {
   folder_.Write("depth.txt",
                 "1.005 depth/0.png\n1.005 depth/9.png\n1.04 depth/1.png\n");
-  TumLists lists = ReadTumLists(folder_.path(), 0.02);
-  ASSERT_EQ(lists.pairs.size(), 2u);
-  EXPECT_EQ(lists.same_stamp, 1);
-  EXPECT_EQ(lists.pairs[0].depth_path, folder_ / "depth/0.png");
-  const std::string pairs = folder_.Write(
-      "pairs.txt", "1 rgb/0.png 1 depth/0.png\n1 rgb/1.jpg 1 depth/9.png\n");
-  lists = ReadTumAssociations(folder_.path(), pairs);
-  EXPECT_EQ(lists.pairs.size(), 1u);
-  EXPECT_EQ(lists.same_stamp, 1);
+  const std::string remark = SameStampRemark(folder_.path(), 1);
+  auto dataset = OpenTum(options_);
+  ASSERT_EQ(dataset->size(), 2);
+  EXPECT_EQ(dataset->remarks(), std::vector<std::string>{remark});
+  EXPECT_EQ(dataset->Read(0).depth.at<uint16_t>(3, 3), 1000);
+  UseAssociations("1 rgb/0.png 1 depth/0.png\n1 rgb/1.jpg 1 depth/9.png\n");
+  dataset = OpenTum(options_);
+  EXPECT_EQ(dataset->size(), 1);
+  EXPECT_EQ(dataset->remarks(), std::vector<std::string>{remark});
 }
 
 TEST_F(TumListsTest, RefusesAMissingList) {

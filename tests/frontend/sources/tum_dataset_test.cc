@@ -1,5 +1,3 @@
-#include "frontend/sources/tum_dataset.h"
-
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -8,6 +6,7 @@
 #include <thread>
 
 #include "frontend/files/camera_file.h"
+#include "frontend/sources/source_kinds.h"
 #include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {
@@ -16,7 +15,7 @@ namespace {
 using TumDatasetTest = TumSequenceTest;
 
 // Expects all three frames of the fixture.
-void ExpectFrames(const TumDataset& dataset) {
+void ExpectFrames(const Dataset& dataset) {
   ASSERT_EQ(dataset.size(), 3);
   const int images[] = {0, 1, 3};
   const double timestamps[] = {1.00, 1.04, 1.10};
@@ -33,46 +32,46 @@ void ExpectFrames(const TumDataset& dataset) {
 }
 
 TEST_F(TumDatasetTest, AssociatesTheListsItself) {
-  const TumDataset dataset(options_);
-  ExpectFrames(dataset);
-  EXPECT_EQ(dataset.unmatched_color(), 1);
-  EXPECT_EQ(dataset.camera().camera.width, kWidth);
+  const auto dataset = OpenTum(options_);
+  ExpectFrames(*dataset);
+  EXPECT_EQ(dataset->unmatched_color(), 1);
+  EXPECT_EQ(dataset->camera().camera.width, kWidth);
 }
 
 TEST_F(TumDatasetTest, TakesTheTimeDifferenceFromItsOptions) {
   options_.max_time_difference = 0.002;
-  const TumDataset dataset(options_);
-  EXPECT_EQ(dataset.size(), 1);
-  EXPECT_EQ(dataset.timestamp(0), 1.04);
-  EXPECT_EQ(dataset.unmatched_color(), 3);
+  const auto dataset = OpenTum(options_);
+  EXPECT_EQ(dataset->size(), 1);
+  EXPECT_EQ(dataset->timestamp(0), 1.04);
+  EXPECT_EQ(dataset->unmatched_color(), 3);
 }
 
 TEST_F(TumDatasetTest, ReadsGrayAndColor) {
   options_.keep_color = true;
-  const TumDataset dataset(options_);
+  const auto dataset = OpenTum(options_);
   // 0.299 red + 0.587 green + 0.114 blue, rounded; JPEG may be off by 2 levels.
-  EXPECT_NEAR(dataset.Read(0).gray.at<uint8_t>(5, 5), 69, 1);
-  EXPECT_NEAR(dataset.Read(1).gray.at<uint8_t>(5, 5), 70, 2);
-  const cv::Mat color = dataset.Read(2).color;
+  EXPECT_NEAR(dataset->Read(0).gray.at<uint8_t>(5, 5), 69, 1);
+  EXPECT_NEAR(dataset->Read(1).gray.at<uint8_t>(5, 5), 70, 2);
+  const cv::Mat color = dataset->Read(2).color;
   ASSERT_EQ(color.type(), CV_8UC3);
   EXPECT_EQ(color.at<cv::Vec3b>(5, 5), cv::Vec3b(13, 63, 113));
 }
 
 // Keeping colours, e.g. for a cloud, must not change the trajectory.
 TEST_F(TumDatasetTest, KeepsColourWithTheSameGray) {
-  const TumDataset gray_alone(options_);
+  const auto gray_alone = OpenTum(options_);
   options_.keep_color = true;
-  const TumDataset dataset(options_);
-  for (int i = 0; i < dataset.size(); ++i) {
-    EXPECT_TRUE(gray_alone.Read(i).color.empty());
-    const Frame frame = dataset.Read(i);
-    EXPECT_EQ(cv::norm(frame.gray, gray_alone.Read(i).gray, cv::NORM_INF), 0);
+  const auto dataset = OpenTum(options_);
+  for (int i = 0; i < dataset->size(); ++i) {
+    EXPECT_TRUE(gray_alone->Read(i).color.empty());
+    const Frame frame = dataset->Read(i);
+    EXPECT_EQ(cv::norm(frame.gray, gray_alone->Read(i).gray, cv::NORM_INF), 0);
     EXPECT_NEAR(frame.color.at<cv::Vec3b>(5, 5)[2], 110 + i, 3);
   }
 }
 
 TEST_F(TumDatasetTest, DepthIsMetresAndZeroWhereThereIsNone) {
-  const Frame frame = TumDataset(options_).Read(0);
+  const Frame frame = OpenTum(options_)->Read(0);
   EXPECT_EQ(frame.DepthAt(0, 0), 0.0);
   EXPECT_EQ(frame.DepthAt(1, 0), 0.0);
   EXPECT_EQ(frame.DepthAt(2, 0), 1.0);
@@ -82,9 +81,9 @@ TEST_F(TumDatasetTest, TakesCarriageReturnsAndAByteOrderMark) {
   folder_.Write("rgb.txt",
                 "\xEF\xBB\xBF"
                 "1.00 rgb/0.png\r\n1.04 rgb/1.jpg\r\n\r\n1.10 rgb/3.png");
-  const TumDataset dataset(options_);
-  ExpectFrames(dataset);
-  EXPECT_EQ(dataset.unmatched_color(), 0);
+  const auto dataset = OpenTum(options_);
+  ExpectFrames(*dataset);
+  EXPECT_EQ(dataset->unmatched_color(), 0);
 }
 
 TEST_F(TumDatasetTest, TakesAssociationsInEitherOrder) {
@@ -92,52 +91,52 @@ TEST_F(TumDatasetTest, TakesAssociationsInEitherOrder) {
       "1.00 rgb/0.png 1.005 depth/0.png\n"
       "1.04 rgb/1.jpg 1.039 depth/1.png\n"
       "1.10 rgb/3.png 1.11 depth/3.png\n");
-  ExpectFrames(TumDataset(options_));
+  ExpectFrames(*OpenTum(options_));
   UseAssociations(
       "1.005 depth/0.png 1.00 rgb/0.png\n"
       "1.039 depth/1.png 1.04 rgb/1.jpg\n"
       "1.11 depth/3.png 1.10 rgb/3.png\n");
-  ExpectFrames(TumDataset(options_));
+  ExpectFrames(*OpenTum(options_));
 }
 
 TEST_F(TumDatasetTest, SaysHowMuchLaterDepthIs) {
   UseAssociations(
       "1.005 depth/0.png 1.00 rgb/0.png\n"
       "1.039 depth/1.png 1.04 rgb/1.jpg\n");
-  const TumDataset dataset(options_);
+  const auto dataset = OpenTum(options_);
   constexpr double kRounding = 1e-9;  // s
-  EXPECT_NEAR(dataset.Read(0).depth_delay, 0.005, kRounding);
-  EXPECT_NEAR(dataset.Read(1).depth_delay, -0.001, kRounding);
+  EXPECT_NEAR(dataset->Read(0).depth_delay, 0.005, kRounding);
+  EXPECT_NEAR(dataset->Read(1).depth_delay, -0.001, kRounding);
 }
 
 TEST_F(TumDatasetTest, TellsAssociatedImagesApartByLookingAtThem) {
   std::filesystem::rename(folder_ / "depth", folder_ / "d");
   UseAssociations("1.00 rgb/0.png 1.005 d/0.png\n");
-  EXPECT_EQ(TumDataset(options_).timestamp(0), 1.00);
+  EXPECT_EQ(OpenTum(options_)->timestamp(0), 1.00);
   UseAssociations("1.005 d/0.png 1.00 rgb/0.png\n");
-  const TumDataset dataset(options_);
-  EXPECT_EQ(dataset.timestamp(0), 1.00);
-  EXPECT_EQ(dataset.Read(0).depth.at<uint16_t>(3, 3), 1000);
+  const auto dataset = OpenTum(options_);
+  EXPECT_EQ(dataset->timestamp(0), 1.00);
+  EXPECT_EQ(dataset->Read(0).depth.at<uint16_t>(3, 3), 1000);
 }
 
 TEST_F(TumDatasetTest, NeedsNoListsBesideAssociations) {
   std::filesystem::remove(folder_ / "rgb.txt");
   std::filesystem::remove(folder_ / "depth.txt");
   UseAssociations("1.00 rgb/0.png 1.005 depth/0.png\n");
-  EXPECT_EQ(TumDataset(options_).size(), 1);
+  EXPECT_EQ(OpenTum(options_)->size(), 1);
 }
 
 TEST_F(TumDatasetTest, MissesNoImageThatNoFrameNeeds) {
   EXPECT_FALSE(std::filesystem::exists(folder_ / "rgb/2.png"));
-  EXPECT_NO_THROW(TumDataset{options_});
+  EXPECT_NO_THROW(OpenTum(options_));
 }
 
 TEST_F(TumDatasetTest, ReadsFromSeveralThreads) {
-  const TumDataset dataset(options_);
+  const auto dataset = OpenTum(options_);
   std::vector<std::thread> threads(4);
   for (std::thread& thread : threads) {
     thread = std::thread([&dataset] {
-      for (int repeat = 0; repeat < 20; ++repeat) ExpectFrames(dataset);
+      for (int repeat = 0; repeat < 20; ++repeat) ExpectFrames(*dataset);
     });
   }
   for (std::thread& thread : threads) thread.join();
@@ -186,20 +185,20 @@ TEST_P(RealTumDatasetTest, IsReadInFull) {
   SourceOptions options;
   options.path = std::string(data) + "/" + GetParam();
   options.camera = ReadCameraFile(options.path + "/camera.yaml");
-  const TumDataset dataset(options);
-  ASSERT_GT(dataset.size(), 0);
-  for (const int i : {0, dataset.size() - 1}) {
-    const Frame frame = dataset.Read(i);
+  const auto dataset = OpenTum(options);
+  ASSERT_GT(dataset->size(), 0);
+  for (const int i : {0, dataset->size() - 1}) {
+    const Frame frame = dataset->Read(i);
     EXPECT_EQ(frame.gray.size(), frame.depth.size());
     EXPECT_GT(cv::countNonZero(frame.depth), 0);
   }
   // The sequence's association file, if there is one, gives the same result.
   options.associations_file = options.path + "/associations.txt";
   if (!std::filesystem::exists(options.associations_file)) return;
-  const TumDataset associated(options);
-  ASSERT_EQ(associated.size(), dataset.size());
-  for (int i = 0; i < dataset.size(); ++i) {
-    EXPECT_EQ(associated.timestamp(i), dataset.timestamp(i));
+  const auto associated = OpenTum(options);
+  ASSERT_EQ(associated->size(), dataset->size());
+  for (int i = 0; i < dataset->size(); ++i) {
+    EXPECT_EQ(associated->timestamp(i), dataset->timestamp(i));
   }
 }
 

@@ -11,7 +11,7 @@
 #include "core/util/input_error.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/source_kinds.h"
 
 namespace rgbd_pose {
 namespace {
@@ -61,11 +61,11 @@ TEST_F(TumWriterTest, ReadsBackAsWritten) {
   options.path = folder_.string();
   options.camera = ReadCameraFile((folder_ / "camera.yaml").string());
   options.keep_color = true;
-  const TumDataset read(options);
-  ASSERT_EQ(read.size(), dataset.size());
+  const auto read = OpenTum(options);
+  ASSERT_EQ(read->size(), dataset.size());
   for (int i = 0; i < dataset.size(); ++i) {
-    const Frame written = dataset.Read(i), frame = read.Read(i);
-    EXPECT_EQ(read.timestamp(i), dataset.timestamp(i));
+    const Frame written = dataset.Read(i), frame = read->Read(i);
+    EXPECT_EQ(read->timestamp(i), dataset.timestamp(i));
     EXPECT_EQ(cv::norm(frame.color, written.color, cv::NORM_INF), 0.0);
     EXPECT_EQ(cv::norm(frame.depth, written.depth, cv::NORM_INF), 0.0);
   }
@@ -107,7 +107,7 @@ TEST_F(TumWriterTest, KeepsGrayLevelsThatAreNotThoseOfTheColours) {
   WriteTumSequence(&source, folder_.string());
   SourceOptions options;
   options.path = folder_.string();
-  EXPECT_EQ(cv::norm(TumDataset(options).Read(0).gray, source.Read(0).gray,
+  EXPECT_EQ(cv::norm(OpenTum(options)->Read(0).gray, source.Read(0).gray,
                      cv::NORM_INF),
             0.0);
 }
@@ -118,11 +118,12 @@ TEST_F(TumWriterTest, DepthHasItsOwnTime) {
   SourceOptions options;
   options.path = folder_.string();
   options.camera = options_.camera;
-  const TumDataset read(options);
-  ASSERT_EQ(read.size(), 4);
-  for (int i = 0; i < read.size(); ++i) {
-    EXPECT_EQ(read.timestamp(i), SyntheticDataset(options_).timestamp(i));
-    EXPECT_NEAR(read.Read(i).depth_delay, -0.0125, 1e-6);  // digits of the text
+  const auto read = OpenTum(options);
+  ASSERT_EQ(read->size(), 4);
+  for (int i = 0; i < read->size(); ++i) {
+    EXPECT_EQ(read->timestamp(i), SyntheticDataset(options_).timestamp(i));
+    EXPECT_NEAR(read->Read(i).depth_delay, -0.0125,
+                1e-6);  // digits of the text
   }
 }
 

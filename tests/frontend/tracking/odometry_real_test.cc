@@ -7,7 +7,7 @@
 
 #include "core/evaluation/evaluation.h"
 #include "frontend/files/camera_file.h"
-#include "frontend/sources/tum_dataset.h"
+#include "frontend/sources/source_kinds.h"
 #include "tests/support/track_sequence.h"
 
 namespace rgbd_pose {
@@ -24,18 +24,18 @@ class RealSequenceTest : public ::testing::Test {
     folder_ = folder;
   }
 
-  TumDataset Open(const std::string& sequence) const {
+  std::unique_ptr<Dataset> Open(const std::string& sequence) const {
     SourceOptions options;
     options.path = folder_ + "/" + sequence;
     options.camera = ResolveCamera(options.path + "/camera.yaml");
-    return TumDataset(options);
+    return OpenTum(options);
   }
 
   std::string folder_;
 };
 
 TEST_F(RealSequenceTest, RedKitchenIsTrackedThroughout) {
-  const TrackedSequence run = TrackAll(Open("redkitchen400"), "tukey");
+  const TrackedSequence run = TrackAll(*Open("redkitchen400"), "tukey");
   EXPECT_EQ(run.frames.size(), 400u);
   EXPECT_EQ(run.Count(TrackingStatus::kLost), 0);
   const EvaluationReport report =
@@ -46,12 +46,12 @@ TEST_F(RealSequenceTest, RedKitchenIsTrackedThroughout) {
 }
 
 TEST_F(RealSequenceTest, AFarHallIsNotLostAndStandsStill) {
-  const TrackedSequence run = TrackAll(Open("tum_fr2_hall50"), "tukey");
+  const TrackedSequence run = TrackAll(*Open("tum_fr2_hall50"), "tukey");
   EXPECT_EQ(run.Count(TrackingStatus::kLost), 0);
 }
 
 TEST_F(RealSequenceTest, FastRotationIsTracked) {
-  const TrackedSequence run = TrackAll(Open("tum_fr1_360_5"), "tukey");
+  const TrackedSequence run = TrackAll(*Open("tum_fr1_360_5"), "tukey");
   EXPECT_EQ(run.Count(TrackingStatus::kLost), 0);
 }
 
@@ -60,7 +60,8 @@ TEST_F(RealSequenceTest, Freiburg1IsWithinAFewMillimetres) {
   // its frame fits worse than without stamps, and better one image later.
   OdometryOptions options;
   options.shutter = ShutterUse::kNone;
-  const TrackedSequence run = TrackAll(Open("tum_fr1_xyz_3"), "tukey", options);
+  const TrackedSequence run =
+      TrackAll(*Open("tum_fr1_xyz_3"), "tukey", options);
   EXPECT_EQ(run.Count(TrackingStatus::kOk), 3);
   const EvaluationReport report =
       Evaluate(run.trajectory,
