@@ -36,9 +36,8 @@ std::optional<Camera> ReadCamera(BagReader* bag, const std::string& info_topic,
                       bag->path() + ": " + info_topic);
 }
 
-// The stream of an image topic of the RealSense viewer:
-// /device_0/sensor_0/Depth_0 of /device_0/sensor_0/Depth_0/image/data. Empty
-// for other topics.
+// The stream of an image topic of the RealSense viewer: X of X/image/data with
+// X = /device_0/sensor_0/Depth_0. Empty for other topics.
 std::string ViewerStreamOf(const std::string& topic) {
   const std::string ending = "/image/data";
   if (topic.rfind("/device_", 0) != 0 || topic.size() < ending.size() ||

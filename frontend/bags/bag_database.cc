@@ -69,9 +69,9 @@ class Rows {
   sqlite3_stmt* statement_ = nullptr;
 };
 
-// The URI by which a database is opened. It is marked immutable: otherwise
-// sqlite3 writes files next to it, which fails in a read-only folder. A log
-// that a recorder left next to it is an exception: only sqlite3 can merge it.
+// The URI by which a database is opened. Unless a recorder left a log, which
+// only sqlite3 can merge, it is marked immutable: otherwise sqlite3 writes
+// files next to it, which fails in a read-only folder.
 std::string UriOf(const std::string& path) {
   std::string uri = path.front() == '/' ? "file://" : "file:";
   for (const char c : path) {

@@ -52,7 +52,7 @@ class BagReader {
     return FindNamed(topics_, name);
   }
 
-  // Gives the next message at each call; nothing after the last one, when it
+  // Gives the next message at each call; nothing after the last one, then it
   // must not be called again. The reader must outlive it.
   using Messages = std::function<std::optional<BagMessage>()>;
 
@@ -94,18 +94,16 @@ auto ReadMessage(const BagReader& bag, const BagMessage& message, Read read) {
 enum class BagKind { kRos1, kRos2 };
 
 // Whether a path is a bag of this kind, judged by file names: a file, or a
-// folder with the files of one recording. The bag need not be readable.
+// folder with the files of one recording.
 bool IsBag(const std::string& path, BagKind kind);
 
 // Opens a bag. Throws InputError if the path is not a bag, if a file was not
-// closed or is compressed as a whole by anything but zstd, if the files are of
-// several recordings or cameras, and for .db3 in a build without sqlite3.
+// closed, if the files are of several recordings or cameras, and for .db3 in a
+// build without sqlite3.
 std::unique_ptr<BagReader> OpenBag(const std::string& path, BagKind kind);
 
-// Open one file of a given kind. Throw InputError if it is not of this kind. A
-// ROS 1 bag (the RealSense viewer records them as well) must have been closed;
-// each of its chunks is decompressed once, even if the times of chunks overlap.
-// In an mcap file only messages of ROS 2 (cdr) or ROS 1 are read.
+// Open one file. Throw InputError if it is not of this kind. A ROS 1 bag must
+// have been closed. Of an mcap file only messages of ROS are read.
 std::unique_ptr<BagReader> OpenRos1Bag(const std::string& path);
 std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path);
 std::unique_ptr<BagReader> OpenMcapFile(const std::string& path);

@@ -89,8 +89,8 @@ Fitness FitnessOf(BagReader* bag, const BagTopic& topic) {
   return fitness;
 }
 
-// The name of the topic that is most suitable as `what`, which is a member.
-// Sets `had_choice` if others are suitable, too.
+// The topic that is most suitable as `what`. Sets `had_choice` if others are
+// suitable, too.
 std::string Best(const BagReader& bag, const std::vector<Fitness>& fitness,
                  int Fitness::*what, const char* name, bool* had_choice) {
   int most = 1;
@@ -136,7 +136,7 @@ std::string InfoOf(const BagReader& bag, const std::string& image) {
   return "";
 }
 
-// Returns the name if the bag has such a topic of images or of CameraInfo.
+// The name, if the bag has such a topic of images or of CameraInfo.
 std::string Existing(const BagReader& bag, const std::string& name,
                      bool is_image) {
   const BagTopic* topic = bag.FindTopic(name);

@@ -12,7 +12,7 @@
 
 namespace rgbd_pose {
 
-// The names of the topics of an RGB-D recording in a bag.
+// The topics of an RGB-D recording.
 struct BagTopics {
   std::string color;
   std::string depth;
@@ -52,8 +52,8 @@ Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
 // The camera that a bag describes: the colour camera, the depth scale and, if
 // depth is of another camera, that one with its pose from fixed transforms.
 // Nothing if the bag has no CameraInfo. Throws InputError if the description is
-// invalid or incomplete. With `has_camera` only the depth scale and, if
-// described, the depth camera are read; missing parts are then no error.
+// invalid or incomplete. With `has_camera` the colour camera is not read, and
+// missing parts are no error.
 std::optional<CameraSetup> CameraOfBag(BagReader* bag, const BagTopics& topics,
                                        bool has_camera);
 

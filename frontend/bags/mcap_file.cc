@@ -1,5 +1,3 @@
-// Reads mcap files (mcap.dev/spec), only the records needed for messages.
-
 #include <algorithm>
 #include <fstream>
 #include <map>
@@ -36,8 +34,7 @@ struct McapMessage {
 };
 
 // Reads the messages of a file from its beginning, chunk by chunk, within a
-// chunk in order of time. Needs neither index nor summary. In a damaged or cut
-// off file, InputError is thrown after the messages before the damage.
+// chunk in order of time. Throws InputError after the messages before a damage.
 class McapRecords {
  public:
   explicit McapRecords(const std::string& path)

@@ -86,12 +86,7 @@ class Ros1Bag final : public BagReader {
     std::vector<uint32_t> connections;
   };
 
-  // The state of reading the messages of some topics.
-  struct Reader {
-    std::set<uint32_t> connections;               // of the topics
-    size_t chunk = 0;                             // the next chunk to read
-    std::multimap<uint64_t, BagMessage> waiting;  // of chunks read, by time
-  };
+  using MessagesByTime = std::multimap<uint64_t, BagMessage>;
 
   // Runs `call`, which parses parts of the file, and adds advice to its errors.
   template <typename Call>
@@ -146,33 +141,31 @@ class Ros1Bag final : public BagReader {
         [](const Chunk& a, const Chunk& b) { return a.start < b.start; });
   }
 
+  // A chunk is loaded when the time of its first message is reached; its
+  // messages are then kept in `waiting`.
   Messages MessagesOf(const std::vector<std::string>& topics) override {
-    Reader reader;
+    std::set<uint32_t> connections;
     for (const auto& [connection, topic] : topics_of_) {
       if (std::count(topics.begin(), topics.end(), topic) > 0) {
-        reader.connections.insert(connection);
+        connections.insert(connection);
       }
     }
-    return [this, reader]() mutable { return NextOf(&reader); };
-  }
-
-  // The next message of the reader. A chunk is loaded when the time of its
-  // first message is reached; its messages are then kept in `waiting`.
-  std::optional<BagMessage> NextOf(Reader* reader) {
-    auto& waiting = reader->waiting;
-    while (reader->chunk < chunks_.size() &&
-           (waiting.empty() ||
-            chunks_[reader->chunk].start <= waiting.begin()->first)) {
-      const Chunk& chunk = chunks_[reader->chunk++];
-      if (std::any_of(
-              chunk.connections.begin(), chunk.connections.end(),
-              [&](uint32_t of) { return reader->connections.count(of) > 0; })) {
-        Load(chunk);
-        Guarded([&] { TakeMessages(reader); });
+    return [this, connections, next = size_t{0},
+            waiting = MessagesByTime()]() mutable -> std::optional<BagMessage> {
+      while (
+          next < chunks_.size() &&
+          (waiting.empty() || chunks_[next].start <= waiting.begin()->first)) {
+        const Chunk& chunk = chunks_[next++];
+        if (std::any_of(
+                chunk.connections.begin(), chunk.connections.end(),
+                [&](uint32_t of) { return connections.count(of) > 0; })) {
+          Load(chunk);
+          Guarded([&] { TakeMessages(connections, &waiting); });
+        }
       }
-    }
-    if (waiting.empty()) return std::nullopt;
-    return std::move(waiting.extract(waiting.begin()).mapped());
+      if (waiting.empty()) return std::nullopt;
+      return std::move(waiting.extract(waiting.begin()).mapped());
+    };
   }
 
   void Load(const Chunk& chunk) {
@@ -195,18 +188,18 @@ class Ros1Bag final : public BagReader {
   }
 
   // Puts the messages of the loaded chunk into `waiting`.
-  void TakeMessages(Reader* reader) const {
+  void TakeMessages(const std::set<uint32_t>& connections,
+                    MessagesByTime* waiting) const {
     WireReader records(records_);
     while (!records.rest().empty()) {
       const std::string_view header = records.Bytes();
       const std::string_view data = records.Bytes();
       if (NumberField<uint8_t>(header, "op") != kMessageData) continue;
       const auto connection = NumberField<uint32_t>(header, "conn");
-      if (reader->connections.count(connection) == 0) continue;
+      if (connections.count(connection) == 0) continue;
       const uint64_t time = TimeField(header, "time");
-      reader->waiting.emplace(time,
-                              BagMessage{topics_of_.at(connection), 1e-9 * time,
-                                         std::make_shared<std::string>(data)});
+      waiting->emplace(time, BagMessage{topics_of_.at(connection), 1e-9 * time,
+                                        std::make_shared<std::string>(data)});
     }
   }
 

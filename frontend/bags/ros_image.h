@@ -19,8 +19,8 @@ enum class RosImageUse {
 };
 RosImageUse UseOfEncoding(std::string_view encoding);
 
-// Default scale to which depth in metres is converted, raw units per metre. The
-// resolution is 0.2 mm; pixels farther than 13.1 m get no depth.
+// Default scale to which depth in metres is converted, raw units per metre.
+// Pixels farther than 13.1 m get no depth.
 constexpr double kMetricDepthScale = 5000.0;
 
 // Decode an image; `name` is used in error messages. An `image` without a size

@@ -25,20 +25,13 @@ void CheckSize(const FrameAssembly::Named& named, const cv::Size& size,
 
 // Raw depths after an offset (1/m) is added to their inverse.
 cv::Mat Offset(const cv::Mat& depth, double scale, double offset) {
-  cv::Mat moved(depth.size(), CV_16UC1);
+  cv::Mat moved = depth.clone();
   const double per_unit = offset / scale;
-  for (int v = 0; v < depth.rows; ++v) {
-    const auto* from = depth.ptr<uint16_t>(v);
-    auto* to = moved.ptr<uint16_t>(v);
-    for (int u = 0; u < depth.cols; ++u) {
-      const uint16_t raw = from[u];
-      to[u] = 0;
-      if (raw == 0 || raw == Frame::kNoDepth) continue;
-      const double value = raw / (1.0 + per_unit * raw);
-      if (value > 0.0 && value < Frame::kNoDepth - 1) {
-        to[u] = static_cast<uint16_t>(std::lround(value));
-      }
-    }
+  for (uint16_t& raw : cv::Mat_<uint16_t>(moved)) {
+    const double value = raw / (1.0 + per_unit * raw);
+    const bool is_depth =
+        raw != Frame::kNoDepth && value > 0.0 && value < Frame::kNoDepth - 1;
+    raw = is_depth ? static_cast<uint16_t>(std::lround(value)) : 0;
   }
   return moved;
 }

@@ -11,13 +11,12 @@
 
 namespace rgbd_pose {
 
-// Corrects the known depth errors of a camera (RgbdCamera) in a frame: the
-// offset of the inverse depth and the error of the registration. Also sets the
-// frame's shutters to those of the camera.
+// Corrects the known depth errors of a camera (DepthCorrection) in a frame and
+// sets the frame's shutters to those of the camera.
 Frame CorrectDepth(const RgbdCamera& camera, Frame frame);
 
-// Makes frames from the images of a recording, in the same way for all sources:
-// checks image sizes, registers depth to colour if needed, corrects depth.
+// Makes frames from images, in the same way for all sources: checks image
+// sizes, registers depth to colour if needed, corrects depth.
 class FrameAssembly {
  public:
   // Throws InputError for invalid cameras.
@@ -35,9 +34,9 @@ class FrameAssembly {
     std::string name;  // for example its path
   };
 
-  // Makes a frame from decoded images: gray CV_8UC1, the colours if they are
-  // kept, and depth CV_16UC1. Time stamps are not set. Throws InputError if the
-  // images do not fit their cameras. May be called from any thread.
+  // Makes a frame without time stamps from gray CV_8UC1, the colours if they
+  // are kept, and depth CV_16UC1. Throws InputError if the images do not fit
+  // their cameras. Thread-safe.
   Frame Make(const Named& gray, const cv::Mat& color, const Named& depth) const;
 
   // The same from two files.

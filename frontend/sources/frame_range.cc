@@ -75,9 +75,8 @@ class PartialSource final : public FrameSource {
   std::optional<RgbdFrame> Next() override {
     while (!picker_.IsOver()) {
       std::optional<RgbdFrame> next = whole_->Next();
-      if (!next.has_value()) return std::nullopt;
-      if (!picker_.Takes(next->timestamp)) continue;
-      return next->WithIndex(num_taken_++);
+      if (!next.has_value()) break;
+      if (picker_.Takes(next->timestamp)) return next->WithIndex(num_taken_++);
     }
     return std::nullopt;
   }
@@ -130,18 +129,6 @@ class PartialSource final : public FrameSource {
   int num_taken_ = 0;
 };
 
-// A number alone is a range of one frame.
-FrameRange ParseItem(const std::string& item) {
-  const bool is_number = item.find('-') == std::string::npos;
-  const FrameRange range =
-      ParseFrameRange(is_number ? item + "-" + item : item);
-  // Open ranges and times are valid for parts of recordings only.
-  if (item[0] == '-' || range.last == FrameRange().last) {
-    throw InputError("open");
-  }
-  return range;
-}
-
 }  // namespace
 
 bool FrameRange::IsWhole() const {
@@ -180,9 +167,12 @@ FrameSelection::FrameSelection(const std::string& flag,
     return;
   }
   for (const std::string& item : SplitText(text, ',')) {
-    try {
-      ranges_.push_back(ParseItem(item));
-    } catch (const InputError&) {
+    FrameRange& range = ranges_.emplace_back();
+    // A number alone is a range of one frame. Open ranges and times are valid
+    // for parts of recordings only.
+    const bool is_number = item.find('-') == std::string::npos;
+    if (!Parse(is_number ? item + "-" + item : item, &range) ||
+        item[0] == '-' || range.last == FrameRange().last) {
       throw InputError(
           "--" + flag + "=" + text + ": '" + item +
           "' is not a frame number, first-last or first-last:step (first <= "

@@ -30,18 +30,16 @@ struct FrameRange {
 // InputError for any other text.
 FrameRange ParseFrameRange(const std::string& text);
 
-// That part of a source, as a source whose frames are numbered from 0. Frames
-// that are left out are not decoded; those after the part are not requested.
+// That part of a source, as a source whose frames are numbered from 0. Other
+// frames are not decoded. Throws InputError for a part known to have no frames.
 std::unique_ptr<FrameSource> PartOf(std::unique_ptr<FrameSource> whole,
                                     const FrameRange& range);
 
 // Frames chosen by number on the command line: "all", or a list of numbers and
-// ranges first-last or first-last:step, such as "10,20-40,100-200:10" (last
-// included). The empty text chooses none.
+// ranges such as "10,20-40,100-200:10". The empty text chooses none.
 class FrameSelection {
  public:
-  // Throws InputError, which names the flag (given without dashes) and its
-  // text, for any other text.
+  // Throws InputError, which names the flag, for any other text.
   FrameSelection(const std::string& flag, const std::string& text);
 
   // Whether the frame at this place in its dataset (from 0) is selected.

@@ -15,9 +15,8 @@ namespace rgbd_pose {
 struct RgbdFrame {
   double timestamp = 0.0;  // of the colour image, seconds
 
-  // Decodes the frame. May be called in any thread, at the same time as for
-  // other frames, while the source exists. Throws InputError if an image is
-  // unreadable or does not fit the camera.
+  // Decodes the frame, in any thread, while the source exists. Throws
+  // InputError if an image is unreadable or does not fit the camera.
   std::function<Frame()> read;
 
   // The same frame with another index.
@@ -37,8 +36,8 @@ class FrameSource {
   virtual ~FrameSource() = default;
 
   // The next frame; waits for it if necessary. Nothing after the last one. Must
-  // be called from one thread at a time. It should be quick because it cannot
-  // run in parallel, as RgbdFrame::read can.
+  // be called from one thread at a time, and be quick: unlike RgbdFrame::read,
+  // it does not run in parallel.
   virtual std::optional<RgbdFrame> Next() = 0;
 
   // The camera of all frames.
@@ -55,12 +54,10 @@ class FrameSource {
   // Number of colour images left out because they have no depth image.
   virtual int unmatched_color() const { return 0; }
 
-  // Number of camera frames that were left out because they arrived faster than
-  // they were requested.
+  // Number of frames left out as they arrived faster than they were requested.
   virtual int dropped() const { return 0; }
 
-  // What else users should know about images left out or choices made so far,
-  // one line each.
+  // What else users should know about what was left out or chosen, in lines.
   virtual std::vector<std::string> remarks() const { return {}; }
 };
 

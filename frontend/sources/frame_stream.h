@@ -25,8 +25,7 @@ struct StreamedFrame {
 
 // The frames of a source in order, read and prepared ahead by several threads.
 // The thread that calls Next is one of them: if its frame is not ready, it
-// reads one itself instead of sleeping, which keeps all threads busy. The
-// frames do not depend on the number of threads.
+// reads one itself. The frames do not depend on the number of threads.
 class FrameStream {
  public:
   // Processes a frame in the thread that has read it (e.g. Frontend::Prepare).
@@ -43,11 +42,11 @@ class FrameStream {
   ~FrameStream();
 
   // The next frame; nothing after the last one. Must always be called from the
-  // same thread. Rethrows the error of reading this frame; the frame after it
-  // can be requested nevertheless. With `max_damaged` only errors of `prepare`
-  // are rethrown. Unreadable frames are left out; if the source fails or too
-  // many are damaged (at least three; one for a share of 0), the frames end
-  // there. If no frame was read at all, throws the first error.
+  // same thread. Rethrows the error of reading this frame, after which the next
+  // one can be requested. With `max_damaged` only errors of `prepare` are
+  // rethrown: unreadable frames are left out, and the frames end where the
+  // source fails or too many are damaged (at least three; one for a share of
+  // 0). If no frame was read at all, throws the first error.
   std::optional<StreamedFrame> Next();
 
   // The frames left out so far: which image is damaged, and why.

@@ -33,18 +33,18 @@ struct StampedImage {
 std::string SameStampRemark(const std::string& recording, int images);
 
 // Pairs a stream of colour images with a stream of depth images by nearest
-// time, as Associate does for complete lists. It looks at a window of kWindow
-// images of each stream; images may be out of order within it. If one stream
-// lags behind, up to kMaxSeconds or kMaxBytes of the other one are kept.
+// time, as Associate does for complete lists. Images may be out of order within
+// a window of kWindow images of each stream. If one stream lags behind, up to
+// kMaxSeconds or kMaxBytes of the other one are kept.
 class ImagePairing {
  public:
   // `max_difference`: largest time between the two images of a pair, s.
   explicit ImagePairing(double max_difference)
       : max_difference_(max_difference) {}
 
-  // Adds the next image of a stream. Images with a known stamp are left out.
-  // AddColor returns false for an image that is too late, because a later one
-  // has been processed; AddDepth leaves such an image out.
+  // Adds the next image of a stream. Images with a known stamp are left out,
+  // and so are those that come after later ones were processed; AddColor
+  // returns false for these.
   bool AddColor(StampedImage image);
   void AddDepth(StampedImage image);
 
@@ -66,8 +66,7 @@ class ImagePairing {
 
   // How many images of a stream are considered together.
   static constexpr int kWindow = 8;
-  // Limits for one stream that waits for the other: by its stamps (s) and by
-  // memory.
+  // Limits for one stream that waits for the other.
   static constexpr double kMaxSeconds = 30.0;
   static constexpr size_t kMaxBytes = size_t{256} << 20;
 
@@ -103,9 +102,9 @@ class ApproximateTimeSync {
                       std::chrono::milliseconds patience)
       : max_time_difference_(max_time_difference), patience_(patience) {}
 
-  // The next pair, in order of time. `read` waits for an image and returns it.
-  // Rethrows what `read` throws. Throws InputError, which begins with `name`
-  // (of the camera), if images come but no pair.
+  // The next pair, in order of time. `read` waits for an image. Throws what
+  // `read` throws, and InputError, which begins with `name` (of the camera), if
+  // images come but no pair.
   PairedImages<StreamImage> Next(const std::string& name,
                                  const std::function<StreamImage()>& read);
 

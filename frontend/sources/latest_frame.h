@@ -11,9 +11,8 @@
 
 namespace rgbd_pose {
 
-// The frames of a live camera, of which only the newest is kept. A caller that
-// is slower than the camera gets every second or third frame, never an old one;
-// the others are dropped and counted. A separate thread reads the camera.
+// The frames of a live camera, of which only the newest is kept; those that a
+// slower caller misses are counted. A separate thread reads the camera.
 class LatestFrame final : public FrameSource {
  public:
   // Starts to read the camera at once.

@@ -27,9 +27,8 @@ struct NumberedFolder {
 // The poses world_from_cam of frames by their numbers; some may be missing.
 using NumberedPoses = std::map<int, Rigid3d>;
 
-// Readers of the poses of a recording, for the table in numbered_layouts.cc.
-// Each returns no poses if its file does not exist, and throws InputError
-// (file:line) if the file holds something else.
+// Readers of the poses of a recording. Each returns no poses if its file does
+// not exist, and throws InputError (file:line) if it holds something else.
 
 // One file per frame, whose `name` has printf's place for the number: 4 rows of
 // 4 numbers; -inf for a lost frame (7-Scenes, ScanNet).
@@ -47,8 +46,7 @@ NumberedPoses ReadPoseLog(const NumberedFolder& folder);
 // world is mirrored (its y axis is inverted), which is undone (ICL-NUIM).
 NumberedPoses ReadMirroredPoses(const NumberedFolder& folder);
 
-// A layout whose images are numbered and have no time stamps: one row of the
-// table in numbered_layouts.cc.
+// A layout whose images are numbered and have no time stamps.
 struct NumberedLayout {
   const char* name;  // of the source
   const char* what;  // description for messages

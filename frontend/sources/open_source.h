@@ -10,8 +10,8 @@
 namespace rgbd_pose {
 
 // The kinds of recording that OpenSource accepts. The first is auto, which
-// detects the kind. To add a kind, write a FrameSource and add it to the table
-// in open_source.cc.
+// detects the kind. To add one, write a FrameSource and a row in
+// open_source.cc.
 std::vector<std::string> SourceNames();
 
 // Opens a recording. Known depth errors of its camera are corrected in its

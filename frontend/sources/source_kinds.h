@@ -21,14 +21,13 @@ namespace rgbd_pose {
 // InputError (file:line) for wrong columns and for decreasing time stamps.
 std::unique_ptr<Dataset> OpenTum(const SourceOptions& options);
 
-// The frames of a ROS 1 or ROS 2 bag. Colour and depth images are paired by
-// their stamps while they are read: only the frames in progress are in memory.
-// The bag's own camera comes from its CameraInfo. The true path is the motion
-// of the colour camera in the frame `world` according to the /tf messages read
-// so far, as a motion capture system publishes them. Throws InputError if the
-// bag has no colour or no depth images. Next throws it if no two images form a
-// pair and, if the bag is damaged, after the frames before the damage. A
-// damaged message counts as an unreadable frame.
+// The frames of a ROS 1 or ROS 2 bag, whose images are paired by their stamps
+// while they are read. The bag's own camera comes from its CameraInfo. The true
+// path is the motion of the colour camera in the frame `world` according to the
+// /tf messages read so far, as a motion capture system publishes them. Throws
+// InputError if the bag has no colour or no depth images. Next throws it if no
+// two images form a pair and, if the bag is damaged, after the frames before
+// the damage. A damaged message counts as an unreadable frame.
 std::unique_ptr<FrameSource> OpenBagSource(std::unique_ptr<BagReader> bag,
                                            const SourceOptions& options);
 
@@ -41,21 +40,19 @@ bool IsNumbered(const NumberedLayout& layout, const std::string& folder);
 std::unique_ptr<FrameSource> OpenNumbered(const NumberedLayout& layout,
                                           const SourceOptions& options);
 
-// Opens a folder that the app Stray Scanner recorded with a phone with LiDAR.
-// Images of rgb.mp4 are scaled to at most 640 px width, or to the width of the
+// A folder that the app Stray Scanner recorded with a phone with LiDAR. Images
+// of rgb.mp4 are scaled to at most 640 px width, or to the width of the
 // options' camera, and to the focal length of camera_matrix.csv; depth/ and
 // confidence/ are resampled to that size. ARKit's path in odometry.csv is the
-// ground truth. Next decodes all images of the video in order. Throws
-// InputError for missing or inconsistent files, and in a build without video;
-// Next throws it where the video ends too early.
+// ground truth. Throws InputError for missing or inconsistent files, and in a
+// build without video; Next throws it where the video ends too early.
 std::unique_ptr<FrameSource> OpenStrayScanner(const SourceOptions& options);
 
-// Opens a camera with an OpenNI 2 driver (Kinect, Xtion, Astra) by its URI, or
-// `any`. The camera registers depth to colour unless the options specify the
-// depth camera. Frames that arrive faster than requested are dropped
-// (LatestFrame). If the options have no camera, the focal lengths follow from
-// the angles of view. Throws InputError if the camera is missing or has no
-// colour or no depth, and in a build without OpenNI 2.
+// A camera with an OpenNI 2 driver (Kinect, Xtion, Astra) by its URI, or `any`,
+// as a LatestFrame. The camera registers depth to colour unless the options
+// specify the depth camera. Without a camera in the options the focal lengths
+// follow from the angles of view. Throws InputError if the camera is missing or
+// has no colour or no depth, and in a build without OpenNI 2.
 std::unique_ptr<FrameSource> OpenOpenNi2(const SourceOptions& options);
 
 }  // namespace rgbd_pose

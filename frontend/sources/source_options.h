@@ -16,8 +16,8 @@ struct SourceOptions {
   // pairs are used as they are. Empty: the recording specifies its pairs.
   std::string associations_file;
 
-  // Topics of a bag: colour, depth and, unless it is the one that belongs to
-  // colour, camera_info. Empty: chosen by their types.
+  // Topics of a bag: colour, depth and, if it is not next to colour, its
+  // camera_info. Empty: chosen by their types.
   std::vector<std::string> topics;
 
   // What it specifies overrides the recording. Nothing: the recording must

@@ -58,56 +58,7 @@ cv::Mat WithGrayOf(const Frame& frame) {
   return color;
 }
 
-// The images are written by the threads that read them, the lists at the end.
-WrittenSequence WriteFrames(FrameSource* source, const fs::path& folder,
-                            const TumWriterOptions& options) {
-  FrameStream stream(
-      source,
-      [&folder](const Frame& frame) {
-        WritePng(folder / ImagePath("rgb", frame.timestamp),
-                 frame.color.empty() ? frame.gray : WithGrayOf(frame));
-        WritePng(folder / ImagePath("depth", DepthStamp(frame)), frame.depth);
-      },
-      std::max(1, options.threads), options.max_damaged);
-  const char* const kinds[] = {"rgb", "depth"};
-  std::string lists[] = {"# timestamp filename\n", "# timestamp filename\n"};
-  WrittenSequence written;
-  while (const std::optional<StreamedFrame> next = stream.Next()) {
-    const double stamps[] = {next->frame.timestamp, DepthStamp(next->frame)};
-    for (int i = 0; i < 2; ++i) {
-      lists[i] +=
-          FormatStamp(stamps[i]) + " " + ImagePath(kinds[i], stamps[i]) + "\n";
-    }
-    ++written.frames;
-    if (options.progress) options.progress(written.frames);
-  }
-  for (int i = 0; i < 2; ++i) {
-    WriteFileAtomically((folder / (std::string(kinds[i]) + ".txt")).string(),
-                        lists[i]);
-  }
-  written.damaged = stream.damaged();
-  written.stopped = stream.stopped();
-  return written;
-}
-
-WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
-                         const TumWriterOptions& options) {
-  fs::create_directories(folder / "rgb");
-  fs::create_directories(folder / "depth");
-  WrittenSequence written = WriteFrames(source, folder, options);
-  const Trajectory ground_truth =
-      options.ground_truth ? options.ground_truth() : source->ground_truth();
-  if (!ground_truth.empty()) {
-    WriteFileAtomically((folder / "groundtruth.txt").string(),
-                        FormatTrajectory(ground_truth));
-  }
-  WriteFileAtomically((folder / "camera.yaml").string(),
-                      FormatCameraYaml(source->camera()));
-  return written;
-}
-
-}  // namespace
-
+// The text of camera.yaml.
 std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
   const Camera& camera = rgbd_camera.camera;
   std::string text = "%YAML:1.0\n";
@@ -134,6 +85,50 @@ std::string FormatCameraYaml(const RgbdCamera& rgbd_camera) {
   }
   return text;
 }
+
+// The images are written by the threads that read them, the lists at the end.
+WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
+                         const TumWriterOptions& options) {
+  fs::create_directories(folder / "rgb");
+  fs::create_directories(folder / "depth");
+  FrameStream stream(
+      source,
+      [&folder](const Frame& frame) {
+        WritePng(folder / ImagePath("rgb", frame.timestamp),
+                 frame.color.empty() ? frame.gray : WithGrayOf(frame));
+        WritePng(folder / ImagePath("depth", DepthStamp(frame)), frame.depth);
+      },
+      std::max(1, options.threads), options.max_damaged);
+  const char* const kinds[] = {"rgb", "depth"};
+  std::string lists[] = {"# timestamp filename\n", "# timestamp filename\n"};
+  WrittenSequence written;
+  while (const std::optional<StreamedFrame> next = stream.Next()) {
+    const double stamps[] = {next->frame.timestamp, DepthStamp(next->frame)};
+    for (int i = 0; i < 2; ++i) {
+      lists[i] +=
+          FormatStamp(stamps[i]) + " " + ImagePath(kinds[i], stamps[i]) + "\n";
+    }
+    ++written.frames;
+    if (options.progress) options.progress(written.frames);
+  }
+  for (int i = 0; i < 2; ++i) {
+    WriteFileAtomically((folder / (std::string(kinds[i]) + ".txt")).string(),
+                        lists[i]);
+  }
+  written.damaged = stream.damaged();
+  written.stopped = stream.stopped();
+  const Trajectory ground_truth =
+      options.ground_truth ? options.ground_truth() : source->ground_truth();
+  if (!ground_truth.empty()) {
+    WriteFileAtomically((folder / "groundtruth.txt").string(),
+                        FormatTrajectory(ground_truth));
+  }
+  WriteFileAtomically((folder / "camera.yaml").string(),
+                      FormatCameraYaml(source->camera()));
+  return written;
+}
+
+}  // namespace
 
 WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
                                  const TumWriterOptions& options) {

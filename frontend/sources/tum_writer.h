@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "core/evaluation/trajectory.h"
-#include "core/geometry/camera.h"
 #include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {
@@ -33,15 +32,11 @@ struct WrittenSequence {
 // Writes all frames of a source in the layout of the TUM RGB-D benchmark:
 // rgb/*.png (grey if the source keeps no colour) and depth/*.png, named by
 // their time stamps, rgb.txt, depth.txt, groundtruth.txt if there is a true
-// path, and camera.yaml in ORB-SLAM2's format. Missing parent folders are
-// created. The sequence is written to FOLDER.partial (leftovers of an earlier
-// run are deleted), which is renamed at the end: it exists as a whole or not at
-// all. Throws InputError if `folder` is a file, is not empty or cannot be
-// written, and for an unreadable frame.
+// path, and camera.yaml in ORB-SLAM2's format. The sequence exists as a whole
+// or not at all: it is written to FOLDER.partial, which is renamed at the end.
+// Throws InputError if `folder` is a file, is not empty or cannot be written,
+// and for an unreadable frame.
 WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
                                  const TumWriterOptions& options = {});
-
-// The text of camera.yaml: the camera, its depth scale and its shutters.
-std::string FormatCameraYaml(const RgbdCamera& camera);
 
 }  // namespace rgbd_pose

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/util/input_error.h"
+#include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/sources/source_kinds.h"
@@ -145,7 +146,9 @@ TEST_F(TumWriterTest, CameraReadsBackExactly) {
 }
 
 TEST_F(TumWriterTest, CameraSaysWhenRowsAreExposed) {
-  EXPECT_EQ(FormatCameraYaml(options_.camera).find("color_"),
+  const fs::path without = parent_ / "without";
+  Write(without.string());
+  EXPECT_EQ(ReadTextFile((without / "camera.yaml").string()).find("color_"),
             std::string::npos);
   options_.color_shutter = {-0.0075, 0.028};
   options_.depth_shutter = {0.0125, -0.027};
