@@ -16,7 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr char kSqlite[] = ".db3";
 constexpr char kMcap[] = ".mcap";
 constexpr char kPacked[] = ".zstd";
 constexpr char kUnclosed[] = ".active";
@@ -28,7 +27,7 @@ bool IsPartOfBag(const fs::path& path, BagKind kind) {
                             : path.filename();
   const fs::path ending = name.extension();
   return is_ros1 ? ending == ".bag" || ending == ".BAG"
-                 : ending == kSqlite || ending == kMcap;
+                 : ending == ".db3" || ending == kMcap;
 }
 
 struct RemoveFolder {

@@ -21,8 +21,6 @@ constexpr uint64_t kMaxSize = uint64_t{1} << 28;
 
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
 
-using ZstdStream = std::unique_ptr<ZSTD_DStream, size_t (*)(ZSTD_DStream*)>;
-
 bool UnpackZstd(std::string_view packed, std::string* unpacked) {
   return ZSTD_decompress(unpacked->data(), unpacked->size(), packed.data(),
                          packed.size()) == unpacked->size();
@@ -33,18 +31,12 @@ bool UnpackLz4(std::string_view packed, std::string* unpacked) {
   if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION))) {
     return false;
   }
-  size_t taken = 0, given = 0, left = 1;
-  while (left != 0) {
-    size_t source = packed.size() - taken;
-    size_t target = unpacked->size() - given;
-    left = LZ4F_decompress(context, unpacked->data() + given, &target,
-                           packed.data() + taken, &source, nullptr);
-    if (LZ4F_isError(left) || (source == 0 && target == 0)) break;
-    taken += source;
-    given += target;
-  }
+  size_t source = packed.size();
+  size_t target = unpacked->size();
+  const size_t left = LZ4F_decompress(context, unpacked->data(), &target,
+                                      packed.data(), &source, nullptr);
   LZ4F_freeDecompressionContext(context);
-  return left == 0 && given == unpacked->size();
+  return left == 0 && target == unpacked->size();
 }
 
 bool UnpackBz2(std::string_view packed, std::string* unpacked) {
@@ -103,7 +95,8 @@ void UnpackZstdFile(const std::string& packed,
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
   std::ifstream from(packed, std::ios::binary);
   std::ofstream to(unpacked, std::ios::binary);
-  const ZstdStream stream(ZSTD_createDStream(), ZSTD_freeDStream);
+  const std::unique_ptr<ZSTD_DStream, decltype(&ZSTD_freeDStream)> stream(
+      ZSTD_createDStream(), ZSTD_freeDStream);
   std::vector<char> read(ZSTD_DStreamInSize());
   std::vector<char> written(ZSTD_DStreamOutSize());
   const auto num_read = static_cast<std::streamsize>(read.size());

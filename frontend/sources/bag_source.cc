@@ -12,8 +12,6 @@
 namespace rgbd_pose {
 namespace {
 
-constexpr char kWorld[] = "world";
-
 class BagSource final : public FrameSource {
  public:
   BagSource(std::unique_ptr<BagReader> bag, const SourceOptions& options)
@@ -59,7 +57,7 @@ class BagSource final : public FrameSource {
   const RgbdCamera& camera() const override { return assembly_.camera(); }
 
   Trajectory ground_truth() const override {
-    return transforms_.PathOf(kWorld, color_.frame);
+    return transforms_.PathOf("world", color_.frame);
   }
 
   int unmatched_color() const override { return pairing_.unmatched_color(); }

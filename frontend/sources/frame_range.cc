@@ -32,25 +32,24 @@ bool ParseEnd(std::string_view text, End* end) {
       end->is_time || (end->value == std::floor(end->value) &&
                        end->value < std::numeric_limits<int>::max());
   return error == std::errc() && rest == stop && std::isfinite(end->value) &&
-         !std::signbit(end->value) && is_number;
+         is_number;
 }
 
 bool Parse(std::string_view text, FrameRange* range) {
-  const size_t dash = text.find('-');
-  const size_t colon = std::min(text.find(':'), text.size());
+  const std::vector<std::string> parts = SplitText(text, ':');
+  const std::vector<std::string> ends = SplitText(parts[0], '-');
   End first;
   End last;
-  if (dash > colon || !ParseEnd(text.substr(0, dash), &first) ||
-      !ParseEnd(text.substr(dash + 1, colon - dash - 1), &last)) {
+  if (parts.size() > 2 || ends.size() != 2 || !ParseEnd(ends[0], &first) ||
+      !ParseEnd(ends[1], &last) || (!first.is_given && !last.is_given)) {
     return false;
   }
-  if (colon < text.size()) {
-    const char* const end = text.data() + text.size();
+  if (parts.size() == 2) {
+    const char* const end = parts[1].data() + parts[1].size();
     const auto [rest, error] =
-        std::from_chars(text.data() + colon + 1, end, range->step);
+        std::from_chars(parts[1].data(), end, range->step);
     if (error != std::errc() || rest != end || range->step < 1) return false;
   }
-  if (!first.is_given && !last.is_given) return false;
   const bool is_time = first.is_given ? first.is_time : last.is_time;
   if (first.is_given && last.is_given &&
       (first.is_time != last.is_time || last.value < first.value)) {
@@ -131,12 +130,6 @@ class PartialSource final : public FrameSource {
 
 }  // namespace
 
-bool FrameRange::IsWhole() const {
-  const FrameRange whole;
-  return first == whole.first && last == whole.last &&
-         begin_s == whole.begin_s && end_s == whole.end_s && step == 1;
-}
-
 FrameRange ParseFrameRange(const std::string& text) {
   FrameRange range;
   if (text.empty() || Parse(text, &range)) return range;
@@ -148,7 +141,6 @@ FrameRange ParseFrameRange(const std::string& text) {
 
 std::unique_ptr<FrameSource> PartOf(std::unique_ptr<FrameSource> whole,
                                     const FrameRange& range) {
-  if (range.IsWhole()) return whole;
   const size_t frames = whole->timestamps().size();
   auto part = std::make_unique<PartialSource>(std::move(whole), range);
   if (frames > 0 && part->timestamps().empty()) {

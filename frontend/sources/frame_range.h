@@ -20,9 +20,6 @@ struct FrameRange {
   double end_s = std::numeric_limits<double>::infinity();
 
   int step = 1;  // every n-th frame of the range, first included
-
-  // Whether the range is the whole recording.
-  bool IsWhole() const;
 };
 
 // Parses "100-400", "100-400:2" (every second frame), "100-" (to the end) or

@@ -27,25 +27,6 @@ struct NumberedFolder {
 // The poses world_from_cam of frames by their numbers; some may be missing.
 using NumberedPoses = std::map<int, Rigid3d>;
 
-// Readers of the poses of a recording. Each returns no poses if its file does
-// not exist, and throws InputError (file:line) if it holds something else.
-
-// One file per frame, whose `name` has printf's place for the number: 4 rows of
-// 4 numbers; -inf for a lost frame (7-Scenes, ScanNet).
-NumberedPoses ReadPoseFiles(const NumberedFolder& folder, const char* name);
-
-// traj.txt: the 16 numbers of each frame, in order, one frame per line (Replica
-// as NICE-SLAM ships it).
-NumberedPoses ReadPoseLines(const NumberedFolder& folder);
-
-// trajectory.log: for each frame, in order, a line of three integers and 4 rows
-// of 4 numbers (Redwood, Open3D).
-NumberedPoses ReadPoseLog(const NumberedFolder& folder);
-
-// *.gt.freiburg: TUM text in which the time is the frame's number, from 1. The
-// world is mirrored (its y axis is inverted), which is undone (ICL-NUIM).
-NumberedPoses ReadMirroredPoses(const NumberedFolder& folder);
-
 // A layout whose images are numbered and have no time stamps.
 struct NumberedLayout {
   const char* name;  // of the source
@@ -63,6 +44,8 @@ struct NumberedLayout {
   // specify it; null: none of this layout does.
   std::optional<CameraSetup> (*camera)(const NumberedFolder& folder);
 
+  // Reads the true poses. None if their file does not exist. Throws InputError
+  // (file:line) if it holds something else.
   NumberedPoses (*poses)(const NumberedFolder& folder);
 };
 

@@ -35,15 +35,6 @@ std::string Reason() {
   return reason.substr(first, reason.find_last_not_of(kWhiteSpace) + 1 - first);
 }
 
-// Initialises the library once. It is never shut down, as this would unload
-// drivers, some of which have threads that still run.
-void RequireLibrary() {
-  static const openni::Status status = openni::OpenNI::initialize();
-  if (status != openni::STATUS_OK) {
-    throw InputError("OpenNI 2 cannot be initialised: " + Reason());
-  }
-}
-
 // How suitable a mode is: best with the image size of TUM's recordings, with
 // one of the first formats, and with their rate. 0: its format is not read.
 int ScoreOf(const openni::VideoMode& mode,
@@ -63,7 +54,12 @@ class OpenNi2Source final : public FrameSource {
       : name_(options.path),
         pairing_(options.max_time_difference,
                  std::chrono::milliseconds(kPatienceMs)) {
-    RequireLibrary();
+    // The library is never shut down, as this would unload drivers, some of
+    // which have threads that still run.
+    static const openni::Status status = openni::OpenNI::initialize();
+    if (status != openni::STATUS_OK) {
+      throw InputError("OpenNI 2 cannot be initialised: " + Reason());
+    }
     Open(options);
     assembly_ = std::make_unique<FrameAssembly>(
         ChooseCamera(options, OwnCamera(options.camera.has_value())),
