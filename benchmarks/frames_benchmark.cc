@@ -27,7 +27,7 @@
 #include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_path.h"
-#include "frontend/sources/source_kinds.h"
+#include "frontend/sources/open_source.h"
 
 DEFINE_int32(frames, 90, "frames of each sequence, from its start");
 DEFINE_int32(rounds, 5, "how often each method tracks each sequence");

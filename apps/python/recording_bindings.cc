@@ -19,7 +19,6 @@
 #include "frontend/files/camera_file.h"
 #include "frontend/sources/frame_range.h"
 #include "frontend/sources/open_source.h"
-#include "frontend/sources/source_kinds.h"
 
 namespace py = pybind11;
 

@@ -60,31 +60,22 @@ Fitness FitnessOf(BagReader* bag, const BagTopic& topic) {
   if (first.empty()) return fitness;
   const RosImage image = ReadImageOf(*bag, first.front());
   const std::string name = LowerCase(topic.name);
-  const bool is_raw = topic.type == kImage;
-  const int if_raw = is_raw ? 1 : 0;
+  const int if_raw = topic.type == kImage ? 1 : 0;
   fitness.encoding = image.encoding;
   RosImageUse use = UseOfEncoding(fitness.encoding);
   // The format of a compressed PNG image does not say that it is depth.
   const bool may_be_depth = use == RosImageUse::kGrayOrDepth ||
-                            (use == RosImageUse::kColor && !is_raw);
+                            (use == RosImageUse::kColor && if_raw == 0);
   if (may_be_depth && Contains(name, "depth")) use = RosImageUse::kDepth;
-  switch (use) {
-    case RosImageUse::kColor:
-      fitness.color = 40 + if_raw;
-      break;
-    case RosImageUse::kGray:
-      fitness.color =
-          (Contains(name, "infra") || Contains(name, "/ir") ? 10 : 20) + if_raw;
-      break;
-    case RosImageUse::kDepth:
-    case RosImageUse::kMetricDepth:
-      fitness.depth = (IsCalledRegistered(name) ? 40 : 20) + if_raw;
-      break;
-    case RosImageUse::kGrayOrDepth:
-      fitness.depth = 5 + if_raw;
-      break;
-    case RosImageUse::kOther:
-      break;
+  if (use == RosImageUse::kColor) {
+    fitness.color = 40 + if_raw;
+  } else if (use == RosImageUse::kGray) {
+    const bool is_infrared = Contains(name, "infra") || Contains(name, "/ir");
+    fitness.color = (is_infrared ? 10 : 20) + if_raw;
+  } else if (use == RosImageUse::kGrayOrDepth) {
+    fitness.depth = 5 + if_raw;
+  } else if (use != RosImageUse::kOther) {
+    fitness.depth = (IsCalledRegistered(name) ? 40 : 20) + if_raw;
   }
   return fitness;
 }

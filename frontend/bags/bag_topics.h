@@ -23,10 +23,9 @@ struct BagTopics {
 };
 
 // Chooses the topics given by `names` (colour, depth and, unless it is next to
-// colour, CameraInfo). If `names` is empty, chooses by types, encodings and
-// topic names; depth that is registered to colour is preferred, and raw images
-// are preferred to compressed ones. Throws InputError, which lists the topics,
-// if no topic is suitable or several are equally suitable.
+// colour, CameraInfo) or, if there are none, by types, encodings and names.
+// Throws InputError, which lists the topics, if no topic is suitable or several
+// are equally suitable.
 BagTopics ChooseTopics(BagReader* bag, const std::vector<std::string>& names);
 
 // Whether the name of a topic contains `part`.

@@ -248,8 +248,7 @@ class McapFile final : public BagReader {
     if (!summary.empty()) return summary;
     McapRecords records(path);
     try {
-      while (records.Next().has_value()) {
-      }
+      while (records.Next().has_value()) continue;
     } catch (const InputError&) {
       if (records.channels().empty()) throw;
     }

@@ -82,11 +82,7 @@ Trajectory TransformTree::PathOf(const std::string& world,
           edge->moves
               ? InterpolatedPose(edge->samples, sample.timestamp, kAnyGap)
               : edge->samples.front().world_from_cam;
-      if (!step.has_value()) {
-        pose.reset();
-        break;
-      }
-      *pose = *step * *pose;
+      pose = pose && step ? std::optional(*step * *pose) : std::nullopt;
     }
     if (pose.has_value()) path.push_back({sample.timestamp, *pose});
   }

@@ -10,7 +10,7 @@
 #include "frontend/frame/depth_registration.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "frontend/simulation/synthetic_renderer.h"
-#include "frontend/sources/dataset.h"
+#include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {
 

@@ -6,6 +6,7 @@
 #include <mutex>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "frontend/sources/frame_source.h"
 
@@ -16,21 +17,63 @@ namespace rgbd_pose {
 class LatestFrame final : public FrameSource {
  public:
   // Starts to read the camera at once.
-  explicit LatestFrame(std::unique_ptr<FrameSource> camera);
+  explicit LatestFrame(std::unique_ptr<FrameSource> camera)
+      : camera_(std::move(camera)), thread_(&LatestFrame::Run, this) {}
 
   // Waits until the camera has delivered its next frame.
-  ~LatestFrame() override;
+  ~LatestFrame() override {
+    {
+      const std::lock_guard<std::mutex> lock(mutex_);
+      is_closing_ = true;
+    }
+    thread_.join();
+  }
 
   // Waits for a frame that was not returned yet. Rethrows the camera's error.
-  std::optional<RgbdFrame> Next() override;
+  std::optional<RgbdFrame> Next() override {
+    std::unique_lock<std::mutex> lock(mutex_);
+    changed_.wait(lock, [this] { return newest_.has_value() || is_over_; });
+    if (newest_.has_value()) {
+      return std::exchange(newest_, std::nullopt)->WithIndex(taken_++);
+    }
+    if (error_ != nullptr) {
+      std::rethrow_exception(std::exchange(error_, nullptr));
+    }
+    return std::nullopt;
+  }
 
   const RgbdCamera& camera() const override { return camera_->camera(); }
   Trajectory ground_truth() const override { return camera_->ground_truth(); }
   int unmatched_color() const override { return camera_->unmatched_color(); }
-  int dropped() const override;
+  int dropped() const override {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return dropped_;
+  }
 
  private:
-  void Run();
+  void Run() {
+    bool goes_on = true;
+    while (goes_on) {
+      std::optional<RgbdFrame> next;
+      std::exception_ptr error;
+      try {
+        next = camera_->Next();
+      } catch (...) {
+        error = std::current_exception();
+      }
+      {
+        const std::lock_guard<std::mutex> lock(mutex_);
+        goes_on = next.has_value() && !is_closing_;
+        is_over_ = !goes_on;
+        error_ = error;
+        if (next.has_value()) {
+          if (newest_.has_value()) ++dropped_;
+          newest_ = std::move(next);
+        }
+      }
+      changed_.notify_all();
+    }
+  }
 
   std::unique_ptr<FrameSource> camera_;
   mutable std::mutex mutex_;  // guards all members below

@@ -5,8 +5,8 @@
 
 #include "core/util/input_error.h"
 #include "core/util/text_file.h"
-#include "frontend/sources/dataset.h"
 #include "frontend/sources/frame_assembly.h"
+#include "frontend/sources/frame_source.h"
 #include "frontend/sources/numbered_layouts.h"
 #include "frontend/sources/source_kinds.h"
 

@@ -244,9 +244,7 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        "7-Scenes (frame-000000.color.png, .depth.png, .pose.txt)",
        {"frame-*.color.png", "frame-*.color.jpg"},
        {"frame-*.depth.png"},
-       "",
        1000.0,
-       nullptr,
        [](const NumberedFolder& folder) {
          return ReadPoseFiles(folder, "frame-%06d.pose.txt");
        }},
@@ -254,40 +252,38 @@ const std::vector<NumberedLayout>& NumberedLayouts() {
        "ScanNet as exported (color/0.jpg, depth/0.png, pose/0.txt, intrinsic/)",
        {"color/*.jpg", "color/*.png"},
        {"depth/*.png"},
-       "intrinsic/intrinsic_color.txt",
        1000.0,
-       ScanNetCamera,
        [](const NumberedFolder& folder) {
          return ReadPoseFiles(folder, "pose/%d.txt");
-       }},
+       },
+       ScanNetCamera,
+       "intrinsic/intrinsic_color.txt"},
       {"replica",
        "Replica as NICE-SLAM ships it (results/frame000000.jpg, "
        "depth000000.png, traj.txt)",
        {"results/frame*.jpg", "results/frame*.png"},
        {"results/depth*.png"},
-       "",
        6553.5,
-       ReplicaCamera,
-       ReadPoseLines},
+       ReadPoseLines,
+       ReplicaCamera},
       {"icl_nuim",
        "ICL-NUIM in TUM's PNG files (rgb/0.png, depth/0.png, "
        "associations.txt)",
        {"rgb/*.png"},
        {"depth/*.png"},
-       "associations.txt",
        5000.0,
+       ReadMirroredPoses,
        IclCamera,
-       ReadMirroredPoses},
+       "associations.txt"},
       {"open3d",
        "Open3D, Redwood (color/, rgb/ or image/, and depth/ with numbered "
        "images, intrinsic.json)",
        {"color/*.jpg", "color/*.png", "rgb/*.jpg", "rgb/*.png", "image/*.jpg",
         "image/*.png"},
        {"depth/*.png"},
-       "",
        1000.0,
-       Open3dCamera,
-       ReadPoseLog},
+       ReadPoseLog,
+       Open3dCamera},
   };
   return layouts;
 }

@@ -37,16 +37,17 @@ struct NumberedLayout {
   std::vector<std::string> color;
   std::vector<std::string> depth;
 
-  const char* mark;    // a file that only this layout has; "": none needed
   double depth_scale;  // raw units per metre
-
-  // Reads the camera, given at least one frame. Nothing if the folder does not
-  // specify it; null: none of this layout does.
-  std::optional<CameraSetup> (*camera)(const NumberedFolder& folder);
 
   // Reads the true poses. None if their file does not exist. Throws InputError
   // (file:line) if it holds something else.
   NumberedPoses (*poses)(const NumberedFolder& folder);
+
+  // Reads the camera, given at least one frame. Nothing if the folder does not
+  // specify it; null: none of this layout does.
+  std::optional<CameraSetup> (*camera)(const NumberedFolder& folder) = nullptr;
+
+  const char* mark = "";  // a file that only this layout has; "": none needed
 };
 
 // Frames per second: all are from a Kinect or rendered as if.

@@ -13,7 +13,7 @@
 #include "frontend/files/image_file.h"
 #include "frontend/sources/frame_assembly.h"
 #include "frontend/sources/image_pairing.h"
-#include "frontend/sources/source_kinds.h"
+#include "frontend/sources/open_source.h"
 
 namespace rgbd_pose {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <map>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
 #include <system_error>
@@ -99,21 +100,20 @@ WrittenSequence WriteAll(FrameSource* source, const fs::path& folder,
         WritePng(folder / ImagePath("depth", DepthStamp(frame)), frame.depth);
       },
       std::max(1, options.threads), options.max_damaged);
-  const char* const kinds[] = {"rgb", "depth"};
-  std::string lists[] = {"# timestamp filename\n", "# timestamp filename\n"};
+  const std::string head = "# timestamp filename\n";
+  std::map<std::string, std::string> lists = {{"rgb", head}, {"depth", head}};
+  const auto add = [&lists](const std::string& kind, double stamp) {
+    lists[kind] += FormatStamp(stamp) + " " + ImagePath(kind, stamp) + "\n";
+  };
   WrittenSequence written;
   while (const std::optional<StreamedFrame> next = stream.Next()) {
-    const double stamps[] = {next->frame.timestamp, DepthStamp(next->frame)};
-    for (int i = 0; i < 2; ++i) {
-      lists[i] +=
-          FormatStamp(stamps[i]) + " " + ImagePath(kinds[i], stamps[i]) + "\n";
-    }
+    add("rgb", next->frame.timestamp);
+    add("depth", DepthStamp(next->frame));
     ++written.frames;
     if (options.progress) options.progress(written.frames);
   }
-  for (int i = 0; i < 2; ++i) {
-    WriteFileAtomically((folder / (std::string(kinds[i]) + ".txt")).string(),
-                        lists[i]);
+  for (const auto& [kind, list] : lists) {
+    WriteFileAtomically((folder / (kind + ".txt")).string(), list);
   }
   written.damaged = stream.damaged();
   written.stopped = stream.stopped();

@@ -2,7 +2,7 @@
 
 #include <opencv2/imgcodecs.hpp>
 
-#include "frontend/sources/source_kinds.h"
+#include "frontend/sources/open_source.h"
 #include "tests/fuzz/fuzz_input.h"
 
 namespace {

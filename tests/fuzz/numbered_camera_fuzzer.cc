@@ -1,7 +1,7 @@
 // Cameras of recordings in numbered files: the input as each kind of file.
 
 #include "frontend/sources/numbered_layouts.h"
-#include "frontend/sources/source_options.h"
+#include "frontend/sources/open_source.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

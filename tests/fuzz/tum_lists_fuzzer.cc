@@ -1,6 +1,6 @@
 // rgb.txt and depth.txt, one after the other in the input.
 
-#include "frontend/sources/source_kinds.h"
+#include "frontend/sources/open_source.h"
 #include "tests/fuzz/fuzz_input.h"
 
 int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {

@@ -7,7 +7,7 @@
 #include "core/geometry/rigid3.h"
 #include "frontend/simulation/synthetic_dataset.h"
 #include "frontend/simulation/synthetic_renderer.h"
-#include "frontend/sources/dataset.h"
+#include "frontend/sources/frame_source.h"
 
 namespace rgbd_pose {
 

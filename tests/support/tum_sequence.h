@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "frontend/sources/source_kinds.h"
+#include "frontend/sources/open_source.h"
 #include "tests/support/expect_input_error.h"
 #include "tests/support/temp_folder.h"
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "frontend/sources/dataset.h"
+#include "frontend/sources/frame_source.h"
 #include "tests/support/expect_input_error.h"
 
 namespace rgbd_pose {

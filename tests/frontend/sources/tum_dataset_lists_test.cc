@@ -3,7 +3,7 @@
 #include <filesystem>
 
 #include "frontend/sources/image_pairing.h"
-#include "frontend/sources/source_kinds.h"
+#include "frontend/sources/open_source.h"
 #include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {

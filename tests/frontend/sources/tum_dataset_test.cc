@@ -6,7 +6,7 @@
 #include <thread>
 
 #include "frontend/files/camera_file.h"
-#include "frontend/sources/source_kinds.h"
+#include "frontend/sources/open_source.h"
 #include "tests/support/tum_sequence.h"
 
 namespace rgbd_pose {

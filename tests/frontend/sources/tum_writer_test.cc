@@ -12,7 +12,7 @@
 #include "core/util/text_file.h"
 #include "frontend/files/camera_file.h"
 #include "frontend/simulation/synthetic_dataset.h"
-#include "frontend/sources/source_kinds.h"
+#include "frontend/sources/open_source.h"
 
 namespace rgbd_pose {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "core/evaluation/evaluation.h"
 #include "frontend/files/camera_file.h"
-#include "frontend/sources/source_kinds.h"
+#include "frontend/sources/open_source.h"
 #include "tests/support/track_sequence.h"
 
 namespace rgbd_pose {
