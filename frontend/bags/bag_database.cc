@@ -3,9 +3,7 @@
 #ifdef RGBD_POSE_HAS_SQLITE
 #include <sqlite3.h>
 
-#include <algorithm>
 #include <filesystem>
-#include <map>
 
 #include "core/util/text_file.h"
 #include "frontend/bags/chunk_codec.h"
@@ -109,8 +107,7 @@ class BagDatabase final : public BagReader {
               "ORDER BY id");
     while (rows.Next()) {
       if (rows.Bytes(3) != "cdr") continue;  // unknown format
-      topics_.push_back({rows.Bytes(1), Ros1Type(rows.Bytes(2))});
-      names_[rows.Number(0)] = topics_.back().name;
+      AddTopic(rows.Number(0), rows.Bytes(1), rows.Bytes(2));
     }
     // Sorting by time without an index would sort whole rows with their data.
     Rows index(path_, database_.get(), "PRAGMA index_list(messages)");
@@ -119,11 +116,8 @@ class BagDatabase final : public BagReader {
 
   Messages MessagesOf(const std::vector<std::string>& topics) override {
     std::vector<std::string> ids;
-    for (const auto& [id, name] : names_) {
-      if (std::count(topics.begin(), topics.end(), name) > 0) {
-        ids.push_back(std::to_string(id));
-      }
-    }
+    for (const int64_t id : NumbersOf(topics))
+      ids.push_back(std::to_string(id));
     // The plus makes sqlite3 go through the messages by time, not by topic.
     const auto rows = std::make_shared<Rows>(
         path_, database_.get(),
@@ -147,7 +141,6 @@ class BagDatabase final : public BagReader {
   };
 
   std::unique_ptr<sqlite3, Close> database_;
-  std::map<int64_t, std::string> names_;  // of topics by id
   std::string order_;
 };
 

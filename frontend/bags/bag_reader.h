@@ -1,8 +1,12 @@
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
+#include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -17,14 +21,6 @@ struct BagTopic {
   std::string name;  // with the leading slash
   std::string type;  // in the form of ROS 1: sensor_msgs/Image
 };
-
-// The ROS 1 name of a type: sensor_msgs/Image for sensor_msgs/msg/Image.
-inline std::string Ros1Type(std::string type) {
-  constexpr std::string_view kPart = "/msg/";
-  const size_t place = type.find(kPart);
-  if (place != std::string::npos) type.replace(place, kPart.size(), "/");
-  return type;
-}
 
 // A message as stored in the bag, not yet parsed.
 struct BagMessage {
@@ -75,9 +71,30 @@ class BagReader {
   BagReader(const std::string& path, WireFormat format)
       : path_(path), format_(format) {}
 
+  // Adds a topic by its number in the file. It has one for each publisher.
+  void AddTopic(int64_t number, const std::string& name, std::string type) {
+    constexpr std::string_view kRos2Part = "/msg/";
+    const size_t place = type.find(kRos2Part);
+    if (place != type.npos) type.replace(place, kRos2Part.size(), "/");
+    if (FindTopic(name) == nullptr) topics_.push_back({name, type});
+    names_[number] = name;
+  }
+
+  // The numbers of topics in the file.
+  std::set<int64_t> NumbersOf(const std::vector<std::string>& topics) const {
+    std::set<int64_t> numbers;
+    for (const auto& [number, name] : names_) {
+      if (std::count(topics.begin(), topics.end(), name) > 0) {
+        numbers.insert(number);
+      }
+    }
+    return numbers;
+  }
+
   const std::string path_;
   WireFormat format_;
-  std::vector<BagTopic> topics_;  // filled in by the derived class
+  std::vector<BagTopic> topics_;
+  std::map<int64_t, std::string> names_;  // of topics by number
 };
 
 // Parses a message by `read`, which takes a WireReader. Adds the names of the

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
+#include <set>
 #include <utility>
 
 #include "core/util/input_error.h"
@@ -213,11 +214,7 @@ class McapFile final : public BagReader {
         others.push_back(channel.encoding);
         continue;
       }
-      // A topic has one channel per publisher.
-      if (FindTopic(channel.topic) == nullptr) {
-        topics_.push_back({channel.topic, Ros1Type(channel.type)});
-      }
-      names_[number] = channel.topic;
+      AddTopic(number, channel.topic, channel.type);
     }
     if (topics_.empty() && !others.empty()) {
       throw InputError(path + ": has messages encoded as " + Join(others) +
@@ -228,9 +225,10 @@ class McapFile final : public BagReader {
   std::vector<BagMessage> First(const std::string& topic, int count) override {
     std::vector<BagMessage> first;
     McapRecords records(path_);
+    const std::set<int64_t> channels = NumbersOf({topic});
     try {
       while (static_cast<int>(first.size()) < count) {
-        std::optional<BagMessage> message = NextOf(&records, {topic});
+        std::optional<BagMessage> message = NextOf(&records, channels);
         if (!message.has_value()) break;
         first.push_back(*std::move(message));
       }
@@ -257,24 +255,20 @@ class McapFile final : public BagReader {
 
   Messages MessagesOf(const std::vector<std::string>& topics) override {
     const auto records = std::make_shared<McapRecords>(path_);
-    return [this, records, topics] { return NextOf(records.get(), topics); };
+    return [this, records, channels = NumbersOf(topics)] {
+      return NextOf(records.get(), channels);
+    };
   }
 
-  std::optional<BagMessage> NextOf(
-      McapRecords* records, const std::vector<std::string>& topics) const {
+  std::optional<BagMessage> NextOf(McapRecords* records,
+                                   const std::set<int64_t>& channels) const {
     while (const std::optional<McapMessage> message = records->Next()) {
-      const auto name = names_.find(message->channel);
-      if (name == names_.end() ||
-          std::count(topics.begin(), topics.end(), name->second) == 0) {
-        continue;
-      }
-      return BagMessage{name->second, 1e-9 * message->log_time,
+      if (channels.count(message->channel) == 0) continue;
+      return BagMessage{names_.at(message->channel), 1e-9 * message->log_time,
                         std::make_shared<std::string>(message->bytes)};
     }
     return std::nullopt;
   }
-
-  std::map<uint16_t, std::string> names_;  // of topics by channel id
 };
 
 }  // namespace

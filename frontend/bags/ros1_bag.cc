@@ -115,12 +115,9 @@ class Ros1Bag final : public BagReader {
       const std::string data = ReadBlock();
       const auto op = NumberField<uint8_t>(header, "op");
       if (op == kConnection) {
-        const std::string topic(Field(header, "topic"));
-        // A topic has one connection per publisher.
-        if (FindTopic(topic) == nullptr) {
-          topics_.push_back({topic, std::string(Field(data, "type"))});
-        }
-        topics_of_[NumberField<uint32_t>(header, "conn")] = topic;
+        AddTopic(NumberField<uint32_t>(header, "conn"),
+                 std::string(Field(header, "topic")),
+                 std::string(Field(data, "type")));
       } else if (op == kChunkInfo) {
         Chunk chunk;
         chunk.place = NumberField<uint64_t>(header, "chunk_pos");
@@ -128,7 +125,7 @@ class Ros1Bag final : public BagReader {
         WireReader counts(data);
         while (!counts.rest().empty()) {
           chunk.connections.push_back(counts.Number<uint32_t>());
-          if (topics_of_.count(chunk.connections.back()) == 0) {
+          if (names_.count(chunk.connections.back()) == 0) {
             throw Damaged("a chunk has messages without a topic");
           }
           counts.Number<uint32_t>();
@@ -144,13 +141,7 @@ class Ros1Bag final : public BagReader {
   // A chunk is loaded when the time of its first message is reached; its
   // messages are then kept in `waiting`.
   Messages MessagesOf(const std::vector<std::string>& topics) override {
-    std::set<uint32_t> connections;
-    for (const auto& [connection, topic] : topics_of_) {
-      if (std::count(topics.begin(), topics.end(), topic) > 0) {
-        connections.insert(connection);
-      }
-    }
-    return [this, connections, next = size_t{0},
+    return [this, connections = NumbersOf(topics), next = size_t{0},
             waiting = MessagesByTime()]() mutable -> std::optional<BagMessage> {
       while (
           next < chunks_.size() &&
@@ -188,7 +179,7 @@ class Ros1Bag final : public BagReader {
   }
 
   // Puts the messages of the loaded chunk into `waiting`.
-  void TakeMessages(const std::set<uint32_t>& connections,
+  void TakeMessages(const std::set<int64_t>& connections,
                     MessagesByTime* waiting) const {
     WireReader records(records_);
     while (!records.rest().empty()) {
@@ -198,15 +189,14 @@ class Ros1Bag final : public BagReader {
       const auto connection = NumberField<uint32_t>(header, "conn");
       if (connections.count(connection) == 0) continue;
       const uint64_t time = TimeField(header, "time");
-      waiting->emplace(time, BagMessage{topics_of_.at(connection), 1e-9 * time,
+      waiting->emplace(time, BagMessage{names_.at(connection), 1e-9 * time,
                                         std::make_shared<std::string>(data)});
     }
   }
 
   std::ifstream file_;
   uint64_t size_ = 0;
-  std::map<uint32_t, std::string> topics_of_;  // by connection
-  std::vector<Chunk> chunks_;                  // in order of time
+  std::vector<Chunk> chunks_;  // in order of time
   const Chunk* loaded_ = nullptr;
   std::string records_;  // of the loaded chunk
 };

@@ -69,7 +69,7 @@ bool Parse(std::string_view text, FrameRange* range) {
 class PartialSource final : public FrameSource {
  public:
   PartialSource(std::unique_ptr<FrameSource> whole, const FrameRange& range)
-      : whole_(std::move(whole)), picker_(range) {}
+      : whole_(std::move(whole)), picker_{range} {}
 
   std::optional<RgbdFrame> Next() override {
     while (!picker_.IsOver()) {
@@ -84,7 +84,7 @@ class PartialSource final : public FrameSource {
 
   std::vector<double> timestamps() const override {
     std::vector<double> part;
-    Picker picker(picker_.range);
+    Picker picker{picker_.range};
     for (const double timestamp : whole_->timestamps()) {
       if (picker.IsOver()) break;
       if (picker.Takes(timestamp)) part.push_back(timestamp);
@@ -104,7 +104,11 @@ class PartialSource final : public FrameSource {
  private:
   // Decides for one frame after the other whether it is in the range.
   struct Picker {
-    explicit Picker(const FrameRange& of_range) : range(of_range) {}
+    FrameRange range;
+    double start = 0.0;
+    double after_s = 0.0;
+    int number = 0;
+    int num_in = 0;
 
     // Whether the next frame is selected.
     bool Takes(double timestamp) {
@@ -115,12 +119,6 @@ class PartialSource final : public FrameSource {
       return is_in && num_in++ % range.step == 0;
     }
     bool IsOver() const { return number > range.last || after_s > range.end_s; }
-
-    FrameRange range;
-    double start = 0.0;
-    double after_s = 0.0;
-    int number = 0;
-    int num_in = 0;
   };
 
   std::unique_ptr<FrameSource> whole_;

@@ -48,10 +48,9 @@ cv::Mat WithGrayOf(const Frame& frame) {
       for (int turn = 0;; ++turn) {
         const int lack = wanted[x] - GrayLevel(bgr[2], bgr[1], bgr[0]);
         if (lack == 0) break;
+        const int step = turn == 0 ? lack : lack > 0 ? 1 : -1;
         for (int k = 0; k < 3; ++k) {
-          bgr[k] = cv::saturate_cast<uint8_t>(bgr[k] + (turn == 0  ? lack
-                                                        : lack > 0 ? 1
-                                                                   : -1));
+          bgr[k] = cv::saturate_cast<uint8_t>(bgr[k] + step);
         }
       }
     }
