@@ -153,12 +153,8 @@ Camera CameraOfInfo(const RosCameraInfo& info, bool is_rectified,
   // librealsense uses the last name.
   const bool is_equidistant = model == "equidistant" || model == "fisheye" ||
                               model == "Kannala Brandt4";
-  const bool is_distorted =
-      !by_p && !info.d.empty() &&
-      (is_equidistant ||
-       std::any_of(info.d.begin(), info.d.end(),
-                   [](double value) { return value != 0.0; }));
-  if (is_distorted) {
+  const size_t zeros = std::count(info.d.begin(), info.d.end(), 0.0);
+  if (!by_p && !info.d.empty() && (is_equidistant || zeros < info.d.size())) {
     const bool is_known = is_equidistant || model.empty() ||
                           model == "plumb_bob" || model == "Brown Conrady" ||
                           model == "rational_polynomial";

@@ -15,8 +15,7 @@
 namespace rgbd_pose {
 namespace {
 
-// Maximum size of a chunk, bytes. No recorder makes larger chunks, and a
-// damaged size is most likely larger.
+// Bytes. No recorder makes larger chunks; most damaged sizes are larger.
 constexpr uint64_t kMaxSize = uint64_t{1} << 28;
 
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS

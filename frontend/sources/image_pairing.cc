@@ -102,11 +102,11 @@ PairedImages<StreamImage> ApproximateTimeSync::Next(
       }
     }
     if (Clock::now() - began < patience_) continue;
-    const double seconds = std::chrono::duration<double>(patience_).count();
     throw InputError(Format(
         "%s: sent %s images for %.3g s, but no colour and depth images within "
         "%.3g s of each other; does the camera send both?",
-        name.c_str(), color.has_value() ? "colour" : "depth", seconds,
+        name.c_str(), color.has_value() ? "colour" : "depth",
+        std::chrono::duration<double>(patience_).count(),
         max_time_difference_));
   }
 }

@@ -61,15 +61,13 @@ class LatestFrame final : public FrameSource {
       } catch (...) {
         error = std::current_exception();
       }
-      {
-        const std::lock_guard<std::mutex> lock(mutex_);
-        goes_on = next.has_value() && !is_closing_;
-        is_over_ = !goes_on;
-        error_ = error;
-        if (next.has_value()) {
-          if (newest_.has_value()) ++dropped_;
-          newest_ = std::move(next);
-        }
+      const std::lock_guard<std::mutex> lock(mutex_);
+      goes_on = next.has_value() && !is_closing_;
+      is_over_ = !goes_on;
+      error_ = error;
+      if (next.has_value()) {
+        if (newest_.has_value()) ++dropped_;
+        newest_ = std::move(next);
       }
       changed_.notify_all();
     }

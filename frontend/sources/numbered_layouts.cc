@@ -19,10 +19,7 @@ namespace fs = std::filesystem;
 
 // The camera of ICL-NUIM's renderer, with the y axis of its images down.
 std::optional<CameraSetup> IclCamera(const NumberedFolder&) {
-  Camera camera;
-  camera.fx = 481.2;
-  camera.fy = 480.0;
-  return CameraSetup(camera);
+  return CameraSetup(Camera{640, 480, 481.2, 480.0});
 }
 
 // intrinsic.json, or the file name of Open3D's recorder: width, height and
