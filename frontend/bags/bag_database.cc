@@ -135,12 +135,9 @@ class BagDatabase final : public BagReader {
   }
 
  private:
-  // Databases are closed once their last query has ended.
-  struct Close {
-    void operator()(sqlite3* database) const { sqlite3_close_v2(database); }
-  };
-
-  std::unique_ptr<sqlite3, Close> database_;
+  // Closed once its last query has ended.
+  std::unique_ptr<sqlite3, decltype(&sqlite3_close_v2)> database_ = {
+      nullptr, sqlite3_close_v2};
   std::string order_;
 };
 

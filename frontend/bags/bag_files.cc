@@ -2,6 +2,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <set>
 #include <utility>
 
@@ -30,19 +31,9 @@ bool IsPartOfBag(const fs::path& path, BagKind kind) {
                  : ending == ".db3" || ending == kMcap;
 }
 
-struct RemoveFolder {
-  void operator()(const fs::path* folder) const {
-    std::error_code error;
-    fs::remove_all(*folder, error);
-    delete folder;
-  }
-};
-
-// The path of a temporary folder, which is removed with this object.
-using TemporaryFolder = std::unique_ptr<const fs::path, RemoveFolder>;
-
-// For the decompressed copy of a file that its recorder compressed as a whole.
-TemporaryFolder MakeFolderFor(const fs::path& packed) {
+// Makes a folder for the decompressed copy of a file that its recorder
+// compressed as a whole. It is removed with the result.
+std::shared_ptr<const fs::path> TemporaryFolderFor(const fs::path& packed) {
   std::error_code error;
   std::string folder =
       (fs::temp_directory_path(error) / "rgbd_pose-XXXXXX").string();
@@ -51,7 +42,11 @@ TemporaryFolder MakeFolderFor(const fs::path& packed) {
         packed.string() + ": cannot be decompressed: the temporary folder " +
         folder + " could not be created; set TMPDIR to a writable folder");
   }
-  return TemporaryFolder(new fs::path(folder));
+  return {new fs::path(folder), [](const fs::path* path) {
+            std::error_code ignored;
+            fs::remove_all(*path, ignored);
+            delete path;
+          }};
 }
 
 // Whether files are the parts of one recording: NAME_0.bag, NAME_1.bag, ...
@@ -108,7 +103,7 @@ class BagFiles final : public BagReader {
       : BagReader(path, WireFormat::kCdr) {
     for (fs::path file : files) {
       if (file.extension() == kPacked) {
-        unpacked_.push_back(MakeFolderFor(file));
+        unpacked_.push_back(TemporaryFolderFor(file));
         const fs::path copy = *unpacked_.back() / file.stem();
         UnpackZstdFile(file.string(), copy.string());
         file = copy;
@@ -171,7 +166,7 @@ class BagFiles final : public BagReader {
     }
   }
 
-  std::vector<TemporaryFolder> unpacked_;
+  std::vector<std::shared_ptr<const fs::path>> unpacked_;
   std::vector<std::unique_ptr<BagReader>> files_;
   std::map<std::string, std::vector<double>> cameras_;  // by CameraInfo topic
 };
