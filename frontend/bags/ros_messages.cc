@@ -69,13 +69,9 @@ RosCameraInfo ReadRosCameraInfo(WireReader reader) {
 }
 
 Rigid3d ReadRosTransform(WireReader* reader) {
-  std::array<double, 3> translation;
-  ReadNumbers(reader, &translation);
-  std::array<double, 4> rotation;  // x y z w
-  ReadNumbers(reader, &rotation);
   Rigid3d motion;
-  motion.translation = Eigen::Map<Eigen::Vector3d>(translation.data());
-  motion.rotation = Eigen::Map<Eigen::Quaterniond>(rotation.data());
+  ReadNumbers(reader, &motion.translation);
+  ReadNumbers(reader, &motion.rotation.coeffs());  // x y z w
   return motion;
 }
 
