@@ -20,16 +20,14 @@ namespace fs = std::filesystem;
 std::optional<int> NumberIn(const std::string& name,
                             const std::string& pattern) {
   const size_t star = pattern.find('*');
-  const std::string suffix = pattern.substr(star + 1);
-  if (name.size() < pattern.size() ||
-      name.compare(0, star, pattern, 0, star) != 0 ||
-      name.compare(name.size() - suffix.size(), suffix.size(), suffix) != 0) {
+  if (name.compare(0, star, pattern, 0, star) != 0) return std::nullopt;
+  int number = 0;
+  const auto [rest, error] =
+      std::from_chars(name.data() + star, name.data() + name.size(), number);
+  if (error != std::errc() || number < 0 ||
+      pattern.compare(star + 1, pattern.npos, rest) != 0) {
     return std::nullopt;
   }
-  const char* const end = name.data() + name.size() - suffix.size();
-  int number = 0;
-  const auto [rest, error] = std::from_chars(name.data() + star, end, number);
-  if (error != std::errc() || rest != end || number < 0) return std::nullopt;
   return number;
 }
 
