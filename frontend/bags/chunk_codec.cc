@@ -20,11 +20,6 @@ constexpr uint64_t kMaxSize = uint64_t{1} << 28;
 
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
 
-bool UnpackZstd(std::string_view packed, std::string* unpacked) {
-  return ZSTD_decompress(unpacked->data(), unpacked->size(), packed.data(),
-                         packed.size()) == unpacked->size();
-}
-
 bool UnpackLz4(std::string_view packed, std::string* unpacked) {
   LZ4F_dctx* context = nullptr;
   if (LZ4F_isError(LZ4F_createDecompressionContext(&context, LZ4F_VERSION))) {
@@ -65,9 +60,11 @@ std::string Unpack(std::string_view packed, std::string_view codec,
 #ifdef RGBD_POSE_HAS_CHUNK_CODECS
   if (size > kMaxSize) throw Damaged(kWhat);
   std::string unpacked(size, '\0');
-  const bool is_whole = codec == "zstd"  ? UnpackZstd(packed, &unpacked)
-                        : codec == "lz4" ? UnpackLz4(packed, &unpacked)
-                                         : UnpackBz2(packed, &unpacked);
+  const bool is_whole =
+      codec == "lz4"   ? UnpackLz4(packed, &unpacked)
+      : codec == "bz2" ? UnpackBz2(packed, &unpacked)
+                       : ZSTD_decompress(unpacked.data(), size, packed.data(),
+                                         packed.size()) == size;
   if (!is_whole) throw Damaged(kWhat);
   return unpacked;
 #else

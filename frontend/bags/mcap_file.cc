@@ -58,18 +58,17 @@ class McapRecords {
     if (size_ < kMcapMagic.size() + tail) return {};
     file_.seekg(static_cast<std::streamoff>(size_ - tail));
     const std::optional<Record> footer = ReadRecord();
-    uint64_t start = 0;
-    if (footer && footer->opcode == kMcapFooter &&
-        footer->content.size() == kFooterSize) {
-      start = WireReader(footer->content).Number<uint64_t>();
+    if (!footer.has_value() || footer->opcode != kMcapFooter ||
+        footer->content.size() != kFooterSize) {
+      return {};
     }
-    if (start >= kMcapMagic.size() && start < size_ - tail) {
-      file_.seekg(static_cast<std::streamoff>(start));
-      while (const std::optional<Record> record = ReadRecord()) {
-        if (record->opcode == kMcapFooter) break;
-        if (record->opcode == kMcapSchema || record->opcode == kMcapChannel) {
-          Located(path_, [&] { Take(record->opcode, record->content); });
-        }
+    const auto start = WireReader(footer->content).Number<uint64_t>();
+    if (start < kMcapMagic.size() || start >= size_ - tail) return {};
+    file_.seekg(static_cast<std::streamoff>(start));
+    while (const std::optional<Record> record = ReadRecord()) {
+      if (record->opcode == kMcapFooter) break;
+      if (record->opcode == kMcapSchema || record->opcode == kMcapChannel) {
+        Located(path_, [&] { Take(record->opcode, record->content); });
       }
     }
     return channels_;
