@@ -89,8 +89,8 @@ std::map<std::string, Rigid3d> ViewerTransforms(BagReader* bag,
   return transforms;
 }
 
-// Turns the camera of the full image into the camera of the cropped and binned
-// image. The centre of a binned pixel is the middle of the merged pixels.
+// Turns the camera of the full image into that of the cropped and binned image,
+// in which the centre of a pixel is the middle of the merged pixels.
 void CropAndBin(const RosCameraInfo& info, Camera* camera) {
   const uint32_t bin_x = std::max(info.binning_x, 1u);
   const uint32_t bin_y = std::max(info.binning_y, 1u);

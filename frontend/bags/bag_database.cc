@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "core/util/format.h"
 #include "core/util/text_file.h"
 #include "frontend/bags/chunk_codec.h"
 #endif
@@ -73,10 +74,8 @@ class Rows {
 std::string UriOf(const std::string& path) {
   std::string uri = path.front() == '/' ? "file://" : "file:";
   for (const char c : path) {
-    uri += c == '%'   ? "%25"
-           : c == '?' ? "%3f"
-           : c == '#' ? "%23"
-                      : std::string(1, c);
+    const bool is_special = c == '%' || c == '?' || c == '#';
+    uri += is_special ? Format("%%%02x", c) : std::string(1, c);
   }
   for (const char* log : {"-wal", "-journal"}) {
     std::error_code error;

@@ -5,9 +5,7 @@
 
 namespace rgbd_pose {
 
-// What readers and writers of mcap files (mcap.dev/spec) share.
-
-// The first and the last bytes of a file.
+// The first and the last bytes of an mcap file (mcap.dev/spec).
 inline constexpr std::string_view kMcapMagic = "\x89MCAP0\r\n";
 
 // The kinds of records.

@@ -52,8 +52,7 @@ class LatestFrame final : public FrameSource {
 
  private:
   void Run() {
-    bool goes_on = true;
-    while (goes_on) {
+    while (true) {
       std::optional<RgbdFrame> next;
       std::exception_ptr error;
       try {
@@ -62,14 +61,14 @@ class LatestFrame final : public FrameSource {
         error = std::current_exception();
       }
       const std::lock_guard<std::mutex> lock(mutex_);
-      goes_on = next.has_value() && !is_closing_;
-      is_over_ = !goes_on;
+      is_over_ = !next.has_value() || is_closing_;
       error_ = error;
       if (next.has_value()) {
         if (newest_.has_value()) ++dropped_;
         newest_ = std::move(next);
       }
       changed_.notify_all();
+      if (is_over_) return;
     }
   }
 

@@ -11,9 +11,7 @@
 
 namespace rgbd_pose {
 
-// The text files of a recording by the app Stray Scanner.
-
-// A row of odometry.csv. The video has one image for each row.
+// A row of odometry.csv of the app Stray Scanner, for one image of the video.
 struct StrayRow {
   double timestamp = 0.0;        // s
   Rigid3d world_from_cam;        // by ARKit; the app has turned the camera axes

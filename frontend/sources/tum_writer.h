@@ -29,13 +29,12 @@ struct WrittenSequence {
   std::string stopped;               // FrameStream::stopped
 };
 
-// Writes all frames of a source in the layout of the TUM RGB-D benchmark:
-// rgb/*.png (grey if the source keeps no colour) and depth/*.png, named by
-// their time stamps, rgb.txt, depth.txt, groundtruth.txt if there is a true
-// path, and camera.yaml in ORB-SLAM2's format. The sequence exists as a whole
-// or not at all: it is written to FOLDER.partial, which is renamed at the end.
-// Throws InputError if `folder` is a file, is not empty or cannot be written,
-// and for an unreadable frame.
+// Writes all frames of a source in the layout of the TUM RGB-D benchmark (grey
+// if the source keeps no colour), with groundtruth.txt if there is a true path,
+// and camera.yaml in ORB-SLAM2's format. The sequence exists as a whole or not
+// at all: it is written to FOLDER.partial, which is renamed at the end. Throws
+// InputError if `folder` is a file, is not empty or cannot be written, and for
+// an unreadable frame.
 WrittenSequence WriteTumSequence(FrameSource* source, const std::string& folder,
                                  const TumWriterOptions& options = {});
 
