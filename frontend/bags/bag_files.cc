@@ -87,11 +87,6 @@ std::unique_ptr<BagReader> OpenFile(const fs::path& file, BagKind kind) {
     return file.extension() == kMcap ? OpenMcapFile(file.string())
                                      : OpenBagDatabase(file.string());
   }
-  if (file.extension() == kUnclosed) {
-    throw InputError(file.string() +
-                     ": the recording was not finished properly; run `rosbag "
-                     "reindex` and rename the file to end in .bag");
-  }
   return OpenRos1Bag(file.string());
 }
 

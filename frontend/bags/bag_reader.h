@@ -57,8 +57,12 @@ class BagReader {
 
   // The first messages of a topic, at most `count`.
   virtual std::vector<BagMessage> First(const std::string& topic, int count) {
+    return Take(MessagesOf({topic}), count);
+  }
+
+ protected:
+  static std::vector<BagMessage> Take(const Messages& next, int count) {
     std::vector<BagMessage> first;
-    const Messages next = MessagesOf({topic});
     while (static_cast<int>(first.size()) < count) {
       std::optional<BagMessage> message = next();
       if (!message.has_value()) break;
@@ -67,7 +71,6 @@ class BagReader {
     return first;
   }
 
- protected:
   BagReader(const std::string& path, WireFormat format)
       : path_(path), format_(format) {}
 
@@ -119,8 +122,8 @@ bool IsBag(const std::string& path, BagKind kind);
 // build without sqlite3.
 std::unique_ptr<BagReader> OpenBag(const std::string& path, BagKind kind);
 
-// Open one file. Throw InputError if it is not of this kind. A ROS 1 bag must
-// have been closed. Of an mcap file only messages of ROS are read.
+// Open one file. Throw InputError if it is not of this kind. Of an mcap file
+// only messages of ROS are read.
 std::unique_ptr<BagReader> OpenRos1Bag(const std::string& path);
 std::unique_ptr<BagReader> OpenBagDatabase(const std::string& path);
 std::unique_ptr<BagReader> OpenMcapFile(const std::string& path);

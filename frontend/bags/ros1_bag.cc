@@ -18,6 +18,8 @@ constexpr std::string_view kRos1Version = "#ROSBAG V2.0\n";
 
 enum Ros1Op : uint8_t {
   kMessageData = 0x02,
+  kIndexData = 0x04,
+  kChunk = 0x05,
   kChunkInfo = 0x06,
   kConnection = 0x07,
 };
@@ -40,11 +42,15 @@ T NumberField(std::string_view header, std::string_view name) {
   return WireReader(Field(header, name)).Number<T>();
 }
 
-// The value of a time field, ns.
+// The next time, ns.
+uint64_t ReadTime(WireReader* reader) {
+  const uint64_t seconds = reader->Number<uint32_t>();
+  return seconds * 1'000'000'000 + reader->Number<uint32_t>();
+}
+
 uint64_t TimeField(std::string_view header, std::string_view name) {
   WireReader time(Field(header, name));
-  const uint64_t seconds = time.Number<uint32_t>();
-  return seconds * 1'000'000'000 + time.Number<uint32_t>();
+  return ReadTime(&time);
 }
 
 class Ros1Bag final : public BagReader {
@@ -71,12 +77,16 @@ class Ros1Bag final : public BagReader {
     if (!Field(header, "encryptor").empty()) {
       throw InputError(path + ": is encrypted; run `rosbag decrypt`");
     }
-    if (index == 0) {
-      throw InputError(path +
-                       ": has no index: the recording was not finished "
-                       "properly; run `rosbag reindex`");
-    }
-    Guarded([&] { ReadIndex(index); });
+    is_unfinished_ = index == 0 || index >= size_;
+    Guarded([&] { is_unfinished_ ? ReadChunks() : ReadIndex(index); });
+    std::stable_sort(
+        chunks_.begin(), chunks_.end(),
+        [](const Chunk& a, const Chunk& b) { return a.start < b.start; });
+  }
+
+  // The end of an unfinished bag concerns only those who read up to it.
+  std::vector<BagMessage> First(const std::string& topic, int count) override {
+    return Take(Read({topic}), count);
   }
 
  private:
@@ -115,9 +125,7 @@ class Ros1Bag final : public BagReader {
       const std::string data = ReadBlock();
       const auto op = NumberField<uint8_t>(header, "op");
       if (op == kConnection) {
-        AddTopic(NumberField<uint32_t>(header, "conn"),
-                 std::string(Field(header, "topic")),
-                 std::string(Field(data, "type")));
+        AddConnection(header, data);
       } else if (op == kChunkInfo) {
         Chunk chunk;
         chunk.place = NumberField<uint64_t>(header, "chunk_pos");
@@ -133,14 +141,76 @@ class Ros1Bag final : public BagReader {
         chunks_.push_back(std::move(chunk));
       }
     }
-    std::stable_sort(
-        chunks_.begin(), chunks_.end(),
-        [](const Chunk& a, const Chunk& b) { return a.start < b.start; });
+  }
+
+  // Reads a file without an index: after each chunk follow the times of its
+  // messages; connections are in the chunk of their first message.
+  void ReadChunks() {
+    while (static_cast<uint64_t>(file_.tellg()) < size_) {
+      const auto place = static_cast<uint64_t>(file_.tellg());
+      std::string header, data;
+      try {
+        header = ReadBlock();
+        data = ReadBlock();
+      } catch (const InputError&) {
+        break;  // cut off within this record
+      }
+      const auto op = NumberField<uint8_t>(header, "op");
+      if (op == kChunk) chunks_.push_back({place, UINT64_MAX, {}});
+      if (op != kIndexData || chunks_.empty()) continue;
+      Chunk& chunk = chunks_.back();
+      chunk.connections.push_back(NumberField<uint32_t>(header, "conn"));
+      WireReader index(data);
+      while (!index.rest().empty()) {
+        chunk.start = std::min(chunk.start, ReadTime(&index));
+        index.Number<uint32_t>();  // the place in the chunk
+      }
+      if (names_.count(chunk.connections.back()) > 0) continue;
+      const std::streampos next = file_.tellg();
+      Load(chunk);
+      loaded_ = nullptr;  // as chunks_ moves
+      WireReader records(records_);
+      while (!records.rest().empty()) {
+        const std::string_view of = records.Bytes();
+        const std::string_view content = records.Bytes();
+        if (NumberField<uint8_t>(of, "op") == kConnection) {
+          AddConnection(of, content);
+        }
+      }
+      if (names_.count(chunk.connections.back()) == 0) {
+        throw Damaged("a chunk has messages without a topic");
+      }
+      file_.seekg(next);
+    }
+    if (topics_.empty()) {
+      throw InputError("ends before its first messages: copy it again");
+    }
+  }
+
+  void AddConnection(std::string_view header, std::string_view data) {
+    AddTopic(NumberField<uint32_t>(header, "conn"),
+             std::string(Field(header, "topic")),
+             std::string(Field(data, "type")));
+  }
+
+  Messages MessagesOf(const std::vector<std::string>& topics) override {
+    return [this, next = Read(topics), has_ended = false]() mutable {
+      std::optional<BagMessage> message;
+      if (!has_ended) message = next();
+      if (!message.has_value() && is_unfinished_ && !has_ended) {
+        has_ended = true;
+        throw InputError(path_ +
+                         ": ends without its index: the recording was not "
+                         "finished properly, or the copy is incomplete; run "
+                         "`rosbag reindex`");
+      }
+      return message;
+    };
   }
 
   // A chunk is loaded when the time of its first message is reached; its
   // messages are then kept in `waiting`.
-  Messages MessagesOf(const std::vector<std::string>& topics) override {
+  Messages Read(const std::vector<std::string>& topics) {
     return [this, connections = NumbersOf(topics), next = size_t{0},
             waiting = MessagesByTime()]() mutable -> std::optional<BagMessage> {
       while (
@@ -196,6 +266,7 @@ class Ros1Bag final : public BagReader {
 
   std::ifstream file_;
   uint64_t size_ = 0;
+  bool is_unfinished_ = false;
   std::vector<Chunk> chunks_;  // in order of time
   const Chunk* loaded_ = nullptr;
   std::string records_;  // of the loaded chunk

@@ -1,10 +1,12 @@
 #include <bzlib.h>
 
+#include <cstring>
 #include <filesystem>
 
 #include "core/util/text_file.h"
 #include "frontend/bags/bag_reader.h"
 #include "tests/frontend/bags/ros1_bag_fixture.h"
+#include "tests/support/expect_input_error.h"
 
 namespace {
 
@@ -98,13 +100,8 @@ TEST_F(Ros1BagTest, ReadsAFolderOfParts) {
   path_ = folder;
   ExpectRefused({"walk_20.bag: /camera/rgb/camera_info: ", "different camera"});
 
-  std::filesystem::rename(folder + "/walk_20.bag",
-                          folder + "/walk_20.bag.active");
-  ExpectRefused({"walk_20.bag.active: the recording was not finished"});
-
   // Two recordings in one folder.
-  std::filesystem::rename(folder + "/walk_20.bag.active",
-                          folder + "/sit_1.bag");
+  std::filesystem::rename(folder + "/walk_20.bag", folder + "/sit_1.bag");
   ExpectRefused({"walk: ", "one at a time"});
 }
 
@@ -113,7 +110,7 @@ TEST_F(Ros1BagTest, RefusesDamagedBags) {
   WriteAll();
   Options();
   const std::string whole = ReadTextFile(path_);
-  for (const double share : {0.0, 0.0001, 0.3, 0.9, 0.999}) {
+  for (const double share : {0.0, 0.0001, 0.999}) {
     folder_.Write("a.bag", whole.substr(0, share * whole.size()));
     ExpectRefused({"a.bag: "});
   }
@@ -127,15 +124,45 @@ TEST_F(Ros1BagTest, RefusesDamagedBags) {
 
   folder_.Write("a.bag", "no bag at all, but a text of some length");
   ExpectRefused({"a.bag: ", "ROS 1 bag"});
+}
 
-  // A killed recorder leaves no position of the index.
-  std::string unindexed = whole;
-  const std::string name = "index_pos=";
-  const size_t place = unindexed.find(name);
-  ASSERT_NE(place, std::string::npos);
-  unindexed.replace(place + name.size(), 8, std::string(8, '\0'));
-  folder_.Write("a.bag", unindexed);
-  ExpectRefused({"a.bag: has no index", "rosbag reindex"});
+// A killed recorder leaves no index and no position of one.
+TEST_F(Ros1BagTest, ReadsUnfinishedBagsUpToTheirEnd) {
+  for (const auto compression :
+       {rosbag::compression::Uncompressed, rosbag::compression::BZ2,
+        rosbag::compression::LZ4}) {
+    path_ = folder_ / "a.bag";
+    Open(compression);
+    bag_.setChunkThreshold(2000);
+    WriteAll();
+    Options();
+    const std::string whole = ReadTextFile(path_);
+    const std::string name = "index_pos=";
+    const size_t place = whole.find(name) + name.size();
+    uint64_t index = 0;
+    std::memcpy(&index, whole.data() + place, sizeof(index));
+    std::string unfinished = whole.substr(0, index);
+    unfinished.replace(place, 8, std::string(8, '\0'));
+    int last = kFrames;
+    for (const double share : {1.0, 0.6}) {
+      folder_.Write("b.bag.active", unfinished.substr(0, share * index));
+      path_ = folder_ / "b.bag.active";
+      const auto source = Source();
+      int frames = 0;
+      ExpectInputError(
+          [&] {
+            while (source->Next().has_value()) ++frames;
+          },
+          {"b.bag.active: ends without its index", "rosbag reindex"});
+      EXPECT_LE(frames, last);
+      EXPECT_GE(frames, share == 1.0 ? kFrames : 1);
+      EXPECT_FALSE(source->Next().has_value());
+      last = kFrames - 1;
+    }
+    folder_.Write("b.bag", unfinished.substr(0, place + 4000));
+    path_ = folder_ / "b.bag";
+    ExpectRefused({"b.bag: ends before its first messages"});
+  }
 }
 
 }  // namespace
