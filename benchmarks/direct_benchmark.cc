@@ -16,7 +16,7 @@
 
 #include "core/geometry/motion.h"
 #include "costs/assembly/cost_blocks.h"
-#include "costs/direct_cost_list.h"
+#include "costs/cost_list.h"
 #include "robust/m_estimator.h"
 #include "tests/support/direct_columns.h"
 
@@ -40,10 +40,10 @@ const DirectPair& Pair() {
 template <typename Residual>
 PackedColumns ManyPoints() {
   PackedColumns points;
-  const DirectOptions options;
-  Residual::Points(Pair().prev.view, 0,
-                   {6 * kRows, 0.0, options.min_depth, options.max_depth},
-                   &points);
+  DirectOptions options;
+  options.max_points = 6 * kRows;
+  options.min_gradient = 0.0;
+  Residual::Points(Pair().prev.view, 0, options, &points);
   return points;
 }
 

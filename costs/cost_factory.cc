@@ -14,25 +14,10 @@ namespace rgbd_pose {
 template bool FactorSums<6>(const CompressedSums<6>& sums, double* residuals,
                             double* jacobian);
 
-namespace {
-
-using CostEntry = Named<std::unique_ptr<MotionCost> (*)()>;
-
-template <typename... Residuals>
-std::vector<CostEntry> EntriesOf(TypeList<Residuals...>) {
-  return {CostEntry{Residuals::kName, &MakeCost<Residuals>}...};
-}
-
-}  // namespace
-
-std::vector<std::string> CostNames() {
-  return NamesOf(EntriesOf(ResidualTypes()));
-}
+std::vector<std::string> CostNames() { return NamesOfTypes(ResidualTypes()); }
 
 std::unique_ptr<MotionCost> MakeCost(std::string_view name) {
-  const std::vector<CostEntry> entries = EntriesOf(ResidualTypes());
-  const CostEntry* const entry = FindNamed(entries, name);
-  return entry != nullptr ? entry->value() : nullptr;
+  return MakeNamed<CostOf>(ResidualTypes(), name);
 }
 
 std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,

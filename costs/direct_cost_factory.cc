@@ -4,28 +4,12 @@
 #include <utility>
 
 #include "core/util/input_error.h"
-#include "core/util/named_values.h"
 #include "costs/cost_factory.h"
-#include "costs/direct_cost_list.h"
+#include "costs/cost_list.h"
+#include "costs/direct/direct_cost.h"
 #include "robust/scale.h"
 
 namespace rgbd_pose {
-namespace {
-
-using Entry =
-    Named<std::unique_ptr<MotionCost> (*)(const DirectOptions& options)>;
-
-template <typename Residual>
-std::unique_ptr<MotionCost> Make(const DirectOptions& options) {
-  return std::make_unique<DirectCostOf<Residual>>(options);
-}
-
-template <typename... Residuals>
-std::vector<Entry> DirectEntriesOf(TypeList<Residuals...>) {
-  return {Entry{Residuals::kName, &Make<Residuals>}...};
-}
-
-}  // namespace
 
 std::string DirectOptions::Check() const {
   if (max_points < 0 || max_coarse_points < 1) {
@@ -91,15 +75,13 @@ std::vector<RobustCost> JoinCosts(std::vector<RobustCost> matches,
 }
 
 std::vector<std::string> DirectCostNames() {
-  return NamesOf(DirectEntriesOf(DirectResidualTypes()));
+  return NamesOfTypes(DirectResidualTypes());
 }
 
 std::unique_ptr<MotionCost> MakeDirectCost(std::string_view name,
                                            const DirectOptions& options) {
   RequireSound(options.Check(), "direct cost: ");
-  const std::vector<Entry> entries = DirectEntriesOf(DirectResidualTypes());
-  const Entry* const entry = FindNamed(entries, name);
-  return entry != nullptr ? entry->value(options) : nullptr;
+  return MakeNamed<DirectCostOf>(DirectResidualTypes(), name, options);
 }
 
 std::vector<RobustCost> MakeDirectCosts(const std::string& cost_names,

@@ -37,43 +37,6 @@ struct CompressedSums {
   double cost = 0.0;  // c
 };
 
-// Computes residuals r[K + 1] and the Jacobian J[K + 1][K], row by row, that
-// represent the sums. The hessian must be complete, not a triangle. If J is
-// null, r represents only the cost, and the other sums are not read. Returns
-// false if a number is not finite.
-template <int K>
-bool FactorSums(const CompressedSums<K>& sums, double* residuals,
-                double* jacobian);
-
-// `Evaluator` is called as
-//
-//   bool(const double* x, bool with_derivatives, CompressedSums<K>* sums) const
-//
-// with x[K] and zeroed sums. It fills in the cost and, with derivatives, the
-// other sums. If it returns false, Ceres rejects the step. The block stores
-// nothing between calls: losses and data may change between two solves, as in
-// plain Ceres, and the block is as thread-safe as its evaluator.
-template <int K, typename Evaluator>
-class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
-  static_assert(K >= 1 && K <= 12, "dense sums suit small problems");
-
- public:
-  // Takes a copy of the evaluator.
-  explicit CompressedBlock(Evaluator evaluator)
-      : evaluator_(std::move(evaluator)) {}
-
-  bool Evaluate(double const* const* parameters, double* residuals,
-                double** jacobians) const override {
-    double* const jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
-    CompressedSums<K> sums;
-    return evaluator_(parameters[0], jacobian != nullptr, &sums) &&
-           FactorSums(sums, residuals, jacobian);
-  }
-
- private:
-  Evaluator evaluator_;
-};
-
 namespace compressed {
 
 // If H is almost singular, rounding can make |L^-1 g|^2 exceed 2 c. Takes the
@@ -127,6 +90,10 @@ void FactorSingular(const CompressedSums<K>& sums, Residuals r, Rows J) {
 
 }  // namespace compressed
 
+// Computes residuals r[K + 1] and the Jacobian J[K + 1][K], row by row, that
+// represent the sums. The hessian must be complete, not a triangle. If J is
+// null, r represents only the cost, and the other sums are not read. Returns
+// false if a number is not finite.
 template <int K>
 bool FactorSums(const CompressedSums<K>& sums, double* residuals,
                 double* jacobian) {
@@ -158,5 +125,34 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
   compressed::Trim<K>(-rest, r.template head<K>());
   return r.allFinite() && J.allFinite();
 }
+
+// `Evaluator` is called as
+//
+//   bool(const double* x, bool with_derivatives, CompressedSums<K>* sums) const
+//
+// with x[K] and zeroed sums. It fills in the cost and, with derivatives, the
+// other sums. If it returns false, Ceres rejects the step. The block stores
+// nothing between calls: losses and data may change between two solves, as in
+// plain Ceres, and the block is as thread-safe as its evaluator.
+template <int K, typename Evaluator>
+class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
+  static_assert(K >= 1 && K <= 12, "dense sums suit small problems");
+
+ public:
+  // Takes a copy of the evaluator.
+  explicit CompressedBlock(Evaluator evaluator)
+      : evaluator_(std::move(evaluator)) {}
+
+  bool Evaluate(double const* const* parameters, double* residuals,
+                double** jacobians) const override {
+    double* const jacobian = jacobians != nullptr ? jacobians[0] : nullptr;
+    CompressedSums<K> sums;
+    return evaluator_(parameters[0], jacobian != nullptr, &sums) &&
+           FactorSums(sums, residuals, jacobian);
+  }
+
+ private:
+  Evaluator evaluator_;
+};
 
 }  // namespace rgbd_pose

@@ -80,8 +80,7 @@ class PackedCost : public MotionCost {
       const int first = i * packed::kChunk;
       const int last = std::min(first + packed::kChunk, packed_.size);
       chunks_[i] = NormalEquations();
-      NormalEquations* const chunk = &chunks_[i];
-      RunVectorised<Kernel>(motion, packed_, loss, first, last, chunk);
+      RunVectorised<Kernel>(motion, packed_, loss, first, last, &chunks_[i]);
     });
     for (const NormalEquations& chunk : chunks_) {
       sum->hessian += chunk.hessian;
@@ -93,8 +92,10 @@ class PackedCost : public MotionCost {
   void AddScoreOuterProduct(const MotionDerivatives& motion,
                             const ceres::LossFunction* loss,
                             MotionMatrix* scatter) const override {
-    RunVectorised<packed::ScatterKernel<Residual>>(motion, packed_, loss,
-                                                   scatter);
+    NormalEquations sum;
+    RunVectorised<packed::SumKernel<Residual, packed::ScatterSums>>(
+        motion, packed_, loss, 0, packed_.size, &sum);
+    *scatter += sum.hessian;
   }
 
   void AddTo(Assembly assembly, const LinearizationPoint& origin,
@@ -129,6 +130,8 @@ class PackedCost : public MotionCost {
   // See FramePair::threads.
   void SetThreads(int threads) { threads_ = threads; }
 
+  const PackedColumns& columns() const { return packed_; }
+
   // Removes all blocks and reserves memory for max_blocks. The caller may write
   // blocks without a match, and their number, directly to the returned columns.
   PackedColumns* BeginBlocks(size_t max_blocks) {
@@ -143,30 +146,6 @@ class PackedCost : public MotionCost {
     packed_.Append(columns);
     matches_.push_back(match);
     degrees_.push_back(Degrees(columns.data()));
-  }
-
-  // Adds `step` times the Hessian of every step-th block, summed over
-  // `variants` variants of the block; change(variant, columns) makes each from
-  // its columns.
-  template <typename Change>
-  void AddSample(const MotionDerivatives& motion, int step, int variants,
-                 const Change& change, MotionMatrix* hessian) const {
-    sample_.Clear(kColumns, (packed_.size + step - 1) / step * variants);
-    Block columns;
-    for (int i = 0; i < packed_.size; i += step) {
-      for (int variant = 0; variant < variants; ++variant) {
-        packed_.Read(i, &columns);
-        change(variant, columns.data());
-        sample_.Append(columns);
-      }
-    }
-    sample_.Pad();
-    NormalEquations sum;
-    NormalEquations* const to = &sum;
-    const ceres::LossFunction* const none = nullptr;
-    RunVectorised<packed::LineariseKernel<Residual>>(motion, sample_, none, 0,
-                                                     sample_.size, to);
-    *hessian += step * sum.hessian;
   }
 
   // To be called after the last block.
@@ -188,7 +167,6 @@ class PackedCost : public MotionCost {
   PackedColumns packed_;
   int threads_ = 1;
   mutable std::vector<NormalEquations> chunks_;  // see Linearise
-  mutable PackedColumns sample_;                 // see AddSample
   // The columns match by match, for the assemblies that need them so.
   std::vector<Block> rows_;
   std::optional<MotionBlock> block_;

@@ -46,6 +46,14 @@ struct PackedColumns {
     for (size_t k = 0; k < N; ++k) (*match)[k] = values[k * stride + i];
   }
 
+  // The matches from i on, one in each lane of D.
+  template <typename D, size_t N>
+  [[gnu::always_inline]] void Load(int i, D (&match)[N]) const {
+    for (size_t k = 0; k < N; ++k) {
+      std::memcpy(&match[k], &values[k * stride + i], sizeof(D));
+    }
+  }
+
   // Pads with copies of the last match, whose numbers cannot overflow.
   void Pad() {
     if (size == 0) return;
@@ -57,22 +65,6 @@ struct PackedColumns {
 };
 
 namespace packed {
-
-// W matches starting at i: their columns and the number of real matches.
-template <typename Residual, int W>
-struct Pack {
-  using D = typename Lanes<W>::Type;
-
-  Pack(const PackedColumns& columns, int i)
-      : lanes(columns.size - i < W ? columns.size - i : W) {
-    for (int k = 0; k < Residual::kColumns; ++k) {
-      std::memcpy(&m[k], &columns.values[k * columns.stride + i], sizeof(D));
-    }
-  }
-
-  D m[Residual::kColumns];
-  int lanes;
-};
 
 // Matches are weighted tile by tile: first all squared norms, then all losses
 // (scalar virtual calls), then all sums. Mixing these steps would spill the
@@ -90,9 +82,9 @@ struct SquaredNormsKernel {
                                          double* squared_norms) {
     using D = typename Lanes<W>::Type;
     for (int i = begin; i < end; i += W) {
-      const Pack<Residual, W> pack(columns, i);
-      D r[Residual::kRows];
-      Residual::Residual(motion, pack.m, r);
+      D m[Residual::kColumns], r[Residual::kRows];
+      columns.Load(i, m);
+      Residual::Residual(motion, m, r);
       D s = r[0] * r[0];
       for (int row = 1; row < Residual::kRows; ++row) s += r[row] * r[row];
       std::memcpy(squared_norms + (i - begin), &s, sizeof(D));
@@ -119,25 +111,6 @@ template <typename Residual, int W>
 // chunks, so the number of threads does not change a bit of the result.
 constexpr int kChunk = 32 * kTile;
 
-// A symmetric 6 x 6 sum, lane by lane: the upper triangle, row by row.
-template <typename D>
-struct SymmetricSum {
-  D entries[21] = {};
-
-  void AddTo(MotionMatrix* sum) const {
-    constexpr int kLanes = sizeof(D) / sizeof(double);
-    int entry = 0;
-    for (int a = 0; a < 6; ++a) {
-      for (int b = a; b < 6; ++b, ++entry) {
-        double value = 0.0;
-        for (int lane = 0; lane < kLanes; ++lane) value += entries[entry][lane];
-        (*sum)(a, b) += value;
-        if (b != a) (*sum)(b, a) += value;
-      }
-    }
-  }
-};
-
 // The residuals of all matches, kRows each.
 template <typename Residual>
 struct ResidualsKernel {
@@ -147,10 +120,10 @@ struct ResidualsKernel {
                                          double* residuals) {
     using D = typename Lanes<W>::Type;
     for (int i = 0; i < columns.size; i += W) {
-      const Pack<Residual, W> pack(columns, i);
-      D r[Residual::kRows];
-      Residual::Residual(motion, pack.m, r);
-      for (int lane = 0; lane < pack.lanes; ++lane) {
+      D m[Residual::kColumns], r[Residual::kRows];
+      columns.Load(i, m);
+      Residual::Residual(motion, m, r);
+      for (int lane = 0; lane < W && i + lane < columns.size; ++lane) {
         for (int row = 0; row < Residual::kRows; ++row) {
           residuals[(i + lane) * Residual::kRows + row] = r[row][lane];
         }
@@ -177,22 +150,17 @@ struct RowSums {
       for (int b = a; b < 6; ++b) {
         D h = wJ[0] * J[0][b];
         for (int row = 1; row < kRows; ++row) h += wJ[row] * J[row][b];
-        hessian.entries[entry++] += h;
+        hessian[entry++] += h;
       }
     }
   }
 
   void AddTo(const MotionDerivatives& /*motion*/, NormalEquations* sum) const {
-    constexpr int kLanes = sizeof(D) / sizeof(double);
-    hessian.AddTo(&sum->hessian);
-    for (int a = 0; a < 6; ++a) {
-      for (int lane = 0; lane < kLanes; ++lane) {
-        sum->gradient[a] += gradient[a][lane];
-      }
-    }
+    sum->hessian += SymmetricLaneSums<6>(hessian);
+    for (int a = 0; a < 6; ++a) sum->gradient[a] += LaneSum(gradient[a]);
   }
 
-  SymmetricSum<D> hessian;
+  D hessian[21] = {};  // the upper triangle, row by row
   D gradient[6] = {};
 };
 
@@ -219,10 +187,37 @@ struct TermSums {
   PointSums<D> sums[kTerms];
 };
 
-// The robustified normal equations, weighted by rho', of the matches from
-// `first` (a multiple of kMaxLanes) up to, not including, `last`.
-template <typename Residual>
-struct LineariseKernel {
+// sum rho'^2 J^T r r^T J, in the place of the hessian.
+template <typename Residual, typename D>
+struct ScatterSums {
+  void Add(const MotionDerivatives& motion, const D* m, const D& weight) {
+    constexpr int kRows = Residual::kRows;
+    D r[kRows];
+    D J[kRows][6];
+    Residual::Jacobian(motion, m, r, J);
+    D g[6];
+    for (int a = 0; a < 6; ++a) {
+      g[a] = J[0][a] * r[0];
+      for (int row = 1; row < kRows; ++row) g[a] += J[row][a] * r[row];
+      g[a] *= weight;
+    }
+    int entry = 0;
+    for (int a = 0; a < 6; ++a) {
+      for (int b = a; b < 6; ++b) scatter[entry++] += g[a] * g[b];
+    }
+  }
+
+  void AddTo(const MotionDerivatives& /*motion*/, NormalEquations* sum) const {
+    sum->hessian += SymmetricLaneSums<6>(scatter);
+  }
+
+  D scatter[21] = {};  // the upper triangle, row by row
+};
+
+// Sums, weighted by rho', over the matches from `first` (a multiple of
+// kMaxLanes) up to, not including, `last`.
+template <typename Residual, template <typename, typename> typename SumsOf>
+struct SumKernel {
   template <int W>
   [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
                                          const PackedColumns& columns,
@@ -230,10 +225,7 @@ struct LineariseKernel {
                                          int first, int last,
                                          NormalEquations* sum) {
     using D = typename Lanes<W>::Type;
-    using Sums =
-        std::conditional_t<kHas<PointTermsOf, Residual>, TermSums<Residual, D>,
-                           RowSums<Residual, D>>;
-    Sums sums;
+    SumsOf<Residual, D> sums;
     double cost = 0.0;
     for (int begin = first; begin < last; begin += kTile) {
       const int end = std::min(begin + kTile, last);
@@ -241,10 +233,10 @@ struct LineariseKernel {
       cost +=
           WeighTile<Residual, W>(motion, columns, loss, begin, end, weights);
       for (int i = begin; i < end; i += W) {
-        const Pack<Residual, W> pack(columns, i);
-        D weight;
+        D m[Residual::kColumns], weight;
+        columns.Load(i, m);
         std::memcpy(&weight, weights + (i - begin), sizeof(D));
-        sums.Add(motion, pack.m, weight);
+        sums.Add(motion, m, weight);
       }
     }
     sum->cost += 0.5 * cost;
@@ -252,43 +244,13 @@ struct LineariseKernel {
   }
 };
 
-// sum rho'^2 J^T r r^T J.
+// The robustified normal equations.
+template <typename Residual, typename D>
+using NormalSums =
+    std::conditional_t<kHas<PointTermsOf, Residual>, TermSums<Residual, D>,
+                       RowSums<Residual, D>>;
 template <typename Residual>
-struct ScatterKernel {
-  template <int W>
-  [[gnu::always_inline]] static void Run(const MotionDerivatives& motion,
-                                         const PackedColumns& columns,
-                                         const ceres::LossFunction* loss,
-                                         MotionMatrix* sum) {
-    using D = typename Lanes<W>::Type;
-    constexpr int kRows = Residual::kRows;
-    SymmetricSum<D> scatter;
-    for (int begin = 0; begin < columns.size; begin += kTile) {
-      const int end = std::min(begin + kTile, columns.size);
-      alignas(64) double weights[kTile + kMaxLanes];
-      WeighTile<Residual, W>(motion, columns, loss, begin, end, weights);
-      for (int i = begin; i < end; i += W) {
-        const Pack<Residual, W> pack(columns, i);
-        D weight;
-        std::memcpy(&weight, weights + (i - begin), sizeof(D));
-        D r[kRows];
-        D J[kRows][6];
-        Residual::Jacobian(motion, pack.m, r, J);
-        D g[6];
-        for (int a = 0; a < 6; ++a) {
-          g[a] = J[0][a] * r[0];
-          for (int row = 1; row < kRows; ++row) g[a] += J[row][a] * r[row];
-          g[a] *= weight;
-        }
-        int entry = 0;
-        for (int a = 0; a < 6; ++a) {
-          for (int b = a; b < 6; ++b) scatter.entries[entry++] += g[a] * g[b];
-        }
-      }
-    }
-    scatter.AddTo(sum);
-  }
-};
+using LineariseKernel = SumKernel<Residual, NormalSums>;
 
 }  // namespace packed
 }  // namespace rgbd_pose

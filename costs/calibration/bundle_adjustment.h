@@ -71,7 +71,7 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
 // depths of landmarks are eliminated. Only landmarks are included, neither
 // known distances nor the prior.
 struct ReducedCameraSystem {
-  Eigen::MatrixXd hessian;  // lower triangle only
+  Eigen::MatrixXd hessian;  // only the lower triangle is valid
 
   // One column per keyframe: the gradient of the landmarks anchored there.
   Eigen::MatrixXd gradients;

@@ -25,20 +25,21 @@ class OneLandmark {
     keyframes_.clear();
   }
 
-  // Everything added after this call belongs to this view.
   void BeginView(int keyframe) { keyframes_.push_back(keyframe); }
   int num_views() const { return static_cast<int>(keyframes_.size()); }
 
-  // Adds a residual at the anchor, which depends on no pose.
+  // Adds a residual of the view begun last.
   template <typename Derivatives, typename Residual>
-  void AddOfAnchor(const Derivatives& J, const Residual& r) {
-    AddFixed(J, r, WeightOf(r));
-  }
-
-  template <typename Derivatives, typename Residual>
-  void AddOfView(const Derivatives& J, const Residual& r) {
+  void Add(const Derivatives& J, const Residual& r) {
     const double weight = WeightOf(r);
-    const auto head = AddFixed(J, r, weight);
+    Eigen::Matrix<double, Residual::RowsAtCompileTime, kFixed> head;
+    head << J.anchor, J.theta * origin_.width.asDiagonal();
+    local_.topLeftCorner<kFixed, kFixed>().noalias() +=
+        weight * head.transpose() * head;
+    by_depth_.head<kFixed>() += weight * head.transpose() * J.inverse_depth;
+    gradient_.head<kFixed>() += weight * head.transpose() * r;
+    hessian_d_ += weight * J.inverse_depth.squaredNorm();
+    gradient_d_ += weight * J.inverse_depth.dot(r);
     const int place = kFixed + 6 * (num_views() - 1);
     local_.block<6, kFixed>(place, 0).noalias() +=
         weight * J.view.transpose() * head;
@@ -71,13 +72,10 @@ class OneLandmark {
         const Block b = BlockAt(j);
         if (b.to < 0) continue;
         const auto block = local_.block(a.from, b.from, a.size, b.size);
-        if (a.to > b.to) {
+        if (a.to >= b.to) {
           H.block(a.to, b.to, a.size, b.size) += block;
-        } else if (a.to < b.to) {
-          H.block(b.to, a.to, b.size, a.size) += block.transpose();
         } else {
-          H.block(a.to, a.to, a.size, a.size).triangularView<Eigen::Lower>() +=
-              block;
+          H.block(b.to, a.to, b.size, a.size) += block.transpose();
         }
       }
     }
@@ -109,20 +107,6 @@ class OneLandmark {
     equations_.weight_p += weight * r.size();
     equations_.slope_p += weight * r.size() + 2.0 * s * curvature;
     return weight;
-  }
-
-  // Returns the derivatives by the anchor and y.
-  template <typename Derivatives, typename Residual>
-  auto AddFixed(const Derivatives& J, const Residual& r, double weight) {
-    Eigen::Matrix<double, Residual::RowsAtCompileTime, kFixed> head;
-    head << J.anchor, J.theta * origin_.width.asDiagonal();
-    local_.topLeftCorner<kFixed, kFixed>().noalias() +=
-        weight * head.transpose() * head;
-    by_depth_.head<kFixed>() += weight * head.transpose() * J.inverse_depth;
-    gradient_.head<kFixed>() += weight * head.transpose() * r;
-    hessian_d_ += weight * J.inverse_depth.squaredNorm();
-    gradient_d_ += weight * J.inverse_depth.dot(r);
-    return head;
   }
 
   const CalibrationOrigin& origin_;
@@ -164,17 +148,17 @@ ReducedCameraSystem MakeReducedCameraSystem(
       one.BeginView(view.keyframe);
       LandmarkPixel::Jacobian(anchor, there, d, state.theta.data(), data,
                               r2.data(), &J2);
-      one.AddOfView(J2, r2);
+      one.Add(J2, r2);
       if (data.depth.inverse_sigma > 0.0) {
         LandmarkDepth::Jacobian(anchor, there, d, state.theta.data(), data,
                                 r1.data(), &J1);
-        one.AddOfView(J1, r1);
+        one.Add(J1, r1);
       }
     }
     if (one.num_views() == 0) continue;
     AnchorDepth::Jacobian(anchor, anchor, d, state.theta.data(),
                           DataOf(views, landmark, state), r1.data(), &J1);
-    one.AddOfAnchor(J1, r1);
+    one.Add(J1, r1);  // depends on no pose, whichever view it is added to
     one.MoveToEquations();
   }
   return equations;

@@ -1,7 +1,6 @@
 #include <Eigen/Core>
 #include <Eigen/LU>
 #include <array>
-#include <cstring>
 
 #include "core/util/vector_lanes.h"
 #include "costs/direct/direct_points.h"
@@ -36,10 +35,7 @@ struct SampleKernel {
     for (int group = 0; group < points.size; group += step) {
       for (int i = group; i < group + kMaxLanes && i < points.size; i += W) {
         D point[Photometric::kPointColumns];
-        for (int k = 0; k < Photometric::kPointColumns; ++k) {
-          std::memcpy(&point[k], &points.values[k * points.stride + i],
-                      sizeof(D));
-        }
+        points.Load(i, point);
         ProjectedPoint<D> place;
         Photometric::Locate(input, point, &place);
         for (int lane = 0; lane < W && i + lane < points.size; ++lane) {
@@ -63,8 +59,7 @@ struct SampleKernel {
 
 void EstimateBrightness(const PackedColumns& points, DirectInput* input) {
   GrayPairs pairs;
-  GrayPairs* const out = &pairs;
-  RunVectorised<SampleKernel>(*input, points, out);
+  RunVectorised<SampleKernel>(*input, points, &pairs);
   constexpr double kNoise2 = kWidth * kWidth;
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix2d H = Eigen::Vector2d(kNoise2 / (kSigmaGain * kSigmaGain),

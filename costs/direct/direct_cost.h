@@ -14,32 +14,6 @@
 
 namespace rgbd_pose {
 
-// How a direct cost selects its points.
-struct DirectOptions {
-  // Number of points at the finest level; 0: kMaxPoints of the cost.
-  int max_points = 0;
-  // The same at the coarser levels, which only lead to the finest one.
-  int max_coarse_points = 1000;
-
-  // Which pixels are used: limits in gray levels per pixel and in m.
-  double min_gradient = 3.0;
-  double min_depth = 0.3;
-  double max_depth = 8.0;
-
-  // Number of pyramid levels; if the images have fewer, the coarsest repeats.
-  int num_levels = 4;
-  // Pyramid level of the image used as the finest one. At 1, half the image
-  // size, interpolation does no harm to gray levels. Depths are always read at
-  // full resolution.
-  int finest_level = 1;
-
-  // See MotionCost::information_factor; 0: kInformation of the cost.
-  double information_factor = 0.0;
-
-  // One line that describes the first invalid option, or empty.
-  std::string Check() const;
-};
-
 // Fills the columns of all visible points. Arithmetic handles several points at
 // a time, reading images and rejecting points goes one by one. Separate passes
 // over tiles of points keep the two from waiting for each other.
@@ -75,21 +49,13 @@ struct LookUpKernel {
     bool is_read[kTile];
   };
 
-  template <typename D>
-  [[gnu::always_inline]] static void Load(const PackedColumns& points, int i,
-                                          D* point) {
-    for (int k = 0; k < Residual::kPointColumns; ++k) {
-      std::memcpy(&point[k], &points.values[k * points.stride + i], sizeof(D));
-    }
-  }
-
   template <int W>
   [[gnu::always_inline]] static void Locate(const DirectInput& input,
                                             const PackedColumns& points,
                                             int begin, int i, Tile* tile) {
     using D = typename Lanes<W>::Type;
     D point[Residual::kPointColumns];
-    Load(points, begin + i, point);
+    points.Load(begin + i, point);
     ProjectedPoint<D> place;
     Residual::Locate(input, point, &place);
     std::memcpy(&tile->u[i], &place.u, sizeof(D));
@@ -119,7 +85,7 @@ struct LookUpKernel {
     typedef float Floats __attribute__((vector_size(sizeof(D) / 2)));
     D point[Residual::kPointColumns], samples[Residual::kSamples];
     D columns[Residual::kColumns], rejection;
-    Load(points, begin + i, point);
+    points.Load(begin + i, point);
     for (int k = 0; k < Residual::kSamples; ++k) {
       Floats floats;
       std::memcpy(&floats, &tile->samples[k][i], sizeof(Floats));
@@ -200,7 +166,8 @@ class DirectCostOf final : public PackedCost<Type> {
     this->SetThreads(pair.threads);
     level_ = 0;
     input_ = DirectInput();
-    input_.cur = pair.cur;
+    static const FrameView none{};
+    input_.cur = pair.cur != nullptr ? pair.cur : &none;
     if (pair.prev == nullptr || pair.cur == nullptr) {
       for (PackedColumns& points : points_) points.size = 0;
       points_of_ = 0;
@@ -214,23 +181,17 @@ class DirectCostOf final : public PackedCost<Type> {
                  "direct cost: the view's depth_noise: ");
     if (pair.prev->id != 0 && pair.prev->id == points_of_) return;
     points_of_ = pair.prev->id;
-    int count =
-        options_.max_points > 0 ? options_.max_points : Residual::kMaxPoints;
+    DirectOptions selection = options_;
+    int& count = selection.max_points;
+    if (count == 0) count = Residual::kMaxPoints;
     for (int level = 0; level < options_.num_levels; ++level) {
-      Residual::Points(*pair.prev, ImageLevel(*pair.prev, level),
-                       {count, options_.min_gradient, options_.min_depth,
-                        options_.max_depth},
+      Residual::Points(*pair.prev, ImageLevel(*pair.prev, level), selection,
                        &points_[level]);
       count = std::min(count, options_.max_coarse_points);
     }
   }
 
   void Associate(const Rigid3d& cur_from_prev) override {
-    if (input_.cur == nullptr) {
-      this->BeginBlocks(0);
-      this->EndBlocks();
-      return;
-    }
     MoveTo(cur_from_prev);
     if constexpr (Residual::kSeesBrightness) {
       EstimateBrightness(points_[level_], &input_);
@@ -239,19 +200,29 @@ class DirectCostOf final : public PackedCost<Type> {
   }
 
   void Reassociate(const Rigid3d& cur_from_prev) override {
-    if (input_.cur != nullptr && MoveTo(cur_from_prev)) LookUp();
+    if (MoveTo(cur_from_prev)) LookUp();
   }
 
   void AddSpuriousInformation(const MotionDerivatives& motion,
                               MotionMatrix* hessian) const override {
     if constexpr (kHas<NoiseRowOf, Residual>) {
-      if (input_.cur == nullptr) return;
-      this->AddSample(
-          motion, kSpuriousStep, 2,
-          [this](int axis, double* columns) {
-            Residual::NoiseRow(input_, axis, columns);
-          },
-          hessian);
+      const PackedColumns& rows = this->columns();
+      noise_.Clear(Residual::kColumns,
+                   (rows.size + kSpuriousStep - 1) / kSpuriousStep * 2);
+      typename PackedCost<Type>::Block row;
+      for (int i = 0; i < rows.size; i += kSpuriousStep) {
+        for (int axis = 0; axis < 2; ++axis) {
+          rows.Read(i, &row);
+          Residual::NoiseRow(input_, axis, row.data());
+          noise_.Append(row);
+        }
+      }
+      noise_.Pad();
+      NormalEquations sum;
+      constexpr const ceres::LossFunction* kNoLoss = nullptr;
+      RunVectorised<packed::LineariseKernel<Residual>>(motion, noise_, kNoLoss,
+                                                       0, noise_.size, &sum);
+      *hessian += kSpuriousStep * sum.hessian;
     }
   }
 
@@ -259,10 +230,10 @@ class DirectCostOf final : public PackedCost<Type> {
   // One in this many points represents all of them in the spurious information.
   static constexpr int kSpuriousStep = 8;
 
-  // Images with fewer levels repeat their coarsest one.
+  // Images with fewer levels repeat their coarsest one. Of no images it is 0.
   int ImageLevel(const FrameView& frame, int level) const {
-    return std::min(options_.finest_level + level,
-                    static_cast<int>(frame.levels.size()) - 1);
+    const int coarsest = static_cast<int>(frame.levels.size()) - 1;
+    return std::max(0, std::min(options_.finest_level + level, coarsest));
   }
 
   // Returns false if the level and, up to rounding, the motion are unchanged.
@@ -293,6 +264,7 @@ class DirectCostOf final : public PackedCost<Type> {
   uint64_t points_of_ = 0;             // id of the frame of points_
   DirectInput input_;
   int level_ = 0;
+  mutable PackedColumns noise_;  // see AddSpuriousInformation
 };
 
 }  // namespace rgbd_pose

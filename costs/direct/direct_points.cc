@@ -106,15 +106,15 @@ Eigen::Vector2i SteepestPixel(const ImageView<uint8_t>& gray, int left, int top,
 }  // namespace
 
 void TexturedPoints(const FrameView& frame, int level_index,
-                    const PointSelection& selection, PackedColumns* points) {
+                    const DirectOptions& options, PackedColumns* points) {
   const FrameView::Level& level = frame.levels[level_index];
   const ImageView<uint8_t>& gray = level.gray;
   const int cell = CellSize(static_cast<double>(gray.width) * gray.height,
-                            selection.max_points);
+                            options.max_points);
   const int scale = 1 << level_index;
   const int border = std::max(2, (kBorder + scale - 1) / scale);
   const int flat =
-      static_cast<int>(4.0 * selection.min_gradient * selection.min_gradient);
+      static_cast<int>(4.0 * options.min_gradient * options.min_gradient);
   points->Clear(
       5, static_cast<size_t>(gray.width / cell + 1) * (gray.height / cell + 1));
   for (int top = border; top < gray.height - border; top += cell) {
@@ -129,7 +129,7 @@ void TexturedPoints(const FrameView& frame, int level_index,
       const int v = at.y() * scale + scale / 2;
       if (!IsOneSurface(frame, u, v)) continue;
       const double depth = DepthBefore(frame, u, v, scale);
-      if (depth < selection.min_depth || depth > selection.max_depth) continue;
+      if (depth < options.min_depth || depth > options.max_depth) continue;
       const Eigen::Vector3d X =
           level.camera.Unproject(at.cast<double>(), depth);
       if (!X.allFinite()) continue;
@@ -141,21 +141,21 @@ void TexturedPoints(const FrameView& frame, int level_index,
   points->Pad();
 }
 
-void SmoothPoints(const FrameView& frame, const PointSelection& selection,
+void SmoothPoints(const FrameView& frame, const DirectOptions& options,
                   PackedColumns* points) {
   // At angles between ray and surface below 15 degrees, points hardly help.
   constexpr double kMinCosine = 0.25;
   const Camera& camera = frame.levels[0].camera;
   const int width = frame.depth.width, height = frame.depth.height;
   const int cell =
-      CellSize(static_cast<double>(width) * height, selection.max_points);
+      CellSize(static_cast<double>(width) * height, options.max_points);
   points->Clear(7, static_cast<size_t>(width / cell + 1) * (height / cell + 1));
   for (int v = kBorder + cell / 2; v < height - kBorder; v += cell) {
     for (int u = kBorder + cell / 2; u < width - kBorder; u += cell) {
       InverseDepthPlane fit;
       if (!FitInverseDepthPlane(frame, u, v, &fit)) continue;
       const double depth = 1.0 / fit.inverse_depth;
-      if (depth < selection.min_depth || depth > selection.max_depth) continue;
+      if (depth < options.min_depth || depth > options.max_depth) continue;
       const Eigen::Vector3d X = camera.Unproject(Eigen::Vector2d(u, v), depth);
       const Eigen::Vector3d ray = X / depth;
       const Eigen::Vector2d slope =

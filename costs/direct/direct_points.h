@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <string>
 
 #include "core/estimation/frame_view.h"
 #include "costs/assembly/packed_sum.h"
@@ -59,26 +60,44 @@ struct DirectResidual {
   static constexpr bool kSeesBrightness = false;
 };
 
-// How the points of a level are selected: the image is divided into about as
-// many square cells as there should be points; each cell gives at most one.
-struct PointSelection {
-  int max_points = 1;
-  double min_gradient = 0.0;  // gray levels per pixel
-  double min_depth = 0.0;     // m
-  double max_depth = 0.0;
+// How a direct cost selects its points.
+struct DirectOptions {
+  // Number of points at the finest level; 0: kMaxPoints of the cost. The image
+  // is divided into about as many square cells; each gives at most one point.
+  int max_points = 0;
+  // The same at the coarser levels, which only lead to the finest one.
+  int max_coarse_points = 1000;
+
+  // Which pixels are used: limits in gray levels per pixel and in m.
+  double min_gradient = 3.0;
+  double min_depth = 0.3;
+  double max_depth = 8.0;
+
+  // Number of pyramid levels; if the images have fewer, the coarsest repeats.
+  int num_levels = 4;
+  // Pyramid level of the image used as the finest one. At 1, half the image
+  // size, interpolation does no harm to gray levels. Depths are always read at
+  // full resolution.
+  int finest_level = 1;
+
+  // See MotionCost::information_factor; 0: kInformation of the cost.
+  double information_factor = 0.0;
+
+  // One line that describes the first invalid option, or empty.
+  std::string Check() const;
 };
 
 // The pixel of each cell with the largest gradient. A cell gives none if its
 // gradients are below min_gradient, or if the depth around that pixel has holes
 // or edges. Columns: X (m), sigma of its depth (m), its gray level.
 void TexturedPoints(const FrameView& frame, int level,
-                    const PointSelection& selection, PackedColumns* points);
+                    const DirectOptions& options, PackedColumns* points);
 
 // The centre of each cell, textured or not, if the surface around it is flat.
 // Its depth comes from a plane through 5 x 5 measured depths and is less noisy
 // than each of them. Columns: X (m), the plane N . X = 1 (1 / m), the sigma of
 // a single measured depth there (m).
-void SmoothPoints(const FrameView& frame, const PointSelection& selection,
+void SmoothPoints(const FrameView& frame, const DirectOptions& options,
                   PackedColumns* points);
 
 // Estimates how gray levels change between the frames, which have separate

@@ -44,8 +44,8 @@ struct Photometric : DirectResidual {
   static constexpr int kPointColumns = 5;
 
   static void Points(const FrameView& frame, int level,
-                     const PointSelection& selection, PackedColumns* points) {
-    TexturedPoints(frame, level, selection, points);
+                     const DirectOptions& options, PackedColumns* points) {
+    TexturedPoints(frame, level, options, points);
   }
 
   template <typename D>

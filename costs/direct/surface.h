@@ -43,8 +43,8 @@ struct Surface : DirectResidual {
   static constexpr double kInformation = 0.75;
 
   static void Points(const FrameView& frame, int /*level*/,
-                     const PointSelection& selection, PackedColumns* points) {
-    SmoothPoints(frame, selection, points);
+                     const DirectOptions& options, PackedColumns* points) {
+    SmoothPoints(frame, options, points);
   }
 
   template <typename D>

@@ -6,10 +6,6 @@
 
 namespace rgbd_pose {
 
-// A list of residual types (cost_list.h).
-template <typename... Types>
-struct TypeList {};
-
 // What a residual type over matches packs its columns from.
 struct CostInput {
   const Correspondences& matches;

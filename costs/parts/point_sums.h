@@ -33,6 +33,27 @@ struct PointTerm {
   D Jtr[3];  // n
 };
 
+// The sum of all lanes.
+template <typename D>
+double LaneSum(const D& lanes) {
+  constexpr int kLanes = sizeof(D) / sizeof(double);
+  double total = 0.0;
+  for (int lane = 0; lane < kLanes; ++lane) total += lanes[lane];
+  return total;
+}
+
+// An N x N matrix from the sums of its upper triangle, row by row.
+template <int N, typename D>
+Eigen::Matrix<double, N, N> SymmetricLaneSums(const D* entries) {
+  Eigen::Matrix<double, N, N> matrix;
+  for (int i = 0; i < N; ++i) {
+    for (int k = i; k < N; ++k) {
+      matrix(i, k) = matrix(k, i) = LaneSum(*entries++);
+    }
+  }
+  return matrix;
+}
+
 // The sums over all matches, lane by lane.
 template <typename D>
 class PointSums {
@@ -74,16 +95,17 @@ class PointSums {
     Eigen::Matrix3d shift_turn;
     Eigen::Vector3d g_turn, g_shift;
     for (int i = 0; i < 3; ++i) {
-      for (int k = 0; k < 3; ++k) shift_turn(i, k) = -Total(shift_turn_[i][k]);
-      g_turn[i] = -Total(turn_[i]);
-      g_shift[i] = Total(shift_[i]);
+      for (int k = 0; k < 3; ++k)
+        shift_turn(i, k) = -LaneSum(shift_turn_[i][k]);
+      g_turn[i] = -LaneSum(turn_[i]);
+      g_shift[i] = LaneSum(shift_[i]);
     }
     const Eigen::Matrix3d corner = shift.transpose() * shift_turn * turn;
     MotionMatrix& hessian = sum->hessian;
     hessian.topLeftCorner<3, 3>() +=
-        turn.transpose() * Symmetric(turn_turn_) * turn;
+        turn.transpose() * SymmetricLaneSums<3>(turn_turn_) * turn;
     hessian.bottomRightCorner<3, 3>() +=
-        shift.transpose() * Symmetric(shift_shift_) * shift;
+        shift.transpose() * SymmetricLaneSums<3>(shift_shift_) * shift;
     hessian.bottomLeftCorner<3, 3>() += corner;
     hessian.topRightCorner<3, 3>() += corner.transpose();
     sum->gradient.head<3>() += turn.transpose() * g_turn;
@@ -91,24 +113,6 @@ class PointSums {
   }
 
  private:
-  static double Total(const D& lanes) {
-    constexpr int kLanes = sizeof(D) / sizeof(double);
-    double total = 0.0;
-    for (int lane = 0; lane < kLanes; ++lane) total += lanes[lane];
-    return total;
-  }
-
-  static Eigen::Matrix3d Symmetric(const D* entries) {
-    Eigen::Matrix3d matrix;
-    int entry = 0;
-    for (int i = 0; i < 3; ++i) {
-      for (int k = i; k < 3; ++k, ++entry) {
-        matrix(i, k) = matrix(k, i) = Total(entries[entry]);
-      }
-    }
-    return matrix;
-  }
-
   D turn_turn_[6] = {};
   D shift_turn_[3][3] = {};
   D shift_shift_[6] = {};

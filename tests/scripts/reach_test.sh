@@ -14,7 +14,7 @@ missing() {
 }
 
 mutants=$(scripts/mutants --list)
-direct=$(sed -n 's/^#include "\(costs\/direct\/.*\)"/\1/p' costs/direct_cost_list.h)
+direct=$(sed -n 's/^#include "\(costs\/direct\/.*\)"/\1/p' costs/cost_list.h)
 for file in costs/matches/*.h $direct robust/losses.h; do
   grep -qF "$file:" <<<"$mutants" || missing "no mutant of $file"
 done

@@ -8,12 +8,10 @@ namespace rgbd_pose {
 // The points of a pair's previous frame, at most `max_points`.
 template <typename Residual>
 PackedColumns PointsOf(const DirectPair& pair, int level, int max_points) {
-  const DirectOptions options;
+  DirectOptions options;
+  options.max_points = max_points;
   PackedColumns points;
-  Residual::Points(
-      pair.prev.view, level,
-      {max_points, options.min_gradient, options.min_depth, options.max_depth},
-      &points);
+  Residual::Points(pair.prev.view, level, options, &points);
   return points;
 }
 

@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "costs/direct_cost_list.h"
+#include "costs/cost_list.h"
 #include "tests/support/both_jacobians.h"
 #include "tests/support/direct_columns.h"
 

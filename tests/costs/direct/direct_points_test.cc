@@ -102,12 +102,12 @@ struct Candidate {
 };
 
 std::optional<Candidate> CandidateAt(const FrameView& view, int index, int u,
-                                     int v, const PointSelection& selection) {
+                                     int v, const DirectOptions& options) {
   const FrameView::Level& level = view.levels[index];
   const int du = level.gray.At(u + 1, v) - level.gray.At(u - 1, v);
   const int dv = level.gray.At(u, v + 1) - level.gray.At(u, v - 1);
   const int square = du * du + dv * dv;
-  if (std::sqrt(square) / 2.0 <= selection.min_gradient) return std::nullopt;
+  if (std::sqrt(square) / 2.0 <= options.min_gradient) return std::nullopt;
   Candidate candidate;
   candidate.square = square;
   const int x = index == 0 ? u : 2 * u + 1, y = index == 0 ? v : 2 * v + 1;
@@ -124,8 +124,8 @@ std::optional<Candidate> CandidateAt(const FrameView& view, int index, int u,
         4.0;
   }
   // A cell whose steepest pixel has no valid depth has no point.
-  if (low <= 0.0 || high >= 1.02 * low || z < selection.min_depth ||
-      z > selection.max_depth) {
+  if (low <= 0.0 || high >= 1.02 * low || z < options.min_depth ||
+      z > options.max_depth) {
     return candidate;
   }
   const Camera& camera = level.camera;
@@ -141,8 +141,11 @@ TEST_P(TexturedPointsTest, AreTheSteepestPixelsOfTheirCells) {
   const int level = GetParam();
   PaintedFrame frame(96, 80);
   PaintAtRandom(&frame);
-  const PointSelection selection = {level == 0 ? 96 * 80 / 36 : 48 * 40 / 36,
-                                    7.0, 1.2, 1.4};
+  DirectOptions options;
+  options.max_points = level == 0 ? 96 * 80 / 36 : 48 * 40 / 36;
+  options.min_gradient = 7.0;
+  options.min_depth = 1.2;
+  options.max_depth = 1.4;
   constexpr int kCell = 6;
   // The neighbourhood of a point stays within the image at any level.
   const int border = level == 0 ? 7 : 4;
@@ -155,7 +158,7 @@ TEST_P(TexturedPointsTest, AreTheSteepestPixelsOfTheirCells) {
       for (int k = 0; k < kCell * kCell; ++k) {
         const int u = left + k % kCell, v = top + k / kCell;
         if (u >= gray.width - border || v >= gray.height - border) continue;
-        const auto found = CandidateAt(frame.view, level, u, v, selection);
+        const auto found = CandidateAt(frame.view, level, u, v, options);
         if (found.has_value() && found->square > best.square) best = *found;
       }
       flat += best.square == 0;
@@ -168,7 +171,7 @@ TEST_P(TexturedPointsTest, AreTheSteepestPixelsOfTheirCells) {
   EXPECT_GT(expected.size(), 12u);
 
   PackedColumns points;
-  TexturedPoints(frame.view, level, selection, &points);
+  TexturedPoints(frame.view, level, options, &points);
   const std::vector<Eigen::VectorXd> actual = Rows(points, 5);
   ASSERT_EQ(actual.size(), expected.size());
   for (size_t i = 0; i < expected.size(); ++i) {
@@ -187,7 +190,10 @@ constexpr int kMiddle = 7 + kSide / 2;
 std::vector<Eigen::VectorXd> SmoothPointsOf(const PaintedFrame& frame,
                                             double max_depth = 8.0) {
   PackedColumns points;
-  SmoothPoints(frame.view, {1, 0.0, 0.3, max_depth}, &points);
+  DirectOptions options;
+  options.max_points = 1;
+  options.max_depth = max_depth;
+  SmoothPoints(frame.view, options, &points);
   return Rows(points, 7);
 }
 

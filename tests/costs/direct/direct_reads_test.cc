@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "costs/direct_cost_list.h"
+#include "costs/cost_list.h"
 
 namespace rgbd_pose {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <vector>
 
-#include "costs/direct_cost_list.h"
+#include "costs/cost_list.h"
 #include "frontend/simulation/synthetic_path.h"
 #include "tests/support/both_jacobians.h"
 #include "tests/support/direct_columns.h"

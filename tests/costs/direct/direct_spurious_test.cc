@@ -6,8 +6,8 @@
 #include <opencv2/core.hpp>
 #include <random>
 
+#include "costs/cost_list.h"
 #include "costs/direct/direct_cost.h"
-#include "costs/direct_cost_list.h"
 #include "tests/support/direct_pair.h"
 
 namespace rgbd_pose {

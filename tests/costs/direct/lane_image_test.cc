@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "core/util/vector_lanes.h"
-#include "costs/direct_cost_list.h"
+#include "costs/cost_list.h"
 #include "frontend/frame/observe.h"
 #include "tests/support/exact_twist.h"
 
