@@ -2,8 +2,6 @@
 
 #include <ceres/jet.h>
 
-#include <cstring>
-
 #include "core/geometry/motion.h"
 
 namespace rgbd_pose {
@@ -20,46 +18,27 @@ struct WithAutodiffJacobian : Type {
   template <typename D>
   static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
                        D (*J)[6]) {
-    constexpr int kRows = Type::kRows;
-    constexpr int kColumns = Type::kColumns;
     // NOLINTNEXTLINE(bugprone-sizeof-expression): D may be one double.
     constexpr int kLanes = sizeof(D) / sizeof(double);
-    double match[kColumns][kLanes];
-    double rows[kRows][kLanes];
-    double derivatives[kRows][6][kLanes];
-    std::memcpy(match, columns, sizeof(match));
+    const auto* const lanes = reinterpret_cast<const double*>(columns);
     for (int lane = 0; lane < kLanes; ++lane) {
-      double m[kColumns], values[kRows], gradients[kRows][6];
-      for (int k = 0; k < kColumns; ++k) m[k] = match[k][lane];
-      Differentiate(motion, m, values, gradients);
-      for (int row = 0; row < kRows; ++row) {
-        rows[row][lane] = values[row];
-        for (int k = 0; k < 6; ++k) {
-          derivatives[row][k][lane] = gradients[row][k];
-        }
+      double match[Type::kColumns];
+      for (int k = 0; k < Type::kColumns; ++k) {
+        match[k] = lanes[k * kLanes + lane];
       }
+      Differentiate(motion, match, kLanes, reinterpret_cast<double*>(r) + lane,
+                    reinterpret_cast<double*>(J) + lane);
     }
-    std::memcpy(r, rows, sizeof(rows));
-    std::memcpy(J, derivatives, sizeof(derivatives));
   }
 
  private:
-  using Jet = ceres::Jet<double, 6>;
-
-  // Compiled once and not for every instruction set, which would take long.
+  // Writes every stride-th number of r and J. Compiled once and not for every
+  // instruction set, which would take long.
   [[gnu::noinline]] static void Differentiate(const MotionDerivatives& motion,
-                                              const double* columns, double* r,
-                                              double (*J)[6]) {
-    Jet residuals[Type::kRows];
-    Type::Residual(JetsOf(motion), columns, residuals);
-    for (int row = 0; row < Type::kRows; ++row) {
-      r[row] = residuals[row].a;
-      for (int k = 0; k < 6; ++k) J[row][k] = residuals[row].v[k];
-    }
-  }
-
-  // R and C with their derivatives by the six parameters.
-  static RotationAndCenter<Jet> JetsOf(const MotionDerivatives& motion) {
+                                              const double* columns, int stride,
+                                              double* r, double* J) {
+    using Jet = ceres::Jet<double, 6>;
+    // R and C with their derivatives by the six parameters.
     RotationAndCenter<Jet> pose;
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 3; ++column) {
@@ -69,7 +48,14 @@ struct WithAutodiffJacobian : Type {
       }
       pose.C[row] = Jet(motion.C[row], 3 + row);
     }
-    return pose;
+    Jet residuals[Type::kRows];
+    Type::Residual(pose, columns, residuals);
+    for (int row = 0; row < Type::kRows; ++row) {
+      r[row * stride] = residuals[row].a;
+      for (int k = 0; k < 6; ++k) {
+        J[(6 * row + k) * stride] = residuals[row].v[k];
+      }
+    }
   }
 };
 

@@ -11,21 +11,23 @@
 
 // One Ceres residual block that represents a whole sum of robustified ones.
 //
-// Ceres spends most of its time around small residual blocks rather than in
-// them. For a Gauss-Newton step over N blocks it needs only their sums
+// For a Gauss-Newton step over N blocks Ceres needs only their sums
 //
 //   c = 1/2 sum rho(|r_i|^2),  g = sum rho' J_i^T r_i,  H = sum rho' J_i^T J_i,
 //
-// so one block with K + 1 rows is enough:
+// so one block with K + 1 rows is enough (docs/compressed_block.md):
 //
-//   r = [ L^-1 g ; sqrt(2 c - |L^-1 g|^2) ],  J = [ L^T ; 0 ],  H = L L^T,
+//   r = [ L^-1 g ; sqrt(2 c - |L^-1 g|^2) ],  J = [ L^T ; 0 ],  H = L L^T.
 //
-// since r^T r / 2 = c, J^T r = g and J^T J = H: Ceres takes exactly the same
-// steps as with N blocks. These sums are for losses with rho'' <= 0; where
-// rho'' > 0, Ceres adds sum 2 rho'' J_i^T r_i r_i^T J_i to H. This header
-// depends on nothing else in the project.
+// This header depends on nothing else in the project.
 
 namespace rgbd_pose {
+
+// A Jacobian as Ceres stores it. Eigen requires a single column to be
+// column-major.
+template <int Rows, int K>
+using RowMajor =
+    Eigen::Matrix<double, Rows, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
 
 // The three sums H, g and c at one x[K].
 template <int K>
@@ -38,18 +40,6 @@ struct CompressedSums {
 };
 
 namespace compressed {
-
-// If H is almost singular, rounding can make |L^-1 g|^2 exceed 2 c. Takes the
-// excess out of the last rows, which belong to the weakest directions. So the
-// cost becomes exact, and J^T r hardly changes.
-template <int K, typename Residuals>
-void Trim(double excess, Residuals r) {
-  for (int i = K - 1; i >= 0 && excess > 0.0; --i) {
-    const double square = r[i] * r[i];
-    r[i] = std::copysign(std::sqrt(std::max(0.0, square - excess)), r[i]);
-    excess -= square;
-  }
-}
 
 // The Hessian's type for factorisation. For K > 6, fixed-size Eigen would
 // unroll loops for half a minute of compile time. Neither type allocates
@@ -97,16 +87,13 @@ void FactorSingular(const CompressedSums<K>& sums, Residuals r, Rows J) {
 template <int K>
 bool FactorSums(const CompressedSums<K>& sums, double* residuals,
                 double* jacobian) {
-  // Row-major as in Ceres; Eigen requires a single column to be column-major.
-  using RowMajor = Eigen::Matrix<double, K + 1, K,
-                                 K == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
   if (!std::isfinite(sums.cost)) return false;
   Eigen::Map<Eigen::Matrix<double, K + 1, 1>> r(residuals);
   r.setZero();
   r[K] = std::sqrt(std::max(0.0, 2.0 * sums.cost));
   if (jacobian == nullptr) return true;
   if (!sums.gradient.allFinite() || !sums.hessian.allFinite()) return false;
-  Eigen::Map<RowMajor> J(jacobian);
+  Eigen::Map<RowMajor<K + 1, K>> J(jacobian);
   J.setZero();
   const Eigen::LLT<compressed::Factorable<K>> cholesky(sums.hessian);
   const auto pivots = cholesky.matrixLLT().diagonal().cwiseAbs2();
@@ -122,7 +109,15 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
   }
   const double rest = 2.0 * sums.cost - r.template head<K>().squaredNorm();
   r[K] = std::sqrt(std::max(0.0, rest));
-  compressed::Trim<K>(-rest, r.template head<K>());
+  // If H is almost singular, rounding can make |L^-1 g|^2 exceed 2 c. Taking
+  // the excess out of the last rows, which belong to the weakest directions,
+  // makes the cost exact and hardly changes J^T r.
+  double excess = -rest;
+  for (int i = K - 1; i >= 0 && excess > 0.0; --i) {
+    const double square = r[i] * r[i];
+    r[i] = std::copysign(std::sqrt(std::max(0.0, square - excess)), r[i]);
+    excess -= square;
+  }
   return r.allFinite() && J.allFinite();
 }
 

@@ -6,10 +6,9 @@
 
 #include "costs/assembly/compressed_block.h"
 
-// Many residuals of one type as one Ceres block, for users of
-// compressed_block.h who have a residual and its Jacobian and do not want to
-// write the sums. Needs nothing else of the project; docs/compressed_block.md
-// has an example.
+// Many residuals of one type as one Ceres block, given a residual and its
+// Jacobian (example: docs/compressed_block.md). Needs nothing of the project
+// but compressed_block.h.
 //
 // A residual type defines its sizes and evaluates itself:
 //
@@ -40,9 +39,7 @@ class CompressedResiduals {
                   CompressedSums<K>* sums) const {
     constexpr int kRows = Residual::kRows;
     Eigen::Matrix<double, kRows, 1> r;
-    // Eigen stores a single column only in column-major order.
-    Eigen::Matrix<double, kRows, K, K == 1 ? Eigen::ColMajor : Eigen::RowMajor>
-        J;
+    RowMajor<kRows, K> J;
     double* const derivatives = with_derivatives ? J.data() : nullptr;
     for (const Residual& residual : *residuals_) {
       // A loss may treat a non-finite residual as an outlier.

@@ -16,32 +16,18 @@ template <typename Residual>
 using AssociationOf = decltype(Residual::kAssociation);
 
 // The MotionCost of a residual type over matches: binding, sums and the three
-// assemblies. A residual type is stateless and defines
+// assemblies. A residual type is stateless and defines (docs/add_a_cost.md)
 //
-//   kName, kRows, kDegreesOfFreedom, kColumns
-//   kIsWhitened                                   see MotionCost::is_whitened
+//   kName, kRows, kDegreesOfFreedom, kColumns, kIsWhitened
 //   Pack(input, i, columns) -> usable             for match i
 //   Residual(motion pose, columns, r)             for any scalars
 //
-// and, if it has to be fast (the default is autodiff_jacobian.h),
+// and, where they apply,
 //
-//   Jacobian(motion derivatives, columns, r, J)   hand-written
-//
-// A type whose weights or choice of matches depend on the motion given to Pack
-// defines when to pack again:
-//
-//   kAssociation                                  see MotionCost::association
-//
-// A type whose matches may lack measurements defines how many they have:
-//
-//   Degrees(columns)                              see MotionCost::degrees
-//
-// A type that is not whitened may define a limit for the residuals of inliers:
-//
-//   InlierLimit(columns)                          see MotionCost::InlierLimit
-//
-// A type that packs the prior instead of matches defines kIsPrior; its Pack is
-// called with i = 0 if there is a prior.
+//   Jacobian(motion derivatives, columns, r, J)   default: autodiff_jacobian.h
+//   kAssociation, Degrees(columns), InlierLimit(columns)    see MotionCost
+//   kPointTerms, PointTerms                       see point_sums.h
+//   kIsPrior           packs the prior, if there is one, as i = 0
 template <typename Type>
 class CostOf final : public PackedCost<Type> {
   using Residual = typename PackedCost<Type>::Residual;

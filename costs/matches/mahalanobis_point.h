@@ -18,7 +18,6 @@ namespace rgbd_pose {
 // reward motions that make the noise look large.
 struct MahalanobisPoint : WeightedForwardError<MahalanobisPoint, 3> {
   static constexpr char kName[] = "mahalanobis_point";
-  static constexpr bool kIsWhitened = true;
   static constexpr int kColumns =
       ForwardError::kColumns + Whitening<3, double>::kColumns;
 

@@ -19,7 +19,6 @@ namespace rgbd_pose {
 // undetermined: the matches must lie on surfaces with different orientations.
 struct PointToPlane : WeightedForwardError<PointToPlane, 1> {
   static constexpr char kName[] = "point_to_plane";
-  static constexpr bool kIsWhitened = true;
   static constexpr int kColumns = ForwardError::kColumns + 3;  // n / sigma
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {

@@ -61,6 +61,7 @@ struct WeightedForwardError {
   // Constants that every residual type has, see costs/assembly/cost_of.h.
   static constexpr int kRows = rows;
   static constexpr int kDegreesOfFreedom = rows;
+  static constexpr bool kIsWhitened = true;
   static constexpr AssociationPolicy kAssociation =
       AssociationPolicy::kWhenMoved;
 
