@@ -123,9 +123,8 @@ class PackedCost : public MotionCost {
   }
 
  protected:
-  // The number of columns of a block, and their values.
-  static constexpr int kColumns = Residual::kColumns;
-  using Block = std::array<double, kColumns>;
+  // The columns of a block.
+  using Block = std::array<double, Residual::kColumns>;
 
   // See FramePair::threads.
   void SetThreads(int threads) { threads_ = threads; }
@@ -135,7 +134,7 @@ class PackedCost : public MotionCost {
   // Removes all blocks and reserves memory for max_blocks. The caller may write
   // blocks without a match, and their number, directly to the returned columns.
   PackedColumns* BeginBlocks(size_t max_blocks) {
-    packed_.Clear(kColumns, max_blocks);
+    packed_.Clear(Residual::kColumns, max_blocks);
     matches_.clear();
     degrees_.clear();
     return &packed_;

@@ -169,8 +169,6 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
                         const CalibrationState& state,
                         CalibrationMatrix* model_covariance,
                         CalibrationMatrix* sandwich_covariance) {
-  model_covariance->setZero();
-  sandwich_covariance->setZero();
   const std::vector<MotionDerivatives> poses = PosesOf(state);
   const int num_poses = static_cast<int>(poses.size());
   const ReducedCameraSystem equations =

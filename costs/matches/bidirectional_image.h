@@ -30,8 +30,7 @@ struct BidirectionalImage {
   static constexpr AssociationPolicy kAssociation =
       AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = true;
-  static constexpr int kForwardColumns =
-      ImageError<3, Forward, double>::kColumns;
+  static constexpr int kForwardColumns = ImageError<3, Forward>::kColumns;
   static constexpr int kColumns = 2 * kForwardColumns;
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
@@ -62,17 +61,16 @@ struct BidirectionalImage {
   template <typename M, typename D, typename T>
   static void Residual(const RotationAndCenter<M>& motion, const D* columns,
                        T* r) {
-    ImageError<3, Forward, D>(columns).Residual(motion, r);
-    ImageError<3, Backward, D>(columns + kForwardColumns)
-        .Residual(motion, r + 3);
+    ImageError<3, Forward>::Residual(motion, columns, r);
+    ImageError<3, Backward>::Residual(motion, columns + kForwardColumns, r + 3);
   }
 
   template <typename D>
   static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
                        D (*J)[6]) {
-    ImageError<3, Forward, D>(columns).Jacobian(motion, r, J);
-    ImageError<3, Backward, D>(columns + kForwardColumns)
-        .Jacobian(motion, r + 3, J + 3);
+    ImageError<3, Forward>::Jacobian(motion, columns, r, J);
+    ImageError<3, Backward>::Jacobian(motion, columns + kForwardColumns, r + 3,
+                                      J + 3);
   }
 };
 

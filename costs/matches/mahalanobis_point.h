@@ -19,7 +19,7 @@ namespace rgbd_pose {
 struct MahalanobisPoint : WeightedForwardError<MahalanobisPoint, 3> {
   static constexpr char kName[] = "mahalanobis_point";
   static constexpr int kColumns =
-      ForwardError::kColumns + Whitening<3, double>::kColumns;
+      ForwardError::kColumns + Whitening<3>::kColumns;
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     return ForwardError::Pack(input, i, columns) &&
@@ -29,7 +29,7 @@ struct MahalanobisPoint : WeightedForwardError<MahalanobisPoint, 3> {
 
   template <typename D, typename T>
   [[gnu::always_inline]] static void Weigh(const D* weights, const T* e, T* r) {
-    Whitening<3, D>(weights).Whiten(e, r);
+    Whitening<3>::Whiten(weights, e, r);
   }
 
   // The same for the compressed sums (point_sums.h): r = W e decreases by W dq,

@@ -25,7 +25,7 @@ struct MotionPriorCost {
   static constexpr bool kIsWhitened = true;
   static constexpr bool kIsPrior = true;
   static constexpr int kPose = 9 + 3;  // R_p, column by column, and C_p
-  static constexpr int kColumns = kPose + Whitening<6, double>::kColumns;
+  static constexpr int kColumns = kPose + Whitening<6>::kColumns;
 
   static bool Pack(const CostInput& input, size_t /*i*/, double* columns) {
     const Rigid3d& motion = input.prior->mean;
@@ -43,14 +43,13 @@ struct MotionPriorCost {
     T e[6];
     HalfTwist(columns, motion.R, e);
     for (int i = 0; i < 3; ++i) e[3 + i] = motion.C[i] - columns[9 + i];
-    Whitening<6, D>(columns + kPose).Whiten(e, r);
+    Whitening<6>::Whiten(columns + kPose, e, r);
   }
 
   template <typename D>
   static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
                        D (*J)[6]) {
     Residual(motion, columns, r);
-    const Whitening<6, D> whitening(columns + kPose);
     for (int parameter = 0; parameter < 6; ++parameter) {
       D de[6] = {};
       if (parameter < 3) {
@@ -58,7 +57,7 @@ struct MotionPriorCost {
       } else {
         de[parameter] += 1.0;
       }
-      whitening.WhitenColumn(de, J, parameter);
+      Whitening<6>::WhitenColumn(columns + kPose, de, J, parameter);
     }
   }
 

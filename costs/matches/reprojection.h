@@ -8,13 +8,12 @@ namespace rgbd_pose {
 
 // Common part of the reprojections: u, v and, if N = 3, inverse depth.
 template <int N>
-struct ReprojectionOf {
+struct ReprojectionOf : ImageError<N, Forward> {
   static constexpr int kRows = N;
   static constexpr int kDegreesOfFreedom = N;
   static constexpr AssociationPolicy kAssociation =
       AssociationPolicy::kWhenMoved;
   static constexpr bool kIsWhitened = true;
-  static constexpr int kColumns = ImageError<N, Forward, double>::kColumns;
 
   static bool Pack(const CostInput& input, size_t i, double* columns) {
     const Observation& prev = input.matches[i].prev;
@@ -22,18 +21,6 @@ struct ReprojectionOf {
     if (prev.depth <= 0.0 || (N == 3 && cur.depth <= 0.0)) return false;
     return PackImageError<N>(input.matches, input.cur_from_prev, prev, cur, 1.0,
                              columns);
-  }
-
-  template <typename M, typename D, typename T>
-  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
-                       T* r) {
-    ImageError<N, Forward, D>(columns).Residual(motion, r);
-  }
-
-  template <typename D>
-  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
-                       D (*J)[6]) {
-    ImageError<N, Forward, D>(columns).Jacobian(motion, r, J);
   }
 };
 

@@ -57,50 +57,45 @@ class Projection {
 // other frame, against its measurement there: u and v (N = 2) or u, v and
 // inverse depth (N = 3). Pixels are in units of the focal length
 // (see Projection); after whitening, units do not matter. Direction is Forward
-// or Backward (moved_point.h); D is double or a vector of doubles.
-template <int N, typename Direction, typename D>
+// or Backward (moved_point.h). Columns: the point, its measurement and the
+// whitening.
+template <int N, typename Direction>
 struct ImageError {
-  static constexpr int kPoint = 3;
-  static constexpr int kColumns = kPoint + N + Whitening<N, D>::kColumns;
+  static constexpr int kWhitening = 3 + N;
+  static constexpr int kColumns = kWhitening + Whitening<N>::kColumns;
 
-  // The point, its measurement and the whitening.
-  explicit ImageError(const D* columns)
-      : point(columns),
-        measured(columns + kPoint),
-        whitening(columns + kPoint + N) {}
-
-  template <typename M, typename T>
-  void Residual(const RotationAndCenter<M>& motion, T* r) const {
+  template <typename M, typename D, typename T>
+  static void Residual(const RotationAndCenter<M>& motion, const D* columns,
+                       T* r) {
     T q[3];
-    Direction::TransformPoint(motion, point, q);
-    WhitenError(Projection<T>(q), r);
+    Direction::TransformPoint(motion, columns, q);
+    WhitenError(columns, Projection<T>(q), r);
   }
 
-  void Jacobian(const MotionDerivatives& motion, D* r, D (*J)[6]) const {
+  template <typename D>
+  static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
+                       D (*J)[6]) {
     D q[3];
-    Direction::TransformPoint(motion, point, q);
+    Direction::TransformPoint(motion, columns, q);
     const Projection<D> projection(q);
-    WhitenError(projection, r);
+    WhitenError(columns, projection, r);
     for (int parameter = 0; parameter < 6; ++parameter) {
       D dq[3], dm[3], de[N];
-      Direction::Derivative(motion, point, parameter, dq);
+      Direction::Derivative(motion, columns, parameter, dq);
       projection.Derivative(dq, dm);
       for (int i = 0; i < N; ++i) de[i] = -dm[i];
-      whitening.WhitenColumn(de, J, parameter);
+      Whitening<N>::WhitenColumn(columns + kWhitening, de, J, parameter);
     }
   }
 
  private:
-  template <typename T>
-  void WhitenError(const Projection<T>& projection, T* r) const {
+  template <typename D, typename T>
+  static void WhitenError(const D* columns, const Projection<T>& projection,
+                          T* r) {
     T e[N];
-    for (int i = 0; i < N; ++i) e[i] = measured[i] - projection.m()[i];
-    whitening.Whiten(e, r);
+    for (int i = 0; i < N; ++i) e[i] = columns[3 + i] - projection.m()[i];
+    Whitening<N>::Whiten(columns + kWhitening, e, r);
   }
-
-  const D* point;
-  const D* measured;
-  Whitening<N, D> whitening;
 };
 
 // Writes the columns of an ImageError: a point of `source`, which must have
@@ -136,7 +131,7 @@ bool PackImageError(const Correspondences& matches,
   columns = std::copy_n(point.data(), 3, columns);
   columns = std::copy_n(measured.data(), N, columns);
   if (N == 3 && has_depth) return PackWhitening<3>(covariance, columns);
-  std::fill_n(columns, Whitening<N, double>::kColumns, 0.0);
+  std::fill_n(columns, Whitening<N>::kColumns, 0.0);
   return PackWhitening<2>(covariance.topLeftCorner<2, 2>(), columns);
 }
 

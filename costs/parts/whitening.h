@@ -29,16 +29,12 @@ inline Eigen::Matrix3d PointCovariance(const Camera& camera,
 // With the covariance K K^T (Cholesky), L^T = K^-1 is a lower triangle, stored
 // row by row; its first part whitens the first n components alone. D is double
 // or a vector of doubles.
-template <int N, typename D>
-class Whitening {
- public:
+template <int N>
+struct Whitening {
   static constexpr int kColumns = N * (N + 1) / 2;
 
-  explicit Whitening(const D* columns) : w_(columns) {}
-
-  template <typename E, typename T>
-  void Whiten(const E* e, T* r) const {
-    const D* w = w_;
+  template <typename D, typename E, typename T>
+  static void Whiten(const D* w, const E* e, T* r) {
     for (int row = 0; row < N; ++row) {
       r[row] = *w++ * e[0];
       for (int k = 1; k <= row; ++k) r[row] += *w++ * e[k];
@@ -46,14 +42,12 @@ class Whitening {
   }
 
   // The same for one column of a Jacobian, into rows J[0..N-1].
-  void WhitenColumn(const D* e, D (*J)[6], int column) const {
+  template <typename D>
+  static void WhitenColumn(const D* w, const D* e, D (*J)[6], int column) {
     D r[N];
-    Whiten(e, r);
+    Whiten(w, e, r);
     for (int row = 0; row < N; ++row) J[row][column] = r[row];
   }
-
- private:
-  const D* w_;
 };
 
 // Writes the columns of the whitening by a covariance; returns false if it is
@@ -80,7 +74,7 @@ bool PackWhitening(const Eigen::Matrix<double, N, N>& covariance,
     }
     columns = std::copy_n(W[i], i + 1, columns);
   }
-  return std::all_of(columns - Whitening<N, double>::kColumns, columns,
+  return std::all_of(columns - Whitening<N>::kColumns, columns,
                      [](double w) { return std::isfinite(w); });
 }
 
