@@ -53,9 +53,8 @@ Estimator MakeCoarseEstimator(const DirectOptions& options) {
   estimator.scale = nullptr;
   // 0.025 px of the finest of these images with a focal length of 66 px.
   estimator.step_tolerance = 4e-4;
-  // If fewer points agree, the estimate is wrong (docs/direct.md). Simulated
-  // pairs: all right estimates had at least 0.90, all wrong ones at most 0.63.
-  // Real pairs: 99 % of the right estimates had at least 0.69.
+  // If fewer points agree, the estimate is wrong (docs/direct.md). 99 % of the
+  // right estimates of real pairs had at least 0.69.
   estimator.min_inlier_share = 0.7;
   return Estimator(estimator,
                    MakeDirectCosts("photometric+inverse_depth+motion_prior",

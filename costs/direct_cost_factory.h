@@ -40,9 +40,8 @@ std::vector<RobustCost> JoinCosts(std::vector<RobustCost> matches,
 EstimatorOptions DirectEstimatorOptions();
 
 // An estimator that leads from a distant guess to where finer images or matches
-// continue. It uses images of 80 x 60 pixels and smaller. Their depths keep it
-// off objects that have come in front of the camera; a prior helps where they
-// show nothing. Ignores max_points, finest_level and num_levels of `options`.
+// continue, with images of 80 x 60 pixels and smaller. Ignores max_points,
+// finest_level and num_levels of `options`.
 Estimator MakeCoarseEstimator(const DirectOptions& options = {});
 
 }  // namespace rgbd_pose

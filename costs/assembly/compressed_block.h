@@ -126,9 +126,8 @@ bool FactorSums(const CompressedSums<K>& sums, double* residuals,
 //   bool(const double* x, bool with_derivatives, CompressedSums<K>* sums) const
 //
 // with x[K] and zeroed sums. It fills in the cost and, with derivatives, the
-// other sums. If it returns false, Ceres rejects the step. The block stores
-// nothing between calls: losses and data may change between two solves, as in
-// plain Ceres, and the block is as thread-safe as its evaluator.
+// other sums; false makes Ceres reject the step. The block stores nothing
+// between calls and is as thread-safe as its evaluator.
 template <int K, typename Evaluator>
 class CompressedBlock final : public ceres::SizedCostFunction<K + 1, K> {
   static_assert(K >= 1 && K <= 12, "dense sums suit small problems");

@@ -13,9 +13,9 @@
 
 namespace rgbd_pose {
 
-// One match as a Ceres cost function with its hand-written Jacobian. Whatever
-// does not depend on the match is computed once per motion, half the benefit of
-// a hand-written Jacobian. So a problem may use only one thread.
+// One match as a Ceres cost function with its hand-written Jacobian. What does
+// not depend on the match is computed once per motion, half the benefit of a
+// hand-written Jacobian; so a problem may use only one thread.
 template <typename Residual>
 class AnalyticBlock final
     : public ceres::SizedCostFunction<Residual::kRows, 6> {
@@ -59,10 +59,9 @@ template <typename Residual>
 using OracleBlock =
     ceres::AutoDiffCostFunction<OracleFunctor<Residual>, Residual::kRows, 6>;
 
-// The sums of a MotionCost, as its compressed block needs them. Ceres first
-// asks for the cost of a trial step and, once it has accepted the step, for the
-// derivatives. The sums of the last x are stored, so both take one evaluation.
-// Only x may change while the block lives (see MotionCost::AddTo).
+// The sums of a MotionCost for its compressed block. Ceres asks for the cost of
+// a trial step and, once it has accepted it, for the derivatives: the sums of
+// the last x are kept. Only x may change meanwhile (see MotionCost::AddTo).
 class MotionSums {
  public:
   // All must outlive this object; a null loss is least squares.

@@ -67,8 +67,7 @@ struct PackedColumns {
 namespace packed {
 
 // Matches are weighted tile by tile: first all squared norms, then all losses
-// (scalar virtual calls), then all sums. Mixing these steps would spill the
-// vector registers at every call.
+// (virtual calls, which would spill the vector registers), then all sums.
 constexpr int kTile = 256;
 
 // The squared norm of the residual of each match from `begin` (a multiple of

@@ -16,9 +16,8 @@ struct CalibrationPrior {
   CalibrationVector mean, sigma;
 };
 
-// A bundle adjustment of keyframes, landmarks and the camera. The free
-// parameters of the camera have a normal prior. It runs on one thread: several
-// threads would add up in varying order, and the last digits would vary.
+// A bundle adjustment of keyframes, landmarks and the camera, on one thread:
+// several would add up in varying order, and the last digits would vary.
 class BundleAdjustment {
  public:
   // `views` must outlive this object. With `training_only`, views that are held

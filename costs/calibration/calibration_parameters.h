@@ -38,8 +38,7 @@ enum CalibrationIndex {
 inline constexpr int kLensSize = kInverseDepth;
 inline constexpr int kDistortionSize = kLensSize - kK1;
 
-// A value, and a covariance, of all parameters in the order of
-// kCalibrationParameters.
+// A value, and a covariance, of all parameters in the order above.
 using CalibrationVector = Eigen::Matrix<double, kCalibrationSize, 1>;
 using CalibrationMatrix =
     Eigen::Matrix<double, kCalibrationSize, kCalibrationSize>;
@@ -57,9 +56,8 @@ struct CalibrationParameter {
   // length.
   double prior;
 
-  // Lower limit of every error bar, for errors that residuals do not show:
-  // features share a bias of some hundredths of a pixel in all views, and
-  // surfaces are not exact planes. From simulated recordings of several scenes.
+  // Lower limit of every error bar, for errors that residuals do not show (a
+  // bias of features in all views, curved surfaces), from simulated recordings.
   double floor;
 };
 

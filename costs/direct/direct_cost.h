@@ -118,15 +118,16 @@ struct LookUpKernel {
 template <typename Residual>
 using NoiseRowOf = decltype(&Residual::NoiseRow);
 
-// The MotionCost of a direct residual type (photometric.h). Its points are
-// selected once per previous frame and looked up in the current frame after
-// every step. A residual type derives from DirectResidual, which has defaults
-// for other constants, and defines
+// The MotionCost of a direct residual type. Its points are selected once per
+// previous frame and looked up in the current frame after every step. A
+// residual type derives from DirectResidual, which has defaults for other
+// constants, or from Surface (surface.h), which also has the first five of
 //
-//   kName, kPointColumns, kSamples, kColumns
-//   Points(frame, level, selection, points)  selects points of a previous frame
+//   kPointColumns, kSamples
+//   Points(frame, level, options, points)    selects points of a previous frame
 //   Locate(input, point, place)              projects; on vectors of doubles
 //   Read(input, u, v, stride, samples)       reads kSamples numbers there
+//   kName, kColumns
 //   LookUp(input, point, samples, columns, rejection)
 //                                            on vectors of doubles; a point is
 //                                            kept if its rejection is below 1
@@ -136,9 +137,6 @@ using NoiseRowOf = decltype(&Residual::NoiseRow);
 //   NoiseRow(input, axis, columns)           optional: turns a row into one of
 //                                            pure slope noise along an image
 //                                            axis (0: u, 1: v)
-//
-// A residual type on surfaces inherits all of these but kName, kColumns, LookUp
-// and Residual from Surface (surface.h).
 template <typename Type>
 class DirectCostOf final : public PackedCost<Type> {
   using Residual = typename PackedCost<Type>::Residual;

@@ -12,10 +12,9 @@
 namespace rgbd_pose {
 
 // Where direct costs look their points up: in the current frame, at one pyramid
-// level, as seen after one motion. Around a point's pixel the image is
-// approximated by a plane (its value and derivatives there). So the residuals
-// need only columns of numbers and no image; the columns are computed again for
-// each motion that the solver tries.
+// level, as seen after one motion. Around a point's pixel the image is a plane
+// (its value and derivatives there), so residuals need only columns of numbers,
+// which are computed again for each motion that the solver tries.
 struct DirectInput {
   const FrameView* cur = nullptr;
   int level = 0;
@@ -94,9 +93,8 @@ void TexturedPoints(const FrameView& frame, int level,
                     const DirectOptions& options, PackedColumns* points);
 
 // The centre of each cell, textured or not, if the surface around it is flat.
-// Its depth comes from a plane through 5 x 5 measured depths and is less noisy
-// than each of them. Columns: X (m), the plane N . X = 1 (1 / m), the sigma of
-// a single measured depth there (m).
+// Its depth is that of a plane through 5 x 5 measured depths. Columns: X (m),
+// the plane N . X = 1 (1 / m), the sigma of a single measured depth there (m).
 void SmoothPoints(const FrameView& frame, const DirectOptions& options,
                   PackedColumns* points);
 

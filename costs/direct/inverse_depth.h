@@ -36,7 +36,6 @@ struct InverseDepth : Surface {
     *rejection = surface.rejection + step * step;
   }
 
-  // Turns a row into pure noise of the plane's slope along an image axis.
   static void NoiseRow(const DirectInput& input, int axis, double* columns) {
     const Camera& camera = input.cur->levels[0].camera;
     columns[3] = axis == 0 ? kSlopeNoise * camera.fx : 0.0;

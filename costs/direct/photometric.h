@@ -19,8 +19,7 @@ namespace rgbd_pose {
 //   r = k_0 + k_x x + k_y y
 //
 // With a rolling shutter (FrameView::timing), u is where q is seen when its row
-// is exposed. The derivative of u by q neglects that motion; the error is the
-// camera's rotation in the meantime, 3 % at 1 rad/s.
+// is exposed; its derivative neglects that motion (3 % at 1 rad/s).
 //
 // sigma^2 = sigma_gray^2 (1 + gain^2) + (dI / d depth)^2 sigma_depth^2: the
 // noise of both images, and the shift of u due to the depth error.
@@ -35,9 +34,7 @@ struct Photometric : DirectResidual {
 
   static constexpr int kMaxPoints = 4000;
 
-  // Errors of interpolation and blur are correlated between neighbouring
-  // pixels. With this share of the information the covariance is consistent in
-  // simulated sequences (docs/direct.md).
+  // Errors of neighbouring pixels are correlated (docs/direct.md).
   static constexpr double kInformation = 0.17;
 
   // X_prev (m), sigma of its depth (m), its gray level.
@@ -106,8 +103,7 @@ struct Photometric : DirectResidual {
     *rejection = D{};
   }
 
-  // Turns a row into pure noise of the slope along an image axis (0: u, 1: v),
-  // in residual sigmas per pixel.
+  // In residual sigmas per pixel.
   static void NoiseRow(const DirectInput& input, int axis, double* columns) {
     // Noise of differences between neighbours in the smooth pyramid, relative
     // to differences between two images.

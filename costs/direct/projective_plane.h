@@ -41,8 +41,7 @@ struct ProjectivePlane : Surface {
                  surface.excess * surface.excess / (kMaxDistance2 * length2);
   }
 
-  // Turns a row into pure noise of the plane's slope along an image axis:
-  // N + noise (1, 0, -x) or (0, 1, -y), where |N| is about 1 / z.
+  // N becomes noise (1, 0, -x) or (0, 1, -y), where |N| is about 1 / z.
   static void NoiseRow(const DirectInput& input, int axis, double* columns) {
     const Camera& camera = input.cur->levels[0].camera;
     const double focal = axis == 0 ? camera.fx : camera.fy;

@@ -39,7 +39,7 @@ struct Surface : DirectResidual {
   static constexpr int kScaleGroup = 2;  // depths
   static constexpr int kPointColumns = 7;
 
-  // As in Photometric: depth noise is correlated over several pixels.
+  // Noise of neighbouring depths is correlated (docs/direct.md).
   static constexpr double kInformation = 0.75;
 
   static void Points(const FrameView& frame, int /*level*/,

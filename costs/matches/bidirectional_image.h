@@ -16,13 +16,11 @@ namespace rgbd_pose {
 //   rows 3-5  L_p^T (m_prev - project(R^T X_cur + C))
 //
 // L L^T is the inverse covariance of the measurement plus the projected point,
-// frozen at the bound motion. Both directions contain the same three
-// measurements, each with the noise of both frames. So each covariance is
-// doubled (the rows are divided by sqrt 2).
+// frozen at the bound motion. Both directions contain the same measurements
+// with the noise of both frames, so each covariance is doubled.
 //
 // If only one frame has depth, only its points can be projected, and only u and
-// v can be compared: two rows, not divided; the other four are zero. Points
-// behind a camera: see Projection (image_error.h).
+// v can be compared: two rows, not doubled; the other four are zero.
 struct BidirectionalImage {
   static constexpr char kName[] = "bidirectional_image";
   static constexpr int kRows = 6;

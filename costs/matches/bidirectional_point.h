@@ -9,19 +9,14 @@
 
 namespace rgbd_pose {
 
-// The point of an observation, and the whitening of a 3D error e at that point
-// along the axes of the measurement. With x = a z and y = b z on the ray
-// (a, b, 1), an error of (u, v, z) moves the point by
-//
-//   dx = (z / fx) du + a dz,  dy = (z / fy) dv + b dz,
-//
-// so the image parts of e are e_x - a e_z and e_y - b e_z, and
+// The point of an observation, and the whitening r = L^T e of a 3D error e at
+// that point along the axes of the measurement (docs/jacobian_tables.md). On
+// the ray (a, b, 1) an error of depth also moves x = a z and y = b z, so
 //
 //   r = [ w_u (e_x - a e_z), w_v (e_y - b e_z), w_z e_z ],
-//   w_u = fx / (z sigma_px), w_v = fy / (z sigma_px), w_z = 1 / sigma_depth:
+//   w_u = fx / (z sigma_px), w_v = fy / (z sigma_px), w_z = 1 / sigma_depth.
 //
-// r = L^T e with L L^T the inverse of the point's 3 x 3 covariance (Khoshelham
-// & Elberink 2012). D is double or a vector of doubles.
+// L L^T is the inverse of PointCovariance. D is double or a vector of doubles.
 template <typename D>
 struct RayWhitening {
   static constexpr int kColumns = 6;
@@ -103,18 +98,17 @@ inline void PackRay(const Camera& camera, const Observation& o,
   columns[5] = inverse * sigma;
 }
 
-// The thesis' cost: the 3D error of a match in both frames.
+// The thesis' cost: the 3D error of a match in both frames
+// (docs/jacobian_tables.md).
 //
-//   e_c = X_cur  - R (X_prev - C)      current error   (Tables 2.3, 2.4, 2.5)
-//   e_p = X_prev - (R^T X_cur + C)     previous error  (Tables 2.6, 2.7, 2.8)
+//   rows 0-2  e_c = X_cur  - R (X_prev - C)     whitened by the current noise
+//   rows 3-5  e_p = X_prev - (R^T X_cur + C)    whitened by the previous noise
 //
-// Rows 0-2 are e_c whitened by the noise of the current frame, rows 3-5 are e_p
-// whitened by the noise of the previous frame, each along the measurement's
-// axes (u, v, depth; RayWhitening). As e_p = -R^T e_c, the six rows contain
-// three independent measurements, each twice, and each error has the noise of
-// both frames. So a row's sigma is twice the sigma of one frame's measurement:
-// (1/4) e^T (S_cur^-1 + S_prev^-1) e equals the Mahalanobis distance
-// e^T (S_cur + S_prev)^-1 e if both frames are equally noisy.
+// As e_p = -R^T e_c, these are three independent measurements, each twice, and
+// each error has the noise of both frames. So a row's sigma is twice that of
+// one frame's measurement: (1/4) e^T (S_cur^-1 + S_prev^-1) e equals the
+// Mahalanobis distance e^T (S_cur + S_prev)^-1 e if both frames are equally
+// noisy.
 struct BidirectionalPoint {
   static constexpr char kName[] = "bidirectional_point";
   static constexpr int kRows = 6;
@@ -135,7 +129,7 @@ struct BidirectionalPoint {
     return true;
   }
 
-  // The six residuals, for any mix of scalars; the oracle differentiates this.
+  // The six residuals, for any mix of scalars.
   template <typename M, typename D, typename T>
   static void Residual(const RotationAndCenter<M>& motion, const D* columns,
                        T* r) {
@@ -152,8 +146,7 @@ struct BidirectionalPoint {
     prev.Whiten(e_p, r + 3);
   }
 
-  // The residuals and their hand-written derivatives
-  // J[row][alpha beta gamma Cx Cy Cz] (docs/jacobian_tables.md).
+  // J[row][alpha beta gamma Cx Cy Cz].
   template <typename D>
   static void Jacobian(const MotionDerivatives& motion, const D* columns, D* r,
                        D (*J)[6]) {

@@ -20,10 +20,9 @@ namespace rgbd_pose {
 //       + su_prev^2 (E^T x_cur)_0^2 + sv_prev^2 (E^T x_cur)_1^2 + eps^2
 //
 // where su = sigma_px / fx, sv = sigma_px / fy: D^2 - eps^2 is the variance of
-// N to first order. N and D are both proportional to |C|. So r contains no
-// scale, which must come from other costs, and would be 0 / 0 at C = 0. eps is
-// the value of D at a baseline of kRestBaseline; it keeps r finite and
-// differentiable there.
+// N to first order. N and D are proportional to |C|: the scale must come from
+// other costs, and r would be 0 / 0 at C = 0. eps, the value of D at a baseline
+// of kRestBaseline, keeps r finite and differentiable there.
 //
 // Two problems follow. C = 0 is a trap: all residuals vanish there, whatever
 // the rotation. And a wrong match that happens to lie on its epipolar line

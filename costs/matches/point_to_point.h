@@ -13,10 +13,8 @@ namespace rgbd_pose {
 // trace(S_cur + R S_prev R^T) / 3, and does not depend on the motion.
 //
 // The errors of a depth camera are many times larger along the ray than across
-// it. One sigma for all directions wastes information of the image, and the
-// rows do not have unit variance. They are not whitened, so the covariance
-// comes from their scatter. Their squared norm has longer tails than chi^2 of
-// three degrees; how long depends on the bound motion.
+// it, so the rows are not whitened: their squared norm has longer tails than
+// chi^2 of three degrees, and the covariance comes from their scatter.
 struct PointToPoint : WeightedForwardError<PointToPoint, 3> {
   static constexpr char kName[] = "point_to_point";
   static constexpr bool kIsWhitened = false;

@@ -30,8 +30,7 @@ struct ReprojectionOf : ImageError<N, Forward> {
 //   r = L^T (m_cur - project(R (X_prev - C))),  m = (u, v)
 //
 // L L^T is the inverse covariance of m_cur plus the projected point, frozen at
-// the bound motion. Needs only the depth of the previous frame and uses no
-// other. Points behind the camera: see Projection.
+// the bound motion. Needs only the depth of the previous frame.
 struct Reprojection : ReprojectionOf<2> {
   static constexpr char kName[] = "reprojection";
 };
@@ -42,9 +41,7 @@ struct Reprojection : ReprojectionOf<2> {
 //
 //   r = L^T (m_cur - project(R (X_prev - C))),  m = (u, v, 1 / z)
 //
-// L L^T is the inverse covariance of m_cur plus the projected point, frozen at
-// the bound motion. Needs both depths. Points behind the camera: see
-// Projection.
+// with L as above. Needs both depths.
 struct ReprojectionDepth : ReprojectionOf<3> {
   static constexpr char kName[] = "reprojection_depth";
 };

@@ -20,10 +20,9 @@ constexpr double kNearestDepth = 0.1;
 //   a = q_x w = (u - cx) / fx,  b = q_y w = (v - cy) / fy,  w = 1 / q_z.
 //
 // Nearer than z0 = kNearestDepth and behind the camera, the inverse depth
-// continues along its tangent, w = (2 z0 - q_z) / z0^2. It is finite, has a
-// continuous derivative and grows the farther a point lies behind. So no motion
-// gains by moving points behind the camera, where -q would give the same image.
-// T is double, ceres::Jet or a vector of doubles.
+// continues along its tangent, w = (2 z0 - q_z) / z0^2: it grows the farther a
+// point lies behind, and no motion gains by moving points there, where -q would
+// give the same image. T is double, ceres::Jet or a vector of doubles.
 template <typename T>
 class Projection {
  public:
@@ -55,10 +54,8 @@ class Projection {
 
 // The whitened error of a point of one frame, moved and projected into the
 // other frame, against its measurement there: u and v (N = 2) or u, v and
-// inverse depth (N = 3). Pixels are in units of the focal length
-// (see Projection); after whitening, units do not matter. Direction is Forward
-// or Backward (moved_point.h). Columns: the point, its measurement and the
-// whitening.
+// inverse depth (N = 3), as in Projection. Direction is Forward or Backward
+// (moved_point.h). Columns: the point, its measurement and the whitening.
 template <int N, typename Direction>
 struct ImageError {
   static constexpr int kWhitening = 3 + N;

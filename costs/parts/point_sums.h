@@ -13,8 +13,8 @@
 //
 // With N = A^T A and n = A^T r (3 numbers) the normal equations in (omega, c)
 // are sums of N, N [q]x, [q]x^T N [q]x, n and n x q: 27 sums for any number of
-// rows instead of 27 for each row. The relation of omega and c to the six
-// parameters is the same for all matches and is applied once, at the end.
+// rows instead of 27 for each row. How omega and c depend on the six parameters
+// is the same for all matches and is applied once, at the end.
 
 namespace rgbd_pose {
 

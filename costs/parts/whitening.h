@@ -78,9 +78,9 @@ bool PackWhitening(const Eigen::Matrix<double, N, N>& covariance,
                      [](double w) { return std::isfinite(w); });
 }
 
-// The same for an information matrix, which may be singular: a lower triangle w
-// with w^T w = information, computed from the last row upwards. Returns false
-// if the matrix is zero or not positive semidefinite.
+// The same for an information matrix: w^T w = information, computed from the
+// last row upwards. Returns false if the matrix, which may be singular, is zero
+// or not positive semidefinite.
 template <int N>
 bool PackInformation(const Eigen::Matrix<double, N, N>& information,
                      double* columns) {
