@@ -20,17 +20,10 @@ std::unique_ptr<MotionCost> MakeCost(std::string_view name) {
   return MakeNamed<CostOf>(ResidualTypes(), name);
 }
 
-std::vector<RobustCost> MakeRobustCosts(const std::string& cost_names,
-                                        const std::string& loss_names) {
-  return MakeRobustCosts(
-      cost_names, loss_names, CostNames(),
-      [](const std::string& name) { return MakeCost(name); });
-}
-
 std::vector<RobustCost> MakeRobustCosts(
     const std::string& cost_names, const std::string& loss_names,
     const std::vector<std::string>& names,
-    const std::function<std::unique_ptr<MotionCost>(const std::string& name)>&
+    const std::function<std::unique_ptr<MotionCost>(std::string_view name)>&
         make) {
   const std::vector<std::string> costs = SplitText(cost_names, '+');
   const std::vector<std::string> losses = SplitText(loss_names, ',');

@@ -22,18 +22,14 @@ inline constexpr char kDefaultCost[] = "bidirectional_point";
 inline constexpr char kDefaultLoss[] = "tukey";
 
 // Costs by name ("bidirectional_point+motion_prior"), with one loss for all of
-// them or one loss each ("tukey", "tukey,none"), see ParseLoss. Throws
-// InputError with the list of known names.
+// them or one loss each ("tukey", "tukey,none"), see ParseLoss. `make` returns
+// the cost with one of `names`, or null. Throws InputError with the list of
+// known names.
 std::vector<RobustCost> MakeRobustCosts(
     const std::string& cost_names = kDefaultCost,
-    const std::string& loss_names = kDefaultLoss);
-
-// The same for costs from another factory: `make` returns the cost with a name,
-// or null if the name is not one of `names`.
-std::vector<RobustCost> MakeRobustCosts(
-    const std::string& cost_names, const std::string& loss_names,
-    const std::vector<std::string>& names,
-    const std::function<std::unique_ptr<MotionCost>(const std::string& name)>&
-        make);
+    const std::string& loss_names = kDefaultLoss,
+    const std::vector<std::string>& names = CostNames(),
+    const std::function<std::unique_ptr<MotionCost>(std::string_view name)>&
+        make = [](std::string_view name) { return MakeCost(name); });
 
 }  // namespace rgbd_pose

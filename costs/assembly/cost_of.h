@@ -8,10 +8,9 @@
 
 namespace rgbd_pose {
 
-// Detects whether a residual type is a prior.
+// Detect optional constants of a residual type.
 template <typename Residual>
 using IsPriorOf = decltype(Residual::kIsPrior);
-// Detects an association policy of a residual type.
 template <typename Residual>
 using AssociationOf = decltype(Residual::kAssociation);
 

@@ -16,10 +16,9 @@
 
 namespace rgbd_pose {
 
-// Detects a residual type's degrees of freedom per match.
+// Detect optional functions of a residual type (cost_of.h).
 template <typename Residual>
 using DegreesOf = decltype(&Residual::Degrees);
-// Detects a residual type's limit for inliers.
 template <typename Residual>
 using InlierLimitOf = decltype(&Residual::InlierLimit);
 
@@ -144,7 +143,9 @@ class PackedCost : public MotionCost {
   void AddBlock(const Block& columns, int match) {
     packed_.Append(columns);
     matches_.push_back(match);
-    degrees_.push_back(Degrees(columns.data()));
+    if constexpr (kHas<DegreesOf, Residual>) {
+      degrees_.push_back(Residual::Degrees(columns.data()));
+    }
   }
 
   // To be called after the last block.
@@ -156,11 +157,6 @@ class PackedCost : public MotionCost {
   }
 
  private:
-  static int Degrees(const double* columns) {
-    if constexpr (kHas<DegreesOf, Residual>) return Residual::Degrees(columns);
-    return Residual::kDegreesOfFreedom;
-  }
-
   std::vector<int> matches_;
   std::vector<int> degrees_;
   PackedColumns packed_;
