@@ -23,60 +23,94 @@ struct LookUpKernel {
   [[gnu::always_inline]] static void Run(const DirectInput& input,
                                          const PackedColumns& points,
                                          PackedColumns* seen) {
-    using D = typename Lanes<W>::Type;
-    typedef float Floats __attribute__((vector_size(sizeof(D) / 2)));
-    constexpr int kTile = 256;
-    alignas(64) double u[kTile], v[kTile], z[kTile], rejections[kTile];
-    alignas(64) float reads[Residual::kSamples][kTile] = {};
-    alignas(64) double found[Residual::kColumns][kTile];
-    bool is_read[kTile];
+    Tile tile;
+    std::memset(tile.samples, 0, sizeof(tile.samples));
     seen->size = 0;
     for (int begin = 0; begin < points.size; begin += kTile) {
       const int size = std::min(kTile, points.size - begin);
-      for (int i = 0; i < size; i += W) {
-        D point[Residual::kPointColumns];
-        points.Load(begin + i, point);
-        ProjectedPoint<D> place;
-        Residual::Locate(input, point, &place);
-        std::memcpy(&u[i], &place.u, sizeof(D));
-        std::memcpy(&v[i], &place.v, sizeof(D));
-        std::memcpy(&z[i], &place.z, sizeof(D));
-      }
-      // Points that are not read keep valid numbers from an earlier point.
-      for (int i = 0; i < size; ++i) {
-        is_read[i] = z[i] > DirectInput::kMinDepth &&
-                     !(input.moving != nullptr &&
-                       input.moving->Contains(input.px_to_full * u[i],
-                                              input.px_to_full * v[i])) &&
-                     Residual::Read(input, u[i], v[i], kTile, &reads[0][i]);
-      }
-      for (int i = 0; i < size; i += W) {
-        D point[Residual::kPointColumns], samples[Residual::kSamples];
-        D columns[Residual::kColumns], rejection;
-        points.Load(begin + i, point);
-        for (int k = 0; k < Residual::kSamples; ++k) {
-          Floats floats;
-          std::memcpy(&floats, &reads[k][i], sizeof(Floats));
-          samples[k] = __builtin_convertvector(floats, D);
-        }
-        Residual::LookUp(input, point, samples, columns, &rejection);
-        for (int k = 0; k < Residual::kColumns; ++k) {
-          std::memcpy(&found[k][i], &columns[k], sizeof(D));
-        }
-        std::memcpy(&rejections[i], &rejection, sizeof(D));
-      }
-      int kept[kTile + 1];
-      int count = 0;
-      for (int i = 0; i < size; ++i) {
-        kept[count] = i;
-        count += is_read[i] && rejections[i] < 1.0;
-      }
-      for (int k = 0; k < Residual::kColumns; ++k) {
-        double* const to = &seen->values[k * seen->stride + seen->size];
-        for (int i = 0; i < count; ++i) to[i] = found[k][kept[i]];
-      }
-      seen->size += count;
+      for (int i = 0; i < size; i += W)
+        Locate<W>(input, points, begin, i, &tile);
+      Read(input, size, &tile);
+      for (int i = 0; i < size; i += W)
+        LookUp<W>(input, points, begin, i, &tile);
+      Append(tile, size, seen);
     }
+  }
+
+ private:
+  static constexpr int kTile = 256;
+
+  // A tile of points between the passes.
+  struct Tile {
+    alignas(64) double u[kTile], v[kTile], z[kTile];
+    alignas(64) float samples[Residual::kSamples][kTile];
+    alignas(64) double columns[Residual::kColumns][kTile];
+    alignas(64) double rejection[kTile];
+    bool is_read[kTile];
+  };
+
+  template <int W>
+  [[gnu::always_inline]] static void Locate(const DirectInput& input,
+                                            const PackedColumns& points,
+                                            int begin, int i, Tile* tile) {
+    using D = typename Lanes<W>::Type;
+    D point[Residual::kPointColumns];
+    points.Load(begin + i, point);
+    ProjectedPoint<D> place;
+    Residual::Locate(input, point, &place);
+    std::memcpy(&tile->u[i], &place.u, sizeof(D));
+    std::memcpy(&tile->v[i], &place.v, sizeof(D));
+    std::memcpy(&tile->z[i], &place.z, sizeof(D));
+  }
+
+  // Points that are not read keep valid numbers from an earlier point.
+  [[gnu::always_inline]] static void Read(const DirectInput& input, int size,
+                                          Tile* tile) {
+    for (int i = 0; i < size; ++i) {
+      tile->is_read[i] =
+          tile->z[i] > DirectInput::kMinDepth &&
+          !(input.moving != nullptr &&
+            input.moving->Contains(input.px_to_full * tile->u[i],
+                                   input.px_to_full * tile->v[i])) &&
+          Residual::Read(input, tile->u[i], tile->v[i], kTile,
+                         &tile->samples[0][i]);
+    }
+  }
+
+  template <int W>
+  [[gnu::always_inline]] static void LookUp(const DirectInput& input,
+                                            const PackedColumns& points,
+                                            int begin, int i, Tile* tile) {
+    using D = typename Lanes<W>::Type;
+    typedef float Floats __attribute__((vector_size(sizeof(D) / 2)));
+    D point[Residual::kPointColumns], samples[Residual::kSamples];
+    D columns[Residual::kColumns], rejection;
+    points.Load(begin + i, point);
+    for (int k = 0; k < Residual::kSamples; ++k) {
+      Floats floats;
+      std::memcpy(&floats, &tile->samples[k][i], sizeof(Floats));
+      samples[k] = __builtin_convertvector(floats, D);
+    }
+    Residual::LookUp(input, point, samples, columns, &rejection);
+    for (int k = 0; k < Residual::kColumns; ++k) {
+      std::memcpy(&tile->columns[k][i], &columns[k], sizeof(D));
+    }
+    std::memcpy(&tile->rejection[i], &rejection, sizeof(D));
+  }
+
+  [[gnu::always_inline]] static void Append(const Tile& tile, int size,
+                                            PackedColumns* seen) {
+    int kept[kTile + 1];
+    int count = 0;
+    for (int i = 0; i < size; ++i) {
+      kept[count] = i;
+      count += tile.is_read[i] && tile.rejection[i] < 1.0;
+    }
+    for (int k = 0; k < Residual::kColumns; ++k) {
+      double* const to = &seen->values[k * seen->stride + seen->size];
+      for (int i = 0; i < count; ++i) to[i] = tile.columns[k][kept[i]];
+    }
+    seen->size += count;
   }
 };
 
