@@ -23,7 +23,7 @@ std::unique_ptr<MotionCost> MakeCost(std::string_view name) {
 std::vector<RobustCost> MakeRobustCosts(
     const std::string& cost_names, const std::string& loss_names,
     const std::vector<std::string>& names,
-    const std::function<std::unique_ptr<MotionCost>(std::string_view name)>&
+    const std::function<std::unique_ptr<MotionCost>(const std::string& name)>&
         make) {
   const std::vector<std::string> costs = SplitText(cost_names, '+');
   const std::vector<std::string> losses = SplitText(loss_names, ',');

@@ -29,7 +29,7 @@ std::vector<RobustCost> MakeRobustCosts(
     const std::string& cost_names = kDefaultCost,
     const std::string& loss_names = kDefaultLoss,
     const std::vector<std::string>& names = CostNames(),
-    const std::function<std::unique_ptr<MotionCost>(std::string_view name)>&
-        make = [](std::string_view name) { return MakeCost(name); });
+    const std::function<std::unique_ptr<MotionCost>(const std::string& name)>&
+        make = [](const std::string& name) { return MakeCost(name); });
 
 }  // namespace rgbd_pose

@@ -89,7 +89,7 @@ std::vector<RobustCost> MakeDirectCosts(const std::string& cost_names,
   std::vector<std::string> names = DirectCostNames();
   names.emplace_back(MotionPriorCost::kName);
   return MakeRobustCosts(
-      cost_names, loss_names, names, [&](std::string_view name) {
+      cost_names, loss_names, names, [&](const std::string& name) {
         return name == MotionPriorCost::kName ? MakeCost(name)
                                               : MakeDirectCost(name, options);
       });

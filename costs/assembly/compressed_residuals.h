@@ -1,6 +1,6 @@
 #pragma once
 
-#include <ceres/lossfunction.h>
+#include <ceres/loss_function.h>
 
 #include <vector>
 
@@ -25,13 +25,15 @@ namespace rgbd_pose {
 // that Ceres forms with one block per residual, whatever the sign of rho''.
 // Time and memory are linear in the number of residuals; nothing is allocated.
 template <typename Residual>
-struct CompressedResiduals {
+class CompressedResiduals {
+ public:
   // The number of parameters.
   static constexpr int K = Residual::kParameters;
 
   // Both must outlive this object.
-  const std::vector<Residual>* residuals;
-  const ceres::LossFunction* loss;
+  CompressedResiduals(const std::vector<Residual>* residuals,
+                      const ceres::LossFunction* loss)
+      : residuals_(residuals), loss_(loss) {}
 
   bool operator()(const double* x, bool with_derivatives,
                   CompressedSums<K>* sums) const {
@@ -39,11 +41,11 @@ struct CompressedResiduals {
     Eigen::Matrix<double, kRows, 1> r;
     RowMajor<kRows, K> J;
     double* const derivatives = with_derivatives ? J.data() : nullptr;
-    for (const Residual& residual : *residuals) {
+    for (const Residual& residual : *residuals_) {
       // A loss may treat a non-finite residual as an outlier.
       if (!residual(x, r.data(), derivatives) || !r.allFinite()) return false;
       double rho[3] = {r.squaredNorm(), 1.0, 0.0};
-      if (loss != nullptr) loss->Evaluate(r.squaredNorm(), rho);
+      if (loss_ != nullptr) loss_->Evaluate(r.squaredNorm(), rho);
       sums->cost += 0.5 * rho[0];
       if (!with_derivatives) continue;
       const Eigen::Matrix<double, K, 1> g = J.transpose() * r;
@@ -53,6 +55,10 @@ struct CompressedResiduals {
     }
     return true;
   }
+
+ private:
+  const std::vector<Residual>* residuals_;
+  const ceres::LossFunction* loss_;
 };
 
 // The block itself, to be owned by a ceres::Problem. Add it without a loss: the
@@ -63,7 +69,7 @@ ceres::CostFunction* MakeCompressedBlock(
     const ceres::LossFunction* loss = nullptr) {
   using Sums = CompressedResiduals<Residual>;
   return new CompressedBlock<Residual::kParameters, Sums>(
-      Sums{residuals, loss});
+      Sums(residuals, loss));
 }
 
 }  // namespace rgbd_pose

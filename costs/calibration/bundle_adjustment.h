@@ -65,10 +65,10 @@ bool LandmarkCovariance(const CalibrationViews& views, bool training_only,
                         CalibrationMatrix* model_covariance,
                         CalibrationMatrix* sandwich_covariance);
 
-// The normal equations of a bundle adjustment at a state. The unknowns are all
-// poses but the first, six numbers each, then y of CalibrationOrigin; the
-// depths of landmarks are eliminated. Only landmarks are included, neither
-// known distances nor the prior.
+// The normal equations of a bundle adjustment at a state, without known
+// distances and the prior. The unknowns are all poses but the first, six
+// numbers each, then y of CalibrationOrigin; the depths of landmarks are
+// eliminated.
 struct ReducedCameraSystem {
   Eigen::MatrixXd hessian;  // only the lower triangle is valid
 

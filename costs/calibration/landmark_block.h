@@ -14,9 +14,8 @@ namespace rgbd_pose {
 // Width of Cauchy's loss on landmarks, in standard deviations.
 inline constexpr double kLandmarkLossWidth = 2.5;
 
-// The solver's calibration parameters y: theta = start + width . y. Fixed
-// parameters have width 0. y counts in standard deviations of the prior, so all
-// of its entries have a similar size.
+// The solver's calibration parameters y, in standard deviations of the prior:
+// theta = start + width . y. Fixed parameters have width 0.
 struct CalibrationOrigin {
   CalibrationVector start;
   CalibrationVector width;

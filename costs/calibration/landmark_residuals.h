@@ -10,10 +10,10 @@
 #include "costs/calibration/lens.h"
 
 // Residuals of a landmark: a point on the viewing ray of a pixel of one
-// keyframe, its anchor. Its inverse depth d there is a parameter. Other
-// keyframes (views) see it. All residuals depend on the poses of both
-// (X_cam = R (X_world - C)), on d and on a CalibrationVector theta. The model
-// predicts the measurements: a pixel and an inverse depth as the sensor gives.
+// keyframe, its anchor, with the inverse depth d there as a parameter, seen by
+// other keyframes (views). They depend on the poses of both (X_cam =
+// R (X_world - C)), on d and on a CalibrationVector theta, and compare what the
+// model predicts with the pixels and inverse depths that the sensor measures.
 
 namespace rgbd_pose {
 

@@ -40,10 +40,7 @@ struct Photometric : DirectResidual {
   // X_prev (m), sigma of its depth (m), its gray level.
   static constexpr int kPointColumns = 5;
 
-  static void Points(const FrameView& frame, int level,
-                     const DirectOptions& options, PackedColumns* points) {
-    TexturedPoints(frame, level, options, points);
-  }
+  static constexpr auto* Points = &TexturedPoints;
 
   template <typename D>
   [[gnu::always_inline]] static void Locate(const DirectInput& input,

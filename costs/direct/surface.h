@@ -13,9 +13,9 @@ constexpr int kSurfaceStep = 4;
 
 // A point of the previous frame's surface as seen in the current frame, and the
 // plane N . p = 1 (p in current axes, m; N in 1 / m) of the surface measured
-// there. The slope of the plane is the slope of the previous surface, moved;
-// its distance is the mean of nine measured inverse depths. In normalised image
-// coordinates the inverse depth of a plane is linear: 1 / z = N . (x, y, 1).
+// there: its slope is that of the previous surface, moved, its distance the
+// mean of nine measured inverse depths. In normalised image coordinates the
+// inverse depth of a plane is linear: 1 / z = N . (x, y, 1).
 template <typename D>
 struct MeasuredSurface {
   D q[3];       // m
@@ -29,8 +29,7 @@ struct MeasuredSurface {
 constexpr double kSlopeNoise = 0.0667;
 
 // Sigma of a surface point relative to the sigma of one depth, from simulated
-// pairs: averaging nine depths here and 25 there leaves half the sigma each,
-// because their noise is correlated.
+// pairs: averages of nine and of 25 depths with correlated noise.
 constexpr double kSurfaceSigma = 0.707;
 
 // Common part of the costs on surfaces. Columns of a point (see SmoothPoints):
